@@ -20,12 +20,6 @@ using namespace crofton::bench;
 
 namespace {
 
-void append(TriangleMesh& mesh, const TriangleMesh& other) {
-    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-    mesh.positions.insert(mesh.positions.end(), other.positions.begin(), other.positions.end());
-    for (const std::uint32_t i : other.indices) mesh.indices.push_back(first + i);
-}
-
 // Each kind of object once: meshes on one node make one.
 void find_in_town() {
     auto source = *assets::make_town({});

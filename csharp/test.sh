@@ -3,12 +3,8 @@
 # Builds the shared library, then builds and tests the classes and runs the example. Says so and does nothing where there is no Mono.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-for tool in mcs mono; do
-    if ! command -v "$tool" >/dev/null; then
-        echo "csharp: skipped, no $tool here; third_party/install.sh --csharp installs it"
-        exit 0
-    fi
-done
+source packaging/need_tools.sh
+need_tools csharp --csharp mcs mono
 cmake --preset shared >/dev/null
 cmake --build --preset shared
 out=$PWD/build/csharp

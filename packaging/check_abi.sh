@@ -5,12 +5,8 @@
 # programs that are linked already: raise CROFTON_API_VERSION and SOVERSION with it.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-for tool in abidw abidiff; do
-    if ! command -v "$tool" >/dev/null; then
-        echo "check_abi: skipped, no $tool here; third_party/install.sh --packages installs it"
-        exit 0
-    fi
-done
+source packaging/need_tools.sh
+need_tools check_abi --packages abidw abidiff
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 # The types of all functions, in a library that holds nothing else.

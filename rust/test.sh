@@ -3,10 +3,8 @@
 # Builds the shared library, then builds, tests and runs the crate. Says so and does nothing where there is no cargo.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-if ! command -v cargo >/dev/null; then
-    echo "rust: skipped, no cargo here; third_party/install.sh --rust installs it"
-    exit 0
-fi
+source packaging/need_tools.sh
+need_tools rust --rust cargo
 cmake --preset shared >/dev/null
 cmake --build --preset shared
 export CROFTON_LIB_DIR=$PWD/build/shared/engine LD_LIBRARY_PATH=$PWD/build/shared/engine CARGO_TARGET_DIR=$PWD/build/rust

@@ -48,19 +48,31 @@ double size_of(const Body& a, const Body& b, const CasePair& place) {
     return a.reach() + b.reach() + b.radius() + glm::length(place.pose_b.translation - place.pose_a.translation);
 }
 
+// Calls check(random, surface, triangle) for `count` random triangles: as a mesh's surface, and as a body. Returns how
+// many of them are meshes.
+template <class Check>
+int for_each_triangle(int seed, int count, const Check& check) {
+    RandomBodies random(seed);
+    int checked = 0;
+    for (int i = 0; i < count; ++i) {
+        const Surface s = one_triangle(random);
+        const Result<mesh::MeshTree> tree = mesh::MeshTree::build(s.mesh);
+        if (!tree) continue;
+        CAPTURE(i);
+        check(random, Body::mesh(*tree).value(), s.triangle(0));
+        ++checked;
+    }
+    return checked;
+}
+
 }  // namespace
 
 TEST_SUITE("convex/triangle_touch") {
     TEST_CASE("depth and gap are those of the certified queries, for any triangle, gap and place") {
-        RandomBodies random(71);
         Manifolds found;
-        int touching = 0, apart = 0, rounds = 0;
-        for (int i = 0; i < 30000; ++i) {
-            Surface s = one_triangle(random);
-            const Result<mesh::MeshTree> tree = mesh::MeshTree::build(s.mesh);
-            if (!tree) continue;
-            ++rounds;
-            const Body surface = Body::mesh(*tree).value(), triangle = s.triangle(0), b = round_or_box(random);
+        int touching = 0, apart = 0;
+        const auto check = [&](RandomBodies& random, const Body& surface, const Body& triangle) {
+            const Body b = round_or_box(random);
             const double decade = std::pow(10.0, -random.number(0.3, 12.0));
             const double gap = (random.index(2) != 0 ? 1.0 : -1.0) * decade;
             const double offset = random.index(3) == 0 ? 1e7 : random.index(2) == 0 ? 1e3 : 0.0;
@@ -70,7 +82,6 @@ TEST_SUITE("convex/triangle_touch") {
             const Penetration deep = penetration({triangle, place.pose_a}, {b, place.pose_b});
             const Distance away = distance({triangle, place.pose_a}, {b, place.pose_b});
             const double tolerance = 2e-9 * size_of(triangle, b, place);
-            CAPTURE(i);
             if (deep.overlapping) {
                 REQUIRE(found.all().size() == 1);
                 const Manifold& m = found.all()[0];
@@ -90,41 +101,33 @@ TEST_SUITE("convex/triangle_touch") {
             } else if (away.distance > margin + tolerance) {
                 CHECK(found.all().empty());
             }
-        }
-        CHECK(rounds > 20000);
+        };
+        CHECK(for_each_triangle(71, 30000, check) > 20000);
         CHECK(touching > 8000);
         CHECK(apart > 4000);
     }
 
     TEST_CASE("the answers do not change with the rotation of the surface, which is rigid to 1e-6 alone") {
-        RandomBodies random(72);
         Manifolds found;
-        for (int i = 0; i < 5000; ++i) {
-            Surface s = one_triangle(random);
-            const Result<mesh::MeshTree> tree = mesh::MeshTree::build(s.mesh);
-            if (!tree) continue;
-            const Body surface = Body::mesh(*tree).value(), triangle = s.triangle(0), box = random.box();
+        const auto check = [&](RandomBodies& random, const Body& surface, const Body& triangle) {
+            const Body box = random.box();
             CasePair place = nearly_touching(random, triangle, box, -std::pow(10.0, -random.number(1.0, 5.0)), 0.0);
             for (int k = 0; k < 3; ++k) place.pose_b.rotation[k] += 2e-7 * random.direction();
             contact_manifolds({surface, place.pose_a}, {box, place.pose_b}, {}, found);
             const Penetration deep = penetration({triangle, place.pose_a}, {box, place.pose_b});
-            if (!deep.overlapping) continue;
-            CAPTURE(i);
+            if (!deep.overlapping) return;
             REQUIRE(found.all().size() == 1);
             const double tolerance = 2e-9 * size_of(triangle, box, place);
             CHECK(found.all()[0].depth >= deep.lower - tolerance);
             CHECK(found.all()[0].depth <= deep.upper + tolerance);
-        }
+        };
+        CHECK(for_each_triangle(72, 5000, check) > 3000);
     }
 
     TEST_CASE("points lie on both bodies up to half the depth, whatever the features") {
-        RandomBodies random(73);
         Manifolds found;
-        for (int i = 0; i < 5000; ++i) {
-            Surface s = one_triangle(random);
-            const Result<mesh::MeshTree> tree = mesh::MeshTree::build(s.mesh);
-            if (!tree) continue;
-            const Body surface = Body::mesh(*tree).value(), triangle = s.triangle(0), b = round_or_box(random);
+        const auto check = [&](RandomBodies& random, const Body& surface, const Body& triangle) {
+            const Body b = round_or_box(random);
             const CasePair place = nearly_touching(random, triangle, b, -1e-3, 0.0);
             contact_manifolds({surface, place.pose_a}, {b, place.pose_b}, {.margin = 0.01}, found);
             // The plane of a sliver is uncertain.
@@ -132,10 +135,10 @@ TEST_SUITE("convex/triangle_touch") {
             for (const Manifold& m : found.all())
                 for (int k = 0; k < m.count; ++k) {
                     const glm::dvec3 &p = m.points[k].position, half = 0.5 * m.points[k].depth * m.normal;
-                    CAPTURE(i);
                     CHECK(closest_point({triangle, place.pose_a}, p + half).distance < tolerance);
                     CHECK(closest_point({b, place.pose_b}, p - half).distance < tolerance);
                 }
-        }
+        };
+        CHECK(for_each_triangle(73, 5000, check) > 3000);
     }
 }

@@ -174,22 +174,22 @@ TEST_SUITE("cull/bound_set") {
         oracle::Crowd crowd = oracle::random_crowd(4096, 0.0, 8);
         BoxSet set;
         set.assign(crowd.boxes);
-        CHECK(set.chunks()[0].strays == 0);
+        CHECK(set.chunks()[0].out_of_frame == 0);
         const double quantum = set.chunks()[0].quantum;
         std::vector<std::uint32_t> one{5}, all;
         crowd.boxes[5].center.x += 1e6;
         set.update(one, crowd.boxes);
-        CHECK(set.chunks()[0].strays == 1);
+        CHECK(set.chunks()[0].out_of_frame == 1);
         CHECK(set.chunks()[0].quantum == quantum);
         crowd.boxes[5].center.x -= 1e6;
         set.update(one, crowd.boxes);
-        CHECK(set.chunks()[0].strays == 0);
+        CHECK(set.chunks()[0].out_of_frame == 0);
         for (std::uint32_t i = 0; i < 4096; ++i) {
             crowd.boxes[i].center.x += 1e6;
             all.push_back(i);
         }
         set.update(all, crowd.boxes);
-        CHECK(set.chunks()[0].strays == 0);
+        CHECK(set.chunks()[0].out_of_frame == 0);
         cull::VerdictBits bits;
         oracle::NearMisses random(9);
         for (int trial = 0; trial < 5; ++trial) {

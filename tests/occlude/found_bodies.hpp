@@ -16,12 +16,6 @@
 
 namespace crofton::testing {
 
-inline void append(TriangleMesh& mesh, const TriangleMesh& other) {
-    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-    mesh.positions.insert(mesh.positions.end(), other.positions.begin(), other.positions.end());
-    for (const std::uint32_t i : other.indices) mesh.indices.push_back(first + i);
-}
-
 inline TriangleMesh box_mesh(const glm::vec3& low, const glm::vec3& high) {
     TriangleMesh mesh;
     for (unsigned i = 0; i < 8; ++i)

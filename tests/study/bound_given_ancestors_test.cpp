@@ -58,32 +58,30 @@ TEST_SUITE("study/bound_given_ancestors") {
         const study::QuerySample samples[] = {*study::QuerySample::planes(region, 4096, 1),
                                               *study::QuerySample::lines(region, 4096, 1),
                                               *study::QuerySample::frusta(camera, region, 4096, 1)};
-        for (int trial = 0; trial < 1; ++trial) {
-            std::vector<glm::dvec3> points;
-            for (int i = 0; i < 20; ++i)
-                points.push_back(glm::dvec3(1.0, 0.5, 0.2) * sampling::ball_point(random.point<3>()));
-            const std::vector<Obb> ancestors = {
-                *fit::fit_oriented(points, glm::mat3(sampling::rotation(random.point<3>())))};
-            for (const auto& queries : samples) {
-                const auto by = [&](std::uint64_t cells) {
-                    return *bound_given_ancestors(points, ancestors, queries, measure::minimal_perimeter(),
-                                                  {.tolerance = 0.0, .max_cells = cells});
-                };
-                const auto none = by(0), few = by(64), many = by(25000);
-                CHECK(none.lower_bound > 0);
-                CHECK(none.lower_bound <= few.lower_bound);
-                CHECK(few.lower_bound <= many.lower_bound);
-                CHECK(many.lower_bound <= many.hits);
-                CHECK(many.hits <= none.hits);
-                CHECK(many.lower_bound > none.lower_bound);
-                CHECK(many.lower_bound > 0.7 * many.hits);
-                const auto reaching = queries.hitting(queries.all(), ancestors[0]);
-                for (int turn = 0; turn < 300; ++turn) {
-                    const auto box = *fit::fit_oriented(points, glm::mat3(sampling::rotation(random.point<3>())));
-                    CHECK(queries.hitting(reaching, box).size() >= many.lower_bound);
-                }
-                CHECK(queries.hitting(reaching, many.bound).size() == many.hits);
+        std::vector<glm::dvec3> points;
+        for (int i = 0; i < 20; ++i)
+            points.push_back(glm::dvec3(1.0, 0.5, 0.2) * sampling::ball_point(random.point<3>()));
+        const std::vector<Obb> ancestors = {
+            *fit::fit_oriented(points, glm::mat3(sampling::rotation(random.point<3>())))};
+        for (const auto& queries : samples) {
+            const auto by = [&](std::uint64_t cells) {
+                return *bound_given_ancestors(points, ancestors, queries, measure::minimal_perimeter(),
+                                              {.tolerance = 0.0, .max_cells = cells});
+            };
+            const auto none = by(0), few = by(64), many = by(25000);
+            CHECK(none.lower_bound > 0);
+            CHECK(none.lower_bound <= few.lower_bound);
+            CHECK(few.lower_bound <= many.lower_bound);
+            CHECK(many.lower_bound <= many.hits);
+            CHECK(many.hits <= none.hits);
+            CHECK(many.lower_bound > none.lower_bound);
+            CHECK(many.lower_bound > 0.7 * many.hits);
+            const auto reaching = queries.hitting(queries.all(), ancestors[0]);
+            for (int turn = 0; turn < 300; ++turn) {
+                const auto box = *fit::fit_oriented(points, glm::mat3(sampling::rotation(random.point<3>())));
+                CHECK(queries.hitting(reaching, box).size() >= many.lower_bound);
             }
+            CHECK(queries.hitting(reaching, many.bound).size() == many.hits);
         }
     }
 

@@ -5,7 +5,7 @@
 #include <crofton/bake/checksum.hpp>
 #include <crofton/core/error.hpp>
 #include <crofton/core/recovery.hpp>
-#include <string>
+#include <string_view>
 
 namespace crofton::bake {
 namespace {
@@ -14,18 +14,13 @@ constexpr std::size_t aligned(std::size_t size) {
     return (size + kAlignment - 1) / kAlignment * kAlignment;
 }
 
-tl::unexpected<Error> damaged(const std::string& what, std::uint64_t item = kNoItem) {
+tl::unexpected<Error> damaged(std::initializer_list<MessagePart> what, std::uint64_t item = kNoItem) {
     return fail(ErrorCode::parse, item, what);
 }
 
-std::string name_of(const Section& section) {
+std::string_view name_of(const Section& section) {
     const char* end = std::find(section.name, section.name + sizeof section.name, '\0');
-    return "section '" + std::string(section.name, end) + "'";
-}
-
-bool is_named(const Section& section, std::string_view name) {
-    const char* end = std::find(section.name, section.name + sizeof section.name, '\0');
-    return std::string_view(section.name, static_cast<std::size_t>(end - section.name)) == name;
+    return {section.name, static_cast<std::size_t>(end - section.name)};
 }
 
 bool all_zero(std::span<const std::byte> bytes) {
@@ -40,7 +35,7 @@ std::uint64_t checksum_of(Header header, std::span<const Section> table) {
 
 Result<void> check_header(const Header& header, std::size_t size) {
     if (std::memcmp(header.magic, Header().magic, sizeof header.magic) != 0)
-        return damaged("not a .crofton file (its first eight bytes are others)");
+        return damaged({"not a .crofton file (its first eight bytes are others)"});
     if (header.byte_order != Header().byte_order)
         return fail(ErrorCode::unsupported, kNoItem, "the file's byte order is not this machine's");
     if (header.version != kVersion)
@@ -48,10 +43,10 @@ Result<void> check_header(const Header& header, std::size_t size) {
             ErrorCode::unsupported, kNoItem,
             {"the file is of version ", header.version, ", this library reads version ", kVersion, ": bake it again"});
     if (header.file_size != size)
-        return damaged("the file has " + std::to_string(size) + " bytes, its header says " +
-                       std::to_string(header.file_size) + ": cut off or appended to");
+        return damaged(
+            {"the file has ", size, " bytes, its header says ", header.file_size, ": cut off or appended to"});
     if (header.section_count > kMaxSections || sizeof(Header) + header.section_count * sizeof(Section) > size)
-        return damaged("the header's section count is out of range");
+        return damaged({"the header's section count is out of range"});
     return {};
 }
 
@@ -62,13 +57,14 @@ Result<void> check_places(std::span<const std::byte> file, std::span<const Secti
         const Section& section = sections[i];
         const std::size_t begin = aligned(end);
         if (section.offset != begin || begin > file.size() || section.size > file.size() - begin)
-            return damaged(name_of(section) + " lies outside its place in the file", i);
+            return damaged({"section '", name_of(section), "' lies outside its place in the file"}, i);
         if (section.element_size == 0 || section.size % section.element_size != 0 || section.reserved != 0)
-            return damaged(name_of(section) + " does not hold whole elements", i);
-        if (!all_zero(file.subspan(end, begin - end))) return damaged(name_of(section) + ": padding before it", i);
+            return damaged({"section '", name_of(section), "' does not hold whole elements"}, i);
+        if (!all_zero(file.subspan(end, begin - end)))
+            return damaged({"section '", name_of(section), "': padding before it"}, i);
         end = begin + section.size;
     }
-    if (file.size() != aligned(end) || !all_zero(file.subspan(end))) return damaged("bytes after the last section");
+    if (file.size() != aligned(end) || !all_zero(file.subspan(end))) return damaged({"bytes after the last section"});
     return {};
 }
 
@@ -110,7 +106,7 @@ Result<Reader> Reader::open(std::span<const std::byte> file, Executor& executor)
     return detail::recover([&]() -> Result<Reader> {
         CROFTON_ASSERT(reinterpret_cast<std::uintptr_t>(file.data()) % kAlignment == 0,
                        "the bytes start at a multiple of 64");
-        if (file.size() < sizeof(Header)) return damaged("too short for a .crofton file");
+        if (file.size() < sizeof(Header)) return damaged({"too short for a .crofton file"});
         Header header;
         std::memcpy(&header, file.data(), sizeof header);
         if (const auto good = check_header(header, file.size()); !good) return tl::unexpected(good.error());
@@ -118,28 +114,28 @@ Result<Reader> Reader::open(std::span<const std::byte> file, Executor& executor)
         reader.file_ = file;
         reader.sections_ = {reinterpret_cast<const Section*>(file.data() + sizeof(Header)), header.section_count};
         if (header.table_checksum != checksum_of(header, reader.sections_))
-            return damaged("the header or the table of sections is damaged (its checksum differs)");
+            return damaged({"the header or the table of sections is damaged (its checksum differs)"});
         if (const auto good = check_places(file, reader.sections_); !good) return tl::unexpected(good.error());
         for (std::size_t i = 0; i < reader.sections_.size(); ++i) {
             const Section& section = reader.sections_[i];
             if (checksum(file.subspan(section.offset, section.size), executor) != section.checksum)
-                return damaged(name_of(section) + " is damaged (its checksum differs)", i);
+                return damaged({"section '", name_of(section), "' is damaged (its checksum differs)"}, i);
         }
         return reader;
     });
 }
 
 bool Reader::has(std::string_view name) const {
-    return std::any_of(sections_.begin(), sections_.end(), [&](const Section& s) { return is_named(s, name); });
+    return std::any_of(sections_.begin(), sections_.end(), [&](const Section& s) { return name_of(s) == name; });
 }
 
 Result<std::span<const std::byte>> Reader::find(std::string_view name, std::size_t element_size) const {
     for (const Section& section : sections_) {
-        if (!is_named(section, name)) continue;
-        if (section.element_size != element_size) return damaged(name_of(section) + " has elements of another size");
+        if (name_of(section) != name) continue;
+        if (section.element_size != element_size) return damaged({"section '", name, "' has elements of another size"});
         return file_.subspan(section.offset, section.size);
     }
-    return damaged("section '" + std::string(name) + "' is missing");
+    return damaged({"section '", name, "' is missing"});
 }
 
 }  // namespace crofton::bake

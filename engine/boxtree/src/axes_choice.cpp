@@ -10,10 +10,10 @@
 namespace crofton::boxtree {
 namespace {
 
-// Less of a saving than this may be chance.
+// Axes that save less than this share are not taken: it may be chance.
 constexpr double kLeastGain = 1.0 / 64.0;
 
-// What a visit of these items costs below, if they are divided along these axes alone, down to leaves.
+// The cost of visiting these items, if they are divided along these axes alone, down to leaves.
 struct Below {
     Splitter& splitter;
     std::span<const BuildItem> items;

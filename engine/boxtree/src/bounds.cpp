@@ -28,7 +28,7 @@ bool is_unit(float unit) {
     return std::frexp(unit, &exponent) == 0.5f && exponent - 1 >= kLeastExponent && exponent < 120;
 }
 
-// A position_unit in edge_units, as a power of two.
+// How many edge_units a position_unit is, as a power of two.
 int edge_shift_of(const Leaf& leaf) {
     return std::min(31, std::ilogb(leaf.position_unit) - std::ilogb(leaf.edge_unit));
 }
@@ -73,7 +73,7 @@ void fit_frame(Leaf& leaf, const Aabb& centers, double longest) {
         if (!centers.is_empty()) farthest = std::max(farthest, centers.half_extents()[j]);
     }
     leaf.edge_unit = unit_for(longest * (32768.0 / 32766.0), 15);
-    leaf.position_unit = std::max(leaf.edge_unit, unit_for(farthest, 14));  // boxes may stray as far again
+    leaf.position_unit = std::max(leaf.edge_unit, unit_for(farthest, 14));  // boxes may move as far again
     leaf.per_quantum = 0x1p14f / leaf.position_unit;
     leaf.edge_shift = edge_shift_of(leaf);
     leaf.l1_radius = 0.0f;
@@ -138,7 +138,7 @@ double size_of(const double* vector) {
     return std::fabs(vector[0]) + std::fabs(vector[1]) + std::fabs(vector[2]);
 }
 
-// What bounds along the axes may be off by, seen from the node's origin.
+// An error bound of bounds along the axes, relative to the node's origin.
 double error_bound_of(const Axes& axes, const Node& node, const Aabb& bounds) {
     return axes.rounding * (size_of(node.origin) + size_of(&bounds.min.x) + size_of(&bounds.max.x));
 }
@@ -213,7 +213,7 @@ Aabb bounds_of_lane(const Node& node, unsigned lane, const Axes& axes) {
     return around(axes, node.origin, low, high, axes.rounding);
 }
 
-// The sums of around(), lane beside lane.
+// As around(), for all lanes at once.
 void bounds_of_lanes(const Node& node, const Axes& axes, LaneBounds& bounds) {
     double off[kWidth];
     for (unsigned j = 0; j < 3; ++j) {

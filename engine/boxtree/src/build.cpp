@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A new tree from boxes.
+// Builds a tree from boxes.
 #include <algorithm>
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/boxtree/items.hpp>
@@ -14,13 +14,13 @@ namespace {
 
 constexpr std::size_t kSubtreeBatch = 32;
 
-// A subtree's nodes, whose leaves are there.
+// Makes a subtree's nodes from its leaves.
 void finish_nodes(Structure& structure, NodeId begin, NodeId end, const Topology& topology) {
     structure.link_nodes(begin, end, topology);
     structure.bound_nodes(begin, end);
 }
 
-// Each subtree's leaves and nodes right after it is divided: its boxes are in the cache then.
+// Makes each subtree's leaves and nodes right after dividing it, while its boxes are in the cache.
 void build_subtrees(Structure& structure, Builder& builder, Executor& executor) {
     const Topology& topology = builder.result();
     const std::span<const Subtree> subtrees = builder.subtrees();

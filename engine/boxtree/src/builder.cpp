@@ -10,9 +10,9 @@ namespace {
 
 constexpr std::uint32_t kClusterItems = kWidth * kWidth * kWidth;
 constexpr double kCells = 1u << 20;
-constexpr std::size_t kCrowd = 256;  // more in one cell are sorted by smaller ones
+constexpr std::size_t kCrowd = 256;  // items; a cell with more of them is sorted by smaller cells
 
-// Spreads ten bits to every third.
+// Moves ten bits to every third place.
 std::uint32_t spread(std::uint32_t v) {
     v = (v | v << 16) & 0x030000ffu;
     v = (v | v << 8) & 0x0300f00fu;
@@ -52,8 +52,8 @@ ItemId Builder::item_of(std::uint64_t key) {
     return static_cast<ItemId>(key & ((std::uint64_t{1} << kItemBits) - 1));
 }
 
-// Large boxes first, by powers of two of their size in cells of the mean spacing: beside small ones they would blow up
-// bounds. Then a Z-order curve through the centres.
+// The key by which items are sorted: large boxes first, then along a Z-order curve through the centres. Beside small
+// boxes a large one would make every bound large. Sizes are compared by powers of two of a cell.
 std::uint64_t Builder::key_of(ItemId id, const Obb& box) const {
     float half_size = 0.0f;
     for (int j = 0; j < 3; ++j) {
@@ -135,8 +135,8 @@ std::size_t Builder::sort_pass(std::size_t budget) {
     return spent;
 }
 
-// Cells that hold many items are sorted by smaller cells. Where those do not help either (a far outlier stretches
-// them), all is split from the top after all.
+// Sorts cells that hold many items by smaller cells. Where a far outlier makes even these too large, the whole crowd is
+// split from the top instead.
 std::size_t Builder::find_crowding(std::size_t budget, std::span<const Obb> boxes) {
     const std::size_t first = next_;
     while (next_ < keys_.size() && (next_ - first) / 4 < budget) {
@@ -165,7 +165,7 @@ void Builder::sort_crowd(std::span<std::uint64_t> keys, std::span<const Obb> box
     for (std::uint64_t& key : keys) key = cell | item_of(key);
 }
 
-// Along the curve: those at rest, then those that move.
+// Cuts the sorted items into clusters: first those at rest, then those that move.
 std::size_t Builder::gather_items(std::size_t budget, std::span<const Obb> boxes, const Movers& movers) {
     const std::size_t end = std::min(keys_.size(), next_ + 2 * budget), spent = (end - next_ + 1) / 2;
     for (; next_ < end; ++next_) {
@@ -201,7 +201,7 @@ void Builder::start_clusters() {
     phase_ = Phase::label;
 }
 
-// Which cluster each item is in, so that boxes can be read in the order in which they lie.
+// Notes each item's cluster, so that boxes can be read in the order in which they are stored.
 std::size_t Builder::label_items(std::size_t budget) {
     const std::size_t first = next_, last = std::min(clusters_.size(), first + budget * 2 / kClusterItems + 1);
     for (; next_ < last; ++next_) {
@@ -229,7 +229,7 @@ std::size_t Builder::bound_clusters(std::size_t budget, std::span<const Obb> box
     return spent;
 }
 
-// The nodes above the clusters, split from the top; then the places of the clusters, in the order of a walk.
+// Makes the nodes above the clusters by splitting from the top. Then gives the clusters places in the order of a walk.
 void Builder::place_clusters() {
     struct Task {
         Range range;  // of clusters
@@ -265,7 +265,7 @@ void Builder::place_clusters() {
     place_subtrees();
 }
 
-// All items below the root, without clusters.
+// Splits all items from the root, without clusters.
 void Builder::place_all() {
     result_.order.clear();
     result_.order.reserve(keys_.size());

@@ -20,9 +20,9 @@ struct Movers {
     const void* context = nullptr;
 };
 
-// Small crowds are split from the top by the criterion. Large ones are first sorted along a space-filling curve into
-// clusters of 4096, of items that move or of items at rest. The clusters are split from the top, and each cluster
-// within itself, a subtree for each. The work per item is the same whatever their number.
+// Makes the topology of a tree. Small crowds are split from the top by the criterion. Large ones are first sorted along
+// a space-filling curve into clusters of 4096 items, which all move or all rest. The clusters are split from the top,
+// and each cluster within itself, a subtree for each. The work per item is the same whatever their number.
 class Builder {
   public:
     // Coordinates are taken around `scene`'s middle. `items` is how many will be added.
@@ -52,11 +52,11 @@ class Builder {
     [[nodiscard]] const Topology& result() const { return result_; }
 
   private:
-    // A key is four bits for the size, ten an axis for the cell, and thirty for the item, from which ten more an axis
-    // follow.
+    // A key has four bits for the size, ten for the cell along each axis, and thirty for the item. Ten more bits along
+    // each axis are computed from the item's box where they are needed.
     static constexpr unsigned kItemBits = 30, kDigitBits = 12, kPasses = 3, kFineBits = 10;
     static constexpr std::size_t kDigits = std::size_t{1} << kDigitBits;
-    // Up to here the whole crowd is split from the top: the best tree, at a cost that grows with n log n.
+    // Crowds of at most so many items are split from the top: the best tree, at a cost that grows with n log n.
     static constexpr std::size_t kSmallCrowd = 32768;
 
     enum class Phase : std::uint8_t { sort, crowding, gather, append, label, bound, ready };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What comes before the subtrees, on several threads: keys, their order, the clusters' bounds.
+// The builder's work before the subtrees on several threads: keys, their order, the clusters' bounds.
 #include <algorithm>
 #include <crofton/core/recovery.hpp>
 #include <utility>
@@ -63,7 +63,7 @@ void Builder::label_items(Executor& executor) {
     });
 }
 
-// Largest values of the same numbers, in whatever order they come.
+// Computes the clusters' bounds. These are maxima, so the order of the items does not matter.
 void Builder::bound_clusters(std::span<const Obb> boxes, Executor& executor) {
     Vector<Vector<BuildItem>> found(executor.concurrency());
     for (auto& bounds : found) bounds.assign(clusters_.size(), kNothing);

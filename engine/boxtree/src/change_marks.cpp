@@ -18,7 +18,7 @@ void ChangeMarks::add_leaf() {
     }
 }
 
-// Neighbours often share a leaf: theirs are put down at once.
+// Neighbours in the list often share a leaf: their bits are collected and written once.
 void ChangeMarks::mark(std::span<const std::uint32_t> slots) {
     std::uint16_t* dirty = dirty_lanes_.data();
     LeafId leaf = 0;

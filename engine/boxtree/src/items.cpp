@@ -11,7 +11,7 @@ constexpr std::size_t kGrain = 1024;
 
 }  // namespace
 
-// Boxes are copied while they are at hand from the check.
+// Boxes are copied right after their check, while they are in the cache.
 Result<void> Items::assign(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks, Aabb& centers) {
     boxes_.reserve(boxes.size());
     for (std::size_t begin = 0; begin < boxes.size(); begin += kGrain) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// How far the boxes of leaves reach, in vectors.
+// The bounds of the boxes of a leaf along the world's axes or others, in vectors.
 #pragma once
 #include <crofton/boxtree/layout.hpp>
 #include <span>
 
 namespace crofton::boxtree {
 
-// Relative to the leaf's origin, as the stored lanes are in float: the farthest low and high side of the compressed
-// boxes. Each is within 2^-24 of itself of the exact number; rounding of the lanes comes on top (see bounds_of).
+// Where a leaf's compressed boxes begin and end along each axis, in float, relative to the leaf's origin. Each is
+// within 2^-24 of itself of the exact number; rounding of the lanes comes on top (see bounds_of).
 struct LeafExtent {
     float low[3], high[3];
 };

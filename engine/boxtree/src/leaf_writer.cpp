@@ -24,12 +24,12 @@ using DF = hn::CappedTag<float, kWidth>;
 using DD = hn::CappedTag<double, kWidth>;
 using VF = hn::Vec<DF>;
 
-// As Obb has it: a centre, three axes, three half extents.
+// The numbers of an Obb, in its order: a centre, three axes, three half extents.
 constexpr std::size_t kBoxBytes = 72, kShapeBytes = 24;
 constexpr float kMostCoordinate = 1e30f;  // of an Obb; the float is a little more
 
-// Sixteen boxes side by side: centres as they are, the twelve numbers of a shape as rows of four, from which lanes are
-// loaded interleaved.
+// Sixteen boxes side by side. Centres are as they are; a shape's twelve numbers are three rows of four, from which
+// lanes are loaded interleaved.
 struct Sixteen {
     alignas(64) double center[3][kWidth];
     alignas(64) float shape[3][kWidth][4];
@@ -47,7 +47,7 @@ struct Sixteen {
     }
 };
 
-// The same with one number a row, for vectors of doubles.
+// As Sixteen, with one number a row: for vectors of doubles.
 struct Rows {
     alignas(64) float axes[9][kWidth];
     alignas(64) float half[3][kWidth];
@@ -63,7 +63,7 @@ struct Rows {
     }
 };
 
-// Integers of 16 bits next to each other, from numbers that have been rounded.
+// Two numbers that are integers already, as a pair of 16-bit integers.
 HWY_INLINE void store_pairs(hn::Vec<DD> lower, hn::Vec<DD> upper, Int16x2* to) {
     const hn::Rebind<std::int32_t, DD> di;
     const auto low = hn::And(hn::DemoteTo(di, lower), hn::Set(di, 0xffff));
@@ -81,7 +81,7 @@ HWY_INLINE void collect(const Leaf& leaf, const ItemId* items, const unsigned ch
     }
 }
 
-// Memory that collect and compress will ask for.
+// Prefetches what collect and compress read.
 HWY_INLINE void prefetch(const Leaf& leaf, const ItemId* items, const unsigned char* all_boxes) {
     for (std::size_t at = 0; at < offsetof(Leaf, layers); at += 64)
         hwy::Prefetch(reinterpret_cast<const char*>(&leaf) + at);
@@ -97,7 +97,7 @@ HWY_INLINE bool compress(const Sixteen& boxes, Leaf& leaf) {
     const Rows rows(boxes);
     const auto per_position = hn::Set(d, 1.0 / static_cast<double>(leaf.position_unit)),
                per_edge = hn::Set(d, 1.0 / static_cast<double>(leaf.edge_unit)), most = hn::Set(d, 32767.0),
-               magic = hn::Set(d, 0x1.8p52);  // added and taken away again it leaves the nearest integer
+               magic = hn::Set(d, 0x1.8p52);  // adding it and taking it away rounds to the nearest integer
     auto l1_radius = hn::Zero(d);
     bool fits = true;
     for (std::size_t l = 0; l < kWidth; l += hn::Lanes(d)) {
@@ -134,8 +134,7 @@ HWY_INLINE bool compress(const Sixteen& boxes, Leaf& leaf) {
 
 std::size_t WriteLanes(Leaf* leaves, const LeafId* ids, std::size_t count, const ItemId* slot_items,
                        const unsigned char* all_boxes) {
-    // Two buffers by turns: what was stored in narrow pieces is read in wide ones a round later, when the stores have
-    // completed.
+    // Two buffers in turn: a wide load right after narrow stores to the same bytes stalls.
     Sixteen boxes[2];
     const auto next = [&](std::size_t i, Sixteen& to) HWY_ATTR {
         collect(leaves[ids[i]], slot_items + std::size_t{ids[i]} * kWidth, all_boxes, to);

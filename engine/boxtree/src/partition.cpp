@@ -29,7 +29,7 @@ void Splitter::start(std::span<const BuildItem> items) {
     }
 }
 
-// By centres along an axis, and where they are equal as the items come: digit by digit, the least first.
+// A radix sort by the centres along an axis. Equal ones keep their order.
 void Splitter::sort(unsigned axis) {
     constexpr unsigned kDigitBits = 8, kDigits = 4, kDigitValues = 1u << kDigitBits;
     constexpr std::size_t kFew = 64;
@@ -70,7 +70,7 @@ unsigned Splitter::longest_axis(Range range) const {
 // The best of the cuts at multiples of `capacity`, fewer than 16 along each axis.
 Splitter::Cut Splitter::best_cut(Range range, std::uint32_t capacity, const Cost& cost) const {
     const std::uint32_t count = range.size(), parts = (count + capacity - 1) / capacity;
-    // Where only one place is possible, the axis is all there is to choose.
+    // Where only one cut is possible along each axis, only the axis is chosen.
     if (parts == 2) return {longest_axis(range), capacity};
     Cut best;
     double least = std::numeric_limits<double>::infinity();
@@ -103,7 +103,7 @@ void Splitter::cut(Range range, const Cut& cut) {
     for (std::uint32_t i = range.begin; i < range.end; ++i) is_left_[sorted_[cut.axis][i]] = i < middle ? 1 : 0;
     for (unsigned axis = 0; axis < 3; ++axis) {
         if (axis == cut.axis) continue;
-        // Both places are written, and one of them is moved on: no branch on what cannot be guessed.
+        // Writes both places and advances one of them, which avoids a branch that cannot be predicted.
         std::uint32_t* const sorted = sorted_[axis].data();
         std::uint32_t *left = sorted + range.begin, *right = right_.data();
         for (std::uint32_t i = range.begin; i < range.end; ++i) {

@@ -59,8 +59,8 @@ struct Children {
     return unit;
 }
 
-// Items in three orders at once, by their centres along each axis; cuts keep all three sorted, so that items are sorted
-// but once. Memory is kept from crowd to crowd.
+// Divides a crowd of items into parts. Keeps the items in three orders, by their centres along each axis. Cuts keep all
+// three sorted, so that items are sorted only once. Memory is kept from crowd to crowd.
 class Splitter {
   public:
     // `items` stay where they are, and are read until the last divide().

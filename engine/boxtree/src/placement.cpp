@@ -12,7 +12,7 @@
 #include "turned_bounds.hpp"
 
 namespace crofton::boxtree {
-// The leaf's last item moves into the gap.
+// Fills the gap that an item leaves with the leaf's last item.
 void Placement::vacate(ItemId item) {
     const std::uint32_t slot = structure_.item_slots_[item];
     const LeafId l = slot / kWidth;
@@ -88,7 +88,7 @@ unsigned Placement::best_lane(const Node& node, const Aabb& box) const {
     return best;
 }
 
-// Down from the root into the best lanes.
+// Goes down from the root into the best lane of each node.
 LeafId Placement::best_leaf(const Obb& box) const {
     std::uint32_t axes = nodes_[0].axes;
     Aabb bounds = bounds_along(structure_.axes_of(nodes_[0]), box);
@@ -166,7 +166,7 @@ void Placement::add_child(NodeId parent, std::uint32_t child) {
     Node& node = nodes_[parent];
     node.count++;
     link(parent, node.count - 1, child);
-    // No longer one run of leaves, here and above.
+    // The new child's leaves lie elsewhere in memory, so those below here, and above, are no longer consecutive.
     for (NodeId n = parent; n != kNone; n = nodes_[n].parent) structure_.ranges_[n] = {};
 }
 
@@ -232,10 +232,10 @@ void Placement::make_node(NodeId n, std::span<const std::uint32_t> children, Nod
     for (const std::uint32_t child : children) link(n, nodes_[n].count++, child);
 }
 
-// The lanes on the path from a leaf or a node whose bound or contents have changed. As in a refit, other lanes and the
-// frame stay where the frame takes the bound. Where all bounds lie along the same axes, the first node in which nothing
-// changes ends the path: those above depend on it alone. Bounds along other axes do not depend on it, so the path ends
-// at the root.
+// Brings the lanes up to date on the path from a changed leaf or node to the root. As in a refit, other lanes and the
+// frame stay where the frame takes the bound. Where all bounds lie along the same axes, the path ends at the first node
+// in which nothing changes, as those above depend on it alone. Bounds along other axes are made from the leaves, so
+// there the path goes on to the root.
 void Placement::refresh_above(std::uint32_t first) {
     const bool turned = structure_.axes_.size() > 1;
     std::uint32_t child = first;
@@ -252,9 +252,10 @@ void Placement::refresh_above(std::uint32_t first) {
     }
 }
 
-// The lane that holds what lies below `child`; false if the node's frame does not take it. Where child's own bounds lie
-// along other axes, to bound all below it anew would be dear. Then the lane's bound grows by what has changed: the
-// bounds of the highest node on the path from `first` that lie along the lane's axes, or those of `first`.
+// Writes the bound of what lies below `child` into its lane; false if the node's frame does not take it. Where child's
+// own bounds lie along other axes, bounding all leaves below it again would cost too much. Then the lane's bound grows
+// by what has changed. That is the bound of the highest node on the path from `first` whose bounds lie along the lane's
+// axes, or else of `first`.
 bool Placement::write_path_lane(Place above, std::uint32_t first, std::uint32_t child) {
     Node& node = nodes_[above.node];
     const Axes& axes = structure_.axes_of(node);
@@ -278,7 +279,7 @@ Placement::Place Placement::place_of(std::uint32_t child) const {
     return {nodes_[child].parent, nodes_[child].lane_in_parent};
 }
 
-// The items of a leaf below here are no longer as many as they were.
+// Notes that the leaves below this node, and below those above it, may have gaps.
 void Placement::invalidate_item_count(NodeId n) {
     for (; n != kNone && structure_.ranges_[n].items != 0; n = nodes_[n].parent) structure_.ranges_[n].items = 0;
 }

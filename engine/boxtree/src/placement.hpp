@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Items into the leaves of a structure, and out of them.
+// Puts items into the leaves of a structure, and takes them out.
 #pragma once
 #include <crofton/boxtree/structure.hpp>
 
@@ -10,9 +10,9 @@ class Placement {
     explicit Placement(Structure& structure)
         : structure_(structure), nodes_(structure.nodes_), leaves_(structure.leaves_) {}
 
-    // Of an item in no leaf: into the leaf whose criterion grows least. Bounds are right at once.
+    // Puts an item that is in no leaf into the leaf whose criterion grows least. Bounds are right at once.
     void place(ItemId item);
-    // Out of its leaf; bounds shrink at the next refit.
+    // Takes the item out of its leaf. Bounds shrink at the next refit.
     void vacate(ItemId item);
 
   private:

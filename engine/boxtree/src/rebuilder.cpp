@@ -14,11 +14,11 @@
 namespace crofton::boxtree {
 namespace {
 
-// What things cost, in items' worth: adding one to a builder is worth 1.
-constexpr std::size_t kSlotsPerItem = 16;  // cleared
+// Costs of a rebuild's work. The unit is adding an item to a builder.
+constexpr std::size_t kSlotsPerItem = 16;  // slots cleared for the cost of one item added
 constexpr std::size_t kNodeLinked = 8, kLeafFilled = 32, kNodeBounded = 32;
 constexpr std::size_t kWordsPerItem = 16;
-constexpr std::size_t kItemMoved = 2, kItemPlaced = 64;  // brought up to date
+constexpr std::size_t kItemMoved = 2, kItemPlaced = 64;  // of an item that is brought up to date
 
 std::size_t steps(std::size_t budget, std::size_t cost) {
     return std::max<std::size_t>(budget / cost, 1);
@@ -38,7 +38,7 @@ Aabb scene_of(const Structure& current) {
 }  // namespace
 
 struct Rebuilder::Work {
-    // One after the other; in `apply_changes` what has changed meanwhile is brought into `next`.
+    // The stages, in order. The last, `apply_changes`, brings into `next` what has changed during the others.
     enum class Stage : std::uint8_t { add, divide, clear_slots, link, fill, bound, apply_changes, done };
 
     Work(const Structure& current, Items& all)
@@ -100,7 +100,7 @@ Owner<Structure> Rebuilder::step(const Structure& current, Items& items, std::si
     return result;
 }
 
-// A step of about `budget` items' worth; returns what it was.
+// Does about `budget` items' worth of the current stage; returns how much it was.
 std::size_t Rebuilder::run_stage(const Structure& current, std::size_t budget) {
     switch (work_->stage) {
         case Work::Stage::add:
@@ -182,7 +182,7 @@ std::size_t Rebuilder::bound_nodes(std::size_t budget) {
     return count * kNodeBounded;
 }
 
-// What has changed since the rebuild began, into the new structure.
+// Brings what has changed since the rebuild began into the new structure.
 std::size_t Rebuilder::apply_changes(const Structure& current, std::size_t budget) {
     Structure& next = *work_->next;
     next.add_items(static_cast<ItemId>(work_->items.size()));
@@ -206,7 +206,7 @@ std::size_t Rebuilder::apply_changes(const Structure& current, std::size_t budge
     return spent;
 }
 
-// The new structure agrees with the item's box, layers and presence.
+// Makes the new structure agree with the item's box and layers, and with whether it is there.
 void Rebuilder::sync_item(ItemId item, bool present, bool placed) {
     Structure& next = *work_->next;
     if (next.contains(item) && (!present || placed)) Placement(next).vacate(item);

@@ -12,7 +12,7 @@
 namespace crofton::boxtree {
 namespace {
 
-constexpr std::size_t kBatch = 256;  // leaves that stay in the cache from their boxes to their bounds
+constexpr std::size_t kBatch = 256;  // leaves; so few are still in the cache when their bounds are computed
 
 }  // namespace
 
@@ -20,7 +20,8 @@ void Refit::run() {
     work_.nodes.clear();
     work_.node_bits.resize((nodes_.size() + 63) / 64, 0);
     refit_leaves();
-    // Level by level up; a node is done once all its dirty children are, for those above are asked again.
+    // Upwards. A node may be done too early, before a child that is dirty, too: the child then puts it into the next
+    // round, where it is done again.
     while (!work_.nodes.empty()) {
         work_.parents.clear();
         for (const NodeId n : work_.nodes) work_.node_bits[n / 64] &= ~(std::uint64_t{1} << (n % 64));
@@ -31,7 +32,7 @@ void Refit::run() {
     if (!work_.leaves.empty()) structure_.marks_.finish_refit();
 }
 
-// The bounds of leaves that have changed, into their parents' lanes.
+// Writes the bounds of leaves that have changed into their parents' lanes.
 void Refit::refit_leaves() {
     structure_.marks_.list_dirty_leaves(work_.leaves);
     LeafExtent extents[kBatch];
@@ -45,7 +46,7 @@ void Refit::refit_leaves() {
             Aabb bounds = bounds_of(leaf, extents[i]);
             if (structure_.contents_changed_) structure_.write_leaf_radii(leaves[i]);
             const glm::dvec3 size = bounds.is_empty() ? glm::dvec3(0.0) : bounds.max - bounds.min;
-            // Far from its origin a leaf loses digits.
+            // Far from the leaf's origin positions lose digits: choose a new frame.
             if (double{leaf.l1_radius} > 8.0 * (size.x + size.y + size.z)) {
                 structure_.rewrite_leaf(leaves[i]);
                 bounds = bounds_of(leaf);
@@ -57,7 +58,7 @@ void Refit::refit_leaves() {
     }
 }
 
-// Boxes that have changed into the lanes of leaves where a move has not written them: where they are many.
+// Writes the boxes of leaves of which so many have changed that moves have only marked them.
 void Refit::write_dirty_leaves(std::span<const LeafId> leaves) {
     LeafId many[kBatch];
     std::size_t many_count = 0;
@@ -72,7 +73,7 @@ void Refit::write_dirty_leaves(std::span<const LeafId> leaves) {
     }
 }
 
-// A node whose lanes are up to date, into its parent's lane.
+// Writes the bound of a node, whose lanes are up to date, into its parent's lane.
 void Refit::refit_node(NodeId n) {
     const Node& node = nodes_[n];
     Aabb bounds = bounds_of(node, structure_.axes_of(node));
@@ -87,8 +88,8 @@ void Refit::refit_node(NodeId n) {
     set_child(node.parent, node.lane_in_parent, bounds, work_.parents);
 }
 
-// A child's bound, and layers and radii if any have changed, into its lane; the node then is to be refitted. All lanes
-// anew if its frame does not take the bound.
+// Writes a child's bound into its lane of the node, with layers and radii if any have changed, and marks the node for
+// refitting. Where the node's frame does not take the bound, all lanes are written in a new frame.
 void Refit::set_child(NodeId n, unsigned lane, const Aabb& bounds, Vector<NodeId>& dirty) {
     if (!write_lane(nodes_[n], lane, bounds, structure_.axes_of(nodes_[n]))) structure_.refresh_node(n);
     if (structure_.contents_changed_) structure_.refresh_contents(n, lane);

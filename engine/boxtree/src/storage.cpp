@@ -20,7 +20,7 @@ struct Header {
 };
 static_assert(sizeof(Header) == 104);
 
-// What is in no leaf, and whose id is not free.
+// Marks as detached the items that are in no leaf though their ids are in use.
 void find_detached(Items& items, const Structure& structure) {
     Vector<std::uint64_t> known((items.size() + 63) / 64, 0);
     const auto mark = [&](ItemId item) { known[item / 64] |= std::uint64_t{1} << item % 64; };
@@ -32,7 +32,7 @@ void find_detached(Items& items, const Structure& structure) {
 
 }  // namespace
 
-// The one list of what is stored, in order, for writing and reading.
+// What is stored, in order. Writing and reading share this list.
 struct TreeStorage {
     template <class ItemsOrConst, class StructureOrConst, class Visit>
     static void arrays(ItemsOrConst& items, StructureOrConst& structure, const Header& h, Visit&& visit) {

@@ -22,7 +22,7 @@ Aabb Structure::child_bounds(NodeId node, unsigned lane) const {
     return nodes_[node].axes == 0 ? bounds : bounds_along(axes_[0], bounds, axes);
 }
 
-// Where the axes are others, from the leaves: boxes around turned boxes would be larger.
+// Along other axes than the node's own, computed from the leaves: boxes around turned boxes would be larger.
 Aabb Structure::bounds_below(std::uint32_t child, std::uint32_t axes) const {
     if (child & kLeafBit) return bounds_along(axes_[axes], leaves_[child & ~kLeafBit]);
     const Node& node = nodes_[child];
@@ -47,7 +47,7 @@ void Structure::make_room(const Topology& topology) {
     leaves_.reserve(topology.leaves.size());
 }
 
-// They are written soon after: before they have left the cache where they were made.
+// Makes room for the leaves before `end`, just before they are written, so that the new memory is in the cache.
 void Structure::make_room_for_leaves(LeafId end) {
     leaves_.resize(end);
 }
@@ -103,7 +103,7 @@ void Structure::fill_leaf(LeafId l, LeafId end, const Topology& topology, const 
     rewrite_leaf(l);
 }
 
-// Bounds, layers, radii and the number of items, from the children's. Parents come before children.
+// Computes bounds, layers, radii and counts of items from the children's. Goes backwards: parents are stored first.
 void Structure::bound_nodes(NodeId begin, NodeId end) {
     for (NodeId n = end; n-- > begin;) {
         refresh_node(n);
@@ -164,13 +164,13 @@ void Structure::write_leaf_radii(LeafId l) {
     leaf_radii_[l] = leaves_[l].count > 0 ? radius_range_of_squares(least, most) : kNoRadii;
 }
 
-// A box that joins the leaf, or that has another size than before.
+// Takes in the radius of a box that joins the leaf or has changed its size.
 void Structure::widen_leaf_radii(LeafId l, const Obb& box) {
     leaf_radii_[l] = united(leaf_radii_[l], radius_range_of(box));
     contents_changed_ = true;
 }
 
-// Writes all boxes anew in a fitting frame.
+// Chooses a new frame for the leaf and writes all its boxes.
 void Structure::rewrite_leaf(LeafId l) {
     Leaf& leaf = leaves_[l];
     Aabb centers;
@@ -186,21 +186,21 @@ void Structure::rewrite_leaf(LeafId l) {
     CROFTON_ASSERT(written == 1, "a frame around boxes must take them");
 }
 
-// An item's box and layers into its slot, all boxes anew if the leaf's frame does not take it.
+// Writes an item's box and layers into its slot; all boxes in a new frame if the leaf's does not take it.
 void Structure::write_item(ItemId item) {
     const std::uint32_t slot = item_slots_[item];
     write_layers(leaves_[slot / kWidth], slot % kWidth, items_.layer_masks()[item]);
     if (!write_lane(leaves_[slot / kWidth], slot % kWidth, items_.boxes()[item])) rewrite_leaf(slot / kWidth);
 }
 
-// Bounds, layers and radii of all lanes from the children.
+// Writes the bounds, layers and radii of all lanes from the children.
 void Structure::refresh_node(NodeId n) {
     refresh_bounds(n);
     for (unsigned lane = 0; lane < nodes_[n].count; ++lane) copy_contents(n, lane);
     join_layers(nodes_[n]);
 }
 
-// In a fitting frame.
+// Writes the bounds of all lanes in a new frame.
 void Structure::refresh_bounds(NodeId n) {
     Node& node = nodes_[n];
     Aabb bounds[kWidth], whole;
@@ -215,7 +215,7 @@ void Structure::refresh_bounds(NodeId n) {
     }
 }
 
-// Layers and radii.
+// Writes the layers and radii of one lane.
 void Structure::refresh_contents(NodeId n, unsigned lane) {
     copy_contents(n, lane);
     join_layers(nodes_[n]);
@@ -242,7 +242,7 @@ void Structure::join_layers(Node& node) {
     for (unsigned i = 0; i < node.count; ++i) node.layers_every &= node.layers_all[i];
 }
 
-// 0 where a slot is empty that is not among the last.
+// How many items lie below the node; 0 where its leaves are not consecutive or an empty slot lies between full ones.
 std::uint32_t Structure::items_without_gaps(NodeId n) const {
     const Node& node = nodes_[n];
     if (ranges_[n].count == 0) return 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Boxes and layers of items that stay in their slots.
+// Changes of boxes and layers of items that stay in their slots.
 #include <hwy/cache_control.h>
 #include <crofton/boxtree/structure.hpp>
 
@@ -8,7 +8,7 @@
 namespace crofton::boxtree {
 namespace {
 
-// Scattered items wait for memory: slots and boxes are asked for so many items ahead of their use, then leaves.
+// Scattered items miss the cache. So slots and boxes are prefetched this many items ahead, then leaves.
 constexpr std::size_t kFarAhead = 32, kNearAhead = 12;
 
 template <class T>

@@ -13,7 +13,7 @@ struct Size {
     unsigned height = 0;
 };
 
-// Of a node that so many items are below of.
+// How many nodes and leaves hold so many items; the top node is counted.
 Size size_of_node(std::uint32_t items) {
     if (items == 0) return {1, 0, 1};
     const auto part = static_cast<std::uint32_t>(items_a_part(items, kWidth));
@@ -55,7 +55,7 @@ void SubtreeBuilder::start(const Subtree& subtree, std::span<const Obb> boxes, c
     const std::span<const ItemId> ids = std::span(topology.order).subspan(first_item_, subtree.items.size());
     items_.clear();
     items_.reserve(ids.size());
-    // The boxes lie in the order of their ids, far from each other: ask for them ahead.
+    // The boxes lie in the order of their ids, far from each other: prefetch them.
     constexpr std::size_t kAhead = 16;
     for (std::size_t i = 0; i < ids.size(); ++i) {
         if (i + kAhead < ids.size()) {
@@ -102,8 +102,8 @@ bool SubtreeBuilder::step(std::size_t& budget, const Cost& cost, Orientation ori
     return true;
 }
 
-// For the last of the tasks, which is the next node; true when they are chosen. The items' coordinates and their three
-// orders are along them then.
+// Chooses axes for the last of the tasks, the next node; true when that is done. Then the items' coordinates and their
+// three orders are along them.
 bool SubtreeBuilder::choose_axes(const Cost& cost, Orientation orientation, std::span<const Obb> boxes,
                                  Topology& topology) {
     Task& task = tasks_.back();

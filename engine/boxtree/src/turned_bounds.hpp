@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Bounds along turned axes. A box in such coordinates holds a point p iff rows[k] · p lies between its ends for each k,
-// in real arithmetic.
+// Bounds along turned axes: a point p is in such a box iff rows[k] · p lies between its ends for each k, in real
+// arithmetic.
 //
 // What is lost. Axes are orthonormal to η = 2^-48: |rows[i] · rows[j] − δij| ≤ η. With A of these rows a node's
 // integers q stand for p = o + Aᵀq. Then A p = A o + q + (A Aᵀ − I) q is within 3 η |q|₁ of A o + q, and q is as near
@@ -15,18 +15,18 @@ namespace crofton::boxtree {
 
 inline constexpr double kTurnRounding = 0x1p-44;
 
-// Those of a box, made orthonormal.
+// The axes of a box, made orthonormal.
 [[nodiscard]] Axes axes_of(const glm::mat3& columns);
 [[nodiscard]] bool are_the_worlds(const Axes& axes);
 // Do they keep what Axes promises?
 [[nodiscard]] bool are_valid(const Axes& axes);
-// The same, in any order and of any sign, to about 0.1°?
+// Are both the same axes to about 0.1°, in any order and of any sign?
 [[nodiscard]] bool are_alike(const Axes& a, const Axes& b);
 
 // Bounds along `axes`, rounded outward.
 [[nodiscard]] Aabb bounds_along(const Axes& axes, const Obb& box);
 [[nodiscard]] Aabb bounds_along(const Axes& axes, const Leaf& leaf);
-// Of a box along other axes.
+// The bound of a box that lies along other axes.
 [[nodiscard]] Aabb bounds_along(const Axes& axes, const Aabb& box, const Axes& its_axes);
 
 }  // namespace crofton::boxtree

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Does a tree keep all its promises?
+// Checks every invariant of a tree.
 #include <algorithm>
 #include <cmath>
 #include <crofton/boxtree/structure.hpp>
@@ -44,7 +44,7 @@ bool holds(const Node& node, const Axes& axes, unsigned lane, const Aabb& child)
     return l1_radius <= double{node.l1_radius};
 }
 
-// In a cycle, or deeper than the tree is high?
+// Whether the links upwards lead to the root, and not in a circle or on a path longer than the tree is high.
 bool reaches_root(const Structure& structure, NodeId n, bool& too_deep) {
     const std::span<const Node> nodes = structure.nodes();
     unsigned steps = 1;

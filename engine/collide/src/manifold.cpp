@@ -13,7 +13,8 @@ Manifold contact_manifold(const ConvexShape& a, const ConvexShape& b) {
     if (deepest.depth < 0.0) return manifold;
     manifold.normal = deepest.axis;
     manifold.depth = deepest.depth;
-    // Parted along the axis they touch in one place: the nearest points then, moved back by half the depth.
+    // One contact point: the bodies are moved apart along the axis, and the nearest points of both are taken. The point
+    // lies between these, moved back by half the depth.
     ConvexShape parted = b;
     const double gap = deepest.depth + a.radius + b.radius + 1.0;
     for (int i = 0; i < parted.point_count; ++i) parted.points[i] += gap * deepest.axis;

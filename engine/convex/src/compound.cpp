@@ -3,7 +3,6 @@
 #include <crofton/convex/body.hpp>
 #include <crofton/core/recovery.hpp>
 #include <numeric>
-#include <string>
 
 #include "parts.hpp"
 
@@ -13,13 +12,14 @@ namespace {
 constexpr std::uint32_t kLeafSize = 4;
 
 Result<void> check(const CompoundChild& child, std::uint64_t item) {
-    const std::string name = "compound: child " + std::to_string(item);
     if (Result<void> good = validate_pose(child.pose, item); !good) return good;
     if (child.body.kind() == Kind::half_space)
-        return fail(ErrorCode::unsupported, item, {name, " is a half-space; make it an object of its own"});
+        return fail(ErrorCode::unsupported, item,
+                    {"compound: child ", item, " is a half-space; make it an object of its own"});
     if (child.body.compound() != nullptr && child.body.compound()->depth() >= kMaxCompoundDepth)
         return fail(ErrorCode::out_of_range, item,
-                    {name, " holds compounds ", kMaxCompoundDepth, " deep; put its children into fewer levels"});
+                    {"compound: child ", item, " holds compounds ", kMaxCompoundDepth,
+                     " deep; put its children into fewer levels"});
     return {};
 }
 

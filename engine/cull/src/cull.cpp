@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Queries of a tree, and of boxes without one: the public functions.
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/core/error.hpp>
 #include <crofton/core/executor.hpp>

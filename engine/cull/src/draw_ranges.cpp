@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Visible ids as bits, and bits as ranges to draw.
 #include <bit>
 #include <crofton/core/error.hpp>
 #include <crofton/cull/cull.hpp>

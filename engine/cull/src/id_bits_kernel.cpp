@@ -23,7 +23,7 @@ namespace {
 // length.
 constexpr std::uint32_t kBefore = 24;  // how far below the first of them the word begins
 
-// Their sum, since they are distinct.
+// The OR of the bits; as they are distinct, their sum.
 HWY_INLINE std::uint64_t word_of(VU positions) {
     const hn::Repartition<std::uint64_t, DU> d64;
     const auto one = hn::Set(d64, 1);
@@ -37,8 +37,8 @@ HWY_INLINE void mark(std::uint32_t id, std::uint64_t* bits) {
     bits[id / 64] |= std::uint64_t{1} << (id % 64);
 }
 
-// Four parts of the list in turn: neighbours in the list are often in one word, and a word that was stored a moment ago
-// is slow to load.
+// Four parts of the list in turn. Neighbours in the list are often in one word, and loading a word right after storing
+// it stalls.
 void mark_scattered(const std::uint32_t* ids, std::size_t count, std::uint64_t* bits) {
     constexpr std::size_t kParts = 4;
     const std::size_t part = count / kParts;
@@ -48,8 +48,8 @@ void mark_scattered(const std::uint32_t* ids, std::size_t count, std::uint64_t* 
 }
 
 #if HWY_TARGET != HWY_SCALAR
-// Whether lanes of ids mostly lie within a word's length, judged by some of them: to ask each time is dear where the
-// answer changes.
+// Whether the ids of a vector mostly lie within a word's length. Judged once, by some of them: a branch for each vector
+// would often be mispredicted.
 bool are_together(const std::uint32_t* ids, std::size_t count) {
     const DU du;
     constexpr std::size_t kSamples = 16;
@@ -116,7 +116,7 @@ HWY_INLINE std::size_t list_word(std::uint64_t word, std::uint32_t base, std::ui
 #else
     constexpr std::uint32_t kLanes = hn::MaxLanes(DU()), kAll = (std::uint32_t{1} << kLanes) - 1;
     std::size_t count = 0;
-    for (std::uint32_t l = 0; l < 64; l += kLanes) {  // to the word's end: where it may stop is hard to guess
+    for (std::uint32_t l = 0; l < 64; l += kLanes) {  // always to the word's end: an earlier exit would be mispredicted
         const std::uint32_t bits = static_cast<std::uint32_t>(word >> l) & kAll;
         count += simd::store_positions(du, bits, base + l, ids + count);
     }

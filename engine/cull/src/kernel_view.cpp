@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Views are set up anew for every query: no more than a query needs, and without branches or calls.
+// Makes the kernels' view for each query: no more than the query needs, and without branches or calls.
 #include "kernel_view.hpp"
 
 #include <cstdlib>

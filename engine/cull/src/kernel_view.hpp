@@ -12,7 +12,7 @@ struct KernelPlane {
     double normal[3];
     double offset;
     float normal_f[3];  // normal, rounded
-    float length_f;     // of normal, within 2^-23: where balls are asked for
+    float length_f;     // of normal, within 2^-23; for queries of balls
 };
 
 // A normal in units of 2^-14, rounded to the nearest, as pairs of 16-bit integers.
@@ -21,7 +21,7 @@ struct PairPlane {
     std::uint32_t size_xy, size_z;  // the absolute values; the lower half of size_z is 0
 };
 
-// To the nearest, without the C library's function.
+// Rounds to the nearest integer, without a call of the C library.
 inline PairPlane pair_plane_of(const double* normal) {
     int n[3];
     for (int j = 0; j < 3; ++j) {
@@ -36,7 +36,7 @@ struct KernelView {
     static constexpr unsigned kMaxPlanes = 12;
     double origin[3];
     KernelPlane planes[kMaxPlanes];
-    PairPlane pair_planes[kMaxPlanes];  // where a tree is asked
+    PairPlane pair_planes[kMaxPlanes];  // for queries of a tree
     double far[kMaxPlanes];             // what a plane's value at a block's origin may be off by (block_planes.hpp)
     std::uint32_t plane_count;
     std::uint32_t layer_mask;

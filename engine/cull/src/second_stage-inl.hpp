@@ -61,13 +61,13 @@ struct BoxRows {
         }
     }
 
-    // Counts the row behind the last in, unless all wanted boxes are certainly inside of its plane.
+    // Adds the row that was written behind the last, unless all wanted boxes are certainly inside of its plane.
     HWY_INLINE void keep_next(MF wanted) {
         set_bits(count, wanted);
         count += cut[count] != 0;
     }
 
-    // The first rows are set: finds which of the wanted boxes each cuts.
+    // Finds which of the wanted boxes each plane cuts, from the rows that are set.
     HWY_INLINE void keep_first(unsigned rows_set, MF wanted) {
         for (count = 0; count < rows_set; ++count) set_bits(count, wanted);
     }
@@ -82,10 +82,10 @@ struct BoxRows {
     }
 };
 
-// Those of the wanted lanes whose boxes certainly have a point inside all planes. The search goes from the centre
-// towards the plane that it is farthest outside of, to a little beyond it. Then on towards the plane that is worst
-// then. Coordinates that have come to a face stay there while the way leads across it. Of the boxes that cross an edge
-// of the frustum about one in fifty needs more than six steps.
+// Those of the wanted lanes whose boxes certainly have a point inside all planes. The search starts at the centre. Each
+// step goes to a little beyond the plane that the point is farthest outside of. A coordinate that has reached a face
+// stays there while the step leads out across it. Of the boxes that cross an edge of the frustum about one in fifty
+// needs more than six steps.
 HWY_INLINE MF has_witness(const BoxRows& box, MF wanted) {
     const DF d;
     const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f);
@@ -127,7 +127,7 @@ HWY_INLINE MF has_witness(const BoxRows& box, MF wanted) {
     return found;
 }
 
-// What two planes at a time say of the boxes.
+// The verdict on boxes by pairs of planes.
 struct PairTest {
     MF separated;  // certainly outside
     MF met;        // certainly met by every two of the planes; so, if no third one cuts the box, by all
@@ -187,8 +187,7 @@ HWY_INLINE MF cut_twice_at_most(const BoxRows& box, MF wanted) {
     return hn::AndNot(hn::RebindMask(DF(), mask_of(thrice)), wanted);
 }
 
-// The second stage in vectors: what it cannot resolve either is undecided. No plane certainly rejects a box that needs
-// it.
+// The second stage, for boxes that no plane certainly rejects. What it cannot resolve is undecided.
 HWY_INLINE void resolve(const BoxRows& box, BoxTest& test) {
     const DF d;
     const PairTest pairs = test_pairs(box, test.needs_edge_test);

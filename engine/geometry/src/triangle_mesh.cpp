@@ -23,4 +23,14 @@ Result<void> validate(const TriangleMesh& mesh) {
     return {};
 }
 
+void append(TriangleMesh& mesh, const TriangleMesh& part) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    const bool colored = mesh.colors.size() == mesh.positions.size() && part.colors.size() == part.positions.size();
+    mesh.positions.insert(mesh.positions.end(), part.positions.begin(), part.positions.end());
+    mesh.indices.reserve(mesh.indices.size() + part.indices.size());
+    for (const std::uint32_t index : part.indices) mesh.indices.push_back(first + index);
+    if (colored) mesh.colors.insert(mesh.colors.end(), part.colors.begin(), part.colors.end());
+    if (!colored) mesh.colors.clear();
+}
+
 }  // namespace crofton

@@ -8,12 +8,6 @@
 namespace crofton::pipeline {
 namespace {
 
-void append(TriangleMesh& to, const TriangleMesh& part) {
-    const auto first = static_cast<std::uint32_t>(to.positions.size());
-    to.positions.insert(to.positions.end(), part.positions.begin(), part.positions.end());
-    for (const std::uint32_t index : part.indices) to.indices.push_back(first + index);
-}
-
 // A node of more meshes is a level that was cut into pieces, not a house of several parts.
 constexpr std::size_t kMostParts = 16;
 

@@ -31,12 +31,6 @@ struct Stage {
     glm::dvec3 offset{0.0};
 };
 
-void append(TriangleMesh& to, const TriangleMesh& mesh) {
-    const auto first = static_cast<std::uint32_t>(to.positions.size());
-    to.positions.insert(to.positions.end(), mesh.positions.begin(), mesh.positions.end());
-    for (const std::uint32_t i : mesh.indices) to.indices.push_back(first + i);
-}
-
 // What a node of many meshes hides: it is in no answer itself, its meshes are.
 Result<void> add_level(scene::Scene& scene, scene::NodeId node, const std::vector<scene::MeshId>& ids, Stage& stage) {
     TriangleMesh all;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A frustum's planes as the box sees them.
+// A frustum's planes in a box's own coordinates.
 #pragma once
 #include <cmath>
 #include <crofton/cull/classify.hpp>
@@ -50,7 +50,7 @@ inline constexpr double kTiny = 1e-200;
     return box.max - box.min;
 }
 
-// Sets base and base_size.
+// Sets only base and base_size.
 inline void set_base(Constraint& result, const Plane& plane, const glm::dvec3& origin, const Obb& box) {
     const glm::dvec3& n = plane.normal;
     const glm::dvec3 d = box.center - origin;
@@ -67,7 +67,7 @@ inline void set_base(Constraint& result, const Plane& plane, const glm::dvec3& o
     result.base_size = both(0) + both(1) + both(2) + 2.0 * std::fabs(plane.offset);
 }
 
-// Sets slope and slope_size.
+// Sets only slope and slope_size.
 inline void set_slopes(Constraint& result, const Plane& plane, const Obb& box) {
     const glm::dvec3& n = plane.normal;
     for (int k = 0; k < 3; ++k) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Exact verdicts on single bounds: a filter in doubles first, exact arithmetic where it cannot decide.
 #include <crofton/core/error.hpp>
 #include <crofton/cull/classify.hpp>
 
@@ -14,7 +15,7 @@ Verdict classify_any(const Frustum& frustum, const Bound& bound, CullMode mode) 
     return classify_usable(frustum, bound, mode);
 }
 
-// Most planes are far from the box: its extents along the axes tell. The others' constraints are kept.
+// Decides by the box's extents along the axes, which tell for planes that are far. Keeps the others' constraints.
 template <class Box>
 Verdict classify_box(const Frustum& frustum, const Box& box, CullMode mode) {
     Constraint constraints[Frustum::kMaxPlanes];
@@ -38,7 +39,7 @@ Verdict classify_box(const Frustum& frustum, const Box& box, CullMode mode) {
     for (std::uint32_t n = 0; n < count && inside; ++n)
         inside = outermost_sign(constraints[n], frustum.planes[open[n]], frustum.origin, box) >= 0;
     if (inside) return Verdict::inside;
-    // One plane that cuts the box leaves a part of it.
+    // A box that only one plane cuts has a part inside it.
     if (mode == CullMode::conservative || count == 1) return Verdict::straddling;
     Frustum crossed;
     crossed.origin = frustum.origin;

@@ -29,8 +29,8 @@ bool separates(const Terms&... terms) {
     return base + projected_radius < -(kCombinationRounding * size + kTiny);
 }
 
-// The separating axes of a frustum edge against a box edge: base + Σ|slope| of (1−y) i + y j is convex and piecewise
-// linear in y. So its minimum lies where one slope vanishes.
+// Tries the separating axes across an edge of the frustum and one of the box. base + Σ|slope| of (1−y) i + y j is
+// convex and piecewise linear in y, so its minimum lies where one slope vanishes.
 bool edge_separates(const Constraint& i, const Constraint& j) {
     for (unsigned k = 0; k < 3; ++k)
         if (i.slope[k] * j.slope[k] < 0.0 &&
@@ -39,7 +39,7 @@ bool edge_separates(const Constraint& i, const Constraint& j) {
     return false;
 }
 
-// Those of a frustum vertex against a box face: two slopes vanish.
+// Tries the separating axes of a vertex of the frustum and a face of the box: two slopes vanish.
 bool vertex_separates(const Constraint& a, const Constraint& b, const Constraint& c) {
     for (unsigned k = 0; k < 3; ++k) {
         const unsigned p = (k + 1) % 3, q = (k + 2) % 3;

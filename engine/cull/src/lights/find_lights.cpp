@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The lights of each froxel: checks of the input, the work shared among threads, the lists put together.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -51,7 +52,7 @@ Result<void> check_lights(std::span<const Sphere> points, std::span<const SpotLi
 
 }  // namespace
 
-// One call at work in the result's buffers.
+// One call of find_lights at work in the result's buffers.
 class LightPass {
   public:
     LightPass(const FroxelGrid& grid, std::span<const Sphere> points, std::span<const SpotLight> spots,
@@ -138,7 +139,7 @@ class LightPass {
         part.exact_tests = context.exact_tests;
     }
 
-    // By counting: the lights of a froxel come in the order of the parts, so ascending.
+    // A counting sort: the lights of a froxel come in the order of the parts, so ascending.
     Result<void> gather(std::size_t parts) {
         std::uint64_t pairs = 0, exact_tests = 0;
         for (std::size_t p = 0; p < parts; ++p) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The grid of froxels over a view.
 #include <algorithm>
 #include <cmath>
 #include <crofton/cull/lights.hpp>

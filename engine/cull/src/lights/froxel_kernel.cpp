@@ -36,7 +36,7 @@ double support(const KernelLight& light, double t) {
     return light.radius * std::max(0.0, side);
 }
 
-// What vectors leave open, in doubles; and what these cannot tell either by exact arithmetic.
+// Decides in doubles the pairs that vectors leave open, and by exact arithmetic those that are open even then.
 class OpenPairs {
   public:
     OpenPairs(const FroxelKernelInput& input, std::uint32_t light)

@@ -39,7 +39,7 @@ struct FroxelKernelGrid {
     double start;   // ≥ the largest |start|
 };
 
-// In the grid's frame; the axis is a unit vector up to rounding.
+// A light in the grid's frame; the axis is a unit vector up to rounding.
 struct KernelLight {
     double at[3];
     double radius;  // of the ball, or the spot's range
@@ -52,7 +52,7 @@ struct LitRun {
     std::uint32_t froxel, light, mask;
 };
 
-// Lights of one input at most.
+// The most lights of one input.
 inline constexpr std::uint32_t kLightsAPart = 256;
 
 struct FroxelKernelInput {
@@ -70,7 +70,7 @@ struct SpotBatch;
 // returns how many. Pairs of a spot stay in the batch until it is full. Lights come in ascending order, points before
 // spots.
 std::size_t run_froxel_kernel(const FroxelKernelInput& input, std::uint32_t light, SpotBatch& batch, LitRun* runs);
-// Decides what is left in the batch.
+// Decides the pairs that are left in the batch.
 std::size_t finish_spots(const FroxelKernelInput& input, SpotBatch& batch, LitRun* runs);
 
 }  // namespace crofton::cull

@@ -35,7 +35,7 @@ glm::dvec3 froxel_support(const FroxelCell& cell, const glm::dvec3& apex, const 
     return best;
 }
 
-// The same of the light.
+// The point of the light farthest along m, relative to the apex.
 glm::dvec3 spot_support(const KernelLight& spot, const glm::dvec3& m) {
     const glm::dvec3 axis(spot.axis[0], spot.axis[1], spot.axis[2]);
     const double along = glm::dot(m, axis);

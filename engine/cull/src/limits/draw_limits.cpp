@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Draw limits for one item, and as the vector kernels read them.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -34,7 +35,7 @@ bool exceeds(const glm::dvec3& from, const glm::dvec3& to, double limit, double 
 
 constexpr glm::dvec3 kOne{1.0, 0.0, 0.0};
 
-// The ball around `center` whose radius is the length of `half`.
+// A ball around `center`, of the radius |half|.
 bool is_ball_within(const DrawLimits& limits, const glm::dvec3& center, const glm::dvec3& half, boxtree::ItemId item,
                     double layer_limit) {
     if (!is_usable(Sphere{limits.eye, 0.0})) return true;
@@ -52,7 +53,7 @@ bool is_ball_within(const DrawLimits& limits, const glm::dvec3& center, const gl
     return !is_beyond(layer_limit, kOne);
 }
 
-// Squares of floats beyond these say little.
+// Whether the limit's square is safe from overflow and underflow in float.
 bool is_moderate_limit(double value) {
     return value == 0.0 || (value >= 1e-18 && value <= 1e18);
 }

@@ -19,11 +19,12 @@ struct LimitTest {
     MF dropped, kept;
 };
 
-// For a walk without limits.
+// The limits of a walk that has none.
 struct NoLimits {
     static constexpr bool kAny = false;
 };
 
+// Tests nodes and leaves against one query's limits.
 class LimitTester {
   public:
     static constexpr bool kAny = true;
@@ -131,7 +132,8 @@ class LimitTester {
         return hn::Load(d, squares);
     }
 
-    // Whether they are certainly small enough, and large enough, for all. Squares that floats do not hold keep nothing.
+    // Whether distances are certainly small enough, and radii large enough, for all items. Squares that floats do not
+    // hold keep nothing.
     HWY_INLINE MF within(VF square, VF radius_square, VF layer_square) const {
         const DF d;
         const VF safe = hn::Mul(square, hn::Set(d, 1.0f + 0x1p-10f));

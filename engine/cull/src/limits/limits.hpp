@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What queries ask of draw limits.
+// Draw limits as queries use them.
 #pragma once
 #include <algorithm>
 #include <crofton/cull/classify.hpp>
@@ -9,10 +9,10 @@
 
 namespace crofton::cull {
 
-// What a kernel needs, but for the tree's radii.
+// The limits as a kernel needs them, without the tree's radii.
 [[nodiscard]] KernelLimits kernel_limits_of(const DrawLimits& limits);
 
-// Whether a limit is one.
+// Whether a number limits anything.
 [[nodiscard]] inline bool counts(double limit) {
     return limit <= kMaxCoordinate;
 }
@@ -20,10 +20,10 @@ namespace crofton::cull {
 // The farthest distance among the layers, or none.
 [[nodiscard]] double limit_in_layers(const DrawLimits& limits, std::uint32_t common_layers);
 
-// The nearest distance among the layers, or none: of items that have some of them, none is dropped before.
+// The nearest distance among the layers, or none. No item with some of these layers is dropped before it.
 [[nodiscard]] double least_limit_in_layers(const DrawLimits& limits, std::uint32_t common_layers);
 
-// limit_in_layers of the layers last asked for is kept.
+// limit_in_layers() with a memory of the last layers.
 class LayerLimit {
   public:
     [[nodiscard]] double of(const DrawLimits& limits, std::uint32_t common_layers) {
@@ -41,14 +41,14 @@ class LayerLimit {
     double limit_ = 0.0;
 };
 
-// is_worth_drawing, where the layers' limit is known.
+// As is_worth_drawing(), given the limit of the item's layers.
 [[nodiscard]] bool is_within_limits(const DrawLimits& limits, const Obb& box, boxtree::ItemId item, double layer_limit);
 [[nodiscard]] bool is_within_limits(const DrawLimits& limits, const Aabb& box, boxtree::ItemId item,
                                     double layer_limit);
 [[nodiscard]] bool is_within_limits(const DrawLimits& limits, const Sphere& sphere, boxtree::ItemId item,
                                     double layer_limit);
 
-// What limits are multiplied by for this item.
+// The factor of this item's limits: above 1 if it was drawn before.
 [[nodiscard]] inline double factor_of(const DrawLimits& limits, boxtree::ItemId item) {
     const bool drawn =
         item / 64 < limits.drawn_before.size() && (limits.drawn_before[item / 64] >> (item % 64) & 1) != 0;

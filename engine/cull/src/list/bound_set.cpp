@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// A list prepared for vectors: chunks with a frame, rows and records of their bounds.
 #include <algorithm>
 #include <atomic>
 #include <bit>
@@ -17,19 +18,19 @@ namespace {
 // A radius of 4096 to 8192 quanta for a typical bound leaves room for others that are larger. The centres' extent
 // chooses the quantum wherever the chunk is wider than some ten bounds.
 constexpr double kTypicalRadius = 4096.0;
-// So many strays more than when a chunk was laid out, and it is laid out anew.
-constexpr std::uint32_t kTooManyStrays = kChunk / 16;
+// A chunk gets a new frame when so many more bounds are out of frame than when the last one was chosen.
+constexpr std::uint32_t kMostOutOfFrame = kChunk / 16;
 
 void clear_row(RowBlock& block, std::size_t lane) {
     block.xy[lane] = 0;
     block.zr[lane] = kUnboundedRadius << 16;
 }
 
-bool is_stray(const RowBlock& block, std::size_t lane) {
+bool is_out_of_frame(const RowBlock& block, std::size_t lane) {
     return block.zr[lane] >> 16 == kUnboundedRadius;
 }
 
-// False if the row must say nothing.
+// Writes a row; false, and the row is empty, if the bound is out of frame.
 bool write_row(RowBlock& block, std::size_t lane, const glm::dvec3& offset, double radius, ListChunk& chunk) {
     std::int32_t at[3];
     for (int j = 0; j < 3; ++j) {
@@ -95,7 +96,7 @@ template <class Bound>
 void BoundSet<Bound>::assign_chunk(std::size_t c, std::span<const Bound> bounds) {
     choose_frame(c, bounds);
     (void)fill_chunk(c, bounds);
-    chunks_[c].accepted_strays = chunks_[c].strays;
+    chunks_[c].out_of_frame_at_layout = chunks_[c].out_of_frame;
 }
 
 template <class Bound>
@@ -123,7 +124,7 @@ void BoundSet<Bound>::choose_frame(std::size_t c, std::span<const Bound> bounds)
     chunk.quantum = std::ldexp(1.0, std::ilogb(quantum) + 1);
 }
 
-// Writes all of a chunk whose frame is chosen. Returns the first that is not valid, or size().
+// Writes all bounds of a chunk whose frame is chosen. Returns the first invalid one, or size().
 template <class Bound>
 std::size_t BoundSet<Bound>::fill_chunk(std::size_t c, std::span<const Bound> bounds) {
     std::size_t invalid = size_;
@@ -143,7 +144,7 @@ std::size_t BoundSet<Bound>::fill_chunk(std::size_t c, std::span<const Bound> bo
         chunk.l1_radius = 0.0f;
         chunk.largest_radius = 0;
         for (std::int32_t& extent : chunk.extent) extent = 0;
-        chunk.strays = static_cast<std::uint32_t>(count);
+        chunk.out_of_frame = static_cast<std::uint32_t>(count);
         for (std::size_t i = first + count; i-- > first;) {
             write(i, bounds[i]);
             if (!is_usable(bounds[i])) invalid = i;
@@ -152,10 +153,10 @@ std::size_t BoundSet<Bound>::fill_chunk(std::size_t c, std::span<const Bound> bo
     return invalid;
 }
 
-// When more of its rows say nothing than should, or its integers are twice as coarse as they need be.
+// Whether too many of its bounds are out of frame, or its integers are twice as coarse as they need be.
 template <class Bound>
 bool BoundSet<Bound>::wants_new_frame(const ListChunk& chunk) {
-    if (chunk.strays >= chunk.accepted_strays + kTooManyStrays) return true;
+    if (chunk.out_of_frame >= chunk.out_of_frame_at_layout + kMostOutOfFrame) return true;
     const std::int32_t farthest = std::max({chunk.extent[0], chunk.extent[1], chunk.extent[2]});
     return farthest < kMaxRowCoordinate / 4 && chunk.largest_radius < static_cast<std::uint32_t>(kTypicalRadius) / 4;
 }
@@ -172,7 +173,7 @@ std::size_t BoundSet<Bound>::update(std::span<const Bound> bounds, Executor& exe
             std::size_t before = first_invalid;
             while (invalid < before && !first_invalid.compare_exchange_weak(before, invalid)) {
             }
-            if (c >= laid_out) chunks_[c].accepted_strays = chunks_[c].strays;
+            if (c >= laid_out) chunks_[c].out_of_frame_at_layout = chunks_[c].out_of_frame;
             if (wants_new_frame(chunks_[c])) assign_chunk(c, bounds);
         }
     });
@@ -194,7 +195,7 @@ void BoundSet<Bound>::update(std::span<const std::uint32_t> items, std::span<con
         }
         for (const std::uint32_t i : batch) {
             const ListChunk& chunk = chunks_[i / kChunk];
-            if (chunk.strays >= chunk.accepted_strays + kTooManyStrays) assign_chunk(i / kChunk, bounds);
+            if (chunk.out_of_frame >= chunk.out_of_frame_at_layout + kMostOutOfFrame) assign_chunk(i / kChunk, bounds);
         }
     }
 }
@@ -203,7 +204,7 @@ template <class Bound>
 void BoundSet<Bound>::write(std::size_t i, const Bound& bound) {
     RowBlock& block = rows_[i / 16];
     ListChunk& chunk = chunks_[i / kChunk];
-    if (is_stray(block, i % 16)) --chunk.strays;
+    if (is_out_of_frame(block, i % 16)) --chunk.out_of_frame;
     bool bounded = false;
     if (is_usable(bound)) {
         const Sphere ball = ball_around(bound);
@@ -218,7 +219,7 @@ void BoundSet<Bound>::write(std::size_t i, const Bound& bound) {
     if (bounded) return;
     clear_row(block, i % 16);
     chunk.largest_radius = kUnboundedRadius;
-    ++chunk.strays;
+    ++chunk.out_of_frame;
 }
 
 template class BoundSet<Obb>;

@@ -23,10 +23,10 @@ namespace {
 constexpr std::size_t kSixteen = boxtree::kWidth;
 using DD = hn::CappedTag<double, kSixteen>;
 
-// As Obb has it: a centre, three axes, three half extents.
+// The numbers of an Obb, in its order: a centre, three axes, three half extents.
 constexpr std::size_t kBoxBytes = sizeof(Obb), kShapeBytes = 24;
 
-// Centres beyond this are left to others, and so are chunks whose origin is: then all centres here are below 1e30.
+// Boxes whose centre, or whose chunk's origin, is beyond this are rejected. So all centres here are below 1e30.
 constexpr double kFarthest = 4e29;
 
 // Sixteen boxes side by side, and the frames that they are to be written in.
@@ -54,8 +54,8 @@ struct Boxes {
     }
 };
 
-// What becomes of them. Coordinates and radius are in quanta, and those of a row that says nothing are 0 and
-// kUnboundedRadius.
+// Sixteen boxes as rows and records. Coordinates and radius are in quanta. An empty row has coordinates 0 and the
+// radius kUnboundedRadius.
 struct Written {
     alignas(64) float offset[3][kSixteen];
     alignas(64) std::int32_t at[3][kSixteen];
@@ -170,7 +170,7 @@ HWY_INLINE void write(const Boxes& boxes, Written& to) {
     }
 }
 
-// Of sixteen numbers.
+// The largest of sixteen numbers.
 template <class D>
 HWY_INLINE hn::TFromD<D> largest(D d, const hn::TFromD<D>* numbers) {
     auto result = hn::Load(d, numbers);
@@ -232,7 +232,7 @@ std::size_t write_chunk(const unsigned char* all_boxes, std::size_t count, ListC
     chunk.largest_radius = 0;
     chunk.l1_radius = 0.0f;
     extremes.grow(chunk);
-    chunk.strays = static_cast<std::uint32_t>(count - bounded);
+    chunk.out_of_frame = static_cast<std::uint32_t>(count - bounded);
     return rejected_count;
 }
 
@@ -246,9 +246,9 @@ std::size_t write_items(const unsigned char* all_boxes, const std::uint32_t* ite
             to.put_frame(lane, chunks[item / kChunk]);
         }
     };
-    // Scattered items wait for memory: it is asked for this many ahead.
+    // Scattered items miss the cache, so this many are prefetched.
     constexpr std::size_t kAhead = 48;
-    const auto ask = [&](std::size_t i) {
+    const auto prefetch = [&](std::size_t i) {
         const std::uint32_t item = items[i];
         hwy::Prefetch(all_boxes + kBoxBytes * item);
         hwy::Prefetch(all_boxes + kBoxBytes * item + kBoxBytes - 4);
@@ -256,12 +256,12 @@ std::size_t write_items(const unsigned char* all_boxes, const std::uint32_t* ite
         hwy::Prefetch(&rows[item / kSixteen].zr);
         hwy::Prefetch(&records[item]);
     };
-    for (std::size_t i = 0; i < std::min(kAhead, count); ++i) ask(i);
+    for (std::size_t i = 0; i < std::min(kAhead, count); ++i) prefetch(i);
     Written written;
     std::size_t rejected_count = 0;
     if (count > 0) put(boxes[0], 0);
     for (std::size_t first = 0, turn = 0; first < count; first += kSixteen, turn ^= 1) {
-        for (std::size_t i = first + kAhead; i < std::min(first + kAhead + kSixteen, count); ++i) ask(i);
+        for (std::size_t i = first + kAhead; i < std::min(first + kAhead + kSixteen, count); ++i) prefetch(i);
         if (first + kSixteen < count) put(boxes[turn ^ 1], first + kSixteen);
         write(boxes[turn], written);
         for (std::size_t lane = 0; lane < std::min(kSixteen, count - first); ++lane) {
@@ -272,8 +272,8 @@ std::size_t write_items(const unsigned char* all_boxes, const std::uint32_t* ite
             }
             ListChunk& chunk = chunks[item / kChunk];
             RowBlock& block = rows[item / kSixteen];
-            const std::uint32_t was_stray = block.zr[item % kSixteen] >> 16 == kUnboundedRadius;
-            chunk.strays = chunk.strays - was_stray + (~written.bounded >> lane & 1);
+            const std::uint32_t was_out_of_frame = block.zr[item % kSixteen] >> 16 == kUnboundedRadius;
+            chunk.out_of_frame = chunk.out_of_frame - was_out_of_frame + (~written.bounded >> lane & 1);
             block.xy[item % kSixteen] = written.xy[lane];
             block.zr[item % kSixteen] = written.zr[lane];
             written.copy_record(lane, records[item]);
@@ -283,7 +283,7 @@ std::size_t write_items(const unsigned char* all_boxes, const std::uint32_t* ite
     return rejected_count;
 }
 
-// The items that a group of sixteen lanes stands for: those beyond the last are the last again.
+// The items of sixteen lanes. Where there are fewer, the last one fills the rest.
 struct Group {
     const std::uint32_t* items;
     std::size_t count;
@@ -294,7 +294,7 @@ struct Group {
         for (std::size_t lane = 1; lane < count; ++lane) differing |= items[lane] ^ items[0];
         return differing < kChunk;
     }
-    // A block of rows, lane by lane.
+    // Whether the items are all those of a block of rows, in order.
     [[nodiscard]] bool is_block() const {
         if (count < kSixteen || items[0] % kSixteen != 0) return false;
         std::uint32_t differing = 0;

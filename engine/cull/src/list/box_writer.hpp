@@ -9,8 +9,8 @@
 namespace crofton::cull {
 
 // Writes `boxes` as the rows and records of a chunk whose frame is chosen, and sets the chunk's extent, L1 radius and
-// strays from them. A box that the kernel cannot take gets an empty row, and its index is appended to `rejected`, which
-// has room for all. Every box that validate(Obb) refuses is rejected. Returns how many are.
+// count of boxes out of frame from them. A box that the kernel cannot take gets an empty row, and its index is appended
+// to `rejected`, which has room for all. Every box that validate(Obb) refuses is rejected. Returns how many are.
 std::size_t write_boxes(const Obb* boxes, std::size_t count, ListChunk& chunk, RowBlock* rows, BoxRecord* records,
                         std::uint32_t* rejected);
 
@@ -21,7 +21,8 @@ std::size_t write_boxes(const Obb* boxes, const std::uint32_t* items, std::size_
                         RowBlock* rows, BoxRecord* records, std::uint32_t* rejected);
 
 // Boxes `stride` bytes apart: the k-th is item items[k]'s, in any chunk. Stops before the first that write_boxes()
-// would reject, and returns how many it has written. Extents and L1 radii only grow; strays are not counted.
+// would reject, and returns how many it has written. Extents and L1 radii only grow; boxes out of frame are not
+// counted.
 std::size_t write_strided_boxes(const Obb* first, std::size_t stride, const std::uint32_t* items, std::size_t count,
                                 ListChunk* chunks, RowBlock* rows, BoxRecord* records);
 

@@ -16,13 +16,13 @@
 HWY_BEFORE_NAMESPACE();
 namespace crofton::cull::HWY_NAMESPACE {
 
-// Numbers 4 q to 4 q + 3 of a record.
+// A record's numbers 4 q to 4 q + 3.
 template <class Record>
 HWY_INLINE simd::Row row_of(const Record& record, std::size_t q) {
     return simd::load_row(reinterpret_cast<const unsigned char*>(&record) + 16 * q);
 }
 
-// Records as lanes are loaded from: records[which[l]] is lane l's.
+// Gathers records into lanes: lane l has records[which[l]].
 template <class Records>
 struct Picked {
     const Records& records;
@@ -60,7 +60,7 @@ HWY_INLINE BoxLanes lanes_of(const PickedRecords<BoxRecord>& picked, std::size_t
     return boxes;
 }
 
-// Half extents in the place of half edges.
+// Aligned boxes, with half extents in the place of half edges.
 struct AabbLanes {
     VF x, y, z, unit, half[3], error;
     MF present;

@@ -20,7 +20,7 @@
 #if HWY_ONCE
 namespace crofton::cull {
 
-// A function of its own: where the compiler knows that `count` is small it would use `rep movs`.
+// Copies masks. Not inlined: where the compiler knows that `count` is small it would use `rep movs`, which is slow.
 HWY_NOINLINE void copy_masks(const std::uint32_t* from, std::size_t count, std::uint32_t* to) {
     std::memcpy(to, from, count * sizeof(*to));
 }
@@ -32,15 +32,16 @@ HWY_BEFORE_NAMESPACE();
 namespace crofton::cull::HWY_NAMESPACE {
 namespace {
 
-// A view that the rows are asked for, and what they leave open of it.
+// A view that is tested against the rows, and the bounds that these leave open.
 struct RowView {
     RowPlanes planes;
     std::uint32_t view, bit, layer_mask;
     std::uint64_t open[kChunk / 64];
 };
 
-// The rows of 64 bounds stay in registers from one view to the next, and so do the masks. Then the records of what the
-// rows left open are tested: they are few, and those that are outside lose their bit one by one.
+// One chunk against many views. The rows of 64 bounds, and their masks, stay in registers from one view to the next.
+// Then the records of the bounds that the rows left open are tested. These are few, and those that are outside lose
+// their bit one by one.
 template <class Record>
 class ChunkViews {
   public:
@@ -66,7 +67,7 @@ class ChunkViews {
             copy_masks(last, left, masks_ + 64 * w);
             for (std::size_t n = 0; n < asked_count_; ++n) asked_[n].open[w] &= ~std::uint64_t{0} >> (64 - left);
         }
-        // One view's records are on their way while another's are tested.
+        // One view's records are prefetched while another's are tested.
         if (asked_count_ > 0) list_open(0);
         for (std::size_t n = 0; n < asked_count_; ++n) {
             if (n + 1 < asked_count_) list_open(n + 1);
@@ -109,7 +110,7 @@ class ChunkViews {
         return asked;
     }
 
-    // Rows, and masks, which are only written, some words ahead. May lie beyond the end.
+    // Prefetches rows, and masks for writing, some words ahead. They may lie beyond the end.
     HWY_INLINE void prefetch(std::size_t w) const {
         const auto rows = reinterpret_cast<std::uintptr_t>(in_.rows) + 4 * w * sizeof(RowBlock);
         const auto masks = reinterpret_cast<std::uintptr_t>(masks_) + 64 * w * sizeof(*masks_);
@@ -146,7 +147,7 @@ class ChunkViews {
         }
     }
 
-    // The bits that lanes l on have in a word.
+    // The bits of a word that belong to the lanes from l on.
     static HWY_INLINE std::uint64_t lanes_from(std::size_t l) {
         const std::uint64_t lanes = ((std::uint64_t{1} << hn::Lanes(DU())) - 1) << l;
         return lanes * 0x0001000100010001u;

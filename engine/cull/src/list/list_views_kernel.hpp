@@ -9,7 +9,7 @@ namespace crofton::cull {
 
 inline constexpr std::size_t kMaxListViews = 32;
 
-// What one view's verdicts cost, beyond the rows of all.
+// The statistics of one view, without the rows, which are read once for all.
 struct ListViewCost {
     std::uint64_t resolved, improper, straddling, undecided;
 };

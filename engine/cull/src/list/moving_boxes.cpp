@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Boxes that move in every frame, in a list beside the tree.
 #include <hwy/cache_control.h>
 #include <algorithm>
 #include <crofton/boxtree/box_tree.hpp>
@@ -31,7 +32,7 @@ void find_visible(const boxtree::BoxTree& resting, const MovingBoxes& moving, co
     Query(view, visible, options, &moving).run(resting, executor);
 }
 
-// Straddling ones go to `straddling`.
+// Appends the visible moving items, those that straddle to a list of their own.
 void Query::add_moving(const boxtree::BoxTree& tree, std::size_t& inside, std::size_t& straddling, Executor& executor) {
     VerdictBits& bits = visible_.moving_bits_;
     find_visible(moving_->set(), moving_->boxes(), view_, bits, options_.mode, executor);
@@ -43,7 +44,7 @@ void Query::add_moving(const boxtree::BoxTree& tree, std::size_t& inside, std::s
     append_moving(tree, bits.visible, visible_.straddling_.data(), straddling);
 }
 
-// The items of the bits that are set, if they are in one of the view's layers.
+// Appends the items of the set bits that are in one of the view's layers.
 void Query::append_moving(const boxtree::BoxTree& tree, std::span<const std::uint64_t> bits, ItemId* to,
                           std::size_t& count) {
     const boxtree::Items& known = tree.structure().items();
@@ -65,7 +66,7 @@ void Query::append_moving(const boxtree::BoxTree& tree, std::span<const std::uin
         count += found;
         return;
     }
-    // Layers lie anywhere: they are asked for ahead. What is in none is overwritten by the next.
+    // Layers lie anywhere, so they are prefetched. An item in none of the view's is overwritten by the next.
     constexpr std::size_t kAhead = 24;
     for (std::size_t i = 0; i < found; ++i) {
         hwy::Prefetch(&known.layer_masks()[listed[std::min(i + kAhead, found - 1)]]);

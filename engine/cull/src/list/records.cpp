@@ -12,7 +12,7 @@ namespace crofton::cull {
 namespace {
 
 constexpr float kLeastUnit = 1e-30f;   // keeps units normal numbers
-constexpr float kUndecidable = 1e37f;  // as error bound: beyond what any plane's value can be for a valid chunk
+constexpr float kUndecidable = 1e37f;  // an error bound above all values of planes in a valid chunk
 
 float float_at_least(double value) {
     const float rounded = static_cast<float>(value);

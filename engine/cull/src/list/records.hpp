@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A bound as a list keeps it.
+// The record of a bound: its compressed form in a list.
 #pragma once
 #include <crofton/cull/list_layout.hpp>
 #include <crofton/geometry/box.hpp>
@@ -12,12 +12,12 @@ namespace crofton::cull {
 [[nodiscard]] Sphere ball_around(const Aabb& box);
 [[nodiscard]] Sphere ball_around(const Sphere& sphere);
 
-// `offset`: the centre relative to the chunk's origin.
+// The record of a bound; `offset` is its centre relative to the chunk's origin.
 [[nodiscard]] BoxRecord record_of(const Obb& box, const glm::dvec3& offset);
 [[nodiscard]] AabbRecord record_of(const Aabb& box, const glm::dvec3& offset);
 [[nodiscard]] SphereRecord record_of(const Sphere& sphere, const glm::dvec3& offset);
 
-// Such that no view's filter decides anything: for bounds that are not valid.
+// A record of which no view's filter decides anything, for bounds that are not valid.
 template <class Record>
 [[nodiscard]] Record undecidable_record();
 

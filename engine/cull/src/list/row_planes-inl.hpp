@@ -15,7 +15,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace crofton::cull::HWY_NAMESPACE {
 
-// The planes before a chunk, not yet sorted.
+// A view's planes in a chunk's units, before those that need no test are left out.
 class ScaledRowPlanes {
   public:
     HWY_INLINE ScaledRowPlanes(const KernelView& view, const ListChunk& chunk) {
@@ -75,7 +75,7 @@ class ScaledRowPlanes {
     using V = hn::Vec<D>;
     static HWY_INLINE V plus_product(V sum, V a, V b) { return hn::Add(hn::Mul(a, b), sum); }
 
-    // Planes i on.
+    // Scales the planes from i on, as many as a vector holds.
     HWY_INLINE void scale(const ListChunk& chunk, const LocalOrigin& at, std::size_t i) {
         const D d;
         const I di;

@@ -13,7 +13,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace crofton::cull::HWY_NAMESPACE {
 
-// Lanes l on of four blocks.
+// The rows of four blocks from lane l on, as many as a vector holds.
 struct RowLanes {
     VU xy[4], zr[4];
     VI radius[4];  // in units of the planes' values
@@ -29,7 +29,7 @@ struct RowLanes {
     }
 };
 
-// Which are certainly outside, which certainly inside: a mask for each block.
+// Which bounds are certainly outside, and which certainly inside: a mask for each block.
 struct RowTest {
     hn::Mask<DI> outside[4], inside[4];
 
@@ -61,8 +61,8 @@ HWY_INLINE std::uint64_t bits_of_blocks(const M (&masks)[4], std::size_t l) {
     return bits;
 }
 
-// The indices of the set bits, which are few. Eight are written for every word, whether it has them or not, and more
-// where it has. Room for 8 beyond the last is needed.
+// Lists the indices of the set bits, which are few. Writes eight for every word, whether it has them or not, and more
+// where it has. Needs room for 8 beyond the last.
 HWY_INLINE std::size_t list_sparse_bits(const std::uint64_t* bits, std::size_t words, std::uint32_t* ids) {
     std::size_t count = 0;
     for (std::size_t w = 0; w < words; ++w) {

@@ -11,7 +11,7 @@
 namespace crofton::cull {
 namespace {
 
-// Sets the entries' bits. Most come in a row.
+// Sets the entries' bits. Most entries are consecutive.
 void mark(std::span<std::uint64_t> bits, std::span<const std::uint32_t> entries) {
     if (!are_consecutive(entries)) {
         for (const std::uint32_t entry : entries) bits[entry / 64] |= std::uint64_t{1} << entry % 64;
@@ -27,7 +27,7 @@ void mark(std::span<std::uint64_t> bits, std::span<const std::uint32_t> entries)
 
 }  // namespace
 
-// The next set gets the frames of the present one, and extents that grow from zero.
+// Gives the next set the frames of the present one, and extents that start at zero.
 void MovingBoxes::begin_staging() {
     const BoxSet& shown = sets_[now_];
     BoxSet& next = sets_[1 - now_];
@@ -93,9 +93,9 @@ void MovingBoxes::finish_chunk(std::size_t c, std::span<const Obb> boxes) {
                                                            next.rows_.data(), next.records_.data(), rejected);
             for (std::size_t i = 0; i < rejected_count; ++i) next.write(rejected[i], boxes[rejected[i]]);
         }
-        chunk.strays = 0;
+        chunk.out_of_frame = 0;
         for (std::size_t i = begin; i < end && chunk.largest_radius == kUnboundedRadius; ++i)
-            chunk.strays += next.rows_[i / 16].zr[i % 16] >> 16 == kUnboundedRadius;
+            chunk.out_of_frame += next.rows_[i / 16].zr[i % 16] >> 16 == kUnboundedRadius;
     }
     if (BoxSet::wants_new_frame(chunk)) next.assign_chunk(c, boxes);
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The cascades of the sun's shadow: where the view is split, and a camera around each part.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Which casters may throw a shadow onto a receiver in view: pictures of the receivers' depths from the light.
 #include <algorithm>
 #include <cmath>
 #include <crofton/cull/lights.hpp>
@@ -9,8 +10,8 @@
 namespace crofton::cull {
 namespace {
 
-// What is computed in doubles here is moved outwards by this share of the sizes that went into it. That is some twenty
-// roundings of 2^-53 each, with much to spare.
+// Results in doubles are moved outwards by this share of the sizes that went into them. That is far more than their
+// some twenty roundings of 2^-53.
 constexpr double kOutward = 0x1p-40;
 
 struct Interval {
@@ -34,12 +35,12 @@ struct FaceBody {
     }
 };
 
-// A part of a picture.
+// A rectangle of a face's picture.
 struct Rectangle2 {
     Interval side[2];
 };
 
-// Where rays through the rectangle are inside the body: no part of it is left out.
+// The depths at which rays through the rectangle may be inside the body; none is left out.
 Interval depths(const FaceBody& body, const Rectangle2& tile, bool is_sun) {
     Interval result;
     if (!is_sun) result.low = 0.0;
@@ -91,7 +92,7 @@ FaceBody body_of(const Obb& box, const glm::dvec3& origin, const glm::dvec3 (&ax
 
 }  // namespace
 
-// One receiver set at work.
+// The work on one ShadowReceivers.
 class ReceiverPass {
   public:
     explicit ReceiverPass(const ShadowReceivers& set) : set_(set) {}

@@ -51,21 +51,21 @@ inline BlockPlane block_plane(const KernelView& view, std::size_t i, const boxtr
             static_cast<std::int32_t>(std::min(plane.error_bound, 0x7fffffff * 1.0))};
 }
 
-// Where the offset would have to be cut off the plane says nothing: a box that it cuts must be so for certain.
+// A leaf's plane must not claim a cut that is not certain. So a plane whose offset does not fit decides nothing.
 inline BlockPlane block_plane(const KernelView& view, std::size_t i, const boxtree::Leaf& leaf) {
     const ScaledPlane plane = scaled_plane(view, i, leaf);
     if (!(std::fabs(plane.offset) <= kMostOffset && plane.error_bound <= kMostOffset)) return {0, 0x7fffffff};
     return {static_cast<std::int32_t>(plane.offset), static_cast<std::int32_t>(plane.error_bound)};
 }
 
-// The view's normals along turned axes. A plane's value at o + Σ axis k · q[k] is its value at o plus (axis k ·
-// normal) q[k] for each k, whatever the axes: so only the normal is turned. Sums in double round by 2^-51, which the
-// rounding to 2^-14 has room for (boxtree::rounding_of).
+// The view's normals along turned axes, computed when first asked for. A plane's value at o + Σ axis k · q[k] is its
+// value at o plus (axis k · normal) q[k] for each k, whatever the axes: so only the normal is turned. Sums in double
+// round by 2^-51, which the rounding to 2^-14 has room for (boxtree::rounding_of).
 class TurnedPlanes {
   public:
     TurnedPlanes(const KernelView& view, const boxtree::Axes* axes) : view_(view), axes_(axes) {}
 
-    // Those of `planes`, as normals along the tree's axes of that index. Good until the next call.
+    // The normals of `planes` along the tree's axes of that index. Valid until the next call.
     const PairPlane* along(std::uint32_t axes, std::uint32_t planes) {
         if (axes == 0) return view_.pair_planes;
         if (axes != turned_to_) {

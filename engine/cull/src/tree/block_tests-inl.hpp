@@ -20,7 +20,7 @@ struct NodeTest {
     alignas(64) std::uint32_t planes[16];  // per lane, those of the planes that it is not certainly inside of
 };
 
-// Lanes below `count` that share a layer with the view; lane by lane only if not all of them do.
+// Lanes below `count` that share a layer with the view. Compares lane by lane only if not all of them do.
 HWY_INLINE MF present(const KernelView& view, std::uint32_t every, const std::uint32_t* layers, std::uint32_t count,
                       std::size_t l) {
     const DU du;
@@ -30,7 +30,7 @@ HWY_INLINE MF present(const KernelView& view, std::uint32_t every, const std::ui
     return hn::And(used, hn::RebindMask(DF(), hn::Ne(common, hn::Zero(du))));
 }
 
-// Lanes l on of a node.
+// The children of a node from lane l on, as many as a vector holds.
 struct NodeRows {
     VU middle_xy, half_xy, middle_half_z;
 
@@ -88,7 +88,7 @@ HWY_INLINE NodeTest test_node(const KernelView& view, const PairPlane* normals, 
     return result;
 }
 
-// Lanes of `lanes` below which everything is in a layer that the view sees.
+// Those of `lanes` below which every item is in a layer that the view sees.
 HWY_INLINE std::uint32_t seen(const KernelView& view, const boxtree::Node& node, std::uint32_t lanes) {
     if (HWY_LIKELY(node.layers_every & view.layer_mask)) return lanes;
     std::uint32_t result = 0;
@@ -99,7 +99,7 @@ HWY_INLINE std::uint32_t seen(const KernelView& view, const boxtree::Node& node,
     return result;
 }
 
-// Boxes in floats: a list's records.
+// Boxes in floats, from a list's records.
 struct BoxLanes {
     VF x, y, z, unit;
     VF edge_error_bound;

@@ -19,7 +19,7 @@ struct LeafPlane {
     BlockPlane at;
 };
 
-// Lanes l on of a leaf.
+// The boxes of a leaf from lane l on, as many as a vector holds.
 struct LeafRows {
     VU xy, z_edge2_z, edge01_z, edge_xy[3];
     int edge_shift;
@@ -52,7 +52,7 @@ struct PlaneValues {
     }
 };
 
-// One plane's word. With m the centre's value and r the projected radius ≥ 0, the numbers below are all in range.
+// One plane's verdict. With m the centre's value and r the projected radius ≥ 0, the numbers below are all in range.
 struct PlaneTest {
     MF cuts;    // certainly
     MF unsure;  // whether the plane cuts the box
@@ -103,14 +103,14 @@ HWY_INLINE BoxRows box_rows(const LeafRows& boxes, const LeafPlane* planes, unsi
     return result;
 }
 
-// Not inlined, and given no vectors: what calls it keeps its own in registers.
+// Not inlined, and without vectors as arguments, so that the caller keeps its own in registers.
 static HWY_NOINLINE void resolve_leaf(const boxtree::Leaf& leaf, std::size_t l, const LeafPlane* planes, unsigned count,
                                       BoxTest& test) {
     resolve(box_rows(LeafRows(leaf, l), planes, count, test.needs_edge_test), test);
 }
 
-// Of two planes or more. In the exact mode a box that crosses two is asked for a common point, unless its centre is
-// one.
+// Tests a leaf against two planes or more. In the exact mode a box that crosses two of them goes to the second stage,
+// unless its centre is inside all.
 HWY_INLINE BoxTest test_leaf(const boxtree::Leaf& leaf, std::size_t l, MF present, const LeafPlane* planes,
                              unsigned count, bool exact) {
     const DF d;

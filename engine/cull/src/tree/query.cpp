@@ -19,11 +19,11 @@
 namespace crofton::cull {
 namespace {
 
-// Vector stores run past the end of what they mean to write.
+// Room behind each list: vector stores write past the end.
 constexpr std::size_t kPadding = boxtree::kWidth, kListPadding = 64;
-// Below this a query is over before another thread has woken.
+// A query of fewer items is over before another thread has woken.
 constexpr std::size_t kParallelItems = 65536;
-// Beside an item's id, which is below 2^30.
+// A mark in an item's number; ids are below 2^30.
 constexpr std::uint32_t kInside = 0x80000000u;
 
 template <class T>
@@ -41,8 +41,8 @@ void leave_all_undecided(std::size_t count, ListKernelOutput& output) {
     std::fill_n(output.inside, (count + 63) / 64, 0);
 }
 
-// A large tree is asked subtree by subtree, two levels down, whether they are shared among threads or not. So the
-// answer comes in the same order.
+// A large tree is queried subtree by subtree, two levels down, with one thread as with many. So the answer comes in
+// the same order.
 Query::Tasks::Tasks(const TreeKernelInput& input, bool many) {
     const std::uint64_t root = tree_entry(0, (1u << input.view->plane_count) - 1);
     std::uint64_t level[boxtree::kWidth];
@@ -99,7 +99,7 @@ std::uint64_t Query::layer_bits(std::span<const std::uint32_t> layer_masks) cons
     return bits;
 }
 
-// Those of up to 64 visible boxes, from `first` on, that are worth drawing.
+// Of up to 64 visible boxes, from `first` on, those that are worth drawing.
 std::uint64_t Query::wanted_bits(std::uint64_t visible, std::span<const Obb> boxes,
                                  std::span<const std::uint32_t> layer_masks, std::size_t first) {
     std::uint64_t result = visible;
@@ -111,7 +111,7 @@ std::uint64_t Query::wanted_bits(std::uint64_t visible, std::span<const Obb> box
     return result;
 }
 
-// What the kernel left of these boxes, and their statistics.
+// Decides what the kernel left undecided of these boxes, and counts for the statistics.
 void Query::decide(std::span<const Obb> boxes, ListKernelOutput& output) {
     std::size_t rejected = 0;
     for (std::size_t n = 0; n < output.undecided_count; ++n) {
@@ -131,7 +131,7 @@ void Query::decide(std::span<const Obb> boxes, ListKernelOutput& output) {
     visible_.statistics_.improper += output.improper + rejected;
 }
 
-// The ids of the bits in `seen`; those in `marked` straddle.
+// Lists the ids of the bits in `seen`; those that are also in `marked` straddle.
 void Query::finish(const std::uint64_t* seen, const std::uint64_t* marked, std::size_t words, std::size_t items) {
     grow(visible_.ids_, items + kListPadding);
     std::size_t size = 0, straddling = 0;
@@ -141,7 +141,7 @@ void Query::finish(const std::uint64_t* seen, const std::uint64_t* marked, std::
         size = list_marked(seen, marked, words);
     } else {
         grow(visible_.straddling_, items + kListPadding);
-        // All that are seen, then those that straddle taken out: what is left is inside, in ascending order.
+        // Lists all that are seen, then takes out those that straddle. The rest is inside, in ascending order.
         Vector<std::uint64_t>& bits = visible_.bits_;
         for (std::size_t w = 0; w < words; ++w) bits[w] &= ~marked[w];
         size = list_bits_kernel(bits.data(), words, visible_.ids_.data());
@@ -267,7 +267,7 @@ void Query::run_parallel(const boxtree::BoxTree& tree, const TreeKernelInput& in
     finish(tree, inside, straddling, executor);
 }
 
-// A view that the kernels cannot take: item by item. If it is not finite, everything may be visible.
+// A view that the kernels cannot take is tested item by item. If it is not finite, everything may be visible.
 void Query::run_all(const boxtree::BoxTree& tree, Executor& executor) {
     const boxtree::Structure& structure = tree.structure();
     const std::span<const Obb> boxes = tree.boxes();
@@ -292,7 +292,7 @@ std::size_t Query::decide(const boxtree::BoxTree& tree, TreeKernelOutput& output
     const std::span<const std::uint32_t> layer_masks = tree.layer_masks();
     std::size_t kept = 0;
     for (std::size_t i = 0; i < output.undecided_count; ++i) {
-        // The boxes lie in the order of their ids, far from each other: ask for them ahead.
+        // The boxes lie in the order of their ids, far from each other: prefetch them.
         constexpr std::size_t kAhead = 8;
         if (i + kAhead < output.undecided_count) hwy::Prefetch(&boxes[slot_items[output.undecided[i + kAhead]]]);
         const ItemId item = slot_items[output.undecided[i]];
@@ -307,7 +307,7 @@ std::size_t Query::decide(const boxtree::BoxTree& tree, TreeKernelOutput& output
     return kept;
 }
 
-// Behind the items that the kernel decided, so that the order is the same however the work was shared.
+// Appends them behind the items that the kernel decided, so that the order does not depend on the threads.
 void Query::append_decided(const TreeKernelOutput& output, std::size_t kept, std::size_t& inside,
                            std::size_t& straddling) {
     for (std::size_t i = 0; i < kept; ++i) {
@@ -326,7 +326,7 @@ void Query::append_decided(const TreeKernelOutput& output, std::size_t kept, std
     statistics.improper += output.improper;
 }
 
-// Of `count` ids those that CullOptions::among has, in order; returns how many.
+// Keeps of `count` ids those that CullOptions::among has, in order; returns how many.
 std::size_t Query::keep_among(ItemId* ids, std::size_t count) const {
     const std::span<const std::uint64_t> set = options_.among;
     std::size_t kept = 0;
@@ -355,8 +355,8 @@ void Query::finish(std::size_t inside, std::size_t straddling, std::size_t items
     visible_.verdicts_.clear();
 }
 
-// By a bit an item: the ids are distinct and below the number of items. Few straddle: how many ids lie below each is
-// found from the words' first places.
+// Sorts by setting a bit for each id: they are distinct and below the number of items. Few straddle. The place of such
+// an id is found from how many ids lie in the words before its own.
 void Query::sort(std::size_t inside, std::size_t straddling, std::size_t items) {
     const std::size_t words = items / 64 + 2;  // one more for the kernel
     grow(visible_.bits_, 2 * words);

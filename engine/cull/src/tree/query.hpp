@@ -11,15 +11,15 @@
 
 namespace crofton::cull {
 
-// A view's planes, without what only trees and balls need. Returns whether the kernels of lists can take them: without
-// planes nothing would tell invalid bounds from others; beyond 1e32 the offsets' error bounds would not.
+// A view's planes, without what only trees and balls need. Returns whether the kernels of lists can take them. They
+// find invalid bounds by planes, so they need one, with an offset of at most 1e32.
 [[nodiscard]] bool set_planes(const View& view, KernelView& result);
 void set_lengths(KernelView& view);  // for balls
 
 // For a tree: its planes in small integers as well.
 [[nodiscard]] KernelView kernel_view_of(const View& view);
 
-// What a kernel would answer that decides nothing.
+// The answer of a kernel that decides nothing.
 void leave_all_undecided(std::size_t count, ListKernelOutput& output);
 
 class Query {

@@ -17,6 +17,7 @@
 
 #include "limits/limit_tests-inl.hpp"
 #include "tree/leaf_tests-inl.hpp"
+#include "tree/open_list-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace crofton::cull::HWY_NAMESPACE {
@@ -27,6 +28,7 @@ constexpr std::uint32_t kWhole = 1u << 31;
 // There too: something below may be beyond a draw limit.
 constexpr std::uint32_t kLimited = 1u << 30;
 
+// The way of one query through the tree, from some entries down to the leaves.
 template <class Limits>
 class Walk {
   public:
@@ -36,53 +38,31 @@ class Walk {
     // A copy of the output travels with the walk, so that the compiler keeps it in registers.
     [[nodiscard]] HWY_INLINE TreeKernelOutput result() const { return out_; }
 
-    // Group after group of entries through the nodes; what lies inside as a whole is noted, and so are the leaves that
-    // stay open. These follow when all nodes are done. The groups set the order of the answer.
+    // Takes group after group of entries through the nodes. Notes what is fully inside, and the leaves that planes
+    // cross. These leaves are tested when all nodes are done. The groups set the order of the answer.
     HWY_INLINE void run(const std::uint64_t* entries, std::size_t entry_count) {
         constexpr std::size_t kMaxGroups = boxtree::kWidth * boxtree::kWidth / kTreeGroup;
-        std::size_t crossing_ends[kMaxGroups + 1] = {}, cornered_ends[kMaxGroups + 1] = {}, groups = 0;
+        std::size_t one_plane_ends[kMaxGroups + 1] = {}, many_plane_ends[kMaxGroups + 1] = {}, groups = 0;
         for (std::size_t first = 0; first < entry_count; first += kTreeGroup, ++groups) {
             descend(entries + first, std::min(kTreeGroup, entry_count - first));
             list_whole();
-            crossing_ends[groups + 1] = crossing_.count;
-            cornered_ends[groups + 1] = cornered_.count;
+            one_plane_ends[groups + 1] = one_plane_leaves_.count;
+            many_plane_ends[groups + 1] = many_plane_leaves_.count;
         }
-        crossing_.pad();
-        cornered_.pad();
-        for (std::size_t i = 0; i < kLeavesAhead; ++i) prefetch_leaf(crossing_.children[i]);
+        one_plane_leaves_.pad();
+        many_plane_leaves_.pad();
+        for (std::size_t i = 0; i < kLeavesAhead; ++i) prefetch_leaf(one_plane_leaves_.children[i]);
         if (out_.runs == nullptr) copy_runs();
         for (std::size_t g = 0; g < groups; ++g) {
-            visit_crossing(crossing_ends[g], crossing_ends[g + 1]);
-            visit_cornered(cornered_ends[g], cornered_ends[g + 1]);
+            visit_one_plane_leaves(one_plane_ends[g], one_plane_ends[g + 1]);
+            visit_many_plane_leaves(many_plane_ends[g], many_plane_ends[g + 1]);
         }
     }
 
   private:
-    static constexpr std::size_t kNodesAhead = 4, kRunsAhead = 4, kLeavesAhead = 8;
+    static constexpr std::size_t kNodesAhead = 4, kRunsAhead = 4, kLeavesAhead = kOpenPadding;
 
-    // Children and the planes that they straddle.
-    struct List {
-        std::uint32_t* children;
-        std::uint32_t* planes;
-        std::size_t count = 0;
-
-        HWY_INLINE void append(VU which, VU their_planes, hn::Mask<DU> mask) {
-            const DU du;
-            simd::compress_store(du, which, mask, children + count);
-            count += simd::compress_store(du, their_planes, mask, planes + count);
-        }
-        HWY_INLINE void append(std::uint32_t child, std::uint32_t child_planes) {
-            children[count] = child;
-            planes[count++] = child_planes;
-        }
-        // Pads the list with its last entry, so that prefetching past the end stays in range.
-        HWY_INLINE void pad() {
-            const std::uint32_t last = count > 0 ? children[count - 1] : 0;
-            for (std::size_t i = 0; i < kLeavesAhead; ++i) children[count + i] = last;
-        }
-    };
-
-    // Level by level; memory is asked for ahead, and lists grow without a branch on what is found.
+    // Visits the nodes level by level. Prefetches, and appends to lists without a branch on what is found.
     HWY_INLINE void descend(const std::uint64_t* entries, std::size_t count) {
         nodes_.count = whole_count_ = 0;
         for (std::size_t i = 0; i < count; ++i) start(entries[i]);
@@ -103,9 +83,9 @@ class Walk {
                     continue;
                 }
             if (is_one(planes))
-                visit_crossed_once(node, planes);
+                visit_one_plane_node(node, planes);
             else
-                visit_crossed(node, planes);
+                visit_many_plane_node(node, planes);
         }
     }
 
@@ -117,13 +97,13 @@ class Walk {
         if (planes & kWhole)
             whole_[whole_count_++] = child;
         else if (child & boxtree::kLeafBit)
-            (is_one(planes) ? crossing_ : cornered_).append(child & ~boxtree::kLeafBit, planes);
+            (is_one(planes) ? one_plane_leaves_ : many_plane_leaves_).append(child & ~boxtree::kLeafBit, planes);
         else
             nodes_.append(child, planes);
     }
 
     // Below the first levels most nodes that cross a frustum cross one plane.
-    HWY_INLINE void visit_crossed_once(const boxtree::Node& node, std::uint32_t planes) {
+    HWY_INLINE void visit_one_plane_node(const boxtree::Node& node, std::uint32_t planes) {
         const DU du;
         const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(planes);
         const BlockPlane plane = block_plane(*in_.view, i, node);
@@ -136,14 +116,14 @@ class Walk {
         }
     }
 
-    HWY_INLINE void visit_crossed(const boxtree::Node& node, std::uint32_t planes) {
+    HWY_INLINE void visit_many_plane_node(const boxtree::Node& node, std::uint32_t planes) {
         const DU du;
         const NodeTest test = test_node(*in_.view, turned_.along(node.axes, planes), node, planes);
         for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(du))
             note<false>(node, l, hn::RebindMask(DF(), mask_of(test.alive >> l)), hn::Load(du, test.planes + l));
     }
 
-    // Limits first: few nodes near one are left when all lanes are dropped.
+    // A node near a draw limit: its children are tested against planes and limits.
     HWY_INLINE void visit_limited(const boxtree::Node& node, boxtree::NodeId id, std::uint32_t planes) {
         const DU du;
         const NodeTest test = test_node(*in_.view, turned_.along(node.axes, planes), node, planes);
@@ -155,7 +135,8 @@ class Walk {
         }
     }
 
-    // Where they go, children l on of a node that are not certainly outside; kOnce: none straddles several planes.
+    // Puts the children of a node from lane l on into lists, as far as they are `alive`: not certainly outside. kOnce:
+    // none straddles several planes.
     template <bool kOnce>
     HWY_INLINE void note(const boxtree::Node& node, std::size_t l, MF alive, VU straddled) {
         const DU du;
@@ -177,12 +158,12 @@ class Walk {
         }
         // Where every child is in a layer that the view sees, a leaf is open only because it straddles a plane.
         if (kOnce && HWY_LIKELY(node.layers_every & in_.view->layer_mask))
-            return crossing_.append(leaves, straddled, of_leaves);
+            return one_plane_leaves_.append(leaves, straddled, of_leaves);
         const auto few = hn::Eq(hn::And(straddled, hn::Sub(straddled, hn::Set(du, 1))), zero);
         auto once = hn::And(few, straddles);
         if constexpr (Limits::kAny) once = hn::And(once, hn::Lt(straddled, hn::Set(du, kLimited)));
-        crossing_.append(leaves, straddled, hn::And(of_leaves, once));
-        cornered_.append(leaves, straddled, hn::AndNot(once, of_leaves));
+        one_plane_leaves_.append(leaves, straddled, hn::And(of_leaves, once));
+        many_plane_leaves_.append(leaves, straddled, hn::AndNot(once, of_leaves));
     }
 
     HWY_INLINE void prefetch_leaf(boxtree::LeafId leaf) const {
@@ -197,8 +178,8 @@ class Walk {
         if constexpr (Limits::kAny) limits_.prefetch(node);
     }
 
-    // What lies inside as a whole, as runs of slots. A node whose leaves are not consecutive leaves it to its children,
-    // at the list's end.
+    // Lists what is fully inside as runs of slots. A node whose leaves are not consecutive is replaced by its children,
+    // which are appended to the list.
     HWY_INLINE void list_whole() {
         const std::size_t before = out_.whole_count;
         for (std::size_t i = 0; i < whole_count_; ++i) {
@@ -221,7 +202,7 @@ class Walk {
 
     HWY_INLINE void note_leaf(boxtree::LeafId leaf) { note_run(leaf * boxtree::kWidth, in_.leaf_counts[leaf]); }
 
-    // Joined with the run before it if it follows that.
+    // Appends a run of slots, joined with the last one if it follows that.
     HWY_INLINE void note_run(std::uint32_t first, std::uint32_t items) {
         const bool follows = out_.run_count > 0 && run_end_ == first;
         out_.run_count += !follows;
@@ -261,14 +242,14 @@ class Walk {
                    out_.undecided_count);
     }
 
-    HWY_INLINE void visit_crossing(std::size_t begin, std::size_t end) {
+    HWY_INLINE void visit_one_plane_leaves(std::size_t begin, std::size_t end) {
         const KernelView& view = *in_.view;
         for (std::size_t at = begin; at < end; ++at) {
-            prefetch_leaf(crossing_.children[at + kLeavesAhead]);
-            const boxtree::LeafId id = crossing_.children[at];
+            prefetch_leaf(one_plane_leaves_.children[at + kLeavesAhead]);
+            const boxtree::LeafId id = one_plane_leaves_.children[at];
             const boxtree::Leaf& leaf = in_.leaves[id];
             if (kCountStatistics) out_.boxes_tested += leaf.count;
-            const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(crossing_.planes[at]);
+            const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(one_plane_leaves_.planes[at]);
             const LeafPlane plane{&view.pair_planes[i], block_plane(view, i, leaf)};
             for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(DU())) {
                 const MF lanes = present(view, leaf.layers_every, leaf.layers, leaf.count, l);
@@ -277,21 +258,21 @@ class Walk {
         }
     }
 
-    HWY_INLINE void visit_cornered(std::size_t begin, std::size_t end) {
+    HWY_INLINE void visit_many_plane_leaves(std::size_t begin, std::size_t end) {
         const KernelView& view = *in_.view;
         for (std::size_t at = begin; at < end; ++at) {
-            prefetch_leaf(cornered_.children[at + kLeavesAhead]);
-            const boxtree::LeafId id = cornered_.children[at];
+            prefetch_leaf(many_plane_leaves_.children[at + kLeavesAhead]);
+            const boxtree::LeafId id = many_plane_leaves_.children[at];
             const boxtree::Leaf& leaf = in_.leaves[id];
             if (kCountStatistics) out_.boxes_tested += leaf.count;
             if constexpr (Limits::kAny)
-                if (cornered_.planes[at] & kLimited) {
-                    visit_limited_leaf(id, cornered_.planes[at] & ~kLimited);
+                if (many_plane_leaves_.planes[at] & kLimited) {
+                    visit_limited_leaf(id, many_plane_leaves_.planes[at] & ~kLimited);
                     continue;
                 }
             LeafPlane planes[KernelView::kMaxPlanes];
             unsigned count = 0;
-            for (std::uint32_t rest = cornered_.planes[at]; rest; rest &= rest - 1) {
+            for (std::uint32_t rest = many_plane_leaves_.planes[at]; rest; rest &= rest - 1) {
                 const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(rest);
                 planes[count++] = {&view.pair_planes[i], block_plane(view, i, leaf)};
             }
@@ -336,10 +317,10 @@ class Walk {
     const TreeKernelInput& in_;
     TreeKernelOutput out_;
     TurnedPlanes turned_{*in_.view, in_.axes};
-    List nodes_{work(0), work(1)};     // open, from the first on
-    List crossing_{work(2), work(3)};  // leaves that cross one plane
-    List cornered_{work(4), work(5)};  // leaves that cross several, fewer and dearer
-    std::uint32_t* whole_ = work(6);   // children that lie inside as a whole
+    OpenList nodes_{work(0), work(1)};              // open, from the first on
+    OpenList one_plane_leaves_{work(2), work(3)};   // that one plane crosses
+    OpenList many_plane_leaves_{work(4), work(5)};  // that several cross: fewer, and slower to test
+    std::uint32_t* whole_ = work(6);                // children that lie inside as a whole
     std::size_t whole_count_ = 0;
     SlotRun* runs_ = out_.runs != nullptr ? out_.runs : reinterpret_cast<SlotRun*>(work(7));
     std::uint32_t run_end_ = 0;
@@ -359,7 +340,7 @@ void run_limited_tree(const TreeKernelInput& input, const KernelLimits& limits, 
     output = walk.result();
 }
 
-// One level down, without going into leaves; subtrees inside the view and leaves stay as they are.
+// Replaces an entry by those of its children. Leaves, and subtrees inside the view, stay as they are.
 std::size_t expand_tree(const TreeKernelInput& input, std::uint64_t entry, std::uint64_t* entries) {
     const auto child = static_cast<std::uint32_t>(entry >> 32);
     const auto planes = static_cast<std::uint32_t>(entry);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Many views in one pass through a tree and a list.
 #include <bit>
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/boxtree/structure.hpp>
@@ -14,6 +15,7 @@
 
 namespace crofton::cull {
 
+// One query of many views at work in a ManyVisible's buffers.
 class ManyViewsQuery {
   public:
     ManyViewsQuery(const boxtree::BoxTree& tree, std::span<const View> views, CullMode mode, const DrawLimits* limits)
@@ -133,10 +135,10 @@ class ManyViewsQuery {
         if (buffer.size() < size) buffer.resize(size);
     }
 
-    // A mask's lower bytes come first.
+    // The kernel writes masks of fewer bytes: a mask's lower bytes come first.
     static_assert(std::endian::native == std::endian::little);
 
-    // A view that the kernel cannot take is among them.
+    // Where the kernel cannot take one of the views: each item is tested against each view.
     void run_one_by_one(ManyVisible& visible) const {
         for (const ItemId item : tree_.slot_items()) {
             if (item == boxtree::kNone) continue;

@@ -31,8 +31,8 @@ HWY_INLINE void for_each_bit(std::uint32_t bits, const Visit& visit) {
     for (; bits; bits &= bits - 1) visit(static_cast<unsigned>(hwy::Num0BitsBelowLS1Bit_Nonzero32(bits)));
 }
 
-// First each view goes through the nodes alone, and notes by leaf what it sees whole and what it must look into. Then
-// one way through the leaves that were noted answers for all views: a leaf is fetched once, and written once.
+// Many views through one tree. First each view goes through the nodes alone. It notes the leaves that are fully inside,
+// and those that must be tested. Then one pass over the noted leaves answers for all views: each leaf is read once.
 template <class Mask>  // wide enough for the views
 class ManyWalk {
   public:
@@ -163,7 +163,7 @@ class ManyWalk {
         return out_.planes + v * (std::size_t{in_.leaf_count} + boxtree::kWidth);
     }
 
-    // Writes the leaves that are seen whole or not at all, and lists the others.
+    // Writes the leaves that no view must test, and lists the others.
     HWY_INLINE std::size_t write_whole() {
         const std::uint32_t words = (in_.leaf_count + 1023) / 1024;
         std::size_t listed = 0;
@@ -204,7 +204,7 @@ class ManyWalk {
         return listed;
     }
 
-    // Have these sixteen leaves sixteen items each?
+    // Whether these sixteen leaves have sixteen items each.
     HWY_INLINE bool is_full(std::uint32_t first) const {
         if (first + 16 > in_.leaf_count) return false;
         std::uint64_t counts[2];
@@ -242,7 +242,7 @@ class ManyWalk {
         }
     }
 
-    // A leaf's items, and which views see each of them.
+    // The views that see each of a leaf's items.
     struct LeafMasks {
         static constexpr std::size_t kParts = (boxtree::kWidth + hn::MaxLanes(DU()) - 1) / hn::MaxLanes(DU());
         VU part[kParts];
@@ -266,8 +266,7 @@ class ManyWalk {
         }
     }
 
-    // Adds view v's bit for the boxes of a leaf that it sees. The planes are brought before the leaf once for all
-    // lanes.
+    // Adds view v's bit to the boxes of a leaf that it sees. The planes are put into the leaf's units once.
     HWY_INLINE void test_view(std::uint32_t v, std::uint32_t id, std::uint32_t straddled, LeafMasks& masks) const {
         const boxtree::Leaf& leaf = in_.leaves[id];
         const KernelView& view = in_.views[v];

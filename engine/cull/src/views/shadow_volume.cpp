@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The volume from which shadows fall into a view.
 #include <crofton/cull/cull.hpp>
 #include <crofton/geometry/finite.hpp>
 #include <glm/geometric.hpp>

@@ -21,7 +21,8 @@ Result<void> Domain::build(const Polygon& polygon) {
     if (auto result = check(polygon); !result) return result;
     merge_vertices(polygon);
     delaunay(mesh_, codes_, scratch_);
-    if (mesh_.triangle_count() == 0) return fail_at(ErrorCode::degenerate, 0, "zero area: all points are collinear");
+    if (mesh_.triangle_count() == 0)
+        return fail(ErrorCode::degenerate, 0, {name_of(0).text, ": zero area: all points are collinear"});
     if (auto result = insert_rings(); !result) return result;
     return find_inside();
 }
@@ -58,15 +59,18 @@ Result<void> Domain::check(const Polygon& polygon) {
         const auto holds = [&](const glm::dvec2& p) { return condition(std::fabs(p.x)) || condition(std::fabs(p.y)); };
         return static_cast<Index>(std::find_if(points.begin(), points.end(), holds) - points.begin());
     };
-    if (!finite)
-        return fail_at(ErrorCode::non_finite, find([](double m) { return !(m <= kLargest); }), "not a finite position");
+    if (!finite) {
+        const Index culprit = find([](double m) { return !(m <= kLargest); });
+        return fail(ErrorCode::non_finite, culprit, {name_of(culprit).text, ": not a finite position"});
+    }
     scale_ = 1.0;
     if (largest > 1e60 || (largest < 1e-20 && largest > 0.0) || smallest < kSmallest) {
         int exponent = 0;
         std::frexp(largest, &exponent);
         if (std::ldexp(smallest, -exponent) < kSmallest) {
-            return fail_at(ErrorCode::out_of_range, find([&](double m) { return m == smallest; }),
-                           "coordinates differ by more than 2^200 in size");
+            const Index culprit = find([&](double m) { return m == smallest; });
+            return fail(ErrorCode::out_of_range, culprit,
+                        {name_of(culprit).text, ": coordinates differ by more than 2^200 in size"});
         }
         scale_ = std::ldexp(1.0, exponent);
     }
@@ -172,8 +176,9 @@ Result<void> Domain::insert_edge(Index input, Index successor) {
         scratch_.cavity.clear();
         const Index e = inserter.advance(at, end, crossing);
         if (crossing.found) {
-            return fail_at(ErrorCode::degenerate, input,
-                           "the edge from here crosses the one from " + describe(record(crossing.mark - 1).input));
+            return fail(ErrorCode::degenerate, input,
+                        {name_of(input).text, ": the edge from here crosses the one from ",
+                         name_of(record(crossing.mark - 1).input).text});
         }
         claim(e, input);
         for (const Index triangle : scratch_.cavity) inside_[triangle / 4] = kUnreached;
@@ -236,17 +241,13 @@ Index Domain::input_index(Index e) const {
     }
 }
 
-std::string Domain::describe(Index input) const {
+Domain::Name Domain::name_of(Index input) const {
     const auto& p = polygon_->points[input];
     const Index r = ring_of(input);
-    char text[128];
-    std::snprintf(text, sizeof text, "ring %u, point %u (%.17g, %.17g)", r,
+    Name name;
+    std::snprintf(name.text, sizeof name.text, "ring %u, point %u (%.17g, %.17g)", r,
                   r == 0 ? input : input - polygon_->ring_ends[r - 1], p.x, p.y);
-    return text;
-}
-
-tl::unexpected<Error> Domain::fail_at(ErrorCode code, Index input, const std::string& what) const {
-    return fail(code, input, {describe(input), ": ", what});
+    return name;
 }
 
 }  // namespace crofton::triangulate

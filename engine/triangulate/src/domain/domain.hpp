@@ -83,8 +83,11 @@ class Domain {
     [[nodiscard]] Record record(Index id) const;
     [[nodiscard]] Index ring_of(Index input) const;
     [[nodiscard]] Index successor(Index input) const;
-    [[nodiscard]] std::string describe(Index input) const;
-    [[nodiscard]] tl::unexpected<Error> fail_at(ErrorCode code, Index input, const std::string& what) const;
+    // Ring, number and place of a point, for messages.
+    struct Name {
+        char text[128];
+    };
+    [[nodiscard]] Name name_of(Index input) const;
 
     const Polygon* polygon_ = nullptr;
     double scale_ = 1.0;

@@ -38,9 +38,10 @@ Result<Domain::State> Domain::cross(State state, Index mark) {
 }
 
 tl::unexpected<Error> Domain::overlap(Index mark, Index a, Index b) const {
-    return fail_at(ErrorCode::degenerate, record(mark - 1).input,
-                   "holes " + std::to_string(std::min(a, b)) + " and " + std::to_string(std::max(a, b)) +
-                       " overlap or lie inside one another");
+    const Index input = record(mark - 1).input;
+    return fail(ErrorCode::degenerate, input,
+                {name_of(input).text, ": holes ", std::min(a, b), " and ", std::max(a, b),
+                 " overlap or lie inside one another"});
 }
 
 // Of a ring that touches neither itself nor others: whether the polygon's inside, if it is valid, lies on its left.
@@ -119,7 +120,8 @@ Result<void> Domain::find_inside() {
         if (inside_[border.half_edge / 4] != kUnreached) continue;
         if (auto result = enter(border.half_edge, regions_[border.region]); !result) return result;
     }
-    if (inside_count_ == 0) return fail_at(ErrorCode::degenerate, 0, "zero area: nothing lies inside");
+    if (inside_count_ == 0)
+        return fail(ErrorCode::degenerate, 0, {name_of(0).text, ": zero area: nothing lies inside"});
     return check_holes();
 }
 
@@ -131,8 +133,9 @@ Result<void> Domain::enter(Index half_edge, State state) {
         if (!crossed) return tl::unexpected<Error>(crossed.error());
         state = *crossed;
         if (state.outer == 0 && state.hole != 0) {
-            return fail_at(ErrorCode::degenerate, record(mark - 1).input,
-                           "hole " + std::to_string(state.hole) + " reaches outside the outer ring");
+            const Index input = record(mark - 1).input;
+            return fail(ErrorCode::degenerate, input,
+                        {name_of(input).text, ": hole ", state.hole, " reaches outside the outer ring"});
         }
     }
     regions_.push_back(state);
@@ -175,7 +178,7 @@ Result<void> Domain::check_holes() const {
         bool touches = begin == end;
         for (Index i = begin; i < end && !touches; ++i) touches = touches_inside(vertex_of_[i]);
         if (!touches)
-            return fail_at(ErrorCode::degenerate, begin, "hole " + std::to_string(r) + " lies outside the polygon");
+            return fail(ErrorCode::degenerate, begin, {name_of(begin).text, ": hole ", r, " lies outside the polygon"});
     }
     return {};
 }

@@ -67,10 +67,10 @@ class BoxTree {
     [[nodiscard]] Result<void> attach(ItemId item, const Obb& box);
     [[nodiscard]] bool is_detached(ItemId item) const;
 
-    // Rebuilds in the background, about `budget` items' worth of work a call; a build is worth some 10 an item. What
-    // has changed since the last call comes on top: an insertion is worth 64, another change 2. Call it once a frame,
-    // after refit(), where items move for long. True when a rebuild has just been completed. What moved before both of
-    // the last two refits is taken for what moves all the time (BuildOptions).
+    // Does a step of a rebuild in the background; true when one has just been completed. Call it once a frame, after
+    // refit(), where items move for long. `budget` bounds the work of a step. Its unit is adding an item: a whole build
+    // costs some 10 an item. Changes since the last call come on top: 64 for an insertion, 2 for another change. Items
+    // that moved before each of the last two refits count as always moving (BuildOptions).
     bool rebuild_step(std::size_t budget);
 
     // Checks every invariant: links, counts, slots, bounds. Errors name the node, leaf or item.

@@ -8,6 +8,7 @@
 
 namespace crofton::boxtree {
 
+// Bits of lanes, by leaf.
 class ChangeMarks {
   public:
     void reset(std::size_t leaves);  // nothing has changed
@@ -18,8 +19,8 @@ class ChangeMarks {
     }
     void mark(std::span<const std::uint32_t> slots);
 
-    // Where no more of a leaf's boxes have changed, a move writes each into its lane; where more have, a refit writes
-    // them all.
+    // A move writes up to so many changed boxes of a leaf into their lanes. Where more have changed, the next refit
+    // writes them all.
     [[nodiscard]] bool has_few_changes(LeafId leaf) const {
         unsigned lanes = dirty_lanes_[leaf];
         for (int few = 3; few > 0; --few) lanes &= lanes - 1;

@@ -12,13 +12,14 @@ namespace crofton::boxtree {
 
 inline constexpr std::size_t kMaxItems = std::size_t{1} << 30;
 
-// Room for some more; by an eighth where there is none: a tree that is loaded and then changes does not double its
-// memory.
+// Makes room for more elements: an eighth more where there is none left. So a tree that is loaded and then changes does
+// not double its memory.
 template <class T>
 void make_room_for(Vector<T>& items, std::size_t more) {
     if (items.size() + more > items.capacity()) items.reserve(items.size() + items.size() / 8 + 16 * more);
 }
 
+// The items of a tree, by id.
 class Items {
   public:
     // Copies the boxes and widens `centers` to all their centres. Errors: a box that fails validate(Obb), by its index.
@@ -33,7 +34,7 @@ class Items {
     [[nodiscard]] bool is_detached(ItemId item) const {
         return item / 64 < detached_bits_.size() && (detached_bits_[item / 64] >> item % 64 & 1) != 0;
     }
-    // Bits that the layer masks of all detached items have, not necessarily every one.
+    // Bits that every detached item has in its layer mask. There may be more such bits.
     [[nodiscard]] std::uint32_t detached_layers() const { return detached_layers_; }
 
     // The id of the next item: one that is free, if there is one.

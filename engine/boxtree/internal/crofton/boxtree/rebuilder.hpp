@@ -6,13 +6,14 @@
 
 namespace crofton::boxtree {
 
-// A step of a rebuild, counted where the work is done.
+// How much work a step of a rebuild has done.
 struct RebuildStep {
     std::size_t items_added = 0, items_synced = 0;  // for the new structure; into it, as they have changed since
     std::size_t slots_cleared = 0, leaves_filled = 0, nodes_linked = 0, nodes_bounded = 0;
     std::size_t divisions = 0;  // steps of dividing items among leaves and nodes, each of the budget's size
 };
 
+// A rebuild that is under way, or none.
 class Rebuilder {
   public:
     Rebuilder();
@@ -27,7 +28,7 @@ class Rebuilder {
     void note_change(ItemId item, bool placed = false);
     void note_changes(std::span<const ItemId> items);
 
-    // What the last step has done, whatever it was worth.
+    // The work of the last step.
     [[nodiscard]] const RebuildStep& last_step() const { return last_step_; }
 
   private:

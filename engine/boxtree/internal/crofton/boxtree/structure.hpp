@@ -44,25 +44,25 @@ class Structure {
     [[nodiscard]] Aabb bounds_below(std::uint32_t child, std::uint32_t axes) const;
     [[nodiscard]] const ChangeMarks& marks() const { return marks_; }
 
-    // Making one: room, then leaves, then nodes, children before parents. Different leaves, and nodes that are not
-    // above each other, may be made by different threads.
+    // To make a structure: first room, then leaves, then nodes, children before parents. Different threads may make
+    // different leaves, and nodes that are not above each other.
     void make_room(const Topology& topology);
     void make_room_for_leaves(LeafId end);
     void link_nodes(NodeId begin, NodeId end, const Topology& topology);
-    // Leaf l gets its items. Boxes of leaves before `end` may be asked for ahead: others may still be in the making.
-    // What is in no leaf of `current` is left out, where there is one.
+    // Gives leaf l its items. May prefetch the boxes of leaves before `end` alone: other threads may be making those
+    // behind it. Where `current` is given, items that are in no leaf of it are left out.
     void fill_leaf(LeafId l, LeafId end, const Topology& topology, const Structure* current = nullptr);
     void bound_nodes(NodeId begin, NodeId end);
     void reset_marks() { marks_.reset(leaves_.size()); }
 
-    // The same in steps, each from where the last one of its kind ended.
+    // The same in steps. Each goes on from where the last one of its kind ended.
     void begin_steps(const Topology& topology);
     void add_items(ItemId end);
     void add_nodes(NodeId end, const Topology& topology);
     void add_leaves(LeafId end, const Topology& topology, const Structure& current);
 
-    // Changes, of items whose boxes and layers have been written into items() before: to their leaves, and marks for
-    // the next refit. What puts items into leaves and takes them out is a Placement.
+    // To change items: their boxes and layers are written into items() first. These functions then bring them into the
+    // leaves, and mark what the next refit must look at. A Placement puts items into leaves and takes them out.
     void reserve_item(ItemId item);  // room for it, so that add_items(item + 1) cannot fail
     void update_box(ItemId item);
     void update_layers(ItemId item);
@@ -112,12 +112,12 @@ class Structure {
     Vector<std::uint32_t> item_slots_;
     unsigned height_ = 1;
     ChangeMarks marks_;
-    // Since the last refit: then layers and radii are looked at again, otherwise only bounds.
+    // Whether layers or radii have changed since the last refit; otherwise it looks at bounds alone.
     bool contents_changed_ = false;
     Scratch scratch_;
 };
 
-// Does it keep all its promises? Errors name the node, leaf or item.
+// Checks every invariant of a structure. Errors name the node, leaf or item.
 [[nodiscard]] Result<void> validate(const Structure& structure, Trust trust);
 
 }  // namespace crofton::boxtree

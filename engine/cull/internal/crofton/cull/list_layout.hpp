@@ -23,12 +23,12 @@ struct alignas(64) RowBlock {
 
 struct ListChunk {
     double origin[3];
-    double quantum;                 // a power of two
-    std::int32_t extent[3];         // ≥ |x|, |y|, |z| of its rows
-    std::uint32_t largest_radius;   // of its rows
-    float l1_radius;                // ≥ |x| + |y| + |z| of its records
-    std::uint32_t strays;           // rows that say nothing
-    std::uint32_t accepted_strays;  // of them, those there when the frame was chosen
+    double quantum;                        // a power of two
+    std::int32_t extent[3];                // ≥ |x|, |y|, |z| of its rows
+    std::uint32_t largest_radius;          // of its rows
+    float l1_radius;                       // ≥ |x| + |y| + |z| of its records
+    std::uint32_t out_of_frame;            // bounds whose rows are empty
+    std::uint32_t out_of_frame_at_layout;  // how many there were when the frame was chosen
 };
 
 // What is asked for where the row cannot tell: the bound itself in floats, its centre relative to the chunk's origin.

@@ -24,6 +24,10 @@ struct TriangleMesh {
 // culprit. An empty mesh is valid here; who needs triangles says so.
 [[nodiscard]] Result<void> validate(const TriangleMesh& mesh);
 
+// Adds the part's vertices and triangles behind those of `mesh`. Colours are kept if all vertices of both have one,
+// else dropped. Requires less than 2^32 vertices together, and that `part` is not `mesh` itself.
+void append(TriangleMesh& mesh, const TriangleMesh& part);
+
 // A planar polygon with holes.
 // Rings one after another in `points`; ring r is [ring_ends[r−1], ring_ends[r]), the first is the outer one, the others
 // holes. Rings are closed implicitly and may have either orientation; triangle indices refer to `points`.

@@ -38,8 +38,8 @@ struct SolverOptions {
 // One run. First lamps shoot local lines and patches look for the sun; global lines would rarely meet what is small and
 // bright. Then each patch gathers the mean of what its rays along N global lines bring. That is the sky, and what the
 // runs before know of all patches' light. What that gathering finds beyond what was known travels on, gathered along
-// new and fewer lines, until it is spent. Whatever was known, a run's expectation is the light itself; knowing it well
-// only takes the spread of the many bounces away (a control variate).
+// new and fewer lines, until it is spent. A run's expectation is the light itself, whatever the runs before knew: that
+// serves as a control variate. The better it is known, the less the many bounces spread.
 //
 // The result is the mean of the runs, its error their spread: it falls as 1/√runs. With quasi-random numbers the true
 // error is smaller than this estimate, since runs share a sequence and make up for each other.

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// A list of nodes or leaves that planes of the view cross. Included once per instruction set.
+#if defined(CROFTON_CULL_OPEN_LIST) == defined(HWY_TARGET_TOGGLE)
+#ifdef CROFTON_CULL_OPEN_LIST
+#undef CROFTON_CULL_OPEN_LIST
+#else
+#define CROFTON_CULL_OPEN_LIST
+#endif
+
+#include <hwy/highway.h>
+
+#include "tree/leaf_tests-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace crofton::cull::HWY_NAMESPACE {
+
+// How many entries behind the last one pad() writes.
+constexpr std::size_t kOpenPadding = 8;
+
+// Children and the planes that they straddle.
+struct OpenList {
+    std::uint32_t* children;
+    std::uint32_t* planes;
+    std::size_t count = 0;
+
+    HWY_INLINE void append(VU which, VU their_planes, hn::Mask<DU> mask) {
+        const DU du;
+        simd::compress_store(du, which, mask, children + count);
+        count += simd::compress_store(du, their_planes, mask, planes + count);
+    }
+    HWY_INLINE void append(std::uint32_t child, std::uint32_t child_planes) {
+        children[count] = child;
+        planes[count++] = child_planes;
+    }
+    // Pads the list with its last entry, so that prefetching past the end stays in range.
+    HWY_INLINE void pad() {
+        const std::uint32_t last = count > 0 ? children[count - 1] : 0;
+        for (std::size_t i = 0; i < kOpenPadding; ++i) children[count + i] = last;
+    }
+};
+
+}  // namespace crofton::cull::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <crofton/geometry/mesh.hpp>
+
+using namespace crofton;
+
+namespace {
+
+TriangleMesh triangle_at(float x) {
+    TriangleMesh mesh;
+    mesh.positions = {{x, 0.0f, 0.0f}, {x + 1.0f, 0.0f, 0.0f}, {x, 1.0f, 0.0f}};
+    mesh.indices = {0, 1, 2};
+    return mesh;
+}
+
+}  // namespace
+
+TEST_SUITE("geometry/mesh") {
+    TEST_CASE("what is appended stands behind what was there, and its indices are moved on") {
+        TriangleMesh mesh = triangle_at(0.0f);
+        append(mesh, triangle_at(5.0f));
+        append(mesh, TriangleMesh{});
+        CHECK(validate(mesh).has_value());
+        CHECK(mesh.positions.size() == 6);
+        CHECK(mesh.positions[3] == glm::vec3(5.0f, 0.0f, 0.0f));
+        CHECK(mesh.indices == Vector<std::uint32_t>{0, 1, 2, 3, 4, 5});
+    }
+
+    TEST_CASE("colours are appended where both have them, and dropped where one has none") {
+        TriangleMesh colored = triangle_at(0.0f), mesh;
+        colored.colors = {glm::vec3(1.0f), glm::vec3(0.5f), glm::vec3(0.0f)};
+        append(mesh, colored);
+        append(mesh, colored);
+        REQUIRE(mesh.colors.size() == 6);
+        CHECK(mesh.colors[4] == glm::vec3(0.5f));
+        append(mesh, triangle_at(0.0f));
+        CHECK(mesh.colors.empty());
+        CHECK(validate(mesh).has_value());
+        append(mesh, colored);
+        CHECK(mesh.colors.empty());
+        CHECK(validate(mesh).has_value());
+    }
+}
