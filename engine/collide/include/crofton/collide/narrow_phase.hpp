@@ -123,8 +123,8 @@ struct Distance {
     double distance = 0.0;            // 0 when they meet
     glm::dvec3 on_a{0.0}, on_b{0.0};  // nearest points; of boxes that meet, one point within 1e-6 of the size of both
 };
-// Gilbert, Johnson, Keerthi 1988, in double: within 1e-7 of the bodies' size; of bodies that are a million times as
-// long as wide, within 1e-5.
+// Gilbert, Johnson, Keerthi 1988, in double, without a proven bound; about 1e-7 of the bodies' size where they
+// are not slender. Needles, a million times as long as wide, may be further off: convex::distance has proven bounds.
 [[nodiscard]] Distance distance(const ConvexShape& a, const ConvexShape& b);
 // Whether it is 0 is exact: iff intersects(a, b). Else within 1e-12 of the size, which is the sum of the half extents
 // and of the offset of the centres.
