@@ -53,6 +53,16 @@ TEST_SUITE("assets/gltf_loader") {
         CHECK(says(source->warnings[0], "quaternion"));
     }
 
+    TEST_CASE("whole numbers may be written with a point or an exponent") {
+        const auto source = load_glb(gltf_json("[{\"children\":[1.0,20e-1]},{\"mesh\":0.0},{\"mesh\":0e3}]"));
+        REQUIRE(source.has_value());
+        CHECK(source->scene.instance_count() == 2);
+        CHECK(source->warnings.empty());
+        for (const char* wrong : {"1.5", "-1.0", "1e300", "2e19"})
+            CHECK(
+                says(message(load_glb(gltf_json("[{\"children\":[" + std::string(wrong) + "]},{}]"))), "is no index"));
+    }
+
     TEST_CASE("a scale that flattens is data: flat things are flat, a zero scale hides") {
         for (const bool hidden : {false, true}) {
             const std::string scale = hidden ? "[0,0,0]" : "[1,0,1]";

@@ -2,6 +2,7 @@
 #include "assets/gltf_document.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "assets/data_uri.hpp"
@@ -185,6 +186,12 @@ std::string label(const char* what, std::size_t index, const Json& object) {
 }
 
 std::optional<std::size_t> as_whole_number(const Json& value) {
+    if (value.is_number_float()) {  // 2.0 is a whole number as well
+        constexpr double kMost = 0x1p53;
+        const auto number = value.get<double>();
+        if (!(number >= 0.0 && number <= kMost) || number != std::floor(number)) return std::nullopt;
+        return static_cast<std::size_t>(number);
+    }
     if (!value.is_number_integer() || value < 0) return std::nullopt;
     return value.get<std::size_t>();
 }

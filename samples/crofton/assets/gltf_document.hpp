@@ -55,7 +55,7 @@ void take_in_images(GltfDocument& document, const std::string& folder);
 [[nodiscard]] std::size_t entry_count(const nlohmann::ordered_json& object, const char* key);
 // "what index 'name'", for messages.
 [[nodiscard]] std::string label(const char* what, std::size_t index, const nlohmann::ordered_json& object);
-// `value` as a whole number ≥ 0, or nothing.
+// `value` as a whole number ≥ 0, or nothing. 2.0 and 2e0 are whole, as glTF allows; so written, at most 2^53.
 [[nodiscard]] std::optional<std::size_t> as_whole_number(const nlohmann::ordered_json& value);
 // A number that counts or names something; `otherwise` where there is none. Errors: not a whole number ≥ 0.
 [[nodiscard]] Result<std::size_t> whole_number(const nlohmann::ordered_json& object, const char* key,
