@@ -9,6 +9,7 @@
 #   third_party/install.sh --rust     also what the Rust crate needs (rust/README.md)
 #   third_party/install.sh --csharp   also what the C# classes need (csharp/README.md)
 #   third_party/install.sh --packages also what makes and checks packages (packaging/README.md)
+#   third_party/install.sh --slurm    also the job system of samples/slurm, whose test starts a cluster on this machine
 #   third_party/install.sh --platforms  also compilers and emulators of other targets (docs/testing.md, "Platforms")
 #   third_party/install.sh --engines  also the engines, decoders, job system and documentation tool that samples and tests use where installed
 set -euo pipefail
@@ -32,6 +33,7 @@ python_packages=(python3-dev python3-numpy python3-pytest python3-setuptools pyt
 rust_packages=(cargo)
 csharp_packages=(mono-mcs mono-runtime libmono-system-core4.0-cil)
 packaging_packages=(debhelper dpkg-dev help2man lintian abigail-tools)
+slurm_packages=(slurm-wlm munge)
 platform_packages=(clang libc++-14-dev libc++abi-14-dev g++-12-multilib g++-riscv64-linux-gnu g++-aarch64-linux-gnu qemu-user
     g++-mingw-w64-x86-64-posix wine64 wine emscripten nodejs dpkg-dev make)
 bench_packages=(libbenchmark-dev libcgal-dev libfcl-dev libbullet-dev libembree-dev libode-dev)
@@ -45,9 +47,10 @@ for argument in "$@"; do
         --rust) packages+=("${rust_packages[@]}") ;;
         --csharp) packages+=("${csharp_packages[@]}") ;;
         --packages) packages+=("${packaging_packages[@]}") ;;
+        --slurm) packages+=("${slurm_packages[@]}") ;;
         --platforms) packages+=("${platform_packages[@]}") ;;
         --engines) packages+=("${engine_packages[@]}") ;;
-        *) echo "usage: third_party/install.sh [--tests] [--checks] [--bench] [--python] [--rust] [--csharp] [--packages] [--platforms] [--engines]" >&2; exit 2 ;;
+        *) echo "usage: third_party/install.sh [--tests] [--checks] [--bench] [--python] [--rust] [--csharp] [--packages] [--slurm] [--platforms] [--engines]" >&2; exit 2 ;;
     esac
 done
 

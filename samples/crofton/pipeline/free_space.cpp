@@ -7,6 +7,8 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "largest_region.hpp"
+
 namespace crofton::pipeline {
 namespace {
 
@@ -156,22 +158,7 @@ std::vector<std::uint32_t> FreeSpace::steps_from(std::uint32_t place, std::vecto
 }
 
 void FreeSpace::keep_largest_region() {
-    std::vector<std::uint8_t> taken(places_.size(), 0);
-    std::vector<std::uint32_t> best, order;
-    double best_height = 0.0;
-    for (std::uint32_t place = 0; place < places_.size(); ++place) {
-        if (taken[place] != 0) continue;
-        steps_from(place, order);
-        double height = 0.0;
-        for (const std::uint32_t each : order) {
-            taken[each] = 1;
-            height += places_[each].y / static_cast<double>(order.size());
-        }
-        if (order.size() < best.size() || (order.size() == best.size() && height >= best_height)) continue;
-        best = order;
-        best_height = height;
-    }
-    std::sort(best.begin(), best.end());
+    const std::vector<std::uint32_t> best = largest_region(places_, ways_);
     std::vector<std::uint32_t> now(places_.size(), kNotReached);
     for (std::size_t i = 0; i < best.size(); ++i) now[best[i]] = static_cast<std::uint32_t>(i);
     std::vector<glm::dvec3> places;
