@@ -187,9 +187,9 @@ std::string label(const char* what, std::size_t index, const Json& object) {
 
 std::optional<std::size_t> as_whole_number(const Json& value) {
     if (value.is_number_float()) {  // 2.0 is a whole number as well
-        constexpr double kMost = 0x1p53;
         const auto number = value.get<double>();
-        if (!(number >= 0.0 && number <= kMost) || number != std::floor(number)) return std::nullopt;
+        const double most = std::min(0x1p53, static_cast<double>(std::numeric_limits<std::size_t>::max() / 2));
+        if (!(number >= 0.0 && number <= most) || number != std::floor(number)) return std::nullopt;
         return static_cast<std::size_t>(number);
     }
     if (!value.is_number_integer() || value < 0) return std::nullopt;
