@@ -8,9 +8,10 @@
 
 namespace crofton::pipeline {
 
-// Of places with ways between them, those of the region with the most places, ascending; of two as large the one whose
-// mean height (y) is lower, then the one with the lowest place's number. ways[p]: where one gets from p, both
-// directions listed. Time and memory grow with places and ways, however many regions there are.
+// The region with the most of these places, ascending. A region is all that ways connect. Of two as large it is the
+// one of lower mean height (y), then the one that holds the lowest index. ways[p] lists where one gets from place p;
+// each way stands in the lists of both its ends. Time and memory grow with places and ways, however many regions there
+// are.
 [[nodiscard]] std::vector<std::uint32_t> largest_region(std::span<const glm::dvec3> places,
                                                         std::span<const std::vector<std::uint32_t>> ways);
 
