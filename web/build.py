@@ -71,6 +71,15 @@ def build(name, jobs):
         f"-sEXPORTED_FUNCTIONS={names}", "--no-entry", "-o", out / f"{name}.js"], log)
 
 
+    # The digests of web/native/digests.cpp, for node (tests alone: not in the package).
+    includes = [f"-I{p}" for kind in ("include", "internal") for p in sorted((ROOT / "engine").glob(f"*/{kind}"))]
+    do(["ninja", "-C", folder / "build", f"-j{jobs}", "crofton_sampling"], log)
+    more = sorted((folder / "build/engine").rglob("crofton_sampling.dir/**/*.o"))
+    do(["em++", "-O2", "-std=c++20", *flags.split(), "-include", ROOT / "web/native/missing.hpp", *includes,
+        f"-isystem{prefix}/include", ROOT / "web/native/digests.cpp", *more, *objects, f"-L{prefix}/lib", "-lqhull_r",
+        "-lhwy", "-sALLOW_MEMORY_GROWTH=1", "-sTOTAL_STACK=1048576", "-sEXIT_RUNTIME=1", "-o", folder / "digests.js"], log)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("names", nargs="*", default=list(FLAGS))

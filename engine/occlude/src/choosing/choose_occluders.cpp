@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kMostCoordinate = 1e15;
 constexpr std::uint64_t kSpare = 32;  // sorted beyond the budget
-constexpr std::size_t kPadding = 64;   // so that a vector that starts at a candidate stays within the columns
+constexpr std::size_t kPadding = 64;  // so that a vector that starts at a candidate stays within the columns
 
 ChooseView choose_view_of(const OccluderCandidates& candidates, const OcclusionView& given,
                           const ChooseBudget& budget) {
