@@ -4,7 +4,8 @@
 
 web/build.py [simd] [plain] [--jobs J]
 
-Builds lie in build/web. Qhull and Highway are compiled from Debian's source packages, as for the other platforms.
+Builds lie in build/web. Qhull and Highway are compiled from Debian's source packages, as for the other platforms; the
+Highway of the build with SIMD is Debian 13's, because that of Debian 12 has no doubles in its WebAssembly target.
 `third_party/install.sh --web` installs the compiler.
 """
 import argparse
@@ -19,8 +20,7 @@ sys.path.insert(0, str(ROOT / "tests/platforms"))
 import run as platforms  # noqa: E402
 
 WORK = ROOT / "build/web"
-# Highway 1.0.3 has no doubles in its WebAssembly target: its emulated vectors are what the compiler turns into SIMD.
-FLAGS = {"simd": "-msimd128 -DHWY_COMPILE_ONLY_EMU128", "plain": "-DHWY_COMPILE_ONLY_SCALAR"}
+FLAGS = {"simd": "-msimd128", "plain": "-DHWY_COMPILE_ONLY_SCALAR"}
 MODULES = ["core", "geometry", "measure", "mesh", "boxtree", "convex", "collide", "scene", "fit", "cull", "occlude",
            "triangulate", "world", "capi"]
 EXPORTED = """last_error status_name version_string set_log_hook log camera_default frustum_from_camera
@@ -40,6 +40,29 @@ def do(command, log, **more):
             sys.exit(f"web: `{command[0]}` failed, see {log}")
 
 
+def fetch_sources(name, log):
+    """The folder of highway/ and qhull/ to compile."""
+    platforms.WORK.mkdir(parents=True, exist_ok=True)
+    platforms.fetch_sources(log)
+    if name != "simd":
+        return platforms.SOURCES
+    sources, packages = WORK / "sources", WORK / "packages"
+    (packages / "lists/partial").mkdir(parents=True, exist_ok=True)
+    sources.mkdir(exist_ok=True)
+    listed = packages / "sources.list"
+    listed.write_text("deb-src http://deb.debian.org/debian trixie main\n")
+    apt = ["apt-get", "-o", f"Dir::Etc::SourceList={listed}", "-o", "Dir::Etc::SourceParts=/dev/null", "-o",
+           f"Dir::State::Lists={packages / 'lists'}", "-o", "Dir::Cache::pkgcache=", "-o", "Dir::Cache::srcpkgcache="]
+    if not (sources / "highway").exists():
+        do([*apt, "update"], log)
+        do([*apt, "source", "--download-only", "highway"], log, cwd=packages)
+        description = next(packages.glob("highway_*.dsc"))
+        do(["dpkg-source", "--no-check", "-x", description.name, sources / "highway"], log, cwd=packages)
+    if not (sources / "qhull").exists():
+        (sources / "qhull").symlink_to(platforms.SOURCES / "qhull")
+    return sources
+
+
 def build(name, jobs):
     folder = WORK / name
     folder.mkdir(parents=True, exist_ok=True)
@@ -51,10 +74,9 @@ def build(name, jobs):
                "-DCMAKE_FIND_ROOT_PATH_MODE_PACKAGE=ONLY", f"-DCMAKE_MODULE_PATH={prefix}/lib/cmake/modules",
                f"-DCMAKE_C_FLAGS={flags}", f"-DCMAKE_CXX_FLAGS={flags} -include {ROOT}/web/native/missing.hpp"]
     if not (prefix / "lib/libqhull_r.a").exists():
-        platforms.WORK.mkdir(parents=True, exist_ok=True)
-        platforms.fetch_sources(log)
+        sources = fetch_sources(name, log)
         do(["cmake", "-S", ROOT / "tests/platforms/dependencies", "-B", folder / "dependencies", *options,
-            f"-DCMAKE_INSTALL_PREFIX={prefix}", f"-DCROFTON_SOURCES={platforms.SOURCES}"], log)
+            f"-DCMAKE_INSTALL_PREFIX={prefix}", f"-DCROFTON_SOURCES={sources}"], log)
         do(["cmake", "--build", folder / "dependencies", "-j", jobs, "--target", "install"], log)
     do(["cmake", "-S", ROOT, "-B", folder / "build", *options, "-DCMAKE_CXX_FLAGS_RELEASE=-O2 -DNDEBUG",
         "-DCROFTON_RENDER=OFF", "-DCROFTON_SAMPLES=OFF", "-DCROFTON_TESTS=OFF", "-DCROFTON_INSTALL=OFF"], log)
