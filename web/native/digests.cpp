@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Prints digests of answers of the C API. The same program is compiled for this machine and for WebAssembly. That of
 // triangulations is published in tests/determinism/triangulate_test.cpp. With `bench`: times of culling 100,000 boxes.
+// With `bench AVX2`: on x86 with no more than AVX2.
 #include <crofton/capi/crofton.h>
 
 #include <algorithm>
@@ -9,6 +10,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#if defined(__x86_64__)
+#include <hwy/targets.h>
+#endif
 
 #include "../../tests/determinism/crowd.hpp"
 #include "../../tests/determinism/digest.hpp"
@@ -166,6 +170,9 @@ void bench() {
 }  // namespace
 
 int main(int count, char**) {
+#if defined(__x86_64__)
+    if (count > 2) hwy::SetSupportedTargetsForTest(HWY_AVX2);
+#endif
     if (count > 1) return bench(), 0;
     std::printf("cull %llx\nfar %llx\nfit %llx\ntriangulate %llx\n", static_cast<unsigned long long>(culled(0.0)),
                 static_cast<unsigned long long>(culled(1e6)), static_cast<unsigned long long>(fitted()),
