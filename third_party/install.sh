@@ -8,6 +8,7 @@
 #   third_party/install.sh --python   also what the Python package needs (python/README.md)
 #   third_party/install.sh --rust     also what the Rust crate needs (rust/README.md)
 #   third_party/install.sh --csharp   also what the C# classes need (csharp/README.md)
+#   third_party/install.sh --web      also what the npm package needs (web/README.md)
 #   third_party/install.sh --packages also what makes and checks packages (packaging/README.md)
 #   third_party/install.sh --slurm    also the job system of samples/slurm, whose test starts a cluster on this machine
 #   third_party/install.sh --platforms  also compilers and emulators of other targets (docs/testing.md, "Platforms")
@@ -32,6 +33,7 @@ engine_packages=(libdraco-dev libmeshoptimizer-dev libogre-1.12-dev libopenscene
 python_packages=(python3-dev python3-numpy python3-pytest python3-setuptools python3-wheel python3-pip python3-venv pybind11-dev)
 rust_packages=(cargo)
 csharp_packages=(mono-mcs mono-runtime libmono-system-core4.0-cil)
+web_packages=(emscripten nodejs dpkg-dev)
 packaging_packages=(debhelper dpkg-dev help2man lintian abigail-tools)
 slurm_packages=(slurm-wlm munge)
 platform_packages=(clang libc++-14-dev libc++abi-14-dev g++-12-multilib g++-riscv64-linux-gnu g++-aarch64-linux-gnu qemu-user
@@ -46,11 +48,12 @@ for argument in "$@"; do
         --python) packages+=("${python_packages[@]}") ;;
         --rust) packages+=("${rust_packages[@]}") ;;
         --csharp) packages+=("${csharp_packages[@]}") ;;
+        --web) packages+=("${web_packages[@]}") ;;
         --packages) packages+=("${packaging_packages[@]}") ;;
         --slurm) packages+=("${slurm_packages[@]}") ;;
         --platforms) packages+=("${platform_packages[@]}") ;;
         --engines) packages+=("${engine_packages[@]}") ;;
-        *) echo "usage: third_party/install.sh [--tests] [--checks] [--bench] [--python] [--rust] [--csharp] [--packages] [--slurm] [--platforms] [--engines]" >&2; exit 2 ;;
+        *) echo "usage: third_party/install.sh [--tests] [--checks] [--bench] [--python] [--rust] [--csharp] [--web] [--packages] [--slurm] [--platforms] [--engines]" >&2; exit 2 ;;
     esac
 done
 

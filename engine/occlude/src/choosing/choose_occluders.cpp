@@ -15,8 +15,8 @@ namespace crofton::occlude {
 namespace {
 
 constexpr double kMostCoordinate = 1e15;
-constexpr std::ptrdiff_t kSpare = 32;  // sorted beyond the budget
-constexpr std::size_t kPadding = 64;   // so that a vector that starts at a candidate stays within the columns
+constexpr std::uint64_t kSpare = 32;  // sorted beyond the budget
+constexpr std::size_t kPadding = 64;  // so that a vector that starts at a candidate stays within the columns
 
 ChooseView choose_view_of(const OccluderCandidates& candidates, const OcclusionView& given,
                           const ChooseBudget& budget) {
@@ -271,7 +271,8 @@ void choose_occluders(const OccluderCandidates& candidates, const OcclusionView&
     std::uint32_t edges = 0;
     while (choice.ids.size() < budget.max_occluders && sorted != choice.order.end()) {
         const auto first = sorted;
-        sorted += std::min<std::ptrdiff_t>(choice.order.end() - first, std::ptrdiff_t{budget.max_occluders} + kSpare);
+        const auto left = static_cast<std::uint64_t>(choice.order.end() - first);
+        sorted += static_cast<std::ptrdiff_t>(std::min(left, std::uint64_t{budget.max_occluders} + kSpare));
         std::nth_element(first, sorted, choice.order.end());
         std::sort(first, sorted);
         for (auto key = first; key != sorted && choice.ids.size() < budget.max_occluders; ++key) {

@@ -226,7 +226,7 @@ typedef struct crofton_object_contact {
 typedef struct crofton_body_contact {
     crofton_object_ref first, second; /* ordered as in crofton_object_pair; the first is body a */
     uint8_t phase;                    /* a crofton_contact_phase */
-    uint8_t unused[7];
+    uint8_t unused[sizeof(void*) - 1];
     crofton_tracked_point* points; /* their memory is yours to write; valid until the next update */
     uint32_t point_count;
     uint32_t unused_too;

@@ -1,0 +1,14 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Times culling of 100,000 boxes, 20 views, natively and in WebAssembly, one after the other. Needs both builds:
+#   cmake --preset release && cmake --build --preset release --target crofton; web/test.sh
+set -euo pipefail
+cd "$(dirname "$0")/.."
+includes=()
+for folder in engine/*/include engine/*/internal; do includes+=("-I$folder"); done
+g++ -std=c++20 -O2 "${includes[@]}" web/native/digests.cpp build/release/engine/libcrofton.a -lqhull_r -lhwy -lpthread -o build/web/digests
+for repeat in 1 2 3; do
+    echo "native:  $(build/web/digests bench)"
+    echo "AVX2:    $(build/web/digests bench AVX2)"
+    for build in simd plain; do echo "$build:   $(node --no-experimental-fetch build/web/$build/digests.js bench)"; done
+done

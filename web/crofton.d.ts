@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+export type Vector = ArrayLike<number>;
+export interface Box { center: number[]; axes: number[]; halfExtents: number[] }
+export interface BoxLike { center: Vector; halfExtents: Vector; axes?: Vector }
+export interface Camera {
+    position?: Vector; forward?: Vector; up?: Vector;
+    /** Radians. */
+    fovY?: number;
+    /** Full height of the view volume: makes the camera orthographic. */
+    height?: number;
+    aspect?: number; near?: number; far?: number;
+}
+export type Depth = 'reversed' | 'zeroToOne' | 'minusOneToOne';
+export interface LoadOptions {
+    /** true: fail without SIMD; false: the build without; left out: the best that runs here. */
+    simd?: boolean;
+    wasmBinary?: ArrayBuffer | Uint8Array;
+}
+export interface CullOptions { conservative?: boolean; treeOrder?: boolean }
+export interface ObjectHandle { readonly index: number; readonly generation: number }
+export type MeshHandle = ObjectHandle;
+export interface Hit { object: ObjectHandle; user: number; t: number; point: number[]; triangle: number }
+export interface Triangulation {
+    indices: Uint32Array;
+    /** Total length of the diagonals. */
+    weight: number;
+    /** Proven bound on (weight - minimum) / minimum; infinite when unknown. */
+    gap: number;
+    optimal: boolean;
+}
+export class CroftonError extends Error {
+    readonly status: string;
+    /** Of the input; -1: none in particular. */
+    readonly item: number;
+}
+/** Holds memory of the library until `free`, or until the collector finds it. Any use after `free` throws. */
+export interface Owned { free(): void }
+export interface Boxes extends Owned {
+    readonly length: number;
+    readonly bytes: Uint8Array;
+    set(i: number, center: Vector, halfExtents: Vector, axes?: Vector): void;
+    get(i: number): Box;
+    setAll(centers: Float64Array | Float32Array, halfExtents: Float64Array | Float32Array, axes?: Float64Array | Float32Array): void;
+    validate(): void;
+}
+export interface Frustum extends Owned {
+    setCamera(camera: Camera): this;
+    setMatrix(matrix: Vector, depth?: Depth, origin?: Vector): this;
+    readonly planes: { origin: number[]; planes: { normal: number[]; offset: number }[] };
+}
+/** Views: valid until the next query or any growth of memory. */
+export interface VisibleSet extends Owned {
+    readonly length: number;
+    readonly ids: Uint32Array;
+    readonly verdicts: Uint8Array;
+    readonly statistics: Record<'nodesTested' | 'boxesTested' | 'acceptedWhole' | 'straddling' | 'exactTests' | 'improper', number>;
+}
+export interface Tree extends Owned {
+    cull(frustum: Frustum, visible: VisibleSet, how?: CullOptions): VisibleSet;
+    move(items: ArrayLike<number>, boxes: Boxes): void;
+    remove(item: number): void;
+    refit(): void;
+}
+export interface Triangulator extends Owned {
+    triangulate(points: Float64Array, ringEnds?: number[], method?: 'ear' | 'delaunay' | 'minimumWeight'): Triangulation;
+}
+/** Views: valid until the next view or any growth of memory. */
+export interface VisibleObjects extends Owned {
+    readonly length: number;
+    readonly ids: Uint32Array;
+    readonly verdicts: Uint8Array;
+    readonly occluded: Uint32Array;
+}
+export interface World extends Owned {
+    readonly count: number;
+    addMesh(positions: Float32Array, indices: Uint32Array | Uint16Array): MeshHandle;
+    findOccluders(mesh: MeshHandle): void;
+    setConvexOccluder(mesh: MeshHandle, positions: Float32Array): void;
+    add(object: { box?: BoxLike; ball?: { center: Vector; radius: number }; mesh?: MeshHandle; transform?: Vector;
+        user?: number; hiddenLayers?: number; transparent?: boolean }): ObjectHandle;
+    remove(object: ObjectHandle): void;
+    setHidden(object: ObjectHandle, hidden: boolean): void;
+    setBox(object: ObjectHandle, box: BoxLike): void;
+    setTransform(object: ObjectHandle, transform: Vector): void;
+    contains(object: ObjectHandle): boolean;
+    update(): void;
+    view(frustum: Frustum, visible: VisibleObjects): VisibleObjects;
+    viewOccluding(camera: Camera, visible: VisibleObjects,
+        options?: { listOccluded?: boolean; occlusion?: boolean; width?: number; height?: number }): VisibleObjects;
+    raycast(origin: Vector, direction: Vector, maxT?: number, layers?: number): Hit | null;
+}
+export interface Crofton {
+    readonly simd: boolean;
+    readonly version: string;
+    readonly memoryBytes: number;
+    readonly Boxes: new (count: number) => Boxes;
+    readonly Frustum: new (from?: { camera?: Camera; matrix?: Vector; depth?: Depth; origin?: Vector; layers?: number }) => Frustum;
+    readonly Tree: new (boxes: Boxes) => Tree;
+    readonly VisibleSet: new () => VisibleSet;
+    readonly Triangulator: new () => Triangulator;
+    readonly World: new () => World;
+    readonly VisibleObjects: new () => VisibleObjects;
+    cullBoxes(boxes: Boxes, frustum: Frustum, visible: VisibleSet, how?: CullOptions): VisibleSet;
+    /** A verdict a box: 0 outside, 1 straddling, 2 inside. */
+    classify(boxes: Boxes, frustum: Frustum): Uint8Array;
+    fitBox(points: Float32Array | Float64Array, how?: { quality?: 'fast' | 'tight' | 'exact';
+        criterion?: { volume?: number; area?: number; meanCurvature?: number } }): Box;
+    setLogger(logger: ((level: number, message: string) => void) | null): void;
+    log(level: number, message: string): void;
+}
+export function load(options?: LoadOptions): Promise<Crofton>;
+export function hasSimd(): boolean;

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+import { failure } from './error.js';
+import { checkArray } from './memory.js';
+
+const QUALITY = { fast: 0, tight: 1, exact: 2 };
+
+/** A box around points, x y z each, best by the criterion: weights of volume, area and mean curvature. */
+export function fitBox(memory, points, { quality = 'tight', criterion } = {}) {
+    checkArray(points, [Float32Array, Float64Array], 'points');
+    if (!(quality in QUALITY)) throw failure(1, `quality is one of ${Object.keys(QUALITY).join(', ')}`);
+    if (points.length % 3) throw failure(1, `points must have three numbers each, and there are ${points.length}`);
+    const kind = points instanceof Float32Array ? 'fit_floats' : 'fit_doubles';
+    return memory.lend([points, new Uint8Array(128)], (place, at) => {
+        memory.words.set([32, QUALITY[quality]], at >> 2);
+        if (criterion) {
+            const { volume = 0, area = 0, meanCurvature = 0 } = criterion;
+            memory.doubles.set([volume, area, meanCurvature], (at >> 3) + 1);
+        } else memory.call('criterion_minimal_perimeter', at + 8);
+        memory.call(kind, place, points.length / 3, at, at + 32);
+        const box = at + 32;
+        return { center: [...memory.doubles.subarray(box >> 3, (box >> 3) + 3)],
+            axes: [...memory.floats.subarray((box >> 2) + 6, (box >> 2) + 15)],
+            halfExtents: [...memory.floats.subarray((box >> 2) + 15, (box >> 2) + 18)] };
+    });
+}

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+import { failure } from './error.js';
+import { Owned, checkArray } from './memory.js';
+
+export const BOX = 72;
+
+/** Boxes in the library's memory: no call copies them. Box i is 72 bytes: center (3 doubles), axes (9 floats), half extents. */
+export class Boxes extends Owned {
+    constructor(memory, count) {
+        if (!Number.isInteger(count) || count < 0) throw failure(1, `Boxes: ${count} is no number of boxes`);
+        super(memory, 'Boxes', memory.allocate(count * BOX, `${count} boxes`), '_free');
+        this.length = count;
+        memory.bytes.fill(0, this.handle, this.handle + count * BOX);
+        const { floats } = memory;
+        for (let at = (this.handle >> 2) + 6, i = 0; i < count; ++i, at += 18) floats[at] = floats[at + 4] = floats[at + 8] = 1;
+    }
+    #at(i) {
+        if (!(i >= 0 && i < this.length)) throw failure(3, `Boxes: there is no box ${i} of ${this.length}`);
+        return this.handle + i * BOX;
+    }
+    /** `axes`: nine numbers, three unit vectors one after another; left out: the world's. */
+    set(i, center, halfExtents, axes) {
+        const at = this.#at(i), { doubles, floats } = this.memory;
+        for (let k = 0; k < 3; ++k) {
+            doubles[(at >> 3) + k] = center[k];
+            floats[(at >> 2) + 15 + k] = halfExtents[k];
+        }
+        for (let k = 0; k < 9; ++k) floats[(at >> 2) + 6 + k] = axes ? axes[k] : k % 4 === 0 ? 1 : 0;
+    }
+    get(i) {
+        const at = this.#at(i), { doubles, floats } = this.memory;
+        return { center: [...doubles.subarray(at >> 3, (at >> 3) + 3)], axes: [...floats.subarray((at >> 2) + 6, (at >> 2) + 15)],
+            halfExtents: [...floats.subarray((at >> 2) + 15, (at >> 2) + 18)] };
+    }
+    /** From packed arrays: centers 3 a box, halfExtents 3, axes 9 or none. One copy, no checks of what the numbers are. */
+    setAll(centers, halfExtents, axes) {
+        checkArray(centers, [Float64Array, Float32Array], 'centers');
+        checkArray(halfExtents, [Float64Array, Float32Array], 'halfExtents');
+        if (axes) checkArray(axes, [Float64Array, Float32Array], 'axes');
+        if (centers.length !== 3 * this.length || halfExtents.length !== 3 * this.length ||
+            axes && axes.length !== 9 * this.length)
+            throw failure(3, `Boxes: ${this.length} boxes take 3 numbers each of centers and halfExtents, and 9 of axes`);
+        const { doubles, floats } = this.memory;
+        let at = this.handle;
+        for (let i = 0; i < this.length; ++i, at += BOX) {
+            for (let k = 0; k < 3; ++k) {
+                doubles[(at >> 3) + k] = centers[3 * i + k];
+                floats[(at >> 2) + 15 + k] = halfExtents[3 * i + k];
+            }
+            if (axes) for (let k = 0; k < 9; ++k) floats[(at >> 2) + 6 + k] = axes[9 * i + k];
+        }
+    }
+    /** Throws with the first box that is none: not finite, not orthogonal, negative extents. */
+    validate() { this.memory.call('boxes_validate', this.handle, this.length); }
+    /** The bytes themselves, for a loader; detached when the memory grows. */
+    get bytes() { return this.memory.bytes.subarray(this.handle, this.handle + this.length * BOX); }
+}
+
+const DEPTH = { reversed: 0, zeroToOne: 1, minusOneToOne: 2 };
+
+/** A view volume: of a camera, or of a matrix and the range of its depths. Held as a view, ready for calls. */
+export class Frustum extends Owned {
+    constructor(memory, { camera, matrix, depth = 'minusOneToOne', origin, layers = 0xffffffff } = {}) {
+        super(memory, 'Frustum', memory.allocate(424, 'a frustum'), '_free');
+        try {
+            memory.bytes.fill(0, this.handle, this.handle + 424);
+            memory.words[this.handle >> 2] = 424;
+            memory.words[(this.handle >> 2) + 1] = layers;
+            memory.words[(this.handle >> 2) + 2] = 416;
+            if (matrix) this.setMatrix(matrix, depth, origin);
+            else this.setCamera(camera ?? {});
+        } catch (error) {
+            this.free();
+            throw error;
+        }
+    }
+    /** What is left out is as of the default camera: at the origin, along -z, 60 degrees, 16:9, from 0.1 to 1000. */
+    setCamera(camera) {
+        this.memory.call('frustum_from_camera', writeCamera(this.memory, camera), this.handle + 8);
+        return this;
+    }
+    /** `matrix`: sixteen numbers by columns, world to clip, as of three.js and WebGL. */
+    setMatrix(matrix, depth = 'minusOneToOne', origin) {
+        if (!(depth in DEPTH)) throw failure(1, `depth is one of ${Object.keys(DEPTH).join(', ')}`);
+        if (matrix?.length !== 16) throw failure(1, 'matrix must have 16 numbers');
+        const at = this.memory.scratch(160);
+        this.memory.doubles.set(matrix, at >> 3);
+        if (origin) this.memory.doubles.set(origin, (at >> 3) + 16);
+        this.memory.call('frustum_from_matrix', at, DEPTH[depth], origin ? at + 128 : 0, this.handle + 8);
+        return this;
+    }
+    /** `{ origin, planes: [{ normal, offset }] }`; dot(normal, x - origin) + offset >= 0 is kept. */
+    get planes() {
+        const { words, doubles } = this.memory, first = this.handle + 40 >> 3;
+        return { origin: [...doubles.subarray(this.handle + 16 >> 3, first)],
+            planes: Array.from({ length: words[(this.handle >> 2) + 3] }, (_, i) => ({
+                normal: [...doubles.subarray(first + 4 * i, first + 4 * i + 3)], offset: doubles[first + 4 * i + 3] })) };
+    }
+}
+
+/** Writes a camera into the scratch memory, and says where. */
+export function writeCamera(memory, camera) {
+    const at = memory.scratch(256), { words, doubles } = memory, first = at >> 3;
+    words[at >> 2] = 128;
+    memory.call('camera_default', at);
+    for (const [name, place] of [['position', 1], ['forward', 4], ['up', 7]])
+        if (camera[name]) for (let k = 0; k < 3; ++k) doubles[first + place + k] = camera[name][k];
+    if (camera.height !== undefined) words[(at >> 2) + 20] = 1;
+    for (const [name, place] of [['fovY', 11], ['height', 12], ['aspect', 13], ['near', 14], ['far', 15]])
+        if (camera[name] !== undefined) doubles[first + place] = camera[name];
+    return at;
+}

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+import { failure } from './error.js';
+import { Owned, checkArray, create } from './memory.js';
+import { BOX, writeCamera } from './geometry.js';
+
+const ALL = 0xffffffff;
+
+/** What one view of a world sees, in memory that is kept; views of it are valid until its next view or growth of memory. */
+export class VisibleObjects extends Owned {
+    constructor(memory) {
+        super(memory, 'VisibleObjects', create(memory, 'visible_objects'), '_crofton_visible_objects_destroy');
+    }
+    #list() {
+        const at = this.memory.scratch(16);
+        this.memory.call('visible_objects_ids', this.handle, at, at + 4, at + 8, 0);
+        return this.memory.words.subarray(at >> 2, (at >> 2) + 3);
+    }
+    get length() { return this.#list()[1]; }
+    /** Indices of objects: `object.index`. */
+    get ids() {
+        const [ids, count] = this.#list();
+        return this.memory.words.subarray(ids >> 2, (ids >> 2) + count);
+    }
+    /** 1: straddling, 2: inside, for each of `ids`. */
+    get verdicts() {
+        const [, count, verdicts] = this.#list();
+        return this.memory.bytes.subarray(verdicts, verdicts + count);
+    }
+    /** Indices of what is in the frustum and hidden, where `listOccluded` asked for it. */
+    get occluded() {
+        const at = this.memory.scratch(16);
+        this.memory.call('visible_objects_occluded_ids', this.handle, at, at + 4);
+        const [ids, count] = this.memory.words.subarray(at >> 2, (at >> 2) + 2);
+        return this.memory.words.subarray(ids >> 2, (ids >> 2) + count);
+    }
+}
+
+/** Objects, what they are and where; changes take effect in `update`. An object is `{ index, generation }`. */
+export class World extends Owned {
+    constructor(memory) { super(memory, 'World', create(memory, 'world', 0), '_crofton_world_destroy'); }
+
+    /** `positions`: Float32Array, x y z; `indices`: Uint32Array or Uint16Array, three a triangle. Both are copied. */
+    addMesh(positions, indices) {
+        checkArray(positions, [Float32Array], 'positions');
+        checkArray(indices, [Uint32Array, Uint16Array], 'indices');
+        const { memory } = this, { handle } = this;
+        return memory.lend([positions, indices, new Uint8Array(48)], (places, corners, at) => {
+            const isShort = indices instanceof Uint16Array ? 1 : 0;
+            memory.words.set([36, places, positions.length / 3, 0, corners, indices.length, 0, isShort], at >> 2);
+            memory.call('world_add_mesh', handle, at, at + 40);
+            return this.#handleAt(at + 40);
+        });
+    }
+    /** Takes boxes of `mesh` that hide what is behind them, where it is closed; needed before objects occlude. */
+    findOccluders(mesh) {
+        this.memory.call('world_find_occluders', this.handle, this.#give(mesh, this.memory.scratch(16)), 0);
+    }
+    /** One convex occluder of a mesh: the hull of `positions`, within what is drawn. */
+    setConvexOccluder(mesh, positions) {
+        checkArray(positions, [Float32Array], 'positions');
+        const { memory } = this, { handle } = this;
+        memory.lend([positions, new Uint8Array(248)], (places, at) => {
+            memory.words.set([232, 2, 0, places, positions.length / 3], at >> 2);
+            memory.call('world_set_occluders', handle, this.#give(mesh, at + 232), at, 1);
+        });
+    }
+
+    /** `{ box: { center, halfExtents, axes } }`, `{ ball: { center, radius } }` or `{ mesh, transform }`; `user`: a number. */
+    add({ box, ball, mesh, transform, user = 0, hiddenLayers = 0, transparent = false }) {
+        if ([box, ball, mesh].filter(Boolean).length !== 1) throw failure(1, 'an object has one of box, ball and mesh');
+        if (!(Number.isInteger(user) && user >= 0 && user < 2 ** 53)) throw failure(1, 'user is a whole number below 2^53');
+        const { memory } = this, at = memory.scratch(64 + 160 + 96 + 16), { words } = memory, first = at >> 2;
+        words[first] = 64;
+        words.set([user % 2 ** 32, Math.floor(user / 2 ** 32)], first + 2);
+        if (box || ball) this.#writeBound(at + 64, box, ball), words[first + 4] = at + 64;
+        if (transform) this.#writeTransform(at + 224, transform), words[first + 5] = at + 224;
+        if (mesh) {
+            words[first + 6] = 1;
+            this.#give(mesh, at + 32);
+        }
+        words[first + 12] = hiddenLayers;
+        words[first + 14] = transparent ? 1 : 0;
+        memory.call('world_add', this.handle, at, at + 320);
+        return this.#handleAt(at + 320);
+    }
+    remove(object) { this.memory.call('world_remove', this.handle, this.#give(object, this.memory.scratch(16))); }
+    setHidden(object, hidden) {
+        this.memory.call('world_set_hidden', this.handle, this.#give(object, this.memory.scratch(16)), hidden ? 1 : 0);
+    }
+    setBox(object, box) {
+        const at = this.memory.scratch(176);
+        this.#writeBound(at, box);
+        this.memory.call('world_set_bound', this.handle, this.#give(object, at + 160), at);
+    }
+    setTransform(object, transform) {
+        const at = this.memory.scratch(112);
+        this.#writeTransform(at, transform);
+        this.memory.call('world_set_transforms', this.handle, this.#give(object, at + 96), 0, at, 0, 1);
+    }
+    contains(object) {
+        const at = this.memory.scratch(16);
+        this.memory.call('world_contains', this.handle, this.#give(object, at), at + 8);
+        return this.memory.words[at + 8 >> 2] === 1;
+    }
+    get count() {
+        const at = this.memory.scratch(8);
+        this.memory.call('world_object_count', this.handle, at);
+        return this.memory.words[at >> 2];
+    }
+    /** Once a frame; then ask. */
+    update() { this.memory.call('world_update', this.handle, 0); }
+
+    view(frustum, visible) {
+        this.memory.call('world_view', this.handle, frustum.handle, 0, 0, visible.handle);
+        return visible;
+    }
+    /** Without what is hidden behind others. `listOccluded`: also lists that; `occlusion` false: for comparison. */
+    viewOccluding(camera, visible, { listOccluded = false, occlusion = true, width = 0, height = 0 } = {}) {
+        const { memory } = this, at = writeCamera(memory, camera), first = at >> 2;
+        memory.words.set([56, at], first + 32);
+        memory.words.set([28, occlusion ? 0 : 1, width, height, 0, listOccluded ? 1 : 0, 0], first + 48);
+        memory.call('world_view_occluding', this.handle, at + 128, at + 192, 0, 0, visible.handle);
+        return visible;
+    }
+    /** The nearest hit of a ray, `{ object, user, t, point, triangle }`, or null. */
+    raycast(origin, direction, maxT = Infinity, layers = ALL) {
+        const { memory } = this, at = memory.scratch(112), { doubles, words } = memory;
+        doubles.set([...origin, ...direction, maxT], at >> 3);
+        memory.call('world_raycast', this.handle, at, 1, layers, at + 56);
+        const hit = at + 56 >> 2;
+        if (words[hit] === ALL) return null;
+        return { object: this.#handleAt(at + 56), user: words[hit + 2] + 2 ** 32 * words[hit + 3], t: doubles[at + 72 >> 3],
+            point: [...doubles.subarray(at + 80 >> 3, at + 104 >> 3)], triangle: words[hit + 12] === ALL ? -1 : words[hit + 12] };
+    }
+
+    #give(handle, at) {
+        if (!Number.isInteger(handle?.index)) throw failure(14, 'this is no object or mesh of a world');
+        this.memory.words.set([handle.index, handle.generation], at >> 2);
+        return at;
+    }
+    #handleAt(at) {
+        const [index, generation] = this.memory.words.subarray(at >> 2, (at >> 2) + 2);
+        return { index, generation };
+    }
+    #writeTransform(at, transform) {
+        if (transform.length !== 16) throw failure(1, 'a transform has 16 numbers, by columns');
+        const column = (c) => [transform[4 * c], transform[4 * c + 1], transform[4 * c + 2]];
+        this.memory.doubles.set([0, 1, 2, 3].flatMap(column), at >> 3);
+    }
+    #writeBound(at, box, ball) {
+        const { words, doubles, floats } = this.memory;
+        words[at >> 2] = box ? 1 : 3;
+        if (ball) return doubles.set([...ball.center, ball.radius], at + 128 >> 3);
+        doubles.set(box.center, at + 8 >> 3);
+        floats.set(box.axes ?? [1, 0, 0, 0, 1, 0, 0, 0, 1], at + 32 >> 2);
+        floats.set(box.halfExtents, at + 8 + BOX - 12 >> 2);
+    }
+}

@@ -1,0 +1,16 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Builds the package and tests it in node. Says so and does nothing where a tool is missing.
+#   web/test.sh [simd] [plain]    which builds; both unless told
+set -euo pipefail
+cd "$(dirname "$0")/.."
+for tool in emcc node cmake ninja; do
+    if ! command -v "$tool" >/dev/null; then
+        echo "web: skipped, no $tool here; third_party/install.sh --web installs it"
+        exit 0
+    fi
+done
+builds=("$@")
+[[ ${#builds[@]} -gt 0 ]] || builds=(simd plain)
+python3 web/build.py "${builds[@]}"
+CROFTON_BUILDS=$(IFS=,; echo "${builds[*]}") node --expose-gc --test web/test/

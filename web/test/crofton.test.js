@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: MIT
+import test from 'node:test';
+import assert from 'node:assert/strict';
+import { load, hasSimd, CroftonError } from '../js/crofton.js';
+import { random, rotation, verdict } from './oracle.js';
+
+const BUILDS = (process.env.CROFTON_BUILDS ?? 'simd,plain').split(',');
+const refused = (status) => (error) => error instanceof CroftonError && error.status === status && error.message.length > 8;
+const CUBE = { positions: new Float32Array([-1, -1, -1, 1, -1, -1, -1, 1, -1, 1, 1, -1, -1, -1, 1, 1, -1, 1, -1, 1, 1, 1, 1, 1]),
+    indices: new Uint32Array([0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5]) };
+
+function crowd(crofton, count, seed, spread = 60) {
+    const next = random(seed), boxes = new crofton.Boxes(count), list = [];
+    for (let i = 0; i < count; ++i) {
+        const box = { center: [0, 0, 0].map(() => spread * (2 * next() - 1)), halfExtents: [0, 0, 0].map(() => Math.fround(3 * next())),
+            axes: rotation(next).map(Math.fround) };
+        boxes.set(i, box.center, box.halfExtents, box.axes);
+        list.push(box);
+    }
+    return { boxes, list, next };
+}
+const translation = (x, y, z) => [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, x, y, z, 1];
+
+test('hasSimd says whether SIMD is there', () => assert.equal(typeof hasSimd(), 'boolean'));
+test('a damaged binary is a clear error', () => assert.rejects(load({ wasmBinary: new Uint8Array(8) }), refused('unavailable')));
+test('without WebAssembly there is a clear error', async () => {
+    const { WebAssembly } = globalThis;
+    try {
+        globalThis.WebAssembly = undefined;
+        await assert.rejects(load(), refused('unavailable'));
+    } finally {
+        globalThis.WebAssembly = WebAssembly;
+    }
+});
+
+for (const build of BUILDS) {
+    const crofton = await load({ simd: build === 'simd' });
+    const here = (name, run) => test(`${build}: ${name}`, run);
+    const one = (center = [0, 0, -5]) => { const b = new crofton.Boxes(1); b.set(0, center, [1, 1, 1]); return b; };
+
+    here('the version is the library\'s', () => assert.match(crofton.version, /^\d+\.\d+\.\d+$/));
+    here('the build is the one that was asked for', () => assert.equal(crofton.simd, build === 'simd'));
+
+    here('a box in front is inside', () => assert.deepEqual([...crofton.classify(one(), new crofton.Frustum())], [2]));
+    here('a box behind is outside', () => assert.deepEqual([...crofton.classify(one([0, 0, 5]), new crofton.Frustum())], [0]));
+    here('a box at the eye straddles', () => assert.deepEqual([...crofton.classify(one([0, 0, 0]), new crofton.Frustum())], [1]));
+    here('a matrix of WebGL gives the view of its camera', () => {
+        const f = 1 / Math.tan(Math.PI / 6), matrix = [f, 0, 0, 0, 0, f, 0, 0, 0, 0, -1.002, -1, 0, 0, -0.2002, 0];
+        const { boxes, list } = crowd(crofton, 500, 3), frustum = new crofton.Frustum({ matrix });
+        const verdicts = crofton.classify(boxes, frustum);
+        list.forEach((box, i) => {
+            const expected = verdict(frustum.planes, box);
+            if (expected === 'out') assert.equal(verdicts[i], 0);
+            else if (expected === 'in') assert.equal(verdicts[i], 2);
+        });
+        assert.ok(verdicts.includes(2));
+        assert.ok(frustum.planes.planes.length >= 5);
+    });
+
+    here('list, tree and classify agree with plain JavaScript on 20,000 boxes', () => {
+        const counts = { out: 0, in: 0, seen: 0, unsure: 0 };
+        for (let trial = 0; trial < 10; ++trial) {
+            const { boxes, list, next } = crowd(crofton, 2000, 100 + trial);
+            const frustum = new crofton.Frustum({ camera: { position: [20 * next(), 0, 0], forward: [next() - 0.5, next() - 0.5, next() - 0.5],
+                fovY: 0.4 + next(), far: 80 } });
+            const tree = new crofton.Tree(boxes), visible = new crofton.VisibleSet(), verdicts = crofton.classify(boxes, frustum);
+            const byTree = [...tree.cull(frustum, visible).ids], treeVerdicts = [...visible.verdicts];
+            const byList = [...crofton.cullBoxes(boxes, frustum, visible).ids];
+            assert.deepEqual(byTree, byList);
+            assert.deepEqual(byTree, [...verdicts.keys()].filter((i) => verdicts[i] > 0));
+            byTree.forEach((id, i) => assert.equal(treeVerdicts[i], verdicts[id]));
+            const { planes } = frustum.planes;
+            list.forEach((box, i) => {
+                const expected = verdict(frustum.planes, box);
+                ++counts[expected];
+                if (expected === 'out') assert.equal(verdicts[i], 0);
+                if (expected === 'in') assert.equal(verdicts[i], 2);
+                if (expected === 'seen') assert.equal(verdicts[i] > 0, true);
+            });
+            assert.ok(planes.length <= 12);
+            for (const owned of [boxes, frustum, tree, visible]) owned.free();
+        }
+        assert.ok(counts.out > 5000 && counts.in > 300 && counts.seen > 100 && counts.unsure < 400, JSON.stringify(counts));
+    });
+    here('conservative culling keeps at least what exact culling keeps', () => {
+        const { boxes } = crowd(crofton, 3000, 7), frustum = new crofton.Frustum({ camera: { far: 90 } }), visible = new crofton.VisibleSet();
+        const exact = [...crofton.cullBoxes(boxes, frustum, visible).ids];
+        const more = new Set(crofton.cullBoxes(boxes, frustum, visible, { conservative: true }).ids);
+        assert.ok(exact.every((id) => more.has(id)));
+    });
+    here('tree order gives the same items', () => {
+        const { boxes } = crowd(crofton, 3000, 8), frustum = new crofton.Frustum(), visible = new crofton.VisibleSet();
+        const tree = new crofton.Tree(boxes), sorted = [...tree.cull(frustum, visible).ids];
+        assert.deepEqual([...tree.cull(frustum, visible, { treeOrder: true }).ids].sort((a, b) => a - b), sorted);
+    });
+    here('moved and removed items are where they were put', () => {
+        const { boxes } = crowd(crofton, 100, 9), tree = new crofton.Tree(boxes), visible = new crofton.VisibleSet();
+        const frustum = new crofton.Frustum({ camera: { far: 10 } });
+        tree.move([7], one());
+        tree.refit();
+        assert.ok(tree.cull(frustum, visible).ids.includes(7));
+        tree.remove(7);
+        tree.refit();
+        assert.ok(!tree.cull(frustum, visible).ids.includes(7));
+    });
+    here('statistics count what was tested', () => {
+        const { boxes } = crowd(crofton, 1000, 10), visible = new crofton.VisibleSet();
+        new crofton.Tree(boxes).cull(new crofton.Frustum(), visible);
+        assert.ok(visible.statistics.nodesTested > 0);
+    });
+    here('no boxes give no answer', () => assert.equal(crofton.classify(new crofton.Boxes(0), new crofton.Frustum()).length, 0));
+    here('boxes come back as they were set', () => {
+        const boxes = new crofton.Boxes(2);
+        boxes.set(1, [1, 2, 3], [4, 5, 6]);
+        assert.deepEqual(boxes.get(1), { center: [1, 2, 3], halfExtents: [4, 5, 6], axes: [1, 0, 0, 0, 1, 0, 0, 0, 1] });
+    });
+    here('setAll is set for each', () => {
+        const boxes = new crofton.Boxes(2);
+        boxes.setAll(new Float64Array([1, 2, 3, 4, 5, 6]), new Float32Array([1, 1, 1, 2, 2, 2]));
+        assert.deepEqual(boxes.get(1).center, [4, 5, 6]);
+        assert.deepEqual(boxes.get(1).halfExtents, [2, 2, 2]);
+    });
+    here('validate names the box that is none', () => {
+        const boxes = new crofton.Boxes(3);
+        boxes.set(2, [NaN, 0, 0], [1, 1, 1]);
+        assert.throws(() => boxes.validate(), (error) => refused('non finite')(error) && error.item === 2);
+    });
+    here('a box that is not there is refused', () => assert.throws(() => new crofton.Boxes(2).set(2, [0, 0, 0], [1, 1, 1]), refused('out of range')));
+    here('arrays of the wrong length are refused', () => assert.throws(() => new crofton.Boxes(2).setAll(new Float64Array(5), new Float32Array(6)), refused('out of range')));
+    here('a number of boxes that is none is refused', () => assert.throws(() => new crofton.Boxes(-1), refused('invalid argument')));
+    here('too many boxes are a clear error, and the library goes on', () => {
+        assert.throws(() => new crofton.Boxes(60_000_000), refused('out of memory'));
+        assert.deepEqual([...crofton.classify(one(), new crofton.Frustum())], [2]);
+    });
+    here('a matrix without 16 numbers is refused', () => assert.throws(() => new crofton.Frustum({ matrix: [1] }), refused('invalid argument')));
+    here('a depth that is none is refused', () => assert.throws(() => new crofton.Frustum({ matrix: translation(0, 0, 0), depth: 'x' }), refused('invalid argument')));
+    here('a camera without a direction is refused', () => assert.throws(() => new crofton.Frustum({ camera: { forward: [0, 0, 0] } }), CroftonError));
+
+    here('every freed handle is a clear error', () => {
+        const owned = [new crofton.Boxes(1), new crofton.Frustum(), new crofton.VisibleSet(), new crofton.Triangulator(),
+            new crofton.World(), new crofton.VisibleObjects(), new crofton.Tree(one())];
+        for (const each of owned) each.free(), each.free();
+        const [boxes, frustum, visible, triangulator, world, objects, tree] = owned;
+        for (const use of [() => boxes.get(0), () => frustum.planes, () => visible.ids, () => triangulator.triangulate(new Float64Array(6)),
+            () => world.update(), () => objects.ids, () => tree.refit()])
+            assert.throws(use, refused('bad handle'));
+    });
+    here('growth of memory detaches old views and no others', () => {
+        const boxes = one(), visible = crofton.cullBoxes(boxes, new crofton.Frustum(), new crofton.VisibleSet());
+        const before = visible.ids, bytes = crofton.memoryBytes;
+        const big = new crofton.Boxes(Math.ceil(bytes / 72) + 1000);
+        assert.ok(crofton.memoryBytes > bytes);
+        assert.equal(before.length, 0);
+        assert.deepEqual([...visible.ids], [0]);
+        assert.deepEqual(boxes.get(0).center, [0, 0, -5]);
+        big.free();
+    });
+    here('a detached ArrayBuffer is a clear error', () => {
+        const points = new Float64Array(30);
+        structuredClone(points.buffer, { transfer: [points.buffer] });
+        assert.throws(() => crofton.fitBox(points), (error) => refused('invalid argument')(error) && /detached/.test(error.message));
+    });
+    here('a logger hears what is logged', () => {
+        const heard = [];
+        crofton.setLogger((level, message) => heard.push([level, message]));
+        crofton.log(2, 'grün');
+        crofton.setLogger(null);
+        assert.deepEqual(heard, [[2, 'grün']]);
+    });
+    here('what a logger throws comes out of the call, and the next call works', () => {
+        crofton.setLogger(() => { throw new TypeError('mine'); });
+        assert.throws(() => crofton.log(2, 'x'), /mine/);
+        crofton.setLogger(null);
+        assert.deepEqual([...crofton.classify(one(), new crofton.Frustum())], [2]);
+    });
+
+    for (const quality of ['fast', 'tight', 'exact'])
+        here(`a box of quality ${quality} contains its points`, () => {
+            const next = random(5), points = Float32Array.from({ length: 300 }, () => next());
+            const { center, axes, halfExtents } = crofton.fitBox(points, { quality });
+            for (let i = 0; i < points.length; i += 3)
+                for (let k = 0; k < 3; ++k) {
+                    const along = [0, 1, 2].reduce((sum, c) => sum + axes[3 * k + c] * (points[i + c] - center[c]), 0);
+                    assert.ok(Math.abs(along) <= halfExtents[k] + 1e-6);
+                }
+        });
+    here('the exact box of a turned box is that box', () => {
+        const axes = rotation(random(6)), points = [];
+        for (let c = 0; c < 8; ++c)
+            for (let i = 0; i < 3; ++i) points.push([4, 2, 1].reduce((sum, h, k) => sum + (c >> k & 1 ? h : -h) * axes[3 * k + i], 0));
+        const box = crofton.fitBox(new Float64Array(points), { quality: 'exact' });
+        box.halfExtents.sort().forEach((h, k) => assert.ok(Math.abs(h - [1, 2, 4][k]) < 1e-5));
+    });
+    here('a criterion chooses the box', () => {
+        const next = random(8), points = Float64Array.from({ length: 90 }, () => next());
+        const volume = (box) => box.halfExtents.reduce((a, b) => a * b);
+        assert.ok(volume(crofton.fitBox(points, { quality: 'exact', criterion: { volume: 1 } })) <= volume(crofton.fitBox(points, { quality: 'exact' })) * (1 + 1e-5));
+    });
+    here('no points are refused', () => assert.throws(() => crofton.fitBox(new Float32Array(0)), refused('empty')));
+    here('points that are not finite are refused by their item', () => assert.throws(() => crofton.fitBox(new Float32Array([0, 0, 0, NaN, 0, 0])), refused('non finite')));
+    here('a list instead of an array is refused', () => assert.throws(() => crofton.fitBox([1, 2, 3]), refused('invalid argument')));
+
+    for (const method of ['ear', 'delaunay', 'minimumWeight'])
+        here(`${method}: a square with a hole is covered`, () => {
+            const points = new Float64Array([0, 0, 4, 0, 4, 4, 0, 4, 1, 1, 1, 3, 3, 3, 3, 1]);
+            const { indices, weight } = new crofton.Triangulator().triangulate(points, [4, 8], method);
+            let area = 0;
+            for (let t = 0; t < indices.length; t += 3) {
+                const [a, b, c] = [...indices.subarray(t, t + 3)].map((i) => [points[2 * i], points[2 * i + 1]]);
+                area += ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2;
+            }
+            assert.equal(indices.length, 24);
+            assert.equal(area, 12);
+            assert.ok(weight > 0);
+        });
+    here('the lightest triangulation is proved so', () => {
+        const { optimal, gap } = new crofton.Triangulator().triangulate(new Float64Array([0, 0, 2, 0, 2, 1, 0, 1]));
+        assert.ok(optimal && gap === 0);
+    });
+    here('an outline that crosses itself is refused', () => assert.throws(
+        () => new crofton.Triangulator().triangulate(new Float64Array([0, 0, 1, 1, 1, 0, 0, 1])), CroftonError));
+
+    here('a world sees what is in front, and gives user data back', () => {
+        const world = new crofton.World(), visible = new crofton.VisibleObjects();
+        const ball = world.add({ ball: { center: [0, 0, -5], radius: 1 }, user: 2 ** 40 + 7 });
+        world.add({ box: { center: [0, 0, 5], halfExtents: [1, 1, 1] } });
+        world.update();
+        assert.deepEqual([...world.view(new crofton.Frustum(), visible).ids], [ball.index]);
+        const hit = world.raycast([0, 0, 0], [0, 0, -1]);
+        assert.deepEqual([hit.user, hit.t, hit.object], [2 ** 40 + 7, 4, ball]);
+        assert.equal(world.raycast([0, 0, 0], [0, 1, 0]), null);
+    });
+    here('objects move, hide and go', () => {
+        const world = new crofton.World(), visible = new crofton.VisibleObjects(), frustum = new crofton.Frustum();
+        const seen = () => { world.update(); return world.view(frustum, visible).length; };
+        const box = world.add({ box: { center: [0, 0, 5], halfExtents: [1, 1, 1] } });
+        assert.equal(seen(), 0);
+        world.setBox(box, { center: [0, 0, -5], halfExtents: [1, 1, 1] });
+        assert.equal(seen(), 1);
+        world.setHidden(box, true);
+        assert.equal(seen(), 0);
+        world.setHidden(box, false);
+        assert.equal(seen(), 1);
+        world.remove(box);
+        assert.deepEqual([seen(), world.count, world.contains(box)], [0, 0, false]);
+        assert.throws(() => world.remove(box), refused('stale handle'));
+    });
+    here('a wall hides what is behind it', () => {
+        const world = new crofton.World(), visible = new crofton.VisibleObjects();
+        const cube = world.addMesh(CUBE.positions, CUBE.indices), scaled = [5, 0, 0, 0, 0, 5, 0, 0, 0, 0, 0.5, 0, 0, 0, -5, 1];
+        world.setConvexOccluder(cube, CUBE.positions);
+        const wall = world.add({ mesh: cube, transform: scaled });
+        const behind = world.add({ mesh: cube, transform: translation(0, 0, -12) });
+        world.update();
+        assert.deepEqual([...world.viewOccluding({}, visible, { listOccluded: true }).ids], [wall.index]);
+        assert.deepEqual([...visible.occluded], [behind.index]);
+        assert.equal(world.viewOccluding({}, visible, { occlusion: false }).length, 2);
+        world.setTransform(wall, translation(50, 0, -5));
+        world.update();
+        assert.deepEqual([...world.viewOccluding({}, visible).ids], [behind.index]);
+    });
+    here('occluders are found in a closed mesh', () => {
+        const world = new crofton.World(), visible = new crofton.VisibleObjects(), cube = world.addMesh(CUBE.positions, CUBE.indices);
+        world.findOccluders(cube);
+        world.add({ mesh: cube, transform: [5, 0, 0, 0, 0, 5, 0, 0, 0, 0, 0.5, 0, 0, 0, -5, 1] });
+        world.add({ mesh: cube, transform: translation(0, 0, -12) });
+        world.update();
+        assert.equal(world.viewOccluding({}, visible).length, 1);
+    });
+    here('an object without a shape is refused', () => assert.throws(() => new crofton.World().add({}), refused('invalid argument')));
+    here('a mesh with a missing corner is refused', () => assert.throws(
+        () => new crofton.World().addMesh(new Float32Array(9), new Uint32Array([0, 1, 3])), CroftonError));
+}
