@@ -51,7 +51,7 @@ double size_of(const Body& a, const Body& b, const CasePair& place) {
 // Calls check(random, surface, triangle) for `count` random triangles: as a mesh's surface, and as a body. Returns how
 // many of them are meshes.
 template <class Check>
-int for_each_triangle(int seed, int count, const Check& check) {
+int for_each_triangle(std::uint64_t seed, int count, const Check& check) {
     RandomBodies random(seed);
     int checked = 0;
     for (int i = 0; i < count; ++i) {
