@@ -11,7 +11,6 @@
 
 using namespace crofton;
 using namespace crofton::occlude;
-using namespace crofton::testing;
 
 namespace {
 
