@@ -55,6 +55,15 @@ class AxisLines {
     std::array<Vector<std::uint32_t>, 3> order_;
 };
 
+// Whether all corners lie on a line along an axis, exactly. Such a triangle covers no point, and cuts of it would be
+// counted by none.
+bool is_on_axis_line(const Vector<glm::vec3>& positions, const Corners& t) {
+    const glm::vec3 &a = positions[t[0]], &b = positions[t[1]], &c = positions[t[2]];
+    int equal = 0;
+    for (int k = 0; k < 3; ++k) equal += a[k] == b[k] && b[k] == c[k];
+    return equal >= 2;
+}
+
 // Cuts triangles from their corners to the vertices on their sides, up to four times as many as there were. No vertex
 // is new, so that what is cut covers the same points exactly.
 Vector<Corners> cut_at_vertices(const PieceMesh& mesh) {
@@ -64,7 +73,7 @@ Vector<Corners> cut_at_vertices(const PieceMesh& mesh) {
     while (!open.empty()) {
         const Corners t = open.back();
         open.pop_back();
-        if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
+        if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0] || is_on_axis_line(mesh.positions, t)) continue;
         bool whole = true;
         for (std::size_t s = 0; s < 3 && whole && cut.size() + open.size() < most; ++s) {
             const std::uint32_t a = t[s], b = t[(s + 1) % 3], c = t[(s + 2) % 3], m = lines.between(a, b);

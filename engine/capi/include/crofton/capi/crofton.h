@@ -405,7 +405,7 @@ typedef struct crofton_occluding_view {
     double origin[3];
     uint32_t depth;                    /* a crofton_depth_range */
     uint32_t hidden_layers;            /* not drawn; 0: all are */
-    const crofton_draw_limits* limits; /* or NULL: those of the options */
+    const crofton_draw_limits* limits; /* or NULL: those of the options. Of several views the first's count */
 } crofton_occluding_view;
 
 typedef struct crofton_occlusion_statistics {

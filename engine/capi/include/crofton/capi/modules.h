@@ -88,8 +88,7 @@ typedef struct crofton_cull_options {
      * lacks it: all. Views of many frusta at once do not look at it. */
     const uint64_t* among;
     size_t among_words;
-    const crofton_draw_limits*
-        limits; /* or NULL: everything is worth drawing. crofton_world_views does not look at it */
+    const crofton_draw_limits* limits; /* or NULL: all is worth drawing. crofton_world_views checks it, no more */
 } crofton_cull_options;
 
 typedef struct crofton_cull_statistics {
@@ -134,8 +133,8 @@ CROFTON_API crofton_status crofton_visible_set_items(const crofton_visible_set* 
 CROFTON_API crofton_status crofton_visible_set_statistics(const crofton_visible_set* visible,
                                                           crofton_cull_statistics* statistics);
 
-/* Limits for a camera: nothing whose ball is less than `pixels` wide in a picture so many pixels high. It counts as in
- * the middle. Fills a struct whose `size` is set; all else is 0. */
+/* Limits for a camera: nothing whose ball is less than `pixels` wide in a picture so many pixels high. Each is judged
+ * as if it were in the middle. Fills a struct whose `size` is set; all else is 0. */
 CROFTON_API crofton_status crofton_draw_limits_of_camera(const crofton_camera* camera, double picture_height,
                                                          double pixels, crofton_draw_limits* limits);
 

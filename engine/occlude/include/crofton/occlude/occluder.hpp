@@ -155,10 +155,12 @@ struct LevelOptions {
 };
 
 // All triangles of a level made of many small pieces, in occluders of kind patch that need not be flat. Walls, floors
-// and ceilings that are near each other are one surface: no pixel is lost where they meet. Triangles are cut
-// where a vertex of another lies on one of their sides along an axis, which covers the same points exactly. The sum of
-// areas stands for mean_shadow and covered, a quarter of it or half as of a patch. Each triangle is drawn: slower than
-// boxes, for what has none. Errors: as find_occluders(); 2^26 triangles or more; max_triangles of 0.
+// and ceilings that are near each other are one surface: within an occluder no pixel is lost where they meet. Triangles
+// are cut where a vertex of another lies on one of their sides along an axis, which covers the same points exactly.
+// There are up to four times as many then; the rest keep their seams. mean_shadow and covered are a quarter of the
+// summed area for Sides::front and half of it for both. Triangles without area are left out: no occluders where all
+// are. Each triangle is drawn: slower than boxes, for what has none. Errors: as find_occluders(); 2^26 triangles or
+// more; max_triangles of 0.
 [[nodiscard]] Result<FoundOccluders> find_level_occluders(const TriangleMesh& level, const LevelOptions& options = {});
 
 // How much an occluder hides from a region of eyes: a measure to rank occluders by, before any view is known.
