@@ -43,24 +43,11 @@ def do(command, log, **more):
 def fetch_sources(name, log):
     """The folder of highway/ and qhull/ to compile."""
     platforms.WORK.mkdir(parents=True, exist_ok=True)
-    platforms.fetch_sources(log)
-    if name != "simd":
-        return platforms.SOURCES
-    sources, packages = WORK / "sources", WORK / "packages"
-    (packages / "lists/partial").mkdir(parents=True, exist_ok=True)
-    sources.mkdir(exist_ok=True)
-    listed = packages / "sources.list"
-    listed.write_text("deb-src http://deb.debian.org/debian trixie main\n")
-    apt = ["apt-get", "-o", f"Dir::Etc::SourceList={listed}", "-o", "Dir::Etc::SourceParts=/dev/null", "-o",
-           f"Dir::State::Lists={packages / 'lists'}", "-o", "Dir::Cache::pkgcache=", "-o", "Dir::Cache::srcpkgcache="]
-    if not (sources / "highway").exists():
-        do([*apt, "update"], log)
-        do([*apt, "source", "--download-only", "highway"], log, cwd=packages)
-        description = next(packages.glob("highway_*.dsc"))
-        do(["dpkg-source", "--no-check", "-x", description.name, sources / "highway"], log, cwd=packages)
-    if not (sources / "qhull").exists():
-        (sources / "qhull").symlink_to(platforms.SOURCES / "qhull")
-    return sources
+    try:
+        platforms.fetch_sources(log)
+        return platforms.fetch_newer(log) if name == "simd" else platforms.SOURCES
+    except platforms.Failed as failure:
+        sys.exit(f"web: {failure}")
 
 
 def build(name, jobs):

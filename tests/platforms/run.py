@@ -2,22 +2,29 @@
 # SPDX-License-Identifier: MIT
 """Builds the digests' tests for every platform that this machine can compile for and run, and compares the digests.
 
-tests/platforms/run.py [CELL …] [--jobs J] [--targets a,b]   all cells, or those whose names contain a word
+tests/platforms/run.py [CELL …] [--jobs J] [--targets a,b] [--limit S] [--nice N]   all cells, or those named
 tests/platforms/run.py --list                                the cells, and why some are left out here
-tests/platforms/run.py --report                              the table of docs/testing.md from the last results
+tests/platforms/run.py --report                              the table of docs/testing.md from the results so far
+tests/platforms/run.py --write                               puts that table into docs/testing.md
 tests/platforms/run.py --check                               whether docs/testing.md has that table
 
-A cell is a compiler and a target. Its build lies in build/platforms/CELL, its result in build/platforms/results.json.
+A cell is a compiler and a target. Its build lies in build/platforms/CELL; the results of all are in results.json beside
+this script. Cells are made cheap: little optimisation, one instruction set, ccache where it is installed, least priority.
+The digests come first, one file of tests after another; then the other programs. What is left of a cell that was
+stopped is done by the next run: a part is done again only where its program has changed. A part that takes longer than
+the limit (900 s) is stopped, and the table says so.
 `third_party/install.sh --platforms` installs the compilers and emulators. Libraries that a target lacks are compiled
 from the system's source packages, which apt-get fetches. A cell that cannot be here says why and counts for nothing.
 Exit status 1 where a digest differs or a test fails. Python 3.11, nothing else.
 """
 import argparse
+import hashlib
 import json
 import os
 import re
 import shlex
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -27,11 +34,15 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 WORK = ROOT / "build" / "platforms"
 SOURCES = WORK / "sources"
-TARGETS = ["test_determinism", "test_core", "test_geometry"]
+RESULTS = ROOT / "tests" / "platforms" / "results.json"
+DIGESTS = "test_determinism"
+TARGETS = [DIGESTS, "test_core", "test_geometry"]
 EMSCRIPTEN = "/usr/share/emscripten/cmake/Modules/Platform/Emscripten.cmake"
 # Debian's Emscripten needs its modules of node, which a node from elsewhere does not look for.
 ENVIRONMENT = {"NODE_PATH": "/usr/share/nodejs", "WINEDEBUG": "-all", **os.environ}
 # A pool of threads must exist before the program waits for one, and exceptions are off unless asked for.
+# Debian 12's Emscripten has no std::bit_cast in its library.
+WASM_MISSING = f"-include {ROOT}/web/native/missing.hpp"
 WASM_LINK = "-pthread -fexceptions -sPTHREAD_POOL_SIZE=12 -sINITIAL_MEMORY=1073741824 -sEXIT_RUNTIME=1 -sTOTAL_STACK=4194304"
 
 
@@ -48,6 +59,9 @@ class Cell:
     runner: list = field(default_factory=list)
     suffix: str = ""
     gmp_flags: str = ""
+    cxx_flags: str = ""            # of our own C++ alone
+    optimize: str = "-O1"          # the quickest in all: what the tests lose, the compiler gains several times
+    newer_highway: bool = False    # that of Debian 13
 
     @property
     def build(self):
@@ -68,22 +82,28 @@ def clang(*more):
     return ["-DCMAKE_C_COMPILER=clang-14", "-DCMAKE_CXX_COMPILER=clang++-14", *more]
 
 
-def wasm(name, what, flags):
+def wasm(name, what, flags, **more):
     return Cell(name, what, ["emcc", "node", EMSCRIPTEN], ["-DEMSCRIPTEN_SYSTEM_PROCESSOR=wasm32"], EMSCRIPTEN,
-                f"-pthread -fexceptions {flags}".strip(), WASM_LINK, "none", ["node"], ".js")
+                f"-pthread -fexceptions {flags}".strip(), WASM_LINK, "none", ["node"], ".js", cxx_flags=WASM_MISSING, **more)
+
+
+def one_set(name):
+    """Kernels for the baseline and one more instruction set."""
+    return f"-DCROFTON_SIMD_TARGETS={name}"
 
 
 CELLS = [
-    Cell("gcc", "g++ 12, x86-64", ["g++"]),
+    Cell("gcc", "g++ 12, x86-64", ["g++"], [one_set("AVX2")]),
     Cell("gcc-native", "g++ 12, x86-64, `-march=native`", ["g++"], ["-DCMAKE_CXX_FLAGS=-march=native"]),
-    Cell("gcc-flto", "g++ 12, x86-64, `-flto`", ["g++"], ["-DCMAKE_INTERPROCEDURAL_OPTIMIZATION=ON"]),
+    Cell("gcc-flto", "g++ 12, x86-64, `-flto`", ["g++"], ["-DCMAKE_INTERPROCEDURAL_OPTIMIZATION=ON", one_set("AVX2")],
+         optimize="-O2"),
     Cell("gcc-scalar", "g++ 12, x86-64, scalar", ["g++"], ["-DCROFTON_SCALAR=ON"]),
-    Cell("gcc-portable", "g++ 12, x86-64, no compiler extensions", ["g++"], ["-DCROFTON_PORTABLE=ON"]),
-    Cell("clang", "clang 14, x86-64", ["clang++-14"], clang()),
+    Cell("gcc-portable", "g++ 12, x86-64, no compiler extensions", ["g++"], ["-DCROFTON_PORTABLE=ON", one_set("AVX2")]),
+    Cell("clang", "clang 14, x86-64", ["clang++-14"], clang(one_set("AVX2"))),
     Cell("clang-libcxx", "clang 14, x86-64, libc++", ["clang++-14", "/usr/lib/llvm-14/include/c++/v1/vector"],
-         clang(), toolchain("clang-libcxx"), host="x86_64-linux-gnu"),
+         clang(one_set("AVX2")), toolchain("clang-libcxx"), host="x86_64-linux-gnu"),
     Cell("i386", "g++ 12, 32-bit x86", ["g++", "/usr/lib/gcc/x86_64-linux-gnu/12/32/libstdc++.a"],
-         ["-DCROFTON_SIMD_TARGETS=SSE4"],
+         [one_set("SSE4")],
          toolchain("i686-linux-gnu"), host="i686-linux-gnu", gmp_flags="-m32 -idirafter /usr/include/x86_64-linux-gnu"),
     Cell("aarch64", "g++ 12, 64-bit ARM, qemu", ["aarch64-linux-gnu-g++", "qemu-aarch64"], [],
          toolchain("aarch64-linux-gnu"), host="aarch64-linux-gnu",
@@ -92,15 +112,23 @@ CELLS = [
          toolchain("riscv64-linux-gnu"), host="riscv64-linux-gnu",
          runner=["qemu-riscv64", "-L", "/usr/riscv64-linux-gnu"]),
     Cell("mingw", "MinGW g++ 12, 64-bit Windows, Wine", ["x86_64-w64-mingw32-g++-posix", "wine"],
-         ["-DCROFTON_SIMD_TARGETS=SSE4"],
+         [one_set("SSE4")],
          toolchain("x86_64-w64-mingw32"), host="x86_64-w64-mingw32", runner=["wine"], suffix=".exe"),
-    wasm("wasm-simd", "Emscripten 3.1, WebAssembly with SIMD, node", "-msimd128"),
-    wasm("wasm", "Emscripten 3.1, WebAssembly without SIMD, node", ""),
+    wasm("wasm-simd", "Emscripten 3.1, WebAssembly with SIMD, node", "-msimd128", newer_highway=True),
+    wasm("wasm", "Emscripten 3.1, WebAssembly without SIMD, node", "-DHWY_COMPILE_ONLY_SCALAR"),
 ]
 
 
 class Failed(Exception):
     pass
+
+
+def environment_of(cell):
+    """For cmake: ccache, where it is installed and nothing else was chosen. It does not know Emscripten's compiler."""
+    launcher = shutil.which("ccache")
+    if not launcher or cell.host == "none":
+        return {}
+    return {name: launcher for name in ("CMAKE_C_COMPILER_LAUNCHER", "CMAKE_CXX_COMPILER_LAUNCHER") if name not in os.environ}
 
 
 def run(command, log, cwd=ROOT, environment=None):
@@ -112,38 +140,56 @@ def run(command, log, cwd=ROOT, environment=None):
         raise Failed(f"`{Path(str(command[0])).name}` failed, see {log.relative_to(ROOT)}")
 
 
+def fetch(release, names, sources, log):
+    """Unpacks source packages of a release of Debian, its patches applied, into a folder each."""
+    packages = sources / "packages"
+    (packages / "lists" / "partial").mkdir(parents=True, exist_ok=True)
+    listed = packages / "sources.list"
+    listed.write_text(f"deb-src http://deb.debian.org/debian {release} main\n")
+    apt = ["apt-get", "-o", f"Dir::Etc::SourceList={listed}", "-o", "Dir::Etc::SourceParts=/dev/null", "-o",
+           f"Dir::State::Lists={packages / 'lists'}", "-o", "Dir::Cache::pkgcache=", "-o", "Dir::Cache::srcpkgcache="]
+    run([*apt, "update"], log)
+    run([*apt, "source", "--download-only", *names], log, packages)
+    for name in names:
+        description = next(packages.glob(f"{name}_*.dsc"))
+        run(["dpkg-source", "--no-check", "-x", description.name, sources / name], log, packages)
+
+
 def fetch_sources(log):
-    """Unpacks the source packages of highway, qhull and gmp: the system's own versions, Debian's patches applied."""
+    """Highway, Qhull and GMP as this system has them."""
     if all((SOURCES / name).exists() for name in ("highway", "qhull", "gmp/doc")):
         return
     release = re.search(r"VERSION_CODENAME=(\w+)", Path("/etc/os-release").read_text())
     if not release:
         raise Failed("this system is no Debian: the libraries' source packages are unknown")
-    packages = SOURCES / "packages"
-    (packages / "lists" / "partial").mkdir(parents=True, exist_ok=True)
-    listed = packages / "sources.list"
-    listed.write_text(f"deb-src http://deb.debian.org/debian {release[1]} main\n")
-    apt = ["apt-get", "-o", f"Dir::Etc::SourceList={listed}", "-o", "Dir::Etc::SourceParts=/dev/null", "-o",
-           f"Dir::State::Lists={packages / 'lists'}", "-o", "Dir::Cache::pkgcache=", "-o", "Dir::Cache::srcpkgcache="]
-    run([*apt, "update"], log)
-    run([*apt, "source", "--download-only", "highway", "qhull", "gmp"], log, packages)
-    for name in ("highway", "qhull", "gmp"):
-        description = next(packages.glob(f"{name}_*.dsc"))
-        run(["dpkg-source", "--no-check", "-x", description.name, SOURCES / name], log, packages)
+    fetch(release[1], ["highway", "qhull", "gmp"], SOURCES, log)
     # Debian leaves out GMP's manual, which its configure expects.
     (SOURCES / "gmp" / "doc").mkdir(exist_ok=True)
     (SOURCES / "gmp" / "doc" / "Makefile.in").write_text("all install check clean:\n")
 
 
+def fetch_newer(log):
+    """The same folder with Debian 13's Highway: that of Debian 12 has no doubles in its WebAssembly target."""
+    newer = WORK / "newer_sources"
+    newer.mkdir(exist_ok=True)
+    if not (newer / "highway").exists():
+        fetch("trixie", ["highway"], newer, log)
+    if not (newer / "qhull").exists():
+        (newer / "qhull").symlink_to(SOURCES / "qhull")
+    return newer
+
+
 def cmake_options(cell):
-    options = ["-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", *cell.options]
+    # Not the build type Release, for which the tests choose an optimisation of their own.
+    flags = f"_FLAGS_RELWITHDEBINFO={cell.optimize} -DNDEBUG"
+    options = ["-G", "Ninja", "-DCMAKE_BUILD_TYPE=RelWithDebInfo", f"-DCMAKE_C{flags}", f"-DCMAKE_CXX{flags}", *cell.options]
     if cell.toolchain:
         prefix = cell.build / "prefix"
         options += [f"-DCMAKE_TOOLCHAIN_FILE={cell.toolchain}", f"-DCMAKE_PREFIX_PATH={prefix}",
                     f"-DCMAKE_FIND_ROOT_PATH={prefix}", "-DCMAKE_FIND_ROOT_PATH_MODE_PACKAGE=ONLY",
                     f"-DCMAKE_MODULE_PATH={prefix}/lib/cmake/modules"]
     if cell.flags:
-        options += [f"-DCMAKE_C_FLAGS={cell.flags}", f"-DCMAKE_CXX_FLAGS={cell.flags}"]
+        options += [f"-DCMAKE_C_FLAGS={cell.flags}", f"-DCMAKE_CXX_FLAGS={cell.flags} {cell.cxx_flags}".strip()]
     if cell.link:
         options.append(f"-DCMAKE_EXE_LINKER_FLAGS={cell.link}")
     return options
@@ -167,8 +213,9 @@ def build_libraries(cell, jobs, log):
     if done.exists():
         return
     fetch_sources(log)
+    sources = fetch_newer(log) if cell.newer_highway else SOURCES
     run(["cmake", "-S", ROOT / "tests/platforms/dependencies", "-B", cell.build / "dependencies", *cmake_options(cell),
-         f"-DCMAKE_INSTALL_PREFIX={prefix}", f"-DCROFTON_SOURCES={SOURCES}"], log)
+         f"-DCMAKE_INSTALL_PREFIX={prefix}", f"-DCROFTON_SOURCES={sources}"], log, environment=environment_of(cell))
     run(["cmake", "--build", cell.build / "dependencies", "-j", jobs, "--target", "install"], log)
     gmp = cell.build / "gmp"
     shutil.rmtree(gmp, ignore_errors=True)
@@ -180,56 +227,131 @@ def build_libraries(cell, jobs, log):
     done.touch()
 
 
-def test(cell, target, log):
-    """The numbers of passed, failed and skipped test cases of one program, and its digests' tests that failed."""
-    program = cell.build / "build" / "bin" / (target + cell.suffix)
-    done = subprocess.run([*cell.runner, str(program)], cwd=cell.build, capture_output=True, text=True, errors="replace",
-                          env=ENVIRONMENT)
-    with log.open("a") as file:
-        print(f"$ {target}", done.stdout, done.stderr, sep="\n", file=file)
-    found = re.findall(r"test cases:\s+(\d+) \|\s+(\d+) passed \|\s+(\d+) failed", done.stdout)
-    if not found:
-        raise Failed(f"{target} ended with status {done.returncode}, see {log.relative_to(ROOT)}")
-    return int(found[-1][1]), int(found[-1][2])
+def parts_of(target):
+    """What of a program is run and remembered alone: {name: doctest's filters}."""
+    if target != DIGESTS:
+        return {target: []}
+    files = sorted((ROOT / "tests" / "determinism").glob("*_test.cpp"))
+    return {file.stem.removesuffix("_test"): [f"--source-file=*determinism/{file.name}"] for file in files}
 
 
-def try_cell(cell, targets, jobs):
-    cell.build.mkdir(parents=True, exist_ok=True)
-    log, started = cell.build / "log.txt", time.monotonic()
-    log.unlink(missing_ok=True)
+def program_of(cell, target):
+    return cell.build / "build" / "bin" / (target + cell.suffix)
+
+
+def hash_of(program):
+    """Of a program and, where it is JavaScript, of what that loads."""
+    files = [file for file in (program, program.with_suffix(".wasm")) if file.exists()]
+    return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()[:16]
+
+
+def test(cell, target, filters, limit, log):
+    """The numbers of passed and failed test cases, the seconds; or what went wrong."""
+    started = time.monotonic()
+    process = subprocess.Popen([*cell.runner, str(program_of(cell, target)), *filters], cwd=cell.build, text=True,
+                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, errors="replace", env=ENVIRONMENT,
+                               start_new_session=True)
     try:
-        options = cmake_options(cell)
+        said, _ = process.communicate(timeout=limit)
+    except subprocess.TimeoutExpired:
+        os.killpg(process.pid, signal.SIGKILL)
+        said = process.communicate()[0]
+        return {"broken": f"not done in {limit} s", "limit": limit}
+    finally:
+        with log.open("a") as file:
+            print(f"$ {target}", *filters, file=file)
+            print(said, file=file)
+    found = re.findall(r"test cases:\s+(\d+) \|\s+(\d+) passed \|\s+(\d+) failed", said)
+    if not found or found[-1][0] == "0":
+        return {"broken": f"ended with status {process.returncode}" if not found else "no test ran"}
+    return {"passed": int(found[-1][1]), "failed": int(found[-1][2]), "seconds": round(time.monotonic() - started)}
+
+
+def try_cell(cell, options, results):
+    """Does what is left of a cell; results are kept after each part."""
+    cell.build.mkdir(parents=True, exist_ok=True)
+    log, result = cell.build / "log.txt", results.setdefault(cell.name, {})
+    result.pop("broken", None)
+    try:
+        cmake, jobs = cmake_options(cell), str(options.jobs)
         if cell.toolchain:
             build_libraries(cell, jobs, log)
-            options.append(f"-DCROFTON_TEST_LIBRARIES={cell.build / 'prefix'}")
-        run(["cmake", "-S", ROOT, "-B", cell.build / "build", *options, "-DCROFTON_RENDER=OFF", "-DCROFTON_SAMPLES=OFF",
-             "-DCROFTON_INSTALL=OFF", "-DCROFTON_DISCOVER_TESTS=OFF"], log)
-        run(["cmake", "--build", cell.build / "build", "-j", jobs, "--target", *targets], log)
-        result = {target: test(cell, target, log) for target in targets}
+            cmake.append(f"-DCROFTON_TEST_LIBRARIES={cell.build / 'prefix'}")
+        run(["cmake", "-S", ROOT, "-B", cell.build / "build", *cmake, "-DCROFTON_RENDER=OFF", "-DCROFTON_SAMPLES=OFF",
+             "-DCROFTON_INSTALL=OFF", "-DCROFTON_DISCOVER_TESTS=OFF"], log, environment=environment_of(cell))
+        for target in options.targets.split(","):
+            run(["cmake", "--build", cell.build / "build", "-j", jobs, "--target", target], log)
+            try_parts(cell, target, options.limit, results, log)
     except Failed as failure:
-        return {"broken": str(failure)}
-    return {"tests": result, "seconds": round(time.monotonic() - started)}
+        result["broken"] = str(failure)
+        keep(results)
+
+
+def try_parts(cell, target, limit, results, log):
+    done, program = results[cell.name].setdefault(target, {}), hash_of(program_of(cell, target))
+    for name in set(done) - set(parts_of(target)):
+        del done[name]
+    for name, filters in parts_of(target).items():
+        known = done.get(name, {})
+        if known.get("program") == program and known.get("limit", limit) >= limit:
+            continue
+        done[name] = {**test(cell, target, filters, limit, log), "program": program}
+        keep(results)
+        print(f"{cell.name}: {name}: {text_of(done[name])}", flush=True)
+
+
+def keep(results):
+    order = {cell.name: i for i, cell in enumerate(CELLS)}
+    kept = {name: results[name] for name in sorted(results, key=lambda name: order.get(name, len(order)))}
+    text = json.dumps(kept, indent=1, sort_keys=False)
+    # One line a part.
+    text = re.sub(r"\{\s+([^{}]*?)\s+\}", lambda found: "{" + re.sub(r"\s+", " ", found[1]) + "}", text)
+    RESULTS.with_suffix(".new").write_text(text + "\n")
+    RESULTS.with_suffix(".new").replace(RESULTS)
+
+
+def text_of(part):
+    if "broken" in part:
+        return part["broken"]
+    return f"{part['passed']} passed" + (f", {part['failed']} fail" if part["failed"] else "") + f", {part['seconds']} s"
+
+
+def wrong(part):
+    return "broken" not in part and part["failed"] > 0
 
 
 def failed(result):
-    return "broken" in result or any(count for _, count in result["tests"].values())
+    return "broken" in result or any(wrong(part) for target in result.values() for part in target.values())
 
 
 def digests_of(result):
-    if "broken" in result:
-        return f"**{result['broken']}**"
-    passed, wrong = result["tests"].get("test_determinism", (0, 0))
-    return "not run" if passed + wrong == 0 else f"equal, {passed} tests" if wrong == 0 else f"**{wrong} tests differ**"
+    parts, all_parts = result.get(DIGESTS, {}), parts_of(DIGESTS)
+    if bad := [name for name, part in parts.items() if wrong(part)]:
+        return f"**differ: {', '.join(bad)}**"
+    equal = [name for name, part in parts.items() if "broken" not in part]
+    if not equal:
+        return f"**{result['broken']}**" if "broken" in result else "not run"
+    missing = [f"{name} {parts.get(name, {}).get('broken', 'not run')}" for name in all_parts if name not in equal]
+    tests = sum(parts[name]["passed"] for name in equal)
+    return f"equal, {tests} tests" + (f" of {len(equal)} modules; {', '.join(missing)}" if missing else "")
 
 
 def others_of(result):
-    cells = [f"{name.removeprefix('test_')} {passed}" + (f", **{wrong} fail**" if wrong else "")
-             for name, (passed, wrong) in result.get("tests", {}).items() if name != "test_determinism"]
-    return "; ".join(cells) or "–"
+    said = []
+    for target, parts in result.items():
+        if target in (DIGESTS, "broken"):
+            continue
+        for part in parts.values():
+            count = part.get("passed", part.get("broken"))
+            said.append(f"{target.removeprefix('test_')} {count}" + (f", **{part['failed']} fail**" if wrong(part) else ""))
+    return "; ".join(said) or "–"
+
+
+HEAD = ["| platform | digests | other tests passed |", "|---|---|---|"]
 
 
 def report(results):
-    lines = ["| platform | digests | other tests passed |", "|---|---|---|"]
+    lines = list(HEAD)
     for cell in CELLS:
         result = results.get(cell.name)
         row = ("not run", "–") if result is None else (digests_of(result), others_of(result))
@@ -237,27 +359,39 @@ def report(results):
     return "\n".join(lines)
 
 
+def write(results):
+    page = ROOT / "docs" / "testing.md"
+    text = page.read_text()
+    begin = text.index("\n".join(HEAD))
+    page.write_text(text[:begin] + report(results) + text[text.index("\n\n", begin):])
+
+
+def chosen_by(words):
+    named = [cell for cell in CELLS if not words or cell.name in words]
+    return named or [cell for cell in CELLS if any(word in cell.name for word in words)]
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("cells", nargs="*")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--targets", default=",".join(TARGETS))
-    parser.add_argument("--list", action="store_true")
-    parser.add_argument("--report", action="store_true")
-    parser.add_argument("--check", action="store_true")
+    parser.add_argument("--limit", type=int, default=900)
+    parser.add_argument("--nice", type=int, default=15)
+    for mode in ("--list", "--report", "--write", "--check"):
+        parser.add_argument(mode, action="store_true")
     options = parser.parse_args()
-    WORK.mkdir(parents=True, exist_ok=True)
-    path = WORK / "results.json"
-    results = json.loads(path.read_text()) if path.exists() else {}
+    results = json.loads(RESULTS.read_text()) if RESULTS.exists() else {}
     if options.report:
         return print(report(results))
+    if options.write:
+        return write(results)
     if options.check:
         return 0 if report(results) in (ROOT / "docs/testing.md").read_text() else 1
-    chosen = [c for c in CELLS if not options.cells or any(word == c.name for word in options.cells)
-              or not any(word == c.name for word in options.cells for c in CELLS)
-              and any(word in c.name for word in options.cells)]
+    chosen = chosen_by(options.cells)
     if not chosen:
         sys.exit("no cell has such a name: see --list")
+    os.nice(options.nice)
     bad = False
     for cell in chosen:
         if reason := cell.missing():
@@ -266,8 +400,8 @@ def main():
         if options.list:
             print(f"{cell.name}: {cell.what}")
             continue
-        result = results[cell.name] = try_cell(cell, options.targets.split(","), options.jobs)
-        path.write_text(json.dumps(results, indent=1))
+        try_cell(cell, options, results)
+        result = results[cell.name]
         print(f"{cell.name}: digests {digests_of(result)}; {others_of(result)}", flush=True)
         bad = bad or failed(result)
     return 1 if bad else 0

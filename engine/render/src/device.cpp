@@ -38,6 +38,7 @@ Result<void> create_logical_device(VulkanContext& context, const DeviceOptions& 
         result != VK_SUCCESS)
         return vulkan_failure(result, "vkCreateDevice");
     volkLoadDeviceTable(&context.vk, context.device);
+    load_labels(context, options);
     context.vk.vkGetDeviceQueue(context.device, context.queue_family, 0, &context.queue);
 
     VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};

@@ -33,6 +33,11 @@ bool has_layer(const char* name) {
                        [&](const VkLayerProperties& layer) { return std::strcmp(layer.layerName, name) == 0; });
 }
 
+bool asks_for_labels(const DeviceOptions& options) {
+    return std::find(options.instance_extensions.begin(), options.instance_extensions.end(),
+                     VK_EXT_DEBUG_UTILS_EXTENSION_NAME) != options.instance_extensions.end();
+}
+
 VkDebugUtilsMessengerCreateInfoEXT messenger_info(VulkanContext& context) {
     VkDebugUtilsMessengerCreateInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT};
     info.messageSeverity =
@@ -44,6 +49,14 @@ VkDebugUtilsMessengerCreateInfoEXT messenger_info(VulkanContext& context) {
 }
 
 }  // namespace
+
+void load_labels(VulkanContext& context, const DeviceOptions& options) {
+    if (!options.validation && !asks_for_labels(options)) return;
+    const auto load = [&](const char* function) { return vkGetDeviceProcAddr(context.device, function); };
+    context.labels.set_name = reinterpret_cast<PFN_vkSetDebugUtilsObjectNameEXT>(load("vkSetDebugUtilsObjectNameEXT"));
+    context.labels.begin = reinterpret_cast<PFN_vkCmdBeginDebugUtilsLabelEXT>(load("vkCmdBeginDebugUtilsLabelEXT"));
+    context.labels.end = reinterpret_cast<PFN_vkCmdEndDebugUtilsLabelEXT>(load("vkCmdEndDebugUtilsLabelEXT"));
+}
 
 Result<void> create_instance(VulkanContext& context, const DeviceOptions& options) {
     if (volkInitialize() != VK_SUCCESS)
@@ -61,7 +74,7 @@ Result<void> create_instance(VulkanContext& context, const DeviceOptions& option
 
     std::vector<const char*> extensions;
     for (const std::string& name : options.instance_extensions) extensions.push_back(name.c_str());
-    if (options.validation) extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+    if (options.validation && !asks_for_labels(options)) extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
 
     const VkValidationFeatureEnableEXT enabled[] = {VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
     VkDebugUtilsMessengerCreateInfoEXT messenger = messenger_info(context);

@@ -101,7 +101,24 @@ Result<void> Pipelines::create() {
     PipelineDescription background{shaders::sky_vert, shaders::sky_frag, {}, {}};
     background.depth_compare = VK_COMPARE_OP_GREATER_OR_EQUAL;
     background.depth_write = false;
-    return make(background, sky);
+    if (auto made = make(background, sky); !made) return made;
+    name();
+    return {};
+}
+
+void Pipelines::name() const {
+    const DebugLabels& labels = context.labels;
+    const auto name_pipeline = [&](VkPipeline pipeline, const char* text) {
+        labels.name(context.device, VK_OBJECT_TYPE_PIPELINE, pipeline, text);
+    };
+    labels.name(context.device, VK_OBJECT_TYPE_RENDER_PASS, render_pass, "picture");
+    labels.name(context.device, VK_OBJECT_TYPE_PIPELINE_LAYOUT, layout, "all pipelines");
+    name_pipeline(triangles[static_cast<std::size_t>(Faces::both)], "triangles, both faces");
+    name_pipeline(triangles[static_cast<std::size_t>(Faces::front_by_shader)], "triangles, front faces by the shader");
+    name_pipeline(triangles[static_cast<std::size_t>(Faces::front_by_culling)], "triangles, front faces by culling");
+    name_pipeline(wires, "wires");
+    name_pipeline(lines, "lines");
+    name_pipeline(sky, "sky");
 }
 
 }  // namespace crofton::render

@@ -19,6 +19,7 @@ struct Pipelines {
     Pipelines& operator=(const Pipelines&) = delete;
 
     [[nodiscard]] Result<void> create();
+    void name() const;  // for debuggers
 
     const VulkanContext& context;
     // Colour ends in SHADER_READ_ONLY_OPTIMAL, visible to transfers and fragment shaders that follow.

@@ -45,7 +45,25 @@ Result<void> Rasterizer::State::create(const RasterizerOptions& options) {
     auto made_commands = Commands::create(context);
     if (!made_commands) return tl::unexpected(std::move(made_commands.error()));
     commands = std::move(*made_commands);
-    return create_queries();
+    if (auto made = create_queries(); !made) return made;
+    name_what_stays();
+    return {};
+}
+
+void Rasterizer::State::name_what_stays() const {
+    const auto name = [&](VkObjectType type, auto handle, const char* text) {
+        context.labels.name(context.device, type, handle, text);
+    };
+    name(VK_OBJECT_TYPE_QUERY_POOL, occlusion, "samples passed");
+    name(VK_OBJECT_TYPE_QUERY_POOL, statistics, "triangles counted");
+    name(VK_OBJECT_TYPE_QUERY_POOL, stamps, "portions handed over");
+    name(VK_OBJECT_TYPE_COMMAND_BUFFER, commands.handle, "frame");
+}
+
+void Rasterizer::State::name_what_grows() const {
+    transforms.name("transforms");
+    indirect.name("draws");
+    lines.name("line ends");
 }
 
 Result<void> Rasterizer::State::create_queries() {
@@ -105,6 +123,7 @@ Result<void> Rasterizer::State::prepare(const Frame& frame) {
             return made;
         std::memcpy(lines.mapped, frame.lines.data(), frame.lines.size_bytes());
     }
+    if (context.labels.set_name != nullptr) name_what_grows();
     return {};
 }
 
@@ -155,6 +174,8 @@ Result<void> Rasterizer::set_geometry(std::span<const Vertex> vertices, std::spa
         if (!made_indices) return tl::unexpected(std::move(made_indices.error()));
         new_vertices = std::move(*made_vertices);
         new_indices = std::move(*made_indices);
+        new_vertices.name("vertices");
+        new_indices.name("indices");
     }
     state_->vertices = std::move(new_vertices);
     state_->indices = std::move(new_indices);

@@ -43,6 +43,8 @@ struct Rasterizer::State {
 
     [[nodiscard]] Result<void> create(const RasterizerOptions& options);
     [[nodiscard]] Result<void> create_queries();
+    void name_what_stays() const;  // for debuggers: once
+    void name_what_grows() const;  // each frame
     // Fills draws, transforms, indirect and lines.
     [[nodiscard]] Result<void> prepare(const Frame& frame);
     void record(const Frame& frame, const Target& target);

@@ -113,6 +113,7 @@ void Rasterizer::State::record(const Frame& frame, const Target& target) {
     if (stamps != VK_NULL_HANDLE) vk.vkCmdResetQueryPool(cmd, stamps, 0, stamp_count);
     next_stamp = 0;
 
+    const LabelledCommands whole(context.labels, cmd, "picture");
     const glm::vec3 background = glm::sqrt(frame.environment.horizon);
     std::array<VkClearValue, 2> clear{};
     clear[0].color = {{background.r, background.g, background.b, 1.0f}};
@@ -147,21 +148,27 @@ void Rasterizer::State::record(const Frame& frame, const Target& target) {
     if (statistics != VK_NULL_HANDLE) vk.vkCmdBeginQuery(cmd, statistics, 0, 0);
     vk.vkCmdBeginQuery(cmd, occlusion, 0,
                        context.precise_occlusion ? VkQueryControlFlags{VK_QUERY_CONTROL_PRECISE_BIT} : 0u);
-    record_counted_draws();
+    {
+        const LabelledCommands label(context.labels, cmd, "counted triangles");
+        record_counted_draws();
+    }
     vk.vkCmdEndQuery(cmd, occlusion, 0);
     if (statistics != VK_NULL_HANDLE) vk.vkCmdEndQuery(cmd, statistics, 0);
 
     if (counted_draws < draws.size() && pipelines.wires != VK_NULL_HANDLE) {
+        const LabelledCommands label(context.labels, cmd, "wires");
         vk.vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipelines.wires);
         record_draws(counted_draws, draws.size());
     }
     if (frame.environment.sky) {
+        const LabelledCommands label(context.labels, cmd, "sky");
         const SkyConstants sky = sky_constants(frame);
         vk.vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipelines.sky);
         vk.vkCmdPushConstants(cmd, layout, kStages, 0, sizeof sky, &sky);
         vk.vkCmdDraw(cmd, 3, 1, 0, 0);
     }
     if (frame.lines.size() >= 2) {
+        const LabelledCommands label(context.labels, cmd, "lines");
         const glm::mat4 matrix = camera_relative_to_clip(frame.camera);
         const VkDeviceSize zero = 0;
         vk.vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipelines.lines);

@@ -54,11 +54,17 @@ Result<void> Target::create(VkRenderPass pass, VkExtent2D size, float share) {
     auto made = create_framebuffer(*context_, pass, views, drawn_extent);
     if (!made) return tl::unexpected(std::move(made.error()));
     framebuffer = *made;
+    color.name("picture");
+    drawn_color.name("picture as drawn");
+    depth.name("depth");
+    readback.name("picture for the host");
+    context_->labels.name(context_->device, VK_OBJECT_TYPE_FRAMEBUFFER, framebuffer, "picture");
     return {};
 }
 
 void Target::record_enlargement(VkCommandBuffer commands) const {
     if (drawn_color.handle == VK_NULL_HANDLE) return;
+    const LabelledCommands label(context_->labels, commands, "enlarge the picture");
     const auto& vk = context_->vk;
     constexpr VkPipelineStageFlags kTransfer = VK_PIPELINE_STAGE_TRANSFER_BIT;
     constexpr VkPipelineStageFlags kReaders = kTransfer | VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT;
@@ -84,6 +90,7 @@ void Target::record_enlargement(VkCommandBuffer commands) const {
 }
 
 void Target::record_readback(VkCommandBuffer commands) const {
+    const LabelledCommands label(context_->labels, commands, "copy the picture to the host");
     const VkImageMemoryBarrier to_copy =
         color_barrier(color.handle, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
                       VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT, VK_ACCESS_TRANSFER_READ_BIT);

@@ -24,7 +24,8 @@ struct DeviceOptions {
     std::string name;
     // Turns on VK_LAYER_KHRONOS_validation with synchronisation checks, and collects what it says.
     bool validation = false;
-    // For windows: what the surface and the swapchain need.
+    // For windows: what the surface and the swapchain need. VK_EXT_debug_utils, which validation brings along, gives
+    // objects and passes their names in debuggers.
     std::vector<std::string> instance_extensions;
     std::vector<std::string> device_extensions;
 };

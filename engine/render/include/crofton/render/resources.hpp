@@ -23,6 +23,11 @@ class Buffer {
                                                VkBufferUsageFlags usage, VkMemoryPropertyFlags wanted,
                                                VkMemoryPropertyFlags fallback);
 
+    // In debuggers, where the device has labels.
+    void name(const char* text) const {
+        if (context_ != nullptr) context_->labels.name(context_->device, VK_OBJECT_TYPE_BUFFER, handle, text);
+    }
+
     VkBuffer handle = VK_NULL_HANDLE;
     VkDeviceSize size = 0;
     std::byte* mapped = nullptr;
@@ -65,6 +70,13 @@ class ImageResource {
 
     [[nodiscard]] static Result<ImageResource> create(const VulkanContext& context, VkExtent2D extent, VkFormat format,
                                                       VkImageUsageFlags usage, VkImageAspectFlags aspect);
+
+    // In debuggers, where the device has labels: the image and its view.
+    void name(const char* text) const {
+        if (context_ == nullptr) return;
+        context_->labels.name(context_->device, VK_OBJECT_TYPE_IMAGE, handle, text);
+        context_->labels.name(context_->device, VK_OBJECT_TYPE_IMAGE_VIEW, view, text);
+    }
 
     VkImage handle = VK_NULL_HANDLE;
     VkImageView view = VK_NULL_HANDLE;

@@ -4,6 +4,7 @@
 #include <volk.h>
 
 #include <crofton/core/error.hpp>
+#include <crofton/render/debug_labels.hpp>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct VulkanContext {
     VkPhysicalDeviceMemoryProperties memory{};
     VkDevice device = VK_NULL_HANDLE;
     VolkDeviceTable vk{};
+    DebugLabels labels;
     std::uint32_t queue_family = 0;
     VkQueue queue = VK_NULL_HANDLE;
     VkCommandPool command_pool = VK_NULL_HANDLE;
