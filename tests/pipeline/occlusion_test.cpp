@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <algorithm>
+#include <box_mesh.hpp>
 #include <crofton/render/device.hpp>
 
 #include "pipeline/owner_picture.hpp"
@@ -12,17 +13,6 @@ using namespace crofton::pipeline;
 
 namespace {
 
-TriangleMesh box_mesh(const glm::vec3& half) {
-    TriangleMesh mesh;
-    for (unsigned i = 0; i < 8; ++i)
-        mesh.positions.push_back(half *
-                                 glm::vec3((i & 1u) ? 1.0f : -1.0f, (i & 2u) ? 1.0f : -1.0f, (i & 4u) ? 1.0f : -1.0f));
-    for (const std::uint32_t index : {0u, 2u, 1u, 1u, 2u, 3u, 4u, 5u, 6u, 5u, 7u, 6u, 0u, 1u, 4u, 1u, 5u, 4u,
-                                      2u, 6u, 3u, 3u, 6u, 7u, 0u, 4u, 2u, 2u, 4u, 6u, 1u, 3u, 5u, 3u, 7u, 5u})
-        mesh.indices.push_back(index);
-    return mesh;
-}
-
 // A wall at z = −10, a row of small cubes behind it, and one beside it; the camera at the origin looks along −z.
 struct Yard {
     scene::Scene scene;
@@ -31,8 +21,8 @@ struct Yard {
     std::vector<scene::InstanceId> behind, all;
 
     Yard() {
-        const auto wall_mesh = scene.add_mesh(box_mesh({4.0f, 4.0f, 0.5f}));
-        const auto cube = scene.add_mesh(box_mesh(glm::vec3(0.3f)));
+        const auto wall_mesh = scene.add_mesh(testing::box_mesh({-4.0f, -4.0f, -0.5f}, {4.0f, 4.0f, 0.5f}));
+        const auto cube = scene.add_mesh(testing::cube_mesh(0.3f));
         wall_node = *scene.add_node(scene::kNone, {glm::dmat3(1.0), {0.0, 0.0, -10.0}});
         wall = *scene.add_instance(wall_node, *wall_mesh);
         for (int i = -2; i <= 2; ++i) {
@@ -108,7 +98,7 @@ TEST_SUITE("pipeline/occlusion") {
 
     TEST_CASE("collisions switched off and on again are those of a new pipeline, and movers alone have them") {
         scene::Scene scene;
-        const auto cube = scene.add_mesh(box_mesh(glm::vec3(0.5f)));
+        const auto cube = scene.add_mesh(testing::cube_mesh(0.5f));
         for (int i = 0; i < 4; ++i)
             REQUIRE(scene.add_instance(*scene.add_node(scene::kNone, {glm::dmat3(1.0), {0.8 * i, 0.0, 0.0}}), *cube));
         scene.update();
@@ -163,8 +153,8 @@ TEST_SUITE("pipeline/occlusion") {
 
     TEST_CASE("meshes on one node are one occluding object, and what is not drawn is no part of it") {
         scene::Scene scene;
-        const auto wall = scene.add_mesh(box_mesh({4.0f, 4.0f, 0.5f})),
-                   other = scene.add_mesh(box_mesh({0.5f, 4.0f, 4.0f}));
+        const auto wall = scene.add_mesh(testing::box_mesh({-4.0f, -4.0f, -0.5f}, {4.0f, 4.0f, 0.5f})),
+                   other = scene.add_mesh(testing::box_mesh({-0.5f, -4.0f, -4.0f}, {0.5f, 4.0f, 4.0f}));
         std::vector<scene::NodeId> nodes;
         for (int i = 0; i < 3; ++i) {
             nodes.push_back(*scene.add_node(scene::kNone, {glm::dmat3(1.0), {20.0 * i, 0.0, 0.0}}));

@@ -170,6 +170,7 @@ class FramesRun {
         if (options_.baked.empty()) return none;
         const auto parts = pipeline::load_baked_parts(options_.baked, source_->scene, options_.read.limits);
         if (!parts) return tl::unexpected(parts.error());
+        if (!parts->occluders && !parts->left_out.empty()) return tl::unexpected(parts->left_out.front());
         if (!parts->occluders)
             return fail(ErrorCode::empty, kNoItem, options_.baked + ": has no occluders: 'crofton bake' writes them");
         return parts->occluders;
