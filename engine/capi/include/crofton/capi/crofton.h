@@ -386,6 +386,7 @@ typedef struct crofton_find_options {
     uint32_t max_occluders, max_edges, max_boxes_a_piece, grid;
     double least_gain, flatness;
     uint32_t max_patch_triangles;
+    uint32_t level_triangles; /* not 0: a level of many small pieces, as surfaces of so many triangles, say 48 */
 } crofton_find_options;
 
 typedef struct crofton_occlusion_options {
