@@ -119,9 +119,9 @@ struct FindOptions {
     // A patch is drawn triangle by triangle, many times as slowly as a box. In a town those of more triangles take five
     // times as long as all other occluders and hide 1 % of the triangles.
     std::uint32_t max_patch_triangles = 4;
-    // 0: a mesh of its own. Else a level made of many small pieces, as of 48: in place of patches all its triangles
-    // become surfaces of so many at most, of kind patch, which need not be flat, beyond max_occluders and max_edges.
-    // Walls, floors and ceilings that are near each other are one surface: within it no pixel is lost where they meet.
+    // 0: a mesh of its own. Else a level made of many small pieces: all its triangles become surfaces of so many at
+    // most; 48 is a good number. They take the place of patches, are of that kind, and need not be flat. max_occluders
+    // and max_edges do not count them. Walls, floors and ceilings that are near each other are one surface: within it no pixel is lost where they meet.
     // Triangles are cut where a vertex of another lies on one of their sides along an axis, which covers the same
     // points exactly. There are up to four times as many then; the rest keep their seams. Each triangle is drawn:
     // slower than boxes, for what has none.
