@@ -131,7 +131,7 @@ struct FindOptions {
 };
 
 struct FoundOccluders {
-    // In the order they were chosen: by gain per edge.
+    // In the order they were chosen: by gain per edge. Then surfaces of a level.
     Vector<FoundOccluder> occluders;
     double mean_shadow = 0.0;         // of the whole mesh; an estimate, as `covered`
     double covered = 0.0;             // of the occluders together
