@@ -195,7 +195,9 @@ std::optional<std::size_t> as_whole_number(const Json& value) {
         if (!(number >= 0.0 && number <= most) || number != std::floor(number)) return std::nullopt;
         return static_cast<std::size_t>(number);
     }
-    if (!value.is_number_integer() || value < 0) return std::nullopt;
+    // On 32-bit targets a larger one would come out as another.
+    if (!value.is_number_integer() || value < 0 || value > std::numeric_limits<std::size_t>::max() / 2)
+        return std::nullopt;
     return value.get<std::size_t>();
 }
 
