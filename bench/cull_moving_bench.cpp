@@ -122,8 +122,7 @@ void list_and_cull(benchmark::State& state, Tenth tenth, int part, cull::CullOpt
     Moving moving(state.range(0), tenth);
     if (tenth == Tenth::scattered) {  // each once
         std::ranges::sort(moving.items);
-        const auto repeated = std::ranges::unique(moving.items);
-        moving.items.erase(repeated.begin(), repeated.end());
+        moving.items.erase(std::unique(moving.items.begin(), moving.items.end()), moving.items.end());
         std::ranges::shuffle(moving.items, std::mt19937(2));
     }
     moving.moved.clear();

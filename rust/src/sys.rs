@@ -188,6 +188,7 @@ pub struct FindOptions {
     pub least_gain: f64,
     pub flatness: f64,
     pub max_patch_triangles: u32,
+    pub level_triangles: u32,
 }
 
 #[repr(C)]

@@ -103,6 +103,13 @@ TEST_SUITE("capi/world bodies") {
         REQUIRE(crofton_found_objects(found.get(), &objects, &count) == CROFTON_OK);
         REQUIRE(count == 1);
         CHECK(objects[0].user == 5);
+        auto closest = sized<crofton_closest_object>();
+        REQUIRE(crofton_world_closest_to_body(s.world.get(), &high, 9.0, ~0u, &closest) == CROFTON_OK);
+        CHECK(closest.user == 6);
+        CHECK(closest.distance == doctest::Approx(5.0 - 0.25 - 1.99));
+        CHECK(closest.on_object[1] == doctest::Approx(1.99));
+        REQUIRE(crofton_world_closest_to_body(s.world.get(), &high, 1.0, ~0u, &closest) == CROFTON_OK);
+        CHECK(closest.object.index == CROFTON_NONE);
         const crofton_motion fall{{0, -10, 0}, {0, 0, 0}, {0, 0, 0}};
         auto hit = sized<crofton_body_hit>();
         REQUIRE(crofton_world_cast(s.world.get(), &high, &fall, nullptr, ~0u, &hit) == CROFTON_OK);
@@ -130,6 +137,8 @@ TEST_SUITE("capi/world bodies") {
         CHECK(crofton_world_set_body(s.world.get(), s.crate, made) == CROFTON_UNSUPPORTED);
         CHECK(crofton_world_overlap_body(s.world.get(), &placed, ~0u, found.get()) == CROFTON_UNSUPPORTED);
         CHECK(crofton_world_cast(s.world.get(), &placed, nullptr, nullptr, ~0u, &hit) == CROFTON_UNSUPPORTED);
+        auto closest = sized<crofton_closest_object>();
+        CHECK(crofton_world_closest_to_body(s.world.get(), &placed, 1.0, ~0u, &closest) == CROFTON_UNSUPPORTED);
         REQUIRE(crofton_world_remove(s.world.get(), s.crate) == CROFTON_OK);
         const BodyHandle box = crate_of(1);
         CHECK(crofton_world_set_body(s.world.get(), s.crate, box.get()) == CROFTON_STALE_HANDLE);

@@ -116,6 +116,15 @@ TEST_SUITE("capi/world occlusion") {
         CHECK_FALSE(s.hides());
         REQUIRE(crofton_world_set_occluders(s.world.get(), s.mesh, &occluder, 1) == CROFTON_OK);
         CHECK(s.hides());
+        // As a level: the body, and all six faces as a surface.
+        find.level_triangles = 48;
+        REQUIRE(crofton_world_find_occluders(s.world.get(), s.mesh, &find) == CROFTON_OK);
+        REQUIRE(crofton_world_occluder_count(s.world.get(), s.mesh, &count) == CROFTON_OK);
+        CHECK(count == 2);
+        REQUIRE(crofton_world_get_occluder(s.world.get(), s.mesh, 1, &occluder) == CROFTON_OK);
+        CHECK(occluder.kind == CROFTON_OCCLUDER_PATCH);
+        CHECK(occluder.index_count == 36);
+        CHECK(s.hides());
         // A box alone.
         auto box = sized<crofton_occluder>();
         box.box = box_at(0, 0, 0, 4.0f);

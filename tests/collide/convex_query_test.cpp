@@ -32,11 +32,10 @@ Obb parted(Obb b, const glm::dvec3& motion) {
 
 TEST_SUITE("collide/convex_query") {
     TEST_CASE("points on top of each other, bodies without extent and coincident boxes have answers") {
-        const ConvexShape point = to_convex_shape(Sphere{{1.0, 2.0, 3.0}, 0.0});
-        CHECK(distance(point, point).distance == 0.0);
-        CHECK(penetration(point, point).depth == 0.0);
-        const ConvexShape ball = to_convex_shape(Sphere{{1.0, 2.0, 3.0}, 0.5});
-        CHECK(penetration(ball, ball).depth == doctest::Approx(1.0));
+        const Sphere point{{1.0, 2.0, 3.0}, 0.0}, ball{{1.0, 2.0, 3.0}, 0.5};
+        CHECK(distance(Capsule{point.center, point.center, 0.0}, point).distance == 0.0);
+        CHECK(contact_manifold(point, point).depth == 0.0);
+        CHECK(contact_manifold(ball, ball).depth == doctest::Approx(1.0));
         CHECK(contact_manifold(ball, ball).count == 1);
         const Obb box = cube_box({});
         CHECK(penetration(box, box).depth == doctest::Approx(2.0));
@@ -50,13 +49,12 @@ TEST_SUITE("collide/convex_query") {
         CHECK(distance(cube_box({}), cube_box({5.0, 0.5, 0.0})).distance == doctest::Approx(3.0));
         CHECK(distance(cube_box({}), cube_box({5.0, 6.0, 0.0})).distance == doctest::Approx(5.0));
         CHECK(distance(cube_box({}), cube_box({4.0, 4.0, 4.0})).distance == doctest::Approx(2.0 * std::sqrt(3.0)));
-        const Distance d = distance(to_convex_shape(cube_box({})), to_convex_shape(Sphere{{4.0, 0.0, 0.0}, 1.0}));
+        const Distance d = distance(cube_box({}), Capsule{{4.0, 0.0, 0.0}, {4.0, 0.0, 0.0}, 1.0});
         CHECK(d.distance == doctest::Approx(2.0));
         CHECK(d.on_a.x == doctest::Approx(1.0));
         CHECK(d.on_b.x == doctest::Approx(3.0));
-        CHECK(distance(to_convex_shape(Capsule{{0, 0, 0}, {0, 0, 9}, 1.0}),
-                       to_convex_shape(Capsule{{5, -1, 4}, {5, 1, 4}, 1.5}))
-                  .distance == doctest::Approx(2.5));
+        CHECK(distance(Capsule{{0, 0, 0}, {0, 0, 9}, 1.0}, Sphere{{5, 0, 4}, 1.5}).distance == doctest::Approx(2.5));
+        CHECK(distance(cube_box({}), Capsule{{4, -9, -2}, {4, 9, 2}, 0.5}).distance == doctest::Approx(2.5));
     }
 
     TEST_CASE(
@@ -332,6 +330,7 @@ TEST_SUITE("collide/convex_query") {
         CHECK(m.depth == doctest::Approx(0.25));
         CHECK(m.normal.z == doctest::Approx(1.0));
         CHECK(contact_manifold(ground, cube_box({0.0, 0.0, 1.5})).count == 0);
-        CHECK(penetration(ground, to_convex_shape(Sphere{{0.0, 0.0, 0.5}, 2.0})).depth == doctest::Approx(1.5));
+        CHECK(penetration(ground, cube_box({0.0, 0.0, 0.5})).depth == doctest::Approx(0.5));
+        CHECK(penetration(ground, cube_box({0.0, 0.0, 1.5})).depth == doctest::Approx(-0.5));
     }
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
+#include <box_mesh.hpp>
 #include <cmath>
 #include <crofton/collide/narrow_phase.hpp>
 #include <crofton/mesh/mesh_query.hpp>
@@ -49,9 +50,9 @@ TEST_SUITE("collide/mesh_manifold") {
         TriangleMesh sheet;
         sheet.positions = {{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}};
         sheet.indices = {0, 1, 2, 0, 2, 3};
-        TriangleMesh slab = cube(9.0);
+        TriangleMesh slab = cube_mesh(9.0f);
         for (glm::vec3& p : slab.positions) p.z -= 9.0f;
-        const auto crate = tree_of(cube(1.0));
+        const auto crate = tree_of(cube_mesh(1.0f));
         for (const TriangleMesh& mesh : {sheet, slab}) {
             const auto floor = tree_of(mesh);
             const RigidTransform pose{glm::dmat3(1.0), {2.3, 1.1, 0.9}};
@@ -104,7 +105,7 @@ TEST_SUITE("collide/mesh_manifold") {
 
     TEST_CASE("points lie midway between the surfaces, a depth apart along the normal, whatever the pose") {
         const TriangleMesh ring = wavy_torus(1.0, 0.3, 0.2);
-        const auto tree = tree_of(ring), crate = tree_of(cube(0.5));
+        const auto tree = tree_of(ring), crate = tree_of(cube_mesh(0.5f));
         std::mt19937_64 random(52);
         int touching = 0, deep = 0;
         for (int trial = 0; trial < 300; ++trial) {
@@ -138,7 +139,7 @@ TEST_SUITE("collide/mesh_manifold") {
     }
 
     TEST_CASE("no contacts, no points") {
-        const auto a = tree_of(cube(1.0));
+        const auto a = tree_of(cube_mesh(1.0f));
         CHECK(manifold_of(a, a, {glm::dmat3(1.0), {3.0, 0.0, 0.0}}).count == 0);
     }
 }

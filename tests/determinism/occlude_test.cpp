@@ -106,11 +106,12 @@ std::uint64_t hidden_objects(Executor& executor) {
     return digest.value();
 }
 
-std::uint64_t found_occluders() {
+std::uint64_t found_occluders(std::uint32_t level_triangles) {
     Digest digest;
     for (const occlude::Sides sides : {occlude::Sides::front, occlude::Sides::both}) {
-        const auto found =
-            occlude::find_occluders(tube(), {.sides = sides, .max_patch_triangles = 1000, .grid = 12}).value();
+        const occlude::FindOptions how{
+            .sides = sides, .max_patch_triangles = 1000, .level_triangles = level_triangles, .grid = 12};
+        const auto found = occlude::find_occluders(tube(), how).value();
         for (const occlude::FoundOccluder& o : found.occluders) {
             digest.add(static_cast<std::uint32_t>(o.kind)).add(o.mean_shadow).add(o.gain).add(o.edges);
             digest.add(o.surface.positions).add(o.surface.indices).add(o.piece_bounds);
@@ -128,7 +129,11 @@ TEST_SUITE("determinism/occlude") {
     }
 
     TEST_CASE("found occluders are the same bits everywhere") {
-        check_everywhere(0x32876e14f8b86dc6, [](Executor&) { return found_occluders(); });
+        check_everywhere(0x32876e14f8b86dc6, [](Executor&) { return found_occluders(0); });
+    }
+
+    TEST_CASE("the surfaces of a level are the same bits everywhere") {
+        check_everywhere(0x85a12723398ec9cd, [](Executor&) { return found_occluders(20); });
     }
 
     TEST_CASE("what was published calls nothing hidden that a ray reaches, in rationals") {

@@ -2,6 +2,7 @@
 // Meshes against meshes, fresh and refitted: against every pair of triangles.
 #include <algorithm>
 #include <crofton/collide/narrow_phase.hpp>
+#include <crofton/geometry/closest_points.hpp>
 #include <crofton/geometry/predicates.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
@@ -39,8 +40,9 @@ void check_pair(fuzz::Shapes& in, const TriangleMesh& of_a, const mesh::MeshTree
     for (std::uint32_t t = 0; t < ts.size(); ++t)
         for (std::uint32_t u = 0; u < us.size(); ++u) {
             if (mesh::intersects(ts[t], us[u])) expected.push_back({t, u});
-            least = std::min(
-                least, collide::distance(collide::to_convex_shape(ts[t]), collide::to_convex_shape(us[u])).distance);
+            ClosestPoints nearest;
+            closest_of_triangles(ts[t], us[u], nearest);
+            least = std::min(least, std::sqrt(nearest.squared));
         }
     Vector<mesh::TrianglePair> pairs;
     mesh::intersecting_triangles(a, b, pose, pairs);

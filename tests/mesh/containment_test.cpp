@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
+#include <box_mesh.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <utility>
 
@@ -11,14 +12,15 @@ using namespace crofton::testing;
 
 TEST_SUITE("mesh/containment") {
     TEST_CASE("one closed mesh inside the other is reported as such, and no other case is") {
-        const auto outer = tree_of(cube(1.0)), inner = tree_of(cube(0.25)), ring = tree_of(wavy_torus(1.0, 0.3, 0.0));
+        const auto outer = tree_of(cube_mesh(1.0f)), inner = tree_of(cube_mesh(0.25f)),
+                   ring = tree_of(wavy_torus(1.0, 0.3, 0.0));
         CHECK(containment(outer, inner, {glm::dmat3(1.0), {0.3, 0.0, 0.0}}) == Containment::b_inside_a);
         CHECK(containment(inner, outer, {glm::dmat3(1.0), {0.3, 0.0, 0.0}}) == Containment::a_inside_b);
         CHECK(containment(outer, inner, {glm::dmat3(1.0), {0.75, 0.0, 0.0}}) ==
               Containment::none);  // touches from inside
         CHECK(containment(outer, inner, {glm::dmat3(1.0), {3.0, 0.0, 0.0}}) == Containment::none);
         CHECK(containment(ring, inner, {}) == Containment::none);  // in the hole
-        const auto pea = tree_of(cube(0.05));
+        const auto pea = tree_of(cube_mesh(0.05f));
         CHECK(containment(ring, pea, {glm::dmat3(1.0), {0.0, 1.0, 0.0}}) == Containment::b_inside_a);
         CHECK(contains(outer, {0.0, 0.0, 0.0}));  // straight below an edge's crossing and on diagonals
         CHECK(contains(outer, {1.0, 0.5, 0.5}));
@@ -30,7 +32,7 @@ TEST_SUITE("mesh/containment") {
         const auto pieces = [](std::initializer_list<glm::vec3> places, float half) {
             TriangleMesh mesh;
             for (const glm::vec3& place : places) {
-                TriangleMesh one = cube(double(half));
+                TriangleMesh one = cube_mesh(half);
                 for (const std::uint32_t index : one.indices) {  // every triangle with corners of its own
                     mesh.indices.push_back(std::uint32_t(mesh.positions.size()));
                     mesh.positions.push_back(one.positions[index] + place);
@@ -38,7 +40,7 @@ TEST_SUITE("mesh/containment") {
             }
             return tree_of(mesh);
         };
-        const auto outer = tree_of(cube(1.0));
+        const auto outer = tree_of(cube_mesh(1.0f));
         const auto both = pieces({{-0.5f, 0.0f, 0.0f}, {0.5f, 0.0f, 0.0f}}, 0.1f);
         CHECK(both.pieces().size() == 2);
         CHECK(containment(outer, both, {}) == Containment::b_inside_a);
@@ -50,12 +52,12 @@ TEST_SUITE("mesh/containment") {
         }
         CHECK(containment(outer, pieces({{3.0f, 0.0f, 0.0f}, {5.0f, 0.0f, 0.0f}}, 0.1f), {}) == Containment::none);
         // A shell with a hollow: what is in the hollow is outside.
-        TriangleMesh shell = cube(1.0);
-        const TriangleMesh hollow = cube(0.5);
+        TriangleMesh shell = cube_mesh(1.0f);
+        const TriangleMesh hollow = cube_mesh(0.5f);
         for (const std::uint32_t index : hollow.indices) shell.indices.push_back(index + 8);
         for (const glm::vec3& p : hollow.positions) shell.positions.push_back(p);
-        CHECK(containment(tree_of(shell), tree_of(cube(0.25)), {}) == Containment::none);
-        CHECK(containment(tree_of(shell), tree_of(cube(0.1)), {glm::dmat3(1.0), {0.75, 0.0, 0.0}}) ==
+        CHECK(containment(tree_of(shell), tree_of(cube_mesh(0.25f)), {}) == Containment::none);
+        CHECK(containment(tree_of(shell), tree_of(cube_mesh(0.1f)), {glm::dmat3(1.0), {0.75, 0.0, 0.0}}) ==
               Containment::b_inside_a);
     }
 
@@ -69,7 +71,7 @@ TEST_SUITE("mesh/containment") {
                 const std::uint32_t at = 20 * i + j;
                 for (const std::uint32_t v : {at, at + 20, at + 21, at, at + 21, at + 1}) terrain.indices.push_back(v);
             }
-        const auto ground = tree_of(terrain), crate = tree_of(cube(0.2));
+        const auto ground = tree_of(terrain), crate = tree_of(cube_mesh(0.2f));
         REQUIRE(ground.pieces().size() == 1);
         CHECK_FALSE(ground.pieces()[0].closed);
         CHECK(crate.pieces()[0].closed);
@@ -82,13 +84,13 @@ TEST_SUITE("mesh/containment") {
             CHECK_FALSE(contains(ground, pose.translation));
         }
         // A hole opens a cube; so does a rejected triangle. A closed piece beside an open one still contains.
-        TriangleMesh holed = cube(1.0);
+        TriangleMesh holed = cube_mesh(1.0f);
         holed.indices.resize(33);
         CHECK(containment(tree_of(holed), crate, {}) == Containment::none);
-        TriangleMesh torn = cube(1.0);
+        TriangleMesh torn = cube_mesh(1.0f);
         torn.indices[35] = 99;
         CHECK(containment(tree_of(torn), crate, {}) == Containment::none);
-        TriangleMesh mixed = cube(1.0);
+        TriangleMesh mixed = cube_mesh(1.0f);
         mixed.positions.insert(mixed.positions.end(), {{-0.1f, -0.1f, 2.0f}, {0.9f, 0.0f, 2.0f}, {0.0f, 0.9f, 2.0f}});
         mixed.indices.insert(mixed.indices.end(), {8, 9, 10});
         REQUIRE(tree_of(mixed).pieces().size() == 2);
@@ -100,15 +102,15 @@ TEST_SUITE("mesh/containment") {
 
     TEST_CASE(
         "closed pieces: whatever the winding, with vertices of their own, and where four triangles share an edge") {
-        TriangleMesh turned = cube(1.0);
+        TriangleMesh turned = cube_mesh(1.0f);
         std::swap(turned.indices[0], turned.indices[1]);
         CHECK(tree_of(turned).pieces()[0].closed);
         // Two cubes that touch along an edge, their vertices there one.
-        TriangleMesh pair = cube(1.0);
+        TriangleMesh pair = cube_mesh(1.0f);
         const std::uint32_t map[8] = {7, 8, 9, 10, 11, 12, 13, 14};  // the second's vertex 0 is the first's 7
         for (int v = 1; v < 8; ++v)
-            pair.positions.push_back(cube(1.0).positions[std::size_t(v)] + glm::vec3(2.0f, 2.0f, 0.0f));
-        for (const std::uint32_t v : cube(1.0).indices) pair.indices.push_back(v == 0 ? 3 : map[v]);
+            pair.positions.push_back(cube_mesh(1.0f).positions[std::size_t(v)] + glm::vec3(2.0f, 2.0f, 0.0f));
+        for (const std::uint32_t v : cube_mesh(1.0f).indices) pair.indices.push_back(v == 0 ? 3 : map[v]);
         const auto tree = tree_of(pair);
         REQUIRE(tree.pieces().size() == 1);
         CHECK(tree.pieces()[0].closed);
@@ -118,7 +120,7 @@ TEST_SUITE("mesh/containment") {
     }
 
     TEST_CASE("the depth is the shortest way out, of the directions tried") {
-        const auto a = tree_of(cube(1.0)), b = tree_of(cube(0.5));
+        const auto a = tree_of(cube_mesh(1.0f)), b = tree_of(cube_mesh(0.5f));
         const MeshDepth side = penetration(a, b, {glm::dmat3(1.0), {1.3, 0.1, 0.0}}, {});
         CHECK(side.depth == doctest::Approx(0.2).epsilon(1e-4));
         CHECK(side.direction.x == doctest::Approx(1.0));

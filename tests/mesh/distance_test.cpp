@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
+#include <box_mesh.hpp>
 #include <cmath>
 #include <crofton/geometry/closest_points.hpp>
 #include <crofton/mesh/mesh_query.hpp>
@@ -101,7 +102,7 @@ TEST_SUITE("mesh/distance") {
     }
 
     TEST_CASE("distance and tolerance agree with known gaps and with each other") {
-        const auto a = tree_of(cube(1.0)), ring = tree_of(wavy_torus(1.0, 0.3, 0.2));
+        const auto a = tree_of(cube_mesh(1.0f)), ring = tree_of(wavy_torus(1.0, 0.3, 0.2));
         const MeshDistance apart = distance(a, a, {glm::dmat3(1.0), {5.0, 6.0, 0.5}});
         CHECK(apart.distance == doctest::Approx(5.0));  // gaps 3 and 4 along two axes
         CHECK(glm::distance(apart.on_a, apart.on_b) == doctest::Approx(5.0));
@@ -125,7 +126,7 @@ TEST_SUITE("mesh/distance") {
     }
 
     TEST_CASE("poses that miss by an ulp are apart: the distance is positive exactly where meshes do not meet") {
-        const auto a = tree_of(cube(1.0)), ring = tree_of(wavy_torus(1.0, 0.3, 0.2));
+        const auto a = tree_of(cube_mesh(1.0f)), ring = tree_of(wavy_torus(1.0, 0.3, 0.2));
         const double beyond = std::nextafter(2.0, 3.0);
         CHECK(distance(a, a, {glm::dmat3(1.0), {2.0, 0.0, 0.0}}).distance == 0.0);
         CHECK(distance(a, a, {glm::dmat3(1.0), {beyond, 0.3, 0.0}}).distance > 0.0);

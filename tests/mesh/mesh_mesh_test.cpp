@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <algorithm>
+#include <box_mesh.hpp>
 #include <cmath>
 #include <crofton/mesh/mesh_query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
@@ -119,7 +120,7 @@ TEST_SUITE("mesh/mesh_mesh") {
 
     TEST_CASE("the same pairs of triangles as brute force, for generic, coincident and face-to-face poses") {
         std::mt19937_64 random(9);
-        const TriangleMesh meshes[] = {wavy_torus(1.0, 0.4, 0.2), wavy_torus(0.6, 0.5, 0.0, 12, 9), cube(0.7)};
+        const TriangleMesh meshes[] = {wavy_torus(1.0, 0.4, 0.2), wavy_torus(0.6, 0.5, 0.0, 12, 9), cube_mesh(0.7f)};
         for (int trial = 0; trial < 60; ++trial) {
             const TriangleMesh &a = meshes[trial % 3], &b = meshes[trial / 3 % 3];
             RigidTransform pose = random_pose(random, 1.2);

@@ -2,6 +2,7 @@
 // Closed meshes with known insides, and poses for them.
 #pragma once
 #include <doctest/doctest.h>
+#include <box_mesh.hpp>
 #include <cmath>
 #include <crofton/geometry/mesh.hpp>
 #include <crofton/geometry/shapes.hpp>
@@ -51,15 +52,6 @@ inline mesh::MeshTree tree_of(const TriangleMesh& mesh) {
 inline Triangle triangle(const TriangleMesh& mesh, std::size_t t, const RigidTransform& pose) {
     return {transform(pose, vertex(mesh, t, 0)), transform(pose, vertex(mesh, t, 1)),
             transform(pose, vertex(mesh, t, 2))};
-}
-
-inline TriangleMesh cube(double half) {
-    TriangleMesh mesh;
-    for (int i = 0; i < 8; ++i)
-        mesh.positions.push_back(glm::vec3(half * (i & 1 ? 1 : -1), half * (i & 2 ? 1 : -1), half * (i & 4 ? 1 : -1)));
-    mesh.indices = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
-                    2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
-    return mesh;
 }
 
 }  // namespace crofton::testing

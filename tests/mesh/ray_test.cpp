@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <hwy/targets.h>
+#include <box_mesh.hpp>
 #include <crofton/mesh/mesh_parts.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
@@ -258,14 +259,6 @@ TEST_SUITE("mesh/ray") {
         for (int trial = 0; trial < 20000; ++trial) CHECK(hits_any(Ray{{0.6, 0.0, 0.0}, random_vector(random)}, *tree));
     }
 
-    TriangleMesh cube_mesh() {
-        TriangleMesh mesh;
-        for (int i = 0; i < 8; ++i) mesh.positions.push_back(glm::vec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1));
-        mesh.indices = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
-                        2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
-        return mesh;
-    }
-
     TEST_CASE("rays within a triangle's plane do not hit it, but what bounds it in a closed mesh is hit") {
         TriangleMesh sheet;
         sheet.positions = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}};
@@ -276,7 +269,7 @@ TEST_SUITE("mesh/ray") {
         CHECK_FALSE(raycast(Ray{{1, 1, 0}, {0.3, 0.7, 0}}, *flat).has_value());
         CHECK(raycast(Ray{{-1, 1, 0}, {1, 0, 1e-300}}, *flat).has_value() == false);
         CHECK(raycast(Ray{{-1, 1, -1e-60}, {1, 0, 1e-60}}, *flat).has_value());  // meets x = 0, if ever so flatly
-        const auto cube = mesh::MeshTree::build(cube_mesh());
+        const auto cube = mesh::MeshTree::build(testing::cube_mesh());
         for (const double y : {-1.0, -0.5, 0.0, 0.25, 1.0}) {
             const auto hit = raycast(Ray{{-5, y, 1}, {1, 0, 0}}, *cube);  // within the plane of a face
             REQUIRE(hit.has_value());
@@ -288,7 +281,7 @@ TEST_SUITE("mesh/ray") {
     }
 
     TEST_CASE("watertight: no ray from inside a closed mesh is lost at an edge or a vertex") {
-        const TriangleMesh meshes[] = {cube_mesh(), wavy_torus(1.0, 0.6, 0.2, 24, 12)};
+        const TriangleMesh meshes[] = {testing::cube_mesh(), wavy_torus(1.0, 0.6, 0.2, 24, 12)};
         for (const TriangleMesh& mesh : meshes) {
             const auto tree = mesh::MeshTree::build(mesh), prepared = mesh::MeshTree::build(mesh, {.rays = true});
             std::mt19937_64 random(8);

@@ -12,6 +12,8 @@ import time
 _NAMES = {"<": "Less", "<=": "LessEqual", ">": "Greater", ">=": "GreaterEqual", "==": "Equal", "!=": "NotEqual",
           "+": "Plus", "-": "Minus"}
 _DECLARATION = re.compile(r"\s*((static |constexpr |const )*(auto|bool|int|double|float|unsigned|[\w:]+(<[^;=]*>)?)[&*]? \w+ = )(.*);$", re.S)
+# Such as a lock: in a block of its own it would end there.
+_OBJECT = re.compile(r"\s*((static |constexpr |const )*(?!return\b|delete\b|throw\b|else\b)[\w:]+(<[^;=]*>)?[&*]? \w+\s*[({].*);", re.S)
 _KERNEL = re.compile(r"foreach_target|-inl\.hpp|\bhn::|constexpr [^=;]*\(")
 
 
@@ -43,7 +45,7 @@ def switched(mutant, number):
         if a > 0 and b > 0 and find[a:] == replace[b:]:
             return f"if ({on} ? bool({replace[4:b]}) : bool({find[4:a]}){find[a:]}"
     whole = find.rstrip().endswith(";") and find.count("{") == find.count("}") and find.count("(") == find.count(")")
-    if whole and not old and (replace.rstrip().endswith(";") or not replace.strip()):
+    if whole and not old and not _OBJECT.match(find) and (replace.rstrip().endswith(";") or not replace.strip()):
         return f"if ({on}) {{ {replace} }} else {{ {find} }}"
     return None
 

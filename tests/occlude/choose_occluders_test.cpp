@@ -256,4 +256,21 @@ TEST_SUITE("occlude/choose_occluders") {
         c = candidate_of(found->occluders[0], transform);
         CHECK(c.areas[0] == glm::vec3(0, 0, 24));  // mirrored left to right it still faces +z
     }
+
+    TEST_CASE("a surface with a part that is turned away from the rest may be chosen from behind the rest") {
+        TriangleMesh mesh;  // a wall of 2 by 3 that faces +z, and one of 0.125 by 3 at its right end that faces −x
+        mesh.positions = {{0, 0, 0}, {2, 0, 0}, {2, 3, 0}, {0, 3, 0}, {2, 0, 0.125f}, {2, 3, 0.125f}};
+        mesh.indices = {0, 1, 2, 0, 2, 3, 1, 4, 5, 1, 5, 2};
+        for (std::size_t t = 6; t < 12; t += 3) std::swap(mesh.indices[t], mesh.indices[t + 1]);
+        const auto found = find_occluders(mesh, {.max_occluders = 0, .level_triangles = 48});
+        REQUIRE(found.has_value());
+        REQUIRE(found->occluders.size() == 1);
+        const OccluderCandidate bent = candidate_of(found->occluders[0], {});
+        CHECK(bent.areas[0].z == doctest::Approx(6.0));
+        CHECK_FALSE(bent.front_only);
+        FoundOccluder flat = found->occluders[0];
+        flat.surface.indices.resize(6);
+        CHECK(candidate_of(flat, {}).front_only);
+        CHECK_FALSE(candidate_of(find_occluders(mesh, {.sides = Sides::both})->occluders[0], {}).front_only);
+    }
 }

@@ -3,6 +3,7 @@
 #pragma once
 #include <doctest/doctest.h>
 #include <algorithm>
+#include <box_mesh.hpp>
 #include <crofton/geometry/mesh.hpp>
 #include <crofton/occlude/occluder.hpp>
 #include <glm/geometric.hpp>
@@ -15,15 +16,6 @@
 #include "oracle/inscribed_bodies.hpp"
 
 namespace crofton::testing {
-
-inline TriangleMesh box_mesh(const glm::vec3& low, const glm::vec3& high) {
-    TriangleMesh mesh;
-    for (unsigned i = 0; i < 8; ++i)
-        mesh.positions.push_back({(i & 1u) ? high.x : low.x, (i & 2u) ? high.y : low.y, (i & 4u) ? high.z : low.z});
-    mesh.indices = {0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4,
-                    2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6};
-    return mesh;
-}
 
 inline TriangleMesh turned_inside_out(TriangleMesh mesh) {
     for (std::size_t i = 0; i < mesh.indices.size(); i += 3) std::swap(mesh.indices[i], mesh.indices[i + 1]);

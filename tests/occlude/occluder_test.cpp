@@ -1,23 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
+#include <box_mesh.hpp>
 #include <crofton/occlude/occluder.hpp>
 #include <error_of.hpp>
 #include <limits>
 
 using namespace crofton;
-
-namespace {
-
-TriangleMesh cube() {
-    TriangleMesh mesh;
-    for (unsigned i = 0; i < 8; ++i)
-        mesh.positions.push_back({i & 1u ? 1.0f : 0.0f, i & 2u ? 1.0f : 0.0f, i & 4u ? 1.0f : 0.0f});
-    mesh.indices = {1, 3, 7, 1, 7, 5, 0, 4, 6, 0, 6, 2, 2, 6, 7, 2, 7, 3,
-                    0, 1, 5, 0, 5, 4, 4, 5, 7, 4, 7, 6, 0, 2, 3, 0, 3, 1};
-    return mesh;
-}
-
-}  // namespace
 
 TEST_SUITE("occlude/occluder") {
     TEST_CASE("boxes that are not boxes are refused by name and hide nothing") {
@@ -41,23 +29,23 @@ TEST_SUITE("occlude/occluder") {
 
     TEST_CASE("meshes that are open, inside out, flat or not finite are refused by name") {
         occlude::OccluderSet set;
-        CHECK(set.add_mesh(cube()));
-        TriangleMesh open = cube();
+        CHECK(set.add_mesh(testing::box_mesh(glm::vec3(0.0f), glm::vec3(1.0f))));
+        TriangleMesh open = testing::box_mesh(glm::vec3(0.0f), glm::vec3(1.0f));
         open.indices.resize(open.indices.size() - 3);
         CHECK(error_of(set.add_mesh(open)).code == ErrorCode::invalid_argument);
         CHECK(error_of(set.add_mesh(open)).item == 0);  // {1, 3, 7}, across the edge from 3 to 1
-        TriangleMesh inside_out = cube();
+        TriangleMesh inside_out = testing::box_mesh(glm::vec3(0.0f), glm::vec3(1.0f));
         for (std::size_t i = 0; i < inside_out.indices.size(); i += 3)
             std::swap(inside_out.indices[i], inside_out.indices[i + 1]);
         CHECK(error_of(set.add_mesh(inside_out)).code == ErrorCode::invalid_argument);
-        TriangleMesh flat = cube();
+        TriangleMesh flat = testing::box_mesh(glm::vec3(0.0f), glm::vec3(1.0f));
         for (glm::vec3& p : flat.positions) p.z = 0.5f;
         CHECK(error_of(set.add_mesh(flat)).code == ErrorCode::degenerate);
-        TriangleMesh bad = cube();
+        TriangleMesh bad = testing::box_mesh(glm::vec3(0.0f), glm::vec3(1.0f));
         bad.positions[3].x = std::numeric_limits<float>::infinity();
         CHECK(error_of(set.add_mesh(bad)).code == ErrorCode::non_finite);
         CHECK(error_of(set.add_mesh(bad)).item == 3);
-        bad = cube();
+        bad = testing::box_mesh(glm::vec3(0.0f), glm::vec3(1.0f));
         bad.indices[5] = 8;
         CHECK(error_of(set.add_mesh(bad)).code == ErrorCode::out_of_range);
         CHECK(error_of(set.add_mesh(TriangleMesh{})).code == ErrorCode::degenerate);
@@ -69,7 +57,7 @@ TEST_SUITE("occlude/occluder") {
 
     TEST_CASE("a transform that flattens a shape is refused") {
         occlude::OccluderSet set;
-        const auto shape = *set.add_mesh(cube());
+        const auto shape = *set.add_mesh(testing::box_mesh(glm::vec3(0.0f), glm::vec3(1.0f)));
         scene::Transform transform;
         transform.linear[1] = glm::dvec3(0.0);
         CHECK(error_of(set.place(shape, transform)).code == ErrorCode::degenerate);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Frames that allocate nothing, and occluders that come and go.
 #include <doctest/doctest.h>
+#include <box_mesh.hpp>
 #include <counting_memory.hpp>
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/occlude/occlusion.hpp>
@@ -11,19 +12,6 @@
 using namespace crofton;
 using namespace crofton::test;
 
-namespace {
-
-TriangleMesh cube_mesh() {
-    TriangleMesh cube;
-    for (unsigned i = 0; i < 8; ++i)
-        cube.positions.push_back({i & 1u ? 1.0f : -1.0f, i & 2u ? 1.0f : -1.0f, i & 4u ? 1.0f : -1.0f});
-    cube.indices = {0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4,
-                    2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6};
-    return cube;
-}
-
-}  // namespace
-
 TEST_SUITE("occlude/warm") {
     TEST_CASE("choosing, moving, drawing and asking allocate nothing once they have done as much") {
         testing::CountingMemory memory;
@@ -31,7 +19,7 @@ TEST_SUITE("occlude/warm") {
             Random random(77);
             const OcclusionScene scene = random_scene(random, 0.0, 2000);
             occlude::OccluderSet set = set_of(scene.occluders);
-            const TriangleMesh cube = cube_mesh();
+            const TriangleMesh cube = testing::cube_mesh();
             const auto convex = set.add_convex(cube.positions).value();
             const auto mesh = set.add_mesh(cube).value();
             const auto surface = set.add_surface(cube, occlude::Sides::both).value();
@@ -79,7 +67,7 @@ TEST_SUITE("occlude/warm") {
 
     TEST_CASE("what is removed hides nothing, and its id is given out again") {
         occlude::OccluderSet set;
-        const auto shape = set.add_mesh(cube_mesh()).value();
+        const auto shape = set.add_mesh(testing::cube_mesh()).value();
         Obb small;
         small.half_extents = glm::vec3(0.5f);
         const scene::Transform place{glm::dmat3(3.0), {0.0, 0.0, -10.0}};
@@ -111,7 +99,7 @@ TEST_SUITE("occlude/warm") {
         REQUIRE(set.remove_shape(shape).has_value());
         CHECK(error_of(set.remove_shape(shape)).code == ErrorCode::out_of_range);
         CHECK(error_of(set.place(shape, place)).code == ErrorCode::out_of_range);
-        CHECK(set.add_convex(cube_mesh().positions).value() == shape);
+        CHECK(set.add_convex(testing::cube_mesh().positions).value() == shape);
         CHECK(set.size() == 2);
     }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <algorithm>
+#include <box_mesh.hpp>
 #include <crofton/render/device.hpp>
 
 #include "pipeline/owner_picture.hpp"
@@ -12,17 +13,6 @@ using namespace crofton::pipeline;
 
 namespace {
 
-TriangleMesh box_mesh(const glm::vec3& half) {
-    TriangleMesh mesh;
-    for (unsigned i = 0; i < 8; ++i)
-        mesh.positions.push_back(half *
-                                 glm::vec3((i & 1u) ? 1.0f : -1.0f, (i & 2u) ? 1.0f : -1.0f, (i & 4u) ? 1.0f : -1.0f));
-    for (const std::uint32_t index : {0u, 2u, 1u, 1u, 2u, 3u, 4u, 5u, 6u, 5u, 7u, 6u, 0u, 1u, 4u, 1u, 5u, 4u,
-                                      2u, 6u, 3u, 3u, 6u, 7u, 0u, 4u, 2u, 2u, 4u, 6u, 1u, 3u, 5u, 3u, 7u, 5u})
-        mesh.indices.push_back(index);
-    return mesh;
-}
-
 // A wall at z = −10, a row of small cubes behind it, and one beside it; the camera at the origin looks along −z.
 struct Yard {
     scene::Scene scene;
@@ -31,8 +21,8 @@ struct Yard {
     std::vector<scene::InstanceId> behind, all;
 
     Yard() {
-        const auto wall_mesh = scene.add_mesh(box_mesh({4.0f, 4.0f, 0.5f}));
-        const auto cube = scene.add_mesh(box_mesh(glm::vec3(0.3f)));
+        const auto wall_mesh = scene.add_mesh(testing::box_mesh({-4.0f, -4.0f, -0.5f}, {4.0f, 4.0f, 0.5f}));
+        const auto cube = scene.add_mesh(testing::cube_mesh(0.3f));
         wall_node = *scene.add_node(scene::kNone, {glm::dmat3(1.0), {0.0, 0.0, -10.0}});
         wall = *scene.add_instance(wall_node, *wall_mesh);
         for (int i = -2; i <= 2; ++i) {
@@ -77,6 +67,56 @@ TEST_SUITE("pipeline/occlusion") {
         }
     }
 
+    // A wall of strips, of which every other one is two pieces. Alone each leaves the pixels on its sides open.
+    TEST_CASE("a node of many meshes is a level, whose pieces hide together, also from a file") {
+        for (const int strips : {4, 12}) {
+            CAPTURE(strips);
+            Yard yard;
+            REQUIRE(yard.scene.set_instance_layers(yard.wall, 0).has_value());
+            const auto node = yard.scene.add_node(scene::kNone, {glm::dmat3(1.0), {0.0, 0.0, -10.0}});
+            const auto add = [&](double left, double right, double low, double high) {
+                TriangleMesh piece;
+                for (const auto& [x, y] : {std::pair{left, low}, {right, low}, {right, high}, {left, high}})
+                    piece.positions.emplace_back(x, y, 0.0);
+                piece.indices = {0, 1, 2, 0, 2, 3};
+                REQUIRE(yard.scene.add_instance(*node, *yard.scene.add_mesh(std::move(piece))).has_value());
+            };
+            for (int i = 0; i < strips; ++i) {
+                const double left = -4.0 + 8.0 * i / strips, right = -4.0 + 8.0 * (i + 1) / strips;
+                if (i % 2 == 0) add(left, right, -4.0, 4.0);
+                if (i % 2 == 1) add(left, right, -4.0, 0.125);
+                if (i % 2 == 1) add(left, right, 0.125, 4.0);
+            }
+            yard.scene.update();
+            const SceneOccluders found = find_scene_occluders(yard.scene, serial_executor());
+            const auto level =
+                std::find_if(found.kinds.begin(), found.kinds.end(), [](const auto& kind) { return kind.is_level; });
+            REQUIRE((level != found.kinds.end()) == (strips == 12));
+            if (strips == 4) continue;
+            CHECK(level->found.covered == level->found.mean_shadow);
+            std::size_t triangles = 0;
+            for (const occlude::FoundOccluder& surface : level->found.occluders) {
+                CHECK(surface.kind == occlude::OccluderKind::patch);
+                triangles += surface.surface.triangle_count();
+            }
+            CHECK(triangles == 36 + 11);  // each whole strip is cut on both sides, but for the first on its left
+            const bake::BakedOccluders baked = to_baked(found);
+            const auto file = bake::bake(yard.scene, serial_executor(), boxtree::Orientation::aligned, &baked);
+            REQUIRE(file.has_value());
+            const SceneOccluders back =
+                scene_occluders_from(yard.scene, *bake::BakedScene::from_memory(*file).value().occluders());
+            for (const SceneOccluders& occluders : {found, back}) {
+                auto pipeline = Pipeline::create(yard.scene, {}, kWithOcclusion, serial_executor(),
+                                                 std::make_shared<const SceneOccluders>(occluders));
+                REQUIRE(pipeline.has_value());
+                const auto frame = pipeline->run(Camera{});
+                for (const scene::InstanceId i : yard.behind)
+                    CHECK_FALSE(std::binary_search(frame->occlusion->visible_ids.begin(),
+                                                   frame->occlusion->visible_ids.end(), i));
+            }
+        }
+    }
+
     TEST_CASE("switched on, off and on again a pipeline answers as a new one, and finds its occluders once") {
         Yard yard;
         auto pipeline = Pipeline::create(yard.scene, {}, {}, serial_executor());
@@ -108,7 +148,7 @@ TEST_SUITE("pipeline/occlusion") {
 
     TEST_CASE("collisions switched off and on again are those of a new pipeline, and movers alone have them") {
         scene::Scene scene;
-        const auto cube = scene.add_mesh(box_mesh(glm::vec3(0.5f)));
+        const auto cube = scene.add_mesh(testing::cube_mesh(0.5f));
         for (int i = 0; i < 4; ++i)
             REQUIRE(scene.add_instance(*scene.add_node(scene::kNone, {glm::dmat3(1.0), {0.8 * i, 0.0, 0.0}}), *cube));
         scene.update();
@@ -163,8 +203,8 @@ TEST_SUITE("pipeline/occlusion") {
 
     TEST_CASE("meshes on one node are one occluding object, and what is not drawn is no part of it") {
         scene::Scene scene;
-        const auto wall = scene.add_mesh(box_mesh({4.0f, 4.0f, 0.5f})),
-                   other = scene.add_mesh(box_mesh({0.5f, 4.0f, 4.0f}));
+        const auto wall = scene.add_mesh(testing::box_mesh({-4.0f, -4.0f, -0.5f}, {4.0f, 4.0f, 0.5f})),
+                   other = scene.add_mesh(testing::box_mesh({-0.5f, -4.0f, -4.0f}, {0.5f, 4.0f, 4.0f}));
         std::vector<scene::NodeId> nodes;
         for (int i = 0; i < 3; ++i) {
             nodes.push_back(*scene.add_node(scene::kNone, {glm::dmat3(1.0), {20.0 * i, 0.0, 0.0}}));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
+#include <box_mesh.hpp>
 
 #include "pipeline/verify.hpp"
 
@@ -8,23 +9,13 @@ using namespace crofton::pipeline;
 
 namespace {
 
-TriangleMesh cube_mesh() {
-    TriangleMesh mesh;
-    for (unsigned i = 0; i < 8; ++i)
-        mesh.positions.push_back(glm::vec3((i & 1u) ? 1.0f : -1.0f, (i & 2u) ? 1.0f : -1.0f, (i & 4u) ? 1.0f : -1.0f));
-    for (const std::uint32_t index : {0u, 2u, 1u, 1u, 2u, 3u, 4u, 5u, 6u, 5u, 7u, 6u, 0u, 1u, 4u, 1u, 5u, 4u,
-                                      2u, 6u, 3u, 3u, 6u, 7u, 0u, 4u, 2u, 2u, 4u, 6u, 1u, 3u, 5u, 3u, 7u, 5u})
-        mesh.indices.push_back(index);
-    return mesh;
-}
-
 // A row of cubes along −z, each 1.5 apart and so overlapping its neighbours, with the camera at the origin.
 struct Row {
     scene::Scene scene;
     std::vector<scene::InstanceId> all;
 
     Row() {
-        const auto mesh = scene.add_mesh(cube_mesh());
+        const auto mesh = scene.add_mesh(testing::cube_mesh());
         for (int i = 0; i < 20; ++i) {
             const auto node = scene.add_node(scene::kNone, {glm::dmat3(1.0), {0.0, 0.0, 10.0 - 1.5 * i}});
             all.push_back(*scene.add_instance(*node, *mesh));

@@ -37,6 +37,7 @@ void check_same(const Pvs& a, const Pvs& b) {
     REQUIRE(a.object_count() == b.object_count());
     CHECK(a.epsilon() == b.epsilon());
     CHECK(a.confidence() == b.confidence());
+    CHECK(a.subject_fingerprint() == b.subject_fingerprint());
     for (std::size_t c = 0; c < a.cells().size(); ++c) {
         CHECK(a.cells().box(c).min == b.cells().box(c).min);
         CHECK(a.cells().box(c).max == b.cells().box(c).max);
@@ -188,5 +189,20 @@ TEST_SUITE("pvs/pvs") {
             CHECK(glm::dot(glm::cross(corner[1] - corner[0], corner[2] - corner[0]), corner[0] - center) > 0.0);
         }
         CHECK(error_of(subject_of(scene, std::vector<scene::InstanceId>{0, 1, 2})).code == ErrorCode::empty);
+    }
+
+    TEST_CASE("sets say of which triangles they are") {
+        const Subject subject = random_subject(3, 20);
+        const Pvs pvs = baked(subject, Cells::grid(kBounds, {2, 1, 2}).value());
+        CHECK(pvs.subject_fingerprint() == fingerprint_of(subject));
+        Subject moved = subject, other = subject, whose = subject, away = subject, boxes = subject;
+        moved.mesh.positions[7].y += 1e-6f;
+        std::swap(other.mesh.indices[3], other.mesh.indices[4]);
+        std::swap(whose.object_of.front(), whose.object_of.back());
+        away.origin.x += 1.0;
+        boxes.boxes[0].half_extents.x += 1.0f;
+        for (const Subject* changed : {&moved, &other, &whose, &away})
+            CHECK(pvs.subject_fingerprint() != fingerprint_of(*changed));
+        CHECK(pvs.subject_fingerprint() == fingerprint_of(boxes));
     }
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
+#include <box_mesh.hpp>
 
 #include <cmath>
 #include <crofton/render/vertex.hpp>
@@ -7,19 +8,6 @@
 
 using namespace crofton;
 using namespace crofton::render;
-
-namespace {
-
-TriangleMesh cube() {
-    TriangleMesh mesh;
-    for (int i = 0; i < 8; ++i)
-        mesh.positions.push_back({i & 1 ? 1.0f : -1.0f, i & 2 ? 1.0f : -1.0f, i & 4 ? 1.0f : -1.0f});
-    mesh.indices = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
-                    2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
-    return mesh;
-}
-
-}  // namespace
 
 TEST_SUITE("render/vertex") {
     TEST_CASE("an empty mesh appends nothing, and triangles without area get a finite normal") {
@@ -38,7 +26,7 @@ TEST_SUITE("render/vertex") {
     TEST_CASE("a cube keeps its edges: three normals a corner, each along an axis and outward") {
         Vector<Vertex> vertices;
         Vector<std::uint32_t> indices;
-        const IndexRange range = append_mesh(cube(), {0.5f, 0.5f, 0.5f}, vertices, indices);
+        const IndexRange range = append_mesh(testing::cube_mesh(), {0.5f, 0.5f, 0.5f}, vertices, indices);
         CHECK(range.index_count == 36);
         CHECK(vertices.size() == 24);
         for (const Vertex& vertex : vertices) {
@@ -49,16 +37,16 @@ TEST_SUITE("render/vertex") {
     TEST_CASE("with a wide crease angle corners are shared and point along the diagonal") {
         Vector<Vertex> vertices;
         Vector<std::uint32_t> indices;
-        append_mesh(cube(), {1, 1, 1}, vertices, indices, 3.0f);
+        append_mesh(testing::cube_mesh(), {1, 1, 1}, vertices, indices, 3.0f);
         CHECK(vertices.size() <= 16);  // the diagonals of the faces weight some corners unevenly
         for (const Vertex& vertex : vertices) CHECK(glm::dot(vertex.normal, glm::normalize(vertex.position)) > 0.9f);
     }
     TEST_CASE("appending keeps the triangles' order and their exact positions, and the colours of the mesh") {
-        TriangleMesh mesh = cube();
+        TriangleMesh mesh = testing::cube_mesh();
         for (const glm::vec3& p : mesh.positions) mesh.colors.push_back(0.5f * p + 0.5f);
         Vector<Vertex> vertices;
         Vector<std::uint32_t> indices;
-        append_mesh(cube(), {1, 1, 1}, vertices, indices);
+        append_mesh(testing::cube_mesh(), {1, 1, 1}, vertices, indices);
         const IndexRange range = append_mesh(mesh, {1, 1, 1}, vertices, indices);
         CHECK(range.first_index == 36);
         for (std::uint32_t i = 0; i < 36; ++i) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Picking and contacts: what the viewer asks of instances' triangles and hulls.
 #include <doctest/doctest.h>
+#include <box_mesh.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -36,17 +37,6 @@ scene::Scene squares(std::initializer_list<double> depths) {
     for (const double z : depths) place(result, *id, {glm::dmat3(1.0), {0.0, 0.0, z}});
     result.update();
     return result;
-}
-
-// A unit cube, twelve triangles.
-TriangleMesh cube() {
-    TriangleMesh mesh;
-    for (int i = 0; i < 8; ++i)
-        mesh.positions.push_back(
-            glm::vec3((i & 1) != 0 ? 0.5f : -0.5f, (i & 2) != 0 ? 0.5f : -0.5f, (i & 4) != 0 ? 0.5f : -0.5f));
-    mesh.indices = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
-                    2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
-    return mesh;
 }
 
 // A World of the instances' bounds, as the viewer has it, and their triangles.
@@ -118,7 +108,7 @@ TEST_SUITE("viewer/picking") {
             return low + (high - low) * static_cast<double>(random()) / 4294967296.0;
         };
         scene::Scene scene;
-        const auto mesh = scene.add_mesh(cube());
+        const auto mesh = scene.add_mesh(testing::cube_mesh(0.5f));
         REQUIRE(mesh);
         std::vector<scene::InstanceId> all;
         for (scene::InstanceId i = 0; i < 60; ++i) {
@@ -167,7 +157,7 @@ TEST_SUITE("viewer/instance_bodies") {
     // Two cubes that meet and a third far away.
     scene::Scene cubes(const glm::dmat3& linear_a, const glm::dmat3& linear_b) {
         scene::Scene scene;
-        const auto mesh = scene.add_mesh(cube());
+        const auto mesh = scene.add_mesh(testing::cube_mesh(0.5f));
         REQUIRE(mesh);
         const glm::dvec3 at(100.0, 5.0, -3.0);
         place(scene, *mesh, {linear_a, at});

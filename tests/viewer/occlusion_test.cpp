@@ -143,10 +143,13 @@ TEST_SUITE("viewer/occlusion") {
         CHECK(number(picture(found, "flat.png"), "colliding_pairs") == 0);
     }
     TEST_CASE("a file that was baked of another scene, has nothing to show, or is missing is refused by name") {
-        const std::string file = scratch().file("other.crofton"), bare = scratch().file("bare.crofton");
+        const std::string file = scratch().file("other.crofton"), bare = scratch().file("bare.crofton"),
+                          sets = scratch().file("sets.crofton");
+        REQUIRE(run_cli("pvs town --instances 400 --seed 2 --cells 2x1x2 --epsilon 0.1 --out " + sets).status == 0);
         REQUIRE(run_cli("bake town --instances 400 --seed 2 -o " + file).status == 0);
         REQUIRE(run_cli("bake town --instances 400 --no-occluders -o " + bare).status == 0);
         for (const auto& [path, why] : {std::pair{file, "baked of another scene"},
+                                        {sets, "baked of another scene"},
                                         {bare, "neither occluders"},
                                         {scratch().file("none.crofton"), "none.crofton"}}) {
             const ViewRun run = view({{{"frame", 0}, {"quit", true}}}, "--baked '" + path + "'", false);

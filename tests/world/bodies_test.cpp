@@ -55,6 +55,18 @@ TEST_SUITE("world/bodies") {
         Vector<ObjectRef> found(1);
         world.overlap(box, bad, found);
         CHECK(found.empty());
+        CHECK(!world.closest(box, bad, 1e9));
+        CHECK(!world.closest(half, {}, 1e9));
+        CHECK(!world.closest(box, {}, NAN));
+        // Balls keep their radius in double, and bounds too large for a body are cut.
+        const double radius = 1.0 + 0x1p-40;
+        REQUIRE(world.add({.bound = Sphere{{0, 9, 0}, radius}}).has_value());
+        REQUIRE(world.add({.bound = Sphere{{5e17, 0, 0}, 4e17}}).has_value());
+        REQUIRE(world.update().has_value());
+        CHECK(world.closest(box, {}, 1e9)->distance == 0.0);
+        RigidTransform above;
+        above.translation.y = 12;
+        CHECK(world.closest(box, above, 1e9)->distance == 2.0 - radius);
     }
 
     TEST_CASE("a crate on a floor: began, stayed with the caller's numbers, kept while asleep, ended") {
@@ -224,12 +236,13 @@ TEST_SUITE("world/bodies") {
             const RigidTransform pose{random.rotation(), random.number(2, 5) * random.direction()};
             const convex::Motion motion{-2.0 * pose.translation, random.index(2) * 4.0 * random.direction(), {}};
             std::vector<std::uint32_t> expected;
-            double first = 1.0;
+            double first = 1.0, least = 1e300;
             for (const Thing& thing : things) {
                 const convex::Body bound = convex::Body::box(thing.box.half_extents).value();
                 const convex::Body& body = thing.has_body ? thing.body : bound;
                 const RigidTransform place = pose_of(thing.box);
                 if (convex::intersects({probe, pose}, {body, place})) expected.push_back(thing.object.index);
+                least = std::min(least, convex::distance({probe, pose}, {body, place}).distance);
                 first = std::min(
                     first, convex::cast({probe, pose}, motion, {body, place}, {}, {.max_steps = 5000}).value().time);
             }
@@ -240,6 +253,11 @@ TEST_SUITE("world/bodies") {
             for (const ObjectRef& ref : found) told.push_back(ref.object.index);
             CHECK(told == expected);
             overlaps += static_cast<int>(told.size());
+            const auto closest = world.closest(probe, pose, 1e3);
+            REQUIRE(closest.has_value());
+            CHECK(closest->distance == least);
+            CHECK(glm::length(closest->on_object - closest->on_shape) == doctest::Approx(least).epsilon(1e-9));
+            if (least > 0.0) CHECK(!world.closest(probe, pose, 0.5 * least));
             const auto hit = world.cast(probe, pose, motion, {.max_steps = 5000}).value();
             CHECK(hit.has_value() == (first < 1.0));
             if (hit) CHECK(hit->time == doctest::Approx(first).epsilon(1e-5));

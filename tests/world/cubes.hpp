@@ -2,6 +2,7 @@
 // What the tests of meshes in a World share.
 #pragma once
 #include <doctest/doctest.h>
+#include <box_mesh.hpp>
 #include <crofton/crofton.hpp>
 #include <limits>
 
@@ -16,15 +17,6 @@ inline scene::Transform at(const glm::dvec3& place, const glm::dmat3& linear = g
 
 inline MeshDescription described(const TriangleMesh& mesh) {
     return {.positions = mesh.positions, .indices = mesh.indices};
-}
-
-// [-1, 1]³.
-inline TriangleMesh cube() {
-    TriangleMesh mesh;
-    for (int i = 0; i < 8; ++i) mesh.positions.push_back({i & 1 ? 1.f : -1.f, i & 2 ? 1.f : -1.f, i & 4 ? 1.f : -1.f});
-    mesh.indices = {0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4,
-                    2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6};
-    return mesh;
 }
 
 inline Ray down(double x, double y) {

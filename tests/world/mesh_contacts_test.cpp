@@ -103,7 +103,7 @@ TEST_SUITE("world/mesh_contacts") {
         oracle::NearMisses random(22);
         World serial, parallel;
         ThreadPool pool(3);
-        const TriangleMesh meshes[] = {wavy_torus(1.0, 0.3, 0.2, 10, 6), cube()};
+        const TriangleMesh meshes[] = {wavy_torus(1.0, 0.3, 0.2, 10, 6), cube_mesh()};
         struct Thing {
             ObjectHandle object;
             std::size_t mesh;

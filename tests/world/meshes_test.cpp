@@ -11,7 +11,7 @@ using namespace crofton::testing;
 TEST_SUITE("world/meshes") {
     TEST_CASE("meshes, nodes and transforms that are none are refused with a reason, and spoil nothing") {
         World world;
-        const TriangleMesh box = cube();
+        const TriangleMesh box = cube_mesh();
         const auto mesh = world.add_mesh(described(box)).value();
         const auto node = world.add_node().value();
         const auto good = world.add({.mesh = mesh, .transform = at({})}).value();
@@ -52,7 +52,7 @@ TEST_SUITE("world/meshes") {
             char color[3];
             float place[3];
         };
-        const TriangleMesh box = cube();
+        const TriangleMesh box = cube_mesh();
         std::vector<Vertex> vertices(8);
         std::vector<glm::dvec3> doubles;
         std::vector<std::uint16_t> shorts(box.indices.begin(), box.indices.end());
@@ -84,7 +84,7 @@ TEST_SUITE("world/meshes") {
 
     TEST_CASE("a node moves, hides and removes all below it") {
         World world;
-        const auto mesh = world.add_mesh(described(cube())).value();
+        const auto mesh = world.add_mesh(described(cube_mesh())).value();
         const auto ship = world.add_node({.transform = at({10.0, 0.0, 0.0})}).value();
         const auto arm = world.add_node({.parent = ship, .transform = at({0.0, 5.0, 0.0})}).value();
         const auto hull = world.add({.mesh = mesh, .node = ship}).value();
@@ -151,14 +151,14 @@ TEST_SUITE("world/meshes") {
         REQUIRE(world.remove(mesh).has_value());
         CHECK(!world.contains(mesh));
         CHECK(error_of(world.add({.mesh = mesh, .node = later})).code == ErrorCode::stale_handle);
-        CHECK(error_of(world.set_vertices(mesh, cube().positions)).code == ErrorCode::stale_handle);
+        CHECK(error_of(world.set_vertices(mesh, cube_mesh().positions)).code == ErrorCode::stale_handle);
         REQUIRE(world.update().has_value());
         CHECK(seen(world) == 0);
     }
 
     TEST_CASE("meshes are exchanged, replaced and deformed, and rays and boxes follow") {
         World world;
-        TriangleMesh box = cube(), large = cube();
+        TriangleMesh box = cube_mesh(), large = cube_mesh();
         for (glm::vec3& p : large.positions) p *= 3.0f;
         const auto small_mesh = world.add_mesh(described(box)).value(),
                    large_mesh = world.add_mesh(described(large)).value();
@@ -202,7 +202,7 @@ TEST_SUITE("world/meshes") {
 
     TEST_CASE("a flat scale gives a flat object that is seen and hit, and out of range it is hidden until it returns") {
         World world;
-        const auto mesh = world.add_mesh(described(cube())).value();
+        const auto mesh = world.add_mesh(described(cube_mesh())).value();
         const auto node = world.add_node().value();
         const auto object =
             world.add({.mesh = mesh, .node = node, .transform = at({}, glm::dmat3({2, 0, 0}, {0, 3, 0}, {0, 0, 0}))})

@@ -91,14 +91,16 @@ struct Model {
         return hits;
     }
     [[nodiscard]] double distance_to(const Bound& shape, std::uint32_t layers) const {
-        const auto convex = [](const Bound& bound) {
-            return bound.kind == BoundKind::ball ? collide::to_convex_shape(Sphere{bound.box.center, bound.radius})
-                                                 : collide::to_convex_shape(bound.box);
+        // A ball is a point, and as much nearer.
+        const auto core = [](const Bound& bound) {
+            return bound.kind == BoundKind::ball ? Obb{bound.box.center, glm::mat3(1.0f), glm::vec3(0.0f)} : bound.box;
+        };
+        const auto between = [&](const Bound& a, const Bound& b) {
+            return std::max(0.0, collide::distance(core(a), core(b)).distance - a.radius - b.radius);
         };
         double least = std::numeric_limits<double>::infinity();
         for (const auto& [id, object] : objects)
-            if (!object.hidden && (object.layers & layers) != 0)
-                least = std::min(least, collide::distance(convex(shape), convex(object.bound)).distance);
+            if (!object.hidden && (object.layers & layers) != 0) least = std::min(least, between(shape, object.bound));
         return least;
     }
 };

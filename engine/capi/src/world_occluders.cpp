@@ -58,6 +58,7 @@ occlude::FindOptions to_find_options(const crofton_find_options& given) {
     if (given.least_gain != 0.0) options.least_gain = given.least_gain;
     if (given.flatness != 0.0) options.flatness = given.flatness;
     if (given.max_patch_triangles) options.max_patch_triangles = given.max_patch_triangles;
+    options.level_triangles = given.level_triangles;
     return options;
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "bodies.hpp"
 #include "collider.hpp"
 #include "found.hpp"
 #include "growing.hpp"
@@ -83,16 +84,17 @@ crofton_status overlap(const crofton_world* world, const Shape& shape, uint32_t 
     return CROFTON_OK;
 }
 
-template <class Shape>
-crofton_status find_closest(const crofton_world* world, const Shape& shape, double max_distance, uint32_t layer_mask,
-                            crofton_closest_object* closest, const char* function) {
+// The shape as arguments that World::closest takes: a shape, or a body and its pose.
+template <class... Shape>
+crofton_status find_closest(const crofton_world* world, double max_distance, uint32_t layer_mask,
+                            crofton_closest_object* closest, const char* function, const Shape&... shape) {
     const SharedUse use(world, function);
     if (use.failed()) return use.status();
     CROFTON_CHECK(check_growing(closest, function));
     if (std::isnan(max_distance)) return report(CROFTON_NON_FINITE, function, "max_distance is NaN");
     if (max_distance < 0.0) return report(CROFTON_INVALID_ARGUMENT, function, "max_distance is negative");
     crofton_closest_object result{0, {CROFTON_NONE, 0}, 0, kNoDistance, {}, {}};
-    if (const auto nearest = world->world.closest(shape, max_distance, layer_mask)) {
+    if (const auto nearest = world->world.closest(shape..., max_distance, layer_mask)) {
         result.object = {nearest->object.index, nearest->object.generation};
         result.user = nearest->user;
         result.distance = nearest->distance;
@@ -247,7 +249,7 @@ crofton_status crofton_world_closest_to_box(const crofton_world* world, const cr
                                             uint32_t layer_mask, crofton_closest_object* closest) {
     Obb shape;
     CROFTON_CHECK(to_shape(box, __func__, shape));
-    return find_closest(world, shape, max_distance, layer_mask, closest, __func__);
+    return find_closest(world, max_distance, layer_mask, closest, __func__, shape);
 }
 
 crofton_status crofton_world_closest_to_ball(const crofton_world* world, const double center[3], double radius,
@@ -255,7 +257,7 @@ crofton_status crofton_world_closest_to_ball(const crofton_world* world, const d
                                              crofton_closest_object* closest) {
     Sphere shape;
     CROFTON_CHECK(to_ball(center, radius, __func__, shape));
-    return find_closest(world, shape, max_distance, layer_mask, closest, __func__);
+    return find_closest(world, max_distance, layer_mask, closest, __func__, shape);
 }
 
 crofton_status crofton_world_closest_to_capsule(const crofton_world* world, const double begin[3], const double end[3],
@@ -263,7 +265,17 @@ crofton_status crofton_world_closest_to_capsule(const crofton_world* world, cons
                                                 crofton_closest_object* closest) {
     collide::Capsule shape;
     CROFTON_CHECK(to_capsule(begin, end, radius, __func__, shape));
-    return find_closest(world, shape, max_distance, layer_mask, closest, __func__);
+    return find_closest(world, max_distance, layer_mask, closest, __func__, shape);
+}
+
+crofton_status crofton_world_closest_to_body(const crofton_world* world, const crofton_placed* shape,
+                                             double max_distance, uint32_t layer_mask,
+                                             crofton_closest_object* closest) {
+    const PlacedBody placed(shape, __func__);
+    CROFTON_CHECK(placed.status());
+    if (placed.body().kind() == convex::Kind::half_space)
+        return report(CROFTON_UNSUPPORTED, __func__, "a half-space is near nearly all; ask with a bounded body");
+    return find_closest(world, max_distance, layer_mask, closest, __func__, placed.body(), placed.pose());
 }
 
 crofton_status crofton_world_pairs(const crofton_world* world, const crofton_object_pair** pairs, size_t* count) {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// How far apart two boxes are: GJK on their corners, with a proof of the answer. Where rounding keeps it from one, the
-// features near the answer are tried one by one.
+// How far apart two boxes are, or a box and a segment: GJK on their corners, with a proof of the answer. Where rounding
+// keeps it from one, the features near the answer are tried one by one.
 #include <algorithm>
 #include <cmath>
 #include <crofton/collide/narrow_phase.hpp>
+#include <crofton/geometry/closest_points.hpp>
 #include <glm/geometric.hpp>
 #include <initializer_list>
 #include <limits>
@@ -18,6 +19,8 @@ namespace {
 constexpr double kLeastDistance = 1e-150;
 // The distance is accepted when it is above a proven lower bound by no more than this part of the pair's size.
 constexpr double kAccepted = 1e-13;
+// A way that is longer than this part of the size is no rounding error: what it parts does not meet.
+constexpr double kMeetsWithin = 1e-12;
 
 // A point of each box by its coordinates along the axes, and the way from the first to the second.
 struct PointPair {
@@ -260,7 +263,50 @@ PointPair search_features(const BoxPairInDouble& pair, PointPair best) {
     return best;
 }
 
+// Where the skins of bodies overlap, both points are the middle of the overlap. `core` is that of what they are around.
+void grow_by_radii(double radius_a, double radius_b, const glm::dvec3& way, Distance& core) {
+    const double apart = core.distance;
+    core.distance = std::max(0.0, apart - radius_a - radius_b);
+    if (!(apart > 0.0)) return;
+    const double length = glm::length(way);
+    const glm::dvec3 direction = length > 0.0 ? way / length : glm::dvec3(0.0);
+    const double from_a = core.distance > 0.0 ? radius_a : std::clamp(0.5 * (apart + radius_a - radius_b), 0.0, apart);
+    const double from_b = core.distance > 0.0 ? radius_b : apart - from_a;
+    core.on_a += from_a * direction;
+    core.on_b -= from_b * direction;
+}
+
 }  // namespace
+
+Distance distance(const Obb& box, const Capsule& capsule) {
+    const glm::dvec3 begin = capsule.begin - box.center, end = capsule.end - box.center;
+    const BoxPairInDouble pair(box, 0.5 * (begin + end), 0.5 * (end - begin));
+    bool proven = false;
+    PointPair nearest = descend(pair, pair.offset, 0.0, proven);
+    const double least = glm::length(nearest.way);
+    // A segment is a triangle without area.
+    const bool meet = (!proven || least <= kMeetsWithin * pair.size) &&
+                      intersects(box, Triangle{capsule.begin, capsule.end, capsule.end});
+    if (!proven && !meet) nearest = search_features(pair, nearest);
+    Distance result;
+    result.distance = meet ? 0.0 : std::max(kLeastDistance, glm::length(nearest.way));
+    result.on_a = box.center;
+    for (int k = 0; k < 3; ++k) result.on_a += nearest.at[0][k] * pair.axes[0][k];
+    result.on_b = box.center + (pair.offset + nearest.at[1][0] * pair.axes[1][0]);
+    if (meet) result.on_a = result.on_b = 0.5 * (result.on_a + result.on_b);
+    grow_by_radii(0.0, capsule.radius, nearest.way, result);
+    return result;
+}
+
+Distance distance(const Capsule& capsule, const Sphere& ball) {
+    Distance result;
+    result.on_a = closest_on_segment(ball.center, capsule.begin, capsule.end);
+    result.on_b = ball.center;
+    const glm::dvec3 way = result.on_b - result.on_a;
+    result.distance = glm::length(way);
+    grow_by_radii(capsule.radius, ball.radius, way, result);
+    return result;
+}
 
 Distance distance(const Obb& a, const Obb& b) {
     const BoxPairInDouble pair(a, b);

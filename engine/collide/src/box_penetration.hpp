@@ -24,6 +24,14 @@ struct BoxPairInDouble {
             }
         }
     }
+    // A box and a segment: as a second box that is as wide as it is along one axis alone. About the box's centre.
+    BoxPairInDouble(const Obb& box, const glm::dvec3& middle, const glm::dvec3& half_segment)
+        : BoxPairInDouble(box, Obb{box.center, glm::mat3(0.0f), glm::vec3(0.0f)}) {
+        offset = middle;
+        axes[1][0] = half_segment;
+        half[1][0] = 1.0;
+        for (int k = 0; k < 3; ++k) size += std::abs(middle[k]) + std::abs(half_segment[k]);
+    }
     // Across the face's edges; as long as these are.
     [[nodiscard]] glm::dvec3 normal(int side, int k) const {
         return glm::cross(axes[side][(k + 1) % 3], axes[side][(k + 2) % 3]);

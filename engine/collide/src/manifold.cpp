@@ -3,39 +3,61 @@
 #include <cmath>
 #include <crofton/collide/narrow_phase.hpp>
 #include <glm/geometric.hpp>
+#include <limits>
 
 #include "manifold_points.hpp"
 
 namespace crofton::collide {
-Manifold contact_manifold(const ConvexShape& a, const ConvexShape& b) {
+namespace {
+
+// `axis` points to the ball, which lies `depth` ≥ 0 deep in the other body.
+Manifold touch_of_ball(const Sphere& ball, const glm::dvec3& axis, double depth) {
     Manifold manifold;
-    const Penetration deepest = penetration(a, b);
-    if (deepest.depth < 0.0) return manifold;
-    manifold.normal = deepest.axis;
-    manifold.depth = deepest.depth;
-    // One contact point: the bodies are moved apart along the axis, and the nearest points of both are taken. The point
-    // lies between these, moved back by half the depth.
-    ConvexShape parted = b;
-    const double gap = deepest.depth + a.radius + b.radius + 1.0;
-    for (int i = 0; i < parted.point_count; ++i) parted.points[i] += gap * deepest.axis;
-    ConvexShape core_a = a;
-    core_a.radius = parted.radius = 0.0;
-    const Distance apart = distance(core_a, parted);
-    const glm::dvec3 on_a = apart.on_a + a.radius * deepest.axis;
-    manifold.points[manifold.count++] = {on_a - 0.5 * deepest.depth * deepest.axis, deepest.depth};
+    manifold.normal = axis;
+    manifold.depth = depth;
+    manifold.points[manifold.count++] = {ball.center - (ball.radius - 0.5 * depth) * axis, depth};
     return manifold;
+}
+
+}  // namespace
+
+Manifold contact_manifold(const Obb& box, const Sphere& ball) {
+    if (!intersects(box, ball)) return {};
+    // Near the box's center, so that nothing is lost far from the origin.
+    const Sphere near_ball{ball.center - box.center, ball.radius};
+    const Obb near_box{glm::dvec3(0.0), box.axes, box.half_extents};
+    const Distance center = distance(near_box, Capsule{near_ball.center, near_ball.center, 0.0});
+    const glm::dvec3 way = center.on_b - center.on_a;
+    const double length = glm::length(way);
+    if (length > 1e-13 * glm::length(near_ball.center))
+        return touch_of_ball(ball, way / length, std::max(0.0, ball.radius - length));
+    const Penetration out = penetration(near_box, Obb{near_ball.center, glm::mat3(1.0f), glm::vec3(0.0f)});
+    return touch_of_ball(ball, out.axis, std::max(0.0, out.depth) + ball.radius);
+}
+
+Manifold contact_manifold(const Sphere& a, const Sphere& b) {
+    const glm::dvec3 way = b.center - a.center;
+    const double length = glm::length(way), depth = a.radius + b.radius - length;
+    if (!(depth >= 0.0)) return {};
+    return touch_of_ball(b, length > 0.0 ? way / length : glm::dvec3(0.0, 0.0, 1.0), depth);
+}
+
+Penetration penetration(const Plane& half_space, const Obb& box) {
+    const double length = glm::length(half_space.normal);
+    if (!(length > 0.0)) return {-std::numeric_limits<double>::infinity(), {}};
+    const glm::dvec3 inward = half_space.normal / length;
+    return {glm::dot(support_point(box, inward), inward) + half_space.offset / length, -inward};
 }
 
 Manifold contact_manifold(const Plane& half_space, const Obb& box, ManifoldPoints points) {
     Manifold manifold;
-    const ConvexShape body = to_convex_shape(box);
-    const Penetration deepest = penetration(half_space, body);
+    const Penetration deepest = penetration(half_space, box);
     if (!intersects(box, half_space)) return manifold;
     manifold.normal = deepest.axis;
     const double length = glm::length(half_space.normal);
-    for (int i = 0; i < body.point_count; ++i) {
-        const double depth = (glm::dot(half_space.normal, body.points[i]) + half_space.offset) / length;
-        if (depth >= 0.0) manifold.points[manifold.count++] = {body.points[i] + 0.5 * depth * deepest.axis, depth};
+    for (const glm::dvec3& corner : corners(box)) {
+        const double depth = (glm::dot(half_space.normal, corner) + half_space.offset) / length;
+        if (depth >= 0.0) manifold.points[manifold.count++] = {corner + 0.5 * depth * deepest.axis, depth};
     }
     if (manifold.count == 0) {
         const glm::dvec3 lowest = support_point(box, half_space.normal);

@@ -8,11 +8,6 @@
 namespace crofton::collide {
 namespace {
 
-glm::dvec3 unit_or_zero(const glm::dvec3& v) {
-    const double length = glm::length(v);
-    return length > 0.0 ? v / length : glm::dvec3(0.0);
-}
-
 // Whether a ball meets a box, where two bounds of the distance d between its centre p and the box tell. From above: the
 // point q that is nearest if the axes are orthonormal lies in the box, so d ≤ |p − q|. From below: for the unit vector
 // n along p − q, d ≥ dot(n, p) − Σ h_k |dot(n, a_k)|. Each is summed from fewer than 20 roundings of 2^-53 of `size`.
@@ -39,47 +34,10 @@ Verdict ball_meets(const Obb& box, const Sphere& ball) {
 
 }  // namespace
 
-ConvexShape to_convex_shape(const Obb& box) {
-    ConvexShape body;
-    for (const glm::dvec3& corner : corners(box)) body.points[body.point_count++] = corner;
-    for (int k = 0; k < 3; ++k) {
-        body.edges[body.edge_count++] = glm::dvec3(box.axes[k]);
-        body.normals[body.normal_count++] =
-            unit_or_zero(glm::cross(glm::dvec3(box.axes[(k + 1) % 3]), glm::dvec3(box.axes[(k + 2) % 3])));
-    }
-    return body;
-}
-
-ConvexShape to_convex_shape(const Sphere& sphere) {
-    ConvexShape body;
-    body.points[body.point_count++] = sphere.center;
-    body.radius = sphere.radius;
-    return body;
-}
-
-ConvexShape to_convex_shape(const Capsule& capsule) {
-    ConvexShape body;
-    body.points[body.point_count++] = capsule.begin;
-    body.points[body.point_count++] = capsule.end;
-    body.edges[body.edge_count++] = unit_or_zero(capsule.end - capsule.begin);
-    body.radius = capsule.radius;
-    return body;
-}
-
-ConvexShape to_convex_shape(const Triangle& triangle) {
-    ConvexShape body;
-    for (std::size_t k = 0; k < 3; ++k) {
-        body.points[body.point_count++] = triangle[k];
-        body.edges[body.edge_count++] = unit_or_zero(triangle[(k + 1) % 3] - triangle[k]);
-    }
-    body.normals[body.normal_count++] = unit_or_zero(glm::cross(triangle[1] - triangle[0], triangle[2] - triangle[0]));
-    return body;
-}
-
 bool intersects(const Obb& box, const Sphere& sphere) {
     if (!is_finite(sphere.center) || !(sphere.radius >= 0.0) || !validate(box)) return false;
     if (const Verdict verdict = ball_meets(box, sphere); verdict != Verdict::open) return verdict == Verdict::meets;
-    return contains(box, sphere.center) || distance(to_convex_shape(box), to_convex_shape(sphere)).distance <= 0.0;
+    return distance(box, Capsule{sphere.center, sphere.center, sphere.radius}).distance <= 0.0;
 }
 
 bool intersects(const Obb& box, const Capsule& capsule) {
@@ -87,7 +45,7 @@ bool intersects(const Obb& box, const Capsule& capsule) {
         return false;
     // A segment is a triangle without area: its core is decided exactly.
     if (intersects(box, Triangle{capsule.begin, capsule.end, capsule.end})) return true;
-    return distance(to_convex_shape(box), to_convex_shape(capsule)).distance <= 0.0;
+    return distance(box, capsule).distance <= 0.0;
 }
 
 }  // namespace crofton::collide

@@ -14,16 +14,17 @@ namespace {
 
 constexpr double kUp = 1.0 + 0x1p-50;  // outweighs the roundings of a length
 
-Result<void> check_length(float value, const char* name, std::uint64_t item = kNoItem) {
+Result<void> check_length(double value, const char* name, std::uint64_t item = kNoItem) {
     if (!std::isfinite(value)) return fail(ErrorCode::non_finite, item, {"body: ", name, " is NaN or infinite"});
-    if (value < 0.0f) return fail(ErrorCode::invalid_argument, item, {"body: ", name, " is negative (inside out)"});
-    if (value > kMaxExtent) return fail(ErrorCode::out_of_range, item, {"body: ", name, " exceeds 1e15"});
+    if (value < 0.0) return fail(ErrorCode::invalid_argument, item, {"body: ", name, " is negative (inside out)"});
+    if (value > static_cast<double>(kMaxExtent))
+        return fail(ErrorCode::out_of_range, item, {"body: ", name, " exceeds 1e15"});
     return {};
 }
 
 Result<void> check_lengths(float half_height, float radius) {
-    if (Result<void> good = check_length(half_height, "half height"); !good) return good;
-    return check_length(radius, "radius");
+    if (Result<void> good = check_length(static_cast<double>(half_height), "half height"); !good) return good;
+    return check_length(static_cast<double>(radius), "radius");
 }
 
 void grow(Aabb& box, double radius) {
@@ -56,11 +57,11 @@ Body BodyMaker::triangle(const Triangle& corners) {
     return body;
 }
 
-Result<Body> Body::ball(float radius) {
+Result<Body> Body::ball(double radius) {
     if (Result<void> good = check_length(radius, "radius"); !good) return tl::unexpected(good.error());
     Body body;
     body.kind_ = Kind::ball;
-    body.radius_ = static_cast<double>(radius);
+    body.radius_ = radius;
     const glm::dvec3 center(0.0);
     body.set_corners({&center, 1});
     return body;
@@ -95,7 +96,9 @@ Result<Body> Body::cone(float half_height, float radius) {
 
 Result<Body> Body::box(const glm::vec3& half_extents) {
     for (int k = 0; k < 3; ++k)
-        if (Result<void> good = check_length(half_extents[k], "half extent", static_cast<std::uint64_t>(k)); !good)
+        if (Result<void> good =
+                check_length(static_cast<double>(half_extents[k]), "half extent", static_cast<std::uint64_t>(k));
+            !good)
             return tl::unexpected(good.error());
     Body body;
     body.kind_ = Kind::box;
@@ -112,7 +115,8 @@ Result<Body> Body::triangle(const glm::vec3& a, const glm::vec3& b, const glm::v
     glm::dvec3 wide[3];
     for (std::uint64_t i = 0; i < 3; ++i)
         for (int k = 0; k < 3; ++k) {
-            if (Result<void> good = check_length(std::abs(corners[i][k]), "triangle's corner", i); !good)
+            if (Result<void> good = check_length(static_cast<double>(std::abs(corners[i][k])), "triangle's corner", i);
+                !good)
                 return tl::unexpected(good.error());
             wide[i] = glm::dvec3(corners[i]);
         }
@@ -149,15 +153,15 @@ Result<Body> Body::half_space(const Plane& plane) {
     return body;
 }
 
-Result<Body> Body::rounded(const Body& core, float radius) {
+Result<Body> Body::rounded(const Body& core, double radius) {
     if (core.kind_ == Kind::half_space)
         return fail(ErrorCode::unsupported, kNoItem, "body: a half-space is not rounded; move its plane");
     if (!core.is_convex())
         return fail(ErrorCode::unsupported, kNoItem, "body: surfaces and compounds are not rounded; round the parts");
     if (Result<void> good = check_length(radius, "rounding"); !good) return tl::unexpected(good.error());
     Body body = core;
-    body.radius_ += static_cast<double>(radius);
-    grow(body.bounds_, static_cast<double>(radius));
+    body.radius_ += radius;
+    grow(body.bounds_, radius);
     return body;
 }
 

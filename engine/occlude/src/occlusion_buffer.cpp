@@ -3,7 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <crofton/core/error.hpp>
-#include <crofton/cull/statistics.hpp>
+#include <crofton/cull/classify.hpp>
 #include <crofton/occlude/occlusion.hpp>
 #include <string>
 

@@ -141,15 +141,10 @@ class BlockTracing {
 };
 
 std::uint64_t fingerprint_of(const Subject& subject, const Cells& cells, const BakeOptions& options) {
-    Vector<std::uint64_t> sums;
-    const auto include = [&](const auto& elements) { sums.push_back(bake::checksum(std::as_bytes(elements))); };
-    include(std::span(subject.mesh.positions));
-    include(std::span(subject.mesh.indices));
-    include(std::span(subject.object_of));
-    include(std::span(&subject.origin, 1));
+    Vector<std::uint64_t> sums{pvs::fingerprint_of(subject)};
     for (std::size_t i = 0; i < cells.size(); ++i) {
         const Aabb box = cells.box(i);
-        include(std::span(&box, 1));
+        sums.push_back(bake::checksum(std::as_bytes(std::span(&box, 1))));
     }
     sums.push_back(options.seed);
     sums.push_back(LinePlan::kVersion);
@@ -198,6 +193,7 @@ Result<Bake> Bake::create(const Subject& subject, const Cells& cells, const Bake
         state->boxes = subject.boxes;
         state->origin = subject.origin;
         state->object_of = subject.object_of;
+        state->subject = pvs::fingerprint_of(subject);
         state->plan = *plan;
         state->walk.emplace(cells, subject.origin);
         Found& found = state->found;

@@ -18,8 +18,9 @@ struct Head {
     std::uint32_t counts[3] = {};      // 0: boxes, in a section of their own
     std::uint32_t objects = 0;
     double epsilon = 1.0, confidence = 0.0;
+    std::uint64_t subject = 0;
 };
-static_assert(sizeof(Head) == 80);
+static_assert(sizeof(Head) == 88);
 
 tl::unexpected<Error> damaged(const char* what, std::uint64_t item = kNoItem) {
     return fail(ErrorCode::parse, item, {"potentially visible sets: ", what});
@@ -51,6 +52,7 @@ struct PvsFile {
             head.counts[k] = pvs.cells_.counts()[k];
         }
         head.objects = pvs.objects_;
+        head.subject = pvs.subject_;
         head.epsilon = pvs.epsilon_, head.confidence = pvs.confidence_;
         Vector<Aabb> boxes;
         for (std::size_t c = 0; c < pvs.cells_.size() && !pvs.cells_.is_grid(); ++c) boxes.push_back(pvs.cells_.box(c));
@@ -83,6 +85,7 @@ struct PvsFile {
         Pvs pvs;
         pvs.cells_ = std::move(*cells);
         pvs.objects_ = head->front().objects;
+        pvs.subject_ = head->front().subject;
         pvs.epsilon_ = head->front().epsilon, pvs.confidence_ = head->front().confidence;
         if (kinds->size() != pvs.cells_.size() || baked->size() != pvs.words())
             return damaged("sections are not as long as the header says");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A scene's instances as one mesh around an origin of its own.
+#include <crofton/bake/checksum.hpp>
 #include <crofton/core/recovery.hpp>
 #include <crofton/pvs/pvs.hpp>
 #include <glm/geometric.hpp>
@@ -32,7 +33,8 @@ Result<Subject> subject_of(const scene::Scene& scene, std::span<const scene::Ins
         Aabb bounds;
         std::uint64_t vertices = 0;
         for (scene::InstanceId id = 0; id < rests.size(); ++id) {
-            if (scene.is_removed(id) || scene.layer_masks()[id] == 0) rests[id] = 0;
+            if (scene.is_removed(id) || scene.layer_masks()[id] == 0 || scene.mesh(scene.mesh_of(id)).indices.empty())
+                rests[id] = 0;
             subject.boxes.push_back(scene.world_boxes()[id]);
             if (!rests[id]) continue;
             bounds.include(aabb_of(subject.boxes[id]));
@@ -47,6 +49,13 @@ Result<Subject> subject_of(const scene::Scene& scene, std::span<const scene::Ins
             return fail(ErrorCode::empty, kNoItem, "pvs: no object rests: there is nothing to be seen");
         return subject;
     });
+}
+
+std::uint64_t fingerprint_of(const Subject& subject) {
+    const auto sum = [](const auto& elements) { return bake::checksum(std::as_bytes(std::span(elements))); };
+    const std::uint64_t sums[] = {sum(subject.mesh.positions), sum(subject.mesh.indices), sum(subject.object_of),
+                                  sum(std::span(&subject.origin, 1))};
+    return bake::checksum(std::as_bytes(std::span(sums)));
 }
 
 }  // namespace crofton::pvs

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/convex/query.hpp>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <limits>
 
 #include "world_state.hpp"
 
@@ -49,14 +51,16 @@ World::State::Stand World::State::stand_of(std::uint32_t id) const {
     const Obb& box = index.box(id);
     if (body_contacts.has(id)) return {body_contacts.body(id), world::pose_of(object, box, scene)};
     if (object.kind == BoundKind::ball)
-        return {*convex::Body::ball(static_cast<float>(object.radius)), RigidTransform{glm::dmat3(1.0), box.center}};
-    Stand stand{convex::Body::box(box.half_extents).value_or(*convex::Body::ball(0.0f)), std::nullopt};
+        return {*convex::Body::ball(std::min(object.radius, static_cast<double>(convex::kMaxExtent))),
+                RigidTransform{glm::dmat3(1.0), box.center}};
+    Stand stand{*convex::Body::box(glm::min(box.half_extents, glm::vec3(convex::kMaxExtent))), std::nullopt};
     // A box whose axes are no rotation, which a flattened mesh may have, is the box around it.
     stand.pose = RigidTransform{glm::dmat3(box.axes), box.center};
     if (!convex::validate_pose(*stand.pose)) {
         const Aabb around = aabb_of(box);
         const Obb aligned = obb_of(around);
-        stand = {*convex::Body::box(aligned.half_extents), RigidTransform{glm::dmat3(1.0), aligned.center}};
+        stand = {*convex::Body::box(glm::min(aligned.half_extents, glm::vec3(convex::kMaxExtent))),
+                 RigidTransform{glm::dmat3(1.0), aligned.center}};
     }
     return stand;
 }
@@ -76,12 +80,24 @@ void World::overlap(const convex::Body& shape, const RigidTransform& pose, Vecto
               [](const ObjectRef& a, const ObjectRef& b) { return a.object.index < b.object.index; });
 }
 
+std::optional<ClosestObject> World::closest(const convex::Body& shape, const RigidTransform& pose, double max_distance,
+                                            std::uint32_t layers) const {
+    if (!check(shape, pose)) return std::nullopt;
+    const State& s = *state_;
+    return s.closest(bounds_of(shape, pose), max_distance, layers, [&](std::uint32_t id) {
+        const State::Stand stand = s.stand_of(id);
+        if (!stand.pose) return collide::Distance{std::numeric_limits<double>::infinity(), {}, {}};
+        const convex::Distance gap = convex::distance({shape, pose}, {stand.body, *stand.pose});
+        return collide::Distance{gap.distance, gap.on_a, gap.on_b};
+    });
+}
+
 Result<std::optional<BodyHit>> World::cast(const convex::Body& shape, const RigidTransform& pose,
                                            const convex::Motion& motion, const convex::CastOptions& options,
                                            std::uint32_t layers) const {
     if (auto good = check(shape, pose); !good) return tl::unexpected(good.error());
     // Bad motions and options are told also where nothing is near.
-    static const convex::Body kPoint = *convex::Body::ball(0.0f);
+    static const convex::Body kPoint = *convex::Body::ball(0.0);
     const RigidTransform far{glm::dmat3(1.0), glm::dvec3(1e15)};
     if (auto good = convex::cast({shape, pose}, motion, {kPoint, far}, {}, options); !good)
         return tl::unexpected(good.error());

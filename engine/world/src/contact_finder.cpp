@@ -19,6 +19,17 @@ bool bounds_meet(const Object& a, const Obb& box_a, const Object& b, const Obb& 
     return true;
 }
 
+// Of two that meet.
+collide::Manifold touch_of_bounds(const Object& a, const Obb& box_a, const Object& b, const Obb& box_b) {
+    const bool ball_a = a.kind == BoundKind::ball, ball_b = b.kind == BoundKind::ball;
+    if (ball_a && ball_b) return collide::contact_manifold(ball_of(a, box_a), ball_of(b, box_b));
+    if (ball_b) return collide::contact_manifold(box_a, ball_of(b, box_b));
+    if (!ball_a) return collide::contact_manifold(box_a, box_b);
+    collide::Manifold manifold = collide::contact_manifold(box_b, ball_of(a, box_a));
+    manifold.normal = -manifold.normal;
+    return manifold;
+}
+
 // Appends part of a list, for which there is room, and returns where it is.
 template <class T>
 std::span<const T> append(const Vector<T>& from, std::uint32_t first, std::uint32_t count, Vector<T>& to) {
@@ -75,9 +86,7 @@ void ContactFinder::touch_bounds(const ObjectTable& table, const SpatialIndex& i
     const std::uint32_t i = pair.first.object.index, j = pair.second.object.index;
     const Object &a = table.objects[i], &b = table.objects[j];
     const Obb &box_a = index.box(i), &box_b = index.box(j);
-    const collide::Manifold manifold = a.kind == BoundKind::ball || b.kind == BoundKind::ball
-                                           ? collide::contact_manifold(convex_of(a, box_a), convex_of(b, box_b))
-                                           : collide::contact_manifold(box_a, box_b);
+    const collide::Manifold manifold = touch_of_bounds(a, box_a, b, box_b);
     touch.hit = true;
     touch.normal = manifold.normal;
     touch.depth = manifold.depth;

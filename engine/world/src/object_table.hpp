@@ -94,10 +94,4 @@ class MoverTable {
     return {box.center, object.radius};
 }
 
-// An object's bound: its ball or its box.
-[[nodiscard]] inline collide::ConvexShape convex_of(const Object& object, const Obb& box) {
-    return object.kind == BoundKind::ball ? collide::to_convex_shape(ball_of(object, box))
-                                          : collide::to_convex_shape(box);
-}
-
 }  // namespace crofton::world

@@ -11,6 +11,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <utility>
 
 #include "ray_ball.hpp"
 #include "trace_zone.hpp"
@@ -48,7 +49,19 @@ bool meets_ball(const Sphere& shape, const Sphere& ball) {
     return glm::length(shape.center - ball.center) <= shape.radius + ball.radius;
 }
 bool meets_ball(const collide::Capsule& shape, const Sphere& ball) {
-    return collide::distance(collide::to_convex_shape(shape), collide::to_convex_shape(ball)).distance <= 0.0;
+    return collide::distance(shape, ball).distance <= 0.0;
+}
+
+// From the shape to an object's bound.
+collide::Distance gap_to(const Obb& shape, const world::Object& object, const Obb& box) {
+    if (object.kind != BoundKind::ball) return collide::distance(shape, box);
+    return collide::distance(shape, collide::Capsule{box.center, box.center, object.radius});
+}
+collide::Distance gap_to(const collide::Capsule& shape, const world::Object& object, const Obb& box) {
+    if (object.kind == BoundKind::ball) return collide::distance(shape, world::ball_of(object, box));
+    collide::Distance gap = collide::distance(box, shape);
+    std::swap(gap.on_a, gap.on_b);
+    return gap;
 }
 
 // No further than rounding tells: boxes apart by less are near.
@@ -205,18 +218,15 @@ void World::overlap(const collide::Capsule& shape, Vector<ObjectRef>& found, std
 }
 
 // Within a small distance first: the tree is entered in no order of nearness.
-template <class Shape>
-std::optional<ClosestObject> World::State::closest(const Shape& shape, double max_distance,
-                                                   std::uint32_t layers) const {
+std::optional<ClosestObject> World::State::closest(const Aabb& bounds, double max_distance, std::uint32_t layers,
+                                                   GapTo gap_to_object) const {
     std::optional<ClosestObject> nearest;
-    if (!is_valid(shape) || !(max_distance >= 0.0)) return nearest;
+    if (!(max_distance >= 0.0)) return nearest;
     max_distance = std::min(max_distance, kMaxCoordinate);
-    const collide::ConvexShape body = collide::to_convex_shape(shape);
-    const Aabb bounds = bounds_of(shape);
     for (double limit = max_distance * 0x1p-12;; limit = std::min(8.0 * limit, max_distance)) {
         double rest = limit;
         visit_near(bounds, limit, layers, [&](std::uint32_t id) {
-            const collide::Distance gap = collide::distance(body, world::convex_of(table.objects[id], index.box(id)));
+            const collide::Distance gap = gap_to_object(id);
             const bool nearer = !nearest || gap.distance < nearest->distance ||
                                 (gap.distance == nearest->distance && id < nearest->object.index);
             if (gap.distance > rest || !nearer) return rest;
@@ -227,8 +237,16 @@ std::optional<ClosestObject> World::State::closest(const Shape& shape, double ma
     }
 }
 
+template <class Shape>
+std::optional<ClosestObject> World::State::closest(const Shape& shape, double max_distance,
+                                                   std::uint32_t layers) const {
+    if (!is_valid(shape)) return std::nullopt;
+    return closest(bounds_of(shape), max_distance, layers,
+                   [&](std::uint32_t id) { return gap_to(shape, table.objects[id], index.box(id)); });
+}
+
 std::optional<ClosestObject> World::closest(const Sphere& shape, double max_distance, std::uint32_t layers) const {
-    return state_->closest(shape, max_distance, layers);
+    return state_->closest(collide::Capsule{shape.center, shape.center, shape.radius}, max_distance, layers);
 }
 std::optional<ClosestObject> World::closest(const Obb& shape, double max_distance, std::uint32_t layers) const {
     return state_->closest(shape, max_distance, layers);

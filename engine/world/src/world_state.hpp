@@ -103,6 +103,11 @@ struct World::State {
     void visit_near(const Aabb& bounds, double distance, std::uint32_t layers, collide::NearVisitor visit) const;
     template <class Shape>
     void overlap(const Shape& shape, Vector<ObjectRef>& found, std::uint32_t layers) const;
+    // How far an object is, and the nearest points: first the shape's, then the object's.
+    using GapTo = FunctionRef<collide::Distance(std::uint32_t object)>;
+    // `bounds` are around the shape.
+    [[nodiscard]] std::optional<ClosestObject> closest(const Aabb& bounds, double max_distance, std::uint32_t layers,
+                                                       GapTo gap_to_object) const;
     template <class Shape>
     [[nodiscard]] std::optional<ClosestObject> closest(const Shape& shape, double max_distance,
                                                        std::uint32_t layers) const;

@@ -74,10 +74,13 @@ Result<Container> open_container(std::string_view file) {
 Result<Json> parse_json(std::string_view text) {
     Json root = Json::parse(text.begin(), text.end(), nullptr, false);
     if (root.is_discarded()) {
-        const std::size_t end = syntax_error_position(text).value_or(text.size());
+        const SyntaxError error = syntax_error(text).value_or(SyntaxError{text.size()});
+        const std::string place = "at byte " + std::to_string(error.position);
+        if (error.number_too_large)
+            return fail(ErrorCode::out_of_range, kNoItem, "its JSON has a number beyond what a double holds, " + place);
+        const bool is_cut = error.position == text.size();
         return fail(ErrorCode::parse, kNoItem,
-                    "its JSON is damaged " + (end == text.size() ? std::string("or cut off: it ends too early")
-                                                                 : "at byte " + std::to_string(end)));
+                    "its JSON is damaged " + (is_cut ? "or cut off: it ends too early" : place));
     }
     const Json* asset = member(root, "asset");
     const Json* version = asset ? member(*asset, "version") : nullptr;
@@ -192,7 +195,9 @@ std::optional<std::size_t> as_whole_number(const Json& value) {
         if (!(number >= 0.0 && number <= most) || number != std::floor(number)) return std::nullopt;
         return static_cast<std::size_t>(number);
     }
-    if (!value.is_number_integer() || value < 0) return std::nullopt;
+    // On 32-bit targets a larger one would come out as another.
+    if (!value.is_number_integer() || value < 0 || value > std::numeric_limits<std::size_t>::max() / 2)
+        return std::nullopt;
     return value.get<std::size_t>();
 }
 

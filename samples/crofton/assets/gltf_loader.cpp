@@ -79,13 +79,19 @@ class GltfReader {
         if (auto walked = add_nodes(); !walked) return tl::unexpected(walked.error());
         if (source_.scene.instance_count() == 0)
             return fail(ErrorCode::empty, kNoItem,
-                        "its scene shows no triangles, so there is nothing to draw" +
-                            (source_.warnings.empty() ? "" : ": " + source_.warnings.front()));
+                        "its scene shows no triangles, so there is nothing to draw: " + why_empty());
         for (std::string& warning : colors_.warnings) source_.warnings.push_back(std::move(warning));
         return std::move(source_);
     }
 
   private:
+    std::string why_empty() const {
+        if (!source_.warnings.empty()) return source_.warnings.front();
+        const Json* meshes = member(root_, "meshes");
+        if (!meshes || !meshes->is_array() || meshes->empty()) return "it has no meshes";
+        return "none of its " + std::to_string(meshes->size()) + " meshes has triangles and is on a node of the scene";
+    }
+
     void leave_out(const std::string& what, const Error& why) {
         source_.warnings.push_back(what + ": left out: " + why.message);
     }

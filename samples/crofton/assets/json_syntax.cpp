@@ -12,7 +12,7 @@ using nlohmann::json;
 // Accepts everything, and remembers how far the text was JSON.
 class SyntaxCheck : public json::json_sax_t {
   public:
-    std::size_t position = 0;
+    SyntaxError error;
 
     bool null() override { return true; }
     bool boolean(bool) override { return true; }
@@ -26,19 +26,21 @@ class SyntaxCheck : public json::json_sax_t {
     bool end_object() override { return true; }
     bool start_array(std::size_t) override { return true; }
     bool end_array() override { return true; }
-    bool parse_error(std::size_t at, const std::string&, const json::exception&) override {
+    bool parse_error(std::size_t at, const std::string&, const json::exception& reason) override {
         // The character read last is the wrong one, not the one after it.
-        position = at > 0 ? at - 1 : 0;
+        error.position = at > 0 ? at - 1 : 0;
+        error.number_too_large = dynamic_cast<const json::out_of_range*>(&reason) != nullptr;
         return false;
     }
 };
 
 }  // namespace
 
-std::optional<std::size_t> syntax_error_position(std::string_view text) {
+std::optional<SyntaxError> syntax_error(std::string_view text) {
     SyntaxCheck check;
     if (json::sax_parse(text.begin(), text.end(), &check)) return std::nullopt;
-    return std::min(check.position, text.size());
+    check.error.position = std::min(check.error.position, text.size());
+    return check.error;
 }
 
 Result<void> check_json_shape(std::string_view text, const ReadLimits& limits) {

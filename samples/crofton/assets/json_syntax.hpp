@@ -9,8 +9,12 @@
 
 namespace crofton::assets {
 
-// The first byte that cannot continue what precedes it; text.size() where the text ends too early; nothing for JSON.
-[[nodiscard]] std::optional<std::size_t> syntax_error_position(std::string_view text);
+struct SyntaxError {
+    std::size_t position = 0;       // the first byte that cannot continue what precedes it; the size: it ends too early
+    bool number_too_large = false;  // it is JSON, but no double holds the number that ends here
+};
+// Nothing for JSON.
+[[nodiscard]] std::optional<SyntaxError> syntax_error(std::string_view text);
 
 // Looked at before the text is parsed: what walks a document recurses as deep as it is nested, and each value takes
 // memory. Errors: nested deeper than limits.nesting; more values than 16 for each of limits.nodes.

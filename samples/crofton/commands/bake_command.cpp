@@ -105,14 +105,10 @@ class BakeRun {
     int write() {
         const auto tree = pipeline::orientation_from(options_.tree);
         if (!tree) return report_error("", tree.error());
-        auto source = assets::load_scene(options_.scene, {.map = options_.map,
-                                                          .seed = options_.seed,
-                                                          .instances = options_.instances,
-                                                          .limits = options_.read.limits,
-                                                          .strict = options_.read.strict});
+        const auto source = load_updated_scene(
+            options_.scene, options_.read,
+            {.map = options_.map, .seed = options_.seed, .instances = options_.instances}, executor());
         if (!source) return report_error("", source.error());
-        print_warnings(source->warnings);
-        source->scene.update(executor());
         std::optional<bake::BakedOccluders> occluders;
         const Stopwatch finding;
         if (!options_.no_occluders)

@@ -70,12 +70,8 @@ Result<int> run_fit_view_trees(const ViewTreesRun& run) {
                     weights.x, weights.y, weights.z, "scene", "objects", "nodes plain", "directed", "saved",
                     "boxes plain", "directed", "saved");
     for (const std::string& name : run.scenes) {
-        assets::LoadOptions load;
-        load.limits = run.read.limits;
-        load.strict = run.read.strict;
-        auto source = assets::load_scene(name, load);
+        const auto source = load_updated_scene(name, run.read);
         if (!source) return tl::unexpected(source.error());
-        source->scene.update();
         const pipeline::Bounds bounds(source->scene, pipeline::BoundsKind::aabb);
         const auto plain = visits_of(bounds.boxes(), run.cameras, glm::dvec3(1.0));
         const auto directed = visits_of(bounds.boxes(), run.cameras, weights);

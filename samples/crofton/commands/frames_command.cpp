@@ -129,16 +129,12 @@ class FramesRun {
         typical.far_distance = 200.0;
         const auto criterion = pipeline::criterion_for(*bounds, typical);
         if (!criterion) return tl::unexpected(criterion.error());
-        auto source = assets::load_scene(options_.scene, {.criterion = *criterion,
-                                                          .map = options_.map,
-                                                          .seed = options_.seed,
-                                                          .instances = options_.instances,
-                                                          .limits = options_.read.limits,
-                                                          .strict = options_.read.strict});
+        auto source = load_updated_scene(
+            options_.scene, options_.read,
+            {.criterion = *criterion, .map = options_.map, .seed = options_.seed, .instances = options_.instances},
+            executor());
         if (!source) return tl::unexpected(source.error());
         source_.emplace(std::move(*source));
-        print_warnings(source_->warnings);
-        source_->scene.update(executor());
         focus_ = pipeline::focus_of(source_->scene);
         if (source_->walk.empty() && options_.camera == "street")
             if (const auto space = pipeline::FreeSpace::find(source_->scene, focus_)) source_->walk = space->walk();
@@ -170,6 +166,7 @@ class FramesRun {
         if (options_.baked.empty()) return none;
         const auto parts = pipeline::load_baked_parts(options_.baked, source_->scene, options_.read.limits);
         if (!parts) return tl::unexpected(parts.error());
+        if (!parts->occluders && !parts->left_out.empty()) return tl::unexpected(parts->left_out.front());
         if (!parts->occluders)
             return fail(ErrorCode::empty, kNoItem, options_.baked + ": has no occluders: 'crofton bake' writes them");
         return parts->occluders;

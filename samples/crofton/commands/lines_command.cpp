@@ -95,15 +95,8 @@ Json compare(const char* method, sampling::Sequence sequence, double surface, co
 }
 
 Result<void> run_lines(const LinesOptions& options) {
-    assets::LoadOptions load;
-    load.map = options.map;
-    load.seed = options.seed;
-    load.limits = options.read.limits;
-    load.strict = options.read.strict;
-    auto source = assets::load_scene(options.scene, load);
+    const auto source = load_updated_scene(options.scene, options.read, {.map = options.map, .seed = options.seed});
     if (!source) return tl::unexpected(source.error());
-    print_warnings(source->warnings);
-    source->scene.update();
     const auto flat = assets::flat_scene(*source, options.read.limits);
     if (!flat) return tl::unexpected(flat.error());
     const TriangleMesh& mesh = flat->mesh;

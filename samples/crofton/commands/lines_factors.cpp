@@ -54,14 +54,10 @@ struct SceneComplexity {
 
 Result<SceneComplexity> look_at(const std::string& scene, const FactorsRun& run) {
     assets::LoadOptions load;
-    if (scene.ends_with(".wad")) load.map = run.map;
     load.seed = run.seed;
-    load.limits = run.read.limits;
-    load.strict = run.read.strict;
-    auto source = assets::load_scene(scene, load);
+    if (scene.ends_with(".wad")) load.map = run.map;
+    const auto source = load_updated_scene(scene, run.read, load);
     if (!source) return tl::unexpected(source.error());
-    source->scene.update();
-    print_warnings(source->warnings);
     const auto flat = assets::flat_scene(*source, run.read.limits);
     if (!flat) return tl::unexpected(flat.error());
     const TriangleMesh& mesh = flat->mesh;

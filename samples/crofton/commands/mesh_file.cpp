@@ -14,10 +14,8 @@ namespace {
 // Calls visit(mesh, world) for each instance.
 template <class Visit>
 Result<void> for_each_instance(const std::string& path, const ReadOptions& options, Visit visit) {
-    auto source = assets::load_scene(path, {.limits = options.limits, .strict = options.strict});
+    const auto source = load_updated_scene(path, options);
     if (!source) return tl::unexpected<Error>(source.error());
-    print_warnings(source->warnings);
-    source->scene.update();
     if (assets::instanced_triangles(source->scene) > options.limits.triangles)
         return assets::in_file(path, "its instances have",
                                assets::over_limit("triangles", options.limits.triangles).value());

@@ -50,14 +50,10 @@ Result<Job> make_job(const PvsRequest& options, Executor& executor) {
     if (!shard) return tl::unexpected(shard.error());
     if (!options.shard.empty() && options.state.empty())
         return fail(ErrorCode::invalid_argument, kNoItem, "--shard needs --state: the part to write");
-    auto source = assets::load_scene(options.scene, {.map = options.map,
-                                                     .seed = options.seed,
-                                                     .instances = options.instances,
-                                                     .limits = options.read.limits,
-                                                     .strict = options.read.strict});
+    auto source =
+        load_updated_scene(options.scene, options.read,
+                           {.map = options.map, .seed = options.seed, .instances = options.instances}, executor);
     if (!source) return tl::unexpected(source.error());
-    print_warnings(source->warnings);
-    source->scene.update(executor);
     Aabb eyes = pipeline::eyes_of(source->scene, options.height);
     if (!options.eyes.empty()) {
         double x[6];

@@ -103,15 +103,8 @@ Result<int> run_radiosity(const RadiosityOptions& options) {
     catch_interrupts();
     const auto parameters = solver_options(options);
     if (!parameters) return tl::unexpected(parameters.error());
-    assets::LoadOptions load;
-    load.map = options.map;
-    load.seed = options.seed;
-    load.limits = options.read.limits;
-    load.strict = options.read.strict;
-    auto source = assets::load_scene(options.scene, load);
+    const auto source = load_updated_scene(options.scene, options.read, {.map = options.map, .seed = options.seed});
     if (!source) return tl::unexpected(source.error());
-    print_warnings(source->warnings);
-    source->scene.update();
     const auto flat = assets::flat_scene(*source, options.read.limits);
     if (!flat) return tl::unexpected(flat.error());
     const auto lit = lit_scene(*flat, options.edge);

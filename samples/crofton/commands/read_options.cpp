@@ -28,4 +28,15 @@ void print_warnings(const std::vector<std::string>& warnings) {
     if (warnings.size() > kMost) std::fprintf(stderr, "crofton: warning: and %zu more\n", warnings.size() - kMost);
 }
 
+Result<assets::SceneSource> load_updated_scene(const std::string& scene, const ReadOptions& read,
+                                               assets::LoadOptions load, Executor& executor) {
+    load.limits = read.limits;
+    load.strict = read.strict;
+    auto source = assets::load_scene(scene, load);
+    if (!source) return source;
+    print_warnings(source->warnings);
+    source->scene.update(executor);
+    return source;
+}
+
 }  // namespace crofton::cli

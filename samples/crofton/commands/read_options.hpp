@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 // How much a file may ask for, as options that every sub-command which reads files has.
 #pragma once
+#include <crofton/core/executor.hpp>
 #include <string>
 #include <vector>
 
 #include "assets/read_limits.hpp"
+#include "assets/scene_source.hpp"
 #include "command_line.hpp"
 
 namespace crofton::cli {
@@ -20,5 +22,10 @@ void add_read_options(Command& command, ReadOptions& options);
 
 // "crofton: warning: …" to stderr, a line each; at most 20, and how many there are besides.
 void print_warnings(const std::vector<std::string>& warnings);
+
+// assets::load_scene with these limits, in place of those in `load`. Prints its warnings and brings it up to date.
+[[nodiscard]] Result<assets::SceneSource> load_updated_scene(const std::string& scene, const ReadOptions& read,
+                                                             assets::LoadOptions load = {},
+                                                             Executor& executor = serial_executor());
 
 }  // namespace crofton::cli

@@ -38,17 +38,20 @@ Result<BakedParts> parts_of(std::span<const std::byte> file, const scene::Scene&
     if (reader->has("occluder")) {
         const auto baked = bake::BakedScene::from_memory(file);
         if (!baked) return tl::unexpected(baked.error());
-        if (auto same = check_same(*baked, scene); !same) return tl::unexpected(same.error());
-        parts.occluders = std::make_shared<const SceneOccluders>(scene_occluders_from(scene, *baked->occluders()));
+        if (auto same = check_same(*baked, scene); !same)
+            parts.left_out.push_back(std::move(same.error()));
+        else
+            parts.occluders = std::make_shared<const SceneOccluders>(scene_occluders_from(scene, *baked->occluders()));
     }
     if (reader->has("pvs_head")) {
         auto sets = pvs::Pvs::from_memory(file);
         if (!sets) return tl::unexpected(sets.error());
-        if (sets->object_count() != scene.instance_count())
-            return of_another_scene("its sets are of another number of instances");
-        parts.pvs = std::make_shared<const pvs::Pvs>(std::move(*sets));
+        if (!is_baked_of(*sets, scene))
+            parts.left_out.push_back(of_another_scene("its visible sets are of other triangles or places").value());
+        else
+            parts.pvs = std::make_shared<const pvs::Pvs>(std::move(*sets));
     }
-    if (!parts.occluders && !parts.pvs)
+    if (!parts.occluders && !parts.pvs && parts.left_out.empty())
         return fail(ErrorCode::empty, kNoItem,
                     "has neither occluders ('crofton bake' writes them) nor potentially visible sets ('crofton pvs')");
     return parts;
@@ -67,12 +70,22 @@ bool same_parts(const scene::Scene& a, const scene::Scene& b) {
     return true;
 }
 
+bool is_baked_of(const pvs::Pvs& pvs, const scene::Scene& scene) {
+    if (pvs.object_count() != scene.instance_count()) return false;
+    std::vector<scene::InstanceId> moving;
+    for (scene::InstanceId i = 0; i < pvs.object_count(); ++i)
+        if (!pvs.is_baked(i)) moving.push_back(i);
+    const auto subject = pvs::subject_of(scene, moving);
+    return subject && pvs::fingerprint_of(*subject) == pvs.subject_fingerprint();
+}
+
 Result<BakedParts> load_baked_parts(const std::string& path, const scene::Scene& scene,
                                     const assets::ReadLimits& limits) {
     const auto file = bake::MappedFile::open(path, {.access = bake::FileAccess::read, .largest = limits.bytes});
     if (!file) return tl::unexpected(file.error());
     auto parts = parts_of(file->bytes(), scene);
-    if (!parts) return fail(parts.error().code, parts.error().item, path + ": " + parts.error().message);
+    if (!parts) return fail(parts.error().code, parts.error().item, {path, ": ", parts.error().message});
+    for (Error& error : parts->left_out) error.message = path + ": " + std::string(error.message);
     return parts;
 }
 

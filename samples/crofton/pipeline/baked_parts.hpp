@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "assets/scene_source.hpp"
 #include "scene_occluders.hpp"
@@ -12,18 +13,23 @@
 namespace crofton::pipeline {
 
 struct BakedParts {
-    std::shared_ptr<const SceneOccluders> occluders;  // nullptr: the file has none
+    std::shared_ptr<const SceneOccluders> occluders;  // nullptr: the file has none of this scene
     std::shared_ptr<const pvs::Pvs> pvs;              // likewise
+    // Parts in the file that were baked of another scene and are not above. Occluders: other meshes, nodes or
+    // instances, with the first that differs. Sets: other triangles where they rest, or triangles that stand elsewhere.
+    std::vector<Error> left_out;
 };
 
 // Of a file by `crofton bake` or `crofton pvs`. The scene has been updated. Errors name the file: what cannot be read
-// or is damaged; neither occluders nor sets in it; baked of another scene, that is other meshes, nodes or instances,
-// with the first that differs.
+// or is damaged; neither occluders nor sets in it.
 [[nodiscard]] Result<BakedParts> load_baked_parts(const std::string& path, const scene::Scene& scene,
                                                   const assets::ReadLimits& limits = {});
 
 // Whether meshes, and which node holds which, are the same in both: then what was found or baked for one is the
 // other's.
 [[nodiscard]] bool same_parts(const scene::Scene& a, const scene::Scene& b);
+
+// Whether the sets were baked of this scene as it stands: what they hold has the same triangles in the same places.
+[[nodiscard]] bool is_baked_of(const pvs::Pvs& pvs, const scene::Scene& scene);
 
 }  // namespace crofton::pipeline

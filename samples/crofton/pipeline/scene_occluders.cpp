@@ -8,9 +8,6 @@
 namespace crofton::pipeline {
 namespace {
 
-// A node of more meshes is a level that was cut into pieces, not a house of several parts.
-constexpr std::size_t kMostParts = 16;
-
 // Nodes with the same meshes are of one kind; no occluders yet.
 SceneOccluders kinds_of(const scene::Scene& scene) {
     std::map<scene::NodeId, std::vector<scene::MeshId>> parts;
@@ -30,15 +27,9 @@ SceneOccluders kinds_of(const scene::Scene& scene) {
     return result;
 }
 
-// A level's flat parts are welded; bodies in it stay as they are found.
 void find_in(SceneOccluders::Kind& kind) {
-    if (auto found = occlude::find_occluders(kind.mesh)) kind.found = std::move(*found);
-    if (!kind.is_level) return;
-    auto welded = occlude::find_level_occluders(kind.mesh);
-    if (!welded) return;
-    std::erase_if(kind.found.occluders,
-                  [](const occlude::FoundOccluder& occluder) { return occluder.kind == occlude::OccluderKind::patch; });
-    for (occlude::FoundOccluder& part : welded->occluders) kind.found.occluders.push_back(std::move(part));
+    if (auto found = occlude::find_occluders(kind.mesh, {.level_triangles = kind.is_level ? kLevelTriangles : 0}))
+        kind.found = std::move(*found);
 }
 
 void forget_what_hides_nothing(SceneOccluders& occluders) {

@@ -5,10 +5,16 @@
 #include <crofton/core/executor.hpp>
 #include <crofton/occlude/occluder.hpp>
 #include <crofton/scene/scene.hpp>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace crofton::pipeline {
+
+// A node of more meshes is a level that was cut into pieces, not a house of several parts.
+inline constexpr std::size_t kMostParts = 16;
+// Triangles of a level's surfaces.
+inline constexpr std::uint32_t kLevelTriangles = 48;
 
 // Instances on one node are one object, as houses of several parts are: occluders are found in its meshes together.
 struct SceneOccluders {

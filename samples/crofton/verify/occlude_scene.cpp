@@ -10,13 +10,14 @@
 #include <map>
 
 #include "assets/scene_source.hpp"
+#include "pipeline/scene_occluders.hpp"
 
 namespace crofton::cli {
 namespace {
 
 using sampling::Random;
 
-constexpr std::size_t kThings = 1000, kMostParts = 16;
+constexpr std::size_t kThings = 1000;
 constexpr int kRaysPerView = 4096, kThingsEvery = 16;
 constexpr occlude::BufferSize kSceneSizes[] = {{160, 90}, {320, 180}, {480, 270}, {640, 360}};
 
@@ -37,9 +38,8 @@ Result<void> add_level(scene::Scene& scene, scene::NodeId node, const std::vecto
     for (const scene::MeshId id : ids) append(all, scene.mesh(id));
     const auto mesh = stage.world.add_mesh({.positions = all.positions, .indices = all.indices, .triangles = false});
     if (!mesh) return tl::unexpected(mesh.error());
-    const auto found = occlude::find_level_occluders(all, {.sides = occlude::Sides::both});
-    if (!found) return tl::unexpected(found.error());
-    if (auto set = stage.world.set_occluders(*mesh, found->occluders); !set) return set;
+    const occlude::FindOptions how{.sides = occlude::Sides::both, .level_triangles = pipeline::kLevelTriangles};
+    if (auto found = stage.world.find_occluders(*mesh, how); !found) return found;
     const auto object =
         stage.world.add({.mesh = *mesh, .node = stage.root, .transform = scene.world(node), .only_occludes = true});
     if (!object) return tl::unexpected(object.error());
@@ -60,8 +60,8 @@ Result<Stage> stage_of(assets::SceneSource& source) {
     }
     std::vector<std::pair<scene::NodeId, std::vector<scene::MeshId>>> objects;
     for (const auto& [node, ids] : parts) {
-        if (ids.size() <= kMostParts) objects.emplace_back(node, ids);
-        if (ids.size() <= kMostParts) continue;
+        if (ids.size() <= pipeline::kMostParts) objects.emplace_back(node, ids);
+        if (ids.size() <= pipeline::kMostParts) continue;
         for (const scene::MeshId id : ids) objects.push_back({node, {id}});
         if (auto added = add_level(scene, node, ids, stage); !added) return tl::unexpected(added.error());
     }

@@ -85,21 +85,26 @@ Result<std::unique_ptr<LoadedScene>> LoadedScene::load(const SceneRequest& reque
 }
 
 Result<void> LoadedScene::take_baked(const SceneRequest& request, const Method& method, const LoadedScene* like) {
-    // The file may have changed since it was loaded.
+    // The scene's file may have changed since it was loaded.
     const bool same = like != nullptr && like->method_.triangulation == method.triangulation &&
                       pipeline::same_parts(like->scene(), scene());
     if (same) {
         baked_ = like->baked_;
         if (auto found = like->pipeline_->occluders()) baked_.occluders = std::move(found);
+        if (baked_.pvs && !pipeline::is_baked_of(*baked_.pvs, scene())) {
+            baked_.pvs = nullptr;
+            source_.warnings.push_back(
+                "the visible sets are left out: something stands elsewhere than when they were "
+                "baked");
+        }
     } else if (!request.baked.empty()) {
         auto parts = pipeline::load_baked_parts(request.baked, source_.scene, request.limits);
-        // Occluders lie within the triangles as they were loaded; cut in another way they may be others. Any other
-        // error is the file's.
-        const bool may_differ = method.triangulation != Triangulation::loaded;
-        if (!parts && !(may_differ && parts.error().code == ErrorCode::invalid_argument))
-            return tl::unexpected(std::move(parts.error()));
-        if (parts) baked_ = std::move(*parts);
-        if (!parts) source_.warnings.push_back(std::move(parts.error().message));
+        if (!parts) return tl::unexpected(std::move(parts.error()));
+        // What was baked is of the triangles as they were loaded; cut in another way they may be others.
+        if (!parts->left_out.empty() && method.triangulation == Triangulation::loaded)
+            return tl::unexpected(std::move(parts->left_out.front()));
+        for (Error& error : parts->left_out) source_.warnings.push_back(std::move(error.message));
+        baked_ = std::move(*parts);
     }
     return {};
 }

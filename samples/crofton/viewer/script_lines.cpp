@@ -16,9 +16,9 @@ std::size_t line_at(const std::string& text, std::size_t position) {
 }  // namespace
 
 std::optional<std::size_t> line_of_syntax_error(const std::string& text) {
-    const auto position = assets::syntax_error_position(text);
-    if (!position) return std::nullopt;
-    return line_at(text, *position);
+    const auto error = assets::syntax_error(text);
+    if (!error) return std::nullopt;
+    return line_at(text, error->position);
 }
 
 std::vector<std::size_t> lines_of_events(const std::string& text) {

@@ -2,7 +2,7 @@
 #include "list/list_kernel.hpp"
 
 #include <algorithm>
-#include <crofton/cull/statistics.hpp>
+#include <crofton/cull/classify.hpp>
 
 // Also compile for AVX-512 VNNI (`vpdpwssd`).
 #define HWY_WANT_AVX3_DL 1

@@ -3,7 +3,7 @@
 
 #include <hwy/cache_control.h>
 #include <algorithm>
-#include <crofton/cull/statistics.hpp>
+#include <crofton/cull/classify.hpp>
 #include <cstddef>
 
 // Also compile for AVX-512 VNNI (`vpdpwssd`).

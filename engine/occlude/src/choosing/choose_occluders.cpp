@@ -129,10 +129,11 @@ OccluderCandidate candidate_of(const FoundOccluder& found, const scene::Transfor
     }
     // A reflection turns the winding round, and what is drawn with it.
     if (glm::determinant(transform.linear) < 0.0) normals = -normals;
-    const bool is_flat = glm::length(normals) >= 0.9 * area;
-    if (found.kind == OccluderKind::patch && is_flat) {
+    const double mean = glm::length(normals);
+    if (found.kind == OccluderKind::patch && mean >= 0.9 * area) {
         result.areas[0] = glm::vec3(normals);
-        result.front_only = found.sides == Sides::front;
+        // Parts that are turned away from the others are seen from behind them.
+        result.front_only = found.sides == Sides::front && mean >= 0.999 * area;
         return result;
     }
     if (found.kind == OccluderKind::patch) {

@@ -29,6 +29,9 @@ void add_walled_box(const Search& search, Vector<FoundOccluder>& found);
 // Appends patches of the whole mesh, each of triangles that belong to no other.
 void add_patches(const Search& search, Vector<FoundOccluder>& found);
 
+// Appends all triangles as surfaces of up to level_triangles, cut to each other where they meet.
+void add_level_surfaces(const Search& search, Vector<FoundOccluder>& found);
+
 [[nodiscard]] bool is_closed(const Piece& piece, Sides sides);
 [[nodiscard]] bool is_inside(const Search& search, const Piece& piece, const glm::dvec3& point);
 [[nodiscard]] Aabb bounds_of(const PieceMesh& mesh, const Piece& piece);

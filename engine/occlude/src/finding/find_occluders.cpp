@@ -109,6 +109,9 @@ Result<FoundOccluders> find_occluders(const TriangleMesh& mesh, const FindOption
     if (mesh.triangle_count() >= std::size_t{1} << 28)
         return fail(ErrorCode::out_of_range, mesh.triangle_count(),
                     "find_occluders: 2^28 triangles or more; split the mesh");
+    if (options.level_triangles > 0 && mesh.triangle_count() >= std::size_t{1} << 26)
+        return fail(ErrorCode::out_of_range, mesh.triangle_count(),
+                    "find_occluders: a level of 2^26 triangles or more; split it");
     PieceMesh pieces = split_into_pieces(mesh);
     if (pieces.triangles.empty())
         return fail(ErrorCode::empty, kNoItem, "find_occluders: the mesh has no valid triangle");
@@ -136,8 +139,12 @@ Result<FoundOccluders> find_occluders(const TriangleMesh& mesh, const FindOption
         if (!(is_convex && is_cheap)) add_boxes(search, piece, candidates);
     }
     add_walled_box(search, candidates);
-    add_patches(search, candidates);
+    const bool is_level = options.level_triangles > 0;
+    if (!is_level) add_patches(search, candidates);
     choose(search, caster, candidates, result);
+    if (!is_level) return result;
+    add_level_surfaces(search, result.occluders);
+    result.covered = result.mean_shadow;  // of all its triangles
     return result;
 }
 

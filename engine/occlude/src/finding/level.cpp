@@ -14,14 +14,17 @@ namespace {
 
 using Corners = std::array<std::uint32_t, 3>;
 
-// All vertices, sorted along the lines parallel to each axis that they lie on.
+// The vertices of triangles, sorted along the lines parallel to each axis that they lie on.
 class AxisLines {
   public:
-    explicit AxisLines(const Vector<glm::vec3>& positions) : positions_(positions) {
+    explicit AxisLines(const PieceMesh& mesh) : positions_(mesh.positions) {
+        Vector<std::uint32_t> used;
+        for (const Corners& t : mesh.triangles) used.insert(used.end(), t.begin(), t.end());
+        std::sort(used.begin(), used.end());
+        used.erase(std::unique(used.begin(), used.end()), used.end());
         for (int k = 0; k < 3; ++k) {
             Vector<std::uint32_t>& order = order_[static_cast<std::size_t>(k)];
-            order.resize(positions.size());
-            for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
+            order = used;
             std::sort(order.begin(), order.end(),
                       [&](std::uint32_t i, std::uint32_t j) { return is_before(k, positions_[i], positions_[j]); });
         }
@@ -67,7 +70,7 @@ bool is_on_axis_line(const Vector<glm::vec3>& positions, const Corners& t) {
 // Cuts triangles from their corners to the vertices on their sides, up to four times as many as there were. No vertex
 // is new, so that what is cut covers the same points exactly.
 Vector<Corners> cut_at_vertices(const PieceMesh& mesh) {
-    const AxisLines lines(mesh.positions);
+    const AxisLines lines(mesh);
     const std::size_t most = 4 * mesh.triangles.size();
     Vector<Corners> cut, open(mesh.triangles.rbegin(), mesh.triangles.rend());
     while (!open.empty()) {
@@ -89,7 +92,7 @@ Vector<Corners> cut_at_vertices(const PieceMesh& mesh) {
 
 class LevelDivision {
   public:
-    LevelDivision(const PieceMesh& mesh, const LevelOptions& options)
+    LevelDivision(const PieceMesh& mesh, const FindOptions& options)
         : mesh_(mesh), options_(options), triangles_(cut_at_vertices(mesh)) {}
 
     void run(Vector<FoundOccluder>& found) {
@@ -108,7 +111,7 @@ class LevelDivision {
     // In halves across the longest axis of the middles.
     void divide(std::span<std::uint32_t> triangles, Vector<FoundOccluder>& found) const {
         if (triangles.empty()) return;
-        if (triangles.size() <= options_.max_triangles) return add(triangles, found);
+        if (triangles.size() <= options_.level_triangles) return add(triangles, found);
         int axis = 0;
         double longest = -1.0;
         for (int k = 0; k < 3; ++k) {
@@ -161,7 +164,7 @@ class LevelDivision {
         for (std::size_t i = 0; i < sides.size();) {
             std::size_t end = i + 1;
             while (end < sides.size() && sides[end] == sides[i]) ++end;
-            occluder.edges += end - i == 1 ? 1u : 0u;
+            if (end - i != 2) occluder.edges += static_cast<std::uint32_t>(end - i);  // two triangles share it
             i = end;
         }
         occluder.mean_shadow = area * (options_.sides == Sides::front ? 0.25 : 0.5);
@@ -170,31 +173,14 @@ class LevelDivision {
     }
 
     const PieceMesh& mesh_;
-    const LevelOptions& options_;
+    const FindOptions& options_;
     Vector<Corners> triangles_;
 };
 
 }  // namespace
 
-Result<FoundOccluders> find_level_occluders(const TriangleMesh& level, const LevelOptions& options) {
-    if (options.max_triangles == 0)
-        return fail(ErrorCode::out_of_range, kNoItem, "find_level_occluders: max_triangles must be 1 or more");
-    if (level.indices.size() % 3 != 0)
-        return fail(ErrorCode::invalid_argument, level.indices.size(),
-                    "find_level_occluders: the index count is no multiple of three");
-    if (level.triangle_count() >= std::size_t{1} << 26)
-        return fail(ErrorCode::out_of_range, level.triangle_count(),
-                    "find_level_occluders: 2^26 triangles or more; split the level");
-    const PieceMesh mesh = split_into_pieces(level);
-    if (mesh.triangles.empty())
-        return fail(ErrorCode::empty, kNoItem, "find_level_occluders: the level has no valid triangle");
-    FoundOccluders result;
-    result.rejected = mesh.rejected;
-    result.pieces = static_cast<std::uint32_t>(mesh.pieces.size());
-    LevelDivision(mesh, options).run(result.occluders);
-    for (const FoundOccluder& occluder : result.occluders) result.mean_shadow += occluder.mean_shadow;
-    result.covered = result.mean_shadow;
-    return result;
+void add_level_surfaces(const Search& search, Vector<FoundOccluder>& found) {
+    LevelDivision(search.mesh, search.options).run(found);
 }
 
 }  // namespace crofton::occlude

@@ -346,6 +346,10 @@ CROFTON_API crofton_status crofton_world_body_contacts(const crofton_world* worl
 /* Finds what a body meets, exactly, by index: objects. Those without bodies are their boxes or balls. */
 CROFTON_API crofton_status crofton_world_overlap_body(const crofton_world* world, const crofton_placed* shape,
                                                       uint32_t layer_mask, crofton_found* found);
+/* Fills a struct whose `size` is set: the object nearest to a body, as crofton_world_closest_to_box. */
+CROFTON_API crofton_status crofton_world_closest_to_body(const crofton_world* world, const crofton_placed* shape,
+                                                         double max_distance, uint32_t layer_mask,
+                                                         crofton_closest_object* closest);
 /* Fills a struct whose `size` is set: the first object that a moving body meets. `options` or NULL. */
 CROFTON_API crofton_status crofton_world_cast(const crofton_world* world, const crofton_placed* shape,
                                               const crofton_motion* motion, const crofton_cast_options* options,
@@ -386,6 +390,7 @@ typedef struct crofton_find_options {
     uint32_t max_occluders, max_edges, max_boxes_a_piece, grid;
     double least_gain, flatness;
     uint32_t max_patch_triangles;
+    uint32_t level_triangles; /* not 0: a level of many small pieces, as surfaces of so many triangles, say 48 */
 } crofton_find_options;
 
 typedef struct crofton_occlusion_options {

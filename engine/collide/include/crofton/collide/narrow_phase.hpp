@@ -101,34 +101,20 @@ struct Capsule {
 [[nodiscard]] bool intersects(const Obb& box, const Sphere& sphere);
 [[nodiscard]] bool intersects(const Obb& box, const Capsule& capsule);
 
-// A convex body as the distance and contact queries see it: the hull of at most eight points, grown by a radius. It
-// lists the directions of its edges and the normals of its faces.
-struct ConvexShape {
-    glm::dvec3 points[8];
-    int point_count = 0;
-    glm::dvec3 edges[3];
-    int edge_count = 0;
-    glm::dvec3 normals[3];  // unit, or zero where degenerate
-    int normal_count = 0;
-    double radius = 0.0;
-};
-[[nodiscard]] ConvexShape to_convex_shape(const Obb& box);
-[[nodiscard]] ConvexShape to_convex_shape(const Sphere& sphere);
-[[nodiscard]] ConvexShape to_convex_shape(const Capsule& capsule);
-[[nodiscard]] ConvexShape to_convex_shape(const Triangle& triangle);
-
-// How far apart two convex bodies are, how deep they overlap, where they touch. When they will: convex::cast.
+// How far apart two bodies are, how deep they overlap, where they touch. Of hulls and of all other bodies: convex.
 
 struct Distance {
     double distance = 0.0;            // 0 when they meet
     glm::dvec3 on_a{0.0}, on_b{0.0};  // nearest points; of boxes that meet, one point within 1e-6 of the size of both
 };
-// Gilbert, Johnson, Keerthi 1988, in double, without a proven bound; about 1e-7 of the bodies' size where they
-// are not slender. Needles, a million times as long as wide, may be further off: convex::distance has proven bounds.
-[[nodiscard]] Distance distance(const ConvexShape& a, const ConvexShape& b);
 // Whether it is 0 is exact: iff intersects(a, b). Else within 1e-12 of the size, which is the sum of the half extents
 // and of the offset of the centres.
 [[nodiscard]] Distance distance(const Obb& a, const Obb& b);
+// The same for a capsule's segment, minus the radius; 0 iff intersects(box, capsule). A ball is a capsule whose ends
+// are equal.
+[[nodiscard]] Distance distance(const Obb& box, const Capsule& capsule);
+// In double: within 1e-15 of the coordinates' size and the radii.
+[[nodiscard]] Distance distance(const Capsule& capsule, const Sphere& ball);
 
 // The shortest motion of b that ends the overlap is depth · axis; the axis has unit length and points from a to b. A
 // negative depth is a gap: the bodies are at least so far apart. Over the separating axes of the two bodies: exact for
@@ -137,10 +123,9 @@ struct Penetration {
     double depth = 0.0;
     glm::dvec3 axis{0.0};
 };
-[[nodiscard]] Penetration penetration(const ConvexShape& a, const ConvexShape& b);
 [[nodiscard]] Penetration penetration(const Obb& a, const Obb& b);
 // The half-space's surface pushes the box out along its normal.
-[[nodiscard]] Penetration penetration(const Plane& half_space, const ConvexShape& body);
+[[nodiscard]] Penetration penetration(const Plane& half_space, const Obb& box);
 
 struct ContactPoint {
     glm::dvec3 position{0.0};  // midway between the surfaces, in the frame of the bodies asked about
@@ -168,7 +153,9 @@ enum class ManifoldPoints : std::uint8_t {
 // No contacts: no points.
 [[nodiscard]] Manifold contact_manifold(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& b_to_a,
                                         std::span<const mesh::MeshContact> contacts);
-[[nodiscard]] Manifold contact_manifold(const ConvexShape& a, const ConvexShape& b);  // one point, at the deepest place
+// One point, at the ball's deepest place; none where they do not meet. Balls with one center part along z.
+[[nodiscard]] Manifold contact_manifold(const Obb& box, const Sphere& ball);
+[[nodiscard]] Manifold contact_manifold(const Sphere& a, const Sphere& b);
 [[nodiscard]] Manifold contact_manifold(const Plane& half_space, const Obb& box,
                                         ManifoldPoints points = ManifoldPoints::reduced);
 

@@ -136,7 +136,7 @@ enum class Sides : std::uint8_t {
 // segment, a disc, a point.
 class Body {
   public:
-    [[nodiscard]] static Result<Body> ball(float radius);
+    [[nodiscard]] static Result<Body> ball(double radius);
     // All points within `radius` of the segment from −half_height to half_height.
     [[nodiscard]] static Result<Body> capsule(float half_height, float radius);
     [[nodiscard]] static Result<Body> cylinder(float half_height, float radius);
@@ -150,7 +150,7 @@ class Body {
     // { x : dot(normal, x) + offset ≥ 0 }: `normal`, of any length but 0, points into the solid, as everywhere.
     [[nodiscard]] static Result<Body> half_space(const Plane& plane);
     // All points within `radius` of `core`: of any convex kind but a half-space.
-    [[nodiscard]] static Result<Body> rounded(const Body& core, float radius);
+    [[nodiscard]] static Result<Body> rounded(const Body& core, double radius);
     // The mesh's triangles: a surface, also where it is closed. Error: a tree without triangles.
     [[nodiscard]] static Result<Body> mesh(const mesh::MeshTree& mesh, Sides sides = Sides::both);
     // Its triangles, whose fronts look up.

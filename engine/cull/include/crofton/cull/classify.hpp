@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// One bound, or many, against a view: verdicts, and limits of what is worth drawing.
+// One bound, or many, against a view: verdicts, limits of what is worth drawing, and what a query cost.
 #pragma once
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/core/error.hpp>
 #include <crofton/core/memory.hpp>
-#include <crofton/cull/statistics.hpp>
+#include <crofton/core/version.hpp>
 #include <crofton/geometry/box.hpp>
 #include <crofton/geometry/camera.hpp>
 #include <crofton/geometry/shapes.hpp>
@@ -54,6 +54,35 @@ void classify(const Frustum& frustum, std::span<const Obb> boxes, std::span<Verd
               CullMode mode = CullMode::exact);
 
 // What a query of a list answers.
+
+// What a query cost, and what of it was in vain.
+
+#if defined(CROFTON_NO_STATISTICS)
+inline constexpr bool kCountStatistics = false;  // every number below stays 0, and counting costs nothing
+#else
+inline constexpr bool kCountStatistics = true;
+#endif
+
+// The same on every processor but for exact_tests: how many items are too near to call in floats depends on whether the
+// processor fuses products with sums.
+struct Statistics {
+    std::uint64_t nodes_tested = 0;    // bounds of inner nodes and leaves against planes
+    std::uint64_t boxes_tested = 0;    // items' boxes against planes
+    std::uint64_t accepted_whole = 0;  // items reported because a node above them is inside
+    std::uint64_t straddling = 0;      // items reported as straddling
+    std::uint64_t exact_tests = 0;     // items that went through the second stage
+    std::uint64_t improper = 0;        // items that no plane rejects and that are outside all the same (mode exact)
+
+    Statistics& operator+=(const Statistics& other) {
+        nodes_tested += other.nodes_tested;
+        boxes_tested += other.boxes_tested;
+        accepted_whole += other.accepted_whole;
+        straddling += other.straddling;
+        exact_tests += other.exact_tests;
+        improper += other.improper;
+        return *this;
+    }
+};
 
 // Bit i % 64 of word i / 64 is bound i's.
 struct VerdictBits {

@@ -6,7 +6,6 @@
 #include <crofton/core/executor.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/cull/classify.hpp>
-#include <crofton/cull/statistics.hpp>
 #include <crofton/geometry/camera.hpp>
 #include <cstddef>
 #include <cstdint>

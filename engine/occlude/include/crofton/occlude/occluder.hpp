@@ -119,12 +119,19 @@ struct FindOptions {
     // A patch is drawn triangle by triangle, many times as slowly as a box. In a town those of more triangles take five
     // times as long as all other occluders and hide 1 % of the triangles.
     std::uint32_t max_patch_triangles = 4;
+    // 0: a mesh of its own. Else a level made of many small pieces: all its triangles become surfaces of so many at
+    // most; 48 is a good number. They take the place of patches, are of that kind, and need not be flat. max_occluders
+    // and max_edges do not count them. Walls, floors and ceilings that are near each other are one surface: within it no pixel is lost where they meet.
+    // Triangles are cut where a vertex of another lies on one of their sides along an axis, which covers the same
+    // points exactly. There are up to four times as many then; the rest keep their seams. Each triangle is drawn:
+    // slower than boxes, for what has none.
+    std::uint32_t level_triangles = 0;
     // Cells along each axis of the grid that boxes are looked for in, 4 to 32: finer is slower and finds larger boxes.
     std::uint32_t grid = 24;
 };
 
 struct FoundOccluders {
-    // In the order they were chosen: by gain per edge.
+    // In the order they were chosen: by gain per edge. Then surfaces of a level.
     Vector<FoundOccluder> occluders;
     double mean_shadow = 0.0;         // of the whole mesh; an estimate, as `covered`
     double covered = 0.0;             // of the occluders together
@@ -145,23 +152,9 @@ struct FoundOccluders {
 // is hidden by the mesh, from any eye that piece_bounds and eyes_within allow (docs/notes/occluder_finding.md). A
 // triangle with a vertex that is NaN, infinite or beyond 1e12, or an index out of range, is left out and listed in
 // rejected. The result depends on the mesh and the options alone; greedy, so not the best for the budget. Errors: an
-// index count that is no multiple of three; 2^28 triangles or more; no valid triangle (empty); an option out of its
-// range.
+// index count that is no multiple of three; 2^28 triangles or more, 2^26 of a level; no valid triangle (empty); an
+// option out of its range.
 [[nodiscard]] Result<FoundOccluders> find_occluders(const TriangleMesh& mesh, const FindOptions& options = {});
-
-struct LevelOptions {
-    Sides sides = Sides::front;        // that are drawn
-    std::uint32_t max_triangles = 48;  // of an occluder
-};
-
-// All triangles of a level made of many small pieces, in occluders of kind patch that need not be flat. Walls, floors
-// and ceilings that are near each other are one surface: within an occluder no pixel is lost where they meet. Triangles
-// are cut where a vertex of another lies on one of their sides along an axis, which covers the same points exactly.
-// There are up to four times as many then; the rest keep their seams. mean_shadow and covered are a quarter of the
-// summed area for Sides::front and half of it for both. Triangles without area are left out: no occluders where all
-// are. Each triangle is drawn: slower than boxes, for what has none. Errors: as find_occluders(); 2^26 triangles or
-// more; max_triangles of 0.
-[[nodiscard]] Result<FoundOccluders> find_level_occluders(const TriangleMesh& level, const LevelOptions& options = {});
 
 // How much an occluder hides from a region of eyes: a measure to rank occluders by, before any view is known.
 

@@ -76,8 +76,8 @@ struct OccluderCandidate {
 
 [[nodiscard]] OccluderCandidate candidate_of(const Obb& box);
 // An occluder of a mesh that stands under `transform`. A convex body counts as a cube of its surface area. Of a patch
-// the mean normal counts. Where that is shorter than nine tenths, as of a closed mesh, a box of the patch's mean
-// shadows along the axes counts.
+// the mean normal counts, and its front alone where all triangles have nearly that normal. Where the mean is shorter
+// than nine tenths, as of a closed mesh, a box of the patch's mean shadows along the axes counts.
 [[nodiscard]] OccluderCandidate candidate_of(const FoundOccluder& found, const scene::Transform& transform);
 
 // Candidates by id, stored for vector kernels. Ids are 0, 1, 2, … in the order of add().

@@ -59,6 +59,8 @@ struct Subject {
 // A scene as of its last update(): objects are its instances. Those that are removed, in no layer or in `moving` have
 // no triangles: nothing is said about them, and they are always drawn. Errors: no triangle at all (empty).
 [[nodiscard]] Result<Subject> subject_of(const scene::Scene& scene, std::span<const scene::InstanceId> moving = {});
+// 64 bits of the triangles, where they are, and whose they are. Boxes do not count.
+[[nodiscard]] std::uint64_t fingerprint_of(const Subject& subject);
 
 // What lines find.
 
@@ -182,6 +184,8 @@ class Pvs {
     [[nodiscard]] PairState state(std::size_t cell, std::uint32_t object) const;
     [[nodiscard]] bool is_baked(std::uint32_t object) const;  // false: it had no triangles, and is always drawn
     [[nodiscard]] PairCounts counts() const;                  // of cells that are not solid and objects that were baked
+    // fingerprint_of the subject that was baked. Sets of other triangles hide what is visible: ask before you use them.
+    [[nodiscard]] std::uint64_t subject_fingerprint() const { return subject_; }
     // Of the bake: see BakeOptions and Bake::epsilon_reached.
     [[nodiscard]] double epsilon() const { return epsilon_; }
     [[nodiscard]] double confidence() const { return confidence_; }
@@ -212,6 +216,7 @@ class Pvs {
 
     Cells cells_;
     std::uint32_t objects_ = 0;
+    std::uint64_t subject_ = 0;
     double epsilon_ = 1.0, confidence_ = 0.0;
     Vector<CellKind> kinds_;
     Vector<std::uint64_t> baked_;        // by object

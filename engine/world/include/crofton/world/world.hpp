@@ -170,8 +170,8 @@ class World {
     void overlap(const Obb& shape, Vector<ObjectRef>& found, std::uint32_t layers = ~0u) const;
     void overlap(const Sphere& shape, Vector<ObjectRef>& found, std::uint32_t layers = ~0u) const;
     void overlap(const collide::Capsule& shape, Vector<ObjectRef>& found, std::uint32_t layers = ~0u) const;
-    // The same for any body but a half-space, exactly; objects with bodies by these. Balls are rounded to float. A pose
-    // that is not valid meets nothing.
+    // The same for any body but a half-space, exactly; objects with bodies by these. Of bounds beyond
+    // convex::kMaxExtent that part alone. A pose that is not valid meets nothing.
     void overlap(const convex::Body& shape, const RigidTransform& pose, Vector<ObjectRef>& found,
                  std::uint32_t layers = ~0u) const;
     // The first object that a moving body meets: as convex::cast against each one's body, ball or box at rest. Errors:
@@ -186,6 +186,10 @@ class World {
                                                        std::uint32_t layers = ~0u) const;
     [[nodiscard]] std::optional<ClosestObject> closest(const collide::Capsule& shape, double max_distance,
                                                        std::uint32_t layers = ~0u) const;
+    // The same for any body but a half-space; objects with bodies by these. Within the bounds that convex::distance
+    // proves. Nothing for a pose that is not valid.
+    [[nodiscard]] std::optional<ClosestObject> closest(const convex::Body& shape, const RigidTransform& pose,
+                                                       double max_distance, std::uint32_t layers = ~0u) const;
 
     // Found by update(): objects whose boxes or balls meet, in order; and of them those that touch, with those that no
     // longer do.
