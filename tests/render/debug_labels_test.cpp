@@ -99,7 +99,7 @@ Image draw_labelled(Device& device) {
 TEST_SUITE("render/debug_labels") {
     TEST_CASE("with validation every buffer and pipeline that stays has a name, and so have images and queries") {
         CROFTON_REQUIRE_DEVICE(device);
-        REQUIRE(device->context().labels.set_name != nullptr);
+        REQUIRE((device->context().labels.set_name != nullptr));
         note_objects(*device);
         listen(*device);
         draw_labelled(*device);
@@ -158,14 +158,14 @@ TEST_SUITE("render/debug_labels") {
             MESSAGE("skipped: " << plain.error().message);
             return;
         }
-        CHECK(plain->context().labels.set_name == nullptr);
-        CHECK(plain->context().labels.begin == nullptr);
+        CHECK((plain->context().labels.set_name == nullptr));
+        CHECK((plain->context().labels.begin == nullptr));
         DeviceOptions options;
         options.kind = DeviceKind::cpu;
         options.instance_extensions = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME};
         auto labelled = Device::create(options);
         REQUIRE(labelled);
-        CHECK(labelled->context().labels.set_name != nullptr);
+        CHECK((labelled->context().labels.set_name != nullptr));
         const Image without = draw_labelled(*plain), with = draw_labelled(*labelled);
         CHECK(without.rgba == with.rgba);
     }
