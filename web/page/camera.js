@@ -37,9 +37,11 @@ export function edgesOf(camera, reach = 400) {
     return Float32Array.from(lines.flat());
 }
 
-/** Where the flight through the streets is after `seconds`. */
+/** Where the flight around a square of streets is after `seconds`; it turns on the last metres before each corner. */
 export function tour(seconds) {
-    const u = seconds / 40;
-    return { position: [420 * Math.sin(u) + 20, 12 + 9 * Math.sin(3.1 * u), 420 * Math.cos(1.3 * u) + 20],
-        yaw: 2.2 * u + 0.6 * Math.sin(2.3 * u), pitch: -0.1 + 0.06 * Math.sin(5 * u) };
+    const half = 200, along = 18 * seconds, leg = Math.floor(along / (2 * half)), u = along - 2 * half * leg;
+    const corners = [[half, half], [half, -half], [-half, -half], [-half, half]], ways = [[0, -1], [-1, 0], [0, 1], [1, 0]];
+    const [x, z] = corners[leg % 4], [dx, dz] = ways[leg % 4], bend = Math.max(0, (u - 2 * half + 40) / 40);
+    return { position: [x + dx * u, 9 + 4 * Math.sin(seconds / 5), z + dz * u],
+        yaw: -Math.PI / 2 * (leg + bend * bend * (3 - 2 * bend)), pitch: -0.02 };
 }
