@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The page: a flight through the town, its switches, and what the address says:
 //   #at=x,y,z,yaw,pitch  stand there      #frozen=x,y,z,yaw,pitch  the camera that culls stands there
-//   #criterion=volume    #occlusion=0     #simd=0  the build without SIMD      #all  draw what is culled too
+//   #criterion=volume    #occlusion=0     #simd=0  the build without SIMD
+//   #all  draw what is culled too        #plainly  edges are not smoothed
 import { load } from 'crofton';
 import { makeTown } from './town.js';
 import { CRITERIA, Culling, VERDICTS } from './culling.js';
@@ -104,7 +105,11 @@ function bytesFromScript(name) {
     return new Promise((done, failed) => {
         const script = document.createElement('script');
         script.src = `${name}.wasm.js`;
-        script.onload = () => done(Uint8Array.from(atob(globalThis.croftonBytes), (c) => c.charCodeAt(0)));
+        script.onload = () => {
+            const text = atob(globalThis.croftonBytes), bytes = new Uint8Array(text.length);
+            for (let i = 0; i < bytes.length; ++i) bytes[i] = text.charCodeAt(i);
+            done(bytes);
+        };
         script.onerror = () => failed(new Error(`${name}.wasm.js is missing beside this page`));
         document.head.append(script);
     });
@@ -113,7 +118,7 @@ function bytesFromScript(name) {
 async function start() {
     if (typeof WebAssembly !== 'object')
         return say('This browser has no WebAssembly, or it is switched off. The page needs it for culling; the guides work without.');
-    const gl = element('view').getContext('webgl2', { antialias: true, preserveDrawingBuffer: true });
+    const gl = element('view').getContext('webgl2', { antialias: !address.has('plainly'), preserveDrawingBuffer: true });
     if (!gl) return say('This browser gives no WebGL 2 here. The page needs it for drawing; the guides work without.');
     element('view').addEventListener('webglcontextlost', () => say('The graphics driver stopped WebGL. Load the page again.'));
     const { hasSimd } = await import('crofton');

@@ -36,8 +36,8 @@ export class Browser {
         this.#process.stdio[3].write(JSON.stringify({ id, method, params, sessionId }) + '\0');
         return new Promise((done, failed) => this.#waiting.set(id, { done, failed }));
     }
-    /** A page of that size at `url`, once `when` (JavaScript) is true in it. */
-    async open(url, { width = 960, height = 600, when = 'true' } = {}) {
+    /** A page of that size at `url`, once `when` (JavaScript) is true in it; `first` runs before its scripts. */
+    async open(url, { width = 960, height = 600, when = 'true', first } = {}) {
         const { targetId } = await this.send('Target.createTarget', { url: 'about:blank' });
         const { sessionId } = await this.send('Target.attachToTarget', { targetId, flatten: true });
         const page = {
@@ -51,6 +51,10 @@ export class Browser {
             close: () => this.send('Target.closeTarget', { targetId }),
         };
         await this.send('Emulation.setDeviceMetricsOverride', { width, height, deviceScaleFactor: 1, mobile: false }, sessionId);
+        if (first) {
+            await this.send('Page.enable', {}, sessionId);
+            await this.send('Page.addScriptToEvaluateOnNewDocument', { source: first }, sessionId);
+        }
         await this.send('Page.navigate', { url }, sessionId);
         for (const end = Date.now() + 60000; !await page.evaluate(when).catch(() => false);) {
             if (Date.now() > end) throw new Error(`${url}: waited a minute for ${when}`);

@@ -52,15 +52,17 @@ const pixels = (page) => page.evaluate(`(() => { const p = croftonPage, gl = p.g
         else if (r > 1.2 * g && g > 1.3 * b) ++share.amber; }
     return { digest: digest >>> 0, ...share }; })()`);
 
-test('page: interactive within 2 s', { skip }, () => see('', async (page) => {
-    const ms = Number(await page.evaluate('document.documentElement.dataset.ready'));
-    assert.ok(ms < 2000 * Number(process.env.CROFTON_SLOW ?? 1), `${ms} ms`);
-}));
+// The first load also starts the browser's processes and its graphics, here by software: the next is measured.
+test('page: interactive within 2 s', { skip }, async () => {
+    const ready = (page) => page.evaluate('Number(document.documentElement.dataset.ready)');
+    const first = await see('', ready), next = await see('', ready);
+    assert.ok(next < 2000 * Number(process.env.CROFTON_SLOW ?? 1), `${first} ms, then ${next} ms`);
+});
 
 test('page: with what is culled drawn as well, the picture is the same', { skip }, async () => {
     for (const at of [STREET, '20,14,300,0.1,-0.1', '-60,3,-120,2.1,0.05']) {
-        const some = await see(`at=${at}`, async (page) => [await pixels(page), await answer(page)]);
-        const all = await see(`at=${at}&all`, async (page) => [await pixels(page), await answer(page)]);
+        const some = await see(`plainly&at=${at}`, async (page) => [await pixels(page), await answer(page)]);
+        const all = await see(`plainly&at=${at}&all`, async (page) => [await pixels(page), await answer(page)]);
         assert.equal(some[0].digest, all[0].digest, at);
         assert.ok(some[1].drawn * 10 < all[1].drawn, `${some[1].drawn} of ${all[1].drawn} drawn`);
         assert.ok(some[0].green > 1000 && some[0].red === 0, JSON.stringify(some[0]));
@@ -126,15 +128,13 @@ test('page: without SIMD the same counts', { skip: skip || (builds.length < 2 ? 
     assert.deepEqual([one.counts, one.digest], [other.counts, other.digest]);
 });
 
-test('page: says so where there is no WebGL, or no WebAssembly', { skip }, async () => {
-    for (const [flag, word] of [['--disable-3d-apis', /WebGL/], ['--js-flags=--noexpose-wasm', /WebAssembly/]]) {
-        const poor = new Browser(flag);
-        try {
-            const page = await poor.open(ADDRESS, { when: READY });
-            assert.equal(await page.evaluate(READY), 'refused');
-            assert.match(await page.evaluate('document.getElementById("message").innerText'), word);
-        } finally {
-            await poor.close();
-        }
+test('page: says so where there is no WebGL, or no WebAssembly, and starts where there is no SIMD', { skip }, async () => {
+    for (const [first, state, word] of [['HTMLCanvasElement.prototype.getContext = () => null', 'refused', /no WebGL 2/],
+        ['delete globalThis.WebAssembly', 'refused', /no WebAssembly/],
+        ...builds.length < 2 ? [] : [['WebAssembly.validate = () => false', 'ready', /^$/]]]) {
+        const page = await browser.open(ADDRESS, { when: READY, first });
+        assert.equal(await page.evaluate(READY), state);
+        assert.match(await page.evaluate('document.getElementById("message").textContent'), word);
+        await page.close();
     }
 });
