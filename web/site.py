@@ -66,9 +66,26 @@ def write_guides(out, work):
                 "GENERATE_TREEVIEW": "YES", "TOC_INCLUDE_HEADINGS": 3, "AUTOLINK_SUPPORT": "NO", "USE_MATHJAX": "NO",
                 "WARN_IF_DOC_ERROR": "NO"}
     run_doxygen("\n".join(f"{name} = {value}" for name, value in settings.items()), work / "guides.txt")
-    # Pages that refer to a picture by its path find it there.
-    for kind in ("pictures",):
-        shutil.copytree(ROOT / "docs" / kind, out / "guides" / kind, dirs_exist_ok=True)
+    shutil.copytree(ROOT / "docs/pictures", out / "guides/pictures", dirs_exist_ok=True)
+    mend_links(out / "guides")
+
+
+def mend_links(guides):
+    """Links to pages that doxygen left as they are, as those with an anchor, and pictures named from below docs/notes."""
+    pages = {re.sub(r"^md_docs_|_", "", p.stem): p.name for p in guides.glob("md_docs_*.html")}
+
+    def page_of(match):
+        up, name = match.group(1).startswith("../"), re.sub(r"_|/|\.\./", "", match.group(1))
+        beside = "notes" + name if below and not up else name
+        found = pages.get(beside) or pages.get(name)
+        return f'href="{found}{match.group(2) or ""}"' if found else match.group(0)
+
+    for page in guides.glob("*.html"):
+        text, below = page.read_text(), page.name.startswith("md_docs_notes")
+        mended = re.sub(r'href="([\w/.]+)\.md(#[^"]*)?"', page_of, re.sub(r'src="\.\./(docs/)?pictures/', 'src="pictures/', text))
+        mended = mended.replace('href="../pictures/', 'href="pictures/').replace('data="../pictures/', 'data="pictures/')
+        if mended != text:
+            page.write_text(mended)
 
 
 def main():
