@@ -30,7 +30,7 @@ export async function loadModule({ simd, wasmBinary } = {}) {
     try {
         const { default: create } = await import(`../wasm/${name}.js`);
         const binary = wasmBinary ?? await bytesOf(new URL(`../wasm/${name}.wasm`, import.meta.url));
-        made = await create({ wasmBinary: binary, printErr: (line) => console.warn(line) });
+        made = await create({ wasmBinary: binary, locateFile: (name) => name, printErr: (line) => console.warn(line) });
     } catch (error) {
         if (error?.name === 'CroftonError') throw error;
         throw failure('unavailable', `the build "${name}" could not be started: ${error?.message ?? error}`);

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// Cameras of the page: { position, yaw, pitch }, radians; yaw 0 looks along -z. Matrices by columns, for WebGL.
+export const LENS = { fovY: 1, near: 0.3, far: 1500 };
+
+export function cameraOf({ position, yaw, pitch }, aspect) {
+    const forward = [Math.sin(yaw) * Math.cos(pitch), Math.sin(pitch), -Math.cos(yaw) * Math.cos(pitch)];
+    return { position, forward, up: [0, 1, 0], aspect, ...LENS };
+}
+
+const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+const unit = (a) => a.map((c) => c / Math.hypot(...a));
+
+function sides({ forward, up }) {
+    const right = unit(cross(forward, up));
+    return [right, cross(right, forward)];
+}
+
+/** From the world to clip space. */
+export function matrixOf(camera) {
+    const [right, up] = sides(camera), { position, forward, fovY, aspect, near, far } = camera;
+    const t = 1 / Math.tan(fovY / 2), a = (far + near) / (far - near), b = 2 * far * near / (far - near);
+    const dot = (v) => v[0] * position[0] + v[1] * position[1] + v[2] * position[2];
+    const columns = [];
+    for (let k = 0; k < 3; ++k) columns.push(t / aspect * right[k], t * up[k], a * forward[k], forward[k]);
+    return Float32Array.from([...columns, -t / aspect * dot(right), -t * dot(up), -a * dot(forward) - b, -dot(forward)]);
+}
+
+/** The twelve edges of a frustum as points of lines; no farther than `reach`. */
+export function edgesOf(camera, reach = 400) {
+    const [right, up] = sides(camera), { position, forward, fovY, aspect, near, far } = camera;
+    const corner = (x, y, d) => position.map((p, k) =>
+        p + d * (forward[k] + Math.tan(fovY / 2) * (x * aspect * right[k] + y * up[k])));
+    const at = [near, Math.min(far, reach)].map((d) => [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([x, y]) => corner(x, y, d)));
+    const lines = [];
+    for (let i = 0; i < 4; ++i)
+        lines.push(at[0][i], at[1][i], at[1][i], at[1][(i + 1) % 4], at[0][i], at[0][(i + 1) % 4]);
+    return Float32Array.from(lines.flat());
+}
+
+/** Where the flight around a square of streets is after `seconds`; it turns on the last metres before each corner. */
+export function tour(seconds) {
+    const half = 200, along = 18 * seconds, leg = Math.floor(along / (2 * half)), u = along - 2 * half * leg;
+    const corners = [[half, half], [half, -half], [-half, -half], [-half, half]], ways = [[0, -1], [-1, 0], [0, 1], [1, 0]];
+    const [x, z] = corners[leg % 4], [dx, dz] = ways[leg % 4], bend = Math.max(0, (u - 2 * half + 40) / 40);
+    return { position: [x + dx * u, 9 + 4 * Math.sin(seconds / 5), z + dz * u],
+        yaw: -Math.PI / 2 * (leg + bend * bend * (3 - 2 * bend)), pitch: -0.02 };
+}
