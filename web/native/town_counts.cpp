@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What native Crofton says of the page's town: for each camera how many objects are outside, straddling, inside and
+// What native Crofton says of the page's town. For each camera: how many objects are outside, straddling, inside and
 // occluded, and a digest of all verdicts. Reads doubles, written by web/test/page.test.js.
 #include <crofton/capi/crofton.h>
 
@@ -19,7 +19,9 @@ void must(crofton_status status) {
 struct Reader {
     std::vector<double> numbers;
     std::size_t at = 0;
-    double next() { return at < numbers.size() ? numbers[at++] : (std::puts("the file ends early"), std::exit(1), 0.0); }
+    double next() {
+        return at < numbers.size() ? numbers[at++] : (std::puts("the file ends early"), std::exit(1), 0.0);
+    }
     std::size_t count() { return static_cast<std::size_t>(next()); }
     template <class T>
     std::vector<T> list(std::size_t n) {
