@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Lines as witnesses beside the visible sets that q3map2 made: `bench_quake3_pvs [--lines N] LEVEL.bsp …`
-// A level's leaves come in clusters. A stretch of a uniform line that meets neither solid leaves nor surfaces witnesses
-// that all clusters it passes see each other; their sets must say so. bench/quake3_pvs.sh fetches levels and runs this.
+// A level's leaves come in clusters. Take a stretch of a uniform line that meets neither solid leaves nor surfaces: all
+// clusters that it passes see each other, and the sets must say so. bench/quake3_pvs.sh fetches levels and runs this.
 #include <algorithm>
 #include <cmath>
 #include <crofton/radiosity/lines.hpp>
@@ -20,8 +20,7 @@ namespace {
 using namespace crofton;
 using Stretch = bench::Quake3Level::Stretch;
 
-// Corners of leaves are rounded to eighths of a unit by the level's compiler, and nearly parallel planes meet far off:
-// shorter stretches than this witness nothing.
+// The level's compiler rounds corners of leaves to eighths of a unit. So shorter stretches witness nothing.
 constexpr double kShortest = 0.25;
 
 class Comparison {
