@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Lines as witnesses beside the visible sets that q3map2 made: `bench_quake3_pvs [--lines N] LEVEL.bsp …`
-// A level's leaves come in clusters. Take a stretch of a line that meets neither solid leaves nor surfaces. All clusters
-// that it passes see each other, and the sets must say so. bench/quake3_pvs.sh fetches levels and runs this.
+// A level's leaves come in clusters. Take a stretch of a line that meets neither solid leaves nor surfaces. All
+// clusters that it passes see each other, and the sets must say so. bench/quake3_pvs.sh fetches levels and runs this.
 #include <algorithm>
 #include <cmath>
 #include <crofton/radiosity/lines.hpp>
