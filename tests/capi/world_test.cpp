@@ -54,6 +54,12 @@ TEST_SUITE("capi/world") {
         CHECK(crofton_world_contact(world, 0, nullptr) == bad);
         CHECK(crofton_found_objects(s.found.get(), nullptr, &count) == bad);
         CHECK(crofton_found_hits(s.found.get(), nullptr, &count) == bad);
+        const crofton_object_pair* pairs = nullptr;
+        const crofton_object_ref* objects = nullptr;
+        const crofton_object_hit* hits = nullptr;
+        CHECK(crofton_world_pairs(world, &pairs, nullptr) == bad);
+        CHECK(crofton_found_objects(s.found.get(), &objects, nullptr) == bad);
+        CHECK(crofton_found_hits(s.found.get(), &hits, nullptr) == bad);
         // No handle, or one of another kind.
         CHECK(crofton_world_update(nullptr, nullptr) == CROFTON_BAD_HANDLE);
         CHECK(crofton_world_destroy(reinterpret_cast<crofton_world*>(s.found.get())) == CROFTON_BAD_HANDLE);

@@ -66,6 +66,16 @@ TEST_SUITE("convex/outline") {
         }
     }
 
+    TEST_CASE("a rounded triangle that is a segment or a point draws finite lines") {
+        const glm::vec3 a(1, 2, 3), b(4, 2, 3);
+        for (const Body& flat : {Body::triangle(a, b, a).value(), Body::triangle(a, a, a).value()}) {
+            const std::vector<OutlineLine> lines = outline_lines(Body::rounded(flat, 0.5).value(), at({}));
+            CHECK_FALSE(lines.empty());
+            for (const OutlineLine& line : lines)
+                for (const glm::dvec3& end : {line.from, line.to}) CHECK(glm::length(end) < 10.0);
+        }
+    }
+
     TEST_CASE("a compound and a height field draw their parts, a half-space its square, contacts their normals") {
         const Body box = Body::box({1, 1, 1}).value();
         const Compound pair =
