@@ -38,6 +38,11 @@ else()
     set(pc_private "")
     set(pc_libs " -lstdc++ -lm -pthread")
 endif()
+get_target_property(pc_qhull Qhull::qhull_r ALIASED_TARGET)  # qhullstatic_r, where only that is installed
+string(REGEX REPLACE "^(Qhull::|.*NOTFOUND$)" "" pc_qhull "${pc_qhull}")
+if(NOT pc_qhull)
+    set(pc_qhull qhull_r)
+endif()
 file(RELATIVE_PATH pc_to_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 configure_file(${CMAKE_CURRENT_LIST_DIR}/crofton.pc.in ${PROJECT_BINARY_DIR}/crofton.pc @ONLY)
 # What C++ needs besides, -std=c++20, would be an error in C.

@@ -159,6 +159,7 @@ struct BodyContact {
     ContactPhase phase = ContactPhase::began;
     convex::TrackedPoint* points = nullptr;
     std::uint32_t point_count = 0;
+    std::uint32_t unused = 0;  // the same size as in C where numbers of 8 bytes are aligned to 4
 };
 
 // An object that a moving body meets, at that time.
