@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <cmath>
+#include <fstream>
 #include <map>
 
 #include "run_cli.hpp"
@@ -99,6 +100,36 @@ TEST_SUITE("cli/verify") {
             CHECK(row["holds"] == true);
             CHECK(row["cases"].get<std::uint64_t>() > 100);
         }
+    }
+
+    TEST_CASE("bodies of bad input are refused by name, and hulls, meshes and maps as bodies are told exactly") {
+        CliRun run = run_cli("verify collide --trials 1000 --json -");
+        CHECK(run.status == 0);
+        std::size_t bad = 0;
+        for (const auto& row : run.json()) {
+            CHECK(row["holds"] == true);
+            bad += row["source"] == "bad input" && row["cases"].get<std::uint64_t>() > 0;
+        }
+        CHECK(bad == 10);
+        const std::string mesh = scratch().file("tetrahedra.obj"), map = scratch().file("squares.poly"),
+                          tests = "--trials 8000 --json -";
+        std::ofstream(mesh)
+            << "v 0 0 0\nv 4 0 0\nv 0 4 0\nv 0 0 4\nv 4 4 4\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\nf 2 5 3\n"
+               "f 3 5 4\nf 4 5 2\n";
+        std::ofstream(map) << "P high 1\n4 0 0 9 0 9 4 0 4\nP low 2\n4 0 4 9 4 9 9 0 9\n4 2 5 3 5 3 6 2 6\n";
+        run = run_cli("verify collide --scene " + mesh + " --scene " + map + " " + tests);
+        CHECK(run.status == 0);
+        CHECK(run.json().size() == 8 + 4);
+        std::size_t fields = 0;
+        for (const auto& row : run.json()) {
+            CHECK(row["holds"] == true);
+            CHECK(row["cases"].get<std::uint64_t>() > 0);
+            fields += row["claim"].get<std::string>().find("height field") != std::string::npos;
+        }
+        CHECK(fields == 3);
+        run = run_cli("verify collide --scene no_such_map.poly");
+        CHECK(run.status == 2);
+        CHECK(run.err.find("no_such_map.poly") != std::string::npos);
     }
 
     TEST_CASE("the table lists one claim a line") {

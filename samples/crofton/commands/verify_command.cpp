@@ -8,6 +8,7 @@
 #include "json/json.hpp"
 #include "report.hpp"
 #include "verify/collide.hpp"
+#include "verify/convex_scene.hpp"
 #include "verify/cull.hpp"
 #include "verify/occlude.hpp"
 #include "verify/occlude_scene.hpp"
@@ -36,8 +37,8 @@ struct VerifyRequest {
 };
 
 int run_verify(const VerifyRequest& request) {
-    if (!request.scenes.empty() && request.topic != "occlude") {
-        std::fputs("crofton: --scene goes with the topic occlude\n", stderr);
+    if (!request.scenes.empty() && request.topic != "occlude" && request.topic != "collide") {
+        std::fputs("crofton: --scene goes with the topics occlude and collide\n", stderr);
         return kBadInput;
     }
     std::vector<VerifyRow> rows;
@@ -45,7 +46,8 @@ int run_verify(const VerifyRequest& request) {
         if (request.scenes.empty() && (request.topic.empty() || request.topic == topic.name))
             for (VerifyRow& row : topic.rows(request.options)) rows.push_back(std::move(row));
     for (const std::string& scene : request.scenes) {
-        auto found = verify_occluded_scene(scene, request.instances, request.options);
+        auto found = request.topic == "collide" ? verify_collided_scene(scene, request.options)
+                                                : verify_occluded_scene(scene, request.instances, request.options);
         if (!found) return report_error(scene, found.error());
         for (VerifyRow& row : *found) rows.push_back(std::move(row));
     }
@@ -70,8 +72,10 @@ void add_verify_command(CommandLine& line) {
     command.option("--trials", request->options.trials, "Random queries per row; more make every check sharper")
         .whole_between(1000, std::uint64_t{1} << 40)
         .show_default();
-    command.option("--scene", request->scenes,
-                   "Instead, occlusion in these scenes (files, or \"town\"), by witness rays; with the topic occlude");
+    command.option(
+        "--scene", request->scenes,
+        "Instead, of these scenes (files, or \"town\"): with the topic occlude what is hidden, by witness rays; "
+        "with collide hulls, meshes and maps of polygons as bodies");
     command.option("--instances", request->instances, "Of the town with --scene: roughly so many").show_default();
     command.option("--seed", request->options.seed, "The same seed gives the same table, bit by bit").show_default();
     command
@@ -87,6 +91,7 @@ void add_verify_command(CommandLine& line) {
         "  crofton verify\n"
         "  crofton verify lines --trials 1000000 --seed 7\n"
         "  crofton verify occlude --scene town --scene forest.glb --trials 1000000\n"
+        "  crofton verify collide --scene bunny.obj --scene counties.poly\n"
         "  crofton verify paper --json - | jq '.[] | select(.holds | not)'");
     command.action([request] { return run_verify(*request); });
 }

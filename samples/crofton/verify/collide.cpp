@@ -8,6 +8,7 @@
 #include <random>
 
 #include "convex.hpp"
+#include "convex_refusals.hpp"
 
 namespace crofton::cli {
 namespace {
@@ -92,38 +93,57 @@ struct Class {
     bool parallel, float_centers;
 };
 
+// Pairs that are asked together: memory does not grow with the number of trials.
+constexpr std::uint64_t kPairsAtOnce = 1 << 14;
+
+struct PairsToAsk {
+    std::vector<Obb> first, second;
+    std::vector<std::uint8_t> truth;
+};
+
+void add_pair(const Class& kind, std::uint64_t trial, Engine& random, PairsToAsk& pairs) {
+    const glm::dquat frame = random_rotation(random);
+    // All decades in turn.
+    const double angle = std::pow(10.0, -1.0 - static_cast<double>(trial / 15 % 12));
+    const glm::dquat turn = glm::angleAxis(angle, glm::normalize(random_vector(random)));
+    const Obb a = lattice_box(random, frame);
+    Obb b = lattice_box(random, kind.parallel ? turn * frame : random_rotation(random));
+    const glm::dvec3 direction =
+        trial % 2 ? glm::normalize(random_vector(random)) : glm::dvec3(a.axes[static_cast<int>(trial % 3)]);
+    const double gap = std::pow(10.0, -1.0 - static_cast<double>(trial % 15)) * (random() % 2 ? 1.0 : -1.0);
+    const double distance = touching_distance(a, b, direction) + gap;
+    for (int i = 0; i < 3; ++i) b.center[i] = on_lattice(distance * direction[i], kOffsetBits);
+    // Floats of this size lie on the lattice, or are small enough to be put there.
+    if (kind.float_centers)
+        for (int i = 0; i < 3; ++i)
+            b.center[i] = on_lattice(static_cast<double>(static_cast<float>(b.center[i])), kOffsetBits);
+    pairs.first.push_back(a);
+    pairs.second.push_back(b);
+    pairs.truth.push_back(meet_in_integers(a, b));
+}
+
+std::uint64_t count_wrong(const PairsToAsk& pairs, bool batch) {
+    std::vector<std::uint8_t> answers(pairs.truth.size());
+    if (batch)
+        collide::intersects(pairs.first, pairs.second, answers);
+    else
+        for (std::size_t i = 0; i < answers.size(); ++i)
+            answers[i] = collide::intersects(pairs.first[i], pairs.second[i]);
+    std::uint64_t wrong = 0;
+    for (std::size_t i = 0; i < answers.size(); ++i) wrong += pairs.truth[i] != answers[i];
+    return wrong;
+}
+
 VerifyRow wrong_answers(const Class& kind, const VerifyOptions& options, bool batch) {
     Engine random(options.seed);
     const std::uint64_t trials = std::max<std::uint64_t>(100, options.trials / 20);
-    std::vector<Obb> first, second;
-    std::vector<std::uint8_t> truth, answers;
-    for (std::uint64_t trial = 0; trial < trials; ++trial) {
-        const glm::dquat frame = random_rotation(random);
-        // All decades in turn.
-        const double angle = std::pow(10.0, -1.0 - static_cast<double>(trial / 15 % 12));
-        const glm::dquat turn = glm::angleAxis(angle, glm::normalize(random_vector(random)));
-        const Obb a = lattice_box(random, frame);
-        Obb b = lattice_box(random, kind.parallel ? turn * frame : random_rotation(random));
-        const glm::dvec3 direction =
-            trial % 2 ? glm::normalize(random_vector(random)) : glm::dvec3(a.axes[static_cast<int>(trial % 3)]);
-        const double gap = std::pow(10.0, -1.0 - static_cast<double>(trial % 15)) * (random() % 2 ? 1.0 : -1.0);
-        const double distance = touching_distance(a, b, direction) + gap;
-        for (int i = 0; i < 3; ++i) b.center[i] = on_lattice(distance * direction[i], kOffsetBits);
-        // Floats of this size lie on the lattice, or are small enough to be put there.
-        if (kind.float_centers)
-            for (int i = 0; i < 3; ++i)
-                b.center[i] = on_lattice(static_cast<double>(static_cast<float>(b.center[i])), kOffsetBits);
-        first.push_back(a);
-        second.push_back(b);
-        truth.push_back(meet_in_integers(a, b));
-    }
-    answers.resize(trials);
-    if (batch)
-        collide::intersects(first, second, answers);
-    else
-        for (std::uint64_t i = 0; i < trials; ++i) answers[i] = collide::intersects(first[i], second[i]);
     std::uint64_t wrong = 0;
-    for (std::uint64_t i = 0; i < trials; ++i) wrong += truth[i] != answers[i];
+    for (std::uint64_t begin = 0; begin < trials; begin += kPairsAtOnce) {
+        PairsToAsk pairs;
+        for (std::uint64_t trial = begin; trial < std::min(trials, begin + kPairsAtOnce); ++trial)
+            add_pair(kind, trial, random, pairs);
+        wrong += count_wrong(pairs, batch);
+    }
     return computed_row("boxes, " + std::string(kind.name) + (batch ? ", in batches" : ", one by one") +
                             ", gaps of 1e-1 to 1e-15: " + std::to_string(trials) + " answers, none wrong",
                         "separating axes in 128-bit integers", 0.0, static_cast<double>(wrong), 0.0);
@@ -138,6 +158,7 @@ std::vector<VerifyRow> verify_collide(const VerifyOptions& options) {
                               Class{"nearly parallel (1e-1 to 1e-12 rad), centres in float", true, true}})
         for (const bool batch : {false, true}) rows.push_back(wrong_answers(kind, options, batch));
     for (VerifyRow& row : verify_convex(options)) rows.push_back(std::move(row));
+    for (VerifyRow& row : verify_bad_bodies(options)) rows.push_back(std::move(row));
     return rows;
 }
 

@@ -20,17 +20,6 @@ VerifyRow none_wrong(std::string claim, const char* source, std::uint64_t cases,
     return row;
 }
 
-bool truly_meet(const Placed& a, const Placed& b, const glm::dvec3& normal, std::uint64_t& by_axes) {
-    // Guesses are made near a's origin, where coordinates are small.
-    const RigidTransform near_a{a.pose.rotation, glm::dvec3(0.0)};
-    const RigidTransform near_b{b.pose.rotation, b.pose.translation - a.pose.translation};
-    const convex::Distance d = convex::distance({a.body, near_a}, {b.body, near_b});
-    const convex::Penetration p = convex::penetration({a.body, near_a}, {b.body, near_b});
-    const std::array normals{normal, d.normal, convex::distance(a, b).normal};
-    const std::array points{0.5 * (p.on_a + p.on_b), 0.5 * (d.on_a + d.on_b)};
-    return meet_exactly(ExactBody(a), ExactBody(b), normals, a.pose.translation, points, by_axes);
-}
-
 // Cold, and with what a neighbouring pose has left.
 VerifyRow yes_or_no(int decade, double offset, const VerifyOptions& options) {
     const std::uint64_t pairs = std::max<std::uint64_t>(20, options.trials / 500);
@@ -46,7 +35,7 @@ VerifyRow yes_or_no(int decade, double offset, const VerifyOptions& options) {
         earlier.translation += 0.01 * random.direction();
         (void)convex::intersects(a, {pair.b, earlier}, &cache);
         const bool cold = convex::intersects(a, b), warm = convex::intersects(a, b, &cache);
-        const bool truth = truly_meet(a, b, pair.normal, by_axes);
+        const bool truth = meet_exactly(a, b, pair.normal, by_axes);
         wrong += (cold != truth) + (warm != truth) + ((convex::distance(a, b).distance == 0.0) != truth);
         meeting += truth;
     }
@@ -69,7 +58,7 @@ VerifyRow depths(const VerifyOptions& options) {
         const Placed a = pair.placed_a(), b = pair.placed_b();
         const convex::Penetration p = convex::penetration(a, b);
         if (!p.overlapping) {
-            wrong += truly_meet(a, b, pair.normal, by_axes);
+            wrong += meet_exactly(a, b, pair.normal, by_axes);
             continue;
         }
         ++met;
@@ -143,7 +132,7 @@ VerifyRow casts_bisected(const VerifyOptions& options) {
         const auto meet_at = [&](double time) {
             RigidTransform there = pair.pose_b;
             there.translation += time * motion.velocity;
-            return truly_meet(pair.placed_a(), {pair.b, there}, pair.normal, by_axes);
+            return meet_exactly(pair.placed_a(), {pair.b, there}, pair.normal, by_axes);
         };
         double early = 0.0, late = -1.0;
         for (int k = 0; k <= 64 && late < 0.0; ++k)

@@ -52,6 +52,10 @@ convex::Body ConvexPairs::polytope(int corners, std::unique_ptr<convex::Hull>& h
 
 ConvexPairs::Pair ConvexPairs::next(int corners, double gap, double offset) {
     const convex::Body a = polytope(corners, hulls_[0]), b = polytope(corners, hulls_[1]);
+    return touching(a, b, gap, offset);
+}
+
+ConvexPairs::Pair ConvexPairs::touching(const convex::Body& a, const convex::Body& b, double gap, double offset) {
     Pair pair{a, b, {rotation(), offset * glm::dvec3(1.0, -0.7, 0.3)}, {}, {}};
     pair.pose_b.rotation = index(3) != 0 ? rotation() : pair.pose_a.rotation;
     glm::dvec3 local = direction();

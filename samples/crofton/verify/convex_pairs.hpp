@@ -22,7 +22,10 @@ class ConvexPairs {
     // Along a direction, of which half are normals of faces, b is `gap` beyond a; both are about `offset` from the
     // origin. A third of the pairs is parallel.
     [[nodiscard]] Pair next(int corners, double gap, double offset);
+    // The same of two bodies that are given. b touches a, but for the gap, at a's farthest point along the direction.
+    [[nodiscard]] Pair touching(const convex::Body& a, const convex::Body& b, double gap, double offset);
 
+    [[nodiscard]] std::uint64_t bits() { return random_(); }
     [[nodiscard]] double number(double low, double high);
     [[nodiscard]] glm::dvec3 direction();
 

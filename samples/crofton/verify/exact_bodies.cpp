@@ -201,6 +201,17 @@ bool meet_exactly(const ExactBody& a, const ExactBody& b, std::span<const glm::d
     return meet_by_axes(a, b);
 }
 
+bool meet_exactly(const convex::Placed& a, const convex::Placed& b, const glm::dvec3& normal, std::uint64_t& by_axes) {
+    // Guesses are made near a's origin, where coordinates are small.
+    const RigidTransform near_a{a.pose.rotation, glm::dvec3(0.0)};
+    const RigidTransform near_b{b.pose.rotation, b.pose.translation - a.pose.translation};
+    const convex::Distance d = convex::distance({a.body, near_a}, {b.body, near_b});
+    const convex::Penetration p = convex::penetration({a.body, near_a}, {b.body, near_b});
+    const std::array normals{normal, d.normal, convex::distance(a, b).normal};
+    const std::array points{0.5 * (p.on_a + p.on_b), 0.5 * (d.on_a + d.on_b)};
+    return meet_exactly(ExactBody(a), ExactBody(b), normals, a.pose.translation, points, by_axes);
+}
+
 bool depth_lies_between(const ExactBody& a, const ExactBody& b, double lower, double upper) {
     std::vector<ExactVector> w;
     std::vector<glm::dvec3> about;

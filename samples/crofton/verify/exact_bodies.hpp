@@ -23,6 +23,10 @@ struct ExactBody {
 [[nodiscard]] bool meet_exactly(const ExactBody& a, const ExactBody& b, std::span<const glm::dvec3> normals,
                                 const glm::dvec3& origin, std::span<const glm::dvec3> points, std::uint64_t& by_axes);
 
+// The same of bodies that stand anywhere. Planes and points are guessed by the engine, and `normal` is tried too.
+[[nodiscard]] bool meet_exactly(const convex::Placed& a, const convex::Placed& b, const glm::dvec3& normal,
+                                std::uint64_t& by_axes);
+
 // Whether the depth of two bodies that meet lies in [lower, upper]: by all faces of the difference body, found among
 // all triples of its points. For bodies of few corners.
 [[nodiscard]] bool depth_lies_between(const ExactBody& a, const ExactBody& b, double lower, double upper);

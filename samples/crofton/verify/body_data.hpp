@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// Bodies made of a scene's or map's data: hulls, and surfaces with their triangles one by one.
+#pragma once
+#include <crofton/convex/body.hpp>
+#include <crofton/core/error.hpp>
+#include <crofton/geometry/mesh.hpp>
+#include <crofton/mesh/mesh_tree.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace crofton::cli {
+
+struct BodyData {
+    std::vector<convex::Hull> hulls;
+    std::vector<std::vector<glm::vec3>> hull_points;  // that each was built of
+    std::size_t flat = 0;                             // meshes and pieces without a hull
+    // One of the two.
+    mesh::MeshTree tree;
+    std::optional<convex::HeightField> field;
+    std::vector<Triangle> triangles;  // of the surface, each as a part of it; coordinates are floats
+    double size = 0.0;                // the diagonal of the box around it
+
+    [[nodiscard]] convex::Body surface() const {
+        return field ? convex::Body::height_field(*field, convex::Sides::both) : *convex::Body::mesh(tree);
+    }
+};
+
+// Hulls are of the whole scene and of each mesh, with pieces: a mesh of more than 64 triangles is cut at the median of
+// its triangles three times, across its longest side: at most eight pieces. A map's polygons are steps of several
+// heights on a grid of 257².
+[[nodiscard]] Result<BodyData> read_body_data(const std::string& source);
+
+}  // namespace crofton::cli

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: MIT
+#include "convex_scene.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <crofton/geometry/predicates.hpp>
+#include <cstdio>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include "body_data.hpp"
+#include "convex_pairs.hpp"
+#include "exact_bodies.hpp"
+
+namespace crofton::cli {
+namespace {
+
+using convex::Placed;
+
+constexpr double kOffsets[] = {0.0, 1e3, 1e7};  // in sizes
+
+struct Tally {
+    std::uint64_t cases = 0, wrong = 0, meeting = 0, by_axes = 0;
+};
+
+VerifyRow row_of(const std::string& claim, const char* source, const Tally& tally) {
+    VerifyRow row = computed_row(claim, source, 0.0, static_cast<double>(tally.wrong), 0.0);
+    row.cases = tally.cases;
+    return row;
+}
+
+std::string at_offset(double offset) {
+    char text[40];
+    std::snprintf(text, sizeof text, " at %g sizes: ", offset);
+    return text;
+}
+
+// No point of what a hull was built of lies outside.
+VerifyRow hulls_hold_points(const BodyData& data) {
+    Tally tally;
+    std::size_t larger = 0;
+    for (std::size_t h = 0; h < data.hulls.size(); ++h) {
+        const convex::Hull& hull = data.hulls[h];
+        larger += hull.excess() > 0.0;
+        const auto at = [&](std::size_t i) { return glm::dvec3(hull.vertices()[hull.triangles()[i]]); };
+        for (std::size_t t = 0; t < hull.triangles().size(); t += 3)
+            for (const glm::vec3& p : data.hull_points[h])
+                tally.wrong += orientation(at(t), at(t + 1), at(t + 2), glm::dvec3(p)) < 0;
+        tally.cases += data.hull_points[h].size();
+    }
+    return row_of(std::to_string(data.hulls.size()) + " hulls of meshes and pieces (" + std::to_string(larger) +
+                      " of them cut to 256 corners, " + std::to_string(data.flat) + " flat): each holds all its points",
+                  "exact orientations", tally);
+}
+
+VerifyRow hulls_that_touch(const BodyData& data, double offset, const VerifyOptions& options) {
+    const std::uint64_t pairs = std::max<std::uint64_t>(20, options.trials / 2000);
+    ConvexPairs random(options.seed + 80 + static_cast<std::uint64_t>(std::log10(offset + 1.0)));
+    Tally tally;
+    for (; tally.cases < pairs; ++tally.cases) {
+        const convex::Body a = convex::Body::hull(data.hulls[random.bits() % data.hulls.size()]);
+        const convex::Body b = convex::Body::hull(data.hulls[random.bits() % data.hulls.size()]);
+        const double size = a.reach() + b.reach();
+        const double gap = size * std::pow(10.0, random.number(-12.0, -1.0)) * (tally.cases % 2 == 0 ? 1.0 : -1.0);
+        const ConvexPairs::Pair pair = random.touching(a, b, gap, offset * data.size);
+        const bool truth = meet_exactly(pair.placed_a(), pair.placed_b(), pair.normal, tally.by_axes);
+        const bool apart = convex::distance(pair.placed_a(), pair.placed_b()).distance > 0.0;
+        const bool deep = convex::penetration(pair.placed_a(), pair.placed_b()).overlapping;
+        tally.wrong +=
+            (convex::intersects(pair.placed_a(), pair.placed_b()) != truth) + (apart == truth) + (deep != truth);
+        tally.meeting += truth;
+    }
+    return row_of("these hulls," + at_offset(offset) + std::to_string(pairs) + " pairs with gaps of 1e-1 to 1e-12, " +
+                      std::to_string(tally.meeting) + " meet, " + std::to_string(tally.by_axes) +
+                      " by all axes; none wrong",
+                  "planes, common points and separating axes in exact numbers", tally);
+}
+
+// Triangles of a surface that may be within `far` of a body.
+class TriangleTruth {
+  public:
+    TriangleTruth(const BodyData& data, const Placed& surface) : data_(data), surface_(surface) {}
+
+    template <class Visit>
+    void visit_near(const Placed& body, double far, Visit visit) const {
+        const glm::dvec3 middle =
+            glm::transpose(surface_.pose.rotation) * (body.pose.translation - surface_.pose.translation);
+        const double reach = (body.body.reach() + far) * (1.0 + 1e-5) + 1e-9 * (data_.size + glm::length(middle));
+        for (const Triangle& t : data_.triangles) {
+            const glm::dvec3 low = glm::min(glm::min(t[0], t[1]), t[2]), high = glm::max(glm::max(t[0], t[1]), t[2]);
+            const glm::dvec3 gap = glm::max(glm::max(low - middle, middle - high), glm::dvec3(0.0));
+            if (glm::dot(gap, gap) > reach * reach) continue;
+            const convex::Body part = *convex::Body::triangle(glm::vec3(t[0]), glm::vec3(t[1]), glm::vec3(t[2]));
+            if (!visit(Placed{part, surface_.pose})) return;
+        }
+    }
+    [[nodiscard]] bool meets(const Placed& body, std::uint64_t& by_axes) const {
+        bool met = false;
+        visit_near(body, 0.0, [&](const Placed& part) {
+            const convex::Distance d = convex::distance(part, body);
+            // Apart by a plane that exact numbers confirm, as nearly all are; else all that is known is tried.
+            const std::array normals{d.normal};
+            const bool parted = d.distance > 0.0 &&
+                                !meet_exactly(ExactBody(part), ExactBody(body), normals, glm::dvec3(0.0), {}, by_axes);
+            met = !parted && meet_exactly(part, body, d.normal, by_axes);
+            return !met;
+        });
+        return met;
+    }
+    // Lower and upper bounds of the distance, by all triangles that may be nearest.
+    [[nodiscard]] std::array<double, 2> distance(const Placed& body, double far) const {
+        std::array<double, 2> least{HUGE_VAL, HUGE_VAL};
+        visit_near(body, far, [&](const Placed& part) {
+            const convex::Distance d = convex::distance(part, body);
+            least = {std::min(least[0], d.lower), std::min(least[1], d.upper)};
+            return true;
+        });
+        return least;
+    }
+
+  private:
+    const BodyData& data_;
+    const Placed& surface_;
+};
+
+// A box of 0.1 to 6 % of the surface's size, or one of the hulls if they are small.
+convex::Body probe_of(const BodyData& data, ConvexPairs& random) {
+    if (!data.hulls.empty() && random.bits() % 2 == 0) {
+        const convex::Body hull = convex::Body::hull(data.hulls[random.bits() % data.hulls.size()]);
+        if (hull.reach() < 0.1 * data.size) return hull;
+    }
+    const double scale = 0.5 * data.size * std::pow(10.0, random.number(-2.0, -1.0));
+    const double x = random.number(0.1, 0.6), y = random.number(0.1, 0.6), z = random.number(0.1, 0.6);
+    return *convex::Body::box(glm::vec3(scale * glm::dvec3(x, y, z)));
+}
+
+// A probe that touches one triangle of the surface, but for a gap; and if `nearest`, none nearer than that.
+ConvexPairs::Pair place_probe(const BodyData& data, double gap, double offset, bool nearest, ConvexPairs& random) {
+    const Triangle& t = data.triangles[random.bits() % data.triangles.size()];
+    const convex::Body part = *convex::Body::triangle(glm::vec3(t[0]), glm::vec3(t[1]), glm::vec3(t[2]));
+    const convex::Body probe = probe_of(data, random);
+    if (!nearest) return random.touching(part, probe, gap, offset);
+    ConvexPairs::Pair pair = random.touching(part, probe, random.number(0.0, 0.3) * data.size, offset);
+    const convex::Distance d = convex::distance({data.surface(), pair.pose_a}, pair.placed_b());
+    pair.pose_b.translation -= (d.distance - gap) * d.normal;
+    return pair;
+}
+
+VerifyRow surface_touched(const BodyData& data, double offset, const VerifyOptions& options) {
+    const std::uint64_t pairs = std::max<std::uint64_t>(20, options.trials / 4000);
+    ConvexPairs random(options.seed + 90 + static_cast<std::uint64_t>(std::log10(offset + 1.0)));
+    const convex::Body whole = data.surface();
+    Tally tally;
+    for (; tally.cases < pairs; ++tally.cases) {
+        const double gap = 0.1 * data.size * std::pow(10.0, random.number(-12.0, -1.0));
+        const ConvexPairs::Pair pair =
+            place_probe(data, tally.cases % 2 == 0 ? gap : -gap, offset * data.size, tally.cases % 4 < 2, random);
+        const Placed surface{whole, pair.pose_a}, probe = pair.placed_b();
+        const TriangleTruth triangles(data, surface);
+        const bool truth = triangles.meets(probe, tally.by_axes);
+        const convex::Distance d = convex::distance(surface, probe);
+        tally.wrong += (convex::intersects(surface, probe) != truth) + ((d.distance == 0.0) != truth);
+        tally.meeting += truth;
+        if (truth) continue;
+        const std::array<double, 2> least = triangles.distance(probe, d.distance);
+        const double error_bound = 1e-9 * (data.size + glm::length(pair.pose_b.translation - pair.pose_a.translation));
+        tally.wrong += !(d.distance <= least[1] + error_bound && d.distance >= least[0] - error_bound);
+    }
+    return row_of(std::to_string(data.triangles.size()) + " triangles as one " +
+                      (data.field ? "height field," : "mesh,") + at_offset(offset) + std::to_string(pairs) +
+                      " bodies with gaps of 1e-2 to 1e-13, " + std::to_string(tally.meeting) +
+                      " meet; none wrong, distances as of the nearest triangle",
+                  "each triangle near it in exact numbers", tally);
+}
+
+// Bodies that fly at the surface: at no moment before the impact do they meet a triangle.
+VerifyRow surface_hit(const BodyData& data, const VerifyOptions& options) {
+    constexpr int kMoments = 50;
+    const std::uint64_t casts = std::max<std::uint64_t>(4, options.trials / 20'000);
+    ConvexPairs random(options.seed + 95);
+    const convex::Body whole = data.surface();
+    Tally tally;
+    std::uint64_t hits = 0;
+    for (std::uint64_t i = 0; i < casts; ++i) {
+        const ConvexPairs::Pair pair = place_probe(data, 0.1 * data.size, 0.0, i % 2 == 0, random);
+        const Placed surface{whole, pair.pose_a}, probe = pair.placed_b();
+        const double rate = random.number(0.0, 6.0);
+        const convex::Motion motion{-0.3 * data.size * pair.normal, rate * random.direction(), {}};
+        const double tolerance = 1e-6 * data.size;
+        const auto impact = convex::cast(surface, {}, probe, motion, {.tolerance = tolerance});
+        tally.wrong += !impact || impact->result == convex::CastResult::unresolved;
+        if (!impact || impact->result == convex::CastResult::unresolved) continue;
+        const TriangleTruth triangles(data, surface);
+        const auto at = [&](double time) { return convex::moved(pair.pose_b, motion, time); };
+        const bool hit = impact->result == convex::CastResult::hit;
+        hits += hit;
+        const double end = hit ? impact->time : 1.0;
+        for (int k = 0; k < kMoments && end > 0.0; ++k, ++tally.cases) {
+            const RigidTransform pose = at(end * (k + 0.5) / kMoments);
+            tally.wrong += triangles.meets({pair.b, pose}, tally.by_axes);
+        }
+        const RigidTransform last = at(end);
+        tally.wrong += hit && triangles.distance({pair.b, last}, 2.0 * tolerance)[0] > tolerance;
+    }
+    return row_of(std::to_string(casts) + " casts of turning bodies at it, " + std::to_string(hits) +
+                      " hits: none meets a triangle at " + std::to_string(kMoments) +
+                      " moments before, and then one is within the tolerance",
+                  "each triangle near it in exact numbers", tally);
+}
+
+}  // namespace
+
+Result<std::vector<VerifyRow>> verify_collided_scene(const std::string& source, const VerifyOptions& options) {
+    const auto data = read_body_data(source);
+    if (!data) return tl::unexpected(data.error());
+    std::vector<VerifyRow> rows;
+    if (!data->hulls.empty()) {
+        rows.push_back(hulls_hold_points(*data));
+        for (const double offset : kOffsets) rows.push_back(hulls_that_touch(*data, offset, options));
+    }
+    for (const double offset : kOffsets) rows.push_back(surface_touched(*data, offset, options));
+    rows.push_back(surface_hit(*data, options));
+    const std::string name = source.substr(source.find_last_of("/\\") + 1);
+    for (VerifyRow& row : rows) row.claim = name + ": " + row.claim;
+    return rows;
+}
+
+}  // namespace crofton::cli
