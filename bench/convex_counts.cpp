@@ -2,8 +2,9 @@
 // How many pairs of polytopes that nearly touch does each library tell wrong? The pairs are those of `crofton verify
 // collide`, without triangles, and so is the truth: exact arithmetic. Prints a CSV: a row for each library and offset,
 // a column for each decade of gap or overlap. Sizes are about 1.
-//   bench_convex_counts [PAIRS in each decade at each offset, 1000] | grep -v ^WARNING
-// ODE writes to standard output, too, where a hull's face is too narrow for it.
+//   bench_convex_counts [PAIRS, 1000] | grep -v ^WARNING
+// PAIRS are those in each decade at each offset. Where a hull's face is too narrow ODE writes warnings to the same
+// place.
 #include <cmath>
 #include <crofton/convex/query.hpp>
 #include <cstdio>
