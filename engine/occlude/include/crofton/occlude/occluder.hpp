@@ -121,10 +121,10 @@ struct FindOptions {
     std::uint32_t max_patch_triangles = 4;
     // 0: a mesh of its own. Else a level made of many small pieces: all its triangles become surfaces of so many at
     // most; 48 is a good number. They take the place of patches, are of that kind, and need not be flat. max_occluders
-    // and max_edges do not count them. Walls, floors and ceilings that are near each other are one surface: within it no pixel is lost where they meet.
-    // Triangles are cut where a vertex of another lies on one of their sides along an axis, which covers the same
-    // points exactly. There are up to four times as many then; the rest keep their seams. Each triangle is drawn:
-    // slower than boxes, for what has none.
+    // and max_edges do not count them. Walls, floors and ceilings that are near each other are one surface: within it
+    // no pixel is lost where they meet. Triangles are cut where a vertex of another lies on one of their sides along an
+    // axis, which covers the same points exactly. There are up to four times as many then; the rest keep their seams.
+    // Each triangle is drawn: slower than boxes, for what has none.
     std::uint32_t level_triangles = 0;
     // Cells along each axis of the grid that boxes are looked for in, 4 to 32: finer is slower and finds larger boxes.
     std::uint32_t grid = 24;
