@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
-// What a frame costs on lavapipe by the way it is drawn, and what predicting its triangle count costs.
+// What a frame costs by the way it is drawn, and what predicting its triangle count costs. On lavapipe, or on the device
+// that the environment's CROFTON_DEVICE names.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <crofton/render/clip_space.hpp>
 #include <crofton/render/rasterizer.hpp>
 #include <optional>
@@ -74,7 +76,7 @@ struct Scene {
     }
     static Result<Device> make_device() {
         DeviceOptions options;
-        options.kind = DeviceKind::cpu;
+        if (std::getenv("CROFTON_DEVICE") == nullptr) options.kind = DeviceKind::cpu;
         return Device::create(options);
     }
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <map>
 
@@ -130,6 +131,25 @@ TEST_SUITE("cli/verify") {
         run = run_cli("verify collide --scene no_such_map.poly");
         CHECK(run.status == 2);
         CHECK(run.err.find("no_such_map.poly") != std::string::npos);
+    }
+
+    TEST_CASE("any level of a WAD, by its name") {
+        const std::string wad = std::string(CROFTON_SHARED_DATA) + "/scenes/freedoom2_maps.wad";
+        if (!std::filesystem::exists(wad)) {
+            MESSAGE("skipped: no shared data");
+            return;
+        }
+        for (const std::string topic : {"occlude", "collide"}) {
+            const CliRun run = run_cli("verify " + topic + " --scene " + wad + " --map MAP02 --trials 1000 --json -");
+            CHECK(run.status == 0);
+            for (const auto& row : run.json()) {
+                CHECK(row["holds"] == true);
+                CHECK(row["claim"].get<std::string>().rfind("freedoom2_maps.wad MAP02", 0) == 0);
+            }
+            const CliRun missing = run_cli("verify " + topic + " --scene " + wad + " --map MAP99");
+            CHECK(missing.status == 2);
+            CHECK(missing.err.find("MAP99") != std::string::npos);
+        }
     }
 
     TEST_CASE("the table lists one claim a line") {

@@ -31,6 +31,7 @@ constexpr Topic kTopics[] = {
 struct VerifyRequest {
     std::string topic;
     std::vector<std::string> scenes;
+    std::string map;
     std::uint32_t instances = 0;
     VerifyOptions options;
     std::string json_path;
@@ -45,9 +46,10 @@ int run_verify(const VerifyRequest& request) {
     for (const Topic& topic : kTopics)
         if (request.scenes.empty() && (request.topic.empty() || request.topic == topic.name))
             for (VerifyRow& row : topic.rows(request.options)) rows.push_back(std::move(row));
+    const assets::LoadOptions which{.map = request.map, .instances = request.instances};
     for (const std::string& scene : request.scenes) {
-        auto found = request.topic == "collide" ? verify_collided_scene(scene, request.options)
-                                                : verify_occluded_scene(scene, request.instances, request.options);
+        auto found = request.topic == "collide" ? verify_collided_scene(scene, which, request.options)
+                                                : verify_occluded_scene(scene, which, request.options);
         if (!found) return report_error(scene, found.error());
         for (VerifyRow& row : *found) rows.push_back(std::move(row));
     }
@@ -76,6 +78,7 @@ void add_verify_command(CommandLine& line) {
         "--scene", request->scenes,
         "Instead, of these scenes (files, or \"town\"): with the topic occlude what is hidden, by witness rays; "
         "with collide hulls, meshes and maps of polygons as bodies");
+    command.option("--map", request->map, "Which level of a WAD given to --scene");
     command.option("--instances", request->instances, "Of the town with --scene: roughly so many").show_default();
     command.option("--seed", request->options.seed, "The same seed gives the same table, bit by bit").show_default();
     command
@@ -91,6 +94,7 @@ void add_verify_command(CommandLine& line) {
         "  crofton verify\n"
         "  crofton verify lines --trials 1000000 --seed 7\n"
         "  crofton verify occlude --scene town --scene forest.glb --trials 1000000\n"
+        "  crofton verify occlude --scene doom.wad --map MAP07\n"
         "  crofton verify collide --scene bunny.obj --scene counties.poly\n"
         "  crofton verify paper --json - | jq '.[] | select(.holds | not)'");
     command.action([request] { return run_verify(*request); });

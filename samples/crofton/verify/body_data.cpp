@@ -7,7 +7,6 @@
 #include <glm/geometric.hpp>
 #include <span>
 
-#include "assets/scene_source.hpp"
 #include "commands/polygon_files.hpp"
 
 namespace crofton::cli {
@@ -61,8 +60,8 @@ void add_mesh(const TriangleMesh& mesh, BodyData& data) {
     add_pieces(mesh, order.data(), order.data() + order.size(), 3, data);
 }
 
-Result<BodyData> data_of_scene(const std::string& source) {
-    auto loaded = assets::load_scene(source);
+Result<BodyData> data_of_scene(const std::string& source, const assets::LoadOptions& which) {
+    auto loaded = assets::load_scene(source, which);
     if (!loaded) return tl::unexpected(loaded.error());
     scene::Scene& scene = loaded->scene;
     scene.update();
@@ -153,9 +152,9 @@ Result<BodyData> data_of_map(const std::string& source) {
 
 }  // namespace
 
-Result<BodyData> read_body_data(const std::string& source) {
+Result<BodyData> read_body_data(const std::string& source, const assets::LoadOptions& which) {
     const bool is_level = source.size() > 4 && source.substr(source.size() - 4) == ".wad";
-    return is_polygon_file(source) && !is_level ? data_of_map(source) : data_of_scene(source);
+    return is_polygon_file(source) && !is_level ? data_of_map(source) : data_of_scene(source, which);
 }
 
 }  // namespace crofton::cli

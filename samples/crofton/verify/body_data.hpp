@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "assets/scene_source.hpp"
+
 namespace crofton::cli {
 
 struct BodyData {
@@ -29,6 +31,6 @@ struct BodyData {
 // Hulls are of the whole scene, of each mesh and of its pieces. A mesh of more than 64 triangles is cut at the median
 // of its triangles three times, across its longest side: at most eight pieces. A map's polygons are steps of several
 // heights on a grid of 257².
-[[nodiscard]] Result<BodyData> read_body_data(const std::string& source);
+[[nodiscard]] Result<BodyData> read_body_data(const std::string& source, const assets::LoadOptions& which);
 
 }  // namespace crofton::cli

@@ -211,8 +211,9 @@ VerifyRow surface_hit(const BodyData& data, const VerifyOptions& options) {
 
 }  // namespace
 
-Result<std::vector<VerifyRow>> verify_collided_scene(const std::string& source, const VerifyOptions& options) {
-    const auto data = read_body_data(source);
+Result<std::vector<VerifyRow>> verify_collided_scene(const std::string& source, const assets::LoadOptions& which,
+                                                     const VerifyOptions& options) {
+    const auto data = read_body_data(source, which);
     if (!data) return tl::unexpected(data.error());
     std::vector<VerifyRow> rows;
     if (!data->hulls.empty()) {
@@ -221,7 +222,7 @@ Result<std::vector<VerifyRow>> verify_collided_scene(const std::string& source, 
     }
     for (const double offset : kOffsets) rows.push_back(surface_touched(*data, offset, options));
     rows.push_back(surface_hit(*data, options));
-    const std::string name = source.substr(source.find_last_of("/\\") + 1);
+    const std::string name = source.substr(source.find_last_of("/\\") + 1) + (which.map.empty() ? "" : " " + which.map);
     for (VerifyRow& row : rows) row.claim = name + ": " + row.claim;
     return rows;
 }

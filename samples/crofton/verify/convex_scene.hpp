@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "assets/scene_source.hpp"
+
 #include "rows.hpp"
 
 namespace crofton::cli {
@@ -14,6 +16,7 @@ namespace crofton::cli {
 // Yes or no, distances and casts must be as exact arithmetic tells of each triangle. Errors: as
 // assets::load_scene and read_polygons.
 [[nodiscard]] Result<std::vector<VerifyRow>> verify_collided_scene(const std::string& source,
+                                                                   const assets::LoadOptions& which,
                                                                    const VerifyOptions& options);
 
 }  // namespace crofton::cli

@@ -9,7 +9,6 @@
 #include <glm/matrix.hpp>
 #include <map>
 
-#include "assets/scene_source.hpp"
 #include "pipeline/scene_occluders.hpp"
 
 namespace crofton::cli {
@@ -169,13 +168,14 @@ void look(Random& random, const Stage& stage, VisibleObjects& visible, std::vect
 
 }  // namespace
 
-Result<std::vector<VerifyRow>> verify_occluded_scene(const std::string& name, std::uint32_t instances,
+Result<std::vector<VerifyRow>> verify_occluded_scene(const std::string& name, const assets::LoadOptions& which,
                                                      const VerifyOptions& options) {
-    auto source = assets::load_scene(name, {.instances = instances});
+    auto source = assets::load_scene(name, which);
     if (!source) return tl::unexpected(source.error());
     auto stage = stage_of(*source);
     if (!stage) return tl::unexpected(stage.error());
     std::vector<VerifyRow> rows;
+    const std::string level = which.map.empty() ? "" : " " + which.map;
     VisibleObjects visible;
     std::vector<bool> seen(stage->world.object_count(), false);
     for (const double offset : {0.0, 1e3, 1e5, 1e7}) {
@@ -187,10 +187,10 @@ Result<std::vector<VerifyRow>> verify_occluded_scene(const std::string& name, st
         }
         char claim[240];
         std::snprintf(claim, sizeof claim,
-                      "%s, %zu objects, offset %g: of %llu rays that witness an object none has it culled "
+                      "%s%s, %zu objects, offset %g: of %llu rays that witness an object none has it culled "
                       "(%.1f %% of the objects in view hidden)",
-                      name.substr(name.find_last_of('/') + 1).c_str(), stage->world.object_count(), offset,
-                      static_cast<unsigned long long>(counts.witnesses),
+                      name.substr(name.find_last_of('/') + 1).c_str(), level.c_str(), stage->world.object_count(),
+                      offset, static_cast<unsigned long long>(counts.witnesses),
                       100.0 * static_cast<double>(counts.hidden) /
                           static_cast<double>(std::max<std::uint64_t>(1, counts.in_view)));
         rows.push_back(computed_row(claim, "docs/notes/occlude.md", 0.0, static_cast<double>(counts.culled), 0.0));
