@@ -175,13 +175,14 @@ double BoxClip::corner_within(int corner) const {
     return std::min(half[u_] - std::abs(q[u_]), half[v_] - std::abs(q[v_]));
 }
 
-// Let n be the outward normal, p a point of the clipped polygon at depth d, and ρ how far its shadow is from the rim of
-// the face. The difference body has all of d n + a disc of radius ρ across n. At an angle t from n its extent is
-// therefore at least d cos t + ρ sin t, which is no less than d up to t = 2 atan(ρ / d). Beyond, the points of the far
-// faces decide: from p's pair they are both steps through the boxes away, `behind` against n and `aside` across it, so
-// that the extent is at least −behind cos t − aside sin t. That grows with t beyond a right angle, hence where ρ > d,
-// and its first value is no less than d where behind (ρ² − d²) − aside 2 ρ d ≥ d (ρ² + d²). With d < 0 the pair of p
-// alone is enough: no axis has less than d. Frames are rigid to 1e-6, which the factors 0.999 cover.
+// Let n be the outward normal and p a point of the clipped polygon, at depth d. Its shadow is ρ from the rim of the
+// face. Then the difference body has all of d n + a disc of radius ρ across n. At an angle t from n its extent is at
+// least d cos t + ρ sin t. That is no less than d up to t = 2 atan(ρ / d).
+// Beyond, step from p through both boxes to their far faces: the difference body has a point `behind` against n and
+// `aside` across it. The extent is at least −behind cos t − aside sin t. Beyond a right angle, hence where ρ > d, that
+// grows with t. Its first value is no less than d where behind (ρ² − d²) − aside 2 ρ d ≥ d (ρ² + d²).
+// With d < 0 the pair of p alone is enough: no axis has less than d. Frames are rigid to 1e-6, which the factors 0.999
+// cover.
 bool BoxClip::proves_least(double extent, double allowed) const {
     if (count_ == 0) return false;
     double x = 0.0, y = 0.0, depth = 0.0, most = -corner_[0].height;
