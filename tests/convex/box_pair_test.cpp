@@ -71,6 +71,16 @@ double wrong_depth(const BoxCase& c, const Manifold& m) {
     return off(-m.depth, d.lower, d.upper);
 }
 
+// Along a unit vector from a to b, with roundings.
+double overlap_along(const Placed& a, const Placed& b, const glm::dvec3& n) {
+    const auto radius = [&n](const Placed& p) {
+        double sum = p.body.radius();
+        for (int k = 0; k < 3; ++k) sum += p.body.half_extents()[k] * std::abs(glm::dot(p.pose.rotation[k], n));
+        return sum;
+    };
+    return radius(a) + radius(b) - glm::dot(n, b.pose.translation - a.pose.translation);
+}
+
 double wrong_place(const BoxCase& c, const ContactPoint& p) {
     // Midway between the surfaces, along the normal.
     const double allowed = 0.5 * std::abs(p.depth);
@@ -136,6 +146,56 @@ TEST_SUITE("convex/box_pair") {
             if (m.normal.y > 0.5) CHECK(better <= allowed * 1.001);
         }
         CHECK(kept > 10);
+    }
+
+    TEST_CASE("whatever face a cache names, it is taken only where no axis is less deep by 1e-4 of the size") {
+        RandomBodies random(29);
+        int taken = 0, others = 0, meeting = 0;
+        for (int i = 0; i < 8000; ++i) {
+            BoxCase c = random_case(random);
+            if (i % 2 == 0) {  // face on face, as they rest, turned about the normal, tilted
+                const glm::dmat3& r = c.pose_a.rotation;
+                const int k = random.index(3);
+                const double turn = std::pow(10.0, random.number(-6, 0));
+                c.pose_b.rotation = glm::mat3_cast(glm::angleAxis(turn, glm::normalize(r[k]))) * r;
+                if (i % 4 == 0) {
+                    const double tilt = std::pow(10.0, random.number(-5, -1));
+                    c.pose_b.rotation = glm::mat3_cast(glm::angleAxis(tilt, random.direction())) * c.pose_b.rotation;
+                }
+                const glm::dvec3 ha = c.a.half_extents(), hb = c.b.half_extents(), across(1.0);
+                glm::dvec3 place = random.number(-1, 1) * ha + random.number(-1, 1) * hb * across;
+                place[k] = ha[k] + hb[k] + c.a.radius() + c.b.radius() + c.gap;
+                c.pose_b.translation = c.pose_a.translation + r * place;
+                c.size = c.a.reach() + c.b.reach() + c.a.radius() + c.b.radius() +
+                         glm::length(c.pose_b.translation - c.pose_a.translation);
+            }
+            CAPTURE(i);
+            const Placed a{c.a, c.pose_a}, b{c.b, c.pose_b};
+            const ManifoldOptions options{.margin = 2.0 * std::abs(c.gap) + 1e-9, .max_points = 8};
+            const Manifold cold = contact_manifold(a, b, options);
+            meeting += cold.count > 0 && cold.depth > 0.0;
+            for (std::uint16_t reference = 1; reference <= 2; ++reference) {
+                for (std::uint16_t face = 0; face < 6; ++face) {
+                    PairCache cache;
+                    cache.axis = random.direction();
+                    cache.reference = reference;
+                    cache.face = face;
+                    const Manifold warm = contact_manifold(a, b, options, &cache);
+                    CHECK((warm.count > 0) == (cold.count > 0));
+                    if (warm.count == 0 || cold.count == 0) continue;
+                    CHECK(std::abs(warm.depth - cold.depth) <= 1.1e-4 * c.size);
+                    // The overlap along the normal is no less than the least, and no more but for what is allowed.
+                    const double along = overlap_along(a, b, warm.normal);
+                    if (cold.depth > 0.0) CHECK(off(along, cold.depth, cold.depth + 1e-4 * c.size) <= 1e-9 * c.size);
+                    const bool named = cache.reference == reference && cache.face == face;
+                    taken += named;
+                    others += named && glm::dot(warm.normal, cold.normal) < 1.0 - 1e-6;
+                }
+            }
+        }
+        MESSAGE(meeting, " meet, ", taken, " faces taken, ", others, " of them another than without a cache");
+        CHECK(taken > 5000);
+        CHECK(others > 200);
     }
 
     TEST_CASE("thin plates that pass to a face's other side: its depth is not taken for theirs") {

@@ -52,54 +52,67 @@ BoxClip::BoxClip(const Placed& a, const Placed& b, const BoxPair& pair, bool ref
     clip();
 }
 
+// The shadow of the incident face is a parallelogram: its middle and two half edges are cast.
 void BoxClip::find_corners(int incident_face) {
     const glm::dvec3& h = other_.body.half_extents();
     const int k = incident_face / 2, u = k == 2 ? 0 : k + 1, v = k == 0 ? 2 : k - 1;
     const double level = (face_ & 1) != 0 ? reference_.body.half_extents()[k_] : -reference_.body.half_extents()[k_];
-    const double steep = 1.0 / direction_[k_], du = direction_[u_], dv = direction_[v_];
-    const glm::dvec3 middle = seen_.center + ((incident_face & 1) != 0 ? h[k] : -h[k]) * seen_.edge[k],
-                     along = h[u] * seen_.edge[u], up = h[v] * seen_.edge[v];
+    const double steep = 1.0 / direction_[k_], du = direction_[u_] * steep, dv = direction_[v_] * steep;
+    struct Shadow {
+        double x, y, height;
+    };
+    const auto cast = [&](const glm::dvec3& q, double rise) {
+        return Shadow{q[u_] - rise * du, q[v_] - rise * dv, rise * steep};
+    };
+    const glm::dvec3 center = seen_.center + ((incident_face & 1) != 0 ? h[k] : -h[k]) * seen_.edge[k],
+                     half_u = h[u] * seen_.edge[u], half_v = h[v] * seen_.edge[v];
+    const Shadow middle = cast(center, center[k_] - level), along = cast(half_u, half_u[k_]),
+                 up = cast(half_v, half_v[k_]);
     for (int i = 0; i < 4; ++i) {
         const int corner = kBoxFaces[incident_face][i];
-        const glm::dvec3 q =
-            middle + ((corner >> u & 1) != 0 ? 1.0 : -1.0) * along + ((corner >> v & 1) != 0 ? 1.0 : -1.0) * up;
-        const double height = (q[k_] - level) * steep;
-        corner_[i] = {q[u_] - height * du, q[v_] - height * dv, height, (i + 3) & 3, i};
+        const double s = (corner >> u & 1) != 0 ? 1.0 : -1.0, t = (corner >> v & 1) != 0 ? 1.0 : -1.0;
+        corner_[i] = {middle.x + s * along.x + t * up.x, middle.y + s * along.y + t * up.y,
+                      middle.height + s * along.height + t * up.height, (i + 3) & 3, i};
     }
     count_ = 4;
 }
 
-// Returns the number of corners in `to`, or −1 with nothing written where none is outside.
+// Returns the number of corners in `to`, which has room for kMost + 1, or −1 with nothing written where none is
+// outside.
 int BoxClip::clip_side(const FlatCorner* from, int count, int side, double level, int face, FlatCorner* to) {
     const FaceSide& at = kSides[face].side[side];
-    double height[9], most = 0.0;
+    double height[kMost + 1];
+    unsigned outside = 0, inside = 0;
     for (int i = 0; i < count; ++i) {
         height[i] = at.sign * (at.axis == 0 ? from[i].x : from[i].y) - level;
-        most = height[i] > most ? height[i] : most;
+        outside |= (height[i] > 0.0 ? 1U : 0U) << i;
+        inside |= (height[i] < 0.0 ? 1U : 0U) << i;
     }
-    if (most == 0.0) return -1;
+    if (outside == 0) return -1;
     height[count] = height[0];
+    outside |= (outside & 1U) << count;
+    inside |= (inside & 1U) << count;
+    const unsigned leaves = inside & (outside >> 1), enters = outside & (inside >> 1);
     int kept = 0;
-    for (int i = 0; i < count; ++i) {
+    for (int i = 0; i < count && kept < kMost; ++i) {
         const FlatCorner& p = from[i];
-        const double hp = height[i], hq = height[i + 1];
-        if (hp <= 0.0 && kept < 8) {
+        if ((outside >> i & 1U) == 0) {
             to[kept] = p;
-            if (hp == 0.0 && hq > 0.0) to[kept].after = -1 - side;
+            if ((inside >> i & 1U) == 0 && (outside >> (i + 1) & 1U) != 0) to[kept].after = -1 - side;
             ++kept;
         }
-        if (((hp < 0.0 && hq > 0.0) || (hp > 0.0 && hq < 0.0)) && kept < 8) {
-            const FlatCorner& q = from[i + 1 == count ? 0 : i + 1];
-            const double t = hp / (hp - hq);
-            to[kept++] = {p.x + t * (q.x - p.x), p.y + t * (q.y - p.y), p.height + t * (q.height - p.height),
-                          hp < 0.0 ? p.after : -1 - side, hp < 0.0 ? -1 - side : p.after};
-        }
+        if (((leaves | enters) >> i & 1U) == 0) continue;
+        const FlatCorner& q = from[i + 1 == count ? 0 : i + 1];
+        const double t = height[i] / (height[i] - height[i + 1]);
+        const bool out = (leaves >> i & 1U) != 0;
+        to[kept++] = {p.x + t * (q.x - p.x), p.y + t * (q.y - p.y), p.height + t * (q.height - p.height),
+                      out ? p.after : -1 - side, out ? -1 - side : p.after};
     }
-    return kept;
+    return std::min(kept, kMost);
 }
 
 void BoxClip::clip() {
-    FlatCorner other[8];
+    FlatCorner other[kMost + 1];
     FlatCorner *now = corner_, *next = other;
     const glm::dvec3& h = reference_.body.half_extents();
     for (int side = 0; side < 4 && count_ > 0; ++side) {
@@ -160,6 +173,38 @@ double BoxClip::corner_within(int corner) const {
     glm::dvec3 q = seen_.center;
     for (int k = 0; k < 3; ++k) q += ((corner >> k & 1) != 0 ? h[k] : -h[k]) * seen_.edge[k];
     return std::min(half[u_] - std::abs(q[u_]), half[v_] - std::abs(q[v_]));
+}
+
+// Let n be the outward normal and p a point of the clipped polygon, at depth d. Its shadow is ρ from the rim of the
+// face. Then the difference body has all of d n + a disc of radius ρ across n. At an angle t from n its extent is at
+// least d cos t + ρ sin t. That is no less than d up to t = 2 atan(ρ / d).
+// Beyond, step from p through both boxes to their far faces: the difference body has a point `behind` against n and
+// `aside` across it. The extent is at least −behind cos t − aside sin t. Beyond a right angle, hence where ρ > d, that
+// grows with t. Its first value is no less than d where behind (ρ² − d²) − aside 2 ρ d ≥ d (ρ² + d²).
+// With d < 0 the pair of p alone is enough: no axis has less than d. Frames are rigid to 1e-6, which the factors 0.999
+// cover.
+bool BoxClip::proves_least(double extent, double allowed) const {
+    if (count_ == 0) return false;
+    double x = 0.0, y = 0.0, depth = 0.0, most = -corner_[0].height;
+    for (int i = 0; i < count_; ++i) {
+        x += corner_[i].x;
+        y += corner_[i].y;
+        depth -= corner_[i].height;
+        most = std::max(most, -corner_[i].height);
+    }
+    allowed *= 0.999;
+    if (extent < 0.0) return extent - most <= allowed;
+    const double share = 1.0 / count_;
+    x *= share, y *= share, depth *= share;
+    const glm::dvec3 &half = reference_.body.half_extents(), &h = other_.body.half_extents();
+    const double rim = 0.999 * std::min(half[u_] - std::abs(x), half[v_] - std::abs(y));
+    if (!(depth > 0.0) || !(rim > depth) || !(extent - depth <= allowed)) return false;
+    // A step through the other box, along the edge of its face that was clipped.
+    const glm::dvec3& edge = seen_.edge[incident_ / 2];
+    const double step = 2.0 * h[incident_ / 2], along = step * std::abs(glm::dot(edge, direction_));
+    const double behind = 0.999 * (2.0 * half[k_] + along) - depth, aside2 = step * step * 1.001 - along * along;
+    const double aside = std::sqrt(std::max(aside2, 0.0)) + 1e-5 * half[k_];
+    return behind * (rim * rim - depth * depth) - aside * 2.0 * rim * depth >= depth * (rim * rim + depth * depth);
 }
 
 }  // namespace crofton::convex

@@ -43,29 +43,47 @@ BoxPair::BoxPair(const Pair& pair)
     for (int k = 0; k < 3; ++k) at_[k] = glm::dot(to_a_[k], pair.offset);
 }
 
+void BoxPair::find_products() {
+    for (int j = 0; j < 3; ++j) across_[j] = glm::cross(edge_[kNext[j]], edge_[kLast[j]]);
+    determinant_ = glm::dot(across_[0], edge_[0]);
+    share_ = 1.0 / determinant_;
+}
+
+// The extent across a face of a. Its row of the edges is known.
+double BoxPair::face_of_a(int k) {
+    const double share = 1.0 / std::sqrt(glm::dot(to_a_[k], to_a_[k]));
+    const double radius =
+        half_b_.x * std::abs(edge_[0][k]) + half_b_.y * std::abs(edge_[1][k]) + half_b_.z * std::abs(edge_[2][k]);
+    radius_sum_[0][k] = (half_a_[k] + radius) * share;
+    along_[0][k] = at_[k] * share;
+    return radius_sum_[0][k] - std::abs(along_[0][k]);
+}
+
+double BoxPair::face_of_b(int j) {
+    const glm::dvec3 &n = across_[j], world = n.x * to_a_[0] + n.y * to_a_[1] + n.z * to_a_[2];
+    const double share = 1.0 / std::sqrt(glm::dot(world, world));
+    radius_sum_[1][j] = (std::abs(determinant_) * half_b_[j] + radius_along(half_a_, n)) * share;
+    along_[1][j] = glm::dot(n, at_) * share;
+    return radius_sum_[1][j] - std::abs(along_[1][j]);
+}
+
+BoxAxis BoxPair::look_along(int axis) {
+    for (int k = 0; k < 3; ++k) find_edges(k);
+    if (axis < 3) return {axis, face_of_a(axis)};
+    find_products();
+    return {axis, face_of_b(axis - 3)};
+}
+
 bool BoxPair::try_faces(double far, BoxAxis& least) {
-    const glm::dmat3& rb = pair_.pose_b.rotation;
     for (int k = 0; k < 3; ++k) {
-        const glm::dvec3& row = to_a_[k];
-        for (int j = 0; j < 3; ++j) edge_[j][k] = glm::dot(row, rb[j]);
-        const double share = 1.0 / std::sqrt(glm::dot(row, row));
-        const double radius =
-            half_b_.x * std::abs(edge_[0][k]) + half_b_.y * std::abs(edge_[1][k]) + half_b_.z * std::abs(edge_[2][k]);
-        radius_sum_[0][k] = (half_a_[k] + radius) * share;
-        along_[0][k] = at_[k] * share;
-        const double extent = radius_sum_[0][k] - std::abs(along_[0][k]);
+        find_edges(k);
+        const double extent = face_of_a(k);
         if (k == 0 || extent < far || extent < least.extent - depth_margin_) least = {k, extent};
         if (extent < far) return false;
     }
-    for (int j = 0; j < 3; ++j) across_[j] = glm::cross(edge_[kNext[j]], edge_[kLast[j]]);
-    const double determinant = glm::dot(across_[0], edge_[0]);
-    share_ = 1.0 / determinant;
+    find_products();
     for (int j = 0; j < 3; ++j) {
-        const glm::dvec3 &n = across_[j], world = n.x * to_a_[0] + n.y * to_a_[1] + n.z * to_a_[2];
-        const double share = 1.0 / std::sqrt(glm::dot(world, world));
-        radius_sum_[1][j] = (std::abs(determinant) * half_b_[j] + radius_along(half_a_, n)) * share;
-        along_[1][j] = glm::dot(n, at_) * share;
-        const double extent = radius_sum_[1][j] - std::abs(along_[1][j]);
+        const double extent = face_of_b(j);
         if (extent < far || extent < least.extent - depth_margin_) least = {3 + j, extent};
         if (extent < far) return false;
     }

@@ -28,6 +28,10 @@ class BoxPair {
     [[nodiscard]] double sliver_width() const { return sliver_width_; }
     void try_slivers(BoxAxis& least) const;
 
+    // Of one face's axis alone, 0 to 5; then normal() and face_towards_other() know this axis, and seen_by() and
+    // into_frame() this box.
+    [[nodiscard]] BoxAxis look_along(int axis);
+
     // The rest is known after least() has not ended early. Along the outward normal of face 2k + s of one box.
     [[nodiscard]] double face_extent(bool of_a, int face) const;
     // The face across axis 0 to 5 that looks at the other box.
@@ -47,19 +51,25 @@ class BoxPair {
     [[nodiscard]] glm::dvec3 into_frame(bool of_a, const glm::dvec3& direction) const;  // times R⁻¹
 
   private:
+    void find_edges(int k) {
+        for (int j = 0; j < 3; ++j) edge_[j][k] = glm::dot(to_a_[k], pair_.pose_b.rotation[j]);
+    }
+    void find_products();
+    [[nodiscard]] double face_of_a(int k);
+    [[nodiscard]] double face_of_b(int j);
     [[nodiscard]] bool try_faces(double far, BoxAxis& least);
     void try_edges(BoxAxis& least);
 
     const Pair& pair_;
     const glm::dvec3 &half_a_, &half_b_;
     double depth_margin_, error_, sliver_width_ = 0.0;
-    int slivers_ = 0;                        // bit 3i + j
-    glm::dvec3 to_a_[3];                     // rows of the inverse of a's rotation
-    glm::dvec3 edge_[3];                     // of b in a's frame
-    glm::dvec3 across_[3];                   // products of the other two edges
-    double share_ = 1.0;                     // 1 / determinant of the edges
-    glm::dvec3 at_;                          // b's center
-    double radius_sum_[2][3], along_[2][3];  // of a's and b's faces: sum of the boxes' radii, and where b's center is
+    int slivers_ = 0;                         // bit 3i + j
+    glm::dvec3 to_a_[3];                      // rows of the inverse of a's rotation
+    glm::dvec3 edge_[3];                      // of b in a's frame
+    glm::dvec3 across_[3];                    // products of the other two edges
+    double determinant_ = 1.0, share_ = 1.0;  // of the edges, and 1 / determinant
+    glm::dvec3 at_;                           // b's center
+    double radius_sum_[2][3], along_[2][3];   // of a's and b's faces: sum of the boxes' radii, and where b's center is
 };
 
 // A face of one box, the other box's face that looks against it, and what they have in common along a direction.
@@ -74,6 +84,8 @@ class BoxClip {
     void gather(const Touch& touch, double margin, GatheredPoints& to) const;
     // How far a corner of the other box is within the sides of the prism: the least distance, negative outside.
     [[nodiscard]] double corner_within(int corner) const;
+    // Whether no axis at all is less deep than the face, of this extent, by more than `allowed`. False: not proven.
+    [[nodiscard]] bool proves_least(double extent, double allowed) const;
 
   private:
     // A corner of the clipped polygon: its shadow on the face, and how far it is above along the direction. The lines
@@ -82,6 +94,7 @@ class BoxClip {
         double x, y, height;
         int before, after;
     };
+    static constexpr int kMost = 8;  // four corners and four sides; roundings can add one, which is left out
     static int clip_side(const FlatCorner* from, int count, int side, double level, int face, FlatCorner* to);
     void find_corners(int incident_face);
     void clip();
@@ -93,7 +106,7 @@ class BoxClip {
     glm::dvec3 direction_;  // unit, out of the reference, in its frame
     bool reference_is_a_;
     int face_, incident_ = 0, k_, u_, v_, count_ = 0;
-    FlatCorner corner_[8];
+    FlatCorner corner_[kMost + 1];
 };
 
 // The manifold of two boxes up to thinning out. The touch's depth and normal are proven, as the least of all axes. The

@@ -23,9 +23,15 @@ class BoxToucher {
     [[nodiscard]] glm::dvec3 separating_normal() const { return axes_.normal(least_.number); }
 
   private:
+    // Whether the cached face is proven to be the least deep but for kKeptDepth, looking along no other axis.
+    [[nodiscard]] Warm stays(bool of_a, int face, double limit);
     // Where the boxes touch at a face, of this extent. False if nothing above the face is as deep, but for `kept`: then
     // the nearest points lie elsewhere.
-    [[nodiscard]] bool at_face(bool of_a, int face, double extent, double kept);
+    [[nodiscard]] bool at_face(bool of_a, int face, double extent, double kept) {
+        touch_.normal = axes_.normal((of_a ? 0 : 3) + face / 2);
+        return at_face(BoxClip(a_, b_, axes_, of_a, face, touch_.normal), of_a, face, extent, kept);
+    }
+    [[nodiscard]] bool at_face(const BoxClip& clip, bool of_a, int face, double extent, double kept);
     // At the crossing of two edges. False if the boxes are apart and other points are nearer.
     [[nodiscard]] bool at_edges();
     void add_deepest(const glm::dvec3& on_a, const glm::dvec3& on_b, Feature feature_a, Feature feature_b);
@@ -58,9 +64,7 @@ void BoxToucher::add_deepest(const glm::dvec3& on_a, const glm::dvec3& on_b, Fea
     if (gatherer.lacks_deepest(1e-9 * pair_.size)) gatherer.add_deepest();
 }
 
-bool BoxToucher::at_face(bool of_a, int face, double extent, double kept) {
-    touch_.normal = axes_.normal((of_a ? 0 : 3) + face / 2);
-    const BoxClip clip(a_, b_, axes_, of_a, face, touch_.normal);
+bool BoxToucher::at_face(const BoxClip& clip, bool of_a, int face, double extent, double kept) {
     double least = std::numeric_limits<double>::infinity();
     for (int i = 0; i < clip.count(); ++i) least = std::min(least, extent - clip.depth(i));
     touch_.depth = extent + rounding_;
@@ -117,8 +121,25 @@ bool BoxToucher::at_edges() {
     return true;
 }
 
+Warm BoxToucher::stays(bool of_a, int face, double limit) {
+    least_ = axes_.look_along((of_a ? 0 : 3) + face / 2);
+    const double extent = least_.extent;
+    if (extent < limit) return Warm::apart;
+    // A box may have passed to the face's other side.
+    if (!(std::abs(extent) > axes_.error()) || face != axes_.face_towards_other(least_.number)) return Warm::unknown;
+    touch_.normal = axes_.normal(least_.number);
+    const BoxClip clip(a_, b_, axes_, of_a, face, touch_.normal);
+    const double kept = kKeptDepth * pair_.size;
+    if (!clip.proves_least(extent, kept)) return Warm::unknown;
+    return at_face(clip, of_a, face, extent, kept) ? Warm::touching : Warm::unknown;
+}
+
 Warm BoxToucher::ask(int& reference, int& face) {
     const double limit = -(rounding_ + margin_) - axes_.error();
+    if (reference != 0) {
+        if (const Warm warm = stays(reference == 1, face, limit); warm != Warm::unknown) return warm;
+        points_.count = 0;
+    }
     least_ = axes_.least(limit);
     if (std::isnan(least_.extent)) return Warm::unknown;
     if (least_.extent < limit) return Warm::apart;

@@ -244,11 +244,12 @@ int deepest_corner(const RawPoint* points, int count) {
 
 void thin_out(Manifold& manifold, const RawPoint* points, int count, int most) {
     int kept[16], chosen = 0;
+    const bool all = count <= most;
     const auto keep = [&](int i) {
         if (chosen < most && std::find(kept, kept + chosen, i) == kept + chosen) kept[chosen++] = i;
         return i;
     };
-    if (count <= most) {
+    if (all) {
         for (; chosen < count; ++chosen) kept[chosen] = chosen;
     } else {
         const glm::dvec3 from = points[keep(deepest_corner(points, count))].position;
@@ -267,7 +268,7 @@ void thin_out(Manifold& manifold, const RawPoint* points, int count, int most) {
         for (const double turn : {1.0, -1.0})
             for (const double side : {1.0, -1.0}) keep_farthest(turn * along + side * across);
     }
-    std::sort(kept, kept + chosen);
+    if (!all) std::sort(kept, kept + chosen);
     manifold.count = chosen;
     manifold.depth = points[kept[0]].depth;
     for (int i = 0; i < chosen; ++i) {
