@@ -139,4 +139,14 @@ TEST_SUITE("boxtree/box_tree") {
         }
         CHECK(per_item() <= 64.0);
     }
+
+    TEST_CASE("an insertion makes room for an eighth more, in each of the tree's lists") {
+        const testing::CountingMemory memory;
+        const oracle::Crowd crowd = oracle::random_crowd(100000, 0.0, 22);
+        BoxTree tree = *BoxTree::build(crowd.boxes);
+        const std::size_t before = memory.bytes_in_use();
+        for (std::size_t i = 0; i < 100; ++i) REQUIRE(tree.insert(crowd.boxes[i]).has_value());
+        CHECK(memory.bytes_in_use() - before > before / 10);
+        CHECK(memory.bytes_in_use() - before < before / 8 + before / 100);
+    }
 }

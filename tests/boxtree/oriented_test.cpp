@@ -91,6 +91,28 @@ TEST_SUITE("boxtree/oriented") {
         check_sound(tree);
     }
 
+    TEST_CASE("of several axes that do better than the world's the best are taken, not the last") {
+        // Needles at 45°, but for the one whose axes are tried last.
+        const auto needle = [](double degrees) {
+            const double angle = degrees * 0.017453292519943295;
+            Obb box;
+            box.axes = glm::mat3(glm::dmat3(glm::dvec3(std::cos(angle), std::sin(angle), 0.0),
+                                            glm::dvec3(-std::sin(angle), std::cos(angle), 0.0), glm::dvec3(0, 0, 1)));
+            box.half_extents = {10.0f, 0.01f, 0.01f};
+            return box;
+        };
+        std::vector<Obb> boxes(300, needle(45.0));
+        boxes[250] = needle(30.0);
+        for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i].center.x = 1e-3 * static_cast<double>(i);
+        const auto tree = BoxTree::build(boxes, {.orientation = Orientation::oriented});
+        REQUIRE(tree.has_value());
+        const boxtree::Structure& structure = tree->structure();
+        const boxtree::Axes& axes = structure.axes_of(structure.nodes()[0]);
+        double along = 0.0;
+        for (const auto& row : axes.rows) along = std::max(along, std::fabs(row[0] + row[1]) * std::sqrt(0.5));
+        CHECK(along > 0.9999);
+    }
+
     TEST_CASE("sizes from nothing to a galaxy, and places to match, are held") {
         for (const double scale : {1e-20, 1e-6, 1e9, 1e27}) {
             oracle::Crowd crowd = oracle::turned_crowd(600, 0.0, 3, scale);

@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "oracle/edges.hpp"
 #include "oracle/exact_boxes.hpp"
 #include "random_boxes.hpp"
 
@@ -98,6 +99,31 @@ TEST_SUITE("collide/shapes") {
         CHECK(wrong == 0);
         CHECK(hits > 500);
         CHECK(hits < 3500);
+    }
+
+    TEST_CASE("long boxes and the triangles that just miss them: as rational clipping says, to the last bit") {
+        std::mt19937_64 random(3);
+        int compared = 0;
+        for (int trial = 0; trial < 400; ++trial) {
+            Obb box = random_box(random);
+            const int k = trial % 3;
+            // Sums along the box's length cancel, but for a rounding that is large beside all else.
+            box.half_extents[k] = std::pow(10.0f, float(2 + trial % 6));
+            const Triangle t = {box.center + random_vector(random), box.center + random_vector(random),
+                                box.center + random_vector(random)};
+            const glm::dvec3 away = glm::dvec3(box.axes[(k + 1 + trial % 2) % 3]) + 0.3 * random_vector(random);
+            const auto moved = [&](double by) {
+                return Triangle{t[0] + by * away, t[1] + by * away, t[2] + by * away};
+            };
+            if (!intersects(box, moved(0.0)) || intersects(box, moved(20.0))) continue;
+            const auto [meets, misses] =
+                oracle::edge_between(0.0, 20.0, [&](double by) { return intersects(box, moved(by)); });
+            for (const double by : {meets, misses}) {
+                REQUIRE(intersects(box, moved(by)) == oracle_triangle(box, moved(by)));
+                ++compared;
+            }
+        }
+        CHECK(compared > 400);
     }
 
     TEST_CASE("balls that nearly touch a box: as the distance between the bodies says") {

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 #include <algorithm>
 #include <crofton/boxtree/box_tree.hpp>
+#include <crofton/boxtree/structure.hpp>
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/collide/narrow_phase.hpp>
 #include <crofton/mesh/mesh_query.hpp>
@@ -129,6 +130,35 @@ TEST_SUITE("collide/tree edges") {
                 visit_near({place, place}, distance, *tree, [&](boxtree::ItemId i) {
                     found = found || i == item;
                     return distance;
+                });
+                REQUIRE(found);
+            }
+        }
+    }
+
+    TEST_CASE("boxes so small beside their leaf that its units lose them are near where they end") {
+        NearMisses random(74);
+        for (int trial = 0; trial < 4000; ++trial) {
+            const int axis = static_cast<int>(random.index(3));
+            std::vector<Obb> boxes(3);
+            for (Obb& box : boxes) box.half_extents = glm::vec3(0.0f);
+            boxes[0].center[axis] = 1.0;
+            boxes[1].center[axis] = -1.0;
+            // Half a unit or one and a half from the leaf's origin, and 2^-24 units wide, or so.
+            const double unit =
+                static_cast<double>(boxtree::BoxTree::build(boxes)->structure().leaves()[0].position_unit);
+            boxes[2].center[axis] =
+                (random.index(2) ? 0.5 : 1.5) * unit * (1.0 + 0x1p-40) * (random.index(2) ? 1.0 : -1.0);
+            boxes[2].half_extents[axis] = float(unit * 0x1p-25 * random.number(0.1, 4.0));
+            const auto tree = boxtree::BoxTree::build(boxes);
+            REQUIRE(tree.has_value());
+            for (const double side : {1.0, -1.0}) {
+                glm::dvec3 end(0.0);
+                end[axis] = boxes[2].center[axis] + side * double{boxes[2].half_extents[axis]};
+                bool found = false;
+                visit_near({end, end}, 0.0, *tree, [&](boxtree::ItemId i) {
+                    found = found || i == 2;
+                    return 0.0;
                 });
                 REQUIRE(found);
             }

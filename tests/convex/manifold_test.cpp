@@ -78,6 +78,22 @@ TEST_SUITE("convex/manifold") {
         CHECK(m.depth == doctest::Approx(0.01));
     }
 
+    TEST_CASE("of points that would do as well the first are kept, so that a body at rest keeps its points") {
+        // An octagon on a floor: two squares of its corners span the same area.
+        std::vector<glm::vec3> corners;
+        for (const glm::vec2 p : {glm::vec2(2, 1), glm::vec2(1, 2), glm::vec2(-1, 2), glm::vec2(-2, 1),
+                                  glm::vec2(-2, -1), glm::vec2(-1, -2), glm::vec2(1, -2), glm::vec2(2, -1)})
+            for (const float y : {-1.0f, 1.0f}) corners.emplace_back(p.x, y, p.y);
+        const Hull hull = Hull::build(corners).value();
+        const Body octagon = Body::hull(hull), floor = Body::box({9, 1, 9}).value();
+        const RigidTransform low = at({}), high = at({0, 1.75, 0});
+        const Manifold all = contact_manifold({floor, low}, {octagon, high}, {.max_points = 8});
+        REQUIRE(all.count == 8);
+        const Manifold four = contact_manifold({floor, low}, {octagon, high});
+        REQUIRE(four.count == 4);
+        for (int i = 0; i < 4; ++i) CHECK(four.points[i].position == all.points[2 * i].position);
+    }
+
     TEST_CASE("round bodies: a capsule and a cylinder lying, standing, on a box and on a half-space") {
         const Body floor = Body::half_space({{0, -1, 0}, 0}).value(), slab = Body::box({9, 1, 9}).value();
         const Body capsule = Body::capsule(1, 0.5f).value(), cylinder = Body::cylinder(1, 0.5f).value();

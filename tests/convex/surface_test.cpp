@@ -63,6 +63,28 @@ TEST_SUITE("convex/surface") {
         CHECK(apart > 100);
     }
 
+    TEST_CASE("triangles so far from the surface's origin that a step of float is an eighth are met where they are") {
+        RandomBodies random(7);
+        int meeting = 0;
+        for (int round = 0; round < 20; ++round) {
+            Surface s = soup(random, 20, 3.0, 0.6);
+            for (glm::vec3& p : s.mesh.positions) p[round % 3] += 0x1.01p20f;
+            s.build();
+            const Body body = s.body(), box = Body::box({0.3f, 0.4f, 0.5f}).value();
+            const RigidTransform pose{glm::dmat3(1.0), glm::dvec3(0.0)};
+            for (int i = 0; i < 40; ++i) {
+                RigidTransform pose_b = next_to(random, s, pose, box, -1e-3);
+                pose_b.rotation = glm::dmat3(1.0);  // and beside it, or in it
+                const bool truth = brute_meets(s, pose, {box, pose_b});
+                CHECK(intersects({body, pose}, {box, pose_b}) == truth);
+                meeting += truth;
+                pose_b = next_to(random, s, pose, box, -1e-3);
+                CHECK(intersects({body, pose}, {box, pose_b}));
+            }
+        }
+        CHECK(meeting > 50);
+    }
+
     TEST_CASE("distances are the least of the triangles' one by one, with points and bounds") {
         RandomBodies random(3);
         int apart = 0;

@@ -73,6 +73,11 @@ TEST_SUITE("cull/classify") {
         CHECK(cull::classify(frustum, cube_at({std::nextafter(1.0, 2.0), 0.0, 0.0}, denormal)) == Verdict::outside);
         CHECK(cull::classify(frustum, cube_at({0.0, 0.0, 0.0}, 9e29f)) == Verdict::straddling);
         CHECK(cull::classify(frustum, cube_at({1e30, 0.0, 0.0}, 1e29f)) == Verdict::outside);
+        Frustum far = frustum;
+        far.planes[far.plane_count++] = {{0.0, 0.0, 1.0}, 1e50};
+        CHECK(cull::classify(far, cube_at({50.0, 0.0, 0.0}, 1.0f)) == Verdict::outside);
+        far.planes[far.plane_count - 1].offset = std::nextafter(1e50, 2e50);
+        CHECK(cull::classify(far, cube_at({50.0, 0.0, 0.0}, 1.0f)) == Verdict::straddling);
         Obb needle = cube_at({0.0, 0.0, 0.0}, 0.0f);
         needle.half_extents.x = 9e29f;
         CHECK(cull::classify(frustum, needle) == Verdict::straddling);

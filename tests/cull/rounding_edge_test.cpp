@@ -122,6 +122,37 @@ TEST_SUITE("cull/rounding edges") {
         CHECK(outside > 100);
     }
 
+    TEST_CASE("planes a little longer than unit vectors, far beyond a tree, lose none of it") {
+        oracle::NearMisses random(46);
+        std::vector<Obb> boxes(2000);
+        for (Obb& box : boxes) {
+            for (int j = 0; j < 3; ++j) box.center[j] = (random.index(2) ? 15.8 : -15.8) + random.number(-0.1, 0.1);
+            box.half_extents = glm::vec3(0.01f);
+        }
+        auto tree = boxtree::BoxTree::build(boxes);
+        REQUIRE(tree.has_value());
+        // Twice as far out they lie where 16 bits just hold them.
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            boxes[i].center *= 2.0;
+            REQUIRE(tree->move(static_cast<cull::ItemId>(i), boxes[i]).has_value());
+        }
+        tree->refit();
+        for (int corner = 0; corner < 8; ++corner) {
+            Frustum frustum;
+            frustum.plane_count = 1;
+            // Integers of 32 bits have room for the sums of a unit normal along a diagonal, not for those of this one.
+            for (int j = 0; j < 3; ++j)
+                frustum.planes[0].normal[j] = (corner >> j & 1 ? 1.2 : -1.2) * std::sqrt(1.0 / 3);
+            frustum.planes[0].offset = 400.0;
+            cull::VisibleSet visible;
+            cull::find_visible(*tree, {frustum}, visible);
+            CHECK(visible.size() == boxes.size());
+            cull::ManyVisible many;
+            cull::find_visible(*tree, std::vector<cull::View>(2, cull::View{frustum}), many);
+            CHECK(many.ids().size() == boxes.size());
+        }
+    }
+
     TEST_CASE("planes twice as long as unit vectors, along the axes, in a tree") {
         oracle::NearMisses random(45);
         std::vector<Obb> boxes(2000);

@@ -74,4 +74,30 @@ TEST_SUITE("cull/spot_filter") {
         CHECK(refused > apart * 9 / 10);
         CHECK(taken > meeting / 4);
     }
+
+    TEST_CASE("half a ball whose flat side is just above a froxel is never taken for one that reaches it") {
+        sampling::Random random(2);
+        int refused = 0;
+        for (int trial = 0; trial < 3000; ++trial) {
+            SpotBelowBox made;
+            made.spot.is_spot = true;
+            made.spot.radius = random.uniform(0.1, 2.0);
+            made.spot.cosine = 0.0;
+            made.spot.sine = made.spot.axis[2] = 1.0;
+            for (int axis = 0; axis < 2; ++axis) {
+                made.cell.start[axis][0] = random.uniform(-1.0, 0.5);
+                made.cell.start[axis][1] = made.cell.start[axis][0] + random.uniform(0.1, 1.0);
+                made.spot.at[axis] = random.uniform(-1.0, 1.0);
+            }
+            made.cell.high = random.uniform(-1.0, 1.0);
+            made.cell.low = made.cell.high - random.uniform(0.0, 1.0);
+            // Their differences nearest to the origin lie in a plane, and so do tetrahedra of them.
+            const double gap = std::pow(10.0, random.uniform(-8.0, 0.0));
+            made.spot.at[2] = made.cell.high + gap;
+            const Answer answer = cull::filter_spot(made.spot, made.cell, 0.04 * gap);
+            REQUIRE(answer != Answer::yes);
+            refused += answer == Answer::no;
+        }
+        CHECK(refused > 2900);
+    }
 }

@@ -40,6 +40,14 @@ TEST_SUITE("measure/planar") {
               std::vector<glm::dvec2>{{0.0, 0.0}, {4.0, 0.0}, {4.0, 4.0}, {0.0, 4.0}});
     }
 
+    TEST_CASE("what lies behind a polygon's last corner is not read") {
+        const std::vector<glm::dvec2> points = {{0.0, 0.0}, {2.0, 0.0}, {2.0, 3.0}, {0.0, 3.0}, {std::nan(""), 1e9}};
+        CHECK(convex_hull(std::span(points).first(4)).value().size() == 4);
+        const PlanarMeasures polygon = planar_measures_of_convex_polygon(std::span(points).first(4));
+        CHECK(polygon.area == 6.0);
+        CHECK(polygon.perimeter == 10.0);
+    }
+
     TEST_CASE("a polygon of many corners has the measures of its circle") {
         std::vector<glm::dvec2> points;
         for (int i = 0; i < 4096; ++i) points.push_back(3.0 * circle_point(i / 4096.0) + glm::dvec2(10.0, -7.0));

@@ -42,6 +42,10 @@ TEST_SUITE("scene/planar_polygon") {
         CHECK(error_of(validate(p)).code == ErrorCode::degenerate);
         p.v = p.u + 1e-8 * square().v;
         CHECK(validate(p).has_value());
+        p.v = p.u + 1e-9 * square().v;  // at the limit, all of whose numbers are exact
+        CHECK(error_of(validate(p)).code == ErrorCode::degenerate);
+        p.v = glm::dvec3(0.0);
+        CHECK(error_of(validate(p)).code == ErrorCode::degenerate);
         constexpr std::array<std::array<std::uint32_t, 3>, 1> beyond = {{{0, 1, 4}}};
         CHECK(error_of(to_mesh(square(), beyond)).code == ErrorCode::out_of_range);
     }

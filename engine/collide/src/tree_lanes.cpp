@@ -60,8 +60,8 @@ HWY_INLINE Bounds bounds_of(D d, const boxtree::Leaf& leaf, std::size_t l) {
 }
 
 // Roundings, each of at most 2^-24 of a number no greater than |origin|₁ + l1_radius + half: of the ray's origin and
-// direction, of the difference, the half extents, both sums and the product with the inverse (two). Together they move
-// a slab, seen at any point of the bounds, by less than 2^-20 of that number.
+// direction, of the difference, the half extents, both sums and the product with the inverse (two), and of the ray's
+// end. Together they move a slab, seen at any point of the bounds, by less than 2^-20 of that number.
 constexpr float kRounding = 0x1p-20f;
 
 HWY_INLINE float size_of(const LaneRay& ray, float l1_radius) {
@@ -96,17 +96,19 @@ HWY_INLINE std::uint32_t along(const Block& block, const LaneRay& ray, float* en
     return lanes & used;
 }
 
-// The box is rounded outward already; here only the sums round, by less than 2^-23 of what they sum.
+// Half extents are rounded, at most four times by 2^-24 of themselves, and made wider by more. That covers differences
+// in double, too, of 2^-39 units, as half extents are half a unit at least. All else is safe: middles are exact, and
+// roundings of a sum and of the box's end keep the order of the numbers that they round.
 template <class Block>
 HWY_INLINE std::uint32_t within(const Block& block, const LaneBox& box) {
     const D d;
-    const V error_bound = hn::Set(d, kRounding * block.l1_radius), grow = hn::Set(d, 1.0f + kRounding);
+    const V grow = hn::Set(d, 1.0f + kRounding);
     std::uint32_t lanes = 0;
     for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(d)) {
         const Bounds bounds = bounds_of(d, block, l);
         auto apart = hn::Lt(hn::Zero(d), hn::Zero(d));
         for (int k = 0; k < 3; ++k) {
-            const V half = hn::Add(hn::Mul(bounds.half[k], grow), error_bound);
+            const V half = hn::Mul(bounds.half[k], grow);
             apart = hn::Or(apart, hn::Gt(hn::Sub(bounds.middle[k], half), hn::Set(d, box.high[k])));
             apart = hn::Or(apart, hn::Lt(hn::Add(bounds.middle[k], half), hn::Set(d, box.low[k])));
         }

@@ -60,23 +60,17 @@ void for_each_item(const boxtree::Structure& tree, boxtree::LeafId leaf, std::ui
     });
 }
 
-// Down and up by more than the conversion rounds; 1e-37 is for what float counts as zero.
-float round_down(double x) {
-    const float near = static_cast<float>(std::clamp(x, -1e38, 1e38));
-    return near - std::abs(near) * 0x1p-22f - 1e-37f;
-}
-float round_up(double x) {
-    const float near = static_cast<float>(std::clamp(x, -1e38, 1e38));
-    return near + std::abs(near) * 0x1p-22f + 1e-37f;
+// Keeps the order of numbers, which is what the comparison with lanes needs (tree_lanes.cpp).
+float to_float(double x) {
+    return static_cast<float>(std::clamp(x, -1e38, 1e38));
 }
 
-// The differences round by 2^-53 of themselves, which is covered as well.
 template <class Block>
 LaneBox box_for(const Block& block, const Aabb& bounds) {
     LaneBox box;
     for (int k = 0; k < 3; ++k) {
-        box.low[k] = round_down(bounds.min[k] - block.origin[k]);
-        box.high[k] = round_up(bounds.max[k] - block.origin[k]);
+        box.low[k] = to_float(bounds.min[k] - block.origin[k]);
+        box.high[k] = to_float(bounds.max[k] - block.origin[k]);
     }
     return box;
 }
@@ -98,8 +92,8 @@ LaneBox box_for(const boxtree::Node& node, const boxtree::Axes& axes, const Aabb
             least += std::min(a, b);
             most += std::max(a, b);
         }
-        box.low[k] = round_down(least - axes.rounding * size);
-        box.high[k] = round_up(most + axes.rounding * size);
+        box.low[k] = to_float(least - axes.rounding * size);
+        box.high[k] = to_float(most + axes.rounding * size);
     }
     return box;
 }
@@ -139,9 +133,9 @@ class Traveller {
         : origin_(ray.origin), length_(glm::length(ray.direction)), speed_(ray.direction / length_) {
         for (int k = 0; k < 3; ++k) inverse_[static_cast<std::size_t>(k)] = inverse_of(speed_[k]);
     }
-    // In the filter's distances, rounded up.
+    // In the filter's distances; what it rounds is below the filter's error bound.
     [[nodiscard]] float distance(double t) const {
-        return static_cast<float>(std::min(t * length_ * (1.0 + 1e-6), static_cast<double>(kFar)));
+        return static_cast<float>(std::min(t * length_, static_cast<double>(kFar)));
     }
     // Along a node's axes where they are not the world's: what turning rounds is below the filter's error bound as
     // well.

@@ -33,9 +33,10 @@ enum class CullMode : std::uint8_t {
 };
 
 // Exact for the boxes' and planes' stored numbers: `outside` as the mode says, `inside` iff the frustum contains the
-// box; touching from outside is straddling. A box or a frustum that is not finite, or beyond 1e30, is `straddling`:
-// never lost. Planes decide most boxes in double with a proven error bound. The rest go through the separating-axis
-// test (Gottschalk, Lin, Manocha 1996). Where rounding could still matter, exact arithmetic decides.
+// box; touching from outside is straddling. A box or a frustum that is not finite, or beyond 1e30 (a plane's
+// offset: 1e50), is `straddling`: never lost. Planes decide most boxes in double with a proven error bound. The rest go
+// through the separating-axis test (Gottschalk, Lin, Manocha 1996). Where rounding could still matter, exact arithmetic
+// decides.
 [[nodiscard]] Verdict classify(const Frustum& frustum, const Obb& box, CullMode mode = CullMode::exact);
 
 // The same for axis-aligned boxes and for balls. An empty Aabb and a negative radius are `straddling`, as is what is
