@@ -99,6 +99,26 @@ TEST_SUITE("cli/pvs") {
         CHECK(run_cli("bake " + quoted("both.crofton")).status == 0);
     }
 
+    TEST_CASE("--views looks at the sets from random places: no wrong pixel in conservative mode, few triangles more") {
+        const std::string base = "pvs " + level() + kSmall;
+        const CliRun run = run_cli(base + "--views 40 --json -");
+        REQUIRE_MESSAGE(run.status == 0, run.err);
+        const auto views = run.json().at("street_views");
+        CHECK(views.at("views") == 40);
+        CHECK(views.at("eyes_in_no_cell") == 0);
+        CHECK(views.at("conservative").at("wrong_pixels_worst") == 0.0);
+        CHECK(views.at("statistical").at("wrong_pixels_mean").get<double>() < 1e-2);
+        const double frustum = views.at("frustum_triangles"), owners = views.at("owner_triangles"),
+                     conservative = views.at("conservative").at("triangles");
+        CHECK(owners > 0.0);
+        CHECK(conservative <= frustum);
+        CHECK(conservative >= owners);
+        CHECK(run_cli(base + "--json -").json().at("street_views") == nullptr);
+        CHECK(run_cli(base + "--views 0").status == 2);
+        CHECK(run_cli(base + "--views 5 --shard 0/2 --state " + quoted("v")).status == 2);
+        CHECK(run_cli(base + "--views 5").out.find("5 street views") != std::string::npos);
+    }
+
     TEST_CASE("a full disk leaves the state that was there") {
         const std::string base = "pvs " + level() + kSmall;
         REQUIRE(run_cli(base + "--shard 0/2 --state " + quoted("kept")).status == 0);

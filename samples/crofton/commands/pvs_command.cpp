@@ -6,10 +6,12 @@
 #include <crofton/pvs/pvs.hpp>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 
 #include "commands.hpp"
 #include "interrupt.hpp"
 #include "pipeline/pvs_scene.hpp"
+#include "pipeline/pvs_views.hpp"
 #include "progress_bar.hpp"
 #include "pvs_cells.hpp"
 #include "pvs_svg.hpp"
@@ -27,7 +29,7 @@ struct PvsRequest {
     std::string scene, map, cells = "64x2x64", eyes, sides = "both", shard, state, out, svg, eye, json;
     double height = 10.0, epsilon = 1e-4, confidence = 0.999, seconds = 0.0, near_radius = 0.5;
     std::uint64_t seed = 1;
-    std::uint32_t instances = 0, halvings = 4;
+    std::uint32_t instances = 0, halvings = 4, views = 0;
     unsigned threads = 1;
     bool with_scene = false;
 };
@@ -62,7 +64,8 @@ Result<Job> make_job(const PvsRequest& options, Executor& executor) {
     }
     auto cells = cells_from(options.cells, eyes, options.read.limits);
     if (!cells) return tl::unexpected(cells.error());
-    auto scene = pipeline::make_pvs_scene(*source, !options.out.empty() || !options.svg.empty(), executor);
+    auto scene =
+        pipeline::make_pvs_scene(*source, !options.out.empty() || !options.svg.empty() || options.views > 0, executor);
     if (!scene) return tl::unexpected(scene.error());
     return Job{options, std::move(*source), std::move(*scene), std::move(*cells), *shard};
 }
@@ -140,7 +143,38 @@ Result<void> write_outputs(const Job& job, const pvs::Pvs& sets, Executor& execu
     return write_file(options.svg, pvs_svg(sets, job.scene.subject, cell));
 }
 
-Json figures(const Job& job, const pvs::Bake& bake, const pvs::Pvs& sets, std::size_t file_bytes) {
+using Views = std::optional<pipeline::PvsViewFigures>;
+
+Json to_json(const pipeline::PvsModeFigures& mode) {
+    return {{"wrong_pixels_mean", mode.wrong_mean},
+            {"wrong_pixels_worst", mode.wrong_worst},
+            {"triangles", mode.triangles}};
+}
+
+Json to_json(const Views& views) {
+    if (!views) return nullptr;
+    return {{"views", views->views},
+            {"eyes_in_no_cell", views->in_no_cell},
+            {"frustum_triangles", views->frustum_triangles},
+            {"owner_triangles", views->owner_triangles},
+            {"conservative", to_json(views->conservative)},
+            {"statistical", to_json(views->statistical)}};
+}
+
+void print(const pipeline::PvsViewFigures& views) {
+    std::printf(
+        "%u street views: wrong pixels, mean and worst; triangles a view, and over those of what owns a pixel\n",
+        views.views);
+    const auto row = [&](const char* name, const pipeline::PvsModeFigures& mode) {
+        std::printf("  %-13s %8.2g %8.2g %10.0f %7.2f\n", name, mode.wrong_mean, mode.wrong_worst, mode.triangles,
+                    mode.triangles / std::max(1.0, views.owner_triangles));
+    };
+    row("conservative", views.conservative);
+    row("statistical", views.statistical);
+    row("frustum alone", {0.0, 0.0, views.frustum_triangles});
+}
+
+Json figures(const Job& job, const pvs::Bake& bake, const pvs::Pvs& sets, std::size_t file_bytes, const Views& views) {
     const pvs::PairCounts counts = sets.counts();
     std::size_t kinds[4] = {};
     for (std::size_t c = 0; c < sets.cells().size(); ++c) ++kinds[static_cast<std::size_t>(sets.kind(c))];
@@ -170,7 +204,8 @@ Json figures(const Job& job, const pvs::Bake& bake, const pvs::Pvs& sets, std::s
             {"bits_a_pair", 8.0 * static_cast<double>(file_bytes) /
                                 static_cast<double>(sets.cells().size() * std::max(1u, sets.object_count()))},
             {"trace_seconds", job.trace_seconds},
-            {"proof_seconds", job.proof_seconds}};
+            {"proof_seconds", job.proof_seconds},
+            {"street_views", to_json(views)}};
 }
 
 void print_figures(const Job& job, const pvs::Bake& bake, const pvs::Pvs& sets, std::size_t file_bytes) {
@@ -223,9 +258,20 @@ Result<int> run_pvs(const PvsRequest& options) {
     job->proof_seconds = seconds_since(start);
     std::size_t file_bytes = 0;
     if (auto written = write_outputs(*job, *sets, pool, file_bytes); !written) return tl::unexpected(written.error());
-    if (options.json != "-") print_figures(*job, *bake, *sets, file_bytes);
+    Views views;
+    if (options.views > 0) {
+        const auto looked = pipeline::look_at_views(
+            job->source.scene, job->scene.subject, *sets,
+            {.views = options.views, .seed = options.seed, .near_radius = options.near_radius}, pool);
+        if (!looked) return tl::unexpected(looked.error());
+        views = *looked;
+    }
+    if (options.json != "-") {
+        print_figures(*job, *bake, *sets, file_bytes);
+        if (views) print(*views);
+    }
     if (!options.json.empty())
-        if (auto written = write_json(options.json, figures(*job, *bake, *sets, file_bytes)); !written)
+        if (auto written = write_json(options.json, figures(*job, *bake, *sets, file_bytes, views)); !written)
             return tl::unexpected(written.error());
     return interrupted() ? kInterrupted : kSuccess;
 }
@@ -244,7 +290,7 @@ void add_pvs_command(CommandLine& line) {
         "  crofton pvs level.wad --map MAP01 --cells 32x1x32 --state map01.state --seconds 60 --out map01.crofton\n"
         "  crofton pvs town --shard 0/2 --state part0       half of the lines; the others: 1/2, part1\n"
         "  crofton merge part0 part1 --out town.state          then both together\n"
-        "  crofton pvs town --state town.state --out town_pvs.crofton");
+        "  crofton pvs town --state town.state --out town_pvs.crofton --views 1000");
     command.option("scene", options->scene, "town, room, or a .glb, .gltf, .obj or .wad file").required();
     command.option("--cells", options->cells, "NXxNYxNZ, or a file of boxes").show_default();
     command.option("--eyes", options->eyes,
@@ -273,7 +319,12 @@ void add_pvs_command(CommandLine& line) {
     command.flag("--with-scene", options->with_scene, "Put the baked scene into the same file");
     command.option("--svg", options->svg, "Write a map with what one cell sees").writable_file().excludes(shard);
     command.option("--eye", options->eye, "x,y,z: the map's cell holds it; without, the middle one");
-    command.option("--seed", options->seed, "Of the lines and of the town").show_default();
+    command
+        .option("--views", options->views,
+                "Look at the sets from so many random places: wrong pixels and triangles in either mode")
+        .whole_between(1, 1'000'000)
+        .excludes(shard);
+    command.option("--seed", options->seed, "Of the lines, of the town and of the views").show_default();
     command.option("--instances", options->instances, "Size of the town, roughly");
     command.option("--map", options->map, "Which level of a .wad");
     command.option("--threads", options->threads, "Worker threads; 0: one per core")

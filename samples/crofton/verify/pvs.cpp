@@ -11,6 +11,7 @@
 #include <cstdio>
 
 #include "pipeline/pvs_scene.hpp"
+#include "pipeline/pvs_views.hpp"
 
 namespace crofton::cli {
 namespace {
@@ -21,6 +22,7 @@ constexpr double kConfidence = 0.999;
 constexpr std::uint64_t kCellsAsked = 96;
 
 struct Baked {
+    assets::SceneSource source;
     pipeline::PvsScene scene;
     pvs::Cells cells;
     pvs::Bake bake;
@@ -52,7 +54,8 @@ Result<Baked> bake_town(const VerifyOptions& options) {
     if (auto ran = bake->run(); !ran) return tl::unexpected(ran.error());
     auto sets = pvs::Pvs::finish(*bake, scene->occluders, {.near_radius = 0.0, .halvings = 2});
     if (!sets) return tl::unexpected(sets.error());
-    return Baked{std::move(*scene), std::move(*cells), std::move(*bake), std::move(*sets), epsilon, lines};
+    return Baked{
+        std::move(*source), std::move(*scene), std::move(*cells), std::move(*bake), std::move(*sets), epsilon, lines};
 }
 
 // The objects at the ends of the gaps that the line has within the box, each once.
@@ -145,6 +148,24 @@ void wrong_rays(const Baked& baked, const VerifyOptions& options, std::vector<Ve
     rows.back().cases = hits;
 }
 
+// Views from places that the bake knew nothing of.
+VerifyRow wrong_pixels(const Baked& baked, const VerifyOptions& options) {
+    const auto views = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(options.trials / 200, 20, 1000));
+    const auto looked = pipeline::look_at_views(baked.source.scene, baked.scene.subject, baked.sets,
+                                                {.views = views, .seed = options.seed, .near_radius = 0.0});
+    if (!looked) return computed_row("street views: " + looked.error().message, "docs/pvs.md", 1.0, 0.0, 0.0);
+    char claim[300];
+    std::snprintf(claim, sizeof claim,
+                  "town: wrong pixels in %u street views, conservative (%.2f times the triangles of what owns a pixel; "
+                  "statistical at epsilon %.2g: %.2g in the mean, %.2g at worst, %.2f times the triangles)",
+                  views, looked->conservative.triangles / looked->owner_triangles, baked.epsilon,
+                  looked->statistical.wrong_mean, looked->statistical.wrong_worst,
+                  looked->statistical.triangles / looked->owner_triangles);
+    VerifyRow row = computed_row(claim, "docs/pvs.md", 0.0, looked->conservative.wrong_worst, 0.0);
+    row.cases = views;
+    return row;
+}
+
 }  // namespace
 
 std::vector<VerifyRow> verify_pvs(const VerifyOptions& options) {
@@ -157,6 +178,7 @@ std::vector<VerifyRow> verify_pvs(const VerifyOptions& options) {
     const auto tracer = radiosity::LineTracer::build(baked->scene.subject.mesh);
     if (tracer) rows.push_back(missed_pairs(*baked, *tracer, options));
     wrong_rays(*baked, options, rows);
+    rows.push_back(wrong_pixels(*baked, options));
     return rows;
 }
 

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// What visible sets cost in pictures: wrong pixels and triangles of views that the bake knew nothing of.
+#pragma once
+#include <crofton/core/executor.hpp>
+#include <crofton/pvs/pvs.hpp>
+#include <crofton/scene/scene.hpp>
+
+namespace crofton::pipeline {
+
+struct PvsViewOptions {
+    std::uint32_t views = 1000, width = 320, height = 180;
+    std::uint64_t seed = 1;
+    double near_radius = 0.5;  // no point of a view's near plane is farther from the eye: what the proofs were told
+};
+
+// Of one mode. A pixel is wrong if its owner, the nearest triangle's object, is not in the set of the eye's cell.
+struct PvsModeFigures {
+    double wrong_mean = 0.0, wrong_worst = 0.0;  // share of a view's pixels, sky and all
+    double triangles = 0.0;                      // mean of a view: of objects in the frustum and in the set
+};
+
+struct PvsViewFigures {
+    std::uint32_t views = 0, in_no_cell = 0;                // of these eyes, which get everything
+    double frustum_triangles = 0.0, owner_triangles = 0.0;  // mean of a view; owners have a pixel
+    PvsModeFigures conservative, statistical;
+};
+
+// Level views in random directions, 60 degrees high, from random places where one could stand and walk (FreeSpace) and
+// the cells reach. Owners are found by exact rays through the middles of pixels, from the near plane on. Objects that
+// are not baked are drawn in any mode: they are left out. The scene has been updated. The same figures for any
+// executor. Errors: sizes of 0; no place to stand within the cells (empty).
+[[nodiscard]] Result<PvsViewFigures> look_at_views(const scene::Scene& scene, const pvs::Subject& subject,
+                                                   const pvs::Pvs& sets, const PvsViewOptions& options = {},
+                                                   Executor& executor = serial_executor());
+
+}  // namespace crofton::pipeline
