@@ -32,7 +32,7 @@ export class VisibleSet extends Owned {
 function writeOptions(memory, { conservative = false, treeOrder = false } = {}) {
     if (!conservative && !treeOrder) return 0;
     const at = memory.scratch(24);
-    memory.words.set([20, conservative ? 1 : 0, treeOrder ? 1 : 0], at >> 2);
+    memory.words.set([24, conservative ? 1 : 0, treeOrder ? 1 : 0], at >> 2);
     return at;
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Holds the layout that js/layout.js writes by hand to what the headers say, and turns 64-bit results into numbers. */
+/* Holds the layout that js/ writes by hand to what the headers say, and turns 64-bit results into numbers. */
 #include <crofton/capi/crofton.h>
 
 #define AT(type, member, place) _Static_assert(offsetof(type, member) == (place), #type "." #member " has moved")
@@ -18,7 +18,7 @@ AT(crofton_frustum, origin, 8);
 AT(crofton_frustum, planes, 32);
 SIZE(crofton_view, 424);
 AT(crofton_view, frustum, 8);
-SIZE(crofton_cull_options, 20);
+SIZE(crofton_cull_options, 24);
 SIZE(crofton_cull_statistics, 56);
 AT(crofton_cull_statistics, nodes_tested, 8);
 SIZE(crofton_fit_options, 32);
