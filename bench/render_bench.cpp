@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// What a frame costs by the way it is drawn, and what predicting its triangle count costs. On lavapipe, or on the device
-// that the environment's CROFTON_DEVICE names.
+// What a frame costs by the way it is drawn, and what predicting its triangle count costs. On lavapipe, or on the
+// device that the environment's CROFTON_DEVICE names.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <crofton/render/clip_space.hpp>
 #include <crofton/render/rasterizer.hpp>
+#include <cstdlib>
 #include <optional>
 #include <random>
 
