@@ -80,7 +80,7 @@ class ShadowTest {
     };
 
     // Each plane's form is least at a corner of the box. Its error is those of three forms, as much again for the
-    // roundings here, and that of the number that they are compared with.
+    // roundings here and of the plane's numbers to float, and that of the number that they are compared with.
     HWY_INLINE hn::Mask<DF> hold(const Planes& planes) const {
         const DF d;
         VF least = planes.at(forms_, 0);
