@@ -79,8 +79,8 @@ class ShadowTest {
         HWY_INLINE VF at(const float* forms, std::size_t k) const { return hn::Add(along(forms, k), constant); }
     };
 
-    // Each plane's form is least at a corner of the box. Its error is those of three forms, as much again for the
-    // roundings here, and that of the number that they are compared with.
+    // Each plane's form is least at a corner of the box. Its error is those of three forms and that of the number that
+    // they are compared with. The forms' count twice, for the roundings here and of the plane's numbers to float.
     HWY_INLINE hn::Mask<DF> hold(const Planes& planes) const {
         const DF d;
         VF least = planes.at(forms_, 0);

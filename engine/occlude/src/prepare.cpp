@@ -118,10 +118,8 @@ class Preparation {
         if (!(range + error < 1e30)) return false;
         const double base = middle - error - 0x1p-21 * (range + bounds_.nearness);
         out_.planes.push_back({static_cast<float>(base), static_cast<float>(plane.x), static_cast<float>(plane.y)});
-        // Here three coefficients are rounded to float.
-        const double least = plane.w - error - 0x1p-22 * (range + std::fabs(plane.w));
         out_.fronts.push_back(
-            {static_cast<float>(plane.x), static_cast<float>(plane.y), static_cast<float>(least), 1.0f});
+            {static_cast<float>(plane.x), static_cast<float>(plane.y), static_cast<float>(plane.w - error), 1.0f});
         return true;
     }
 
@@ -175,12 +173,11 @@ class Preparation {
     bool add_line(const Line& line, double error) {
         const double w = line.w - error, ax = std::fabs(line.x), ay = std::fabs(line.y);
         const double most = ax * map_.half_width + ay * map_.half_height;
-        if (!(w + most >= 0.0)) return false;  // also where it is not a number
-        if (w - most >= 0.0) return true;      // holds in the whole picture
-        // Of size 1; the three coefficients are rounded to float.
-        const double size = 1.0 / (most + std::fabs(w));
-        out_.lines.push_back({static_cast<float>(line.x * size), static_cast<float>(line.y * size),
-                              static_cast<float>(w * size - 0x1p-22), 0.0f});
+        if (!(w + most >= 0.0)) return false;             // also where it is not a number
+        if (w - most >= 0.0) return true;                 // holds in the whole picture
+        const double size = 1.0 / (most + std::fabs(w));  // of the line: 1
+        out_.lines.push_back(
+            {static_cast<float>(line.x * size), static_cast<float>(line.y * size), static_cast<float>(w * size), 0.0f});
         if (ax * kSteepest < ay || ax == 0.0) return add_row_limit(line.y, w - ax * map_.half_width);
         const double slope = -line.y / line.x, at_middle = -w / line.x;
         const double at_bottom = at_middle - slope * map_.half_height;
