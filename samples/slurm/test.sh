@@ -9,7 +9,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 CROFTON=$(realpath "${1:-$here/../../build/release/bin/crofton}")
 [[ -x $CROFTON ]] || { echo "samples/slurm/test.sh: $CROFTON is not built" >&2; exit 2; }
 folder=$(mktemp -d)
-export CROFTON PARTS=4 SCENE=room OPTIONS='--cells 6x2x6 --epsilon 2e-2' PARTS_DIR="$folder/parts"
+export CROFTON PARTS=4 SCENE=room PARTS_DIR="$folder/parts" COMMAND OPTIONS
 daemons=()
 finish() {
     for ((i = ${#daemons[@]} - 1; i >= 0; --i)); do kill "${daemons[i]}" 2>/dev/null || true; done
@@ -101,11 +101,21 @@ check() {
     "$array" 2-2 || wrong "$array: part 2 failed: $(cat "$folder"/log.*)"
     "$CROFTON" merge "$PARTS_DIR"/part* --shards "$PARTS" --out "$folder/sum" || wrong "$array: merge of all parts ended with $?"
     cmp "$folder/sum" "$folder/one" || wrong "$array: the sum is not what one run saves"
-    echo "$array: a lost part named and mended, a repeated one counted once, same bytes as one run"
+    echo "$COMMAND, $array: a lost part named and mended, a repeated one counted once, same bytes as one run"
 }
 
-read -r -a options <<<"$OPTIONS"
-"$CROFTON" pvs "$SCENE" "${options[@]}" --state "$folder/one" >/dev/null
+# bake COMMAND OPTIONS: sets what the tasks run, and makes the state of one run.
+bake() {
+    local options
+    COMMAND=$1 OPTIONS=$2
+    read -r -a options <<<"$OPTIONS"
+    rm -f "$folder/one"
+    "$CROFTON" "$COMMAND" "$SCENE" "${options[@]}" --state "$folder/one" >/dev/null
+}
+
+bake radiosity '--edge 0.8 --runs 32'
+check array_by_loop
+bake pvs '--cells 6x2x6 --epsilon 2e-2'
 check array_by_loop
 reason=$(why_no_slurm)
 if [[ -n $reason ]]; then

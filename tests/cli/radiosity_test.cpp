@@ -88,6 +88,47 @@ TEST_SUITE("cli/radiosity") {
         CHECK(run_cli("radiosity room --checkpoint '" + state + "'").status == 2);
     }
 
+    TEST_CASE("shards merge to the state of one run, a lost one is named, and one given twice counts once") {
+        const auto quoted = [](const std::string& name) { return "'" + scratch().file(name) + "'"; };
+        const std::string base = "radiosity " + box(kGlowing) + common() + "--runs 28 ";
+        for (int i = 0; i < 3; ++i)
+            REQUIRE(run_cli(base + "--shard " + std::to_string(i) + "/3 --state " + quoted("light" + std::to_string(i)))
+                        .status == 0);
+        const CliRun one = run_cli(base + "--threads 2 --json - --state " + quoted("one_light"));
+        REQUIRE_MESSAGE(one.status == 0, one.err);
+        CHECK(one.json().at("runs") == 28);
+        CHECK(one.json().at("runs_planned") == 28);
+        CHECK(one.json().at("mean_radiosity")[0].get<double>() == doctest::Approx(kFurnace).epsilon(0.01));
+        const CliRun lost =
+            run_cli("merge " + quoted("light0") + " " + quoted("light2") + " --shards 3 --out " + quoted("light_sum"));
+        CHECK(lost.status == 1);
+        CHECK_MESSAGE(lost.err.find("runs are missing; run again: --shard 1/3") != std::string::npos, lost.err);
+        CHECK(run_cli("merge " + quoted("light2") + " " + quoted("light0") + " " + quoted("light1") + " " +
+                      quoted("light0") + " --shards 3 --out " + quoted("light_sum"))
+                  .status == 0);
+        CHECK(contents_of(scratch().file("light_sum")) == contents_of(scratch().file("one_light")));
+        // The sum is a finished bake: it is only read, and gives the light.
+        const CliRun whole = run_cli(base + "--json - --state " + quoted("light_sum"));
+        CHECK(whole.json().at("mean_radiosity") == one.json().at("mean_radiosity"));
+        CHECK(contents_of(scratch().file("light_sum")) == contents_of(scratch().file("one_light")));
+
+        REQUIRE(run_cli(base + "--seed 2 --state " + quoted("other_light")).status == 0);
+        const CliRun other =
+            run_cli("merge " + quoted("light0") + " " + quoted("other_light") + " --out " + quoted("light_sum"));
+        CHECK(other.status == 2);
+        CHECK_MESSAGE(other.err.find("other") != std::string::npos, other.err);
+        CHECK(run_cli(base + "--state " + quoted("other_light")).status == 2);
+        write_contents(scratch().file("no_part"), "nothing of the kind");
+        const CliRun none =
+            run_cli("merge " + quoted("light0") + " " + quoted("no_part") + " --out " + quoted("light_sum"));
+        CHECK(none.status == 2);
+        CHECK_MESSAGE(none.err.find("no_part") != std::string::npos, none.err);
+        for (const char* bad :
+             {"--shard 3/3 --state x", "--shard 0/3", "--error 0.1", "--lines 5", "--shard 0/3 --state x --out y.glb"})
+            CHECK_MESSAGE(run_cli(base + bad).status == 2, bad);
+        CHECK(run_cli("radiosity " + box(kGlowing) + common() + "--shard 0/3 --state x").status == 2);
+    }
+
     TEST_CASE("--png draws the lit scene") {
         const std::string picture = scratch().file("lit.png");
         CHECK(run_cli("radiosity " + box(kGlowing) + common() + "--lines 100000 --png '" + picture + "'").status == 0);

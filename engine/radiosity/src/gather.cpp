@@ -61,7 +61,7 @@ void Solver::gather_bundles(const Gathering& what, Light& arrived, Executor& exe
         const std::size_t now = static_cast<std::size_t>(std::min<std::uint64_t>(wave, bundles - first));
         executor.parallel_for(now, 1, [&](std::size_t begin, std::size_t end, unsigned worker) {
             for (std::size_t b = begin; b < end; ++b) {
-                const std::uint64_t number = runs_ * bundles + first + b;
+                const std::uint64_t number = (first_run_ + runs_) * bundles + first + b;
                 drawn[b] = make_bundle(bundles_.bounds(), cell_area, points.at<2>(number),
                                        mixed(mixed(options_.seed, what.stream), number));
                 bundles_.all_hits(drawn[b], scratch[worker], hits[b]);
@@ -87,7 +87,7 @@ void Solver::gather_lines(const Gathering& what, Light& arrived, Executor& execu
         executor.parallel_for(now, 1, [&](std::size_t begin, std::size_t end, unsigned) {
             Vector<Line> lines;
             for (std::size_t b = begin; b < end; ++b) {
-                source.draw(runs_ * blocks + first + b, lines);
+                source.draw((first_run_ + runs_) * blocks + first + b, lines);
                 tracer_.all_hits(lines, hits[b]);
             }
         });
@@ -111,7 +111,7 @@ void Solver::cast_local(const Gathering& what, std::span<const std::uint32_t> pa
     const auto patch_of = [&](std::uint64_t ray) {
         return patches[static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), ray) - ends.begin())];
     };
-    const sampling::UnitPoints points(mixed(mixed(options_.seed, stream), runs_));
+    const sampling::UnitPoints points(mixed(mixed(options_.seed, stream), first_run_ + runs_));
     trace_in_order(
         tracer_, count, executor,
         [&](std::uint64_t ray) {

@@ -63,7 +63,7 @@ void Solver::shoot_lamps(Light& arrived, Executor& executor) {
         return lamps[static_cast<std::size_t>(found - sums.begin())];
     };
     const sampling::UnitPoints points(mixed(options_.seed, kLampStream), options_.sequence);
-    const std::uint64_t first = runs_ * options_.first_shot;
+    const std::uint64_t first = (first_run_ + runs_) * options_.first_shot;
     const double each = sum / static_cast<double>(options_.first_shot);
     lines_traced_ += options_.first_shot;
     trace_in_order(
@@ -100,7 +100,7 @@ void Solver::look_for_sun(Light& arrived, Executor& executor) {
             std::min(kMostSunRays, std::max<std::uint64_t>(1, static_cast<std::uint64_t>(per_area * p.areas[i])));
         counts[i] = static_cast<std::uint8_t>(n);
         for (std::uint64_t k = 0; k < n; ++k) {
-            const auto u = points.at(i, runs_ * n + k);
+            const auto u = points.at(i, (first_run_ + runs_) * n + k);
             const std::uint32_t triangle = triangle_of(i, u[2]);
             const Corners c = corners_of(p, triangle);
             const double cosine = glm::dot(glm::normalize(glm::cross(c.b - c.a, c.c - c.a)), to_sun);

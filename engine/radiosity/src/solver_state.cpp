@@ -98,6 +98,16 @@ std::uint64_t Solver::fingerprint() const {
     return hash(h, patches_->materials.data(), patches_->materials.size() * sizeof(Material));
 }
 
+void Solver::forget() {
+    runs_ = lines_traced_ = unseen_ = seen_ = 0;
+    bounces_ = 0;
+    sum_.assign(sum_.size(), glm::dvec3(0.0));
+    squares_ = sum_;
+    drawn_.assign(drawn_.size(), 0);
+    buried_ = drawn_;
+    update_mean();
+}
+
 Vector<std::byte> Solver::checkpoint() const {
     const Header header{kMagic, fingerprint(), sum_.size(), runs_, lines_traced_, unseen_, seen_};
     Vector<std::byte> bytes(sizeof header + state_bytes(sum_.size()) + sizeof(std::uint64_t));

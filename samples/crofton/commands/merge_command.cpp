@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// `crofton merge`: parts of a bake as one.
+// `crofton merge`: parts of a bake, of visible sets or of light, as one.
 #include <crofton/bake/baked_scene.hpp>
 #include <crofton/pvs/pvs.hpp>
+#include <crofton/radiosity/solver.hpp>
 #include <cstdio>
 
 #include "commands.hpp"
@@ -25,7 +26,8 @@ Result<int> run_merge(const MergeRequest& options) {
         files.push_back(std::move(*file));
         states.push_back(files.back().bytes());
     }
-    const auto sum = pvs::merge_states(states);
+    const bool of_light = radiosity::is_bake_state(states.front());
+    const auto sum = of_light ? radiosity::merge_states(states) : pvs::merge_states(states);
     if (!sum) {
         const bool names_part = sum.error().item < options.parts.size();
         return fail(sum.error().code, kNoItem,
@@ -34,10 +36,10 @@ Result<int> run_merge(const MergeRequest& options) {
     if (auto written = write_file(options.out, {reinterpret_cast<const char*>(sum->data()), sum->size()}); !written)
         return tl::unexpected(written.error());
     const std::uint32_t shards = options.shards ? options.shards : static_cast<std::uint32_t>(options.parts.size());
-    const auto missing = pvs::missing_shards(*sum, shards);
+    const auto missing = of_light ? radiosity::missing_shards(*sum, shards) : pvs::missing_shards(*sum, shards);
     if (!missing) return tl::unexpected(missing.error());
     if (missing->empty()) return kSuccess;
-    std::fprintf(stderr, "crofton: %s: lines are missing; run again:", options.out.c_str());
+    std::fprintf(stderr, "crofton: %s: %s are missing; run again:", options.out.c_str(), of_light ? "runs" : "lines");
     for (const std::uint32_t i : *missing) std::fprintf(stderr, " --shard %u/%u", i, shards);
     std::fputs("\n", stderr);
     return kCheckFailed;
@@ -48,15 +50,17 @@ Result<int> run_merge(const MergeRequest& options) {
 void add_merge_command(CommandLine& line) {
     auto options = std::make_shared<MergeRequest>();
     Command command = line.command("merge", "Add up the parts of a bake that ran as shards");
-    command.option("parts", options->parts, "Files that `crofton pvs --shard i/n --state FILE` wrote").required();
+    command
+        .option("parts", options->parts,
+                "Files that `crofton pvs` or `crofton radiosity` wrote with --shard i/n --state FILE")
+        .required();
     command.option("--out", options->out, "The sum: the bytes that one run would have saved")
         .writable_file()
         .required();
     command.option("--shards", options->shards,
                    "Into how many parts the work was split; without, as many as are given");
     command.footer(
-        "A part given twice counts once. Exit status: 0 all lines are there, 1 some are missing (the sum is written, "
-        "and "
+        "A part given twice counts once. Exit status: 0 nothing is missing, 1 some parts are (the sum is written, and "
         "the shards to run again are named), 2 a part that is damaged or of another bake.\n\n"
         "Example:\n"
         "  crofton merge part0 part1 part2 part3 --out whole.state");

@@ -15,6 +15,7 @@
 #include "json/json.hpp"
 #include "pipeline/camera_path.hpp"
 #include "progress_bar.hpp"
+#include "pvs_cells.hpp"
 #include "radiosity_light_field.hpp"
 #include "radiosity_output.hpp"
 #include "read_options.hpp"
@@ -24,11 +25,12 @@ namespace crofton::cli {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+constexpr double kSaveLightEvery = 20.0;  // seconds
 
 struct RadiosityOptions {
     ReadOptions read;
-    std::string scene, method = "global", out, png, light_field, json, checkpoint, map;
-    std::uint64_t lines = 20'000'000, seed = 1, stored_lines = 1 << 22;
+    std::string scene, method = "global", out, png, light_field, json, checkpoint, map, shard;
+    std::uint64_t lines = 20'000'000, seed = 1, stored_lines = 1 << 22, runs = 0;
     double error = 0.0, edge = 0.0, sky = 1.0, sun = 3.0, exposure = 0.0;
     unsigned threads = 1;
 };
@@ -68,19 +70,26 @@ Result<Camera> camera_for(const assets::SceneSource& source, std::uint64_t seed)
     return path->cameras.front();
 }
 
-Result<void> save_checkpoint(const std::string& path, const radiosity::Solver& solver) {
-    const auto bytes = solver.checkpoint();
-    return write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+Result<void> save(const std::string& path, std::span<const std::byte> bytes) {
+    return path.empty() ? Result<void>{}
+                        : write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+// What an earlier run has left in the file of --checkpoint, if there is one.
+template <class Add>
+Result<void> load(const std::string& path, Add&& add) {
+    if (path.empty() || !std::filesystem::exists(path)) return {};
+    const auto bytes = read_file(path);
+    if (!bytes) return tl::unexpected(bytes.error());
+    if (const Result<void> added = add(std::as_bytes(std::span(*bytes))); !added)
+        return fail(added.error().code, kNoItem, path + ": " + added.error().message);
+    return {};
 }
 
 // Runs until the error or the number of lines is reached.
 Result<void> solve(const RadiosityOptions& options, radiosity::Solver& solver, Executor& executor) {
-    if (!options.checkpoint.empty() && std::filesystem::exists(options.checkpoint)) {
-        const auto bytes = read_file(options.checkpoint);
-        if (!bytes) return tl::unexpected(bytes.error());
-        if (auto resumed = solver.resume(std::as_bytes(std::span(*bytes))); !resumed)
-            return fail(resumed.error().code, kNoItem, options.checkpoint + ": " + resumed.error().message);
-    }
+    if (auto loaded = load(options.checkpoint, [&](auto bytes) { return solver.resume(bytes); }); !loaded)
+        return loaded;
     const auto done = [&] {
         if (solver.runs() < 2) return false;
         return options.error > 0.0 ? solver.relative_error() <= options.error : solver.lines_traced() >= options.lines;
@@ -93,27 +102,87 @@ Result<void> solve(const RadiosityOptions& options, radiosity::Solver& solver, E
                                  : static_cast<double>(solver.lines_traced()) / static_cast<double>(options.lines);
         bar.set(static_cast<std::size_t>(1000.0 * std::min(1.0, share)));
         if (options.checkpoint.empty()) continue;
-        if (auto saved = save_checkpoint(options.checkpoint, solver); !saved) return saved;
+        if (auto saved = save(options.checkpoint, solver.checkpoint()); !saved) return saved;
     }
-    if (solver.runs() == 0) return fail(ErrorCode::cancelled, kNoItem, "interrupted before the first run");
     return {};
+}
+
+struct LightProgress {
+    ProgressBar bar{"radiosity", 1000};
+    static bool go_on(void* user, double share) {
+        static_cast<LightProgress*>(user)->bar.set(static_cast<std::size_t>(1000.0 * share));
+        return !interrupted();
+    }
+};
+
+// Makes the runs of a shard; what there is is saved as time goes by.
+Result<void> solve(const RadiosityOptions& options, const pvs::Shard& shard, radiosity::Bake& bake,
+                   Executor& executor) {
+    if (auto loaded = load(options.checkpoint, [&](auto bytes) { return bake.add_state(bytes); }); !loaded)
+        return loaded;
+    LightProgress progress;
+    for (bool done = false; !done;) {
+        const std::uint64_t before = bake.runs_done();
+        const auto ran = bake.run({.seconds = kSaveLightEvery,
+                                   .shard = {shard.index, shard.count},
+                                   .go_on = LightProgress::go_on,
+                                   .user = &progress},
+                                  executor);
+        if (!ran) return ran;
+        done = interrupted() || bake.runs_done() == before;
+        const auto bytes = bake.state();
+        if (!bytes) return tl::unexpected(bytes.error());
+        if (auto saved = save(options.checkpoint, *bytes); !saved) return saved;
+    }
+    return {};
+}
+
+// The light, by a solver alone or by a bake of a given number of runs.
+struct Light {
+    std::optional<radiosity::Solver> alone;
+    std::optional<radiosity::Bake> bake;
+    [[nodiscard]] const radiosity::Solver& solver() const { return bake ? bake->solver() : *alone; }
+};
+
+Result<Light> find_light(const RadiosityOptions& options, const radiosity::Patches& patches,
+                         const radiosity::SolverOptions& parameters, Executor& executor) {
+    Light light;
+    if (options.runs > 0) {
+        const auto shard = shard_from(options.shard);
+        if (!shard) return tl::unexpected(shard.error());
+        auto bake = radiosity::Bake::create(patches, parameters, options.runs);
+        if (!bake) return tl::unexpected(bake.error());
+        light.bake.emplace(std::move(*bake));
+        if (auto solved = solve(options, *shard, *light.bake, executor); !solved) return tl::unexpected(solved.error());
+    } else {
+        auto solver = radiosity::Solver::create(patches, parameters);
+        if (!solver) return tl::unexpected(solver.error());
+        light.alone.emplace(std::move(*solver));
+        if (auto solved = solve(options, *light.alone, executor); !solved) return tl::unexpected(solved.error());
+    }
+    if (light.solver().runs() == 0 && interrupted())
+        return fail(ErrorCode::cancelled, kNoItem, "interrupted before the first run");
+    return light;
 }
 
 Result<int> run_radiosity(const RadiosityOptions& options) {
     catch_interrupts();
     const auto parameters = solver_options(options);
     if (!parameters) return tl::unexpected(parameters.error());
+    if (!options.shard.empty() && (options.runs == 0 || options.checkpoint.empty()))
+        return fail(ErrorCode::invalid_argument, kNoItem,
+                    "--shard needs --runs, of the whole bake, and --checkpoint: the part to write");
     const auto source = load_updated_scene(options.scene, options.read, {.map = options.map, .seed = options.seed});
     if (!source) return tl::unexpected(source.error());
     const auto flat = assets::flat_scene(*source, options.read.limits);
     if (!flat) return tl::unexpected(flat.error());
     const auto lit = lit_scene(*flat, options.edge);
     if (!lit) return tl::unexpected(lit.error());
-    auto solver = radiosity::Solver::create(lit->patches, *parameters);
-    if (!solver) return tl::unexpected(solver.error());
     ThreadPool pool(options.threads);
     const auto start = Clock::now();
-    if (auto solved = solve(options, *solver, pool); !solved) return tl::unexpected(solved.error());
+    const auto found = find_light(options, lit->patches, *parameters, pool);
+    if (!found) return tl::unexpected(found.error());
+    const radiosity::Solver* const solver = &found->solver();
     const bool cut_short = interrupted();
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     const TriangleMesh light = lit_mesh(*lit, *solver);
@@ -159,6 +228,7 @@ Result<int> run_radiosity(const RadiosityOptions& options) {
         {"method", options.method},
         {"lines_from", radiosity::to_string(solver->method())},
         {"runs", solver->runs()},
+        {"runs_planned", found->bake ? Json(found->bake->runs_planned()) : Json(nullptr)},
         {"lines", solver->lines_traced()},
         {"relative_error", solver->relative_error()},
         {"unseen", solver->unseen()},
@@ -198,14 +268,27 @@ void add_radiosity_command(CommandLine& line) {
         "Examples:\n"
         "  crofton radiosity room --edge 0.2 --error 0.02 --out room.glb --png room.png\n"
         "  crofton radiosity town --lines 20000000 --checkpoint town.state --out town.glb\n"
+        "  crofton radiosity room --runs 64 --shard 0/2 --state part0    half of the runs; the others: 1/2, part1\n"
+        "  crofton merge part0 part1 --out whole.state                   then both together\n"
+        "  crofton radiosity room --runs 64 --state whole.state --out room.glb\n"
         "  crofton radiosity room --light-field lines.png --stored-lines 16000000\n"
         "  crofton radiosity level.wad --map MAP01 --method local --json -\n");
     command.option("scene", options->scene, "town, room, or a .glb, .gltf, .obj or .wad file").required();
     const Option lines =
         command.option("--lines", options->lines, "Trace about this many lines, in two runs or more").show_default();
-    command.option("--error", options->error, "Stop at this relative error instead, for example 0.02")
-        .positive()
-        .excludes(lines);
+    const Option error =
+        command.option("--error", options->error, "Stop at this relative error instead, for example 0.02")
+            .positive()
+            .excludes(lines);
+    command
+        .option("--runs", options->runs,
+                "Make so many runs instead, in chains of eight that know nothing of each other: such a bake can be "
+                "split")
+        .whole_between(1, std::uint64_t{1} << 32)
+        .excludes(lines)
+        .excludes(error);
+    const Option shard =
+        command.option("--shard", options->shard, "i/n: make part i of n only; needs --runs and --state");
     command.option("--method", options->method, "local, global, bundles or walls").show_default();
     command.option("--edge", options->edge, "Cut patches until no edge is longer (metres); automatic without")
         .positive();
@@ -217,19 +300,21 @@ void add_radiosity_command(CommandLine& line) {
     command.option("--threads", options->threads, "Worker threads; 0: one per core")
         .whole_between(0, 256)
         .show_default();
-    command.option("--out", options->out, "Write the lit scene as .glb").writable_file();
-    command.option("--png", options->png, "Write a picture of it").writable_file();
+    command.option("--out", options->out, "Write the lit scene as .glb").writable_file().excludes(shard);
+    command.option("--png", options->png, "Write a picture of it").writable_file().excludes(shard);
     command
         .option("--light-field", options->light_field,
                 "Store global lines with the light along them, draw a picture from these lines alone, and say how far "
                 "it is from the scene's own")
-        .writable_file();
+        .writable_file()
+        .excludes(shard);
     command.option("--stored-lines", options->stored_lines, "--light-field: about so many lines")
         .whole_between(1, 1 << 28)
         .show_default();
     command.option("--json", options->json, "Write the figures as JSON; - for stdout").writable_file();
     command
-        .option("--checkpoint", options->checkpoint, "Save after every run to this file; go on from it where it exists")
+        .option("--checkpoint,--state", options->checkpoint,
+                "Save to this file as time goes by; go on from it where it exists")
         .writable_file();
     add_read_options(command, options->read);
     command.action([options] {

@@ -7,8 +7,8 @@
 
 namespace crofton::cli {
 
-// A bake of the town with about `trials` lines; 20 times as many for each of some cells, by another way; `trials` rays
-// from eyes in the cells; pictures of street views.
+// A bake of the town with about `trials` lines; 20 times as many for each of some cells, by another way. `trials` rays
+// from eyes in the cells, and pictures of street views.
 [[nodiscard]] std::vector<VerifyRow> verify_pvs(const VerifyOptions& options);
 
 }  // namespace crofton::cli

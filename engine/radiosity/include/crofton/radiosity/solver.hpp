@@ -6,6 +6,7 @@
 #include <crofton/radiosity/patches.hpp>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -80,6 +81,7 @@ class Solver {
     [[nodiscard]] Result<void> resume(std::span<const std::byte> bytes);
 
   private:
+    friend class Bake;
     using Light = Vector<glm::dvec3>;  // by patch
 
     struct Gathering {
@@ -106,6 +108,7 @@ class Solver {
     void add_run(const Light& arrived);
     void update_mean();
     [[nodiscard]] std::uint64_t fingerprint() const;
+    void forget();  // all runs
 
     const Patches* patches_;
     SolverOptions options_;
@@ -116,6 +119,7 @@ class Solver {
     Vector<std::uint32_t> triangles_, first_triangle_;  // of each patch: triangles_[first_triangle_[i] …]
     Vector<double> triangle_sums_;                      // their areas, added up within the patch
 
+    std::uint64_t first_run_ = 0;  // the number of the first run, of those of all chains of a bake
     std::uint64_t runs_ = 0, lines_traced_ = 0, unseen_ = 0, seen_ = 0;
     std::uint32_t bounces_ = 0;
     Light sum_, squares_;                   // of what arrived, over runs
@@ -123,5 +127,74 @@ class Solver {
     Vector<glm::vec3> mean_;
     Vector<std::uint32_t> rays_;  // scratch of a gathering
 };
+
+// A bake in parts: as many runs as one likes, on any machines, to the same bytes.
+
+// Runs that know of each other's light. Those of other chains are independent: each part of a bake is some chains.
+inline constexpr std::uint64_t kRunsOfChain = 8;
+
+// One of `count` parts of a bake, which may run on different machines.
+struct Shard {
+    std::uint32_t index = 0, count = 1;
+};
+
+struct BakeLimits {
+    double seconds = std::numeric_limits<double>::infinity();  // no further chain is begun then; one always is
+    Shard shard = {};
+    // Asked before each run; false stops the bake. Complete chains are kept.
+    bool (*go_on)(void* user, double share_done) = nullptr;
+    void* user = nullptr;
+};
+
+// Runs of a Solver in chains of kRunsOfChain. Chain c is a function of the patches, the options and c. Sums over chains
+// are added up in one binary tree, by their numbers. So any executor, order, stop and split gives the same bytes.
+class Bake {
+  public:
+    // `runs` in all. The patches must outlive the bake. Errors: as Solver::create; no run, or more than 2^32.
+    [[nodiscard]] static Result<Bake> create(const Patches& patches, const SolverOptions& options, std::uint64_t runs);
+
+    // Makes what is left of a shard, up to the limits. Errors: a shard's index that is not below its count; a count of
+    // 0; out of memory. What was found before is kept.
+    [[nodiscard]] Result<void> run(const BakeLimits& limits = {}, Executor& executor = serial_executor());
+    [[nodiscard]] std::uint64_t runs_planned() const { return sums_.runs; }
+    [[nodiscard]] std::uint64_t runs_done() const { return solver_.runs(); }
+    [[nodiscard]] bool is_complete() const { return runs_done() == runs_planned(); }
+    // The light that all runs so far found, with their error.
+    [[nodiscard]] const Solver& solver() const { return solver_; }
+
+    // All that is known, to be stored: the same bytes for the same chains.
+    [[nodiscard]] Result<Vector<std::byte>> state() const;
+    // Adds what a state of the same bake holds: a checkpoint, a part. Twice is once. Errors: damaged (parse); of other
+    // patches, options or another number of runs (invalid_argument); then nothing has changed.
+    [[nodiscard]] Result<void> add_state(std::span<const std::byte> state);
+
+    // What some neighbouring chains found together.
+    struct Sum {
+        std::uint64_t begin = 0, end = 0;  // chains: as many as a power of two, of which `begin` is a multiple
+        std::uint64_t lines = 0, unseen = 0, seen = 0;
+        Vector<glm::dvec3> light, squares;    // by patch
+        Vector<std::uint64_t> drawn, buried;  // rays, by patch
+    };
+    struct Sums {
+        std::uint64_t fingerprint = 0, patches = 0, runs = 0;
+        Vector<Sum> all;  // ascending, no two that belong together
+    };
+
+  private:
+    Bake(Solver solver, std::uint64_t runs);
+    void show_sum();  // in solver_
+    Solver solver_;
+    Sums sums_;
+};
+
+// Whether these bytes begin as a state of a bake of light does.
+[[nodiscard]] bool is_bake_state(std::span<const std::byte> bytes);
+
+// Parts of one bake as one: the same bytes as from a single run. Errors: none given; item, the part: damaged, or of
+// another bake.
+[[nodiscard]] Result<Vector<std::byte>> merge_states(std::span<const std::span<const std::byte>> states);
+
+// Runs that a state lacks, as shards of `count`: those that must run again. Ascending. Errors: damaged; a count of 0.
+[[nodiscard]] Result<Vector<std::uint32_t>> missing_shards(std::span<const std::byte> state, std::uint32_t count);
 
 }  // namespace crofton::radiosity
