@@ -37,8 +37,8 @@ struct Counts {
     std::uint64_t frustum = 0, owners = 0, conservative = 0, statistical = 0;  // triangles
 };
 
-// A place, moved sideways by up to half the distance of two, if nothing lies between. Cells and places are both regular,
-// so places alone would always be at the same spots of cells.
+// A place, moved sideways by up to half the distance of two, if nothing lies between. Cells and places are both
+// regular, so places alone would always be at the same spots of cells.
 std::optional<Camera> random_view(const Looked& all, std::span<const glm::dvec3> places, double spacing,
                                   std::uint32_t number) {
     sampling::Random random(all.options.seed, number);
