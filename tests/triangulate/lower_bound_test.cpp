@@ -42,6 +42,20 @@ TEST_SUITE("triangulate/lower bound") {
             }
     }
 
+    TEST_CASE("whatever work is granted, the bound is never above the minimum where it could just be") {
+        for (const int count : {7, 40}) {
+            const double minimum = 5.0 * (2.0 * count - 3.0);
+            int tight = 0;
+            for (double work = 1.0; work < 1e6; work *= 1.1) {
+                const auto result = triangulate::triangulate(strip(count), {.work = static_cast<std::uint64_t>(work)});
+                REQUIRE(result.has_value());
+                CHECK(lower_bound_of(*result) <= minimum);
+                tight += !result->optimal && lower_bound_of(*result) > minimum * (1.0 - 1e-9);
+            }
+            CHECK(tight > 50);
+        }
+    }
+
     TEST_CASE("no bound of a small polygon is above its minimum, however little is known") {
         std::mt19937_64 random(51);
         int compared = 0, tight = 0;
