@@ -6,7 +6,8 @@
 # LIGHT: optimised builds compile it with -O1, as its own code takes no time worth saving.
 # UNITY: its sources may be compiled together: no two of them define the same name in an anonymous namespace.
 # A source that must stay alone, as one with a library's implementation, says so: SKIP_UNITY_BUILD_INCLUSION. Kernels need
-# not: Highway includes them once for each instruction set.
+# not: Highway includes them once for each instruction set. CROFTON_KERNEL_OPTIONS are theirs: small builds optimise them
+# alone for speed.
 function(crofton_own_target target)
     if("LIGHT" IN_LIST ARGN)
         target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
@@ -21,6 +22,7 @@ function(crofton_own_target target)
             file(STRINGS ${source} is_kernel REGEX "hwy/foreach_target.h" LIMIT_COUNT 1)
             if(is_kernel)
                 set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+                set_property(SOURCE ${source} APPEND PROPERTY COMPILE_OPTIONS ${CROFTON_KERNEL_OPTIONS})
             endif()
         endforeach()
         # In a batch g++ takes the sources for headers, whose classes should not use anonymous namespaces.

@@ -9,6 +9,7 @@ Highway of the build with SIMD is Debian 13's, because that of Debian 12 has no 
 `third_party/install.sh --web` installs the compiler.
 """
 import argparse
+import hashlib
 import os
 import shutil
 import subprocess
@@ -21,6 +22,7 @@ import run as platforms  # noqa: E402
 
 WORK = ROOT / "build/web"
 FLAGS = {"simd": "-msimd128", "plain": "-DHWY_COMPILE_ONLY_SCALAR"}
+OPTIMIZE, KERNELS = "-Os", "-O2"  # kernels for size would be three times slower
 MODULES = ["core", "geometry", "measure", "mesh", "boxtree", "convex", "collide", "scene", "fit", "cull", "occlude",
            "triangulate", "world", "capi"]
 EXPORTED = """last_error status_name version_string set_log_hook log camera_default frustum_from_camera
@@ -50,6 +52,12 @@ def fetch_sources(name, log):
         sys.exit(f"web: {failure}")
 
 
+def dependencies_digest():
+    """Of what says how the libraries are compiled."""
+    files = [Path(__file__), ROOT / "tests/platforms/dependencies/CMakeLists.txt", *sorted((ROOT / "web/native").glob("qhull*"))]
+    return hashlib.sha256(b"".join(f.read_bytes() for f in files)).hexdigest()
+
+
 def build(name, jobs):
     folder = WORK / name
     folder.mkdir(parents=True, exist_ok=True)
@@ -60,13 +68,17 @@ def build(name, jobs):
                "-DEMSCRIPTEN_SYSTEM_PROCESSOR=wasm32", f"-DCMAKE_PREFIX_PATH={prefix}", f"-DCMAKE_FIND_ROOT_PATH={prefix}",
                "-DCMAKE_FIND_ROOT_PATH_MODE_PACKAGE=ONLY", f"-DCMAKE_MODULE_PATH={prefix}/lib/cmake/modules",
                f"-DCMAKE_C_FLAGS={flags}", f"-DCMAKE_CXX_FLAGS={flags} -include {ROOT}/web/native/missing.hpp"]
-    if not (prefix / "lib/libqhull_r.a").exists():
+    made = prefix / "made"
+    if not made.exists() or made.read_text() != dependencies_digest():
         sources = fetch_sources(name, log)
         do(["cmake", "-S", ROOT / "tests/platforms/dependencies", "-B", folder / "dependencies", *options,
-            f"-DCMAKE_INSTALL_PREFIX={prefix}", f"-DCROFTON_SOURCES={sources}"], log)
+            f"-DCMAKE_INSTALL_PREFIX={prefix}", f"-DCROFTON_SOURCES={sources}", f"-DCROFTON_QUIET_QHULL={ROOT}/web/native",
+            "-DCMAKE_C_FLAGS_RELEASE=-Os -DNDEBUG"], log)
         do(["cmake", "--build", folder / "dependencies", "-j", jobs, "--target", "install"], log)
-    do(["cmake", "-S", ROOT, "-B", folder / "build", *options, "-DCMAKE_CXX_FLAGS_RELEASE=-O2 -DNDEBUG",
-        "-DCROFTON_RENDER=OFF", "-DCROFTON_SAMPLES=OFF", "-DCROFTON_TESTS=OFF", "-DCROFTON_INSTALL=OFF"], log)
+        made.write_text(dependencies_digest())
+    do(["cmake", "-S", ROOT, "-B", folder / "build", *options, f"-DCMAKE_CXX_FLAGS_RELEASE={OPTIMIZE} -DNDEBUG",
+        f"-DCROFTON_KERNEL_OPTIONS={KERNELS}", "-DCROFTON_CONTACTS=OFF", "-DCROFTON_RENDER=OFF", "-DCROFTON_SAMPLES=OFF",
+        "-DCROFTON_TESTS=OFF", "-DCROFTON_INSTALL=OFF"], log)
     targets = [f"crofton_{module}" for module in MODULES]
     do(["ninja", "-C", folder / "build", f"-j{jobs}", "-k0", *targets], log)
     objects = sorted(p for target in targets for p in (folder / "build/engine").rglob(f"{target}.dir/**/*.o"))
@@ -78,7 +90,6 @@ def build(name, jobs):
         "-sALLOW_MEMORY_GROWTH=1", "-sMAXIMUM_MEMORY=2147483648", "-sINITIAL_MEMORY=16777216", "-sTOTAL_STACK=1048576",
         "-sALLOW_TABLE_GROWTH=1", "-sWASM_BIGINT=1", "-sEXPORTED_RUNTIME_METHODS=addFunction,removeFunction,HEAPU8",
         f"-sEXPORTED_FUNCTIONS={names}", "--no-entry", "-o", out / f"{name}.js"], log)
-
 
     # The digests of web/native/digests.cpp, for node (tests alone: not in the package).
     includes = [f"-I{p}" for kind in ("include", "internal") for p in sorted((ROOT / "engine").glob(f"*/{kind}"))]

@@ -37,7 +37,11 @@ export class VisibleObjects extends Owned {
 
 /** Objects, what they are and where; changes take effect in `update`. An object is `{ index, generation }`. */
 export class World extends Owned {
-    constructor(memory) { super(memory, 'World', create(memory, 'world', 0), '_crofton_world_destroy'); }
+    constructor(memory) {
+        const at = memory.scratch(56);
+        memory.words.set([56, 1], at >> 2);  // without pairs, which this build does not look for
+        super(memory, 'World', create(memory, 'world', at), '_crofton_world_destroy');
+    }
 
     /** `positions`: Float32Array, x y z; `indices`: Uint32Array or Uint16Array, three a triangle. Both are copied. */
     addMesh(positions, indices) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Prints digests of answers of the C API. The same program is compiled for this machine and for WebAssembly. That of
 // triangulations is published in tests/determinism/triangulate_test.cpp. With `bench`: times of culling 100,000 boxes.
-// With `bench AVX2`: on x86 with no more than AVX2.
+// With `bench SET FILE`: on x86 with no more than that instruction set (AVX3, AVX2, SSE4); writes what was asked to
+// FILE, for web/bench.js.
 #include <crofton/capi/crofton.h>
 
 #include <algorithm>
@@ -144,7 +145,24 @@ std::uint64_t triangulated() {
     return digest.value();
 }
 
-void bench() {
+// The boxes, then 52 doubles a view: how many planes, the origin, the planes.
+void write_questions(const char* path, const std::vector<crofton_box>& boxes, const std::vector<crofton_view>& views) {
+    std::FILE* file = std::fopen(path, "wb");
+    if (file == nullptr) std::printf("cannot write %s\n", path), std::exit(1);
+    std::fwrite(boxes.data(), sizeof boxes[0], boxes.size(), file);
+    for (const crofton_view& view : views) {
+        std::vector<double> numbers{static_cast<double>(view.frustum.plane_count)};
+        numbers.insert(numbers.end(), view.frustum.origin, view.frustum.origin + 3);
+        for (const crofton_plane& plane : view.frustum.planes)
+            for (const double x : {plane.normal[0], plane.normal[1], plane.normal[2], plane.offset})
+                numbers.push_back(x);
+        numbers.resize(52);
+        std::fwrite(numbers.data(), 8, numbers.size(), file);
+    }
+    std::fclose(file);
+}
+
+void bench(const char* path) {
     const std::vector<crofton_box> boxes = boxes_of(crowd(100000, 0.0, 12));
     crofton_tree* tree = nullptr;
     crofton_visible_set* visible = nullptr;
@@ -153,27 +171,40 @@ void bench() {
     Random random(5);
     std::vector<crofton_view> views;
     for (int k = 0; k < 20; ++k) views.push_back(view_of(random_camera(random, 0.0)));
+    if (path != nullptr) write_questions(path, boxes, views);
     double least[2] = {1e9, 1e9};
-    for (int repeat = 0; repeat < 15; ++repeat)
+    std::size_t seen = 0;
+    for (int repeat = 0; repeat < 40; ++repeat)
         for (int kind = 0; kind < 2; ++kind) {
+            seen = 0;
             const auto from = std::chrono::steady_clock::now();
-            for (const crofton_view& view : views)
+            for (const crofton_view& view : views) {
                 must(kind == 0
                          ? crofton_cull_tree(tree, &view, nullptr, nullptr, visible)
                          : crofton_cull_boxes(boxes.data(), nullptr, boxes.size(), &view, nullptr, nullptr, visible));
+                const std::uint32_t* ids = nullptr;
+                std::size_t count = 0;
+                must(crofton_visible_set_items(visible, &ids, nullptr, &count));
+                seen += count;
+            }
             const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - from;
             least[kind] = (std::min)(least[kind], took.count() / 20);
         }
-    std::printf("tree %.1f us, list %.1f us a view\n", least[0], least[1]);
+    std::printf("tree %.1f us, list %.1f us a view, %zu seen\n", least[0], least[1], seen);
 }
 
 }  // namespace
 
-int main(int count, char**) {
+int main(int count, char** given) {
 #if defined(__x86_64__)
-    if (count > 2) hwy::SetSupportedTargetsForTest(HWY_AVX2);
+    if (count > 2) {
+        const auto set = std::strcmp(given[2], "SSE4") == 0   ? HWY_SSE4
+                         : std::strcmp(given[2], "AVX2") == 0 ? HWY_AVX2
+                                                              : HWY_AVX3;
+        hwy::SetSupportedTargetsForTest(set);
+    }
 #endif
-    if (count > 1) return bench(), 0;
+    if (count > 1) return bench(count > 3 ? given[3] : nullptr), 0;
     std::printf("cull %llx\nfar %llx\nfit %llx\ntriangulate %llx\n", static_cast<unsigned long long>(culled(0.0)),
                 static_cast<unsigned long long>(culled(1e6)), static_cast<unsigned long long>(fitted()),
                 static_cast<unsigned long long>(triangulated()));

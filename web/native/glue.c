@@ -28,6 +28,8 @@ SIZE(crofton_triangulation, 40);
 AT(crofton_triangulation, weight, 16);
 AT(crofton_triangulation, optimal, 32);
 SIZE(crofton_mesh_data, 36);
+SIZE(crofton_world_options, 56);
+AT(crofton_world_options, without_pairs, 4);
 SIZE(crofton_bound, 160);
 AT(crofton_bound, box, 8);
 AT(crofton_bound, center, 128);

@@ -267,6 +267,17 @@ for (const build of BUILDS) {
         world.update();
         assert.equal(world.viewOccluding({}, visible).length, 1);
     });
+    here('a world that looks for contacts is refused: this build finds none', () => {
+        const { memory } = new crofton.World(), slot = memory.allocate(8, 'a handle');
+        memory.call('world_create', 0, slot);
+        const world = memory.words[slot >> 2], at = memory.scratch(240), { words, doubles } = memory;
+        [words[at >> 2], words[at + 16 >> 2], words[at + 64 >> 2]] = [64, at + 64, 3];  // a description, its bound: a ball
+        doubles.set([0, 0, -5, 1], at + 192 >> 3);
+        memory.call('world_add', world, at, at + 224);
+        assert.throws(() => memory.call('world_update', world, 0), refused('unsupported'));
+        memory.call('world_destroy', world);
+        memory.free(slot);
+    });
     here('an object without a shape is refused', () => assert.throws(() => new crofton.World().add({}), refused('invalid argument')));
     here('a mesh with a missing corner is refused', () => assert.throws(
         () => new crofton.World().addMesh(new Float32Array(9), new Uint32Array([0, 1, 3])), CroftonError));

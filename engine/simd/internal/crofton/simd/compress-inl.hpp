@@ -72,7 +72,11 @@ HWY_INLINE hn::Vec<D> compress([[maybe_unused]] D d, hn::Vec<D> v, hn::Mask<D> m
 template <class D>
 HWY_INLINE std::size_t compress_store(D d, hn::Vec<D> v, hn::Mask<D> mask, hn::TFromD<D>* to) {
     hn::StoreU(compress(d, v, mask), d, to);
+#if HWY_TARGET == HWY_WASM
+    return hwy::PopCount(mask_bits(d, mask));  // Highway's goes through memory
+#else
     return hn::CountTrue(d, mask);
+#endif
 }
 
 // base + the positions of the bits that are set, below the number of lanes, to `to`, which needs room for a whole

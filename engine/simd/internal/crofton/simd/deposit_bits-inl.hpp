@@ -20,8 +20,8 @@ HWY_INLINE std::uint64_t deposit_bits(std::uint64_t bits, std::uint64_t mask) {
     return _pdep_u64(bits, mask);
 #else
     std::uint64_t result = 0;
-    for (; mask != 0; mask &= mask - 1, bits >>= 1)
-        if (bits & 1) result |= mask & (~mask + 1);
+    for (; bits != 0 && mask != 0; mask &= mask - 1, bits >>= 1)
+        result |= mask & (~mask + 1) & (~(bits & 1) + 1);  // no branch on the bit, which would be mispredicted
     return result;
 #endif
 }

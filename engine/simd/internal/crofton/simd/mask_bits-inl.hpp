@@ -16,8 +16,8 @@ namespace crofton::simd::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Bit l for lane l, of up to 32 lanes of 32 or 64 bits. On x86 one instruction: Highway's StoreMaskBits goes through
-// memory, where a load that is wider than the store waits for it.
+// Bit l for lane l, of up to 32 lanes of 32 or 64 bits. On x86 and in WebAssembly one instruction: Highway's
+// StoreMaskBits goes through memory, where a load that is wider than the store waits for it.
 template <class D>
 HWY_INLINE std::uint32_t mask_bits([[maybe_unused]] D d, hn::Mask<D> mask) {
     constexpr std::size_t kLanes = hn::MaxLanes(D()), kLaneBytes = sizeof(hn::TFromD<D>);
@@ -43,6 +43,12 @@ HWY_INLINE std::uint32_t mask_bits([[maybe_unused]] D d, hn::Mask<D> mask) {
 #endif
 #if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
     if constexpr (kLanes * kLaneBytes == 64) return static_cast<std::uint32_t>(mask.raw);
+#endif
+#if HWY_TARGET == HWY_WASM
+    if constexpr (kLanes * kLaneBytes == 16) {
+        const auto signs = hn::VecFromMask(d, mask).raw;
+        return static_cast<std::uint32_t>(kFloats ? wasm_i32x4_bitmask(signs) : wasm_i64x2_bitmask(signs));
+    }
 #endif
     constexpr std::size_t kBytes = (kLanes + 7) / 8;
     std::uint8_t bytes[8];
