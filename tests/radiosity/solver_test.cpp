@@ -226,6 +226,40 @@ TEST_SUITE("radiosity/solver") {
         CHECK(early / solver->relative_error() == doctest::Approx(2.0).epsilon(0.2));
     }
 
+    TEST_CASE("the share of patches within 10 % is told from the runs, and rather too small") {
+        const Box box = lit_box(4);
+        const Patches patches = patches_of(box.shape, box.materials);
+        SolverOptions options = quick();
+        options.lines = 1 << 9;
+        options.first_shot = 1 << 10;
+        auto truth = Solver::create(patches, quick());
+        for (int run = 0; run < 60; ++run) truth->run();
+        CHECK(truth->share_within(0.1) == doctest::Approx(1.0).epsilon(0.01));
+        CHECK(truth->share_within(0.0) == 0.0);
+        double told = 0.0, true_share = 0.0;
+        constexpr int kSeeds = 20, kRuns = 5;
+        for (int seed = 0; seed < kSeeds; ++seed) {
+            options.seed = 100 + static_cast<std::uint64_t>(seed);
+            auto solver = Solver::create(patches, options);
+            solver->run();
+            solver->run();
+            CHECK(solver->share_within(0.1) == 0.0);
+            while (solver->runs() < kRuns) solver->run();
+            CHECK(solver->share_within(0.05) < solver->share_within(0.1));
+            told += solver->share_within(0.1) / kSeeds;
+            std::size_t within = 0;
+            for (std::size_t i = 0; i < patches.count(); ++i) {
+                const glm::vec3 off = glm::abs(solver->radiosity()[i] - truth->radiosity()[i]),
+                                light = truth->radiosity()[i];
+                within += off.x + off.y + off.z <= 0.1f * (light.x + light.y + light.z) ? 1 : 0;
+            }
+            true_share += static_cast<double>(within) / static_cast<double>(patches.count()) / kSeeds;
+        }
+        CHECK(told <= true_share + 0.03);
+        CHECK(told >= true_share - 0.25);
+        CHECK(true_share < 0.98);
+    }
+
     TEST_CASE("the same bits for any number of threads, and after a checkpoint") {
         const Box box = lit_box(3);
         const Patches patches = patches_of(box.shape, box.materials);

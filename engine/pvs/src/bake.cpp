@@ -20,8 +20,12 @@ constexpr std::uint64_t kMaxPairs = std::uint64_t{1} << 34;
 // Bits are only ever set, so the order of threads does not matter.
 template <class T>
 void set_bits(T& word, T bits) {
+#ifdef __cpp_lib_atomic_ref
     const std::atomic_ref<T> shared(word);
     if ((shared.load(std::memory_order_relaxed) & bits) != bits) shared.fetch_or(bits, std::memory_order_relaxed);
+#else  // libc++ before 19
+    if ((__atomic_load_n(&word, __ATOMIC_RELAXED) & bits) != bits) __atomic_fetch_or(&word, bits, __ATOMIC_RELAXED);
+#endif
 }
 
 // An object's bit in a cell's row, or none.

@@ -26,6 +26,18 @@ std::size_t state_bytes(std::size_t patches) {
     return patches * (2 * sizeof(glm::dvec3) + 2 * sizeof(std::uint64_t));
 }
 
+// The chance that Student's t of `freedom` degrees, an even number, is within ±√square. A finite sum then, without
+// trigonometry (Abramowitz and Stegun, 26.7.4): the same bits everywhere.
+double student_within(double square, std::uint64_t freedom) {
+    const double cos2 = 1.0 / (1.0 + square / static_cast<double>(freedom));
+    double sum = 1.0, term = 1.0;
+    for (std::uint64_t k = 2; k < freedom; k += 2) {
+        term *= static_cast<double>(k - 1) / static_cast<double>(k) * cos2;
+        sum += term;
+    }
+    return std::min(1.0, std::sqrt(1.0 - cos2) * sum);
+}
+
 }  // namespace
 
 void Solver::add_run(const Light& arrived) {
@@ -66,6 +78,28 @@ double Solver::relative_error() const {
             size += patches_->areas[i] * light * light;
         }
     return size > 0.0 ? std::sqrt(error / size) : 0.0;
+}
+
+double Solver::share_within(double tolerance) const {
+    constexpr std::uint64_t kMostFreedom = 64;  // beyond it is a normal distribution
+    if (runs_ < 3 || !(tolerance > 0.0)) return 0.0;
+    const std::uint64_t freedom = std::min(kMostFreedom, (runs_ - 1) / 2 * 2);
+    const double n = static_cast<double>(runs_);
+    double within = 0.0, patches = 0.0;
+    for (std::size_t i = 0; i < sum_.size(); ++i) {
+        const glm::dvec3 mean = sum_[i] / n, reflectance(patches_->materials[i].reflectance),
+                         emission(patches_->materials[i].emission);
+        double light = 0.0, error = 0.0;  // channels err together, as light has nearly one colour
+        for (int k = 0; k < 3; ++k) {
+            light += emission[k] + reflectance[k] * mean[k];
+            error += reflectance[k] * std::sqrt(std::max(0.0, (squares_[i][k] / n - mean[k] * mean[k]) / (n - 1.0)));
+        }
+        if (!(light > 0.0)) continue;
+        patches += 1.0;
+        const double ratio = tolerance * light / std::max(error, 1e-9 * tolerance * light);
+        within += student_within(ratio * ratio, freedom);
+    }
+    return patches > 0.0 ? within / patches : 1.0;
 }
 
 std::size_t Solver::bytes() const {

@@ -26,11 +26,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr double kSaveLightEvery = 20.0;  // seconds
+// What an error of e promises: so many patches are within twice e, as two deviations would be.
+constexpr double kPatchesWithin = 0.95, kDeviations = 2.0;
 
 struct RadiosityOptions {
     ReadOptions read;
     std::string scene, method = "global", out, png, light_field, json, checkpoint, map, shard;
-    std::uint64_t lines = 20'000'000, seed = 1, stored_lines = 1 << 22, runs = 0;
+    std::uint64_t lines = 20'000'000, seed = 1, stored_lines = 1 << 22, runs = 0, reference = 0;
     double error = 0.0, edge = 0.0, sky = 1.0, sun = 3.0, exposure = 0.0;
     unsigned threads = 1;
 };
@@ -92,7 +94,9 @@ Result<void> solve(const RadiosityOptions& options, radiosity::Solver& solver, E
         return loaded;
     const auto done = [&] {
         if (solver.runs() < 2) return false;
-        return options.error > 0.0 ? solver.relative_error() <= options.error : solver.lines_traced() >= options.lines;
+        if (!(options.error > 0.0)) return solver.lines_traced() >= options.lines;
+        return solver.relative_error() <= options.error &&
+               solver.share_within(kDeviations * options.error) >= kPatchesWithin;
     };
     ProgressBar bar("radiosity", 1000);
     while (!done() && !interrupted()) {
@@ -211,6 +215,12 @@ Result<int> run_radiosity(const RadiosityOptions& options) {
         if (!drawn) return tl::unexpected(drawn.error());
         field = *drawn;
     }
+    std::optional<ReferenceReport> reference;
+    if (options.reference > 0) {
+        const auto compared = compare_to_reference(lit->patches, *parameters, options.reference, *solver, pool);
+        if (!compared) return tl::unexpected(compared.error());
+        reference = *compared;
+    }
     const auto seen = radiosity::visibility_complexity(
         *tracer, radiosity::LineSource(tracer->bounds(), radiosity::LineMethod::walls, options.seed), 50);
     glm::dvec3 mean(0.0);
@@ -231,6 +241,8 @@ Result<int> run_radiosity(const RadiosityOptions& options) {
         {"runs_planned", found->bake ? Json(found->bake->runs_planned()) : Json(nullptr)},
         {"lines", solver->lines_traced()},
         {"relative_error", solver->relative_error()},
+        {"share_within_10_percent", solver->share_within(0.1)},
+        {"reference", reference ? to_json(*reference) : Json(nullptr)},
         {"unseen", solver->unseen()},
         {"bounces", solver->bounces_of_last_run()},
         {"mean_radiosity", {mean.x, mean.y, mean.z}},
@@ -250,6 +262,9 @@ Result<int> run_radiosity(const RadiosityOptions& options) {
     std::printf("%s: %zu patches, %llu runs, %llu lines in %.1f s, relative error %.3f %%\n", source->name.c_str(),
                 lit->patches.count(), static_cast<unsigned long long>(solver->runs()),
                 static_cast<unsigned long long>(solver->lines_traced()), seconds, 100.0 * solver->relative_error());
+    std::printf("%.1f %% of patches are within 10 %% of their light, as the spread of runs tells\n",
+                100.0 * solver->share_within(0.1));
+    if (reference) print(*reference);
     if (field) print(*field);
     return status;
 }
@@ -277,7 +292,9 @@ void add_radiosity_command(CommandLine& line) {
     const Option lines =
         command.option("--lines", options->lines, "Trace about this many lines, in two runs or more").show_default();
     const Option error =
-        command.option("--error", options->error, "Stop at this relative error instead, for example 0.02")
+        command
+            .option("--error", options->error,
+                    "Stop at this relative error instead, for example 0.02, when 95 % of patches are within twice that")
             .positive()
             .excludes(lines);
     command
@@ -289,6 +306,9 @@ void add_radiosity_command(CommandLine& line) {
         .excludes(error);
     const Option shard =
         command.option("--shard", options->shard, "i/n: make part i of n only; needs --runs and --state");
+    command.option("--reference", options->reference, "Compare with so many runs of another seed, patch by patch")
+        .whole_between(2, 1'000'000)
+        .excludes(shard);
     command.option("--method", options->method, "local, global, bundles or walls").show_default();
     command.option("--edge", options->edge, "Cut patches until no edge is longer (metres); automatic without")
         .positive();

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <crofton/render/device.hpp>
 #include <crofton/render/rasterizer.hpp>
+#include <cstdio>
 #include <cstring>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -92,6 +93,10 @@ Vector<radiosity::Material> mean_materials(const LitScene& scene, std::span<cons
         sums[i].reflectance = glm::clamp(sums[i].reflectance / areas[i], 0.0f, kMostReflectance);
     }
     return sums;
+}
+
+double sum_of(const glm::vec3& v) {
+    return static_cast<double>(v.x) + static_cast<double>(v.y) + static_cast<double>(v.z);
 }
 
 }  // namespace
@@ -250,6 +255,50 @@ Result<void> write_lit_picture(const std::string& path, const TriangleMesh& mesh
     render::Image image;
     if (auto read = rasterizer->read_pixels(image); !read) return read;
     return write_file(path, pipeline::encode_png(image));
+}
+
+Result<ReferenceReport> compare_to_reference(const radiosity::Patches& patches, radiosity::SolverOptions options,
+                                             std::uint64_t runs, const radiosity::Solver& found, Executor& executor) {
+    options.seed += 1;
+    auto reference = radiosity::Solver::create(patches, options);
+    if (!reference) return tl::unexpected(reference.error());
+    while (reference->runs() < runs) reference->run(executor);
+    std::vector<double> errors;
+    for (std::size_t i = 0; i < patches.count(); ++i) {
+        const glm::vec3 light = reference->radiosity()[i];
+        if (sum_of(light) > 0.0) errors.push_back(sum_of(glm::abs(found.radiosity()[i] - light)) / sum_of(light));
+    }
+    ReferenceReport report;
+    report.runs = runs;
+    report.reference_error = reference->relative_error();
+    if (errors.empty()) return report;
+    std::sort(errors.begin(), errors.end());
+    const auto share_up_to = [&](double error) {
+        const auto end = std::upper_bound(errors.begin(), errors.end(), error);
+        return static_cast<double>(end - errors.begin()) / static_cast<double>(errors.size());
+    };
+    report.within_10 = share_up_to(0.10);
+    report.beyond_25 = 1.0 - share_up_to(0.25);
+    report.median = errors[errors.size() / 2];
+    report.worst_of_95 = errors[static_cast<std::size_t>(0.95 * static_cast<double>(errors.size() - 1))];
+    return report;
+}
+
+Json to_json(const ReferenceReport& report) {
+    return {{"runs", report.runs},
+            {"reference_error", report.reference_error},
+            {"within_10_percent", report.within_10},
+            {"beyond_25_percent", report.beyond_25},
+            {"median_error", report.median},
+            {"error_of_95_percent", report.worst_of_95}};
+}
+
+void print(const ReferenceReport& report) {
+    std::printf(
+        "beside %llu runs of another seed (%.2f %%): %.1f %% of patches within 10 %% of their light, %.1f %% off by "
+        "more than 25 %%; half within %.1f %%, 95 %% within %.1f %%\n",
+        static_cast<unsigned long long>(report.runs), 100.0 * report.reference_error, 100.0 * report.within_10,
+        100.0 * report.beyond_25, 100.0 * report.median, 100.0 * report.worst_of_95);
 }
 
 }  // namespace crofton::cli

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Scenes into patches, and lit patches into files.
 #pragma once
+#include <crofton/core/executor.hpp>
 #include <crofton/geometry/camera.hpp>
 #include <crofton/radiosity/solver.hpp>
 #include <string>
 
 #include "assets/flat_scene.hpp"
+#include "json/json.hpp"
 
 namespace crofton::cli {
 
@@ -37,5 +39,21 @@ inline constexpr float kMostReflectance = 0.9f;  // of white paint; light must e
 // One picture of the unlit mesh through the rasterizer, as PNG. `sky`: how bright the background is.
 [[nodiscard]] Result<void> write_lit_picture(const std::string& path, const TriangleMesh& mesh, const Camera& camera,
                                              std::uint32_t width, std::uint32_t height, float sky);
+
+// Of patches that the reference finds lit. A patch's error is that of all channels together, over its light.
+struct ReferenceReport {
+    std::uint64_t runs = 0;
+    double reference_error = 0.0;             // relative_error() of the reference
+    double within_10 = 0.0, beyond_25 = 0.0;  // shares of patches, by number, in percent of their own light
+    double median = 0.0, worst_of_95 = 0.0;   // errors that half and 95 % of the patches do not exceed
+};
+
+// Makes `runs` of another seed, and compares. Errors: as Solver::create.
+[[nodiscard]] Result<ReferenceReport> compare_to_reference(const radiosity::Patches& patches,
+                                                           radiosity::SolverOptions options, std::uint64_t runs,
+                                                           const radiosity::Solver& found, Executor& executor);
+
+[[nodiscard]] Json to_json(const ReferenceReport& report);
+void print(const ReferenceReport& report);
 
 }  // namespace crofton::cli

@@ -18,7 +18,7 @@ namespace {
 
 using convex::Placed;
 
-constexpr double kOffsets[] = {0.0, 1e3, 1e7};  // in sizes
+constexpr double kSceneOffsets[] = {0.0, 1e3, 1e7};  // in sizes
 
 struct Tally {
     std::uint64_t cases = 0, wrong = 0, meeting = 0, by_axes = 0;
@@ -218,9 +218,9 @@ Result<std::vector<VerifyRow>> verify_collided_scene(const std::string& source, 
     std::vector<VerifyRow> rows;
     if (!data->hulls.empty()) {
         rows.push_back(hulls_hold_points(*data));
-        for (const double offset : kOffsets) rows.push_back(hulls_that_touch(*data, offset, options));
+        for (const double offset : kSceneOffsets) rows.push_back(hulls_that_touch(*data, offset, options));
     }
-    for (const double offset : kOffsets) rows.push_back(surface_touched(*data, offset, options));
+    for (const double offset : kSceneOffsets) rows.push_back(surface_touched(*data, offset, options));
     rows.push_back(surface_hit(*data, options));
     const std::string name = source.substr(source.find_last_of("/\\") + 1) + (which.map.empty() ? "" : " " + which.map);
     for (VerifyRow& row : rows) row.claim = name + ": " + row.claim;

@@ -65,6 +65,10 @@ class Solver {
     // Root of the area-weighted mean square standard error over that of the radiosity, all channels together; infinite
     // before the second run.
     [[nodiscard]] double relative_error() const;
+    // relative_error() is a mean: bright patches weigh most. This is the share of patches, by number, whose radiosity
+    // is within `tolerance` of its own size, all channels together. By the spread of their runs and Student's t; so it
+    // is rather too small after few runs, and 0 before the third. Patches that give off nothing are left out.
+    [[nodiscard]] double share_within(double tolerance) const;
     [[nodiscard]] double unseen() const;
     // The share of a patch that lies in the open, as its rays so far tell. It is 0 where all is buried, 1 before the
     // first run.
