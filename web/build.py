@@ -22,7 +22,9 @@ import run as platforms  # noqa: E402
 
 WORK = ROOT / "build/web"
 FLAGS = {"simd": "-msimd128", "plain": "-DHWY_COMPILE_ONLY_SCALAR"}
-OPTIMIZE, KERNELS = "-Os", "-O2"  # kernels for size would be three times slower
+# Emscripten takes `-Os` for `-fno-inline-functions`, whatever level follows. Kernels need calls inlined: they would take
+# three times as long.
+OPTIMIZE, KERNELS = "-Os", "-O2;-finline-functions"
 MODULES = ["core", "geometry", "measure", "mesh", "boxtree", "convex", "collide", "scene", "fit", "cull", "occlude",
            "triangulate", "world", "capi"]
 EXPORTED = """last_error status_name version_string set_log_hook log camera_default frustum_from_camera
