@@ -191,6 +191,26 @@ TEST_SUITE("collide/broadphase") {
         CHECK(apart > 50);
     }
 
+    // Widths of 1 and three times half of its last place, a little more or less: three sums round the same way.
+    TEST_CASE("bounds whose widths are off by three halves of their last place are compared exactly") {
+        for (const float part : {0.49f * 0x1p-52f, 0.51f * 0x1p-52f})
+            for (int i = 0; i < 3; ++i)
+                for (int step = 0; step < 8; ++step) {
+                    Obb a;
+                    a.axes = glm::mat3(1.0f);
+                    a.axes[(i + 1) % 3][i] = a.axes[(i + 2) % 3][i] = 0.5f * part;
+                    a.half_extents = glm::vec3(1.0f);
+                    Obb b = a;
+                    b.half_extents[i] = part;
+                    b.center[i] = 1.0 + step * 0x1p-52;
+                    const std::vector<Obb> boxes{a, b};
+                    Broadphase bounds({.exact_boxes = false});
+                    REQUIRE(bounds.update(boxes).has_value());
+                    CHECK(bounds.pairs().size() == (step <= 1 ? 1u : 0u));
+                    CHECK(bounds_meet(a, b) == (step <= 1));
+                }
+    }
+
     TEST_CASE("only the items that moved are named: the same pairs as from all boxes, frame after frame") {
         std::mt19937_64 random(8);
         for (const bool exact : {true, false}) {

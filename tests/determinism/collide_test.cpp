@@ -90,7 +90,7 @@ TEST_SUITE("determinism/collide") {
     }
 
     TEST_CASE("contacts, depths, distances and rays of meshes are the same bits everywhere") {
-        check_everywhere(0x240cb72dd5e7416, [](Executor&) { return meshes(); });
+        check_everywhere(0xbc2a0e661c49041a, [](Executor&) { return meshes(); });
     }
 
     TEST_CASE("what was published are the pairs that rational arithmetic finds") {
@@ -103,7 +103,8 @@ TEST_SUITE("determinism/collide") {
         std::size_t meet = 0;
         for (std::size_t i = 0; i < 200; ++i)
             for (std::size_t j = i + 1; j < 200; ++j) meet += oracle::boxes_meet_by_integers(boxes[i], boxes[j]);
-        CHECK(meet == static_cast<std::size_t>(std::ranges::count_if(
-                          broadphase.pairs(), [](const IdPair& pair) { return pair.second < 200; })));
+        const auto pairs = broadphase.pairs();  // libc++ 14 lacks the algorithms of std::ranges
+        CHECK(meet == static_cast<std::size_t>(std::count_if(pairs.begin(), pairs.end(),
+                                                             [](const IdPair& pair) { return pair.second < 200; })));
     }
 }

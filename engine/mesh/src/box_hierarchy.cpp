@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <glm/common.hpp>
 #include <limits>
 #include <numeric>
 #include <utility>
+
+#include "wide_box.hpp"
 
 namespace crofton::mesh {
 namespace {
@@ -15,26 +18,6 @@ constexpr std::size_t kWidth = kBoxNodeWidth;
 constexpr std::size_t kBins = 16;
 // From this depth on ranges are halved by number: 2^30 triangles then need no more than 30 further levels.
 constexpr int kMaxUnevenDepth = 30;
-
-// A FloatBox with a fourth number, which is never read: four at a time are one instruction.
-struct alignas(16) WideBox {
-    static constexpr float kNone = std::numeric_limits<float>::infinity();
-    float low[4] = {kNone, kNone, kNone, kNone}, high[4] = {-kNone, -kNone, -kNone, -kNone};
-
-    void include(const float (&low_corner)[4], const float (&high_corner)[4]) {
-        for (int k = 0; k < 4; ++k) {
-            low[k] = low_corner[k] < low[k] ? low_corner[k] : low[k];
-            high[k] = high[k] < high_corner[k] ? high_corner[k] : high[k];
-        }
-    }
-    void include(const WideBox& box) { include(box.low, box.high); }
-};
-
-double half_area(const WideBox& box) {
-    double d[3];
-    for (int k = 0; k < 3; ++k) d[k] = static_cast<double>(box.high[k]) - static_cast<double>(box.low[k]);
-    return d[0] >= 0.0 ? d[0] * d[1] + d[1] * d[2] + d[2] * d[0] : 0.0;
-}
 
 struct BoxRange {
     std::uint32_t begin = 0, end = 0;
@@ -52,18 +35,11 @@ struct Plane {
 class Builder {
   public:
     Builder(std::span<const FloatBox> boxes, std::uint32_t leaf_size)
-        : leaf_size_(leaf_size),
-          boxes_(boxes.size()),
-          middles_(boxes.size()),
-          order_(boxes.size()),
-          right_(boxes.size()) {
+        : leaf_size_(leaf_size), items_(boxes.size()), others_(boxes.size()), order_(boxes.size()) {
         std::iota(order_.begin(), order_.end(), 0u);
+        other_order_.resize(boxes.size());
         for (std::size_t i = 0; i < boxes.size(); ++i)
-            for (int k = 0; k < 3; ++k) {
-                boxes_[i].low[k] = boxes[i].low[k];
-                boxes_[i].high[k] = boxes[i].high[k];
-                middles_[i].at[k] = 0.5f * boxes[i].low[k] + 0.5f * boxes[i].high[k];
-            }
+            for (int k = 0; k < 3; ++k) items_[i].low[k] = boxes[i].low[k], items_[i].high[k] = boxes[i].high[k];
     }
 
     BoxHierarchy build() {
@@ -101,10 +77,6 @@ class Builder {
     }
 
   private:
-    struct alignas(16) Middle {
-        float at[4] = {};
-    };
-
     static FloatBox narrow(const WideBox& box) {
         return {{box.low[0], box.low[1], box.low[2]}, {box.high[0], box.high[1], box.high[2]}};
     }
@@ -113,8 +85,10 @@ class Builder {
         BoxRange range;
         range.begin = begin, range.end = end, range.depth = depth;
         for (std::uint32_t i = begin; i < end; ++i) {
-            range.box.include(boxes_[order_[i]]);
-            range.middles.include(middles_[order_[i]].at, middles_[order_[i]].at);
+            const WideBox item = items_[i];
+            const Four middle = item.middle();
+            range.box.include(item);
+            range.middles.include(middle, middle);
         }
         range.area = half_area(range.box);
         return range;
@@ -139,104 +113,152 @@ class Builder {
         return count;
     }
 
-    // Within a range items ascend, before and after: so the tree does not depend on how a library sorts.
+    // Within a range items ascend, before and after: so the tree does not depend on how a library sorts. Boxes move
+    // with their items: what is split further lies side by side.
     void split(const BoxRange& range, BoxRange& left, BoxRange& right) {
         std::uint32_t cut = range.begin;
         Plane plane;
-        if (range.depth < kMaxUnevenDepth && best_plane(range, plane)) cut = part_by(range, plane);
+        if (range.depth < kMaxUnevenDepth && best_plane(range, plane))
+            cut = part(range, [&](std::uint32_t i) { return items_[i].middle()[plane.axis] < plane.at; });
         if (cut == range.begin || cut == range.end) cut = part_by_number(range);
         left = range_of(range.begin, cut, range.depth + 1);
         right = range_of(cut, range.end, range.depth + 1);
     }
 
-    // Those below the plane first; returns where the others begin.
-    std::uint32_t part_by(const BoxRange& range, const Plane& plane) {
+    // Those that are left first; returns where the others begin.
+    template <class IsLeft>
+    std::uint32_t part(const BoxRange& range, const IsLeft& is_left) {
         std::uint32_t cut = range.begin, others = 0;
         for (std::uint32_t i = range.begin; i < range.end; ++i) {
+            const bool to_left = is_left(i);
+            const WideBox item = items_[i];
             const std::uint32_t t = order_[i];
-            const bool is_left = middles_[t].at[plane.axis] < plane.at;
-            order_[cut] = t;
-            right_[others] = t;
-            cut += is_left;
-            others += !is_left;
+            items_[cut] = others_[others] = item;
+            order_[cut] = other_order_[others] = t;
+            cut += to_left;
+            others += !to_left;
         }
-        std::copy_n(right_.begin(), others, order_.begin() + cut);
+        std::copy_n(others_.begin(), others, items_.begin() + cut);
+        std::copy_n(other_order_.begin(), others, order_.begin() + cut);
         return cut;
     }
 
     // Halves along the longest side.
     std::uint32_t part_by_number(const BoxRange& range) {
-        std::uint32_t* const first = order_.data();
-        const std::uint32_t cut = range.begin + range.size() / 2;
         const FloatBox box = narrow(range.box);
         const glm::vec3 d = box.high - box.low;
         const int axis = d.x >= d.y && d.x >= d.z ? 0 : (d.y >= d.z ? 1 : 2);
-        std::nth_element(first + range.begin, first + cut, first + range.end, [&](std::uint32_t a, std::uint32_t b) {
-            const float x = middles_[a].at[axis], y = middles_[b].at[axis];
+        Vector<std::uint32_t> ranked(range.size());
+        std::iota(ranked.begin(), ranked.end(), range.begin);
+        const auto half = ranked.begin() + range.size() / 2;
+        std::nth_element(ranked.begin(), half, ranked.end(), [&](std::uint32_t a, std::uint32_t b) {
+            const float x = items_[a].middle()[axis], y = items_[b].middle()[axis];
             return x != y ? x < y : a < b;
         });
-        std::sort(first + range.begin, first + cut);
-        std::sort(first + cut, first + range.end);
-        return cut;
+        Vector<std::uint8_t> is_left(range.size(), 0);
+        for (auto i = ranked.begin(); i != half; ++i) is_left[*i - range.begin] = 1;
+        return part(range, [&](std::uint32_t i) { return is_left[i - range.begin] != 0; });
     }
 
     struct Bins {
         std::array<WideBox, kBins> boxes;
-        std::array<std::uint32_t, kBins> counts{};
+        std::array<std::uint32_t, kBins> counts;
+        std::uint32_t used;  // bits of those with items
+
+        void clear() {
+            for (WideBox& box : boxes) box = WideBox();
+            for (std::uint32_t& count : counts) count = 0;
+            used = 0;
+        }
+        void add(std::int32_t bin, const WideBox& item) {
+            boxes[static_cast<std::size_t>(bin)].include(item);
+            ++counts[static_cast<std::size_t>(bin)];
+        }
+        void add(const Bins& other) {
+            for (std::size_t b = 0; b < kBins; ++b) {
+                boxes[b].include(other.boxes[b]);
+                counts[b] += other.counts[b];
+            }
+        }
+        void find_used() {
+            used = 0;
+            for (std::size_t b = 0; b < kBins; ++b) used |= (counts[b] != 0 ? 1u : 0u) << b;
+        }
     };
 
     // The bin border of least Σ area · count; false where all middles coincide.
-    bool best_plane(const BoxRange& range, Plane& plane) const {
-        std::array<Bins, 3> bins;
-        float scale[3];
+    bool best_plane(const BoxRange& range, Plane& plane) {
+        Four scale = four(0.0f);
         for (int axis = 0; axis < 3; ++axis) {
             const float width = range.middles.high[axis] - range.middles.low[axis];
             scale[axis] = width > 0.0f ? static_cast<float>(kBins) / width : 0.0f;
         }
-        for (std::uint32_t i = range.begin; i < range.end; ++i) {
-            const std::uint32_t t = order_[i];
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                // The scale of a width near the smallest float is infinite: bounded before it becomes an integer.
-                const float place = std::max(0.0f, (middles_[t].at[axis] - range.middles.low[axis]) * scale[axis]);
-                const auto bin = static_cast<std::size_t>(std::min(static_cast<float>(kBins - 1), place));
-                bins[axis].boxes[bin].include(boxes_[t]);
-                ++bins[axis].counts[bin];
-            }
-        }
+        fill_bins(range, scale);
         double best = std::numeric_limits<double>::infinity();
         for (int axis = 0; axis < 3; ++axis) {
             if (scale[axis] == 0.0f) continue;
-            const std::size_t border = best_border(bins[static_cast<std::size_t>(axis)], range.size(), best);
+            const std::size_t border = best_border(bins_[static_cast<std::size_t>(axis)], best);
             if (border == 0) continue;
             plane = {axis, range.middles.low[axis] + static_cast<float>(border) / scale[axis]};
         }
         return best < std::numeric_limits<double>::infinity();
     }
 
-    // The first bin behind the best border, 0 where none is better than `best`.
-    static std::size_t best_border(const Bins& bins, std::uint32_t size, double& best) {
-        std::array<double, kBins> right_cost{};
+    void fill_bins(const BoxRange& range, const Four& scale) {
+        const bool many = range.size() > kManyItems;
+        for (std::size_t i = 0; i < (many ? 6u : 3u); ++i) bins_[i].clear();
+        const Four low = range.middles.low, zero = four(0.0f), last = four(static_cast<float>(kBins - 1));
+        const auto add = [&](std::uint32_t i, Bins* bins) {
+            const WideBox item = items_[i];
+            // The scale of a width near the smallest float is infinite: bounded before it becomes an integer.
+            std::int32_t bin[4];
+            to_integers(lesser(larger((item.middle() - low) * scale, zero), last), bin);
+            for (std::size_t axis = 0; axis < 3; ++axis) bins[axis].add(bin[axis], item);
+        };
+        std::uint32_t i = range.begin;
+        for (; many && i + 1 < range.end; i += 2) {
+            add(i, bins_.data());
+            add(i + 1, bins_.data() + 3);
+        }
+        for (; i < range.end; ++i) add(i, bins_.data());
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            if (many) bins_[axis].add(bins_[axis + 3]);
+            bins_[axis].find_used();
+        }
+    }
+
+    // The first bin behind the best border, 0 where none is better than `best`. Borders in front of an empty bin are as
+    // good as the one behind it.
+    static std::size_t best_border(const Bins& bins, double& best) {
+        std::array<double, kBins> right_cost;
         WideBox right, left;
         std::uint32_t right_count = 0, left_count = 0;
-        for (std::size_t b = kBins - 1; b > 0; --b) {
+        for (std::uint32_t rest = bins.used; rest != 0;) {
+            const auto b = static_cast<std::size_t>(std::bit_width(rest)) - 1;
+            rest ^= 1u << b;
             right.include(bins.boxes[b]);
             right_cost[b] = half_area(right) * (right_count += bins.counts[b]);
         }
         std::size_t border = 0;
-        for (std::size_t b = 1; b < kBins; ++b) {
-            left.include(bins.boxes[b - 1]);
-            left_count += bins.counts[b - 1];
-            if (left_count == 0 || left_count == size) continue;
-            const double cost = half_area(left) * left_count + right_cost[b];
-            if (cost < best) best = cost, border = b;
+        for (std::uint32_t rest = bins.used; (rest & (rest - 1)) != 0;) {
+            const auto b = static_cast<std::size_t>(std::countr_zero(rest));
+            rest &= rest - 1;
+            left.include(bins.boxes[b]);
+            left_count += bins.counts[b];
+            const double cost =
+                half_area(left) * left_count + right_cost[static_cast<std::size_t>(std::countr_zero(rest))];
+            if (cost < best) best = cost, border = b + 1;
         }
         return border;
     }
 
     std::uint32_t leaf_size_;
-    Vector<WideBox> boxes_;
-    Vector<Middle> middles_;
-    Vector<std::uint32_t> order_, right_;
+    Vector<WideBox> items_, others_;  // their boxes, in order
+    Vector<std::uint32_t> order_, other_order_;
+    // By axis, twice: of many items the odd ones go to the second three. An item waits for the one before it in its
+    // bin.
+    static constexpr std::uint32_t kManyItems = 128;
+    std::array<Bins, 6> bins_;
 };
 
 }  // namespace

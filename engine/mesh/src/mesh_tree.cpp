@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/core/recovery.hpp>
+#include <crofton/core/select.hpp>
 #include <crofton/mesh/mesh_parts.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <glm/geometric.hpp>
@@ -124,9 +125,10 @@ Part MeshTreeBuilder::split(Part& part) {
     // Whole leaves below: the cut is a multiple of the leaf's size, so that no lanes stay empty but in the last leaf.
     const std::uint32_t below = part.count / 2;
     const std::size_t cut = (range.leaves() * below + part.count / 2) / part.count * kMeshLeafWidth;
-    std::nth_element(begin, begin + static_cast<std::ptrdiff_t>(cut), end, [](const Reference& a, const Reference& b) {
-        return a.key < b.key || (a.key == b.key && a.triangle < b.triangle);
-    });
+    crofton::detail::select(begin, begin + static_cast<std::ptrdiff_t>(cut), end,
+                            [](const Reference& a, const Reference& b) {
+                                return a.key < b.key || (a.key == b.key && a.triangle < b.triangle);
+                            });
     const Part upper{{range.begin + cut, range.end}, part.count - below};
     part = {{range.begin, range.begin + cut}, below};
     return upper;

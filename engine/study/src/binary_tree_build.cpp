@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <crofton/core/select.hpp>
 #include <crofton/fit/fit.hpp>
 #include <crofton/study/binary_tree.hpp>
 #include <limits>
@@ -130,7 +131,7 @@ class BinaryTreeBuilder {
             double best = std::numeric_limits<double>::infinity();
             for (int j = 0; j < 3; ++j) best_cut(items, alive, j, centers, best, axis, left);
         }
-        std::nth_element(items.begin(), items.begin() + left, items.end(), [&](ItemId a, ItemId b) {
+        crofton::detail::select(items.begin(), items.begin() + left, items.end(), [&](ItemId a, ItemId b) {
             const double x = centroid(a, axis), y = centroid(b, axis);
             return x != y ? x < y : a < b;
         });

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <crofton/core/select.hpp>
 #include <crofton/geometry/predicates.hpp>
 #include <limits>
 #include <numeric>
@@ -26,7 +27,8 @@ double length(std::span<const glm::dvec2> points, const Segment& s) {
 // Reorders the lengths.
 double sum_of_shortest(std::span<double> lengths, std::size_t count) {
     count = std::min(count, lengths.size());
-    std::nth_element(lengths.begin(), lengths.begin() + static_cast<std::ptrdiff_t>(count), lengths.end());
+    crofton::detail::select(lengths.begin(), lengths.begin() + static_cast<std::ptrdiff_t>(count), lengths.end(),
+                            std::less<>());
     return std::accumulate(lengths.begin(), lengths.begin() + static_cast<std::ptrdiff_t>(count), 0.0);
 }
 
