@@ -124,6 +124,8 @@ if [[ -n $reason ]]; then
 fi
 start_cluster
 check array_by_slurm
+bake radiosity '--edge 0.8 --runs 32'
+check array_by_slurm
 nodes=$(grep -l 'Launching batch job' "$folder"/slurmd.*.log | wc -l)
 [[ $nodes -ge 2 ]] || wrong "all tasks ran on one node"
 echo "tasks ran on $nodes of 3 nodes"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
+#include <algorithm>
 #include <crofton/core/executor.hpp>
 #include <crofton/radiosity/patches.hpp>
 #include <crofton/radiosity/solver.hpp>
@@ -18,7 +19,7 @@ std::vector<std::byte> plain(const Vector<std::byte>& bytes) {
     return {bytes.begin(), bytes.end()};
 }
 
-// A box of which one side glows, with a ball in it.
+// A box of which one side glows, with a ball that is half sunk into the floor.
 struct Job {
     Patches patches;
     SolverOptions options;
@@ -27,7 +28,7 @@ struct Job {
     explicit Job(std::uint64_t number = 43) : runs(number) {
         shapes::Shape shape;
         shape.room({0, 0, 0}, {3, 1, 2}, 0);
-        shape.sphere({1.5f, 0.5f, 1}, 0.3f, 6, false, 6);
+        shape.sphere({1.5f, 0.0f, 1}, 0.3f, 6, false, 6);
         std::vector<Material> materials(7, {glm::vec3(0.0f), glm::vec3(0.5f)});
         materials[2].emission = {1.0f, 0.8f, 0.6f};
         patches = make_patches(shape.mesh, shape.patches, materials).value();
@@ -120,6 +121,13 @@ TEST_SUITE("radiosity/bake") {
         CHECK(std::memcmp(first.solver().radiosity().data(), solver.radiosity().data(),
                           solver.radiosity().size_bytes()) == 0);
         CHECK(first.solver().relative_error() == solver.relative_error());
+        CHECK(first.solver().unseen() == solver.unseen());
+        double exposed = 1.0;
+        for (std::size_t i = 0; i < job.patches.count(); ++i) {
+            CHECK(first.solver().exposed_share(i) == solver.exposed_share(i));
+            exposed = std::min(exposed, solver.exposed_share(i));
+        }
+        CHECK(exposed < 1.0);
 
         job.runs = 160;
         for (int i = 0; i < 152; ++i) solver.run();
@@ -129,6 +137,19 @@ TEST_SUITE("radiosity/bake") {
         CHECK(bake.solver().relative_error() < 0.6 * first.solver().relative_error());
         for (std::size_t i = 0; i < job.patches.count(); ++i)
             CHECK(bake.solver().radiosity()[i].x == doctest::Approx(solver.radiosity()[i].x).epsilon(0.03));
+    }
+
+    TEST_CASE("no two chains are alike") {
+        const Job job(3 * kRunsOfChain);
+        std::vector<Vector<glm::vec3>> found;
+        for (std::uint32_t i = 0; i < 3; ++i) {
+            Bake bake = job.start();
+            REQUIRE(bake.run({.shard = {i, 3}}).has_value());
+            const auto light = bake.solver().radiosity();
+            found.emplace_back(light.begin(), light.end());
+            for (std::uint32_t j = 0; j < i; ++j)
+                for (std::size_t k = 0; k < light.size(); ++k) CHECK(found[j][k] != light[k]);
+        }
     }
 
     TEST_CASE("shards that are none, no runs, damaged states and those of other bakes are refused") {

@@ -151,7 +151,39 @@ TEST_SUITE("radiosity/line_tracer") {
         }
     }
 
-    TEST_CASE("sixty-four lines that meet more than a beam has room for have all of their crossings") {
+    TEST_CASE("any number of lines in one call, more than go together too, have the bits they have alone") {
+        sampling::Random random(18);
+        const auto tracer = LineTracer::build(shapes::soup(3000, 0.3f, 9));
+        REQUIRE(tracer.has_value());
+        std::vector<Line> lines;
+        std::vector<LineHits> alone;
+        std::size_t most = 0;
+        for (int i = 0; i < 9000; ++i) {
+            // Now and then many the same: lists of every length at one leaf.
+            if (i > 0 && random.uniform(0.0, 1.0) < 0.3)
+                lines.push_back(lines.back());
+            else
+                lines.push_back({sampling::ball_point(random.point<3>()), sampling::direction(random.point<2>())});
+            tracer->all_hits({&lines.back(), 1}, alone.emplace_back());
+            most = std::max(most, alone.back().hits.size());
+        }
+        CHECK(most > 30);
+        LineHits together;
+        for (const std::size_t count : {0u, 1u, 2u, 3u, 4u, 5u, 7u, 8u, 9u, 33u, 4095u, 4096u, 4097u, 9000u}) {
+            tracer->all_hits({lines.data(), count}, together);
+            REQUIRE(together.ends.size() == count);
+            for (std::size_t i = 0, first = 0; i < count; first = together.ends[i], ++i) {
+                REQUIRE(together.ends[i] - first == alone[i].hits.size());
+                for (std::size_t h = 0; h < alone[i].hits.size(); ++h) {
+                    REQUIRE(together.hits[first + h].t == alone[i].hits[h].t);
+                    REQUIRE(together.hits[first + h].triangle == alone[i].hits[h].triangle);
+                    REQUIRE(together.hits[first + h].front == alone[i].hits[h].front);
+                }
+            }
+        }
+    }
+
+    TEST_CASE("many lines that meet more than there is room for at first have all of their crossings") {
         TriangleMesh mesh;
         mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
         for (int i = 0; i < 900; ++i) mesh.indices.insert(mesh.indices.end(), {0, 1, 2});

@@ -4,8 +4,6 @@
 #include <crofton/radiosity/patches.hpp>
 #include <error_of.hpp>
 #include <limits>
-#include <map>
-#include <tuple>
 
 #include "shapes.hpp"
 
@@ -21,22 +19,6 @@ double area_of(const TriangleMesh& mesh) {
     double sum = 0.0;
     for (const double a : patches->areas) sum += a;
     return sum;
-}
-
-// Edges used by one triangle only, as position pairs: a T-junction leaves unmatched ones inside a closed surface.
-std::size_t unmatched_edges(const TriangleMesh& mesh) {
-    using Point = std::tuple<float, float, float>;
-    std::map<std::pair<Point, Point>, int> edges;
-    for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
-        for (std::size_t e = 0; e < 3; ++e) {
-            const glm::vec3 &a = mesh.positions[mesh.indices[3 * t + e]],
-                            &b = mesh.positions[mesh.indices[3 * t + (e + 1) % 3]];
-            const Point p(a.x, a.y, a.z), q(b.x, b.y, b.z);
-            p < q ? ++edges[{p, q}] : --edges[{q, p}];
-        }
-    std::size_t count = 0;
-    for (const auto& [edge, balance] : edges) count += balance != 0 ? 1u : 0u;
-    return count;
 }
 
 }  // namespace
@@ -76,11 +58,11 @@ TEST_SUITE("radiosity/patches") {
         shapes::Shape shape;
         shape.room({0, 0, 0}, {3, 1, 2}, 0);
         shape.sphere({1, 0.5f, 1}, 0.3f, 6, false, 6);
-        REQUIRE(unmatched_edges(shape.mesh) == 0);
+        REQUIRE(shapes::unmatched_edges(shape.mesh) == 0);
         for (const double longest : {5.0, 0.7, 0.11}) {
             const auto refined = refine(shape.mesh, longest);
             REQUIRE(refined.has_value());
-            CHECK(unmatched_edges(refined->mesh) == 0);
+            CHECK(shapes::unmatched_edges(refined->mesh) == 0);
             CHECK(area_of(refined->mesh) == doctest::Approx(area_of(shape.mesh)).epsilon(1e-6));
             REQUIRE(refined->source.size() == refined->mesh.triangle_count());
             std::vector<double> by_source(shape.mesh.triangle_count(), 0.0);
@@ -109,13 +91,13 @@ TEST_SUITE("radiosity/patches") {
                 const float z0 = r == 2 ? 0.5f * static_cast<float>(half) : 0.0f, dz = r == 2 ? 0.5f : 1.0f;
                 cut.parallelogram({0, rows[r], z0}, {0, rows[r + 1] - rows[r], 0}, {0, 0, dz}, 0);
             }
-        REQUIRE(unmatched_edges(cut.mesh) > 0);
+        REQUIRE(shapes::unmatched_edges(cut.mesh) > 0);
         const auto mended = mend_t_junctions(cut.mesh, 1e-5);
         REQUIRE(mended.has_value());
-        CHECK(unmatched_edges(mended->mesh) == 0);
+        CHECK(shapes::unmatched_edges(mended->mesh) == 0);
         CHECK(area_of(mended->mesh) == doctest::Approx(area_of(cut.mesh)).epsilon(1e-6));
-        CHECK(unmatched_edges(refine(mended->mesh, 0.11)->mesh) == 0);
-        CHECK(unmatched_edges(refine(cut.mesh, 0.11)->mesh) > 0);
+        CHECK(shapes::unmatched_edges(refine(mended->mesh, 0.11)->mesh) == 0);
+        CHECK(shapes::unmatched_edges(refine(cut.mesh, 0.11)->mesh) > 0);
         // A mesh without T-junctions is left as it is, and bad arguments are refused.
         CHECK(mend_t_junctions(box.mesh, 1e-5)->mesh.indices == box.mesh.indices);
         CHECK(error_of(mend_t_junctions(box.mesh, -1.0)).code == ErrorCode::out_of_range);

@@ -5,8 +5,11 @@
 #include <crofton/geometry/mesh.hpp>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <map>
 #include <numbers>
 #include <random>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 namespace shapes {
@@ -79,6 +82,22 @@ inline crofton::TriangleMesh soup(int triangles, float size, std::uint32_t seed)
         }
     }
     return mesh;
+}
+
+// Edges used by one triangle only, as position pairs: a T-junction leaves unmatched ones inside a closed surface.
+inline std::size_t unmatched_edges(const crofton::TriangleMesh& mesh) {
+    using Point = std::tuple<float, float, float>;
+    std::map<std::pair<Point, Point>, int> edges;
+    for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
+        for (std::size_t e = 0; e < 3; ++e) {
+            const glm::vec3 &a = mesh.positions[mesh.indices[3 * t + e]],
+                            &b = mesh.positions[mesh.indices[3 * t + (e + 1) % 3]];
+            const Point p(a.x, a.y, a.z), q(b.x, b.y, b.z);
+            p < q ? ++edges[{p, q}] : --edges[{q, p}];
+        }
+    std::size_t count = 0;
+    for (const auto& [edge, balance] : edges) count += balance != 0 ? 1u : 0u;
+    return count;
 }
 
 }  // namespace shapes

@@ -30,15 +30,6 @@ struct Spread {
             inverse[k] = hn::Set(d, 1.0f / ray.direction[k]);
         }
     }
-    // Of a beam.
-    template <class Lines>
-    HWY_INLINE Spread(D d, const Lines& lines, std::size_t line) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            point[k] = hn::Set(d, lines.point[k][line]);
-            direction[k] = hn::Set(d, lines.direction[k][line]);
-            inverse[k] = hn::Set(d, lines.inverse[k][line]);
-        }
-    }
 };
 
 // Which children the line passes between t_low and t_high, and where it enters each. Each of the three steps of a
@@ -61,40 +52,55 @@ HWY_INLINE unsigned children(D d, const mesh::BoxNode& node, const Spread& ray, 
     return bits & ((1u << node.count) - 1u);
 }
 
-// Möller and Trumbore, both sides. `front`: the line runs against the normal.
+// Möller and Trumbore, both sides. `determinant` > 0: the line runs against the normal.
+HWY_INLINE hn::Mask<D> meet(D d, const V* corner, const V* e1, const V* e2, const V* point, const V* direction,
+                            V* determinant, V* t) {
+    const V zero = hn::Zero(d);
+    V s[3], p[3], q[3];
+    for (int k = 0; k < 3; ++k) s[k] = hn::Sub(point[k], corner[k]);
+    const auto cross = [](const V* a, const V* b, V* out) {
+        out[0] = hn::Sub(hn::Mul(a[1], b[2]), hn::Mul(a[2], b[1]));
+        out[1] = hn::Sub(hn::Mul(a[2], b[0]), hn::Mul(a[0], b[2]));
+        out[2] = hn::Sub(hn::Mul(a[0], b[1]), hn::Mul(a[1], b[0]));
+    };
+    const auto dot = [](const V* a, const V* b) {
+        return hn::Add(hn::Add(hn::Mul(a[0], b[0]), hn::Mul(a[1], b[1])), hn::Mul(a[2], b[2]));
+    };
+    cross(direction, e2, p);
+    *determinant = dot(e1, p);
+    const V scale = hn::Div(hn::Set(d, 1.0f), *determinant);
+    const V u = hn::Mul(dot(s, p), scale);
+    cross(s, e1, q);
+    const V v = hn::Mul(dot(direction, q), scale);
+    *t = hn::Mul(dot(e2, q), scale);
+    return hn::And(hn::And(hn::Ge(u, zero), hn::Ge(v, zero)),
+                   hn::And(hn::Le(hn::Add(u, v), hn::Set(d, 1.0f)), hn::Ne(*determinant, zero)));
+}
+
+// A line against the triangles of a leaf from lane i on.
+HWY_INLINE hn::Mask<D> meet_lanes(D d, const TracerLeaf& leaf, std::size_t i, const V* point, const V* direction,
+                                  V* determinant, V* t) {
+    V corner[3], e1[3], e2[3];
+    for (int k = 0; k < 3; ++k) {
+        corner[k] = hn::Load(d, leaf.corner[k] + i);
+        e1[k] = hn::Load(d, leaf.first[k] + i);
+        e2[k] = hn::Load(d, leaf.second[k] + i);
+    }
+    return meet(d, corner, e1, e2, point, direction, determinant, t);
+}
+
+// All triangles of a leaf: those that are met, and where. `front`: the line runs against the normal.
 HWY_INLINE unsigned triangles(D d, const TracerLeaf& leaf, const Spread& ray, float* t_out, unsigned* front) {
     unsigned bits = 0;
-    const V zero = hn::Zero(d);
     *front = 0;
     for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
-        V e1[3], e2[3], s[3], p[3], q[3];
-        for (int k = 0; k < 3; ++k) {
-            e1[k] = hn::Load(d, leaf.first[k] + i);
-            e2[k] = hn::Load(d, leaf.second[k] + i);
-            s[k] = hn::Sub(ray.point[k], hn::Load(d, leaf.corner[k] + i));
-        }
-        const auto cross = [](const V* a, const V* b, V* out) {
-            out[0] = hn::Sub(hn::Mul(a[1], b[2]), hn::Mul(a[2], b[1]));
-            out[1] = hn::Sub(hn::Mul(a[2], b[0]), hn::Mul(a[0], b[2]));
-            out[2] = hn::Sub(hn::Mul(a[0], b[1]), hn::Mul(a[1], b[0]));
-        };
-        const auto dot = [](const V* a, const V* b) {
-            return hn::Add(hn::Add(hn::Mul(a[0], b[0]), hn::Mul(a[1], b[1])), hn::Mul(a[2], b[2]));
-        };
-        cross(ray.direction, e2, p);
-        const V determinant = dot(e1, p);
-        const V scale = hn::Div(hn::Set(d, 1.0f), determinant);
-        const V u = hn::Mul(dot(s, p), scale);
-        cross(s, e1, q);
-        const V v = hn::Mul(dot(ray.direction, q), scale);
-        const V t = hn::Mul(dot(e2, q), scale);
-        const auto inside = hn::And(hn::And(hn::Ge(u, zero), hn::Ge(v, zero)),
-                                    hn::And(hn::Le(hn::Add(u, v), hn::Set(d, 1.0f)), hn::Ne(determinant, zero)));
+        V determinant, t;
+        const auto inside = meet_lanes(d, leaf, i, ray.point, ray.direction, &determinant, &t);
         hn::Store(t, d, t_out + i);
         bits |= simd::mask_bits(d, inside) << i;
-        *front |= simd::mask_bits(d, hn::Gt(determinant, zero)) << i;
+        *front |= simd::mask_bits(d, hn::Gt(determinant, hn::Zero(d))) << i;
     }
-    return bits & ((1u << leaf.count) - 1u);
+    return bits;
 }
 
 constexpr float kFar = 3e38f;
@@ -102,16 +108,6 @@ constexpr float kFar = 3e38f;
 // Where two faces back to back coincide, rounding must not put the back one in front.
 HWY_INLINE float sort_key(const FlatHit& hit, float tie) {
     return (hit.triangle & kFront) ? hit.t : hit.t + tie;
-}
-
-// Keeps the hits of one line sorted, ties by number: puts the one at `at` in its place among those from `first` on.
-HWY_INLINE void put_in_order(FlatHit* hits, std::size_t first, std::size_t at, const FlatHit& hit, float tie) {
-    const auto before = [&](const FlatHit& x, const FlatHit& y) {
-        const float kx = sort_key(x, tie), ky = sort_key(y, tie);
-        return kx != ky ? kx < ky : x.triangle < y.triangle;
-    };
-    for (; at > first && before(hit, hits[at - 1]); --at) hits[at] = hits[at - 1];
-    hits[at] = hit;
 }
 
 }  // namespace crofton::radiosity::detail::HWY_NAMESPACE

@@ -7,6 +7,7 @@
 #include <crofton/radiosity/lines.hpp>
 #include <glm/geometric.hpp>
 
+#include "hit_order.hpp"
 #include "trace_kernels.hpp"
 #include "tracer_build.hpp"
 
@@ -32,6 +33,34 @@ Hit unpacked(const detail::FlatHit& hit) {
     if (hit.triangle == detail::kMiss) return {};
     return {hit.t, hit.triangle & ~detail::kFront, (hit.triangle & detail::kFront) != 0};
 }
+
+// One thread's memory.
+struct StreamMemory {
+    static constexpr std::size_t kMost = 4096;  // lines at once: what is kept of them fits a core's own cache
+    Vector<detail::StreamLine> lines;
+    Vector<std::uint16_t> lists;
+    Vector<float> t;
+    Vector<std::uint32_t> triangle, line;
+    detail::HitOrder order;
+
+    void reserve(std::size_t count) {
+        if (lines.size() < count) lines.resize(count);
+        if (lists.size() < 32 * count + 1024) lists.resize(32 * count + 1024);
+        if (t.size() < 4 * count + 1024) resize_crossings(4 * count + 1024);
+    }
+    void resize_crossings(std::size_t count) {
+        t.resize(count);
+        triangle.resize(count);
+        line.resize(count);
+    }
+    void grow(detail::StreamEnd end) {
+        if (end == detail::StreamEnd::lists_full)
+            lists.resize(2 * lists.size());
+        else
+            resize_crossings(2 * t.size());
+    }
+    detail::StreamCrossings room() { return {t.data(), triangle.data(), line.data(), 0, t.size()}; }
+};
 
 }  // namespace
 
@@ -60,30 +89,29 @@ std::size_t LineTracer::bytes() const {
 }
 
 detail::TracerView LineTracer::view() const {
-    const glm::vec3 half(bounds_.half_extents());
-    return {nodes_.data(), leaves_.data(), tie_, {half.x, half.y, half.z}};
+    return {nodes_.data(), leaves_.data(), tie_};
 }
 
 void LineTracer::all_hits(std::span<const Line> lines, LineHits& result) const {
+    static_assert(sizeof(Line) == 6 * sizeof(double));
+    thread_local StreamMemory stream;
     const detail::TracerView tree = view();
-    std::array<detail::FlatRay, kBatch> rays;
-    std::array<std::uint32_t, kBatch> ends;
-    thread_local Vector<detail::FlatHit> hits;
-    if (hits.empty()) hits.resize(64 * kBatch);
+    const double origin[3] = {origin_.x, origin_.y, origin_.z};
     result.hits.clear();
     result.ends.clear();
-    for (std::size_t begin = 0; begin < lines.size();) {
-        const std::size_t count = std::min(kBatch, lines.size() - begin);
-        for (std::size_t i = 0; i < count; ++i) rays[i] = flat(lines[begin + i], origin_, Hit::kNothing);
-        const std::size_t done = detail::trace_all(tree, rays.data(), count, hits.data(), hits.size(), ends.data());
-        if (done == 0) {
-            hits.resize(2 * hits.size());
-            continue;
+    for (std::size_t begin = 0; begin < lines.size(); begin += StreamMemory::kMost) {
+        const std::size_t count = std::min(StreamMemory::kMost, lines.size() - begin);
+        stream.reserve(count);
+        detail::flatten(&lines[begin].point.x, count, origin, stream.lines.data());
+        detail::StreamCrossings found;
+        for (;;) {
+            found = stream.room();
+            const auto end =
+                detail::trace_stream(tree, stream.lines.data(), count, stream.lists.data(), stream.lists.size(), found);
+            if (end == detail::StreamEnd::done) break;
+            stream.grow(end);
         }
-        const std::size_t before = result.hits.size();
-        for (std::size_t h = 0; h < ends[done - 1]; ++h) result.hits.push_back(unpacked(hits[h]));
-        for (std::size_t i = 0; i < done; ++i) result.ends.push_back(static_cast<std::uint32_t>(before + ends[i]));
-        begin += done;
+        stream.order.append(found, count, tie_, result);
     }
 }
 

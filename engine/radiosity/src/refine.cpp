@@ -8,6 +8,8 @@
 #include <string>
 #include <unordered_map>
 
+#include "refine.hpp"
+
 namespace crofton::radiosity {
 namespace {
 
@@ -24,7 +26,7 @@ double squared_length(const glm::vec3& a, const glm::vec3& b) {
 
 class Refiner {
   public:
-    Refiner(const TriangleMesh& mesh, EdgeLength longest_edge) : longest_(longest_edge) {
+    Refiner(const TriangleMesh& mesh, detail::CutEdge is_cut) : is_cut_(is_cut) {
         result.mesh = mesh;
         for (std::size_t t = 0; t < mesh.triangle_count(); ++t) result.source.push_back(static_cast<std::uint32_t>(t));
     }
@@ -50,11 +52,10 @@ class Refiner {
     }
 
   private:
-    bool is_long(std::uint32_t a, std::uint32_t b) const {
+    bool to_cut(std::uint32_t a, std::uint32_t b) const {
         const glm::vec3 &p = result.mesh.positions[a], &q = result.mesh.positions[b];
         const glm::vec3 m = middle(p, q);
-        const double longest = longest_(m);
-        return squared_length(p, q) > longest * longest && m != p && m != q;
+        return m != p && m != q && is_cut_(p, q);
     }
 
     std::uint32_t midpoint(std::uint32_t a, std::uint32_t b) {
@@ -72,7 +73,7 @@ class Refiner {
         const auto emit = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) { out.insert(out.end(), {a, b, c}); };
         std::array<bool, 3> cut_edge;
         int count = 0;
-        for (std::size_t e = 0; e < 3; ++e) count += (cut_edge[e] = is_long(v[e], v[(e + 1) % 3])) ? 1 : 0;
+        for (std::size_t e = 0; e < 3; ++e) count += (cut_edge[e] = to_cut(v[e], v[(e + 1) % 3])) ? 1 : 0;
         if (count == 0) return emit(v[0], v[1], v[2]);
         // Turn the triangle so that its first edges are the ones cut.
         while (!(cut_edge[0] && (count != 2 || cut_edge[1]))) {
@@ -103,7 +104,7 @@ class Refiner {
         }
     }
 
-    EdgeLength longest_;
+    detail::CutEdge is_cut_;
     std::unordered_map<std::uint64_t, std::uint32_t, std::hash<std::uint64_t>, std::equal_to<>,
                        Allocator<std::pair<const std::uint64_t, std::uint32_t>>>
         midpoints_;
@@ -111,10 +112,20 @@ class Refiner {
 
 }  // namespace
 
+RefinedMesh detail::cut_edges(const TriangleMesh& mesh, CutEdge is_cut) {
+    Refiner refiner(mesh, is_cut);
+    refiner.round();
+    return std::move(refiner.result);
+}
+
 Result<RefinedMesh> refine(const TriangleMesh& mesh, EdgeLength longest_edge, std::size_t most_triangles) {
     return crofton::detail::recover([&]() -> Result<RefinedMesh> {
         if (auto valid = validate(mesh); !valid) return tl::unexpected(valid.error());
-        Refiner refiner(mesh, longest_edge);
+        const auto is_long = [&](const glm::vec3& p, const glm::vec3& q) {
+            const double longest = longest_edge(middle(p, q));
+            return squared_length(p, q) > longest * longest;
+        };
+        Refiner refiner(mesh, is_long);
         while (refiner.round())
             if (refiner.result.source.size() > most_triangles)
                 return fail(ErrorCode::budget_exceeded, refiner.result.source.size(),

@@ -7,56 +7,11 @@
 #include <hwy/highway.h>
 #include <bit>
 
-#include "beam-inl.hpp"
 #include "line_tests-inl.hpp"
+#include "stream-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace crofton::radiosity::detail::HWY_NAMESPACE {
-
-std::size_t trace_all(const TracerView& tree, const FlatRay* rays, std::size_t count, FlatHit* hits,
-                      std::size_t capacity, std::uint32_t* ends) {
-    const D d;
-    std::uint32_t stack[kMaxDepth * kLanes];
-    alignas(64) float values[kLanes];
-    std::size_t used = 0;
-    std::size_t next_beam = 0;
-    for (std::size_t r = 0; r < count; ++r) {
-        if (r == next_beam && r + kBeamLines <= count) {
-            next_beam += kBeamLines;
-            const BeamEnd end = trace_beam(tree, rays + r, hits, capacity, used, ends + r);
-            if (end == BeamEnd::full) return r;
-            if (end == BeamEnd::done) {
-                r = next_beam - 1;
-                continue;
-            }
-        }
-        const Spread ray(d, rays[r]);
-        const std::size_t first = used;
-        std::size_t top = 0;
-        stack[top++] = 0;
-        while (top > 0) {
-            const std::uint32_t item = stack[--top];
-            if (item & kLeaf) {
-                const TracerLeaf& leaf = tree.leaves[item & ~kLeaf];
-                unsigned front;
-                unsigned bits = triangles(d, leaf, ray, values, &front);
-                if (used + kLanes > capacity) return r;
-                for (; bits != 0; bits &= bits - 1) {
-                    const unsigned lane = static_cast<unsigned>(std::countr_zero(bits));
-                    const FlatHit hit{values[lane], leaf.triangle[lane] | ((front >> lane & 1u) ? kFront : 0u)};
-                    put_in_order(hits, first, used, hit, tree.tie);
-                    ++used;
-                }
-                continue;
-            }
-            const mesh::BoxNode& node = tree.nodes[item];
-            for (unsigned bits = children(d, node, ray, -kFar, kFar, values); bits != 0; bits &= bits - 1)
-                stack[top++] = node.child[static_cast<unsigned>(std::countr_zero(bits))];
-        }
-        ends[r] = static_cast<std::uint32_t>(used);
-    }
-    return count;
-}
 
 void trace_first(const TracerView& tree, const FlatRay* rays, std::size_t count, FlatHit* hits) {
     const D d;
@@ -110,13 +65,18 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace crofton::radiosity::detail {
 
-HWY_EXPORT(trace_all);
 HWY_EXPORT(trace_first);
+HWY_EXPORT(flatten);
+HWY_EXPORT(trace_stream);
 
-std::size_t trace_all(const TracerView& tree, const FlatRay* rays, std::size_t count, FlatHit* hits,
-                      std::size_t capacity, std::uint32_t* ends) {
-    return HWY_DYNAMIC_DISPATCH(trace_all)(tree, rays, count, hits, capacity, ends);
+void flatten(const double* lines, std::size_t count, const double* origin, StreamLine* flat) {
+    HWY_DYNAMIC_DISPATCH(flatten)(lines, count, origin, flat);
 }
+StreamEnd trace_stream(const TracerView& tree, const StreamLine* lines, std::size_t count, std::uint16_t* lists,
+                       std::size_t list_capacity, StreamCrossings& found) {
+    return HWY_DYNAMIC_DISPATCH(trace_stream)(tree, lines, count, lists, list_capacity, found);
+}
+
 void trace_first(const TracerView& tree, const FlatRay* rays, std::size_t count, FlatHit* hits) {
     HWY_DYNAMIC_DISPATCH(trace_first)(tree, rays, count, hits);
 }

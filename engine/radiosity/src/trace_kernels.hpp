@@ -13,11 +13,10 @@ inline constexpr std::uint32_t kFront = 0x80000000u;     // in a hit: the line c
 inline constexpr std::uint32_t kMiss = ~std::uint32_t{0};
 inline constexpr std::size_t kMaxDepth = 64;  // of the tree; the builder sees to it
 
-// Corner and edges of up to eight triangles; unused lanes have no area.
+// Corner and edges of up to eight triangles. Unused lanes have no area, and kMiss for a number.
 struct alignas(64) TracerLeaf {
     float corner[3][kLanes], first[3][kLanes], second[3][kLanes];
     std::uint32_t triangle[kLanes];
-    std::uint32_t count;
 };
 
 struct FlatRay {
@@ -32,16 +31,32 @@ struct FlatHit {
 struct TracerView {
     const mesh::BoxNode* nodes;
     const TracerLeaf* leaves;
-    float tie;      // crossings closer together than this along a line count as one place: fronts come first there
-    float half[3];  // extents of all; the centre is the origin
+    float tie;  // crossings closer together than this along a line count as one place: fronts come first there
 };
 
-// Consecutive lines that are near each other go through the tree together: a beam.
-inline constexpr std::size_t kBeamLines = 64;
+// A line of a stream: point and direction, and their reciprocals from 8 on.
+struct alignas(64) StreamLine {
+    float values[16];
+};
 
-// All crossings of each line, sorted, into hits[0 .. capacity); ends[i] as in LineHits. Returns how many lines fitted.
-std::size_t trace_all(const TracerView& tree, const FlatRay* rays, std::size_t count, FlatHit* hits,
-                      std::size_t capacity, std::uint32_t* ends);
+// Crossings of a stream's lines, in any order.
+struct StreamCrossings {
+    float* t;
+    std::uint32_t* triangle;  // with kFront
+    std::uint32_t* line;
+    std::size_t count, capacity;
+};
+enum class StreamEnd { done, lists_full, crossings_full };
+
+// `lines`: point and direction of each. No component of a direction becomes 0.
+void flatten(const double* lines, std::size_t count, const double* origin, StreamLine* flat);
+
+// All crossings of up to 2^16 lines, which go through the tree together. `lists` is memory for their numbers, at least
+// count + 8. Where that or `found` is too small the answer says so, and what was found is worth nothing.
+StreamEnd trace_stream(const TracerView& tree, const StreamLine* lines, std::size_t count, std::uint16_t* lists,
+                       std::size_t list_capacity, StreamCrossings& found);
+
+// The first crossing of each ray beyond the tie.
 void trace_first(const TracerView& tree, const FlatRay* rays, std::size_t count, FlatHit* hits);
 
 }  // namespace crofton::radiosity::detail

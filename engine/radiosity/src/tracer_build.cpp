@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "tracer_build.hpp"
 
+#include <algorithm>
 #include <crofton/mesh/box_hierarchy.hpp>
+#include <iterator>
 #include <utility>
 
 namespace crofton::radiosity::detail {
@@ -13,7 +15,7 @@ static_assert(kMaxDepth >= BoxHierarchy::kMaxDepth);
 TracerLeaf leaf_of(std::span<const std::uint32_t> triangles, const TriangleMesh& mesh,
                    std::span<const glm::vec3> points) {
     TracerLeaf leaf{};
-    leaf.count = static_cast<std::uint32_t>(triangles.size());
+    std::fill(std::begin(leaf.triangle), std::end(leaf.triangle), kMiss);
     for (std::size_t lane = 0; lane < triangles.size(); ++lane) {
         const std::uint32_t* const corner = &mesh.indices[3 * std::size_t{triangles[lane]}];
         const glm::vec3 &a = points[corner[0]], &b = points[corner[1]], &c = points[corner[2]];

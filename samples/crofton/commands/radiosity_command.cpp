@@ -34,7 +34,7 @@ struct RadiosityOptions {
     std::string scene, method = "global", out, png, light_field, json, checkpoint, map, shard;
     std::uint64_t lines = 20'000'000, seed = 1, stored_lines = 1 << 22, runs = 0, reference = 0;
     double error = 0.0, edge = 0.0, sky = 1.0, sun = 3.0, exposure = 0.0;
-    unsigned threads = 1;
+    unsigned threads = 1, shadow_cuts = 3;
 };
 
 Result<radiosity::SolverOptions> solver_options(const RadiosityOptions& options) {
@@ -180,7 +180,9 @@ Result<int> run_radiosity(const RadiosityOptions& options) {
     if (!source) return tl::unexpected(source.error());
     const auto flat = assets::flat_scene(*source, options.read.limits);
     if (!flat) return tl::unexpected(flat.error());
-    const auto lit = lit_scene(*flat, options.edge);
+    std::optional<SunEdges> sun;
+    if (options.sun > 0.0 && options.shadow_cuts > 0) sun = {parameters->outside.to_sun, options.shadow_cuts};
+    const auto lit = lit_scene(*flat, options.edge, sun);
     if (!lit) return tl::unexpected(lit.error());
     ThreadPool pool(options.threads);
     const auto start = Clock::now();
@@ -312,6 +314,11 @@ void add_radiosity_command(CommandLine& line) {
     command.option("--method", options->method, "local, global, bundles or walls").show_default();
     command.option("--edge", options->edge, "Cut patches until no edge is longer (metres); automatic without")
         .positive();
+    command
+        .option("--shadow-cuts", options->shadow_cuts,
+                "Cut patches into four so often where shadows of the sun end; 0: shadows are as sharp as patches")
+        .whole_between(0, 8)
+        .show_default();
     command.option("--sky", options->sky, "Radiosity of the sky").not_negative().show_default();
     command.option("--sun", options->sun, "Irradiance toward the sun").not_negative().show_default();
     command.option("--exposure", options->exposure, "Factor from radiosity to colour; automatic without").positive();

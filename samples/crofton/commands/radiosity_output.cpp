@@ -101,7 +101,7 @@ double sum_of(const glm::vec3& v) {
 
 }  // namespace
 
-Result<LitScene> lit_scene(const assets::FlatScene& scene, double edge) {
+Result<LitScene> lit_scene(const assets::FlatScene& scene, double edge, const std::optional<SunEdges>& sun) {
     EdgeLengths lengths;
     if (edge == 0.0) {
         lengths = automatic_edges(scene.mesh);
@@ -112,11 +112,17 @@ Result<LitScene> lit_scene(const assets::FlatScene& scene, double edge) {
     auto refined = lengths.edge > 0.0 ? radiosity::refine(mended->mesh, radiosity::EdgeLength(lengths))
                                       : radiosity::refine(mended->mesh, edge);
     if (!refined) return tl::unexpected(refined.error());
+    if (sun) {
+        auto cut = radiosity::refine_at_shadows(refined->mesh, sun->to_sun, sun->halvings);
+        if (!cut) return tl::unexpected(cut.error());
+        for (std::uint32_t& source : cut->source) source = refined->source[source];
+        *refined = std::move(*cut);
+    }
     LitScene result;
     result.patches.mesh.positions = std::move(refined->mesh.positions);
     result.patches.mesh.colors = std::move(refined->mesh.colors);
     for (glm::vec3& color : result.patches.mesh.colors) color = glm::clamp(color, 0.0f, kMostReflectance);
-    Vector<std::uint32_t> glows;
+    Vector<std::uint32_t> labels;  // what may not share a patch
     for (std::size_t t = 0; t < refined->source.size(); ++t) {
         const std::uint32_t* v = &refined->mesh.indices[3 * t];
         const auto at = [&](std::size_t k) { return glm::dvec3(result.patches.mesh.positions[v[k]]); };
@@ -124,9 +130,14 @@ Result<LitScene> lit_scene(const assets::FlatScene& scene, double edge) {
         if (!(glm::length(glm::cross(at(1) - at(0), at(2) - at(0))) > 0.0)) continue;
         result.patches.mesh.indices.insert(result.patches.mesh.indices.end(), v, v + 3);
         result.emission.push_back(scene.emission[mended->source[refined->source[t]]]);
-        glows.push_back(result.emission.back() == glm::vec3(0.0f) ? 0 : 1);
+        labels.push_back(result.emission.back() == glm::vec3(0.0f) ? 0 : 1);
     }
-    const auto patches = radiosity::group_small_triangles(result.patches.mesh, glows, edge);
+    if (sun) {
+        const auto lit = radiosity::sunlit_triangles(result.patches.mesh, sun->to_sun);
+        if (!lit) return tl::unexpected(lit.error());
+        for (std::size_t t = 0; t < labels.size(); ++t) labels[t] += 2 * (*lit)[t];
+    }
+    const auto patches = radiosity::group_small_triangles(result.patches.mesh, labels, edge);
     const auto materials = mean_materials(result, patches);
     auto made = radiosity::make_patches(std::move(result.patches.mesh), patches, materials);
     if (!made) return tl::unexpected(made.error());

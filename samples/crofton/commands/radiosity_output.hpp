@@ -4,6 +4,7 @@
 #include <crofton/core/executor.hpp>
 #include <crofton/geometry/camera.hpp>
 #include <crofton/radiosity/solver.hpp>
+#include <optional>
 #include <string>
 
 #include "assets/flat_scene.hpp"
@@ -19,9 +20,17 @@ struct LitScene {
 
 inline constexpr float kMostReflectance = 0.9f;  // of white paint; light must end
 
+// How sharp shadows of the sun are to be: refine_at_shadows.
+struct SunEdges {
+    glm::dvec3 to_sun;
+    std::uint32_t halvings = 3;
+};
+
 // T-junctions mended, edges of at most `edge` metres, small triangles in groups of that size. edge = 0: such
 // that the scene has up to a few times its triangles, 50,000 at least, and longer far from where most of them are.
-[[nodiscard]] Result<LitScene> lit_scene(const assets::FlatScene& scene, double edge);
+// Without `sun` shadows are as sharp as that. Groups lie in the sun or in its shadow.
+[[nodiscard]] Result<LitScene> lit_scene(const assets::FlatScene& scene, double edge,
+                                         const std::optional<SunEdges>& sun);
 
 // Three vertices a triangle, whose colours are what leaves there: emission + reflectance · irradiance. Irradiance is
 // interpolated between patches, the reflectance is each triangle's own.

@@ -60,6 +60,20 @@ using EdgeLength = FunctionRef<double(const glm::vec3& middle)>;
 [[nodiscard]] Result<RefinedMesh> refine(const TriangleMesh& mesh, EdgeLength longest_edge,
                                          std::size_t most_triangles = std::size_t{1} << 24);
 
+// Triangles in which a shadow of the sun ends are cut into four, so many times: shadows are 2^halvings times as sharp
+// then. The neighbours' sides are cut alike, so no T-junctions come about. Seven points of each triangle that faces the
+// sun are looked from: near its corners, near the middles of its sides, and its center. A shadow ends there if some see
+// the sun and others do not. What fits between these points is not found: refine() first. `to_sun`: of any length. What
+// blocks the sun is `mesh` itself, from either side. Errors: as refine() and LineTracer::build; to_sun zero, too long
+// to square or not finite.
+[[nodiscard]] Result<RefinedMesh> refine_at_shadows(const TriangleMesh& mesh, const glm::dvec3& to_sun,
+                                                    std::uint32_t halvings,
+                                                    std::size_t most_triangles = std::size_t{1} << 24);
+
+// By triangle, 1 where it faces the sun and its center sees it. As labels for group_small_triangles they part light
+// and shadow. Errors: as refine_at_shadows.
+[[nodiscard]] Result<Vector<std::uint32_t>> sunlit_triangles(const TriangleMesh& mesh, const glm::dvec3& to_sun);
+
 // A patch number for each triangle. Those of at least size²/4 are patches of their own. Smaller ones share one if they
 // are in one cell of side `size`, face the same side of a cube and have the same label. `labels`: by triangle, or
 // empty. What is too small to be met by lines on its own is met together.
