@@ -52,24 +52,21 @@ struct Scratch {
     Vector<Gap> gaps;
 };
 
-// Lines of a block come in strata, and those of one go through the tree together.
+// Lines of a block go through the tree together.
 class BlockTracing {
   public:
     BlockTracing(Bake::State& state, Scratch& scratch) : state_(state), scratch_(scratch) {}
 
     void trace(std::uint64_t block) {
         state_.plan.draw(block, state_.cells, state_.origin, scratch_.lines);
-        constexpr std::size_t kAtOnce = 1024;
-        for (std::size_t begin = 0; begin < scratch_.lines.size(); begin += kAtOnce) {
-            const auto lines = std::span(std::as_const(scratch_.lines)).subspan(begin).first(kAtOnce);
-            state_.tracer->all_hits(lines, scratch_.hits);
-            for (std::size_t i = 0, first = 0; i < lines.size(); ++i) {
-                const std::size_t end = scratch_.hits.ends[i];
-                find_gaps(std::span(scratch_.hits.hits).subspan(first, end - first), (begin + i) % kEscapeClasses);
-                state_.walk->find(lines[i], scratch_.spans);
-                witness();
-                first = end;
-            }
+        const std::span<const Line> lines(scratch_.lines);
+        state_.tracer->all_hits(lines, scratch_.hits);
+        for (std::size_t i = 0, first = 0; i < lines.size(); ++i) {
+            const std::size_t end = scratch_.hits.ends[i];
+            find_gaps(std::span(scratch_.hits.hits).subspan(first, end - first), i % kEscapeClasses);
+            state_.walk->find(lines[i], scratch_.spans);
+            witness();
+            first = end;
         }
     }
 
@@ -196,6 +193,8 @@ Result<Bake> Bake::create(const Subject& subject, const Cells& cells, const Bake
         state->options = options;
         state->boxes = subject.boxes;
         state->origin = subject.origin;
+        state->mesh.positions = subject.mesh.positions;
+        state->mesh.indices = subject.mesh.indices;
         state->object_of = subject.object_of;
         state->subject = pvs::fingerprint_of(subject);
         state->plan = *plan;

@@ -74,6 +74,7 @@ struct Bake::State {
     BakeOptions options;
     Vector<Obb> boxes;
     glm::dvec3 origin{0.0};
+    TriangleMesh mesh;  // of the subject, relative to the origin
     Vector<std::uint32_t> object_of;
     std::uint64_t subject = 0;    // its fingerprint
     Vector<std::uint64_t> baked;  // by object: it has triangles

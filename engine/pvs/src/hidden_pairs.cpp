@@ -4,28 +4,61 @@
 #include <algorithm>
 #include <crofton/core/recovery.hpp>
 #include <glm/geometric.hpp>
+#include <optional>
 
 #include "box_groups.hpp"
 #include "cell_walk.hpp"
+#include "surface.hpp"
+#include "surface_cut.hpp"
 
 namespace crofton::pvs {
 namespace {
 
 // Relative to the margin: a thousand million times the rounding of what is computed from such coordinates.
 constexpr double kMargin = 1e-9;
+// Relative to it too: ten times the rounding of single precision, in which triangles are.
+constexpr double kGap = 1e-6;
+// The surface is asked about groups of so many at most, and triangle by triangle about objects of so many.
+constexpr std::uint32_t kFewCells = 8, kFewObjects = 64;
+constexpr std::size_t kFewTriangles = 64;
 
-// Part of the boxes of one object: its halves are proved one by one.
+// Part of an object, its box or one of its triangles: halves are proved one by one.
 struct Part {
     glm::dvec3 center{0.0};
-    std::array<glm::dvec3, 3> half{};
+    std::array<glm::dvec3, 3> half{};  // of a box
+    std::optional<std::array<glm::dvec3, 3>> triangle;
 
     [[nodiscard]] Corners corners() const {
         Corners c;
         for (unsigned i = 0; i < 8; ++i) {
-            c[i] = center;
-            for (unsigned k = 0; k < 3; ++k) c[i] += (i >> k & 1 ? 1.0 : -1.0) * half[k];
+            c[i] = triangle ? (*triangle)[i % 3] : center;
+            for (unsigned k = 0; k < 3 && !triangle; ++k) c[i] += (i >> k & 1 ? 1.0 : -1.0) * half[k];
         }
         return c;
+    }
+
+    // Of a box the half axis, of a triangle the side: 0, 1 or 2.
+    [[nodiscard]] std::size_t longest() const {
+        std::size_t best = 0;
+        for (std::size_t i = 1; i < 3; ++i)
+            if (length(i) > length(best)) best = i;
+        return best;
+    }
+    // Half of a box's extent or of a triangle's side.
+    [[nodiscard]] double length(std::size_t i) const {
+        return triangle ? 0.5 * glm::distance((*triangle)[i], (*triangle)[(i + 1) % 3]) : glm::length(half[i]);
+    }
+
+    [[nodiscard]] Part halved(std::size_t i, bool upper) const {
+        Part part = *this;
+        if (triangle) {
+            const glm::dvec3 middle = 0.5 * ((*triangle)[i] + (*triangle)[(i + 1) % 3]);
+            (*part.triangle)[upper ? i : (i + 1) % 3] = middle;
+        } else {
+            part.half[i] *= 0.5;
+            part.center += (upper ? 1.0 : -1.0) * part.half[i];
+        }
+        return part;
     }
 };
 
@@ -33,15 +66,22 @@ struct Question {
     const Bake::State& bake;
     std::span<const Blocker> bodies;
     const ProofOptions& options;
-    const BoxGroups &cells, &objects, &tree;  // of the cells' boxes, the objects', the bodies'
-    Vector<Part> parts;                       // by object
+    const BoxGroups &cells, &objects, &tree;                 // of the cells' boxes, the objects', the bodies'
+    Vector<Part> parts;                                      // by object: its box
+    const Vector<std::uint32_t>&first_triangle, &triangles;  // by object
+    const Surface* surface;                                  // nullptr: bodies alone
+    CutOptions cut;
     double margin;
 };
 
 // One thread's work on some of the cells.
 class Prover {
   public:
-    Prover(const Question& question, Vector<std::uint64_t>& open) : q_(question), open_(open) {}
+    Prover(const Question& question, Vector<std::uint64_t>& open) : q_(question), open_(open) {
+        if (!q_.surface) return;
+        cut_.emplace(*q_.surface, q_.cut);
+        failed_.assign(q_.bake.boxes.size(), 0);
+    }
 
     void prove(std::uint32_t cells, std::uint32_t objects) {
         const auto& eyes = q_.cells[cells];
@@ -49,11 +89,13 @@ class Prover {
         const bool single = group.count == 1;
         if (eyes.count == 1 && single && is_seen(eyes, group)) return;
         const Corners corners = single ? q_.parts[q_.objects.items(group)[0]].corners() : corners_of(group.box);
-        const Answer answer = intersects(eyes.box, group.box) ? Answer::open : ask(eyes.box, corners);
+        const bool is_small = eyes.count <= kFewCells && group.count <= kFewObjects;
+        const Answer answer = intersects(eyes.box, group.box) ? Answer::open : ask(eyes.box, corners, is_small);
         if (answer == Answer::blocked) return hide(eyes, group);
         if (eyes.count == 1 && single) {
-            if (answer == Answer::partly &&
-                prove_halves(eyes.box, q_.parts[q_.objects.items(group)[0]], q_.options.halvings))
+            const std::uint32_t object = q_.objects.items(group)[0];
+            if ((answer == Answer::partly && prove_halves(eyes.box, q_.parts[object], q_.options.halvings)) ||
+                prove_triangles(eyes.box, object))
                 hide(eyes, group);
             return;
         }
@@ -87,8 +129,18 @@ class Prover {
         open,     // it meets none: no halving can help
     };
 
+    // Bodies are asked first: they cost less.
+    [[nodiscard]] Answer ask(const Aabb& eyes, const Corners& object, bool with_surface = true) {
+        const Answer answer = ask_bodies(eyes, object);
+        if (answer == Answer::blocked || !cut_ || !with_surface) return answer;
+        const SurfaceCut::Answer cut = cut_->ask(corners_of(eyes), object);
+        if (cut == SurfaceCut::Answer::cut) return Answer::blocked;
+        return cut == SurfaceCut::Answer::partly ? Answer::partly : answer;
+    }
+
     // The last body that blocked is asked first, then all that the segment between the middles meets.
-    [[nodiscard]] Answer ask(const Aabb& eyes, const Corners& object) {
+    [[nodiscard]] Answer ask_bodies(const Aabb& eyes, const Corners& object) {
+        if (q_.bodies.empty()) return Answer::open;
         const Corners from = corners_of(eyes);
         const auto blocks_eyes = [&](const Blocker& body) {
             return may_prove_for(body, eyes, q_.options.near_radius, q_.margin) &&
@@ -126,19 +178,12 @@ class Prover {
         if (halvings == 0) return false;
         const glm::dvec3 e = 0.5 * (eyes.max - eyes.min);
         const int k = e.x >= e.y ? (e.x >= e.z ? 0 : 2) : (e.y >= e.z ? 1 : 2);
-        std::size_t widest = 0;
-        for (std::size_t i = 1; i < 3; ++i)
-            if (glm::length(object.half[i]) > glm::length(object.half[widest])) widest = i;
-        const bool halve_eyes = e[k] >= glm::length(object.half[widest]);
-        for (const double side : {-1.0, 1.0}) {
+        const std::size_t widest = object.longest();
+        const bool halve_eyes = e[k] >= object.length(widest);
+        for (const bool upper : {false, true}) {
             Aabb part_of_eyes = eyes;
-            Part part = object;
-            if (halve_eyes) {
-                (side < 0.0 ? part_of_eyes.max : part_of_eyes.min)[k] = eyes.center()[k];
-            } else {
-                part.half[widest] *= 0.5;
-                part.center += side * part.half[widest];
-            }
+            if (halve_eyes) (upper ? part_of_eyes.min : part_of_eyes.max)[k] = eyes.center()[k];
+            const Part part = halve_eyes ? object : object.halved(widest, upper);
             const Answer answer = ask(part_of_eyes, part.corners());
             if (answer == Answer::open) return false;
             if (answer == Answer::partly && !prove_halves(part_of_eyes, part, halvings - 1)) return false;
@@ -146,8 +191,32 @@ class Prover {
         return true;
     }
 
+    // Triangle by triangle, that on which the object failed last before the others.
+    [[nodiscard]] bool prove_triangles(const Aabb& eyes, std::uint32_t object) {
+        const auto triangles =
+            std::span(q_.triangles)
+                .subspan(q_.first_triangle[object], q_.first_triangle[object + 1] - q_.first_triangle[object]);
+        if (!cut_ || triangles.empty() || triangles.size() > kFewTriangles) return false;
+        for (std::size_t i = 0; i < triangles.size(); ++i) {
+            const std::size_t at = (failed_[object] + i) % triangles.size();
+            Part part;
+            part.triangle.emplace();
+            for (std::size_t k = 0; k < 3; ++k)
+                (*part.triangle)[k] = glm::dvec3(q_.bake.mesh.positions[q_.bake.mesh.indices[3 * triangles[at] + k]]);
+            const Answer answer = ask(eyes, part.corners());
+            if (answer == Answer::blocked ||
+                (answer == Answer::partly && prove_halves(eyes, part, q_.options.halvings)))
+                continue;
+            failed_[object] = static_cast<std::uint32_t>(at);
+            return false;
+        }
+        return true;
+    }
+
     const Question& q_;
     Vector<std::uint64_t>& open_;
+    std::optional<SurfaceCut> cut_;
+    Vector<std::uint32_t> failed_;  // by object: the triangle
     Vector<std::uint32_t> stack_;
     std::uint32_t last_ = ~std::uint32_t{0};
 };
@@ -156,7 +225,7 @@ class Prover {
 
 void prove_hidden(const Bake::State& bake, std::span<const Blocker> bodies, const ProofOptions& options,
                   Executor& executor, Vector<std::uint64_t>& open) {
-    if (bodies.empty()) return;
+    if (bodies.empty() && options.surface_steps == 0) return;
     const double margin = kMargin * bake.extent + 1e-13 * glm::length(bake.origin);
     Vector<Aabb> cells, objects, bounds;
     Vector<Part> parts;
@@ -175,7 +244,26 @@ void prove_hidden(const Bake::State& bake, std::span<const Blocker> bodies, cons
     }
     for (const Blocker& body : bodies) bounds.push_back(body.bounds);
     const BoxGroups cell_groups(cells), object_groups(objects), tree(bounds);
-    const Question question{bake, bodies, options, cell_groups, object_groups, tree, std::move(parts), margin};
+    Surface surface;
+    if (options.surface_steps > 0) surface = surface_of(bake.mesh);
+    Vector<std::uint32_t> first_triangle(bake.boxes.size() + 1, 0), triangles(bake.object_of.size());
+    for (const std::uint32_t o : bake.object_of) ++first_triangle[o + 1];
+    for (std::size_t o = 0; o < bake.boxes.size(); ++o) first_triangle[o + 1] += first_triangle[o];
+    Vector<std::uint32_t> next(first_triangle.begin(), first_triangle.end() - 1);
+    for (std::uint32_t t = 0; t < triangles.size(); ++t) triangles[next[bake.object_of[t]]++] = t;
+    const Question question{
+        bake,
+        bodies,
+        options,
+        cell_groups,
+        object_groups,
+        tree,
+        std::move(parts),
+        first_triangle,
+        triangles,
+        options.surface_steps > 0 ? &surface : nullptr,
+        {bake.options.sides, options.near_radius, margin + kGap * bake.extent, options.surface_steps},
+        margin};
     // Groups of few cells are tasks: each writes its cells' bits alone.
     Vector<std::uint32_t> tasks, stack{BoxGroups::kRoot};
     while (!stack.empty()) {
@@ -189,7 +277,8 @@ void prove_hidden(const Bake::State& bake, std::span<const Blocker> bodies, cons
         }
     }
     crofton::detail::recoverable_for(executor, tasks.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
-        for (std::size_t i = begin; i < end; ++i) Prover(question, open).prove(tasks[i], BoxGroups::kRoot);
+        Prover prover(question, open);
+        for (std::size_t i = begin; i < end; ++i) prover.prove(tasks[i], BoxGroups::kRoot);
     });
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // `crofton pvs`: what can be seen from each cell of a level, baked by global lines.
+#include <algorithm>
 #include <chrono>
 #include <crofton/bake/baked_scene.hpp>
 #include <crofton/core/executor.hpp>
@@ -23,13 +24,14 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr double kSaveEvery = 20.0;  // seconds
+constexpr std::uint32_t kByScene = ~std::uint32_t{0}, kStepsInLevels = 100;
 
 struct PvsRequest {
     ReadOptions read;
     std::string scene, map, cells = "64x2x64", eyes, sides = "both", shard, state, out, svg, eye, json;
     double height = 10.0, epsilon = 1e-4, confidence = 0.999, seconds = 0.0, near_radius = 0.5;
     std::uint64_t seed = 1;
-    std::uint32_t instances = 0, halvings = 4, views = 0;
+    std::uint32_t instances = 0, halvings = 4, surface_steps = kByScene, views = 0;
     unsigned threads = 1;
     bool with_scene = false;
 };
@@ -68,6 +70,14 @@ Result<Job> make_job(const PvsRequest& options, Executor& executor) {
         pipeline::make_pvs_scene(*source, !options.out.empty() || !options.svg.empty() || options.views > 0, executor);
     if (!scene) return tl::unexpected(scene.error());
     return Job{options, std::move(*source), std::move(*scene), std::move(*cells), *shard};
+}
+
+// Levels have no bodies; other scenes mostly do, and many more triangles.
+std::uint32_t surface_steps_of(const Job& job) {
+    if (job.options.surface_steps != kByScene) return job.options.surface_steps;
+    const auto& kinds = job.scene.found.kinds;
+    const bool is_level = std::any_of(kinds.begin(), kinds.end(), [](const auto& kind) { return kind.is_level; });
+    return is_level ? kStepsInLevels : 0;
 }
 
 struct BakeProgress {
@@ -251,9 +261,10 @@ Result<int> run_pvs(const PvsRequest& options) {
                      options.state.empty() ? "; with --state the next run would go on from here"
                                            : ": the next run goes on from here");
     const auto start = Clock::now();
-    const auto sets =
-        pvs::Pvs::finish(*bake, options.shard.empty() ? job->scene.occluders : std::vector<pvs::PlacedOccluder>{},
-                         {.near_radius = options.near_radius, .halvings = options.halvings}, pool);
+    const auto sets = pvs::Pvs::finish(
+        *bake, options.shard.empty() ? job->scene.occluders : std::vector<pvs::PlacedOccluder>{},
+        {.near_radius = options.near_radius, .halvings = options.halvings, .surface_steps = surface_steps_of(*job)},
+        pool);
     if (!sets) return tl::unexpected(sets.error());
     job->proof_seconds = seconds_since(start);
     std::size_t file_bytes = 0;
@@ -312,9 +323,14 @@ void add_pvs_command(CommandLine& line) {
     command.option("--near", options->near_radius, "How far a point of a camera's near plane may be from the eye")
         .not_negative()
         .show_default();
-    command.option("--halvings", options->halvings, "Of pairs that no single body hides: more prove more")
+    command.option("--halvings", options->halvings, "Of pairs that no single proof hides: more prove more")
         .whole_between(0, 16)
         .show_default();
+    command
+        .option("--surface-steps", options->surface_steps,
+                "Sides of triangles that a proof by the scene's own surface may visit; 0: bodies alone; "
+                "without, 100 in levels (minutes for thousands of cells), else 0")
+        .whole_between(0, 1'000'000);
     command.option("--out", options->out, "Write the sets to this .crofton file").writable_file().excludes(shard);
     command.flag("--with-scene", options->with_scene, "Put the baked scene into the same file");
     command.option("--svg", options->svg, "Write a map with what one cell sees").writable_file().excludes(shard);

@@ -153,10 +153,15 @@ struct ProofOptions {
     double near_radius = 0.5;
     // Halvings of a cell or an object's box, where no single body hides all of it: more prove more and take longer.
     std::uint32_t halvings = 4;
+    // Above 0, what the subject's own triangles hide together is proved too: walls of a level, which are no bodies. So
+    // many sides of triangles a question may visit: more prove more. 400 is a good number for levels. Each unseen
+    // pair is asked, so it is slow where there are millions. Edges must have equal corners, or meet along an axis.
+    std::uint32_t surface_steps = 0;
 };
 
 enum class PairState : std::uint8_t {
-    hidden,  // proved: an opaque body meets every segment from the cell to the object's box
+    hidden,  // proved: what is opaque meets every segment from the cell to the object. To its box, or with
+             // ProofOptions::surface_steps to its triangles
     unseen,  // no line has witnessed it, and no proof was found
     seen,    // a line has witnessed it
 };

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: MIT
+// What the scene's own surface hides: sheets, rooms, corners, holes.
+#include <doctest/doctest.h>
+#include <cmath>
+#include <crofton/pvs/pvs.hpp>
+#include <crofton/sampling/sampling.hpp>
+#include <glm/geometric.hpp>
+#include <oracle/plain_pvs.hpp>
+#include <vector>
+
+#include "subjects.hpp"
+
+using namespace crofton;
+using namespace crofton::pvs;
+using namespace crofton::testing;
+
+namespace {
+
+using Points = std::vector<glm::dvec3>;
+
+// Triangles 0, 1, 2, 0, 2, 3, … of a polygon, as one object; they face the side from which it is counter-clockwise.
+void add_fan(Subject& subject, const Points& polygon) {
+    const auto first = static_cast<std::uint32_t>(subject.mesh.positions.size());
+    const auto object = static_cast<std::uint32_t>(subject.boxes.size());
+    Aabb box;
+    for (const glm::dvec3& p : polygon) {
+        subject.mesh.positions.push_back(glm::vec3(p));
+        box.include(p + subject.origin);
+    }
+    for (std::uint32_t i = 2; i < polygon.size(); ++i) {
+        for (const std::uint32_t v : {0u, i - 1, i}) subject.mesh.indices.push_back(first + v);
+        subject.object_of.push_back(object);
+    }
+    subject.boxes.push_back(obb_of(box));
+}
+
+Points turned_over(Points polygon) {
+    return {polygon.rbegin(), polygon.rend()};
+}
+
+// Polygons between an eye around 0 and an object around (0, 0, 10), relative to an origin.
+struct Case {
+    std::vector<Points> walls;
+    occlude::Sides sides = occlude::Sides::both;
+    glm::dvec3 origin{0.0};
+    double near_radius = 0.1;
+    std::uint32_t halvings = 0;
+};
+
+PairState state_of(const Case& given) {
+    Subject subject;
+    subject.origin = given.origin;
+    add_box(subject, box_around(given.origin + glm::dvec3(0.0, 0.0, 10.0), glm::dvec3(0.5)));
+    // Lines that meet this alone call the cell free.
+    add_box(subject, box_around(given.origin + glm::dvec3(0.0, 0.0, -3.0), glm::dvec3(1.0)));
+    for (const Points& wall : given.walls) add_fan(subject, wall);
+    const Cells cells = Cells::boxes(std::vector<Aabb>{box_around(given.origin, glm::dvec3(0.5))}).value();
+    // Few lines: the question is what is proved.
+    Bake bake = Bake::create(subject, cells, {.epsilon = 0.5, .confidence = 0.5, .sides = given.sides}).value();
+    REQUIRE(bake.run().has_value());
+    const Pvs pvs =
+        Pvs::finish(bake, {}, {.near_radius = given.near_radius, .halvings = given.halvings, .surface_steps = 400})
+            .value();
+    REQUIRE(pvs.kind(0) != CellKind::unknown);
+    REQUIRE(pvs.kind(0) != CellKind::solid);
+    return pvs.state(0, 0);
+}
+
+// Counter-clockwise as the eye sees it, which looks along +z: x to the left.
+Points wall(double x0, double x1, double z0, double z1, double y0 = -2.0, double y1 = 2.0) {
+    return {{x0, y0, z0}, {x0, y1, z0}, {x1, y1, z1}, {x1, y0, z1}};
+}
+
+}  // namespace
+
+TEST_SUITE("pvs/surface") {
+    TEST_CASE("a sheet hides what lies behind it, and two that share an edge hide what neither does alone") {
+        CHECK(state_of({.walls = {}}) != PairState::hidden);
+        CHECK(state_of({.walls = {wall(-2, 2, 5, 5)}}) == PairState::hidden);
+        CHECK(state_of({.walls = {wall(-2, 0, 5, 5)}}) != PairState::hidden);
+        CHECK(state_of({.walls = {wall(0, 2, 5, 5)}}) != PairState::hidden);
+        CHECK(state_of({.walls = {wall(-2, 0, 5, 5), wall(0, 2, 5, 5)}}) == PairState::hidden);
+        // A corner toward the eye, and one away from it.
+        CHECK(state_of({.walls = {wall(-2, 0, 6, 4), wall(0, 2, 4, 6)}}) == PairState::hidden);
+        CHECK(state_of({.walls = {wall(-2, 0, 4, 6), wall(0, 2, 6, 4)}}) == PairState::hidden);
+        // Next to each other, but with a slit between them.
+        CHECK(state_of({.walls = {wall(-2, 0, 5, 5), wall(0.001, 2, 5, 5)}}) != PairState::hidden);
+        CHECK(state_of({.walls = {wall(-2, 0, 5, 5), wall(0, 2, 5.001, 5.001)}}) != PairState::hidden);
+    }
+
+    TEST_CASE("a window is no wall, wherever it is, a hole that no line of sight passes does not matter") {
+        const std::vector<Points> frame = {wall(-3, -0.3, 5, 5), wall(0.3, 3, 5, 5), wall(-0.3, 0.3, 5, 5, -2.0, -0.3),
+                                           wall(-0.3, 0.3, 5, 5, 0.3, 2.0)};
+        CHECK(state_of({.walls = frame}) != PairState::hidden);
+        std::vector<Points> closed = frame;
+        closed.push_back(wall(-0.3, 0.3, 5, 5, -0.3, 0.3));
+        CHECK(state_of({.walls = closed}) == PairState::hidden);
+        closed.back() = {{-0.3, -0.3, 5}, {-0.3, 0.3, 5}, {0.3, 0.3, 5}};  // half of it
+        CHECK(state_of({.walls = closed}) != PairState::hidden);
+        const std::vector<Points> aside = {wall(-2, 1, 5, 5), wall(1.5, 3, 5, 5)};
+        CHECK(state_of({.walls = aside}) == PairState::hidden);
+    }
+
+    TEST_CASE("T-junctions on lines along an axis are closed, others are seams") {
+        // Two walls above each other meet one of both heights.
+        CHECK(state_of({.walls = {wall(-2, 0, 5, 5), wall(0, 2, 5, 5, -2, 0.1), wall(0, 2, 5, 5, 0.1, 2)}}) ==
+              PairState::hidden);
+        CHECK(state_of({.walls = {wall(-2, 0, 5, 5), wall(0, 2, 5, 5, -2, 0.1), wall(0, 2, 5, 5, 0.2, 2)}}) !=
+              PairState::hidden);
+    }
+
+    TEST_CASE("one-sided sheets hide from their front alone") {
+        const auto front = occlude::Sides::front;
+        CHECK(state_of({.walls = {wall(-2, 2, 5, 5)}, .sides = front}) == PairState::hidden);
+        CHECK(state_of({.walls = {turned_over(wall(-2, 2, 5, 5))}, .sides = front}) != PairState::hidden);
+        CHECK(state_of({.walls = {turned_over(wall(-2, 2, 5, 5))}}) == PairState::hidden);
+        CHECK(state_of({.walls = {wall(-2, 0, 5, 5), turned_over(wall(0, 2, 5, 5))}, .sides = front}) !=
+              PairState::hidden);
+        // Back to back at one place.
+        CHECK(state_of({.walls = {wall(-2, 2, 5, 5), turned_over(wall(-2, 2, 5, 5))}, .sides = front}) ==
+              PairState::hidden);
+        CHECK(state_of({.walls = {wall(-2, 2, 5, 5), turned_over(wall(-2, 2, 5, 5))}}) == PairState::hidden);
+        // A back before a front.
+        CHECK(state_of({.walls = {turned_over(wall(-2, 2, 4, 4)), wall(-2, 2, 5, 5)}, .sides = front}) ==
+              PairState::hidden);
+    }
+
+    TEST_CASE("what meets the cell, is near it, or touches the object proves nothing") {
+        CHECK(state_of({.walls = {wall(-2, 2, 0.2, 0.2)}}) != PairState::hidden);  // through the cell
+        CHECK(state_of({.walls = {wall(-2, 2, 0.55, 0.55)}}) != PairState::hidden);
+        CHECK(state_of({.walls = {wall(-2, 2, 0.55, 0.55)}, .near_radius = 0.01}) == PairState::hidden);
+        CHECK(state_of({.walls = {wall(-2, 2, 9.5, 9.5)}}) != PairState::hidden);  // on a face of the object
+        CHECK(state_of({.walls = {wall(-2, 2, 10.2, 10.2)}}) != PairState::hidden);
+        CHECK(state_of({.walls = {wall(-2, 2, 9.4, 9.4)}}) == PairState::hidden);
+        CHECK(state_of({.walls = {wall(-2, 2, 11, 11)}}) != PairState::hidden);
+    }
+
+    TEST_CASE("triangles without an area, doubled and crossing ones do no harm") {
+        std::vector<Points> walls = {
+            wall(-2, 2, 5, 5), {{-1, 0, 5}, {0, 0, 5}, {1, 0, 5}}, {{0, 0, 5}, {0, 0, 5}, {1, 1, 5}}};
+        CHECK(state_of({.walls = walls}) == PairState::hidden);
+        walls.push_back(wall(-2, 2, 5, 5));
+        walls.push_back({{0, -3, 3}, {0.1, 3, 3}, {0.1, 3, 7}, {0, -3, 7}});  // across the wall
+        CHECK(state_of({.walls = walls}) == PairState::hidden);
+        walls = {
+            wall(-2, 0, 5, 5), wall(0, 2, 5, 5), {{0, -2, 5}, {0, 2, 5}, {0, 2, 8}, {0, -2, 8}}};  // three at an edge
+        CHECK(state_of({.walls = walls}) == PairState::hidden);
+        walls.erase(walls.begin());
+        CHECK(state_of({.walls = walls}) != PairState::hidden);
+    }
+
+    TEST_CASE("far from the world's origin too") {
+        for (const double far : {1e4, 1e7}) {
+            const glm::dvec3 origin = far * glm::dvec3(1.0, -0.75, 0.25);
+            CHECK(state_of({.walls = {wall(-2, 0, 6, 4), wall(0, 2, 4, 6)}, .origin = origin}) == PairState::hidden);
+            CHECK(state_of({.walls = {wall(-2, 0, 6, 4), wall(0.001, 2, 4, 6)}, .origin = origin}) !=
+                  PairState::hidden);
+        }
+    }
+
+    TEST_CASE("no segment of a hidden pair reaches the object: random mazes, either sides, any offset") {
+        std::uint64_t hidden = 0, wrong = 0;
+        for (const double far : {0.0, 1e7})
+            for (const auto sides : {occlude::Sides::both, occlude::Sides::front})
+                for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+                    sampling::Random random(seed);
+                    Subject subject;
+                    subject.origin = far * glm::dvec3(1.0, -0.75, 0.25);
+                    // Walls of a lattice with moved corners: some are left out, some have a window, some are turned.
+                    constexpr int kSide = 5;
+                    const auto corner = [&](int i, int j) {
+                        sampling::Random at(100 * seed + 10 * static_cast<std::uint64_t>(i),
+                                            static_cast<std::uint64_t>(j));
+                        return glm::dvec3(4.0 * i + at.uniform(-1.0, 1.0), 0.0, 4.0 * j + at.uniform(-1.0, 1.0));
+                    };
+                    const auto add_wall = [&](const glm::dvec3& a, const glm::dvec3& b) {
+                        const glm::dvec3 up(0.0, 3.0, 0.0);
+                        const double kind = random.uniform();
+                        if (kind < 0.2) return;
+                        Points points = {a, b, b + up, a + up};
+                        if (kind < 0.3) points[3] = a + 0.3 * up;  // a gap above
+                        if (sides == occlude::Sides::front && random.uniform() < 0.5) points = turned_over(points);
+                        add_fan(subject, points);
+                        if (sides == occlude::Sides::front && random.uniform() < 0.5)
+                            add_fan(subject, turned_over(points));
+                    };
+                    for (int i = 0; i <= kSide; ++i)
+                        for (int j = 0; j <= kSide; ++j) {
+                            if (i < kSide) add_wall(corner(i, j), corner(i + 1, j));
+                            if (j < kSide) add_wall(corner(i, j), corner(i, j + 1));
+                        }
+                    std::vector<Aabb> boxes;
+                    for (int i = 0; i < kSide; ++i)
+                        for (int j = 0; j < kSide; ++j) {
+                            const glm::dvec3 middle(4.0 * i + 2.0, 1.5, 4.0 * j + 2.0);
+                            boxes.push_back(box_around(subject.origin + middle, {0.7, 0.6, 0.7}));
+                            add_box(subject,
+                                    box_around(subject.origin + middle - glm::dvec3(0.0, 0.8, 0.0), glm::dvec3(0.3)));
+                        }
+                    const Cells cells = Cells::boxes(boxes).value();
+                    Bake bake =
+                        Bake::create(subject, cells, {.epsilon = 2e-2, .confidence = 0.9, .sides = sides}).value();
+                    REQUIRE(bake.run().has_value());
+                    const Pvs pvs =
+                        Pvs::finish(bake, {},
+                                    {.near_radius = 0.05, .halvings = seed == 1 ? 0u : 3u, .surface_steps = 400})
+                            .value();
+                    for (std::size_t c = 0; c < cells.size(); ++c)
+                        for (std::size_t t = 0; t < subject.object_of.size(); ++t) {
+                            const std::uint32_t object = subject.object_of[t];
+                            if (pvs.kind(c) == CellKind::solid || pvs.state(c, object) != PairState::hidden) continue;
+                            ++hidden;
+                            for (int n = 0; n < 6; ++n) {
+                                const glm::dvec3 p =
+                                    sampling::box_point(cells.box(c), random.point<3>()) - subject.origin;
+                                double u = random.uniform(), v = random.uniform();
+                                if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
+                                glm::dvec3 q[3];
+                                for (std::size_t k = 0; k < 3; ++k)
+                                    q[k] = glm::dvec3(subject.mesh.positions[subject.mesh.indices[3 * t + k]]);
+                                const glm::dvec3 target = q[0] + u * (q[1] - q[0]) + v * (q[2] - q[0]);
+                                bool met = false;
+                                for (const auto& hit : oracle::crossings(subject, {p, target - p}))
+                                    met = met || (hit.t > 0.0 && hit.t < 1.0 - 1e-6 &&
+                                                  (sides == occlude::Sides::both || hit.front));
+                                wrong += !met;
+                            }
+                        }
+                }
+        CHECK(hidden > 2000);
+        CHECK(wrong == 0);
+        MESSAGE(hidden << " triangles of hidden pairs");
+    }
+}
