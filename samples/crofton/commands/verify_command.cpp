@@ -8,6 +8,7 @@
 #include "json/json.hpp"
 #include "report.hpp"
 #include "verify/collide.hpp"
+#include "verify/convex.hpp"
 #include "verify/convex_scene.hpp"
 #include "verify/cull.hpp"
 #include "verify/occlude.hpp"
@@ -22,10 +23,11 @@ namespace {
 struct Topic {
     const char* name;
     std::vector<VerifyRow> (*rows)(const VerifyOptions&);
+    bool part = false;  // of another topic: only if named
 };
 constexpr Topic kTopics[] = {
-    {"paper", verify_paper},     {"lines", verify_lines},     {"cull", verify_cull},
-    {"occlude", verify_occlude}, {"collide", verify_collide}, {"pvs", verify_pvs},
+    {"paper", verify_paper},     {"lines", verify_lines},         {"cull", verify_cull}, {"occlude", verify_occlude},
+    {"collide", verify_collide}, {"convex", verify_convex, true}, {"pvs", verify_pvs},
 };
 
 struct VerifyRequest {
@@ -44,7 +46,7 @@ int run_verify(const VerifyRequest& request) {
     }
     std::vector<VerifyRow> rows;
     for (const Topic& topic : kTopics)
-        if (request.scenes.empty() && (request.topic.empty() || request.topic == topic.name))
+        if (request.scenes.empty() && (request.topic.empty() ? !topic.part : request.topic == topic.name))
             for (VerifyRow& row : topic.rows(request.options)) rows.push_back(std::move(row));
     const assets::LoadOptions which{.map = request.map, .instances = request.instances};
     for (const std::string& scene : request.scenes) {
@@ -70,7 +72,11 @@ void add_verify_command(CommandLine& line) {
     Command command = line.command("verify", "Check the claims Crofton is built on, one row each");
     std::vector<std::string> names;
     for (const Topic& topic : kTopics) names.emplace_back(topic.name);
-    command.option("topic", request->topic, "Only this topic; all when absent").one_of(names);
+    command
+        .option(
+            "topic", request->topic,
+            "Only this topic; all when absent. convex: those rows of collide that are of convex bodies in good order")
+        .one_of(names);
     command.option("--trials", request->options.trials, "Random queries per row; more make every check sharper")
         .whole_between(1000, std::uint64_t{1} << 40)
         .show_default();
@@ -95,6 +101,7 @@ void add_verify_command(CommandLine& line) {
         "  crofton verify lines --trials 1000000 --seed 7\n"
         "  crofton verify occlude --scene town --scene forest.glb --trials 1000000\n"
         "  crofton verify occlude --scene doom.wad --map MAP07\n"
+        "  crofton verify convex --trials 10000000 --seed 3\n"
         "  crofton verify collide --scene bunny.obj --scene counties.poly\n"
         "  crofton verify paper --json - | jq '.[] | select(.holds | not)'");
     command.action([request] { return run_verify(*request); });
