@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: MIT
 """Checks that every mutant still applies: the text that it replaces is in its file exactly once, and is another then.
 
-Also that the tests it names exist. Exit status 1 if not.
+Also that the tests it names exist, and that what --together switches on is the same fault. Exit status 1 if not.
 """
 import sys
 from dataclasses import replace
 
 
+import switches
 from run import ROOT, all_mutants
 
 
@@ -21,6 +22,11 @@ def problems(mutants, root):
         try:
             if mutant.apply(text) == text:
                 yield f"{mutant.name}: changes nothing"
+            edit = switches.edit(text, 1, mutant)
+            if edit and not mutant.switch and text[:edit.begin] + edit.text + text[edit.end:] != mutant.apply(text):
+                yield f"{mutant.name}: another fault with --together"
+            if mutant.switch and "$ON" not in mutant.switch:
+                yield f"{mutant.name}: its switch is never read"
         except ValueError as error:
             yield str(error)
         for test in mutant.tests:
@@ -32,7 +38,7 @@ def check_itself(mutants):
     """A list with a fault of each kind must not pass."""
     one = next(m for m in mutants if m.at < 0)
     faults = [replace(one, find="no text like this"), replace(one, find=";"), replace(one, replace=one.find),
-              replace(one, file="engine/none.cpp"), replace(one, tests=["none"])]
+              replace(one, file="engine/none.cpp"), replace(one, tests=["none"]), replace(one, switch="never")]
     for fault in faults:
         if len(list(problems([fault], ROOT))) != 1:
             yield f"the check does not see a fault: {fault}"

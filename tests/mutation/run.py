@@ -11,12 +11,16 @@ Exit status: 0 if every mutant that has no reason to survive is caught, 1 if one
 docs/testing.md says how to read it. Python 3.11, nothing else.
 """
 import argparse
+import csv
 import hashlib
 import json
 import os
+import re
+import resource
 import shutil
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -40,12 +44,15 @@ RULES = {
 class Scratch:
     """A copy of the tree with a build of its own."""
 
-    def __init__(self, work, jobs, clock):
+    def __init__(self, work, jobs, clock, together):
         self.tree = work / "tree"
-        self.build = self.tree / "build" / "mutation"
+        self.together = together
+        self.build = self.tree / "build" / ("together" if together else "mutation")
         self.jobs = jobs
         self.clock = clock
         self.times = {}
+        self.processor = {}  # test: seconds
+        self.cases = {}  # test: {case: seconds}
         self.built = set()
 
     def copy(self):
@@ -68,8 +75,10 @@ class Scratch:
             return
         data = ROOT.parent / "shared" / "data"
         command = ["cmake", "-S", self.tree, "-B", self.build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
-                   "-DCROFTON_SIMD_TARGETS=AVX2", f"-DCROFTON_SHARED_DATA={data}",
-                   f"-DCMAKE_PROJECT_crofton_INCLUDE={self.tree}/tests/mutation/settings.cmake"]
+                   f"-DCROFTON_SHARED_DATA={data}", "-DCROFTON_DISCOVER_TESTS=OFF", "-DCROFTON_WERROR=ON"]
+        if not self.together:  # a mutant should cost one small compilation
+            command += ["-DCROFTON_SIMD_TARGETS=AVX2", "-DCROFTON_WERROR=OFF",
+                        f"-DCMAKE_PROJECT_crofton_INCLUDE={self.tree}/tests/mutation/settings.cmake"]
         done = subprocess.run(command, capture_output=True, text=True)
         if done.returncode:
             sys.exit(f"cmake cannot configure {self.tree}:\n{done.stdout}{done.stderr}")
@@ -78,19 +87,32 @@ class Scratch:
         command = ["ninja", "-C", str(self.build), "-j", str(self.jobs)] + ["-k0"] * keep_going
         return subprocess.run(command + [f"test_{t}" for t in tests], capture_output=True, text=True)
 
-    def run(self, test, limit):
-        """None if the tests pass, or how they fail."""
+    def run(self, test, limit, environment=None, cases=(), without=()):
+        """None if the tests pass (those of some names, or all but some), or how they fail. Without an environment it
+        also notes how long each case takes."""
         command = [str(self.build / "bin" / f"test_{test}"), "--abort-after=1", "--no-intro=1"]
-        started = time.monotonic()
-        process = subprocess.Popen(command, cwd=self.build, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                                   errors="replace", start_new_session=True)
+        for option, names in (("test-case", cases), ("test-case-exclude", without)):
+            if names:
+                command.append(f"--{option}=" + ",".join(re.sub(r"[,*\\]", "?", name) for name in names))
+        if environment is None:
+            command.append("--duration=1")
+        started, used = time.monotonic(), resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+        # The processor's time is a limit that does not depend on what else the machine does; what sleeps meets the other.
+        most = 20 + 6 * int(self.processor[test]) if test in self.processor else resource.RLIM_INFINITY
+        process = subprocess.Popen(command, cwd=self.build, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                                   text=True, errors="replace", start_new_session=True,
+                                   preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (most, most)))
         try:
             output, _ = process.communicate(timeout=limit)
         except subprocess.TimeoutExpired:
             os.killpg(process.pid, 9)
             process.communicate()
             return f"{test}: longer than {limit:.0f} s"
-        self.times[test] = time.monotonic() - started
+        if environment is None:
+            self.times[test] = time.monotonic() - started
+            self.processor[test] = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - used
+            seconds = re.findall(r"^([\d.]+) s: (.*)$", output, re.M)
+            self.cases[test] = {name.strip(): float(length) for length, name in seconds}
         if process.returncode == 0:
             return None
         case = [line.strip() for line in output.splitlines() if line.startswith("TEST CASE:")]
@@ -160,14 +182,41 @@ def digest(paths):
     return total.hexdigest()[:16]
 
 
+def short(text):
+    return hashlib.sha256(text.encode()).hexdigest()[:8]
+
+
 class Known:
     """Results of earlier runs. A caught mutant stays caught while its file is the same; a survivor is tried again when
     the tests that should catch it have changed."""
 
     def __init__(self, work):
         self.path = work / "results.json"
-        self.all = json.loads(self.path.read_text()) if self.path.exists() else {}
+        self.lock = threading.Lock()
+        self.record = LISTS / "judged.csv"
+        self.all = self._read_record() if self.record.exists() else {}
+        if self.path.exists():
+            self.all |= json.loads(self.path.read_text())
         self.digests = {}  # as of the start: files may be edited while mutants are tried in the copy
+
+    _COLUMNS = ("status", "by", "file", "tests", "replace")
+
+    def _read_record(self):
+        with open(self.record, newline="") as file:
+            return {row.pop("name"): row for row in csv.DictReader(file)}
+
+    def write_record(self, mutants):
+        """What is known of the mutants as they are, for the repository: name, status, by what, and of which text."""
+        with open(self.record, "w", newline="") as file:
+            writer = csv.writer(file, lineterminator="\n")
+            writer.writerow(("name",) + self._COLUMNS)
+            for mutant in sorted(mutants, key=lambda m: m.name):
+                if result := self.get(mutant):
+                    writer.writerow([mutant.name] + [result[c] for c in self._COLUMNS])
+
+    def last(self, mutant):
+        """What caught it last time."""
+        return self.all.get(mutant.name, {}).get("by", "")
 
     def file_digest(self, file):
         if file not in self.digests:
@@ -183,18 +232,19 @@ class Known:
 
     def get(self, mutant):
         result = self.all.get(mutant.name)
-        if not result or result["file"] != self.file_digest(mutant.file) or result["replace"] != mutant.replace:
+        if not result or result["file"] != self.file_digest(mutant.file) or result["replace"] != short(mutant.replace):
             return None
         if result["status"] != "caught" and result["tests"] != self.tests_digest(mutant.tests):
             return None
         return result
 
     def put(self, mutant, status, by, seconds):
-        self.all[mutant.name] = {"status": status, "by": by, "seconds": round(seconds, 1), "replace": mutant.replace,
+        self.all[mutant.name] = {"status": status, "by": by, "seconds": round(seconds, 1), "replace": short(mutant.replace),
                                  "file": self.file_digest(mutant.file), "tests": self.tests_digest(mutant.tests)}
-        partial = self.path.with_suffix(".partial")
-        partial.write_text(json.dumps(self.all, indent=1))
-        partial.replace(self.path)
+        with self.lock:
+            partial = self.path.with_suffix(".partial")
+            partial.write_text(json.dumps(self.all, indent=1))
+            partial.replace(self.path)
 
 
 def report(mutants, known):
@@ -236,12 +286,13 @@ def main():
     parser.add_argument("--report", action="store_true", help="print what is known and end")
     parser.add_argument("--fresh", action="store_true", help="forget earlier results of those selected")
     parser.add_argument("--together", action="store_true", help="only those that fit into one build, switched on in turn")
+    parser.add_argument("--record", action="store_true", help="write judged.csv: what is known, for the repository")
     parser.add_argument("--hand", action="store_true", help="only those that are written down")
     parser.add_argument("--minutes", type=float, default=1e9, help="begin no mutant after so long")
     parser.add_argument("--work", type=Path, default=ROOT / "build" / "mutation", help="folder of the copy and the results")
-    parser.add_argument("-j", "--jobs", type=int, default=2, help="compilations at a time")
+    parser.add_argument("-j", "--jobs", type=int, default=2, help="compilations, or mutants, at a time")
     options = parser.parse_args()
-    mutants = all_mutants()
+    mutants = every = all_mutants()
     if options.hand:
         mutants = [m for m in mutants if m.at < 0]
     if options.select:
@@ -259,14 +310,16 @@ def main():
     if options.fresh:
         for mutant in mutants:
             known.all.pop(mutant.name, None)
-    if not options.report:
-        scratch = Scratch(options.work.resolve(), options.jobs, {})
+    if options.record:
+        known.write_record(all_mutants())
+    if not options.report and not options.record:
+        scratch = Scratch(options.work.resolve(), options.jobs, {}, options.together)
         scratch.copy()
         scratch.configure()
         started = time.monotonic()
         todo = [m for m in mutants if not m.equivalent and known.get(m) is None]
         if options.together:
-            try_together(scratch, todo, known, options.minutes)
+            try_together(scratch, [m for m in every if not m.equivalent], todo, known, options.minutes, options.jobs)
             return 0 if report(mutants, known) else 1
         for number, mutant in enumerate(sorted(todo, key=lambda m: (m.file.endswith("hpp"), m.tests, m.file)), 1):
             if time.monotonic() - started > 60 * options.minutes:

@@ -1,83 +1,67 @@
 # SPDX-License-Identifier: MIT
 """Many mutants in one build: each is switched on by the environment, so that a module is compiled once for all of them.
 
-Those that cannot be written so (in kernels, headers of the API, declarations, places that must be constant) are left to
-run.py one by one.
+Kernels and headers too. The build is that of users: tests and untouched sources come from a compiler cache, if there is
+one. What does not compile so (a place that must be constant) is left to run.py one by one.
 """
 import os
 import re
-import subprocess
 import time
+from concurrent.futures import ThreadPoolExecutor
 
-_NAMES = {"<": "Less", "<=": "LessEqual", ">": "Greater", ">=": "GreaterEqual", "==": "Equal", "!=": "NotEqual",
-          "+": "Plus", "-": "Minus"}
-_DECLARATION = re.compile(r"\s*((static |constexpr |const )*(auto|bool|int|double|float|unsigned|[\w:]+(<[^;=]*>)?)[&*]? \w+ = )(.*);$", re.S)
-# Such as a lock: in a block of its own it would end there.
-_OBJECT = re.compile(r"\s*((static |constexpr |const )*(?!return\b|delete\b|throw\b|else\b)[\w:]+(<[^;=]*>)?[&*]? \w+\s*[({].*);", re.S)
-_KERNEL = re.compile(r"foreach_target|-inl\.hpp|\bhn::|constexpr [^=;]*\(")
+import switches
+
+_ERROR = re.compile(r"^(?:\.\./)*([\w./-]+?):(\d+):\d+: +(?:error|fatal|  required|required from)", re.M)
 
 
-def _closing(text, begin):
-    depth = 0
-    for at in range(begin, len(text)):
-        depth += (text[at] == "(") - (text[at] == ")")
-        if depth == 0:
-            return at
-    return -1
-
-
-def switched(mutant, number):
-    """What stands in the place of mutant.find, or None."""
-    find, replace, on = mutant.find, mutant.replace, f"crofton::mutation::kOn == {number}"
-    if mutant.at >= 0:
-        if find in _NAMES:
-            return f"{find} crofton::mutation::{_NAMES[find]}<{number}>() {find}"
-        if replace == ";":
-            return f"if (!({on})) {{ {find} }}"
-        if re.fullmatch(r"[\w.+-]+", find) and find not in ("&&", "||", "+=", "-="):
-            return f"({on} ? {replace} : {find})"
-        return None
-    old, new = _DECLARATION.fullmatch(find), _DECLARATION.fullmatch(replace)
-    if old and new and old.group(1) == new.group(1) and "{" not in find:
-        return f"{old.group(1)}{on} ? ({new.group(5)}) : ({old.group(5)});"
-    if find.startswith("if (") and replace.startswith("if ("):
-        a, b = _closing(find, 3), _closing(replace, 3)
-        if a > 0 and b > 0 and find[a:] == replace[b:]:
-            return f"if ({on} ? bool({replace[4:b]}) : bool({find[4:a]}){find[a:]}"
-    whole = find.rstrip().endswith(";") and find.count("{") == find.count("}") and find.count("(") == find.count(")")
-    if whole and not old and not _OBJECT.match(find) and (replace.rstrip().endswith(";") or not replace.strip()):
-        return f"if ({on}) {{ {replace} }} else {{ {find} }}"
-    return None
+_INCLUDE = re.compile(r'^#include ["<]([^">]+)[">]', re.M)
+# A kernel is compiled for what most machines have and for the baseline: half the time.
+_TARGETS = "#undef HWY_DISABLED_TARGETS\n#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3 | HWY_AVX3_DL)\n#line 1\n"
 
 
 class Together:
     """Several mutants of one scratch tree at once."""
 
-    def __init__(self, scratch, mutants):
+    def __init__(self, scratch, numbered):
         self.scratch = scratch
-        self.numbers = {}
         self.originals = {}
-        self.by_file = {}
-        for number, mutant in enumerate(mutants, 1):
-            text = (scratch.tree / mutant.file).read_text()
-            if "/include/" in mutant.file or _KERNEL.search(text) or switched(mutant, number) is None:
-                continue
-            at = mutant.at if mutant.at >= 0 else text.index(mutant.find)
-            taken = self.by_file.setdefault(mutant.file, [])
-            if all(at + len(mutant.find) <= b or at >= e for b, e, _, _ in taken):
-                taken.append((at, at + len(mutant.find), number, mutant))
+        self.by_file = {}  # file: [(edit, mutant)]
+        self.relaxed = {}  # file: lines whose constants must not be constexpr
+        for number, mutant in numbered:
+            text = self.originals.setdefault(mutant.file, (scratch.tree / mutant.file).read_text())
+            if edit := switches.edit(text, number, mutant):
+                self.by_file.setdefault(mutant.file, []).append((edit, mutant))
+        self.kernels = self._find_kernels()
+
+    def _find_kernels(self):
+        """Sources with kernels that have mutants, or include headers that do."""
+        names = {}
+        for path in (self.scratch.tree / "engine").rglob("*.[ch]pp"):
+            names[str(path.relative_to(self.scratch.tree))] = path.read_text()
+        changed, before = set(self.by_file), 0
+        while len(changed) > before:
+            before = len(changed)
+            ends = {file.split("/src/")[-1].split("/internal/")[-1].split("/include/")[-1] for file in changed}
+            ends |= {end.split("/")[-1] for end in ends}
+            changed |= {file for file, text in names.items() if ends.intersection(_INCLUDE.findall(text))}
+        kernels = [file for file in changed if file.endswith(".cpp") and "hwy/foreach_target.h" in names[file]]
+        self.originals |= {file: names[file] for file in kernels}
+        return kernels
 
     def mutants(self):
-        return [(number, mutant) for list_ in self.by_file.values() for _, _, number, mutant in list_]
+        return [(edit.number, mutant) for list_ in self.by_file.values() for edit, mutant in list_]
 
     def _write(self, file):
-        path = self.scratch.tree / file
-        text = self.originals.setdefault(file, path.read_text())
-        for begin, end, number, mutant in sorted(self.by_file[file], key=lambda entry: -entry[0]):
-            piece = switched(mutant, number).replace("\n", " ")  # lines stay where they are
-            text = text[:begin] + piece + "\n" * mutant.find.count("\n") + text[end:]
+        text = switches.write(self.originals[file], [edit for edit, _ in self.by_file.get(file, [])])
+        lines = text.split("\n")
+        here = {n for n, line in enumerate(lines, 1) if re.search(r"\bconstexpr [^;]*::crofton::mutation::kOn", line)}
+        for line in here | self.relaxed.get(file, set()):
+            lines[line - 1] = lines[line - 1].replace("static constexpr ", "static inline const ").replace("constexpr ", "const ")
         header = self.scratch.tree / "tests" / "mutation" / "switch.hpp"
-        path.write_text(f'#include "{header}"\n#line 1\n{text}')
+        text = _TARGETS * (file in self.kernels) + f'#include "{header}"\n#line 1\n' + "\n".join(lines)
+        path = self.scratch.tree / file
+        if path.read_text() != text:
+            path.write_text(text)
 
     def restore(self):
         for file, text in self.originals.items():
@@ -85,66 +69,88 @@ class Together:
 
     def build(self, tests):
         """Compiles; a mutant on a line with an error is left to be tried alone."""
-        for file in list(self.by_file):
+        for file in {*self.by_file, *self.kernels}:
             self._write(file)
-        for _ in range(6):
+        for _ in range(8):
             done = self.scratch.compile(tests, keep_going=True)
             if done.returncode == 0:
                 return True
-            wrong = set(re.findall(r"^(?:\.\./)*([\w./-]+?):(\d+):(?:\d+:)? +(?:error|fatal|  required)", done.stdout, re.M))
-            wrong |= set(re.findall(r"^(?:\.\./)*([\w./-]+?):(\d+):\d+: +required from", done.stdout, re.M))
-            dropped = 0
-            for name, line in wrong:
-                for file, list_ in self.by_file.items():
-                    if not name.endswith(file.split("/", 1)[1]):
-                        continue
-                    text = self.originals[file]
-                    kept = [e for e in list_ if not text.count("\n", 0, e[0]) + 1 <= int(line) <= text.count("\n", 0, e[1]) + 1]
-                    dropped += len(list_) - len(kept)
-                    self.by_file[file] = kept
-            if not dropped:
-                print(done.stdout[-3000:])
+            changed = False
+            for name, line in set(_ERROR.findall(done.stdout)):
+                for file in self.by_file:
+                    if name.endswith(file.split("/", 1)[1]):
+                        changed |= self._mend(file, int(line))
+            if not changed:
+                print(done.stdout[-6000:])
                 return False
-            for file in list(self.by_file):
+            for file in {*self.by_file, *self.kernels}:
                 self._write(file)
         return False
 
-    def run(self, number, mutant, limits):
-        os.environ["CROFTON_MUTANT"] = str(number)
-        try:
-            for test in mutant.tests:
-                failed = self.scratch.run(test, limits[test])
-                if failed:
-                    return "caught", failed
-            return "survived", ""
-        finally:
-            del os.environ["CROFTON_MUTANT"]
+    def _mend(self, file, line):
+        """Makes a constant on a line that does not compile one that is set at the start, or drops the line's mutants."""
+        text = self.originals[file]
+        if "constexpr " in text.split("\n")[line - 1] and line not in self.relaxed.setdefault(file, set()):
+            self.relaxed[file].add(line)
+            return True
+        there = lambda e: text.count("\n", 0, e.begin) + 1 <= line <= text.count("\n", 0, e.end) + 1
+        dropped = [mutant for edit, mutant in self.by_file[file] if there(edit)]
+        for mutant in dropped:
+            print(f"does not compile so: {mutant.name}", flush=True)
+        self.by_file[file] = [(edit, mutant) for edit, mutant in self.by_file[file] if not there(edit)]
+        return bool(dropped)
+
+    def judge(self, number, mutant, limits, known):
+        """(status, by what) of one: first the case that caught it last time, then all quick ones, then the slow."""
+        environment = dict(os.environ, CROFTON_MUTANT=str(number))
+        last, _, case = known.last(mutant).partition(": ")
+        rounds = [(last, {"cases": [case]})] if case and last in mutant.tests else []
+        slow = {}
+        for test in mutant.tests:
+            cases = self.scratch.cases[test]
+            slow[test] = [name for name in sorted(cases, key=cases.get) if cases[name] > 0.05 * sum(cases.values())]
+            rounds.append((test, {"without": slow[test]}))
+        rounds += [(test, {"cases": [name]}) for test in mutant.tests for name in slow[test]]
+        for test, which in rounds:
+            if failed := self.scratch.run(test, limits[test], environment, **which):
+                return "caught", failed
+        return "survived", ""
 
 
-def try_together(scratch, mutants, known, minutes):
-    """Judges as many of the mutants as can be put into one build. The tests are built once more when it is over."""
+def try_together(scratch, mutants, todo, known, minutes, jobs):
+    """Judges those that are left to do of as many mutants as can be put into one build, `jobs` at a time.
+
+    The others are built too: so what is compiled stays the same from run to run.
+    """
     started = time.monotonic()
-    batch = Together(scratch, mutants)
-    chosen = batch.mutants()
-    tests = sorted({test for _, mutant in chosen for test in mutant.tests})
-    print(f"{len(chosen)} of {len(mutants)} mutants in one build of {', '.join(tests)}", flush=True)
+    files = {mutant.file for mutant in todo}
+    batch = Together(scratch, [entry for entry in enumerate(mutants, 1) if entry[1].file in files])
+    names = {mutant.name for mutant in todo}
+    tests = sorted({test for mutant in todo for test in mutant.tests})
+    print(f"{len(batch.mutants())} mutants in one build of {', '.join(tests)}; {len(todo)} are to be judged", flush=True)
     try:
-        if not chosen or not batch.build(tests):
+        if not tests or not batch.build(tests):
             return
-        limits = {}
-        for test in tests:
-            if failed := scratch.run(test, 1200):
-                print(f"the tests fail without a fault: {failed}")
-                return
-            limits[test] = 30 + 10 * scratch.times[test]
-        chosen = batch.mutants()
-        print(f"{len(chosen)} built after {time.monotonic() - started:.0f} s", flush=True)
-        for number, mutant in chosen:
-            if time.monotonic() - started > 60 * minutes:
-                break
-            begun = time.monotonic()
-            status, by = batch.run(number, mutant, limits)
-            known.put(mutant, status, by, time.monotonic() - begun)
-            print(f"{status}: {mutant.name} {by} ({time.monotonic() - begun:.0f} s)", flush=True)
     finally:
         batch.restore()
+    print(f"{len(batch.mutants())} built after {time.monotonic() - started:.0f} s", flush=True)
+    limits = {}
+    for test in tests:
+        if failed := scratch.run(test, 1200):
+            print(f"the tests fail without a fault: {failed}")
+            return
+        limits[test] = 30 + 4 * scratch.times[test]
+        print(f"test_{test} passes without a fault: {scratch.times[test]:.0f} s", flush=True)
+
+    def one(entry):
+        number, mutant = entry
+        if time.monotonic() - started > 60 * minutes:
+            return
+        begun = time.monotonic()
+        status, by = batch.judge(number, mutant, limits, known)
+        seconds = time.monotonic() - begun
+        known.put(mutant, status, by, seconds)
+        print(f"{status}: {mutant.name} {by} ({seconds:.0f} s)", flush=True)
+
+    with ThreadPoolExecutor(jobs) as pool:
+        list(pool.map(one, [entry for entry in sorted(batch.mutants(), key=lambda e: e[0]) if entry[1].name in names]))
