@@ -2,13 +2,17 @@
 // Two boxes in float, in the layout of pair_columns.hpp: gaps along the fifteen axes.
 #pragma once
 #include <crofton/geometry/box.hpp>
+#include <crofton/geometry/float_lanes.hpp>
 #include <cstddef>
 #include <cstring>
 
-#include "float_lanes.hpp"
 #include "pair_columns.hpp"
 
 namespace crofton::collide {
+
+using detail::after_next, detail::all_lanes, detail::Lanes4, detail::lanes_where, detail::larger, detail::load4,
+    detail::magnitude;
+using detail::next, detail::shuffled, detail::transpose;
 
 // A box with its axes side by side: component c of all three.
 struct FloatBox {

@@ -6,12 +6,15 @@
 #include <cmath>
 #include <crofton/core/int128.hpp>
 #include <crofton/geometry/expansion.hpp>
+#include <crofton/geometry/float_lanes.hpp>
 #include <cstddef>
 
 #include "careful_axis.hpp"
-#include "float_lanes.hpp"
 
 namespace crofton::collide {
+
+using detail::all_lanes, detail::Bits4, detail::Lanes4, detail::lanes_where, detail::larger, detail::load4,
+    detail::magnitude, detail::next;
 
 namespace {
 

@@ -86,7 +86,7 @@ class Builder {
         range.begin = begin, range.end = end, range.depth = depth;
         for (std::uint32_t i = begin; i < end; ++i) {
             const WideBox item = items_[i];
-            const Four middle = item.middle();
+            const detail::Lanes4 middle = item.middle();
             range.box.include(item);
             range.middles.include(middle, middle);
         }
@@ -188,7 +188,7 @@ class Builder {
 
     // The bin border of least Σ area · count; false where all middles coincide.
     bool best_plane(const BoxRange& range, Plane& plane) {
-        Four scale = four(0.0f);
+        detail::Lanes4 scale = detail::all_lanes(0.0f);
         for (int axis = 0; axis < 3; ++axis) {
             const float width = range.middles.high[axis] - range.middles.low[axis];
             scale[axis] = width > 0.0f ? static_cast<float>(kBins) / width : 0.0f;
@@ -204,16 +204,16 @@ class Builder {
         return best < std::numeric_limits<double>::infinity();
     }
 
-    void fill_bins(const BoxRange& range, const Four& scale) {
+    void fill_bins(const BoxRange& range, const detail::Lanes4& scale) {
         const bool many = range.size() > kManyItems;
         for (std::size_t i = 0; i < (many ? 6u : 3u); ++i) bins_[i].clear();
-        const Four low = range.middles.low, zero = four(0.0f), last = four(static_cast<float>(kBins - 1));
+        const detail::Lanes4 low = range.middles.low, zero = detail::all_lanes(0.0f);
+        const detail::Lanes4 last = detail::all_lanes(static_cast<float>(kBins - 1));
         const auto add = [&](std::uint32_t i, Bins* bins) {
             const WideBox item = items_[i];
             // The scale of a width near the smallest float is infinite: bounded before it becomes an integer.
-            std::int32_t bin[4];
-            to_integers(lesser(larger((item.middle() - low) * scale, zero), last), bin);
-            for (std::size_t axis = 0; axis < 3; ++axis) bins[axis].add(bin[axis], item);
+            const detail::Lanes4 bin = detail::lesser(detail::larger((item.middle() - low) * scale, zero), last);
+            for (int axis = 0; axis < 3; ++axis) bins[axis].add(static_cast<std::int32_t>(bin[axis]), item);
         };
         std::uint32_t i = range.begin;
         for (; many && i + 1 < range.end; i += 2) {

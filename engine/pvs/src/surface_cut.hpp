@@ -13,9 +13,9 @@ namespace crofton::pvs {
 
 struct CutOptions {
     occlude::Sides sides = occlude::Sides::both;
-    double near_radius = 0.0;   // faces that are not farther from the eyes block nothing
-    double gap = 0.0;           // nearer than this is touching: above all rounding
-    std::uint32_t steps = 400;  // sides of faces that one question may visit
+    double near_radius = 0.0;  // faces that are not farther from the eyes block nothing
+    double gap = 0.0;          // nearer than this is touching: above all rounding
+    std::uint32_t steps = 0;   // sides of faces that one question may visit
 };
 
 // One thread's memory for such questions.

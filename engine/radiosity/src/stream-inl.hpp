@@ -310,7 +310,12 @@ class Stream {
     std::size_t capacity_;
     StreamCrossings& found_;
     std::size_t top_ = 0;
-    Visit stack_[kMaxDepth * kLanes * (kLater + 1)];
+    // Each visit to a node puts one block of up to kLanes children here.
+    // Blocks of visit_many: each that is here descends from the one below it, so there are at most kMaxDepth.
+    // Blocks of visit_few: take the topmost, and the ancestors of its visit. When one of these ancestors was taken from
+    // here, it was the top. What has come since lies above its place, and goes before the next ancestor is taken,
+    // unless it came while the ancestor waited. While it waits, kLater + 1 visits are made, its own among them.
+    Visit stack_[kMaxDepth * kLanes * (kLater + 2)];
 };
 
 StreamEnd trace_stream(const TracerView& tree, const StreamLine* lines, std::size_t count, std::uint16_t* lists,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Four floats side by side, of which three are the components or axes of a box; the last is anything. The compilers'
-// own vectors, or arrays where there are none: operations are single roundings on every machine.
+// Four floats side by side, of which three are the components of a vector or the axes of a box; the last is anything.
+// The compilers' own vectors, or arrays where there are none: operations are single roundings on every machine.
 #pragma once
 #include <bit>
 #include <crofton/core/extensions.hpp>
@@ -9,7 +9,7 @@
 #include <emmintrin.h>
 #endif
 
-namespace crofton::collide {
+namespace crofton::detail {
 
 #if defined(CROFTON_COMPILER_VECTORS)
 
@@ -23,6 +23,9 @@ using Bits4 = int __attribute__((vector_size(16)));
 }
 
 // b where either is NaN.
+[[nodiscard]] inline Lanes4 lesser(Lanes4 a, Lanes4 b) {
+    return a < b ? a : b;
+}
 [[nodiscard]] inline Lanes4 larger(Lanes4 a, Lanes4 b) {
     return a > b ? a : b;
 }
@@ -46,6 +49,8 @@ template <int A, int B, int C, int D>
 
 struct Lanes4 {
     float lane[4];
+    float& operator[](int j) { return lane[j]; }
+    float operator[](int j) const { return lane[j]; }
 };
 
 // Bit j for lane j.
@@ -95,6 +100,9 @@ template <class Predicate>
 }
 
 // b where either is NaN.
+[[nodiscard]] inline Lanes4 lesser(const Lanes4& a, const Lanes4& b) {
+    return lane_by_lane(a, b, [](float x, float y) { return x < y ? x : y; });
+}
 [[nodiscard]] inline Lanes4 larger(const Lanes4& a, const Lanes4& b) {
     return lane_by_lane(a, b, [](float x, float y) { return x > y ? x : y; });
 }
@@ -141,4 +149,4 @@ inline void transpose(Lanes4 a, Lanes4 b, Lanes4 c, Lanes4& x, Lanes4& y, Lanes4
     z = shuffled<0, 1, 6, 6>(high, c);
 }
 
-}  // namespace crofton::collide
+}  // namespace crofton::detail
