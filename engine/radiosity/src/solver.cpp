@@ -60,8 +60,8 @@ Solver::Solver(const Patches& patches, const SolverOptions& options, LineTracer 
 // A cell is as large as a triangle on average. Then crossings cost about as much as triangles, and a patch of one
 // triangle has half a ray of each bundle. More lines of one direction would tell it little.
 double Solver::lines_of_bundle() const {
-    constexpr double kMost = 1 << 21;
-    return std::min(kMost, 0.25 * box_area_ * static_cast<double>(patches_->triangle_areas.size()) / surface_);
+    constexpr double kMostLines = 1 << 21;
+    return std::min(kMostLines, 0.25 * box_area_ * static_cast<double>(patches_->triangle_areas.size()) / surface_);
 }
 
 void Solver::list_triangles() {
