@@ -92,6 +92,28 @@ double wrong_place(const BoxCase& c, const ContactPoint& p) {
 }  // namespace
 
 TEST_SUITE("convex/box_pair") {
+    // A face looks 2e-10 deep; an axis across two edges parts them, by less than a choice among axes tells.
+    TEST_CASE("a thin box 7e-10 m beside one of 1 km has no points") {
+        const auto body = [](float x, float y, float z) { return Body::box({x, y, z}).value(); };
+        const Body thin = body(0x1.065462p-2f, 0x1.0c426cp-12f, 0x1.410614p-12f),
+                   large = body(0x1.c4ae06p+7f, 0x1.65cfdcp+8f, 0x1.a0a068p+8f);
+        const RigidTransform at{glm::dmat3(0x1.f563fd76fadfbp-1, 0x1.fb8c772fd04d2p-5, 0x1.8adf0bef27dfdp-3,
+                                           -0x1.d469129b59742p-5, 0x1.feed78dc8674fp-1, -0x1.efa2dfb42407cp-6,
+                                           -0x1.8de1f9dd76a3bp-3, 0x1.30bd3641158f2p-6, 0x1.f6277d2b6d981p-1),
+                                {0x1.312dp+23, -0x1.ab3fp+22, 0x1.6e36p+21}};
+        const RigidTransform beside{glm::dmat3(0x1.8546febbe1443p-1, -0x1.971e047dc35ddp-2, -0x1.0700ff5ea8846p-1,
+                                               0x1.bd5787192ae37p-2, 0x1.cc45ca81266a6p-1, -0x1.aa8fc6d08a00ap-5,
+                                               0x1.ee1062f9b8ef8p-2, -0x1.78724f6dd761ap-3, 0x1.b67a24e0b488ap-1),
+                                    {0x1.312e7195d9f4ap+23, -0x1.ab39c3a954d48p+22, 0x1.6e4433de8cc0fp+21}};
+        const Placed a{thin, at}, b{large, beside};
+        REQUIRE(distance(a, b).lower > 6e-10);
+        REQUIRE_FALSE(intersects(a, b));
+        CHECK(contact_manifold(a, b).count == 0);
+        CHECK(contact_manifold(b, a).count == 0);
+        CHECK(contact_manifold(a, b, {.margin = 5e-10}).count == 0);
+        CHECK(contact_manifold(a, b, {.margin = 8e-10}).count > 0);
+    }
+
     TEST_CASE(
         "boxes of all forms have points iff they meet, as deep as is proven, cold and warm, skewed poses or not") {
         RandomBodies random(11);
