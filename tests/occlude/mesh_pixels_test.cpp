@@ -47,11 +47,13 @@ MeshScene mesh_scene(std::uint64_t seed) {
     scene.size = {width, static_cast<std::uint32_t>(8 + pick(random, 120))};
     for (int i = 0; i < 6; ++i) {
         const std::uint32_t n = 1u << pick(random, 5);
-        const auto shape = scene.set.add_surface(bumpy_sheet(random, n),
-                                                 pick(random, 2) ? occlude::Sides::both : occlude::Sides::front);
+        // One draw after the other: in which order arguments are computed is left to the compiler.
+        const occlude::Sides sides = pick(random, 2) ? occlude::Sides::both : occlude::Sides::front;
+        const auto shape = scene.set.add_surface(bumpy_sheet(random, n), sides);
         REQUIRE(shape.has_value());
         scene::Transform transform;
-        const double size = std::ldexp(0.02 + 0.02 * random.uniform(), static_cast<int>(pick(random, 10)));
+        const int octave = static_cast<int>(pick(random, 10));
+        const double size = std::ldexp(0.02 + 0.02 * random.uniform(), octave);
         transform.linear = size * sampling::rotation(random.point<3>());
         if (pick(random, 4) == 0) transform.linear[0] *= -0.5;
         transform.translation =

@@ -57,8 +57,9 @@ inline glm::dvec3 point_in_view(Random& random, const Camera& camera, double dis
     const glm::dmat3 view_to_world = glm::transpose(world_to_view_rotation(camera));
     const double half =
         camera.projection == Projection::perspective ? distance * std::tan(0.5 * camera.fov_y) : 0.5 * camera.height;
-    return camera.position + view_to_world * glm::dvec3(1.1 * half * camera.aspect * random.uniform(-1, 1),
-                                                        1.1 * half * random.uniform(-1, 1), -distance);
+    // One draw after the other: in which order arguments are computed is left to the compiler.
+    const double y = random.uniform(-1, 1), x = random.uniform(-1, 1);
+    return camera.position + view_to_world * glm::dvec3(1.1 * half * camera.aspect * x, 1.1 * half * y, -distance);
 }
 
 // Occluders of many kinds: large and small, slivers, around the eye, across the near plane; objects behind them and

@@ -15,18 +15,22 @@ class NearMisses {
     explicit NearMisses(std::uint64_t seed, double offset = 0.0) : random_(seed), offset_(offset) {}
 
     double number(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
+    // One after the other: in which order arguments are computed is left to the compiler.
+    glm::dvec3 vector(double low, double high) {
+        const double z = number(low, high), y = number(low, high), x = number(low, high);
+        return {x, y, z};
+    }
     unsigned index(unsigned count) { return std::uniform_int_distribution<unsigned>(0, count - 1)(random_); }
     glm::dvec3 direction() {
         for (;;) {
-            const glm::dvec3 v(number(-1, 1), number(-1, 1), number(-1, 1));
+            const glm::dvec3 v = vector(-1, 1);
             if (const double length = glm::length(v); length > 0.1 && length < 1.0) return v / length;
         }
     }
 
     Camera camera() {
         Camera camera;
-        camera.position =
-            offset_ * glm::dvec3(1.0, -0.7, 0.3) + glm::dvec3(number(-5, 5), number(-5, 5), number(-5, 5));
+        camera.position = offset_ * glm::dvec3(1.0, -0.7, 0.3) + vector(-5, 5);
         camera.forward = direction();
         camera.up = direction();
         camera.projection = index(3) ? Projection::perspective : Projection::orthographic;

@@ -15,7 +15,7 @@ struct Crowd {
 
 inline Obb random_box(NearMisses& random, const glm::dvec3& middle, double spread) {
     Obb box;
-    box.center = middle + spread * glm::dvec3(random.number(-1, 1), random.number(-1, 1), random.number(-1, 1));
+    box.center = middle + spread * random.vector(-1, 1);
     const glm::dvec3 axis = random.direction();
     const double angle = random.number(0.0, 6.2);
     box.axes = glm::mat3(glm::mat3_cast(glm::dquat(std::cos(angle / 2), std::sin(angle / 2) * axis)));

@@ -46,7 +46,8 @@ TEST_SUITE("world/conventions") {
         const auto our_mesh = ours.add_mesh({.positions = mesh.positions, .indices = mesh.indices}).value();
         const auto their_mesh = theirs.add_mesh({.positions = swapped.positions, .indices = swapped.indices}).value();
         for (int i = 0; i < 200; ++i) {
-            const glm::dvec3 place = random.number(2.0, 12.0) * random.direction();
+            const glm::dvec3 toward = random.direction();
+            const glm::dvec3 place = random.number(2.0, 12.0) * toward;
             if (i % 4 == 0) {
                 REQUIRE(ours.add({.bound = Sphere{place, 0.7}}).has_value());
                 REQUIRE(theirs.add({.bound = Sphere{kUnit * (kSwap * place), kUnit * 0.7}}).has_value());

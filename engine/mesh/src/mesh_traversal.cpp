@@ -26,7 +26,7 @@ struct Reference {
 };
 constexpr std::uint32_t kRoot = ~std::uint32_t{0}, kAllTriangles = ~std::uint32_t{0};
 
-struct Step {
+struct PairStep {
     Reference a, b;
     float bound;
 };
@@ -49,7 +49,7 @@ HWY_INLINE QueryBox query_box(const MeshPair& pair, const Reference& a, const Re
     return into_a ? carried(pair.to_a, box_at(pair, 1, b)) : carried(pair.to_b, box_at(pair, 0, a));
 }
 // The pair of boxes one level down in the mesh that is descended, whose node is number `index`.
-HWY_INLINE Step below(const Step& step, bool into_a, const mesh::MeshNode& node, std::uint32_t index,
+HWY_INLINE PairStep below(const PairStep& step, bool into_a, const mesh::MeshNode& node, std::uint32_t index,
                       std::uint32_t lane, float bound) {
     if (into_a) return {lane_of(node, index, lane), step.b, bound};
     return {step.a, lane_of(node, index, lane), bound};
@@ -118,13 +118,13 @@ struct LeafQueue {
 };
 
 // Descends the larger box: the other's box is carried into its frame and tested against all its children at once.
-HWY_INLINE bool descends_a(const Step& step) {
+HWY_INLINE bool descends_a(const PairStep& step) {
     if (step.a.child & mesh::kMeshLeaf) return false;
     return (step.b.child & mesh::kMeshLeaf) || step.a.size >= step.b.size;
 }
 
 void VisitOverlaps(const MeshPair& pair, bool at_once, PairVisitor visit, TraversalCounts& counts) {
-    Step stack[kMeshStackSize];
+    PairStep stack[kMeshStackSize];
     std::uint32_t height = 0;
     stack[height++] = {root_of(pair, 0), root_of(pair, 1), 0.0f};
     const float margin = pair.error_bound + pair.tolerance;
@@ -138,7 +138,7 @@ void VisitOverlaps(const MeshPair& pair, bool at_once, PairVisitor visit, Traver
         return visit_leaves(pair, queue.a[place], queue.b[place], leaves, gathered, visit, counts);
     };
     while (height > 0) {
-        const Step step = stack[--height];
+        const PairStep step = stack[--height];
         const std::uint32_t a = step.a.child, b = step.b.child;
         if (a & b & mesh::kMeshLeaf) {
             if (queue.count == LeafQueue::kCapacity && visit_first()) return;
@@ -177,7 +177,7 @@ HWY_INLINE bool flush_nearest(TrianglePairs& gathered, const Nearest& nearest, P
     return false;
 }
 
-bool visit_near_leaves(const MeshPair& pair, const Step& step, LeafPair& leaves, TrianglePairs& gathered,
+bool visit_near_leaves(const MeshPair& pair, const PairStep& step, LeafPair& leaves, TrianglePairs& gathered,
                        const Nearest& nearest, PairVisitor visit, TraversalCounts& counts) {
     load_pair(pair, step.a.child & ~mesh::kMeshLeaf, step.b.child & ~mesh::kMeshLeaf, leaves);
     const std::uint32_t of_a = lanes_of(leaf_of(pair, 0, step.a), step.a),
@@ -205,11 +205,11 @@ HWY_INLINE bool is_coarse(const Reference& leaf, const Reference& node) {
     return (leaf.child & mesh::kMeshLeaf) && leaf.triangle == kAllTriangles && leaf.size > node.size;
 }
 
-HWY_INLINE std::uint32_t push_triangles(const MeshPair& pair, const Step& step, int side, Step* stack,
+HWY_INLINE std::uint32_t push_triangles(const MeshPair& pair, const PairStep& step, int side, PairStep* stack,
                                         std::uint32_t height) {
     const Reference& whole = side == 0 ? step.a : step.b;
     for (std::uint32_t lane = 0; lane < leaf_of(pair, side, whole).count; ++lane) {
-        Step& one = stack[height++] = step;
+        PairStep& one = stack[height++] = step;
         (side == 0 ? one.a : one.b).triangle = lane;
     }
     return height;
@@ -217,7 +217,7 @@ HWY_INLINE std::uint32_t push_triangles(const MeshPair& pair, const Step& step, 
 
 // In the frame of the mesh that is descended: the direction between the nearest points so far. Where one triangle is
 // compared: from it to the middle of what is descended.
-HWY_INLINE void choose_directions(const MeshPair& pair, const Step& step, bool into_a, const QueryBox& box,
+HWY_INLINE void choose_directions(const MeshPair& pair, const PairStep& step, bool into_a, const QueryBox& box,
                                   const Nearest& nearest, Direction& global, Direction& own) {
     for (int i = 0; i < 3; ++i) global.way[i] = nearest.direction[i];
     global.way[3] = 0.0f;
@@ -243,13 +243,13 @@ HWY_INLINE void choose_directions(const MeshPair& pair, const Step& step, bool i
 }
 
 void VisitNearest(const MeshPair& pair, const Nearest& nearest, PairVisitor visit, TraversalCounts& counts) {
-    Step stack[kMeshStackSize];
+    PairStep stack[kMeshStackSize];
     std::uint32_t height = 0;
     LeafPair leaves;
     TrianglePairs gathered;
     stack[height++] = {root_of(pair, 0), root_of(pair, 1), 0.0f};
     while (height > 0) {
-        const Step step = stack[--height];
+        const PairStep step = stack[--height];
         if (static_cast<double>(step.bound) > nearest.squared) continue;
         const std::uint32_t a = step.a.child, b = step.b.child;
         if (a & b & mesh::kMeshLeaf) {

@@ -68,7 +68,9 @@ void append_line_bundle(const Sphere& ball, double cell_area, Random& random, Ve
     const glm::dvec2 turn = circle_point(random.uniform());
     const glm::dvec3 right = turn.x * x + turn.y * y, up = turn.x * y - turn.y * x;
     const double cell = std::sqrt(cell_area), r = ball.radius;
-    const glm::dvec2 shift(random.uniform(), random.uniform());
+    // One after the other: in which order arguments are computed is left to the compiler.
+    const double shift_up = random.uniform(), shift_right = random.uniform();
+    const glm::dvec2 shift(shift_right, shift_up);
     // Cells that can hold a point of the disc: their numbers along one axis, the disc being centred at `shift`.
     const auto count = static_cast<std::int64_t>(std::ceil(r / cell)) + 1;
     CROFTON_ASSERT(count < (std::int64_t{1} << 30), "a bundle of too many cells");

@@ -27,7 +27,8 @@ void append_parallelogram_bundle(const Sphere& ball, const glm::dvec2& first, co
     const glm::dvec3 direction = sampling::direction(random.point<2>());
     const auto [x, y] = sampling::orthonormal_frame(direction);
     const glm::dmat2 turn = sampling::planar_rotation(random.uniform());
-    const glm::dvec2 a = turn * first, b = turn * second, shift = random.uniform() * a + random.uniform() * b;
+    const double along_a = random.uniform(), along_b = random.uniform();
+    const glm::dvec2 a = turn * first, b = turn * second, shift = along_a * a + along_b * b;
     // p = i·a + j·b + shift has |i| ≤ |p × b| / area and |j| ≤ |p × a| / area, and the shift is less than one cell.
     const auto count_across = [&](const glm::dvec2& side) {
         return static_cast<std::int64_t>(std::ceil(ball.radius * glm::length(side) / std::abs(area))) + 2;

@@ -64,6 +64,11 @@ scene::NodeId Builder::place(scene::MeshId mesh, double x, double z, double turn
     return place(Parts{mesh}, turned(x, kKerb, z, turn, scale));
 }
 
+void Builder::place_tree(double x, double z, double least, double most) {
+    const double scale = library_.random.uniform(least, most), turn = library_.random.uniform(0.0, 6.28);
+    place(any(trees_), x, z, turn, scale);
+}
+
 void Builder::add_row(double length, const scene::Transform& frame) {
     double x = 0.0;
     while (length - x >= kLeastWidth) {
@@ -83,6 +88,7 @@ void Builder::add_terraces(const Block& b) {
     const Ground& g = ground(b, true);
     place(Parts{g.paving, g.lawn, g.gravel, g.kerb}, turned(b.center().x, kKerb, b.center().z, 0.0));
     const double quarter = 0.5 * std::numbers::pi;
+    auto& random = library_.random;
     add_row(b.width(), turned(b.x0, kKerb, b.z1, 0.0));
     add_row(b.width(), turned(b.x1, kKerb, b.z0, 2.0 * quarter));
     const double inner = b.depth() - 2.0 * kHouseDepth;
@@ -93,17 +99,21 @@ void Builder::add_terraces(const Block& b) {
     for (double x = b.x0 + 15.0; x < b.x1 - 14.0; x += 6.5) {
         place(any(library_.chance(0.6) ? fences_ : hedges_), x, back0 + 6.0, quarter);
         place(any(library_.chance(0.6) ? fences_ : hedges_), x + 2.0, back1, quarter);
-        if (library_.chance(0.35)) place(any(sheds_), x + 2.5, back0 + 3.0, library_.pick(4) * quarter);
-        if (library_.chance(0.35)) place(any(sheds_), x + 4.5, back1 - 3.0, library_.pick(4) * quarter);
-        if (library_.chance(0.7))
-            place(any(trees_), x + 3.5, back0 + library_.random.uniform(4.0, 6.5), library_.random.uniform(0.0, 6.28),
-                  library_.random.uniform(0.7, 1.0));
-        if (library_.chance(0.7))
-            place(any(trees_), x - 1.0, back1 - library_.random.uniform(4.0, 6.5), library_.random.uniform(0.0, 6.28),
-                  library_.random.uniform(0.7, 1.0));
+        for (const double shed : {back0 + 3.0, back1 - 3.0})
+            if (library_.chance(0.35)) {
+                const double turn = library_.pick(4) * quarter;
+                place(any(sheds_), x + (shed < b.center().z ? 2.5 : 4.5), shed, turn);
+            }
+        for (const bool front : {true, false})
+            if (library_.chance(0.7)) {
+                const double scale = random.uniform(0.7, 1.0), turn = random.uniform(0.0, 6.28),
+                             in = random.uniform(4.0, 6.5);
+                place(any(trees_), front ? x + 3.5 : x - 1.0, front ? back0 + in : back1 - in, turn, scale);
+            }
     }
-    place(ladder_, b.x0 + 12.0 + library_.random.uniform(0.0, 20.0), back0 + 1.7, 0.0);
-    place(any(poles_), b.x1 - 14.0 - library_.random.uniform(0.0, 18.0), back1, std::numbers::pi);
+    place(ladder_, b.x0 + 12.0 + random.uniform(0.0, 20.0), back0 + 1.7, 0.0);
+    const double poles = b.x1 - 14.0 - random.uniform(0.0, 18.0);
+    place(any(poles_), poles, back1, std::numbers::pi);
     place(bench_, b.center().x, b.center().z, library_.random.uniform(0.0, 6.28));
     if (library_.chance(0.4)) {
         const glm::dvec3 at(b.x0 + 14.0 + library_.random.uniform(0.0, b.width() - 28.0), 0.0, b.z1 + 0.3);
@@ -118,8 +128,8 @@ void Builder::add_park(const Block& b) {
     for (int k = 0; k < 46; ++k) {
         const double x = random.uniform(b.x0 + 3.0, b.x1 - 3.0), z = random.uniform(b.z0 + 3.0, b.z1 - 3.0);
         if (std::hypot(x - b.center().x, z - b.center().z) < 11.0) continue;
-        place(any(library_.chance(0.25) ? conifers_ : trees_), x, z, random.uniform(0.0, 6.28),
-              random.uniform(0.85, 1.35));
+        const double scale = random.uniform(0.85, 1.35), turn = random.uniform(0.0, 6.28);
+        place(any(library_.chance(0.25) ? conifers_ : trees_), x, z, turn, scale);
     }
     for (int k = 0; k < 8; ++k) {
         const double angle = (k + 0.5) * std::numbers::pi / 4.0;
@@ -140,15 +150,14 @@ void Builder::add_market(const Block& b) {
     place(Parts{g.paving, g.setts, g.gravel, g.kerb}, turned(b.center().x, kKerb, b.center().z, 0.0));
     place(church_, turned(b.x0 + 11.0, kKerb, b.center().z + 1.0, 0.0));
     place(fountain_, b.center().x + 4.0, b.center().z, 0.0);
-    auto& random = library_.random;
     for (int i = 0; i < 4; ++i)
         for (int j = 0; j < 4; ++j) {
             const double x = b.center().x + 11.0 + 4.4 * i, z = b.z0 + 7.0 + 8.0 * j;
             if (x < b.x1 - 3.0 && z < b.z1 - 3.0) place(any(stalls_), x, z, j % 2 == 0 ? 0.0 : std::numbers::pi);
         }
     for (double x = b.x0 + 4.0; x < b.x1 - 2.0; x += 7.0) {
-        place(any(trees_), x, b.z0 + 2.0, random.uniform(0.0, 6.28), random.uniform(0.8, 1.0));
-        place(any(trees_), x, b.z1 - 2.0, random.uniform(0.0, 6.28), random.uniform(0.8, 1.0));
+        place_tree(x, b.z0 + 2.0, 0.8, 1.0);
+        place_tree(x, b.z1 - 2.0, 0.8, 1.0);
     }
     for (const double dz : {-8.0, 8.0})
         place(bench_, b.center().x + 4.0, b.center().z + dz, dz > 0.0 ? std::numbers::pi : 0.0);
@@ -203,8 +212,8 @@ void Builder::add_street_furniture(const Block& b) {
             place(lamp_, x, b.z1 + edge, 0.0);
             place(lamp_, x + 4.0, b.z0 - edge, std::numbers::pi);
         } else if (library_.chance(0.6)) {
-            place(any(trees_), x, b.z1 + edge, random.uniform(0.0, 6.28), random.uniform(0.6, 0.8));
-            place(any(trees_), x + 4.0, b.z0 - edge, random.uniform(0.0, 6.28), random.uniform(0.6, 0.8));
+            place_tree(x, b.z1 + edge, 0.6, 0.8);
+            place_tree(x + 4.0, b.z0 - edge, 0.6, 0.8);
         }
     }
     for (double z = b.z0 + 5.0; z < b.z1 - 3.0; z += 15.0) {
@@ -212,15 +221,19 @@ void Builder::add_street_furniture(const Block& b) {
         place(lamp_, b.x0 - edge, z + 6.0, -0.5 * std::numbers::pi);
     }
     for (const double x : {b.x0 - 1.2, b.x1 + 1.2})
-        for (const double z : {b.z0 - 1.6, b.z1 + 1.6}) place(any(signs_), x, z, random.uniform(-0.6, 0.6));
+        for (const double z : {b.z0 - 1.6, b.z1 + 1.6}) {
+            const double turn = random.uniform(-0.6, 0.6);
+            place(any(signs_), x, z, turn);
+        }
     for (int p = 0; p < 14; ++p) {  // strollers on the pavement
         const double along = random.uniform(-0.5, 0.5), off = random.uniform(0.7, 1.2),
                      s = library_.chance(0.5) ? 1.0 : -1.0;
         const bool on_x = library_.chance(0.6);
         const glm::dvec3 c = b.center();
+        const bool looks_back = library_.chance(0.5);
         place(any(people_), on_x ? c.x + along * b.width() : c.x + s * (0.5 * b.width() + off),
               on_x ? c.z + s * (0.5 * b.depth() + off) : c.z + along * b.depth(),
-              (on_x ? 1.57 : 0.0) + (library_.chance(0.5) ? 3.14 : 0.0));
+              (on_x ? 1.57 : 0.0) + (looks_back ? 3.14 : 0.0));
     }
     // Cables across the street toward +z, slanted in plan and in height.
     const double across = kStreet, along = std::sqrt(kCableLength * kCableLength - across * across - 1.0);

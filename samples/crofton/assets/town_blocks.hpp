@@ -49,6 +49,7 @@ class Builder {
     };
     const Ground& ground(const Block& block, bool courtyard);
     void add_row(double length, const scene::Transform& frame);
+    void place_tree(double x, double z, double least_scale, double most_scale);
     scene::MeshId any(const std::vector<scene::MeshId>& list);
 
     scene::Scene& scene_;

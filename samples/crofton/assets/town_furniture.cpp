@@ -86,8 +86,9 @@ scene::MeshId make_poles(Library& library) {
     for (int k = 0; k < 7; ++k) {
         const double x = -0.9 + 0.3 * k, top = random.uniform(2.6, 4.2);
         const glm::vec3 color = scaled(srgb(150, 112, 70), random.uniform(0.75, 1.1));
-        b.bar({x, 0.0, random.uniform(0.6, 1.1)}, {x + random.uniform(-0.8, 0.8), top, -0.1}, random.uniform(0.05, 0.1),
-              color);
+        const double width = random.uniform(0.05, 0.1), lean = random.uniform(-0.8, 0.8),
+                     foot = random.uniform(0.6, 1.1);
+        b.bar({x, 0.0, foot}, {x + lean, top, -0.1}, width, color);
     }
     return library.add(b, "leaning poles");
 }

@@ -131,9 +131,9 @@ void Builder::add_countryside(const Grid& grid) {
             const double outside = std::max(std::abs(x - cx) - hx, std::abs(z - cz) - hz);
             if (outside < 10.0) continue;
             const double y = hill(x - cx, z - cz, outside) - 1.0;
+            const double scale = random.uniform(1.0, 1.6), turn = random.uniform(0.0, 6.28);
             place(Parts{any(library_.chance(0.5) ? conifers_ : trees_)},
-                  *scene::from_trs({x, y, z}, glm::angleAxis(random.uniform(0.0, 6.28), glm::dvec3(0, 1, 0)),
-                                   glm::dvec3(random.uniform(1.0, 1.6))));
+                  *scene::from_trs({x, y, z}, glm::angleAxis(turn, glm::dvec3(0, 1, 0)), glm::dvec3(scale)));
         }
     }
 }

@@ -35,7 +35,9 @@ Style make_style(Library& library, int width) {
     static const std::array trims = {srgb(244, 242, 236), srgb(236, 228, 210), srgb(70, 74, 70), srgb(210, 206, 198)};
     Style s;
     s.width = width;
-    s.floors = 2 + (library.chance(0.5) ? 1 : 0) + (library.chance(0.2) ? 1 : 0);
+    s.floors = 2;
+    s.floors += library.chance(0.5) ? 1 : 0;
+    s.floors += library.chance(0.2) ? 1 : 0;
     s.roof_rise = library.random.uniform(2.4, 4.4);
     s.shop = library.chance(0.3);
     s.dormer = library.chance(0.4);
@@ -45,8 +47,10 @@ Style make_style(Library& library, int width) {
     const auto any = [&](const auto& list) {
         return list[static_cast<std::size_t>(library.pick(static_cast<int>(list.size())))];
     };
-    s.wall = scaled(any(walls), library.random.uniform(0.88, 1.04));
-    s.roof = scaled(any(roofs), library.random.uniform(0.85, 1.1));
+    const double wall = library.random.uniform(0.88, 1.04);
+    s.wall = scaled(any(walls), wall);
+    const double roof = library.random.uniform(0.85, 1.1);
+    s.roof = scaled(any(roofs), roof);
     s.trim = any(trims);
     s.door = any(doors);
     return s;

@@ -69,8 +69,9 @@ scene::MeshId make_hedge(Library& library, double length) {
     const int count = static_cast<int>(length / 1.5);
     for (int k = 0; k < count; ++k) {
         const double x = (k + 0.5) * length / count;
-        b.blob({x, 0.55, 0.0}, {0.95, library.random.uniform(0.6, 0.75), 0.45},
-               scaled(green, library.random.uniform(0.9, 1.1)), 0.08);
+        const glm::vec3 leaves = scaled(green, library.random.uniform(0.9, 1.1));
+        const double height = library.random.uniform(0.6, 0.75);
+        b.blob({x, 0.55, 0.0}, {0.95, height, 0.45}, leaves, 0.08);
     }
     return library.add(b, "hedge");
 }

@@ -76,7 +76,9 @@ Camera street(Camera camera, std::span<const glm::dvec3> walk, double t) {
 // Anywhere in the bounds, looking anywhere.
 Camera random_camera(Camera camera, const Aabb& bounds, std::mt19937_64& random) {
     const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
-    camera.position = bounds.min + glm::dvec3(unit(), unit(), unit()) * (bounds.max - bounds.min);
+    // One after the other: in which order arguments are computed is left to the compiler.
+    const double at_z = unit(), at_y = unit(), at_x = unit();
+    camera.position = bounds.min + glm::dvec3(at_x, at_y, at_z) * (bounds.max - bounds.min);
     const double z = 2.0 * unit() - 1.0, angle = 2.0 * pi * unit(), ring = std::sqrt(std::max(0.0, 1.0 - z * z));
     camera.forward = {ring * std::cos(angle), z, ring * std::sin(angle)};
     if (std::abs(z) > 0.999) camera.up = {1.0, 0.0, 0.0};

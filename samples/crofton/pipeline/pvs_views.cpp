@@ -44,7 +44,9 @@ std::optional<Camera> random_view(const Looked& all, std::span<const glm::dvec3>
     sampling::Random random(all.options.seed, number);
     for (std::uint32_t i = 0; i < kTries; ++i) {
         const glm::dvec3 place = places[random.bits() % places.size()];
-        const glm::dvec3 move = spacing * glm::dvec3(random.uniform(-0.5, 0.5), 0.0, random.uniform(-0.5, 0.5));
+        // One after the other: in which order arguments are computed is left to the compiler.
+        const double z = random.uniform(-0.5, 0.5), x = random.uniform(-0.5, 0.5);
+        const glm::dvec3 move = spacing * glm::dvec3(x, 0.0, z);
         const glm::dvec2 ahead = sampling::circle_point(random.uniform());
         const glm::dvec3 eye = place + move;
         const Aabb& cells = all.sets.cells().bounds();

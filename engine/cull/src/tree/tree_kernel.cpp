@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <crofton/cull/classify.hpp>
 #include <cstddef>
+#include <cstdint>
 
 // Also compile for AVX-512 VNNI (`vpdpwssd`).
 #define HWY_WANT_AVX3_DL 1
@@ -166,15 +167,19 @@ class Walk {
         many_plane_leaves_.append(leaves, straddled, hn::AndNot(once, of_leaves));
     }
 
+    // As integers: of an empty tree there is nothing to point to.
+    HWY_INLINE static void prefetch(const void* table, std::size_t from, std::size_t bytes) {
+        const std::uintptr_t first = reinterpret_cast<std::uintptr_t>(table) + from;
+        for (std::size_t at = 0; at < bytes; at += 64) hwy::Prefetch(reinterpret_cast<const char*>(first + at));
+    }
+
     HWY_INLINE void prefetch_leaf(boxtree::LeafId leaf) const {
-        for (std::size_t at = 0; at < offsetof(boxtree::Leaf, layers); at += 64)
-            hwy::Prefetch(reinterpret_cast<const char*>(in_.leaves + leaf) + at);
-        hwy::Prefetch(in_.slot_items + std::size_t{leaf} * boxtree::kWidth);
+        prefetch(in_.leaves, leaf * sizeof(boxtree::Leaf), offsetof(boxtree::Leaf, layers));
+        prefetch(in_.slot_items, std::size_t{leaf} * boxtree::kWidth * sizeof(*in_.slot_items), 1);
     }
 
     HWY_INLINE void prefetch_node(boxtree::NodeId node) const {
-        for (std::size_t at = 0; at < offsetof(boxtree::Node, layers_any); at += 64)
-            hwy::Prefetch(reinterpret_cast<const char*>(in_.nodes + node) + at);
+        prefetch(in_.nodes, node * sizeof(boxtree::Node), offsetof(boxtree::Node, layers_any));
         if constexpr (Limits::kAny) limits_.prefetch(node);
     }
 
