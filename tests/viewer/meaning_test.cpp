@@ -108,7 +108,7 @@ TEST_SUITE("viewer/meaning") {
         }
     }
     TEST_CASE("an equilateral triangle is green, a sliver red, one between yellow") {
-        json events{set(0, {{"panels", false}, {"coloring", "shape"}})};
+        json events = json::array({set(0, {{"panels", false}, {"coloring", "shape"}})});
         drop_triangle(events, 1, "equilateral", 0.0, std::sqrt(3.0));
         drop_triangle(events, 2, "sliver", 0.0, 0.05);
         drop_triangle(events, 3, "middling", 0.0, 0.55);  // quality 0.73 … 0.8 of 1
@@ -153,7 +153,7 @@ TEST_SUITE("viewer/meaning") {
         CHECK(Pixels(scratch().file("verdicts.png")).magenta() == 0);
     }
     TEST_CASE("movers move with the time's scale, stand with none, and step by one") {
-        json events{set(0, {{"panels", false}, {"time_scale", 4.0}})};
+        json events = json::array({set(0, {{"panels", false}, {"time_scale", 4.0}})});
         for (const auto& [frame, name] : {std::pair{1, "a.png"}, {6, "b.png"}}) events.push_back(shot(frame, name));
         events.push_back(set(7, {{"time_scale", 0.0}}));
         events.push_back(shot(8, "c.png"));

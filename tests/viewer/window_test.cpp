@@ -133,7 +133,7 @@ TEST_SUITE("viewer/window") {
                         set(frame + 3, {{"panels", false}}),
                         shot(frame + 4, name + "_plain.png")};
         };
-        json script{set(0, {{"paused", true}})};
+        json script = json::array({set(0, {{"paused", true}})});
         for (const json& event : shots(1, 320, 200, "small")) script.push_back(event);
         for (const json& event : shots(6, 1280, 720, "large")) script.push_back(event);
         check_clean(view(script, {}, false));
