@@ -50,7 +50,7 @@ HWY_INLINE QueryBox query_box(const MeshPair& pair, const Reference& a, const Re
 }
 // The pair of boxes one level down in the mesh that is descended, whose node is number `index`.
 HWY_INLINE PairStep below(const PairStep& step, bool into_a, const mesh::MeshNode& node, std::uint32_t index,
-                      std::uint32_t lane, float bound) {
+                          std::uint32_t lane, float bound) {
     if (into_a) return {lane_of(node, index, lane), step.b, bound};
     return {step.a, lane_of(node, index, lane), bound};
 }
