@@ -11,8 +11,7 @@
 namespace crofton::collide {
 
 using detail::after_next, detail::all_lanes, detail::Lanes4, detail::lanes_where, detail::larger, detail::load4,
-    detail::magnitude;
-using detail::next, detail::shuffled, detail::transpose;
+    detail::magnitude, detail::next, detail::shuffled, detail::transpose;
 
 // A box with its axes side by side: component c of all three.
 struct FloatBox {

@@ -181,8 +181,8 @@ Warm touch_of_boxes(const Placed& a, const Placed& b, const Pair& pair, double m
     BoxToucher toucher(a, b, pair, margin, touch, points);
     const Warm answer = toucher.ask(reference, face);
     // Another axis may be less deep by kSameDepth of the size, and leave the boxes farther apart than the margin.
-    if (answer == Warm::touching && !(touch.depth >= -margin + kSameDepth * pair.size)) return Warm::unknown;
-    if (answer == Warm::unknown) return Warm::unknown;
+    const double least_depth = -margin + kSameDepth * pair.size;
+    if (answer == Warm::unknown || (answer == Warm::touching && !(touch.depth >= least_depth))) return Warm::unknown;
     if (cache != nullptr) {
         cache->axis = answer == Warm::apart ? toucher.separating_normal() : touch.normal;
         cache->reference = static_cast<std::uint16_t>(answer == Warm::apart ? 0 : reference);
