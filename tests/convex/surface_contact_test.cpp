@@ -57,6 +57,27 @@ TEST_SUITE("convex/surface_contact") {
         CHECK(touching > 100);
     }
 
+    TEST_CASE("a polytope has contact points iff it meets a surface, also where edges and vertices are shared") {
+        RandomBodies random(8);
+        int meeting = 0, apart = 0;
+        for (int round = 0; round < 100; ++round) {
+            const Surface s = tangle(random, 6, 4);
+            const Body body = s.body();
+            for (int i = 0; i < 200; ++i) {
+                const Body b = random.polytope(12, 0.3);
+                const RigidTransform pose{random.rotation(), (i % 3 == 0 ? 1e3 : 0.0) * random.direction()};
+                const double gap = (i % 2 == 0 ? 1.0 : -1.0) * std::pow(10.0, -random.number(4, 14));
+                const RigidTransform pose_b = next_to(random, s, pose, b, gap);
+                const bool truth = intersects({body, pose}, {b, pose_b});
+                CHECK((contact_manifold({body, pose}, {b, pose_b}).count > 0) == truth);
+                CHECK((contact_manifold({b, pose_b}, {body, pose}).count > 0) == truth);
+                (truth ? meeting : apart) += 1;
+            }
+        }
+        CHECK(meeting > 3000);
+        CHECK(apart > 3000);
+    }
+
     TEST_CASE("bodies that slide over a triangulated floor meet no inner edge, whatever the floor's place") {
         RandomBodies random(2);
         const Body bodies[] = {Body::box({0.5f, 0.5f, 0.5f}).value(),

@@ -17,17 +17,6 @@ bool brute_meets(const Surface& s, const RigidTransform& pose, const Placed& b) 
     return false;
 }
 
-// b's pose next to one of the triangles, `gap` from it along a random direction.
-RigidTransform next_to(RandomBodies& random, const Surface& s, const RigidTransform& pose, const Body& b, double gap) {
-    const Body triangle = s.triangle(static_cast<std::size_t>(random.index(static_cast<int>(s.size()))));
-    const glm::dvec3 d = random.direction();
-    const RigidTransform turned{random.rotation(), {}};
-    const glm::dvec3 from =
-        pose.translation + pose.rotation * support_point(triangle, glm::transpose(pose.rotation) * d);
-    const glm::dvec3 own = turned.rotation * support_point(b, glm::transpose(turned.rotation) * -d);
-    return {turned.rotation, from - own + gap * d};
-}
-
 }  // namespace
 
 TEST_SUITE("convex/surface") {

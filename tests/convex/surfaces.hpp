@@ -60,6 +60,31 @@ inline Surface ground(RandomBodies& random, int n, double cell, const std::funct
     return s;
 }
 
+// Triangles among a few vertices: edges and vertices are shared by many.
+inline Surface tangle(RandomBodies& random, int vertices, int count) {
+    Surface s;
+    for (int i = 0; i < vertices; ++i) s.mesh.positions.emplace_back(random.direction());
+    while (s.mesh.indices.size() < 3 * static_cast<std::size_t>(count)) {
+        const int i = random.index(vertices), j = random.index(vertices), k = random.index(vertices);
+        if (i == j || j == k || k == i) continue;
+        for (const int v : {i, j, k}) s.mesh.indices.push_back(static_cast<std::uint32_t>(v));
+    }
+    s.build();
+    return s;
+}
+
+// b's pose next to one of the triangles, `gap` from it along a random direction.
+inline RigidTransform next_to(RandomBodies& random, const Surface& s, const RigidTransform& pose, const convex::Body& b,
+                              double gap) {
+    const convex::Body triangle = s.triangle(static_cast<std::size_t>(random.index(static_cast<int>(s.size()))));
+    const glm::dvec3 d = random.direction();
+    const RigidTransform turned{random.rotation(), {}};
+    const glm::dvec3 from =
+        pose.translation + pose.rotation * convex::support_point(triangle, glm::transpose(pose.rotation) * d);
+    const glm::dvec3 own = turned.rotation * convex::support_point(b, glm::transpose(turned.rotation) * -d);
+    return {turned.rotation, from - own + gap * d};
+}
+
 inline convex::Body any_body(RandomBodies& random, double size = 1.0) {
     const float r = static_cast<float>(size * random.number(0.2, 1)),
                 h = static_cast<float>(size * random.number(0.2, 1));

@@ -119,7 +119,8 @@ Warm BoxTouch::ask(const PlacedTriangle& triangle, Touch& touch) const {
     if (least.extent < limit) return Warm::apart;
     const bool certain = try_edges(t, least);
     if (least.extent < limit) return Warm::apart;
-    if (!certain || !(std::abs(least.extent) > 4.0 * error_)) return Warm::unknown;
+    // Another axis may be less deep by kSameDepth of the size, and part the bodies.
+    if (!certain || !(std::abs(least.extent) > 2.0 * kSameDepth * size_)) return Warm::unknown;
     const glm::dvec3 normal = Pair::local(to_local_, least.m);
     touch.normal = normal / glm::length(normal);
     if (!set_points(t, least, triangle, touch)) return Warm::unknown;

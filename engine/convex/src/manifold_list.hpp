@@ -11,6 +11,7 @@ class ManifoldList {
     // Points of one part along its normal: to the manifold whose normal agrees within 5 degrees, else to a new one. A
     // manifold's normal is that of its deepest point.
     void add(const glm::dvec3& normal, std::span<const RawPoint> points);
+    [[nodiscard]] std::size_t point_count() const { return points_.size(); }
     // Replaces `manifolds`: of each at most `most` points.
     void finish(int most, Vector<Manifold>& manifolds);
 

@@ -62,10 +62,19 @@ class ManifoldFinder {
         return *found.scratch_;
     }
 
-    // The contacts of a, which has parts, and b, which is convex; `of_b`: b's part.
+    // The contacts of a, which has parts, and b, which is convex; `of_b`: b's part. Where several triangles meet in a
+    // tip, each one's normal may point into the others: then the rule leaves no point, and does not hold.
     void find(const Placed& a, const Placed& b, const PartId& of_b, bool flip) {
+        const std::size_t before = scratch_.list.point_count();
         list_near(a, b, of_b, flip);
         scratch_.rule.start(scratch_.triangles);
+        const bool left_out = ask_triangles(b, &scratch_.rule, of_b, flip);
+        if (left_out && scratch_.list.point_count() == before) (void)ask_triangles(b, nullptr, of_b, flip);
+    }
+
+    // Whether the rule left out a triangle that the body meets.
+    bool ask_triangles(const Placed& b, EdgeRule* rule, const PartId& of_b, bool flip) {
+        bool left_out = false;
         std::uint32_t i = 0;
         const auto count = static_cast<std::uint32_t>(scratch_.triangles.size());
         while (i < count) {
@@ -73,10 +82,12 @@ class ManifoldFinder {
             const NearSurface& surface = scratch_.surfaces[at];
             const SurfaceContacts contacts(surface, b, options_.margin);
             for (; i < count && scratch_.triangles[i].surface == at; ++i) {
-                contacts.ask(scratch_.triangles[i], i, scratch_.rule, scratch_.contact);
+                contacts.ask(scratch_.triangles[i], i, rule, scratch_.contact);
+                left_out = left_out || scratch_.contact.left_out;
                 add(scratch_.contact, {surface.child, scratch_.triangles[i].triangle}, of_b, flip);
             }
         }
+        return left_out;
     }
 
     // Lists the triangles that may touch; convex parts are asked at once.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "surface_manifold.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "body_maker.hpp"
@@ -23,6 +24,12 @@ void triangle_patch(const PlacedTriangle& t, const glm::dvec3& direction, Patch&
     }
 }
 
+double deepest(const GatheredPoints& points) {
+    double depth = -HUGE_VAL;
+    for (int i = 0; i < points.count; ++i) depth = std::max(depth, points.point[i].depth);
+    return depth;
+}
+
 }  // namespace
 
 SurfaceContacts::SurfaceContacts(const NearSurface& surface, const Placed& body, double margin)
@@ -35,8 +42,9 @@ SurfaceContacts::SurfaceContacts(const NearSurface& surface, const Placed& body,
     if (round) segment_.emplace(body, origin, surface.reach, margin);
 }
 
-void SurfaceContacts::ask(const NearTriangle& near, std::uint32_t index, EdgeRule& rule, Contact& contact) const {
+void SurfaceContacts::ask(const NearTriangle& near, std::uint32_t index, EdgeRule* rule, Contact& contact) const {
     contact.points.count = 0;
+    contact.left_out = false;
     PlacedTriangle t = placed_corners(near.corners, surface_.pose, surface_.pose.translation);
     Touch touch;
     Warm warm = box_ ? box_->ask(t, touch) : Warm::unknown;
@@ -61,13 +69,14 @@ void SurfaceContacts::ask(const NearTriangle& near, std::uint32_t index, EdgeRul
     }
     const bool allowed = !front_only || along > 0.0;
     const bool across_face = std::abs(along) >= 1.0 - 0.5 * kFlatSine * kFlatSine;
-    if (allowed && (across_face || !rule.points_into_neighbor(index, surface_.pose, normal))) {
+    if (allowed && (across_face || rule == nullptr || !rule->points_into_neighbor(index, surface_.pose, normal))) {
         if (found == Found::touch) gather(t, triangle ? &*triangle : nullptr, touch, contact);
         return;
     }
+    const bool meets = found == Found::points ? deepest(contact.points) >= 0.0 : touch.depth >= 0.0;
     contact.points.count = 0;
-    if (t.normal == glm::dvec3(0.0)) return;
-    gather_along_face(t, front_only || is_in_front(t, body_.body, middle_), contact);
+    if (t.normal != glm::dvec3(0.0)) gather_along_face(t, front_only || is_in_front(t, body_.body, middle_), contact);
+    contact.left_out = allowed && meets && contact.points.count == 0;
 }
 
 // The triangle's face is tried first: its points are clipped for that already.

@@ -15,12 +15,14 @@ class SurfaceContacts {
     SurfaceContacts(const NearSurface& surface, const Placed& body, double margin);
 
     // The contact points of one triangle, along `normal`, from the triangle to the body. No points where it does not
-    // touch.
+    // touch. `left_out`: the two meet, and the rule for inner edges leaves no point.
     struct Contact {
         glm::dvec3 normal;
         GatheredPoints points;
+        bool left_out;
     };
-    void ask(const NearTriangle& triangle, std::uint32_t index, EdgeRule& rule, Contact& contact) const;
+    // Without a rule: as if the triangle had no neighbours.
+    void ask(const NearTriangle& triangle, std::uint32_t index, EdgeRule* rule, Contact& contact) const;
 
   private:
     // How the two touch along the least deep direction; false: they do not. Points that come with it go to `contact`.

@@ -20,31 +20,50 @@ VerifyRow none_wrong(std::string claim, const char* source, std::uint64_t cases,
     return row;
 }
 
-// Cold, and with what a neighbouring pose has left.
-VerifyRow yes_or_no(int decade, double offset, const VerifyOptions& options) {
-    const std::uint64_t pairs = std::max<std::uint64_t>(20, options.trials / 500);
+// Of one size, or each of its own.
+enum class Sizes { one, any };
+
+// Whether a and b meet, as each question tells that has a yes or no: alone, and with what a neighbouring pose has left.
+// Returns how many of these answers are not the truth.
+std::uint64_t wrong_answers(const Placed& a, const Placed& b, const RigidTransform& earlier, bool truth) {
+    const Placed before{b.body, earlier};
+    convex::PairCache cache, manifold_cache;
+    (void)convex::intersects(a, before, &cache);
+    (void)convex::contact_manifold(a, before, {}, &manifold_cache);
+    const std::array answers{convex::intersects(a, b),
+                             convex::intersects(a, b, &cache),
+                             convex::distance(a, b).distance == 0.0,
+                             convex::penetration(a, b).overlapping,
+                             convex::contact_manifold(a, b).count > 0,
+                             convex::contact_manifold(a, b, {}, &manifold_cache).count > 0};
+    return static_cast<std::uint64_t>(std::count(answers.begin(), answers.end(), !truth));
+}
+
+VerifyRow yes_or_no(Sizes sizes, int decade, double offset, const VerifyOptions& options) {
+    const std::uint64_t pairs = std::max<std::uint64_t>(20, options.trials / (sizes == Sizes::one ? 500 : 2000));
     ConvexPairs random(options.seed * 1000 + static_cast<std::uint64_t>(decade) * 10 + (offset > 0.0 ? 1 : 0) +
-                       (offset > 1e5 ? 1 : 0));
+                       (offset > 1e5 ? 1 : 0) + (sizes == Sizes::one ? 0 : 500));
     std::uint64_t wrong = 0, meeting = 0, by_axes = 0;
     for (std::uint64_t i = 0; i < pairs; ++i) {
         const double gap = std::pow(10.0, -decade) * random.number(0.1, 1.0) * (i % 2 == 0 ? 1.0 : -1.0);
-        const ConvexPairs::Pair pair = random.next(12, gap, offset);
+        const ConvexPairs::Pair pair =
+            sizes == Sizes::one ? random.next(12, gap, offset) : random.next_of_sizes(12, gap, offset);
         const Placed a = pair.placed_a(), b = pair.placed_b();
-        convex::PairCache cache;
         RigidTransform earlier = pair.pose_b;
-        earlier.translation += 0.01 * random.direction();
-        (void)convex::intersects(a, {pair.b, earlier}, &cache);
-        const bool cold = convex::intersects(a, b), warm = convex::intersects(a, b, &cache);
+        earlier.translation += (sizes == Sizes::one ? 0.01 : 0.01 * pair.b.reach()) * random.direction();
         const bool truth = meet_exactly(a, b, pair.normal, by_axes);
-        wrong += (cold != truth) + (warm != truth) + ((convex::distance(a, b).distance == 0.0) != truth);
+        wrong += wrong_answers(a, b, earlier, truth);
         meeting += truth;
     }
     char claim[200];
-    std::snprintf(
-        claim, sizeof claim,
-        "convex bodies at %g m, gaps and overlaps of 1e-%d: %llu pairs, %llu meet, %llu by all axes; none wrong",
-        offset, decade, static_cast<unsigned long long>(pairs), static_cast<unsigned long long>(meeting),
-        static_cast<unsigned long long>(by_axes));
+    std::snprintf(claim, sizeof claim,
+                  sizes == Sizes::one
+                      ? "convex bodies at %g m, gaps and overlaps of 1e-%d: %llu pairs, %llu meet, %llu by all "
+                        "axes; none wrong"
+                      : "of sizes 1e-6 to 1e6 at %g m, 1e-%d of the larger: %llu pairs, %llu meet, %llu by all "
+                        "axes; none wrong",
+                  offset, decade, static_cast<unsigned long long>(pairs), static_cast<unsigned long long>(meeting),
+                  static_cast<unsigned long long>(by_axes));
     return none_wrong(claim, "planes, common points and separating axes in exact numbers", pairs, wrong);
 }
 
@@ -153,8 +172,9 @@ VerifyRow casts_bisected(const VerifyOptions& options) {
 
 std::vector<VerifyRow> verify_convex(const VerifyOptions& options) {
     std::vector<VerifyRow> rows;
-    for (const double offset : {0.0, 1e3, 1e7})
-        for (int decade = 1; decade <= 12; ++decade) rows.push_back(yes_or_no(decade, offset, options));
+    for (const Sizes sizes : {Sizes::one, Sizes::any})
+        for (const double offset : {0.0, 1e3, 1e7})
+            for (int decade = 1; decade <= 12; ++decade) rows.push_back(yes_or_no(sizes, decade, offset, options));
     rows.push_back(depths(options));
     rows.push_back(casts_sampled(options));
     rows.push_back(casts_bisected(options));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "convex_pairs.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 #include <vector>
@@ -25,16 +26,16 @@ glm::dmat3 ConvexPairs::rotation() {
     return glm::mat3_cast(glm::dquat(std::cos(angle / 2), std::sin(angle / 2) * axis));
 }
 
-convex::Body ConvexPairs::polytope(int corners, std::unique_ptr<convex::Hull>& hull) {
+convex::Body ConvexPairs::polytope(int corners, double size, std::unique_ptr<convex::Hull>& hull) {
     const int kind = index(8);
     if (kind < 3) {
         const double x = number(0.1, 1), y = number(0.1, 1), z = number(0.1, 1);
-        return *convex::Body::box(glm::vec3(glm::dvec3(x, y, z)));
+        return *convex::Body::box(glm::vec3(size * glm::dvec3(x, y, z)));
     }
-    glm::dvec3 scale(1.0);
+    glm::dvec3 scale(size);
     const int form = index(4);
-    if (form == 2) scale.z = 1e-3;
-    if (form == 3) scale.y = scale.z = 0.02;
+    if (form == 2) scale.z *= 1e-3;
+    if (form == 3) scale.y = scale.z = 0.02 * size;
     for (;;) {
         std::vector<glm::vec3> points;
         const int count = kind == 3 ? 3 : 4 + index(corners - 3);
@@ -51,8 +52,15 @@ convex::Body ConvexPairs::polytope(int corners, std::unique_ptr<convex::Hull>& h
 }
 
 ConvexPairs::Pair ConvexPairs::next(int corners, double gap, double offset) {
-    const convex::Body a = polytope(corners, hulls_[0]), b = polytope(corners, hulls_[1]);
+    const convex::Body a = polytope(corners, 1.0, hulls_[0]), b = polytope(corners, 1.0, hulls_[1]);
     return touching(a, b, gap, offset);
+}
+
+ConvexPairs::Pair ConvexPairs::next_of_sizes(int corners, double gap, double offset) {
+    const double power_a = number(-6.0, 6.0), power_b = number(-6.0, 6.0);
+    const double size_a = std::pow(10.0, power_a), size_b = std::pow(10.0, power_b);
+    const convex::Body a = polytope(corners, size_a, hulls_[0]), b = polytope(corners, size_b, hulls_[1]);
+    return touching(a, b, std::max(size_a, size_b) * gap, offset);
 }
 
 ConvexPairs::Pair ConvexPairs::touching(const convex::Body& a, const convex::Body& b, double gap, double offset) {

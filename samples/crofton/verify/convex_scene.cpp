@@ -67,8 +67,9 @@ VerifyRow hulls_that_touch(const BodyData& data, double offset, const VerifyOpti
         const bool truth = meet_exactly(pair.placed_a(), pair.placed_b(), pair.normal, tally.by_axes);
         const bool apart = convex::distance(pair.placed_a(), pair.placed_b()).distance > 0.0;
         const bool deep = convex::penetration(pair.placed_a(), pair.placed_b()).overlapping;
-        tally.wrong +=
-            (convex::intersects(pair.placed_a(), pair.placed_b()) != truth) + (apart == truth) + (deep != truth);
+        const bool has_points = convex::contact_manifold(pair.placed_a(), pair.placed_b()).count > 0;
+        tally.wrong += (convex::intersects(pair.placed_a(), pair.placed_b()) != truth) + (apart == truth) +
+                       (deep != truth) + (has_points != truth);
         tally.meeting += truth;
     }
     return row_of("these hulls," + at_offset(offset) + std::to_string(pairs) + " pairs with gaps of 1e-1 to 1e-12, " +
@@ -160,7 +161,9 @@ VerifyRow surface_touched(const BodyData& data, double offset, const VerifyOptio
         const TriangleTruth triangles(data, surface);
         const bool truth = triangles.meets(probe, tally.by_axes);
         const convex::Distance d = convex::distance(surface, probe);
+        const bool has_points = convex::contact_manifold(surface, probe).count > 0;
         tally.wrong += (convex::intersects(surface, probe) != truth) + ((d.distance == 0.0) != truth);
+        tally.wrong += has_points != truth;
         tally.meeting += truth;
         if (truth) continue;
         const std::array<double, 2> least = triangles.distance(probe, d.distance);

@@ -108,7 +108,7 @@ struct ManifoldOptions {
 
 // The normal is that of `penetration` or `distance`, and the manifold as deep. The faces that look along it are clipped
 // against each other (Sutherland, Hodgman); the deepest point is among the points. Bodies that meet, as `intersects`
-// tells, have one point at least. With a cache, the face of the frame before is kept while its normal is proven to be
+// tells, have one point at least; polytopes that do not meet have none at a margin of 0. With a cache, the face of the frame before is kept while its normal is proven to be
 // the least deep. That holds within 1e-4 of the pair's size. Normal and depth are then those of that face. Points are
 // off by 1e-9 of the pair's size, by 1e-5 where a hull's face is not quite flat (HullOptions). Of bodies of parts: the
 // deepest of the manifolds below; this allocates.
@@ -143,6 +143,7 @@ class Manifolds {
 // deepest point. Each depth is along its own part's normal. Two convex bodies: one manifold, or none. On the edges and
 // vertices of a surface the internal-edge rule holds. Where a contact's normal would point into the surface beside it,
 // the triangle pushes along its face's normal. So what slides over a floor of many triangles meets the floor alone.
+// Where the rule would leave a body that meets the surface without any point, it does not hold.
 // Neighbours are triangles of the same body that share vertices of equal position. Surfaces with Sides::front push to
 // the front, and only bodies whose center is there (of mass for hulls; else the middle of the bounds). The cache serves
 // two convex bodies. No allocation once `found` has seen as many parts.
