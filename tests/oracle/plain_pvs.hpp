@@ -55,6 +55,26 @@ inline bool span_in(const Aabb& box, const Line& line, double& begin, double& en
     return begin <= end;
 }
 
+// Of a hull: each triangle of three corners lies in it, and these cover its surface.
+inline bool span_in(const pvs::ConvexCell& cell, const glm::dvec3& origin, const Line& line, double& begin,
+                    double& end) {
+    begin = HUGE_VAL, end = -HUGE_VAL;
+    for (std::size_t i = 0; i < 8; ++i)
+        for (std::size_t j = i + 1; j < 8; ++j)
+            for (std::size_t k = j + 1; k < 8; ++k) {
+                const glm::dvec3 a = cell.corners[i] - origin - line.point, b = cell.corners[j] - origin - line.point,
+                                 c = cell.corners[k] - origin - line.point;
+                const double x = glm::dot(line.direction, glm::cross(a, b)),
+                             y = glm::dot(line.direction, glm::cross(b, c)),
+                             z = glm::dot(line.direction, glm::cross(c, a));
+                if (!((x > 0.0 && y > 0.0 && z > 0.0) || (x < 0.0 && y < 0.0 && z < 0.0))) continue;
+                const glm::dvec3 normal = glm::cross(b - a, c - a);
+                const double t = glm::dot(normal, a) / glm::dot(normal, line.direction);
+                begin = std::min(begin, t), end = std::max(end, t);
+            }
+    return begin <= end;
+}
+
 using Pairs = std::set<std::pair<std::size_t, std::uint32_t>>;  // cell, object
 
 // The lines are relative to the subject's origin.
@@ -64,7 +84,10 @@ inline void add_witnessed(const pvs::Subject& subject, const pvs::Cells& cells, 
     for (std::size_t c = 0; c < cells.size(); ++c) {
         const Aabb box = cells.box(c);
         double begin, end;
-        if (!span_in({box.min - subject.origin, box.max - subject.origin}, line, begin, end)) continue;
+        const bool meets = cells.is_convex()
+                               ? span_in(cells.corners(c), subject.origin, line, begin, end)
+                               : span_in({box.min - subject.origin, box.max - subject.origin}, line, begin, end);
+        if (!meets) continue;
         for (std::size_t gap = 0; gap <= hits.size(); ++gap) {
             const double from = gap == 0 ? -HUGE_VAL : hits[gap - 1].t,
                          to = gap == hits.size() ? HUGE_VAL : hits[gap].t;

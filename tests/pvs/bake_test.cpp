@@ -85,6 +85,51 @@ TEST_SUITE("pvs/bake") {
         }
     }
 
+    TEST_CASE("witnesses what a plain walk does in convex cells, near and far, together and each by itself") {
+        for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+            const Subject subject = random_subject(seed, 12, (seed % 2 ? 1e5 : 0.0) * glm::dvec3(1.0, -0.7, 0.3));
+            const bool far_apart = seed % 3 == 0;
+            std::vector<ConvexCell> convex;
+            sampling::Random random(seed + 100);
+            for (int i = 0; i < (far_apart ? 3 : 20); ++i) {
+                const double x = random.uniform(-8.0, 8.0), y = random.uniform(0.0, 3.0), z = random.uniform(-8.0, 8.0);
+                const glm::dvec3 at(x, y, z + (far_apart ? 400.0 * i : 0.0));
+                convex.push_back(random_cell(random, subject.origin + at, 2.0));
+            }
+            const Cells cells = Cells::convex(convex).value();
+            const BakeOptions options{.epsilon = epsilon_for(far_apart ? 4000.0 : 60.0, cells.size() * 12, 0.9),
+                                      .confidence = 0.9,
+                                      .seed = seed,
+                                      .sides = seed % 4 == 0 ? occlude::Sides::front : occlude::Sides::both};
+            Bake bake = Bake::create(subject, cells, options).value();
+            REQUIRE(bake.run().has_value());
+            REQUIRE(bake.is_complete());
+            CHECK(bake.epsilon_reached() <= options.epsilon);
+            CAPTURE(seed);
+            const auto found = pairs_of(bake, cells.size(), 12);
+            CHECK(found.size() > (far_apart ? 10 : 100));
+            CHECK(found == oracle::witnessed(subject, cells, options));
+        }
+    }
+
+    TEST_CASE("of lines through the box around a convex cell as many meet it as their surfaces say") {
+        sampling::Random random(5);
+        for (int i = 0; i < 20; ++i) {
+            const ConvexCell cell = random_cell(random, {}, 1.0);
+            const Cells cells = Cells::convex(std::vector<ConvexCell>{cell}).value();
+            const Aabb box = cells.box(0);
+            const glm::dvec3 e = box.max - box.min;
+            const double share = cells.surface(0) / (2.0 * (e.x * e.y + e.y * e.z + e.z * e.x));
+            constexpr int kLines = 4000;
+            int met = 0;
+            for (int n = 0; n < kLines; ++n) {
+                double begin, end;
+                met += oracle::span_in(cell, {}, sampling::line_from_box(box, random.point<5>()), begin, end);
+            }
+            CHECK(std::abs(met - kLines * share) < 5.0 * std::sqrt(kLines * share * (1.0 - share)) + 1.0);
+        }
+    }
+
     TEST_CASE("cells that are few and far apart get lines of their own, and witness the same as the plain walk") {
         const Subject subject = random_subject(8, 12);
         const std::vector<Aabb> far = {box_around({-400.0, 1.0, 0.0}, glm::dvec3(0.5)),

@@ -147,6 +147,44 @@ TEST_SUITE("pvs/hidden") {
         MESSAGE(hidden << " hidden, " << by_one << " by one body, " << by_halves << " by halves");
     }
 
+    TEST_CASE("of convex cells too: every segment of a hidden pair meets a body, and more is proved than of boxes") {
+        std::uint64_t hidden = 0, hidden_of_boxes = 0;
+        for (const double offset : {0.0, 1e7})
+            for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+                const glm::dvec3 o = offset * glm::dvec3(1.0, -0.75, 0.25);
+                const Walls walls = random_walls(seed, 14, 40, o);
+                sampling::Random random(seed);
+                std::vector<ConvexCell> convex;
+                std::vector<Aabb> boxes;
+                for (int i = 0; i < 40; ++i) {
+                    const double x = random.uniform(-11.0, 11.0), z = random.uniform(-11.0, 11.0);
+                    convex.push_back(random_cell(random, o + glm::dvec3(x, 1.5, z), 1.5));
+                    boxes.emplace_back();
+                    for (const glm::dvec3& p : convex.back().corners) boxes.back().include(p);
+                }
+                const Cells cells = Cells::convex(convex).value();
+                const ProofOptions options{.near_radius = 0.1, .halvings = seed % 2 ? 0u : 4u};
+                const Pvs pvs = finished(walls, cells, options);
+                hidden_of_boxes += finished(walls, Cells::boxes(boxes).value(), options).counts().hidden;
+                for (std::size_t c = 0; c < cells.size(); ++c)
+                    for (std::uint32_t i = 0; i < 40 && pvs.kind(c) == CellKind::open; ++i) {
+                        if (pvs.state(c, i) != PairState::hidden) continue;
+                        ++hidden;
+                        for (int n = 0; n < 40; ++n) {
+                            const glm::dvec3 p = point_in(convex[c], random),
+                                             q = point_in(walls.subject.boxes[i], random);
+                            bool met = false;
+                            for (const Obb& body : walls.boxes)
+                                met = met || (!is_near(body, cells.box(c), 0.0999) && depth_in(body, p, q) >= 0.0);
+                            CHECK(met);
+                        }
+                    }
+            }
+        CHECK(hidden > 400);
+        CHECK(hidden > hidden_of_boxes);
+        MESSAGE(hidden << " hidden, of the boxes around the cells " << hidden_of_boxes);
+    }
+
     TEST_CASE("a body proves nothing for eyes near it, behind its open side, or where it is a patch or flat") {
         Subject subject;
         add_box(subject, box_around({0.0, 0.0, 10.0}, glm::dvec3(0.5)));

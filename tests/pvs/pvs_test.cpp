@@ -41,6 +41,7 @@ void check_same(const Pvs& a, const Pvs& b) {
     for (std::size_t c = 0; c < a.cells().size(); ++c) {
         CHECK(a.cells().box(c).min == b.cells().box(c).min);
         CHECK(a.cells().box(c).max == b.cells().box(c).max);
+        CHECK(a.cells().corners(c).corners == b.cells().corners(c).corners);
         CHECK(a.kind(c) == b.kind(c));
         for (const Mode mode : {Mode::conservative, Mode::statistical}) {
             const auto x = a.visible_from(static_cast<std::uint32_t>(c), mode);
@@ -53,13 +54,18 @@ void check_same(const Pvs& a, const Pvs& b) {
 }  // namespace
 
 TEST_SUITE("pvs/pvs") {
-    TEST_CASE("a file holds what was put in, in grids and boxes, alone and beside a scene") {
+    TEST_CASE("a file holds what was put in, in grids, boxes and convex cells, alone and beside a scene") {
         for (std::uint64_t seed = 1; seed <= 4; ++seed) {
             Subject subject = random_subject(seed, 40 + static_cast<int>(seed) * 17);
             subject.boxes.push_back(subject.boxes[0]);  // one that moves
             std::vector<Aabb> boxes;
             for (int i = 0; i < 9; ++i) boxes.push_back(box_around({2.0 * i - 9.0, 1.0, 3.0}, glm::dvec3(1.2)));
-            const Cells cells = seed % 2 ? Cells::grid(kBounds, {7, 2, 5}).value() : Cells::boxes(boxes).value();
+            sampling::Random random(seed);
+            std::vector<ConvexCell> convex;
+            for (const Aabb& box : boxes) convex.push_back(random_cell(random, box.center(), 1.5));
+            const Cells cells = seed == 1   ? Cells::grid(kBounds, {7, 2, 5}).value()
+                                : seed == 2 ? Cells::boxes(boxes).value()
+                                            : Cells::convex(convex).value();
             const Pvs pvs = baked(subject, cells);
             const PairCounts counts = pvs.counts();
             CHECK(counts.hidden > 0);
@@ -85,7 +91,16 @@ TEST_SUITE("pvs/pvs") {
     }
 
     TEST_CASE("damaged files are refused, forged ones read as something or refused") {
-        const Pvs pvs = baked(random_subject(1, 30), Cells::grid(kBounds, {4, 1, 4}).value());
+        bool convex = false;
+        SUBCASE("grid") {}
+        SUBCASE("convex cells") {
+            convex = true;
+        }
+        sampling::Random random(1);
+        std::vector<ConvexCell> few;
+        for (int i = 0; i < 2; ++i) few.push_back(random_cell(random, {2.0 * i - 8.0, 1.0, 3.0}, 1.5));
+        const Cells cells = convex ? Cells::convex(few).value() : Cells::grid(kBounds, {4, 1, 4}).value();
+        const Pvs pvs = baked(random_subject(1, 30), cells);
         const auto file = pvs.to_file().value();
         for (std::size_t at = 0; at < file.size(); at += 7) {
             Vector<std::byte> damaged = file;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Scenes of boxes for the tests of pvs.
 #pragma once
+#include <cmath>
 #include <crofton/pvs/pvs.hpp>
 #include <crofton/sampling/sampling.hpp>
 #include <utility>
@@ -26,6 +27,30 @@ inline void add_box(pvs::Subject& subject, const Aabb& box, bool inward = false)
 
 inline Aabb box_around(const glm::dvec3& center, const glm::dvec3& half) {
     return {center - half, center + half};
+}
+
+// The hull of eight points: at random, or a turned prism over a triangle, with corners that are equal.
+inline pvs::ConvexCell random_cell(sampling::Random& random, const glm::dvec3& center, double size) {
+    pvs::ConvexCell cell;
+    const bool prism = random.uniform() < 0.5;
+    for (std::size_t i = 0; i < 8; ++i) {
+        const double x = random.uniform(-1.0, 1.0), y = random.uniform(-1.0, 1.0), z = random.uniform(-1.0, 1.0);
+        cell.corners[i] = center + size * glm::dvec3(x, y, z);
+    }
+    if (!prism) return cell;
+    const glm::dvec3 up = cell.corners[3] - center;
+    for (std::size_t k = 0; k < 3; ++k) cell.corners[k + 3] = cell.corners[k] + up;
+    cell.corners[6] = cell.corners[7] = cell.corners[0];
+    return cell;
+}
+
+// A point of it: weights of the corners.
+inline glm::dvec3 point_in(const pvs::ConvexCell& cell, sampling::Random& random) {
+    double weight[8], sum = 0.0;
+    for (double& w : weight) sum += w = -std::log(1.0 - random.uniform());
+    glm::dvec3 point(0.0);
+    for (std::size_t i = 0; i < 8; ++i) point += weight[i] / sum * (cell.corners[i] - cell.corners[0]);
+    return cell.corners[0] + point;
 }
 
 // Boxes at random places of a flat region, some of which meet.

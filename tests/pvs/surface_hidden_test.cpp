@@ -197,7 +197,10 @@ TEST_SUITE("pvs/surface") {
                             add_box(subject,
                                     box_around(subject.origin + middle - glm::dvec3(0.0, 0.8, 0.0), glm::dvec3(0.3)));
                         }
-                    const Cells cells = Cells::boxes(boxes).value();
+                    // Of every other maze the cells are convex.
+                    std::vector<ConvexCell> convex;
+                    for (const Aabb& box : boxes) convex.push_back(random_cell(random, box.center(), 0.9));
+                    const Cells cells = seed % 2 ? Cells::boxes(boxes).value() : Cells::convex(convex).value();
                     Bake bake =
                         Bake::create(subject, cells, {.epsilon = 2e-2, .confidence = 0.9, .sides = sides}).value();
                     REQUIRE(bake.run().has_value());
@@ -212,7 +215,9 @@ TEST_SUITE("pvs/surface") {
                             ++hidden;
                             for (int n = 0; n < 6; ++n) {
                                 const glm::dvec3 p =
-                                    sampling::box_point(cells.box(c), random.point<3>()) - subject.origin;
+                                    (cells.is_convex() ? point_in(convex[c], random)
+                                                       : sampling::box_point(cells.box(c), random.point<3>())) -
+                                    subject.origin;
                                 double u = random.uniform(), v = random.uniform();
                                 if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
                                 glm::dvec3 q[3];

@@ -118,7 +118,7 @@ class BlockTracing {
         const auto& gaps = scratch_.gaps;
         std::size_t g = 0;
         for (const CellSpan& span : scratch_.spans) {
-            if (g > 0 && gaps[g - 1].end >= span.begin) g = 0;  // not in order: boxes of the caller's
+            if (g > 0 && gaps[g - 1].end >= span.begin) g = 0;  // not in order: cells of the caller's
             while (gaps[g].end < span.begin) ++g;
             double begin = span.begin;
             for (std::size_t i = g; begin < span.end; ++i) {
@@ -145,7 +145,9 @@ std::uint64_t fingerprint_of(const Subject& subject, const Cells& cells, const B
     Vector<std::uint64_t> sums{pvs::fingerprint_of(subject)};
     for (std::size_t i = 0; i < cells.size(); ++i) {
         const Aabb box = cells.box(i);
-        sums.push_back(bake::checksum(std::as_bytes(std::span(&box, 1))));
+        const ConvexCell convex = cells.corners(i);
+        sums.push_back(cells.is_convex() ? bake::checksum(std::as_bytes(std::span(convex.corners)))
+                                         : bake::checksum(std::as_bytes(std::span(&box, 1))));
     }
     sums.push_back(options.seed);
     sums.push_back(LinePlan::kVersion);
@@ -272,7 +274,7 @@ double Bake::epsilon_reached() const {
         std::uint64_t least = plan.per_cell;
         for (std::uint64_t c = 0; c < state_->cells.size(); ++c)
             least = (std::min)(least, done.count_within({c * plan.per_cell, (c + 1) * plan.per_cell}));
-        lines = static_cast<double>(least * LinePlan::kBlock);
+        lines = static_cast<double>(least * LinePlan::kBlock) * plan.own_share;
     }
     const std::uint64_t pairs = state_->cells.size() * state_->boxes.size();
     return epsilon_after(lines, pairs, state_->options.confidence);

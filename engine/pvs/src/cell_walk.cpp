@@ -3,19 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <limits>
 
 namespace crofton::pvs {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-inline std::uint32_t voxel_of(double x, const Aabb& bounds, int k, std::uint32_t count) {
-    const double extent = bounds.max[k] - bounds.min[k];
-    if (!(extent > 0.0)) return 0;
-    const double at = (x - bounds.min[k]) / extent * count;
-    return at <= 0.0 ? 0 : (std::min)(static_cast<std::uint32_t>((std::min)(at, 4e9)), count - 1);
-}
 
 }  // namespace
 
@@ -34,6 +28,17 @@ bool clip(const Line& line, const Aabb& box, double& begin, double& end) {
     return begin <= end;
 }
 
+bool clip(const Line& line, std::span<const Plane> planes, double& begin, double& end) {
+    for (const Plane& plane : planes) {
+        const double height = glm::dot(plane.normal, line.point) + plane.offset,
+                     slope = glm::dot(plane.normal, line.direction);
+        if (slope == 0.0 && height < 0.0) return false;
+        if (slope > 0.0) begin = (std::max)(begin, -height / slope);
+        if (slope < 0.0) end = (std::min)(end, -height / slope);
+    }
+    return begin <= end;
+}
+
 CellWalk::CellWalk(const Cells& cells, const glm::dvec3& origin) {
     bounds_ = {cells.bounds().min - origin, cells.bounds().max - origin};
     if (cells.is_grid()) {
@@ -43,30 +48,15 @@ CellWalk::CellWalk(const Cells& cells, const glm::dvec3& origin) {
     }
     for (std::size_t i = 0; i < cells.size(); ++i)
         boxes_.push_back({cells.box(i).min - origin, cells.box(i).max - origin});
-    // About a voxel for each box.
-    const double side = std::sqrt(static_cast<double>(boxes_.size()));
-    for (int k = 0; k < 3; ++k)
-        counts_[k] = static_cast<std::uint32_t>(std::clamp(k == 1 ? side / 4.0 : side, 1.0, 64.0));
+    voxels_.emplace(boxes_, bounds_);
+    std::copy(std::begin(voxels_->counts), std::end(voxels_->counts), counts_);
     set_steps();
-    const auto each_voxel = [&](const Aabb& box, auto&& visit) {
-        std::uint32_t low[3], high[3];
-        for (int k = 0; k < 3; ++k) {
-            low[k] = voxel_of(box.min[k], bounds_, k, counts_[k]);
-            high[k] = voxel_of(box.max[k], bounds_, k, counts_[k]);
-            low[k] -= low[k] > 0;  // rounding of a walk's steps
-            high[k] += high[k] + 1 < counts_[k];
-        }
-        for (std::uint32_t z = low[2]; z <= high[2]; ++z)
-            for (std::uint32_t y = low[1]; y <= high[1]; ++y)
-                for (std::uint32_t x = low[0]; x <= high[0]; ++x) visit(x + counts_[0] * (y + counts_[1] * z));
-    };
-    first_.assign(std::size_t{counts_[0]} * counts_[1] * counts_[2] + 1, 0);
-    for (const Aabb& box : boxes_) each_voxel(box, [&](std::uint32_t v) { ++first_[v + 1]; });
-    for (std::size_t v = 1; v < first_.size(); ++v) first_[v] += first_[v - 1];
-    listed_.resize(first_.back());
-    Vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-    for (std::uint32_t i = 0; i < boxes_.size(); ++i)
-        each_voxel(boxes_[i], [&](std::uint32_t v) { listed_[next[v]++] = i; });
+    for (std::size_t i = 0; i < cells.size() && cells.is_convex(); ++i) {
+        const glm::dvec3 corner = cells.corners(i).corners[0] - origin;
+        for (const Plane& plane : cells.planes(i))
+            planes_.push_back({plane.normal, plane.offset - glm::dot(plane.normal, corner)});
+        plane_ends_.push_back(static_cast<std::uint32_t>(planes_.size()));
+    }
 }
 
 void CellWalk::set_steps() {
@@ -115,9 +105,15 @@ void CellWalk::find(const Line& line, Vector<CellSpan>& spans) const {
         return;
     }
     walk(line, [&](std::uint32_t voxel, double, double) {
-        for (std::uint32_t i = first_[voxel]; i < first_[voxel + 1]; ++i) {
-            CellSpan span{listed_[i], 0.0, 0.0};
-            if (clip(line, boxes_[span.cell], span.begin, span.end)) spans.push_back(span);
+        for (const std::uint32_t i : voxels_->boxes_in(voxel)) {
+            CellSpan span{i, 0.0, 0.0};
+            if (!clip(line, boxes_[i], span.begin, span.end)) continue;
+            if (!planes_.empty()) {
+                const std::uint32_t first = i == 0 ? 0 : plane_ends_[i - 1];
+                const auto planes = std::span(planes_).subspan(first, plane_ends_[i] - first);
+                if (!clip(line, planes, span.begin, span.end)) continue;
+            }
+            spans.push_back(span);
         }
     });
 }

@@ -5,6 +5,10 @@
 #include <crofton/geometry/shapes.hpp>
 #include <crofton/pvs/pvs.hpp>
 #include <cstdint>
+#include <optional>
+#include <span>
+
+#include "box_voxels.hpp"
 
 namespace crofton::pvs {
 
@@ -13,13 +17,13 @@ struct CellSpan {
     double begin = 0.0, end = 0.0;  // along the line, from its point; begin ≤ end
 };
 
-// Cells relative to an origin. Boxes of the caller's are listed in the voxels of a grid.
+// Cells relative to an origin. Those of the caller's are listed in the voxels of a grid.
 class CellWalk {
   public:
     CellWalk(const Cells& cells, const glm::dvec3& origin);
 
     // Replaces `spans` by all cells that the line meets, but for those that it grazes within rounding. Of a grid each
-    // once, along the line; a box of the caller's may come more than once, in any order.
+    // once, along the line; a cell of the caller's may come more than once, in any order.
     void find(const Line& line, Vector<CellSpan>& spans) const;
 
   private:
@@ -32,11 +36,16 @@ class CellWalk {
     std::uint32_t counts_[3] = {1, 1, 1};
     double widths_[3] = {}, per_length_[3] = {};  // of a voxel; voxels to a unit of length
     std::int64_t last_[3] = {};
-    Vector<Aabb> boxes_;                    // empty: the voxels are the cells
-    Vector<std::uint32_t> first_, listed_;  // by voxel, the range of boxes that meet it
+    Vector<Aabb> boxes_;               // empty: the voxels are the cells
+    std::optional<BoxVoxels> voxels_;  // of the boxes
+    // Of convex cells: where all are at least 0.
+    Vector<Plane> planes_;
+    Vector<std::uint32_t> plane_ends_;
 };
 
 // Where the line is in the box: begin ≤ end, or none.
 [[nodiscard]] bool clip(const Line& line, const Aabb& box, double& begin, double& end);
+// What of that lies within the planes.
+[[nodiscard]] bool clip(const Line& line, std::span<const Plane> planes, double& begin, double& end);
 
 }  // namespace crofton::pvs

@@ -3,6 +3,11 @@
 #include <cmath>
 #include <crofton/core/recovery.hpp>
 #include <crofton/pvs/pvs.hpp>
+#include <glm/geometric.hpp>
+
+#include "box_voxels.hpp"
+#include "convex_cell.hpp"
+#include "shaft.hpp"
 
 namespace crofton::pvs {
 namespace {
@@ -62,6 +67,36 @@ Result<Cells> Cells::boxes(std::span<const Aabb> boxes) {
             cells.bounds_.include(boxes[i]);
         }
         cells.boxes_.assign(boxes.begin(), boxes.end());
+        cells.voxels_ = std::make_shared<const BoxVoxels>(boxes, cells.bounds_);
+        return cells;
+    });
+}
+
+Result<Cells> Cells::convex(std::span<const ConvexCell> convex) {
+    return crofton::detail::recover([&]() -> Result<Cells> {
+        if (convex.empty()) return fail(ErrorCode::empty, kNoItem, "cells: there are none");
+        if (convex.size() > kMaxCells) return fail(ErrorCode::out_of_range, convex.size(), "cells: more than 2^24");
+        Cells cells;
+        for (std::size_t i = 0; i < convex.size(); ++i) {
+            Aabb box;
+            for (const glm::dvec3& p : convex[i].corners) {
+                for (int k = 0; k < 3; ++k)
+                    if (!(std::abs(p[k]) <= kMaxCoordinate))
+                        return fail(ErrorCode::non_finite, i, "cells: a corner of a convex cell is not finite");
+                box.include(p);
+            }
+            const ConvexCellFaces faces = faces_of(convex[i]);
+            if (faces.planes.empty())
+                return fail(ErrorCode::degenerate, i,
+                            "cells: a convex cell needs a volume: its corners are in a plane");
+            cells.boxes_.push_back(box);
+            cells.bounds_.include(box);
+            cells.surfaces_.push_back(faces.surface);
+            cells.planes_.insert(cells.planes_.end(), faces.planes.begin(), faces.planes.end());
+            cells.plane_ends_.push_back(static_cast<std::uint32_t>(cells.planes_.size()));
+        }
+        cells.corners_.assign(convex.begin(), convex.end());
+        cells.voxels_ = std::make_shared<const BoxVoxels>(cells.boxes_, cells.bounds_);
         return cells;
     });
 }
@@ -83,12 +118,35 @@ Aabb Cells::box(std::size_t cell) const {
     return box;
 }
 
+ConvexCell Cells::corners(std::size_t cell) const {
+    return is_convex() ? corners_[cell] : ConvexCell{corners_of(box(cell))};
+}
+
+double Cells::surface(std::size_t cell) const {
+    if (is_convex()) return surfaces_[cell];
+    const Aabb own = box(cell);
+    const glm::dvec3 e = own.max - own.min;
+    return 2.0 * (e.x * e.y + e.y * e.z + e.z * e.x);
+}
+
+std::span<const Plane> Cells::planes(std::size_t cell) const {
+    if (!is_convex()) return {};
+    const std::uint32_t begin = cell == 0 ? 0 : plane_ends_[cell - 1];
+    return std::span(planes_).subspan(begin, plane_ends_[cell] - begin);
+}
+
 std::uint32_t Cells::find(const glm::dvec3& point) const {
     if (!holds(bounds_, point)) return kNoCell;
     if (!is_grid()) {
-        const auto found =
-            std::find_if(boxes_.begin(), boxes_.end(), [&](const Aabb& box) { return holds(box, point); });
-        return found == boxes_.end() ? kNoCell : static_cast<std::uint32_t>(found - boxes_.begin());
+        for (const std::uint32_t i : voxels_->boxes_near(point)) {
+            if (!holds(boxes_[i], point)) continue;
+            const auto within = planes(i);
+            const auto is_inside = [&](const Plane& plane) {
+                return glm::dot(plane.normal, point - corners_[i].corners[0]) + plane.offset >= 0.0;
+            };
+            if (std::all_of(within.begin(), within.end(), is_inside)) return i;
+        }
+        return kNoCell;
     }
     std::uint32_t at[3];
     for (int k = 0; k < 3; ++k) {

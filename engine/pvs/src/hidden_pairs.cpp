@@ -62,6 +62,16 @@ struct Part {
     }
 };
 
+// Where eyes may be: a cell, half of one, or the box around several.
+struct Eyes {
+    Aabb box;
+    Corners corners;
+    bool is_box = true;
+
+    explicit Eyes(const Aabb& of) : box(of), corners(corners_of(of)) {}
+    Eyes(const Aabb& around, const Corners& hull) : box(around), corners(hull), is_box(false) {}
+};
+
 struct Question {
     const Bake::State& bake;
     std::span<const Blocker> bodies;
@@ -84,27 +94,36 @@ class Prover {
     }
 
     void prove(std::uint32_t cells, std::uint32_t objects) {
-        const auto& eyes = q_.cells[cells];
+        const auto& from = q_.cells[cells];
         const auto& group = q_.objects[objects];
         const bool single = group.count == 1;
-        if (eyes.count == 1 && single && is_seen(eyes, group)) return;
+        if (from.count == 1 && single && is_seen(from, group)) return;
         const Corners corners = single ? q_.parts[q_.objects.items(group)[0]].corners() : corners_of(group.box);
-        const bool is_small = eyes.count <= kFewCells && group.count <= kFewObjects;
-        const Answer answer = intersects(eyes.box, group.box) ? Answer::open : ask(eyes.box, corners, is_small);
-        if (answer == Answer::blocked) return hide(eyes, group);
-        if (eyes.count == 1 && single) {
+        const Eyes eyes = from.count == 1 ? eyes_of(q_.cells.items(from)[0], from.box) : Eyes(from.box);
+        const bool is_small = from.count <= kFewCells && group.count <= kFewObjects;
+        const Answer answer =
+            eyes.is_box && intersects(eyes.box, group.box) ? Answer::open : ask(eyes, corners, is_small);
+        if (answer == Answer::blocked) return hide(from, group);
+        if (from.count == 1 && single) {
             const std::uint32_t object = q_.objects.items(group)[0];
-            if ((answer == Answer::partly && prove_halves(eyes.box, q_.parts[object], q_.options.halvings)) ||
-                prove_triangles(eyes.box, object))
-                hide(eyes, group);
+            if ((answer == Answer::partly && prove_halves(eyes, q_.parts[object], q_.options.halvings)) ||
+                prove_triangles(eyes, object))
+                hide(from, group);
             return;
         }
-        const bool halve_cells = !single ? eyes.count > 1 && size_of(eyes.box) >= size_of(group.box) : true;
+        const bool halve_cells = !single ? from.count > 1 && size_of(from.box) >= size_of(group.box) : true;
         for (std::uint32_t half = 0; half < 2; ++half)
-            halve_cells ? prove(eyes.child + half, objects) : prove(cells, group.child + half);
+            halve_cells ? prove(from.child + half, objects) : prove(cells, group.child + half);
     }
 
   private:
+    [[nodiscard]] Eyes eyes_of(std::uint32_t cell, const Aabb& box) const {
+        const Cells& cells = q_.bake.cells;
+        if (!cells.is_convex()) return Eyes(box);
+        Corners corners = cells.corners(cell).corners;
+        for (glm::dvec3& p : corners) p -= q_.bake.origin;
+        return {box, corners};
+    }
     static double size_of(const Aabb& box) { return glm::length(box.max - box.min); }
 
     [[nodiscard]] bool is_seen(const BoxGroups::Group& cell, const BoxGroups::Group& object) const {
@@ -130,26 +149,26 @@ class Prover {
     };
 
     // Bodies are asked first: they cost less.
-    [[nodiscard]] Answer ask(const Aabb& eyes, const Corners& object, bool with_surface = true) {
+    [[nodiscard]] Answer ask(const Eyes& eyes, const Corners& object, bool with_surface = true) {
         const Answer answer = ask_bodies(eyes, object);
         if (answer == Answer::blocked || !cut_ || !with_surface) return answer;
-        const SurfaceCut::Answer cut = cut_->ask(corners_of(eyes), object);
+        const SurfaceCut::Answer cut = cut_->ask(eyes.corners, object);
         if (cut == SurfaceCut::Answer::cut) return Answer::blocked;
         return cut == SurfaceCut::Answer::partly ? Answer::partly : answer;
     }
 
     // The last body that blocked is asked first, then all that the segment between the middles meets.
-    [[nodiscard]] Answer ask_bodies(const Aabb& eyes, const Corners& object) {
+    [[nodiscard]] Answer ask_bodies(const Eyes& eyes, const Corners& object) {
         if (q_.bodies.empty()) return Answer::open;
-        const Corners from = corners_of(eyes);
         const auto blocks_eyes = [&](const Blocker& body) {
-            return may_prove_for(body, eyes, q_.options.near_radius, q_.margin) &&
-                   blocks_all(body, from, object, q_.margin);
+            return may_prove_for(body, eyes.box, q_.options.near_radius, q_.margin) &&
+                   blocks_all(body, eyes.corners, object, q_.margin);
         };
         if (last_ < q_.bodies.size() && blocks_eyes(q_.bodies[last_])) return Answer::blocked;
         glm::dvec3 middle(0.0);
         for (const glm::dvec3& p : object) middle += 0.125 * p;
-        const glm::dvec3 start = eyes.center();
+        glm::dvec3 start(0.0);
+        for (const glm::dvec3& p : eyes.corners) start += 0.125 * p;
         const Line line{start, middle - start};  // of any length: 0 ≤ t ≤ 1 is the segment
         Answer answer = Answer::open;
         stack_.assign(1, BoxGroups::kRoot);
@@ -174,15 +193,16 @@ class Prover {
         return answer;
     }
 
-    [[nodiscard]] bool prove_halves(const Aabb& eyes, const Part& object, std::uint32_t halvings) {
+    [[nodiscard]] bool prove_halves(const Eyes& eyes, const Part& object, std::uint32_t halvings) {
         if (halvings == 0) return false;
-        const glm::dvec3 e = 0.5 * (eyes.max - eyes.min);
+        const glm::dvec3 e = 0.5 * (eyes.box.max - eyes.box.min);
         const int k = e.x >= e.y ? (e.x >= e.z ? 0 : 2) : (e.y >= e.z ? 1 : 2);
         const std::size_t widest = object.longest();
-        const bool halve_eyes = e[k] >= object.length(widest);
+        const bool halve_eyes = eyes.is_box && e[k] >= object.length(widest);
         for (const bool upper : {false, true}) {
-            Aabb part_of_eyes = eyes;
-            if (halve_eyes) (upper ? part_of_eyes.min : part_of_eyes.max)[k] = eyes.center()[k];
+            Aabb half_box = eyes.box;
+            if (halve_eyes) (upper ? half_box.min : half_box.max)[k] = eyes.box.center()[k];
+            const Eyes part_of_eyes = halve_eyes ? Eyes(half_box) : eyes;
             const Part part = halve_eyes ? object : object.halved(widest, upper);
             const Answer answer = ask(part_of_eyes, part.corners());
             if (answer == Answer::open) return false;
@@ -192,7 +212,7 @@ class Prover {
     }
 
     // Triangle by triangle, that on which the object failed last before the others.
-    [[nodiscard]] bool prove_triangles(const Aabb& eyes, std::uint32_t object) {
+    [[nodiscard]] bool prove_triangles(const Eyes& eyes, std::uint32_t object) {
         const auto triangles =
             std::span(q_.triangles)
                 .subspan(q_.first_triangle[object], q_.first_triangle[object + 1] - q_.first_triangle[object]);

@@ -95,11 +95,14 @@ Result<LinePlan> plan_lines(const Cells& cells, std::uint64_t pairs, const BakeO
     LinePlan plan;
     plan.seed = options.seed;
     plan.for_a_cell = std::ceil(epsilon_after(options.epsilon, pairs, options.confidence));
-    double least = surface(cells.box(0));
-    for (std::size_t i = 1; i < cells.size(); ++i) least = (std::min)(least, surface(cells.box(i)));
+    double least = cells.surface(0);
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        least = (std::min)(least, cells.surface(i));
+        if (cells.is_convex()) plan.own_share = (std::min)(plan.own_share, cells.surface(i) / surface(cells.box(i)));
+    }
     plan.least_share = least / surface(cells.bounds());
     const double whole = plan.for_a_cell / plan.least_share;
-    plan.per_cell = (std::max)(std::uint64_t{1}, blocks_for(plan.for_a_cell));
+    plan.per_cell = (std::max)(std::uint64_t{1}, blocks_for(plan.for_a_cell / plan.own_share));
     const double each = static_cast<double>(cells.size() * LinePlan::kBlock) * static_cast<double>(plan.per_cell);
     if (!((std::min)(whole, each) <= 0x1p44))
         return fail(ErrorCode::out_of_range, kNoItem,

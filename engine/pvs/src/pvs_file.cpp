@@ -15,7 +15,7 @@ namespace {
 
 struct Head {
     double low[3] = {}, high[3] = {};  // of a grid
-    std::uint32_t counts[3] = {};      // 0: boxes, in a section of their own
+    std::uint32_t counts[3] = {};      // 0: boxes or convex cells, in a section of their own
     std::uint32_t objects = 0;
     double epsilon = 1.0, confidence = 0.0;
     std::uint64_t subject = 0;
@@ -26,7 +26,8 @@ tl::unexpected<Error> damaged(const char* what, std::uint64_t item = kNoItem) {
     return fail(ErrorCode::parse, item, {"potentially visible sets: ", what});
 }
 
-Result<Cells> cells_from(const Head& head, std::span<const Aabb> boxes) {
+Result<Cells> cells_from(const Head& head, std::span<const Aabb> boxes, std::span<const ConvexCell> convex) {
+    if (!convex.empty()) return Cells::convex(convex);
     if (!boxes.empty()) return Cells::boxes(boxes);
     const glm::dvec3 low(head.low[0], head.low[1], head.low[2]), high(head.high[0], head.high[1], head.high[2]);
     return Cells::grid({low, high}, {head.counts[0], head.counts[1], head.counts[2]});
@@ -39,6 +40,15 @@ glm::uvec3 rows_of(const Cells& cells) {
 std::string_view name_of(const bake::Section& section) {
     const auto end = std::find(std::begin(section.name), std::end(section.name), '\0');
     return {section.name, static_cast<std::size_t>(end - section.name)};
+}
+
+constexpr const char* kConvex = "pvs_hull";
+constexpr std::size_t kMostSections = 6;
+
+bool has_convex(const bake::Reader& reader) {
+    const auto sections = reader.sections();
+    return std::any_of(sections.begin(), sections.end(),
+                       [](const bake::Section& section) { return name_of(section) == kConvex; });
 }
 
 }  // namespace
@@ -55,7 +65,9 @@ struct PvsFile {
         head.subject = pvs.subject_;
         head.epsilon = pvs.epsilon_, head.confidence = pvs.confidence_;
         Vector<Aabb> boxes;
-        for (std::size_t c = 0; c < pvs.cells_.size() && !pvs.cells_.is_grid(); ++c) boxes.push_back(pvs.cells_.box(c));
+        Vector<ConvexCell> convex;
+        for (std::size_t c = 0; c < pvs.cells_.size() && !pvs.cells_.is_grid(); ++c)
+            pvs.cells_.is_convex() ? convex.push_back(pvs.cells_.corners(c)) : boxes.push_back(pvs.cells_.box(c));
         PairStates pairs{rows_of(pvs.cells_), pvs.objects_, {}};
         for (std::size_t c = 0; c < pvs.kinds_.size(); ++c)
             for (std::uint32_t o = 0; o < pvs.objects_; ++o)
@@ -63,6 +75,7 @@ struct PvsFile {
         const Vector<std::byte> code = encode(pairs);
         writer.add("pvs_head", std::span<const Head>(&head, 1));
         writer.add("pvs_box", std::span<const Aabb>(boxes));
+        if (!convex.empty()) writer.add(kConvex, std::span<const ConvexCell>(convex));
         writer.add("pvs_kind", std::span<const CellKind>(pvs.kinds_));
         writer.add("pvs_from", std::span<const std::uint64_t>(pvs.baked_));
         writer.add("pvs_pair", std::span<const std::byte>(code));
@@ -80,7 +93,13 @@ struct PvsFile {
         if (!baked) return tl::unexpected(baked.error());
         if (!code) return tl::unexpected(code.error());
         if (head->size() != 1) return damaged("not one header");
-        auto cells = cells_from(head->front(), *boxes);
+        std::span<const ConvexCell> convex;
+        if (has_convex(reader)) {
+            const auto section = reader.section<ConvexCell>(kConvex);
+            if (!section) return tl::unexpected(section.error());
+            convex = *section;
+        }
+        auto cells = cells_from(head->front(), *boxes, convex);
         if (!cells) return damaged(cells.error().message.c_str(), cells.error().item);
         Pvs pvs;
         pvs.cells_ = std::move(*cells);
@@ -123,7 +142,7 @@ Result<Vector<std::byte>> Pvs::to_file(std::span<const std::byte> scene_file) co
         if (!scene_file.empty()) {
             const auto reader = bake::Reader::open(scene_file);
             if (!reader) return tl::unexpected(reader.error());
-            if (reader->sections().size() + 5 > bake::kMaxSections)
+            if (reader->sections().size() + kMostSections > bake::kMaxSections)
                 return fail(ErrorCode::out_of_range, kNoItem, "the scene file has no room for more sections");
             for (const bake::Section& section : reader->sections()) {
                 if (name_of(section).substr(0, 4) == "pvs_")

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Potentially visible sets: what can be seen from each cell, found by uniform lines before the game runs.
 #pragma once
+#include <array>
 #include <crofton/core/error.hpp>
 #include <crofton/core/executor.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/box.hpp>
 #include <crofton/geometry/mesh.hpp>
+#include <crofton/geometry/shapes.hpp>
 #include <crofton/occlude/occluder.hpp>
 #include <crofton/scene/scene.hpp>
 #include <crofton/scene/transform.hpp>
@@ -23,7 +25,15 @@ namespace crofton::pvs {
 
 inline constexpr std::uint32_t kNoCell = ~std::uint32_t{0};
 
-// Closed boxes in world coordinates: a grid, or boxes of the caller's, which may overlap.
+// The hull of eight points in world coordinates, of which some may be equal: a prism over a triangle or a quadrangle,
+// say.
+struct ConvexCell {
+    std::array<glm::dvec3, 8> corners{};
+};
+
+struct BoxVoxels;
+
+// Closed and convex, in world coordinates: a grid, or boxes or convex cells of the caller's, which may overlap.
 class Cells {
   public:
     // `counts` equal boxes along each axis that fill `bounds`; cell (x, y, z) is x + counts.x · (y + counts.y · z).
@@ -32,19 +42,33 @@ class Cells {
     // Errors, item the box: empty, not finite, or without an area; none at all; more than 2^24.
     [[nodiscard]] static Result<Cells> boxes(std::span<const Aabb> boxes);
 
+    // Errors, item the cell: not finite, or without a volume; none at all; more than 2^24.
+    [[nodiscard]] static Result<Cells> convex(std::span<const ConvexCell> cells);
+
     [[nodiscard]] std::size_t size() const;
-    [[nodiscard]] Aabb box(std::size_t cell) const;
+    [[nodiscard]] Aabb box(std::size_t cell) const;  // around the cell
+    [[nodiscard]] ConvexCell corners(std::size_t cell) const;
+    [[nodiscard]] double surface(std::size_t cell) const;  // area
     [[nodiscard]] const Aabb& bounds() const { return bounds_; }
     [[nodiscard]] bool is_grid() const { return boxes_.empty(); }
+    [[nodiscard]] bool is_convex() const { return !corners_.empty(); }  // made by `convex`
+    // Of a convex cell: it is where all of these are at least 0, relative to its corner 0. Unit normals.
+    [[nodiscard]] std::span<const Plane> planes(std::size_t cell) const;
     [[nodiscard]] const glm::uvec3& counts() const { return counts_; }  // of a grid; 0 otherwise
-    // The cell that holds the point, of several the lowest; kNoCell: none does. A grid takes a few operations. Boxes of
-    // the caller's are looked through in turn.
+    // The cell that holds the point, of several the lowest; kNoCell: none does. A grid takes a few operations. Cells of
+    // the caller's are listed in voxels, about one for each.
     [[nodiscard]] std::uint32_t find(const glm::dvec3& point) const;
 
   private:
     Aabb bounds_;
     glm::uvec3 counts_{0};
-    Vector<Aabb> boxes_;
+    Vector<Aabb> boxes_;  // of cells that are no grid
+    std::shared_ptr<const BoxVoxels> voxels_;
+    // Of convex cells:
+    Vector<ConvexCell> corners_;
+    Vector<double> surfaces_;
+    Vector<Plane> planes_;
+    Vector<std::uint32_t> plane_ends_;
 };
 
 // What is looked at.

@@ -26,6 +26,7 @@ struct LinePlan {
     std::uint64_t blocks = 0, per_cell = 0, seed = 1;
     double for_a_cell = 0.0;   // lines that the smallest cell needs
     double least_share = 1.0;  // of the lines through the box around all, those through the smallest cell
+    double own_share = 1.0;    // of the lines through the box around one cell, those through the cell, at least
     Vector<Part> parts;        // of `whole`: six of each round, by `first`
     Vector<double> rounds;     // of `whole`: lines that each round counts for
 

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+// A convex cell by its corners: its planes and its surface.
+#pragma once
+#include <crofton/core/memory.hpp>
+#include <crofton/geometry/shapes.hpp>
+#include <crofton/pvs/pvs.hpp>
+
+namespace crofton::pvs {
+
+struct ConvexCellFaces {
+    Vector<Plane> planes;  // unit normals, inward, relative to corner 0: the cell is where all are at least 0
+    double surface = 0.0;  // area
+};
+
+// Of the hull of the corners. Corners within 1e-12 of the size of a plane lie on it; the plane is then moved inward
+// behind all of them, so that what lies within the planes lies within the hull, but for rounding. None where the hull
+// is flat.
+[[nodiscard]] ConvexCellFaces faces_of(const ConvexCell& cell);
+
+}  // namespace crofton::pvs
