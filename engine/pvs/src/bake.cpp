@@ -48,7 +48,7 @@ struct Gap {
 struct Scratch {
     Vector<Line> lines;
     radiosity::LineHits hits;
-    Vector<CellSpan> spans;
+    CellSpans spans;
     Vector<Gap> gaps;
 };
 
@@ -117,7 +117,7 @@ class BlockTracing {
     void witness() {
         const auto& gaps = scratch_.gaps;
         std::size_t g = 0;
-        for (const CellSpan& span : scratch_.spans) {
+        for (const CellSpan& span : scratch_.spans.all) {
             if (g > 0 && gaps[g - 1].end >= span.begin) g = 0;  // not in order: cells of the caller's
             while (gaps[g].end < span.begin) ++g;
             double begin = span.begin;

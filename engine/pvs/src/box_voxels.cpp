@@ -7,6 +7,9 @@
 namespace crofton::pvs {
 namespace {
 
+// Of the extent: far above the rounding of a walk's steps.
+constexpr double kRoom = 1e-9;
+
 inline std::uint32_t voxel_of(double x, const Aabb& bounds, int k, std::uint32_t count) {
     const double extent = bounds.max[k] - bounds.min[k];
     if (!(extent > 0.0)) return 0;
@@ -24,10 +27,9 @@ BoxVoxels::BoxVoxels(std::span<const Aabb> boxes, const Aabb& all) : bounds(all)
     const auto each_voxel = [&](const Aabb& box, auto&& visit) {
         std::uint32_t low[3], high[3];
         for (int k = 0; k < 3; ++k) {
-            low[k] = voxel_of(box.min[k], bounds, k, counts[k]);
-            high[k] = voxel_of(box.max[k], bounds, k, counts[k]);
-            low[k] -= low[k] > 0;  // rounding of a walk's steps
-            high[k] += high[k] + 1 < counts[k];
+            const double room = kRoom * (bounds.max[k] - bounds.min[k]);
+            low[k] = voxel_of(box.min[k] - room, bounds, k, counts[k]);
+            high[k] = voxel_of(box.max[k] + room, bounds, k, counts[k]);
         }
         for (std::uint32_t z = low[2]; z <= high[2]; ++z)
             for (std::uint32_t y = low[1]; y <= high[1]; ++y)

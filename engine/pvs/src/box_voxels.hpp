@@ -20,7 +20,7 @@ struct BoxVoxels {
 
     Aabb bounds;
     std::uint32_t counts[3] = {1, 1, 1};
-    Vector<std::uint32_t> first, listed;  // by voxel, the range of boxes that meet it or a neighbour
+    Vector<std::uint32_t> first, listed;  // by voxel, the range of boxes that meet it
 };
 
 }  // namespace crofton::pvs

@@ -98,14 +98,18 @@ void CellWalk::walk(const Line& line, Visit&& visit) const {
     }
 }
 
-void CellWalk::find(const Line& line, Vector<CellSpan>& spans) const {
-    spans.clear();
+void CellWalk::find(const Line& line, CellSpans& spans) const {
+    spans.all.clear();
     if (boxes_.empty()) {
-        walk(line, [&](std::uint32_t cell, double begin, double end) { spans.push_back({cell, begin, end}); });
+        walk(line, [&](std::uint32_t cell, double begin, double end) { spans.all.push_back({cell, begin, end}); });
         return;
     }
+    spans.asked.resize(boxes_.size(), 0);
+    ++spans.line;
     walk(line, [&](std::uint32_t voxel, double, double) {
         for (const std::uint32_t i : voxels_->boxes_in(voxel)) {
+            if (spans.asked[i] == spans.line) continue;
+            spans.asked[i] = spans.line;
             CellSpan span{i, 0.0, 0.0};
             if (!clip(line, boxes_[i], span.begin, span.end)) continue;
             if (!planes_.empty()) {
@@ -113,7 +117,7 @@ void CellWalk::find(const Line& line, Vector<CellSpan>& spans) const {
                 const auto planes = std::span(planes_).subspan(first, plane_ends_[i] - first);
                 if (!clip(line, planes, span.begin, span.end)) continue;
             }
-            spans.push_back(span);
+            spans.all.push_back(span);
         }
     });
 }

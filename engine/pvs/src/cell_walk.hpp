@@ -17,14 +17,21 @@ struct CellSpan {
     double begin = 0.0, end = 0.0;  // along the line, from its point; begin ≤ end
 };
 
+// One thread's memory.
+struct CellSpans {
+    Vector<CellSpan> all;
+    Vector<std::uint64_t> asked;  // by cell: the last line that asked it
+    std::uint64_t line = 0;
+};
+
 // Cells relative to an origin. Those of the caller's are listed in the voxels of a grid.
 class CellWalk {
   public:
     CellWalk(const Cells& cells, const glm::dvec3& origin);
 
-    // Replaces `spans` by all cells that the line meets, but for those that it grazes within rounding. Of a grid each
-    // once, along the line; a cell of the caller's may come more than once, in any order.
-    void find(const Line& line, Vector<CellSpan>& spans) const;
+    // Replaces spans.all by all cells that the line meets, each once, but for those that it grazes within rounding. Of
+    // a grid along the line; cells of the caller's come in any order.
+    void find(const Line& line, CellSpans& spans) const;
 
   private:
     template <class Visit>
