@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Where scenes come from: files of several formats, and the town we make ourselves.
 #pragma once
+#include <array>
 #include <crofton/core/error.hpp>
 #include <crofton/measure/measure.hpp>
 #include <crofton/scene/scene.hpp>
@@ -22,6 +23,14 @@ struct LoadOptions {
     bool strict = false;          // a file of which anything would be left out is refused
 };
 
+// A convex piece of a level's sector: a prism over three or four corners, from floor to ceiling.
+struct Room {
+    std::array<glm::dvec2, 4> corners{};  // (x, z), counter-clockwise seen from above; of three the last is repeated
+    double floor = 0.0, ceiling = 0.0;
+    std::array<bool, 4> is_wall{};  // the side from each corner to the next: opaque from floor to ceiling
+    bool has_floor = true, has_ceiling = true;
+};
+
 // A scene with what one needs to visit it. +y is up, lengths are metres where the format says so.
 struct SceneSource {
     std::string name;
@@ -36,6 +45,7 @@ struct SceneSource {
     std::vector<std::uint8_t> one_sided = {};
     // By mesh, one radiosity per triangle: what its faces give off; nothing where a mesh is beyond the end or empty.
     std::vector<std::vector<glm::vec3>> emission = {};
+    std::vector<Room> rooms = {};  // of a level
 
     // Sets the transforms of frame `frame`, at 60 frames a second; the same for the same frame. update() is the
     // caller's.

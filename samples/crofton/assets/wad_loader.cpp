@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 // A level as a scene: floors and ceilings as polygons with holes, lines as walls.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <crofton/triangulate/triangulate.hpp>
 #include <glm/geometric.hpp>
+#include <map>
 
+#include "assets/convex_pieces.hpp"
 #include "assets/file.hpp"
 #include "assets/name_color.hpp"
 #include "assets/scene_source.hpp"
@@ -42,6 +45,11 @@ class LevelBuilder {
         const auto root = source_.scene.add_node(scene::kNone, {}, ~0u, level_.name);
         if (!root) return tl::unexpected(root.error());
         root_ = *root;
+        for (const WadLevel::Line& line : level_.lines) {
+            const WadLevel::Vertex &a = level_.vertices[line.from], &b = level_.vertices[line.to];
+            lines_[{a.x * 1.0, a.y * 1.0, b.x * 1.0, b.y * 1.0}] = line.right;
+            lines_[{b.x * 1.0, b.y * 1.0, a.x * 1.0, a.y * 1.0}] = line.left;
+        }
         const auto sectors = sector_polygons(level_);
         for (std::size_t s = 0; s < sectors.size(); ++s) {
             if (auto good = check_limits(); !good) return tl::unexpected(good.error());
@@ -84,6 +92,7 @@ class LevelBuilder {
                 add_flat(number, polygon, *triangulation, s.floor, lit(s.floor_texture, s.light), true);
             if (!is_sky(s.ceiling_texture) && s.ceiling > s.floor)
                 add_flat(number, polygon, *triangulation, s.ceiling, lit(s.ceiling_texture, s.light), false);
+            add_rooms(polygon, *triangulation, s);
             add_waypoint(polygon, *triangulation, s);
         }
     }
@@ -106,6 +115,30 @@ class LevelBuilder {
             warn("sector", number, mesh.error().message);
         else if (auto added = source_.scene.add_instance(root_, *mesh); !added)
             warn("sector", number, added.error().message);
+    }
+
+    void add_rooms(const Polygon& polygon, const triangulate::Triangulation& triangulation, const WadLevel::Sector& s) {
+        if (s.ceiling <= s.floor) return;
+        for (const auto& piece : convex_pieces(polygon, triangulation.triangles)) {
+            Room& room = source_.rooms.emplace_back();
+            room.floor = s.floor * kMetresPerUnit;
+            room.ceiling = s.ceiling * kMetresPerUnit;
+            room.has_floor = !is_sky(s.floor_texture);
+            room.has_ceiling = !is_sky(s.ceiling_texture);
+            for (std::size_t k = 0; k < 4; ++k) {
+                const glm::dvec2 &p = polygon.points[piece[k]], &q = polygon.points[piece[(k + 1) % 4]];
+                room.corners[k] = kMetresPerUnit * glm::dvec2(p.x, -p.y);
+                const auto line = lines_.find({p.x, p.y, q.x, q.y});
+                room.is_wall[k] = line != lines_.end() && is_wall(s, line->second);
+            }
+        }
+    }
+
+    // Whether nothing but the wall is seen from a sector through a side of a line.
+    [[nodiscard]] bool is_wall(const WadLevel::Sector& here, std::uint32_t other) const {
+        const WadLevel::Sector* there = sector_of(other);
+        if (there == nullptr || there->floor >= here.ceiling) return true;
+        return there->ceiling <= here.floor && !(is_sky(here.ceiling_texture) && is_sky(there->ceiling_texture));
     }
 
     // A point in the middle of the sector's largest triangle, if one can stand there.
@@ -185,6 +218,7 @@ class LevelBuilder {
     }
 
     const WadLevel& level_;
+    std::map<std::array<double, 4>, std::uint32_t> lines_;  // from, to: the side to the right
     ReadLimits limits_;
     Deadline deadline_;
     std::uint64_t triangles_ = 0;

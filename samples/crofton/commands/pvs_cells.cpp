@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "pvs_cells.hpp"
 
+#include <algorithm>
 #include <cstdlib>
+#include <glm/geometric.hpp>
+#include <optional>
 #include <sstream>
 #include <vector>
 
@@ -29,25 +32,84 @@ Result<pvs::Cells> cells_of_file(const std::string& path, const assets::ReadLimi
     if (!text) return tl::unexpected(text.error());
     std::istringstream lines(*text);
     std::vector<Aabb> boxes;
+    std::vector<pvs::ConvexCell> convex;
+    bool all_boxes = true;
     std::string line;
     for (int number = 1; std::getline(lines, line); ++number) {
         if (line.empty() || line[0] == '#') continue;
         std::istringstream values(line);
-        Aabb box;
-        std::string rest;
-        values >> box.min.x >> box.min.y >> box.min.z >> box.max.x >> box.max.y >> box.max.z;
-        if (!values || values >> rest)
-            return fail(ErrorCode::parse, kNoItem, path + ": line " + std::to_string(number) + " is not six numbers");
-        boxes.push_back(box);
+        std::vector<double> numbers;
+        for (double value = 0.0; values >> value;) numbers.push_back(value);
+        const std::size_t corners = numbers.size() / 3;
+        const bool box = numbers.size() == 6;
+        if (!values.eof() || numbers.size() % 3 != 0 || !(box || (corners >= 4 && corners <= 8)))
+            return fail(ErrorCode::parse, kNoItem,
+                        path + ": line " + std::to_string(number) +
+                            " is neither six numbers, a box, nor four to eight corners of three numbers each");
+        const auto point = [&](std::size_t i) {
+            return glm::dvec3(numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]);
+        };
+        boxes.push_back({point(0), point(1)});
+        all_boxes = all_boxes && box;
+        auto& cell = convex.emplace_back();
+        for (std::size_t i = 0; i < 8; ++i)
+            cell.corners[i] = box ? glm::dvec3(point(i & 1).x, point(i >> 1 & 1).y, point(i >> 2).z)
+                                  : point(std::min(i, corners - 1));
     }
-    auto cells = pvs::Cells::boxes(boxes);
+    auto cells = all_boxes ? pvs::Cells::boxes(boxes) : pvs::Cells::convex(convex);
     if (!cells) return fail(cells.error().code, cells.error().item, path + ": " + cells.error().message);
     return cells;
 }
 
+// Keeps of a convex ring what is at least `inset` to the left of the line from p to q, in (x, −z).
+void cut_ring(std::vector<glm::dvec2>& ring, const glm::dvec2& p, const glm::dvec2& q, double inset) {
+    const glm::dvec2 along = glm::normalize(q - p);
+    const auto height = [&](const glm::dvec2& x) { return along.y * (x.x - p.x) - along.x * (x.y - p.y) - inset; };
+    std::vector<glm::dvec2> kept;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+        const glm::dvec2 &a = ring[i], &b = ring[(i + 1) % ring.size()];
+        const double from = height(a), to = height(b);
+        if (from >= 0.0) kept.push_back(a);
+        if ((from < 0.0) != (to < 0.0)) kept.push_back(a + from / (from - to) * (b - a));
+    }
+    ring = std::move(kept);
+}
+
+// What of a room is `inset` from its walls, its floor and its ceiling. None where nothing is left.
+std::optional<pvs::ConvexCell> cell_of(const assets::Room& room, double inset) {
+    const bool is_triangle = room.corners[3] == room.corners[2];
+    std::vector<glm::dvec2> ring(room.corners.begin(), room.corners.end() - (is_triangle ? 1 : 0));
+    for (std::size_t k = 0; k < 4; ++k)
+        if (room.is_wall[k]) cut_ring(ring, room.corners[k], room.corners[(k + 1) % 4], inset);
+    const double low = room.floor + (room.has_floor ? inset : 0.0),
+                 high = room.ceiling - (room.has_ceiling ? inset : 0.0);
+    if (ring.size() < 3 || ring.size() > 4 || !(low < high)) return std::nullopt;
+    pvs::ConvexCell cell;
+    for (std::size_t k = 0; k < 8; ++k) {
+        const glm::dvec2& p = ring[std::min(k % 4, ring.size() - 1)];
+        cell.corners[k] = {p.x, k < 4 ? low : high, p.y};
+    }
+    return cell;
+}
+
+Result<pvs::Cells> cells_of_rooms(const assets::SceneSource& source, double inset) {
+    if (source.rooms.empty())
+        return fail(ErrorCode::unsupported, kNoItem,
+                    "--cells rooms: " + source.name + " has no sectors; take a grid, or a file of cells");
+    std::vector<pvs::ConvexCell> cells;
+    for (const assets::Room& room : source.rooms)
+        if (const auto cell = cell_of(room, inset)) cells.push_back(*cell);
+    if (cells.empty())
+        return fail(ErrorCode::empty, kNoItem,
+                    "--cells rooms: no room is larger than twice the near radius; ask for a smaller one");
+    return pvs::Cells::convex(cells);
+}
+
 }  // namespace
 
-Result<pvs::Cells> cells_from(const std::string& text, const Aabb& eyes, const assets::ReadLimits& limits) {
+Result<pvs::Cells> cells_from(const std::string& text, const Aabb& eyes, const assets::SceneSource& source,
+                              double inset, const assets::ReadLimits& limits) {
+    if (text == "rooms") return cells_of_rooms(source, inset);
     glm::uvec3 counts(0);
     const char* at = text.c_str();
     if (take_number(at, counts.x) && take(at, 'x') && take_number(at, counts.y) && take(at, 'x') &&

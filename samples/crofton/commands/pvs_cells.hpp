@@ -5,13 +5,15 @@
 #include <span>
 #include <string>
 
-#include "assets/read_limits.hpp"
+#include "assets/scene_source.hpp"
 
 namespace crofton::cli {
 
-// "NXxNYxNZ" over `eyes`, or a file with a box a line: six numbers, min and max; lines that begin with # are comments.
-// Errors name the file and the line.
+// "NXxNYxNZ" over `eyes`; "rooms", what of a level's rooms is `inset` from walls, floors and ceilings; or a file with a
+// cell a line. Six numbers are a box, min and max; twelve to 24 are four to eight corners of a convex cell; lines that
+// begin with # are comments. Errors name the file and the line, and a scene that has no rooms.
 [[nodiscard]] Result<pvs::Cells> cells_from(const std::string& text, const Aabb& eyes,
+                                            const assets::SceneSource& source, double inset,
                                             const assets::ReadLimits& limits);
 // "i/n" with 0 ≤ i < n; "": all.
 [[nodiscard]] Result<pvs::Shard> shard_from(const std::string& text);

@@ -2,11 +2,13 @@
 // `crofton pvs`: what can be seen from each cell of a level, baked by global lines.
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <crofton/bake/baked_scene.hpp>
 #include <crofton/core/executor.hpp>
 #include <crofton/pvs/pvs.hpp>
 #include <cstdio>
 #include <filesystem>
+#include <glm/geometric.hpp>
 #include <optional>
 
 #include "commands.hpp"
@@ -24,6 +26,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr double kSaveEvery = 20.0;  // seconds
+// Of the near radius: walls of a room are far enough from its cell to prove.
+constexpr double kInset = 1.01;
 constexpr std::uint32_t kByScene = ~std::uint32_t{0}, kStepsInLevels = 100;
 
 struct PvsRequest {
@@ -64,7 +68,7 @@ Result<Job> make_job(const PvsRequest& options, Executor& executor) {
         if (auto read = read_numbers("--eyes", options.eyes, x); !read) return tl::unexpected(read.error());
         eyes = {{x[0], x[1], x[2]}, {x[3], x[4], x[5]}};
     }
-    auto cells = cells_from(options.cells, eyes, options.read.limits);
+    auto cells = cells_from(options.cells, eyes, *source, kInset * options.near_radius, options.read.limits);
     if (!cells) return tl::unexpected(cells.error());
     auto scene =
         pipeline::make_pvs_scene(*source, !options.out.empty() || !options.svg.empty() || options.views > 0, executor);
@@ -125,6 +129,20 @@ Result<void> trace(Job& job, pvs::Bake& bake, Executor& executor) {
     return {};
 }
 
+// The cell that is nearest to the middle of all, of those that eyes may be in.
+std::uint32_t middle_cell(const pvs::Pvs& sets) {
+    const pvs::Cells& cells = sets.cells();
+    const glm::dvec3 middle = cells.bounds().center();
+    std::uint32_t best = pvs::kNoCell;
+    double least = HUGE_VAL;
+    for (std::uint32_t c = 0; c < cells.size(); ++c) {
+        if (sets.kind(c) == pvs::CellKind::solid || sets.kind(c) == pvs::CellKind::unknown) continue;
+        const double distance = glm::distance(cells.box(c).center(), middle);
+        if (distance < least) least = distance, best = c;
+    }
+    return best;
+}
+
 Result<void> write_outputs(const Job& job, const pvs::Pvs& sets, Executor& executor, std::size_t& file_bytes) {
     const PvsRequest& options = job.options;
     if (!options.out.empty()) {
@@ -142,13 +160,12 @@ Result<void> write_outputs(const Job& job, const pvs::Pvs& sets, Executor& execu
             return written;
     }
     if (options.svg.empty()) return {};
-    glm::dvec3 eye = sets.cells().bounds().center();
+    std::uint32_t cell = middle_cell(sets);
     if (!options.eye.empty()) {
         double x[3];
         if (auto read = read_numbers("--eye", options.eye, x); !read) return read;
-        eye = {x[0], x[1], x[2]};
+        cell = sets.cells().find({x[0], x[1], x[2]});
     }
-    const std::uint32_t cell = sets.cells().find(eye);
     if (cell == pvs::kNoCell) return fail(ErrorCode::out_of_range, kNoItem, "--eye: no cell holds it");
     return write_file(options.svg, pvs_svg(sets, job.scene.subject, cell));
 }
@@ -228,14 +245,18 @@ void print_figures(const Job& job, const pvs::Bake& bake, const pvs::Pvs& sets, 
     const auto percent = [&](std::uint64_t pairs) {
         return 100.0 * static_cast<double>(pairs) / static_cast<double>(std::max<std::uint64_t>(1, counts.all()));
     };
+    char promise[120] = "nothing is promised yet: the first round of lines is not complete\n";
+    if (std::isfinite(sets.epsilon()))
+        std::snprintf(promise, sizeof promise, "no pair above %.3g of its cell's lines is missed, with confidence %g\n",
+                      sets.epsilon(), sets.confidence());
     std::printf(
         "%s: %zu cells (%zu solid, %zu that see out of the scene), %u objects, %llu of %llu lines in %.1f s\n"
-        "no pair above %.3g of its cell's lines is missed, with confidence %g\n"
+        "%s"
         "pairs: %.1f %% seen, %.1f %% proved hidden (%.1f s), %.1f %% unseen\n",
         job.source.name.c_str(), sets.cells().size(), solid, open, sets.object_count(),
         static_cast<unsigned long long>(bake.lines_done()), static_cast<unsigned long long>(bake.lines_planned()),
-        job.trace_seconds, sets.epsilon(), sets.confidence(), percent(counts.seen), percent(counts.hidden),
-        job.proof_seconds, percent(counts.unseen));
+        job.trace_seconds, promise, percent(counts.seen), percent(counts.hidden), job.proof_seconds,
+        percent(counts.unseen));
     const double pairs = static_cast<double>(sets.cells().size()) * std::max(1u, sets.object_count());
     if (file_bytes > 0)
         std::printf("%.1f kB, %.3f bits a pair\n", 1e-3 * static_cast<double>(file_bytes),
@@ -298,12 +319,15 @@ void add_pvs_command(CommandLine& line) {
         "Exit status: 0 done, 2 bad usage or input, 130 interrupted (what there is has been written).\n\n"
         "Examples:\n"
         "  crofton pvs town --cells 64x2x64 --out town_pvs.crofton --svg town.svg\n"
-        "  crofton pvs level.wad --map MAP01 --cells 32x1x32 --state map01.state --seconds 60 --out map01.crofton\n"
+        "  crofton pvs level.wad --map MAP01 --cells rooms --state map01.state --seconds 60 --out map01.crofton\n"
         "  crofton pvs town --shard 0/2 --state part0       half of the lines; the others: 1/2, part1\n"
         "  crofton merge part0 part1 --out town.state          then both together\n"
         "  crofton pvs town --state town.state --out town_pvs.crofton --views 1000");
     command.option("scene", options->scene, "town, room, or a .glb, .gltf, .obj or .wad file").required();
-    command.option("--cells", options->cells, "NXxNYxNZ, or a file of boxes").show_default();
+    command
+        .option("--cells", options->cells,
+                "NXxNYxNZ, rooms (sectors of a WAD in convex pieces), or a file of boxes and convex cells")
+        .show_default();
     command.option("--eyes", options->eyes,
                    "x,y,z,x,y,z: the box that the grid fills; without, where the scene is dense");
     command

@@ -90,15 +90,39 @@ class Map {
         for (std::size_t c = 0; c < pvs_.cells().size(); ++c) {
             const Aabb box = pvs_.cells().box(c);
             if (box.max.y <= own.min.y || box.min.y >= own.max.y || c == cell_) continue;
-            rectangle(box, pvs_.kind(c) == pvs::CellKind::solid ? "#00000066" : "none", "#5577aa55", 0.4);
+            outline(c, pvs_.kind(c) == pvs::CellKind::solid ? "#00000066" : "none", "#5577aa55", 0.4);
         }
-        rectangle(own, "#d0202088", "#d02020", 2.0);
+        outline(cell_, "#d0202088", "#d02020", 2.0);
     }
 
-    void rectangle(const Aabb& box, const char* fill, const char* stroke, double width) {
-        print("<rect x='%.1f' y='%.1f' width='%.1f' height='%.1f'", x(box.min), z(box.min),
-              scale_ * (box.max.x - box.min.x), scale_ * (box.max.z - box.min.z));
-        print(" fill='%s' stroke='%s' stroke-width='%.1f'/>\n", fill, stroke, width);
+    // A cell from above: the hull of its corners.
+    void outline(std::size_t cell, const char* fill, const char* stroke, double width) {
+        svg_ += "<path d='";
+        const auto ring = ring_of(pvs_.cells().corners(cell));
+        for (std::size_t i = 0; i < ring.size(); ++i) print(i ? "L%.1f %.1f" : "M%.1f %.1f", x(ring[i]), z(ring[i]));
+        print("Z' fill='%s' stroke='%s' stroke-width='%.1f'/>\n", fill, stroke, width);
+    }
+
+    // Andrew's monotone chain, from above.
+    static std::vector<glm::dvec3> ring_of(const pvs::ConvexCell& cell) {
+        auto corners = cell.corners;
+        std::sort(corners.begin(), corners.end(),
+                  [](const auto& p, const auto& q) { return p.x != q.x ? p.x < q.x : p.z < q.z; });
+        std::vector<glm::dvec3> ring;
+        for (const bool back : {false, true}) {
+            const std::size_t first = ring.size();
+            for (const glm::dvec3& p : corners) {
+                while (ring.size() >= first + 2) {
+                    const glm::dvec3 &a = ring[ring.size() - 2], &b = ring.back();
+                    if ((b.x - a.x) * (p.z - a.z) - (b.z - a.z) * (p.x - a.x) > 0.0) break;
+                    ring.pop_back();
+                }
+                ring.push_back(p);
+            }
+            if (!back) std::reverse(corners.begin(), corners.end());
+            ring.pop_back();
+        }
+        return ring;
     }
 
     [[nodiscard]] double x(const glm::dvec3& p) const { return scale_ * (p.x - bounds_.min.x); }
