@@ -53,18 +53,22 @@ function(crofton_own_target target)
     endif()
 endfunction()
 
-# crofton_module(NAME cull DEPENDS scene tree SOURCES src/a.cpp … [LINK hwy] [UNITY])
+# crofton_module(NAME cull DEPENDS scene tree SOURCES src/a.cpp … [HOT src/a.cpp …] [LINK hwy] [UNITY])
 # One engine module = one object library that sees its own headers and those of the modules it names, nothing else:
 # an include against the direction of docs/architecture.md does not compile. Headers in internal/ are for other modules
-# only: they are not installed.
+# only: they are not installed. HOT: of the sources, no kernels, but compiled with CROFTON_KERNEL_OPTIONS as these are.
 function(crofton_module)
-    cmake_parse_arguments(ARG "UNITY" "NAME" "DEPENDS;SOURCES;LINK" ${ARGN})
+    cmake_parse_arguments(ARG "UNITY" "NAME" "DEPENDS;SOURCES;HOT;LINK" ${ARGN})
     set(target crofton_${ARG_NAME})
     add_library(${target} OBJECT ${ARG_SOURCES})
     if(ARG_UNITY)
         set(unity UNITY)
     endif()
     crofton_own_target(${target} ${unity})
+    if(CROFTON_KERNEL_OPTIONS)
+        set_source_files_properties(${ARG_HOT} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+        set_property(SOURCE ${ARG_HOT} APPEND PROPERTY COMPILE_OPTIONS ${CROFTON_KERNEL_OPTIONS})
+    endif()
     # Exceptions serve core/recovery.hpp alone: a failed allocation unwinds to the public function, which returns an Error.
     target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-fno-rtti>)
     target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-# 32-bit x86 by the machine's own g++ (docs/testing.md says what to install).
+# 32-bit x86 by Debian's cross compiler (docs/testing.md says what to install); the tests run on this machine.
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR i686)
-# The headers of <asm/…> are the same; only the package g++-multilib, which no cross compiler can stand beside, links them.
-set(CMAKE_C_FLAGS_INIT "-m32 -idirafter /usr/include/x86_64-linux-gnu")
-set(CMAKE_CXX_FLAGS_INIT "-m32 -idirafter /usr/include/x86_64-linux-gnu")
+set(CMAKE_C_COMPILER i686-linux-gnu-gcc)
+set(CMAKE_CXX_COMPILER i686-linux-gnu-g++)
+# Static: a machine of 64 bits has no loader for 32-bit programs.
+set(CMAKE_EXE_LINKER_FLAGS_INIT "-static")
 set(CMAKE_CROSSCOMPILING_EMULATOR env)

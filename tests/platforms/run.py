@@ -58,7 +58,6 @@ class Cell:
     host: str = ""                 # as GMP's configure calls it
     runner: list = field(default_factory=list)
     suffix: str = ""
-    gmp_flags: str = ""
     cxx_flags: str = ""            # of our own C++ alone
     optimize: str = "-O1"          # the quickest in all: what the tests lose, the compiler gains several times
     newer_highway: bool = False    # that of Debian 13
@@ -102,9 +101,8 @@ CELLS = [
     Cell("clang", "clang 14, x86-64", ["clang++-14"], clang(one_set("AVX2"))),
     Cell("clang-libcxx", "clang 14, x86-64, libc++", ["clang++-14", "/usr/lib/llvm-14/include/c++/v1/vector"],
          clang(one_set("AVX2")), toolchain("clang-libcxx"), host="x86_64-linux-gnu"),
-    Cell("i386", "g++ 12, 32-bit x86", ["g++", "/usr/lib/gcc/x86_64-linux-gnu/12/32/libstdc++.a"],
-         [one_set("SSE4")],
-         toolchain("i686-linux-gnu"), host="i686-linux-gnu", gmp_flags="-m32 -idirafter /usr/include/x86_64-linux-gnu"),
+    Cell("i386", "g++ 12, 32-bit x86", ["i686-linux-gnu-g++"], [one_set("SSE4")], toolchain("i686-linux-gnu"),
+         host="i686-linux-gnu"),
     Cell("aarch64", "g++ 12, 64-bit ARM, qemu", ["aarch64-linux-gnu-g++", "qemu-aarch64"], [],
          toolchain("aarch64-linux-gnu"), host="aarch64-linux-gnu",
          runner=["qemu-aarch64", "-L", "/usr/aarch64-linux-gnu"]),
@@ -196,15 +194,13 @@ def cmake_options(cell):
 
 
 def gmp_environment(cell):
-    flags = f"-O2 {cell.flags} {cell.gmp_flags}".strip()
+    flags = f"-O2 {cell.flags}".strip()
     if cell.host == "x86_64-w64-mingw32":
         return {"CC": "x86_64-w64-mingw32-gcc-posix", "CXX": "x86_64-w64-mingw32-g++-posix", "CC_FOR_BUILD": "gcc"}
     if cell.host == "none":
         return {"CFLAGS": flags, "CXXFLAGS": flags, "CC_FOR_BUILD": "gcc"}
     if cell.name == "clang-libcxx":
         return {"CC": "clang-14", "CXX": "clang++-14 -stdlib=libc++", "CC_FOR_BUILD": "gcc"}
-    if cell.gmp_flags:
-        return {"CC": f"gcc {cell.gmp_flags}", "CXX": f"g++ {cell.gmp_flags}", "CC_FOR_BUILD": "gcc", "ABI": "32"}
     return {"CC_FOR_BUILD": "gcc"}
 
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "id_bits_kernel.hpp"
 
+#include <bit>
 #include <cstring>
 
 // Also compile for AVX-512 VBMI2, which compresses bytes.
@@ -115,7 +116,16 @@ HWY_INLINE std::size_t list_word(std::uint64_t word, std::uint32_t base, std::ui
     return count;
 #else
     constexpr std::uint32_t kLanes = hn::MaxLanes(DU()), kAll = (std::uint32_t{1} << kLanes) - 1;
-    std::size_t count = 0;
+    // Where little is seen, most words have few bits. Four are stored without a branch on how many there are.
+    constexpr std::size_t kFew = 4;
+    std::size_t count = hwy::PopCount(word);
+    if (count <= kFew) {
+        std::uint64_t rest = word;
+        for (std::size_t i = 0; i < kFew; ++i, rest &= rest - 1)
+            ids[i] = base + static_cast<std::uint32_t>(std::countr_zero(rest));
+        return count;
+    }
+    count = 0;
     for (std::uint32_t l = 0; l < 64; l += kLanes) {  // always to the word's end: an earlier exit would be mispredicted
         const std::uint32_t bits = static_cast<std::uint32_t>(word >> l) & kAll;
         count += simd::store_positions(du, bits, base + l, ids + count);
@@ -169,6 +179,15 @@ std::size_t list_marked_ids(const std::uint64_t* bits, const std::uint64_t* mark
     return count;
 }
 
+void mark_placed(const std::uint32_t* ids, std::size_t count, const std::uint64_t* bits, const std::uint64_t* before,
+                 std::uint8_t value, std::uint8_t* bytes) {
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::uint32_t id = ids[i];
+        const std::uint64_t below = bits[id / 64] & ((std::uint64_t{1} << (id % 64)) - 1);
+        bytes[before[id / 64] + hwy::PopCount(below)] = value;
+    }
+}
+
 }  // namespace
 }  // namespace crofton::cull::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -180,6 +199,7 @@ HWY_EXPORT(mark_ids);
 HWY_EXPORT(list_ids);
 HWY_EXPORT(list_placed_ids);
 HWY_EXPORT(list_marked_ids);
+HWY_EXPORT(mark_placed);
 
 void mark_ids_kernel(const std::uint32_t* ids, std::size_t count, std::uint64_t* bits) {
     HWY_DYNAMIC_DISPATCH(mark_ids)(ids, count, bits);
@@ -197,6 +217,11 @@ std::size_t list_placed_bits_kernel(const std::uint64_t* bits, std::size_t words
 std::size_t list_marked_bits_kernel(const std::uint64_t* bits, const std::uint64_t* marks, std::size_t words,
                                     MarkBytes values, std::uint32_t* ids, std::uint8_t* bytes) {
     return HWY_DYNAMIC_DISPATCH(list_marked_ids)(bits, marks, words, values, ids, bytes);
+}
+
+void mark_placed_kernel(const std::uint32_t* ids, std::size_t count, const std::uint64_t* bits,
+                        const std::uint64_t* before, std::uint8_t value, std::uint8_t* bytes) {
+    HWY_DYNAMIC_DISPATCH(mark_placed)(ids, count, bits, before, value, bytes);
 }
 
 }  // namespace crofton::cull

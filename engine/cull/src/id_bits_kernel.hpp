@@ -16,6 +16,10 @@ std::size_t list_bits_kernel(const std::uint64_t* bits, std::size_t words, std::
 std::size_t list_placed_bits_kernel(const std::uint64_t* bits, std::size_t words, std::uint32_t* ids,
                                     std::uint64_t* before);
 
+// Of ids whose bits are set: the byte of each, among those listed, becomes `value`.
+void mark_placed_kernel(const std::uint32_t* ids, std::size_t count, const std::uint64_t* bits,
+                        const std::uint64_t* before, std::uint8_t value, std::uint8_t* bytes);
+
 // The first, and for each a byte: `marked` where its bit in `marks` is set, `others` where not. Room for 64 more bytes.
 struct MarkBytes {
     std::uint8_t marked, others;

@@ -20,5 +20,11 @@ namespace crofton::cull {
 // A record of which no view's filter decides anything, for bounds that are not valid.
 template <class Record>
 [[nodiscard]] Record undecidable_record();
+template <>
+BoxRecord undecidable_record();
+template <>
+AabbRecord undecidable_record();
+template <>
+SphereRecord undecidable_record();
 
 }  // namespace crofton::cull

@@ -28,6 +28,12 @@ struct OpenList {
         simd::compress_store(du, which, mask, children + count);
         count += simd::compress_store(du, their_planes, mask, planes + count);
     }
+    // The same planes for all.
+    HWY_INLINE void append(VU which, std::uint32_t their_planes, hn::Mask<DU> mask) {
+        const DU du;
+        hn::StoreU(hn::Set(du, their_planes), du, planes + count);
+        count += simd::compress_store(du, which, mask, children + count);
+    }
     HWY_INLINE void append(std::uint32_t child, std::uint32_t child_planes) {
         children[count] = child;
         planes[count++] = child_planes;

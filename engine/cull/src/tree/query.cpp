@@ -7,6 +7,7 @@
 #include <cmath>
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/boxtree/structure.hpp>
+#include <cstring>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -366,11 +367,11 @@ void Query::sort(std::size_t inside, std::size_t straddling, std::size_t items) 
     mark_ids_kernel(visible_.straddling_.data(), straddling, seen);
     mark_ids_kernel(visible_.ids_.data(), inside, seen);
     const std::size_t count = list_placed_bits_kernel(seen, words, visible_.ids_.data(), before);
-    std::fill_n(visible_.verdicts_.begin(), count, Verdict::inside);
-    for (const ItemId item : std::span(visible_.straddling_).first(straddling)) {
-        const std::uint64_t below = seen[item / 64] & ((std::uint64_t{1} << (item % 64)) - 1);
-        visible_.verdicts_[before[item / 64] + static_cast<std::size_t>(std::popcount(below))] = Verdict::straddling;
-    }
+    static_assert(sizeof(Verdict) == 1);
+    std::uint8_t* const verdicts = reinterpret_cast<std::uint8_t*>(visible_.verdicts_.data());
+    std::memset(verdicts, static_cast<int>(Verdict::inside), count);
+    mark_placed_kernel(visible_.straddling_.data(), straddling, seen, before,
+                       static_cast<std::uint8_t>(Verdict::straddling), verdicts);
 }
 
 }  // namespace crofton::cull

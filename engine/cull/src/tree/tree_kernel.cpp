@@ -113,7 +113,8 @@ class Walk {
             const NodeSide side(NodeRows(node, l), normal, plane);
             const MF alive =
                 hn::AndNot(side.outside, present(*in_.view, node.layers_every, node.layers_any, node.count, l));
-            note<true>(node, l, alive, hn::IfThenZeroElse(hn::RebindMask(du, side.inside), hn::Set(du, planes)));
+            note<true>(node, l, alive, hn::IfThenZeroElse(hn::RebindMask(du, side.inside), hn::Set(du, planes)),
+                       planes);
         }
     }
 
@@ -137,9 +138,10 @@ class Walk {
     }
 
     // Puts the children of a node from lane l on into lists, as far as they are `alive`: not certainly outside. kOnce:
-    // none straddles several planes.
+    // none straddles any but `plane`.
     template <bool kOnce>
-    HWY_INLINE void note(const boxtree::Node& node, std::size_t l, MF alive, VU straddled) {
+    HWY_INLINE void note(const boxtree::Node& node, std::size_t l, MF alive, VU straddled,
+                         [[maybe_unused]] std::uint32_t plane = 0) {
         const DU du;
         const VU zero = hn::Zero(du), children = hn::Load(du, node.child + l);
         const auto lanes = hn::RebindMask(du, alive), straddles = hn::Ne(straddled, zero);
@@ -159,7 +161,7 @@ class Walk {
         }
         // Where every child is in a layer that the view sees, a leaf is open only because it straddles a plane.
         if (kOnce && HWY_LIKELY(node.layers_every & in_.view->layer_mask))
-            return one_plane_leaves_.append(leaves, straddled, of_leaves);
+            return one_plane_leaves_.append(leaves, plane, of_leaves);
         const auto few = hn::Eq(hn::And(straddled, hn::Sub(straddled, hn::Set(du, 1))), zero);
         auto once = hn::And(few, straddles);
         if constexpr (Limits::kAny) once = hn::And(once, hn::Lt(straddled, hn::Set(du, kLimited)));

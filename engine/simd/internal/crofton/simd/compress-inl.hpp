@@ -91,6 +91,12 @@ HWY_INLINE std::size_t store_positions(D d, std::uint32_t bits, std::uint32_t ba
         return hwy::PopCount(bits);
     }
 #endif
+#if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128 && !(HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3)
+    if constexpr (hn::MaxLanes(D()) == 4) {
+        hn::StoreU(hn::Add(hn::Load(d, kPositions4.lanes[bits]), hn::Set(d, base)), d, to);
+        return hwy::PopCount(bits);
+    }
+#endif
     // Iota from another start would be stored lane by lane.
     const auto lanes = hn::Add(hn::Iota(d, 0), hn::Set(d, base));
     hn::StoreU(compress(d, lanes, mask_from_bits(d, bits)), d, to);

@@ -67,6 +67,21 @@ constexpr CompressBytes16<kLaneBytes> make_compress_bytes_16() {
     return table;
 }
 
+// The positions of the bits of 4, then those of the others.
+struct Positions4 {
+    alignas(64) std::uint32_t lanes[16][4];
+};
+
+constexpr Positions4 make_positions_4() {
+    Positions4 table{};
+    for (std::size_t mask = 0; mask < 16; ++mask) {
+        const auto order = compressed_order<4>(mask);
+        for (std::size_t l = 0; l < 4; ++l) table.lanes[mask][l] = order[l];
+    }
+    return table;
+}
+
+inline constexpr Positions4 kPositions4 = make_positions_4();
 inline constexpr CompressLanes8 kCompressLanes8 = make_compress_lanes_8();
 inline constexpr CompressLanes4 kCompressLanes4 = make_compress_lanes_4();
 template <std::size_t kLaneBytes>
