@@ -132,6 +132,79 @@ TEST_SUITE("assets/wad_loader") {
         }
     }
 
+    TEST_CASE("rooms: convex pieces of each sector, and which sides are walls from floor to ceiling") {
+        // The column's inside as a sector of its own, or as none.
+        const auto sector = [](int floor, int ceiling, const char* floor_name, const char* ceiling_name) {
+            return test_files::bytes_of(static_cast<std::int16_t>(floor)) +
+                   test_files::bytes_of(static_cast<std::int16_t>(ceiling)) + test_files::name8(floor_name) +
+                   test_files::name8(ceiling_name) + test_files::bytes_of(std::int16_t{160}) + std::string(4, '\0');
+        };
+        struct Case {
+            const char* what;
+            std::string inside;
+            bool is_wall, has_inside;
+        };
+        const Case cases[] = {{"no sector", "", true, false},
+                              {"a step", sector(64, 128, "FLAT1", "FLAT1"), false, true},
+                              {"a window", sector(64, 100, "FLAT1", "FLAT1"), false, true},
+                              {"a floor at the ceiling", sector(128, 200, "FLAT1", "FLAT1"), true, true},
+                              {"a closed door", sector(0, 0, "FLAT1", "FLAT1"), true, false},
+                              {"one unit open", sector(0, 1, "FLAT1", "FLAT1"), false, true}};
+        for (const Case& c : cases) {
+            CAPTURE(c.what);
+            Wad wad;
+            if (!c.inside.empty()) {
+                wad.lines.resize(wad.lines.size() - 4 * 14);
+                for (int k = 0; k < 4; ++k) wad.line(4 + k, 4 + (k + 1) % 4, 4 + k, 8 + k);
+                for (int k = 0; k < 4; ++k) wad.side(1);
+                wad.sectors += c.inside;
+            }
+            const auto source = load_wad(wad.file());
+            REQUIRE_MESSAGE(source.has_value(), message(source));
+            double inside = 0.0, around = 0.0;
+            int walls = 0, column_walls = 0;
+            for (const assets::Room& room : source->rooms) {
+                double twice = 0.0;
+                bool is_column = true;
+                const std::size_t corners = room.corners[3] == room.corners[2] ? 3 : 4;
+                for (std::size_t k = 0; k < corners; ++k) {
+                    const glm::dvec2 &p = room.corners[k], &q = room.corners[(k + 1) % corners];
+                    twice += p.y * q.x - p.x * q.y;  // (x, −z)
+                    is_column = is_column && p.x >= 3 && p.x <= 5 && p.y >= -5 && p.y <= -3;
+                }
+                CHECK(twice > 0.0);
+                (is_column ? inside : around) += 0.5 * twice;
+                if (is_column) continue;
+                CHECK(room.floor == 0.0);
+                CHECK(room.ceiling == 4.0);
+                CHECK(room.has_floor);
+                CHECK(room.has_ceiling);
+                for (std::size_t k = 0; k < corners; ++k) {
+                    const glm::dvec2 &p = room.corners[k], &q = room.corners[(k + 1) % corners];
+                    const auto outer = [](const glm::dvec2& x) {
+                        return x.x == 0 || x.x == 8 || x.y == 0 || x.y == -8;
+                    };
+                    const bool on_outer = outer(p) && outer(q) && (p.x == q.x || p.y == q.y),
+                               on_column = !outer(p) && !outer(q) && (p.x == q.x || p.y == q.y);
+                    CHECK(room.is_wall[k] == (on_outer || (on_column && c.is_wall)));
+                    walls += on_outer;
+                    column_walls += on_column;
+                }
+            }
+            CHECK(walls == 4);
+            CHECK(column_walls == 4);
+            CHECK(around == doctest::Approx(60.0));
+            CHECK(inside == (c.has_inside ? doctest::Approx(4.0) : doctest::Approx(0.0)));
+        }
+        Wad sky;
+        sky.sectors = sector(0, 128, "FLOOR4_8", "F_SKY1");
+        const auto source = load_wad(sky.file());
+        REQUIRE(source.has_value());
+        REQUIRE_FALSE(source->rooms.empty());
+        CHECK(source->rooms[0].has_floor);
+        CHECK_FALSE(source->rooms[0].has_ceiling);
+    }
+
     TEST_CASE("rings that touch in a point are told apart") {
         // A board whose diagonal cells are one sector: two outlines that touch in the middle.
         const auto diagonal = sector_polygons(board(2, {0, 1, 1, 0}));

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 #include <cstdlib>
 
+#include "../assets/test_files.hpp"
 #include "run_cli.hpp"
 
 using namespace crofton::test;
@@ -57,6 +58,56 @@ TEST_SUITE("cli/pvs") {
         refused("pvs " + level() + " --cells " + quoted("cells.txt"), "line 3");
         write_contents(scratch().file("bad_part"), "nothing of the kind");
         refused("merge " + quoted("bad_part") + " --out " + quoted("sum"), "bad_part");
+    }
+
+    TEST_CASE("--cells rooms: a level's sectors as cells, away from the walls") {
+        write_contents(scratch().file("room.wad"), test_files::Wad().file());
+        const std::string base = "pvs " + quoted("room.wad") + " --epsilon 1e-2 --cells rooms ";
+        const CliRun run = run_cli(base + "--near 0.05 --views 50 --svg " + quoted("rooms.svg") + " --json -");
+        REQUIRE_MESSAGE(run.status == 0, run.err);
+        const auto figures = run.json();
+        // A frame around a column: at least four pieces of at most eight triangles.
+        CHECK(figures.at("cells").get<int>() >= 4);
+        CHECK(figures.at("cells").get<int>() <= 8);
+        CHECK(figures.at("cells_solid") == 0);
+        CHECK(figures.at("street_views").at("conservative").at("wrong_pixels_worst") == 0.0);
+        CHECK(contents_of(scratch().file("rooms.svg")).find("<svg") == 0);
+        const auto refused = [&](const std::string& arguments, const char* reason) {
+            const CliRun bad = run_cli(arguments);
+            CHECK(bad.status == 2);
+            CHECK_MESSAGE(bad.err.find(reason) != std::string::npos, bad.err);
+        };
+        refused(base + "--near 2", "no room is larger");
+        refused("pvs " + level() + " --cells rooms", "has no sectors");
+    }
+
+    TEST_CASE("a file of cells: boxes, and convex cells of four to eight corners") {
+        const std::string base = "pvs " + level() + " --epsilon 1e-2 --cells " + quoted("convex.txt") + " ";
+        const std::string box = "-5.9 0.1 -2.9 -3 2.9 2.9\n";
+        const std::string wedge = "1 0.5 -2  5 0.5 -2  1 0.5 2  1 2.5 -2  5 2.5 -2  1 2.5 2\n";
+        const std::string tetrahedron = "4 0.5 2  5 0.5 2  4 0.5 2.8  4 1.5 2\n";
+        write_contents(scratch().file("convex.txt"), "# cells\n" + box + "\n" + wedge + tetrahedron);
+        const CliRun run = run_cli(base + "--json - --svg " + quoted("convex.svg") + " --eye 2,1,-1");
+        REQUIRE_MESSAGE(run.status == 0, run.err);
+        CHECK(run.json().at("cells") == 3);
+        CHECK(run.json().at("cells_solid") == 0);
+        // Outside the wedge, but in its box.
+        CHECK(run_cli(base + "--svg " + quoted("convex.svg") + " --eye 4.5,1,1.5").err.find("no cell holds it") !=
+              std::string::npos);
+        const auto refused = [&](const std::string& cells, const char* reason) {
+            write_contents(scratch().file("convex.txt"), cells);
+            const CliRun bad = run_cli(base);
+            CHECK(bad.status == 2);
+            CHECK_MESSAGE(bad.err.find(reason) != std::string::npos, bad.err);
+        };
+        refused(box + "0 0 0 1 1 1 2 2 2\n", "line 2");            // three corners
+        refused(box + box + "0 0 0 1 1 1 0 0\n", "line 3");        // not points
+        refused("0 0 0 1 0 0 0 0 1 1 0 1\n", "needs a volume");  // flat
+        refused("0 0 0 1 0 0 0 0 1 1 nan 1\n", "convex.txt");
+        std::string nine;
+        for (int i = 0; i < 9; ++i) nine += "0 0 " + std::to_string(i) + " ";
+        refused(nine + "\n", "line 1");
+        refused("# nothing\n", "convex.txt");
     }
 
     TEST_CASE("parts merge to the state of one run, a lost one is named, and one given twice counts once") {
