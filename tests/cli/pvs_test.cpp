@@ -72,11 +72,17 @@ TEST_SUITE("cli/pvs") {
         CHECK(figures.at("cells_solid") == 0);
         CHECK(figures.at("street_views").at("conservative").at("wrong_pixels_worst") == 0.0);
         CHECK(contents_of(scratch().file("rooms.svg")).find("<svg") == 0);
+        // 60 square metres, less what is near the walls.
+        const CliRun small = run_cli(base + "--near 0.05 --cell-size 1 --views 50 --json -");
+        REQUIRE_MESSAGE(small.status == 0, small.err);
+        CHECK(small.json().at("cells").get<int>() >= 56);
+        CHECK(small.json().at("street_views").at("conservative").at("wrong_pixels_worst") == 0.0);
         const auto refused = [&](const std::string& arguments, const char* reason) {
             const CliRun bad = run_cli(arguments);
             CHECK(bad.status == 2);
             CHECK_MESSAGE(bad.err.find(reason) != std::string::npos, bad.err);
         };
+        refused(base + "--cell-size 0", "--cell-size");
         refused(base + "--near 2", "no room is larger");
         refused("pvs " + level() + " --cells rooms", "has no sectors");
     }
@@ -100,8 +106,8 @@ TEST_SUITE("cli/pvs") {
             CHECK(bad.status == 2);
             CHECK_MESSAGE(bad.err.find(reason) != std::string::npos, bad.err);
         };
-        refused(box + "0 0 0 1 1 1 2 2 2\n", "line 2");            // three corners
-        refused(box + box + "0 0 0 1 1 1 0 0\n", "line 3");        // not points
+        refused(box + "0 0 0 1 1 1 2 2 2\n", "line 2");          // three corners
+        refused(box + box + "0 0 0 1 1 1 0 0\n", "line 3");      // not points
         refused("0 0 0 1 0 0 0 0 1 1 0 1\n", "needs a volume");  // flat
         refused("0 0 0 1 0 0 0 0 1 1 nan 1\n", "convex.txt");
         std::string nine;

@@ -2,9 +2,10 @@
 #include "pvs_cells.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <optional>
 #include <sstream>
 #include <vector>
 
@@ -61,44 +62,81 @@ Result<pvs::Cells> cells_of_file(const std::string& path, const assets::ReadLimi
     return cells;
 }
 
-// Keeps of a convex ring what is at least `inset` to the left of the line from p to q, in (x, −z).
-void cut_ring(std::vector<glm::dvec2>& ring, const glm::dvec2& p, const glm::dvec2& q, double inset) {
-    const glm::dvec2 along = glm::normalize(q - p);
-    const auto height = [&](const glm::dvec2& x) { return along.y * (x.x - p.x) - along.x * (x.y - p.y) - inset; };
-    std::vector<glm::dvec2> kept;
+constexpr double kThinnest = 0.01;  // metres
+
+using Ring = std::vector<glm::dvec2>;  // a convex polygon, (x, z)
+
+// What of a ring is where dot(normal, x) ≥ least.
+Ring clipped(const Ring& ring, const glm::dvec2& normal, double least) {
+    Ring kept;
     for (std::size_t i = 0; i < ring.size(); ++i) {
         const glm::dvec2 &a = ring[i], &b = ring[(i + 1) % ring.size()];
-        const double from = height(a), to = height(b);
+        const double from = glm::dot(normal, a) - least, to = glm::dot(normal, b) - least;
         if (from >= 0.0) kept.push_back(a);
         if ((from < 0.0) != (to < 0.0)) kept.push_back(a + from / (from - to) * (b - a));
     }
-    ring = std::move(kept);
+    return kept;
 }
 
-// What of a room is `inset` from its walls, its floor and its ceiling. None where nothing is left.
-std::optional<pvs::ConvexCell> cell_of(const assets::Room& room, double inset) {
+// What of a room is at least `inset` from its walls.
+Ring inner_ring(const assets::Room& room, double inset) {
     const bool is_triangle = room.corners[3] == room.corners[2];
-    std::vector<glm::dvec2> ring(room.corners.begin(), room.corners.end() - (is_triangle ? 1 : 0));
-    for (std::size_t k = 0; k < 4; ++k)
-        if (room.is_wall[k]) cut_ring(ring, room.corners[k], room.corners[(k + 1) % 4], inset);
-    const double low = room.floor + (room.has_floor ? inset : 0.0),
-                 high = room.ceiling - (room.has_ceiling ? inset : 0.0);
-    if (ring.size() < 3 || ring.size() > 4 || !(low < high)) return std::nullopt;
-    pvs::ConvexCell cell;
-    for (std::size_t k = 0; k < 8; ++k) {
-        const glm::dvec2& p = ring[std::min(k % 4, ring.size() - 1)];
-        cell.corners[k] = {p.x, k < 4 ? low : high, p.y};
+    Ring ring(room.corners.begin(), room.corners.end() - (is_triangle ? 1 : 0));
+    for (std::size_t k = 0; k < 4; ++k) {
+        if (!room.is_wall[k]) continue;
+        const glm::dvec2 &p = room.corners[k], along = glm::normalize(room.corners[(k + 1) % 4] - p);
+        const glm::dvec2 inward(along.y, -along.x);
+        ring = clipped(ring, inward, glm::dot(inward, p) + inset);
     }
-    return cell;
+    return ring;
 }
 
-Result<pvs::Cells> cells_of_rooms(const assets::SceneSource& source, double inset) {
+// Halves a ring until no piece is longer than `size` in x or z. Pieces go to `pieces`.
+void cut_to_size(const Ring& ring, double size, std::vector<Ring>& pieces) {
+    if (ring.size() < 3) return;
+    glm::dvec2 low = ring[0], high = ring[0];
+    for (const glm::dvec2& p : ring) low = glm::min(low, p), high = glm::max(high, p);
+    const glm::dvec2 extent = high - low;
+    if (extent.x <= size && extent.y <= size) {
+        pieces.push_back(ring);
+        return;
+    }
+    const glm::dvec2 normal = extent.x > extent.y ? glm::dvec2(1.0, 0.0) : glm::dvec2(0.0, 1.0);
+    const double middle = glm::dot(normal, 0.5 * (low + high));
+    cut_to_size(clipped(ring, normal, middle), size, pieces);
+    cut_to_size(clipped(ring, -normal, -middle), size, pieces);
+}
+
+// Prisms of up to four sides that fill the ring, but for those that are too thin to stand in.
+void add_prisms(const Ring& ring, double low, double high, std::vector<pvs::ConvexCell>& cells) {
+    for (std::size_t first = 1; first + 1 < ring.size(); first += 2) {
+        const std::size_t last = std::min(first + 2, ring.size() - 1);
+        const glm::dvec2 corners[4] = {ring[0], ring[first], ring[first + 1], ring[last]};
+        const glm::dvec2 diagonal = corners[2] - corners[0];
+        const auto side = [&](const glm::dvec2& p) {
+            return std::abs(diagonal.x * (p.y - corners[0].y) - diagonal.y * (p.x - corners[0].x));
+        };
+        if (side(corners[1]) + side(corners[3]) < kThinnest * glm::length(diagonal)) continue;
+        pvs::ConvexCell cell;
+        for (std::size_t k = 0; k < 8; ++k) cell.corners[k] = {corners[k % 4].x, k < 4 ? low : high, corners[k % 4].y};
+        cells.push_back(cell);
+    }
+}
+
+Result<pvs::Cells> cells_of_rooms(const assets::SceneSource& source, const RoomOptions& options) {
     if (source.rooms.empty())
         return fail(ErrorCode::unsupported, kNoItem,
                     "--cells rooms: " + source.name + " has no sectors; take a grid, or a file of cells");
     std::vector<pvs::ConvexCell> cells;
-    for (const assets::Room& room : source.rooms)
-        if (const auto cell = cell_of(room, inset)) cells.push_back(*cell);
+    std::vector<Ring> pieces;
+    for (const assets::Room& room : source.rooms) {
+        const double low = room.floor + (room.has_floor ? options.inset : 0.0),
+                     high = room.ceiling - (room.has_ceiling ? options.inset : 0.0);
+        if (!(low < high)) continue;
+        pieces.clear();
+        cut_to_size(inner_ring(room, options.inset), options.size, pieces);
+        for (const Ring& piece : pieces) add_prisms(piece, low, high, cells);
+    }
     if (cells.empty())
         return fail(ErrorCode::empty, kNoItem,
                     "--cells rooms: no room is larger than twice the near radius; ask for a smaller one");
@@ -108,8 +146,8 @@ Result<pvs::Cells> cells_of_rooms(const assets::SceneSource& source, double inse
 }  // namespace
 
 Result<pvs::Cells> cells_from(const std::string& text, const Aabb& eyes, const assets::SceneSource& source,
-                              double inset, const assets::ReadLimits& limits) {
-    if (text == "rooms") return cells_of_rooms(source, inset);
+                              const RoomOptions& rooms, const assets::ReadLimits& limits) {
+    if (text == "rooms") return cells_of_rooms(source, rooms);
     glm::uvec3 counts(0);
     const char* at = text.c_str();
     if (take_number(at, counts.x) && take(at, 'x') && take_number(at, counts.y) && take(at, 'x') &&

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Cells and shards as they are typed.
 #pragma once
+#include <cmath>
 #include <crofton/pvs/pvs.hpp>
 #include <span>
 #include <string>
@@ -9,11 +10,16 @@
 
 namespace crofton::cli {
 
-// "NXxNYxNZ" over `eyes`; "rooms", what of a level's rooms is `inset` from walls, floors and ceilings; or a file with a
-// cell a line. Six numbers are a box, min and max; twelve to 24 are four to eight corners of a convex cell; lines that
-// begin with # are comments. Errors name the file and the line, and a scene that has no rooms.
+struct RoomOptions {
+    double inset = 0.0;      // from walls, floors and ceilings
+    double size = HUGE_VAL;  // no cell is longer in x or z
+};
+
+// "NXxNYxNZ" over `eyes`; "rooms", a level's rooms cut by the options; or a file with a cell a line. Six numbers are a
+// box, min and max; twelve to 24 are four to eight corners of a convex cell; lines that begin with # are comments.
+// Errors name the file and the line, and a scene that has no rooms.
 [[nodiscard]] Result<pvs::Cells> cells_from(const std::string& text, const Aabb& eyes,
-                                            const assets::SceneSource& source, double inset,
+                                            const assets::SceneSource& source, const RoomOptions& rooms,
                                             const assets::ReadLimits& limits);
 // "i/n" with 0 ≤ i < n; "": all.
 [[nodiscard]] Result<pvs::Shard> shard_from(const std::string& text);

@@ -33,7 +33,7 @@ constexpr std::uint32_t kByScene = ~std::uint32_t{0}, kStepsInLevels = 100;
 struct PvsRequest {
     ReadOptions read;
     std::string scene, map, cells = "64x2x64", eyes, sides = "both", shard, state, out, svg, eye, json;
-    double height = 10.0, epsilon = 1e-4, confidence = 0.999, seconds = 0.0, near_radius = 0.5;
+    double height = 10.0, epsilon = 1e-4, confidence = 0.999, seconds = 0.0, near_radius = 0.5, cell_size = HUGE_VAL;
     std::uint64_t seed = 1;
     std::uint32_t instances = 0, halvings = 4, surface_steps = kByScene, views = 0;
     unsigned threads = 1;
@@ -68,7 +68,8 @@ Result<Job> make_job(const PvsRequest& options, Executor& executor) {
         if (auto read = read_numbers("--eyes", options.eyes, x); !read) return tl::unexpected(read.error());
         eyes = {{x[0], x[1], x[2]}, {x[3], x[4], x[5]}};
     }
-    auto cells = cells_from(options.cells, eyes, *source, kInset * options.near_radius, options.read.limits);
+    auto cells = cells_from(options.cells, eyes, *source,
+                            {.inset = kInset * options.near_radius, .size = options.cell_size}, options.read.limits);
     if (!cells) return tl::unexpected(cells.error());
     auto scene =
         pipeline::make_pvs_scene(*source, !options.out.empty() || !options.svg.empty() || options.views > 0, executor);
@@ -319,7 +320,7 @@ void add_pvs_command(CommandLine& line) {
         "Exit status: 0 done, 2 bad usage or input, 130 interrupted (what there is has been written).\n\n"
         "Examples:\n"
         "  crofton pvs town --cells 64x2x64 --out town_pvs.crofton --svg town.svg\n"
-        "  crofton pvs level.wad --map MAP01 --cells rooms --state map01.state --seconds 60 --out map01.crofton\n"
+        "  crofton pvs level.wad --map MAP01 --cells rooms --near 0.2 --out map01.crofton\n"
         "  crofton pvs town --shard 0/2 --state part0       half of the lines; the others: 1/2, part1\n"
         "  crofton merge part0 part1 --out town.state          then both together\n"
         "  crofton pvs town --state town.state --out town_pvs.crofton --views 1000");
@@ -328,6 +329,7 @@ void add_pvs_command(CommandLine& line) {
         .option("--cells", options->cells,
                 "NXxNYxNZ, rooms (sectors of a WAD in convex pieces), or a file of boxes and convex cells")
         .show_default();
+    command.option("--cell-size", options->cell_size, "Of rooms: cut until no cell is longer in x or z").positive();
     command.option("--eyes", options->eyes,
                    "x,y,z,x,y,z: the box that the grid fills; without, where the scene is dense");
     command
