@@ -36,7 +36,8 @@ coal::Transform3s coal_pose(const RigidTransform& pose) {
 
 bool coal_meets(const convex::Placed& a, const convex::Placed& b) {
     const auto shape_a = coal_shape(a.body), shape_b = coal_shape(b.body);
-    const coal::CollisionRequest request;
+    coal::CollisionRequest request;
+    request.gjk_tolerance = request.epa_tolerance = 1e-14;  // its own are 1e-6
     coal::CollisionResult result;
     return coal::collide(shape_a.get(), coal_pose(a.pose), shape_b.get(), coal_pose(b.pose), request, result) > 0;
 }

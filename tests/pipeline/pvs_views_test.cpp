@@ -19,10 +19,18 @@ struct Plain {
     // Between the cells and all that lies below.
     occlude::FoundOccluder sheet;
 
-    Plain() {
+    // With walls as high as 5 m along x, so far from each other; 0: none.
+    explicit Plain(float wall_distance = 0.0f) {
         TriangleMesh floor, below;
         floor.positions = {{-100, 0, -100}, {-100, 0, 100}, {100, 0, 100}, {100, 0, -100}};
         floor.indices = {0, 1, 2, 0, 2, 3};
+        if (wall_distance > 0.0f)
+            for (float z = -100.0f; z <= 100.0f; z += wall_distance) {
+                const auto first = static_cast<std::uint32_t>(floor.positions.size());
+                for (const float x : {-100.0f, 100.0f})
+                    for (const float y : {0.0f, 5.0f}) floor.positions.push_back({x, y, z});
+                for (const std::uint32_t corner : {0u, 1u, 2u, 2u, 1u, 3u}) floor.indices.push_back(first + corner);
+            }
         below.positions = {{0, -1000, 0}, {1, -1000, 0}, {0, -1000, 1}};
         below.indices = {0, 1, 2};
         for (TriangleMesh* mesh : {&floor, &below}) {
@@ -73,6 +81,17 @@ TEST_SUITE("pipeline/pvs_views") {
             CHECK(mode.wrong_worst == 0.0);
             CHECK(mode.triangles == seen->owner_triangles);
         }
+    }
+
+    TEST_CASE("no near plane cuts a wall: where all are nearer than it reaches there is no view") {
+        // The near plane is 0.1 m from the eye, and its corners 0.155 m.
+        const Plain corridors(0.3f);
+        const auto refused = corridors.look(corridors.sets(false, false));
+        REQUIRE_FALSE(refused.has_value());
+        CHECK(refused.error().code == ErrorCode::empty);
+        CHECK(corridors.look(corridors.sets(false, false), {.views = 20, .near_radius = 0.05}).has_value());
+        const Plain wider(0.4f);
+        CHECK(wider.look(wider.sets(false, false), {.views = 20}).has_value());
     }
 
     TEST_CASE("a floor that nothing saw is nearly half of each level picture, and wrong in statistical mode alone") {

@@ -16,7 +16,7 @@ struct RoomOptions {
 };
 
 // "NXxNYxNZ" over `eyes`; "rooms", a level's rooms cut by the options; or a file with a cell a line. Six numbers are a
-// box, min and max; twelve to 24 are four to eight corners of a convex cell; lines that begin with # are comments.
+// box, min and max. Twelve to 24 are four to eight corners of a convex cell. Lines that begin with # are comments.
 // Errors name the file and the line, and a scene that has no rooms.
 [[nodiscard]] Result<pvs::Cells> cells_from(const std::string& text, const Aabb& eyes,
                                             const assets::SceneSource& source, const RoomOptions& rooms,

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <crofton/convex/query.hpp>
 #include <crofton/cull/classify.hpp>
 #include <crofton/geometry/camera.hpp>
 #include <crofton/mesh/mesh_query.hpp>
@@ -29,6 +30,7 @@ struct Looked {
     mesh::MeshTree tree;
     Vector<std::uint32_t> triangles_of;  // by object
     double near = 0.0;
+    double reach = 0.0;  // of the near plane: its farthest point in a picture
 };
 
 // Of one view.
@@ -36,6 +38,13 @@ struct Counts {
     std::uint64_t wrong_conservative = 0, wrong_statistical = 0;               // pixels
     std::uint64_t frustum = 0, owners = 0, conservative = 0, statistical = 0;  // triangles
 };
+
+// Whether a camera at `eye` could turn all around, and its near plane would cut nothing.
+bool has_room(const Looked& all, const glm::dvec3& eye) {
+    const auto ball = convex::Body::ball(all.reach);
+    const auto mesh = convex::Body::mesh(all.tree);
+    return ball && mesh && !convex::intersects({*mesh, {}}, {*ball, {glm::dmat3(1.0), eye - all.subject.origin}});
+}
 
 // A place, moved sideways by up to half the distance of two, if nothing lies between. Cells and places are both
 // regular, so places alone would always be at the same spots of cells.
@@ -51,7 +60,7 @@ std::optional<Camera> random_view(const Looked& all, std::span<const glm::dvec3>
         const glm::dvec3 eye = place + move;
         const Aabb& cells = all.sets.cells().bounds();
         if (glm::any(glm::lessThan(eye, cells.min)) || glm::any(glm::greaterThan(eye, cells.max))) continue;
-        if (mesh::hits_any({place - all.subject.origin, move, 1.0}, all.tree)) continue;
+        if (mesh::hits_any({place - all.subject.origin, move, 1.0}, all.tree) || !has_room(all, eye)) continue;
         Camera camera;
         camera.position = eye;
         camera.forward = {ahead.x, 0.0, ahead.y};
@@ -150,11 +159,13 @@ Result<PvsViewFigures> look_at_views(const scene::Scene& scene, const pvs::Subje
     if (!space || space->places().empty()) return no_place();
     auto tree = mesh::MeshTree::build(subject.mesh, {.boxes = mesh::MeshBoxes::principal_axes, .rays = true});
     if (!tree) return tl::unexpected(tree.error());
-    Looked all{subject, sets, options, std::move(*tree), {}, 0.0};
+    Looked all{subject, sets, options, std::move(*tree), {}};
     all.triangles_of.assign(subject.boxes.size(), 0);
     for (const std::uint32_t object : subject.object_of) ++all.triangles_of[object];
     const double half = std::tan(0.5 * Camera{}.fov_y), aspect = static_cast<double>(options.width) / options.height;
-    all.near = std::min(kFarthestNear, options.near_radius / std::hypot(1.0, half, half * aspect));
+    const double farthest = std::hypot(1.0, half, half * aspect);
+    all.near = std::min(kFarthestNear, options.near_radius / farthest);
+    all.reach = all.near * farthest;
     const double spacing = std::max(focus.max.x - focus.min.x, focus.max.z - focus.min.z) / FreeSpace::kColumns;
 
     Vector<Camera> cameras;

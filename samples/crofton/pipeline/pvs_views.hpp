@@ -26,9 +26,9 @@ struct PvsViewFigures {
 };
 
 // Level views in random directions, 60 degrees high, from random places where one could stand and walk (FreeSpace) and
-// the cells reach. Owners are found by exact rays through the middles of pixels, from the near plane on. Objects that
-// are not baked are drawn in any mode: they are left out. The scene has been updated. The same figures for any
-// executor. Errors: sizes of 0; no place to stand within the cells (empty).
+// the cells reach. No near plane cuts anything. Owners are found by exact rays through the middles of pixels, from the
+// near plane on. Objects that are not baked are drawn in any mode: they are left out. The scene has been updated. The
+// same figures for any executor. Errors: sizes of 0; no place to stand within the cells (empty).
 [[nodiscard]] Result<PvsViewFigures> look_at_views(const scene::Scene& scene, const pvs::Subject& subject,
                                                    const pvs::Pvs& sets, const PvsViewOptions& options = {},
                                                    Executor& executor = serial_executor());
