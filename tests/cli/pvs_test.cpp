@@ -77,6 +77,9 @@ TEST_SUITE("cli/pvs") {
         REQUIRE_MESSAGE(small.status == 0, small.err);
         CHECK(small.json().at("cells").get<int>() >= 56);
         CHECK(small.json().at("street_views").at("conservative").at("wrong_pixels_worst") == 0.0);
+        // Halving leaves pieces without an area.
+        for (const char* sizes : {"--near 0 --cell-size 1.5", "--near 0.05 --cell-size 0.3"})
+            CHECK(run_cli(base + sizes + " --seconds 1e-9").status == 0);
         const auto refused = [&](const std::string& arguments, const char* reason) {
             const CliRun bad = run_cli(arguments);
             CHECK(bad.status == 2);

@@ -116,7 +116,7 @@ void add_prisms(const Ring& ring, double low, double high, std::vector<pvs::Conv
         const auto side = [&](const glm::dvec2& p) {
             return std::abs(diagonal.x * (p.y - corners[0].y) - diagonal.y * (p.x - corners[0].x));
         };
-        if (side(corners[1]) + side(corners[3]) < kThinnest * glm::length(diagonal)) continue;
+        if (side(corners[1]) + side(corners[3]) <= kThinnest * glm::length(diagonal)) continue;
         pvs::ConvexCell cell;
         for (std::size_t k = 0; k < 8; ++k) cell.corners[k] = {corners[k % 4].x, k < 4 ? low : high, corners[k % 4].y};
         cells.push_back(cell);
@@ -132,7 +132,7 @@ Result<pvs::Cells> cells_of_rooms(const assets::SceneSource& source, const RoomO
     for (const assets::Room& room : source.rooms) {
         const double low = room.floor + (room.has_floor ? options.inset : 0.0),
                      high = room.ceiling - (room.has_ceiling ? options.inset : 0.0);
-        if (!(low < high)) continue;
+        if (high - low <= kThinnest) continue;
         pieces.clear();
         cut_to_size(inner_ring(room, options.inset), options.size, pieces);
         for (const Ring& piece : pieces) add_prisms(piece, low, high, cells);
