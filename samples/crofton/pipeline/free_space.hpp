@@ -28,6 +28,7 @@ class FreeSpace {
     static constexpr std::uint32_t kColumns = 128;
 
     [[nodiscard]] std::span<const glm::dvec3> places() const { return places_; }
+    [[nodiscard]] double eye_height() const { return eye_height_; }  // of a place over its floor
     // A long way through them, as a polyline along free ways; empty for a single place.
     [[nodiscard]] std::vector<glm::dvec3> walk() const;
     // The place from which the most objects are seen, looking to where most are. Nothing where the scene does not

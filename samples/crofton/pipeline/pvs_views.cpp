@@ -164,7 +164,7 @@ Result<PvsViewFigures> look_at_views(const scene::Scene& scene, const pvs::Subje
     for (const std::uint32_t object : subject.object_of) ++all.triangles_of[object];
     const double half = std::tan(0.5 * Camera{}.fov_y), aspect = static_cast<double>(options.width) / options.height;
     const double farthest = std::hypot(1.0, half, half * aspect);
-    all.near = std::min(kFarthestNear, options.near_radius / farthest);
+    all.near = std::min({kFarthestNear, options.near_radius / farthest, 0.5 * space->eye_height() / farthest});
     all.reach = all.near * farthest;
     const double spacing = std::max(focus.max.x - focus.min.x, focus.max.z - focus.min.z) / FreeSpace::kColumns;
 
