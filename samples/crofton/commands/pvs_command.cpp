@@ -28,7 +28,7 @@ using Clock = std::chrono::steady_clock;
 constexpr double kSaveEvery = 20.0;  // seconds
 // Of the near radius: walls of a room are far enough from its cell to prove.
 constexpr double kInset = 1.01;
-constexpr std::uint32_t kByScene = ~std::uint32_t{0}, kStepsInLevels = 100;
+constexpr std::uint32_t kByScene = ~std::uint32_t{0}, kStepsInLevels = 10000;
 
 struct PvsRequest {
     ReadOptions read;
@@ -355,7 +355,7 @@ void add_pvs_command(CommandLine& line) {
     command
         .option("--surface-steps", options->surface_steps,
                 "Sides of triangles that a proof by the scene's own surface may visit; 0: bodies alone; "
-                "without, 100 in levels (minutes for thousands of cells), else 0")
+                "without, 10000 in levels (minutes for thousands of cells), else 0")
         .whole_between(0, 1'000'000);
     command.option("--out", options->out, "Write the sets to this .crofton file").writable_file().excludes(shard);
     command.flag("--with-scene", options->with_scene, "Put the baked scene into the same file");
