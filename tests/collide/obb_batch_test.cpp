@@ -92,6 +92,24 @@ TEST_SUITE("collide/obb_batch") {
         }
     }
 
+    TEST_CASE("specks whose centres floats round away from each other, by half a step each, meet nevertheless") {
+        std::vector<Obb> a, b;
+        for (int power = -20; power <= 20; ++power)
+            for (int axis = 0; axis < 3; ++axis)
+                for (const double sign : {-1.0, 1.0}) {
+                    Obb box{};
+                    box.axes = glm::mat3(1.0f);
+                    box.half_extents[axis] = std::ldexp(0.03f, power - 24);
+                    // Halfway between two floats, a little below and a little above: their floats are a step apart.
+                    box.center[axis] = sign * std::ldexp(1.0 + 0x1p-24 * 0.98, power);
+                    a.push_back(box);
+                    box.center[axis] = sign * std::ldexp(1.0 + 0x1p-24 * 1.02, power);
+                    b.push_back(box);
+                    REQUIRE(separating_axis(a.back(), b.back(), 0) == kNotSeparated);
+                }
+        check(a, b, {});
+    }
+
     TEST_CASE("boxes with parallel edges that overlap clearly are decided in float") {
         std::mt19937_64 random(6);
         std::vector<Obb> a, b;

@@ -75,6 +75,44 @@ TEST_SUITE("collide/skewed boxes") {
         CHECK(from_batch == expected);
     }
 
+    TEST_CASE("needles whose thin axes lean on the long one meet specks at their tips, where the filter is off most") {
+        std::vector<Obb> a, b;
+        for (int axis = 0; axis < 3; ++axis)
+            for (const float lean : {-0.98e-4f, 0.98e-4f})
+                for (const double tip : {-0.999, 0.999})
+                    for (const float turn : {-1.0f, 1.0f}) {
+                        const int second = (axis + 1) % 3, third = (axis + 2) % 3;
+                        Obb needle{}, speck{};
+                        needle.axes = glm::mat3(0.0f);
+                        needle.axes[0][axis] = 1.0f;
+                        needle.axes[1][second] = needle.axes[2][third] = 1.0f;
+                        needle.axes[1][axis] = needle.axes[2][axis] = lean;
+                        needle.half_extents = {1.0f, 0.0f, 0.0f};
+                        // Along the cross product of both first axes the needle is as wide as its thin axes lean.
+                        speck.axes = glm::mat3(0.0f);
+                        const float diagonal = std::sqrt(0.5f);
+                        speck.axes[0][second] = -turn * diagonal;
+                        speck.axes[0][third] = diagonal;
+                        speck.axes[1][axis] = 1.0f;
+                        speck.axes[2][second] = diagonal;
+                        speck.axes[2][third] = turn * diagonal;
+                        speck.half_extents = glm::vec3(1e-7f);
+                        speck.center[axis] = tip;
+                        REQUIRE(validate(needle));
+                        REQUIRE(separating_axis(needle, speck, 0) == kNotSeparated);
+                        a.insert(a.end(), {needle, speck});
+                        b.insert(b.end(), {speck, needle});
+                    }
+        std::vector<std::uint8_t> hits(a.size());
+        (void)intersects(a, b, hits);
+        CHECK(hits == std::vector<std::uint8_t>(a.size(), 1));
+        PackedBoxes packed_a, packed_b;
+        packed_a.pack(a, {});
+        packed_b.pack(b, {});
+        (void)intersects(packed_a, packed_b, hits);
+        CHECK(hits == std::vector<std::uint8_t>(a.size(), 1));
+    }
+
     TEST_CASE("one axis component that is not finite, whichever it is, and a pair that would overlap does not meet") {
         std::mt19937_64 random(62);
         std::vector<Obb> a, b;

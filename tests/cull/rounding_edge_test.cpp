@@ -122,6 +122,35 @@ TEST_SUITE("cull/rounding edges") {
         CHECK(outside > 100);
     }
 
+    TEST_CASE("planes that just touch a corner, with numbers just above powers of two, whose roundings are largest") {
+        oracle::NearMisses random(47);
+        const auto above_one = [&] { return 1.0 + random.number(0.0, 0.01); };
+        for (int trial = 0; trial < 4000; ++trial) {
+            Obb box{};
+            box.axes = glm::mat3(1.0f);
+            // A point, or so small that the roundings are those of its centre.
+            if (trial % 2) box.half_extents = glm::vec3(0x1p-40f * static_cast<float>(above_one()));
+            Frustum frustum;
+            frustum.plane_count = 1;
+            Plane& plane = frustum.planes[0];
+            const double side = trial % 4 < 2 ? 1.0 : -1.0;
+            double distance = 0.0, radius = 0.0;
+            for (int j = 0; j < 3; ++j) {
+                const double sign = random.index(2) ? 1.0 : -1.0;
+                plane.normal[j] = 0.5 * side * sign * above_one();
+                frustum.origin[j] = -sign * random.number(2.0, 4.0);
+                box.center[j] = frustum.origin[j] + sign * above_one();
+                distance += plane.normal[j] * (box.center[j] - frustum.origin[j]);
+                radius += std::fabs(plane.normal[j]) * static_cast<double>(box.half_extents[j]);
+            }
+            for (const double corner : {-radius, radius})
+                for (int step = -4; step <= 4; ++step) {
+                    plane.offset = corner - distance + step * 0x1p-54 * std::fabs(distance);
+                    REQUIRE(cull::classify(frustum, box) == oracle::classify(frustum, box));
+                }
+        }
+    }
+
     TEST_CASE("planes a little longer than unit vectors, far beyond a tree, lose none of it") {
         oracle::NearMisses random(46);
         std::vector<Obb> boxes(2000);
