@@ -90,6 +90,15 @@ TEST_SUITE("convex/query") {
         CHECK(penetration({point, at({})}, {point, at({})}).depth == doctest::Approx(0.0));
     }
 
+    TEST_CASE("a direction so short that its length is rounded to 0 gives a point of the body") {
+        const Body ball = Body::ball(0.5f).value(), capsule = Body::capsule(1, 0.25f).value();
+        for (const double length : {1e-200, 1e-300}) {
+            const glm::dvec3 direction = length * glm::dvec3(0.6, 0.8, 0.0);
+            CHECK(glm::length(support_point(ball, direction)) <= 0.5);
+            CHECK(glm::distance(support_point(capsule, direction), {0, 1, 0}) <= 0.25);
+        }
+    }
+
     TEST_CASE("distances and depths known by hand, of every kind") {
         const Body ball = Body::ball(0.5f).value(), capsule = Body::capsule(1, 0.25f).value();
         const Body cylinder = Body::cylinder(1, 2).value(), cone = Body::cone(1, 2).value();

@@ -27,6 +27,14 @@ TEST_SUITE("geometry/mesh") {
         CHECK(mesh.indices == Vector<std::uint32_t>{0, 1, 2, 3, 4, 5});
     }
 
+    TEST_CASE("what lies in memory behind the indices is none of them") {
+        TriangleMesh mesh = triangle_at(0.0f);
+        mesh.indices.push_back(1000);
+        CHECK_FALSE(validate(mesh).has_value());
+        mesh.indices.pop_back();
+        CHECK(validate(mesh).has_value());
+    }
+
     TEST_CASE("colours are appended where both have them, and dropped where one has none") {
         TriangleMesh colored = triangle_at(0.0f), mesh;
         colored.colors = {glm::vec3(1.0f), glm::vec3(0.5f), glm::vec3(0.0f)};
