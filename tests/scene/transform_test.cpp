@@ -204,4 +204,27 @@ TEST_SUITE("scene/transform") {
         CHECK(volume(transformed_box(shear, cube, measure::minimal_volume()).value()) ==
               doctest::Approx(12.0).epsilon(1e-6));
     }
+
+    TEST_CASE("a transform that flattens a box along any of its edges gives a flat box around it") {
+        for (int flat = 0; flat < 3; ++flat) {
+            Transform place;
+            place.linear[flat] = glm::dvec3(0.0);
+            Obb box{};
+            box.axes = glm::mat3(1.0f);
+            box.half_extents = {1.0f, 2.0f, 3.0f};
+            const Result<Obb> image = transformed_box(place, box, measure::minimal_perimeter());
+            REQUIRE(image.has_value());
+            CHECK(validate(*image));
+            for (int corner = 0; corner < 8; ++corner) {
+                glm::dvec3 p;
+                for (int k = 0; k < 3; ++k) p[k] = (corner >> k & 1 ? 1.0 : -1.0) * double(box.half_extents[k]);
+                p = place * p - image->center;
+                for (int k = 0; k < 3; ++k)
+                    CHECK(std::abs(glm::dot(p, glm::dvec3(image->axes[k]))) <= double(image->half_extents[k]) + 1e-6);
+            }
+            // One edge of three is next to nothing.
+            const glm::vec3& half = image->half_extents;
+            CHECK(std::min(half.x, std::min(half.y, half.z)) < 1e-6f);
+        }
+    }
 }
