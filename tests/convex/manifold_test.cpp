@@ -202,6 +202,44 @@ TEST_SUITE("convex/manifold") {
         CHECK(tried > 100);
     }
 
+    // Found by fuzzing: a sliver's clipped face was from 2e-5 to 7e-4 deep, and the proof took all of it for the least.
+    TEST_CASE("a sliver that slides off a face has no point, whatever face the frame before had") {
+        const std::vector<glm::vec3> sliver = {{0, -0x1p-3f, -0x1p-3f},
+                                               {-0x1p-3f, -0x1.ff5718p-4f, 0},
+                                               {0, -0x1p-3f, -0x1.cp+1f},
+                                               {-0x1.ff5718p-4f, -0x1.ff5718p-4f, -0x1.ff5718p-4f}};
+        const std::vector<glm::vec3> wedge = {{0x1.48p+3f, -0x1p-3f, -0x1.ff5718p-4f},
+                                              {-0x1.ff5718p-4f, -0x1.ff5718p-4f, -0x1.15c5fp-3f},
+                                              {0x1.48p+3f, 0x1.48p+3f, 0x1.48p+3f},
+                                              {0x1.48p+3f, -0x1.ff5718p-4f, 0x1.6f869ap+2f},
+                                              {-0x1.ff5718p-4f, -0x1.ff5718p-4f, 0x1.6aa8e8p+3f},
+                                              {-0x1p-3f, -0x1p-3f, 0}};
+        const Hull a = Hull::build(sliver).value(), b = Hull::build(wedge).value();
+        const Placed thin{Body::hull(a), at({0, -0x1.102a3ap-3, -0x1.ff5718p-4})};
+        const Body wide = Body::hull(b);
+        const RigidTransform touching = at({-0x1.4cp+3, -0x1.0fd5c6p-3, 0}), past = at({-0x1.2cp+3, -0x1.0fd5c6p-3, 0});
+        PairCache cache;
+        REQUIRE(contact_manifold(thin, {wide, touching}, {}, &cache).count > 0);
+        REQUIRE(cache.reference != 0);
+        CHECK_FALSE(intersects(thin, {wide, past}));
+        CHECK(contact_manifold(thin, {wide, past}, {}, &cache).count == 0);
+
+        // The same from many places nearby.
+        RandomBodies random(77);
+        int meeting = 0, apart = 0;
+        for (int i = 0; i < 20000; ++i) {
+            PairCache from = cache;
+            RigidTransform near = past;
+            near.translation +=
+                glm::dvec3(random.number(-1.0, 1.0), random.number(-1e-3, 1e-3), random.number(-1e-3, 1e-3));
+            const bool meet = intersects(thin, {wide, near});
+            ++(meet ? meeting : apart);
+            CHECK((contact_manifold(thin, {wide, near}, {}, &from).count > 0) == meet);
+        }
+        CHECK(meeting > 5000);
+        CHECK(apart > 5000);
+    }
+
     TEST_CASE("a face that is no longer the least deep is given up") {
         const Body box = Body::box({1, 1, 1}).value();
         const RigidTransform ground = at({}), top = at({0.5, 1.99, 0.25}), side = at({1.9, 1.5, 0.25});

@@ -62,18 +62,38 @@ double inner_distance(const Clipped& clipped, const glm::dvec3& direction) {
     return least;
 }
 
-// Whether no direction is less deep than `depth`. The difference body has, across the unit vector n at this depth, a
-// disc of radius `inner` around the foot of the origin: at an angle t from n its extent is at least depth · cos t +
-// inner · sin t, which is no less than depth up to t = 2 atan(inner / depth). Beyond, the ball within the difference
-// body, of radius R around c, has extent −c·n cos s − |c across n| sin s + R at the angle s = π − t from −n; that falls
-// with s up to a right angle, so that its value at the last s decides.
-bool least_deep(const Placed& a, const Placed& b, const Pair& pair, const glm::dvec3& n, double depth, double inner) {
-    if (!(inner > depth)) return false;
+// How far points of the difference body are beyond the origin along a unit vector.
+struct Depths {
+    double least, most;
+};
+
+// Whether no direction is less deep than `depths.least`. The difference body has, across the unit vector n at these
+// depths, for each direction a point at least `inner` from the axis. At an angle t from n its extent is at least d ·
+// cos t + inner · sin t, with d the least depth up to a right angle and the most beyond. That is no less than the least
+// depth up to t = 2 atan(inner / most). Beyond, the ball within the difference body, of radius R around c, has extent
+// −c·n cos s − |c across n| sin s + R at the angle s = π − t from −n; that falls with s up to a right angle, so that
+// its value at the last s decides.
+bool least_deep(const Placed& a, const Placed& b, const Pair& pair, const glm::dvec3& n, const Depths& depths,
+                double inner) {
+    // What rounding may have made of a touch counts as none.
+    if (!(depths.least > 4.0 * pair.error) || !(inner > depths.most)) return false;
     const InnerBall in_a = inner_ball(a), in_b = inner_ball(b);
     const glm::dvec3 c = in_a.center - in_b.center - pair.offset;
     const double along = -glm::dot(n, c), across = glm::length(c + along * n);
-    const double t = depth / inner, cosine = (1.0 - t * t) / (1.0 + t * t), sine = 2.0 * t / (1.0 + t * t);
-    return along >= 0.0 && along * cosine - across * sine + (in_a.radius + in_b.radius) >= depth + pair.error;
+    const double t = depths.most / inner, cosine = (1.0 - t * t) / (1.0 + t * t), sine = 2.0 * t / (1.0 + t * t);
+    const double from_ball = along * cosine - across * sine + (in_a.radius + in_b.radius);
+    return along >= 0.0 && from_ball >= depths.least + pair.error;
+}
+
+// How far the points of a face are from one plane across a direction: hulls have faces that are not quite flat.
+double unevenness(const Patch& face, const glm::dvec3& direction) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (int i = 0; i < face.count; ++i) {
+        const double along = glm::dot(direction, face.point[i]);
+        low = std::min(low, along);
+        high = std::max(high, along);
+    }
+    return face.count > 3 ? high - low : 0.0;
 }
 
 }  // namespace
@@ -132,7 +152,7 @@ Warm touch_at_face(const Placed& a, const Placed& b, const Pair& pair, double ma
     patch_along(incident, -out, a.pose.translation, other);
     // The deepest corner itself above the face, else the common part of the two faces.
     const glm::dvec3 x = on_a ? deepest.on_b : deepest.on_a;
-    double inner = 0.0, drop = 0.0;
+    double inner = 0.0, drop = 0.0, uneven = 0.0;
     if (on_box) {
         const glm::dmat3 to_local = glm::inverse(reference.pose.rotation);
         const BoxFace box(reference, cache.face, to_local, a.pose.translation);
@@ -143,13 +163,14 @@ Warm touch_at_face(const Placed& a, const Placed& b, const Pair& pair, double ma
         find_sides(face, out, sides);
         clip(face, sides, other, out, clipped);
         inner = distance_within(sides, x);
+        uneven = unevenness(face, out);
     }
     touch.known = true;
     touch.feature_a = on_a ? face.self : Feature{FeatureKind::vertex, static_cast<std::uint16_t>(deepest.a)};
     touch.feature_b = on_a ? Feature{FeatureKind::vertex, static_cast<std::uint16_t>(deepest.b)} : face.self;
     touch.on_a = on_a ? x + depth * touch.normal : x;
     touch.on_b = on_a ? x : x - depth * touch.normal;
-    if (inner < 0.0 || (depth > 0.0 && !least_deep(a, b, pair, touch.normal, depth, inner))) {
+    if (inner < 0.0 || (depth > 0.0 && !least_deep(a, b, pair, touch.normal, {depth - uneven, depth}, inner))) {
         double least = std::numeric_limits<double>::infinity();
         for (int i = 0; i < clipped.count; ++i) {
             const ClippedPoint& p = clipped.point[i];
@@ -161,8 +182,9 @@ Warm touch_at_face(const Placed& a, const Placed& b, const Pair& pair, double ma
         }
         if (!(least <= kept)) return Warm::unknown;
         if (depth > 0.0) {
-            if (clipped.count < 3 || drop > kept || depth <= drop) return Warm::unknown;
-            if (!least_deep(a, b, pair, touch.normal, depth - drop, inner_distance(clipped, out))) return Warm::unknown;
+            if (clipped.count < 3 || drop > kept) return Warm::unknown;
+            const Depths depths{depth - drop - uneven, depth};
+            if (!least_deep(a, b, pair, touch.normal, depths, inner_distance(clipped, out))) return Warm::unknown;
         }
         depth -= std::max(0.0, least);
     }
