@@ -116,7 +116,7 @@ inline int parts(const ExactPolytope& a, const ExactPolytope& b, const Vec3z& n)
     return gap_along(a, b, n) > 0;
 }
 
-// 1 or 0, or kUnknown.
+// 1 or 0, or kUnknown. Of a triangle, which has no inside, nothing is said: its two faces alone do not bound it.
 template <class Number>
 int contains(const Polytope<Number>& a, const Vec3<Number>& x) {
     int answer = 1;
