@@ -39,8 +39,13 @@ function(crofton_own_target target)
         # differ from those of every other compiler and level. At -O3, which releases have, digests are the published ones.
         $<$<AND:$<COMPILE_LANG_AND_ID:CXX,GNU>,$<NOT:$<CONFIG:Release>>>:-fno-tree-slp-vectorize>
         $<$<BOOL:${CROFTON_WERROR}>:-Werror>)
-    if(CROFTON_FUZZ)
+    if(CROFTON_FUZZ AND CROFTON_SANITIZE)
         target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link)
+    elseif(CROFTON_FUZZ AND NOT target MATCHES "^fuzz_")
+        # For executions a second: edges of the engine alone are counted, comparisons are not traced, and what a fuzzer does
+        # not call is not linked, so that there are few counters to look at after each execution.
+        target_compile_options(${target} PRIVATE -fsanitize-coverage=inline-8bit-counters,pc-table
+                                                 -ffunction-sections -fdata-sections)
     endif()
     if(CROFTON_SANITIZE)
         target_compile_options(${target} PRIVATE -fsanitize=${CROFTON_SANITIZE} -fno-omit-frame-pointer

@@ -47,8 +47,7 @@ void compare(const scene::Scene& scene, const bake::BakedScene& baked) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    fuzz::Shapes in(data, size);
+CROFTON_FUZZ(in) {
     fuzz::LivingScene living(in);
     const auto orientation = static_cast<boxtree::Orientation>(in.below(3));
     for (int step = 0; step < 40 && in.more(); ++step) living.change(in);
@@ -71,5 +70,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::size_t at = in.word() % file->size();
     (*file)[at] ^= static_cast<std::byte>(1u << in.below(8));
     if (const auto damaged = bake::BakedScene::from_memory(*file)) compare(living.scene, *damaged);
-    return 0;
 }

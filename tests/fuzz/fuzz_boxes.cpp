@@ -4,8 +4,7 @@
 #include <crofton/collide/narrow_phase.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <oracle/exact_boxes.hpp>
-#include <oracle/exact_frustum.hpp>
-#include <oracle/exact_triangles.hpp>
+#include <oracle/quick_frustum.hpp>
 
 #include "shapes.hpp"
 
@@ -22,7 +21,7 @@ double size_of(const Obb& a, const Obb& b) {
 
 void check_pair(fuzz::Shapes& in) {
     const Obb a = in.box(), b = in.box_near(a);
-    const bool meet = oracle::boxes_meet_by_integers(a, b);
+    const bool meet = oracle::boxes_meet(a, b);
     demand(collide::intersects(a, b) == meet && collide::intersects(b, a) == meet, "two boxes meet");
     const int hint = static_cast<int>(in.below(17)) - 1;
     demand((collide::separating_axis(a, b, hint) == collide::kNotSeparated) == meet, "a separating axis");
@@ -40,12 +39,12 @@ void check_pair(fuzz::Shapes& in) {
     if (meet && depth.depth < 1e6) {
         Obb away = b;
         away.center += (depth.depth + 1e-9 + 1e-6 * (size + glm::length(b.center))) * depth.axis;
-        demand(!oracle::boxes_meet_by_integers(a, away), "the depth parts them");
+        demand(!oracle::boxes_meet(a, away), "the depth parts them");
     }
 }
 
 void check_batch(fuzz::Shapes& in) {
-    const std::vector<Obb> a = in.boxes(20);
+    const std::vector<Obb> a = in.boxes(6);
     std::vector<Obb> b;
     std::vector<IdPair> pairs;
     for (const Obb& box : a) {
@@ -69,28 +68,31 @@ void check_batch(fuzz::Shapes& in) {
     }
 }
 
-// Whether some point a + u (b − a) + v (c − a) of the triangle is between the box's faces, by eliminating u and v.
+// Whether some point a + u (b − a) + v (c − a) of the triangle is between the box's faces.
 bool box_meets_triangle(const Obb& box, const Triangle& triangle) {
-    std::vector<oracle::Inequality> rows;
-    const auto volume_row = [&](int k, int side) {
-        // |dot(n, x − center)| ≤ h |dot(n, axis_k)| with n across the two other axes.
-        const oracle::Vec3q n =
-            oracle::cross(oracle::rational(box.axes[(k + 1) % 3]), oracle::rational(box.axes[(k + 2) % 3]));
-        const oracle::Rational projected_radius =
-            abs(oracle::dot(n, oracle::rational(box.axes[k]))) * oracle::Rational(double(box.half_extents[k]));
-        const auto at = [&](const glm::dvec3& p) {
-            return oracle::Rational(side *
-                                    oracle::dot(n, oracle::minus(oracle::rational(p), oracle::rational(box.center))));
-        };
-        const oracle::Rational fa = at(triangle[0]);
-        rows.push_back({at(triangle[1]) - fa, at(triangle[2]) - fa, fa + projected_radius});
+    const auto rows_of = [&]<class Number>() {
+        using oracle::vector_of;
+        auto rows = oracle::quick::rows_of_triangle<Number>();
+        for (int k = 0; k < 3; ++k) {
+            // |dot(n, x − center)| ≤ h |dot(n, axis_k)| with n across the two other axes.
+            const auto n =
+                oracle::cross(vector_of<Number>(box.axes[(k + 1) % 3]), vector_of<Number>(box.axes[(k + 2) % 3]));
+            const Number projected_radius =
+                abs(oracle::dot(n, vector_of<Number>(box.axes[k]))) * Number(double(box.half_extents[k]));
+            Number at[3];
+            for (std::size_t i = 0; i < 3; ++i)
+                at[i] = oracle::dot(n, oracle::minus(vector_of<Number>(triangle[i]), vector_of<Number>(box.center)));
+            const Number u = at[1] - at[0], v = at[2] - at[0], zero(0.0);
+            rows.push_back({{u, v, zero}, Number(projected_radius + at[0])});
+            rows.push_back({{Number(-u), Number(-v), zero}, Number(projected_radius - at[0])});
+        }
+        return rows;
     };
-    for (int k = 0; k < 3; ++k)
-        for (const int side : {-1, 1}) volume_row(k, side);
-    rows.push_back({1, 0, 0});
-    rows.push_back({0, 1, 0});
-    rows.push_back({-1, -1, 1});
-    return oracle::is_feasible(rows);
+    if (const auto proof = oracle::proven_feasible(rows_of)) return *proof;
+    std::vector<oracle::Inequality> system;
+    for (const auto& row : rows_of.template operator()<oracle::Rational>())
+        system.push_back({row.normal[0], row.normal[1], row.normal[2], row.offset});
+    return oracle::is_feasible(system);
 }
 
 void check_triangle(fuzz::Shapes& in) {
@@ -103,7 +105,7 @@ void check_triangle(fuzz::Shapes& in) {
     demand(collide::intersects(box, triangle) == box_meets_triangle(box, triangle), "a box and a triangle");
     const Frustum frustum = in.frustum();
     demand(intersects(frustum, triangle[0], triangle[1], triangle[2]) ==
-               oracle::meets(frustum, triangle[0], triangle[1], triangle[2]),
+               oracle::quick::meets(frustum, triangle[0], triangle[1], triangle[2]),
            "a view and a triangle");
 }
 
@@ -112,20 +114,19 @@ void check_point_and_half_space(fuzz::Shapes& in) {
     const glm::dvec3 p = in.point_of(box) + in.nudge();
     Obb point;
     point.center = p;
-    demand(contains(box, p) == oracle::boxes_meet_by_integers(box, point), "a point in a box");
+    demand(contains(box, p) == oracle::boxes_meet(box, point), "a point in a box");
     Plane plane;
     plane.normal = in.direction();
     plane.offset = in.flag() ? -glm::dot(plane.normal, p) : in.coordinate();
     Frustum half_space;
     half_space.planes[0] = plane;
     half_space.plane_count = 1;
-    demand(collide::intersects(box, plane) == !oracle::is_rejected_by_a_plane(half_space, box), "a half-space");
+    demand(collide::intersects(box, plane) == !oracle::quick::is_rejected_by_a_plane(half_space, box), "a half-space");
 }
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    fuzz::Shapes in(data, size);
+CROFTON_FUZZ(in) {
     switch (in.below(5)) {
         case 0:
             check_batch(in);
@@ -139,5 +140,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         default:
             check_pair(in);
     }
-    return 0;
 }

@@ -208,12 +208,10 @@ class Sequence {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    fuzz::Shapes in(data, size);
+CROFTON_FUZZ(in) {
     Sequence sequence(in);
     for (int frame = 0; frame < 10 && in.more(); ++frame) {
         for (unsigned calls = 1 + in.below(12); calls > 0; --calls) sequence.step();
         sequence.update();
     }
-    return 0;
 }

@@ -92,11 +92,9 @@ void check_rays(fuzz::Shapes& in) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    fuzz::Shapes in(data, size);
+CROFTON_FUZZ(in) {
     if (in.below(4) < 3)
         check_cast(in);
     else
         check_rays(in);
-    return 0;
 }

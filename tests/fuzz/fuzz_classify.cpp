@@ -2,7 +2,7 @@
 // Boxes, aligned boxes and balls against a view: alone, as a span, as packed lists, as a query; against rational
 // arithmetic.
 #include <crofton/cull/bound_set.hpp>
-#include <oracle/exact_frustum.hpp>
+#include <oracle/quick_frustum.hpp>
 
 #include "shapes.hpp"
 
@@ -15,14 +15,17 @@ using fuzz::demand;
 // By the planes alone, for a ball: their normals are of any length.
 Verdict conservative_of_ball(const Frustum& frustum, const Sphere& ball) {
     bool inside = true;
-    const mpq_class squared = mpq_class(ball.radius) * mpq_class(ball.radius);
     for (const Plane& plane : frustum.view()) {
-        const mpq_class value = oracle::plane_value(
-            frustum, plane, {mpq_class(ball.center.x), mpq_class(ball.center.y), mpq_class(ball.center.z)});
-        mpq_class squared_radius = 0;
-        for (int k = 0; k < 3; ++k) squared_radius += mpq_class(plane.normal[k]) * mpq_class(plane.normal[k]) * squared;
-        if (value < 0 && value * value > squared_radius) return Verdict::outside;
-        inside = inside && value >= 0 && value * value >= squared_radius;
+        const Verdict verdict = oracle::decide([&]<class Number>() {
+            const auto normal = oracle::vector_of<Number>(plane.normal);
+            const Number value = oracle::quick::plane_value<Number>(frustum, plane, ball.center), radius(ball.radius);
+            const int beyond = sgn(Number(value * value - oracle::dot(normal, normal) * radius * radius));
+            const int side = sgn(value);
+            if (side < 0 && beyond > 0) return Verdict::outside;
+            return side >= 0 && beyond >= 0 ? Verdict::inside : Verdict::straddling;
+        });
+        if (verdict == Verdict::outside) return Verdict::outside;
+        inside = inside && verdict == Verdict::inside;
     }
     return inside ? Verdict::inside : Verdict::straddling;
 }
@@ -47,15 +50,15 @@ void check_list(fuzz::Shapes& in, const cull::View& view, std::vector<Bound>& bo
 }
 
 void check_boxes(fuzz::Shapes& in, const cull::View& view) {
-    std::vector<Obb> boxes(1 + in.below(6)), later;
+    std::vector<Obb> boxes(1 + in.below(3)), later;
     for (Obb& box : boxes) box = in.flag() ? in.box_at(in.point_of(view.frustum)) : in.box();
     std::vector<std::uint32_t> layers, expected;
     for (std::uint32_t i = 0; i < boxes.size(); ++i) {
-        const Verdict exact = oracle::classify(view.frustum, boxes[i]);
+        const Verdict exact = oracle::quick::classify(view.frustum, boxes[i]);
         demand(cull::classify(view.frustum, boxes[i]) == exact, "a box's verdict");
-        const Verdict by_planes = oracle::is_rejected_by_a_plane(view.frustum, boxes[i]) ? Verdict::outside
-                                  : exact == Verdict::inside                             ? Verdict::inside
-                                                                                         : Verdict::straddling;
+        const Verdict by_planes = oracle::quick::is_rejected_by_a_plane(view.frustum, boxes[i]) ? Verdict::outside
+                                  : exact == Verdict::inside                                    ? Verdict::inside
+                                                                                                : Verdict::straddling;
         demand(cull::classify(view.frustum, boxes[i], cull::CullMode::conservative) == by_planes, "a box by planes");
         layers.push_back(in.layers());
         if (exact != Verdict::outside && (layers.back() & view.layer_mask) != 0) expected.push_back(i);
@@ -72,7 +75,7 @@ void check_boxes(fuzz::Shapes& in, const cull::View& view) {
 }
 
 void check_aligned(fuzz::Shapes& in, const cull::View& view) {
-    std::vector<Aabb> boxes(1 + in.below(4)), later(boxes.size());
+    std::vector<Aabb> boxes(1 + in.below(3)), later(boxes.size());
     for (std::vector<Aabb>* list : {&boxes, &later})
         for (Aabb& box : *list) {
             // Middles and half extents are stored without rounding.
@@ -83,13 +86,13 @@ void check_aligned(fuzz::Shapes& in, const cull::View& view) {
             Obb same;
             same.center = middle;
             same.half_extents = glm::vec3(half);
-            demand(cull::classify(view.frustum, box) == oracle::classify(view.frustum, same), "an aligned box");
+            demand(cull::classify(view.frustum, box) == oracle::quick::classify(view.frustum, same), "an aligned box");
         }
     check_list(in, view, boxes, later);
 }
 
 void check_balls(fuzz::Shapes& in, const cull::View& view) {
-    std::vector<Sphere> balls(1 + in.below(4)), later(balls.size());
+    std::vector<Sphere> balls(1 + in.below(3)), later(balls.size());
     for (std::vector<Sphere>* list : {&balls, &later})
         for (Sphere& ball : *list) {
             ball = {in.flag() ? in.point_of(view.frustum) + in.nudge() : in.point(), std::fabs(in.coordinate())};
@@ -104,12 +107,10 @@ void check_balls(fuzz::Shapes& in, const cull::View& view) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    fuzz::Shapes in(data, size);
+CROFTON_FUZZ(in) {
     const unsigned kind = in.below(3);
     const cull::View view{in.frustum(), in.layers()};
     if (kind == 0) check_boxes(in, view);
     if (kind == 1) check_aligned(in, view);
     if (kind == 2) check_balls(in, view);
-    return 0;
 }

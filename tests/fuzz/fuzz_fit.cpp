@@ -64,18 +64,24 @@ void check_points(fuzz::Shapes& in) {
         demand(glm::length(p - sphere->center) <= sphere->radius, "a point outside the least sphere");
 }
 
-// Does `outer` contain the whole of `inner`, in rationals.
+// Does `outer` contain the whole of `inner`, exactly.
 bool holds(const Obb& outer, const Obb& inner) {
-    using namespace oracle;
-    for (int k = 0; k < 3; ++k) {
-        const Vec3q n = cross(rational(outer.axes[(k + 1) % 3]), rational(outer.axes[(k + 2) % 3]));
-        Rational farthest = abs(oracle::dot(n, minus(rational(inner.center), rational(outer.center))));
-        for (int j = 0; j < 3; ++j)
-            farthest += Rational(double(inner.half_extents[j])) * abs(oracle::dot(n, rational(inner.axes[j])));
-        if (farthest > Rational(double(outer.half_extents[k])) * abs(oracle::dot(n, rational(outer.axes[k]))))
-            return false;
-    }
-    return true;
+    return oracle::decide([&]<class Number>() {
+        using namespace oracle;
+        for (int k = 0; k < 3; ++k) {
+            const Vec3<Number> n =
+                cross(vector_of<Number>(outer.axes[(k + 1) % 3]), vector_of<Number>(outer.axes[(k + 2) % 3]));
+            Number farthest =
+                abs(oracle::dot(n, minus(vector_of<Number>(inner.center), vector_of<Number>(outer.center))));
+            for (int j = 0; j < 3; ++j)
+                farthest +=
+                    Number(double(inner.half_extents[j])) * abs(oracle::dot(n, vector_of<Number>(inner.axes[j])));
+            const Number reach =
+                Number(double(outer.half_extents[k])) * abs(oracle::dot(n, vector_of<Number>(outer.axes[k])));
+            if (sgn(Number(farthest - reach)) > 0) return false;
+        }
+        return true;
+    });
 }
 
 void check_merge(fuzz::Shapes& in) {
@@ -128,11 +134,9 @@ void check_plane(fuzz::Shapes& in) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    fuzz::Shapes in(data, size);
+CROFTON_FUZZ(in) {
     const unsigned kind = in.below(4);
     if (kind < 2) check_points(in);
     if (kind == 2) check_merge(in);
     if (kind == 3) check_plane(in);
-    return 0;
 }

@@ -90,9 +90,8 @@ void check_inside(fuzz::Shapes& in) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    fuzz::Shapes in(data, size);
-    if (in.below(4) == 0) return check_inside(in), 0;
+CROFTON_FUZZ(in) {
+    if (in.below(4) == 0) return check_inside(in);
     TriangleMesh of_a = in.flag() ? in.solid() : in.mesh(10, 30), of_b = in.flag() ? in.solid() : in.mesh(10, 30);
     mesh::MeshTreeOptions options;
     options.boxes = static_cast<mesh::MeshBoxes>(in.below(3));
@@ -101,10 +100,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto b = mesh::MeshTree::build(of_b);
     demand(a.has_value() && b.has_value(), "meshes");
     check_pair(in, of_a, *a, of_b, *b);
-    if (!options.refittable) return 0;
+    if (!options.refittable) return;
     for (glm::vec3& p : of_a.positions)
         if (in.flag()) p = glm::vec3(in.point());
     demand(a->refit(of_a.positions).has_value(), "a refit");
     check_pair(in, of_a, *a, of_b, *b);
-    return 0;
 }

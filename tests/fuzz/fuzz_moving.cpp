@@ -80,8 +80,7 @@ void check_refusals(fuzz::Shapes& in, const fuzz::LivingTree& living, cull::Movi
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    fuzz::Shapes in(data, size);
+CROFTON_FUZZ(in) {
     fuzz::LivingTree living(in);
     cull::MovingBoxes moving;
     for (int frame = 0; frame < 12 && in.more(); ++frame) {
@@ -94,5 +93,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         check_views(in, living, moving);
         (void)moving.update(living.tree(), {}, {});  // before the boxes go
     }
-    return 0;
 }

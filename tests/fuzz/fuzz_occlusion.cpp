@@ -110,8 +110,7 @@ void check_queries(const occlude::OcclusionBuffer& buffer, const std::vector<Obb
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    fuzz::Shapes in(data, size);
+CROFTON_FUZZ(in) {
     Camera camera = in.camera();
     camera.near_distance = (std::min)(camera.near_distance, 0.5);
     camera.far_distance = (std::max)(camera.far_distance, 100.0);
@@ -133,5 +132,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (const Obb& box : boxes)
         if (buffer->hides(box)) check_hidden(in, camera, *buffer, box, occluders);
     check_queries(*buffer, boxes);
-    return 0;
 }

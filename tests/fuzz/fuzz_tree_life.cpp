@@ -110,8 +110,7 @@ void check_near(fuzz::Shapes& in, const fuzz::LivingTree& living) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    fuzz::Shapes in(data, size);
+CROFTON_FUZZ(in) {
     fuzz::LivingTree living(in);
     for (int step = 0; step < 60 && in.more(); ++step) {
         switch (in.below(12)) {
@@ -146,5 +145,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     living.settle(in);
     living.check();
     check_views(in, living);
-    return 0;
 }

@@ -11,24 +11,29 @@ namespace {
 using namespace crofton;
 using fuzz::demand;
 
-oracle::Rational triple(const oracle::Vec3q& a, const oracle::Vec3q& b, const oracle::Vec3q& c) {
+template <class Number>
+Number triple(const oracle::Vec3<Number>& a, const oracle::Vec3<Number>& b, const oracle::Vec3<Number>& c) {
     return oracle::dot(oracle::cross(a, b), c);
 }
 
 // Where the ray's line passes through the triangle, if it does and the two are in no plane.
 std::optional<double> crossing(const Ray& ray, const Triangle& t) {
-    const oracle::Vec3q d = oracle::rational(ray.direction), o = oracle::rational(ray.origin);
-    const oracle::Vec3q a = oracle::minus(oracle::rational(t[0]), o), b = oracle::minus(oracle::rational(t[1]), o),
-                        c = oracle::minus(oracle::rational(t[2]), o);
-    const oracle::Rational u = triple(d, b, c), v = triple(d, c, a), w = triple(d, a, b), sum = u + v + w;
-    if (sum == 0 || ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0))) return std::nullopt;
-    return oracle::Rational(triple(a, b, c) / sum).get_d();
+    return oracle::decide([&]<class Number>() -> std::optional<double> {
+        const auto d = oracle::vector_of<Number>(ray.direction), o = oracle::vector_of<Number>(ray.origin);
+        const auto a = oracle::minus(oracle::vector_of<Number>(t[0]), o),
+                   b = oracle::minus(oracle::vector_of<Number>(t[1]), o),
+                   c = oracle::minus(oracle::vector_of<Number>(t[2]), o);
+        const Number u = triple(d, b, c), v = triple(d, c, a), w = triple(d, a, b), sum = u + v + w;
+        const int of_u = sgn(u), of_v = sgn(v), of_w = sgn(w);
+        const bool below = of_u < 0 || of_v < 0 || of_w<0, above = of_u> 0 || of_v > 0 || of_w > 0;
+        if (below == above) return std::nullopt;  // beside it, or all three are 0
+        return oracle::quotient(triple(a, b, c), sum);
+    });
 }
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    fuzz::Shapes in(data, size);
+CROFTON_FUZZ(in) {
     const Triangle a = in.triangle();
     Triangle b = in.triangle();
     // Corners, or points of edges, in common.
@@ -37,7 +42,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         if (kind == 0) p = a[in.below(3)];
         if (kind == 1) p = 0.5 * (a[in.below(3)] + a[in.below(3)]) + in.nudge();
     }
-    const bool meet = oracle::triangles_meet(a, b);
+    const bool meet = oracle::triangles_meet_quickly(a, b);
     demand(mesh::intersects(a, b) == meet && mesh::intersects(b, a) == meet, "two triangles meet");
     if (meet) {
         const mesh::SegmentOfContact segment = mesh::contact_segment(a, b);
@@ -49,7 +54,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     const Ray ray = in.flag() ? in.ray_through(a[in.below(3)]) : in.ray_through((a[0] + a[1] + a[2]) / 3.0);
     const auto hit = mesh::raycast(ray, a), line = crossing(ray, a);
-    if (!line) return demand(!hit, "a ray that misses hits"), 0;
+    if (!line) return demand(!hit, "a ray that misses hits");
     // t is rounded, as far as between the nearest and the farthest corner.
     double low = *line, high = *line;
     for (const glm::dvec3& p : a) {
@@ -60,5 +65,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const double rounding = 1e-9 * (1.0 + std::max(std::fabs(low), std::fabs(high)));
     if (low > rounding && high < ray.max_t - rounding) demand(hit.has_value(), "a ray passes through");
     if (high < -rounding || low > ray.max_t + rounding) demand(!hit, "a ray hits beyond its ends");
-    return 0;
 }

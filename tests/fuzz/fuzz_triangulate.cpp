@@ -13,7 +13,9 @@ using namespace crofton;
 using fuzz::demand;
 
 int turn(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
-    return sgn(oracle::twice_area({a.x, a.y}, {b.x, b.y}, {c.x, c.y}));
+    return oracle::decide([&]<class Number>() {
+        return sgn(oracle::twice_area<Number>({a.x, a.y}, {b.x, b.y}, {c.x, c.y}));
+    });
 }
 bool between(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
     return turn(a, b, c) == 0 && std::min(a.x, b.x) <= c.x && c.x <= std::max(a.x, b.x) && std::min(a.y, b.y) <= c.y &&
@@ -80,8 +82,7 @@ void add_ring(fuzz::Shapes& in, Polygon& polygon, unsigned count, const glm::dve
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    fuzz::Shapes in(data, size);
+CROFTON_FUZZ(in) {
     Polygon polygon;
     add_ring(in, polygon, 3 + in.below(12), {0.0, 0.0}, 1.0);
     if (in.below(3) == 0) add_ring(in, polygon, in.below(5), glm::dvec2(in.grid_point()) / 8.0, 1.0 / 16.0);
@@ -99,12 +100,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         demand(done.has_value() || !simple, "a simple polygon is refused");
         if (!done) {
             demand(result.triangles.empty(), "a refused polygon leaves triangles");
-            return 0;
+            return;
         }
-        const std::string wrong = oracle::check_triangulation(polygon, result.triangles, !simple);
+        const std::string wrong = oracle::decide(
+            [&]<class Number>() { return oracle::check_triangulation<Number>(polygon, result.triangles, !simple); });
         demand(wrong.empty(), wrong.c_str());
         if (simple && method == triangulate::Method::delaunay)
-            demand(oracle::is_constrained_delaunay(polygon, result.triangles), "a diagonal that is not Delaunay");
+            demand(oracle::decide([&]<class Number>() {
+                       return oracle::is_constrained_delaunay<Number>(polygon, result.triangles);
+                   }),
+                   "a diagonal that is not Delaunay");
         weights[static_cast<int>(method)] = result.weight;
         if (method == triangulate::Method::minimum_weight) optimal = result.optimal;
     }
@@ -113,5 +118,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         const auto least = static_cast<double>(oracle::MinimumWeightReference(polygon).solve());
         demand(std::fabs(weights[2] - least) <= 1e-9 * (1.0 + least), "the minimum weight");
     }
-    return 0;
 }

@@ -135,8 +135,7 @@ void change(fuzz::Shapes& in, World& world, oracle::Model& model) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    fuzz::Shapes in(data, size);
+CROFTON_FUZZ(in) {
     WorldOptions options;
     options.updates_to_rest = 1 + in.below(4);
     options.rebuild_budget = in.below(64);
@@ -149,5 +148,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         if (in.flag()) check_views(in, world, model);
         if (in.flag()) check_queries(in, world, model);
     }
-    return 0;
 }

@@ -259,3 +259,14 @@ class Shapes {
 };
 
 }  // namespace crofton::fuzz
+
+// CROFTON_FUZZ(in) { … }: the fuzzer that judges what `in` says.
+#define CROFTON_FUZZ(in)                                                                \
+    static void judge(crofton::fuzz::Shapes& in);                                       \
+    extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) { \
+        crofton::fuzz::Shapes shapes(data, size);                                       \
+        judge(shapes);                                                                  \
+        crofton::fuzz::tally.execution();                                               \
+        return 0;                                                                       \
+    }                                                                                   \
+    static void judge(crofton::fuzz::Shapes& in)

@@ -7,46 +7,43 @@
 #include <array>
 #include <cmath>
 #include <crofton/geometry/box.hpp>
+#include <oracle/tracked.hpp>
 #include <vector>
 
 namespace crofton::oracle {
 
-using Rational = mpq_class;
-using Vec3q = std::array<Rational, 3>;
+using Vec3q = Vec3<Rational>;
 
-inline Rational dot(const Vec3q& a, const Vec3q& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-inline Vec3q cross(const Vec3q& a, const Vec3q& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-inline Vec3q minus(const Vec3q& a, const Vec3q& b) {
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
 template <class V>
 Vec3q rational(const V& v) {
-    return {Rational(double(v.x)), Rational(double(v.y)), Rational(double(v.z))};
+    return vector_of<Rational>(v);
 }
 
 // The separating-axis theorem for the zonotope of the six scaled edges.
-inline bool boxes_meet_by_axes(const Obb& a, const Obb& b) {
-    std::array<Vec3q, 6> edge;
-    std::array<Rational, 6> half;
+template <class Number = Rational>
+bool boxes_meet_by_axes(const Obb& a, const Obb& b) {
+    std::array<Vec3<Number>, 6> edge;
+    std::array<Number, 6> half;
     for (int k = 0; k < 6; ++k) {
         const Obb& box = k < 3 ? a : b;
-        edge[std::size_t(k)] = rational(box.axes[k % 3]);
-        half[std::size_t(k)] = double(box.half_extents[k % 3]);
+        edge[std::size_t(k)] = vector_of<Number>(box.axes[k % 3]);
+        half[std::size_t(k)] = Number(double(box.half_extents[k % 3]));
     }
-    const Vec3q offset = minus(rational(b.center), rational(a.center));
+    const Vec3<Number> offset = minus(vector_of<Number>(b.center), vector_of<Number>(a.center));
     for (std::size_t p = 0; p < 6; ++p)
         for (std::size_t q = p + 1; q < 6; ++q) {
-            const Vec3q n = cross(edge[p], edge[q]);
-            Rational projected_radius = 0;
+            const Vec3<Number> n = cross(edge[p], edge[q]);
+            Number projected_radius = 0.0;
             for (std::size_t k = 0; k < 6; ++k)
                 if (k != p && k != q) projected_radius += half[k] * abs(dot(edge[k], n));
-            if (abs(dot(offset, n)) > projected_radius) return false;
+            if (sgn(Number(abs(dot(offset, n)) - projected_radius)) > 0) return false;
         }
     return true;
+}
+
+// The same in the first kind of number that can tell: a thousand times as fast.
+inline bool boxes_meet(const Obb& a, const Obb& b) {
+    return decide([&]<class Number>() { return boxes_meet_by_axes<Number>(a, b); });
 }
 
 // Numbers as integers times one power of two, so that no fraction has ever to be reduced.

@@ -7,22 +7,14 @@
 #include <cmath>
 #include <crofton/convex/query.hpp>
 #include <cstdlib>
+#include <optional>
+#include <oracle/tracked.hpp>
 #include <vector>
 
 namespace crofton::oracle {
 
 using Integer = mpz_class;
-using Vec3z = std::array<Integer, 3>;
-
-inline Integer dot(const Vec3z& a, const Vec3z& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-inline Vec3z cross(const Vec3z& a, const Vec3z& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-inline Vec3z minus(const Vec3z& a, const Vec3z& b) {
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
+using Vec3z = Vec3<Integer>;
 
 // value · 2^bits; ends the program if that is no integer.
 inline Integer scaled(double value, int bits) {
@@ -39,10 +31,12 @@ inline Vec3z scaled(const glm::dvec3& v, int bits) {
     return {scaled(v.x, bits), scaled(v.y, bits), scaled(v.z, bits)};
 }
 
-struct ExactPolytope {
-    std::vector<Vec3z> points;  // in units of 2^-(2 kBits)
+template <class Number>
+struct Polytope {
+    std::vector<Vec3<Number>> points;  // if integers, in units of 2^-(2 kBits)
     std::vector<std::array<std::size_t, 3>> triangles;
 };
+using ExactPolytope = Polytope<Integer>;
 
 inline std::vector<std::array<std::size_t, 3>> triangles_of(const convex::Body& body) {
     std::vector<std::array<std::size_t, 3>> result;
@@ -52,6 +46,25 @@ inline std::vector<std::array<std::size_t, 3>> triangles_of(const convex::Body& 
     if (body.hull() == nullptr) return {{0, 1, 2}, {0, 2, 1}};
     const auto indices = body.hull()->triangles();
     for (std::size_t i = 0; i < indices.size(); i += 3) result.push_back({indices[i], indices[i + 1], indices[i + 2]});
+    return result;
+}
+
+// Relative to `origin`.
+template <class Number>
+Polytope<Number> polytope(const convex::Placed& placed, const glm::dvec3& origin) {
+    const RigidTransform& pose = placed.pose;
+    Polytope<Number> result;
+    const Vec3<Number> columns[3] = {vector_of<Number>(pose.rotation[0]), vector_of<Number>(pose.rotation[1]),
+                                     vector_of<Number>(pose.rotation[2])};
+    const Vec3<Number> at = minus(vector_of<Number>(pose.translation), vector_of<Number>(origin));
+    for (int i = 0; i < placed.body.vertex_count(); ++i) {
+        const Vec3<Number> v = vector_of<Number>(placed.body.vertex(i));
+        Vec3<Number> image;
+        for (std::size_t c = 0; c < 3; ++c)
+            image[c] = columns[0][c] * v[0] + columns[1][c] * v[1] + columns[2][c] * v[2] + at[c];
+        result.points.push_back(image);
+    }
+    result.triangles = triangles_of(placed.body);
     return result;
 }
 
@@ -81,37 +94,69 @@ inline Integer gap_along(const ExactPolytope& a, const ExactPolytope& b, const V
     return least - most;
 }
 
-inline bool contains(const ExactPolytope& a, const Vec3z& x) {
-    for (const auto& t : a.triangles) {
-        const Vec3z &p = a.points[t[0]], n = cross(minus(a.points[t[1]], p), minus(a.points[t[2]], p));
-        if (dot(n, minus(x, p)) > 0) return false;
+// Whether that is positive: 1 or 0, or kUnknown.
+template <class Number>
+int parts(const Polytope<Number>& a, const Polytope<Number>& b, const Vec3<Number>& n) {
+    std::vector<Number> levels;
+    levels.reserve(a.points.size());
+    for (const auto& p : a.points) levels.push_back(dot(n, p));
+    // One that cannot be told must not hide another that can.
+    int answer = 1;
+    for (const auto& q : b.points) {
+        const Number level = dot(n, q);
+        for (const Number& other : levels) {
+            const int sign = told(Number(level - other));
+            if (sign == 0 || sign == -1) return 0;
+            if (sign == kUnknown) answer = kUnknown;
+        }
     }
-    return true;
+    return answer;
+}
+inline int parts(const ExactPolytope& a, const ExactPolytope& b, const Vec3z& n) {
+    return gap_along(a, b, n) > 0;
+}
+
+// 1 or 0, or kUnknown. Of a triangle, which has no inside, nothing is said: its two faces alone do not bound it.
+template <class Number>
+int contains(const Polytope<Number>& a, const Vec3<Number>& x) {
+    int answer = 1;
+    for (const auto& t : a.triangles) {
+        const Vec3<Number>&p = a.points[t[0]], n = cross(minus(a.points[t[1]], p), minus(a.points[t[2]], p));
+        const int sign = told(Number(dot(n, minus(x, p))));
+        if (sign == 1) return 0;
+        if (sign == kUnknown) answer = kUnknown;
+    }
+    return answer;
 }
 
 // The separating-axis theorem: normals of faces, products of edges.
-inline bool meet_by_axes(const ExactPolytope& a, const ExactPolytope& b) {
+template <class Number>
+bool meet_by_axes(const Polytope<Number>& a, const Polytope<Number>& b) {
+    bool undecided = false;
+    const auto try_to_part = [&](Vec3<Number> n, bool turned) {
+        if (turned)
+            for (Number& c : n) c = -c;
+        const int answer = parts(a, b, n);
+        undecided = undecided || answer == kUnknown;
+        return answer == 1;
+    };
     for (int side = 0; side < 2; ++side)
         for (const auto& t : (side == 0 ? a : b).triangles) {
             const auto& p = (side == 0 ? a : b).points;
-            Vec3z n = cross(minus(p[t[1]], p[t[0]]), minus(p[t[2]], p[t[0]]));
-            if (side == 1)
-                for (Integer& c : n) c = -c;
-            if (gap_along(a, b, n) > 0) return false;
+            if (try_to_part(cross(minus(p[t[1]], p[t[0]]), minus(p[t[2]], p[t[0]])), side == 1)) return false;
         }
     for (const auto& s : a.triangles)
         for (std::size_t i = 0; i < 3; ++i) {
             if (s[i] > s[(i + 1) % 3]) continue;
-            const Vec3z u = minus(a.points[s[(i + 1) % 3]], a.points[s[i]]);
+            const Vec3<Number> u = minus(a.points[s[(i + 1) % 3]], a.points[s[i]]);
             for (const auto& t : b.triangles)
                 for (std::size_t j = 0; j < 3; ++j) {
                     if (t[j] > t[(j + 1) % 3]) continue;
-                    Vec3z n = cross(u, minus(b.points[t[(j + 1) % 3]], b.points[t[j]]));
-                    if (gap_along(a, b, n) > 0) return false;
-                    for (Integer& c : n) c = -c;
-                    if (gap_along(a, b, n) > 0) return false;
+                    const Vec3<Number> n = cross(u, minus(b.points[t[(j + 1) % 3]], b.points[t[j]]));
+                    if (try_to_part(n, false) || try_to_part(n, true)) return false;
                 }
         }
+    if (undecided) throw Undecided{};
     return true;
 }
 
@@ -124,10 +169,37 @@ inline bool meet(const ExactPolytope& a, const ExactPolytope& b, const std::vect
         Vec3z x = scaled(p, 2 * kBits);
         const Vec3z from = scaled(origin, 2 * kBits);
         for (std::size_t k = 0; k < 3; ++k) x[k] += from[k];
-        if (contains(a, x) && contains(b, x)) return true;
+        if (contains(a, x) == 1 && contains(b, x) == 1) return true;
     }
     if (brute != nullptr) *brute = true;
     return meet_by_axes(a, b);
+}
+
+// meet() in the first kind of number that can tell. Everything is relative to a's place.
+inline bool meet_quickly(const convex::Placed& a, const convex::Placed& b, const std::vector<glm::dvec3>& normals,
+                         const std::vector<glm::dvec3>& points) {
+    const auto ask = [&]<class Number>() -> bool {
+        const auto of_a = polytope<Number>(a, a.pose.translation), of_b = polytope<Number>(b, a.pose.translation);
+        for (const glm::dvec3& n : normals)
+            if (parts(of_a, of_b, vector_of<Number>(n)) == 1) return false;
+        for (const glm::dvec3& p : points) {
+            const Vec3<Number> x = vector_of<Number>(p);
+            if (contains(of_a, x) == 1 && contains(of_b, x) == 1) return true;
+        }
+        return meet_by_axes(of_a, of_b);
+    };
+    const auto attempt = [&]<class Number>(std::uint64_t& count) -> std::optional<bool> {
+        try {
+            const bool answer = ask.template operator()<Number>();
+            return ++count, answer;
+        } catch (const Undecided&) {
+            return std::nullopt;
+        }
+    };
+    if (const auto answer = attempt.template operator()<Tracked>(decisions.doubles)) return *answer;
+    if (const auto answer = attempt.template operator()<TrackedPair>(decisions.pairs)) return *answer;
+    ++decisions.rationals;
+    return meet(exact_polytope(a), exact_polytope(b), normals, a.pose.translation, points);
 }
 
 // The least over all faces of the difference body { p − q } of its distance from the origin, squared: by all triples of

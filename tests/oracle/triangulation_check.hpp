@@ -8,6 +8,7 @@
 #include <cmath>
 #include <crofton/geometry/mesh.hpp>
 #include <map>
+#include <oracle/tracked.hpp>
 #include <set>
 #include <string>
 #include <utility>
@@ -21,22 +22,24 @@ inline Point at(const Polygon& polygon, std::uint32_t i) {
     return {polygon.points[i].x + 0.0, polygon.points[i].y + 0.0};
 }
 
-inline mpq_class twice_area(Point a, Point b, Point c) {
-    const mpq_class ax(a.first), ay(a.second), bx(b.first), by(b.second), cx(c.first), cy(c.second);
-    return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
+template <class Number = Rational>
+Number twice_area(Point a, Point b, Point c) {
+    const Number ax(a.first), ay(a.second), bx(b.first), by(b.second), cx(c.first), cy(c.second);
+    return Number((bx - ax) * (cy - ay) - (by - ay) * (cx - ax));
 }
 
 // Twice the area by the shoelace formula: |outer ring| − Σ |holes|, right for simple rings.
-inline mpq_class twice_polygon_area(const Polygon& polygon) {
-    mpq_class total = 0;
+template <class Number = Rational>
+Number twice_polygon_area(const Polygon& polygon) {
+    Number total = 0.0;
     for (std::size_t r = 0; r < polygon.ring_count(); ++r) {
         const auto ring = polygon.ring(r);
-        mpq_class area = 0;
+        Number area = 0.0;
         for (std::size_t i = 0; i < ring.size(); ++i) {
             const auto &p = ring[i], &q = ring[(i + 1) % ring.size()];
-            area += mpq_class(p.x) * mpq_class(q.y) - mpq_class(q.x) * mpq_class(p.y);
+            area += Number(p.x) * Number(q.y) - Number(q.x) * Number(p.y);
         }
-        total += r == 0 ? mpq_class(abs(area)) : mpq_class(-abs(area));
+        total += r == 0 ? Number(abs(area)) : Number(-abs(area));
     }
     return total;
 }
@@ -44,23 +47,25 @@ inline mpq_class twice_polygon_area(const Polygon& polygon) {
 // Empty if the triangles are positively oriented, their directed sides are distinct, every side without a partner lies
 // on a ring's edge, every used position is a vertex of no triangle's side (conforming) and the areas add up; else what
 // is wrong. `weakly_simple`: the shoelace formula does not apply, so the area is not checked.
-inline std::string check_triangulation(const Polygon& polygon, const auto& triangles, bool weakly_simple = false) {
+template <class Number = Rational>
+std::string check_triangulation(const Polygon& polygon, const auto& triangles, bool weakly_simple = false) {
     std::set<std::pair<Point, Point>> sides;
     std::set<Point> used;
-    mpq_class area = 0;
+    Number area = 0.0;
     for (const auto& t : triangles) {
         for (std::size_t k = 0; k < 3; ++k) {
             if (t[k] >= polygon.points.size()) return "index out of range";
         }
-        const mpq_class a = twice_area(at(polygon, t[0]), at(polygon, t[1]), at(polygon, t[2]));
-        if (a <= 0) return "a triangle is not counter-clockwise";
+        const Number a = twice_area<Number>(at(polygon, t[0]), at(polygon, t[1]), at(polygon, t[2]));
+        if (sgn(a) <= 0) return "a triangle is not counter-clockwise";
         area += a;
         for (std::size_t k = 0; k < 3; ++k) {
             used.insert(at(polygon, t[k]));
             if (!sides.insert({at(polygon, t[k]), at(polygon, t[(k + 1) % 3])}).second) return "a side occurs twice";
         }
     }
-    if (!weakly_simple && area != twice_polygon_area(polygon)) return "the areas do not add up";
+    if (!weakly_simple && sgn(Number(area - twice_polygon_area<Number>(polygon))) != 0)
+        return "the areas do not add up";
     // Sides without a partner form the boundary: each must lie on a ring edge.
     std::vector<std::pair<Point, Point>> edges;
     for (std::size_t r = 0; r < polygon.ring_count(); ++r) {
@@ -73,7 +78,7 @@ inline std::string check_triangulation(const Polygon& polygon, const auto& trian
     const std::set<std::pair<Point, Point>> whole(edges.begin(), edges.end());
     const auto on = [](Point p, const std::pair<Point, Point>& e) {
         return std::min(e.first, e.second) <= p && p <= std::max(e.first, e.second) &&
-               twice_area(e.first, e.second, p) == 0;
+               sgn(twice_area<Number>(e.first, e.second, p)) == 0;
     };
     for (const auto& side : sides) {
         if (sides.count({side.second, side.first})) continue;
@@ -93,7 +98,8 @@ inline std::string check_triangulation(const Polygon& polygon, const auto& trian
 
 // Whether every diagonal is locally Delaunay: no apex beyond it lies inside the circle of the triangle before it. For
 // polygons without slits that makes the triangulation constrained Delaunay (Lee and Lin 1986).
-inline bool is_constrained_delaunay(const Polygon& polygon, const auto& triangles) {
+template <class Number = Rational>
+bool is_constrained_delaunay(const Polygon& polygon, const auto& triangles) {
     std::map<std::pair<Point, Point>, Point> apex;
     for (const auto& t : triangles) {
         for (std::size_t k = 0; k < 3; ++k)
@@ -104,13 +110,11 @@ inline bool is_constrained_delaunay(const Polygon& polygon, const auto& triangle
         if (beyond == apex.end() || side.second < side.first) continue;
         const Point d = beyond->second;
         const auto row = [&](Point p) {
-            const mpq_class x = mpq_class(p.first) - mpq_class(d.first), y = mpq_class(p.second) - mpq_class(d.second);
-            return std::array<mpq_class, 3>{x, y, x * x + y * y};
+            const Number x = Number(p.first) - Number(d.first), y = Number(p.second) - Number(d.second);
+            return Vec3<Number>{x, y, x * x + y * y};
         };
         const auto p = row(side.first), q = row(side.second), r = row(c);
-        const mpq_class determinant = p[0] * (q[1] * r[2] - r[1] * q[2]) - p[1] * (q[0] * r[2] - r[0] * q[2]) +
-                                      p[2] * (q[0] * r[1] - r[0] * q[1]);
-        if (determinant > 0) return false;
+        if (sgn(Number(dot(p, cross(q, r)))) > 0) return false;
     }
     return true;
 }
