@@ -74,6 +74,18 @@ bool wait_for_lines(const std::string& path, std::ptrdiff_t lines) {
     return false;
 }
 
+// Starts it, sends Ctrl-C while it computes, and returns its status. Before it listens, Ctrl-C ends it: then it has
+// longer.
+int interrupt(const std::vector<std::string>& arguments, int milliseconds = 200) {
+    for (; milliseconds < 30'000; milliseconds *= 2) {
+        const Child child(arguments, "/dev/null");
+        std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+        child.signal(SIGINT);
+        if (const int status = child.wait(); status >= 0) return status;
+    }
+    return -1;
+}
+
 const std::string kTriangle = R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],
     "bufferViews":[{"buffer":0,"byteLength":36}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
     "nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}],"scene":0,"asset":{"version":"2.0"})";
@@ -210,14 +222,31 @@ TEST_SUITE("cli/faults") {
         }
         const std::string poly = folder + "/many.poly", json = folder + "/many.json";
         write_contents(poly, text);
-        const Child cut({"triangulate", poly, "--json", json, "--no-indices"}, "/dev/null");
-        std::this_thread::sleep_for(std::chrono::milliseconds(1500));
-        cut.signal(SIGINT);
-        CHECK(cut.wait() == 130);
+        CHECK(interrupt({"triangulate", poly, "--json", json, "--no-indices"}) == 130);
         const auto document = nlohmann::json::parse(contents_of(json), nullptr, false);
         REQUIRE(document.is_object());
         CHECK(document["polygons"].size() == document["summary"]["polygons"].get<std::size_t>());
         CHECK(document["polygons"].size() < 4000);
+    }
+
+    TEST_CASE("pvs, interrupted, keeps its lines, and the next run goes on from there") {
+        const std::string folder = fresh_folder("sets");
+        const std::string state = folder + "/state", json = folder + "/figures.json";
+        // More lines than hours have.
+        const std::vector<std::string> bake{"pvs",       "room", "--cells", "4x1x4", "--epsilon", "1e-9",
+                                            "--threads", "1",    "--state", state,   "--json",    json};
+        const auto lines = [&] {
+            const auto document = nlohmann::json::parse(contents_of(json), nullptr, false);
+            return document.is_object() ? document["lines"].get<std::uint64_t>() : 0;
+        };
+        std::uint64_t before = 0;
+        for (int run = 0; run < 2; ++run) {
+            // Until it has had time for one line.
+            for (int wait = 200; lines() == before && wait < 30'000; wait *= 2) CHECK(interrupt(bake, wait) == 130);
+            CHECK(lines() > before);
+            before = lines();
+        }
+        CHECK(names_in(folder) == std::vector<std::string>{"figures.json", "state"});
     }
 
     TEST_CASE("pictures of an earlier run are not left among new ones, other files are") {

@@ -2,19 +2,24 @@
 # SPDX-License-Identifier: MIT
 """Damages files of every format that the command line reads, and counts what it does with them.
 
-damage.py CROFTON [--variants N] [--seconds S] [--megabytes M] [--jobs J] [--seed K] [--keep FOLDER]
+damage.py CROFTON [--variants N] [--first N] [--seconds S] [--megabytes M] [--jobs J] [--seed K] [--keep FOLDER]
 
 Each variant is a sound file with bits flipped, bytes cut out, copied or replaced, its end cut off, or its numbers
-replaced by ones that are too large, negative, or none. Right is any exit status of 0, 1 or 2. A crash (a signal, or
-another status, as a sanitizer gives), a run longer than S seconds, and one of more than M megabytes are failures, kept
-in FOLDER. Exits with 1 if there is any.
+replaced by ones that are too large, negative, or none. Right is any exit status of 0, 1 or 2. A crash (a signal,
+another status, or a sanitizer's report), a run longer than S seconds, and one of more than M megabytes are failures, kept
+in FOLDER. Exits with 1 if there is any. The same seed makes the same files; --first goes on where a run was stopped.
+
+Each file has a process of its own, in which main begins. Loading the program takes longer than a damaged file does, so
+these processes are copies of one that has just been loaded.
 """
 import argparse
 import concurrent.futures
 import os
 import pathlib
+import queue
 import random
 import re
+import signal
 import struct
 import subprocess
 import sys
@@ -22,6 +27,7 @@ import tempfile
 import time
 import zlib
 
+SANITIZER_STATUS = 99
 NUMBERS = [b"-1", b"0", b"4294967295", b"4294967296", b"18446744073709551615", b"1e308", b"1e-320", b"-0.0", b"NaN",
            b"1e999", b"2147483648", b"99999999999999999999", b'"x"', b"[]", b"{}", b"null", b"true"]
 
@@ -94,9 +100,10 @@ def sound_files(crofton, folder):
     camera = b'{"cameras":[{"position":[0,2,9],"forward":[0,0,-1],"up":[0,1,0],"fov_y":1,"near":0.1,"far":"infinity"}]}'
     in_glb = glb((text % (len(binary), "")).encode(), binary)
     in_text = (text % (len(binary), ',"uri":"beside.bin"')).encode()
-    files = [("a.glb", in_glb, frames), ("b.glb", in_glb, triangulate + ["--out", "/dev/null"]),
-             ("a.gltf", in_text, frames), ("b.gltf", in_text, triangulate + ["--out", "/dev/null"]),
-             ("a.obj", obj, frames), ("b.obj", obj, triangulate + ["--out", "/dev/null"]), ("c.obj", obj, ["fit", "{}"]),
+    out = "{}.out.glb"  # not /dev/null: the name must end so, or no file is read
+    files = [("a.glb", in_glb, frames), ("b.glb", in_glb, triangulate + ["--out", out]),
+             ("a.gltf", in_text, frames), ("b.gltf", in_text, triangulate + ["--out", out]),
+             ("a.obj", obj, frames), ("b.obj", obj, triangulate + ["--out", out]), ("c.obj", obj, ["fit", "{}"]),
              ("a.wad", wad(), frames), ("b.wad", wad(), triangulate), ("a.poly", polygons, triangulate),
              ("a.geojson", geojson, triangulate), ("a.json", b"[[[0,0],[9,0],[9,9],[0,9]],[[1,1],[2,1],[2,2]]]", triangulate),
              ("camera.json", camera, ["frames", str(folder / "tiny.obj"), "--no-draw", "--camera", "{}"]),
@@ -138,47 +145,73 @@ def damaged(contents, name, chance):
     return bytes(data)
 
 
-def try_one(task):
-    """None, or (kind of failure, what it was)."""
-    options, number, name, contents, arguments, folder = task
+class Server:
+    """The program, loaded once: each run is a copy of that process, in which main begins (fork_server.c)."""
+
+    def __init__(self, options, library, errors):
+        to_child, self.tasks = os.pipe()
+        self.answers, from_child = os.pipe()
+        self.errors = errors
+
+        def descriptors():
+            high = [os.dup2(d, number) for d, number in ((to_child, 100), (from_child, 101))]
+            os.dup2(high[0], 3)
+            os.dup2(high[1], 4)
+
+        # A sanitizer's status would be 1 by itself, which is that of a refused file.
+        sanitizer = f"exitcode={SANITIZER_STATUS}:abort_on_error=0"
+        environment = dict(os.environ, LD_PRELOAD=str(library), CROFTON_SERVER_SECONDS=str(max(1, round(options.seconds))))
+        for name in ("ASAN_OPTIONS", "UBSAN_OPTIONS"):
+            environment[name] = ":".join(filter(None, [os.environ.get(name), sanitizer]))
+        self.process = subprocess.Popen([options.crofton], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, env=environment,
+                                        close_fds=False, preexec_fn=descriptors)
+        os.close(to_child)
+        os.close(from_child)
+
+    def run(self, arguments):
+        """(wait status, kilobytes at most, what it said on standard error)"""
+        os.write(self.tasks, ("\t".join([str(self.errors), *arguments]) + "\n").encode())
+        answer = b""
+        while not answer.endswith(b"\n"):
+            more = os.read(self.answers, 100)
+            if not more:
+                sys.exit(f"damage.py: {self.process.args[0]} ended by itself")
+            answer += more
+        status, memory = map(int, answer.split())
+        with open(self.errors, "rb") as said:
+            said.seek(max(0, os.path.getsize(self.errors) - 2000))
+            return status, memory, said.read().decode(errors="replace")
+
+
+def try_one(options, servers, number, name, contents, arguments, folder):
+    """(None or what failed, exit status, kilobytes)"""
     chance = random.Random(options.seed * 1_000_003 + number)
     path = folder / f"{number}_{name}"
     path.write_bytes(damaged(contents, name, chance))
-    command = [options.crofton] + [a.replace("{}", str(path)) for a in arguments]
-    with tempfile.TemporaryFile() as said:
-        begin = time.monotonic()
-        process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=said)
-        failure, status, usage = None, 0, None
-        while True:
-            pid, status, usage = os.wait4(process.pid, os.WNOHANG)
-            if pid:
-                break
-            if time.monotonic() - begin > options.seconds:
-                process.kill()
-                _, status, usage = os.wait4(process.pid, 0)
-                failure = "hang"
-                break
-            time.sleep(0.001)
-        process.returncode = status
-        code = os.waitstatus_to_exitcode(status)
-        if not failure and code not in (0, 1, 2):
-            failure = "crash"
-        if not failure and usage.ru_maxrss > options.megabytes * 1024:
-            failure = "memory"
-        if not failure:
-            path.unlink()
-            return None, usage.ru_maxrss
-        said.seek(0)
-        text = said.read()[-2000:].decode(errors="replace")
-    if options.keep:
+    arguments = [a.replace("{}", str(path)) for a in arguments]
+    server = servers.get()
+    status, memory, said = server.run(arguments)
+    servers.put(server)
+    code = os.waitstatus_to_exitcode(status)
+    failure = None
+    if code == -signal.SIGALRM:
+        failure = "hang"
+    elif code not in (0, 1, 2) or "Sanitizer" in said or "runtime error:" in said:
+        failure = "crash"
+    elif memory > options.megabytes * 1024:
+        failure = "memory"
+    if failure and options.keep:
         os.replace(path, pathlib.Path(options.keep) / path.name)
-    return f"{failure}: status {code}, {usage.ru_maxrss >> 10} MB: {' '.join(command)}\n{text}", usage.ru_maxrss
+    for left in (path, path.with_name(path.name + ".out.glb")):
+        left.unlink(missing_ok=True)
+    return failure and f"{failure}: status {code}, {memory >> 10} MB: {' '.join(arguments)}\n{said}", code, memory
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("crofton")
     parser.add_argument("--variants", type=int, default=1000)
+    parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--seconds", type=float, default=10)
     parser.add_argument("--megabytes", type=int, default=1024)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
@@ -187,18 +220,38 @@ def main():
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
+        library = folder / "fork_server.so"
+        subprocess.run(["cc", "-O1", "-shared", "-fPIC", pathlib.Path(__file__).with_name("fork_server.c"), "-o", library, "-ldl"],
+                       check=True)
         files = sound_files(options.crofton, folder)
-        tasks = ((options, i, *files[i % len(files)], folder) for i in range(options.variants))
-        failures, most = [], 0
+        servers = queue.Queue()
+        for job in range(options.jobs):
+            servers.put(Server(options, library, folder / f"errors_{job}"))
+        for name, contents, arguments in files:  # a command line that is refused reads nothing
+            server = servers.get()
+            (folder / name).write_bytes(contents)
+            status, _, said = server.run([a.replace("{}", str(folder / name)) for a in arguments])
+            servers.put(server)
+            if status:
+                sys.exit(f"damage.py: the sound file {name} is not taken: {said}")
+        failures, codes, most, begin = [], {}, 0, time.monotonic()
         with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-            for failure, memory in pool.map(try_one, tasks):
+            def task(number):
+                return try_one(options, servers, number, *files[number % len(files)], folder)
+            for done, (failure, code, memory) in enumerate(pool.map(task, range(options.first, options.variants)), 1):
                 most = max(most, memory)
+                codes[code] = codes.get(code, 0) + 1
                 if failure:
                     failures.append(failure)
                     print(failure, file=sys.stderr)
+                if done % 1000 == 0:
+                    print(f"{options.first + done} variants, {done / (time.monotonic() - begin):.0f} a second, "
+                          f"{len(failures)} failures", flush=True)
     kinds = {kind: sum(f.startswith(kind) for f in failures) for kind in ("crash", "hang", "memory")}
-    print(f"{options.variants} damaged files of {len(files)} kinds: {kinds['crash']} crashes, {kinds['hang']} hangs, "
-          f"{kinds['memory']} above {options.megabytes} MB; the most was {most >> 10} MB")
+    print(f"{options.variants - options.first} damaged files of {len(files)} kinds, of which {codes.get(0, 0)} were taken and "
+          f"{codes.get(1, 0) + codes.get(2, 0)} refused: {kinds['crash']} crashes, {kinds['hang']} hangs, "
+          f"{kinds['memory']} above {options.megabytes} MB; the most was {most >> 10} MB; "
+          f"{(options.variants - options.first) / (time.monotonic() - begin):.0f} a second")
     return 1 if failures else 0
 
 
