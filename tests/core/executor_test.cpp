@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -23,6 +24,16 @@ namespace {
 }  // namespace
 
 TEST_SUITE("core/executor") {
+    TEST_CASE("a pool of no number of threads has one for each processor, and works") {
+        ThreadPool pool(0);
+        CHECK(pool.concurrency() == std::max(1u, std::thread::hardware_concurrency()));
+        std::atomic<std::size_t> sum{0};
+        pool.parallel_for(100, 3, [&](std::size_t begin, std::size_t end, unsigned) {
+            for (std::size_t i = begin; i < end; ++i) sum += i;
+        });
+        CHECK(sum == 4950);
+    }
+
     TEST_CASE("zero items call no body") {
         ThreadPool pool(2);
         for (Executor* executor : {&serial_executor(), static_cast<Executor*>(&pool)})

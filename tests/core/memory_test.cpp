@@ -47,6 +47,14 @@ TEST_SUITE("core/memory") {
         }
     }
 
+    TEST_CASE("a large block keeps an alignment that is coarser than a huge page") {
+        constexpr std::size_t kBytes = std::size_t{8} << 20, kAlignment = std::size_t{4} << 20;
+        auto* memory = static_cast<unsigned char*>(crofton::detail::allocate(kBytes, kAlignment));
+        CHECK(reinterpret_cast<std::uintptr_t>(memory) % kAlignment == 0);
+        memory[kBytes - 1] = 7;
+        crofton::detail::release(memory, kBytes, kAlignment);
+    }
+
     TEST_CASE("containers take their memory from the host's hooks and give all of it back") {
         Counts counts;
         set_memory_hooks({counting_allocate, counting_release, &counts});

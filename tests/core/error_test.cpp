@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+#include <crofton/core/error.hpp>
+#include <cstdio>
+#include <set>
+#include <string>
+
+#if defined(__unix__)
+#include <unistd.h>
+#endif
+
+using namespace crofton;
+
+TEST_SUITE("core/error") {
+    TEST_CASE("every code has a name of its own, other numbers are unknown") {
+        std::set<std::string> names;
+        for (int code = 0; code <= static_cast<int>(ErrorCode::out_of_memory); ++code)
+            names.insert(to_string(static_cast<ErrorCode>(code)));
+        CHECK(names.size() == static_cast<std::size_t>(ErrorCode::out_of_memory) + 1);
+        CHECK(names.count("unknown") == 0);
+        CHECK(to_string(static_cast<ErrorCode>(200)) == std::string("unknown"));
+    }
+
+    TEST_CASE("a message is made of texts and of numbers of each kind") {
+        const std::string text = "text";
+        const Error error = fail(ErrorCode::parse, 7, {text, " ", 18446744073709551615u, " ", -5, " ", 0.5}).value();
+        CHECK(error.code == ErrorCode::parse);
+        CHECK(error.item == 7);
+        CHECK(error.message == "text 18446744073709551615 -5 0.500000");
+    }
+
+    TEST_CASE("an error is copied whole, also over another and over itself") {
+        const Error first{ErrorCode::io, 3, "a message that is too long for the room within a string"};
+        Error second{ErrorCode::empty, 9, "other"};
+        second = first;
+        CHECK((second.code == ErrorCode::io && second.item == 3 && second.message == first.message));
+        const Error& same = second;
+        second = same;
+        CHECK((second.code == ErrorCode::io && second.item == 3 && second.message == first.message));
+    }
+
+#if defined(__unix__)
+    TEST_CASE("without a handler warnings and errors go to stderr, and nothing below them") {
+        set_log_handler(nullptr, nullptr);
+        std::FILE* const file = std::tmpfile();
+        REQUIRE(file != nullptr);
+        std::fflush(stderr);
+        const int kept = dup(STDERR_FILENO);
+        dup2(fileno(file), STDERR_FILENO);
+        log(LogLevel::debug, "one");
+        log(LogLevel::info, "two");
+        log(LogLevel::warning, std::string_view("three and more").substr(0, 5));
+        log(LogLevel::error, "four");
+        std::fflush(stderr);
+        dup2(kept, STDERR_FILENO);
+        close(kept);
+        std::rewind(file);
+        char said[256] = {};
+        const std::size_t length = std::fread(said, 1, sizeof said - 1, file);
+        std::fclose(file);
+        CHECK(std::string(said, length) == "crofton: warning: three\ncrofton: error: four\n");
+    }
+#endif
+}
