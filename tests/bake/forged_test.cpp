@@ -246,6 +246,8 @@ TEST_SUITE("bake/forged") {
         check_scene_refused(record(1, [](R& r) { r.piece_bounds.min.y = -HUGE_VAL; }), "bounds are none");
         check_scene_refused(record(1, [&](R& r) { r.gain = nan; }), "no measure");
         check_scene_refused(record(1, [](R& r) { r.mean_shadow = -1.0; }), "no measure");
+        check_scene_refused(record(1, [](R& r) { r.gain = HUGE_VAL; }), "no measure");
+        check_scene_refused(record(1, [](R& r) { r.piece_bounds.min = Aabb().min; }), "bounds are none");
         check_scene_refused(record(2, [](R& r) { r.index_count = 0; }), "no triangles");
         check_scene_refused(record(2, [](R& r) { r.index_count = 2; }), "no mesh");
         check_scene_refused(record(2, [](R& r) { r.index_count = 6; }), "not in their place");
@@ -274,6 +276,67 @@ TEST_SUITE("bake/forged") {
         const auto refused = bake::bake(scene, serial_executor(), boxtree::Orientation::aligned, &twice);
         REQUIRE_FALSE(refused);
         CHECK(error_of(refused).message.find("ascend") != std::string::npos);
+        CHECK(error_of(refused).item == 1);
+    }
+
+    TEST_CASE("a section that is missing or of other elements is refused by its name, occluders' too") {
+        const Vector<std::byte> file = with_occluders(three_kinds());
+        const std::array<std::string, 16> names{"meshes",   "position", "colors",   "indices", "names", "polygons",
+                                                "points",   "rings",    "instance", "nodes",   "tree",  "occluder",
+                                                "occkinds", "occnodes", "occpoint", "occindex"};
+        const auto with_section = [&](const std::string& name, auto change) {
+            bool found = false;
+            auto changed = with_table(file, [&](const Header& header, Section* sections) {
+                for (Section& section : std::span(sections, header.section_count)) {
+                    char known[9] = {};
+                    std::memcpy(known, section.name, 8);
+                    if (name != known) continue;
+                    found = true;
+                    change(section);
+                }
+            });
+            REQUIRE(found);
+            return changed;
+        };
+        for (const std::string& name : names) {
+            CAPTURE(name);
+            const auto other_elements = with_section(name, [](Section& s) {
+                s.element_size = s.element_size > 1 ? 1 : s.size > 1 ? static_cast<std::uint32_t>(s.size) : 3;
+            });
+            check_scene_refused(other_elements, name);
+            const auto missing = with_section(name, [](Section& s) { s.name[0] = 'X'; });
+            if (name == "occluder")  // no occluders at all
+                CHECK(BakedScene::from_memory(missing).has_value());
+            else
+                check_scene_refused(missing, name);
+        }
+    }
+
+    TEST_CASE("a file that is cut before a section begins is refused, though its header says so itself") {
+        Vector<std::byte> file = two_sections();
+        Section first;
+        std::memcpy(&first, file.data() + sizeof(Header), sizeof first);
+        file.resize(first.offset + first.size);
+        check_refused(with_table(file, [&](Header& header, Section*) { header.file_size = file.size(); }),
+                      "section 'letters' lies outside its place");
+    }
+
+    TEST_CASE("occluders of several nodes are baked; one with points and no triangles is refused before") {
+        BakedOccluders occluders = three_kinds();
+        occluders.nodes = {{0, 0}, {1, 2}};
+        const auto baked = BakedScene::from_memory(with_occluders(occluders));
+        REQUIRE(baked);
+        REQUIRE(baked->occluders()->nodes.size() == 2);
+        CHECK(baked->occluders()->nodes[0].node == 0);
+        CHECK(baked->occluders()->nodes[1].kind == 2);
+        occluders.kinds[0][1].surface.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+        scene::Scene scene;
+        REQUIRE(scene.add_node(scene::kNone, {}, ~0u));
+        REQUIRE(scene.add_node(scene::kNone, {}, ~0u));
+        scene.update();
+        const auto refused = bake::bake(scene, serial_executor(), boxtree::Orientation::aligned, &occluders);
+        REQUIRE_FALSE(refused);
+        CHECK(error_of(refused).message.find("no mesh") != std::string::npos);
         CHECK(error_of(refused).item == 1);
     }
 }

@@ -100,4 +100,19 @@ TEST_SUITE("bake/mapped_file") {
         CHECK(error_of(read).code == crofton::ErrorCode::io);
         CHECK(error_of(read).message.find("was cut while it was read") != std::string::npos);
     }
+
+    // The loopback interface has no speed: reading it is an error.
+    TEST_CASE("a file that the system cannot read is an error that names it and the reason") {
+        const char* const name = "/sys/class/net/lo/speed";
+        std::error_code none;
+        if (std::filesystem::file_size(name, none) < 1 || none) return;
+        const auto read = MappedFile::open(name, {.access = crofton::bake::FileAccess::read});
+        REQUIRE_FALSE(read);
+        CHECK(error_of(read).code == crofton::ErrorCode::io);
+        CHECK(error_of(read).message.find(name) != std::string::npos);
+        CHECK(error_of(read).message.find("cannot read") != std::string::npos);
+        const auto mapped = MappedFile::open(name);  // nor can it be mapped
+        REQUIRE_FALSE(mapped);
+        CHECK(error_of(mapped).message.find("cannot map") != std::string::npos);
+    }
 }

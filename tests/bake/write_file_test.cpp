@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/un.h>
 #include <crofton/bake/baked_scene.hpp>
 #include <error_of.hpp>
 
@@ -189,5 +191,46 @@ TEST_SUITE("bake/write_file") {
         CHECK(failures == std::vector<int>(4, 0));
         CHECK(is_filled(contents(path)));
         CHECK(folder.count() == 1);
+    }
+
+    TEST_CASE("a name without a folder is written where the program stands, a link in a circle is replaced") {
+        const Folder folder;
+        CHECK(in_child([&] {
+                  if (chdir(folder.path.c_str()) != 0) return 1;
+                  return write("scene", "text") ? 0 : 2;
+              }) == 0);
+        CHECK(contents(folder.file("scene")) == "text");
+        const std::string circle = folder.file("circle");
+        std::filesystem::create_symlink("circle", circle);
+        REQUIRE(write(circle, "new"));
+        CHECK_FALSE(std::filesystem::is_symlink(circle));
+        CHECK(contents(circle) == "new");
+        CHECK(folder.count() == 2);
+    }
+
+    TEST_CASE("a folder that may be written and not read is written to; a socket is refused and stays") {
+        const Folder folder;
+        REQUIRE(chmod(folder.path.c_str(), 0333) == 0);
+        CHECK(in_child([&] {
+                  if (geteuid() == 0 && seteuid(65534) != 0) return 1;  // who may not read it either
+                  return write(folder.file("scene"), "text") ? 0 : 2;
+              }) == 0);
+        REQUIRE(chmod(folder.path.c_str(), 0700) == 0);
+        CHECK(contents(folder.file("scene")) == "text");
+
+        const std::string path = folder.file("socket");
+        sockaddr_un address{};
+        address.sun_family = AF_UNIX;
+        REQUIRE(path.size() < sizeof address.sun_path);
+        std::copy(path.begin(), path.end(), address.sun_path);
+        const int listener = socket(AF_UNIX, SOCK_STREAM, 0);
+        REQUIRE(listener >= 0);
+        REQUIRE(bind(listener, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0);
+        const auto refused = write(path, "text");
+        close(listener);
+        REQUIRE_FALSE(refused);
+        CHECK(error_of(refused).code == ErrorCode::io);
+        CHECK(error_of(refused).message.find("cannot open") != std::string::npos);
+        CHECK(std::filesystem::is_socket(path));
     }
 }

@@ -15,8 +15,9 @@ tl::unexpected<Error> bad_occluder(const char* what, std::uint64_t item) {
     return fail(ErrorCode::parse, item, {"occluders: ", what});
 }
 
+// Requires first ≤ size.
 bool is_range(std::uint64_t first, std::uint64_t count, std::size_t size) {
-    return first <= size && count <= size - first;
+    return count <= size - first;
 }
 
 bool is_box(const Aabb& box) {
