@@ -28,7 +28,7 @@ packages=(
     doctest-dev libgmp-dev xvfb xauth xdotool libx11-dev
 )
 test_packages=(chromium)
-check_packages=(clang libclang-rt-dev clang-format clang-tidy)
+check_packages=(clang libclang-rt-dev clang-format clang-tidy llvm)
 engine_packages=(libdraco-dev libmeshoptimizer-dev libogre-1.12-dev libopenscenegraph-dev libbullet-dev libtbb-dev doxygen)
 python_packages=(python3-dev python3-numpy python3-pytest python3-setuptools python3-wheel python3-pip python3-venv pybind11-dev)
 rust_packages=(cargo)
