@@ -77,6 +77,9 @@ TEST_SUITE("occlude/choose_occluders") {
         bad.areas[2].x = std::numeric_limits<float>::infinity();
         CHECK(error_of(candidates.add(bad)).code == ErrorCode::non_finite);
         bad = candidate_of(Obb{});
+        bad.radius = std::numeric_limits<double>::infinity();
+        CHECK(error_of(candidates.add(bad)).code == ErrorCode::non_finite);
+        bad = candidate_of(Obb{});
         bad.center.x = 2e15;
         CHECK(error_of(candidates.add(bad)).code == ErrorCode::out_of_range);
         bad.center.x = 0.0;

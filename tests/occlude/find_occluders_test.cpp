@@ -49,6 +49,8 @@ TEST_SUITE("occlude/find_occluders") {
         CHECK(error_of(find_occluders(cube, {.grid = 33})).code == ErrorCode::out_of_range);
         CHECK(error_of(find_occluders(cube, {.least_gain = -0.1})).code == ErrorCode::out_of_range);
         CHECK(error_of(find_occluders(cube, {.flatness = double(kNan)})).code == ErrorCode::out_of_range);
+        CHECK(error_of(find_occluders(cube, {.least_gain = 1.5})).code == ErrorCode::out_of_range);
+        CHECK(error_of(find_occluders(cube, {.flatness = 1.5})).code == ErrorCode::out_of_range);
         TriangleMesh ragged = cube;
         ragged.indices.pop_back();
         CHECK(error_of(find_occluders(ragged)).code == ErrorCode::invalid_argument);
@@ -58,10 +60,11 @@ TEST_SUITE("occlude/find_occluders") {
     }
 
     TEST_CASE("a triangle with a bad corner or index is listed, and opens its piece alone") {
-        for (const float bad : {kNan, std::numeric_limits<float>::infinity(), -2e12f}) {
+        for (const glm::vec3 bad : {glm::vec3(kNan, 0, 0), glm::vec3(0, std::numeric_limits<float>::infinity(), 0),
+                                    glm::vec3(-2e12f, 0, 0), glm::vec3(0, 0, 2e12f)}) {
             TriangleMesh mesh = box_mesh(glm::vec3(0), glm::vec3(1));
             append(mesh, box_mesh(glm::vec3(3), glm::vec3(4)));
-            mesh.positions.push_back({bad, 0, 0});
+            mesh.positions.push_back(bad);
             mesh.indices[1] = 16;
             mesh.indices.insert(mesh.indices.end(), {0, 1, 99});
             const FoundOccluders found = found_in(mesh);

@@ -130,4 +130,50 @@ TEST_SUITE("occlude/find_visible") {
         CHECK(some.size() == in_layer);
         CHECK(all.statistics().nodes_tested > 0);
     }
+
+    TEST_CASE("of trees, lists and what moves: those in the layers and among the items that may be seen, no others") {
+        Random random(8);
+        const OcclusionScene scene = crowd_behind_walls(random, 0.0);
+        auto buffer = *occlude::OcclusionBuffer::create(scene.size);
+        buffer.draw(set_of(scene.occluders), *occlude::occlusion_view_of(scene.camera));
+        std::vector<std::uint32_t> layers(scene.objects.size());
+        for (std::size_t i = 0; i < layers.size(); ++i) layers[i] = 1u << (i % 3);
+        // Whole leaves may not be seen, and of others some.
+        std::vector<std::uint64_t> among((scene.objects.size() + 63) / 64, 0);
+        for (std::size_t i = 0; i < scene.objects.size(); ++i)
+            if (scene.objects[i].center.x > scene.camera.position.x && i % 5 != 0) among[i / 64] |= 1ull << (i % 64);
+        const auto wanted = [&](const occlude::VisibleSet& from, bool by_layer, bool by_list) {
+            std::vector<boxtree::ItemId> result;
+            for (const boxtree::ItemId id : from.ids())
+                if ((!by_layer || id % 3 == 1) && (!by_list || ((among[id / 64] >> (id % 64)) & 1) != 0))
+                    result.push_back(id);
+            return result;
+        };
+        const auto ids = [](const occlude::VisibleSet& from) {
+            return std::vector<boxtree::ItemId>(from.ids().begin(), from.ids().end());
+        };
+        auto tree = *boxtree::BoxTree::build(scene.objects, layers);
+        occlude::VisibleSet all, some;
+        occlude::find_visible(tree, buffer, all);
+        occlude::find_visible(tree, buffer, some, {.among = among});
+        CHECK(ids(some) == wanted(all, false, true));
+        CHECK(some.size() < all.size());
+        occlude::find_visible(scene.objects, layers, buffer, all);
+        occlude::find_visible(scene.objects, layers, buffer, some, {.layer_mask = 2});
+        CHECK(ids(some) == wanted(all, true, false));
+        occlude::find_visible(scene.objects, layers, buffer, some, {.layer_mask = 2, .among = among});
+        CHECK(ids(some) == wanted(all, true, true));
+        std::vector<boxtree::ItemId> items;
+        for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
+            (void)tree.detach(i);
+            items.push_back(i);
+        }
+        tree.refit();
+        cull::MovingBoxes moving;
+        REQUIRE(moving.update(tree, items, scene.objects));
+        occlude::find_visible(tree, moving, buffer, all);
+        occlude::find_visible(tree, moving, buffer, some, {.layer_mask = 2});
+        CHECK(some.size() > 0);
+        CHECK(ids(some) == wanted(all, true, false));
+    }
 }

@@ -45,6 +45,8 @@ TEST_SUITE("occlude/occluder") {
         bad.positions[3].x = std::numeric_limits<float>::infinity();
         CHECK(error_of(set.add_mesh(bad)).code == ErrorCode::non_finite);
         CHECK(error_of(set.add_mesh(bad)).item == 3);
+        CHECK(error_of(set.add_mesh(testing::box_mesh(glm::vec3(0.0f), glm::vec3(2e30f)))).code ==
+              ErrorCode::out_of_range);
         bad = testing::box_mesh(glm::vec3(0.0f), glm::vec3(1.0f));
         bad.indices[5] = 8;
         CHECK(error_of(set.add_mesh(bad)).code == ErrorCode::out_of_range);

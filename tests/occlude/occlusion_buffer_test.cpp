@@ -71,7 +71,7 @@ WitnessCheck check_objects(Random& random, const OcclusionScene& scene) {
 
 TEST_SUITE("occlude/occlusion_buffer") {
     TEST_CASE("sizes beyond the limits are refused") {
-        for (const occlude::BufferSize size : {occlude::BufferSize{0, 100}, {7, 8}, {8, 4097}, {~0u, ~0u}})
+        for (const occlude::BufferSize size : {occlude::BufferSize{0, 100}, {7, 8}, {8, 7}, {8, 4097}, {~0u, ~0u}})
             CHECK(error_of(occlude::OcclusionBuffer::create(size)).code == ErrorCode::out_of_range);
         CHECK(occlude::OcclusionBuffer::create({8, 8}));
     }

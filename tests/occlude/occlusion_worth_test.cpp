@@ -58,7 +58,11 @@ TEST_SUITE("occlude/occlusion_worth") {
         scene.samples = 8;
         scene.range = 0.0;
         CHECK(error_of(occlusion_worth(points, scene)).code == ErrorCode::out_of_range);
+        scene.range = std::numeric_limits<double>::infinity();
+        CHECK(error_of(occlusion_worth(points, scene)).code == ErrorCode::out_of_range);
         scene.range = 10.0;
+        scene.object.mean_curvature = std::numeric_limits<double>::infinity();
+        CHECK(error_of(occlusion_worth(points, scene)).code == ErrorCode::out_of_range);
         scene.object.mean_curvature = std::numeric_limits<double>::quiet_NaN();
         CHECK(error_of(occlusion_worth(points, scene)).code == ErrorCode::out_of_range);
     }
@@ -76,6 +80,8 @@ TEST_SUITE("occlude/occlusion_worth") {
         scene.range = 20.0;
         scene.eyes = {glm::dvec3(5, 5, -2), glm::dvec3(5, 5, -2)};  // in its plane
         CHECK(*occlusion_worth(square, scene) == doctest::Approx(0.0));
+        const std::vector<glm::dvec3> eye{{5, 5, -2}};  // which has no direction from itself
+        CHECK(*occlusion_worth(eye, scene) == 0.0);
     }
 
     TEST_CASE("an eye inside the body sees nothing hidden") {
