@@ -44,6 +44,10 @@ static_assert(offsetof(crofton_tracked_point, depth) == offsetof(convex::Contact
               offsetof(crofton_tracked_point, part_a) == offsetof(convex::ContactPoint, part_a) &&
               offsetof(crofton_tracked_point, part_b) == offsetof(convex::ContactPoint, part_b) &&
               offsetof(crofton_feature, index) == offsetof(convex::Feature, index));
+static_assert(sizeof(crofton_body_point) == sizeof(convex::ContactPoint) &&
+              offsetof(crofton_body_point, depth) == offsetof(convex::ContactPoint, depth) &&
+              offsetof(crofton_body_point, on_b) == offsetof(convex::ContactPoint, on_b) &&
+              offsetof(crofton_body_point, part_b) == offsetof(convex::ContactPoint, part_b));
 static_assert(sizeof(convex::PairCache) <= sizeof(crofton_pair_cache) &&
               alignof(convex::PairCache) <= alignof(crofton_pair_cache));
 static_assert(sizeof(crofton_motion) == sizeof(convex::Motion) &&

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Questions asked of two bodies, and the contacts of a pair that last.
+#include <algorithm>
 #include <cmath>
 
 #include "bodies.hpp"
@@ -49,6 +50,17 @@ crofton_body_distance to_c_distance(const convex::Distance& answer) {
     return result;
 }
 
+// Lines for the caller's function.
+auto line_teller(crofton_line_visitor visit, void* user) {
+    return [=](const glm::dvec3& from, const glm::dvec3& to) { visit(user, &from.x, &to.x); };
+}
+
+crofton_status check_length(double length, const char* function) {
+    if (!std::isfinite(length)) return report(CROFTON_NON_FINITE, function, "a margin or length is not finite");
+    if (length < 0.0) return report(CROFTON_INVALID_ARGUMENT, function, "a margin or length is negative");
+    return CROFTON_OK;
+}
+
 // The caller's cache for the length of a call.
 class CallersCache {
   public:
@@ -72,8 +84,7 @@ crofton_status to_manifold_options(const crofton_manifold_options* options, cons
     if (!options) return CROFTON_OK;
     crofton_manifold_options given{};
     CROFTON_CHECK(read_growing(options, function, given));
-    if (!std::isfinite(given.margin)) return report(CROFTON_NON_FINITE, function, "margin is not finite");
-    if (given.margin < 0.0) return report(CROFTON_INVALID_ARGUMENT, function, "margin is negative");
+    CROFTON_CHECK(check_length(given.margin, function));
     if (given.max_points > 8) return report(CROFTON_OUT_OF_RANGE, function, "max_points is more than 8");
     result.margin = given.margin;
     if (given.max_points != 0) result.max_points = static_cast<int>(given.max_points);
@@ -149,6 +160,47 @@ crofton_status crofton_body_closest_point(const crofton_placed* body, const doub
     return CROFTON_OK;
 }
 
+crofton_status crofton_body_outline(const crofton_placed* body, crofton_line_visitor visit, void* user) {
+    if (!visit) return report(CROFTON_INVALID_ARGUMENT, __func__, "the visitor is NULL");
+    const PlacedBody placed(body, __func__);
+    CROFTON_CHECK(placed.status());
+    convex::outline(placed.placed(), line_teller(visit, user));
+    return CROFTON_OK;
+}
+
+crofton_status crofton_body_parts_near(const crofton_placed* body, const crofton_placed* other, double margin,
+                                       crofton_part* parts, size_t capacity, size_t* found) {
+    CROFTON_CHECK(check_pointer(found, __func__));
+    CROFTON_CHECK(check_array(parts, capacity, __func__));
+    CROFTON_CHECK(check_length(margin, __func__));
+    const PlacedPair pair(body, other, __func__);
+    CROFTON_CHECK(pair.status());
+    Vector<convex::Part> near;
+    convex::parts_near(pair.first(), pair.second(), margin, near);
+    for (std::size_t i = 0; i < (std::min)(near.size(), capacity); ++i) parts[i] = to_c_part(near[i].id);
+    *found = near.size();
+    return CROFTON_OK;
+}
+
+crofton_status crofton_bodies_manifold(const crofton_placed* a, const crofton_placed* b,
+                                       const crofton_manifold_options* options, crofton_pair_cache* cache,
+                                       crofton_body_manifold* manifold) {
+    CROFTON_CHECK(check_growing(manifold, __func__));
+    const PlacedPair pair(a, b, __func__);
+    CROFTON_CHECK(pair.status());
+    convex::ManifoldOptions wanted;
+    CROFTON_CHECK(to_manifold_options(options, __func__, wanted));
+    CallersCache kept(cache);
+    const convex::Manifold answer = convex::contact_manifold(pair.first(), pair.second(), wanted, kept.get());
+    crofton_body_manifold result{};
+    copy_out(answer.normal, result.normal);
+    result.depth = answer.depth;
+    result.point_count = static_cast<std::uint32_t>(answer.count);
+    std::memcpy(static_cast<void*>(result.points), answer.points, result.point_count * sizeof *result.points);
+    write_growing(result, manifold);
+    return CROFTON_OK;
+}
+
 crofton_status crofton_bodies_cast(const crofton_placed* a, const crofton_motion* motion_a, const crofton_placed* b,
                                    const crofton_motion* motion_b, const crofton_cast_options* options,
                                    crofton_impact* impact) {
@@ -200,5 +252,15 @@ crofton_status crofton_body_contacts_points(crofton_body_contacts* contacts, cro
     *points = reinterpret_cast<crofton_tracked_point*>(contacts->points.data());
     *count = contacts->points.size();
     if (ended) *ended = contacts->ended;
+    return CROFTON_OK;
+}
+
+crofton_status crofton_body_contacts_outline(crofton_body_contacts* contacts, double length, crofton_line_visitor visit,
+                                             void* user) {
+    const ExclusiveUse use(contacts, __func__);
+    if (use.failed()) return use.status();
+    if (!visit) return report(CROFTON_INVALID_ARGUMENT, __func__, "the visitor is NULL");
+    CROFTON_CHECK(check_length(length, __func__));
+    convex::outline(contacts->points, length, line_teller(visit, user));
     return CROFTON_OK;
 }

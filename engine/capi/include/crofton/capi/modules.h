@@ -362,6 +362,22 @@ typedef struct crofton_tracked_point {
     float memory[4]; /* the caller's, as impulses for a warm start: 0 when the point begins, kept while it stays */
 } crofton_tracked_point;
 
+/* As the first members of crofton_tracked_point. */
+typedef struct crofton_body_point {
+    double position[3];
+    double depth;
+    crofton_feature on_a, on_b;
+    crofton_part part_a, part_b;
+} crofton_body_point;
+
+typedef struct crofton_body_manifold {
+    size_t size;
+    double normal[3];     /* unit, from a to b */
+    double depth;         /* of the deepest point */
+    uint32_t point_count; /* 0 where the bodies are farther apart than the margin */
+    crofton_body_point points[CROFTON_MAX_MANIFOLD_POINTS];
+} crofton_body_manifold;
+
 typedef struct crofton_manifold_options {
     size_t size;
     double margin;       /* >= 0: points with a gap of up to this are told, too */
@@ -429,6 +445,16 @@ CROFTON_API crofton_status crofton_body_hull_surface(const crofton_body* body, c
                                                      size_t* vertex_count, const uint16_t** indices,
                                                      size_t* index_count);
 
+/* Told of a line, in the world; `user` is what the caller gave. It must not throw, and may ask bodies, but not the
+ * contacts that are drawn. */
+typedef void (*crofton_line_visitor)(void* user, const double from[3], const double to[3]);
+/* For debug drawing: the edges of a body and of its parts. What is round is drawn as circles, in pieces of a 24th. */
+CROFTON_API crofton_status crofton_body_outline(const crofton_placed* body, crofton_line_visitor visit, void* user);
+/* Writes the first `capacity` of the convex parts that may be within `margin` >= 0 of another body, and in *found how
+ * many there are in all: all that are so near, and some more. A convex body is its own part. */
+CROFTON_API crofton_status crofton_body_parts_near(const crofton_placed* body, const crofton_placed* other,
+                                                   double margin, crofton_part* parts, size_t capacity, size_t* found);
+
 /* *meet is 1 where the bodies share a point, else 0. `cache` or NULL. */
 CROFTON_API crofton_status crofton_bodies_meet(const crofton_placed* a, const crofton_placed* b,
                                                crofton_pair_cache* cache, int* meet);
@@ -439,6 +465,10 @@ CROFTON_API crofton_status crofton_bodies_penetration(const crofton_placed* a, c
                                                       crofton_pair_cache* cache, crofton_body_penetration* penetration);
 CROFTON_API crofton_status crofton_body_closest_point(const crofton_placed* body, const double point[3],
                                                       crofton_body_distance* distance);
+/* Where they touch: the deepest manifold. crofton_body_contacts_update tells all, and what has stayed. */
+CROFTON_API crofton_status crofton_bodies_manifold(const crofton_placed* a, const crofton_placed* b,
+                                                   const crofton_manifold_options* options, crofton_pair_cache* cache,
+                                                   crofton_body_manifold* manifold);
 /* When will they first touch? `options` or NULL: within a time of 1. A motion or NULL: that body rests. */
 CROFTON_API crofton_status crofton_bodies_cast(const crofton_placed* a, const crofton_motion* motion_a,
                                                const crofton_placed* b, const crofton_motion* motion_b,
@@ -453,6 +483,9 @@ CROFTON_API crofton_status crofton_body_contacts_update(crofton_body_contacts* c
 /* The points, whose memory is yours to write, and how many have ended (or NULL); valid until the next update. */
 CROFTON_API crofton_status crofton_body_contacts_points(crofton_body_contacts* contacts, crofton_tracked_point** points,
                                                         size_t* count, size_t* ended);
+/* For debug drawing: each point's normal, `length` >= 0 long, with a cross of that size across it. */
+CROFTON_API crofton_status crofton_body_contacts_outline(crofton_body_contacts* contacts, double length,
+                                                         crofton_line_visitor visit, void* user);
 
 /* What does a ray hit first, and what lies within a body? */
 
