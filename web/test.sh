@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Builds the package and tests it in node. Says so and does nothing where a tool is missing.
+# Builds the package, tests it in node and runs the README's program. Says so and does nothing where a tool is missing.
 #   web/test.sh [simd] [plain]    which builds; both unless told
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -14,3 +14,9 @@ builds=("$@")
 [[ ${#builds[@]} -gt 0 ]] || builds=(simd plain)
 python3 web/build.py "${builds[@]}"
 CROFTON_BUILDS=$(IFS=,; echo "${builds[*]}") node --expose-gc --test web/test/
+# The README's program, with the package where npm would put it. It takes the build with SIMD.
+[[ " ${builds[*]} " == *" simd "* ]] || exit 0
+mkdir -p build/web/readme/node_modules
+ln -sfn "$PWD/web" build/web/readme/node_modules/crofton
+sed -n '/^```js$/,/^```$/{/^```/d;p}' web/README.md >build/web/readme/readme.mjs
+node build/web/readme/readme.mjs
