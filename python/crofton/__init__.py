@@ -10,14 +10,17 @@ from ._crofton import Pvs, Triangulation, __version__, box_dtype, handle_dtype  
 def boxes(center, half_extents, axes=None):
     """An array of box_dtype: centres (n, 3), half extents (n, 3) or (3,), axes (n, 3, 3) or (3, 3).
 
-    axes[i, k] is the direction of axis k of box i; without axes they are x, y and z.
+    axes[i, k] is the direction of axis k of box i; without axes they are x, y and z. Numbers are stored as floats, axes
+    as the nearest, half extents as the next above: a box holds what it held.
     """
     center = _np.asarray(center, dtype="f8")
     if center.ndim != 2 or center.shape[1] != 3:
         raise TypeError("center: an array of shape (n, 3) is expected")
     result = _np.zeros(len(center), dtype=box_dtype)
     result["center"] = center
-    result["half_extents"] = half_extents
+    half = _np.broadcast_to(_np.asarray(half_extents, dtype="f8"), center.shape)
+    stored = half.astype("f4")
+    result["half_extents"] = _np.where(stored < half, _np.nextafter(stored, _np.float32(_np.inf)), stored)
     result["axes"] = _np.eye(3) if axes is None else axes
     return result
 
