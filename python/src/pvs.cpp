@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <crofton/pvs/pvs.hpp>
 
+#include <algorithm>
 #include <cstring>
 #include <optional>
 #include <string>
@@ -67,8 +68,16 @@ void take_positions(const Points<3>& points, pvs::Subject& subject, Aabb& bounds
     });
 }
 
-// A box along the axes around each object's triangles.
-void box_objects(pvs::Subject& subject, std::size_t objects) {
+// How much wider a box must be than the stored positions of its object. The caller's positions are up to 2^-24 of the
+// mesh's half extent from those, half extents are rounded to floats as much, and doubles to 2^-53 of a coordinate. The
+// object's own extent is no measure: that of a flat one is 0.
+double margin_of(const Aabb& bounds) {
+    const glm::dvec3 size = bounds.max - bounds.min, far = glm::max(glm::abs(bounds.min), glm::abs(bounds.max));
+    return 0x1p-23 * std::max({size.x, size.y, size.z}) + 0x1p-50 * std::max({far.x, far.y, far.z});
+}
+
+// A box along the axes around each object's triangles, `margin` wider.
+void box_objects(pvs::Subject& subject, std::size_t objects, double margin) {
     Vector<Aabb> around(objects);
     for (std::size_t t = 0; t < subject.object_of.size(); ++t) {
         Aabb& box = around[subject.object_of[t]];
@@ -83,8 +92,7 @@ void box_objects(pvs::Subject& subject, std::size_t objects) {
             subject.boxes.push_back({});
             continue;
         }
-        // Rounded outward: half extents are floats.
-        const glm::dvec3 half = 0.5 * (box.max - box.min) * (1.0 + 1e-6);
+        const glm::dvec3 half = 0.5 * (box.max - box.min) + margin;
         subject.boxes.push_back({0.5 * (box.min + box.max), glm::mat3(1.0f), glm::vec3(half)});
     }
 }
@@ -112,7 +120,7 @@ pvs::Subject subject_of(const py::handle& positions, const py::handle& indices, 
             raise({ErrorCode::out_of_range, t, "object_of: objects are numbered from 0, below 2^24"});
         count = std::max(count, std::size_t{subject.object_of[t]} + 1);
     }
-    box_objects(subject, count);
+    box_objects(subject, count, margin_of(bounds));
     return subject;
 }
 

@@ -61,6 +61,18 @@ def test_without_proofs_nothing_is_hidden_and_with_them_the_other_half_is(sets):
     assert proved.visible(LEFT_EYE).tolist() == [True, True, True, False]
 
 
+def test_a_flat_object_is_hidden_and_seen_like_any_other():
+    # A square at a coordinate that no float has, on either side of the wall; only its own half of the hall sees it.
+    positions, indices, object_of = level()
+    for x, own, other in ((-0.4, LEFT_EYE, RIGHT_EYE), (0.4, RIGHT_EYE, LEFT_EYE)):
+        square = [(x / 3 * 3.1, y, z) for z in (1, 2) for y in (0.5, 1.5)]
+        sets = crofton.Pvs.bake(np.vstack([positions, square]), np.concatenate([indices, [32, 33, 35, 32, 35, 34]]),
+                                np.concatenate([object_of, [4, 4]]), cells=(4, 1, 2), epsilon=1e-3, surface_steps=400,
+                                near_radius=0.01)
+        assert sets.visible(own)[4] and sets.visible(own, "statistical")[4]
+        assert not sets.visible(other)[4] and sets.states[sets.find_cell(other), 4] == crofton.HIDDEN
+
+
 def test_the_counts_are_those_of_the_states(sets):
     assert sets.states.shape == (8, 4)
     for name, state in (("hidden", crofton.HIDDEN), ("unseen", crofton.UNSEEN), ("seen", crofton.SEEN)):
