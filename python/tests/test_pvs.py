@@ -240,6 +240,16 @@ def test_a_notebook_shows_a_chart(sets):
     assert all(line.get("d").count("L") == (sets.kinds > 1).sum() - 1 for line in lines)
 
 
+def test_the_chart_of_sets_has_the_shares_of_their_states():
+    sets = bake(surface_steps=400, near_radius=0.01)
+    states = sets.states[sets.kinds > 1]
+    shares = sets.chart().series
+    assert sorted(shares) == ["conservative", "statistical"]
+    assert shares["conservative"] == pytest.approx(sorted(100 * (states != crofton.HIDDEN).mean(axis=1)))
+    assert shares["statistical"] == pytest.approx(sorted(100 * (states == crofton.SEEN).mean(axis=1)))
+    assert (shares["conservative"] < 100).any()
+
+
 def test_a_chart_places_its_ends_where_they_belong():
     root = ElementTree.fromstring(crofton.Chart([0, 10], {"a & b": [0, 1]}, "x", "y").to_svg(500))
     (line,) = [part for part in root.iter() if part.get("class") == "line"]
