@@ -4,7 +4,7 @@
 #   third_party/install.sh            what building, running and testing need
 #   third_party/install.sh --tests    also a browser, in which the tests open the report page
 #   third_party/install.sh --bench    also the benchmarks' framework and the peers measured beside us
-#   third_party/install.sh --checks   also clang, its formatter and its linter, for .ci/run and .ci/long
+#   third_party/install.sh --checks   also clang, its formatter and its linter, and gdb, for .ci/run and .ci/long
 #   third_party/install.sh --python   also what the Python package needs (python/README.md)
 #   third_party/install.sh --rust     also what the Rust crate needs (rust/README.md)
 #   third_party/install.sh --csharp   also what the C# classes need (csharp/README.md)
@@ -28,12 +28,12 @@ packages=(
     doctest-dev libgmp-dev xvfb xauth xdotool libx11-dev
 )
 test_packages=(chromium)
-check_packages=(clang libclang-rt-dev clang-format clang-tidy llvm)
+check_packages=(clang libclang-rt-dev clang-format clang-tidy llvm gdb)
 engine_packages=(libdraco-dev libmeshoptimizer-dev libogre-1.12-dev libopenscenegraph-dev libbullet-dev libtbb-dev doxygen)
 python_packages=(python3-dev python3-numpy python3-pytest python3-setuptools python3-wheel python3-pip python3-venv pybind11-dev)
 rust_packages=(cargo)
 csharp_packages=(mono-mcs mono-runtime libmono-system-core4.0-cil)
-web_packages=(emscripten nodejs dpkg-dev chromium doxygen)
+web_packages=(emscripten nodejs node-typescript dpkg-dev chromium doxygen)
 packaging_packages=(debhelper dpkg-dev help2man lintian abigail-tools)
 slurm_packages=(slurm-wlm munge)
 platform_packages=(clang libc++-14-dev libc++abi-14-dev g++-i686-linux-gnu g++-riscv64-linux-gnu g++-aarch64-linux-gnu qemu-user

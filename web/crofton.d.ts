@@ -38,6 +38,7 @@ export interface Owned { free(): void }
 export interface Boxes extends Owned {
     readonly length: number;
     readonly bytes: Uint8Array;
+    /** Numbers become floats: axes the nearest, half extents the next above. */
     set(i: number, center: Vector, halfExtents: Vector, axes?: Vector): void;
     get(i: number): Box;
     setAll(centers: Float64Array | Float32Array, halfExtents: Float64Array | Float32Array, axes?: Float64Array | Float32Array): void;

@@ -51,4 +51,5 @@ PYBIND11_MODULE(_crofton, module) {
     bind_cull(module);
     bind_collide(module);
     bind_world(module);
+    bind_pvs(module);
 }

@@ -12,5 +12,6 @@ void bind_triangulate(pybind11::module_& module);
 void bind_cull(pybind11::module_& module);
 void bind_collide(pybind11::module_& module);
 void bind_world(pybind11::module_& module);
+void bind_pvs(pybind11::module_& module);
 
 }  // namespace crofton::python

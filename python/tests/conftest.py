@@ -1,4 +1,6 @@
 # SPDX-License-Identifier: MIT
+import signal
+
 import numpy as np
 import pytest
 
@@ -17,3 +19,8 @@ def cube():
         dtype="u4",
     )
     return corners, indices
+
+
+def pytest_configure():
+    # A shell starts what runs in the background with Ctrl-C ignored: tests that press it would never end.
+    signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -90,6 +90,18 @@ def test_boxes_fills_axes_and_extents():
     assert array["half_extents"].tolist() == [[1, 2, 3]] * 2
 
 
+def test_boxes_rounds_half_extents_up():
+    given = np.concatenate([[0, 0.7, 1e-50, 16777217, 3e38], np.random.default_rng(5).random(1001) * 10.0]).reshape(-1, 2)
+    half = np.column_stack([given, given[:, 0]])
+    stored = crofton.boxes(np.zeros((len(half), 3)), half)["half_extents"]
+    nearest = half.astype("f4")
+    assert (stored >= half).all() and (stored[nearest >= half] == nearest[nearest >= half]).all()
+    assert (stored <= np.nextafter(nearest, np.float32(np.inf))).all() and (nearest < half).sum() > 100
+    assert np.isnan(crofton.boxes([[0, 0, 0]], [np.nan, 1, 1])["half_extents"][0, 0])
+    with pytest.raises(ValueError):
+        crofton.boxes([[0, 0, 0]], [1, 2])
+
+
 @pytest.mark.parametrize("bad", [[1, 2, 3], [[1, 2]], 5])
 def test_boxes_wants_rows_of_three(bad):
     with pytest.raises((TypeError, ValueError)):

@@ -214,6 +214,44 @@ TEST_SUITE("capi/world occlusion") {
         CHECK(crofton_visible_in_views_depth(in_views.get(), 2, &width, &height, nullptr, 0) == CROFTON_OUT_OF_RANGE);
     }
 
+    TEST_CASE("the first view's limits count for all, and a later view with others is refused") {
+        Walled s;
+        update(s.world);
+        // The wall is too far to be drawn. It hides nothing then.
+        std::vector<float> distances{5.0f, 1e9f, 1e9f};
+        auto limits = sized<crofton_draw_limits>();
+        limits.item_distances = distances.data();
+        limits.item_count = distances.size();
+        const crofton_draw_limits others = limits;
+        crofton_occluding_view views[2] = {s.view, s.view};
+        const VisibleInViewsHandle visible = make_visible_in_views();
+        const auto look = [&] {
+            return crofton_world_views_occluding(s.world.get(), views, 2, nullptr, nullptr, nullptr, visible.get());
+        };
+        // Listed are those that any view sees.
+        const auto seen_by_both = [&] {
+            crofton_object_ref refs[3] = {};
+            std::uint32_t masks[3] = {};
+            REQUIRE(crofton_visible_in_views_list(visible.get(), s.world.get(), 0, refs, masks, 3) == CROFTON_OK);
+            std::vector<std::uint32_t> seen;
+            for (std::size_t i = 0; i < 3; ++i)
+                if (masks[i] == 3) seen.push_back(refs[i].object.index);
+            return seen;
+        };
+        views[0].limits = &limits;
+        for (const crofton_draw_limits* later :
+             {static_cast<const crofton_draw_limits*>(nullptr), &std::as_const(limits)}) {
+            views[1].limits = later;
+            REQUIRE(look() == CROFTON_OK);
+            CHECK(seen_by_both() == std::vector<std::uint32_t>{s.behind.index, s.beside.index});
+        }
+        views[1].limits = &others;
+        CHECK(look() == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_last_error_item() == 1);
+        views[0].limits = nullptr;
+        CHECK(look() == CROFTON_INVALID_ARGUMENT);
+    }
+
     TEST_CASE("bad calls are refused by name") {
         Walled s;
         update(s.world);

@@ -2,17 +2,19 @@
 # SPDX-License-Identifier: MIT
 """Builds the digests' tests for every platform that this machine can compile for and run, and compares the digests.
 
-tests/platforms/run.py [CELL …] [--jobs J] [--targets a,b] [--limit S] [--nice N]   all cells, or those named
+tests/platforms/run.py [CELL …] [--jobs J] [--modules a,b] [--limit S] [--nice N]   all cells, or those named
+tests/platforms/run.py --libraries [CELL …]                  compiles only the libraries that the targets' presets need
 tests/platforms/run.py --list                                the cells, and why some are left out here
 tests/platforms/run.py --report                              the table of docs/testing.md from the results so far
 tests/platforms/run.py --write                               puts that table into docs/testing.md
 tests/platforms/run.py --check                               whether docs/testing.md has that table
 
-A cell is a compiler and a target. Its build lies in build/platforms/CELL; the results of all are in results.json beside
-this script. Cells are made cheap: little optimisation, one instruction set, ccache where it is installed, least priority.
-The digests come first, one file of tests after another; then the other programs. What is left of a cell that was
-stopped is done by the next run: a part is done again only where its program has changed. A part that takes longer than
-the limit (900 s) is stopped, and the table says so.
+A cell is a compiler and a target, set as a preset of CMakePresets.json says. Its build lies in build/platforms/CELL; the
+results of all are in results.json beside this script. Cells are made cheap: little optimisation, one instruction set,
+ccache where it is installed, least priority. The digests come first, one file of tests after another; then the tests of
+the modules (core and geometry unless told). What is left of a cell that was stopped is done by the next run: a part is
+done again only where its program has changed. A part that takes longer than the limit (900 s) is stopped, and the table
+says so.
 `third_party/install.sh --platforms` installs the compilers and emulators. Libraries that a target lacks are compiled
 from the system's source packages, which apt-get fetches. A cell that cannot be here says why and counts for nothing.
 Exit status 1 where a digest differs or a test fails. Python 3.11, nothing else.
@@ -36,14 +38,11 @@ WORK = ROOT / "build" / "platforms"
 SOURCES = WORK / "sources"
 RESULTS = ROOT / "tests" / "platforms" / "results.json"
 DIGESTS = "test_determinism"
-TARGETS = [DIGESTS, "test_core", "test_geometry"]
+MODULES = "core,geometry"
+PRESETS = json.loads((ROOT / "CMakePresets.json").read_text())["configurePresets"]
 EMSCRIPTEN = "/usr/share/emscripten/cmake/Modules/Platform/Emscripten.cmake"
 # Debian's Emscripten needs its modules of node, which a node from elsewhere does not look for.
 ENVIRONMENT = {"NODE_PATH": "/usr/share/nodejs", "WINEDEBUG": "-all", **os.environ}
-# A pool of threads must exist before the program waits for one, and exceptions are off unless asked for.
-# Debian 12's Emscripten has no std::bit_cast in its library.
-WASM_MISSING = f"-include {ROOT}/web/native/missing.hpp"
-WASM_LINK = "-pthread -fexceptions -sPTHREAD_POOL_SIZE=12 -sINITIAL_MEMORY=1073741824 -sEXIT_RUNTIME=1 -sTOTAL_STACK=4194304"
 
 
 @dataclass
@@ -51,14 +50,11 @@ class Cell:
     name: str
     what: str                      # for the table
     needs: list                    # programs
-    options: list = field(default_factory=list)
-    toolchain: str = ""            # of a target whose libraries are compiled from source packages
-    flags: str = ""                # of both languages, also for the libraries
-    link: str = ""
-    host: str = ""                 # as GMP's configure calls it
+    preset: str = ""               # where it is not named as the cell
+    options: list = field(default_factory=list)   # what makes a cell cheap
+    host: str = ""                 # as GMP's configure calls it; of a target whose libraries are compiled from source packages
     runner: list = field(default_factory=list)
     suffix: str = ""
-    cxx_flags: str = ""            # of our own C++ alone
     optimize: str = "-O1"          # the quickest in all: what the tests lose, the compiler gains several times
     newer_highway: bool = False    # that of Debian 13
 
@@ -73,17 +69,9 @@ class Cell:
         return ""
 
 
-def toolchain(name):
-    return str(ROOT / "cmake" / f"{name}.cmake")
-
-
-def clang(*more):
-    return ["-DCMAKE_C_COMPILER=clang-14", "-DCMAKE_CXX_COMPILER=clang++-14", *more]
-
-
-def wasm(name, what, flags, **more):
-    return Cell(name, what, ["emcc", "node", EMSCRIPTEN], ["-DEMSCRIPTEN_SYSTEM_PROCESSOR=wasm32"], EMSCRIPTEN,
-                f"-pthread -fexceptions {flags}".strip(), WASM_LINK, "none", ["node", "--no-experimental-fetch"], ".js", cxx_flags=WASM_MISSING, **more)
+def wasm(name, what, **more):
+    return Cell(name, what, ["emcc", "node", EMSCRIPTEN], host="none", runner=["node", "--no-experimental-fetch"],
+                suffix=".js", **more)
 
 
 def one_set(name):
@@ -92,28 +80,23 @@ def one_set(name):
 
 
 CELLS = [
-    Cell("gcc", "g++ 12, x86-64", ["g++"], [one_set("AVX2")]),
-    Cell("gcc-native", "g++ 12, x86-64, `-march=native`", ["g++"], ["-DCMAKE_CXX_FLAGS=-march=native"]),
-    Cell("gcc-flto", "g++ 12, x86-64, `-flto`", ["g++"], ["-DCMAKE_INTERPROCEDURAL_OPTIMIZATION=ON", one_set("AVX2")],
-         optimize="-O2"),
-    Cell("gcc-scalar", "g++ 12, x86-64, scalar", ["g++"], ["-DCROFTON_SCALAR=ON"]),
-    Cell("gcc-portable", "g++ 12, x86-64, no compiler extensions", ["g++"], ["-DCROFTON_PORTABLE=ON", one_set("AVX2")]),
-    Cell("clang", "clang 14, x86-64", ["clang++-14"], clang(one_set("AVX2"))),
+    Cell("gcc", "g++ 12, x86-64", ["g++"], "release", [one_set("AVX2")]),
+    Cell("gcc-native", "g++ 12, x86-64, `-march=native`", ["g++"], "native"),
+    Cell("gcc-flto", "g++ 12, x86-64, `-flto`", ["g++"], "lto", [one_set("AVX2")], optimize="-O2"),
+    Cell("gcc-scalar", "g++ 12, x86-64, scalar", ["g++"], "scalar"),
+    Cell("gcc-portable", "g++ 12, x86-64, no compiler extensions", ["g++"], "portable", [one_set("AVX2")]),
+    Cell("clang", "clang 14, x86-64", ["clang++-14"], options=["-DCROFTON_UNITY=ON", one_set("AVX2")]),
     Cell("clang-libcxx", "clang 14, x86-64, libc++", ["clang++-14", "/usr/lib/llvm-14/include/c++/v1/vector"],
-         clang(one_set("AVX2")), toolchain("clang-libcxx"), host="x86_64-linux-gnu"),
-    Cell("i386", "g++ 12, 32-bit x86", ["i686-linux-gnu-g++"], [one_set("SSE4")], toolchain("i686-linux-gnu"),
-         host="i686-linux-gnu"),
-    Cell("aarch64", "g++ 12, 64-bit ARM, qemu", ["aarch64-linux-gnu-g++", "qemu-aarch64"], [],
-         toolchain("aarch64-linux-gnu"), host="aarch64-linux-gnu",
+         options=[one_set("AVX2")], host="x86_64-linux-gnu"),
+    Cell("i386", "g++ 12, 32-bit x86", ["i686-linux-gnu-g++"], host="i686-linux-gnu"),
+    Cell("aarch64", "g++ 12, 64-bit ARM, qemu", ["aarch64-linux-gnu-g++", "qemu-aarch64"], host="aarch64-linux-gnu",
          runner=["qemu-aarch64", "-L", "/usr/aarch64-linux-gnu"]),
-    Cell("riscv64", "g++ 12, 64-bit RISC-V, qemu", ["riscv64-linux-gnu-g++", "qemu-riscv64"], [],
-         toolchain("riscv64-linux-gnu"), host="riscv64-linux-gnu",
+    Cell("riscv64", "g++ 12, 64-bit RISC-V, qemu", ["riscv64-linux-gnu-g++", "qemu-riscv64"], host="riscv64-linux-gnu",
          runner=["qemu-riscv64", "-L", "/usr/riscv64-linux-gnu"]),
     Cell("mingw", "MinGW g++ 12, 64-bit Windows, Wine", ["x86_64-w64-mingw32-g++-posix", "wine"],
-         [one_set("SSE4")],
-         toolchain("x86_64-w64-mingw32"), host="x86_64-w64-mingw32", runner=["wine"], suffix=".exe"),
-    wasm("wasm-simd", "Emscripten 3.1, WebAssembly with SIMD, node", "-msimd128", newer_highway=True),
-    wasm("wasm", "Emscripten 3.1, WebAssembly without SIMD, node", "-DHWY_COMPILE_ONLY_SCALAR"),
+         host="x86_64-w64-mingw32", runner=["wine"], suffix=".exe"),
+    wasm("wasm-simd", "Emscripten 3.1, WebAssembly with SIMD, node", newer_highway=True),
+    wasm("wasm", "Emscripten 3.1, WebAssembly without SIMD, node"),
 ]
 
 
@@ -177,24 +160,38 @@ def fetch_newer(log):
     return newer
 
 
+def settings_of(preset, name):
+    """The options of a configure preset and those it inherits, where it is called `name`."""
+    (found,) = [p for p in PRESETS if p["name"] == preset]
+    inherited = found.get("inherits", [])
+    settings = {}
+    # The first of several wins.
+    for parent in reversed([inherited] if isinstance(inherited, str) else inherited):
+        settings |= settings_of(parent, name)
+    settings |= found.get("cacheVariables", {})
+    if "toolchainFile" in found:
+        settings["CMAKE_TOOLCHAIN_FILE"] = found["toolchainFile"]
+    return {key: value.replace("${sourceDir}", str(ROOT)).replace("${presetName}", name) for key, value in settings.items()}
+
+
 def cmake_options(cell):
+    settings = settings_of(cell.preset or cell.name, cell.name)
+    if cell.host:
+        settings |= settings_of("libraries", cell.name)
     # Not the build type Release, for which the tests choose an optimisation of their own.
     flags = f"_FLAGS_RELWITHDEBINFO={cell.optimize} -DNDEBUG"
-    options = ["-G", "Ninja", "-DCMAKE_BUILD_TYPE=RelWithDebInfo", f"-DCMAKE_C{flags}", f"-DCMAKE_CXX{flags}", *cell.options]
-    if cell.toolchain:
-        prefix = cell.build / "prefix"
-        options += [f"-DCMAKE_TOOLCHAIN_FILE={cell.toolchain}", f"-DCMAKE_PREFIX_PATH={prefix}",
-                    f"-DCMAKE_FIND_ROOT_PATH={prefix}", "-DCMAKE_FIND_ROOT_PATH_MODE_PACKAGE=ONLY",
-                    f"-DCMAKE_MODULE_PATH={prefix}/lib/cmake/modules"]
-    if cell.flags:
-        options += [f"-DCMAKE_C_FLAGS={cell.flags}", f"-DCMAKE_CXX_FLAGS={cell.flags} {cell.cxx_flags}".strip()]
-    if cell.link:
-        options.append(f"-DCMAKE_EXE_LINKER_FLAGS={cell.link}")
-    return options
+    return ["-G", "Ninja", *(f"-D{key}={value}" for key, value in settings.items()), "-DCMAKE_BUILD_TYPE=RelWithDebInfo",
+            f"-DCMAKE_C{flags}", f"-DCMAKE_CXX{flags}", *cell.options]
+
+
+def flags_of(cell):
+    """What the toolchain file compiles C with."""
+    cache = (cell.build / "dependencies" / "CMakeCache.txt").read_text()
+    return re.search(r"^CMAKE_C_FLAGS:\w+=(.*)$", cache, re.MULTILINE)[1]
 
 
 def gmp_environment(cell):
-    flags = f"-O2 {cell.flags}".strip()
+    flags = f"-O2 {flags_of(cell)}".strip()
     if cell.host == "x86_64-w64-mingw32":
         return {"CC": "x86_64-w64-mingw32-gcc-posix", "CXX": "x86_64-w64-mingw32-g++-posix", "CC_FOR_BUILD": "gcc"}
     if cell.host == "none":
@@ -270,12 +267,14 @@ def try_cell(cell, options, results):
     result.pop("broken", None)
     try:
         cmake, jobs = cmake_options(cell), str(options.jobs)
-        if cell.toolchain:
+        if cell.host:
             build_libraries(cell, jobs, log)
-            cmake.append(f"-DCROFTON_TEST_LIBRARIES={cell.build / 'prefix'}")
-        run(["cmake", "-S", ROOT, "-B", cell.build / "build", *cmake, "-DCROFTON_RENDER=OFF", "-DCROFTON_SAMPLES=OFF",
-             "-DCROFTON_INSTALL=OFF", "-DCROFTON_DISCOVER_TESTS=OFF"], log, environment=environment_of(cell))
-        for target in options.targets.split(","):
+        if options.libraries:
+            return
+        run(["cmake", "-S", ROOT, "-B", cell.build / "build", *cmake, "-DCROFTON_WERROR=OFF", "-DCROFTON_RENDER=OFF",
+             "-DCROFTON_SAMPLES=OFF", "-DCROFTON_INSTALL=OFF", "-DCROFTON_DISCOVER_TESTS=OFF"], log,
+            environment=environment_of(cell))
+        for target in [DIGESTS, *(f"test_{module}" for module in options.modules.split(",") if module)]:
             run(["cmake", "--build", cell.build / "build", "-j", jobs, "--target", target], log)
             try_parts(cell, target, options.limit, results, log)
     except Failed as failure:
@@ -372,10 +371,10 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("cells", nargs="*")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
-    parser.add_argument("--targets", default=",".join(TARGETS))
+    parser.add_argument("--modules", default=MODULES)
     parser.add_argument("--limit", type=int, default=900)
     parser.add_argument("--nice", type=int, default=15)
-    for mode in ("--list", "--report", "--write", "--check"):
+    for mode in ("--libraries", "--list", "--report", "--write", "--check"):
         parser.add_argument(mode, action="store_true")
     options = parser.parse_args()
     results = json.loads(RESULTS.read_text()) if RESULTS.exists() else {}
@@ -399,6 +398,11 @@ def main():
             continue
         try_cell(cell, options, results)
         result = results[cell.name]
+        if options.libraries:
+            here = cell.build.relative_to(ROOT) / "prefix" if cell.host else "those of this system"
+            print(f"{cell.name}: libraries: {result.get('broken', here)}", flush=True)
+            bad = bad or "broken" in result
+            continue
         print(f"{cell.name}: digests {digests_of(result)}; {others_of(result)}", flush=True)
         bad = bad or failed(result)
     return 1 if bad else 0

@@ -4,6 +4,14 @@ import { Owned, checkArray } from './memory.js';
 
 export const BOX = 72;
 
+const float = new Float32Array(1), bits = new Int32Array(float.buffer);
+/** The least float that is not below a number: half extents are stored as floats, and a box must not lose what it holds. */
+export function roundedUp(value) {
+    float[0] = value;
+    if (float[0] < value) bits[0] += float[0] < 0 ? -1 : 1;
+    return float[0];
+}
+
 /** Boxes in the library's memory: no call copies them. Box i is 72 bytes: center (3 doubles), axes (9 floats), half extents. */
 export class Boxes extends Owned {
     constructor(memory, count) {
@@ -18,12 +26,15 @@ export class Boxes extends Owned {
         if (!(i >= 0 && i < this.length)) throw failure(3, `Boxes: there is no box ${i} of ${this.length}`);
         return this.handle + i * BOX;
     }
-    /** `axes`: nine numbers, three unit vectors one after another; left out: the world's. */
+    /**
+     * `axes`: nine numbers, three unit vectors one after another; left out: the world's. They are rounded to the nearest
+     * floats, half extents to the next above.
+     */
     set(i, center, halfExtents, axes) {
         const at = this.#at(i), { doubles, floats } = this.memory;
         for (let k = 0; k < 3; ++k) {
             doubles[(at >> 3) + k] = center[k];
-            floats[(at >> 2) + 15 + k] = halfExtents[k];
+            floats[(at >> 2) + 15 + k] = roundedUp(halfExtents[k]);
         }
         for (let k = 0; k < 9; ++k) floats[(at >> 2) + 6 + k] = axes ? axes[k] : k % 4 === 0 ? 1 : 0;
     }
@@ -45,7 +56,7 @@ export class Boxes extends Owned {
         for (let i = 0; i < this.length; ++i, at += BOX) {
             for (let k = 0; k < 3; ++k) {
                 doubles[(at >> 3) + k] = centers[3 * i + k];
-                floats[(at >> 2) + 15 + k] = halfExtents[3 * i + k];
+                floats[(at >> 2) + 15 + k] = roundedUp(halfExtents[3 * i + k]);
             }
             if (axes) for (let k = 0; k < 9; ++k) floats[(at >> 2) + 6 + k] = axes[9 * i + k];
         }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 import { failure } from './error.js';
 import { Owned, checkArray, create } from './memory.js';
-import { BOX, writeCamera } from './geometry.js';
+import { BOX, roundedUp, writeCamera } from './geometry.js';
 
 const ALL = 0xffffffff;
 
@@ -157,6 +157,6 @@ export class World extends Owned {
         if (ball) return doubles.set([...ball.center, ball.radius], at + 128 >> 3);
         doubles.set(box.center, at + 8 >> 3);
         floats.set(box.axes ?? [1, 0, 0, 0, 1, 0, 0, 0, 1], at + 32 >> 2);
-        floats.set(box.halfExtents, at + 8 + BOX - 12 >> 2);
+        floats.set(Array.from(box.halfExtents, roundedUp), at + 8 + BOX - 12 >> 2);
     }
 }

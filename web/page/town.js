@@ -64,9 +64,13 @@ export function makeTown(lots = 48) {
 /** Sixteen numbers by columns. */
 export const transformOf = ({ position: [x, y, z], cos, sin }) => [cos, 0, -sin, 0, 0, 1, 0, 0, sin, 0, cos, 0, x, y, z, 1];
 
-/** The box of an object from that of its mesh. */
+/**
+ * The box of an object from that of its mesh. Turned axes become floats, each at most √3 / 2²⁵ < 5.2e-8 from what it was:
+ * a corner may leave the box by that much of the half extents' sum. Twice as much is added.
+ */
 export function placed(box, { position, cos, sin }) {
     const turn = ([x, y, z]) => [cos * x + sin * z, y, cos * z - sin * x];
-    return { center: turn(box.center).map((c, k) => c + position[k]), halfExtents: box.halfExtents,
+    const margin = 1.04e-7 * box.halfExtents.reduce((sum, half) => sum + half, 0);
+    return { center: turn(box.center).map((c, k) => c + position[k]), halfExtents: box.halfExtents.map((half) => half + margin),
         axes: [0, 3, 6].flatMap((first) => turn(box.axes.slice(first, first + 3))) };
 }

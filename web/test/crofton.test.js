@@ -120,6 +120,29 @@ for (const build of BUILDS) {
         assert.deepEqual(boxes.get(1).center, [4, 5, 6]);
         assert.deepEqual(boxes.get(1).halfExtents, [2, 2, 2]);
     });
+    here('half extents are rounded up to floats, so that a box loses nothing', () => {
+        const boxes = new crofton.Boxes(1), next = random(77);
+        const numbers = [0, 0.1, 0.7, 1e-50, 1e-40, 0.1 + 2 ** -30, Math.fround(0.1), 16777217, 3e38, Infinity];
+        for (let i = 0; i < 1000; ++i) numbers.push(next() * 2 ** (80 * next() - 40));
+        for (const h of numbers) {
+            boxes.set(0, [0, 0, 0], [h, h, h]);
+            const [up] = boxes.get(0).halfExtents;
+            assert.ok(up >= h && (h === 0 ? up === 0 : Math.fround(h) < h || up === Math.fround(h)), `${h} became ${up}`);
+            assert.ok(up === h || up - h <= Math.max(h * 2 ** -23, 2 ** -149), `${h} became ${up}`);
+            boxes.setAll(new Float64Array(3), new Float64Array([h, h, h]));
+            assert.deepEqual(boxes.get(0).halfExtents, [up, up, up]);
+        }
+        boxes.set(0, [0, 0, 0], [-0.1, NaN, -Infinity]);
+        const [negative, none, least] = boxes.get(0).halfExtents;
+        assert.ok(negative < 0 && Number.isNaN(none) && least === -Infinity);
+    });
+    here('a box of a world is rounded up as well', () => {
+        const world = new crofton.World();
+        world.add({ box: { center: [0, 0, -5], halfExtents: [0.7, 0.7, 1] } });
+        world.update();
+        assert.ok(Math.fround(0.7) < 0.7);
+        assert.ok(world.raycast([0.7, 0, 0], [0, 0, -1]));
+    });
     here('validate names the box that is none', () => {
         const boxes = new crofton.Boxes(3);
         boxes.set(2, [NaN, 0, 0], [1, 1, 1]);

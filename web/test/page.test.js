@@ -91,6 +91,31 @@ test('page: without occlusion nothing is occluded, and nothing else changes', { 
     assert.deepEqual(without.text, without.counts);
 }));
 
+test('page: the box of an object holds its mesh, to the last bit', { skip: builds.length ? false : skip }, async () => {
+    const objects = makeTown(), culling = new Culling(await load(), objects);
+    const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+    const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    for (const criterion of Object.keys(CRITERIA)) {
+        culling.setCriterion(criterion);
+        const { buffer } = culling.boxBytes;
+        objects.forEach(({ mesh, position, cos, sin }, i) => {
+            const center = new Float64Array(buffer, 72 * i, 3), floats = [...new Float32Array(buffer, 72 * i + 24, 12)];
+            const axes = [0, 3, 6].map((first) => floats.slice(first, first + 3)), half = floats.slice(9);
+            const volume = dot(axes[0], cross(axes[1], axes[2]));
+            const { positions } = MESHES[mesh];
+            for (let v = 0; v < positions.length; v += 3) {
+                const [x, y, z] = positions.subarray(v, v + 3);
+                const p = [cos * x + sin * z, y, cos * z - sin * x].map((c, k) => c + position[k] - center[k]);
+                // Coordinates along the axes as they are stored: these are not quite orthogonal.
+                for (let k = 0; k < 3; ++k) {
+                    const along = dot(p, cross(axes[(k + 1) % 3], axes[(k + 2) % 3])) / volume;
+                    assert.ok(Math.abs(along) <= half[k], `${criterion}, object ${i}, axis ${k}: ${Math.abs(along) - half[k]} outside`);
+                }
+            }
+        });
+    }
+});
+
 test('page: counts are those of the native library, for every criterion', {
     skip: skip || (existsSync(LIBRARY) ? false : `no ${LIBRARY}: cmake --preset release; ninja -C build/release crofton`) }, async () => {
     const objects = makeTown(), culling = new Culling(await load(), objects), program = `${ROOT}build/web/town_counts`;

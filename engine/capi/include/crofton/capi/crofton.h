@@ -410,7 +410,7 @@ typedef struct crofton_occluding_view {
     double origin[3];
     uint32_t depth;                    /* a crofton_depth_range */
     uint32_t hidden_layers;            /* not drawn; 0: all are */
-    const crofton_draw_limits* limits; /* or NULL: those of the options. Of several views the first's count */
+    const crofton_draw_limits* limits; /* or NULL: those of the options. Of several views the first's */
 } crofton_occluding_view;
 
 typedef struct crofton_occlusion_statistics {
@@ -448,7 +448,8 @@ CROFTON_API crofton_status crofton_world_view_occluding(const crofton_world* wor
                                                         const crofton_occlusion_options* occlusion,
                                                         const crofton_cull_options* options, const crofton_jobs* jobs,
                                                         crofton_visible_objects* visible);
-/* Up to 32 views of one `size`, which lie so far apart. The limits of the first count for all. */
+/* Up to 32 views of one `size`, which lie so far apart. The limits of the first count for all: a later view has NULL or
+ * the same pointer, else CROFTON_INVALID_ARGUMENT, item the view. */
 CROFTON_API crofton_status crofton_world_views_occluding(const crofton_world* world,
                                                          const crofton_occluding_view* views, size_t count,
                                                          const crofton_occlusion_options* occlusion,
