@@ -200,6 +200,13 @@ TEST_SUITE("capi/world occlusion") {
         const VisibleInViewsHandle in_views = make_visible_in_views();
         REQUIRE(crofton_world_views_occluding(s.world.get(), views, 2, nullptr, nullptr, nullptr, in_views.get()) ==
                 CROFTON_OK);
+        // What is asked beside the views is read with the first of them, which may be the only one.
+        auto disabled = sized<crofton_occlusion_options>();
+        disabled.disabled = 1;
+        const VisibleInViewsHandle without = make_visible_in_views();
+        REQUIRE(crofton_world_views_occluding(s.world.get(), views, 1, &disabled, nullptr, nullptr, without.get()) ==
+                CROFTON_OK);
+        CHECK(crofton_visible_in_views_depth(without.get(), 0, &width, &height, nullptr, 0) == CROFTON_OUT_OF_RANGE);
         crofton_object_ref refs[3] = {};
         std::uint32_t masks[3] = {};
         REQUIRE(crofton_visible_in_views_list(in_views.get(), s.world.get(), 0, refs, masks, 3) == CROFTON_OK);

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <crofton/core/executor.hpp>
+#include <ctime>
 #include <thread>
 #include <vector>
 
@@ -82,6 +83,27 @@ TEST_SUITE("core/executor") {
         }
         CHECK(shared > 0);
     }
+
+#ifdef CLOCK_THREAD_CPUTIME_ID
+    TEST_CASE("a caller that waits for another thread's long body sleeps") {
+        const auto processor_seconds = [] {
+            timespec now{};
+            clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+            return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+        };
+        ThreadPool pool(2);
+        std::atomic<bool> begun{false};
+        const double before = processor_seconds();
+        pool.parallel_for(2, 1, [&](std::size_t, std::size_t, unsigned worker) {
+            if (worker != 0) {
+                begun = true;
+                std::this_thread::sleep_for(std::chrono::milliseconds(500));
+            }
+            while (worker == 0 && !begun) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        });
+        CHECK(processor_seconds() - before < 0.03);
+    }
+#endif
 
     TEST_CASE("threads that race for a million ranges take each once") {
         ThreadPool pool(3);

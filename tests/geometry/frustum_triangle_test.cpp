@@ -68,6 +68,26 @@ TEST_SUITE("geometry/frustum_triangle") {
         }
     }
 
+    TEST_CASE("three planes that leave nothing of a triangle, though rounding says the contrary") {
+        // Found by a search for the worst roundings.
+        Frustum frustum;
+        frustum.origin = {-0x1.f0f10f822b96fp-9, 0x1.50db57c7090b1p-8, 0x1.3f21e676730ccp-12};
+        frustum.planes[0] = {{-0x1.897a68e8c5237p+0, -0x1.01ce266ff85aep-3, 0x1.14a380c9eb4e9p+0},
+                             0x1.6cf6e22b81113p-8};
+        frustum.planes[1] = {{0x1.141208d98fd34p-3, 0x1.da061e4dc8405p-1, 0x1.72a9f1b2b6734p-4}, 0x1.ef60bed6429afp-9};
+        frustum.planes[2] = {{0x1.9d9f4700ada94p+0, -0x1.248608812d3a3p-1, -0x1.abf2c3827bec1p+0},
+                             -0x1.bf9829345166bp-6};
+        frustum.plane_count = 3;
+        const glm::dvec3 a(-0x1.9e0948c7c19f4p+0, 0x1.0993f6e1a148cp-3, 0x1.6207e8b28a539p+0);
+        const glm::dvec3 b(0x1.aaafe50f2a551p-3, 0x1.18ff418c9e10fp+0, -0x1.4a19400dffd5bp-3);
+        const glm::dvec3 c(0x1.88e2110735b53p+0, -0x1.afc2eb9d64a1cp-1, -0x1.8729154d98166p+0);
+        CHECK(!oracle::meets(frustum, a, b, c));
+        CHECK(!intersects(frustum, a, b, c));
+        frustum.planes[2].offset += 0x1p-40;
+        CHECK(oracle::meets(frustum, a, b, c));
+        CHECK(intersects(frustum, a, b, c));
+    }
+
     TEST_CASE("agrees with exact elimination to the last bit where a triangle begins to miss the frustum") {
         for (const double offset : {0.0, 1e6}) {
             oracle::NearMisses cases(6, offset);

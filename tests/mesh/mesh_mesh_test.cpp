@@ -141,6 +141,19 @@ TEST_SUITE("mesh/mesh_mesh") {
         }
     }
 
+    TEST_CASE("whether meshes meet is known at the first pair that does") {
+        const TriangleMesh torus = wavy_torus(1.0, 0.4, 0.2, 60, 40);
+        const auto tree = tree_of(torus);
+        const RigidTransform pose{glm::dmat3(1.0), {0.0, 0.0, 0.0}};  // every triangle meets its own copy
+        MeshStatistics all, first;
+        Vector<TrianglePair> pairs;
+        intersecting_triangles(tree, tree, pose, pairs, &all);
+        REQUIRE(pairs.size() >= torus.triangle_count());
+        CHECK(intersects(tree, tree, pose, &first));
+        CHECK(first.triangle_tests < all.triangle_tests / 10);
+        CHECK(first.box_tests < all.box_tests / 10);
+    }
+
     TEST_CASE("meshes of every size from 1e-15 to 1e12 give the same pairs as brute force") {
         std::mt19937_64 random(10);
         for (const double size : {1e-15, 1e-9, 1e-3, 1e5, 2e11}) {

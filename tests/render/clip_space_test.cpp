@@ -140,6 +140,18 @@ TEST_SUITE("geometry/clip_space") {
         CHECK(count({1, 0, 0.5f}, {1, 1, 0.5f}, {1, -1, 0.5f}) == 1);        // lies in a plane: touching is inside
         CHECK(count({0, 0, 0.5f}, {0, 0, 0.5f}, {0, 0, 0.5f}) == 1);         // degenerate
     }
+    TEST_CASE("the smallest normal number is not taken for 0, what is smaller is") {
+        ClipPredictor predictor;
+        const auto count = [&](float z) {
+            const Vector<glm::vec3> points{{0, 0, z}, {0.5f, 0, z}, {0, 0.5f, z}};
+            const Vector<std::uint32_t> indices{0, 1, 2};
+            return predictor.count(points, indices, glm::mat4(1.0f));
+        };
+        constexpr float kLeast = std::numeric_limits<float>::min();
+        CHECK(count(-kLeast) == 0);  // before the near plane
+        CHECK(count(-std::nextafter(kLeast, 0.0f)) == 1);
+        CHECK(count(kLeast) == 1);
+    }
     TEST_CASE("with bounds the count is the same, wherever the box lies: inside, outside, touching, huge, at 10⁷ m") {
         std::mt19937_64 random(11);
         std::uniform_real_distribution<double> unit(-1.0, 1.0);

@@ -66,6 +66,22 @@ void check_containment(const BinaryTree& tree, const std::vector<Obb>& boxes, co
     }
 }
 
+// How far the box leaves the bound, whose centre is so near that the difference of centres is exact.
+long double sticks_out(const Obb& box, const Obb& bound) {
+    using Vector3 = glm::vec<3, long double>;
+    const Vector3 apart(box.center - bound.center);
+    long double most = 0.0L;
+    for (int k = 0; k < 3; ++k) {
+        const Vector3 normal = glm::cross(Vector3(bound.axes[(k + 1) % 3]), Vector3(bound.axes[(k + 2) % 3]));
+        long double reach = std::abs(glm::dot(normal, apart));
+        for (int j = 0; j < 3; ++j)
+            reach += static_cast<long double>(box.half_extents[j]) * std::abs(glm::dot(normal, Vector3(box.axes[j])));
+        const long double determinant = std::abs(glm::dot(normal, Vector3(bound.axes[k])));
+        most = std::max(most, reach / determinant - static_cast<long double>(bound.half_extents[k]));
+    }
+    return most;
+}
+
 }  // namespace
 
 TEST_SUITE("study/binary_tree") {
@@ -119,6 +135,26 @@ TEST_SUITE("study/binary_tree") {
                 check_structure(*tree, boxes, all);
                 check_containment(*tree, boxes, all);
             }
+    }
+
+    TEST_CASE("far from the origin oriented bounds hold their boxes, whose corners are rounded by more than a float") {
+        Random random(9);
+        const auto vector = [&](double size) {
+            return size * glm::dvec3(random.uniform(), random.uniform(), random.uniform());
+        };
+        for (int trial = 0; trial < 400; ++trial) {
+            std::vector<Obb> boxes = random_boxes(static_cast<std::uint64_t>(trial), 4);
+            const glm::dvec3 far = glm::dvec3(1e10) + vector(1e9);
+            for (Obb& box : boxes) {
+                box.center = far + vector(1e-2);
+                box.half_extents *= 1e-3f;
+            }
+            const auto tree = BinaryTree::build(boxes, {.oriented = true});
+            REQUIRE(tree.has_value());
+            for (ItemId i = 0; i < boxes.size(); ++i)
+                for (std::uint32_t n = tree->node(tree->leaf(i)).parent; n != kNone; n = tree->node(n).parent)
+                    CHECK(sticks_out(boxes[i], tree->node(n).bound) <= 1e-12L);
+        }
     }
 
     TEST_CASE("inserting and removing in any order keeps the tree sound, and ids are used again") {

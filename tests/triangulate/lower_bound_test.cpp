@@ -74,6 +74,24 @@ TEST_SUITE("triangulate/lower bound") {
         CHECK(tight > 100);
     }
 
+    TEST_CASE("rectangles in a row, each with two diagonals of one length, are promised one of them") {
+        for (const int count : {6, 30}) {
+            Polygon p;
+            for (int i = 0; i < count; ++i) p.points.emplace_back(6.0 * i, 0.0);
+            for (int i = count - 1; i >= 0; --i) p.points.emplace_back(6.0 * i, 8.0);
+            p.ring_ends = {static_cast<std::uint32_t>(p.points.size())};
+            const double minimum = 8.0 * (count - 2) + 10.0 * (count - 1);
+            int tight = 0;
+            for (double work = 1.0; work < 1e6; work *= 1.05) {
+                const auto result = triangulate::triangulate(p, {.work = static_cast<std::uint64_t>(work)});
+                REQUIRE(result.has_value());
+                CHECK(lower_bound_of(*result) <= minimum * (1.0 + 1e-15));
+                tight += !result->optimal && lower_bound_of(*result) > minimum * (1.0 - 1e-9);
+            }
+            CHECK(tight > 4);
+        }
+    }
+
     TEST_CASE(
         "the faces that are left unsolved are bounded by their own diagonals, tightly where these are all alike") {
         // A strip with a triangular hole in its middle, given work for some of its parts only.

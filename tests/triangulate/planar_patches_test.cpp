@@ -9,6 +9,7 @@
 
 using namespace crofton;
 using triangulate::find_planar_patches;
+using triangulate::PlanarPatch;
 using triangulate::retriangulate_planar_patches;
 
 namespace {
@@ -95,6 +96,32 @@ TEST_SUITE("triangulate/planar_patches") {
         REQUIRE(patches->size() == 1);
         CHECK((*patches)[0].polygon.ring_count() == 6);
         CHECK((*patches)[0].polygon.points.size() == 9);
+    }
+
+    TEST_CASE("the outer ring comes first, also where the mesh begins at the holes") {
+        TriangleMesh mesh;
+        mesh.positions = {{0, 0, 0}, {6, 0, 0}, {12, 0, 0}, {12, 6, 0}, {6, 6, 0}, {0, 6, 0},  {2, 2, 0},
+                          {4, 2, 0}, {4, 4, 0}, {2, 4, 0},  {8, 2, 0},  {9, 2, 0}, {10, 4, 0}, {8, 4, 0}};
+        const std::uint32_t outer[2][4] = {{0, 1, 4, 5}, {1, 2, 3, 4}}, hole[2] = {6, 10};
+        for (const bool at_hole : {true, false})
+            for (std::uint32_t side = 0; side < 2; ++side)
+                for (std::uint32_t i = 0; i < 4; ++i) {
+                    const std::uint32_t j = (i + 1) % 4, a = outer[side][i], b = outer[side][j];
+                    if (at_hole)
+                        mesh.indices.insert(mesh.indices.end(), {hole[side] + j, hole[side] + i, a});
+                    else
+                        mesh.indices.insert(mesh.indices.end(), {a, b, hole[side] + j});
+                }
+        const auto patches = find_planar_patches(mesh);
+        REQUIRE(patches->size() == 1);
+        const PlanarPatch& patch = (*patches)[0];
+        REQUIRE(patch.polygon.ring_count() == 3);
+        CHECK(patch.polygon.ring(0).size() == 6);
+        CHECK(patch.polygon.ring(1).size() == 4);
+        CHECK(patch.polygon.ring(2).size() == 4);
+        REQUIRE(patch.vertices.size() == 14);
+        for (std::size_t i = 0; i < 14; ++i) CHECK((patch.vertices[i] < 6) == (i < 6));
+        for (std::size_t i = 6; i < 14; ++i) CHECK((patch.vertices[i] < 10) == (i < 10));
     }
 
     TEST_CASE("a strip becomes lighter, keeps its vertices, its area and its orientation, in any plane") {

@@ -69,6 +69,43 @@ TEST_SUITE("world/bodies") {
         CHECK(world.closest(box, above, 1e9)->distance == 2.0 - radius);
     }
 
+    TEST_CASE("of a pair of which one has a body the bounds touch, as if there were no body") {
+        World world;
+        const convex::Body crate = convex::Body::box({0.5f, 0.5f, 0.5f}).value();
+        const ObjectHandle floor = world.add({.bound = Obb{{}, glm::mat3(1.0f), {9, 1, 9}}}).value();
+        const ObjectHandle box = world.add({.bound = Obb{{0, 1.25, 0}, glm::mat3(1.0f), glm::vec3(0.5f)}}).value();
+        for (const ObjectHandle with_body : {floor, box}) {
+            REQUIRE(world.set_body(floor, with_body == floor ? &crate : nullptr).has_value());
+            REQUIRE(world.set_body(box, with_body == box ? &crate : nullptr).has_value());
+            REQUIRE(world.update().has_value());
+            CHECK(world.body_contacts().empty());
+            REQUIRE(world.contacts().size() == 1);
+            CHECK(world.contacts()[0].points.size() == 4);
+            CHECK(world.contacts()[0].depth == doctest::Approx(0.25));
+        }
+    }
+
+    TEST_CASE("a cast far from the origin hits what it just reaches") {
+        for (const double far : {0.0, 1e6, 1e9, 1e11}) {
+            World world;
+            const glm::dvec3 at(far, -far, far);
+            const convex::Body ball = convex::Body::ball(1.0).value();
+            const auto target = world.add({.bound = Obb{at, glm::mat3(1.0f), glm::vec3(1.0f)}}).value();
+            REQUIRE(world.update().has_value());
+            for (int axis = 0; axis < 3; ++axis)
+                for (const double side : {-1.0, 1.0}) {
+                    glm::dvec3 from(0.0), way(0.0);
+                    from[axis] = 12.0 * side;
+                    way[axis] = -10.5 * side;  // reaches in by 0.5
+                    const auto hit = world.cast(ball, {glm::dmat3(1.0), at + from}, {way, {}, {}}, {.tolerance = 1e-3});
+                    REQUIRE(hit.has_value());
+                    REQUIRE(hit->has_value());
+                    CHECK((*hit)->object == target);
+                    CHECK((*hit)->time == doctest::Approx(10.0 / 10.5).epsilon(1e-3));
+                }
+        }
+    }
+
     TEST_CASE("a crate on a floor: began, stayed with the caller's numbers, kept while asleep, ended") {
         World world({.contact_margin = 0.02});
         const convex::Body crate = convex::Body::box({0.5f, 0.5f, 0.5f}).value();

@@ -76,6 +76,28 @@ TEST_SUITE("world/bounds") {
             CHECK(!world.closest(Sphere{{0.0, 5.0, 0.0}, 1.0}, number == kInfinity ? kNan : number));
         }
         CHECK(world.closest(Sphere{{0.0, 5.0, 0.0}, 1.0}, kInfinity)->distance == doctest::Approx(3.5));
+        for (const double tiny : {5e-324, 1e-310, 1e-300, 0.0}) {
+            CHECK(!world.closest(Sphere{{0.0, 5.0, 0.0}, 1.0}, tiny));
+            CHECK(world.closest(Sphere{{0.0, 1.5, 0.0}, 1.0}, tiny)->distance == 0.0);
+        }
+    }
+
+    TEST_CASE("the box of a ball holds the ball, whose radius no float has") {
+        for (int i = 0; i < 1000; ++i) {
+            const double radius = 1.0 + i * 0x1p-32;  // between two floats
+            const Bound bound = Sphere{{0.0, 0.0, 0.0}, radius};
+            for (int k = 0; k < 3; ++k) REQUIRE(static_cast<double>(bound.box.half_extents[k]) >= radius);
+        }
+        World world;
+        const double radius = 1.0 + 0.3 * 0x1p-23, height = 1.0 + 0.2 * 0x1p-23;
+        const auto ball = world.add({.bound = Sphere{{0.0, 0.0, 0.0}, radius}}).value();
+        for (int frame = 0; frame < 3; ++frame) {  // in the tree, and among what moves
+            REQUIRE(world.update().has_value());
+            const auto hit = world.raycast({{-5.0, height, 0.0}, {1.0, 0.0, 0.0}});
+            REQUIRE(hit.has_value());
+            CHECK(hit->object == ball);
+            REQUIRE(world.set_bound(ball, Sphere{{1e-9 * frame, 0.0, 0.0}, radius}).has_value());
+        }
     }
 
     TEST_CASE("of many boxes the bad ones are refused, the first is named, and the others move") {

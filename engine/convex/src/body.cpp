@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cmath>
 #include <crofton/convex/body.hpp>
 #include <crofton/mesh/mesh_parts.hpp>
@@ -25,6 +26,14 @@ Result<void> check_length(double value, const char* name, std::uint64_t item = k
 Result<void> check_lengths(float half_height, float radius) {
     if (Result<void> good = check_length(static_cast<double>(half_height), "half height"); !good) return good;
     return check_length(static_cast<double>(radius), "radius");
+}
+
+// The direction times a power of two where squares of its components would leave the range of doubles; else as it is.
+glm::dvec3 without_extremes(const glm::dvec3& direction) {
+    const double largest = std::max({std::fabs(direction.x), std::fabs(direction.y), std::fabs(direction.z)});
+    if (largest == 0.0 || (largest >= 0x1p-400 && largest <= 0x1p400)) return direction;
+    const int down = -std::ilogb(largest);
+    return {std::scalbn(direction.x, down), std::scalbn(direction.y, down), std::scalbn(direction.z, down)};
 }
 
 void grow(Aabb& box, double radius) {
@@ -199,7 +208,8 @@ Body Body::compound(const Compound& compound) {
     return body;
 }
 
-glm::dvec3 support_point(const Body& body, const glm::dvec3& direction) {
+glm::dvec3 support_point(const Body& body, const glm::dvec3& of_any_length) {
+    const glm::dvec3 direction = without_extremes(of_any_length);
     const glm::dvec3 core = core_support(body, direction).point;
     const double length = glm::length(direction);
     return body.radius() > 0.0 && length > 0.0 ? core + body.radius() / length * direction : core;

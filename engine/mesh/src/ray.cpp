@@ -61,11 +61,12 @@ double parameter(const Ray& ray, const Triangle& t) {
     return by_plane >= low - margin ? std::min(by_plane, high + margin) : low - margin;
 }
 
-// The largest one that is not above x > 0, where it and its reciprocal are normal numbers.
+// The largest one that is not above x, but at most 2^1000, so that its reciprocal is a normal number. x is a valid
+// ray's largest component, whose square is not 0: above 2^-540.
 double power_of_two(double x) {
     constexpr std::uint64_t kExponent = 0x7ff0000000000000u;
     const double power = std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) & kExponent);
-    return std::min(std::max(power, 0x1p-1000), 0x1p1000);
+    return std::min(power, 0x1p1000);
 }
 
 // validate(ray) without the words.

@@ -217,13 +217,16 @@ void World::overlap(const collide::Capsule& shape, Vector<ObjectRef>& found, std
     state_->overlap(shape, found, layers);
 }
 
+// A limit that is rounded to 0 grows too.
+constexpr double kLeastGrowth = 1e-300;
+
 // Within a small distance first: the tree is entered in no order of nearness.
 std::optional<ClosestObject> World::State::closest(const Aabb& bounds, double max_distance, std::uint32_t layers,
                                                    GapTo gap_to_object) const {
     std::optional<ClosestObject> nearest;
     if (!(max_distance >= 0.0)) return nearest;
     max_distance = std::min(max_distance, kMaxCoordinate);
-    for (double limit = max_distance * 0x1p-12;; limit = std::min(8.0 * limit, max_distance)) {
+    for (double limit = max_distance * 0x1p-12;; limit = std::min(std::max(8.0 * limit, kLeastGrowth), max_distance)) {
         double rest = limit;
         visit_near(bounds, limit, layers, [&](std::uint32_t id) {
             const collide::Distance gap = gap_to_object(id);

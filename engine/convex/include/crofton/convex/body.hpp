@@ -313,8 +313,8 @@ class Compound {
 // item is the child).
 [[nodiscard]] Result<MassProperties> mass_properties(const Body& body);
 
-// The farthest point of the body along `direction` (finite; any length but 0), in its frame. Of convex bodies but
-// half-spaces.
+// The farthest point of the body along `direction` (finite, of any length; of length 0 some point of the body), in its
+// frame. Of convex bodies but half-spaces.
 [[nodiscard]] glm::dvec3 support_point(const Body& body, const glm::dvec3& direction);
 
 }  // namespace crofton::convex
