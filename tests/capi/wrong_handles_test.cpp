@@ -138,6 +138,7 @@ void refuse_modules_queries(Table& table) {
     CROFTON_REFUSE(crofton_body_contacts_destroy);
     CROFTON_REFUSE(crofton_body_contacts_update);
     CROFTON_REFUSE(crofton_body_contacts_points);
+    CROFTON_REFUSE(crofton_body_contacts_outline);
     CROFTON_REFUSE(crofton_collider_raycast);
     CROFTON_REFUSE(crofton_collider_hits_any);
     CROFTON_REFUSE(crofton_tree_raycast);
@@ -164,6 +165,7 @@ const std::set<std::string> kWithoutHandle = {
     "baked_scene_read",
     "bodies_cast",
     "bodies_distance",
+    "bodies_manifold",
     "bodies_meet",
     "bodies_penetration",
     "body_ball",
@@ -178,6 +180,8 @@ const std::set<std::string> kWithoutHandle = {
     "body_height_field",
     "body_hull",
     "body_mesh",
+    "body_outline",
+    "body_parts_near",
     "body_triangle",
     "box_raycast",
     "box_transform",
