@@ -321,7 +321,7 @@ TEST_SUITE("bake/forged") {
                       "section 'letters' lies outside its place");
     }
 
-    TEST_CASE("occluders of several nodes are baked; one with points and no triangles is refused before") {
+    TEST_CASE("occluders of several nodes are baked, one with points and no triangles is refused before") {
         BakedOccluders occluders = three_kinds();
         occluders.nodes = {{0, 0}, {1, 2}};
         const auto baked = BakedScene::from_memory(with_occluders(occluders));

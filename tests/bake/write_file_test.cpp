@@ -208,7 +208,7 @@ TEST_SUITE("bake/write_file") {
         CHECK(folder.count() == 2);
     }
 
-    TEST_CASE("a folder that may be written and not read is written to; a socket is refused and stays") {
+    TEST_CASE("a folder that may be written and not read is written to, a socket is refused and stays") {
         const Folder folder;
         REQUIRE(chmod(folder.path.c_str(), 0333) == 0);
         CHECK(in_child([&] {

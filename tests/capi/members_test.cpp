@@ -57,7 +57,7 @@ TEST_SUITE("capi/members") {
         CHECK(scene);
     }
 
-    TEST_CASE("criteria: what has no measure is refused and changes nothing; boxes merge by the one that is given") {
+    TEST_CASE("criteria: what has no measure is refused and changes nothing, boxes merge by the one that is given") {
         crofton_criterion criterion{1, 2, 3};
         auto camera = sized<crofton_camera>();
         REQUIRE(crofton_camera_default(&camera) == CROFTON_OK);
@@ -135,7 +135,7 @@ TEST_SUITE("capi/members") {
         CHECK(faces(1e-2f) == 6);
     }
 
-    TEST_CASE("of a surface with one side casts from behind pass; a height field has spacing, holes and two sides") {
+    TEST_CASE("of a surface with one side casts from behind pass, a height field has spacing, holes and two sides") {
         const float positions[] = {-5, -5, 0, 5, -5, 0, 0, 5, 0};
         const std::uint32_t indices[] = {0, 1, 2};  // seen from above, where z > 0
         const crofton_mesh mesh{sizeof mesh, positions, 3, indices, 3, nullptr};
@@ -233,7 +233,7 @@ TEST_SUITE("capi/members") {
         CHECK(distance.distance == 42);
     }
 
-    TEST_CASE("planes alone keep a box beside the frustum's edge; masks may be left out, and names of meshes") {
+    TEST_CASE("planes alone keep a box beside the frustum's edge, masks may be left out, and names of meshes") {
         const SmallWorld small;
         const crofton_view view = default_view();
         REQUIRE(crofton_world_views(small.world.get(), &view, 1, nullptr, small.in_views.get()) == CROFTON_OK);

@@ -197,7 +197,7 @@ TEST_SUITE("world/body_rules") {
         CHECK(hits > 20);
     }
 
-    TEST_CASE("a floor's front pushes up what has sunk in, lets pass what comes from below; both sides push back") {
+    TEST_CASE("a floor's front pushes up what has sunk in, lets pass what comes from below, both sides push back") {
         RandomBodies random(3);
         const Surface s = ground(random, 16, 0.5, [](double, double) { return 0.0; });
         const std::vector<float> level(17 * 17, 0.0f);
