@@ -69,7 +69,7 @@ void take_positions(const Points<3>& points, pvs::Subject& subject, Aabb& bounds
 }
 
 // How much wider a box must be than the stored positions of its object. The caller's positions are up to 2^-24 of the
-// mesh's half extent from those, half extents are rounded to floats as much, and doubles to 2^-53 of a coordinate. The
+// mesh's half extent from those. Half extents are rounded to floats as much, and doubles to 2^-53 of a coordinate. The
 // object's own extent is no measure: that of a flat one is 0.
 double margin_of(const Aabb& bounds) {
     const glm::dvec3 size = bounds.max - bounds.min, far = glm::max(glm::abs(bounds.min), glm::abs(bounds.max));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Is there a point where all of some linear inequalities in three unknowns hold? A linear programme in doubles guesses
-// a proof, and the proof is checked by numbers that cannot be wrong (tracked.hpp): a vertex where all hold, or four
-// inequalities of which a positive combination is 0 ≥ 1 (Farkas 1902; four are enough by Helly's theorem).
+// a proof. Numbers that cannot be wrong (tracked.hpp) check it. The proof is a vertex where all hold, or four
+// inequalities of which a positive combination is 0 ≥ 1 (Farkas 1902). Four are enough by Helly's theorem.
 #pragma once
 #include <cmath>
 #include <limits>

@@ -36,8 +36,8 @@ inline Rounded product(double a, double b) {
 inline bool is_lost(double p, double a, double b) {
     return std::fabs(p) < kLeast && a != 0.0 && b != 0.0;
 }
-// Of a sum of at most 32 terms, none negative, each a product of at most three: rounded down by less than 64 · 2^-53
-// of itself and by 32 subnormal steps.
+// Of a sum of at most 32 terms, none negative, each a product of at most three. It is rounded down by less than
+// 64 · 2^-53 of itself and by 32 subnormal steps.
 inline double rounded_up(double error) {
     return error * (1.0 + 0x1p-46) + kLeast;
 }

@@ -451,7 +451,7 @@ typedef void (*crofton_line_visitor)(void* user, const double from[3], const dou
 /* For debug drawing: the edges of a body and of its parts. What is round is drawn as circles, in pieces of a 24th. */
 CROFTON_API crofton_status crofton_body_outline(const crofton_placed* body, crofton_line_visitor visit, void* user);
 /* Writes the first `capacity` of the convex parts that may be within `margin` >= 0 of another body, and in *found how
- * many there are in all: all that are so near, and some more. A convex body is its own part. */
+ * many there are. These are all that are so near, and some more. A convex body is its own part. */
 CROFTON_API crofton_status crofton_body_parts_near(const crofton_placed* body, const crofton_placed* other,
                                                    double margin, crofton_part* parts, size_t capacity, size_t* found);
 
