@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <cstdlib>
+#include <filesystem>
+#include <iterator>
 
 #include "../assets/test_files.hpp"
 #include "run_cli.hpp"
@@ -179,15 +181,46 @@ TEST_SUITE("cli/pvs") {
         CHECK(run_cli(base + "--views 5").out.find("5 street views") != std::string::npos);
     }
 
-    TEST_CASE("a full disk leaves the state that was there") {
-        const std::string base = "pvs " + level() + kSmall;
-        REQUIRE(run_cli(base + "--shard 0/2 --state " + quoted("kept")).status == 0);
-        const std::string before = contents_of(scratch().file("kept"));
-        const std::string command =
-            "trap '' XFSZ; ulimit -f 0; '" CROFTON_CLI "' " + base + "--state " + quoted("kept") + " >/dev/null 2>&1";
-        const int status = std::system(command.c_str());
-        CHECK(WIFEXITED(status));
-        CHECK(WEXITSTATUS(status) == 2);
-        CHECK(contents_of(scratch().file("kept")) == before);
+    TEST_CASE("a full disk leaves the state that was there, or none, and the bake goes on to the same bytes") {
+        const std::string base = "pvs " + level() + " --eyes=-6,0,-3,6,3,3 --cells 60x4x30 --epsilon 2e-2 ";
+        const std::string folder = scratch().file("disk");
+        std::filesystem::create_directory(folder);
+        const auto state = [&](const char* name) { return folder + "/" + name; };
+        REQUIRE(run_cli(base + "--shard 0/2 --state '" + state("kept") + "'").status == 0);
+        REQUIRE(run_cli(base + "--state " + quoted("whole")).status == 0);
+        const std::string before = contents_of(state("kept"));
+        CHECK(before.size() > 8 * 1024);  // more than the smaller disk below takes
+        for (const char* blocks : {"0", "8"})
+            for (const char* name : {"kept", "new"}) {
+                const std::string command = std::string("trap '' XFSZ; ulimit -f ") + blocks + "; '" CROFTON_CLI "' " +
+                                            base + "--state '" + state(name) + "' >/dev/null 2>&1";
+                const int status = std::system(command.c_str());
+                CHECK(WIFEXITED(status));
+                CHECK(WEXITSTATUS(status) == 2);
+                CHECK(contents_of(state("kept")) == before);
+                CHECK(std::distance(std::filesystem::directory_iterator(folder), {}) == 1);
+            }
+        for (const char* name : {"kept", "new"}) {
+            REQUIRE(run_cli(base + "--state '" + state(name) + "'").status == 0);
+            CHECK(contents_of(state(name)) == contents_of(scratch().file("whole")));
+        }
+    }
+
+    TEST_CASE("a level that leaks is told by its open cells, and its sets are right") {
+        const std::string closed = level(), path = scratch().file("level.obj");
+        const auto open_cells = [&] {
+            const CliRun run = run_cli("pvs " + closed + kSmall + "--views 40 --json -");
+            REQUIRE_MESSAGE(run.status == 0, run.err);
+            CHECK(run.json().at("street_views").at("conservative").at("wrong_pixels_worst") == 0.0);
+            return run.json().at("cells_open").get<int>();
+        };
+        CHECK(open_cells() == 0);
+        // Without the first room's ceiling, its fourth face.
+        std::string text = contents_of(path);
+        std::size_t face = 0;
+        for (int i = 0; i < 4; ++i) face = text.find("\nf", face + 1);
+        text.erase(face, text.find('\n', face + 1) - face);
+        write_contents(path, text);
+        CHECK(open_cells() >= 12);
     }
 }

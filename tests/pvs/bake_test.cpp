@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
+#include <hwy/targets.h>
 #include <cmath>
 #include <crofton/pvs/pvs.hpp>
 #include <error_of.hpp>
@@ -203,6 +204,34 @@ TEST_SUITE("pvs/bake") {
         for (; !many.is_complete(); ++runs) REQUIRE(many.run({.lines = 1}, pool).has_value());
         CHECK(runs > 1);
         CHECK(plain(one.state().value()) == plain(many.state().value()));
+    }
+
+    TEST_CASE("same bits on every instruction set, in grids and among cells of the caller's") {
+        const Subject subject = random_subject(9, 30, {1e7, -1e7, 0.5e7});
+        const glm::dvec3 o = subject.origin;
+        std::vector<Aabb> few;
+        sampling::Random random(10);
+        for (int i = 0; i < 30; ++i) {
+            const auto at = random.point<3>();
+            few.push_back(
+                box_around(o + glm::dvec3(16.0 * at[0] - 8.0, 3.0 * at[1], 16.0 * at[2] - 8.0), glm::dvec3(1.0)));
+        }
+        const Aabb bounds{o + glm::dvec3(-10.0, 0.0, -10.0), o + glm::dvec3(10.0, 3.0, 10.0)};
+        // 200 in a row: more steps than there is room for at first.
+        for (const Cells& cells : {Cells::grid(bounds, {9, 2, 7}).value(), Cells::grid(bounds, {200, 1, 1}).value(),
+                                   Cells::boxes(few).value()}) {
+            std::vector<std::byte> first;
+            for (std::int64_t rest = hwy::SupportedTargets(); rest != 0; rest &= rest - 1) {
+                hwy::SetSupportedTargetsForTest(rest & -rest);
+                CAPTURE(hwy::TargetName(rest & -rest));
+                Bake bake = Bake::create(subject, cells, {.epsilon = 1e-2, .confidence = 0.9}).value();
+                REQUIRE(bake.run().has_value());
+                const auto bytes = plain(bake.state().value());
+                if (first.empty()) first = bytes;
+                CHECK(bytes == first);
+            }
+            hwy::SetSupportedTargetsForTest(0);
+        }
     }
 
     TEST_CASE("a scene far from the origin has the pairs that it has near") {

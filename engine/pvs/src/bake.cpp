@@ -17,14 +17,23 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::uint64_t kMaxPairs = std::uint64_t{1} << 34;
 
+template <class T>
+T bits_of(const T& word) {
+#ifdef __cpp_lib_atomic_ref
+    return std::atomic_ref<T>(const_cast<T&>(word)).load(std::memory_order_relaxed);
+#else  // libc++ before 19
+    return __atomic_load_n(&word, __ATOMIC_RELAXED);
+#endif
+}
+
 // Bits are only ever set, so the order of threads does not matter.
 template <class T>
 void set_bits(T& word, T bits) {
+    if ((bits_of(word) & bits) == bits) return;
 #ifdef __cpp_lib_atomic_ref
-    const std::atomic_ref<T> shared(word);
-    if ((shared.load(std::memory_order_relaxed) & bits) != bits) shared.fetch_or(bits, std::memory_order_relaxed);
-#else  // libc++ before 19
-    if ((__atomic_load_n(&word, __ATOMIC_RELAXED) & bits) != bits) __atomic_fetch_or(&word, bits, __ATOMIC_RELAXED);
+    std::atomic_ref<T>(word).fetch_or(bits, std::memory_order_relaxed);
+#else
+    __atomic_fetch_or(&word, bits, __ATOMIC_RELAXED);
 #endif
 }
 
@@ -41,6 +50,7 @@ struct ObjectBit {
 struct Gap {
     double end = 0.0;  // along the line
     ObjectBit behind, ahead;
+    std::int32_t depth = 0;         // of solids that the line is in; of gaps that are thin kThin
     std::uint16_t flags = kPassed;  // of CellFlag
 };
 
@@ -48,6 +58,7 @@ struct Gap {
 struct Scratch {
     Vector<Line> lines;
     radiosity::LineHits hits;
+    VoxelPaths paths;
     CellSpans spans;
     Vector<Gap> gaps;
 };
@@ -58,59 +69,86 @@ class BlockTracing {
     BlockTracing(Bake::State& state, Scratch& scratch) : state_(state), scratch_(scratch) {}
 
     void trace(std::uint64_t block) {
+        static_assert(LinePlan::kBlock % VoxelPaths::kLines == 0);
         state_.plan.draw(block, state_.cells, state_.origin, scratch_.lines);
         const std::span<const Line> lines(scratch_.lines);
         state_.tracer->all_hits(lines, scratch_.hits);
         for (std::size_t i = 0, first = 0; i < lines.size(); ++i) {
+            const std::size_t number = i % VoxelPaths::kLines;
+            if (number == 0) state_.walk->pass(lines.subspan(i, VoxelPaths::kLines), scratch_.paths);
             const std::size_t end = scratch_.hits.ends[i];
             find_gaps(std::span(scratch_.hits.hits).subspan(first, end - first), i % kEscapeClasses);
-            state_.walk->find(lines[i], scratch_.spans);
-            witness();
+            if (state_.walk->is_grid()) {
+                witness_along(number);
+            } else {
+                state_.walk->find(lines[i], scratch_.paths, number, scratch_.spans);
+                witness();
+            }
             first = end;
         }
     }
 
   private:
+    static constexpr std::int32_t kThin = -0x7fffffff;
+
     [[nodiscard]] ObjectBit object(const radiosity::Hit& hit) const {
         return ObjectBit::of(state_.object_of[hit.triangle]);
     }
 
-    void find_gaps(std::span<const radiosity::Hit> hits, std::size_t line_class) {
-        auto& gaps = scratch_.gaps;
-        gaps.assign(hits.size() + 1, Gap{});
-        const bool both = state_.options.sides == occlude::Sides::both;
-        for (std::size_t h = 0; h < hits.size(); ++h) {
-            const ObjectBit met = object(hits[h]);
-            gaps[h].end = static_cast<double>(hits[h].t);
-            if (both || hits[h].front) gaps[h].ahead = met;
-            // After it has come from a front the line leaves a back behind.
-            gaps[h + 1].behind = both || !hits[h].front ? met : gaps[h].behind;
-        }
-        gaps.back().end = HUGE_VAL;
-        for (std::size_t h = hits.size(); h-- > 0 && !both;)
-            if (!hits[h].front) gaps[h].ahead = gaps[h + 1].ahead;
-        tell_solids(hits);
-        const auto escapes = static_cast<std::uint16_t>(kFirstEscape << line_class);
-        for (Gap& gap : gaps)
-            if ((gap.behind.is_nothing() || gap.ahead.is_nothing()) && !(gap.flags & kSolid)) gap.flags |= escapes;
-    }
-
     // Depth is how often the line is inside of something. Take a line that goes in as often as it comes out and has
     // been at two depths at least. It is in a solid where it is deeper than at its least. Others have met what is open,
-    // or nothing but sheets at one place: they say nothing.
-    void tell_solids(std::span<const radiosity::Hit> hits) {
-        int depth = 0, least = 0, most = 0;
-        for (std::size_t i = 0; i < hits.size(); ++i) {
-            depth += hits[i].front ? 1 : -1;
-            if (i + 1 < hits.size() && hits[i + 1].t - hits[i].t <= state_.thin) continue;
-            least = (std::min)(least, depth);
-            most = (std::max)(most, depth);
+    // or nothing but sheets at one place: they say nothing. Thin gaps have no say.
+    void find_gaps(std::span<const radiosity::Hit> hits, std::size_t line_class) {
+        const std::size_t count = hits.size();
+        if (scratch_.gaps.size() <= count) scratch_.gaps.resize(2 * count + 1);
+        Gap* const gaps = scratch_.gaps.data();
+        const bool both = state_.options.sides == occlude::Sides::both;
+        std::int32_t depth = 0, least = 0, most = 0;
+        ObjectBit behind;
+        bool thin = false;
+        for (std::size_t h = 0; h < count; ++h) {
+            const radiosity::Hit& hit = hits[h];
+            const ObjectBit met = object(hit);
+            gaps[h] = {static_cast<double>(hit.t), behind, both || hit.front ? met : ObjectBit{}, thin ? kThin : depth};
+            // After it has come from a front the line leaves a back behind.
+            if (both || !hit.front) behind = met;
+            depth += hit.front ? 1 : -1;
+            thin = h + 1 < count && hits[h + 1].t - hit.t <= state_.thin;
+            least = thin ? least : (std::min)(least, depth);
+            most = thin ? most : (std::max)(most, depth);
         }
-        if (depth != 0 || least == most) return;
-        for (std::size_t g = 0; g <= hits.size(); ++g) {
-            if (g > 0) depth += hits[g - 1].front ? 1 : -1;
-            if (g > 0 && g < hits.size() && hits[g].t - hits[g - 1].t <= state_.thin) continue;
-            scratch_.gaps[g].flags |= depth == least ? kFree : kSolid;
+        gaps[count] = {HUGE_VAL, behind, {}, depth};
+        for (std::size_t h = count; h-- > 0 && !both;)
+            if (!hits[h].front) gaps[h].ahead = gaps[h + 1].ahead;
+        if (depth == 0 && least != most)
+            for (std::size_t g = 0; g <= count; ++g)
+                gaps[g].flags |= gaps[g].depth == kThin ? 0 : gaps[g].depth == least ? kFree : kSolid;
+        const auto escapes = static_cast<std::uint16_t>(kFirstEscape << line_class);
+        // What is met on both sides has an object at both ends of all gaps but the outer ones.
+        for (std::size_t g = 0; g <= count; g += both && count > 0 ? count : 1) add_escapes(gaps[g], escapes);
+    }
+
+    static void add_escapes(Gap& gap, std::uint16_t escapes) {
+        if ((gap.behind.is_nothing() || gap.ahead.is_nothing()) && !(gap.flags & kSolid)) gap.flags |= escapes;
+    }
+
+    // In a grid: cells and gaps follow each other along the line, and what ends first makes room for the next.
+    void witness_along(std::size_t number) {
+        const kernels::WalkStep* step = scratch_.paths.steps.data();
+        const kernels::WalkStep* const last = step + scratch_.paths.count(number);
+        const Gap* gap = scratch_.gaps.data();
+        const double thin = static_cast<double>(state_.thin);
+        double begin = scratch_.paths.start.begin[number];
+        if (step != last)
+            while (gap->end < begin) ++gap;
+        while (step != last) {
+            const double cell_end = step->end[number];
+            const double end = (std::min)(gap->end, cell_end);
+            if (end - begin > thin) see(step->voxel[number], *gap);
+            begin = end;
+            const bool gap_ends = gap->end < cell_end;
+            gap += gap_ends;
+            step += !gap_ends;
         }
     }
 
@@ -118,7 +156,7 @@ class BlockTracing {
         const auto& gaps = scratch_.gaps;
         std::size_t g = 0;
         for (const CellSpan& span : scratch_.spans.all) {
-            if (g > 0 && gaps[g - 1].end >= span.begin) g = 0;  // not in order: cells of the caller's
+            if (g > 0 && gaps[g - 1].end >= span.begin) g = 0;  // not in order
             while (gaps[g].end < span.begin) ++g;
             double begin = span.begin;
             for (std::size_t i = g; begin < span.end; ++i) {
@@ -130,10 +168,16 @@ class BlockTracing {
     }
 
     void see(std::uint32_t cell, const Gap& gap) {
-        set_bits(state_.found.flags[cell], gap.flags);
-        std::uint64_t* row = state_.found.seen.data() + cell * words_;
-        set_bits(row[gap.behind.word], gap.behind.bit);
-        set_bits(row[gap.ahead.word], gap.ahead.bit);
+        std::uint64_t* const row = state_.found.seen.data() + cell * words_;
+        std::uint64_t &behind = row[gap.behind.word], &ahead = row[gap.ahead.word];
+        std::uint16_t& flags = state_.found.flags[cell];
+        const std::uint64_t fresh = (gap.behind.bit & ~bits_of(behind)) | (gap.ahead.bit & ~bits_of(ahead)) |
+                                    static_cast<std::uint64_t>(gap.flags & ~bits_of(flags));
+        if (fresh == 0) [[likely]]
+            return;
+        set_bits(flags, gap.flags);
+        set_bits(behind, gap.behind.bit);
+        set_bits(ahead, gap.ahead.bit);
     }
 
     Bake::State& state_;

@@ -40,17 +40,16 @@ bool clip(const Line& line, std::span<const Plane> planes, double& begin, double
 }
 
 CellWalk::CellWalk(const Cells& cells, const glm::dvec3& origin) {
-    bounds_ = {cells.bounds().min - origin, cells.bounds().max - origin};
+    const Aabb bounds{cells.bounds().min - origin, cells.bounds().max - origin};
     if (cells.is_grid()) {
-        for (int k = 0; k < 3; ++k) counts_[k] = cells.counts()[k];
-        set_steps();
+        const auto counts = cells.counts();
+        set_grid(bounds, {counts.x, counts.y, counts.z});
         return;
     }
     for (std::size_t i = 0; i < cells.size(); ++i)
         boxes_.push_back({cells.box(i).min - origin, cells.box(i).max - origin});
-    voxels_.emplace(boxes_, bounds_);
-    std::copy(std::begin(voxels_->counts), std::end(voxels_->counts), counts_);
-    set_steps();
+    voxels_.emplace(boxes_, bounds);
+    set_grid(bounds, voxels_->counts);
     for (std::size_t i = 0; i < cells.size() && cells.is_convex(); ++i) {
         const glm::dvec3 corner = cells.corners(i).corners[0] - origin;
         for (const Plane& plane : cells.planes(i))
@@ -59,55 +58,32 @@ CellWalk::CellWalk(const Cells& cells, const glm::dvec3& origin) {
     }
 }
 
-void CellWalk::set_steps() {
+void CellWalk::set_grid(const Aabb& bounds, const std::uint32_t (&counts)[3]) {
+    double stride = 1.0;
     for (int k = 0; k < 3; ++k) {
-        const double extent = bounds_.max[k] - bounds_.min[k];
-        widths_[k] = extent / counts_[k];
-        per_length_[k] = extent > 0.0 ? counts_[k] / extent : 0.0;
-        last_[k] = std::int64_t{counts_[k]} - 1;
+        const double extent = bounds.max[k] - bounds.min[k];
+        grid_.min[k] = bounds.min[k], grid_.max[k] = bounds.max[k];
+        grid_.width[k] = extent / counts[k];
+        grid_.per_length[k] = extent > 0.0 ? counts[k] / extent : 0.0;
+        grid_.counts[k] = counts[k];
+        grid_.strides[k] = stride;
+        stride *= counts[k];
     }
 }
 
-// Amanatides and Woo, "A fast voxel traversal algorithm for ray tracing" (1987).
-template <class Visit>
-void CellWalk::walk(const Line& line, Visit&& visit) const {
-    double begin = 0.0, end = 0.0;
-    if (!clip(line, bounds_, begin, end)) return;
-    std::int64_t at[3], step[3], stride[3] = {1, counts_[0], std::int64_t{counts_[0]} * counts_[1]};
-    double next[3], pace[3];
-    for (int k = 0; k < 3; ++k) {
-        const double d = line.direction[k], inverse = 1.0 / d, width = widths_[k];
-        const double from = (line.point[k] + begin * d - bounds_.min[k]) * per_length_[k];
-        at[k] = from > 0.0 ? (std::min)(static_cast<std::int64_t>((std::min)(from, 4e9)), last_[k]) : 0;
-        step[k] = d > 0.0 ? 1 : -1;
-        const double border = bounds_.min[k] + static_cast<double>(at[k] + (d > 0.0)) * width;
-        next[k] = d == 0.0 ? kInfinity : (border - line.point[k]) * inverse;
-        pace[k] = d == 0.0 ? kInfinity : width * std::abs(inverse);
-    }
-    std::int64_t voxel = at[0] + stride[1] * at[1] + stride[2] * at[2];
-    for (double t = begin;;) {
-        const int k = next[0] <= next[1] ? (next[0] <= next[2] ? 0 : 2) : (next[1] <= next[2] ? 1 : 2);
-        const double until = (std::min)(next[k], end);
-        visit(static_cast<std::uint32_t>(voxel), t, (std::max)(t, until));
-        if (next[k] >= end) return;
-        t = (std::max)(t, until);
-        at[k] += step[k];
-        if (at[k] < 0 || at[k] >= counts_[k]) return;
-        voxel += step[k] * stride[k];
-        next[k] += pace[k];
-    }
+void CellWalk::pass(std::span<const Line> lines, VoxelPaths& paths) const {
+    static_assert(sizeof(Line) == 6 * sizeof(double));
+    CROFTON_ASSERT(lines.size() == VoxelPaths::kLines, "so many lines pass at once");
+    while (!kernels::walk(grid_, &lines[0].point.x, paths.start, paths.steps.data(), paths.steps.size()))
+        paths.steps.resize(2 * paths.steps.size());
 }
 
-void CellWalk::find(const Line& line, CellSpans& spans) const {
+void CellWalk::find(const Line& line, const VoxelPaths& paths, std::size_t number, CellSpans& spans) const {
     spans.all.clear();
-    if (boxes_.empty()) {
-        walk(line, [&](std::uint32_t cell, double begin, double end) { spans.all.push_back({cell, begin, end}); });
-        return;
-    }
     spans.asked.resize(boxes_.size(), 0);
     ++spans.line;
-    walk(line, [&](std::uint32_t voxel, double, double) {
-        for (const std::uint32_t i : voxels_->boxes_in(voxel)) {
+    for (std::size_t n = 0; n < paths.count(number); ++n)
+        for (const std::uint32_t i : voxels_->boxes_in(paths.steps[n].voxel[number])) {
             if (spans.asked[i] == spans.line) continue;
             spans.asked[i] = spans.line;
             CellSpan span{i, 0.0, 0.0};
@@ -119,7 +95,6 @@ void CellWalk::find(const Line& line, CellSpans& spans) const {
             }
             spans.all.push_back(span);
         }
-    });
 }
 
 }  // namespace crofton::pvs

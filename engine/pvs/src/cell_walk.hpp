@@ -9,6 +9,7 @@
 #include <span>
 
 #include "box_voxels.hpp"
+#include "walk_kernels.hpp"
 
 namespace crofton::pvs {
 
@@ -24,25 +25,33 @@ struct CellSpans {
     std::uint64_t line = 0;
 };
 
+// How some lines pass through voxels: line i enters the first at start.begin[i], and leaves voxel steps[n].voxel[i] for
+// the next at steps[n].end[i], n < start.steps[i].
+struct VoxelPaths {
+    static constexpr std::size_t kLines = kernels::kWalkLanes;
+    kernels::WalkStart start;
+    Vector<kernels::WalkStep> steps = Vector<kernels::WalkStep>(64);
+
+    [[nodiscard]] std::size_t count(std::size_t line) const { return static_cast<std::size_t>(start.steps[line]); }
+};
+
 // Cells relative to an origin. Those of the caller's are listed in the voxels of a grid.
 class CellWalk {
   public:
     CellWalk(const Cells& cells, const glm::dvec3& origin);
 
-    // Replaces spans.all by all cells that the line meets, each once, but for those that it grazes within rounding. Of
-    // a grid along the line; cells of the caller's come in any order.
-    void find(const Line& line, CellSpans& spans) const;
+    // The voxels of kLines lines, each once, but for those that a line grazes within rounding.
+    void pass(std::span<const Line> lines, VoxelPaths& paths) const;
+    // Whether voxels are the cells.
+    [[nodiscard]] bool is_grid() const { return boxes_.empty(); }
+    // Cells of the caller's: replaces spans.all by all that the line meets, each once, in any order. `number`: the
+    // line's among those of the paths.
+    void find(const Line& line, const VoxelPaths& paths, std::size_t number, CellSpans& spans) const;
 
   private:
-    template <class Visit>
-    void walk(const Line& line, Visit&& visit) const;
+    void set_grid(const Aabb& bounds, const std::uint32_t (&counts)[3]);
 
-    void set_steps();
-
-    Aabb bounds_;
-    std::uint32_t counts_[3] = {1, 1, 1};
-    double widths_[3] = {}, per_length_[3] = {};  // of a voxel; voxels to a unit of length
-    std::int64_t last_[3] = {};
+    kernels::VoxelGrid grid_;
     Vector<Aabb> boxes_;               // empty: the voxels are the cells
     std::optional<BoxVoxels> voxels_;  // of the boxes
     // Of convex cells: where all are at least 0.
