@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The promise of a bake, asked by twenty times its lines: these are drawn in each cell by itself, and their crossings
+// The promise of a bake, asked by twenty times its lines. These are drawn in each cell by itself, and their crossings
 // and gaps are told by the plain oracle.
 #include <doctest/doctest.h>
 #include <cmath>
