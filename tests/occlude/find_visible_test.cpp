@@ -21,6 +21,21 @@ OcclusionScene crowd_behind_walls(Random& random, double offset) {
     return scene;
 }
 
+// Its walls drawn, and its objects in three layers by turns.
+struct LayeredCrowd {
+    OcclusionScene scene;
+    occlude::OcclusionBuffer buffer;
+    std::vector<std::uint32_t> layers;
+};
+LayeredCrowd layered_crowd(Random& random) {
+    OcclusionScene scene = crowd_behind_walls(random, 0.0);
+    auto buffer = *occlude::OcclusionBuffer::create(scene.size);
+    buffer.draw(set_of(scene.occluders), *occlude::occlusion_view_of(scene.camera));
+    std::vector<std::uint32_t> layers(scene.objects.size());
+    for (std::size_t i = 0; i < layers.size(); ++i) layers[i] = 1u << (i % 3);
+    return {std::move(scene), std::move(buffer), std::move(layers)};
+}
+
 // Judges an answer against the frustum's, box by box: what is missing must be hidden, by rays and by the single test
 // or a bound above it.
 struct Judgement {
@@ -112,11 +127,7 @@ TEST_SUITE("occlude/find_visible") {
 
     TEST_CASE("verdicts are the frustum's, and layers are looked at") {
         Random random(6);
-        const OcclusionScene scene = crowd_behind_walls(random, 0.0);
-        auto buffer = *occlude::OcclusionBuffer::create(scene.size);
-        buffer.draw(set_of(scene.occluders), *occlude::occlusion_view_of(scene.camera));
-        std::vector<std::uint32_t> layers(scene.objects.size());
-        for (std::size_t i = 0; i < layers.size(); ++i) layers[i] = 1u << (i % 3);
+        const auto [scene, buffer, layers] = layered_crowd(random);
         const auto tree = *boxtree::BoxTree::build(scene.objects, layers);
         occlude::VisibleSet all, some;
         occlude::find_visible(tree, buffer, all);
@@ -133,11 +144,7 @@ TEST_SUITE("occlude/find_visible") {
 
     TEST_CASE("of trees, lists and what moves: those in the layers and among the items that may be seen, no others") {
         Random random(8);
-        const OcclusionScene scene = crowd_behind_walls(random, 0.0);
-        auto buffer = *occlude::OcclusionBuffer::create(scene.size);
-        buffer.draw(set_of(scene.occluders), *occlude::occlusion_view_of(scene.camera));
-        std::vector<std::uint32_t> layers(scene.objects.size());
-        for (std::size_t i = 0; i < layers.size(); ++i) layers[i] = 1u << (i % 3);
+        const auto [scene, buffer, layers] = layered_crowd(random);
         // Whole leaves may not be seen, and of others some.
         std::vector<std::uint64_t> among((scene.objects.size() + 63) / 64, 0);
         for (std::size_t i = 0; i < scene.objects.size(); ++i)

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "../convex/surfaces.hpp"
+#include "body_pose.hpp"
 
 using namespace crofton;
 using namespace crofton::testing;
@@ -21,10 +22,6 @@ namespace {
 Obb box_around(const convex::Body& body, const RigidTransform& pose) {
     const glm::dvec3 half = glm::max(glm::abs(body.bounds().min), glm::abs(body.bounds().max)) * 1.000001;
     return {pose.translation, glm::mat3(pose.rotation), glm::vec3(half)};
-}
-
-RigidTransform pose_of(const Obb& box) {
-    return {glm::dmat3(box.axes), box.center};
 }
 
 struct Thing {

@@ -10,15 +10,12 @@
 #include <vector>
 
 #include "../convex/surfaces.hpp"
+#include "body_pose.hpp"
 
 using namespace crofton;
 using namespace crofton::testing;
 
 namespace {
-
-RigidTransform stand_of(const Obb& box) {
-    return {glm::dmat3(box.axes), box.center};
-}
 
 struct Filtered {
     convex::Body body;
@@ -63,7 +60,7 @@ class FilteredBodies {
         for (const Filtered& a : things)
             for (const Filtered& b : things) {
                 if (a.object.index >= b.object.index) continue;
-                const RigidTransform at_a = stand_of(a.box), at_b = stand_of(b.box);
+                const RigidTransform at_a = pose_of(a.box), at_b = pose_of(b.box);
                 if (convex::contact_manifold({a.body, at_a}, {b.body, at_b}).count == 0) continue;
                 if ((a.layers & b.collides_with) != 0 && (b.layers & a.collides_with) != 0)
                     pairs.insert({a.object.index, b.object.index});
@@ -167,7 +164,7 @@ TEST_SUITE("world/body_rules") {
             std::vector<std::uint32_t> expected;
             double first = 2.0, least = std::numeric_limits<double>::infinity();
             for (const Filtered& thing : bodies.things) {
-                const RigidTransform stand = stand_of(thing.box);
+                const RigidTransform stand = pose_of(thing.box);
                 const bool meets = convex::intersects({probe, pose}, {thing.body, stand});
                 if ((thing.layers & layers) == 0) {
                     left_out += meets;

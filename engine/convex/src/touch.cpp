@@ -70,9 +70,9 @@ struct Depths {
 // Whether no direction is less deep than `depths.least`. The difference body has, across the unit vector n at these
 // depths, for each direction a point at least `inner` from the axis. At an angle t from n its extent is at least d ·
 // cos t + inner · sin t, with d the least depth up to a right angle and the most beyond. That is no less than the least
-// depth up to t = 2 atan(inner / most). Beyond, the ball within the difference body, of radius R around c, has extent
-// −c·n cos s − |c across n| sin s + R at the angle s = π − t from −n; that falls with s up to a right angle, so that
-// its value at the last s decides.
+// depth up to t = 2 atan(inner / most). Beyond, there is the ball of radius R around c within the difference body.
+// At the angle s = π − t from −n it has extent −c·n cos s − |c across n| sin s + R. That falls with s up to a right
+// angle, so its value at the last s decides.
 bool least_deep(const Placed& a, const Placed& b, const Pair& pair, const glm::dvec3& n, const Depths& depths,
                 double inner) {
     // What rounding may have made of a touch counts as none.
