@@ -35,10 +35,10 @@ void cast_packet(std::span<const Ray> rays, const MeshTree& mesh, std::optional<
     RayQuery queries[kRayPacketWidth];
     RayAnswer answers[kRayPacketWidth];
     for (std::size_t r = 0; r < rays.size(); ++r) queries[r] = query_of(rays[r], mesh, false);
-    const auto meets = [&](std::uint32_t ray, std::uint32_t leaf, std::uint32_t lane) {
-        return line_meets(rays[ray], mesh, leaf, lane);
+    const auto exact = [&](std::uint32_t ray, std::uint32_t leaf, std::uint32_t lane) {
+        return meets(rays[ray], mesh, leaf, lane);
     };
-    trace_packet(std::span<const RayQuery>(queries, rays.size()), meets, std::span<RayAnswer>(answers, rays.size()));
+    trace_packet(std::span<const RayQuery>(queries, rays.size()), exact, std::span<RayAnswer>(answers, rays.size()));
     for (std::size_t r = 0; r < rays.size(); ++r) {
         hits[r] = std::nullopt;
         if (answers[r].hit) hits[r] = RayHit{answers[r].t, answers[r].triangle};

@@ -97,7 +97,7 @@ HWY_INLINE std::uint32_t descend(const Node& node, std::uint32_t lanes, const fl
 
 // The nearest hit below `child`, if it comes before `answer`; else that.
 template <class Boxes>
-HWY_INLINE RayAnswer trace_below(const RayQuery& q, std::uint32_t child, RayAnswer answer, LineTest line_meets) {
+HWY_INLINE RayAnswer trace_below(const RayQuery& q, std::uint32_t child, RayAnswer answer, ExactTest meets) {
     Step stack[8 * 64];  // BoxHierarchy::kWidth · kMaxDepth; a mesh tree's own needs 15 · 7
     Step* top = stack;
     const Boxes boxes(q);
@@ -111,7 +111,7 @@ HWY_INLINE RayAnswer trace_below(const RayQuery& q, std::uint32_t child, RayAnsw
                 child = descend(node, lanes, entry, top);
                 continue;
             }
-        } else if (trace_leaf(q, child & ~mesh::kMeshLeaf, limit, line_meets, answer)) {
+        } else if (trace_leaf(q, child & ~mesh::kMeshLeaf, limit, meets, answer)) {
             if (q.any) return answer;
             limit = limit_of(q, answer.t);
         }

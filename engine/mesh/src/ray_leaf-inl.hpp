@@ -85,8 +85,54 @@ HWY_INLINE VD parameters(DD d, const VD (&p)[3][3], const VD* direction) {
     return hn::IfThenElse(hn::Lt(by_plane, least), least, hn::IfThenElse(hn::Le(by_plane, most), by_plane, most));
 }
 
-// The line passes through a triangle iff its three determinants with the edges do not differ in sign. `open`: lanes
-// where a sign is uncertain. Of the lanes, only those that are wanted, and their neighbours in a vector, are looked at.
+// Of one vector of triangles: which the ray meets for certain, and which it may meet.
+struct Verdicts {
+    MD met, open;
+};
+
+// p: the vertices seen from the ray's start. The line passes through a triangle iff its three determinants with the
+// edges do not differ in sign. Let s be their sum, and v = det(p[0], p[1], p[2]): it comes to the triangle's plane at
+// the parameter v / s. So it does before its start where v and s differ in sign, and beyond its end where v − max_t · s
+// and s agree.
+HWY_INLINE Verdicts verdicts(DD d, const VD (&p)[3][3], const VD* direction, double max_t) {
+    const VD zero = hn::Zero(d), smallest = hn::Set(d, 1e-280), error_bound = hn::Set(d, kDeterminantError);
+    const VD length = sum_abs(direction);
+    const VD size[3] = {sum_abs(p[0]), sum_abs(p[1]), sum_abs(p[2])};
+    MD positive = hn::Lt(zero, zero), negative = positive, unknown = positive;
+    VD n[3], sum = zero, sizes = zero;
+    for (int v = 0; v < 3; ++v) {
+        const int w = (v + 1) % 3;
+        cross(p[v], p[w], n);
+        const VD value = dot(direction, n), product = hn::Mul(size[v], size[w]);
+        const VD error = hn::MulAdd(hn::Mul(product, length), error_bound, smallest);
+        const MD up = hn::Gt(value, error), down = hn::Lt(value, hn::Neg(error));
+        positive = hn::Or(positive, up);
+        negative = hn::Or(negative, down);
+        unknown = hn::Or(unknown, hn::Not(hn::Or(up, down)));
+        sum = hn::Add(sum, value);
+        sizes = hn::Add(sizes, product);
+    }
+    const VD volume = dot(p[1], n);  // n = cross(p[2], p[0])
+    const VD volume_size = hn::Mul(hn::Mul(size[0], size[1]), size[2]);
+    const VD error = hn::MulAdd(volume_size, error_bound, smallest);
+    const MD above = hn::Gt(volume, error), below = hn::Lt(volume, hn::Neg(error));
+    MD out = hn::Or(hn::And(positive, negative), hn::Or(hn::And(positive, below), hn::And(negative, above)));
+    unknown = hn::Or(unknown, hn::Not(hn::Or(above, below)));
+    if (max_t < 1e300) {
+        // Three sums and a product more: twice the bound. What overflows is unknown.
+        const VD end = hn::Set(d, max_t);
+        const VD past = hn::NegMulAdd(end, sum, volume);
+        const VD wide = hn::MulAdd(hn::Mul(end, length), sizes, volume_size);
+        const VD doubt = hn::MulAdd(wide, hn::Add(error_bound, error_bound), smallest);
+        const MD beyond = hn::Gt(past, doubt), within = hn::Lt(past, hn::Neg(doubt));
+        out = hn::Or(out, hn::Or(hn::And(positive, beyond), hn::And(negative, within)));
+        unknown = hn::Or(unknown, hn::Not(hn::Or(beyond, within)));
+    }
+    return {hn::AndNot(hn::Or(out, unknown), hn::Eq(zero, zero)), hn::AndNot(out, unknown)};
+}
+
+// `open`: lanes where a sign is uncertain. Of the lanes, only those that are wanted, and their neighbours in a vector,
+// are looked at. A parameter is kept on the ray.
 HWY_INLINE std::uint32_t triangle_hits(const mesh::MeshLeaf& leaf, const RayQuery& q, std::uint32_t wanted, double* t,
                                        std::uint32_t& open) {
     const DD d;
@@ -100,31 +146,19 @@ HWY_INLINE std::uint32_t triangle_hits(const mesh::MeshLeaf& leaf, const RayQuer
             for (int v = 0; v < 3; ++v)
                 p[v][i] = hn::Sub(hn::PromoteTo(d, hn::Load(df, leaf.vertex[v][i] + l)), hn::Set(d, q.origin[i]));
         }
-        const VD scale = hn::Mul(sum_abs(direction), hn::Set(d, kDeterminantError));
-        const VD size[3] = {sum_abs(p[0]), sum_abs(p[1]), sum_abs(p[2])};
-        MD positive = hn::Lt(hn::Zero(d), hn::Zero(d)), negative = positive, unknown = positive;
-        for (int v = 0; v < 3; ++v) {
-            const int w = (v + 1) % 3;
-            VD n[3];
-            cross(p[v], p[w], n);
-            const VD value = dot(direction, n);
-            const VD error = hn::MulAdd(hn::Mul(size[v], size[w]), scale, hn::Set(d, 1e-280));
-            const MD up = hn::Gt(value, error), down = hn::Lt(value, hn::Neg(error));
-            positive = hn::Or(positive, up);
-            negative = hn::Or(negative, down);
-            unknown = hn::Or(unknown, hn::Not(hn::Or(up, down)));
-        }
-        hn::Store(parameters(d, p, direction), d, t + l);
-        const MD agree = hn::Not(hn::And(positive, negative));
-        hits |= bits_of(d, hn::AndNot(unknown, agree), l);
-        open |= bits_of(d, hn::And(unknown, agree), l);
+        // NaN, where coordinates overflow, stays so, and is no hit.
+        const VD at = parameters(d, p, direction), zero = hn::Zero(d), end = hn::Set(d, q.max_t);
+        const VD from_start = hn::IfThenElse(hn::Lt(at, zero), zero, at);
+        hn::Store(hn::IfThenElse(hn::Gt(from_start, end), end, from_start), d, t + l);
+        const Verdicts found = verdicts(d, p, direction, q.max_t);
+        hits |= bits_of(d, found.met, l);
+        open |= bits_of(d, found.open, l);
     }
     return hits;
 }
 
 // True if it has changed the answer.
-HWY_INLINE bool trace_leaf(const RayQuery& q, std::uint32_t index, float limit, LineTest line_meets,
-                           RayAnswer& answer) {
+HWY_INLINE bool trace_leaf(const RayQuery& q, std::uint32_t index, float limit, ExactTest meets, RayAnswer& answer) {
     const mesh::MeshLeaf& leaf = q.leaves[index];
     const std::uint32_t wanted = candidates(leaf, q, limit);
     if (wanted == 0) return false;
@@ -135,9 +169,9 @@ HWY_INLINE bool trace_leaf(const RayQuery& q, std::uint32_t index, float limit, 
     lanes = (lanes | open) & wanted;
     for (; lanes != 0; lanes &= lanes - 1) {
         const auto lane = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(lanes));
-        if (!(t[lane] >= 0.0 && t[lane] <= answer.t)) continue;
+        if (!(t[lane] <= answer.t)) continue;
         if (answer.hit && t[lane] == answer.t && leaf.triangle[lane] > answer.triangle) continue;
-        if ((open >> lane & 1u) && !line_meets(index, lane)) continue;
+        if ((open >> lane & 1u) && !meets(index, lane)) continue;
         answer = {t[lane], leaf.triangle[lane], true};
         found = true;
         if (q.any) return true;

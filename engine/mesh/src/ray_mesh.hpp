@@ -31,27 +31,27 @@ struct RayQuery {
 
 // Of a valid ray.
 [[nodiscard]] RayQuery query_of(const Ray& ray, const MeshTree& mesh, bool any);
-// Whether the ray's line passes through the triangle in a leaf's lane, exactly.
-[[nodiscard]] bool line_meets(const Ray& ray, const MeshTree& mesh, std::uint32_t leaf, std::uint32_t lane);
+// Whether the ray meets the triangle in a leaf's lane, exactly.
+[[nodiscard]] bool meets(const Ray& ray, const MeshTree& mesh, std::uint32_t leaf, std::uint32_t lane);
 
-// Tells exactly whether the line passes through a triangle, where double cannot.
-using LineTest = FunctionRef<bool(std::uint32_t leaf, std::uint32_t lane)>;
+// Tells exactly whether the ray meets a triangle, where double cannot.
+using ExactTest = FunctionRef<bool(std::uint32_t leaf, std::uint32_t lane)>;
 
 struct RayAnswer {
     double t = 0.0;
     std::uint32_t triangle = 0;
     bool hit = false;
 };
-[[nodiscard]] RayAnswer trace(const RayQuery& query, LineTest line_meets);
+[[nodiscard]] RayAnswer trace(const RayQuery& query, ExactTest meets);
 
 inline constexpr std::size_t kRayPacketWidth = 16;
 
-// As LineTest, of the query at `ray`.
-using PacketLineTest = FunctionRef<bool(std::uint32_t ray, std::uint32_t leaf, std::uint32_t lane)>;
+// As ExactTest, of the query at `ray`.
+using PacketExactTest = FunctionRef<bool(std::uint32_t ray, std::uint32_t leaf, std::uint32_t lane)>;
 
 // The nearest hit of each, as trace() would answer it; `any` is not looked at. They share the mesh's `nodes`, which are
 // not null; their directions agree in sign, and `scale` differs by a factor of four at most. Fast where they leave from
 // nearly one place into nearly one direction. Requires 1 to kRayPacketWidth queries, and as many answers.
-void trace_packet(std::span<const RayQuery> queries, PacketLineTest line_meets, std::span<RayAnswer> answers);
+void trace_packet(std::span<const RayQuery> queries, PacketExactTest meets, std::span<RayAnswer> answers);
 
 }  // namespace crofton::mesh

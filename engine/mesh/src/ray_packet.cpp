@@ -102,8 +102,8 @@ struct PacketStep {
 
 class Packet {
   public:
-    HWY_INLINE Packet(std::span<const RayQuery> queries, PacketLineTest line_meets, std::span<RayAnswer> answers)
-        : queries_(queries), line_meets_(line_meets), answers_(answers), boxes_(queries) {
+    HWY_INLINE Packet(std::span<const RayQuery> queries, PacketExactTest meets, std::span<RayAnswer> answers)
+        : queries_(queries), meets_(meets), answers_(answers), boxes_(queries) {
         std::fill(limits_, limits_ + kRayPacketWidth, -1.0f);  // unused lanes meet nothing
         for (std::size_t r = 0; r < queries.size(); ++r) {
             answers[r] = {queries[r].max_t, 0, false};
@@ -179,7 +179,7 @@ class Packet {
         for (std::uint32_t rays = step.rays; rays != 0; rays &= rays - 1) {
             const auto r = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(rays));
             const RayQuery& q = queries_[r];
-            const auto exact = [&](std::uint32_t l, std::uint32_t lane) { return line_meets_(r, l, lane); };
+            const auto exact = [&](std::uint32_t l, std::uint32_t lane) { return meets_(r, l, lane); };
             if (trace_leaf(q, step.child & ~kMeshLeaf, limit_of(q, answers_[r].t), exact, answers_[r])) set_limit(r);
         }
     }
@@ -187,22 +187,22 @@ class Packet {
     HWY_INLINE void one_by_one(const PacketStep& step) {
         for (std::uint32_t rays = step.rays; rays != 0; rays &= rays - 1) {
             const auto r = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(rays));
-            const auto exact = [&](std::uint32_t l, std::uint32_t lane) { return line_meets_(r, l, lane); };
+            const auto exact = [&](std::uint32_t l, std::uint32_t lane) { return meets_(r, l, lane); };
             answers_[r] = trace_below<AlignedBoxes>(queries_[r], step.child, answers_[r], exact);
             set_limit(r);
         }
     }
 
     std::span<const RayQuery> queries_;
-    PacketLineTest line_meets_;
+    PacketExactTest meets_;
     std::span<RayAnswer> answers_;
     PacketBoxes boxes_;
     HWY_ALIGN float limits_[kRayPacketWidth];
     float far_ = 0.0f;  // the largest limit
 };
 
-void TracePacket(std::span<const RayQuery> queries, PacketLineTest line_meets, std::span<RayAnswer> answers) {
-    Packet(queries, line_meets, answers).run();
+void TracePacket(std::span<const RayQuery> queries, PacketExactTest meets, std::span<RayAnswer> answers) {
+    Packet(queries, meets, answers).run();
 }
 
 }  // namespace crofton::mesh::HWY_NAMESPACE
@@ -213,8 +213,8 @@ namespace crofton::mesh {
 
 HWY_EXPORT(TracePacket);
 
-void trace_packet(std::span<const RayQuery> queries, PacketLineTest line_meets, std::span<RayAnswer> answers) {
-    HWY_DYNAMIC_DISPATCH(TracePacket)(queries, line_meets, answers);
+void trace_packet(std::span<const RayQuery> queries, PacketExactTest meets, std::span<RayAnswer> answers) {
+    HWY_DYNAMIC_DISPATCH(TracePacket)(queries, meets, answers);
 }
 
 }  // namespace crofton::mesh

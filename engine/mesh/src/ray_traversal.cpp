@@ -60,10 +60,10 @@ class OrientedBoxes {
     const RayQuery& query_;
 };
 
-RayAnswer Trace(const RayQuery& q, LineTest line_meets) {
+RayAnswer Trace(const RayQuery& q, ExactTest meets) {
     const RayAnswer none{q.max_t, 0, false};
-    return q.nodes != nullptr ? trace_below<AlignedBoxes>(q, 0, none, line_meets)
-                              : trace_below<OrientedBoxes>(q, 0, none, line_meets);
+    return q.nodes != nullptr ? trace_below<AlignedBoxes>(q, 0, none, meets)
+                              : trace_below<OrientedBoxes>(q, 0, none, meets);
 }
 
 }  // namespace crofton::mesh::HWY_NAMESPACE
@@ -74,8 +74,8 @@ namespace crofton::mesh {
 
 HWY_EXPORT(Trace);
 
-RayAnswer trace(const RayQuery& query, LineTest line_meets) {
-    return HWY_DYNAMIC_DISPATCH(Trace)(query, line_meets);
+RayAnswer trace(const RayQuery& query, ExactTest meets) {
+    return HWY_DYNAMIC_DISPATCH(Trace)(query, meets);
 }
 
 }  // namespace crofton::mesh

@@ -107,9 +107,9 @@ struct MeshDistance {
 // may be told either way.
 [[nodiscard]] std::optional<double> raycast(const Ray& ray, const Obb& box);
 
-// Whether the ray's line passes through a triangle, edges and corners included, is decided exactly. So nothing slips
-// through between triangles that share an edge. t is rounded. A ray within the plane of a triangle does not hit that
-// triangle.
+// Whether the ray meets a triangle is decided exactly, edges and corners included, and the ray's start and end. So
+// nothing slips through between triangles that share an edge. t is rounded, but stays within 0 … max_t. A ray within
+// the plane of a triangle does not hit that triangle.
 [[nodiscard]] std::optional<double> raycast(const Ray& ray, const Triangle& triangle);
 
 struct RayHit {
