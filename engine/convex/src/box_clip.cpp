@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "box_pair.hpp"
 
@@ -28,6 +29,54 @@ constexpr FaceSides sides_of(int face) {
 }
 constexpr FaceSides kSides[6] = {sides_of(0), sides_of(1), sides_of(2), sides_of(3), sides_of(4), sides_of(5)};
 
+// A corner of the clipped polygon is where two lines meet: `before` and `after` are edges of the incident face (from 0)
+// or sides of the reference (−1 − number), −4 to 3.
+constexpr unsigned lines(int before, int after) {
+    return static_cast<unsigned>(8 * (before + 4) + (after + 4));
+}
+constexpr int before_of(unsigned lines) {
+    return static_cast<int>(lines >> 3) - 4;
+}
+constexpr int after_of(unsigned lines) {
+    return static_cast<int>(lines & 7U) - 4;
+}
+
+constexpr Feature on_reference(int face, int before, int after) {
+    const Feature self{FeatureKind::face, static_cast<std::uint16_t>(face)};
+    if (before >= 0 && after >= 0) return self;
+    if (before >= 0 || after >= 0) return {FeatureKind::edge, kSides[face].side[-1 - std::min(before, after)].edge};
+    // The common corner of two sides is where the later begins; of sides apart, the face stands for it.
+    const int first = -1 - before, second = -1 - after;
+    if (((first + 1) & 3) == second) return {FeatureKind::vertex, kBoxFaces[face][second]};
+    if (((second + 1) & 3) == first) return {FeatureKind::vertex, kBoxFaces[face][first]};
+    return self;
+}
+
+constexpr Feature on_incident(int face, int before, int after) {
+    if (before >= 0 && after >= 0) {
+        if (before == after) return {FeatureKind::edge, kSides[face].side[after].edge};
+        return {FeatureKind::vertex, kBoxFaces[face][after]};
+    }
+    const int edge = std::max(before, after);
+    if (edge >= 0) return {FeatureKind::edge, kSides[face].side[edge].edge};
+    return {FeatureKind::face, static_cast<std::uint16_t>(face)};
+}
+
+// The features of a corner, by its lines.
+struct FaceFeatures {
+    Feature reference[6][64], incident[6][64];
+};
+constexpr FaceFeatures features_of_corners() {
+    FaceFeatures features{};
+    for (int face = 0; face < 6; ++face)
+        for (unsigned at = 0; at < 64; ++at) {
+            features.reference[face][at] = on_reference(face, before_of(at), after_of(at));
+            features.incident[face][at] = on_incident(face, before_of(at), after_of(at));
+        }
+    return features;
+}
+constexpr FaceFeatures kFeatures = features_of_corners();
+
 }  // namespace
 
 BoxClip::BoxClip(const Placed& a, const Placed& b, const BoxPair& pair, bool reference_is_a, int face,
@@ -41,13 +90,13 @@ BoxClip::BoxClip(const Placed& a, const Placed& b, const BoxPair& pair, bool ref
       k_(face / 2),
       u_(k_ == 2 ? 0 : k_ + 1),
       v_(k_ == 0 ? 2 : k_ - 1) {
-    if (!(std::abs(direction_[k_]) > 0.05)) return;
+    if (!(std::abs(coordinate(direction_, k_)) > 0.05)) return;
     // The face that looks against the direction most.
     const glm::dvec3 facing(glm::dot(seen_.edge[0], direction_), glm::dot(seen_.edge[1], direction_),
                             glm::dot(seen_.edge[2], direction_));
     const double x = std::abs(facing.x), y = std::abs(facing.y), z = std::abs(facing.z);
     const int k = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
-    incident_ = 2 * k + (facing[k] < 0.0 ? 1 : 0);
+    incident_ = 2 * k + (coordinate(facing, k) < 0.0 ? 1 : 0);
     find_corners(incident_);
     clip();
 }
@@ -56,24 +105,28 @@ BoxClip::BoxClip(const Placed& a, const Placed& b, const BoxPair& pair, bool ref
 void BoxClip::find_corners(int incident_face) {
     const glm::dvec3& h = other_.body.half_extents();
     const int k = incident_face / 2, u = k == 2 ? 0 : k + 1, v = k == 0 ? 2 : k - 1;
-    const double level = (face_ & 1) != 0 ? reference_.body.half_extents()[k_] : -reference_.body.half_extents()[k_];
-    const double steep = 1.0 / direction_[k_], du = direction_[u_] * steep, dv = direction_[v_] * steep;
+    const double steep = 1.0 / coordinate(direction_, k_), du = coordinate(direction_, u_) * steep,
+                 dv = coordinate(direction_, v_) * steep;
     struct Shadow {
         double x, y, height;
     };
     const auto cast = [&](const glm::dvec3& q, double rise) {
-        return Shadow{q[u_] - rise * du, q[v_] - rise * dv, rise * steep};
+        return Shadow{coordinate(q, u_) - rise * du, coordinate(q, v_) - rise * dv, rise * steep};
     };
-    const glm::dvec3 center = seen_.center + ((incident_face & 1) != 0 ? h[k] : -h[k]) * seen_.edge[k],
-                     half_u = h[u] * seen_.edge[u], half_v = h[v] * seen_.edge[v];
-    const Shadow middle = cast(center, center[k_] - level), along = cast(half_u, half_u[k_]),
-                 up = cast(half_v, half_v[k_]);
-    for (int i = 0; i < 4; ++i) {
-        const int corner = kBoxFaces[incident_face][i];
-        const double s = (corner >> u & 1) != 0 ? 1.0 : -1.0, t = (corner >> v & 1) != 0 ? 1.0 : -1.0;
-        corner_[i] = {middle.x + s * along.x + t * up.x, middle.y + s * along.y + t * up.y,
-                      middle.height + s * along.height + t * up.height, (i + 3) & 3, i};
-    }
+    const double out = coordinate(h, k);
+    const glm::dvec3 center = seen_.center + ((incident_face & 1) != 0 ? out : -out) * seen_.edge[k],
+                     half_u = coordinate(h, u) * seen_.edge[u], half_v = coordinate(h, v) * seen_.edge[v];
+    const Shadow middle = cast(center, coordinate(center, k_) - level()), along = cast(half_u, coordinate(half_u, k_)),
+                 up = cast(half_v, coordinate(half_v, k_));
+    // A face's first corner is the lowest along both its axes. Corners that are two apart lie opposite.
+    const double turn = (kBoxFaces[incident_face][1] >> u & 1) != 0 ? 1.0 : -1.0;
+    const Shadow sum{along.x + up.x, along.y + up.y, along.height + up.height};
+    const Shadow difference{turn * (along.x - up.x), turn * (along.y - up.y), turn * (along.height - up.height)};
+    const auto corner = [&](const Shadow& to, double sign, int number) {
+        corner_[number] = {middle.x + sign * to.x, middle.y + sign * to.y, middle.height + sign * to.height,
+                           lines((number + 3) & 3, number)};
+    };
+    corner(sum, -1.0, 0), corner(difference, 1.0, 1), corner(sum, 1.0, 2), corner(difference, -1.0, 3);
     count_ = 4;
 }
 
@@ -81,32 +134,37 @@ void BoxClip::find_corners(int incident_face) {
 // outside.
 int BoxClip::clip_side(const FlatCorner* from, int count, int side, double level, int face, FlatCorner* to) {
     const FaceSide& at = kSides[face].side[side];
+    const bool of_x = at.axis == 0;
+    const double sign = at.sign;
     double height[kMost + 1];
     unsigned outside = 0, inside = 0;
     for (int i = 0; i < count; ++i) {
-        height[i] = at.sign * (at.axis == 0 ? from[i].x : from[i].y) - level;
+        height[i] = sign * (of_x ? from[i].x : from[i].y) - level;
         outside |= (height[i] > 0.0 ? 1U : 0U) << i;
         inside |= (height[i] < 0.0 ? 1U : 0U) << i;
     }
     if (outside == 0) return -1;
     height[count] = height[0];
-    outside |= (outside & 1U) << count;
-    inside |= (inside & 1U) << count;
-    const unsigned leaves = inside & (outside >> 1), enters = outside & (inside >> 1);
+    const unsigned outside_next = (outside | (outside & 1U) << count) >> 1,
+                   inside_next = (inside | (inside & 1U) << count) >> 1;
+    const unsigned leaves = inside & outside_next, enters = outside & inside_next;
+    // A corner on the side, after which the polygon is outside, has the side after it.
+    const unsigned turns = ~(inside | outside) & outside_next;
     int kept = 0;
     for (int i = 0; i < count && kept < kMost; ++i) {
         const FlatCorner& p = from[i];
-        if ((outside >> i & 1U) == 0) {
-            to[kept] = p;
-            if ((inside >> i & 1U) == 0 && (outside >> (i + 1) & 1U) != 0) to[kept].after = -1 - side;
-            ++kept;
+        to[kept] = p;
+        kept += static_cast<int>(~outside >> i & 1U);
+        if (((leaves | enters | turns) >> i & 1U) == 0) continue;
+        if ((turns >> i & 1U) != 0) {
+            to[kept - 1].lines = lines(before_of(p.lines), -1 - side);
+            continue;
         }
-        if (((leaves | enters) >> i & 1U) == 0) continue;
         const FlatCorner& q = from[i + 1 == count ? 0 : i + 1];
         const double t = height[i] / (height[i] - height[i + 1]);
-        const bool out = (leaves >> i & 1U) != 0;
+        const int along = after_of(p.lines);
         to[kept++] = {p.x + t * (q.x - p.x), p.y + t * (q.y - p.y), p.height + t * (q.height - p.height),
-                      out ? p.after : -1 - side, out ? -1 - side : p.after};
+                      (leaves >> i & 1U) != 0 ? lines(along, -1 - side) : lines(-1 - side, along)};
     }
     return std::min(kept, kMost);
 }
@@ -115,9 +173,15 @@ void BoxClip::clip() {
     FlatCorner other[kMost + 1];
     FlatCorner *now = corner_, *next = other;
     const glm::dvec3& h = reference_.body.half_extents();
+    const double level[2] = {coordinate(h, u_), coordinate(h, v_)};
+    // Sides that all of the face is within cut nothing off.
+    const auto [left, right] = std::minmax({corner_[0].x, corner_[1].x, corner_[2].x, corner_[3].x});
+    const auto [lowest, highest] = std::minmax({corner_[0].y, corner_[1].y, corner_[2].y, corner_[3].y});
+    const double reach[2][2] = {{-left, right}, {-lowest, highest}};
     for (int side = 0; side < 4 && count_ > 0; ++side) {
-        const double level = h[kSides[face_].side[side].axis == 0 ? u_ : v_];
-        const int kept = clip_side(now, count_, side, level, face_, next);
+        const FaceSide& at = kSides[face_].side[side];
+        if (reach[at.axis][at.sign > 0.0 ? 1 : 0] <= level[at.axis]) continue;
+        const int kept = clip_side(now, count_, side, level[at.axis], face_, next);
         if (kept < 0) continue;
         count_ = kept;
         std::swap(now, next);
@@ -125,54 +189,47 @@ void BoxClip::clip() {
     if (now != corner_) std::copy(now, now + count_, corner_);
 }
 
-Feature BoxClip::on_reference(const FlatCorner& corner) const {
-    const Feature self{FeatureKind::face, static_cast<std::uint16_t>(face_)};
-    if (corner.before >= 0 && corner.after >= 0) return self;
-    if (corner.before >= 0 || corner.after >= 0)
-        return {FeatureKind::edge, kSides[face_].side[-1 - std::min(corner.before, corner.after)].edge};
-    // The common corner of two sides is where the later begins; of sides apart, the face stands for it.
-    const int first = -1 - corner.before, second = -1 - corner.after;
-    if (((first + 1) & 3) == second) return {FeatureKind::vertex, kBoxFaces[face_][second]};
-    if (((second + 1) & 3) == first) return {FeatureKind::vertex, kBoxFaces[face_][first]};
-    return self;
+double BoxClip::deepest() const {
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < count_; ++i) least = std::min(least, corner_[i].height);
+    return -least;
 }
 
-Feature BoxClip::on_incident(const FlatCorner& corner) const {
-    if (corner.before >= 0 && corner.after >= 0) {
-        if (corner.before == corner.after) return {FeatureKind::edge, kSides[incident_].side[corner.after].edge};
-        return {FeatureKind::vertex, kBoxFaces[incident_][corner.after]};
-    }
-    const int edge = std::max(corner.before, corner.after);
-    if (edge >= 0) return {FeatureKind::edge, kSides[incident_].side[edge].edge};
-    return {FeatureKind::face, static_cast<std::uint16_t>(incident_)};
+double BoxClip::level() const {
+    const double half = coordinate(reference_.body.half_extents(), k_);
+    return (face_ & 1) != 0 ? half : -half;
 }
 
 void BoxClip::gather(const Touch& touch, double margin, GatheredPoints& to) const {
-    const double ra = reference_.body.radius(), ri = other_.body.radius();
-    const double level = (face_ & 1) != 0 ? reference_.body.half_extents()[k_] : -reference_.body.half_extents()[k_];
+    const double ra = reference_.body.radius(), ri = other_.body.radius(), most = touch.depth;
     const glm::dmat3& r = reference_.pose.rotation;
     // From the middle of the cores' points to that of the surfaces'.
-    const glm::dvec3 out = reference_is_a_ ? touch.normal : -touch.normal;
-    const glm::dvec3 base = reference_.pose.translation + level * r[k_] + (0.5 * (ra - ri)) * out;
+    const glm::dvec3 out = reference_is_a_ ? touch.normal : -touch.normal, along_u = r[u_], along_v = r[v_];
+    const glm::dvec3 base = reference_.pose.translation + level() * r[k_] + (0.5 * (ra - ri)) * out;
+    const Feature *on_reference = kFeatures.reference[face_], *on_incident = kFeatures.incident[incident_];
+    const Feature *on_a = reference_is_a_ ? on_reference : on_incident,
+                  *on_b = reference_is_a_ ? on_incident : on_reference;
+    int count = to.count;
     for (int i = 0; i < count_; ++i) {
         const FlatCorner& c = corner_[i];
-        const double depth = std::min((ra + ri) - c.height, touch.depth);
+        const double depth = std::min((ra + ri) - c.height, most);
         if (!(depth >= -margin)) continue;
-        const Feature on_reference = this->on_reference(c), on_incident = this->on_incident(c);
-        to.point[to.count++] = {base + (c.x * r[u_] + c.y * r[v_] + (0.5 * c.height) * out),
-                                depth,
-                                reference_is_a_ ? on_reference : on_incident,
-                                reference_is_a_ ? on_incident : on_reference,
-                                {},
-                                {}};
+        ContactPoint& point = to.point[count++];
+        point.position = base + (c.x * along_u + c.y * along_v + (0.5 * c.height) * out);
+        point.depth = depth;
+        point.on_a = on_a[c.lines];
+        point.on_b = on_b[c.lines];
+        point.part_a = point.part_b = {};
     }
+    to.count = count;
 }
 
 double BoxClip::corner_within(int corner) const {
     const glm::dvec3 &h = other_.body.half_extents(), &half = reference_.body.half_extents();
     glm::dvec3 q = seen_.center;
     for (int k = 0; k < 3; ++k) q += ((corner >> k & 1) != 0 ? h[k] : -h[k]) * seen_.edge[k];
-    return std::min(half[u_] - std::abs(q[u_]), half[v_] - std::abs(q[v_]));
+    return std::min(coordinate(half, u_) - std::abs(coordinate(q, u_)),
+                    coordinate(half, v_) - std::abs(coordinate(q, v_)));
 }
 
 // Let n be the outward normal and p a point of the clipped polygon, at depth d. Its shadow is ρ from the rim of the
@@ -185,25 +242,25 @@ double BoxClip::corner_within(int corner) const {
 // cover.
 bool BoxClip::proves_least(double extent, double allowed) const {
     if (count_ == 0) return false;
-    double x = 0.0, y = 0.0, depth = 0.0, most = -corner_[0].height;
+    allowed *= 0.999;
+    if (extent < 0.0) return extent - deepest() <= allowed;
+    double x = 0.0, y = 0.0, depth = 0.0;
     for (int i = 0; i < count_; ++i) {
         x += corner_[i].x;
         y += corner_[i].y;
         depth -= corner_[i].height;
-        most = std::max(most, -corner_[i].height);
     }
-    allowed *= 0.999;
-    if (extent < 0.0) return extent - most <= allowed;
     const double share = 1.0 / count_;
     x *= share, y *= share, depth *= share;
     const glm::dvec3 &half = reference_.body.half_extents(), &h = other_.body.half_extents();
-    const double rim = 0.999 * std::min(half[u_] - std::abs(x), half[v_] - std::abs(y));
+    const double rim = 0.999 * std::min(coordinate(half, u_) - std::abs(x), coordinate(half, v_) - std::abs(y));
     if (!(depth > 0.0) || !(rim > depth) || !(extent - depth <= allowed)) return false;
     // A step through the other box, along the edge of its face that was clipped.
     const glm::dvec3& edge = seen_.edge[incident_ / 2];
-    const double step = 2.0 * h[incident_ / 2], along = step * std::abs(glm::dot(edge, direction_));
-    const double behind = 0.999 * (2.0 * half[k_] + along) - depth, aside2 = step * step * 1.001 - along * along;
-    const double aside = std::sqrt(std::max(aside2, 0.0)) + 1e-5 * half[k_];
+    const double step = 2.0 * coordinate(h, incident_ / 2), thick = coordinate(half, k_),
+                 along = step * std::abs(glm::dot(edge, direction_));
+    const double behind = 0.999 * (2.0 * thick + along) - depth, aside2 = step * step * 1.001 - along * along;
+    const double aside = std::sqrt(std::max(aside2, 0.0)) + 1e-5 * thick;
     return behind * (rim * rim - depth * depth) - aside * 2.0 * rim * depth >= depth * (rim * rim + depth * depth);
 }
 

@@ -51,18 +51,18 @@ void BoxPair::find_products() {
 
 // The extent across a face of a. Its row of the edges is known.
 double BoxPair::face_of_a(int k) {
-    const double share = 1.0 / std::sqrt(glm::dot(to_a_[k], to_a_[k]));
-    const double radius =
-        half_b_.x * std::abs(edge_[0][k]) + half_b_.y * std::abs(edge_[1][k]) + half_b_.z * std::abs(edge_[2][k]);
-    radius_sum_[0][k] = (half_a_[k] + radius) * share;
-    along_[0][k] = at_[k] * share;
+    const double share = row_share_[k] = 1.0 / std::sqrt(glm::dot(to_a_[k], to_a_[k]));
+    const double radius = half_b_.x * std::abs(coordinate(edge_[0], k)) +
+                          half_b_.y * std::abs(coordinate(edge_[1], k)) + half_b_.z * std::abs(coordinate(edge_[2], k));
+    radius_sum_[0][k] = (coordinate(half_a_, k) + radius) * share;
+    along_[0][k] = coordinate(at_, k) * share;
     return radius_sum_[0][k] - std::abs(along_[0][k]);
 }
 
 double BoxPair::face_of_b(int j) {
     const glm::dvec3 &n = across_[j], world = n.x * to_a_[0] + n.y * to_a_[1] + n.z * to_a_[2];
     const double share = 1.0 / std::sqrt(glm::dot(world, world));
-    radius_sum_[1][j] = (std::abs(determinant_) * half_b_[j] + radius_along(half_a_, n)) * share;
+    radius_sum_[1][j] = (std::abs(determinant_) * coordinate(half_b_, j) + radius_along(half_a_, n)) * share;
     along_[1][j] = glm::dot(n, at_) * share;
     return radius_sum_[1][j] - std::abs(along_[1][j]);
 }
@@ -144,11 +144,11 @@ double BoxPair::face_extent(bool of_a, int face) const {
 
 glm::dvec3 BoxPair::normal(int axis) const {
     const glm::dmat3 &ra = pair_.pose_a.rotation, &rb = pair_.pose_b.rotation;
-    const glm::dvec3 n = axis < 3   ? to_a_[axis]
-                         : axis < 6 ? glm::cross(rb[kNext[axis - 3]], rb[kLast[axis - 3]])
-                                    : careful_cross(ra[(axis - 6) / 3], rb[(axis - 6) % 3]);
     // As face_towards_other() has it, also where rounding decides.
-    const double along = axis < 6 ? along_[axis / 3][axis % 3] : glm::dot(n, pair_.offset);
+    if (axis < 3) return (along_[0][axis] < 0.0 ? -row_share_[axis] : row_share_[axis]) * to_a_[axis];
+    const glm::dvec3 n = axis < 6 ? glm::cross(rb[kNext[axis - 3]], rb[kLast[axis - 3]])
+                                  : careful_cross(ra[(axis - 6) / 3], rb[(axis - 6) % 3]);
+    const double along = axis < 6 ? along_[1][axis - 3] : glm::dot(n, pair_.offset);
     return (along < 0.0 ? -1.0 : 1.0) / glm::length(n) * n;
 }
 

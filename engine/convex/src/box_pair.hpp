@@ -1,9 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Two boxes, closely: along which of their fifteen axes do they overlap least, and where?
 #pragma once
+#include <glm/gtc/type_ptr.hpp>
+
 #include "gather.hpp"
 
 namespace crofton::convex {
+
+// Coordinate i of v; glm's own operator[] has a branch for each.
+[[nodiscard]] inline double coordinate(const glm::dvec3& v, int i) {
+    return glm::value_ptr(v)[i];
+}
 
 // A separating axis: 0-2 across the faces of a, 3-5 of b, 6 + 3i + j across edge i of a and edge j of b.
 struct BoxAxis {
@@ -70,6 +77,7 @@ class BoxPair {
     double determinant_ = 1.0, share_ = 1.0;  // of the edges, and 1 / determinant
     glm::dvec3 at_;                           // b's center
     double radius_sum_[2][3], along_[2][3];   // of a's and b's faces: sum of the boxes' radii, and where b's center is
+    double row_share_[3];                     // 1 / length of to_a_, where face_of_a() was asked
 };
 
 // A face of one box, the other box's face that looks against it, and what they have in common along a direction.
@@ -78,9 +86,8 @@ class BoxClip {
     // `direction`: unit, from a to b. The face is that of the reference.
     BoxClip(const Placed& a, const Placed& b, const BoxPair& pair, bool reference_is_a, int face,
             const glm::dvec3& direction);
-    [[nodiscard]] int count() const { return count_; }
-    // How deep point i is, without roundings.
-    [[nodiscard]] double depth(int i) const { return -corner_[i].height; }
+    // How deep the deepest point is, without roundings; −infinity where there is none.
+    [[nodiscard]] double deepest() const;
     void gather(const Touch& touch, double margin, GatheredPoints& to) const;
     // How far a corner of the other box is within the sides of the prism: the least distance, negative outside.
     [[nodiscard]] double corner_within(int corner) const;
@@ -88,18 +95,17 @@ class BoxClip {
     [[nodiscard]] bool proves_least(double extent, double allowed) const;
 
   private:
-    // A corner of the clipped polygon: its shadow on the face, and how far it is above along the direction. The lines
-    // that meet in it: edges of the incident face (from 0) or sides of the reference (−1 − number).
+    // A corner of the clipped polygon: its shadow on the face, and how far it is above along the direction; and which
+    // lines meet in it.
     struct FlatCorner {
         double x, y, height;
-        int before, after;
+        unsigned lines;
     };
     static constexpr int kMost = 8;  // four corners and four sides; roundings can add one, which is left out
     static int clip_side(const FlatCorner* from, int count, int side, double level, int face, FlatCorner* to);
     void find_corners(int incident_face);
+    [[nodiscard]] double level() const;  // of the reference face along its axis
     void clip();
-    [[nodiscard]] Feature on_reference(const FlatCorner& corner) const;
-    [[nodiscard]] Feature on_incident(const FlatCorner& corner) const;
 
     const Placed &reference_, &other_;
     BoxPair::Seen seen_;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "box_pair.hpp"
 
@@ -65,8 +64,7 @@ void BoxToucher::add_deepest(const glm::dvec3& on_a, const glm::dvec3& on_b, Fea
 }
 
 bool BoxToucher::at_face(const BoxClip& clip, bool of_a, int face, double extent, double kept) {
-    double least = std::numeric_limits<double>::infinity();
-    for (int i = 0; i < clip.count(); ++i) least = std::min(least, extent - clip.depth(i));
+    const double least = extent - clip.deepest();
     touch_.depth = extent + rounding_;
     if (least <= kSameFace * pair_.size) {
         clip.gather(touch_, margin_, points_);

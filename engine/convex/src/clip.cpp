@@ -228,7 +228,7 @@ int greatest(int count, Value value) {
 
 // Of points as deep but for rounding that which is farthest from their middle: on a flat floor a corner, not whichever
 // inner point rounding made the deepest.
-int deepest_corner(const RawPoint* points, int count) {
+int deepest_corner(const ContactPoint* points, int count) {
     glm::dvec3 middle(0.0);
     for (int i = 0; i < count; ++i) middle += points[i].position / static_cast<double>(count);
     const auto squared = [&](int i) {
@@ -242,7 +242,7 @@ int deepest_corner(const RawPoint* points, int count) {
 
 }  // namespace
 
-void thin_out(Manifold& manifold, const RawPoint* points, int count, int most) {
+void thin_out(Manifold& manifold, const ContactPoint* points, int count, int most) {
     int kept[16], chosen = 0;
     const bool all = count <= most;
     const auto keep = [&](int i) {
@@ -272,13 +272,7 @@ void thin_out(Manifold& manifold, const RawPoint* points, int count, int most) {
     manifold.count = chosen;
     manifold.depth = points[kept[0]].depth;
     for (int i = 0; i < chosen; ++i) {
-        const RawPoint& p = points[kept[i]];
-        manifold.points[i] = {p.position,
-                              p.depth,
-                              p.on_a,
-                              p.on_b,
-                              {p.part_a.child, p.part_a.triangle},
-                              {p.part_b.child, p.part_b.triangle}};
+        manifold.points[i] = points[kept[i]];
         manifold.depth = std::max(manifold.depth, points[kept[i]].depth);
     }
 }

@@ -10,16 +10,6 @@ struct ClippedPoint {
     glm::dvec3 on_reference, on_incident;
     Feature reference, incident;
 };
-// A contact point, without the defaults that would be written over all of a long array.
-struct RawPart {
-    std::uint32_t child, triangle;
-};
-struct RawPoint {
-    glm::dvec3 position;
-    double depth;
-    Feature on_a, on_b;
-    RawPart part_a, part_b;
-};
 inline constexpr int kMaxClipped = 2 * kMaxPatch;
 struct Clipped {
     int count = 0;
@@ -65,6 +55,6 @@ class BoxFace {
 void clip_segments(const Patch& reference, const Patch& incident, Clipped& clipped);
 
 // Keeps at most `most` points, in their order: the deepest, the one farthest from it, and those that span most area.
-void thin_out(Manifold& manifold, const RawPoint* points, int count, int most);
+void thin_out(Manifold& manifold, const ContactPoint* points, int count, int most);
 
 }  // namespace crofton::convex

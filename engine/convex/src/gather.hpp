@@ -7,7 +7,7 @@ namespace crofton::convex {
 
 struct GatheredPoints {
     int count = 0;
-    RawPoint point[kMaxClipped + 1];
+    ContactPoint point[kMaxClipped + 1];
 };
 
 // Two bodies as the gatherer sees them: a's origin, and how far the surfaces are from the cores.

@@ -11,6 +11,12 @@
 namespace crofton::convex {
 namespace {
 
+// Without clearing the points, as Manifold{} would.
+Manifold nothing() {
+    Manifold manifold;
+    return manifold;
+}
+
 Gathering gathering_of(const Placed& a, const Placed& b, double margin) {
     return {a.pose.translation, a.body.radius(), b.body.radius(), margin};
 }
@@ -40,7 +46,7 @@ Manifold on_half_space(const Placed& a, const Placed& b, const ManifoldOptions& 
     Touch touch;
     touch.normal = gap.outward;
     touch.depth = meet ? std::max(-apart, 0.0) : -apart;
-    if (!(meet || apart <= options.margin)) return {};
+    if (!(meet || apart <= options.margin)) return nothing();
     Patch patch;
     patch_along(b, -gap.outward, a.pose.translation, patch);
     GatheredPoints points;
@@ -75,25 +81,25 @@ Manifold flipped(Manifold m) {
 
 Manifold contact_manifold(const Placed& a, const Placed& b, const ManifoldOptions& options, PairCache* cache) {
     if (!a.body.is_convex() || !b.body.is_convex()) return deepest_manifold(a, b, options);
-    if (is_half_space(a)) return is_half_space(b) ? Manifold{} : on_half_space(a, b, options);
+    if (is_half_space(a)) return is_half_space(b) ? nothing() : on_half_space(a, b, options);
     if (is_half_space(b)) return flipped(on_half_space(b, a, options));
     const Pair pair(a, b);
     if (a.body.kind() == Kind::box && b.body.kind() == Kind::box) {
         Touch touch;
         GatheredPoints points;
         const Warm answer = touch_of_boxes(a, b, pair, options.margin, cache, touch, points);
-        if (answer == Warm::apart) return {};
+        if (answer == Warm::apart) return nothing();
         if (answer == Warm::touching) return finish(points, touch, options.max_points);
     }
     Touch touch;
     Clipped clipped;
     if (cache != nullptr && cache->reference != 0) {
         const Warm warm = touch_at_face(a, b, pair, options.margin, *cache, kKeptDepth, touch, clipped);
-        if (warm == Warm::apart) return {};
+        if (warm == Warm::apart) return nothing();
         if (warm == Warm::touching) return gather_clipped(a, b, pair, touch, clipped, cache->reference, options);
         touch = {};
     }
-    if (!find_touch(pair, options.margin, cache, touch)) return {};
+    if (!find_touch(pair, options.margin, cache, touch)) return nothing();
     Patch patch_a, patch_b;
     patch_along(a, touch.normal, a.pose.translation, patch_a);
     patch_along(b, -touch.normal, a.pose.translation, patch_b);

@@ -17,10 +17,10 @@ void ManifoldList::clear() {
     direction_of_.clear();
 }
 
-void ManifoldList::add(const glm::dvec3& normal, std::span<const RawPoint> points) {
+void ManifoldList::add(const glm::dvec3& normal, std::span<const ContactPoint> points) {
     if (points.empty()) return;
     double depth = points[0].depth;
-    for (const RawPoint& p : points) depth = std::max(depth, p.depth);
+    for (const ContactPoint& p : points) depth = std::max(depth, p.depth);
     std::size_t at = 0;
     while (at < directions_.size() && glm::dot(directions_[at].normal, normal) < kSameNormal) ++at;
     if (at == directions_.size()) directions_.push_back({normal, depth, 0});
@@ -30,7 +30,7 @@ void ManifoldList::add(const glm::dvec3& normal, std::span<const RawPoint> point
         direction.depth = depth;
     }
     direction.count += static_cast<std::uint32_t>(points.size());
-    for (const RawPoint& p : points) {
+    for (const ContactPoint& p : points) {
         points_.push_back(p);
         direction_of_.push_back(static_cast<std::uint32_t>(at));
     }

@@ -121,10 +121,9 @@ class ManifoldFinder {
 
     void add(SurfaceContacts::Contact& contact, const PartId& of_a, const PartId& of_b, bool flip) {
         for (int k = 0; k < contact.points.count; ++k) {
-            RawPoint& p = contact.points.point[k];
-            const PartId &first = flip ? of_b : of_a, &second = flip ? of_a : of_b;
-            p.part_a = {first.child, first.triangle};
-            p.part_b = {second.child, second.triangle};
+            ContactPoint& p = contact.points.point[k];
+            p.part_a = flip ? of_b : of_a;
+            p.part_b = flip ? of_a : of_b;
             if (flip) std::swap(p.on_a, p.on_b);
         }
         scratch_.list.add(flip ? -contact.normal : contact.normal,

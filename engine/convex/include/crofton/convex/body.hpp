@@ -208,8 +208,8 @@ class Body {
 // One of the convex parts of a body, by number.
 struct PartId {
     // Of a compound: which child, with the children of compounds within it counted in their place. Else 0.
-    std::uint32_t child = 0;
-    std::uint32_t triangle = 0;  // of a mesh or height field; else 0
+    std::uint32_t child;
+    std::uint32_t triangle;  // of a mesh or height field; else 0
     auto operator<=>(const PartId&) const = default;
 };
 

@@ -87,18 +87,18 @@ struct Feature {
 };
 
 struct ContactPoint {
-    glm::dvec3 position{0.0};  // midway between the surfaces, in the world
-    double depth = 0.0;        // along the normal; negative: a gap
+    glm::dvec3 position;  // midway between the surfaces, in the world
+    double depth;         // along the normal; negative: a gap
     // Together the point's id: the same for as long as the same features touch. Features are those of the parts.
-    Feature on_a{}, on_b{};
-    PartId part_a{}, part_b{};
+    Feature on_a, on_b;
+    PartId part_a, part_b;
 };
 
 struct Manifold {
     glm::dvec3 normal{0.0};  // unit, from a to b
     double depth = 0.0;      // of the deepest point
     int count = 0;           // 0 when the bodies are farther apart than the margin
-    ContactPoint points[8];
+    ContactPoint points[8];  // of which the first `count` are set
 };
 
 struct ManifoldOptions {
@@ -119,7 +119,7 @@ struct ManifoldOptions {
 struct Part {
     Body body;  // convex
     RigidTransform pose;
-    PartId id;
+    PartId id{};
     Sides sides = Sides::both;
 };
 
@@ -155,7 +155,7 @@ void parts_near(const Placed& body, const Placed& other, double margin, Vector<P
 
 // What a pair's contact points are from step to step.
 struct TrackedPoint {
-    ContactPoint contact;
+    ContactPoint contact{};
     glm::dvec3 normal{0.0};  // its manifold's
     bool began = true;       // its id was not there in the step before
     float memory[4] = {};    // the caller's, as impulses for a warm start: 0 when the point begins, kept while it stays
