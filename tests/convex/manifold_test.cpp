@@ -22,6 +22,14 @@ std::set<std::pair<Feature, Feature>> ids(const Manifold& m) {
     return result;
 }
 
+// Of the points, in their order.
+double area(const Manifold& m) {
+    glm::dvec3 sum(0.0);
+    for (int i = 1; i + 1 < m.count; ++i)
+        sum += glm::cross(m.points[i].position - m.points[0].position, m.points[i + 1].position - m.points[0].position);
+    return 0.5 * glm::length(sum);
+}
+
 }  // namespace
 
 TEST_SUITE("convex/manifold") {
@@ -278,6 +286,66 @@ TEST_SUITE("convex/manifold") {
             (void)distance(pa, pb, &cache);
             (void)cast(pa, {}, pb, {.velocity = -where.normal, .spin = {1, 2, 3}}, {}, &cache);
             CHECK(memory.allocations() == 0);
+        }
+    }
+
+    // Prisms on eight corners that stand on each other and sway: which corner is the deepest goes round.
+    TEST_CASE("of more points than are wanted those of the frame before stay while they serve as well") {
+        std::vector<glm::vec3> corners;
+        for (int k = 0; k < 8; ++k)
+            for (const float y : {-0.5f, 0.5f}) {
+                const float angle = 0.785398f * static_cast<float>(k) + 0.3f;
+                corners.emplace_back(std::cos(angle), y, std::sin(angle));
+            }
+        const Hull hull = Hull::build(corners).value();
+        for (glm::vec3& p : corners) p *= glm::vec3(1.3f, 1.0f, 1.3f);
+        const Hull wide_hull = Hull::build(corners).value();
+        const Body box = Body::box({1.5f, 0.5f, 1.5f}).value(), prism = Body::hull(hull), wide = Body::hull(wide_hull);
+        for (const Body* below : {&wide, &box}) {
+            PairCache cache;
+            std::set<std::pair<Feature, Feature>> before;
+            int kept = 0, all = 0, eight = 0;
+            for (int frame = 0; frame < 2000; ++frame) {
+                const double round = 0.02 * frame;
+                RigidTransform top = at({1e-4 * std::cos(round), 0.999, 1e-4 * std::sin(round)});
+                top.rotation = glm::mat3_cast(
+                    glm::angleAxis(2e-5 * std::sin(0.37 * frame), glm::dvec3(std::cos(round), 0, std::sin(round))));
+                const RigidTransform low = at({});
+                PairCache same = cache;
+                const Manifold m = contact_manifold({*below, low}, {prism, top}, {}, &cache),
+                               full = contact_manifold({*below, low}, {prism, top}, {.max_points = 8}, &same),
+                               fresh = contact_manifold({*below, low}, {prism, top});
+                REQUIRE(m.count == 4);
+                eight += full.count == 8;
+                CHECK(std::abs(m.depth - fresh.depth) <= 2e-4);
+                double deepest = -1.0;
+                for (int i = 0; i < 4; ++i) {
+                    deepest = std::max(deepest, m.points[i].depth);
+                    CHECK(ids(full).count({m.points[i].on_a, m.points[i].on_b}) == 1);
+                }
+                CHECK(deepest >= full.depth - 4e-4);
+                CHECK(area(m) >= 0.9 * area(fresh) - 1e-12);
+                for (const auto& id : ids(m)) kept += static_cast<int>(before.count(id));
+                if (frame > 0) all += 4;
+                before = ids(m);
+            }
+            CHECK(eight > 1500);
+            CHECK(kept >= 0.99 * all);
+        }
+    }
+
+    TEST_CASE("points of the frame before that lie together now make room for others") {
+        const Body box = Body::box({1, 1, 1}).value();
+        PairCache cache;
+        for (int frame = 0; frame < 200; ++frame) {
+            RigidTransform top = at({0.01 * frame, 1.99, 0.004 * frame});
+            top.rotation = glm::mat3_cast(glm::angleAxis(0.785398 + 0.002 * frame, glm::dvec3(0, 1, 0)));
+            const RigidTransform low = at({});
+            const Manifold m = contact_manifold({box, low}, {box, top}, {}, &cache),
+                           fresh = contact_manifold({box, low}, {box, top});
+            CHECK(m.count == fresh.count);
+            CHECK(m.depth == doctest::Approx(0.01));
+            CHECK(area(m) >= 0.9 * area(fresh) - 1e-12);
         }
     }
 }

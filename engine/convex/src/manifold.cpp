@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/convex/query.hpp>
+#include <limits>
 
 #include "box_pair.hpp"
 #include "core_query.hpp"
@@ -21,25 +22,63 @@ Gathering gathering_of(const Placed& a, const Placed& b, double margin) {
     return {a.pose.translation, a.body.radius(), b.body.radius(), margin};
 }
 
-Manifold finish(const GatheredPoints& points, const Touch& touch, int most) {
+// A point's id in one number that is not 0. Features of convex bodies have indices below 1024.
+std::uint32_t number_of(const ContactPoint& p) {
+    const auto feature = [](const Feature& f) { return static_cast<std::uint32_t>(f.kind) << 10 | f.index; };
+    return 1U << 31 | feature(p.on_a) << 12 | feature(p.on_b);
+}
+
+// Of points in a circle.
+double area_of(const Manifold& m) {
+    glm::dvec3 sum(0.0);
+    for (int i = 1; i + 1 < m.count; ++i)
+        sum += glm::cross(m.points[i].position - m.points[0].position, m.points[i + 1].position - m.points[0].position);
+    return glm::length(sum);
+}
+
+// Puts the points of the frame before into the place of those chosen afresh, if they serve as well: a body that sways
+// would else lose all of its ids whenever another corner becomes the deepest.
+void keep_choice(Manifold& manifold, const GatheredPoints& points, double kept, PairCache& cache) {
+    const auto end = cache.chosen + 4;
+    Manifold before;
+    double deepest = -std::numeric_limits<double>::infinity();
+    for (int i = 0; i < points.count && before.count < 4; ++i) {
+        const ContactPoint& p = points.point[i];
+        if (std::find(cache.chosen, end, number_of(p)) == end) continue;
+        before.points[before.count++] = p;
+        deepest = std::max(deepest, p.depth);
+    }
+    if (before.count == manifold.count && deepest >= manifold.depth - kept &&
+        area_of(before) >= 0.9 * area_of(manifold)) {
+        std::copy_n(before.points, before.count, manifold.points);
+        return;
+    }
+    for (int i = 0; i < 4; ++i) cache.chosen[i] = i < manifold.count ? number_of(manifold.points[i]) : 0;
+}
+
+Manifold finish(const GatheredPoints& points, const Touch& touch, const ManifoldOptions& options, double size,
+                PairCache* cache) {
     Manifold manifold;
     manifold.normal = touch.normal;
-    if (points.count > 0) thin_out(manifold, points.point, points.count, std::clamp(most, 1, 8));
+    if (points.count == 0) return manifold;
+    const int most = std::clamp(options.max_points, 1, 8);
+    thin_out(manifold, points.point, points.count, most);
+    if (cache != nullptr && points.count > most && most <= 4) keep_choice(manifold, points, kKeptDepth * size, *cache);
     return manifold;
 }
 
 // What the touch's patches have in common, clipped against the face of a (1) or of b (2).
 Manifold gather_clipped(const Placed& a, const Placed& b, const Pair& pair, const Touch& touch, const Clipped& clipped,
-                        int reference, const ManifoldOptions& options) {
+                        const ManifoldOptions& options, PairCache& cache) {
     GatheredPoints points;
     Gatherer gatherer(gathering_of(a, b, options.margin), touch, points);
-    gatherer.add(clipped, reference == 1);
+    gatherer.add(clipped, cache.reference == 1);
     if (gatherer.lacks_deepest(1e-9 * pair.size)) gatherer.add_deepest();
-    return finish(points, touch, options.max_points);
+    return finish(points, touch, options, pair.size, &cache);
 }
 
 // a is the half-space.
-Manifold on_half_space(const Placed& a, const Placed& b, const ManifoldOptions& options) {
+Manifold on_half_space(const Placed& a, const Placed& b, const ManifoldOptions& options, PairCache* cache) {
     const HalfSpaceGap gap = half_space_gap(a, b);
     const double apart = gap.gap - b.body.radius();
     const bool meet = apart <= gap.error && half_space_meets(a, b);
@@ -65,7 +104,7 @@ Manifold on_half_space(const Placed& a, const Placed& b, const ManifoldOptions& 
         touch.feature_b = patch.self;
         gatherer.add_deepest();
     }
-    return finish(points, touch, options.max_points);
+    return finish(points, touch, options, b.body.reach(), cache);
 }
 
 }  // namespace
@@ -81,22 +120,22 @@ Manifold flipped(Manifold m) {
 
 Manifold contact_manifold(const Placed& a, const Placed& b, const ManifoldOptions& options, PairCache* cache) {
     if (!a.body.is_convex() || !b.body.is_convex()) return deepest_manifold(a, b, options);
-    if (is_half_space(a)) return is_half_space(b) ? nothing() : on_half_space(a, b, options);
-    if (is_half_space(b)) return flipped(on_half_space(b, a, options));
+    if (is_half_space(a)) return is_half_space(b) ? nothing() : on_half_space(a, b, options, cache);
+    if (is_half_space(b)) return flipped(on_half_space(b, a, options, cache));
     const Pair pair(a, b);
     if (a.body.kind() == Kind::box && b.body.kind() == Kind::box) {
         Touch touch;
         GatheredPoints points;
         const Warm answer = touch_of_boxes(a, b, pair, options.margin, cache, touch, points);
         if (answer == Warm::apart) return nothing();
-        if (answer == Warm::touching) return finish(points, touch, options.max_points);
+        if (answer == Warm::touching) return finish(points, touch, options, pair.size, cache);
     }
     Touch touch;
     Clipped clipped;
     if (cache != nullptr && cache->reference != 0) {
         const Warm warm = touch_at_face(a, b, pair, options.margin, *cache, kKeptDepth, touch, clipped);
         if (warm == Warm::apart) return nothing();
-        if (warm == Warm::touching) return gather_clipped(a, b, pair, touch, clipped, cache->reference, options);
+        if (warm == Warm::touching) return gather_clipped(a, b, pair, touch, clipped, options, *cache);
         touch = {};
     }
     if (!find_touch(pair, options.margin, cache, touch)) return nothing();
@@ -116,7 +155,7 @@ Manifold contact_manifold(const Placed& a, const Placed& b, const ManifoldOption
         name_features(a.body, b.body, patch_a, patch_b, touch);
         gatherer.add_deepest();
     }
-    return finish(points, touch, options.max_points);
+    return finish(points, touch, options, pair.size, cache);
 }
 
 }  // namespace crofton::convex
