@@ -198,6 +198,37 @@ TEST_SUITE("convex/query") {
         }
     }
 
+    // Points, segments and rectangles in the plane z = 0, turned by a Pythagorean angle. What is known by hand: one
+    // side of the rectangle is x cos + y sin = 0.25 there, and the point moves across it.
+    TEST_CASE("bodies within one plane meet or not as exact arithmetic tells, and the oracle as is known by hand") {
+        const Body plate = Body::box({4, 0.25f, 0}).value(), point = Body::box({0, 0, 0}).value(),
+                   rod = Body::box({2, 0, 0}).value();
+        RigidTransform turned = at({});
+        turned.rotation = glm::dmat3(0.8, 0.6, 0.0, -0.6, 0.8, 0.0, 0.0, 0.0, 1.0);
+        int met = 0, apart = 0;
+        for (const Body* other : {&point, &rod, &plate})
+            for (int step = -40; step <= 40; ++step) {
+                // 0.15 + 0.2 along the side's normal is on the side, but for rounding.
+                const double by = step < -20 ? -0.01 : step > 20 ? 0.01 : step * 1e-17;
+                const RigidTransform place = at({-0.15 - 0.6 * by, 0.2 + 0.8 * by, 0.0});
+                const bool meet = intersects({plate, turned}, {*other, place});
+                CHECK(meet == intersects({*other, place}, {plate, turned}));
+                CHECK(meet == oracle::meet_by_axes(oracle::exact_polytope({plate, turned}),
+                                                   oracle::exact_polytope({*other, place})));
+                CHECK(meet == oracle::meet_quickly({plate, turned}, {*other, place}, {}, {}));
+                if (other == &point && step < -20) CHECK(meet);
+                if (other == &point && step > 20) CHECK_FALSE(meet);
+                ++(meet ? met : apart);
+            }
+        CHECK(met > 80);
+        CHECK(apart > 20);
+        CHECK_FALSE(intersects({rod, at({})}, {rod, at({4.5, 0, 0})}));
+        CHECK_FALSE(oracle::meet_by_axes(oracle::exact_polytope({rod, at({})}),
+                                         oracle::exact_polytope({rod, at({4.5, 0, 0})})));
+        CHECK(intersects({rod, at({})}, {rod, at({4, 0, 0})}));
+        CHECK(oracle::meet_by_axes(oracle::exact_polytope({point, at({})}), oracle::exact_polytope({point, at({})})));
+    }
+
     TEST_CASE("yes and no are exact in each decade of gap and overlap, at each offset, cold and warm") {
         std::uint64_t seed = 1;
         int pairs = 0, brute = 0, meeting = 0;

@@ -129,6 +129,48 @@ int contains(const Polytope<Number>& a, const Vec3<Number>& x) {
     return answer;
 }
 
+// Whether a vector is certainly not 0. Throws where that cannot be told.
+template <class Number>
+bool is_some(const Vec3<Number>& v) {
+    bool unknown = false;
+    for (const Number& c : v) {
+        const int sign = told(c);
+        if (sign == 1 || sign == -1) return true;
+        unknown = unknown || sign == kUnknown;
+    }
+    if (unknown) throw Undecided{};
+    return false;
+}
+
+// Whether both bodies lie within one plane and a line of that plane parts them. All other axes are then across it.
+template <class Number>
+bool are_parted_in_a_plane(const Polytope<Number>& a, const Polytope<Number>& b) {
+    std::vector<Vec3<Number>> ways;
+    for (const auto* body : {&a, &b})
+        for (const auto& p : body->points) ways.push_back(minus(p, a.points[0]));
+    const auto first = [&](const auto& of) {
+        for (const auto& way : ways)
+            if (const Vec3<Number> v = of(way); is_some(v)) return v;
+        return Vec3<Number>{0, 0, 0};
+    };
+    const auto either = [&](Vec3<Number> n) {
+        if (parts(a, b, n) == 1) return true;
+        for (Number& c : n) c = -c;
+        return parts(a, b, n) == 1;
+    };
+    const Vec3<Number> u = first([](const auto& way) { return way; });
+    if (!is_some(u)) return false;  // a single point
+    const Vec3<Number> n = first([&](const auto& way) { return cross(u, way); });
+    if (!is_some(n)) return either(u);  // on one line
+    for (const auto& way : ways)
+        if (const Vec3<Number> height{dot(n, way), 0, 0}; is_some(height)) return false;
+    for (const auto* body : {&a, &b})
+        for (const auto& t : body->triangles)
+            for (std::size_t i = 0; i < 3; ++i)
+                if (either(cross(n, minus(body->points[t[(i + 1) % 3]], body->points[t[i]])))) return true;
+    return false;
+}
+
 // The separating-axis theorem: normals of faces, products of edges.
 template <class Number>
 bool meet_by_axes(const Polytope<Number>& a, const Polytope<Number>& b) {
@@ -157,7 +199,7 @@ bool meet_by_axes(const Polytope<Number>& a, const Polytope<Number>& b) {
                 }
         }
     if (undecided) throw Undecided{};
-    return true;
+    return !are_parted_in_a_plane(a, b);
 }
 
 // A proof first: a plane between them, or a common point, among those guessed (from `origin`); else brute force.
