@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 #include <array>
 #include <cmath>
+#include <crofton/radiosity/lines.hpp>
 #include <crofton/radiosity/patches.hpp>
 #include <error_of.hpp>
 #include <glm/geometric.hpp>
@@ -72,6 +73,12 @@ TEST_SUITE("radiosity/shadow edges") {
             REQUIRE(cut.has_value());
             const auto lit = sunlit_triangles(cut->mesh, kToSun);
             REQUIRE(lit.has_value());
+            // A tracer of the mesh that was cut says the same.
+            const LineTracer scene = LineTracer::build(mesh).value();
+            const auto cut_with_tracer = refine_at_shadows(scene, mesh, 3.0 * kToSun, halvings);
+            REQUIRE(cut_with_tracer.has_value());
+            CHECK(cut_with_tracer->source == cut->source);
+            CHECK(sunlit_triangles(scene, cut->mesh, kToSun).value() == *lit);
             const Ground ground = judge(cut->mesh, *lit);
             INFO("halvings ", halvings, " wrong ", ground.wrong, " triangles ", ground.triangles);
             CHECK(ground.area == doctest::Approx(100.0).epsilon(1e-6));

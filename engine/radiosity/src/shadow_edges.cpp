@@ -33,14 +33,13 @@ constexpr std::array<glm::dvec3, 7> kPoints = {{{1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0
 
 class SunRays {
   public:
-    static Result<SunRays> create(const TriangleMesh& mesh, const glm::dvec3& to_sun) {
+    // `scene` must live as long.
+    static Result<SunRays> create(const LineTracer& scene, const TriangleMesh& mesh, const glm::dvec3& to_sun) {
         if (auto valid = validate(mesh); !valid) return tl::unexpected(valid.error());
         const double length = glm::length(to_sun);
         if (!(length > 0.0) || !std::isfinite(length))
             return fail(ErrorCode::out_of_range, kNoItem, "the direction to the sun is zero, too long or not finite");
-        auto tracer = LineTracer::build(mesh);
-        if (!tracer) return tl::unexpected(tracer.error());
-        return SunRays(std::move(*tracer), to_sun / length);
+        return SunRays(scene, to_sun / length);
     }
 
     // Calls visit(triangle, how many of the first `points` of kPoints see the sun) for those of `triangles` that face
@@ -76,12 +75,12 @@ class SunRays {
     }
 
   private:
-    SunRays(LineTracer tracer, const glm::dvec3& to_sun)
-        : tracer_(std::move(tracer)),
+    SunRays(const LineTracer& scene, const glm::dvec3& to_sun)
+        : tracer_(scene),
           to_sun_(to_sun),
           off_surface_(kOffSurface * 0.5 * glm::length(tracer_.bounds().max - tracer_.bounds().min)) {}
 
-    LineTracer tracer_;
+    const LineTracer& tracer_;
     glm::dvec3 to_sun_;
     double off_surface_;
 };
@@ -117,10 +116,10 @@ class Edges {
 
 }  // namespace
 
-Result<RefinedMesh> refine_at_shadows(const TriangleMesh& mesh, const glm::dvec3& to_sun, std::uint32_t halvings,
-                                      std::size_t most_triangles) {
+Result<RefinedMesh> refine_at_shadows(const LineTracer& scene, const TriangleMesh& mesh, const glm::dvec3& to_sun,
+                                      std::uint32_t halvings, std::size_t most_triangles) {
     return crofton::detail::recover([&]() -> Result<RefinedMesh> {
-        const auto rays = SunRays::create(mesh, to_sun);
+        const auto rays = SunRays::create(scene, mesh, to_sun);
         if (!rays) return tl::unexpected(rays.error());
         RefinedMesh result{mesh, {}};
         Vector<std::uint32_t> newest;  // triangles that were not looked at as they are
@@ -156,15 +155,29 @@ Result<RefinedMesh> refine_at_shadows(const TriangleMesh& mesh, const glm::dvec3
     });
 }
 
-Result<Vector<std::uint32_t>> sunlit_triangles(const TriangleMesh& mesh, const glm::dvec3& to_sun) {
+Result<RefinedMesh> refine_at_shadows(const TriangleMesh& mesh, const glm::dvec3& to_sun, std::uint32_t halvings,
+                                      std::size_t most_triangles) {
+    const auto scene = LineTracer::build(mesh);
+    if (!scene) return tl::unexpected(scene.error());
+    return refine_at_shadows(*scene, mesh, to_sun, halvings, most_triangles);
+}
+
+Result<Vector<std::uint32_t>> sunlit_triangles(const LineTracer& scene, const TriangleMesh& mesh,
+                                               const glm::dvec3& to_sun) {
     return crofton::detail::recover([&]() -> Result<Vector<std::uint32_t>> {
-        const auto rays = SunRays::create(mesh, to_sun);
+        const auto rays = SunRays::create(scene, mesh, to_sun);
         if (!rays) return tl::unexpected(rays.error());
         Vector<std::uint32_t> lit(mesh.triangle_count(), 0), all;
         for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) all.push_back(t);
         rays->look(mesh, all, 1, [&](std::uint32_t t, std::size_t seen) { lit[t] = static_cast<std::uint32_t>(seen); });
         return lit;
     });
+}
+
+Result<Vector<std::uint32_t>> sunlit_triangles(const TriangleMesh& mesh, const glm::dvec3& to_sun) {
+    const auto scene = LineTracer::build(mesh);
+    if (!scene) return tl::unexpected(scene.error());
+    return sunlit_triangles(*scene, mesh, to_sun);
 }
 
 }  // namespace crofton::radiosity

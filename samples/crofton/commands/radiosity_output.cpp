@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <crofton/radiosity/lines.hpp>
 #include <crofton/render/device.hpp>
 #include <crofton/render/rasterizer.hpp>
 #include <cstdio>
@@ -10,6 +11,8 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <numeric>
+#include <optional>
+#include <utility>
 
 #include "assets/split_mesh.hpp"
 #include "json/json.hpp"
@@ -112,8 +115,12 @@ Result<LitScene> lit_scene(const assets::FlatScene& scene, double edge, const st
     auto refined = lengths.edge > 0.0 ? radiosity::refine(mended->mesh, radiosity::EdgeLength(lengths))
                                       : radiosity::refine(mended->mesh, edge);
     if (!refined) return tl::unexpected(refined.error());
+    std::optional<radiosity::LineTracer> tracer;
     if (sun) {
-        auto cut = radiosity::refine_at_shadows(refined->mesh, sun->to_sun, sun->halvings);
+        auto built = radiosity::LineTracer::build(refined->mesh);
+        if (!built) return tl::unexpected(built.error());
+        tracer.emplace(std::move(*built));
+        auto cut = radiosity::refine_at_shadows(*tracer, refined->mesh, sun->to_sun, sun->halvings);
         if (!cut) return tl::unexpected(cut.error());
         for (std::uint32_t& source : cut->source) source = refined->source[source];
         *refined = std::move(*cut);
@@ -133,7 +140,7 @@ Result<LitScene> lit_scene(const assets::FlatScene& scene, double edge, const st
         labels.push_back(result.emission.back() == glm::vec3(0.0f) ? 0 : 1);
     }
     if (sun) {
-        const auto lit = radiosity::sunlit_triangles(result.patches.mesh, sun->to_sun);
+        const auto lit = radiosity::sunlit_triangles(*tracer, result.patches.mesh, sun->to_sun);
         if (!lit) return tl::unexpected(lit.error());
         for (std::size_t t = 0; t < labels.size(); ++t) labels[t] += 2 * (*lit)[t];
     }

@@ -74,6 +74,13 @@ using EdgeLength = FunctionRef<double(const glm::vec3& middle)>;
 // and shadow. Errors: as refine_at_shadows.
 [[nodiscard]] Result<Vector<std::uint32_t>> sunlit_triangles(const TriangleMesh& mesh, const glm::dvec3& to_sun);
 
+// The same where a tracer is at hand: of `mesh`, or of what it was cut from. What blocks the sun is the tracer's.
+[[nodiscard]] Result<RefinedMesh> refine_at_shadows(const LineTracer& scene, const TriangleMesh& mesh,
+                                                    const glm::dvec3& to_sun, std::uint32_t halvings,
+                                                    std::size_t most_triangles = std::size_t{1} << 24);
+[[nodiscard]] Result<Vector<std::uint32_t>> sunlit_triangles(const LineTracer& scene, const TriangleMesh& mesh,
+                                                             const glm::dvec3& to_sun);
+
 // A patch number for each triangle. Those of at least size²/4 are patches of their own. Smaller ones share one if they
 // are in one cell of side `size`, face the same side of a cube and have the same label. `labels`: by triangle, or
 // empty. What is too small to be met by lines on its own is met together.
