@@ -119,11 +119,20 @@ class Scratch:
             self.cases[test] = {name.strip(): float(length) for length, name in seconds}
         if process.returncode == 0:
             return None
-        case = [line.strip() for line in output.splitlines() if line.startswith("TEST CASE:")]
-        report = [line for line in output.splitlines() if "runtime error:" in line or "ERROR: AddressSanitizer" in line]
-        if report and not case:
-            return f"{test}: a sanitizer: {report[0].rpartition('rror: ')[2]}"
-        return f"{test}: {case[0][10:].strip() if case else f'ended with {process.returncode}'}"
+        return f"{test}: {self.reason(output) or f'ended with {process.returncode}'}"
+
+    @staticmethod
+    def reason(output):
+        """The case that failed, which is not the first named where others say something, or a sanitizer's words."""
+        case = ""
+        for line in output.splitlines():
+            if line.startswith("TEST CASE:"):
+                case = line[10:].strip()
+            elif re.search(r": (FATAL )?ERROR: ", line) and case:
+                return case
+            elif "runtime error:" in line or "ERROR: AddressSanitizer" in line:
+                return f"a sanitizer: {line.rpartition('rror: ')[2]}"
+        return case
 
     def check_original(self, tests):
         """Builds the tests and sees them pass on the true code: that is how long a mutant may take ten times."""
