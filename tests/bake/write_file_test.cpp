@@ -38,6 +38,32 @@ struct Folder {
     std::string path;
 };
 
+// The program stands in a folder until the end of the scope.
+class Standing {
+  public:
+    explicit Standing(const std::string& folder) : before_(std::filesystem::current_path()) {
+        std::filesystem::current_path(folder);
+    }
+    ~Standing() { std::filesystem::current_path(before_); }
+    Standing(const Standing&) = delete;
+    Standing& operator=(const Standing&) = delete;
+
+  private:
+    std::filesystem::path before_;
+};
+
+// Where the program runs as root, which may read everything, it is another user until the end of the scope.
+class AsNobody {
+  public:
+    AsNobody() { REQUIRE((!root_ || seteuid(65534) == 0)); }
+    ~AsNobody() { CHECK((!root_ || seteuid(0) == 0)); }
+    AsNobody(const AsNobody&) = delete;
+    AsNobody& operator=(const AsNobody&) = delete;
+
+  private:
+    bool root_ = geteuid() == 0;
+};
+
 Result<void> write(const std::string& path, const std::string& text) {
     return bake::write_file(path, std::as_bytes(std::span(text)));
 }
@@ -195,11 +221,13 @@ TEST_SUITE("bake/write_file") {
 
     TEST_CASE("a name without a folder is written where the program stands, a link in a circle is replaced") {
         const Folder folder;
-        CHECK(in_child([&] {
-                  if (chdir(folder.path.c_str()) != 0) return 1;
-                  return write("scene", "text") ? 0 : 2;
-              }) == 0);
+        {
+            const Standing standing(folder.path);
+            REQUIRE(write("scene", "text"));
+            CHECK(contents("scene") == "text");
+        }
         CHECK(contents(folder.file("scene")) == "text");
+        CHECK(folder.count() == 1);
         const std::string circle = folder.file("circle");
         std::filesystem::create_symlink("circle", circle);
         REQUIRE(write(circle, "new"));
@@ -211,10 +239,11 @@ TEST_SUITE("bake/write_file") {
     TEST_CASE("a folder that may be written and not read is written to, a socket is refused and stays") {
         const Folder folder;
         REQUIRE(chmod(folder.path.c_str(), 0333) == 0);
-        CHECK(in_child([&] {
-                  if (geteuid() == 0 && seteuid(65534) != 0) return 1;  // who may not read it either
-                  return write(folder.file("scene"), "text") ? 0 : 2;
-              }) == 0);
+        {
+            const AsNobody nobody;
+            CHECK_FALSE(std::ifstream(folder.path).is_open());
+            CHECK(write(folder.file("scene"), "text"));
+        }
         REQUIRE(chmod(folder.path.c_str(), 0700) == 0);
         CHECK(contents(folder.file("scene")) == "text");
 

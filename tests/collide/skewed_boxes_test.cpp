@@ -144,4 +144,63 @@ TEST_SUITE("collide/skewed boxes") {
         (void)intersects(packed_a, packed_b, hits);
         CHECK(hits == expected);
     }
+
+    TEST_CASE(
+        "walls without width, one on the other, touch from end to end though rounding moves a corner off the wall") {
+        // The walls lie in the plane of their first and third axes, and are as long and as high as said. In the
+        // manifold a corner's place across the wall, 0, comes out as 1.07 to 1.1 units of 2^-53 of the pair's size.
+        // Found by a search around axes whose products with the corners are just above powers of two.
+        struct Walls {
+            glm::mat3 axes;
+            float length;
+            float half_height[2];
+            double along;
+        };
+        const Walls all[] = {
+            {{0x1.fe6e6cp-2f, 0x1.fddd1p-2f, -0x1.6b5a9cp-1f, 0x1.00e078p-1f, 0x1.00f9e2p-1f, 0x1.68b942p-1f,
+              0x1.69fa7ep-1f, -0x1.6a1baap-1f, 0x1.890e7p-12f},
+             0x1.0399eap+0f,
+             {0x1.a8b7ap-11f, 0x1.cae90cp-8f},
+             0x1.05dp+0},
+            {{0x1.002fcp-1f, 0x1.000bp-1f, -0x1.69e0ep-1f, 0x1.0079bcp-1f, 0x1.fe974ep-2f, 0x1.6a3316p-1f,
+              0x1.699216p-1f, -0x1.6a819ap-1f, -0x1.0979d8p-10f},
+             0x1.015e34p+0f,
+             {0x1.f0f67p-10f, 0x1.83c264p-8f},
+             0x1.038p+0},
+            {{0x1.005186p-1f, 0x1.fd5ea2p-2f, -0x1.6ac1dep-1f, 0x1.ff127p-2f, 0x1.017882p-1f, 0x1.6952a4p-1f,
+              0x1.6a28bcp-1f, -0x1.69f0f4p-1f, 0x1.c8aef4p-9f},
+             0x1.01d294p+0f,
+             {0x1.d57e04p-9f, 0x1.1540fep-8f},
+             0x1.044p+0},
+            {{0x1.fd32a6p-2f, 0x1.012a98p-1f, -0x1.6a3bb2p-1f, 0x1.012346p-1f, 0x1.fe3d7ap-2f, 0x1.69da7ap-1f,
+              0x1.6a3b8ap-1f, -0x1.69d876p-1f, -0x1.25772ep-8f},
+             0x1.01573p+0f,
+             {0x1.ad5ce8p-9f, 0x1.29518cp-8f},
+             0x1.03p+0},
+            {{0x1.010fd8p-1f, 0x1.fda31p-2f, -0x1.6a2764p-1f, 0x1.0054eep-1f, 0x1.ff9dccp-2f, 0x1.69f082p-1f,
+              0x1.691074p-1f, -0x1.6b053cp-1f, 0x1.b873c6p-10f},
+             0x1.03b624p+0f,
+             {0x1.76e1f4p-9f, 0x1.448f06p-8f},
+             0x1.062p+0},
+        };
+        for (const Walls& walls : all) {
+            const glm::dmat3 axes(walls.axes);
+            Obb low{}, high{};
+            low.axes = high.axes = walls.axes;
+            low.half_extents = {0.02f, 0.0f, walls.half_height[0]};
+            high.half_extents = {walls.length, 0.0f, walls.half_height[1]};
+            // Exact: few bits of either.
+            high.center =
+                walls.along * axes[0] + (double(walls.half_height[0]) + double(walls.half_height[1])) * axes[2];
+            REQUIRE(intersects(low, high));
+            const Manifold manifold = contact_manifold(low, high);
+            REQUIRE(manifold.count == 2);
+            for (const double end : {double(low.half_extents.x), walls.along - double(walls.length)}) {
+                const glm::dvec3 there = end * axes[0] + double(walls.half_height[0]) * axes[2];
+                const double nearest = std::min(glm::length(manifold.points[0].position - there),
+                                                glm::length(manifold.points[1].position - there));
+                CHECK(nearest < 1e-12);
+            }
+        }
+    }
 }

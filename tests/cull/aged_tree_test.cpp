@@ -5,6 +5,7 @@
 #include <crofton/boxtree/structure.hpp>
 #include <crofton/core/executor.hpp>
 #include <crofton/cull/cull.hpp>
+#include <guarded_memory.hpp>
 #include <oracle/aged_tree.hpp>
 #include <set>
 
@@ -123,5 +124,32 @@ TEST_SUITE("cull/aged trees") {
             if (trial % 3 == 2) aged.live(random, 3000);
             while (aged.tree.item_count() < 66000) aged.insert(random, glm::dvec3(0.0));
         }
+    }
+
+    TEST_CASE("a great tree of which all is undecided is asked by several threads within the memory that they have") {
+        testing::GuardedMemory memory;
+        {
+            ThreadPool pool(3);
+            oracle::NearMisses random(36);
+            // A sheet on a plane, in heaps: leaves are not full.
+            std::vector<Obb> boxes(70000);
+            glm::dvec3 heap(0.0);
+            for (std::size_t i = 0; i < boxes.size(); ++i) {
+                if (i % 7 == 0) heap = 1000.0 * random.vector(-1, 1);
+                boxes[i].center = heap + random.vector(-1, 1);
+                boxes[i].center.z = 0.0;
+                boxes[i].half_extents = glm::vec3(0.1f, 0.1f, 0.0f);
+            }
+            const auto tree = boxtree::BoxTree::build(boxes);
+            REQUIRE(tree.has_value());
+            Frustum frustum;
+            frustum.plane_count = 1;
+            frustum.planes[0].normal = {0.0, 0.0, 1.0};
+            cull::VisibleSet visible;
+            cull::find_visible(*tree, {frustum}, visible, {}, pool);
+            CHECK(visible.size() == boxes.size());
+            if (cull::kCountStatistics) CHECK(visible.statistics().exact_tests == boxes.size());
+        }
+        CHECK(memory.overrun() == 0);
     }
 }

@@ -203,6 +203,32 @@ TEST_SUITE("cull/bound_set") {
         }
     }
 
+    TEST_CASE("one box that moves off alone, along any axis and within its chunk's frame, is where it went") {
+        for (int axis = 0; axis < 3; ++axis)
+            for (const double way : {-90.0, 90.0}) {
+                std::vector<Obb> boxes(100);  // in a row along another axis
+                for (std::size_t i = 0; i < boxes.size(); ++i) {
+                    boxes[i].center[(axis + 1) % 3] = 2.0 * static_cast<double>(i) - 99.0;
+                    boxes[i].half_extents = glm::vec3(0.5f);
+                }
+                BoxSet set;
+                set.assign(boxes);
+                const std::uint32_t moved = 50;
+                boxes[moved].center[axis] = way;
+                set.update(std::span(&moved, 1), boxes);
+                Frustum half_space;
+                half_space.plane_count = 1;
+                for (const double side : {-1.0, 1.0}) {  // where it is, and where the others are
+                    half_space.planes[0].normal[axis] = side * way / 90.0;
+                    half_space.planes[0].offset = side * -80.0;
+                    cull::VerdictBits bits;
+                    cull::find_visible(set, boxes, {half_space}, bits);
+                    for (std::size_t i = 0; i < boxes.size(); ++i)
+                        CHECK(bits.verdict(i) == ((i == moved) == (side > 0.0) ? Verdict::inside : Verdict::outside));
+                }
+            }
+    }
+
     TEST_CASE("a list in the order of space is decided by whole chunks, with the same verdicts") {
         oracle::Crowd crowd = oracle::random_crowd(40000, 0.0, 10);
         std::sort(crowd.boxes.begin(), crowd.boxes.end(),

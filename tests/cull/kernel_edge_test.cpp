@@ -9,6 +9,7 @@
 #include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/cull.hpp>
 #include <limits>
+#include <oracle/edges.hpp>
 #include <oracle/near_misses.hpp>
 #include <vector>
 
@@ -65,6 +66,36 @@ std::vector<Obb> cluster_at(oracle::NearMisses& random, const Frustum& frustum, 
         double depth = quantum * random.number(-1.5, 1.5);
         if (random.index(3) == 0) depth *= std::exp(random.number(-12.0, 3.0));
         boxes.push_back(box_at(random, at, plane.normal, shape.half, depth));
+    }
+    return boxes;
+}
+
+// Boxes across an edge of the frustum, each moved outward to where it begins to be outside, within a part of a quantum.
+// No plane alone rejects them.
+std::vector<Obb> cluster_across_edge(oracle::NearMisses& random, const Frustum& frustum, double size,
+                                     std::size_t count) {
+    const auto corners = *frustum_corners(frustum);
+    const unsigned corner = random.index(8), other = corner ^ (1u << random.index(3));
+    glm::dvec3 middle(0.0);
+    for (const glm::dvec3& c : corners) middle += 0.125 * c;
+    const glm::dvec3 target = glm::mix(corners[corner], corners[other], random.number(0.2, 0.8));
+    const glm::dvec3 along = glm::normalize(corners[other] - corners[corner]);
+    const glm::dvec3 straight = target - middle - glm::dot(target - middle, along) * along;
+    const glm::dvec3 outward = glm::normalize(straight);
+    std::vector<Obb> boxes;
+    for (int trial = 0; trial < 1000 && boxes.size() < count; ++trial) {
+        const glm::dvec3 place = frustum.origin + target + 3.0 * size * random.number(-1, 1) * along;
+        Obb box = box_at(random, place, random.direction(), size, 0.0);
+        const glm::dvec3 from = box.center;
+        const auto at = [&](double s) {
+            box.center = from + s * outward;
+            return box;
+        };
+        const auto meets = [&](double s) { return cull::classify(frustum, at(s)) != Verdict::outside; };
+        if (!meets(-0.5 * size) || meets(4.0 * size)) continue;
+        const double edge = oracle::edge_between(-0.5 * size, 4.0 * size, meets).first, share = random.number(-1, 1);
+        const Obb there = at(edge + share * share * share * std::ldexp(size, -14));
+        if (cull::classify(frustum, there, CullMode::conservative) == Verdict::straddling) boxes.push_back(there);
     }
     return boxes;
 }
@@ -181,6 +212,23 @@ TEST_SUITE("cull/kernel edges") {
         }
         // Half of all boxes lie within what small integers can tell.
         if (cull::kCountStatistics) CHECK(exact_tests > 10000);
+    }
+
+    TEST_CASE("boxes that two planes part from the frustum, or nearly, get classify's verdicts from every structure") {
+        oracle::NearMisses random(28);
+        std::size_t count = 0;
+        for (int trial = 0; trial < 120; ++trial) {
+            const TargetInTurn target(trial / 7);
+            Camera camera = random.camera();
+            camera.far_distance = camera.near_distance + random.number(1.0, 30.0);
+            const Frustum frustum = *frustum_of(camera);
+            const auto corners = *frustum_corners(frustum);
+            const double size = glm::length(corners[0] - corners[7]) * std::exp(random.number(-7.0, -3.0));
+            const auto boxes = cluster_across_edge(random, frustum, size, 16);
+            (void)check_all(boxes, {frustum});
+            count += boxes.size();
+        }
+        CHECK(count > 1200);
     }
 
     TEST_CASE("planes whose normals are not unit vectors get classify's verdicts from every structure") {

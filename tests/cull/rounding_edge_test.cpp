@@ -38,13 +38,14 @@ Frustum half_space(const glm::dvec3& normal, const glm::dvec3& through) {
     return frustum;
 }
 
-// Points around a place of a plane, up to three quanta off it, in a chunk that reaches to ±size.
+// Points around a place of a plane, up to three quanta off it, in a chunk that reaches to ±size. Lists of up to 64 are
+// tested without rows, longer ones by their rows first.
 std::vector<Sphere> points_near(oracle::NearMisses& random, const glm::dvec3& normal, const glm::dvec3& place,
-                                double size) {
+                                double size, int count) {
     std::vector<Sphere> points;
     for (int i = 0; i < 8; ++i)
         points.push_back({size * glm::dvec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1), 0.0});
-    for (int i = 0; i < 52; ++i) {
+    for (int i = 8; i < count; ++i) {
         glm::dvec3 p = place;
         for (int j = 0; j < 3; ++j) p[j] *= random.number(0.97, 1.0);
         p += (random.number(-3.0, 3.0) * size * 0x1p-14 - glm::dot(normal, p - place)) * normal;
@@ -64,7 +65,7 @@ void check_rows(oracle::NearMisses& random, double fraction) {
             place[j] = 0.98 * (rounding > 0.0 ? size : -size);
         }
         if (trial % 2) place = -place;
-        check_verdicts(points_near(random, n, place, size), half_space(n, place));
+        check_verdicts(points_near(random, n, place, size, trial % 4 < 2 ? 60 : 100), half_space(n, place));
     }
 }
 
@@ -79,6 +80,24 @@ TEST_SUITE("cull/rounding edges") {
     TEST_CASE("normals of 14 bits exactly: what is left is the rounding of the centres") {
         oracle::NearMisses random(42);
         check_rows(random, 0.0);
+    }
+
+    TEST_CASE("normals as long as kernels take them, before balls of many quanta that just touch or are just inside") {
+        oracle::NearMisses random(48);
+        for (int trial = 0; trial < 40; ++trial) {
+            const glm::dvec3 n = random.direction();
+            Frustum frustum = half_space(1.00049 * n, 100.0 * random.direction());
+            std::vector<Sphere> balls;
+            for (int i = 0; i < 120; ++i) {
+                // Most are small: so the rows' units are.
+                const double radius = random.number(4.0, 7.5) / (i % 6 == 0 ? 1.0 : 8.0);
+                const double value = (i % 2 ? radius : -radius) * (1.0 + 1e-7 * random.number(-1, 1));
+                const glm::dvec3 at = random.vector(-1, 1);
+                const double there = glm::dot(n, at) + frustum.planes[0].offset / 1.00049;
+                balls.push_back({at + (value - there) * n, radius});
+            }
+            check_verdicts(balls, frustum);
+        }
     }
 
     TEST_CASE("aligned boxes of a few roundings, far from the world's origin and beside the view's") {

@@ -4,6 +4,7 @@
 
 tests/mutation/run.py [NAME|MODULE|FILE …]   those that a word selects (all without one); resumes where it was stopped
 tests/mutation/run.py --together [WORD …]    those of them that fit into one build: minutes instead of hours
+tests/mutation/run.py --sanitize [WORD …]    the same under the sanitizers, as .ci/run has it: for what writes beyond an array
 tests/mutation/run.py --list                 what there is, nothing run
 tests/mutation/run.py --report               the table of what is known, nothing run
 
@@ -44,10 +45,11 @@ RULES = {
 class Scratch:
     """A copy of the tree with a build of its own."""
 
-    def __init__(self, work, jobs, clock, together):
+    def __init__(self, work, jobs, clock, together, sanitize):
         self.tree = work / "tree"
         self.together = together
-        self.build = self.tree / "build" / ("together" if together else "mutation")
+        self.sanitize = sanitize
+        self.build = self.tree / "build" / ("sanitized" if sanitize else "together" if together else "mutation")
         self.jobs = jobs
         self.clock = clock
         self.times = {}
@@ -76,10 +78,12 @@ class Scratch:
         data = ROOT.parent / "shared" / "data"
         command = ["cmake", "-S", self.tree, "-B", self.build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
                    f"-DCROFTON_SHARED_DATA={data}", "-DCROFTON_DISCOVER_TESTS=OFF", "-DCROFTON_WERROR=ON"]
+        if self.sanitize:  # a preset's values give way to those of the command line
+            command += ["--preset", "asan", "-DCMAKE_BUILD_TYPE=RelWithDebInfo", "-DCROFTON_WERROR=OFF"]
         if not self.together:  # a mutant should cost one small compilation
             command += ["-DCROFTON_SIMD_TARGETS=AVX2", "-DCROFTON_WERROR=OFF",
                         f"-DCMAKE_PROJECT_crofton_INCLUDE={self.tree}/tests/mutation/settings.cmake"]
-        done = subprocess.run(command, capture_output=True, text=True)
+        done = subprocess.run(command, capture_output=True, text=True, cwd=self.tree)
         if done.returncode:
             sys.exit(f"cmake cannot configure {self.tree}:\n{done.stdout}{done.stderr}")
 
@@ -115,8 +119,20 @@ class Scratch:
             self.cases[test] = {name.strip(): float(length) for length, name in seconds}
         if process.returncode == 0:
             return None
-        case = [line.strip() for line in output.splitlines() if line.startswith("TEST CASE:")]
-        return f"{test}: {case[0][10:].strip() if case else f'ended with {process.returncode}'}"
+        return f"{test}: {self.reason(output) or f'ended with {process.returncode}'}"
+
+    @staticmethod
+    def reason(output):
+        """The case that failed, which is not the first named where others say something, or a sanitizer's words."""
+        case = ""
+        for line in output.splitlines():
+            if line.startswith("TEST CASE:"):
+                case = line[10:].strip()
+            elif re.search(r": (FATAL )?ERROR: ", line) and case:
+                return case
+            elif "runtime error:" in line or "ERROR: AddressSanitizer" in line:
+                return f"a sanitizer: {line.rpartition('rror: ')[2]}"
+        return case
 
     def check_original(self, tests):
         """Builds the tests and sees them pass on the true code: that is how long a mutant may take ten times."""
@@ -286,12 +302,14 @@ def main():
     parser.add_argument("--report", action="store_true", help="print what is known and end")
     parser.add_argument("--fresh", action="store_true", help="forget earlier results of those selected")
     parser.add_argument("--together", action="store_true", help="only those that fit into one build, switched on in turn")
+    parser.add_argument("--sanitize", action="store_true", help="--together, under the sanitizers")
     parser.add_argument("--record", action="store_true", help="write judged.csv: what is known, for the repository")
     parser.add_argument("--hand", action="store_true", help="only those that are written down")
     parser.add_argument("--minutes", type=float, default=1e9, help="begin no mutant after so long")
     parser.add_argument("--work", type=Path, default=ROOT / "build" / "mutation", help="folder of the copy and the results")
     parser.add_argument("-j", "--jobs", type=int, default=2, help="compilations, or mutants, at a time")
     options = parser.parse_args()
+    options.together |= options.sanitize
     mutants = every = all_mutants()
     if options.hand:
         mutants = [m for m in mutants if m.at < 0]
@@ -313,7 +331,7 @@ def main():
     if options.record:
         known.write_record(all_mutants())
     if not options.report and not options.record:
-        scratch = Scratch(options.work.resolve(), options.jobs, {}, options.together)
+        scratch = Scratch(options.work.resolve(), options.jobs, {}, options.together, options.sanitize)
         scratch.copy()
         scratch.configure()
         started = time.monotonic()

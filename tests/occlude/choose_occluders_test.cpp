@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
+#include <gmpxx.h>
 #include <hwy/targets.h>
 #include <algorithm>
 #include <counting_memory.hpp>
@@ -49,6 +50,21 @@ double cover_by_definition(const OccluderCandidate& c, const Camera& camera) {
     for (const glm::vec3& a : c.areas) area += std::abs(glm::dot(d, glm::dvec3(a)));
     return perspective ? area / (distance * distance) / (4.0 * std::numbers::pi)
                        : area / (camera.height * camera.height * camera.aspect);
+}
+
+// The point where three rows of a matrix are 0, by Cramer's rule.
+std::array<mpq_class, 3> meeting_point(const glm::dmat4& m, const std::array<int, 3>& rows) {
+    const auto determinant = [&](int instead) {
+        const auto at = [&](int i, int column) {
+            const double number = m[column == instead ? 3 : column][rows[static_cast<std::size_t>(i)]];
+            return mpq_class(column == instead ? -number : number);
+        };
+        return mpq_class(at(0, 0) * (at(1, 1) * at(2, 2) - at(1, 2) * at(2, 1)) -
+                         at(0, 1) * (at(1, 0) * at(2, 2) - at(1, 2) * at(2, 0)) +
+                         at(0, 2) * (at(1, 0) * at(2, 1) - at(1, 1) * at(2, 0)));
+    };
+    const mpq_class all = determinant(-1);
+    return {determinant(0) / all, determinant(1) / all, determinant(2) / all};
 }
 
 Camera random_camera(std::mt19937_64& random, const glm::dvec3& around) {
@@ -193,6 +209,35 @@ TEST_SUITE("occlude/choose_occluders") {
         const EyeLimits flat = candidate_of(found, transform).limits;
         camera = {};
         CHECK_FALSE(may_use(flat, camera));
+    }
+
+    TEST_CASE("the eye of a matrix is within its error of the exact one, also of a window far to the eye's side") {
+        std::mt19937_64 random(50);
+        int far_off = 0, taken = 0;
+        for (int trial = 0; trial < 400; ++trial) {
+            const glm::dvec3 eye = 50.0 * random_vector(random), forward = glm::normalize(random_vector(random));
+            const glm::dvec3 right = glm::normalize(glm::cross(forward, random_vector(random))),
+                             up = glm::cross(right, forward);
+            // How far, in half widths of the window.
+            const double aside = std::exp2(double(trial % 13)), above = 0.3 * aside;
+            const glm::dvec3 rows[4] = {right + aside * forward, up - above * forward, forward, forward};
+            glm::dmat4 matrix;
+            for (int r = 0; r < 4; ++r) {
+                for (int j = 0; j < 3; ++j) matrix[j][r] = rows[r][j];
+                matrix[3][r] = -glm::dot(rows[r], eye) - (r == 2 ? 0.1 : 0.0);
+            }
+            const auto view = occlusion_view_of(matrix, DepthRange::zero_to_one, glm::dvec3(0.0));
+            if (!view) continue;  // the corners of such a window's near face are not known well enough
+            const auto exact = meeting_point(matrix, {0, 1, 3});
+            glm::dvec3 off;
+            for (int j = 0; j < 3; ++j)
+                off[j] = mpq_class(view->origin[j] - exact[static_cast<std::size_t>(j)]).get_d();
+            CHECK(glm::length(off) <= view->eye_error);
+            far_off += glm::length(off) > 0x1p-40 * glm::length(eye);
+            ++taken;
+        }
+        CHECK(taken > 350);
+        CHECK(far_off > 50);
     }
 
     TEST_CASE("budgets hold, equals come by id, and a changed candidate counts as it is now") {

@@ -4,6 +4,7 @@
 #include <hwy/targets.h>
 #include <crofton/core/executor.hpp>
 #include <crofton/occlude/occlusion.hpp>
+#include <oracle/edges.hpp>
 
 #include "scenes.hpp"
 
@@ -138,6 +139,65 @@ TEST_SUITE("occlude/hard cases") {
                 CHECK(hidden == ((x + z) % 5 != 0));
             }
         CHECK(!buffer.hides(box_of({0.5, 12.0, -3.5}, {0.3f, 1.0f, 0.3f})));  // above the tiles
+    }
+
+    TEST_CASE("beams far longer than the picture, as far out behind a wall as they count as hidden, are hidden") {
+        Random random(26);
+        int close = 0;
+        for (int trial = 0; trial < 200; ++trial) {
+            OcclusionScene scene;
+            scene.camera = camera_at(random, 0.0);
+            scene.camera.projection = Projection::orthographic;
+            scene.camera.height = 64.0;
+            scene.camera.aspect = 1.0;
+            scene.size = {64, 64};
+            const glm::dmat3 view_to_world = glm::transpose(world_to_view_rotation(scene.camera));
+            const auto view = *occlude::occlusion_view_of(scene.camera);
+            // The left half of the picture, up to where the last column just counts as covered.
+            const double column = 32.0;
+            const auto wall_to = [&](double x) {
+                Obb wall = box_of(ray_through(scene, x, 32.0, 10.0).to, {50.0f, 50.0f, 1.0f});
+                wall.axes = glm::mat3(view_to_world);
+                wall.center -= 50.0 * view_to_world[0];
+                return wall;
+            };
+            double less = 0.0, more = 0.1;
+            while (more - less > 1e-6) {
+                const double middle = 0.5 * (less + more);
+                (picture({wall_to(column + middle)}, view, scene.size).nearness(31, 32) < -1e38f ? less : more) =
+                    middle;
+            }
+            const std::vector<Obb> walls = {wall_to(column + more + 1e-5)};
+            const auto buffer = picture(walls, view, scene.size);
+            // Upright, nearly, and behind the wall but for its right side.
+            const double slope = random.uniform(-1e-4, 1e-4);
+            const glm::dvec3 up = glm::normalize(view_to_world[1] + slope * view_to_world[0]);
+            const glm::dvec3 right = glm::cross(up, view_to_world[2]);
+            Obb beam = box_of(ray_through(scene, column, 32.0, 30.0).to,
+                              {4.0f, static_cast<float>(random.uniform(1e4, 4e4)), 0.0f});
+            beam.axes = glm::mat3(glm::dmat3(right, up, view_to_world[2]));
+            beam.center -= 4.0 * right - random.uniform(-0.9, 0.9) * double(beam.half_extents.y) * up;
+            // Where its right side passes the picture's middle, to doubles.
+            const auto side = [&] {
+                const glm::dvec3 edge = beam.center + 4.0 * glm::dvec3(beam.axes[0]), along(beam.axes[1]);
+                const glm::dvec3 to_middle = ray_through(scene, column, 32.0, 30.0).to - edge;
+                return edge + glm::dot(to_middle, view_to_world[1]) / glm::dot(along, view_to_world[1]) * along;
+            };
+            const glm::dvec3 center = beam.center;
+            const auto is_hidden_at = [&](double x) {
+                beam.center = center;
+                beam.center +=
+                    glm::dot(ray_through(scene, x, 32.0, 30.0).to - side(), view_to_world[0]) * view_to_world[0];
+                return buffer.hides(beam);
+            };
+            REQUIRE(is_hidden_at(column - 2.5));
+            REQUIRE(!is_hidden_at(column + 0.1));
+            const double last = oracle::edge_between(column - 2.5, column + 0.1, is_hidden_at).first;
+            CHECK(is_hidden_at(last));
+            CHECK(!oracle::is_free(ray_to(scene.camera, side() - 1e-7 * view_to_world[0]), walls));
+            close += last > column - 0.2;
+        }
+        CHECK(close > 50);
     }
 
     TEST_CASE("matrices of any kind give the answers of the camera that they come from") {

@@ -92,9 +92,16 @@ TEST_SUITE("radiosity/patches") {
                 cut.parallelogram({0, rows[r], z0}, {0, rows[r + 1] - rows[r], 0}, {0, 0, dz}, 0);
             }
         REQUIRE(shapes::unmatched_edges(cut.mesh) > 0);
+        const auto color_at = [](const glm::vec3& p) { return 0.3f + 0.1f * glm::vec3(p.x, p.y - p.z, p.z); };
+        for (const glm::vec3& p : cut.mesh.positions) cut.mesh.colors.push_back(color_at(p));
         const auto mended = mend_t_junctions(cut.mesh, 1e-5);
         REQUIRE(mended.has_value());
         CHECK(shapes::unmatched_edges(mended->mesh) == 0);
+        // New corners have the colour of their place.
+        REQUIRE(mended->mesh.positions.size() > cut.mesh.positions.size());
+        REQUIRE(mended->mesh.colors.size() == mended->mesh.positions.size());
+        for (std::size_t i = 0; i < mended->mesh.colors.size(); ++i)
+            CHECK(glm::length(mended->mesh.colors[i] - color_at(mended->mesh.positions[i])) < 1e-5f);
         CHECK(area_of(mended->mesh) == doctest::Approx(area_of(cut.mesh)).epsilon(1e-6));
         CHECK(shapes::unmatched_edges(refine(mended->mesh, 0.11)->mesh) == 0);
         CHECK(shapes::unmatched_edges(refine(cut.mesh, 0.11)->mesh) > 0);

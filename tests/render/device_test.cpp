@@ -38,6 +38,24 @@ TEST_SUITE("render/device") {
         CHECK(error_of(device).code == ErrorCode::unavailable);
         CHECK(error_of(device).message.find("mesa-vulkan-drivers") != std::string::npos);
     }
+    TEST_CASE("an instance has the labels' extension where it is asked for or is validated, and not else") {
+        // A function of an extension that is not enabled has no address.
+        const auto has_labels = [](const DeviceOptions& options) {
+            const auto device = Device::create(options);
+            REQUIRE(device);
+            return vkGetInstanceProcAddr(device->context().instance, "vkCreateDebugUtilsMessengerEXT") != nullptr;
+        };
+        CROFTON_REQUIRE_DEVICE(validated);
+        DeviceOptions options;
+        options.kind = DeviceKind::cpu;
+        CHECK_FALSE(has_labels(options));
+        options.instance_extensions = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME};
+        CHECK(has_labels(options));
+        options.validation = true;
+        CHECK(has_labels(options));
+        options.instance_extensions.clear();
+        CHECK(has_labels(options));
+    }
     TEST_CASE("a name that no device has is refused, and the message lists the devices there are") {
         CROFTON_REQUIRE_DEVICE(device);
         DeviceOptions options;

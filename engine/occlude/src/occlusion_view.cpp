@@ -94,8 +94,9 @@ Result<OcclusionView> occlusion_view_of(const glm::dmat4& to_clip, DepthRange de
     // Rays are the lines through the point where the first two rows and w are 0, or along that direction.
     const glm::dvec3 across = glm::cross(direction_of(x), direction_of(y));
     const double turn = glm::dot(across, direction_of(w));
-    const double scale = glm::length(direction_of(x)) * glm::length(direction_of(y)) * glm::length(direction_of(w));
-    view.perspective = std::fabs(turn) > 1e-12 * scale && glm::length(direction_of(w)) > 1e-12 * std::fabs(w[3]);
+    const double size_x = glm::length(direction_of(x)), size_y = glm::length(direction_of(y)),
+                 size_w = glm::length(direction_of(w)), scale = size_x * size_y * size_w;
+    view.perspective = std::fabs(turn) > 1e-12 * scale && size_w > 1e-12 * std::fabs(w[3]);
     if (view.perspective) {
         const glm::dvec3 eye = -(x[3] * glm::cross(direction_of(y), direction_of(w)) +
                                  y[3] * glm::cross(direction_of(w), direction_of(x)) + w[3] * across) /
@@ -114,9 +115,16 @@ Result<OcclusionView> occlusion_view_of(const glm::dmat4& to_clip, DepthRange de
     if (!(view.least_w > 0.0) || !std::isfinite(view.least_w))
         return fail(ErrorCode::unsupported, kNoItem, "occlusion view: the near plane reaches the eye");
     view.near_radius = near_radius_of(view);
-    // The eye comes from quotients of products of three entries; 2^-36 leaves room for a matrix of poor condition.
-    const glm::dvec3 relative = view.origin - origin;
-    view.eye_error = view.perspective ? 0x1p-36 * glm::length(relative) + 0x1p-50 * glm::length(origin) : 0.0;
+    if (view.perspective) {
+        // The eye is a quotient. With u = 2^-53 its dividend is within 8 u of `sizes`, and `turn` within 8 u of
+        // `scale`: of that a cross product takes 4 u. What one is off by moves the eye by that share of `turn`. 2^-49
+        // is 16 u.
+        const glm::dvec3 relative = view.origin - origin;
+        const double sizes =
+            std::fabs(x[3]) * size_y * size_w + std::fabs(y[3]) * size_w * size_x + std::fabs(w[3]) * size_x * size_y;
+        view.eye_error =
+            0x1p-49 * (sizes + scale * glm::length(relative)) / std::fabs(turn) + 0x1p-50 * glm::length(origin);
+    }
     return view;
 }
 
