@@ -343,6 +343,8 @@ def digests_of(result):
 
 def others_of(result):
     said = []
+    if "broken" in result and result.get(DIGESTS):
+        said.append(f"**{result['broken']}**")
     for target, parts in result.items():
         if target in (DIGESTS, "broken"):
             continue
