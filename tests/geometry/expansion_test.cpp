@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 #include <gmpxx.h>
 
+#include <cmath>
 #include <crofton/geometry/expansion.hpp>
 #include <random>
 
@@ -22,6 +23,19 @@ TEST_SUITE("geometry/expansion") {
         const auto rest = x * x - exact_sum(0x1p60, 2.0);
         CHECK(rest.sign() == 1);
         CHECK(rest.estimate() == 0x1p-60);
+    }
+
+    TEST_CASE("products of halves and fused ones have the same bits") {
+        std::mt19937_64 random(8);
+        std::uniform_real_distribution<double> number(-1.0, 1.0);
+        for (int trial = 0; trial < 200000; ++trial) {
+            const double a = std::ldexp(number(random), static_cast<int>(random() % 900) - 450);
+            const double b = std::ldexp(number(random), static_cast<int>(random() % 900) - 450);
+            const auto halves = crofton::detail::two_product_of_halves(a, b),
+                       whole = crofton::detail::two_product(a, b);
+            REQUIRE(halves.high == whole.high);
+            REQUIRE(halves.low == whole.low);
+        }
     }
 
     TEST_CASE("agrees with integers of any length on random sums of products") {
