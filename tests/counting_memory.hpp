@@ -3,7 +3,8 @@
 #pragma once
 #include <crofton/core/memory.hpp>
 #include <cstddef>
-#include <cstdlib>
+
+#include "aligned_memory.hpp"
 
 namespace crofton::testing {
 
@@ -21,11 +22,11 @@ class CountingMemory {
     static void* allocate(void* self, std::size_t bytes, std::size_t alignment) {
         ++static_cast<CountingMemory*>(self)->allocations_;
         static_cast<CountingMemory*>(self)->bytes_in_use_ += bytes;
-        return std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
+        return aligned_block(bytes, alignment);
     }
     static void release(void* self, void* memory, std::size_t bytes, std::size_t) {
         static_cast<CountingMemory*>(self)->bytes_in_use_ -= bytes;
-        std::free(memory);
+        free_block(memory);
     }
 
     std::size_t allocations_ = 0, bytes_in_use_ = 0;

@@ -18,7 +18,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 WEB = ROOT / "web"
-PAGE = ["town", "culling", "camera", "draw", "main"]
+PAGE = ["town", "culling", "camera", "draw", "map", "main"]
 
 
 def module_url(text):

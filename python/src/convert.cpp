@@ -28,7 +28,8 @@ py::array contiguous(const py::array& array) {
 }
 
 bool has_layout(const py::array& array, const py::dtype& dtype) {
-    return array.dtype().equal(dtype) && (array.flags() & py::array::c_style) != 0 &&
+    const py::dtype own = array.dtype();
+    return (own.is(dtype) || own.equal(dtype)) && (array.flags() & py::array::c_style) != 0 &&
            (array.flags() & py::detail::npy_api::NPY_ARRAY_ALIGNED_) != 0;
 }
 
@@ -40,8 +41,39 @@ py::array record_array(const py::dtype& dtype, std::span<const T> values) {
     return result;
 }
 
+// A float, or an int that NumPy holds as one: what a conversion by NumPy yields, without the conversion.
+bool read_number(PyObject* given, double& value) {
+    if (PyFloat_Check(given)) {
+        value = PyFloat_AS_DOUBLE(given);
+        return true;
+    }
+    if (!PyLong_CheckExact(given)) return false;
+    int overflow = 0;
+    value = static_cast<double>(PyLong_AsLongLongAndOverflow(given, &overflow));
+    return overflow == 0;
+}
+
+// Three numbers in a tuple, a list or an array of doubles: the usual ways. False for any other, which NumPy judges.
+bool read_vector(const py::handle& given, glm::dvec3& vector) {
+    PyObject* const p = given.ptr();
+    if (PyTuple_CheckExact(p) && PyTuple_GET_SIZE(p) == 3)
+        return read_number(PyTuple_GET_ITEM(p, 0), vector.x) && read_number(PyTuple_GET_ITEM(p, 1), vector.y) &&
+               read_number(PyTuple_GET_ITEM(p, 2), vector.z);
+    if (PyList_CheckExact(p) && PyList_GET_SIZE(p) == 3)
+        return read_number(PyList_GET_ITEM(p, 0), vector.x) && read_number(PyList_GET_ITEM(p, 1), vector.y) &&
+               read_number(PyList_GET_ITEM(p, 2), vector.z);
+    if (!py::isinstance<py::array>(given)) return false;
+    const auto array = py::reinterpret_borrow<py::array>(given);
+    if (array.ndim() != 1 || array.size() != 3 || !has_layout(array, py::dtype::of<double>())) return false;
+    const auto* const values = static_cast<const double*>(array.data());
+    vector = {values[0], values[1], values[2]};
+    return true;
+}
+
 py::array records(const py::handle& given, const py::dtype& dtype, const char* name, const char* what) {
-    py::array array = py::array::ensure(given);
+    if (py::isinstance<py::array>(given))
+        if (auto array = py::reinterpret_borrow<py::array>(given); has_layout(array, dtype)) return array;
+    const py::array array = py::array::ensure(given);
     if (!array) PyErr_Clear();
     if (array && has_layout(array, dtype)) return array;
     if (!array || array.dtype().kind() != 'V' || !array.dtype().attr("newbyteorder")("=").equal(dtype))
@@ -123,7 +155,7 @@ const py::dtype& handle_dtype() {
 }
 
 Boxes::Boxes(const py::handle& given, const char* name) {
-    if (py::isinstance<Obb>(given)) {
+    if (!py::isinstance<py::array>(given) && py::isinstance<Obb>(given)) {
         owner_ = py::reinterpret_borrow<py::object>(given);
         span_ = {given.cast<const Obb*>(), 1};
         return;
@@ -163,6 +195,7 @@ py::array handles_of(std::span<const ObjectHandle> handles) {
 }
 
 glm::dvec3 vector_of(const py::handle& given, const char* name) {
+    if (glm::dvec3 vector; read_vector(given, vector)) return vector;
     const py::array array = numbers(given, name);
     if (array.ndim() != 1 || array.size() != 3) raise_type(std::string(name) + ": three numbers are expected");
     const py::array_t<double> values = contiguous<double>(array);

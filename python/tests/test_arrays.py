@@ -77,6 +77,27 @@ def test_input_is_not_changed_and_not_kept():
     assert box == crofton.fit_obb(before)
 
 
+vectors = [(1, 2, 3), (0.1, -2, 3e29), (2**53 + 1, 2**60 + 129, -(2**62) - 1), (2**63, 1, 2), (2**63 - 1, 0.5, -(2**63)),
+           (True, 0.5, 2), (np.float32(0.1), np.float64(0.1), np.int8(-3))]
+
+
+@pytest.mark.parametrize("given", vectors)
+def test_a_vector_is_the_same_three_numbers_in_a_tuple_a_list_or_an_array(given):
+    expected = tuple(float(number) for number in given)
+    array = np.array(expected)
+    for way in (given, list(given), array, np.repeat(array, 2)[::2], array.astype(">f8"),
+                np.frombuffer(b"x" + array.tobytes(), dtype="f8", offset=1)):
+        assert tuple(crofton.Box(way, (1, 1, 1)).center) == expected
+
+
+@pytest.mark.parametrize("bad", [(1, 2), (1, 2, 3, 4), [1, 2], [1.0, "2", 3], (1, 2, None), (1j, 2, 3), (1, 2, 10**30),
+                                 (True, False, True), (2**63, 0.5, 2**70), np.zeros((3, 1)), np.zeros(2),
+                                 np.zeros(3, bool), "abc", None, 7])
+def test_what_is_no_vector_is_a_type_error(bad):
+    with pytest.raises(TypeError, match="center: "):
+        crofton.Box(bad, (1, 1, 1))
+
+
 def test_boxes_have_the_layout_of_the_library():
     assert crofton.box_dtype.itemsize == 72
     assert crofton.box_dtype.names == ("center", "axes", "half_extents")

@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: MIT
+import signal
 import threading
 import time
 
@@ -96,11 +97,9 @@ def test_an_exception_in_progress_comes_out(random):
 
 
 def test_ctrl_c_ends_a_long_call(random):
-    import _thread
-
     points = random.normal(size=(20000, 3))
     points /= np.linalg.norm(points, axis=1)[:, None]
-    threading.Timer(0.3, _thread.interrupt_main).start()
+    threading.Timer(0.3, signal.pthread_kill, [threading.main_thread().ident, signal.SIGINT]).start()
     start = time.monotonic()
     with pytest.raises(KeyboardInterrupt):
         crofton.fit_exact(points, gap=1e-12)

@@ -4,11 +4,11 @@
 #include <atomic>
 #include <crofton/core/error.hpp>
 #include <crofton/core/executor.hpp>
-#include <cstdlib>
 #include <map>
 #include <mutex>
 #include <thread>
 
+#include "aligned_memory.hpp"
 #include "handles.hpp"
 
 using namespace crofton::capi_test;
@@ -23,12 +23,12 @@ void* count_allocate(void* user, std::size_t bytes, std::size_t alignment) {
     auto& counter = *static_cast<Counter*>(user);
     ++counter.allocations;
     counter.bytes_live += bytes;
-    return std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
+    return crofton::testing::aligned_block(bytes, alignment);
 }
 
 void count_release(void* user, void* memory, std::size_t bytes, std::size_t) {
     static_cast<Counter*>(user)->bytes_live -= bytes;
-    std::free(memory);
+    crofton::testing::free_block(memory);
 }
 
 // A job system of the host's, here the library's own pool.

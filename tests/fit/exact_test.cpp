@@ -239,6 +239,26 @@ TEST_SUITE("fit/exact") {
                    ->complete);
     }
 
+    TEST_CASE("each bound that is told on the way is a bound: no box is found below it later") {
+        std::mt19937 random(7);
+        int told = 0;
+        for (int trial = 0; trial < 400; ++trial) {
+            Points points;
+            for (int i = 0; i < 20 + trial; ++i) points.push_back(glm::normalize(random_point(random)));
+            std::vector<double> bounds;
+            const auto keep = [&](const fit::Progress& progress) {
+                return bounds.push_back(progress.lower_bound), true;
+            };
+            const FunctionRef<bool(const fit::Progress&)> callback(keep);
+            const auto found =
+                fit::fit_exact(view(points), {.criterion = measure::minimal_volume(), .progress = &callback});
+            REQUIRE(found);
+            for (const double bound : bounds) CHECK(bound <= found->value);
+            told += static_cast<int>(bounds.size());
+        }
+        CHECK(told > 100);
+    }
+
     TEST_CASE("the best known boxes of real meshes are matched within 1e-6") {
         const std::string folder = std::string(CROFTON_SHARED_DATA) + "/meshes/";
         std::ifstream table(folder + "reference.csv");

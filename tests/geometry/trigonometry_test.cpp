@@ -69,8 +69,9 @@ TEST_SUITE("geometry/trigonometry") {
             const long double angle = std::atan2(static_cast<long double>(y), static_cast<long double>(a));
             REQUIRE(near(arc_tangent(y, a), angle, std::fabs(angle)));
             const double c = 2.0 * wide - 1.0;
-            REQUIRE(
-                near(arc_cosine(c), std::acos(static_cast<long double>(c)), std::acos(static_cast<long double>(c))));
+            // MinGW's std::acos loses digits near 1.
+            const long double wide_c = c, arc = std::atan2(std::sqrt((1.0L - wide_c) * (1.0L + wide_c)), wide_c);
+            REQUIRE(near(arc_cosine(c), arc, arc));
             const double cube = std::ldexp(wide + 1e-3, static_cast<int>(random() % 2000) - 1000);
             REQUIRE(near(cube_root(cube), std::cbrt(static_cast<long double>(cube)),
                          std::cbrt(static_cast<long double>(cube))));

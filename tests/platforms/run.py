@@ -10,16 +10,17 @@ tests/platforms/run.py --write                               puts that table int
 tests/platforms/run.py --check                               whether docs/testing.md has that table
 
 A cell is a compiler and a target, set as a preset of CMakePresets.json says. Its build lies in build/platforms/CELL; the
-results of all are in results.json beside this script. Cells are made cheap: little optimisation, one instruction set,
-ccache where it is installed, least priority. The digests come first, one file of tests after another; then the tests of
-the modules (core and geometry unless told). What is left of a cell that was stopped is done by the next run: a part is
-done again only where its program has changed. A part that takes longer than the limit (900 s) is stopped, and the table
-says so.
+results of all are in results.json beside this script. Two runs may try different cells at a time. Cells are made cheap:
+little optimisation, one instruction set, ccache where it is installed, least priority. The digests come first, one file
+of tests after another; then the tests of the modules (core and geometry unless told). What is left of a cell that was
+stopped is done by the next run: a part is done again only where its program has changed. A part that takes longer than
+the limit (900 s) is stopped, and the table says so.
 `third_party/install.sh --platforms` installs the compilers and emulators. Libraries that a target lacks are compiled
 from the system's source packages, which apt-get fetches. A cell that cannot be here says why and counts for nothing.
 Exit status 1 where a digest differs or a test fails. Python 3.11, nothing else.
 """
 import argparse
+import fcntl
 import hashlib
 import json
 import os
@@ -276,14 +277,14 @@ def try_cell(cell, options, results):
             environment=environment_of(cell))
         for target in [DIGESTS, *(f"test_{module}" for module in options.modules.split(",") if module)]:
             run(["cmake", "--build", cell.build / "build", "-j", jobs, "--target", target], log)
-            try_parts(cell, target, options.limit, results, log)
+            try_parts(cell, target, options.limit, result, log)
     except Failed as failure:
         result["broken"] = str(failure)
-        keep(results)
+        keep(cell, result)
 
 
-def try_parts(cell, target, limit, results, log):
-    done, program = results[cell.name].setdefault(target, {}), hash_of(program_of(cell, target))
+def try_parts(cell, target, limit, result, log):
+    done, program = result.setdefault(target, {}), hash_of(program_of(cell, target))
     for name in set(done) - set(parts_of(target)):
         del done[name]
     for name, filters in parts_of(target).items():
@@ -292,18 +293,26 @@ def try_parts(cell, target, limit, results, log):
         if known.get("program") == program and settled:
             continue
         done[name] = {**test(cell, target, filters, limit, log), "program": program}
-        keep(results)
+        keep(cell, result)
         print(f"{cell.name}: {name}: {text_of(done[name])}", flush=True)
 
 
-def keep(results):
-    order = {cell.name: i for i, cell in enumerate(CELLS)}
-    kept = {name: results[name] for name in sorted(results, key=lambda name: order.get(name, len(order)))}
-    text = json.dumps(kept, indent=1, sort_keys=False)
-    # One line a part.
-    text = re.sub(r"\{\s+([^{}]*?)\s+\}", lambda found: "{" + re.sub(r"\s+", " ", found[1]) + "}", text)
-    RESULTS.with_suffix(".new").write_text(text + "\n")
-    RESULTS.with_suffix(".new").replace(RESULTS)
+def known_results():
+    return json.loads(RESULTS.read_text()) if RESULTS.exists() else {}
+
+
+def keep(cell, result):
+    """Of this cell alone: other cells may be tried by other runs meanwhile."""
+    WORK.mkdir(parents=True, exist_ok=True)
+    with (WORK / "lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        results = {**known_results(), cell.name: result}
+        kept = {c.name: results[c.name] for c in CELLS if c.name in results}
+        text = json.dumps(kept, indent=1, sort_keys=False)
+        # One line a part.
+        text = re.sub(r"\{\s+([^{}]*?)\s+\}", lambda found: "{" + re.sub(r"\s+", " ", found[1]) + "}", text)
+        RESULTS.with_suffix(".new").write_text(text + "\n")
+        RESULTS.with_suffix(".new").replace(RESULTS)
 
 
 def text_of(part):
@@ -334,6 +343,8 @@ def digests_of(result):
 
 def others_of(result):
     said = []
+    if "broken" in result and result.get(DIGESTS):
+        said.append(f"**{result['broken']}**")
     for target, parts in result.items():
         if target in (DIGESTS, "broken"):
             continue
@@ -377,7 +388,7 @@ def main():
     for mode in ("--libraries", "--list", "--report", "--write", "--check"):
         parser.add_argument(mode, action="store_true")
     options = parser.parse_args()
-    results = json.loads(RESULTS.read_text()) if RESULTS.exists() else {}
+    results = known_results()
     if options.report:
         return print(report(results))
     if options.write:

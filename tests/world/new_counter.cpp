@@ -5,13 +5,15 @@
 #include <cstdlib>
 #include <new>
 
+#include "aligned_memory.hpp"
+
 namespace {
 
 std::atomic<std::size_t> calls = 0;
 
 void* counted(std::size_t bytes, std::size_t alignment) {
     ++calls;
-    void* memory = std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
+    void* memory = crofton::testing::aligned_block(bytes, alignment);
     if (!memory) std::abort();
     return memory;
 }
@@ -31,16 +33,16 @@ void* operator new(std::size_t bytes, std::align_val_t alignment, const std::not
     return counted(bytes, static_cast<std::size_t>(alignment));
 }
 void operator delete(void* memory) noexcept {
-    std::free(memory);
+    crofton::testing::free_block(memory);
 }
 void operator delete(void* memory, std::size_t) noexcept {
-    std::free(memory);
+    crofton::testing::free_block(memory);
 }
 void operator delete(void* memory, std::align_val_t) noexcept {
-    std::free(memory);
+    crofton::testing::free_block(memory);
 }
 void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-    std::free(memory);
+    crofton::testing::free_block(memory);
 }
 
 std::size_t crofton::testing::operator_news() {

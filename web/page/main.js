@@ -8,6 +8,7 @@ import { makeTown } from './town.js';
 import { CRITERIA, Culling, VERDICTS } from './culling.js';
 import { cameraOf, edgesOf, matrixOf, tour } from './camera.js';
 import { COLOURS, Drawing } from './draw.js';
+import { TownMap } from './map.js';
 
 const element = (id) => document.getElementById(id);
 const address = new URLSearchParams(location.hash.slice(1));
@@ -19,7 +20,8 @@ const poseOf = (text) => {
 
 class Page {
     constructor(gl, culling, objects) {
-        Object.assign(this, { gl, culling, objects, drawing: new Drawing(gl, objects), keys: new Set(), seconds: 0 });
+        Object.assign(this, { gl, culling, objects, drawing: new Drawing(gl, objects), map: new TownMap(element('map'), objects),
+            keys: new Set(), seconds: 0 });
         this.pose = poseOf(address.get('at'));
         this.flying = !this.pose;
         this.pose ??= tour(0);
@@ -83,6 +85,7 @@ class Page {
         const shown = this.frozen || this.all ? () => true : (verdict) => verdict === 1 || verdict === 2;
         const drawn = this.drawing.frame(this.objects, this.culling.verdicts, shown, matrixOf(viewer), viewer.position,
             this.frozen && edgesOf(camera));
+        this.map.draw(this.culling.verdicts, camera, viewer.position);
         this.show(counts, ms, drawn);
         this.answer = { counts, drawn, camera };
     }

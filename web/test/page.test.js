@@ -91,6 +91,30 @@ test('page: without occlusion nothing is occluded, and nothing else changes', { 
     assert.deepEqual(without.text, without.counts);
 }));
 
+/** Objects whose place on the map has the colour of their verdict, of another, or of none. */
+const mapped = (page) => page.evaluate(`(() => { const p = croftonPage, canvas = document.getElementById('map'); p.frame(0);
+    const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+    const tint = (id) => getComputedStyle(document.getElementById(id).parentElement).getPropertyValue('--tint');
+    const tints = ['outside', 'straddling', 'inside', 'occluded'].map((id) => tint(id).match(/\\d+/g).join());
+    const found = { own: 0, other: 0, none: 0, red: 0 };
+    p.objects.forEach(({ position: [x, , z] }, i) => {
+        const at = 4 * (canvas.width * Math.round(p.map.at(z)) + Math.round(p.map.at(x)));
+        const verdict = tints.indexOf(data.subarray(at, at + 3).join());
+        ++found[verdict < 0 ? 'none' : verdict === p.culling.verdicts[i] ? 'own' : 'other'];
+        if (verdict === 3) ++found.red;
+    });
+    return found; })()`);
+
+test('page: the map shows each object in the colour of its verdict', { skip }, () => see(`at=${STREET}`, async (page) => {
+    const all = makeTown().length, { counts } = await answer(page), first = await mapped(page);
+    // Houses cover some of the trees beside them, lines of the frustum some of both.
+    assert.ok(first.own > 0.97 * all && first.none < 0.02 * all, JSON.stringify(first));
+    assert.ok(first.red > 0.9 * counts[3], JSON.stringify(first));
+    await page.evaluate('document.getElementById("occlusion").click()');
+    const second = await mapped(page);
+    assert.ok(second.own > 0.97 * all && second.red === 0, JSON.stringify(second));
+}));
+
 test('page: the box of an object holds its mesh, to the last bit', { skip: builds.length ? false : skip }, async () => {
     const objects = makeTown(), culling = new Culling(await load(), objects);
     const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];

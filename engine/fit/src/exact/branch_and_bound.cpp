@@ -17,6 +17,8 @@ using kernels::kBatch;
 
 // tan(π/8). By the 24 symmetries of a box, Rodrigues vectors c with |c_i| ≤ tan(π/8) and Σ|c_i| ≤ 1 cover all frames.
 constexpr double kRootHalf = 0.41421356237309515;
+// The host is asked after so many points of cells: some 0.1 ms.
+constexpr std::size_t kWorkBetween = 8192;
 
 struct Cell {
     glm::dvec3 center, half, spread;
@@ -51,7 +53,7 @@ class Search {
             cells_.pop_back();
             load_lists(cell);
             if (cell.bound >= target()) continue;
-            if (result_.cells >= limits_.cells || (++steps_ % 64 == 0 && !keep_going())) {
+            if (result_.cells >= limits_.cells || !keep_going(cell.bound)) {
                 cells_.push_back(cell);
                 break;
             }
@@ -75,9 +77,14 @@ class Search {
         target_ = std::max(0.0, value * (1.0 - limits_.gap) - 1e-13 * slopes);
     }
 
-    bool keep_going() {
+    // Asks the host now and then. `bound` is that of the cell which is about to be split.
+    bool keep_going(double bound) {
         if (limits_.keep_going == nullptr) return true;
-        double bound = target();
+        work_ += 64;
+        for (const std::size_t count : count_) work_ += count;
+        if (work_ < kWorkBetween) return true;
+        work_ = 0;
+        bound = std::min(bound, target());
         for (const Cell& cell : cells_) bound = std::min(bound, cell.bound);
         return (*limits_.keep_going)(result_.best.value, bound, result_.cells);
     }
@@ -233,7 +240,7 @@ class Search {
     const glm::dmat3 root_;
     SearchResult result_;
     double target_ = std::numeric_limits<double>::infinity();
-    std::uint64_t steps_ = 0;
+    std::size_t work_ = 0;               // since the host was asked
     Vector<glm::dvec3> subset_, local_;  // in the cloud's coordinates and in the root frame's
     std::array<std::array<Vector<double>, 3>, 6> lists_;
     std::array<std::size_t, 6> count_{};

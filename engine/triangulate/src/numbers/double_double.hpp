@@ -36,7 +36,8 @@ struct SquaredLength {
 // the correction. In all it errs by less than q·2^-101.
 [[nodiscard]] inline DoubleDouble root(const SquaredLength& square) {
     const double q = std::sqrt(square.high);
-    return {q, (std::fma(-q, q, square.high) + square.rest) / (2.0 * q)};
+    const auto qq = detail::two_product(q, q);
+    return {q, (((square.high - qq.high) - qq.low) + square.rest) / (2.0 * q)};
 }
 
 }  // namespace crofton::triangulate

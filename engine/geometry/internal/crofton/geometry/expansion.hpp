@@ -2,8 +2,10 @@
 // Exact sums and products of doubles, for signs that floating-point filters cannot decide.
 #pragma once
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 namespace crofton {
 
@@ -43,10 +45,26 @@ struct TwoTerms {
     return {high, (a - a_part) + (b - b_part)};
 }
 
-// a · b = high + low, exactly.
+// The nearest number of 26 bits; what is left has as many.
+[[nodiscard]] inline double upper_half(double value) {
+    constexpr std::uint64_t kUnit = std::uint64_t{1} << 27;
+    return std::bit_cast<double>((std::bit_cast<std::uint64_t>(value) + kUnit / 2) & ~(kUnit - 1));
+}
+
+// The same without fused multiplication (Dekker): all products of halves are exact.
+[[nodiscard]] inline TwoTerms two_product_of_halves(double a, double b) {
+    const double high = a * b, a1 = upper_half(a), b1 = upper_half(b), a2 = a - a1, b2 = b - b1;
+    return {high, ((a1 * b1 - high) + a1 * b2 + a2 * b1) + a2 * b2};
+}
+
+// a · b = high + low, exactly. MinGW's std::fma rounds twice.
 [[nodiscard]] inline TwoTerms two_product(double a, double b) {
+#if defined(__MINGW32__) && !defined(__FMA__)
+    return two_product_of_halves(a, b);
+#else
     const double high = a * b;
     return {high, std::fma(a, b, -high)};
+#endif
 }
 
 }  // namespace detail
