@@ -29,8 +29,8 @@ constexpr FaceSides sides_of(int face) {
 }
 constexpr FaceSides kSides[6] = {sides_of(0), sides_of(1), sides_of(2), sides_of(3), sides_of(4), sides_of(5)};
 
-// A corner of the clipped polygon is where two lines meet: `before` and `after` are edges of the incident face (from 0)
-// or sides of the reference (−1 − number), −4 to 3.
+// A corner of the clipped polygon is where two lines meet. `before` and `after` are edges of the incident face, 0 to 3,
+// or sides of the reference, −1 − number.
 constexpr unsigned lines(int before, int after) {
     return static_cast<unsigned>(8 * (before + 4) + (after + 4));
 }

@@ -95,8 +95,8 @@ class BoxClip {
     [[nodiscard]] bool proves_least(double extent, double allowed) const;
 
   private:
-    // A corner of the clipped polygon: its shadow on the face, and how far it is above along the direction; and which
-    // lines meet in it.
+    // A corner of the clipped polygon: its shadow on the face, and how far it is above along the direction. `lines`:
+    // which meet in it.
     struct FlatCorner {
         double x, y, height;
         unsigned lines;

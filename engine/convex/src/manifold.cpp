@@ -36,7 +36,7 @@ double area_of(const Manifold& m) {
     return glm::length(sum);
 }
 
-// Puts the points of the frame before into the place of those chosen afresh, if they serve as well: a body that sways
+// Puts the points of the frame before into the place of those chosen afresh, if they serve as well. A body that sways
 // would else lose all of its ids whenever another corner becomes the deepest.
 void keep_choice(Manifold& manifold, const GatheredPoints& points, double kept, PairCache& cache) {
     const auto end = cache.chosen + 4;

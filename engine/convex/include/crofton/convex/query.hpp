@@ -111,10 +111,10 @@ struct ManifoldOptions {
 // against each other (Sutherland, Hodgman); the deepest point is among the points. Bodies that meet, as `intersects`
 // tells, have one point at least; polytopes that do not meet have none at a margin of 0. With a cache, the face of the
 // frame before is kept while its normal is proven to be the least deep. That holds within 1e-4 of the pair's size.
-// Normal and depth are then those of that face. Of more points than are wanted those of the frame before stay while
-// they are as deep within 1e-4 of the size, and span nine tenths of the area. Points are off by 1e-9 of the pair's
-// size, by 1e-5 where a hull's face is not quite flat (HullOptions). Of bodies of parts: the deepest of the manifolds
-// below; this allocates.
+// Normal and depth are then those of that face. With a cache and more points than are wanted, those of the frame
+// before stay. One of them must be as deep within 1e-4 of the size, and they must span nine tenths of the area. Points
+// are off by 1e-9 of the pair's size, by 1e-5 where a hull's face is not quite flat (HullOptions). Of bodies of parts:
+// the deepest of the manifolds below; this allocates.
 [[nodiscard]] Manifold contact_manifold(const Placed& a, const Placed& b, const ManifoldOptions& options = {},
                                         PairCache* cache = nullptr);
 
