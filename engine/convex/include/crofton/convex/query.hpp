@@ -213,10 +213,10 @@ struct Impact {
 
 // Conservative advancement (Mirtich 1996) by a bound of second order. Each step ends before any vertex can have crossed
 // the plane that parts the bodies. That follows from its velocity across the plane and a bound of its acceleration. So
-// no wall is too thin. "Touch" is said of the bodies as they move in real arithmetic; the rotation is off by 1e-15 a
-// radian, which the bounds include. Bodies of parts: the first time at which parts touch. A one-sided triangle that is
-// first touched from behind is passed through. Errors: NaN or infinite motions, a turn beyond 1e5 radians, options out
-// of range, half-spaces turned.
+// no wall is too thin. As `intersects`, a hit may be off by 1e-7 of the size with cylinders and cones. "Touch" is said
+// of the bodies as they move in real arithmetic; the rotation is off by 1e-15 a radian, which the bounds include.
+// Bodies of parts: the first time at which parts touch. A one-sided triangle that is first touched from behind is
+// passed through. Errors: NaN or infinite motions, a turn beyond 1e5 radians, options out of range, half-spaces turned.
 [[nodiscard]] Result<Impact> cast(const Placed& a, const Motion& motion_a, const Placed& b, const Motion& motion_b,
                                   const CastOptions& options = {}, PairCache* cache = nullptr);
 
