@@ -4,8 +4,9 @@
 #include <atomic>
 #include <crofton/core/memory.hpp>
 #include <cstddef>
-#include <cstdlib>
 #include <cstring>
+
+#include "aligned_memory.hpp"
 
 namespace crofton::testing {
 
@@ -25,9 +26,7 @@ class GuardedMemory {
     static std::size_t guard_of(std::size_t bytes) { return bytes + 4096; }
 
     static void* allocate(void*, std::size_t bytes, std::size_t alignment) {
-        const std::size_t all = bytes + guard_of(bytes);
-        auto* const block =
-            static_cast<unsigned char*>(std::aligned_alloc(alignment, (all + alignment - 1) / alignment * alignment));
+        auto* const block = static_cast<unsigned char*>(aligned_block(bytes + guard_of(bytes), alignment));
         if (block) std::memset(block + bytes, kMark, guard_of(bytes));
         return block;
     }
@@ -38,7 +37,7 @@ class GuardedMemory {
                 ++static_cast<GuardedMemory*>(self)->overrun_;
                 break;
             }
-        std::free(memory);
+        free_block(memory);
     }
 
     std::atomic<std::size_t> overrun_ = 0;
