@@ -4,7 +4,6 @@
 // clusters that it passes see each other, and the sets must say so. bench/quake3_pvs.sh fetches levels and runs this.
 #include <algorithm>
 #include <cmath>
-#include <crofton/radiosity/lines.hpp>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -13,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "line_blocks.hpp"
 #include "quake3_level.hpp"
 
 namespace {
@@ -28,16 +28,8 @@ class Comparison {
     explicit Comparison(const bench::Quake3Level& level) : level_(level), ours_(level.clusters * level.clusters) {}
 
     void trace(const radiosity::LineTracer& tracer, const radiosity::LineSource& source, std::uint64_t blocks) {
-        Vector<Line> lines;
-        radiosity::LineHits hits;
-        for (std::uint64_t block = 0; block < blocks; ++block) {
-            source.draw(block, lines);
-            tracer.all_hits(lines, hits);
-            for (std::size_t i = 0, first = 0; i < lines.size(); ++i) {
-                follow(lines[i], std::span(hits.hits).subspan(first, hits.ends[i] - first));
-                first = hits.ends[i];
-            }
-        }
+        bench::for_each_line(tracer, source, blocks,
+                             [&](const Line& line, std::span<const radiosity::Hit> hits) { follow(line, hits); });
     }
 
     void print(const std::string& name, std::uint64_t lines) const {

@@ -8,7 +8,6 @@
 #include <assets/wad_file.hpp>
 #include <cmath>
 #include <crofton/pvs/pvs.hpp>
-#include <crofton/radiosity/lines.hpp>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -16,6 +15,8 @@
 #include <iterator>
 #include <string>
 #include <vector>
+
+#include "line_blocks.hpp"
 
 namespace {
 
@@ -49,19 +50,11 @@ class Comparison {
 
     void trace(const radiosity::LineTracer& tracer, const radiosity::LineSource& source, const glm::dvec3& origin,
                std::uint64_t blocks) {
-        Vector<Line> lines;
-        radiosity::LineHits hits;
-        for (std::uint64_t block = 0; block < blocks; ++block) {
-            source.draw(block, lines);
-            tracer.all_hits(lines, hits);
-            for (std::size_t i = 0, first = 0; i < lines.size(); ++i) {
-                if (hits.ends[i] > first) {
-                    cross_level({lines[i].point + origin, lines[i].direction});
-                    follow(std::span(hits.hits).subspan(first, hits.ends[i] - first));
-                }
-                first = hits.ends[i];
-            }
-        }
+        bench::for_each_line(tracer, source, blocks, [&](const Line& line, std::span<const radiosity::Hit> hits) {
+            if (hits.empty()) return;
+            cross_level({line.point + origin, line.direction});
+            follow(hits);
+        });
     }
 
     void print(std::uint64_t lines) const {
