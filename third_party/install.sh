@@ -5,6 +5,7 @@
 #   third_party/install.sh --tests    also a browser, in which the tests open the report page
 #   third_party/install.sh --bench    also the benchmarks' framework and the peers measured beside us
 #   third_party/install.sh --checks   also clang, its formatter and its linter, and gdb, for .ci/run and .ci/long
+#   third_party/install.sh --matrix   also all compilers of .ci/matrix (docs/testing.md, "The matrix")
 #   third_party/install.sh --python   also what the Python package needs (python/README.md)
 #   third_party/install.sh --rust     also what the Rust crate needs (rust/README.md)
 #   third_party/install.sh --csharp   also what the C# classes need (csharp/README.md)
@@ -29,6 +30,7 @@ packages=(
 )
 test_packages=(chromium)
 check_packages=(clang libclang-rt-dev clang-format clang-tidy llvm gdb)
+matrix_packages=(clang libclang-rt-dev clang-19 libclang-rt-19-dev)
 engine_packages=(libdraco-dev libmeshoptimizer-dev libogre-1.12-dev libopenscenegraph-dev libbullet-dev libtbb-dev doxygen)
 python_packages=(python3-dev python3-numpy python3-pytest python3-setuptools python3-wheel python3-pip python3-venv pybind11-dev)
 rust_packages=(cargo)
@@ -45,6 +47,7 @@ for argument in "$@"; do
         --tests) packages+=("${test_packages[@]}") ;;
         --bench) packages+=("${bench_packages[@]}") ;;
         --checks) packages+=("${check_packages[@]}") ;;
+        --matrix) packages+=("${matrix_packages[@]}") ;;
         --python) packages+=("${python_packages[@]}") ;;
         --rust) packages+=("${rust_packages[@]}") ;;
         --csharp) packages+=("${csharp_packages[@]}") ;;
@@ -53,7 +56,7 @@ for argument in "$@"; do
         --slurm) packages+=("${slurm_packages[@]}") ;;
         --platforms) packages+=("${platform_packages[@]}") ;;
         --engines) packages+=("${engine_packages[@]}") ;;
-        *) echo "usage: third_party/install.sh [--tests] [--checks] [--bench] [--python] [--rust] [--csharp] [--web] [--packages] [--slurm] [--platforms] [--engines]" >&2; exit 2 ;;
+        *) echo "usage: third_party/install.sh [--tests] [--checks] [--bench] [--matrix] [--python] [--rust] [--csharp] [--web] [--packages] [--slurm] [--platforms] [--engines]" >&2; exit 2 ;;
     esac
 done
 
