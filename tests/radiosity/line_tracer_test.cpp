@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
+#include <hwy/highway.h>
 #include <algorithm>
 #include <cmath>
 #include <crofton/core/executor.hpp>
@@ -149,6 +150,37 @@ TEST_SUITE("radiosity/line_tracer") {
             }
             CHECK(crossings > 300);
         }
+    }
+
+    TEST_CASE("lines that all look the same way along each axis have the crossings they have among others") {
+        const auto tracer = LineTracer::build(shapes::soup(3000, 0.3f, 10));
+        REQUIRE(tracer.has_value());
+        for (std::int64_t rest = hwy::SupportedTargets(); rest != 0; rest &= rest - 1) {
+            hwy::SetSupportedTargetsForTest(rest & -rest);
+            sampling::Random random(19);
+            for (unsigned octant = 0; octant < 8; ++octant)
+                for (const std::size_t count : {6u, 17u, 300u}) {
+                    std::vector<Line> lines;
+                    for (std::size_t i = 0; i < count; ++i) {
+                        glm::dvec3 direction = glm::abs(sampling::direction(random.point<2>()));
+                        for (int k = 0; k < 3; ++k)
+                            if (octant >> k & 1u) direction[k] = -direction[k];
+                        lines.push_back({sampling::ball_point(random.point<3>()), direction});
+                    }
+                    LineHits same, mixed;
+                    tracer->all_hits(lines, same);
+                    lines.push_back({glm::dvec3(0.0), -lines[0].direction});
+                    tracer->all_hits(lines, mixed);
+                    CHECK(same.hits.size() > 5 * count);
+                    REQUIRE(mixed.hits.size() >= same.hits.size());
+                    for (std::size_t i = 0; i < count; ++i) REQUIRE(same.ends[i] == mixed.ends[i]);
+                    for (std::size_t h = 0; h < same.hits.size(); ++h) {
+                        REQUIRE(same.hits[h].t == mixed.hits[h].t);
+                        REQUIRE(same.hits[h].triangle == mixed.hits[h].triangle);
+                    }
+                }
+        }
+        hwy::SetSupportedTargetsForTest(0);
     }
 
     TEST_CASE("any number of lines in one call, more than go together too, have the bits they have alone") {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
+#include <hwy/highway.h>
 #include <crofton/sampling/sampling.hpp>
 #include <set>
+#include <vector>
 
 using namespace crofton::sampling;
 
@@ -27,6 +29,24 @@ TEST_SUITE("sampling/random") {
                 }
             }
         CHECK(seen.size() == 900);
+    }
+
+    TEST_CASE("many numbers at once are those one by one, on every instruction set") {
+        for (std::int64_t rest = hwy::SupportedTargets(); rest != 0; rest &= rest - 1) {
+            hwy::SetSupportedTargetsForTest(rest & -rest);
+            for (const std::uint64_t seed : {0ull, 1ull, ~0ull, 0x123456789abcdefull})
+                for (const std::size_t first : {0u, 1u, 2u})
+                    for (const std::size_t count : {0u, 1u, 2u, 15u, 16u, 17u, 63u, 64u, 200u}) {
+                        Random many(seed, ~seed), each(seed, ~seed);
+                        for (std::size_t i = 0; i < first; ++i) CHECK(many.bits() == each.bits());
+                        std::vector<std::uint64_t> numbers(count + 1, 7);
+                        many.fill({numbers.data(), count});
+                        for (std::size_t i = 0; i < count; ++i) REQUIRE(numbers[i] == each.bits());
+                        CHECK(numbers[count] == 7);
+                        CHECK(many.bits() == each.bits());
+                    }
+        }
+        hwy::SetSupportedTargetsForTest(0);
     }
 
     TEST_CASE("uniform numbers lie between 0 and below 1 and have mean 1/2 and variance 1/12") {

@@ -36,15 +36,8 @@ double narrow_angle(double y, double x) {
 }  // namespace
 
 glm::dvec2 detail::cosine_sine_beyond(std::int64_t quarters, double x) {
-    // Taylor's series: what is cut off is below 2e-18.
-    static constexpr double kSine[] = {
-        -1.0 / 6.0,        1.0 / 120.0,        -1.0 / 5040.0,          1.0 / 362880.0,
-        -1.0 / 39916800.0, 1.0 / 6227020800.0, -1.0 / 1307674368000.0, 1.0 / 355687428096000.0};
-    static constexpr double kCosine[] = {
-        -1.0 / 2.0,       1.0 / 24.0,        -1.0 / 720.0,         1.0 / 40320.0,
-        -1.0 / 3628800.0, 1.0 / 479001600.0, -1.0 / 87178291200.0, 1.0 / 20922789888000.0};
     const double y = x * x;
-    const double c = 1.0 + y * polynomial(kCosine, y), s = x + x * (y * polynomial(kSine, y));
+    const double c = 1.0 + y * polynomial(kCosineTerms, y), s = x + x * (y * polynomial(kSineTerms, y));
     switch (quarters & 3) {
         case 0:
             return {c, s};

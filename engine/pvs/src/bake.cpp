@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Lines through the cells, and what the gaps between their crossings witness.
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -37,21 +38,14 @@ void set_bits(T& word, T bits) {
 #endif
 }
 
-// An object's bit in a cell's row, or none.
-struct ObjectBit {
-    std::uint32_t word = 0;
-    std::uint64_t bit = 0;
-
-    static ObjectBit of(std::uint32_t object) { return {object / 64, std::uint64_t{1} << (object % 64)}; }
-    [[nodiscard]] bool is_nothing() const { return bit == 0; }
-};
-
-// What is seen from one gap between crossings: the object at each of its ends.
+// What is seen from one gap between crossings: the object at each of its ends, as a bit of a cell's row; no bit is no
+// object. There is no struct for such a bit: g++ builds it on the stack, and waits to read it from there.
 struct Gap {
     double end = 0.0;  // along the line
-    ObjectBit behind, ahead;
-    std::int32_t depth = 0;         // of solids that the line is in; of gaps that are thin kThin
-    std::uint16_t flags = kPassed;  // of CellFlag
+    std::uint64_t behind_bit = 0, ahead_bit = 0;
+    std::uint32_t behind_word = 0, ahead_word = 0;
+    std::int32_t depth = 0;   // of solids that the line is in; of gaps that are thin kThin
+    std::uint32_t flags = 0;  // of CellFlag
 };
 
 // One thread's memory.
@@ -60,7 +54,7 @@ struct Scratch {
     radiosity::LineHits hits;
     VoxelPaths paths;
     CellSpans spans;
-    Vector<Gap> gaps;
+    std::array<Vector<Gap>, 2> gaps;  // of two lines
 };
 
 // Lines of a block go through the tree together.
@@ -73,87 +67,113 @@ class BlockTracing {
         state_.plan.draw(block, state_.cells, state_.origin, scratch_.lines);
         const std::span<const Line> lines(scratch_.lines);
         state_.tracer->all_hits(lines, scratch_.hits);
-        for (std::size_t i = 0, first = 0; i < lines.size(); ++i) {
+        for (std::size_t i = 0; i < lines.size(); i += 2) {
             const std::size_t number = i % VoxelPaths::kLines;
             if (number == 0) state_.walk->pass(lines.subspan(i, VoxelPaths::kLines), scratch_.paths);
-            const std::size_t end = scratch_.hits.ends[i];
-            find_gaps(std::span(scratch_.hits.hits).subspan(first, end - first), i % kEscapeClasses);
+            find_gaps(i, scratch_.gaps[0]);
+            find_gaps(i + 1, scratch_.gaps[1]);
             if (state_.walk->is_grid()) {
                 witness_along(number);
-            } else {
-                state_.walk->find(lines[i], scratch_.paths, number, scratch_.spans);
-                witness();
+                continue;
             }
-            first = end;
+            for (std::size_t k = 0; k < 2; ++k) {
+                state_.walk->find(lines[i + k], scratch_.paths, number + k, scratch_.spans);
+                witness(scratch_.gaps[k]);
+            }
         }
     }
 
   private:
     static constexpr std::int32_t kThin = -0x7fffffff;
 
-    [[nodiscard]] ObjectBit object(const radiosity::Hit& hit) const {
-        return ObjectBit::of(state_.object_of[hit.triangle]);
-    }
-
     // Depth is how often the line is inside of something. Take a line that goes in as often as it comes out and has
     // been at two depths at least. It is in a solid where it is deeper than at its least. Others have met what is open,
     // or nothing but sheets at one place: they say nothing. Thin gaps have no say.
-    void find_gaps(std::span<const radiosity::Hit> hits, std::size_t line_class) {
-        const std::size_t count = hits.size();
-        if (scratch_.gaps.size() <= count) scratch_.gaps.resize(2 * count + 1);
-        Gap* const gaps = scratch_.gaps.data();
+    void find_gaps(std::size_t line, Vector<Gap>& result) {
+        const std::size_t first = line == 0 ? 0 : scratch_.hits.ends[line - 1];
+        const std::size_t count = scratch_.hits.ends[line] - first;
+        const radiosity::Hit* const hits = scratch_.hits.hits.data() + first;
+        if (result.size() <= count) result.resize(2 * count + 1);
+        Gap* const gaps = result.data();
         const bool both = state_.options.sides == occlude::Sides::both;
         std::int32_t depth = 0, least = 0, most = 0;
-        ObjectBit behind;
+        std::uint64_t behind_bit = 0;
+        std::uint32_t behind_word = 0;
         bool thin = false;
         for (std::size_t h = 0; h < count; ++h) {
             const radiosity::Hit& hit = hits[h];
-            const ObjectBit met = object(hit);
-            gaps[h] = {static_cast<double>(hit.t), behind, both || hit.front ? met : ObjectBit{}, thin ? kThin : depth};
+            const std::uint32_t object = state_.object_of[hit.triangle], word = object / 64;
+            const std::uint64_t bit = std::uint64_t{1} << (object % 64);
+            Gap& gap = gaps[h];
+            gap.end = static_cast<double>(hit.t);
+            gap.behind_bit = behind_bit, gap.behind_word = behind_word;
+            gap.ahead_bit = both || hit.front ? bit : 0, gap.ahead_word = word;
+            gap.depth = thin ? kThin : depth;
+            gap.flags = kPassed;
             // After it has come from a front the line leaves a back behind.
-            if (both || !hit.front) behind = met;
+            if (both || !hit.front) behind_bit = bit, behind_word = word;
             depth += hit.front ? 1 : -1;
             thin = h + 1 < count && hits[h + 1].t - hit.t <= state_.thin;
             least = thin ? least : (std::min)(least, depth);
             most = thin ? most : (std::max)(most, depth);
         }
-        gaps[count] = {HUGE_VAL, behind, {}, depth};
+        gaps[count] = {HUGE_VAL, behind_bit, 0, behind_word, 0, depth, kPassed};
         for (std::size_t h = count; h-- > 0 && !both;)
-            if (!hits[h].front) gaps[h].ahead = gaps[h + 1].ahead;
+            if (!hits[h].front) gaps[h].ahead_bit = gaps[h + 1].ahead_bit, gaps[h].ahead_word = gaps[h + 1].ahead_word;
         if (depth == 0 && least != most)
             for (std::size_t g = 0; g <= count; ++g)
-                gaps[g].flags |= gaps[g].depth == kThin ? 0 : gaps[g].depth == least ? kFree : kSolid;
-        const auto escapes = static_cast<std::uint16_t>(kFirstEscape << line_class);
+                if (gaps[g].depth != kThin) gaps[g].flags |= gaps[g].depth == least ? kFree : kSolid;
+        const std::uint32_t escapes = static_cast<std::uint32_t>(kFirstEscape) << line % kEscapeClasses;
         // What is met on both sides has an object at both ends of all gaps but the outer ones.
         for (std::size_t g = 0; g <= count; g += both && count > 0 ? count : 1) add_escapes(gaps[g], escapes);
     }
 
-    static void add_escapes(Gap& gap, std::uint16_t escapes) {
-        if ((gap.behind.is_nothing() || gap.ahead.is_nothing()) && !(gap.flags & kSolid)) gap.flags |= escapes;
+    static void add_escapes(Gap& gap, std::uint32_t escapes) {
+        if ((gap.behind_bit == 0 || gap.ahead_bit == 0) && !(gap.flags & kSolid)) gap.flags |= escapes;
     }
 
-    // In a grid: cells and gaps follow each other along the line, and what ends first makes room for the next.
-    void witness_along(std::size_t number) {
-        const kernels::WalkStep* step = scratch_.paths.steps.data();
-        const kernels::WalkStep* const last = step + scratch_.paths.count(number);
-        const Gap* gap = scratch_.gaps.data();
-        const double thin = static_cast<double>(state_.thin);
-        double begin = scratch_.paths.start.begin[number];
-        if (step != last)
-            while (gap->end < begin) ++gap;
-        while (step != last) {
-            const double cell_end = step->end[number];
-            const double end = (std::min)(gap->end, cell_end);
-            if (end - begin > thin) see(step->voxel[number], *gap);
-            begin = end;
-            const bool gap_ends = gap->end < cell_end;
-            gap += gap_ends;
-            step += !gap_ends;
+    // A line's cells and gaps, side by side.
+    struct Way {
+        const kernels::WalkStep *step, *last;
+        const Gap* gap;
+        double begin;
+        std::size_t number;
+
+        Way(const VoxelPaths& paths, std::size_t line, const Vector<Gap>& gaps)
+            : step(paths.steps.data()),
+              last(step + paths.count(line)),
+              gap(gaps.data()),
+              begin(paths.start.begin[line]),
+              number(line) {
+            if (step != last)
+                while (gap->end < begin) ++gap;
         }
+        [[nodiscard]] bool is_done() const { return step == last; }
+    };
+
+    // In a grid: cells and gaps follow each other along the line, and what ends first makes room for the next. Two
+    // lines in turn: each step of a line waits for the one before.
+    void witness_along(std::size_t number) {
+        Way a(scratch_.paths, number, scratch_.gaps[0]), b(scratch_.paths, number + 1, scratch_.gaps[1]);
+        while (!a.is_done() && !b.is_done()) {
+            go_on(a);
+            go_on(b);
+        }
+        while (!a.is_done()) go_on(a);
+        while (!b.is_done()) go_on(b);
     }
 
-    void witness() {
-        const auto& gaps = scratch_.gaps;
+    void go_on(Way& way) {
+        const double cell_end = way.step->end[way.number];
+        const double end = (std::min)(way.gap->end, cell_end);
+        if (end - way.begin > static_cast<double>(state_.thin)) see(way.step->voxel[way.number], *way.gap);
+        way.begin = end;
+        const bool gap_ends = way.gap->end < cell_end;
+        way.gap += gap_ends;
+        way.step += !gap_ends;
+    }
+
+    void witness(const Vector<Gap>& gaps) {
         std::size_t g = 0;
         for (const CellSpan& span : scratch_.spans.all) {
             if (g > 0 && gaps[g - 1].end >= span.begin) g = 0;  // not in order
@@ -169,15 +189,15 @@ class BlockTracing {
 
     void see(std::uint32_t cell, const Gap& gap) {
         std::uint64_t* const row = state_.found.seen.data() + cell * words_;
-        std::uint64_t &behind = row[gap.behind.word], &ahead = row[gap.ahead.word];
+        std::uint64_t &behind = row[gap.behind_word], &ahead = row[gap.ahead_word];
         std::uint16_t& flags = state_.found.flags[cell];
-        const std::uint64_t fresh = (gap.behind.bit & ~bits_of(behind)) | (gap.ahead.bit & ~bits_of(ahead)) |
-                                    static_cast<std::uint64_t>(gap.flags & ~bits_of(flags));
+        const std::uint64_t fresh = (gap.behind_bit & ~bits_of(behind)) | (gap.ahead_bit & ~bits_of(ahead)) |
+                                    (gap.flags & ~std::uint32_t{bits_of(flags)});
         if (fresh == 0) [[likely]]
             return;
-        set_bits(flags, gap.flags);
-        set_bits(behind, gap.behind.bit);
-        set_bits(ahead, gap.ahead.bit);
+        set_bits(flags, static_cast<std::uint16_t>(gap.flags));
+        set_bits(behind, gap.behind_bit);
+        set_bits(ahead, gap.ahead_bit);
     }
 
     Bake::State& state_;

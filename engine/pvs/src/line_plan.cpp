@@ -5,6 +5,8 @@
 #include <crofton/pvs/line_plan.hpp>
 #include <numbers>
 
+#include "stratum_kernels.hpp"
+
 namespace crofton::pvs {
 namespace {
 
@@ -133,26 +135,23 @@ void LinePlan::draw(std::uint64_t block, const Cells& cells, const glm::dvec3& o
     const Division division({e[s], e[t]}, 2.0 * (std::min)({e.x, e.y, e.z}));
     Stratum of_block;
     division.take(block - part.first, part.blocks, of_block);
-    glm::dvec3 point(0.0), direction(0.0);
-    point[part.axis] = (part.side < 0.0 ? cells.bounds().min : cells.bounds().max)[part.axis] - origin[part.axis];
     const glm::dvec3 corner = cells.bounds().min - origin;
+    kernels::LineStratum of_lines;
+    of_lines.corner[0] = corner[s], of_lines.corner[1] = corner[t];
+    of_lines.sides[0] = e[s], of_lines.sides[1] = e[t];
+    of_lines.plane = (part.side < 0.0 ? cells.bounds().min : cells.bounds().max)[part.axis] - origin[part.axis];
+    of_lines.inward = -part.side;
+    of_lines.axis = static_cast<unsigned>(part.axis);
+    static_assert(sizeof(Line) == 6 * sizeof(double) && kStratum == kernels::kStratumLines);
+    lines.resize(kBlock);
     for (std::uint64_t i = 0; i < kBlock / kStratum; ++i) {
         Stratum stratum = of_block;
         division.take(i, kBlock / kStratum, stratum);
-        for (std::uint64_t n = 0; n < kStratum; ++n) {
-            // 2^32 places along each side of a stratum.
-            std::array<double, 4> u;
-            const std::uint64_t first = random.bits(), second = random.bits();
-            for (std::size_t k = 0; k < 4; ++k) {
-                const auto bits = static_cast<std::uint32_t>((k < 2 ? first : second) >> (k % 2 * 32));
-                u[k] = stratum.low[k] + stratum.length(k) * ((static_cast<double>(bits) + 0.5) * 0x1p-32);
-            }
-            const glm::dvec2 disc = sampling::disc_point({u[2], u[3]});
-            point[s] = corner[s] + e[s] * u[0], point[t] = corner[t] + e[t] * u[1];
-            direction[s] = disc.x, direction[t] = disc.y;
-            direction[part.axis] = -part.side * std::sqrt((std::max)(0.0, 1.0 - u[2]));
-            lines.push_back({point, direction});
-        }
+        for (std::size_t k = 0; k < 4; ++k) of_lines.low[k] = stratum.low[k], of_lines.length[k] = stratum.length(k);
+        // 2^32 places along each side of a stratum.
+        std::array<std::uint64_t, 2 * kStratum> bits;
+        random.fill(bits);
+        kernels::draw_stratum(of_lines, bits.data(), &lines[i * kStratum].point.x);
     }
 }
 

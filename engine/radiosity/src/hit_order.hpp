@@ -23,7 +23,7 @@ class HitOrder {
         float t;
         std::uint32_t triangle;  // with kFront
     };
-    static constexpr std::size_t kShort = 8;  // crossings: lines of more are sorted one by one
+    static constexpr std::size_t kShort = 16;  // crossings: lines of more are sorted one by one
 
     void place(const StreamCrossings& found, std::size_t count, LineHits& result);
     template <std::size_t kCount>

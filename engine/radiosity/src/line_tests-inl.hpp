@@ -53,25 +53,26 @@ HWY_INLINE unsigned children(D d, const mesh::BoxNode& node, const Spread& ray, 
 }
 
 // Möller and Trumbore, both sides. `determinant` > 0: the line runs against the normal.
-HWY_INLINE hn::Mask<D> meet(D d, const V* corner, const V* e1, const V* e2, const V* point, const V* direction,
-                            V* determinant, V* t) {
-    const V zero = hn::Zero(d);
-    V s[3], p[3], q[3];
+template <class T, class U = hn::Vec<T>>
+HWY_INLINE hn::Mask<T> meet(T d, const U* corner, const U* e1, const U* e2, const U* point, const U* direction,
+                            U* determinant, U* t) {
+    const U zero = hn::Zero(d);
+    U s[3], p[3], q[3];
     for (int k = 0; k < 3; ++k) s[k] = hn::Sub(point[k], corner[k]);
-    const auto cross = [](const V* a, const V* b, V* out) {
+    const auto cross = [](const U* a, const U* b, U* out) {
         out[0] = hn::Sub(hn::Mul(a[1], b[2]), hn::Mul(a[2], b[1]));
         out[1] = hn::Sub(hn::Mul(a[2], b[0]), hn::Mul(a[0], b[2]));
         out[2] = hn::Sub(hn::Mul(a[0], b[1]), hn::Mul(a[1], b[0]));
     };
-    const auto dot = [](const V* a, const V* b) {
+    const auto dot = [](const U* a, const U* b) {
         return hn::Add(hn::Add(hn::Mul(a[0], b[0]), hn::Mul(a[1], b[1])), hn::Mul(a[2], b[2]));
     };
     cross(direction, e2, p);
     *determinant = dot(e1, p);
-    const V scale = hn::Div(hn::Set(d, 1.0f), *determinant);
-    const V u = hn::Mul(dot(s, p), scale);
+    const U scale = hn::Div(hn::Set(d, 1.0f), *determinant);
+    const U u = hn::Mul(dot(s, p), scale);
     cross(s, e1, q);
-    const V v = hn::Mul(dot(direction, q), scale);
+    const U v = hn::Mul(dot(direction, q), scale);
     *t = hn::Mul(dot(e2, q), scale);
     return hn::And(hn::And(hn::Ge(u, zero), hn::Ge(v, zero)),
                    hn::And(hn::Le(hn::Add(u, v), hn::Set(d, 1.0f)), hn::Ne(*determinant, zero)));

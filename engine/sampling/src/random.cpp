@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <crofton/sampling/sampling.hpp>
 
+#include "random_kernels.hpp"
+
 namespace crofton::sampling {
 namespace {
 
@@ -64,6 +66,15 @@ std::uint64_t Random::bits() {
     spare_ = b[2] | std::uint64_t{b[3]} << 32;
     has_spare_ = true;
     return b[0] | std::uint64_t{b[1]} << 32;
+}
+
+void Random::fill(std::span<std::uint64_t> numbers) {
+    constexpr std::size_t kMany = 2 * kernels::kPhiloxBlocks;
+    std::size_t at = 0;
+    if (has_spare_ && !numbers.empty()) numbers[at++] = bits();
+    for (; numbers.size() - at >= kMany; at += kMany, position_ += kernels::kPhiloxBlocks)
+        kernels::philox(position_, stream_, seed_, numbers.data() + at);
+    while (at < numbers.size()) numbers[at++] = bits();
 }
 
 void UnitPoints::fill(std::uint64_t index, double* coordinates, std::size_t dimensions) const {

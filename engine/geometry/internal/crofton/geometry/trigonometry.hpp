@@ -27,6 +27,13 @@ namespace crofton {
 namespace detail {
 // cosine_sine(quarters · π/2 + rest) for |rest| ≤ π/4 (1 + 1e-9).
 [[nodiscard]] glm::dvec2 cosine_sine_beyond(std::int64_t quarters, double rest);
+// Taylor's series in x² for |x| ≤ π/4: cos x = 1 + x² Σ, sin x = x + x³ Σ. What is cut off is below 2e-18.
+inline constexpr double kSineTerms[8] = {
+    -1.0 / 6.0,        1.0 / 120.0,        -1.0 / 5040.0,          1.0 / 362880.0,
+    -1.0 / 39916800.0, 1.0 / 6227020800.0, -1.0 / 1307674368000.0, 1.0 / 355687428096000.0};
+inline constexpr double kCosineTerms[8] = {
+    -1.0 / 2.0,       1.0 / 24.0,        -1.0 / 720.0,         1.0 / 40320.0,
+    -1.0 / 3628800.0, 1.0 / 479001600.0, -1.0 / 87178291200.0, 1.0 / 20922789888000.0};
 }  // namespace detail
 
 }  // namespace crofton

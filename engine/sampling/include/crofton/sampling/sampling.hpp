@@ -29,6 +29,8 @@ class Random {
 
     // 64 random bits.
     [[nodiscard]] std::uint64_t bits();
+    // The next numbers of `bits`, many at a time.
+    void fill(std::span<std::uint64_t> numbers);
     // A multiple of 2^-53 in [0, 1).
     [[nodiscard]] double uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
     [[nodiscard]] double uniform(double low, double high) { return low + (high - low) * uniform(); }
