@@ -5,6 +5,7 @@
 tests/mutation/run.py [NAME|MODULE|FILE …]   those that a word selects (all without one); resumes where it was stopped
 tests/mutation/run.py --together [WORD …]    those of them that fit into one build: minutes instead of hours
 tests/mutation/run.py --sanitize [WORD …]    the same under the sanitizers, as .ci/run has it: for what writes beyond an array
+tests/mutation/run.py --seed 22 [WORD …]     other faults by rule than those that the tests were mended for
 tests/mutation/run.py --list                 what there is, nothing run
 tests/mutation/run.py --report               the table of what is known, nothing run
 
@@ -36,7 +37,7 @@ RULES = {
     "bake": (4, ["bake"]), "boxtree": (10, ["boxtree", "cull"]), "capi": (8, ["capi"]), "collide": (14, ["collide"]),
     "convex": (10, ["convex"]), "occlude": (10, ["occlude"]),
     "core": (4, ["core"]), "cull": (14, ["cull"]), "fit": (12, ["fit"]), "geometry": (8, ["geometry"]),
-    "measure": (5, ["measure"]), "mesh": (10, ["mesh"]), "radiosity": (8, ["radiosity"]), "render": (5, ["render"]),
+    "measure": (5, ["measure"]), "mesh": (10, ["mesh"]), "pvs": (10, ["pvs"]), "radiosity": (8, ["radiosity"]), "render": (5, ["render"]),
     "sampling": (4, ["sampling"]), "scene": (8, ["scene"]), "study": (6, ["study"]), "triangulate": (12, ["triangulate"]),
     "world": (8, ["world"]),
 }
@@ -169,7 +170,8 @@ class Scratch:
             path.write_text(original)
 
 
-def all_mutants():
+def all_mutants(seed=SEED):
+    """Those of the lists, and those drawn by rule with the seed. Reasons to be equivalent are known for SEED's draw."""
     mutants = [m for path in sorted(LISTS.glob("*.txt")) if path.name != "equivalent.txt" for m in read_list(path)]
     for mutant in mutants:
         mutant.tests = mutant.tests or [mutant.module]
@@ -179,10 +181,10 @@ def all_mutants():
             name, _, reason = line.partition(": ")
             reasons[name] = reason
     for module, (count, tests) in RULES.items():
-        for mutant in by_rule(ROOT, module, count, SEED, tests):
+        for mutant in by_rule(ROOT, module, count, seed, tests):
             mutant.equivalent = reasons.pop(mutant.name, "")
             mutants.append(mutant)
-    if reasons:
+    if reasons and seed == SEED:
         sys.exit(f"equivalent.txt names what is not drawn: {', '.join(reasons)}")
     names = [m.name for m in mutants]
     twice = {n for n in names if names.count(n) > 1}
@@ -305,12 +307,15 @@ def main():
     parser.add_argument("--sanitize", action="store_true", help="--together, under the sanitizers")
     parser.add_argument("--record", action="store_true", help="write judged.csv: what is known, for the repository")
     parser.add_argument("--hand", action="store_true", help="only those that are written down")
+    parser.add_argument("--seed", type=int, default=SEED, help=f"draw others by rule than the record has ({SEED})")
     parser.add_argument("--minutes", type=float, default=1e9, help="begin no mutant after so long")
     parser.add_argument("--work", type=Path, default=ROOT / "build" / "mutation", help="folder of the copy and the results")
     parser.add_argument("-j", "--jobs", type=int, default=2, help="compilations, or mutants, at a time")
     options = parser.parse_args()
     options.together |= options.sanitize
-    mutants = every = all_mutants()
+    if options.record and options.seed != SEED:
+        parser.error(f"the record is of the draw with --seed {SEED}")
+    mutants = every = all_mutants(options.seed)
     if options.hand:
         mutants = [m for m in mutants if m.at < 0]
     if options.select:
