@@ -38,8 +38,8 @@ void set_bits(T& word, T bits) {
 #endif
 }
 
-// What is seen from one gap between crossings: the object at each of its ends, as a bit of a cell's row; no bit is no
-// object. There is no struct for such a bit: g++ builds it on the stack, and waits to read it from there.
+// What is seen from one gap between crossings: the object at each of its ends. It is a bit of a cell's row, or none.
+// There is no struct for such a bit: g++ builds it on the stack, and waits to read it from there.
 struct Gap {
     double end = 0.0;  // along the line
     std::uint64_t behind_bit = 0, ahead_bit = 0;
