@@ -32,6 +32,8 @@ constexpr double kThin = 1e-3;
 
 constexpr SmallSetEffort kFastSmallSet{1, 6, 2}, kTightSmallSet{2, 9, 4}, kTightSmallSetByVolume{3, 9, 4};
 constexpr Effort kFast{kFastSmallSet, 4, 2, 5}, kTight{{4, 9, 4}, 5, 40, 40};
+// Extreme points along this many directions show which points are inside.
+constexpr std::size_t kExtremesToForgetBy = 18;
 const Candidate kNone{glm::dmat3(1.0), std::numeric_limits<double>::infinity()};
 
 bool is_volume_alone(const Weights& weights) {
@@ -63,6 +65,7 @@ class Deadline {
 template <class Point>
 Result<void> Fitter::assign(std::span<const Point> points) {
     known_.clear();
+    forgotten_ = false;
     return cloud_.assign(points);
 }
 
@@ -78,6 +81,10 @@ void Fitter::gather_extremes(std::size_t triples) {
     for (const glm::dmat3& triple : std::span(kDirections).first(triples)) {
         const Supports extremes = supports(triple);
         subset_.insert(subset_.end(), extremes.begin(), extremes.end());
+        if (subset_.size() == kExtremesToForgetBy && !forgotten_) {
+            forgotten_ = true;
+            cloud_.forget_interior(subset_);
+        }
     }
     make_canonical(subset_);
 }

@@ -63,6 +63,7 @@ class Fitter {
 
     PointCloud cloud_;
     Vector<Known> known_;
+    bool forgotten_ = false;  // the interior points, if that helps
     SearchBuffers buffers_;
     Vector<glm::dvec3> subset_;
     Vector<glm::dmat3> frames_;

@@ -16,6 +16,8 @@ namespace {
 
 // Error bound of a projection of normalised coordinates computed in double: the true one is below 1e-15.
 constexpr double kErrorBound = 1e-13;
+// Clouds of this many chunks are worth a look at which points are inside, a block of points at a time.
+constexpr std::size_t kManyChunks = 64, kBlock = 4096;
 constexpr std::size_t kScanAllChunks = 16;  // up to this many, picking the promising ones costs more than it saves
 
 template <class T>
@@ -230,6 +232,35 @@ Supports PointCloud::supports(const glm::dmat3& directions) {
     Supports supports;
     for (std::size_t side = 0; side < 6; ++side) supports[side] = best[side].point;
     return supports;
+}
+
+void PointCloud::forget_interior(std::span<const glm::dvec3> extremes) {
+    const auto read =
+        static_cast<std::size_t>(std::count_if(wanted_.begin(), wanted_.end(), [](auto w) { return w != 0; }));
+    if (chunks_ < kManyChunks || read < chunks_ / 4) return;
+    const InteriorTest test = interior_test(extremes);
+    if (test.count == 0) return;
+    if (floats_)
+        forget_interior_of(floats_, test, kept_floats_);
+    else
+        forget_interior_of(doubles_, test, kept_doubles_);
+}
+
+template <class T>
+void PointCloud::forget_interior_of(const T* points, const InteriorTest& test, Vector<T>& kept) {
+    const kernels::Normalisation to{{shift_.x, shift_.y, shift_.z}, scale_};
+    std::size_t left = 0;
+    for (std::size_t begin = 0; begin < count_; begin += kBlock) {
+        const std::size_t block = std::min(kBlock, count_ - begin);
+        kept.resize(3 * (left + block));
+        left += kernels::copy_all_but_interior(points + 3 * begin, block, to, test, kept.data() + 3 * left);
+        if (left > (begin + block) / 2) return;
+    }
+    if constexpr (std::is_same_v<T, float>)
+        floats_ = kept.data();
+    else
+        doubles_ = kept.data();
+    static_cast<void>(assign_points(kept.data(), left));  // they were good before
 }
 
 void PointCloud::visit_beyond(const glm::dmat3& directions, const glm::dvec3& center, const glm::dvec3& limit,
