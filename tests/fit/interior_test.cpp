@@ -117,7 +117,8 @@ std::vector<Cloud> clouds(Random& random, std::size_t count) {
         const double angle = 4.0 * random.unit();
         return turn * glm::dvec3(std::cos(angle), std::sin(angle), 2.0 * random.unit());
     });
-    add("grid", true, [&](std::size_t) { return glm::round(4.0 * random.box()); });
+    add("coarse grid", false, [&](std::size_t) { return glm::round(4.0 * random.box()); });
+    add("fine grid", true, [&](std::size_t) { return glm::round(40.0 * random.box()); });
     add("points twice and thrice", true, [&](std::size_t i) {
         static glm::dvec3 last;
         if (i % 3 == 0) last = random.box();
@@ -126,7 +127,7 @@ std::vector<Cloud> clouds(Random& random, std::size_t count) {
     add("far from the origin", true, [&](std::size_t) { return random.box() + glm::dvec3(1e7, -1e7, 3e6); });
     add("large", true, [&](std::size_t) { return 1e29 * random.box(); });
     add("small", true, [&](std::size_t) { return 1e-30 * random.normal(); });
-    add("thin", true, [&](std::size_t) { return turn * (random.box() * glm::dvec3(1, 1, 1e-3)); });
+    add("thin", true, [&](std::size_t) { return random.normal() * glm::dvec3(1, 1, 1e-3); });
     add("thinner than the margin", false, [&](std::size_t) { return turn * (random.box() * glm::dvec3(1, 1, 1e-8)); });
     add("flat", false, [&](std::size_t) { return turn * (random.box() * glm::dvec3(1, 1, 0)); });
     add("straight", false, [&](std::size_t) { return random.unit() * glm::dvec3(1, 2, 3); });
@@ -152,7 +153,7 @@ void check_supports(const Cloud& cloud, Random& random) {
     REQUIRE(thinned.assign(std::span<const Point>(points)));
     thinned.forget_interior(extremes_of(thinned));
     INFO(std::string(cloud.name), ": ", thinned.size(), " of ", whole.size());
-    CHECK((thinned.size() < whole.size() / 2) == cloud.thins);
+    CHECK((thinned.size() < whole.size() / 4) == cloud.thins);
     CHECK((cloud.thins || thinned.size() == whole.size()));
     CHECK(thinned.origin() == whole.origin());
     CHECK(thinned.unit() == whole.unit());
