@@ -277,6 +277,13 @@ TEST_SUITE("fit/interior") {
             twice.insert(twice.end(), cloud.points.begin(), cloud.points.end());
             random.shuffle(twice);
             CHECK(boxes_of<glm::dvec3>(twice, cloud.thins) == boxes_of<glm::dvec3>(cloud.points, cloud.thins));
+            if (cloud.thins) {
+                const auto proof = fit_exact(std::span<const glm::dvec3>(twice));
+                const auto whole = fit_exact(std::span<const glm::dvec3>(cloud.points));
+                CHECK(proof->lower_bound == whole->lower_bound);
+                CHECK(proof->cells == whole->cells);
+                CHECK(proof->subset == whole->subset);
+            }
             CHECK(boxes_of<glm::vec3>(twice, cloud.thins) == boxes_of<glm::vec3>(cloud.points, cloud.thins));
         }
     }
