@@ -31,12 +31,16 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/crofton-config-version.cm
 install(FILES ${PROJECT_BINARY_DIR}/crofton-config.cmake ${PROJECT_BINARY_DIR}/crofton-config-version.cmake
         DESTINATION ${package_dir})
 # What the library itself needs is private to a shared one, and everybody's to link with an archive.
+set(pc_system "-lstdc++ -lm -pthread")
+if(CROFTON_NEEDS_LIBATOMIC)
+    string(APPEND pc_system " -latomic")
+endif()
 if(BUILD_SHARED_LIBS)
     set(pc_private ".private")
     set(pc_libs "")
 else()
     set(pc_private "")
-    set(pc_libs " -lstdc++ -lm -pthread")
+    set(pc_libs " ${pc_system}")
 endif()
 get_target_property(pc_qhull Qhull::qhull_r ALIASED_TARGET)  # qhullstatic_r, where only that is installed
 string(REGEX REPLACE "^(Qhull::|.*NOTFOUND$)" "" pc_qhull "${pc_qhull}")

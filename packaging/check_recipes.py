@@ -172,7 +172,7 @@ def check_conan(version, options):
     expect(recipe.version == version, f"conanfile.py says version {recipe.version}, the project {version}")
     expect(set(recipe.options) == set(recipe.default_options), "conanfile.py: not every option has a default")
     recipe.options = types.SimpleNamespace(**recipe.default_options)
-    recipe.settings = types.SimpleNamespace(os="Linux", compiler="gcc")
+    recipe.settings = types.SimpleNamespace(os="Linux", arch="x86_64", compiler="gcc")
     recipe.recipe_folder, recipe.export_sources_folder = str(ROOT / "packaging/conan"), "/exported"
     recipe.source_folder = recipe.package_folder = "/nowhere"
     recipe.requires = lambda name, **_: required.append(name.split("/")[0])

@@ -78,3 +78,5 @@ class CroftonConan(ConanFile):
             self.cpp_info.defines.append("CROFTON_NO_STATISTICS=1")
         if self.settings.os in ("Linux", "FreeBSD"):
             self.cpp_info.system_libs.extend(["m", "pthread"])
+        if "riscv" in str(self.settings.arch):
+            self.cpp_info.system_libs.append("atomic")

@@ -11,6 +11,8 @@
 #include <oracle/tree_contents.hpp>
 #include <vector>
 
+#include "../ranges.hpp"
+
 using namespace crofton;
 using boxtree::BoxTree;
 using boxtree::ItemId;
@@ -115,7 +117,7 @@ TEST_SUITE("boxtree/box_tree changes") {
         CHECK(tree.validate().has_value());
         const BoxTree fresh = *BoxTree::build(crowd.boxes);
         CHECK(tree.structure().leaves().size() == fresh.structure().leaves().size());
-        CHECK(std::ranges::equal(tree.structure().leaf_counts(), fresh.structure().leaf_counts()));
+        CHECK(test::ranges::equal(tree.structure().leaf_counts(), fresh.structure().leaf_counts()));
     }
 
     TEST_CASE("ids that are used again elsewhere during a background rebuild do not widen its bounds") {

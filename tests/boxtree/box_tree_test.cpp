@@ -11,6 +11,8 @@
 #include <oracle/tree_contents.hpp>
 #include <vector>
 
+#include "../ranges.hpp"
+
 using namespace crofton;
 using boxtree::BoxTree;
 using oracle::holds_all;
@@ -77,7 +79,7 @@ TEST_SUITE("boxtree/box_tree") {
                 for (std::size_t l = 0; l < parts.size(); ++l) {
                     const auto slots =
                         tree.structure().slot_items().subspan(l * boxtree::kWidth, tree.structure().leaves()[l].count);
-                    CHECK(std::ranges::is_permutation(slots, parts[l]));
+                    CHECK(test::ranges::is_permutation(slots, parts[l]));
                 }
             }
     }
@@ -115,7 +117,7 @@ TEST_SUITE("boxtree/box_tree") {
         const Vector<std::byte> serial = BoxTree::build(crowd.boxes)->serialise();
         for (const unsigned threads : {2u, 3u, 8u}) {
             ThreadPool pool(threads);
-            CHECK(std::ranges::equal(BoxTree::build(crowd.boxes, {}, pool)->serialise(), serial));
+            CHECK(test::ranges::equal(BoxTree::build(crowd.boxes, {}, pool)->serialise(), serial));
         }
     }
 

@@ -9,6 +9,8 @@
 #include <oracle/tree_contents.hpp>
 #include <oracle/turned_crowd.hpp>
 
+#include "../ranges.hpp"
+
 using namespace crofton;
 using boxtree::BoxTree;
 using boxtree::Orientation;
@@ -17,7 +19,7 @@ namespace {
 
 std::size_t turned_nodes(const BoxTree& tree) {
     return static_cast<std::size_t>(
-        std::ranges::count_if(tree.structure().nodes(), [](const boxtree::Node& node) { return node.axes != 0; }));
+        test::ranges::count_if(tree.structure().nodes(), [](const boxtree::Node& node) { return node.axes != 0; }));
 }
 
 void check_sound(const BoxTree& tree) {

@@ -11,6 +11,8 @@
 #include <oracle/random_boxes.hpp>
 #include <string_view>
 
+#include "../ranges.hpp"
+
 using namespace crofton;
 using boxtree::BoxTree;
 using boxtree::ItemId;
@@ -150,7 +152,7 @@ TEST_SUITE("boxtree/stored") {
         const auto back = BoxTree::deserialise(stored.bytes());
         REQUIRE(back.has_value());
         const auto bytes = back->serialise();
-        CHECK(std::ranges::equal(bytes, stored.bytes()));
+        CHECK(test::ranges::equal(bytes, stored.bytes()));
     }
 
     TEST_CASE("bytes too many or too few, other versions, byte orders and element sizes are refused") {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Callers' mistakes that no handle is to blame for: counts beyond memory, dead handles, calls without anything.
+#include <cmath>
 #include <cstdint>
 
 #include "handles.hpp"
@@ -55,6 +56,45 @@ TEST_SUITE("capi/misuse") {
         }
         // All is as before.
         CHECK(crofton_cull_tree(tree, &view, nullptr, nullptr, visible.get()) == CROFTON_OK);
+    }
+
+    TEST_CASE("a message says which number is at fault, and why") {
+        const crofton_box box = box_at(0, 0, 0);
+        crofton_tree* tree = nullptr;
+        REQUIRE(crofton_tree_create(&box, nullptr, 1, nullptr, &tree) == CROFTON_OK);
+        const Tree owner(tree);
+        std::uint32_t id = 0;
+        std::size_t found = 0;
+        const double center[3] = {}, nan = std::nan(""), nowhere[3] = {0, 0, nan};
+        const auto near = [&](const double* at, double radius) {
+            return crofton_tree_within_ball(tree, at, radius, ~0u, &id, 1, &found);
+        };
+        CHECK(near(center, nan) == CROFTON_NON_FINITE);
+        CHECK(mentions(crofton_last_error(), "crofton_tree_within_ball: radius is NaN or infinite"));
+        CHECK(near(center, -1) == CROFTON_INVALID_ARGUMENT);
+        CHECK(mentions(crofton_last_error(), "crofton_tree_within_ball: radius is negative"));
+        CHECK(near(nowhere, 1) == CROFTON_NON_FINITE);
+        CHECK(mentions(crofton_last_error(), "center is NaN or infinite"));
+        auto options = sized<crofton_world_options>();
+        crofton_world* world = nullptr;
+        options.contact_margin = nan;
+        CHECK(crofton_world_create(&options, &world) == CROFTON_NON_FINITE);
+        CHECK(mentions(crofton_last_error(), "crofton_world_create: contact_margin is NaN or infinite"));
+        options.contact_margin = -1;
+        CHECK(crofton_world_create(&options, &world) == CROFTON_INVALID_ARGUMENT);
+        CHECK(mentions(crofton_last_error(), "contact_margin is negative"));
+    }
+
+    TEST_CASE("coordinates whose sum is beyond doubles are finite") {
+        const crofton_box box = box_at(0, 0, 0);
+        crofton_tree* tree = nullptr;
+        REQUIRE(crofton_tree_create(&box, nullptr, 1, nullptr, &tree) == CROFTON_OK);
+        const Tree owner(tree);
+        std::uint32_t id = 0;
+        std::size_t found = 77;
+        const double far[3] = {1.5e308, 1.5e308, 0};
+        CHECK(crofton_tree_within_ball(tree, far, 1, ~0u, &id, 1, &found) == CROFTON_OK);
+        CHECK(found == 0);
     }
 
     TEST_CASE("no arrays at all are empty input, not a crash") {

@@ -9,6 +9,7 @@
 #include <limits>
 #include <vector>
 
+#include "../ranges.hpp"
 #include "random_boxes.hpp"
 
 using namespace crofton;
@@ -54,7 +55,7 @@ std::vector<IdPair> brute_force_bounds(std::span<const Obb> boxes) {
 }
 
 bool same(std::span<const IdPair> a, std::span<const IdPair> b) {
-    return std::ranges::equal(a, b);
+    return test::ranges::equal(a, b);
 }
 
 }  // namespace
@@ -77,7 +78,7 @@ TEST_SUITE("collide/broadphase") {
         boxes[199].axes[2] = glm::vec3(0.0f);
         Broadphase broadphase;
         REQUIRE(broadphase.update(boxes).has_value());
-        CHECK(std::ranges::equal(broadphase.rejected(), std::vector<std::uint32_t>{17, 40, 199}));
+        CHECK(test::ranges::equal(broadphase.rejected(), std::vector<std::uint32_t>{17, 40, 199}));
         CHECK(broadphase.statistics().rejected == 3);
         CHECK(same(broadphase.pairs(), brute_force(boxes)));
     }
@@ -154,7 +155,7 @@ TEST_SUITE("collide/broadphase") {
             Broadphase bounds({.exact_boxes = false}), exact;
             REQUIRE(bounds.update(boxes).has_value());
             REQUIRE(exact.update(boxes).has_value());
-            CHECK(std::ranges::includes(bounds.pairs(), exact.pairs()));
+            CHECK(test::ranges::includes(bounds.pairs(), exact.pairs()));
             CHECK(same(exact.pairs(), brute_force(boxes)));
         }
     }
@@ -239,7 +240,7 @@ TEST_SUITE("collide/broadphase") {
                 CHECK(same(few.began(), all.began()));
                 CHECK(same(few.stayed(), all.stayed()));
                 CHECK(same(few.ended(), all.ended()));
-                CHECK(std::ranges::equal(few.rejected(), all.rejected()));
+                CHECK(test::ranges::equal(few.rejected(), all.rejected()));
                 looked_at += few.statistics().bound_pairs < all.statistics().bound_pairs;
                 began += few.began().size();
                 ended += few.ended().size();
@@ -295,9 +296,9 @@ TEST_SUITE("collide/broadphase") {
             const auto now = brute_force(boxes);
             CHECK(same(broadphase.pairs(), now));
             std::vector<IdPair> began, stayed, ended;
-            std::ranges::set_difference(now, before, std::back_inserter(began));
-            std::ranges::set_intersection(now, before, std::back_inserter(stayed));
-            std::ranges::set_difference(before, now, std::back_inserter(ended));
+            test::ranges::set_difference(now, before, std::back_inserter(began));
+            test::ranges::set_intersection(now, before, std::back_inserter(stayed));
+            test::ranges::set_difference(before, now, std::back_inserter(ended));
             CHECK(same(broadphase.began(), began));
             CHECK(same(broadphase.stayed(), stayed));
             CHECK(same(broadphase.ended(), ended));

@@ -9,6 +9,8 @@
 #include <glm/geometric.hpp>
 #include <oracle/turned_crowd.hpp>
 
+#include "../ranges.hpp"
+
 using namespace crofton;
 using boxtree::Orientation;
 
@@ -44,10 +46,10 @@ TEST_SUITE("collide/oriented trees") {
                 for (std::size_t i = 0; i < crowd.boxes.size(); ++i)
                     if (collide::intersects(crowd.boxes[i], body)) expected.push_back(static_cast<boxtree::ItemId>(i));
                 touched += expected.size();
-                REQUIRE(std::ranges::equal(found, expected));
+                REQUIRE(test::ranges::equal(found, expected));
                 collide::overlapping(tree, Sphere{body.center, 3.0}, found);
                 collide::overlapping(flat, Sphere{body.center, 3.0}, expected);
-                REQUIRE(std::ranges::equal(found, expected));
+                REQUIRE(test::ranges::equal(found, expected));
             }
             CHECK(met > 100);
             CHECK(touched > 100);

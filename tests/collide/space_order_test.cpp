@@ -5,6 +5,7 @@
 #include <random>
 #include <vector>
 
+#include "../ranges.hpp"
 #include "space_order.hpp"
 
 using namespace crofton;
@@ -18,7 +19,7 @@ bool are_parted(std::span<const std::uint32_t> first, std::span<const std::uint3
         const auto before = [&](std::uint32_t a, std::uint32_t b) {
             return boxes[a].center[axis] < boxes[b].center[axis];
         };
-        if (!before(*std::ranges::min_element(second, before), *std::ranges::max_element(first, before))) return true;
+        if (!before(*test::ranges::min_element(second, before), *test::ranges::max_element(first, before))) return true;
     }
     return false;
 }

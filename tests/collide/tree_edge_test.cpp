@@ -11,6 +11,8 @@
 #include <oracle/aged_tree.hpp>
 #include <oracle/edges.hpp>
 
+#include "../ranges.hpp"
+
 using namespace crofton;
 using namespace crofton::collide;
 using oracle::NearMisses;
@@ -37,7 +39,7 @@ void check_body(const boxtree::BoxTree& tree, const Body& body) {
         if (intersects(tree.boxes()[i], body)) expected.push_back(static_cast<boxtree::ItemId>(i));
     Vector<boxtree::ItemId> items;
     overlapping(tree, body, items);
-    REQUIRE(std::ranges::equal(items, expected));
+    REQUIRE(test::ranges::equal(items, expected));
 }
 
 // Bodies of growing size about one place: just before and just after each begins to touch box `item`.
@@ -70,7 +72,7 @@ void check_rays(NearMisses& random, const boxtree::BoxTree& tree, const Obb& box
             for (std::size_t i = 0; i < tree.boxes().size(); ++i)
                 if (mesh::raycast(ray, tree.boxes()[i])) expected.push_back(static_cast<boxtree::ItemId>(i));
             visit_along(ray, tree, [&](boxtree::ItemId item, double) { return found.push_back(item), ray.max_t; });
-            std::ranges::sort(found);
+            test::ranges::sort(found);
             REQUIRE(found == expected);
         }
 }
@@ -193,17 +195,17 @@ TEST_SUITE("collide/tree edges") {
                 body.half_extents *= 20.0f;
                 Vector<boxtree::ItemId> items;
                 overlapping(aged.tree, body, items, layers);
-                REQUIRE(std::ranges::equal(items, expect(layers, [&](const Obb& b) { return intersects(b, body); })));
+                REQUIRE(test::ranges::equal(items, expect(layers, [&](const Obb& b) { return intersects(b, body); })));
                 const Sphere ball{body.center, random.number(0.0, 30.0)};
                 overlapping(aged.tree, ball, items, layers);
-                REQUIRE(std::ranges::equal(items, expect(layers, [&](const Obb& b) { return intersects(b, ball); })));
+                REQUIRE(test::ranges::equal(items, expect(layers, [&](const Obb& b) { return intersects(b, ball); })));
                 Ray ray{60.0 * random.direction(), random.direction()};
                 ray.direction -= random.number(0.5, 2.0) * ray.origin / 60.0;
                 Items found;
                 visit_along(
                     ray, aged.tree, [&](boxtree::ItemId item, double) { return found.push_back(item), ray.max_t; },
                     layers);
-                std::ranges::sort(found);
+                test::ranges::sort(found);
                 REQUIRE(found == expect(layers, [&](const Obb& b) { return mesh::raycast(ray, b).has_value(); }));
             }
         });

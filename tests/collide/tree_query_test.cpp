@@ -99,7 +99,7 @@ TEST_SUITE("collide/tree_query") {
             NearMisses random(3);
             Vector<boxtree::ItemId> items;
             std::size_t found = 0;
-            for (int trial = 0; trial < 100; ++trial) {
+            for (int trial = 0; trial < 200; ++trial) {
                 const std::uint32_t layers = random.index(3) ? ~0u : 1u << random.index(5);
                 Obb box = oracle::random_box(random, middle, 60.0);
                 box.half_extents *= 20.0f;

@@ -9,6 +9,8 @@
 #include <oracle/aged_tree.hpp>
 #include <set>
 
+#include "../ranges.hpp"
+
 using namespace crofton;
 using cull::CullMode;
 using cull::Verdict;
@@ -37,13 +39,13 @@ void check_view(const AgedTree& aged, const cull::View& view, CullMode mode, Exe
     }
     cull::VisibleSet visible;
     cull::find_visible(aged.tree, view, visible, {mode}, executor);
-    REQUIRE(std::ranges::equal(visible.ids(), ids));
-    REQUIRE(std::ranges::equal(visible.verdicts(), verdicts));
+    REQUIRE(test::ranges::equal(visible.ids(), ids));
+    REQUIRE(test::ranges::equal(visible.verdicts(), verdicts));
     cull::find_visible(aged.tree, view, visible, {mode, cull::ResultOrder::tree}, executor);
     std::vector<cull::ItemId> sorted(visible.ids().begin(), visible.ids().end());
-    std::ranges::sort(sorted);
+    test::ranges::sort(sorted);
     REQUIRE(sorted == ids);
-    const auto inside = std::ranges::count(verdicts, Verdict::inside);
+    const auto inside = test::ranges::count(verdicts, Verdict::inside);
     REQUIRE(visible.inside_count() == static_cast<std::size_t>(inside));
     const std::vector<cull::View> views{view, {view.frustum, ~view.layer_mask}};
     cull::ManyVisible many;
@@ -51,7 +53,7 @@ void check_view(const AgedTree& aged, const cull::View& view, CullMode mode, Exe
     sorted.clear();
     for (std::size_t i = 0; i < many.size(); ++i)
         if (many.view_mask(i) & 1u) sorted.push_back(many.ids()[i]);
-    std::ranges::sort(sorted);
+    test::ranges::sort(sorted);
     REQUIRE(sorted == ids);
 }
 

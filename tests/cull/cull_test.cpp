@@ -11,6 +11,8 @@
 #include <oracle/random_boxes.hpp>
 #include <vector>
 
+#include "../ranges.hpp"
+
 using namespace crofton;
 using cull::Verdict;
 
@@ -81,13 +83,13 @@ TEST_SUITE("cull/cull") {
                     cull::find_visible(*tree, view, from_tree, options);
                     cull::find_visible(town.boxes, town.layers, view, from_list, options);
                     for (const cull::VisibleSet* visible : {&from_tree, &from_list}) {
-                        CHECK(std::ranges::equal(visible->ids(), ids));
-                        CHECK(std::ranges::equal(visible->verdicts(), verdicts));
+                        CHECK(test::ranges::equal(visible->ids(), ids));
+                        CHECK(test::ranges::equal(visible->verdicts(), verdicts));
                     }
                     options.order = cull::ResultOrder::tree;
                     cull::find_visible(*tree, view, from_tree, options);
                     std::vector<cull::ItemId> sorted(from_tree.ids().begin(), from_tree.ids().end());
-                    std::ranges::sort(sorted);
+                    test::ranges::sort(sorted);
                     CHECK(sorted == ids);
                 }
             }
@@ -167,11 +169,11 @@ TEST_SUITE("cull/cull") {
                         CAPTURE(hwy::TargetName(rest & -rest));
                         cull::VisibleSet visible;
                         cull::find_visible(boxes, layers, view, visible, {mode});
-                        CHECK(std::ranges::equal(visible.ids(), ids));
-                        CHECK(std::ranges::equal(visible.verdicts(), verdicts));
+                        CHECK(test::ranges::equal(visible.ids(), ids));
+                        CHECK(test::ranges::equal(visible.verdicts(), verdicts));
                         CHECK(visible.inside_count() == ids.size() - straddling.size());
                         cull::find_visible(boxes, layers, view, visible, {mode, cull::ResultOrder::tree});
-                        CHECK(std::ranges::equal(visible.ids(), inside));
+                        CHECK(test::ranges::equal(visible.ids(), inside));
                         CHECK(visible.verdicts().empty());
                     }
                     hwy::SetSupportedTargetsForTest(0);
@@ -197,7 +199,7 @@ TEST_SUITE("cull/cull") {
                 for (std::size_t i = 0; i < unsorted.size(); ++i)
                     expected.emplace_back(unsorted.ids()[i],
                                           i < unsorted.inside_count() ? Verdict::inside : Verdict::straddling);
-                std::ranges::sort(expected);
+                test::ranges::sort(expected);
                 REQUIRE(sorted.size() == expected.size());
                 CHECK(sorted.inside_count() == unsorted.inside_count());
                 CHECK(expected.size() > 1000);
@@ -251,10 +253,10 @@ TEST_SUITE("cull/cull") {
                 if (present[i] && cull::classify(view.frustum, boxes[i]) != Verdict::outside)
                     ids.push_back(static_cast<cull::ItemId>(i));
             cull::find_visible(tree, view, visible);
-            CHECK(std::ranges::equal(visible.ids(), ids));
+            CHECK(test::ranges::equal(visible.ids(), ids));
             cull::find_visible(tree, view, visible, {cull::CullMode::exact, cull::ResultOrder::tree});
             sorted.assign(visible.ids().begin(), visible.ids().end());
-            std::ranges::sort(sorted);
+            test::ranges::sort(sorted);
             CHECK(sorted == ids);
             const auto valid = tree.validate();
             INFO((valid ? std::string() : valid.error().message));

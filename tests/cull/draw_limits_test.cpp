@@ -12,6 +12,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "../ranges.hpp"
 #include "limited_crowd.hpp"
 
 using namespace crofton;
@@ -114,13 +115,13 @@ TEST_SUITE("cull/draw_limits") {
             for (std::int64_t left = hwy::SupportedTargets(); left != 0; left &= left - 1) {
                 hwy::SetSupportedTargetsForTest(left & -left);
                 cull::find_visible(tree, of.view, visible, {.limits = &of.limits});
-                REQUIRE(std::ranges::equal(visible.ids(), expected));
+                REQUIRE(test::ranges::equal(visible.ids(), expected));
                 for (std::size_t i = 0; i < visible.size(); ++i)
                     REQUIRE(visible.verdicts()[i] == cull::classify(of.view.frustum, of.crowd.boxes[visible.ids()[i]]));
                 cull::find_visible(of.crowd.boxes, of.crowd.layers, of.view, visible, {.limits = &of.limits});
-                REQUIRE(std::ranges::equal(visible.ids(), expected));
+                REQUIRE(test::ranges::equal(visible.ids(), expected));
                 cull::find_visible(rest, list, of.view, visible, {.limits = &of.limits});
-                REQUIRE(std::ranges::equal(visible.ids(), expected));
+                REQUIRE(test::ranges::equal(visible.ids(), expected));
                 cull::find_visible(tree, of.view, visible,
                                    {cull::CullMode::exact, cull::ResultOrder::tree, &of.limits});
                 CHECK(visible.size() == expected.size());
@@ -161,8 +162,8 @@ TEST_SUITE("cull/draw_limits") {
                         REQUIRE(all.view_mask(i) != 0);
                         if (all.view_mask(i) >> v & 1) ids.push_back(all.ids()[i]);
                     }
-                    std::ranges::sort(ids);
-                    REQUIRE(std::ranges::equal(ids, one.ids()));
+                    test::ranges::sort(ids);
+                    REQUIRE(test::ranges::equal(ids, one.ids()));
                 }
             }
         }
@@ -193,8 +194,8 @@ TEST_SUITE("cull/draw_limits") {
                 cull::find_visible(set, bounds, of.view, all);
                 cull::find_visible(set, bounds, of.view, of.limits, few);
                 cull::find_visible(set, bounds, of.view, of.limits, same, cull::CullMode::exact, three);
-                CHECK(std::ranges::equal(few.visible, same.visible));
-                CHECK(std::ranges::equal(few.inside, same.inside));
+                CHECK(test::ranges::equal(few.visible, same.visible));
+                CHECK(test::ranges::equal(few.inside, same.inside));
                 for (std::size_t w = 0; w < few.inside.size(); ++w) CHECK((few.inside[w] & ~few.visible[w]) == 0);
                 for (std::uint32_t i = 0; i < bounds.size(); ++i) {
                     const bool keeps = oracle_keeps(of.limits, alike[i], i, of.view.layer_mask);
@@ -216,7 +217,7 @@ TEST_SUITE("cull/draw_limits") {
         const boxtree::BoxTree tree = *boxtree::BoxTree::build(of.crowd.boxes, of.crowd.layers);
         cull::VisibleSet visible;
         cull::find_visible(tree, of.view, visible, {.limits = &of.limits});
-        CHECK(std::ranges::equal(visible.ids(), of.expected()));
+        CHECK(test::ranges::equal(visible.ids(), of.expected()));
     }
 
     TEST_CASE("what is far is dropped by nodes, not item by item") {
@@ -274,7 +275,7 @@ TEST_SUITE("cull/draw_limits") {
                 for (std::int64_t left = hwy::SupportedTargets(); left != 0; left &= left - 1) {
                     hwy::SetSupportedTargetsForTest(left & -left);
                     cull::find_visible(aged.tree, of.view, visible, {.limits = &of.limits});
-                    REQUIRE(std::ranges::equal(visible.ids(), expected));
+                    REQUIRE(test::ranges::equal(visible.ids(), expected));
                     hwy::SetSupportedTargetsForTest(0);
                 }
             }
@@ -305,7 +306,7 @@ TEST_SUITE("cull/draw_limits") {
                         expected.push_back(i);
                 cull::VisibleSet visible;
                 cull::find_visible(tree, view, visible, {.limits = &limits});
-                REQUIRE(std::ranges::equal(visible.ids(), expected));
+                REQUIRE(test::ranges::equal(visible.ids(), expected));
             }
     }
 

@@ -13,6 +13,8 @@
 #include <oracle/random_boxes.hpp>
 #include <vector>
 
+#include "../ranges.hpp"
+
 using namespace crofton;
 
 namespace {
@@ -87,7 +89,7 @@ TEST_SUITE("cull/frame") {
         ThreadPool three(3);
         const boxtree::BoxTree tree = *boxtree::BoxTree::build(crowd.boxes, crowd.layers);
         const boxtree::BoxTree tree_of_three = *boxtree::BoxTree::build(crowd.boxes, crowd.layers, {}, three);
-        CHECK(std::ranges::equal(tree.structure().slot_items(), tree_of_three.structure().slot_items()));
+        CHECK(test::ranges::equal(tree.structure().slot_items(), tree_of_three.structure().slot_items()));
         cull::BoxSet set;
         set.assign(crowd.boxes, three);
         cull::VisibleSet one, many;
@@ -98,8 +100,8 @@ TEST_SUITE("cull/frame") {
                 cull::find_visible(tree, view, many, {cull::CullMode::exact, order}, three);
                 CHECK(one.inside_count() == many.inside_count());
                 REQUIRE(one.size() == many.size());
-                CHECK(std::ranges::equal(one.ids(), many.ids()));
-                CHECK(std::ranges::equal(one.verdicts(), many.verdicts()));
+                CHECK(test::ranges::equal(one.ids(), many.ids()));
+                CHECK(test::ranges::equal(one.verdicts(), many.verdicts()));
                 CHECK(one.statistics().boxes_tested == many.statistics().boxes_tested);
                 CHECK(one.statistics().improper == many.statistics().improper);
                 cull::find_visible(set, crowd.boxes, view, one_bits);

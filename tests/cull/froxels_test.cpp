@@ -15,6 +15,8 @@
 #include <oracle/exact_spot.hpp>
 #include <vector>
 
+#include "../ranges.hpp"
+
 using namespace crofton;
 
 namespace {
@@ -34,7 +36,7 @@ std::vector<std::uint32_t> froxels_of(const cull::FroxelLights& lights, const cu
                                       std::uint32_t light) {
     std::vector<std::uint32_t> result;
     for (std::uint32_t f = 0; f < grid.size(); ++f)
-        if (std::ranges::binary_search(lights.lights_of(f), light)) result.push_back(f);
+        if (test::ranges::binary_search(lights.lights_of(f), light)) result.push_back(f);
     return result;
 }
 
@@ -212,7 +214,7 @@ TEST_SUITE("cull/froxels") {
             for (std::uint32_t f = 0; f < grid.size(); ++f) {
                 const Frustum cell = grid.froxel(f);
                 const auto has = [&](std::size_t light) {
-                    return std::ranges::binary_search(found.lights_of(f), std::uint32_t(light));
+                    return test::ranges::binary_search(found.lights_of(f), std::uint32_t(light));
                 };
                 for (std::size_t i = 0; i < lights.points.size(); ++i) {
                     const bool meets = cull::classify(cell, lights.points[i]) != cull::Verdict::outside;
@@ -255,7 +257,7 @@ TEST_SUITE("cull/froxels") {
             REQUIRE(cull::find_lights(grid, {}, spots, found).has_value());
             for (std::uint32_t f = std::uint32_t(trial % 3); f < grid.size(); f += 3)
                 for (std::uint32_t i = 0; i < spots.size(); ++i) {
-                    const bool has = std::ranges::binary_search(found.lights_of(f), i);
+                    const bool has = test::ranges::binary_search(found.lights_of(f), i);
                     (has ? lit : dark) += 1;
                     if (!has && (f + i) % 16 != 0) continue;  // the oracle is slow
                     CAPTURE(trial);
@@ -279,10 +281,10 @@ TEST_SUITE("cull/froxels") {
         REQUIRE(cull::find_lights(grid, lights.points, lights.spots, one).has_value());
         CHECK(counting.allocations() == warm);
         CHECK(one.lights().size() > 1500);
-        for (std::uint32_t f = 0; f < grid.size(); ++f) CHECK(std::ranges::is_sorted(one.lights_of(f)));
+        for (std::uint32_t f = 0; f < grid.size(); ++f) CHECK(test::ranges::is_sorted(one.lights_of(f)));
         const auto same = [&](const cull::FroxelLights& other) {
-            return std::ranges::equal(one.offsets(), other.offsets()) &&
-                   std::ranges::equal(one.lights(), other.lights());
+            return test::ranges::equal(one.offsets(), other.offsets()) &&
+                   test::ranges::equal(one.lights(), other.lights());
         };
         ThreadPool three(3);
         cull::FroxelLights other;

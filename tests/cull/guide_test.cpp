@@ -13,6 +13,8 @@
 #include <limits>
 #include <vector>
 
+#include "../ranges.hpp"
+
 namespace {
 
 struct Drawn {
@@ -153,8 +155,8 @@ TEST_SUITE("cull/guide") {
         LitRow row;
         REQUIRE(light_row(boxes, camera, {{{0.01, 0.01, -20.0}, 1e-3}}, {0.0, 1.0, 0.0}, row) == 0);
         CHECK(row.pairs == 1);
-        CHECK(std::ranges::count(row.shadows, 200u) == 1);
-        CHECK(std::ranges::count(row.shadows, 201u) == 0);
+        CHECK(crofton::test::ranges::count(row.shadows, 200u) == 1);
+        CHECK(crofton::test::ranges::count(row.shadows, 201u) == 0);
         CHECK(row.drawn.size() > 30);                                         // 0.43 · 540 / 20 pixels and more
         for (crofton::Obb& box : boxes) box.half_extents = glm::vec3(0.01f);  // 0.03 m at 20 m: 0.9 of a pixel
         REQUIRE(light_row(boxes, camera, {}, {0.0, 1.0, 0.0}, row) == 0);

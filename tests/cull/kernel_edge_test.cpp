@@ -13,6 +13,8 @@
 #include <oracle/near_misses.hpp>
 #include <vector>
 
+#include "../ranges.hpp"
+
 using namespace crofton;
 using cull::CullMode;
 using cull::Verdict;
@@ -50,7 +52,7 @@ std::vector<Obb> cluster_at(oracle::NearMisses& random, const Frustum& frustum, 
         const Plane& plane = frustum.planes[i];
         nearest.emplace_back(std::fabs(glm::dot(plane.normal, target - frustum.origin) + plane.offset), i);
     }
-    std::ranges::sort(nearest);
+    test::ranges::sort(nearest);
     const double largest = std::max({shape.size.x, shape.size.y, shape.size.z});
     // What small integers are rounded to, or floats.
     const double quantum = std::ldexp(std::max(largest, shape.half), random.index(2) ? -14 : -23);
@@ -131,7 +133,8 @@ Answer expected_of(const std::vector<Obb>& boxes, const cull::View& view, CullMo
 }
 
 bool is_answer(const cull::VisibleSet& visible, const Answer& expected) {
-    return std::ranges::equal(visible.ids(), expected.ids) && std::ranges::equal(visible.verdicts(), expected.verdicts);
+    return test::ranges::equal(visible.ids(), expected.ids) &&
+           test::ranges::equal(visible.verdicts(), expected.verdicts);
 }
 
 template <class Bound>
@@ -174,7 +177,7 @@ std::uint64_t check_tree(const std::vector<Obb>& boxes, const cull::View& view) 
         exact_tests += visible.statistics().exact_tests;
         cull::find_visible(*tree, views, many, mode);
         std::vector<cull::ItemId> ids(many.ids().begin(), many.ids().end());
-        std::ranges::sort(ids);
+        test::ranges::sort(ids);
         REQUIRE(ids == expected.ids);
     }
     return exact_tests;

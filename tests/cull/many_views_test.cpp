@@ -9,6 +9,8 @@
 #include <oracle/random_boxes.hpp>
 #include <vector>
 
+#include "../ranges.hpp"
+
 using namespace crofton;
 
 namespace {
@@ -62,8 +64,8 @@ TEST_SUITE("cull/many_views") {
                     cull::find_visible(*tree, some, std::span(lists).first(used), options, *executor);
                     for (std::size_t v = 0; v < used; ++v) {
                         cull::find_visible(*tree, views[v], alone, options);
-                        CHECK(std::ranges::equal(lists[v].ids(), alone.ids()));
-                        CHECK(std::ranges::equal(lists[v].verdicts(), alone.verdicts()));
+                        CHECK(test::ranges::equal(lists[v].ids(), alone.ids()));
+                        CHECK(test::ranges::equal(lists[v].verdicts(), alone.verdicts()));
                         CHECK(lists[v].inside_count() == alone.inside_count());
                         seen += alone.size();
                     }

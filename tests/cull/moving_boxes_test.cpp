@@ -12,6 +12,8 @@
 #include <oracle/random_boxes.hpp>
 #include <vector>
 
+#include "../ranges.hpp"
+
 using namespace crofton;
 using boxtree::BoxTree;
 using cull::ItemId;
@@ -74,7 +76,7 @@ void check_answers(const Crowd& crowd, std::span<const cull::View> views, Execut
             for (const cull::ResultOrder order : {cull::ResultOrder::ascending, cull::ResultOrder::tree}) {
                 cull::find_visible(crowd.tree, crowd.moving, views[v], visible, {mode, order});
                 cull::find_visible(crowd.tree, crowd.moving, views[v], threaded, {mode, order}, executor);
-                REQUIRE(std::ranges::equal(visible.ids(), threaded.ids()));
+                REQUIRE(test::ranges::equal(visible.ids(), threaded.ids()));
                 REQUIRE(visible.inside_count() == threaded.inside_count());
                 REQUIRE(visible.size() == expected.size());
                 for (std::size_t i = 0; i < visible.size(); ++i) {
@@ -83,7 +85,7 @@ void check_answers(const Crowd& crowd, std::span<const cull::View> views, Execut
                                                                                   : Verdict::straddling;
                     REQUIRE(expected.at(visible.ids()[i]) == verdict);
                 }
-                if (order == cull::ResultOrder::ascending) REQUIRE(std::ranges::is_sorted(visible.ids()));
+                if (order == cull::ResultOrder::ascending) REQUIRE(test::ranges::is_sorted(visible.ids()));
                 if (cull::kCountStatistics)
                     CHECK(visible.statistics().straddling == visible.size() - visible.inside_count());
             }
@@ -152,7 +154,7 @@ TEST_SUITE("cull/moving_boxes") {
                         const ItemId item = random.index(static_cast<unsigned>(crowd.tree.boxes().size()));
                         const bool moves = crowd.tree.is_detached(item);
                         const auto at =
-                            static_cast<std::size_t>(std::ranges::find(crowd.items, item) - crowd.items.begin());
+                            static_cast<std::size_t>(test::ranges::find(crowd.items, item) - crowd.items.begin());
                         if (!crowd.all.contains(item)) continue;
                         switch (random.index(5)) {
                             case 0:

@@ -10,6 +10,8 @@
 #include <oracle/aged_tree.hpp>
 #include <oracle/turned_crowd.hpp>
 
+#include "../ranges.hpp"
+
 using namespace crofton;
 using boxtree::Orientation;
 using cull::CullMode;
@@ -27,7 +29,7 @@ cull::View view_near(oracle::NearMisses& random, const glm::dvec3& middle, doubl
 
 std::vector<cull::ItemId> sorted(std::span<const cull::ItemId> ids) {
     std::vector<cull::ItemId> result(ids.begin(), ids.end());
-    std::ranges::sort(result);
+    test::ranges::sort(result);
     return result;
 }
 
@@ -64,8 +66,8 @@ TEST_SUITE("cull/oriented trees") {
                     const Expected expected(crowd.boxes, crowd.layers, view, mode);
                     cull::VisibleSet visible;
                     cull::find_visible(tree, view, visible, {mode});
-                    REQUIRE(std::ranges::equal(visible.ids(), expected.ids));
-                    REQUIRE(std::ranges::equal(visible.verdicts(), expected.verdicts));
+                    REQUIRE(test::ranges::equal(visible.ids(), expected.ids));
+                    REQUIRE(test::ranges::equal(visible.verdicts(), expected.verdicts));
                     const std::vector<cull::View> views{view, view_near(random, middle, spread, trial)};
                     cull::ManyVisible many;
                     cull::find_visible(tree, views, many, mode);
@@ -89,7 +91,7 @@ TEST_SUITE("cull/oriented trees") {
             cull::VisibleSet one, shared;
             cull::find_visible(tree, view, one, {CullMode::exact, cull::ResultOrder::tree});
             cull::find_visible(tree, view, shared, {CullMode::exact, cull::ResultOrder::tree}, pool);
-            CHECK(std::ranges::equal(one.ids(), shared.ids()));
+            CHECK(test::ranges::equal(one.ids(), shared.ids()));
         }
     }
 
@@ -110,7 +112,7 @@ TEST_SUITE("cull/oriented trees") {
             cull::VisibleSet from_tree, from_list;
             cull::find_visible(tree, view, from_tree, options);
             cull::find_visible(crowd.boxes, crowd.layers, view, from_list, options);
-            CHECK(std::ranges::equal(from_tree.ids(), from_list.ids()));
+            CHECK(test::ranges::equal(from_tree.ids(), from_list.ids()));
         }
     }
 
@@ -127,7 +129,7 @@ TEST_SUITE("cull/oriented trees") {
                 const Expected expected(aged.boxes, layers, view, CullMode::exact);
                 cull::VisibleSet visible;
                 cull::find_visible(aged.tree, view, visible);
-                REQUIRE(std::ranges::equal(visible.ids(), expected.ids));
+                REQUIRE(test::ranges::equal(visible.ids(), expected.ids));
             }
         }
     }

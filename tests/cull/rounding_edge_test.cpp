@@ -10,6 +10,8 @@
 #include <oracle/near_misses.hpp>
 #include <vector>
 
+#include "../ranges.hpp"
+
 using namespace crofton;
 
 namespace {
@@ -223,7 +225,7 @@ TEST_SUITE("cull/rounding edges") {
             for (std::size_t i = 0; i < boxes.size(); ++i)
                 if (cull::classify(frustum, boxes[i]) != cull::Verdict::outside)
                     expected.push_back(static_cast<cull::ItemId>(i));
-            CHECK(std::ranges::equal(visible.ids(), expected));
+            CHECK(test::ranges::equal(visible.ids(), expected));
             CHECK(expected.size() > 20);
         }
     }

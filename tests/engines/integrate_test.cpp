@@ -20,6 +20,8 @@
 #include <random>
 #include <vector>
 
+#include "../ranges.hpp"
+
 namespace {
 
 // A cube of edge 1, as a mesh.
@@ -210,7 +212,7 @@ TEST_SUITE("engines/integrate") {
 
             for (std::size_t k = 0; k < moving_ids.size(); ++k) boxes[moving_ids[k]] = moving_boxes[k];
             cull::find_visible(boxes, {}, {.frustum = frustum_of(camera).value()}, expected);
-            CHECK(std::ranges::equal(visible.ids(), expected.ids()));
+            CHECK(test::ranges::equal(visible.ids(), expected.ids()));
         }
         // What has come to rest goes back.
         if (!tree.attach(moving_ids.back(), moving_boxes.back())) std::abort();
@@ -219,7 +221,7 @@ TEST_SUITE("engines/integrate") {
 
         CHECK(movers.update(tree, moving_ids, moving_boxes));
         cull::find_visible(tree, movers, {.frustum = frustum_of(camera).value()}, visible);
-        CHECK(std::ranges::equal(visible.ids(), expected.ids()));
+        CHECK(test::ranges::equal(visible.ids(), expected.ids()));
         CHECK(visible.size() > 100);
     }
 

@@ -109,6 +109,8 @@ TEST_SUITE("memory/fault") {
         const Vector<glm::dvec3> precise(cloud.begin(), cloud.end());
         sweep("fit_obb, float", [&] { return outcome_of(fit::fit_obb(span)); });
         sweep("fit_obb, double", [&] { return outcome_of(fit::fit_obb(std::span<const glm::dvec3>(precise))); });
+        const auto large = points(9000);  // most of them are forgotten
+        sweep("fit_obb, many", [&] { return outcome_of(fit::fit_obb(std::span<const glm::vec3>(large))); });
         sweep("fit_exact", [&] { return outcome_of(fit::fit_exact(span, {.gap = 1e-2})); });
         const auto many = boxes(20);
         sweep("merge", [&] { return outcome_of(fit::merge(many, measure::minimal_perimeter())); });

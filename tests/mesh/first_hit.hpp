@@ -5,6 +5,7 @@
 #include <crofton/mesh/mesh_query.hpp>
 #include <optional>
 
+#include "mesh/meshes.hpp"
 #include "oracle/exact_boxes.hpp"
 
 namespace crofton::testing {
@@ -30,7 +31,7 @@ inline std::optional<double> oracle_hit(const Ray& ray, const TriangleMesh& mesh
     return best->get_d();
 }
 
-inline bool are_same(const std::optional<RayHit>& a, const std::optional<RayHit>& b) {
+inline bool are_same(const std::optional<mesh::RayHit>& a, const std::optional<mesh::RayHit>& b) {
     return a.has_value() == b.has_value() && (!a || (a->t == b->t && a->triangle == b->triangle));
 }
 

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include <crofton/geometry/closest_points.hpp>
+#include "../ranges.hpp"
 #include "mesh/meshes.hpp"
 
 using namespace crofton;
@@ -97,7 +98,7 @@ TEST_SUITE("mesh/mesh_mesh") {
         const auto bad_vertex = std::uint32_t(a.positions.size() - 1);
         for (const std::uint32_t index : {0u, 1u, bad_vertex, 0u, 1u, 9999u}) a.indices.push_back(index);
         const auto tree_a = tree_of(a), tree_b = tree_of(b);
-        CHECK(std::ranges::equal(tree_a.rejected(), Vector<std::uint32_t>{576, 577}));
+        CHECK(test::ranges::equal(tree_a.rejected(), Vector<std::uint32_t>{576, 577}));
         CHECK(tree_a.triangle_count() == 576);
         Vector<TrianglePair> pairs;
         intersecting_triangles(tree_a, tree_b, pose, pairs);

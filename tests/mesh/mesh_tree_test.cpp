@@ -11,6 +11,8 @@
 #include <random>
 #include <vector>
 
+#include "../ranges.hpp"
+
 using namespace crofton;
 using namespace crofton::mesh;
 
@@ -115,7 +117,7 @@ TEST_SUITE("mesh/mesh_tree") {
         mesh.indices[3 * 15] = 4000;
         const auto tree = MeshTree::build(mesh);
         REQUIRE(tree.has_value());
-        CHECK(std::ranges::equal(tree->rejected(), std::vector<std::uint32_t>{2, 10, 15}));
+        CHECK(test::ranges::equal(tree->rejected(), std::vector<std::uint32_t>{2, 10, 15}));
         CHECK(tree->triangle_count() == 17);
     }
 
@@ -129,7 +131,7 @@ TEST_SUITE("mesh/mesh_tree") {
                 std::vector<int> seen(count, 0);
                 int deepest = 0;
                 walk(*tree, 0, 1, seen, deepest, mesh);
-                CHECK(std::ranges::all_of(seen, [](int n) { return n == 1; }));
+                CHECK(test::ranges::all_of(seen, [](int n) { return n == 1; }));
                 int levels = 1;
                 for (std::size_t leaves = 16; 8 * leaves < count; leaves *= 16) ++levels;
                 CHECK(deepest == levels);

@@ -8,6 +8,8 @@
 #include <oracle/random_boxes.hpp>
 #include <vector>
 
+#include "../ranges.hpp"
+
 using namespace crofton;
 using namespace crofton::study;
 using sampling::Random;
@@ -256,7 +258,7 @@ TEST_SUITE("study/binary_tree") {
                         if (tree.holds(i) && cull::classify(view.frustum, boxes[i]) != cull::Verdict::outside)
                             expected.push_back(i);
                     find_visible(tree, view, visible);
-                    CHECK(std::ranges::equal(visible, expected));
+                    CHECK(test::ranges::equal(visible, expected));
                 }
             }
         Vector<ItemId> visible;

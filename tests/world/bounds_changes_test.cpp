@@ -6,6 +6,7 @@
 #include <oracle/random_boxes.hpp>
 #include <set>
 
+#include "../ranges.hpp"
 #include "model.hpp"
 #include "new_counter.hpp"
 
@@ -209,10 +210,10 @@ TEST_SUITE("world/bounds changes") {
             REQUIRE(serial.update().has_value());
             REQUIRE(parallel.update(pool).has_value());
             CHECK(serial.contacts().size() > 500);
-            CHECK(std::ranges::equal(serial.contacts(), parallel.contacts(), [](const Contact& a, const Contact& b) {
+            CHECK(test::ranges::equal(serial.contacts(), parallel.contacts(), [](const Contact& a, const Contact& b) {
                 return a.first.object == b.first.object && a.second.object == b.second.object && a.phase == b.phase &&
                        a.normal == b.normal && a.depth == b.depth &&
-                       std::ranges::equal(a.points, b.points, [](const auto& p, const auto& q) {
+                       test::ranges::equal(a.points, b.points, [](const auto& p, const auto& q) {
                            return p.position == q.position && p.depth == q.depth;
                        });
             }));
@@ -220,7 +221,7 @@ TEST_SUITE("world/bounds changes") {
             const cull::View view = random_view(random);
             serial.view(view, a);
             parallel.view(view, b, {}, pool);
-            CHECK(std::ranges::equal(a.ids(), b.ids()));
+            CHECK(test::ranges::equal(a.ids(), b.ids()));
         }
     }
 

@@ -10,6 +10,7 @@
 #include <oracle/random_boxes.hpp>
 #include <set>
 
+#include "../ranges.hpp"
 #include "cubes.hpp"
 #include "new_counter.hpp"
 
@@ -131,7 +132,7 @@ TEST_SUITE("world/mesh_contacts") {
             std::map<std::pair<std::uint32_t, std::uint32_t>, ContactPhase> phases;
             for (const Contact& contact : serial.contacts())
                 phases[{contact.first.object.index, contact.second.object.index}] = contact.phase;
-            CHECK(std::ranges::equal(serial.contacts(), parallel.contacts(), [](const Contact& x, const Contact& y) {
+            CHECK(test::ranges::equal(serial.contacts(), parallel.contacts(), [](const Contact& x, const Contact& y) {
                 return x.first.object == y.first.object && x.second.object == y.second.object && x.phase == y.phase &&
                        x.normal == y.normal && x.triangles.size() == y.triangles.size();
             }));

@@ -5,6 +5,7 @@
 #include <array>
 #include <counting_memory.hpp>
 
+#include "../ranges.hpp"
 #include "new_counter.hpp"
 #include "occlusion_town.hpp"
 
@@ -60,20 +61,20 @@ TEST_SUITE("world/occlusion") {
         VisibleInViews together, alone;
         REQUIRE(town.world.view(views, OcclusionOptions{}, together, {}, pool).has_value());
         REQUIRE(town.world.view(views, OcclusionOptions{}, alone).has_value());
-        CHECK(std::ranges::equal(together.ids(), alone.ids()));
+        CHECK(test::ranges::equal(together.ids(), alone.ids()));
         CHECK(together.occlusion_view_count() == views.size());
         std::size_t seen = 0;
         for (std::size_t v = 0; v < views.size(); ++v) {
             VisibleObjects one, threaded;
             REQUIRE(town.world.view(views[v], OcclusionOptions{}, one).has_value());
             REQUIRE(town.world.view(views[v], OcclusionOptions{}, threaded, {}, pool).has_value());
-            CHECK(std::ranges::equal(one.ids(), threaded.ids()));
+            CHECK(test::ranges::equal(one.ids(), threaded.ids()));
             std::vector<std::uint32_t> of_view;
             for (std::size_t i = 0; i < together.size(); ++i) {
                 CHECK(together.view_mask(i) == alone.view_mask(i));
                 if (together.view_mask(i) >> v & 1u) of_view.push_back(together.ids()[i]);
             }
-            CHECK(std::ranges::equal(one.ids(), of_view));
+            CHECK(test::ranges::equal(one.ids(), of_view));
             CHECK(together.occlusion_statistics(v).occluders_drawn == one.occlusion_statistics().occluders_drawn);
             std::vector<float> a(480 * 270), b(a.size()), c(a.size());
             one.occlusion_buffer()->read(a);

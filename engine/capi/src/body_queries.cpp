@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Questions asked of two bodies, and the contacts of a pair that last.
 #include <algorithm>
-#include <cmath>
 
 #include "bodies.hpp"
+#include "numbers.hpp"
 
 using namespace crofton;
 using namespace crofton::capi;
@@ -55,12 +55,6 @@ auto line_teller(crofton_line_visitor visit, void* user) {
     return [=](const glm::dvec3& from, const glm::dvec3& to) { visit(user, &from.x, &to.x); };
 }
 
-crofton_status check_length(double length, const char* function) {
-    if (!std::isfinite(length)) return report(CROFTON_NON_FINITE, function, "a margin or length is not finite");
-    if (length < 0.0) return report(CROFTON_INVALID_ARGUMENT, function, "a margin or length is negative");
-    return CROFTON_OK;
-}
-
 // The caller's cache for the length of a call.
 class CallersCache {
   public:
@@ -84,7 +78,7 @@ crofton_status to_manifold_options(const crofton_manifold_options* options, cons
     if (!options) return CROFTON_OK;
     crofton_manifold_options given{};
     CROFTON_CHECK(read_growing(options, function, given));
-    CROFTON_CHECK(check_length(given.margin, function));
+    CROFTON_CHECK(check_length(given.margin, "margin", function));
     if (given.max_points > 8) return report(CROFTON_OUT_OF_RANGE, function, "max_points is more than 8");
     result.margin = given.margin;
     if (given.max_points != 0) result.max_points = static_cast<int>(given.max_points);
@@ -151,11 +145,9 @@ crofton_status crofton_bodies_penetration(const crofton_placed* a, const crofton
 crofton_status crofton_body_closest_point(const crofton_placed* body, const double point[3],
                                           crofton_body_distance* distance) {
     CROFTON_CHECK(check_growing(distance, __func__));
-    CROFTON_CHECK(check_pointer(point, __func__));
+    CROFTON_CHECK(check_place(point, "point", __func__));
     const PlacedBody placed(body, __func__);
     CROFTON_CHECK(placed.status());
-    for (int k = 0; k < 3; ++k)
-        if (!std::isfinite(point[k])) return report(CROFTON_NON_FINITE, __func__, "the point is not finite");
     write_growing(to_c_distance(convex::closest_point(placed.placed(), to_vector(point))), distance);
     return CROFTON_OK;
 }
@@ -172,7 +164,7 @@ crofton_status crofton_body_parts_near(const crofton_placed* body, const crofton
                                        crofton_part* parts, size_t capacity, size_t* found) {
     CROFTON_CHECK(check_pointer(found, __func__));
     CROFTON_CHECK(check_array(parts, capacity, __func__));
-    CROFTON_CHECK(check_length(margin, __func__));
+    CROFTON_CHECK(check_length(margin, "margin", __func__));
     const PlacedPair pair(body, other, __func__);
     CROFTON_CHECK(pair.status());
     Vector<convex::Part> near;
@@ -260,7 +252,7 @@ crofton_status crofton_body_contacts_outline(crofton_body_contacts* contacts, do
     const ExclusiveUse use(contacts, __func__);
     if (use.failed()) return use.status();
     if (!visit) return report(CROFTON_INVALID_ARGUMENT, __func__, "the visitor is NULL");
-    CROFTON_CHECK(check_length(length, __func__));
+    CROFTON_CHECK(check_length(length, "length", __func__));
     convex::outline(contacts->points, length, line_teller(visit, user));
     return CROFTON_OK;
 }

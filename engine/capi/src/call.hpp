@@ -17,6 +17,8 @@ namespace crofton::capi {
 // Keeps `message` and `item` for this thread's crofton_last_error; returns `status`.
 crofton_status report(crofton_status status, const char* function, const char* message, std::uint64_t item = kNoItem);
 crofton_status report(const Error& error, const char* function);
+// "argument fault", such as "radius is negative".
+crofton_status report_argument(crofton_status status, const char* function, const char* argument, const char* fault);
 
 [[nodiscard]] inline crofton_status status_of(const Result<void>& result, const char* function) {
     return result ? CROFTON_OK : report(result.error(), function);

@@ -25,6 +25,12 @@ crofton_status report(crofton_status status, const char* function, const char* m
     return status;
 }
 
+crofton_status report_argument(crofton_status status, const char* function, const char* argument, const char* fault) {
+    char message[128];
+    std::snprintf(message, sizeof message, "%s %s", argument, fault);
+    return report(status, function, message);
+}
+
 crofton_status report(const Error& error, const char* function) {
     // Statuses 1 to 13 are the codes, in their order.
     static_assert(static_cast<int>(ErrorCode::internal) + 1 == CROFTON_INTERNAL);

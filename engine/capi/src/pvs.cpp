@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <crofton/capi/modules.h>
 
-#include <cmath>
 #include <crofton/pvs/pvs.hpp>
 
 #include "call.hpp"
 #include "convert.hpp"
+#include "numbers.hpp"
 
 using namespace crofton;
 using namespace crofton::capi;
@@ -20,16 +20,7 @@ struct crofton_pvs {
     pvs::Pvs sets;
 };
 
-namespace {
-
-crofton_status check_eye(const double* eye, const char* function) {
-    CROFTON_CHECK(check_pointer(eye, function));
-    if (!std::isfinite(eye[0] + eye[1] + eye[2]))
-        return report(CROFTON_NON_FINITE, function, "the eye's place is not finite");
-    return CROFTON_OK;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 crofton_status crofton_pvs_open(const char* path, crofton_pvs** pvs) {
     CROFTON_CHECK(check_pointer(path, __func__));
@@ -57,7 +48,7 @@ crofton_status crofton_pvs_counts(const crofton_pvs* pvs, size_t* cells, size_t*
 crofton_status crofton_pvs_find_cell(const crofton_pvs* pvs, const double* eye, uint32_t* cell) {
     const SharedUse use(pvs, __func__);
     if (use.failed()) return use.status();
-    CROFTON_CHECK(check_eye(eye, __func__));
+    CROFTON_CHECK(check_place(eye, "eye", __func__));
     CROFTON_CHECK(check_pointer(cell, __func__));
     *cell = pvs->sets.find_cell(to_vector(eye));
     return CROFTON_OK;
@@ -67,7 +58,7 @@ crofton_status crofton_pvs_visible(const crofton_pvs* pvs, const double* eye, ui
                                    size_t* count) {
     const SharedUse use(pvs, __func__);
     if (use.failed()) return use.status();
-    CROFTON_CHECK(check_eye(eye, __func__));
+    CROFTON_CHECK(check_place(eye, "eye", __func__));
     CROFTON_CHECK(check_pointer(words, __func__));
     CROFTON_CHECK(check_pointer(count, __func__));
     if (mode > CROFTON_PVS_STATISTICAL) return report(CROFTON_INVALID_ARGUMENT, __func__, "unknown mode");

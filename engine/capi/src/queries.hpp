@@ -3,7 +3,6 @@
 #pragma once
 #include <crofton/capi/modules.h>
 
-#include <cmath>
 #include <crofton/cull/cull.hpp>
 #include <crofton/geometry/shapes.hpp>
 #include <span>
@@ -11,6 +10,7 @@
 #include "call.hpp"
 #include "convert.hpp"
 #include "growing.hpp"
+#include "numbers.hpp"
 
 namespace crofton::capi {
 
@@ -125,10 +125,8 @@ template <class Visible>
 }
 
 [[nodiscard]] inline crofton_status to_ball(const double* center, double radius, const char* function, Sphere& result) {
-    CROFTON_CHECK(check_pointer(center, function));
-    if (!std::isfinite(center[0] + center[1] + center[2]) || !std::isfinite(radius))
-        return report(CROFTON_NON_FINITE, function, "a ball's centre or radius is not finite");
-    if (radius < 0.0) return report(CROFTON_INVALID_ARGUMENT, function, "a ball's radius is negative");
+    CROFTON_CHECK(check_place(center, "center", function));
+    CROFTON_CHECK(check_length(radius, "radius", function));
     result = {to_vector(center), radius};
     return CROFTON_OK;
 }

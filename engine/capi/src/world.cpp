@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 
 #include "convert.hpp"
 #include "growing.hpp"
+#include "numbers.hpp"
 #include "world.hpp"
 
 using namespace crofton;
@@ -166,8 +166,7 @@ crofton_status crofton_world_create(const crofton_world_options* options, crofto
     CROFTON_CHECK(check_pointer(world, __func__));
     crofton_world_options given{};
     if (options) CROFTON_CHECK(read_growing(options, __func__, given));
-    if (!(given.contact_margin >= 0.0 && std::isfinite(given.contact_margin)))
-        return report(CROFTON_INVALID_ARGUMENT, __func__, "contact_margin is negative or not finite");
+    CROFTON_CHECK(check_length(given.contact_margin, "contact_margin", __func__));
     const char* const function = __func__;
     return recover(function, [&] { return create(world, function, World(to_world_options(given)), next_serial()); });
 }

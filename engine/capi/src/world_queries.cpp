@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 
 #include "bodies.hpp"
 #include "collider.hpp"
 #include "found.hpp"
 #include "growing.hpp"
+#include "numbers.hpp"
 #include "queries.hpp"
 #include "world.hpp"
 
@@ -91,8 +91,7 @@ crofton_status find_closest(const crofton_world* world, double max_distance, uin
     const SharedUse use(world, function);
     if (use.failed()) return use.status();
     CROFTON_CHECK(check_growing(closest, function));
-    if (std::isnan(max_distance)) return report(CROFTON_NON_FINITE, function, "max_distance is NaN");
-    if (max_distance < 0.0) return report(CROFTON_INVALID_ARGUMENT, function, "max_distance is negative");
+    CROFTON_CHECK(check_limit(max_distance, "max_distance", function));
     crofton_closest_object result{0, {CROFTON_NONE, 0}, 0, kNoDistance, {}, {}};
     if (const auto nearest = world->world.closest(shape..., max_distance, layer_mask)) {
         result.object = {nearest->object.index, nearest->object.generation};

@@ -32,6 +32,8 @@ constexpr double kThin = 1e-3;
 
 constexpr SmallSetEffort kFastSmallSet{1, 6, 2}, kTightSmallSet{2, 9, 4}, kTightSmallSetByVolume{3, 9, 4};
 constexpr Effort kFast{kFastSmallSet, 4, 2, 5}, kTight{{4, 9, 4}, 5, 40, 40};
+// Extreme points along this many directions show which points are inside.
+constexpr std::size_t kExtremesToForgetBy = 18;
 const Candidate kNone{glm::dmat3(1.0), std::numeric_limits<double>::infinity()};
 
 bool is_volume_alone(const Weights& weights) {
@@ -60,11 +62,29 @@ class Deadline {
 
 }  // namespace
 
+template <class Point>
+Result<void> Fitter::assign(std::span<const Point> points) {
+    known_.clear();
+    forgotten_ = false;
+    return cloud_.assign(points);
+}
+
+Supports Fitter::supports(const glm::dmat3& directions) {
+    for (const Known& known : known_)
+        if (known.directions == directions) return known.supports;
+    known_.push_back({directions, cloud_.supports(directions)});
+    return known_.back().supports;
+}
+
 void Fitter::gather_extremes(std::size_t triples) {
     subset_.clear();
     for (const glm::dmat3& triple : std::span(kDirections).first(triples)) {
-        const Supports supports = cloud_.supports(triple);
-        subset_.insert(subset_.end(), supports.begin(), supports.end());
+        const Supports extremes = supports(triple);
+        subset_.insert(subset_.end(), extremes.begin(), extremes.end());
+        if (subset_.size() == kExtremesToForgetBy && !forgotten_) {
+            forgotten_ = true;
+            cloud_.forget_interior(subset_);
+        }
     }
     make_canonical(subset_);
 }
@@ -116,11 +136,11 @@ Candidate Fitter::local_search(const Weights& weights, const Effort& effort, Can
     for (int query = 0; query < effort.queries; ++query) {
         const bool anew = query < effort.searches;
         const SmallSetSearch::Found found = search_subset(weights, effort.small_set, anew ? nullptr : &best.axes);
-        const Supports supports = cloud_.supports(found.axes);
-        const double value = value_of(weights, supports, found.axes);
+        const Supports extremes = supports(found.axes);
+        const double value = value_of(weights, extremes, found.axes);
         if (value < best.value) best = {found.axes, value};
         const std::size_t before = subset_.size();
-        subset_.insert(subset_.end(), supports.begin(), supports.end());
+        subset_.insert(subset_.end(), extremes.begin(), extremes.end());
         make_canonical(subset_);
         if (subset_.size() == before || best.value <= found.value * (1.0 + 1e-6)) break;
     }
@@ -173,8 +193,7 @@ SearchResult Fitter::global_search(const Weights& weights, const SearchLimits& l
 }
 
 Obb Fitter::box_of(const glm::dmat3& axes, const Weights& weights, double tolerance) {
-    const Supports supports = cloud_.supports(axes);
-    return enclose(cloud_, rounded(axes, widths(supports, axes), weights, tolerance));
+    return enclose(cloud_, rounded(axes, widths(supports(axes), axes), weights, tolerance));
 }
 
 template <class Point>
@@ -185,7 +204,7 @@ Result<Obb> Fitter::fit(std::span<const Point> points, const FitOptions& options
         return exact(points, exact_options).map([](const ExactFit& fit) { return fit.box; });
     }
     if (auto valid = measure::validate(options.criterion); !valid) return tl::unexpected(valid.error());
-    if (auto valid = cloud_.assign(points); !valid) return tl::unexpected(valid.error());
+    if (auto valid = assign(points); !valid) return tl::unexpected(valid.error());
     const Weights asked = normalised_weights(options.criterion, cloud_.unit()).weights;
     if (points.size() > kSmallSet) return fit_large_set(asked, options);
     return options.quality == Quality::fast ? fit_small_set_fast(asked) : fit_small_set_tight(asked, options.criterion);
@@ -201,7 +220,7 @@ Result<ExactFit> Fitter::exact(std::span<const Point> points, const ExactOptions
         return fail(ErrorCode::invalid_argument, kNoItem, "fit_exact: the gap must lie in [1e-12, 1)");
     if (!(options.time_budget_seconds >= 0.0))
         return fail(ErrorCode::invalid_argument, kNoItem, "fit_exact: the time budget is negative or NaN");
-    if (auto valid = cloud_.assign(points); !valid) return tl::unexpected(valid.error());
+    if (auto valid = assign(points); !valid) return tl::unexpected(valid.error());
     const NormalisedWeights normalised = normalised_weights(options.criterion, cloud_.unit());
     const Weights weights = search_weights(normalised.weights);
     const bool flat = weights.product == 0.0 && normalised.weights.product > 0.0 && normalised.weights.pairs == 0.0 &&

@@ -26,6 +26,11 @@ class Fitter {
     [[nodiscard]] Result<ExactFit> exact(std::span<const Point> points, const ExactOptions& options);
 
   private:
+    // Checks the points and begins to fit them.
+    template <class Point>
+    [[nodiscard]] Result<void> assign(std::span<const Point> points);
+    // The cloud's support points. Each query may read all points, so its answer is kept until the next points.
+    [[nodiscard]] Supports supports(const glm::dmat3& directions);
     // Writes to subset_ the extreme points along `triples` triples of directions of a k-DOP, at most 5.
     void gather_extremes(std::size_t triples);
     // The best for subset_ of the frames that extreme points of subset_ span.
@@ -51,7 +56,14 @@ class Fitter {
     // The weights to search by: those asked for, or those of the area where the volume is 0 in many frames.
     [[nodiscard]] Weights search_weights(const Weights& weights);
 
+    struct Known {
+        glm::dmat3 directions;
+        Supports supports;
+    };
+
     PointCloud cloud_;
+    Vector<Known> known_;
+    bool forgotten_ = false;  // the interior points, if that helps
     SearchBuffers buffers_;
     Vector<glm::dvec3> subset_;
     Vector<glm::dmat3> frames_;

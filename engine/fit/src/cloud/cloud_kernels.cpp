@@ -258,6 +258,58 @@ void slabs_double(const double* points, std::size_t count, const double center[3
     slabs(points, count, center, normals, low, high);
 }
 
+template <class T>
+T* copy_point(const T* point, T* kept) {
+    for (int k = 0; k < 3; ++k) kept[k] = point[k];
+    return kept + 3;
+}
+
+// The greatest height of a vector of points above the planes.
+template <class D>
+HWY_INLINE hn::Vec<D> highest(D d, const InteriorTest& test, hn::Vec<D> x, hn::Vec<D> y, hn::Vec<D> z) {
+    auto height = hn::Set(d, -std::numeric_limits<double>::infinity());
+    for (std::size_t i = 0; i < test.count; ++i) {
+        const double* const plane = test.planes[i].data();
+        const auto sum = hn::Add(hn::Add(hn::Mul(hn::Set(d, plane[0]), x), hn::Mul(hn::Set(d, plane[1]), y)),
+                                 hn::Mul(hn::Set(d, plane[2]), z));
+        height = hn::Max(height, hn::Sub(sum, hn::Set(d, plane[3])));
+    }
+    return height;
+}
+
+template <class T>
+std::size_t copy_outer(const T* points, std::size_t count, const Normalisation& to, const InteriorTest& test, T* kept) {
+    const hn::CappedTag<double, 8> d;
+    const std::size_t lanes = hn::Lanes(d);
+    T* end = kept;
+    std::size_t i = 0;
+    for (; i + lanes <= count; i += lanes) {
+        auto x = hn::Zero(d), y = x, z = x;
+        load_points(d, points + 3 * i, x, y, z);
+        const auto scale = hn::Set(d, to.scale);
+        x = hn::Mul(hn::Add(x, hn::Set(d, to.shift[0])), scale);
+        y = hn::Mul(hn::Add(y, hn::Set(d, to.shift[1])), scale);
+        z = hn::Mul(hn::Add(z, hn::Set(d, to.shift[2])), scale);
+        const auto height = highest(d, test, x, y, z);
+        if (hn::AllTrue(d, hn::Lt(height, hn::Zero(d)))) continue;
+        HWY_ALIGN double heights[8];
+        hn::Store(height, d, heights);
+        for (std::size_t k = 0; k < lanes; ++k)
+            if (!(heights[k] < 0.0)) end = copy_point(points + 3 * (i + k), end);
+    }
+    for (; i < count; ++i) end = copy_point(points + 3 * i, end);
+    return static_cast<std::size_t>(end - kept) / 3;
+}
+
+std::size_t copy_outer_floats(const float* points, std::size_t count, const Normalisation& to, const InteriorTest& test,
+                              float* kept) {
+    return copy_outer(points, count, to, test, kept);
+}
+std::size_t copy_outer_doubles(const double* points, std::size_t count, const Normalisation& to,
+                               const InteriorTest& test, double* kept) {
+    return copy_outer(points, count, to, test, kept);
+}
+
 }  // namespace crofton::fit::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -271,6 +323,8 @@ HWY_EXPORT(extents_float);
 HWY_EXPORT(extents_double);
 HWY_EXPORT(slabs_float);
 HWY_EXPORT(slabs_double);
+HWY_EXPORT(copy_outer_floats);
+HWY_EXPORT(copy_outer_doubles);
 
 bool chunk_bounds(const float* points, std::size_t count, float limit, const ChunkBounds<float>& out) {
     return HWY_DYNAMIC_DISPATCH(bounds_float)(points, count, limit, out);
@@ -298,6 +352,15 @@ void slab_extents(const float* points, std::size_t count, const double center[3]
 void slab_extents(const double* points, std::size_t count, const double center[3], const double normals[9],
                   double low[3], double high[3]) {
     HWY_DYNAMIC_DISPATCH(slabs_double)(points, count, center, normals, low, high);
+}
+
+std::size_t copy_all_but_interior(const float* points, std::size_t count, const Normalisation& to,
+                                  const InteriorTest& test, float* kept) {
+    return HWY_DYNAMIC_DISPATCH(copy_outer_floats)(points, count, to, test, kept);
+}
+std::size_t copy_all_but_interior(const double* points, std::size_t count, const Normalisation& to,
+                                  const InteriorTest& test, double* kept) {
+    return HWY_DYNAMIC_DISPATCH(copy_outer_doubles)(points, count, to, test, kept);
 }
 
 }  // namespace crofton::fit::kernels

@@ -3,6 +3,8 @@
 #pragma once
 #include <cstddef>
 
+#include "cloud/interior.hpp"
+
 namespace crofton::fit::kernels {
 
 inline constexpr std::size_t kChunk = 128;  // points in one box
@@ -43,5 +45,18 @@ void slab_extents(const float* points, std::size_t count, const double center[3]
                   double low[3], double high[3]);
 void slab_extents(const double* points, std::size_t count, const double center[3], const double normals[9],
                   double low[3], double high[3]);
+
+// Normalised coordinates are (p + shift) · scale.
+struct Normalisation {
+    double shift[3];
+    double scale;
+};
+
+// Copies the points whose normalised coordinates are not inside to `kept`, in their order; returns how many. `kept` has
+// room for all. Requires test.count > 0.
+std::size_t copy_all_but_interior(const float* points, std::size_t count, const Normalisation& to,
+                                  const InteriorTest& test, float* kept);
+std::size_t copy_all_but_interior(const double* points, std::size_t count, const Normalisation& to,
+                                  const InteriorTest& test, double* kept);
 
 }  // namespace crofton::fit::kernels

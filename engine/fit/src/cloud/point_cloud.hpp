@@ -57,6 +57,11 @@ class PointCloud {
     void visit_beyond(const glm::dmat3& directions, const glm::dvec3& center, const glm::dvec3& limit,
                       FunctionRef<void(int k, const glm::dvec3& p)> visit);
 
+    // After a support query: forgets points that are inside the hull of `extremes`, which are normalised points of the
+    // cloud. No answer changes. Does so only where the query read many chunks and few points are left, so that the next
+    // ones are quicker.
+    void forget_interior(std::span<const glm::dvec3> extremes);
+
   private:
     struct Support {
         glm::dvec3 point;
@@ -65,6 +70,8 @@ class PointCloud {
 
     template <class T>
     Result<void> assign_points(const T* points, std::size_t count);
+    template <class T>
+    void forget_interior_of(const T* points, const InteriorTest& test, Vector<T>& kept);
     // Writes each wanted chunk's least and greatest projections on each direction to low_ and high_, in normalised
     // units, with an error of at most extent_error_bound_. A chunk that is not wanted gets an empty range.
     void find_extents(const glm::dmat3& directions);
@@ -88,9 +95,9 @@ class PointCloud {
     const double* doubles_ = nullptr;
     std::size_t count_ = 0, chunks_ = 0;
     Vector<unsigned char> wanted_;
-    Vector<float> float_bounds_, ranks_;
+    Vector<float> float_bounds_, ranks_, kept_floats_;
     Vector<std::uint32_t> order_;
-    Vector<double> double_bounds_, boxes_;
+    Vector<double> double_bounds_, boxes_, kept_doubles_;
     Vector<double> middle_, projected_radius_, low_, high_;  // one array per direction
     Aabb bounds_;
     glm::dvec3 origin_{0.0}, shift_{0.0};  // shift_ = −origin_
