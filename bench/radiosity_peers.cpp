@@ -11,8 +11,17 @@
 
 namespace crofton::bench {
 
+namespace {
+
+// One for all scenes: making it takes as long as building a small scene.
+RTCDevice the_device() {
+    static const RTCDevice device = rtcNewDevice("threads=1");
+    return device;
+}
+
+}  // namespace
+
 struct EmbreeScene::Data {
-    RTCDevice device = nullptr;
     RTCScene scene = nullptr;
     float start = 0.0f;
 };
@@ -22,12 +31,11 @@ bool EmbreeScene::available() {
 }
 
 EmbreeScene::EmbreeScene(const TriangleMesh& mesh, bool crossings) : data_(std::make_unique<Data>()) {
-    data_->device = rtcNewDevice("threads=1");
-    data_->scene = rtcNewScene(data_->device);
+    data_->scene = rtcNewScene(the_device());
     // High quality cuts triangles in two, which a filter would then count twice.
     rtcSetSceneBuildQuality(data_->scene, crossings ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_HIGH);
     if (crossings) rtcSetSceneFlags(data_->scene, RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
-    const RTCGeometry geometry = rtcNewGeometry(data_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    const RTCGeometry geometry = rtcNewGeometry(the_device(), RTC_GEOMETRY_TYPE_TRIANGLE);
     void* positions =
         rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, mesh.positions.size());
     std::memcpy(positions, mesh.positions.data(), mesh.positions.size() * 12);
@@ -46,7 +54,6 @@ EmbreeScene::EmbreeScene(const TriangleMesh& mesh, bool crossings) : data_(std::
 
 EmbreeScene::~EmbreeScene() {
     rtcReleaseScene(data_->scene);
-    rtcReleaseDevice(data_->device);
 }
 
 void EmbreeScene::first_hits(std::span<const radiosity::FirstHitQuery> rays, std::span<radiosity::Hit> result) const {

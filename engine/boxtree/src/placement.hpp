@@ -8,7 +8,9 @@ namespace crofton::boxtree {
 class Placement {
   public:
     explicit Placement(Structure& structure)
-        : structure_(structure), nodes_(structure.nodes_), leaves_(structure.leaves_) {}
+        : structure_(structure), nodes_(structure.nodes_), leaves_(structure.leaves_) {
+        ++structure.slots_version_.changes;
+    }
 
     // Puts an item that is in no leaf into the leaf whose criterion grows least. Bounds are right at once.
     void place(ItemId item);

@@ -4,6 +4,7 @@
 
 #include <hwy/cache_control.h>
 #include <algorithm>
+#include <atomic>
 #include <crofton/core/error.hpp>
 #include <limits>
 
@@ -14,6 +15,17 @@
 #include "turned_bounds.hpp"
 
 namespace crofton::boxtree {
+namespace {
+
+std::uint64_t next_number() {
+    static std::atomic<std::uint64_t> last{0};
+    return ++last;
+}
+
+}  // namespace
+
+Structure::Structure(Items& items, const measure::Criterion& criterion, Orientation orientation)
+    : items_(items), criterion_(criterion), orientation_(orientation), slots_version_{.structure = next_number()} {}
 
 Aabb Structure::child_bounds(NodeId node, unsigned lane) const {
     CROFTON_ASSERT(node < nodes_.size() && lane < nodes_[node].count, "no such child");

@@ -188,6 +188,31 @@ void mark_placed(const std::uint32_t* ids, std::size_t count, const std::uint64_
     }
 }
 
+// In place: what is kept never lies behind what is read next.
+std::size_t keep_ids(std::uint32_t* ids, std::size_t count, const std::uint64_t* bits, std::size_t words) {
+    std::size_t kept = 0, i = 0;
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
+    const DU du;
+    const auto* const halves = reinterpret_cast<const int*>(bits);  // of words
+    const VU last = hn::Set(du, static_cast<std::uint32_t>(2 * words - 1)), in_half = hn::Set(du, 31),
+             one = hn::Set(du, 1);
+    const hn::RebindToSigned<DU> di;
+    for (; i + hn::Lanes(du) <= count; i += hn::Lanes(du)) {
+        const VU id = hn::LoadU(du, ids + i), half = hn::ShiftRight<5>(id);
+        const VU from = hn::BitCast(du, hn::GatherIndex(di, halves, hn::BitCast(di, hn::Min(half, last))));
+        const VU bit = hn::Shl(one, hn::And(id, in_half));
+        const auto keep = hn::Or(hn::TestBit(from, bit), hn::Gt(half, last));
+        kept += simd::compress_store(du, id, keep, ids + kept);
+    }
+#endif
+    for (; i < count; ++i) {
+        const std::uint32_t id = ids[i];
+        ids[kept] = id;
+        kept += id / 64 >= words || (bits[id / 64] >> (id % 64) & 1) != 0;
+    }
+    return kept;
+}
+
 }  // namespace
 }  // namespace crofton::cull::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -200,6 +225,7 @@ HWY_EXPORT(list_ids);
 HWY_EXPORT(list_placed_ids);
 HWY_EXPORT(list_marked_ids);
 HWY_EXPORT(mark_placed);
+HWY_EXPORT(keep_ids);
 
 void mark_ids_kernel(const std::uint32_t* ids, std::size_t count, std::uint64_t* bits) {
     HWY_DYNAMIC_DISPATCH(mark_ids)(ids, count, bits);
@@ -222,6 +248,10 @@ std::size_t list_marked_bits_kernel(const std::uint64_t* bits, const std::uint64
 void mark_placed_kernel(const std::uint32_t* ids, std::size_t count, const std::uint64_t* bits,
                         const std::uint64_t* before, std::uint8_t value, std::uint8_t* bytes) {
     HWY_DYNAMIC_DISPATCH(mark_placed)(ids, count, bits, before, value, bytes);
+}
+
+std::size_t keep_ids_kernel(std::uint32_t* ids, std::size_t count, const std::uint64_t* bits, std::size_t words) {
+    return HWY_DYNAMIC_DISPATCH(keep_ids)(ids, count, bits, words);
 }
 
 }  // namespace crofton::cull

@@ -9,6 +9,10 @@ namespace crofton::cull {
 // Sets bit id % 64 of word id / 64 for each id; the ids are distinct. `bits` has a word more than the largest needs.
 void mark_ids_kernel(const std::uint32_t* ids, std::size_t count, std::uint64_t* bits);
 
+// Keeps, in order, the ids whose bit is set and those beyond the bits; returns how many. Room for 16 more is needed.
+// Requires words ≥ 1.
+std::size_t keep_ids_kernel(std::uint32_t* ids, std::size_t count, const std::uint64_t* bits, std::size_t words);
+
 // The indices of the bits that are set, ascending; returns how many. Room for 16 more is needed.
 std::size_t list_bits_kernel(const std::uint64_t* bits, std::size_t words, std::uint32_t* ids);
 

@@ -169,17 +169,22 @@ void Query::run(const boxtree::BoxTree& tree, Executor& executor) {
     grow(visible_.undecided_, tree.boxes().size() + kPadding);
     KernelView view = kernel_view_of(view_);
     bring_before(structure.nodes()[0], view);
-    const TreeKernelInput input{structure.nodes().data(),
-                                structure.leaves().data(),
-                                structure.leaf_ranges().data(),
-                                structure.leaf_counts().data(),
-                                structure.slot_items().data(),
-                                structure.axes().data(),
-                                &view,
-                                options_.mode == CullMode::exact};
+    TreeKernelInput input{structure.nodes().data(),
+                          structure.leaves().data(),
+                          structure.leaf_ranges().data(),
+                          structure.leaf_counts().data(),
+                          structure.slot_items().data(),
+                          structure.axes().data(),
+                          &view,
+                          options_.mode == CullMode::exact};
     const Tasks tasks(input, tree.item_count() >= kParallelItems);
     if (executor.concurrency() > 1 && tasks.count > 1 && !options_.limits)
         return run_parallel(tree, input, tasks, executor);
+    if (!options_.among.empty() && !options_.limits && has_among_slots(structure)) {
+        by_slots_ = true;
+        input.leaves_among = visible_.among_slots_.leaves.data();
+        input.nodes_among = visible_.among_slots_.nodes.data();
+    }
     TreeKernelOutput output{};
     output.inside = visible_.ids_.data();
     output.straddling = visible_.straddling_.data();
@@ -327,21 +332,14 @@ void Query::append_decided(const TreeKernelOutput& output, std::size_t kept, std
     statistics.improper += output.improper;
 }
 
-// Keeps of `count` ids those that CullOptions::among has, in order; returns how many.
-std::size_t Query::keep_among(ItemId* ids, std::size_t count) const {
-    const std::span<const std::uint64_t> set = options_.among;
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        ids[kept] = ids[i];
-        kept += is_among(set, ids[i]);
-    }
-    return kept;
-}
-
+// Of resting items, those that CullOptions::among leaves out are dropped here, or by sort() where nothing moves.
 void Query::finish(const boxtree::BoxTree& tree, std::size_t inside, std::size_t straddling, Executor& executor) {
-    if (!options_.among.empty()) {
-        inside = keep_among(visible_.ids_.data(), inside);
-        straddling = keep_among(visible_.straddling_.data(), straddling);
+    const std::span<const std::uint64_t> among = options_.among;
+    if (!among.empty() && !by_slots_) {
+        visible_.among_slots_.looked_up += inside + straddling;
+        straddling = keep_ids_kernel(visible_.straddling_.data(), straddling, among.data(), among.size());
+        if (moving_ || options_.order == ResultOrder::tree)
+            inside = keep_ids_kernel(visible_.ids_.data(), inside, among.data(), among.size());
     }
     if (moving_) add_moving(tree, inside, straddling, executor);
     finish(inside, straddling, tree.boxes().size());
@@ -351,14 +349,18 @@ void Query::finish(std::size_t inside, std::size_t straddling, std::size_t items
     if (kCountStatistics) visible_.statistics_.straddling = straddling;
     visible_.size_ = inside + straddling;
     visible_.inside_ = inside;
-    if (options_.order == ResultOrder::ascending) return sort(inside, straddling, items);
+    if (options_.order == ResultOrder::ascending) {
+        visible_.size_ = sort(inside, straddling, items);
+        visible_.inside_ = visible_.size_ - straddling;
+        return;
+    }
     std::copy_n(visible_.straddling_.begin(), straddling, visible_.ids_.begin() + static_cast<std::ptrdiff_t>(inside));
     visible_.verdicts_.clear();
 }
 
 // Sorts by setting a bit for each id: they are distinct and below the number of items. Few straddle. The place of such
-// an id is found from how many ids lie in the words before its own.
-void Query::sort(std::size_t inside, std::size_t straddling, std::size_t items) {
+// an id is found from how many ids lie in the words before its own. Returns how many there are.
+std::size_t Query::sort(std::size_t inside, std::size_t straddling, std::size_t items) {
     const std::size_t words = items / 64 + 2;  // one more for the kernel
     grow(visible_.bits_, 2 * words);
     grow(visible_.verdicts_, items + 64);
@@ -366,12 +368,15 @@ void Query::sort(std::size_t inside, std::size_t straddling, std::size_t items) 
     std::fill_n(seen, words, 0);
     mark_ids_kernel(visible_.straddling_.data(), straddling, seen);
     mark_ids_kernel(visible_.ids_.data(), inside, seen);
+    if (!moving_ && !by_slots_)  // otherwise they are dropped already: what moves is never left out
+        for (std::size_t w = 0; w < std::min(words, options_.among.size()); ++w) seen[w] &= options_.among[w];
     const std::size_t count = list_placed_bits_kernel(seen, words, visible_.ids_.data(), before);
     static_assert(sizeof(Verdict) == 1);
     std::uint8_t* const verdicts = reinterpret_cast<std::uint8_t*>(visible_.verdicts_.data());
     std::memset(verdicts, static_cast<int>(Verdict::inside), count);
     mark_placed_kernel(visible_.straddling_.data(), straddling, seen, before,
                        static_cast<std::uint8_t>(Verdict::straddling), verdicts);
+    return count;
 }
 
 }  // namespace crofton::cull

@@ -42,6 +42,10 @@ class Query {
     }
     [[nodiscard]] std::uint64_t wanted_bits(std::uint64_t visible, std::span<const Obb> boxes,
                                             std::span<const std::uint32_t> layer_masks, std::size_t first);
+    [[nodiscard]] bool has_among_slots(const boxtree::Structure& structure);
+    void make_among_slots(const boxtree::Structure& structure);
+    static bool mark_below(std::span<const boxtree::Node> nodes, boxtree::NodeId n,
+                           std::span<const std::uint16_t> leaves, std::span<std::uint16_t> marks);
     struct Tasks {
         static constexpr std::size_t kMost = std::size_t{boxtree::kWidth} * boxtree::kWidth;
         std::uint64_t entries[kMost];
@@ -56,20 +60,20 @@ class Query {
     void add_moving(const boxtree::BoxTree& tree, std::size_t& inside, std::size_t& straddling, Executor& executor);
     void append_moving(const boxtree::BoxTree& tree, std::span<const std::uint64_t> bits, ItemId* to,
                        std::size_t& count);
-    [[nodiscard]] std::size_t keep_among(ItemId* ids, std::size_t count) const;
     void finish(const boxtree::BoxTree& tree, std::size_t inside, std::size_t straddling, Executor& executor);
     void finish(std::size_t inside, std::size_t straddling, std::size_t items);
     [[nodiscard]] std::uint64_t layer_bits(std::span<const std::uint32_t> layer_masks) const;
     void decide(std::span<const Obb> boxes, ListKernelOutput& output);
     void finish(const std::uint64_t* seen, const std::uint64_t* marked, std::size_t words, std::size_t items);
     std::size_t list_marked(const std::uint64_t* seen, const std::uint64_t* marked, std::size_t words);
-    void sort(std::size_t inside, std::size_t straddling, std::size_t items);
+    [[nodiscard]] std::size_t sort(std::size_t inside, std::size_t straddling, std::size_t items);
 
     const View& view_;
     VisibleSet& visible_;
     const CullOptions& options_;
     const MovingBoxes* moving_;
     LayerLimit layer_limit_;
+    bool by_slots_ = false;  // what the options' set leaves out, the kernel has left out
 };
 
 }  // namespace crofton::cull

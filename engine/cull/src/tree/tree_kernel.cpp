@@ -30,7 +30,7 @@ constexpr std::uint32_t kWhole = 1u << 31;
 constexpr std::uint32_t kLimited = 1u << 30;
 
 // The way of one query through the tree, from some entries down to the leaves.
-template <class Limits>
+template <class Limits, bool kAmong = false>
 class Walk {
   public:
     HWY_INLINE Walk(const TreeKernelInput& input, const TreeKernelOutput& output, const Limits& limits)
@@ -83,10 +83,11 @@ class Walk {
                     visit_limited(node, nodes_.children[head], planes & ~kLimited);
                     continue;
                 }
+            const std::uint32_t among = kAmong ? in_.nodes_among[nodes_.children[head]] : ~0u;
             if (is_one(planes))
-                visit_one_plane_node(node, planes);
+                visit_one_plane_node(node, planes, among);
             else
-                visit_many_plane_node(node, planes);
+                visit_many_plane_node(node, planes, among);
         }
     }
 
@@ -104,25 +105,26 @@ class Walk {
     }
 
     // Below the first levels most nodes that cross a frustum cross one plane.
-    HWY_INLINE void visit_one_plane_node(const boxtree::Node& node, std::uint32_t planes) {
+    HWY_INLINE void visit_one_plane_node(const boxtree::Node& node, std::uint32_t planes, std::uint32_t among) {
         const DU du;
         const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(planes);
         const BlockPlane plane = block_plane(*in_.view, i, node);
         const PairPlane normal = turned_.along(node.axes, planes)[i];
         for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(du)) {
             const NodeSide side(NodeRows(node, l), normal, plane);
-            const MF alive =
-                hn::AndNot(side.outside, present(*in_.view, node.layers_every, node.layers_any, node.count, l));
+            MF alive = hn::AndNot(side.outside, present(*in_.view, node.layers_every, node.layers_any, node.count, l));
+            if constexpr (kAmong) alive = hn::And(alive, hn::RebindMask(DF(), mask_of(among >> l)));
             note<true>(node, l, alive, hn::IfThenZeroElse(hn::RebindMask(du, side.inside), hn::Set(du, planes)),
                        planes);
         }
     }
 
-    HWY_INLINE void visit_many_plane_node(const boxtree::Node& node, std::uint32_t planes) {
+    HWY_INLINE void visit_many_plane_node(const boxtree::Node& node, std::uint32_t planes, std::uint32_t among) {
         const DU du;
         const NodeTest test = test_node(*in_.view, turned_.along(node.axes, planes), node, planes);
         for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(du))
-            note<false>(node, l, hn::RebindMask(DF(), mask_of(test.alive >> l)), hn::Load(du, test.planes + l));
+            note<false>(node, l, hn::RebindMask(DF(), mask_of((test.alive & among) >> l)),
+                        hn::Load(du, test.planes + l));
     }
 
     // A node near a draw limit: its children are tested against planes and limits.
@@ -226,10 +228,21 @@ class Walk {
             if (r + kRunsAhead < out_.run_count) hwy::Prefetch(in_.slot_items + runs_[r + kRunsAhead].first);
             const boxtree::ItemId* from = in_.slot_items + runs_[r].first;
             boxtree::ItemId* to = out_.inside + out_.inside_count;
+            if constexpr (kAmong) {
+                for (std::size_t i = 0; i < runs_[r].count; i += hn::Lanes(du))
+                    to += simd::compress_store(du, hn::Load(du, from + i), among(runs_[r].first + i), to);
+                out_.inside_count = static_cast<std::size_t>(to - out_.inside);
+                continue;
+            }
             for (std::size_t i = 0; i < runs_[r].count; i += hn::Lanes(du))
                 hn::StoreU(hn::Load(du, from + i), du, to + i);
             out_.inside_count += runs_[r].count;
         }
+    }
+
+    // Of a vector's length of slots, those that are asked for.
+    HWY_INLINE auto among(std::size_t slot) const {
+        return mask_of(std::uint32_t{in_.leaves_among[slot / boxtree::kWidth]} >> slot % boxtree::kWidth);
     }
 
     template <class V>
@@ -249,6 +262,14 @@ class Walk {
                    out_.undecided_count);
     }
 
+    HWY_INLINE MF present_among(boxtree::LeafId id, const boxtree::Leaf& leaf, std::size_t l) const {
+        const MF lanes = present(*in_.view, leaf.layers_every, leaf.layers, leaf.count, l);
+        if constexpr (kAmong)
+            return hn::And(lanes, hn::RebindMask(DF(), among(id * boxtree::kWidth + l)));
+        else
+            return lanes;
+    }
+
     HWY_INLINE void visit_one_plane_leaves(std::size_t begin, std::size_t end) {
         const KernelView& view = *in_.view;
         for (std::size_t at = begin; at < end; ++at) {
@@ -259,8 +280,7 @@ class Walk {
             const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(one_plane_leaves_.planes[at]);
             const LeafPlane plane{&view.pair_planes[i], block_plane(view, i, leaf)};
             for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(DU())) {
-                const MF lanes = present(view, leaf.layers_every, leaf.layers, leaf.count, l);
-                emit(id, l, test_leaf(LeafRows(leaf, l), lanes, plane));
+                emit(id, l, test_leaf(LeafRows(leaf, l), present_among(id, leaf, l), plane));
             }
         }
     }
@@ -285,7 +305,7 @@ class Walk {
             }
             // Nearly all have two: then there is no loop.
             for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(DU())) {
-                const MF lanes = present(view, leaf.layers_every, leaf.layers, leaf.count, l);
+                const MF lanes = present_among(id, leaf, l);
                 emit(id, l,
                      HWY_LIKELY(count == 2) ? test_leaf(leaf, l, lanes, planes, 2, in_.exact)
                                             : test_leaf(leaf, l, lanes, planes, count, in_.exact));
@@ -340,6 +360,13 @@ void run_tree(const TreeKernelInput& input, const std::uint64_t* entries, std::s
     output = walk.result();
 }
 
+void run_tree_among(const TreeKernelInput& input, const std::uint64_t* entries, std::size_t count,
+                    TreeKernelOutput& output) {
+    Walk<NoLimits, true> walk(input, output, {});
+    walk.run(entries, count);
+    output = walk.result();
+}
+
 void run_limited_tree(const TreeKernelInput& input, const KernelLimits& limits, TreeKernelOutput& output) {
     Walk<LimitTester> walk(input, output, LimitTester(limits, input.view->layer_mask));
     const std::uint64_t root = tree_entry(0, ((1u << input.view->plane_count) - 1) | kLimited);
@@ -375,6 +402,7 @@ HWY_AFTER_NAMESPACE();
 namespace crofton::cull {
 
 HWY_EXPORT(run_tree);
+HWY_EXPORT(run_tree_among);
 HWY_EXPORT(run_limited_tree);
 HWY_EXPORT(expand_tree);
 
@@ -384,6 +412,7 @@ std::size_t expand_tree_kernel(const TreeKernelInput& input, std::uint64_t entry
 
 void run_tree_kernel(const TreeKernelInput& input, const std::uint64_t* entries, std::size_t count,
                      TreeKernelOutput& output) {
+    if (input.leaves_among != nullptr) return HWY_DYNAMIC_DISPATCH(run_tree_among)(input, entries, count, output);
     HWY_DYNAMIC_DISPATCH(run_tree)(input, entries, count, output);
 }
 

@@ -129,6 +129,13 @@ struct alignas(64) NodeRadii {
     RadiusRange below[kWidth];
 };
 
+// Which items are in which slots, and what is below each node: equal versions, equal places. No two structures share
+// one.
+struct SlotsVersion {
+    std::uint64_t structure = 0, changes = 0;
+    [[nodiscard]] constexpr bool operator==(const SlotsVersion&) const = default;
+};
+
 // The leaves below a node, where they are consecutive (they are after a build): count 0 says they are not.
 struct LeafRange {
     LeafId first = 0;

@@ -15,8 +15,7 @@ struct Topology;
 class Structure {
   public:
     // Of the items that are placed in it, all of them among `items`.
-    Structure(Items& items, const measure::Criterion& criterion, Orientation orientation)
-        : items_(items), criterion_(criterion), orientation_(orientation) {}
+    Structure(Items& items, const measure::Criterion& criterion, Orientation orientation);
     Structure(const Structure&) = delete;
     Structure& operator=(const Structure&) = delete;
 
@@ -42,6 +41,8 @@ class Structure {
     [[nodiscard]] Aabb child_bounds(NodeId node, unsigned lane) const;
     // Around a node or leaf, as Node::child names it, along the axes of that index.
     [[nodiscard]] Aabb bounds_below(std::uint32_t child, std::uint32_t axes) const;
+    // Of a structure that is whole; while one is made it does not change.
+    [[nodiscard]] SlotsVersion slots_version() const { return slots_version_; }
     [[nodiscard]] const ChangeMarks& marks() const { return marks_; }
 
     // To make a structure: first room, then leaves, then nodes, children before parents. Different threads may make
@@ -110,6 +111,7 @@ class Structure {
     Vector<RadiusRange> leaf_radii_;
     Vector<ItemId> slot_items_;
     Vector<std::uint32_t> item_slots_;
+    SlotsVersion slots_version_;
     unsigned height_ = 1;
     ChangeMarks marks_;
     // Whether layers or radii have changed since the last refit; otherwise it looks at bounds alone.

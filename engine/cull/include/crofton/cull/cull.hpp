@@ -43,6 +43,15 @@ class VisibleSet {
     Vector<std::uint32_t> work_;
     VerdictBits moving_bits_;
     Vector<std::uint32_t> listed_;
+    // CullOptions::among of the last queries, and once that pays its bits in the order of the tree's slots.
+    struct AmongSlots {
+        Vector<std::uint64_t> set;
+        std::uint64_t structure = 0, changes = 0;  // the tree's
+        std::uint64_t looked_up = 0;               // items, one by one, since set and tree are these
+        bool made = false;
+        Vector<std::uint16_t> leaves, nodes;  // slots that the set has; children with such slots below
+    };
+    AmongSlots among_slots_;
     std::size_t size_ = 0, inside_ = 0;
     Statistics statistics_;
 };
