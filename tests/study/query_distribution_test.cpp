@@ -38,6 +38,10 @@ TEST_SUITE("study/query_distribution") {
         const std::vector<double> one = {1.0}, negative = {1.0, -1.0}, zero = {0.0, 0.0}, huge = {1e308, 1e308};
         for (const auto* weights : {&one, &negative, &zero, &huge})
             CHECK(error_of(QueryDistribution::samples(good, *weights)).code == ErrorCode::invalid_argument);
+        for (const double weight : {-1.0, std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+            const std::vector<double> bad = {3.0, weight};
+            CHECK(error_of(QueryDistribution::samples(good, bad)).item == 1);
+        }
         CHECK(error_of(QueryDistribution::of_views({})).code == ErrorCode::empty);
         std::vector<Camera> cameras(2);
         cameras[1].far_distance = HUGE_VAL;
