@@ -254,6 +254,7 @@ TEST_SUITE("boxtree/stored") {
         check_refused_after([](Stored& s) { s.slot_items[0] = boxtree::kNone; }, "do not match its count");
         check_refused_after([](Stored& s) { std::swap(s.slot_items[0], s.slot_items[1]); }, "slot says");
         check_refused_after([](Stored& s) { s.slot_items[0] = 100000; }, "slot says");
+        check_refused_after([](Stored& s) { s.slot_items[0] = 700; }, "slot says");  // the first that there is not
         check_refused_after([](Stored& s) { s.boxes[s.slot_items[0]].center.x += 0.5; }, "match its box");
         check_refused_after([](Stored& s) { s.layer_masks[s.slot_items[0]] ^= 1u << 30; }, "match its box");
         check_refused_after([](Stored& s) { s.boxes[s.slot_items[0]].half_extents.x = -1.0f; }, "");

@@ -123,7 +123,8 @@ TEST_SUITE("collide/obb_obb") {
         std::mt19937_64 random(77);
         int wrong = 0, hits = 0;
         for (int trial = 0; trial < 20000; ++trial) {
-            const auto [a, b] = nearly_touching(random, {.parallel = trial % 2 == 0, .no_gap = true});
+            const auto [a, b] =
+                nearly_touching(random, {.parallel = trial % 2 == 0, .half_turned = trial % 4 == 1, .no_gap = true});
             const bool truth = oracle::boxes_meet_by_integers(a, b);
             wrong += intersects(a, b) != truth;
             hits += truth;

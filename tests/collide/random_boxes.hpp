@@ -55,6 +55,7 @@ inline double touching_distance(const Obb& a, const Obb& b, const glm::dvec3& di
 
 struct NearTouch {
     bool parallel = false;       // b's frame is a's, turned by 1e-1 … 1e-12 rad
+    bool half_turned = false;    // b's frame is a's, turned by 180 degrees about an axis of the world
     bool float_centers = false;  // centres rounded to float
     bool no_gap = false;         // as near to touching as double can put them
     int gap_decade = 0;          // 1 … 15: a gap or overlap of 1e-1 … 1e-15; 0: any between
@@ -70,6 +71,11 @@ inline std::pair<Obb, Obb> nearly_touching(std::mt19937_64& random, const NearTo
         const double angle = std::pow(10.0, -(kind.angle_decade > 0 ? double(kind.angle_decade) : exponent));
         a.axes = glm::mat3(glm::mat3_cast(frame));
         b.axes = glm::mat3(glm::mat3_cast(glm::angleAxis(angle, glm::normalize(random_vector(random))) * frame));
+    }
+    if (kind.half_turned) {
+        const int axis = static_cast<int>(random() % 3);
+        for (int k = 0; k < 3; ++k)
+            for (int i = 0; i < 3; ++i) b.axes[k][i] = i == axis ? a.axes[k][i] : -a.axes[k][i];
     }
     const double size = std::pow(10.0, -(kind.gap_decade > 0 ? double(kind.gap_decade) : 1.0 + 14.0 * unit(random)));
     const double gap = kind.no_gap ? 0.0 : random() % 2 ? size : -size;

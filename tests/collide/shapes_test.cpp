@@ -47,6 +47,15 @@ bool oracle_triangle(const Obb& box, const Triangle& t) {
     return true;
 }
 
+bool oracle_half_space(const Obb& box, const Plane& plane) {
+    oracle::Rational value(plane.offset);
+    value += oracle::dot(oracle::rational(plane.normal), oracle::rational(box.center));
+    for (int k = 0; k < 3; ++k)
+        value += abs(oracle::dot(oracle::rational(plane.normal), oracle::rational(box.axes[k]))) *
+                 oracle::Rational(double(box.half_extents[k]));
+    return value >= 0;
+}
+
 }  // namespace
 
 TEST_SUITE("collide/shapes") {
@@ -59,6 +68,43 @@ TEST_SUITE("collide/shapes") {
         CHECK_FALSE(intersects(box, Triangle{glm::dvec3(0.0), glm::dvec3(1.0), glm::dvec3(0.0, kNan, 0.0)}));
     }
 
+    TEST_CASE("half-spaces and boxes whose roundings add up to a sixteenth of the filter's bound, and more") {
+        // Found by a search for the greatest sum of roundings: 2.6 to 3 half units in the last place of the terms' sum.
+        const struct {
+            Obb box;
+            Plane plane;
+        } found[] = {
+            {{{-0x1.3760c02ce917ep-3, -0x1.aec6a8a42032cp+0, -0x1.ce6d2c8e15a66p-4},
+              glm::mat3(0x1.fb5c52p-6f, -0x1.b6ad7cp-1f, 0x1.078adp-1f, -0x1.0f7cf6p-4f, 0x1.062fe4p-1f, 0x1.b676acp-1f,
+                        -0x1.fea0c6p-1f, -0x1.f0bb6p-5f, -0x1.4f4fecp-5f),
+              {0x1.2cd55cp-11f, 0x1.9579c6p-14f, 0x1.0d5f82p+1f}},
+             {{0x1.22aaae16a3fa1p-1, 0x1.747b5e4096993p-1, 0x1.90ee3485b55d5p-3}, 0x1.fc7c4bce7525ep-6}},
+            {{{0x1.05500aa67695ep+1, 0x1.db54d6fb5bca6p-8, 0x1.8e6b618bf02ffp+0},
+              glm::mat3(0x1.b123b4p-2f, -0x1.7e94dcp-1f, -0x1.066fc6p-1f, -0x1.dbdda8p-2f, -0x1.543968p-1f,
+                        0x1.2ba1dp-1f, -0x1.8e487ep-1f, -0x1.321da2p-7f, -0x1.41b38p-1f),
+              {0x1.e62eap-3f, 0x1.b9cd7ep-2f, 0x1.51e2e8p-4f}},
+             {{-0x1.2ca427aec7a85p-8, 0x1.fdb1fb4d7bf5ap-1, -0x1.533119e51d892p-2}, -0x1.fecbb5b982884p-9}},
+            {{{0x1.ba85cce02970ap+0, 0x1.f69d9d03ed2c7p-2, 0x1.ba65bb60605a1p-2},
+              glm::mat3(0x1.b65378p-1f, 0x1.04c02cp-2f, -0x1.cc81a6p-2f, 0x1.075f76p-3f, -0x1.e5437ep-1f,
+                        -0x1.2ad9a6p-2f, -0x1.00476ep-1f, 0x1.894098p-3f, -0x1.b03404p-1f),
+              {0x1.e169eap+0f, 0x1.a02296p-5f, 0x1.0997eep-6f}},
+             {{-0x1.fc3ddae223fd7p-1, -0x1.cf8c058dad0bep-1, 0x1.61d834d295bffp-3}, -0x1.09420e906f4f8p-3}},
+            {{{-0x1.45c8677da32fep-1, 0x1.17abbd09f3c85p+0, -0x1.7f64ea01282fap-3},
+              glm::mat3(-0x1.b99198p-7f, 0x1.1dc3f4p-1f, -0x1.a8c69cp-1f, 0x1.9fd3dcp-5f, -0x1.a81238p-1f,
+                        -0x1.1db6aap-1f, -0x1.ff4b1ep-1f, -0x1.969704p-5f, -0x1.194f04p-6f),
+              {0x1.e4d29p-4f, 0x1.078ffep+0f, 0x1.3684d6p-1f}},
+             {{0x1.9c32af525b84bp-2, -0x1.22c8fd46ab24dp-2, -0x1.329aa68682f52p-6}, 0x1.2961c6d429019p-5}},
+        };
+        for (auto [box, plane] : found) {
+            REQUIRE(validate(box));
+            for (int mirror = 0; mirror < 2; ++mirror) {
+                CHECK(intersects(box, plane) == oracle_half_space(box, plane));
+                box.center = -box.center;
+                plane.normal = -plane.normal;
+            }
+        }
+    }
+
     TEST_CASE("a half-space is met to the last bit") {
         const Obb box = cube_box({5.0, 0.0, 0.0});
         CHECK(intersects(box, Plane{{1.0, 0.0, 0.0}, -6.0}));
@@ -69,12 +115,7 @@ TEST_SUITE("collide/shapes") {
             const Obb tilted = random_box(random);
             Plane plane{random_vector(random), 0.0};
             plane.offset = -glm::dot(plane.normal, support_point(tilted, plane.normal));
-            oracle::Rational value(plane.offset);
-            value += oracle::dot(oracle::rational(plane.normal), oracle::rational(tilted.center));
-            for (int k = 0; k < 3; ++k)
-                value += abs(oracle::dot(oracle::rational(plane.normal), oracle::rational(tilted.axes[k]))) *
-                         oracle::Rational(double(tilted.half_extents[k]));
-            CHECK(intersects(tilted, plane) == (value >= 0));
+            CHECK(intersects(tilted, plane) == oracle_half_space(tilted, plane));
         }
     }
 

@@ -111,6 +111,35 @@ TEST_SUITE("convex/surface_contact") {
         }
     }
 
+    TEST_CASE("what lies along a large triangle has a point at either end, as deep, from the front and from behind") {
+        Surface s;
+        s.mesh.positions = {{-9, 0, -9}, {0, 0, 9}, {9, 0, -9}};
+        s.mesh.indices = {0, 1, 2};
+        s.build();
+        const Body surface = s.body(), capsule = Body::capsule(0.75f, 0.25f).value(),
+                   cylinder = Body::cylinder(0.75f, 0.25f).value();
+        const RigidTransform still = at({});
+        Manifolds found;
+        for (const Body* body : {&capsule, &cylinder})
+            for (const double side : {1.0, -1.0}) {
+                CAPTURE(static_cast<int>(body->kind()));
+                RigidTransform pose = at({0.5, side * 0.24, -1.0});
+                pose.rotation = {{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}};
+                contact_manifolds({surface, still}, {*body, pose}, {}, found);
+                REQUIRE(found.all().size() == 1);
+                const Manifold& m = found.all()[0];
+                CHECK(m.normal.y == doctest::Approx(side));
+                REQUIRE(m.count == 2);
+                for (int i = 0; i < 2; ++i) {
+                    CHECK(m.points[i].depth == doctest::Approx(0.01));
+                    CHECK(std::abs(m.points[i].position.x - 0.5) == doctest::Approx(0.75));
+                    CHECK(m.points[i].position.y == doctest::Approx(-0.005 * side));
+                    CHECK(m.points[i].position.z == doctest::Approx(-1.0));
+                }
+                CHECK(m.points[0].position.x + m.points[1].position.x == doctest::Approx(1.0));
+            }
+    }
+
     TEST_CASE("a box tilted on the floor is held by its lowest corner or edge, straight up") {
         RandomBodies random(3);
         const Surface s = ground(random, 24, 0.5, [](double, double) { return 0.0; });

@@ -72,6 +72,27 @@ TEST_SUITE("geometry/convex_hull") {
         CHECK(hull.triangles.empty());
     }
 
+    TEST_CASE("points of a plane, on lines along its longest diagonal, have one hull in whatever order they come") {
+        std::vector<glm::dvec3> points;
+        for (int x = -2; x <= 2; ++x) points.emplace_back(x, 0.0, 0.0);
+        for (int x = -1; x <= 1; ++x)
+            for (const double y : {-1.0, 1.0}) points.emplace_back(x, y, 0.0);
+        std::mt19937 random(3);
+        for (int trial = 0; trial < 200; ++trial) {
+            std::shuffle(points.begin(), points.end(), random);
+            const ConvexHull hull = convex_hull(view(points)).value();
+            CHECK(hull.rank == 2);
+            REQUIRE(hull.vertices.size() == 6);
+            for (std::size_t i = 0; i < 6; ++i) {
+                const glm::dvec3 &a = points[hull.vertices[i]], &b = points[hull.vertices[(i + 1) % 6]],
+                                 &c = points[hull.vertices[(i + 2) % 6]];
+                CHECK(std::abs(a.x) == (a.y == 0.0 ? 2.0 : 1.0));
+                CHECK(std::abs(glm::cross(b - a, c - b).z) > 0.0);
+                CHECK(glm::cross(b - a, c - b).z * glm::cross(a, b).z > 0.0);
+            }
+        }
+    }
+
     TEST_CASE("a cube with points inside and on its faces has eight corners and twelve triangles") {
         std::vector<glm::dvec3> points;
         for (int x = 0; x <= 2; ++x)

@@ -59,6 +59,14 @@ TEST_SUITE("geometry/cut_at_vertices") {
         CHECK(cut[1] == triangles[3]);
         const std::vector<glm::vec3> line = {{0, 1, 0}, {0, 2, 0}, {0, 5, 0}};
         CHECK(cut_at_vertices(line, std::vector<CutCorners>{{0, 1, 2}}).empty());
+        // Two corners in one place, with numbers of their own: nothing is between them and the third.
+        for (int axis = 0; axis < 3; ++axis) {
+            glm::vec3 far(1.0f);
+            far[axis] = 5.0f;
+            const std::vector<glm::vec3> needle = {glm::vec3(1.0f), glm::vec3(1.0f), far};
+            for (const CutCorners& t : {CutCorners{0, 1, 2}, CutCorners{2, 0, 1}, CutCorners{1, 2, 0}})
+                CHECK(cut_at_vertices(needle, std::vector<CutCorners>{t}).empty());
+        }
         CHECK(cut_at_vertices({}, {}).empty());
     }
 }

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <crofton/geometry/mesh.hpp>
+#include <error_of.hpp>
 
 using namespace crofton;
 
@@ -25,6 +26,17 @@ TEST_SUITE("geometry/mesh") {
         CHECK(mesh.positions.size() == 6);
         CHECK(mesh.positions[3] == glm::vec3(5.0f, 0.0f, 0.0f));
         CHECK(mesh.indices == Vector<std::uint32_t>{0, 1, 2, 3, 4, 5});
+    }
+
+    TEST_CASE("colours are one a vertex or none, else they are refused by their number") {
+        TriangleMesh mesh = triangle_at(0.0f);
+        mesh.colors.resize(2);
+        CHECK(error_of(validate(mesh)).code == ErrorCode::invalid_argument);
+        CHECK(error_of(validate(mesh)).item == 2);
+        mesh.colors.resize(3);
+        CHECK(validate(mesh).has_value());
+        mesh.colors.resize(4);
+        CHECK(error_of(validate(mesh)).item == 4);
     }
 
     TEST_CASE("what lies in memory behind the indices is none of them") {

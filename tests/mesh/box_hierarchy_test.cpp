@@ -78,6 +78,26 @@ TEST_SUITE("mesh/box_hierarchy") {
             }
     }
 
+    TEST_CASE("two crowds of unequal number are parted between them, in whatever order they come") {
+        std::mt19937 random(6);
+        std::uniform_real_distribution<float> unit(-1.0f, 1.0f);
+        std::vector<FloatBox> boxes;
+        for (int i = 0; i < 16; ++i) {
+            const glm::vec3 place(i < 5 ? 0.0f : 1000.0f, 0.0f, 0.0f);
+            boxes.push_back(around(place + glm::vec3(unit(random), unit(random), unit(random))));
+        }
+        for (int trial = 0; trial < 10; ++trial) {
+            std::shuffle(boxes.begin(), boxes.end(), random);
+            const BoxHierarchy tree = build_box_hierarchy(boxes, 11);
+            REQUIRE(tree.nodes.size() == 1);
+            REQUIRE(tree.nodes[0].count == 2);
+            for (std::uint32_t lane = 0; lane < 2; ++lane) {
+                const FloatBox box = box_of(tree.nodes[0], lane);
+                CHECK(box.high.x - box.low.x <= 2.0f);
+            }
+        }
+    }
+
     TEST_CASE("boxes in one place, and a geometric series of places, make no deep tree") {
         const std::vector<FloatBox> same(100000, around(glm::vec3(1.0f)));
         CHECK(check(build_box_hierarchy(same, 1), same, 1) <= 20);

@@ -119,6 +119,20 @@ TEST_SUITE("mesh/containment") {
         CHECK_FALSE(contains(tree, {2.0, 0.0, 0.0}));
     }
 
+    TEST_CASE("a closed mesh that has shrunk to a point contains that point alone") {
+        for (const glm::vec3& place : {glm::vec3(0.0f), glm::vec3(1.0f, -2.0f, 3.0f)}) {
+            TriangleMesh mesh = cube_mesh(1.0f);
+            for (glm::vec3& p : mesh.positions) p = place;
+            for (const MeshBoxes boxes :
+                 {MeshBoxes::principal_axes, MeshBoxes::small_perimeter, MeshBoxes::least_perimeter}) {
+                const MeshTree tree = MeshTree::build(mesh, {.boxes = boxes}).value();
+                REQUIRE(tree.pieces()[0].closed);
+                CHECK(contains(tree, glm::dvec3(place)));
+                CHECK_FALSE(contains(tree, glm::dvec3(place) + glm::dvec3(0.0, 0.0, 1e-9)));
+            }
+        }
+    }
+
     TEST_CASE("the depth is the shortest way out, of the directions tried") {
         const auto a = tree_of(cube_mesh(1.0f)), b = tree_of(cube_mesh(0.5f));
         const MeshDepth side = penetration(a, b, {glm::dmat3(1.0), {1.3, 0.1, 0.0}}, {});

@@ -94,6 +94,15 @@ void check_boxes(const MeshTree& tree, const TriangleMesh& mesh) {
         for (int i = 0; i < 3; ++i)
             for (int j = 0; j < 3; ++j) skew += std::abs(gram[i][j] - (i == j ? 1.0 : 0.0)) > 1e-6;
     });
+    const MeshBox& stored = tree.parts().root_box;
+    DoubleBox root{};
+    for (int k = 0; k < 3; ++k) {
+        root.center[k] = double(stored.center[k]);
+        root.half[k] = double(stored.half[k]);
+        for (int i = 0; i < 3; ++i) root.axes[k][i] = double(stored.axes[k][i]);
+    }
+    for (std::uint32_t t = 0; t < tree.triangle_count(); ++t)
+        for (std::size_t v = 0; v < 3; ++v) outside += !holds(root.axes, root.center, root.half, vertex(mesh, t, v));
     CHECK(outside == 0);
     CHECK(skew == 0);
 }

@@ -109,5 +109,20 @@ TEST_SUITE("mesh/triangle_triangle") {
         const SegmentOfContact inner =
             contact_segment(a, {glm::dvec3(1, 1, 0), glm::dvec3(2, 1, 0), glm::dvec3(1, 2, 0)});
         CHECK(glm::distance(inner.begin, inner.end) == doctest::Approx(std::sqrt(2.0)));
+        // An edge that runs in the other's plane, from before it to behind it, wherever that is.
+        for (const glm::dvec3& place :
+             {glm::dvec3(0), glm::dvec3(10, 0, 0), glm::dvec3(-7, 5, 3), glm::dvec3(1, -9, -4)}) {
+            Triangle floor,
+                wall = {place + glm::dvec3(-1, 1, 0), place + glm::dvec3(9, 1, 0), place + glm::dvec3(2, 1, 5)};
+            for (std::size_t k = 0; k < 3; ++k) floor[k] = place + a[k];
+            for (int turn = 0; turn < 6; ++turn) {
+                std::rotate(wall.begin(), wall.begin() + 1, wall.end());
+                if (turn == 3) std::swap(wall[0], wall[1]);
+                for (const SegmentOfContact& found : {contact_segment(floor, wall), contact_segment(wall, floor)}) {
+                    CHECK(glm::distance(0.5 * (found.begin + found.end), place + glm::dvec3(1.5, 1, 0)) <= 1e-12);
+                    CHECK(glm::distance(found.begin, found.end) == doctest::Approx(3.0));
+                }
+            }
+        }
     }
 }

@@ -24,6 +24,12 @@ TEST_SUITE("scene/planar_polygon") {
         PlanarPolygon p = square();
         CHECK(validate(p).has_value());
         CHECK(error_of(validate(PlanarPolygon{})).code == ErrorCode::empty);
+        p.polygon.ring_ends.clear();
+        CHECK(error_of(validate(p)).code == ErrorCode::empty);
+        p.polygon.ring_ends = {0};
+        p.polygon.points.clear();
+        CHECK(error_of(validate(p)).code == ErrorCode::empty);
+        p = square();
         p.polygon.ring_ends = {3, 9};
         CHECK(error_of(validate(p)).code == ErrorCode::out_of_range);
         CHECK(error_of(validate(p)).item == 1);

@@ -194,6 +194,25 @@ TEST_SUITE("scene/edit") {
         CHECK(scene.instance_count() == kLive);
     }
 
+    TEST_CASE("a removed node or mesh has no name, and the name's memory is given back") {
+        testing::CountingMemory memory;
+        Scene scene;
+        const auto add_and_remove = [&](const std::string& name) {
+            const NodeId node = scene.add_node(kNone, {}, ~0u, name).value();
+            CHECK(scene.node_name(node) == name);
+            REQUIRE(scene.remove_node(node).has_value());
+            CHECK(scene.node_name(node).empty());
+            const MeshId mesh = scene.add_mesh(tetrahedron(), name).value();
+            CHECK(scene.mesh_name(mesh) == name);
+            REQUIRE(scene.remove_mesh(mesh).has_value());
+            CHECK(scene.mesh_name(mesh).empty());
+        };
+        add_and_remove("short");
+        const std::size_t before = memory.bytes_in_use();
+        add_and_remove(std::string(10000, 'n'));
+        CHECK(memory.bytes_in_use() == before);
+    }
+
     TEST_CASE("chains of a million nodes are moved under others and removed without recursion") {
         Scene scene;
         constexpr int kLength = 1'000'000;

@@ -147,6 +147,17 @@ TEST_SUITE("scene/transform") {
         }
     }
 
+    TEST_CASE("an image too small for any float, or for any double, is not taken for a point") {
+        Obb box;
+        box.half_extents = glm::vec3(0x1p-100f);
+        for (const double scale : {0x1p-200, 0x1p-900, 0x1p-980, 0x1p-1010, 0x1p-1074}) {
+            Transform t;
+            t.linear = glm::dmat3(scale);
+            const Obb image = transformed_box(t, box, measure::minimal_perimeter()).value();
+            for (int k = 0; k < 3; ++k) CHECK(image.half_extents[k] > 0.0f);
+        }
+    }
+
     TEST_CASE("a box moved out of the range of coordinates is an error, not a box") {
         Transform t;
         t.translation.x = 1e31;

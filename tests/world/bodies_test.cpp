@@ -268,7 +268,9 @@ TEST_SUITE("world/bodies") {
 
             const convex::Body probe = any_body(random);
             const RigidTransform pose{random.rotation(), random.number(2, 5) * random.direction()};
-            const convex::Motion motion{-2.0 * pose.translation, random.index(2) * 4.0 * random.direction(), {}};
+            // Around its own origin, or a pivot outside.
+            const convex::Motion motion{-2.0 * pose.translation, random.index(2) * 4.0 * random.direction(),
+                                        random.index(2) * 3.0 * random.direction()};
             std::vector<std::uint32_t> expected;
             double first = 1.0, least = 1e300;
             for (const Thing& thing : things) {

@@ -149,7 +149,7 @@ Result<void> Scene::remove_mesh(MeshId mesh) {
         return fail(ErrorCode::invalid_argument, mesh,
                     {"scene: mesh ", mesh, " is used by instance ", user,
                      "; remove its instances first or give them another mesh"});
-    s.meshes[mesh] = MeshRecord();
+    (void)std::exchange(s.meshes[mesh], MeshRecord());  // an assignment alone would keep the name's memory
     s.free_meshes.push_back(mesh);
     return {};
 }

@@ -116,7 +116,7 @@ void Scene::State::release_node(NodeId node) {
     order.remove_at(nodes[node].position);
     nodes[node] = Node();
     locals[node] = worlds[node] = Transform();
-    node_names[node] = String();
+    (void)std::exchange(node_names[node], String());  // an assignment alone would keep its memory
     free_nodes.push_back(node);
 }
 

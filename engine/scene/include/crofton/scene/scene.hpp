@@ -116,13 +116,13 @@ class Scene {
     [[nodiscard]] const TriangleMesh& mesh(MeshId mesh) const;      // empty once removed
     [[nodiscard]] const PlanarPolygon* polygon(MeshId mesh) const;  // nullptr where the mesh was not added as one
     [[nodiscard]] const Obb& mesh_box(MeshId mesh) const;           // in the mesh's own frame
-    [[nodiscard]] std::string_view mesh_name(MeshId mesh) const;
+    [[nodiscard]] std::string_view mesh_name(MeshId mesh) const;    // empty once removed
     // Another number whenever an id's vertices or triangles change; no two meshes of a scene ever share one.
     [[nodiscard]] std::uint64_t mesh_revision(MeshId mesh) const;
-    [[nodiscard]] NodeId node_of(InstanceId instance) const;  // kNone once removed
-    [[nodiscard]] MeshId mesh_of(InstanceId instance) const;  // kNone once removed
-    [[nodiscard]] NodeId parent_of(NodeId node) const;        // kNone for roots, and once removed
-    [[nodiscard]] std::string_view node_name(NodeId node) const;
+    [[nodiscard]] NodeId node_of(InstanceId instance) const;      // kNone once removed
+    [[nodiscard]] MeshId mesh_of(InstanceId instance) const;      // kNone once removed
+    [[nodiscard]] NodeId parent_of(NodeId node) const;            // kNone for roots, and once removed
+    [[nodiscard]] std::string_view node_name(NodeId node) const;  // empty once removed
     // Calls on_node for the node and all below it, parents first, and on_instance for what hangs on them. Neither may
     // change the scene.
     void visit_subtree(NodeId node, FunctionRef<void(NodeId)> on_node, FunctionRef<void(InstanceId)> on_instance) const;
