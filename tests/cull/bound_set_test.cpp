@@ -48,6 +48,31 @@ TEST_SUITE("cull/bound_set") {
         for (std::size_t i = 0; i < 100; ++i) CHECK(bits.verdict(i) == cull::classify(scaled.frustum, crowd.boxes[i]));
     }
 
+    TEST_CASE("no record of a chunk lies farther from its origin than the chunk says") {
+        oracle::NearMisses random(4);
+        const auto reach_of = [](const auto& record) {
+            return std::abs(double(record.center[0])) + std::abs(double(record.center[1])) +
+                   std::abs(double(record.center[2]));
+        };
+        cull::AabbSet aligned;
+        cull::SphereSet balls;
+        for (int trial = 0; trial < 2000; ++trial) {
+            std::vector<Aabb> boxes;
+            std::vector<Sphere> spheres;
+            for (int i = 0; i < 3; ++i) {
+                const glm::dvec3 center = random.number(0.5, 60.0) * random.direction();
+                boxes.push_back({center - 0.25, center + 0.25});
+                spheres.push_back({center, 0.25});
+            }
+            aligned.assign(boxes);
+            balls.assign(spheres);
+            for (std::size_t i = 0; i < 3; ++i) {
+                REQUIRE(reach_of(aligned.records()[i]) <= double(aligned.chunks()[0].l1_radius));
+                REQUIRE(reach_of(balls.records()[i]) <= double(balls.chunks()[0].l1_radius));
+            }
+        }
+    }
+
     TEST_CASE("all verdicts are classify's, at every offset and in every mode, after updates too") {
         for (const double offset : {0.0, 1e4, 1e5, 1e6, 1e7})
             for (const std::size_t count : {1u, 63u, 9000u}) {

@@ -270,6 +270,30 @@ TEST_SUITE("cull/froxels") {
         CHECK(dark > 1000);
     }
 
+    TEST_CASE("half balls tilted by less than an axis in doubles can tell reach as deep as their rims do") {
+        const cull::FroxelGrid grid = unit_grid();
+        oracle::NearMisses random(200);
+        std::size_t deeper = 0;
+        for (int trial = 0; trial < 80; ++trial) {
+            // Towards the eye, so that only the rim comes beyond the slice's end, 3 from the eye.
+            const double tilt = std::exp2(random.number(-27.0, -5.0)),
+                         depth = 3.0 - 2.0 * tilt * random.number(0.1, 1.2);
+            cull::SpotLight spot{.apex = {0.5, 0.5, -depth}, .cos_half_angle = 0.0f, .range = 2.0f};
+            spot.axis = {float(random.index(2) ? tilt : -tilt), 0.0f, 1.0f};
+            cull::FroxelLights found;
+            REQUIRE(cull::find_lights(grid, {}, std::span(&spot, 1), found).has_value());
+            for (std::uint32_t column = 2; column < 7; ++column) {
+                const std::uint32_t f = grid.index(column, 4, 2);
+                const bool has = !found.lights_of(f).empty();
+                deeper += has;
+                CAPTURE(tilt);
+                CAPTURE(depth);
+                REQUIRE(has == oracle::meets(grid.froxel(f), spot));
+            }
+        }
+        CHECK(deeper > 20);
+    }
+
     TEST_CASE(
         "any number of threads and every instruction set give the same lists, and nothing is allocated once warm") {
         const cull::FroxelGrid grid = *cull::FroxelGrid::build(Camera{.far_distance = 40.0}, {16, 9, 24});

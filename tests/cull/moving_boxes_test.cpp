@@ -288,8 +288,14 @@ TEST_SUITE("cull/moving_boxes") {
         check_answers(crowd, views, serial_executor());
         crowd.moving.finish(crowd.items, crowd.boxes);
         check_answers(crowd, views, serial_executor());
-        elsewhere[7].axes[0][0] = std::nanf("");
-        CHECK(crowd.moving.stage(entries, elsewhere.data(), sizeof(Obb)) == 7);
+        // The first that is no box ends the staging, whichever place it has among those written together.
+        for (std::uint32_t bad = 0; bad < 40; ++bad) {
+            Obb spoilt = elsewhere[bad];
+            spoilt.axes[0][0] = std::nanf("");
+            std::swap(spoilt, elsewhere[bad]);
+            CHECK(crowd.moving.stage(entries, elsewhere.data(), sizeof(Obb)) == bad);
+            std::swap(spoilt, elsewhere[bad]);
+        }
         // update() counts all, whatever has been staged.
         REQUIRE(crowd.moving.update(crowd.tree, crowd.items, crowd.boxes).has_value());
         crowd.moving.finish(crowd.items, crowd.boxes);

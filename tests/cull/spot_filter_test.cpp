@@ -3,7 +3,9 @@
 #include <doctest/doctest.h>
 #include <crofton/sampling/sampling.hpp>
 #include <glm/geometric.hpp>
+#include <oracle/exact_spot.hpp>
 
+#include "exact/spot.hpp"
 #include "lights/spot_filter.hpp"
 
 using namespace crofton;
@@ -99,5 +101,58 @@ TEST_SUITE("cull/spot_filter") {
             refused += answer == Answer::no;
         }
         CHECK(refused > 2900);
+    }
+
+    TEST_CASE("a light just long enough to pass an edge that runs along its cone, and one just too short") {
+        // An edge along (1, 0, 1) is 60 degrees from an axis along (1, 1, 0), exactly: it pierces the cone once.
+        sampling::Random random(3);
+        const auto whole = [&](double most) { return std::floor(random.uniform(-most, most + 1.0)); };
+        int decided = 0, asked = 0;
+        for (int trial = 0; asked < 150; ++trial) {
+            const int x = int(random.uniform(0.0, 3.0)), y = (x + 1) % 3, z = (x + 2) % 3;
+            Frustum cell;
+            cell.plane_count = 6;
+            for (std::uint32_t i = 0; i < 6; ++i) {
+                glm::dvec3 normal(0.0);
+                normal[x] = i < 2 ? 0.0 : 1.0;
+                normal[y] = i < 2 ? 1.0 : 0.0;
+                normal[z] = i < 2 ? 0.0 : i < 4 ? -1.0 : 1.0;
+                cell.planes[i] = {i % 2 ? -normal : normal, 0.125 * std::floor(random.uniform(1.0, 17.0))};
+            }
+            cull::SpotLight spot{.cos_half_angle = 0.5f};
+            spot.axis = glm::vec3(0.0f);
+            spot.axis[x] = trial & 1 ? 1.0f : -1.0f;
+            spot.axis[y] = trial & 2 ? 1.0f : -1.0f;
+            for (int k = 0; k < 3; ++k) spot.apex[k] = 0.25 * whole(12.0);
+            // Where the edge of a side across y and a side across the others is on the cone: a · p = |a| |p| / 2.
+            const Plane &first = cell.planes[trial >> 2 & 1], &second = cell.planes[2 + (trial >> 3 & 3)];
+            glm::dvec3 foot = -spot.apex, edge(0.0);
+            foot[y] = -first.offset * first.normal[y] - spot.apex[y];
+            const double beside = second.offset + glm::dot(second.normal, spot.apex);
+            foot[x] = -0.5 * beside * second.normal[x];
+            foot[z] = -0.5 * beside * second.normal[z];
+            edge[x] = second.normal[z];
+            edge[z] = -second.normal[x];
+            const glm::dvec3 axis(spot.axis);
+            const double b = 2.0 * (glm::dot(axis, edge) * glm::dot(axis, foot)) - glm::dot(edge, foot),
+                         c = glm::dot(axis, foot) * glm::dot(axis, foot) - 0.5 * glm::dot(foot, foot);
+            if (b == 0.0) continue;
+            const glm::dvec3 pierced = foot - c / b * edge;
+            bool within = glm::dot(axis, pierced) > 0.0;
+            for (const Plane& plane : cell.view())
+                within = within && glm::dot(plane.normal, spot.apex + pierced) + plane.offset >= -1e-9;
+            if (!within) continue;  // else it may be the first point of the cell that the light reaches
+            const double length = glm::length(pierced);
+            bool answers[2];
+            for (int longer = 0; longer < 2; ++longer) {
+                spot.range = float(length * (longer ? 1.0001 : 0.9999));
+                answers[longer] = cull::meets(cell, spot);
+                CAPTURE(trial);
+                REQUIRE(answers[longer] == oracle::meets(cell, spot));
+            }
+            decided += answers[0] != answers[1];
+            ++asked;
+        }
+        CHECK(decided > 5);
     }
 }

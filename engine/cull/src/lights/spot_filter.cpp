@@ -35,18 +35,38 @@ glm::dvec3 froxel_support(const FroxelCell& cell, const glm::dvec3& apex, const 
     return best;
 }
 
-// The point of the light farthest along m, relative to the apex.
-glm::dvec3 spot_support(const KernelLight& spot, const glm::dvec3& m) {
-    const glm::dvec3 axis(spot.axis[0], spot.axis[1], spot.axis[2]);
-    const double along = glm::dot(m, axis);
-    const glm::dvec3 rest = m - along * axis;
-    const double across = glm::length(rest);
-    if (across * spot.cosine <= along * spot.sine) return spot.radius / std::max(glm::length(m), 1e-300) * m;
-    if (along * spot.cosine + across * spot.sine <= 0.0) return glm::dvec3(0.0);
-    // Where little of m is across the axis, the first difference leaves rounding in all directions.
-    const glm::dvec3 side = rest - glm::dot(rest, axis) * axis;
-    return spot.radius * (spot.cosine * axis + spot.sine / std::max(glm::length(side), 1e-300) * side);
+// Two directions that are perpendicular to the unit vector n and to each other (Duff et al. 2017: "Building an
+// Orthonormal Basis, Revisited").
+void find_across(const glm::dvec3& n, glm::dvec3 (&across)[2]) {
+    const double sign = std::copysign(1.0, n.z), a = -1.0 / (sign + n.z), b = n.x * n.y * a;
+    across[0] = {1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x};
+    across[1] = {b, sign + n.y * n.y * a, -n.y};
 }
+
+// A light's support points. What of a direction is across the axis is taken along two fixed directions: where there is
+// little, taking away what is along the axis would leave nothing but rounding.
+class SpotSupport {
+  public:
+    explicit SpotSupport(const KernelLight& spot) : spot_(spot), axis_(spot.axis[0], spot.axis[1], spot.axis[2]) {
+        find_across(axis_, across_);
+    }
+
+    [[nodiscard]] const glm::dvec3& axis() const { return axis_; }
+
+    // The point of the light farthest along m, relative to the apex.
+    [[nodiscard]] glm::dvec3 operator()(const glm::dvec3& m) const {
+        const double along = glm::dot(m, axis_), p = glm::dot(m, across_[0]), q = glm::dot(m, across_[1]);
+        const double across = std::sqrt(p * p + q * q);
+        if (across * spot_.cosine <= along * spot_.sine) return spot_.radius / std::max(glm::length(m), 1e-300) * m;
+        if (along * spot_.cosine + across * spot_.sine <= 0.0) return glm::dvec3(0.0);
+        const glm::dvec3 side = p * across_[0] + q * across_[1];
+        return spot_.radius * (spot_.cosine * axis_ + spot_.sine / std::max(across, 1e-300) * side);
+    }
+
+  private:
+    const KernelLight& spot_;
+    glm::dvec3 axis_, across_[2];
+};
 
 double largest_of(const glm::dvec3& v) {
     return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
@@ -75,11 +95,11 @@ double depth_of_origin(const glm::dvec3 (&points)[4], double eta) {
 
 Answer filter_spot(const KernelLight& spot, const FroxelCell& cell, double eta) {
     const glm::dvec3 apex(spot.at[0], spot.at[1], spot.at[2]);
+    const SpotSupport farthest_of_spot(spot);
     const auto support = [&](const glm::dvec3& m) {  // of A, towards −m
-        return froxel_support(cell, apex, -m) - spot_support(spot, m);
+        return froxel_support(cell, apex, -m) - farthest_of_spot(m);
     };
-    const glm::dvec3 axis(spot.axis[0], spot.axis[1], spot.axis[2]);
-    const glm::dvec3 first = support(-axis);
+    const glm::dvec3 first = support(-farthest_of_spot.axis());
     glm::dvec3 points[4] = {first, first, first, first}, nearest = first;
     for (int round = 0; round < kMostRounds; ++round) {
         const double square = glm::dot(nearest, nearest);

@@ -45,15 +45,22 @@ struct Vectors {
 template <class D>
 struct Sector {
     using V = hn::Vec<D>;
-    Vectors<D> axis;
+    Vectors<D> axis, across[2];  // perpendicular to each other
     V cosine, sine, range, eta;
 
+    // Directions across the axis by Duff et al. 2017: "Building an Orthonormal Basis, Revisited".
     HWY_INLINE explicit Sector(const LightLanes<D>& light)
         : axis{light.axis[0], light.axis[1], light.axis[2]},
           cosine(light.cosine),
           sine(light.sine),
           range(light.radius),
-          eta(light.eta) {}
+          eta(light.eta) {
+        const V one = hn::Set(D(), hn::TFromD<D>(1)), sign = hn::CopySign(one, axis.w);
+        const V a = hn::Neg(hn::Div(one, hn::Add(sign, axis.w))), b = hn::Mul(hn::Mul(axis.u, axis.v), a);
+        across[0] = {hn::MulAdd(hn::Mul(sign, axis.u), hn::Mul(axis.u, a), one), hn::Mul(sign, b),
+                     hn::Neg(hn::Mul(sign, axis.u))};
+        across[1] = {b, hn::MulAdd(axis.v, hn::Mul(axis.v, a), sign), hn::Neg(axis.v)};
+    }
 
     // What is along the axis, and what is left of it.
     struct Split {
@@ -97,21 +104,25 @@ struct Sector {
         return {hn::Mul(axis.u, along), hn::Mul(axis.v, along), hn::Mul(axis.w, along)};
     }
 
-    // The point farthest along m, which is not 0. What of m is across the axis is made so twice: where little is, the
-    // first leaves rounding in all directions.
+    // The point farthest along m, which is not 0. What of m is across the axis is taken along two fixed directions:
+    // where there is little, taking away what is along the axis would leave nothing but rounding. Less than 1e-12 of
+    // what is along it gives a point between the axis and the rim, which is as far but for rounding.
     HWY_INLINE Vectors<D> farthest(const Vectors<D>& m) const {
-        const V zero = hn::Zero(D()), least = hn::Set(D(), hn::TFromD<D>(1e-30));
-        const Split of = split(m);
-        const auto in_cone = hn::Le(hn::Mul(of.across, cosine), hn::Mul(of.along, sine));
-        const auto behind = hn::Le(hn::MulAdd(of.along, cosine, hn::Mul(of.across, sine)), zero);
-        const Vectors<D> rest = of.rest.plus(axis, hn::Neg(of.rest.dot(axis)));
+        const D d;
+        const V zero = hn::Zero(d), least = hn::Set(d, hn::TFromD<D>(1e-30));
+        const V along = m.dot(axis), p = m.dot(across[0]), q = m.dot(across[1]);
+        const V beside = hn::Sqrt(hn::MulAdd(p, p, hn::Mul(q, q)));
+        const auto in_cone = hn::Le(hn::Mul(beside, cosine), hn::Mul(along, sine));
+        const auto behind = hn::Le(hn::MulAdd(along, cosine, hn::Mul(beside, sine)), zero);
+        const V little = hn::MulAdd(hn::Abs(along), hn::Set(d, hn::TFromD<D>(1e-12)), least);
         const V of_whole = hn::Div(range, hn::Max(hn::Sqrt(m.dot(m)), least)), of_axis = hn::Mul(range, cosine),
-                of_rest = hn::Div(hn::Mul(range, sine), hn::Max(hn::Sqrt(rest.dot(rest)), least));
-        const auto component = [&](V whole, V axial, V across) HWY_ATTR {
-            const V on_side = hn::IfThenZeroElse(behind, hn::MulAdd(axial, of_axis, hn::Mul(across, of_rest)));
+                of_side = hn::Div(hn::Mul(range, sine), hn::Max(beside, little));
+        const Vectors<D> side = across[0].times(p).plus(across[1], q);
+        const auto component = [&](V whole, V axial, V sideways) HWY_ATTR {
+            const V on_side = hn::IfThenZeroElse(behind, hn::MulAdd(axial, of_axis, hn::Mul(sideways, of_side)));
             return hn::IfThenElse(in_cone, hn::Mul(whole, of_whole), on_side);
         };
-        return {component(m.u, axis.u, rest.u), component(m.v, axis.v, rest.v), component(m.w, axis.w, rest.w)};
+        return {component(m.u, axis.u, side.u), component(m.v, axis.v, side.v), component(m.w, axis.w, side.w)};
     }
 };
 
