@@ -175,6 +175,10 @@ TEST_SUITE("cli/pvs") {
         CHECK(owners > 0.0);
         CHECK(conservative <= frustum);
         CHECK(conservative >= owners);
+        const auto both = views.at("conservative_and_occlusion");
+        CHECK(both.at("wrong_pixels_worst") == 0.0);
+        CHECK(both.at("triangles").get<double>() <= conservative);
+        CHECK(both.at("triangles").get<double>() >= owners);
         CHECK(run_cli(base + "--json -").json().at("street_views") == nullptr);
         CHECK(run_cli(base + "--views 0").status == 2);
         CHECK(run_cli(base + "--views 5 --shard 0/2 --state " + quoted("v")).status == 2);
@@ -187,7 +191,7 @@ TEST_SUITE("cli/pvs") {
         std::filesystem::create_directory(folder);
         const auto state = [&](const char* name) { return folder + "/" + name; };
         REQUIRE(run_cli(base + "--shard 0/2 --state '" + state("kept") + "'").status == 0);
-        REQUIRE(run_cli(base + "--state " + quoted("whole")).status == 0);
+        REQUIRE(run_cli(base + "--state " + quoted("undisturbed")).status == 0);
         const std::string before = contents_of(state("kept"));
         CHECK(before.size() > 8 * 1024);  // more than the smaller disk below takes
         for (const char* blocks : {"0", "8"})
@@ -202,7 +206,7 @@ TEST_SUITE("cli/pvs") {
             }
         for (const char* name : {"kept", "new"}) {
             REQUIRE(run_cli(base + "--state '" + state(name) + "'").status == 0);
-            CHECK(contents_of(state(name)) == contents_of(scratch().file("whole")));
+            CHECK(contents_of(state(name)) == contents_of(scratch().file("undisturbed")));
         }
     }
 

@@ -127,6 +127,55 @@ TEST_SUITE("pipeline/pvs_views") {
         CHECK(looked->statistical.triangles == looked->owner_triangles);
     }
 
+    TEST_CASE("a wall hides at run time what a set holds, and no pixel of what is seen") {
+        // Two boxes on the plain, 40 m high: one stands in front of the other for many eyes, and each is an occluder.
+        Plain plain;
+        for (const float x : {-30.0f, 30.0f}) {
+            TriangleMesh box;
+            for (int c = 0; c < 8; ++c)
+                box.positions.push_back({x + (c & 1 ? 5.0f : -5.0f), c & 2 ? 40.0f : 0.0f, c & 4 ? 60.0f : -60.0f});
+            box.indices = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
+                           2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+            const auto node = plain.source.scene.add_node(scene::kNone, {});
+            REQUIRE(plain.source.scene.add_instance(*node, *plain.source.scene.add_mesh(std::move(box))).has_value());
+        }
+        plain.source.scene.update();
+        plain.scene = pipeline::make_pvs_scene(plain.source, true).value();
+        REQUIRE(plain.scene.occluders.size() >= 2);
+        const auto cells = pvs::Cells::grid({{-100, 1, -100}, {100, 20, 100}}, {3, 1, 3}).value();
+        auto bake = pvs::Bake::create(plain.scene.subject, cells, {.epsilon = 1e-3}).value();
+        REQUIRE(bake.run().has_value());
+        const pvs::Pvs sets = pvs::Pvs::finish(bake).value();
+        const auto without = plain.look(sets, {.views = 60}),
+                   with = plain.look(sets, {.views = 60, .occluders = plain.scene.found});
+        REQUIRE_MESSAGE(with.has_value(), error_of(with).message);
+        CHECK_FALSE(without->has_occlusion);
+        CHECK(with->has_occlusion);
+        CHECK(with->conservative.triangles == without->conservative.triangles);
+        for (const pipeline::PvsModeFigures& way : {with->occlusion, with->conservative_and_occlusion}) {
+            CHECK(way.wrong_worst == 0.0);
+            CHECK(way.triangles >= with->owner_triangles);
+            CHECK(way.triangles < with->conservative.triangles - 0.5);
+        }
+        CHECK(with->statistical_and_occlusion.wrong_worst == with->statistical.wrong_worst);
+        CHECK(with->statistical_and_occlusion.triangles <= with->statistical.triangles);
+        // Occluders that reach beyond their boxes hide these: then pixels are wrong.
+        auto lies = *plain.scene.found;
+        for (auto& kind : lies.kinds)
+            for (auto& occluder : kind.found.occluders) {
+                glm::vec3 middle(0.0f);
+                for (const glm::vec3& corner : occluder.surface.positions)
+                    middle += corner / static_cast<float>(occluder.surface.positions.size());
+                for (glm::vec3& corner : occluder.surface.positions) corner = middle + 2.0f * (corner - middle);
+                occluder.box.half_extents *= 2.0f;
+            }
+        const auto wrong =
+            plain.look(sets, {.views = 60, .occluders = std::make_shared<const pipeline::SceneOccluders>(lies)});
+        REQUIRE_MESSAGE(wrong.has_value(), error_of(wrong).message);
+        CHECK(wrong->occlusion.wrong_worst > 0.0);
+        CHECK(wrong->conservative_and_occlusion.wrong_worst > 0.0);
+    }
+
     TEST_CASE("the same figures for any number of threads, others for another seed") {
         const Plain plain;
         const pvs::Pvs sets = plain.sets(true, false);

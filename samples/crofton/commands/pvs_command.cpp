@@ -80,7 +80,8 @@ Result<Job> make_job(const PvsRequest& options, Executor& executor) {
 // Levels have no bodies; other scenes mostly do, and many more triangles.
 std::uint32_t surface_steps_of(const Job& job) {
     if (job.options.surface_steps != kByScene) return job.options.surface_steps;
-    const auto& kinds = job.scene.found.kinds;
+    if (!job.scene.found) return 0;
+    const auto& kinds = job.scene.found->kinds;
     const bool is_level = std::any_of(kinds.begin(), kinds.end(), [](const auto& kind) { return kind.is_level; });
     return is_level ? kStepsInLevels : 0;
 }
@@ -186,7 +187,10 @@ Json to_json(const Views& views) {
             {"frustum_triangles", views->frustum_triangles},
             {"owner_triangles", views->owner_triangles},
             {"conservative", to_json(views->conservative)},
-            {"statistical", to_json(views->statistical)}};
+            {"statistical", to_json(views->statistical)},
+            {"occlusion", to_json(views->occlusion)},
+            {"conservative_and_occlusion", to_json(views->conservative_and_occlusion)},
+            {"statistical_and_occlusion", to_json(views->statistical_and_occlusion)}};
 }
 
 void print(const pipeline::PvsViewFigures& views) {
@@ -194,11 +198,14 @@ void print(const pipeline::PvsViewFigures& views) {
         "%u street views: wrong pixels, mean and worst; triangles a view, and over those of what owns a pixel\n",
         views.views);
     const auto row = [&](const char* name, const pipeline::PvsModeFigures& mode) {
-        std::printf("  %-13s %8.2g %8.2g %10.0f %7.2f\n", name, mode.wrong_mean, mode.wrong_worst, mode.triangles,
+        std::printf("  %-26s %8.2g %8.2g %10.0f %7.2f\n", name, mode.wrong_mean, mode.wrong_worst, mode.triangles,
                     mode.triangles / std::max(1.0, views.owner_triangles));
     };
     row("conservative", views.conservative);
     row("statistical", views.statistical);
+    row("conservative and occlusion", views.conservative_and_occlusion);
+    row("statistical and occlusion", views.statistical_and_occlusion);
+    row("occlusion alone", views.occlusion);
     row("frustum alone", {0.0, 0.0, views.frustum_triangles});
 }
 
@@ -293,9 +300,12 @@ Result<int> run_pvs(const PvsRequest& options) {
     if (auto written = write_outputs(*job, *sets, pool, file_bytes); !written) return tl::unexpected(written.error());
     Views views;
     if (options.views > 0) {
-        const auto looked = pipeline::look_at_views(
-            job->source.scene, job->scene.subject, *sets,
-            {.views = options.views, .seed = options.seed, .near_radius = options.near_radius}, pool);
+        const auto looked = pipeline::look_at_views(job->source.scene, job->scene.subject, *sets,
+                                                    {.views = options.views,
+                                                     .seed = options.seed,
+                                                     .near_radius = options.near_radius,
+                                                     .occluders = job->scene.found},
+                                                    pool);
         if (!looked) return tl::unexpected(looked.error());
         views = *looked;
     }
@@ -363,7 +373,8 @@ void add_pvs_command(CommandLine& line) {
     command.option("--eye", options->eye, "x,y,z: the map's cell holds it; without, the middle one");
     command
         .option("--views", options->views,
-                "Look at the sets from so many random places: wrong pixels and triangles in either mode")
+                "Look at the sets from so many random places: wrong pixels and triangles in either mode, "
+                "with and without occlusion")
         .whole_between(1, 1'000'000)
         .excludes(shard);
     command.option("--seed", options->seed, "Of the lines, of the town and of the views").show_default();

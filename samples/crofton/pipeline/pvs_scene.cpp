@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "camera_path.hpp"
 
@@ -21,15 +22,15 @@ Result<PvsScene> make_pvs_scene(const assets::SceneSource& source, bool with_occ
     PvsScene result;
     result.subject = std::move(*subject);
     if (!with_occluders) return result;
-    result.found = find_scene_occluders(scene, executor);
+    SceneOccluders found = find_scene_occluders(scene, executor);
     std::set<scene::NodeId> moving;
     for (const scene::InstanceId id : source.movers)
         if (!scene.is_removed(id)) moving.insert(scene.node_of(id));
-    for (const SceneOccluders::Object& object : result.found.objects) {
-        if (moving.count(object.node)) continue;
-        for (const occlude::FoundOccluder& occluder : result.found.kinds[object.kind].found.occluders)
+    std::erase_if(found.objects, [&](const SceneOccluders::Object& object) { return moving.count(object.node) != 0; });
+    result.found = std::make_shared<const SceneOccluders>(std::move(found));
+    for (const SceneOccluders::Object& object : result.found->objects)
+        for (const occlude::FoundOccluder& occluder : result.found->kinds[object.kind].found.occluders)
             result.occluders.push_back({&occluder, scene.world(object.node)});
-    }
     return result;
 }
 

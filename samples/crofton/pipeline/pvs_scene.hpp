@@ -3,6 +3,7 @@
 #pragma once
 #include <crofton/core/executor.hpp>
 #include <crofton/pvs/pvs.hpp>
+#include <memory>
 #include <vector>
 
 #include "assets/scene_source.hpp"
@@ -11,9 +12,9 @@
 namespace crofton::pipeline {
 
 struct PvsScene {
-    pvs::Subject subject;  // objects are instances; the source's movers are left out
-    SceneOccluders found;
-    std::vector<pvs::PlacedOccluder> occluders;  // in `found`; none of movers
+    pvs::Subject subject;                         // objects are instances; the source's movers are left out
+    std::shared_ptr<const SceneOccluders> found;  // but those of movers; nullptr without
+    std::vector<pvs::PlacedOccluder> occluders;   // in `found`
 };
 
 // The scene has been updated. Errors: as pvs::subject_of.

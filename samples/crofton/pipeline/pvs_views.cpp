@@ -2,6 +2,7 @@
 #include "pvs_views.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <crofton/convex/query.hpp>
 #include <crofton/cull/classify.hpp>
@@ -14,6 +15,7 @@
 
 #include "camera_path.hpp"
 #include "free_space.hpp"
+#include "pipeline.hpp"
 
 namespace crofton::pipeline {
 namespace {
@@ -28,15 +30,19 @@ struct Looked {
     const pvs::Pvs& sets;
     const PvsViewOptions& options;
     mesh::MeshTree tree;
+    std::optional<Pipeline> occluding;
     Vector<std::uint32_t> triangles_of;  // by object
     double near = 0.0;
     double reach = 0.0;  // of the near plane: its farthest point in a picture
 };
 
+// Ways to choose what is drawn: the sets' modes, occlusion at run time, both.
+enum Way : std::size_t { kConservative, kStatistical, kOcclusion, kConservativeToo, kStatisticalToo, kWays };
+
 // Of one view.
 struct Counts {
-    std::uint64_t wrong_conservative = 0, wrong_statistical = 0;               // pixels
-    std::uint64_t frustum = 0, owners = 0, conservative = 0, statistical = 0;  // triangles
+    std::uint64_t frustum = 0, owners = 0;                  // triangles
+    std::array<std::uint64_t, kWays> wrong{}, triangles{};  // pixels; triangles
 };
 
 // Whether a camera at `eye` could turn all around, and its near plane would cut nothing.
@@ -97,21 +103,36 @@ Vector<std::uint32_t> owned_pixels(const Looked& all, const Camera& camera) {
     return pixels;
 }
 
-Counts look(const Looked& all, const Camera& camera, std::uint32_t cell) {
+// By object: whether the view finds it, occlusion considered.
+Vector<bool> not_occluded(const Looked& all, const Camera& camera, VisibleObjects& visible) {
+    Vector<bool> found(all.subject.boxes.size(), !all.occluding);
+    if (!all.occluding) return found;
+    const auto view = occlude::occlusion_view_of(camera);
+    if (!view || !all.occluding->world().view({*view, kSeenLayer}, OcclusionOptions{}, visible)) {
+        found.assign(found.size(), true);
+        return found;
+    }
+    for (const std::uint32_t id : visible.ids())
+        if (id < found.size()) found[id] = true;
+    return found;
+}
+
+Counts look(const Looked& all, const Camera& camera, std::uint32_t cell, VisibleObjects& visible) {
     const Vector<std::uint32_t> pixels = owned_pixels(all, camera);
+    const Vector<bool> open = not_occluded(all, camera, visible);
     const auto frustum = frustum_of(camera);
     Counts counts;
     for (std::uint32_t o = 0; o < pixels.size(); ++o) {
         if (all.triangles_of[o] == 0) continue;
         const auto state = cell == pvs::kNoCell ? pvs::PairState::seen : all.sets.state(cell, o);
         const bool conservative = state != pvs::PairState::hidden, statistical = state == pvs::PairState::seen;
-        counts.wrong_conservative += conservative ? 0 : pixels[o];
-        counts.wrong_statistical += statistical ? 0 : pixels[o];
+        const std::array<bool, kWays> drawn{conservative, statistical, open[o], conservative && open[o],
+                                            statistical && open[o]};
         counts.owners += pixels[o] > 0 ? all.triangles_of[o] : 0;
+        for (std::size_t w = 0; w < kWays; ++w) counts.wrong[w] += drawn[w] ? 0 : pixels[o];
         if (frustum && cull::classify(*frustum, all.subject.boxes[o]) == cull::Verdict::outside) continue;
         counts.frustum += all.triangles_of[o];
-        counts.conservative += conservative ? all.triangles_of[o] : 0;
-        counts.statistical += statistical ? all.triangles_of[o] : 0;
+        for (std::size_t w = 0; w < kWays; ++w) counts.triangles[w] += drawn[w] ? all.triangles_of[o] : 0;
     }
     return counts;
 }
@@ -120,28 +141,32 @@ Counts look(const Looked& all, const Camera& camera, std::uint32_t cell) {
 PvsViewFigures figures_of(const Looked& all, std::span<const Camera> cameras, std::span<const Counts> counts) {
     PvsViewFigures figures;
     figures.views = all.options.views;
-    Counts sum;
-    std::uint64_t worst_conservative = 0, worst_statistical = 0;
+    Counts sum, worst;
     for (std::size_t i = 0; i < cameras.size(); ++i) {
-        const Counts& each = counts[i];
         figures.in_no_cell += all.sets.find_cell(cameras[i].position) == pvs::kNoCell;
-        worst_conservative = std::max(worst_conservative, each.wrong_conservative);
-        worst_statistical = std::max(worst_statistical, each.wrong_statistical);
-        sum.wrong_conservative += each.wrong_conservative;
-        sum.wrong_statistical += each.wrong_statistical;
-        sum.frustum += each.frustum;
-        sum.owners += each.owners;
-        sum.conservative += each.conservative;
-        sum.statistical += each.statistical;
+        sum.frustum += counts[i].frustum;
+        sum.owners += counts[i].owners;
+        for (std::size_t w = 0; w < kWays; ++w) {
+            sum.wrong[w] += counts[i].wrong[w];
+            worst.wrong[w] = std::max(worst.wrong[w], counts[i].wrong[w]);
+            sum.triangles[w] += counts[i].triangles[w];
+        }
     }
     const double pixels = static_cast<double>(all.options.width) * all.options.height;
     const auto mean = [&](std::uint64_t n) { return static_cast<double>(n) / static_cast<double>(cameras.size()); };
+    const auto way = [&](Way w) {
+        return PvsModeFigures{mean(sum.wrong[w]) / pixels, static_cast<double>(worst.wrong[w]) / pixels,
+                              mean(sum.triangles[w])};
+    };
     figures.frustum_triangles = mean(sum.frustum);
     figures.owner_triangles = mean(sum.owners);
-    figures.conservative = {mean(sum.wrong_conservative) / pixels, static_cast<double>(worst_conservative) / pixels,
-                            mean(sum.conservative)};
-    figures.statistical = {mean(sum.wrong_statistical) / pixels, static_cast<double>(worst_statistical) / pixels,
-                           mean(sum.statistical)};
+    figures.conservative = way(kConservative);
+    figures.statistical = way(kStatistical);
+    figures.has_occlusion = all.occluding.has_value();
+    if (!figures.has_occlusion) return figures;
+    figures.occlusion = way(kOcclusion);
+    figures.conservative_and_occlusion = way(kConservativeToo);
+    figures.statistical_and_occlusion = way(kStatisticalToo);
     return figures;
 }
 
@@ -159,7 +184,13 @@ Result<PvsViewFigures> look_at_views(const scene::Scene& scene, const pvs::Subje
     if (!space || space->places().empty()) return no_place();
     auto tree = mesh::MeshTree::build(subject.mesh, {.boxes = mesh::MeshBoxes::principal_axes, .rays = true});
     if (!tree) return tl::unexpected(tree.error());
-    Looked all{subject, sets, options, std::move(*tree), {}};
+    Looked all{subject, sets, options, std::move(*tree), {}, {}};
+    if (options.occluders) {
+        auto occluding = Pipeline::create(scene, {}, {.collide = false, .occlusion = OcclusionOptions{}},
+                                          serial_executor(), options.occluders);
+        if (!occluding) return tl::unexpected(occluding.error());
+        all.occluding = std::move(*occluding);
+    }
     all.triangles_of.assign(subject.boxes.size(), 0);
     for (const std::uint32_t object : subject.object_of) ++all.triangles_of[object];
     const double half = std::tan(0.5 * Camera{}.fov_y), aspect = static_cast<double>(options.width) / options.height;
@@ -175,9 +206,10 @@ Result<PvsViewFigures> look_at_views(const scene::Scene& scene, const pvs::Subje
         cameras.push_back(*camera);
     }
     Vector<Counts> counts(cameras.size());
-    executor.parallel_for(cameras.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
+    Vector<VisibleObjects> visible(executor.concurrency());
+    executor.parallel_for(cameras.size(), 1, [&](std::size_t begin, std::size_t end, unsigned worker) {
         for (std::size_t i = begin; i < end; ++i)
-            counts[i] = look(all, cameras[i], sets.find_cell(cameras[i].position));
+            counts[i] = look(all, cameras[i], sets.find_cell(cameras[i].position), visible[worker]);
     });
     return figures_of(all, cameras, counts);
 }

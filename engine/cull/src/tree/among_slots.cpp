@@ -16,7 +16,8 @@ void for_each_among(std::span<const std::uint64_t> set, std::size_t items, const
     for (std::size_t first = 0; first < items; first += 64) {
         std::uint64_t bits = first / 64 < set.size() ? set[first / 64] : ~std::uint64_t{0};
         if (items - first < 64) bits &= (std::uint64_t{1} << (items - first)) - 1;
-        for (; bits != 0; bits &= bits - 1) visit(static_cast<ItemId>(first) + std::countr_zero(bits));
+        for (; bits != 0; bits &= bits - 1)
+            visit(static_cast<ItemId>(first + static_cast<std::size_t>(std::countr_zero(bits))));
     }
 }
 
