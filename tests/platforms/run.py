@@ -14,7 +14,7 @@ results of all are in results.json beside this script. Two runs may try differen
 little optimisation, one instruction set, ccache where it is installed, least priority. The digests come first, one file
 of tests after another; then the tests of the modules (core and geometry unless told). What is left of a cell that was
 stopped is done by the next run: a part is done again only where its program has changed. A part that takes longer than
-the limit (900 s) is stopped, and the table says so. Where each instruction is emulated, each file of tests is a part.
+the limit (900 s) is stopped, and the table says so. In cells that are slow each file of tests is a part.
 `third_party/install.sh --platforms` installs the compilers and emulators. Libraries that a target lacks are compiled
 from the system's source packages, which apt-get fetches. A cell that cannot be here says why and counts for nothing.
 Exit status 1 where a digest differs or a test fails. Python 3.11, nothing else.
@@ -58,7 +58,7 @@ class Cell:
     suffix: str = ""
     optimize: str = "-O1"          # the quickest in all: what the tests lose, the compiler gains several times
     newer_highway: bool = False    # that of Debian 13
-    emulated: bool = False         # an instruction takes tens of times as long: each file of tests has the limit to itself
+    by_file: bool = False          # slow, by emulation or by GMP without assembly: each file of tests has the limit to itself
 
     @property
     def build(self):
@@ -90,11 +90,11 @@ CELLS = [
     Cell("clang", "clang 14, x86-64", ["clang++-14"], options=["-DCROFTON_UNITY=ON", one_set("AVX2")]),
     Cell("clang-libcxx", "clang 14, x86-64, libc++", ["clang++-14", "/usr/lib/llvm-14/include/c++/v1/vector"],
          options=[one_set("AVX2")], host="x86_64-linux-gnu"),
-    Cell("i386", "g++ 12, 32-bit x86", ["i686-linux-gnu-g++"], host="i686-linux-gnu"),
+    Cell("i386", "g++ 12, 32-bit x86", ["i686-linux-gnu-g++"], host="i686-linux-gnu", by_file=True),
     Cell("aarch64", "g++ 12, 64-bit ARM, qemu", ["aarch64-linux-gnu-g++", "qemu-aarch64"], host="aarch64-linux-gnu",
-         runner=["qemu-aarch64", "-L", "/usr/aarch64-linux-gnu"], emulated=True),
+         runner=["qemu-aarch64", "-L", "/usr/aarch64-linux-gnu"], by_file=True),
     Cell("riscv64", "g++ 12, 64-bit RISC-V, qemu", ["riscv64-linux-gnu-g++", "qemu-riscv64"], host="riscv64-linux-gnu",
-         runner=["qemu-riscv64", "-L", "/usr/riscv64-linux-gnu"], emulated=True),
+         runner=["qemu-riscv64", "-L", "/usr/riscv64-linux-gnu"], by_file=True),
     Cell("mingw", "MinGW g++ 12, 64-bit Windows, Wine", ["x86_64-w64-mingw32-g++-posix", "wine"],
          host="x86_64-w64-mingw32", runner=["wine"], suffix=".exe"),
     wasm("wasm-simd", "Emscripten 3.1, WebAssembly with SIMD, node", newer_highway=True),
@@ -222,9 +222,9 @@ def build_libraries(cell, jobs, log):
     done.touch()
 
 
-def parts_of(target, emulated=False):
+def parts_of(target, by_file=False):
     """What of a program is run and remembered alone: {name: doctest's filters}."""
-    if target != DIGESTS and not emulated:
+    if target != DIGESTS and not by_file:
         return {target: []}
     module = target.removeprefix("test_")
     files = sorted((ROOT / "tests" / module).glob("*_test.cpp"))
@@ -287,7 +287,7 @@ def try_cell(cell, options, results):
 
 def try_parts(cell, target, limit, result, log):
     done, program = result.setdefault(target, {}), hash_of(program_of(cell, target))
-    parts = parts_of(target, cell.emulated)
+    parts = parts_of(target, cell.by_file)
     for name in set(done) - set(parts):
         del done[name]
     for name, filters in parts.items():
