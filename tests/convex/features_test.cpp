@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+// The features that contact points name: whether the points are there.
+#include <doctest/doctest.h>
+#include <algorithm>
+#include <cmath>
+#include <crofton/convex/query.hpp>
+
+#include "random_bodies.hpp"
+
+using namespace crofton;
+using namespace crofton::convex;
+using namespace crofton::testing;
+
+namespace {
+
+glm::dvec3 placed(const Placed& b, int vertex) {
+    return b.pose.rotation * b.body.vertex(vertex) + b.pose.translation;
+}
+
+double distance_to_segment(const glm::dvec3& p, const glm::dvec3& from, const glm::dvec3& to) {
+    const glm::dvec3 along = to - from;
+    const double square = glm::dot(along, along);
+    const double t = square > 0.0 ? std::clamp(glm::dot(p - from, along) / square, 0.0, 1.0) : 0.0;
+    return glm::length(p - from - t * along);
+}
+
+double distance_to_plane(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+    const glm::dvec3 n = glm::cross(b - a, c - a);
+    return std::abs(glm::dot(p - a, n)) / glm::length(n);
+}
+
+// From a point of the core of a hull, box, triangle, capsule or ball to the feature; to the plane of a face.
+double distance_to_feature(const Placed& b, const Feature& feature, const glm::dvec3& p) {
+    const int i = feature.index;
+    if (feature.kind == FeatureKind::vertex) return glm::length(p - placed(b, i));
+    if (b.body.hull() != nullptr) {
+        if (feature.kind == FeatureKind::edge) {
+            const HullEdge& e = b.body.hull()->edges()[feature.index];
+            return distance_to_segment(p, placed(b, e.vertices[0]), placed(b, e.vertices[1]));
+        }
+        const glm::dvec3 out = p - placed(b, b.body.hull()->face_vertices(i)[0]);
+        return std::abs(glm::dot(b.pose.rotation * b.body.hull()->face_normal(i), out));
+    }
+    if (b.body.kind() == Kind::box) {
+        const int k = feature.kind == FeatureKind::edge ? i / 4 : i / 2, u = 1 << (k + 1) % 3, v = 1 << (k + 2) % 3;
+        if (feature.kind == FeatureKind::edge) {
+            const int from = ((i & 1) != 0 ? u : 0) + ((i & 2) != 0 ? v : 0);
+            return distance_to_segment(p, placed(b, from), placed(b, from + (1 << k)));
+        }
+        const int from = (i & 1) << k;
+        return distance_to_plane(p, placed(b, from), placed(b, from + u), placed(b, from + v));
+    }
+    if (feature.kind == FeatureKind::edge)
+        return distance_to_segment(p, placed(b, i), placed(b, (i + 1) % b.body.vertex_count()));
+    return distance_to_plane(p, placed(b, 0), placed(b, 1), placed(b, 2));
+}
+
+}  // namespace
+
+TEST_SUITE("convex/features") {
+    TEST_CASE("points lie on the features that they name, faces, edges and vertices alike") {
+        RandomBodies random(3);
+        const auto any_body = [&](int i) {
+            const Body core = random.polytope(24);
+            if (i % 5 == 0) return Body::rounded(core, random.number(0.0, 0.3)).value();
+            if (i % 5 == 1) return Body::capsule(0.7f, 0.2f).value();
+            return core;
+        };
+        int named[3][3] = {};
+        for (int i = 0; i < 1500; ++i) {
+            const Body a = any_body(i), b = any_body(i / 5);
+            const CasePair where = nearly_touching(random, a, b, -std::pow(10.0, random.number(-6, -1)), 0.0);
+            const Placed pa{a, where.pose_a}, pb{b, where.pose_b};
+            const Manifold m = contact_manifold(pa, pb, {.max_points = 8});
+            for (int k = 0; k < m.count; ++k) {
+                const ContactPoint& point = m.points[k];
+                const glm::dvec3 half = 0.5 * point.depth * m.normal;
+                // Hulls' faces are flat to 1e-5 alone.
+                const double tolerance = 2e-5 * (a.reach() + b.reach() + glm::length(where.pose_b.translation));
+                CAPTURE(i);
+                CHECK(distance_to_feature(pa, point.on_a, point.position + half - a.radius() * m.normal) <= tolerance);
+                CHECK(distance_to_feature(pb, point.on_b, point.position - half + b.radius() * m.normal) <= tolerance);
+                ++named[static_cast<int>(point.on_a.kind)][static_cast<int>(point.on_b.kind)];
+            }
+        }
+        CHECK(named[0][2] > 200);
+        CHECK(named[1][1] > 200);
+        CHECK(named[2][0] > 200);
+    }
+}
