@@ -18,8 +18,8 @@ struct PvsViewOptions {
     std::shared_ptr<const SceneOccluders> occluders = nullptr;
 };
 
-// Of one way to draw. A pixel is wrong if its owner, the nearest triangle's object, is not drawn: it is not in the set
-// of the eye's cell, or called occluded.
+// Of one way to draw. A pixel is wrong if its owner, the nearest triangle's object, is not drawn. It is then not in the
+// set of the eye's cell, or called occluded.
 struct PvsModeFigures {
     double wrong_mean = 0.0, wrong_worst = 0.0;  // share of a view's pixels, sky and all
     double triangles = 0.0;                      // mean of a view: of objects in the frustum that are drawn

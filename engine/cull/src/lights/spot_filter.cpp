@@ -43,7 +43,7 @@ void find_across(const glm::dvec3& n, glm::dvec3 (&across)[2]) {
     across[1] = {b, sign + n.y * n.y * a, -n.y};
 }
 
-// A light's support points. What of a direction is across the axis is taken along two fixed directions: where there is
+// A light's support points. What of a direction is across the axis is taken along two fixed directions. Where there is
 // little, taking away what is along the axis would leave nothing but rounding.
 class SpotSupport {
   public:

@@ -104,8 +104,8 @@ struct Sector {
         return {hn::Mul(axis.u, along), hn::Mul(axis.v, along), hn::Mul(axis.w, along)};
     }
 
-    // The point farthest along m, which is not 0. What of m is across the axis is taken along two fixed directions:
-    // where there is little, taking away what is along the axis would leave nothing but rounding. Less than 1e-12 of
+    // The point farthest along m, which is not 0. What of m is across the axis is taken along two fixed directions.
+    // Where there is little, taking away what is along the axis would leave nothing but rounding. Less than 1e-12 of
     // what is along it gives a point between the axis and the rim, which is as far but for rounding.
     HWY_INLINE Vectors<D> farthest(const Vectors<D>& m) const {
         const D d;

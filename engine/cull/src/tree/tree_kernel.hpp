@@ -17,7 +17,7 @@ struct TreeKernelInput {
     const boxtree::Axes* axes;
     const KernelView* view;
     bool exact;  // boxes that straddle two planes or more may yet be outside: undecided
-    // Where they are given, the slots of a leaf and the children of a node that are asked for: the others are left out
+    // Where they are given, the slots of a leaf and the children of a node that are asked for. The others are left out
     // in silence. For run_tree_kernel without `runs`.
     const std::uint16_t* leaves_among = nullptr;
     const std::uint16_t* nodes_among = nullptr;
