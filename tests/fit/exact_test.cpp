@@ -246,7 +246,13 @@ TEST_SUITE("fit/exact") {
             Points points;
             for (int i = 0; i < 20 + trial; ++i) points.push_back(glm::normalize(random_point(random)));
             std::vector<double> bounds;
+            std::uint64_t before = 0;
+            // Told by the work done: eight cells are no more than so many points to look at, and 8192 are between
+            // calls.
+            const std::uint64_t least_cells = 8 * (8192 / (64 + 6 * points.size()));
             const auto keep = [&](const fit::Progress& progress) {
+                CHECK(progress.cells >= before + least_cells);
+                before = progress.cells;
                 return bounds.push_back(progress.lower_bound), true;
             };
             const FunctionRef<bool(const fit::Progress&)> callback(keep);
