@@ -246,7 +246,13 @@ TEST_SUITE("fit/exact") {
             Points points;
             for (int i = 0; i < 20 + trial; ++i) points.push_back(glm::normalize(random_point(random)));
             std::vector<double> bounds;
+            std::uint64_t before = 0;
+            // Told by the work done: eight cells are no more than so many points to look at, and 8192 are between
+            // calls.
+            const std::uint64_t least_cells = 8 * (8192 / (64 + 6 * points.size()));
             const auto keep = [&](const fit::Progress& progress) {
+                CHECK(progress.cells >= before + least_cells);
+                before = progress.cells;
                 return bounds.push_back(progress.lower_bound), true;
             };
             const FunctionRef<bool(const fit::Progress&)> callback(keep);
@@ -257,6 +263,25 @@ TEST_SUITE("fit/exact") {
             told += static_cast<int>(bounds.size());
         }
         CHECK(told > 100);
+    }
+
+    TEST_CASE("a proof of four digits more takes seven levels of cells, some ten cells a level") {
+        // The bound's error is quadratic in a cell's size: a halving quarters it, and 10^4 is less than 4^7. Each cell
+        // that survives becomes eight.
+        std::mt19937 random(8);
+        for (const auto& criterion :
+             {measure::minimal_volume(), measure::minimal_area(), measure::minimal_perimeter()}) {
+            double more = 0.0;
+            for (int trial = 0; trial < 20; ++trial) {
+                Points points;
+                for (int i = 0; i < 20; ++i) points.push_back(random_point(random) * glm::dvec3(1.0, 0.7, 0.5));
+                const auto coarse = fit::fit_exact(view(points), {.criterion = criterion, .gap = 1e-5}).value();
+                const auto fine = fit::fit_exact(view(points), {.criterion = criterion, .gap = 1e-9}).value();
+                CHECK(fine.complete);
+                more += static_cast<double>(fine.cells - coarse.cells) / 20.0;
+            }
+            CHECK(more <= 7 * 10 * 8);
+        }
     }
 
     TEST_CASE("the best known boxes of real meshes are matched within 1e-6") {

@@ -179,6 +179,16 @@ TEST_SUITE("fit/planar") {
         }
     }
 
+    TEST_CASE("the rectangle around 200,000 corners of a circle is its square, found in one turn about them") {
+        Points points;
+        for (int i = 0; i < 200000; ++i) {
+            const double angle = 2.0 * std::numbers::pi * i / 200000;
+            points.emplace_back(3.0 * std::cos(angle), 3.0 * std::sin(angle));
+        }
+        CHECK(area(fit::minimal_rectangle(view(points), PlanarCriterion::area).value()) ==
+              doctest::Approx(36.0).epsilon(1e-8));
+    }
+
     TEST_CASE("discs contain every point and are the smallest through two or three of them") {
         std::mt19937 random(2);
         std::normal_distribution<double> normal;

@@ -15,8 +15,16 @@ using std::numbers::pi;
 TEST_SUITE("measure/planar") {
     TEST_CASE("a hull of nothing, or of a NaN, is an error that names the culprit") {
         CHECK(error_of(measure::convex_hull({})).code == ErrorCode::empty);
-        const std::vector<glm::dvec2> points = {{0.0, 0.0}, {1.0, std::nan("")}};
-        CHECK(error_of(convex_hull(points)).item == 1);
+        for (std::size_t bad = 0; bad < 5; ++bad)
+            for (const double value : {std::nan(""), HUGE_VAL, -HUGE_VAL})
+                for (const int axis : {0, 1}) {
+                    std::vector<glm::dvec2> points = {{0.0, 0.0}, {2.0, 0.0}, {3.0, 3.0}, {0.0, 3.0}, {1.0, 1.0}};
+                    points[bad][axis] = value;
+                    const auto hull = convex_hull(points);
+                    REQUIRE(!hull.has_value());
+                    CHECK(error_of(hull).code == ErrorCode::non_finite);
+                    CHECK(error_of(hull).item == bad);
+                }
     }
 
     TEST_CASE("equal points have one corner, collinear points two") {

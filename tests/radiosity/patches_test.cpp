@@ -78,6 +78,42 @@ TEST_SUITE("radiosity/patches") {
         CHECK(error_of(refine(shape.mesh, 1e-4, 1000)).code == ErrorCode::budget_exceeded);
     }
 
+    TEST_CASE("a triangle whose sides are met is cut alike wherever it lies, and by the shortest lines") {
+        const std::vector<glm::vec3> corners = {{0, 0, 0}, {4, 0, 0}, {1, 3, 0}};
+        const std::vector<glm::vec3> met = {{0.5f, 0, 0}, {1.25f, 0, 0},     {3, 0, 0},         {3.25f, 0.75f, 0},
+                                            {2, 2, 0},    {0.75f, 2.25f, 0}, {0.25f, 0.75f, 0}, {0.125f, 0.375f, 0}};
+        std::vector<std::uint32_t> expected;
+        double length = 0.0;
+        for (const glm::vec3& shift : {glm::vec3(0.0f), glm::vec3(64, 32, 16), glm::vec3(-8, 0.5f, 256)}) {
+            TriangleMesh mesh;
+            mesh.positions.assign(corners.begin(), corners.end());
+            mesh.indices = {0, 1, 2};
+            for (const glm::vec3& p : met) {  // each is a corner of a triangle that stands on the side
+                for (const glm::vec3& q : {p, p + glm::vec3(0, 0, 1), p + glm::vec3(0.25f, 0, 1)}) {
+                    mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
+                    mesh.positions.push_back(q);
+                }
+            }
+            for (glm::vec3& p : mesh.positions) p += shift;  // exactly
+            const auto mended = mend_t_junctions(mesh, 1e-5);
+            REQUIRE(mended.has_value());
+            double sum = 0.0;
+            for (std::size_t i = 0; i < mended->mesh.indices.size(); ++i) {
+                const std::size_t next = i % 3 == 2 ? i - 2 : i + 1;
+                sum += glm::distance(glm::dvec3(mended->mesh.positions[mended->mesh.indices[i]]),
+                                     glm::dvec3(mended->mesh.positions[mended->mesh.indices[next]]));
+            }
+            if (expected.empty()) {
+                expected.assign(mended->mesh.indices.begin(), mended->mesh.indices.end());
+                length = sum;
+            }
+            CHECK(
+                std::equal(expected.begin(), expected.end(), mended->mesh.indices.begin(), mended->mesh.indices.end()));
+            CHECK(sum == length);
+        }
+        CHECK(expected.size() == 3 * (9 + 8));
+    }
+
     TEST_CASE("a closed box whose sides meet at T-junctions is mended, and stays so when refined") {
         // One face of a cube is cut into rows of unequal number on either side of its neighbours' whole sides.
         shapes::Shape box;

@@ -68,7 +68,13 @@ TEST_SUITE("study/bound_given_ancestors") {
                 return *bound_given_ancestors(points, ancestors, queries, measure::minimal_perimeter(),
                                               {.tolerance = 0.0, .max_cells = cells});
             };
-            const auto none = by(0), few = by(64), many = by(25000);
+            const auto none = by(0), one = by(1), few = by(64), many = by(25000);
+            // What one cell leaves open takes its eight parts, and theirs.
+            CHECK(one.cells == 1);
+            CHECK(one.lower_bound < one.hits);
+            CHECK(few.cells >= 64);
+            CHECK(few.cells < 64 + 8);
+            CHECK(few.cells % 8 == 1);
             CHECK(none.lower_bound > 0);
             CHECK(none.lower_bound <= few.lower_bound);
             CHECK(few.lower_bound <= many.lower_bound);

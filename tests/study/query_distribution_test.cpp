@@ -38,10 +38,15 @@ TEST_SUITE("study/query_distribution") {
         const std::vector<double> one = {1.0}, negative = {1.0, -1.0}, zero = {0.0, 0.0}, huge = {1e308, 1e308};
         for (const auto* weights : {&one, &negative, &zero, &huge})
             CHECK(error_of(QueryDistribution::samples(good, *weights)).code == ErrorCode::invalid_argument);
-        for (const double weight : {-1.0, std::nan(""), HUGE_VAL, -HUGE_VAL}) {
-            const std::vector<double> bad = {3.0, weight};
-            CHECK(error_of(QueryDistribution::samples(good, bad)).item == 1);
-        }
+        // Also where the others outweigh it.
+        for (const double bad : {-1e-300, -0.5, -HUGE_VAL, HUGE_VAL, std::nan("")})
+            for (std::size_t at = 0; at < 2; ++at) {
+                std::vector<double> weights(2, 1.0);
+                weights[at] = bad;
+                const auto refused = QueryDistribution::samples(good, weights);
+                CHECK(error_of(refused).code == ErrorCode::invalid_argument);
+                CHECK(error_of(refused).item == at);
+            }
         CHECK(error_of(QueryDistribution::of_views({})).code == ErrorCode::empty);
         std::vector<Camera> cameras(2);
         cameras[1].far_distance = HUGE_VAL;

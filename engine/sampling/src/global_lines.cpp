@@ -19,10 +19,9 @@ SurfacePoint box_surface_point(const glm::dvec3& center, const std::array<glm::d
                                double choice, double s, double t) {
     const std::array<double, 3> areas = {half.y * half.z, half.z * half.x, half.x * half.y};
     double left = choice * 2.0 * (areas[0] + areas[1] + areas[2]);
-    // The last pair with area takes what rounding leaves over.
+    // The last pair takes what rounding leaves over.
     int k = 0;
-    while (k < 2 && left >= 2.0 * areas[static_cast<std::size_t>(k)] &&
-           *std::max_element(areas.begin() + k + 1, areas.end()) > 0.0)
+    while (k < 2 && left >= 2.0 * areas[static_cast<std::size_t>(k)])
         left -= 2.0 * areas[static_cast<std::size_t>(k++)];
     const double side = left < areas[static_cast<std::size_t>(k)] ? -1.0 : 1.0;
     const int i = (k + 1) % 3, j = (k + 2) % 3;

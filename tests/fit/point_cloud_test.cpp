@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+// The farthest points of a cloud along three directions: found by floats that round, and decided in double.
+#include <doctest/doctest.h>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <random>
+#include <vector>
+
+#include "cloud/point_cloud.hpp"
+
+using namespace crofton;
+
+TEST_SUITE("fit/point_cloud") {
+    TEST_CASE("of two points in different chunks that are nearly as far, the farther is the support point") {
+        std::mt19937_64 random(50);
+        std::uniform_real_distribution<double> number(-1.0, 1.0);
+        const auto vector = [&] { return glm::dvec3(number(random), number(random), number(random)); };
+        fit::PointCloud cloud;
+        std::vector<glm::vec3> points(256, glm::vec3(0.0f));
+        int near = 0;
+        for (int trial = 0; trial < 20000; ++trial) {
+            glm::dmat3 axes;
+            axes[0] = glm::normalize(vector());
+            axes[1] = glm::normalize(glm::cross(axes[0], vector()));
+            axes[2] = glm::cross(axes[0], axes[1]);
+            const glm::dvec3 up = 0.6 * axes[trial % 3], aside = 0.75 * axes[(trial + 1) % 3];
+            const glm::dvec3 place = trial % 4 == 3 ? 64.0 * vector() : glm::dvec3(0.0);
+            // Both as far along one axis, but for their rounding to floats; all else is at the middle.
+            for (glm::vec3& p : points) p = glm::vec3(place);
+            points[5] = glm::vec3(place + up + aside);
+            points[200] = glm::vec3(place + up - aside);
+            REQUIRE(cloud.assign(points).has_value());
+            const fit::Supports supports = cloud.supports(axes);
+            const auto normalised = [&](std::size_t i) {
+                return (glm::dvec3(points[i]) - cloud.origin()) / cloud.unit();
+            };
+            const std::size_t k = static_cast<std::size_t>(trial % 3);
+            const glm::dvec3 first = normalised(5), second = normalised(200), along = axes[trial % 3];
+            const double apart = glm::dot(first - second, along);
+            if (std::abs(apart) < 1e-13) continue;
+            near += std::abs(apart) < 0x1p-24;
+            REQUIRE(supports[2 * k] == (apart > 0.0 ? first : second));
+        }
+        CHECK(near > 1000);
+    }
+}
