@@ -211,6 +211,33 @@ TEST_SUITE("occlude/choose_occluders") {
         CHECK_FALSE(may_use(flat, camera));
     }
 
+    TEST_CASE("an occluder that a parallel view's near plane cuts by less than rounding tells is not used") {
+        // Chosen by a search for products that round to too much, all of them.
+        const glm::dvec3 normal(0x1.002a2d8b69cc5p-1, 0x1.004245f308698p-1, -0x1.6a0902cbc084cp-1),
+            nearest(0x1.000b1cf49f5e2p-1, 0x1.0019f24fbabe9p-1, 0x1.6a7030c10d109p-1);
+        OcclusionView view;
+        view.perspective = false;
+        view.frustum.origin = {-0x1.000b25dcdb5bdp-1, -0x1.00170058dcbb2p-1, -0x1.6a7032d96a61cp-1};
+        EyeLimits limits;
+        limits.left_out_within = {nearest, nearest};
+        mpq_class exact = 0;
+        for (int k = 0; k < 3; ++k)
+            exact += mpq_class(normal[k]) * (mpq_class(nearest[k]) - mpq_class(view.frustum.origin[k]));
+        int cut = 0, whole = 0;
+        for (int step = -64; step <= 64; ++step) {
+            const double offset = -exact.get_d() + step * 0x1p-54;
+            view.frustum.planes[4] = {normal, offset};
+            const bool is_cut = exact + mpq_class(offset) < 0;
+            CHECK_FALSE((is_cut && may_use(limits, view)));
+            cut += is_cut;
+            whole += !is_cut;
+        }
+        CHECK(cut > 10);
+        CHECK(whole > 10);
+        view.frustum.planes[4].offset = -exact.get_d() + 1e-12;
+        CHECK(may_use(limits, view));
+    }
+
     TEST_CASE("the eye of a matrix is within its error of the exact one, also of a window far to the eye's side") {
         std::mt19937_64 random(50);
         int far_off = 0, taken = 0;
