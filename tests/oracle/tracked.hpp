@@ -5,6 +5,7 @@
 #include <gmpxx.h>
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <type_traits>
@@ -31,7 +32,17 @@ inline Rounded sum(double a, double b) {
 inline constexpr double kLeast = 0x1p-900;
 inline Rounded product(double a, double b) {
     const double p = a * b;
+#if defined(__MINGW32__) && !defined(__FMA__)
+    // Its std::fma rounds twice. Halves of 26 bits have exact products (Dekker).
+    const auto upper = [](double v) {
+        constexpr std::uint64_t kUnit = std::uint64_t{1} << 27;
+        return std::bit_cast<double>((std::bit_cast<std::uint64_t>(v) + kUnit / 2) & ~(kUnit - 1));
+    };
+    const double a1 = upper(a), b1 = upper(b), a2 = a - a1, b2 = b - b1;
+    return {p, ((a1 * b1 - p) + a1 * b2 + a2 * b1) + a2 * b2};
+#else
     return {p, std::fma(a, b, -p)};
+#endif
 }
 inline bool is_lost(double p, double a, double b) {
     return std::fabs(p) < kLeast && a != 0.0 && b != 0.0;
