@@ -291,7 +291,7 @@ def report(mutants, known):
     total = rows["all"]
     print(f"Not judged: {total['invalid']} do not build, {total['untried']} are not tried yet.")
     if stale:
-        print(f"Of these survived before their tests or files changed: {', '.join(stale)}")
+        print(f"Of these were judged before their tests or files changed: {', '.join(stale)}")
     for mutant in survivors:
         print(f"survived: {mutant.name} ({mutant.file}): {mutant.why}")
     return not survivors and not stale
