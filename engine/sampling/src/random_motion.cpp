@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <crofton/geometry/orthonormal_frame.hpp>
 #include <crofton/geometry/trigonometry.hpp>
 #include <crofton/sampling/sampling.hpp>
 #include <numbers>
@@ -30,12 +31,7 @@ glm::dvec3 ball_point(const std::array<double, 3>& u) {
 }
 
 std::array<glm::dvec3, 2> orthonormal_frame(const glm::dvec3& axis) {
-    // Duff et al., "Building an orthonormal basis, revisited", 2017.
-    const double sign = std::copysign(1.0, axis.z);
-    const double a = -1.0 / (sign + axis.z);
-    const double b = axis.x * axis.y * a;
-    return {glm::dvec3(1.0 + sign * axis.x * axis.x * a, sign * b, -sign * axis.x),
-            glm::dvec3(b, sign + axis.y * axis.y * a, -axis.y)};
+    return crofton::orthonormal_frame(axis);
 }
 
 glm::dvec3 cosine_direction(const glm::dvec3& normal, const std::array<double, 2>& u) {

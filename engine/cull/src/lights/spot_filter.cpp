@@ -6,8 +6,10 @@
 #include "lights/spot_filter.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <crofton/geometry/closest_points.hpp>
+#include <crofton/geometry/orthonormal_frame.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
@@ -35,21 +37,12 @@ glm::dvec3 froxel_support(const FroxelCell& cell, const glm::dvec3& apex, const 
     return best;
 }
 
-// Two directions that are perpendicular to the unit vector n and to each other (Duff et al. 2017: "Building an
-// Orthonormal Basis, Revisited").
-void find_across(const glm::dvec3& n, glm::dvec3 (&across)[2]) {
-    const double sign = std::copysign(1.0, n.z), a = -1.0 / (sign + n.z), b = n.x * n.y * a;
-    across[0] = {1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x};
-    across[1] = {b, sign + n.y * n.y * a, -n.y};
-}
-
 // A light's support points. What of a direction is across the axis is taken along two fixed directions. Where there is
 // little, taking away what is along the axis would leave nothing but rounding.
 class SpotSupport {
   public:
-    explicit SpotSupport(const KernelLight& spot) : spot_(spot), axis_(spot.axis[0], spot.axis[1], spot.axis[2]) {
-        find_across(axis_, across_);
-    }
+    explicit SpotSupport(const KernelLight& spot)
+        : spot_(spot), axis_(spot.axis[0], spot.axis[1], spot.axis[2]), across_(orthonormal_frame(axis_)) {}
 
     [[nodiscard]] const glm::dvec3& axis() const { return axis_; }
 
@@ -65,7 +58,8 @@ class SpotSupport {
 
   private:
     const KernelLight& spot_;
-    glm::dvec3 axis_, across_[2];
+    glm::dvec3 axis_;
+    std::array<glm::dvec3, 2> across_;
 };
 
 double largest_of(const glm::dvec3& v) {

@@ -48,7 +48,7 @@ struct Sector {
     Vectors<D> axis, across[2];  // perpendicular to each other
     V cosine, sine, range, eta;
 
-    // Directions across the axis by Duff et al. 2017: "Building an Orthonormal Basis, Revisited".
+    // The directions across the axis are those of orthonormal_frame.
     HWY_INLINE explicit Sector(const LightLanes<D>& light)
         : axis{light.axis[0], light.axis[1], light.axis[2]},
           cosine(light.cosine),
