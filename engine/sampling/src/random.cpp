@@ -43,13 +43,13 @@ constexpr Directions kDirections = sobol_directions();
 Random::Block Random::block(const Block& counter, const std::array<std::uint32_t, 2>& key) {
     Block c = counter;
     std::uint32_t k0 = key[0], k1 = key[1];
-    for (int round = 0; round < 10; ++round) {
-        const std::uint64_t p0 = std::uint64_t{0xD2511F53u} * c[0];
-        const std::uint64_t p1 = std::uint64_t{0xCD9E8D57u} * c[2];
+    for (int round = 0; round < kernels::kPhiloxRounds; ++round) {
+        const std::uint64_t p0 = std::uint64_t{kernels::kPhiloxFactors[0]} * c[0];
+        const std::uint64_t p1 = std::uint64_t{kernels::kPhiloxFactors[1]} * c[2];
         c = {static_cast<std::uint32_t>(p1 >> 32) ^ c[1] ^ k0, static_cast<std::uint32_t>(p1),
              static_cast<std::uint32_t>(p0 >> 32) ^ c[3] ^ k1, static_cast<std::uint32_t>(p0)};
-        k0 += 0x9E3779B9u;
-        k1 += 0xBB67AE85u;
+        k0 += kernels::kPhiloxSteps[0];
+        k1 += kernels::kPhiloxSteps[1];
     }
     return c;
 }

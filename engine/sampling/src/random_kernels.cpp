@@ -34,8 +34,8 @@ void philox(std::uint64_t first, std::uint64_t stream, std::uint64_t seed, std::
         auto c0 = counter, c1 = hn::ShiftRight<32>(counter);
         auto c2 = hn::Set(d, stream), c3 = hn::Set(d, stream >> 32);
         std::uint32_t k0 = low(seed), k1 = high(seed);
-        for (int round = 0; round < 10; ++round, k0 += 0x9E3779B9u, k1 += 0xBB67AE85u) {
-            const auto p0 = product(0xD2511F53u, c0), p1 = product(0xCD9E8D57u, c2);
+        for (int round = 0; round < kPhiloxRounds; ++round, k0 += kPhiloxSteps[0], k1 += kPhiloxSteps[1]) {
+            const auto p0 = product(kPhiloxFactors[0], c0), p1 = product(kPhiloxFactors[1], c2);
             c0 = hn::Xor(hn::Xor(hn::ShiftRight<32>(p1), c1), hn::Set(d, std::uint64_t{k0}));
             c2 = hn::Xor(hn::Xor(hn::ShiftRight<32>(p0), c3), hn::Set(d, std::uint64_t{k1}));
             c1 = p1, c3 = p0;

@@ -7,6 +7,10 @@
 namespace crofton::sampling::kernels {
 
 inline constexpr std::size_t kPhiloxBlocks = 8;
+// Philox4x32: the factors of its products, and what its keys grow by from round to round.
+inline constexpr std::uint32_t kPhiloxFactors[2] = {0xD2511F53u, 0xCD9E8D57u};
+inline constexpr std::uint32_t kPhiloxSteps[2] = {0x9E3779B9u, 0xBB67AE85u};
+inline constexpr int kPhiloxRounds = 10;
 
 // Random::block of kPhiloxBlocks counters from `first` on: the upper half of a counter is `stream`, and the key `seed`.
 // Two numbers a block.
