@@ -7,6 +7,8 @@
 #include <crofton/cull/cull.hpp>
 #include <oracle/aged_tree.hpp>
 
+#include "../ranges.hpp"
+
 using namespace crofton;
 using cull::ResultOrder;
 using oracle::AgedTree;
@@ -49,8 +51,8 @@ std::size_t check_among(const boxtree::BoxTree& tree, const cull::View& view, st
         if (order == ResultOrder::ascending) verdicts.push_back(all.verdicts()[i]);
         inside += order == ResultOrder::ascending ? verdicts.back() == cull::Verdict::inside : i < all.inside_count();
     }
-    REQUIRE(std::ranges::equal(kept.ids(), ids));
-    REQUIRE(std::ranges::equal(kept.verdicts(), verdicts));
+    REQUIRE(test::ranges::equal(kept.ids(), ids));
+    REQUIRE(test::ranges::equal(kept.verdicts(), verdicts));
     REQUIRE(kept.inside_count() == inside);
     return all.size() - ids.size();
 }
@@ -100,7 +102,7 @@ TEST_SUITE("cull/among") {
             std::vector<cull::ItemId> ids;
             for (const cull::ItemId id : all.ids())
                 if (id % 5 == 0 || cull::is_among(set, id)) ids.push_back(id), moved += id % 5 == 0;
-            REQUIRE(std::ranges::equal(kept.ids(), ids));
+            REQUIRE(test::ranges::equal(kept.ids(), ids));
             left_out += all.size() - ids.size();
         }
         CHECK(left_out > 1000);
@@ -134,7 +136,7 @@ TEST_SUITE("cull/among") {
             Executor& executor = frame % 4 < 2 ? static_cast<Executor&>(pool) : serial_executor();
             (void)check_among(tree, view, set, order, executor, kept);
             cull::find_visible(tree, view, by_one, {.order = order, .among = set});
-            REQUIRE(std::ranges::equal(by_one.ids(), kept.ids()));
+            REQUIRE(test::ranges::equal(by_one.ids(), kept.ids()));
         }
     }
 }
