@@ -7,6 +7,17 @@
 
 using namespace crofton::capi_test;
 
+namespace {
+
+Tree tree_of_one_box() {
+    const crofton_box box = box_at(0, 0, 0);
+    crofton_tree* tree = nullptr;
+    REQUIRE(crofton_tree_create(&box, nullptr, 1, nullptr, &tree) == CROFTON_OK);
+    return Tree(tree);
+}
+
+}  // namespace
+
 TEST_SUITE("capi/misuse") {
     TEST_CASE("a count larger than any array is refused before anything is read") {
         const crofton_box box = box_at(0, 0, 0);
@@ -59,15 +70,12 @@ TEST_SUITE("capi/misuse") {
     }
 
     TEST_CASE("a message says which number is at fault, and why") {
-        const crofton_box box = box_at(0, 0, 0);
-        crofton_tree* tree = nullptr;
-        REQUIRE(crofton_tree_create(&box, nullptr, 1, nullptr, &tree) == CROFTON_OK);
-        const Tree owner(tree);
+        const Tree tree = tree_of_one_box();
         std::uint32_t id = 0;
         std::size_t found = 0;
         const double center[3] = {}, nan = std::nan(""), nowhere[3] = {0, 0, nan};
         const auto near = [&](const double* at, double radius) {
-            return crofton_tree_within_ball(tree, at, radius, ~0u, &id, 1, &found);
+            return crofton_tree_within_ball(tree.get(), at, radius, ~0u, &id, 1, &found);
         };
         CHECK(near(center, nan) == CROFTON_NON_FINITE);
         CHECK(mentions(crofton_last_error(), "crofton_tree_within_ball: radius is NaN or infinite"));
@@ -86,14 +94,11 @@ TEST_SUITE("capi/misuse") {
     }
 
     TEST_CASE("coordinates whose sum is beyond doubles are finite") {
-        const crofton_box box = box_at(0, 0, 0);
-        crofton_tree* tree = nullptr;
-        REQUIRE(crofton_tree_create(&box, nullptr, 1, nullptr, &tree) == CROFTON_OK);
-        const Tree owner(tree);
+        const Tree tree = tree_of_one_box();
         std::uint32_t id = 0;
         std::size_t found = 77;
         const double far[3] = {1.5e308, 1.5e308, 0};
-        CHECK(crofton_tree_within_ball(tree, far, 1, ~0u, &id, 1, &found) == CROFTON_OK);
+        CHECK(crofton_tree_within_ball(tree.get(), far, 1, ~0u, &id, 1, &found) == CROFTON_OK);
         CHECK(found == 0);
     }
 

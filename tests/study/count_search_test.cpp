@@ -3,26 +3,12 @@
 #include <doctest/doctest.h>
 #include <algorithm>
 #include <count_search.hpp>
+#include <crofton/fit/fit.hpp>
 #include <crofton/geometry/mesh.hpp>
 #include <crofton/sampling/sampling.hpp>
-#include <limits>
 
 using namespace crofton;
 using namespace crofton::study;
-
-namespace {
-
-Obb tight_box_along(std::span<const glm::dvec3> points, const glm::dmat3& axes) {
-    glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
-    for (const glm::dvec3& p : points) low = glm::min(low, p * axes), high = glm::max(high, p * axes);
-    Obb box;
-    box.axes = glm::mat3(axes);
-    box.center = axes * (0.5 * (low + high));
-    box.half_extents = glm::vec3(0.5 * (high - low));
-    return box;
-}
-
-}  // namespace
 
 TEST_SUITE("study/count search") {
     TEST_CASE("the bound is below the hits of every orientation, and near the least it has seen") {
@@ -39,7 +25,8 @@ TEST_SUITE("study/count search") {
             REQUIRE(hull.has_value());
             const Vector<std::uint32_t> all = queries->all();
             const auto hits = [&](const glm::dmat3& axes) {
-                return static_cast<std::uint32_t>(queries->hitting(all, tight_box_along(points, axes)).size());
+                return static_cast<std::uint32_t>(
+                    queries->hitting(all, fit::fit_oriented(points, glm::mat3(axes)).value()).size());
             };
             std::uint32_t found = queries->size();
             const CountProof proof =
