@@ -20,8 +20,6 @@ struct crofton_pvs {
     pvs::Pvs sets;
 };
 
-namespace {}  // namespace
-
 crofton_status crofton_pvs_open(const char* path, crofton_pvs** pvs) {
     CROFTON_CHECK(check_pointer(path, __func__));
     CROFTON_CHECK(check_pointer(pvs, __func__));

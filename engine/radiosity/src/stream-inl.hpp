@@ -66,8 +66,8 @@ struct Rows {
     unsigned first[3] = {0, 1, 2}, second[3] = {3, 4, 5};
 };
 
-// Where lines cross the slabs of boxes, lane by lane: whether they pass. The arithmetic of `children`. kSame: all come
-// to `first` before `second`, as rounding keeps the order.
+// Where lines cross the slabs of boxes, lane by lane: whether they pass. The arithmetic of `children`, with both signs
+// turned; `inverse` is −1 over the direction. kSame: all come to `first` before `second`, as rounding keeps the order.
 template <bool kSame, class T, class U = hn::Vec<T>>
 HWY_INLINE unsigned passing(T d, const U* first, const U* second, const U* point, const U* inverse) {
     U enter, leave;

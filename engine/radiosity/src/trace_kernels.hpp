@@ -34,7 +34,7 @@ struct TracerView {
     float tie;  // crossings closer together than this along a line count as one place: fronts come first there
 };
 
-// A line of a stream: point and direction, and their reciprocals from 8 on.
+// A line of a stream: point and direction, and from 8 on −1 over each.
 struct alignas(64) StreamLine {
     float values[16];
 };
@@ -52,7 +52,7 @@ enum class StreamEnd { done, lists_full, crossings_full };
 void flatten(const double* lines, std::size_t count, const double* origin, StreamLine* flat);
 
 // All crossings of up to 2^16 lines, which go through the tree together. `lists` is memory for their numbers, at least
-// count + 8. Where that or `found` is too small the answer says so, and what was found is worth nothing.
+// count + 16. Where that or `found` is too small the answer says so, and what was found is worth nothing.
 StreamEnd trace_stream(const TracerView& tree, const StreamLine* lines, std::size_t count, std::uint16_t* lists,
                        std::size_t list_capacity, StreamCrossings& found);
 
