@@ -4,14 +4,17 @@
 
 tests/fuzz/run.py [NAME …] [--build FOLDER] [--seconds S] [--rounds R] [--jobs J] [--record]
 tests/fuzz/run.py --report     the table of executions so far, nothing run
-tests/fuzz/run.py --minimise   keeps of each corpus what reaches something of its own, nothing else run
+tests/fuzz/run.py --minimise   keeps of each corpus what reaches something of its own, nothing else run;
+                               --record writes what is left into tests/fuzz/corpora
 
-A fuzzer begins with the seeds of fuzz_seeds and with FOLDER/corpus/NAME, to which it adds. What it finds is left in
-FOLDER/found, and the exit status is 1. Executions are added up in FOLDER/executions.json; --record also adds them to
-tests/fuzz/executions.csv, from which docs/testing.md has its figure. Both are written after each fuzzer, and when the
-run is interrupted or terminated. Python 3.11, nothing else.
+A fuzzer begins with the seeds of fuzz_seeds, with tests/fuzz/corpora/NAME.txt, and with FOLDER/corpus/NAME, to which it
+adds. What it finds is left in FOLDER/found, and the exit status is 1. Executions are added up in FOLDER/executions.json;
+--record also adds them to tests/fuzz/executions.csv, from which docs/testing.md has its figure. Both are written after
+each fuzzer, and when the run is interrupted or terminated. A line of a corpus in tests/fuzz/corpora is an input in
+base64; the readers of files have none, as theirs are long. Python 3.11, nothing else.
 """
 import argparse
+import base64
 import csv
 import fcntl
 import json
@@ -28,6 +31,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 RECORD = ROOT / "tests" / "fuzz" / "executions.csv"
+CORPORA = ROOT / "tests" / "fuzz" / "corpora"
 GOAL = 10**9
 # The longest input, in bytes: what a target can read of one small scene.
 LONGEST = {"boxes": 96, "triangles": 96, "classify": 128, "convex": 160, "fit": 96, "triangulate": 96, "casts": 160, "mesh": 192,
@@ -124,7 +128,23 @@ def keep_count(build, name, count, record):
             write_record(known)
 
 
-def minimise(build, name):
+def unpack(name, folder):
+    """Writes the inputs of tests/fuzz/corpora into a folder, a file each."""
+    packed = CORPORA / f"{name}.txt"
+    if not packed.exists():
+        return
+    folder.mkdir(parents=True, exist_ok=True)
+    for number, line in enumerate(packed.read_text().split()):
+        (folder / f"kept_{number}").write_bytes(base64.b64decode(line))
+
+
+def pack(name, folder):
+    CORPORA.mkdir(exist_ok=True)
+    inputs = sorted((path.read_bytes() for path in folder.iterdir()), key=lambda bytes_: (len(bytes_), bytes_))
+    (CORPORA / f"{name}.txt").write_text("".join(base64.b64encode(bytes_).decode() + "\n" for bytes_ in inputs if bytes_))
+
+
+def minimise(build, name, record):
     corpus = build / "corpus" / name
     if not corpus.is_dir():
         return
@@ -135,7 +155,9 @@ def minimise(build, name):
     subprocess.run([build / "bin" / f"fuzz_{name}", "-merge=1", small, corpus], capture_output=True, check=True)
     shutil.rmtree(corpus)
     small.rename(corpus)
-    print(f"fuzz_{name}: {before} inputs become {len(list(corpus.iterdir()))}")
+    print(f"fuzz_{name}: {before} inputs become {len(list(corpus.iterdir()))}", flush=True)
+    if record and name in LONGEST:
+        pack(name, corpus)
 
 
 def main():
@@ -145,7 +167,7 @@ def main():
     parser.add_argument("--seconds", type=int, default=120, help="how long each one runs")
     parser.add_argument("--rounds", type=int, default=1, help="how often all of them run, one after another")
     parser.add_argument("--jobs", type=int, default=1, help="fuzzers at a time")
-    parser.add_argument("--record", action="store_true", help="add the executions to tests/fuzz/executions.csv")
+    parser.add_argument("--record", action="store_true", help="add executions, or minimised corpora, to the repository's")
     parser.add_argument("--report", action="store_true")
     parser.add_argument("--minimise", action="store_true")
     options = parser.parse_args()
@@ -157,12 +179,14 @@ def main():
     if unknown or not names:
         sys.exit(f"no such fuzzers in {build}/bin: {', '.join(sorted(unknown)) or 'none is built'}")
     if options.minimise:
-        return [minimise(build, name) for name in names] and None
+        return [minimise(build, name, options.record) for name in names] and None
     signal.signal(signal.SIGINT, stop)
     signal.signal(signal.SIGTERM, stop)
     with tempfile.TemporaryDirectory() as seeds:
         if (build / "bin" / "fuzz_seeds").exists():
             subprocess.run([build / "bin" / "fuzz_seeds", seeds], check=True)
+        for name in names:
+            unpack(name, Path(seeds) / name)
         with ThreadPoolExecutor(options.jobs) as pool:
             results = list(pool.map(lambda name: fuzz(build, name, options, Path(seeds)), names * options.rounds))
     counts = json.loads((build / "executions.json").read_text())

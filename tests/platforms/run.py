@@ -59,6 +59,7 @@ class Cell:
     optimize: str = "-O1"          # the quickest in all: what the tests lose, the compiler gains several times
     newer_highway: bool = False    # that of Debian 13
     by_file: bool = False          # slow, by emulation or by GMP without assembly: each file of tests has the limit to itself
+    own_libcxx: bool = False       # a C++ library compiled for the memory sanitizer
 
     @property
     def build(self):
@@ -90,6 +91,8 @@ CELLS = [
     Cell("clang", "clang 14, x86-64", ["clang++-14"], options=["-DCROFTON_UNITY=ON", one_set("AVX2")]),
     Cell("clang-libcxx", "clang 14, x86-64, libc++", ["clang++-14", "/usr/lib/llvm-14/include/c++/v1/vector"],
          options=[one_set("AVX2")], host="x86_64-linux-gnu"),
+    Cell("clang-msan", "clang 14, x86-64, libc++, memory sanitizer", ["clang++-14", "/usr/lib/llvm-14/include/c++/v1/vector"],
+         options=[one_set("AVX2")], host="x86_64-linux-gnu", by_file=True, own_libcxx=True),
     Cell("i386", "g++ 12, 32-bit x86", ["i686-linux-gnu-g++"], host="i686-linux-gnu", by_file=True),
     Cell("aarch64", "g++ 12, 64-bit ARM, qemu", ["aarch64-linux-gnu-g++", "qemu-aarch64"], host="aarch64-linux-gnu",
          runner=["qemu-aarch64", "-L", "/usr/aarch64-linux-gnu"], by_file=True),
@@ -123,8 +126,8 @@ def run(command, log, cwd=ROOT, environment=None):
         raise Failed(f"`{Path(str(command[0])).name}` failed, see {log.relative_to(ROOT)}")
 
 
-def fetch(release, names, sources, log):
-    """Unpacks source packages of a release of Debian, its patches applied, into a folder each."""
+def download(release, names, sources, log):
+    """Source packages of a release of Debian, in a folder that is returned."""
     packages = sources / "packages"
     (packages / "lists" / "partial").mkdir(parents=True, exist_ok=True)
     listed = packages / "sources.list"
@@ -133,6 +136,12 @@ def fetch(release, names, sources, log):
            f"Dir::State::Lists={packages / 'lists'}", "-o", "Dir::Cache::pkgcache=", "-o", "Dir::Cache::srcpkgcache="]
     run([*apt, "update"], log)
     run([*apt, "source", "--download-only", *names], log, packages)
+    return packages
+
+
+def fetch(release, names, sources, log):
+    """Unpacks source packages of a release of Debian, its patches applied, into a folder each."""
+    packages = download(release, names, sources, log)
     for name in names:
         description = next(packages.glob(f"{name}_*.dsc"))
         run(["dpkg-source", "--no-check", "-x", description.name, sources / name], log, packages)
@@ -151,6 +160,14 @@ def fetch_sources(log):
     (SOURCES / "gmp" / "doc" / "Makefile.in").write_text("all install check clean:\n")
 
 
+def fetch_llvm(folder, log):
+    """What of LLVM's source package the C++ library needs: the whole is a gigabyte."""
+    packages = download("bookworm", ["llvm-toolchain-14"], folder, log)
+    (archive,) = packages.glob("llvm-toolchain-14_*.orig.tar.*")
+    run(["tar", "xf", archive, "-C", folder, "--strip-components=1", "--wildcards", "*/libcxx/*", "*/libcxxabi/*", "*/runtimes/*",
+         "*/cmake/*"], log)
+
+
 def fetch_newer(log):
     """The same folder with Debian 13's Highway: that of Debian 12 has no doubles in its WebAssembly target."""
     newer = WORK / "newer_sources"
@@ -160,6 +177,23 @@ def fetch_newer(log):
     if not (newer / "qhull").exists():
         (newer / "qhull").symlink_to(SOURCES / "qhull")
     return newer
+
+
+def build_libcxx(cell, jobs, log):
+    """The C++ library, compiled for the memory sanitizer: what another one writes would look uninitialised."""
+    prefix, source = cell.build / "libcxx", WORK / "llvm"
+    if (prefix / "done").exists():
+        return
+    if not (source / "runtimes").exists():
+        fetch_llvm(source, log)
+    run(["cmake", "-S", source / "runtimes", "-B", cell.build / "libcxx_build", "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
+         "-DCMAKE_C_COMPILER=clang-14", "-DCMAKE_CXX_COMPILER=clang++-14", f"-DCMAKE_INSTALL_PREFIX={prefix}",
+         "-DLLVM_ENABLE_RUNTIMES=libcxx;libcxxabi", "-DLLVM_USE_SANITIZER=Memory", "-DLIBCXXABI_USE_LLVM_UNWINDER=OFF",
+         "-DLIBCXX_STATICALLY_LINK_ABI_IN_STATIC_LIBRARY=ON",
+         *(f"-D{library}_{option}=OFF" for library in ("LIBCXX", "LIBCXXABI") for option in ("ENABLE_SHARED", "INCLUDE_TESTS")),
+         "-DLIBCXX_INCLUDE_BENCHMARKS=OFF"], log, environment=environment_of(cell))
+    run(["cmake", "--build", cell.build / "libcxx_build", "-j", jobs, "--target", "install-cxx", "install-cxxabi"], log)
+    (prefix / "done").touch()
 
 
 def settings_of(preset, name):
@@ -186,10 +220,10 @@ def cmake_options(cell):
             f"-DCMAKE_C{flags}", f"-DCMAKE_CXX{flags}", *cell.options]
 
 
-def flags_of(cell):
-    """What the toolchain file compiles C with."""
+def flags_of(cell, language="C"):
+    """What the toolchain file compiles a language with."""
     cache = (cell.build / "dependencies" / "CMakeCache.txt").read_text()
-    return re.search(r"^CMAKE_C_FLAGS:\w+=(.*)$", cache, re.MULTILINE)[1]
+    return re.search(rf"^CMAKE_{language}_FLAGS:\w+=(.*)$", cache, re.MULTILINE)[1]
 
 
 def gmp_environment(cell):
@@ -200,6 +234,9 @@ def gmp_environment(cell):
         return {"CFLAGS": flags, "CXXFLAGS": flags, "CC_FOR_BUILD": "gcc"}
     if cell.name == "clang-libcxx":
         return {"CC": "clang-14", "CXX": "clang++-14 -stdlib=libc++", "CC_FOR_BUILD": "gcc"}
+    if cell.own_libcxx:
+        return {"CC": "clang-14", "CXX": "clang++-14", "CFLAGS": flags, "CXXFLAGS": f"-O2 {flags_of(cell, 'CXX')}",
+                "CC_FOR_BUILD": "gcc"}
     return {"CC_FOR_BUILD": "gcc"}
 
 
@@ -208,6 +245,8 @@ def build_libraries(cell, jobs, log):
     if done.exists():
         return
     fetch_sources(log)
+    if cell.own_libcxx:
+        build_libcxx(cell, jobs, log)
     sources = fetch_newer(log) if cell.newer_highway else SOURCES
     run(["cmake", "-S", ROOT / "tests/platforms/dependencies", "-B", cell.build / "dependencies", *cmake_options(cell),
          f"-DCMAKE_INSTALL_PREFIX={prefix}", f"-DCROFTON_SOURCES={sources}"], log, environment=environment_of(cell))
