@@ -220,10 +220,10 @@ def cmake_options(cell):
             f"-DCMAKE_C{flags}", f"-DCMAKE_CXX{flags}", *cell.options]
 
 
-def flags_of(cell, language="C"):
-    """What the toolchain file compiles a language with."""
+def flags_of(cell, name="CMAKE_C_FLAGS"):
+    """What the toolchain file compiles C with, or others of its flags."""
     cache = (cell.build / "dependencies" / "CMakeCache.txt").read_text()
-    return re.search(rf"^CMAKE_{language}_FLAGS:\w+=(.*)$", cache, re.MULTILINE)[1]
+    return re.search(rf"^{name}:\w+=(.*)$", cache, re.MULTILINE)[1]
 
 
 def gmp_environment(cell):
@@ -235,8 +235,8 @@ def gmp_environment(cell):
     if cell.name == "clang-libcxx":
         return {"CC": "clang-14", "CXX": "clang++-14 -stdlib=libc++", "CC_FOR_BUILD": "gcc"}
     if cell.own_libcxx:
-        return {"CC": "clang-14", "CXX": "clang++-14", "CFLAGS": flags, "CXXFLAGS": f"-O2 {flags_of(cell, 'CXX')}",
-                "CC_FOR_BUILD": "gcc"}
+        return {"CC": "clang-14", "CXX": "clang++-14", "CFLAGS": flags, "CXXFLAGS": f"-O2 {flags_of(cell, 'CMAKE_CXX_FLAGS')}",
+                "LDFLAGS": flags_of(cell, "CMAKE_EXE_LINKER_FLAGS"), "CC_FOR_BUILD": "gcc"}
     return {"CC_FOR_BUILD": "gcc"}
 
 
