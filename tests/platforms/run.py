@@ -235,8 +235,9 @@ def gmp_environment(cell):
     if cell.name == "clang-libcxx":
         return {"CC": "clang-14", "CXX": "clang++-14 -stdlib=libc++", "CC_FOR_BUILD": "gcc"}
     if cell.own_libcxx:
-        return {"CC": "clang-14", "CXX": "clang++-14", "CFLAGS": flags, "CXXFLAGS": f"-O2 {flags_of(cell, 'CMAKE_CXX_FLAGS')}",
-                "LDFLAGS": flags_of(cell, "CMAKE_EXE_LINKER_FLAGS"), "CC_FOR_BUILD": "gcc"}
+        linked = flags_of(cell, "CMAKE_EXE_LINKER_FLAGS").replace("-lc++abi", "")
+        return {"CC": "clang-14", "CXX": f"clang++-14 -Wno-unused-command-line-argument {linked}", "CFLAGS": flags,
+                "CXXFLAGS": f"-O2 {flags_of(cell, 'CMAKE_CXX_FLAGS')}", "CC_FOR_BUILD": "gcc"}
     return {"CC_FOR_BUILD": "gcc"}
 
 
