@@ -189,9 +189,8 @@ def build_libcxx(cell, jobs, log):
     run(["cmake", "-S", source / "runtimes", "-B", cell.build / "libcxx_build", "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
          "-DCMAKE_C_COMPILER=clang-14", "-DCMAKE_CXX_COMPILER=clang++-14", f"-DCMAKE_INSTALL_PREFIX={prefix}",
          "-DLLVM_ENABLE_RUNTIMES=libcxx;libcxxabi", "-DLLVM_USE_SANITIZER=Memory", "-DLIBCXXABI_USE_LLVM_UNWINDER=OFF",
-         "-DLIBCXX_STATICALLY_LINK_ABI_IN_STATIC_LIBRARY=ON",
-         *(f"-D{library}_{option}=OFF" for library in ("LIBCXX", "LIBCXXABI") for option in ("ENABLE_SHARED", "INCLUDE_TESTS")),
-         "-DLIBCXX_INCLUDE_BENCHMARKS=OFF"], log, environment=environment_of(cell))
+         *(f"-D{library}_{option}=OFF" for library in ("LIBCXX", "LIBCXXABI") for option in ("ENABLE_STATIC", "INCLUDE_TESTS")),
+         "-DLIBCXX_INCLUDE_BENCHMARKS=OFF", "-DLIBCXX_ENABLE_EXPERIMENTAL_LIBRARY=OFF"], log, environment=environment_of(cell))
     run(["cmake", "--build", cell.build / "libcxx_build", "-j", jobs, "--target", "install-cxx", "install-cxxabi"], log)
     (prefix / "done").touch()
 
@@ -235,7 +234,7 @@ def gmp_environment(cell):
     if cell.name == "clang-libcxx":
         return {"CC": "clang-14", "CXX": "clang++-14 -stdlib=libc++", "CC_FOR_BUILD": "gcc"}
     if cell.own_libcxx:
-        linked = flags_of(cell, "CMAKE_EXE_LINKER_FLAGS").replace("-lc++abi", "")
+        linked = flags_of(cell, "CMAKE_EXE_LINKER_FLAGS")
         return {"CC": "clang-14", "CXX": f"clang++-14 -Wno-unused-command-line-argument {linked}", "CFLAGS": flags,
                 "CXXFLAGS": f"-O2 {flags_of(cell, 'CMAKE_CXX_FLAGS')}", "CC_FOR_BUILD": "gcc"}
     return {"CC_FOR_BUILD": "gcc"}
