@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What the scene's own surface hides: sheets, rooms, corners, holes.
 #include <doctest/doctest.h>
+#include <algorithm>
 #include <cmath>
 #include <crofton/pvs/pvs.hpp>
 #include <crofton/sampling/sampling.hpp>
@@ -147,6 +148,65 @@ TEST_SUITE("pvs/surface") {
         CHECK(state_of({.walls = walls}) == PairState::hidden);
         walls.erase(walls.begin());
         CHECK(state_of({.walls = walls}) != PairState::hidden);
+    }
+
+    TEST_CASE("a triangle that two walls hide together, one half each, is proved by halving its longest side") {
+        // As the eye sees it, the walls are a roof along the two upper sides. The corners of its box stick out.
+        const glm::dvec3 corner[3] = {{-2, 0, 10}, {2, 0, 10}, {0, 1, 10}};
+        const auto wall_under = [](double side) {
+            const double s = 1.0 / std::sqrt(5.0);
+            const glm::dvec3 along(side * 2.0 * s, s, 0.0), up(-side * s, 2.0 * s, 0.0);
+            // From before the lower corner, halfway, to beyond the top; 0.1 above the side and 2 deep.
+            Obb wall;
+            wall.center = glm::dvec3(-side, 0.0, 5.0) + 0.46 * along - 0.95 * up;
+            wall.axes = glm::mat3(glm::vec3(along), glm::vec3(up), {0.f, 0.f, static_cast<float>(side)});
+            wall.half_extents = {0.76f, 1.05f, 0.2f};
+            return wall;
+        };
+        const auto state = [&](std::size_t first, std::size_t walls, const ProofOptions& options) {
+            Subject subject;
+            add_fan(subject, {corner[first], corner[(first + 1) % 3], corner[(first + 2) % 3]});
+            add_box(subject, box_around({0.0, 0.0, -3.0}, glm::dvec3(1.0)));  // calls the cell free
+            std::vector<occlude::FoundOccluder> found;
+            for (std::size_t i = 0; i < walls; ++i) {
+                found.emplace_back().box = wall_under(i == 0 ? 1.0 : -1.0);
+                found.back().piece_bounds = aabb_of(found.back().box);
+                add_box(subject, found.back().box);
+            }
+            std::vector<PlacedOccluder> placed;
+            for (const auto& occluder : found) placed.push_back({&occluder, {}});
+            const Aabb cell = box_around({}, glm::dvec3(0.05));
+            Bake bake = Bake::create(subject, Cells::boxes(std::vector<Aabb>{cell}).value(),
+                                     {.epsilon = 0.5, .confidence = 0.5})
+                            .value();
+            REQUIRE(bake.run().has_value());
+            const Pvs pvs = Pvs::finish(bake, placed, options).value();
+            REQUIRE(pvs.kind(0) != CellKind::unknown);
+            REQUIRE(pvs.kind(0) != CellKind::solid);
+            if (pvs.state(0, 0) == PairState::hidden) {
+                sampling::Random random(first);
+                for (int n = 0; n < 300; ++n) {
+                    const glm::dvec3 p = sampling::box_point(cell, random.point<3>());
+                    double u = random.uniform(), v = random.uniform();
+                    if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
+                    const glm::dvec3 q = corner[0] + u * (corner[1] - corner[0]) + v * (corner[2] - corner[0]);
+                    const auto hits = oracle::crossings(subject, {p, q - p});
+                    const bool met = std::any_of(hits.begin(), hits.end(),
+                                                 [](const auto& hit) { return hit.t > 0.0 && hit.t < 0.9; });
+                    CHECK(met);
+                }
+            }
+            return pvs.state(0, 0);
+        };
+        // Whichever side comes first.
+        for (const std::size_t first : {0u, 1u, 2u}) {
+            CHECK(state(first, 2, {.near_radius = 0.1, .halvings = 1, .surface_steps = 400}) == PairState::hidden);
+            CHECK(state(first, 2, {.near_radius = 0.1, .halvings = 4, .surface_steps = 400}) == PairState::hidden);
+            // No wall hides it alone. Of its box more is seen.
+            CHECK(state(first, 2, {.near_radius = 0.1, .halvings = 0, .surface_steps = 400}) != PairState::hidden);
+            CHECK(state(first, 1, {.near_radius = 0.1, .halvings = 4, .surface_steps = 400}) != PairState::hidden);
+            CHECK(state(first, 2, {.near_radius = 0.1, .halvings = 4}) != PairState::hidden);
+        }
     }
 
     TEST_CASE("far from the world's origin too") {
