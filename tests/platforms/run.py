@@ -92,7 +92,8 @@ CELLS = [
     Cell("clang-libcxx", "clang 14, x86-64, libc++", ["clang++-14", "/usr/lib/llvm-14/include/c++/v1/vector"],
          options=[one_set("AVX2")], host="x86_64-linux-gnu"),
     Cell("clang-msan", "clang 14, x86-64, libc++, memory sanitizer", ["clang++-14", "/usr/lib/llvm-14/include/c++/v1/vector"],
-         options=[one_set("AVX2")], host="x86_64-linux-gnu", by_file=True, own_libcxx=True),
+         # What the sanitizer knows of a vector's lanes does not move with them, where they are put into another order.
+         options=["-DCROFTON_SCALAR=ON"], host="x86_64-linux-gnu", by_file=True, own_libcxx=True),
     Cell("i386", "g++ 12, 32-bit x86", ["i686-linux-gnu-g++"], host="i686-linux-gnu", by_file=True),
     Cell("aarch64", "g++ 12, 64-bit ARM, qemu", ["aarch64-linux-gnu-g++", "qemu-aarch64"], host="aarch64-linux-gnu",
          runner=["qemu-aarch64", "-L", "/usr/aarch64-linux-gnu"], by_file=True),
