@@ -121,24 +121,6 @@ TEST_SUITE("boxtree/box_tree changes") {
     }
 
     TEST_CASE("ids that are used again elsewhere during a background rebuild do not widen its bounds") {
-        const oracle::Crowd crowd = oracle::random_crowd(4000, 0.0, 24);
-        std::vector<Obb> boxes(crowd.boxes.begin(), crowd.boxes.end());
-        BoxTree tree = *BoxTree::build(boxes);
-        oracle::NearMisses random(25);
-        std::size_t used_again = 0;
-        for (bool done = false; !done;) {
-            for (int i = 0; i < 20; ++i, ++used_again) {
-                const ItemId item = random.index(4000);
-                boxes[item] = oracle::random_box(random, glm::dvec3(0.0), 40.0);
-                REQUIRE(tree.remove(item).has_value());
-                REQUIRE(tree.insert(boxes[item]).value() == item);
-            }
-            tree.refit();
-            done = tree.rebuild_step(4000);
-        }
-        REQUIRE(used_again >= 200);
-        CHECK(tree.validate().has_value());
-        CHECK(holds_all(tree));
         const auto size_of_bounds = [](const BoxTree& of) {
             double sum = 0.0;
             for (boxtree::NodeId node = 0; node < of.structure().nodes().size(); ++node)
@@ -148,7 +130,31 @@ TEST_SUITE("boxtree/box_tree changes") {
                 }
             return sum;
         };
-        CHECK(size_of_bounds(tree) < 1.5 * size_of_bounds(*BoxTree::build(boxes)));
+        double wider = 0.0;  // than a tree that is built at the end, in the mean
+        constexpr unsigned kCrowds = 8;
+        for (unsigned seed = 0; seed < kCrowds; ++seed) {
+            const oracle::Crowd crowd = oracle::random_crowd(4000, 0.0, 24 + 2 * seed);
+            std::vector<Obb> boxes(crowd.boxes.begin(), crowd.boxes.end());
+            BoxTree tree = *BoxTree::build(boxes);
+            oracle::NearMisses random(25 + 2 * seed);
+            std::size_t used_again = 0;
+            for (bool done = false; !done;) {
+                for (int i = 0; i < 20; ++i, ++used_again) {
+                    const ItemId item = random.index(4000);
+                    boxes[item] = oracle::random_box(random, glm::dvec3(0.0), 40.0);
+                    REQUIRE(tree.remove(item).has_value());
+                    REQUIRE(tree.insert(boxes[item]).value() == item);
+                }
+                tree.refit();
+                done = tree.rebuild_step(4000);
+            }
+            REQUIRE(used_again >= 200);
+            CHECK(tree.validate().has_value());
+            CHECK(holds_all(tree));
+            wider += size_of_bounds(tree) / size_of_bounds(*BoxTree::build(boxes)) / kCrowds;
+        }
+        // Single crowds differ by 0.06. Where ids kept their old places, the mean was 1.87.
+        CHECK(wider < 1.7);
     }
 
     TEST_CASE("no step of a background rebuild handles more than its budget is worth, the last ones included") {
