@@ -250,7 +250,6 @@ class ManyWalk {
 
     HWY_INLINE void look_into(std::uint32_t id) {
         const std::uint32_t whole = out_.whole[id], open = out_.open[id];
-        out_.whole[id] = out_.open[id] = 0;
         const DU du;
         constexpr std::size_t kLanes = hn::MaxLanes(DU());
         LeafMasks masks;
@@ -264,6 +263,8 @@ class ManyWalk {
             store_masks(simd::compress(du, mask, seen), out_.count);
             out_.count += simd::compress_store(du, items, seen, out_.ids + out_.count);
         }
+        // Last: clang 14 for WebAssembly reads what fills a vector after a store that follows it.
+        out_.whole[id] = out_.open[id] = 0;
     }
 
     // Adds view v's bit to the boxes of a leaf that it sees. The planes are put into the leaf's units once.
