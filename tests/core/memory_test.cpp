@@ -57,6 +57,18 @@ TEST_SUITE("core/memory") {
         crofton::detail::release(memory, kBytes, kAlignment);
     }
 
+    TEST_CASE("small blocks lie together, not each at the beginning of a huge page") {
+        constexpr std::size_t kHugePage = std::size_t{2} << 20;
+        void* blocks[100];
+        int at_beginning = 0;
+        for (void*& block : blocks) {
+            block = crofton::detail::allocate(100, 64);
+            at_beginning += reinterpret_cast<std::uintptr_t>(block) % kHugePage == 0;
+        }
+        for (void* block : blocks) crofton::detail::release(block, 100, 64);
+        CHECK(at_beginning <= 1);
+    }
+
     TEST_CASE("containers take their memory from the host's hooks and give all of it back") {
         Counts counts;
         set_memory_hooks({counting_allocate, counting_release, &counts});
