@@ -181,11 +181,15 @@ TEST_SUITE("bake/forged") {
 
     TEST_CASE("instances and nodes that name what is not there, half of it, or themselves are refused") {
         const Vector<std::byte> file = small_scene();
-        const auto instance = [&](auto change) { return with_element<InstanceRecord>(file, "instance", 1, change); };
-        check_scene_refused(instance([](InstanceRecord& i) { i.mesh = 2; }), "not there");
-        check_scene_refused(instance([](InstanceRecord& i) { i.node = 2; }), "not there");
-        check_scene_refused(instance([](InstanceRecord& i) { i.mesh = scene::kNone; }), "not there");
-        check_scene_refused(instance([](InstanceRecord& i) { i.node = scene::kNone; }), "not there");
+        for (const std::size_t at : {0u, 1u}) {
+            const auto instance = [&](auto change) {
+                return with_element<InstanceRecord>(file, "instance", at, change);
+            };
+            check_scene_refused(instance([](InstanceRecord& i) { i.mesh = 2; }), "not there");
+            check_scene_refused(instance([](InstanceRecord& i) { i.node = 2; }), "not there");
+            check_scene_refused(instance([](InstanceRecord& i) { i.mesh = scene::kNone; }), "not there");
+            check_scene_refused(instance([](InstanceRecord& i) { i.node = scene::kNone; }), "not there");
+        }
         const auto node = [&](std::size_t at, std::uint32_t parent) {
             return with_element<NodeRecord>(file, "nodes", at, [&](NodeRecord& n) { n.parent = parent; });
         };

@@ -8,10 +8,13 @@
 #include <error_of.hpp>
 
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <thread>
 #include <vector>
@@ -97,7 +100,28 @@ void limit_file_size(rlim_t bytes) {
     setrlimit(RLIMIT_FSIZE, &limit);
 }
 
+// Answers this program's calls of fsync until the end of the scope, with 0 or the reason of a failure.
+class Disk {
+  public:
+    explicit Disk(std::function<int(int file)> flush) : flush_(std::move(flush)) { current = this; }
+    ~Disk() { current = nullptr; }
+    Disk(const Disk&) = delete;
+    Disk& operator=(const Disk&) = delete;
+    [[nodiscard]] int flush(int file) const { return flush_(file); }
+    static inline const Disk* current = nullptr;
+
+  private:
+    std::function<int(int file)> flush_;
+};
+
 }  // namespace
+
+// In the place of the system's.
+extern "C" int fsync(int file) {
+    if (!Disk::current) return fdatasync(file);
+    errno = Disk::current->flush(file);
+    return errno == 0 ? 0 : -1;
+}
 
 TEST_SUITE("bake/write_file") {
     TEST_CASE("no folder, a folder, a full device: an error that names the path and the system's reason") {
@@ -261,5 +285,43 @@ TEST_SUITE("bake/write_file") {
         CHECK(error_of(refused).code == ErrorCode::io);
         CHECK(error_of(refused).message.find("cannot open") != std::string::npos);
         CHECK(std::filesystem::is_socket(path));
+    }
+
+    TEST_CASE("the bytes are on the disk before the file takes its place, and then the name is") {
+        const Folder folder;
+        const std::string path = folder.file("scene");
+        for (const std::string text : {"first", "second"}) {
+            const std::string before = contents(path);
+            std::vector<std::string> flushed;
+            const Disk disk([&](int file) {
+                struct stat status {
+                }, place{};
+                REQUIRE(fstat(file, &status) == 0);
+                REQUIRE(stat(folder.path.c_str(), &place) == 0);
+                flushed.push_back((status.st_ino == place.st_ino ? "folder of " : "file beside ") + contents(path));
+                if (S_ISREG(status.st_mode)) CHECK(status.st_size == static_cast<off_t>(text.size()));
+                return 0;
+            });
+            REQUIRE(write(path, text));
+            CHECK(flushed == std::vector<std::string>{"file beside " + before, "folder of " + text});
+        }
+    }
+
+    TEST_CASE("a disk that fails is told and the old file stays, one that cannot flush a file is written to") {
+        const Folder folder;
+        const std::string path = folder.file("scene");
+        REQUIRE(write(path, "old"));
+        int reason = EIO;
+        const Disk disk([&](int) { return reason; });
+        const auto failed = write(path, "new");
+        REQUIRE_FALSE(failed);
+        CHECK(error_of(failed).message.find(std::string("cannot write: ") + std::strerror(EIO)) != std::string::npos);
+        CHECK(contents(path) == "old");
+        CHECK(folder.count() == 1);
+        for (const int harmless : {EINVAL, EROFS}) {
+            reason = harmless;
+            REQUIRE(write(path, std::to_string(harmless)));
+            CHECK(contents(path) == std::to_string(harmless));
+        }
     }
 }

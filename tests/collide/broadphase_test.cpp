@@ -251,6 +251,27 @@ TEST_SUITE("collide/broadphase") {
         }
     }
 
+    TEST_CASE("boxes that validate only just lets pass meet others where they have moved to") {
+        std::vector<Obb> boxes(40);
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            boxes[i].center.x = 10.0 * double(i);
+            boxes[i].half_extents = glm::vec3(1.0f);
+        }
+        boxes[7].axes[0].x = 1.0f + 0.49e-4f;
+        boxes[8].axes[1].x = 0.98e-4f;
+        REQUIRE(validate(boxes[7]));
+        REQUIRE(validate(boxes[8]));
+        Broadphase broadphase;
+        REQUIRE(broadphase.update(boxes));
+        CHECK(broadphase.pairs().empty());
+        boxes[7].center.x = 1.5;
+        boxes[8].center.x = 91.5;
+        REQUIRE(broadphase.update_moved(boxes, std::vector<std::uint32_t>{7, 8}));
+        CHECK(same(broadphase.pairs(), std::vector<IdPair>{{0, 7}, {8, 9}}));
+        CHECK(broadphase.rejected().empty());
+        CHECK(broadphase.statistics().rejected == 0);
+    }
+
     TEST_CASE("where nothing moves nothing is looked at, and moves that name no box are an error") {
         std::mt19937_64 random(9);
         const auto boxes = random_boxes(random, 300, 4.0);

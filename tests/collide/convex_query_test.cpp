@@ -195,6 +195,20 @@ TEST_SUITE("collide/convex_query") {
         CHECK(met > 1000);
     }
 
+    TEST_CASE("a plate thinner than its coordinates' last place has two points where it stands, and no twins of them") {
+        std::mt19937_64 random(45);
+        for (int trial = 0; trial < 2000; ++trial) {
+            Obb ground{{}, glm::mat3(glm::mat3_cast(random_rotation(random))), {1.0f, 1.0f, 0.5f}};
+            Obb plate{{}, ground.axes, {0.3f, 5e-15f, 0.4f}};
+            ground.center = std::exp2(8 + trial % 4) * random_vector(random, 0.5);
+            plate.center = ground.center + 0.899 * glm::dvec3(ground.axes[2]);
+            const Manifold m = contact_manifold(ground, plate, ManifoldPoints::all);
+            REQUIRE(m.count == 2);
+            CHECK(glm::length(m.points[1].position - m.points[0].position) == doctest::Approx(0.6));
+            CHECK(m.depth == doctest::Approx(0.001));
+        }
+    }
+
     TEST_CASE("a manifold is as deep as its deepest point, and its four points keep that and most of the area") {
         std::mt19937_64 random(43);
         int reduced = 0;

@@ -142,6 +142,43 @@ TEST_SUITE("collide/shapes") {
         CHECK(hits < 3500);
     }
 
+    TEST_CASE("triangles and boxes whose roundings add up to a sixteenth of the filter's bound, and more") {
+        // Found by a search for the greatest sum of roundings: 2.1 to 2.3 half units in the last place of the terms'
+        // sum. The axis is a cross product of edges for two of them, the triangle's normal for the third.
+        const struct {
+            Obb box;
+            Triangle triangle;
+        } found[] = {
+            {{{-0x1.05fb6592e6943p-1, 0x1.86a5074f69b7p+0, 0x1.4d5b1cfe8fc4cp-3},
+              glm::mat3(0x1.3f10d2p-2f, 0x1.7a1008p-2f, -0x1.c0493ep-1f, 0x1.a4fe4ep-3f, 0x1.bf30dep-1f, 0x1.c40c8ep-2f,
+                        0x1.dafd96p-1f, -0x1.4527b6p-2f, 0x1.91ecdp-3f),
+              {0x1.258a98p-1f, 0x1.235a12p-3f, 0x1.36ca46p-1f}},
+             {glm::dvec3(-0x1.d3f2c3e1eef9dp+0, 0x1.534cb2dedca54p+0, -0x1.7f354787ad82ep+0),
+              glm::dvec3(0x1.0629e962d8086p+0, 0x1.ab46ef5373b6fp+0, -0x1.c155ab4f4d6a3p+0),
+              glm::dvec3(-0x1.363fc270b3394p+0, 0x1.4f34488eaf91p+0, 0x1.3ea4637a07eb8p-1)}},
+            {{{-0x1.58f4b71355db7p-1, -0x1.12dbef2fabf4cp-1, -0x1.652a5013d1897p-1},
+              glm::mat3(-0x1.a9b0d6p-3f, 0x1.a0fc3ep-4f, -0x1.f21908p-1f, -0x1.4cf3e6p-4f, 0x1.fa89a4p-1f,
+                        0x1.ef305cp-4f, 0x1.f315d2p-1f, 0x1.aad72cp-4f, -0x1.943392p-3f),
+              {0x1.acf2ccp-17f, 0x1.0908c4p-4f, 0x1.05442ap-3f}},
+             {glm::dvec3(-0x1.1e88b5a065c6cp+0, -0x1.a8eb8f8ef8de8p+0, -0x1.241472d92d16dp-1),
+              glm::dvec3(0x1.5e8f3cf757fd6p-3, -0x1.9bf84cc2bec06p-2, -0x1.aedc5f52c23fbp-2),
+              glm::dvec3(0x1.aed4802b15d1ep-1, 0x1.fee60d821bb3dp+0, -0x1.1dc573633f828p+0)}},
+            {{{0x1.eed09ef269929p-2, -0x1.c3da7bc22d11cp-3, -0x1.e4aa529e779d2p-2},
+              glm::mat3(0x1.a7ecaep-1f, -0x1.c926fap-2f, 0x1.5b79fp-2f, -0x1.5f6256p-2f, -0x1.c39204p-1f,
+                        -0x1.4ad1f2p-2f, 0x1.c627ccp-2f, 0x1.3559ecp-3f, -0x1.c45362p-1f),
+              {0x1.1a9b5ap-3f, 0x1.0410dap-1f, 0x1.f899eap-6f}},
+             {glm::dvec3(-0x1.f2a8413323e91p+0, -0x1.b9aad3a7c628dp-1, -0x1.aae527894f8adp-1),
+              glm::dvec3(0x1.958995a5132fcp-1, -0x1.4754b7fc3c646p-1, -0x1.774350d6671e4p-1),
+              glm::dvec3(0x1.d5a0a2c277931p-1, -0x1.a648de3c762ap+0, 0x1.8e11ef2699b7fp+0)}},
+        };
+        for (const auto& [box, t] : found) {
+            REQUIRE(validate(box));
+            CHECK(intersects(box, t) == oracle_triangle(box, t));
+            const Obb mirrored{-box.center, box.axes, box.half_extents};
+            CHECK(intersects(mirrored, Triangle{-t[0], -t[1], -t[2]}) == oracle_triangle(box, t));
+        }
+    }
+
     TEST_CASE("long boxes and the triangles that just miss them: as rational clipping says, to the last bit") {
         std::mt19937_64 random(3);
         int compared = 0;

@@ -2,6 +2,7 @@
 // Of the module's own parts: which boxes come to lie side by side.
 #include <doctest/doctest.h>
 #include <algorithm>
+#include <array>
 #include <random>
 #include <vector>
 
@@ -43,5 +44,45 @@ TEST_SUITE("collide/space_order") {
                 CHECK(are_parted(order.items().subspan(begin, width / 2),
                                  order.items().subspan(begin + width / 2, width / 2), boxes));
         for (std::uint32_t slot = 0; slot < 4096; ++slot) CHECK(order.slots()[order.items()[slot]] == slot);
+    }
+
+    TEST_CASE("each stretch of 4096 boxes in a lattice is a block of a Morton curve: as few places as can be") {
+        struct Lattice {
+            std::array<unsigned, 3> bits;  // log2 of how many places along each axis
+            std::array<unsigned, 3> block;
+        };
+        std::mt19937_64 random(72);
+        for (const Lattice& lattice : {Lattice{{4, 4, 4}, {4, 8, 8}},
+                                       {{3, 3, 3}, {2, 4, 4}},
+                                       {{2, 2, 2}, {1, 2, 2}},
+                                       {{4, 0, 0}, {1, 1, 1}},
+                                       {{0, 4, 0}, {1, 1, 1}},
+                                       {{0, 0, 4}, {1, 1, 1}}}) {
+            std::vector<std::array<unsigned, 3>> places(65536);
+            for (unsigned n = 0; n < 65536; ++n)
+                for (unsigned axis = 0, rest = n; axis < 3; rest >>= lattice.bits[axis++])
+                    places[n][axis] = rest & ((1u << lattice.bits[axis]) - 1);
+            for (std::size_t n = 65536; n > 1; --n) std::swap(places[n - 1], places[random() % n]);
+            std::vector<Obb> boxes(65536);
+            for (std::size_t n = 0; n < 65536; ++n) {
+                boxes[n].half_extents = glm::vec3(0.1f);
+                for (int axis = 0; axis < 3; ++axis) boxes[n].center[axis] = places[n][static_cast<unsigned>(axis)];
+            }
+            collide::SpaceOrder order;
+            order.sort(boxes);
+            for (std::size_t begin = 0; begin < 65536; begin += 4096) {
+                std::array<unsigned, 3> widths;
+                for (unsigned axis = 0; axis < 3; ++axis) {
+                    unsigned least = 16, most = 0;
+                    for (const std::uint32_t item : order.items().subspan(begin, 4096)) {
+                        least = std::min(least, places[item][axis]);
+                        most = std::max(most, places[item][axis]);
+                    }
+                    widths[axis] = most - least + 1;
+                }
+                test::ranges::sort(widths);
+                CHECK(widths == lattice.block);
+            }
+        }
     }
 }

@@ -155,7 +155,7 @@ void fit_frame(Node& node, const Aabb& whole, const Axes& axes) {
         for (int j = 0; j < 3; ++j) farthest = std::max(farthest, whole.half_extents()[j]);
         farthest += 2.0 * error_bound_of(axes, node, whole);
     }
-    node.unit = unit_for(farthest * (1.0 + 0x1p-10), 14);
+    node.unit = unit_for(farthest, 14);  // as far again is left for roundings and moves
     node.per_quantum = 0x1p14f / node.unit;
     node.l1_radius = 0.0f;
     node.rounding = rounding_of(node);
