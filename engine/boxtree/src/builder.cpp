@@ -217,7 +217,7 @@ std::size_t Builder::label_items(std::size_t budget) {
 }
 
 std::size_t Builder::bound_clusters(std::size_t budget, std::span<const Obb> boxes) {
-    const std::size_t end = std::min(cluster_of_.size(), next_ + budget);
+    const std::size_t end = std::min(cluster_of_.size(), next_ + budget), spent = end - next_;
     for (; next_ < end; ++next_)
         if (cluster_of_[next_] != kNone) {
             BuildItem& cluster = clusters_[cluster_of_[next_]];
@@ -226,7 +226,7 @@ std::size_t Builder::bound_clusters(std::size_t budget, std::span<const Obb> box
             cluster.set_id(id);
         }
     if (next_ == cluster_of_.size()) place_clusters();
-    return budget;  // or less, where the builder is ready and asks no more
+    return spent;
 }
 
 // Makes the nodes above the clusters by splitting from the top. Then gives the clusters places in the order of a walk.
