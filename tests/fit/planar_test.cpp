@@ -133,6 +133,42 @@ TEST_SUITE("fit/planar") {
         CHECK(error_of(fit::minimal_disc(view(points))).item == 2);
         points[1].y = 1e31;
         CHECK(error_of(fit::minimal_disc(view(points))).code == ErrorCode::out_of_range);
+        for (int k = 0; k < 2; ++k)
+            for (const double bad :
+                 {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+                Points corners = {{0.0, 0.0}, {2.0, 0.0}, {1.0, 1.0}};
+                corners[1][k] = bad;
+                const auto refused = fit::minimal_rectangle_of_convex(view(corners), PlanarCriterion::area);
+                CHECK(error_of(refused).code == ErrorCode::non_finite);
+                CHECK(error_of(refused).item == 1);
+                CHECK(error_of(fit::minimal_disc(view(corners))).code == ErrorCode::non_finite);
+            }
+    }
+
+    TEST_CASE("points times a power of two have the same rectangle, disc and triangle, scaled, from 1e-90 to 1e29") {
+        std::mt19937 random(5);
+        std::normal_distribution<double> normal;
+        for (int run = 0; run < 60; ++run) {
+            Points points, scaled;
+            const double scale = std::ldexp(1.0, run % 2 ? -299 : 96);
+            for (int i = 0; i < 3 + run % 9; ++i) {
+                points.emplace_back(normal(random), normal(random));
+                scaled.push_back(scale * points.back());
+            }
+            const Disc disc = *fit::minimal_disc(view(points)), large = *fit::minimal_disc(view(scaled));
+            CHECK(large.center == scale * disc.center);
+            CHECK(large.radius == scale * disc.radius);
+            for (const auto criterion : {PlanarCriterion::area, PlanarCriterion::perimeter}) {
+                const auto first = *fit::minimal_rectangle(view(points), criterion);
+                const auto second = *fit::minimal_rectangle(view(scaled), criterion);
+                CHECK(second.center == scale * first.center);
+                CHECK(second.axis == first.axis);
+                CHECK(second.half_extents == scale * first.half_extents);
+                const auto corners = *fit::minimal_triangle(view(points), criterion);
+                const auto others = *fit::minimal_triangle(view(scaled), criterion);
+                for (std::size_t k = 0; k < 3; ++k) CHECK(others[k] == scale * corners[k]);
+            }
+        }
     }
 
     TEST_CASE("a point and a segment have rectangles and discs of no more than their size") {

@@ -24,6 +24,16 @@ double farthest(const Points& points, const glm::dvec3& center) {
     return r;
 }
 
+// In extended precision: rounding of the test itself must not matter.
+bool contains(const Sphere& sphere, const glm::dvec3& p) {
+    long double square = 0.0L;
+    for (int k = 0; k < 3; ++k) {
+        const long double d = static_cast<long double>(p[k]) - static_cast<long double>(sphere.center[k]);
+        square += d * d;
+    }
+    return std::sqrt(square) <= static_cast<long double>(sphere.radius);
+}
+
 // Downhill by ever smaller random steps: the radius is a convex function of the centre.
 double by_descent(const Points& points) {
     std::mt19937_64 random(2);
@@ -79,6 +89,7 @@ TEST_SUITE("fit/sphere") {
             const auto sphere = sphere_of(points);
             REQUIRE(sphere.has_value());
             CHECK(farthest(points, sphere->center) <= sphere->radius);
+            for (const glm::dvec3& p : points) CHECK(contains(*sphere, p));
             CHECK(sphere->radius <= by_descent(points) * (1.0 + 1e-8));
         }
     }

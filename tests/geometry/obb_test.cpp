@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 #include <cmath>
 #include <crofton/geometry/box.hpp>
+#include <crofton/geometry/dyadic.hpp>
 #include <error_of.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
@@ -36,6 +37,14 @@ TEST_SUITE("geometry/obb") {
         box = Obb{};
         box.center.x = std::numeric_limits<double>::infinity();
         CHECK(error_of(validate(box)).code == ErrorCode::non_finite);
+        for (int k = 0; k < 3; ++k)
+            for (const double sign : {-1.0, 1.0}) {
+                box = Obb{};
+                box.center[k] = sign * 1e30;
+                CHECK(validate(box).has_value());
+                box.center[k] = sign * 1.0000001e30;
+                CHECK(error_of(validate(box)).code == ErrorCode::out_of_range);
+            }
         box = Obb{};
         box.axes[0] = glm::vec3(1.0f, 0.1f, 0.0f);
         CHECK(error_of(validate(box)).code == ErrorCode::invalid_argument);
@@ -67,6 +76,28 @@ TEST_SUITE("geometry/obb") {
             double best = -1e300;
             for (const glm::dvec3& corner : corners(box)) best = std::max(best, glm::dot(corner, direction));
             CHECK(glm::dot(support_point(box, direction), direction) == doctest::Approx(best));
+        }
+    }
+
+    TEST_CASE("the AABB of a box holds it exactly, also where a side lies near zero and rounds to almost nothing") {
+        std::mt19937 random(3);
+        std::uniform_real_distribution<double> number(-1.0, 1.0);
+        for (int trial = 0; trial < 2000; ++trial) {
+            Obb box = random_box(random, 0.0);
+            for (int i = 0; i < 3; ++i) {
+                for (int k = 0; k < 3; ++k)
+                    box.center[i] += std::abs(double(box.axes[k][i]) * double(box.half_extents[k]));
+                box.center[i] *= (trial % 2 ? -1.0 : 1.0) + 1e-15 * number(random);
+            }
+            const Aabb aabb = aabb_of(box);
+            for (int i = 0; i < 3; ++i) {
+                Dyadic reach;
+                for (int k = 0; k < 3; ++k)
+                    reach = reach + abs(Dyadic(double(box.axes[k][i])) * Dyadic(double(box.half_extents[k])));
+                const Dyadic center(box.center[i]);
+                REQUIRE((center - reach - Dyadic(aabb.min[i])).sign() >= 0);
+                REQUIRE((center + reach - Dyadic(aabb.max[i])).sign() <= 0);
+            }
         }
     }
 

@@ -96,7 +96,8 @@ struct ExactFit {
 [[nodiscard]] Result<ExactFit> fit_exact(std::span<const glm::vec3> points, const ExactOptions& options = {});
 [[nodiscard]] Result<ExactFit> fit_exact(std::span<const glm::dvec3> points, const ExactOptions& options = {});
 
-// In the plane: the best rectangle, the smallest disc and the best triangle around points.
+// In the plane: the best rectangle, the smallest disc and the best triangle around points. Points times a power of two
+// give the same bits, scaled. Of sets smaller than 1e-90 nothing is promised: products of lengths underflow.
 
 enum class PlanarCriterion : std::uint8_t {
     perimeter,  // the measure of the lines that meet the rectangle
