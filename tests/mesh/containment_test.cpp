@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 #include <box_mesh.hpp>
 #include <crofton/mesh/mesh_query.hpp>
+#include <limits>
 #include <utility>
 
 #include "mesh/meshes.hpp"
@@ -26,6 +27,21 @@ TEST_SUITE("mesh/containment") {
         CHECK(contains(outer, {1.0, 0.5, 0.5}));
         CHECK_FALSE(contains(outer, {1.0 + 1e-15, 0.5, 0.5}));
         CHECK_FALSE(contains(outer, {-1.0, -1.0, -2.0}));
+    }
+
+    TEST_CASE("a point that is not finite, or too far for products in double, lies in no mesh") {
+        const auto cube = tree_of(cube_mesh(1.0f));
+        const double nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
+        for (const glm::dvec3& place : {glm::dvec3(0.0), glm::dvec3(0.5, 0.25, 1.0), glm::dvec3(1.0, 0.5, -0.5)}) {
+            REQUIRE(contains(cube, place));
+            for (const double bad : {nan, infinite, -infinite, 1e200, -1e200})
+                for (int axes = 1; axes < 8; ++axes) {
+                    glm::dvec3 p = place;
+                    for (int i = 0; i < 3; ++i)
+                        if ((axes >> i & 1) != 0) p[i] = bad;
+                    CHECK_FALSE(contains(cube, p));
+                }
+        }
     }
 
     TEST_CASE("of a mesh in several pieces each is asked, vertices that only coincide hold a piece together") {

@@ -94,4 +94,28 @@ TEST_SUITE("pvs/shaft") {
             }
         }
     }
+
+    TEST_CASE("a body for eyes on one side of a plane may prove for boxes that are all there, whatever the normal") {
+        sampling::Random random(73);
+        int all_there = 0, others = 0;
+        for (int trial = 0; trial < 600; ++trial) {
+            const glm::dvec3 middle(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
+            const Aabb eyes{middle - 0.3, middle + 0.3};
+            Blocker body;
+            Plane plane{sampling::direction(random.point<2>()), 0.3};
+            if (trial % 4 != 0) {  // along an axis
+                plane.normal = glm::dvec3(0.0);
+                plane.normal[trial % 3] = trial % 2 ? 1.0 : -1.0;
+            }
+            body.eyes.push_back(plane);
+            double least = std::numeric_limits<double>::infinity();
+            for (const glm::dvec3& p : pvs::corners_of(eyes))
+                least = std::min(least, glm::dot(plane.normal, p) + plane.offset);
+            if (std::abs(least - kMargin) < 1e-9) continue;
+            CHECK(pvs::may_prove_for(body, eyes, 0.0, kMargin) == (least > kMargin));
+            ++(least > kMargin ? all_there : others);
+        }
+        CHECK(all_there > 100);
+        CHECK(others > 100);
+    }
 }

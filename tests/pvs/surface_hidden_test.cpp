@@ -46,15 +46,24 @@ struct Case {
     glm::dvec3 origin{0.0};
     double near_radius = 0.1;
     std::uint32_t halvings = 0;
+    int way = 0;  // 0 … 5: all of it turned, so that the object is along z, x, y, −z, −x, −y
 };
+
+glm::dvec3 turned(const glm::dvec3& p, int way) {
+    const glm::dvec3 q = way < 3 ? p : glm::dvec3(p.x, -p.y, -p.z);
+    return way % 3 == 0 ? q : way % 3 == 1 ? glm::dvec3(q.z, q.x, q.y) : glm::dvec3(q.y, q.z, q.x);
+}
 
 PairState state_of(const Case& given) {
     Subject subject;
     subject.origin = given.origin;
-    add_box(subject, box_around(given.origin + glm::dvec3(0.0, 0.0, 10.0), glm::dvec3(0.5)));
+    add_box(subject, box_around(given.origin + turned({0.0, 0.0, 10.0}, given.way), glm::dvec3(0.5)));
     // Lines that meet this alone call the cell free.
-    add_box(subject, box_around(given.origin + glm::dvec3(0.0, 0.0, -3.0), glm::dvec3(1.0)));
-    for (const Points& wall : given.walls) add_fan(subject, wall);
+    add_box(subject, box_around(given.origin + turned({0.0, 0.0, -3.0}, given.way), glm::dvec3(1.0)));
+    for (Points wall : given.walls) {
+        for (glm::dvec3& p : wall) p = turned(p, given.way);
+        add_fan(subject, wall);
+    }
     const Cells cells = Cells::boxes(std::vector<Aabb>{box_around(given.origin, glm::dvec3(0.5))}).value();
     // Few lines: the question is what is proved.
     Bake bake = Bake::create(subject, cells, {.epsilon = 0.5, .confidence = 0.5, .sides = given.sides}).value();
@@ -127,13 +136,16 @@ TEST_SUITE("pvs/surface") {
     }
 
     TEST_CASE("what meets the cell, is near it, or touches the object proves nothing") {
-        CHECK(state_of({.walls = {wall(-2, 2, 0.2, 0.2)}}) != PairState::hidden);  // through the cell
-        CHECK(state_of({.walls = {wall(-2, 2, 0.55, 0.55)}}) != PairState::hidden);
-        CHECK(state_of({.walls = {wall(-2, 2, 0.55, 0.55)}, .near_radius = 0.01}) == PairState::hidden);
-        CHECK(state_of({.walls = {wall(-2, 2, 9.5, 9.5)}}) != PairState::hidden);  // on a face of the object
-        CHECK(state_of({.walls = {wall(-2, 2, 10.2, 10.2)}}) != PairState::hidden);
-        CHECK(state_of({.walls = {wall(-2, 2, 9.4, 9.4)}}) == PairState::hidden);
-        CHECK(state_of({.walls = {wall(-2, 2, 11, 11)}}) != PairState::hidden);
+        for (int way = 0; way < 6; ++way) {
+            CHECK(state_of({.walls = {wall(-2, 2, 0.2, 0.2)}, .way = way}) != PairState::hidden);  // through the cell
+            CHECK(state_of({.walls = {wall(-2, 2, 0.55, 0.55)}, .way = way}) != PairState::hidden);
+            CHECK(state_of({.walls = {wall(-2, 2, 0.55, 0.55)}, .near_radius = 0.01, .way = way}) == PairState::hidden);
+            CHECK(state_of({.walls = {wall(-2, 2, 9.5, 9.5)}, .way = way}) !=
+                  PairState::hidden);  // on a face of the object
+            CHECK(state_of({.walls = {wall(-2, 2, 10.2, 10.2)}, .way = way}) != PairState::hidden);
+            CHECK(state_of({.walls = {wall(-2, 2, 9.4, 9.4)}, .way = way}) == PairState::hidden);
+            CHECK(state_of({.walls = {wall(-2, 2, 11, 11)}, .way = way}) != PairState::hidden);
+        }
     }
 
     TEST_CASE("triangles without an area, doubled and crossing ones do no harm") {

@@ -301,4 +301,58 @@ TEST_SUITE("radiosity/solver") {
         CHECK(error_of(Solver::create(patches, other)->resume(saved)).code == ErrorCode::invalid_argument);
         CHECK(solver->resume(saved).has_value());
     }
+
+    TEST_CASE("checkpoints of patches that differ in one corner, one triangle, one material are refused") {
+        const Box box = lit_box(2);
+        const Patches patches = patches_of(box.shape, box.materials);
+        auto solver = Solver::create(patches, quick());
+        solver->run();
+        const auto saved = solver->checkpoint();
+        const auto refuses = [&](const Box& other) {
+            const Patches others = patches_of(other.shape, other.materials);
+            auto resumed = Solver::create(others, quick());
+            REQUIRE(resumed.has_value());
+            return error_of(resumed->resume(saved)).code == ErrorCode::invalid_argument;
+        };
+        Box other = box;
+        other.shape.mesh.positions.back() *= 1.5f;
+        CHECK(refuses(other));
+        // The same triangle from its next corner.
+        other = box;
+        std::rotate(other.shape.mesh.indices.begin(), other.shape.mesh.indices.begin() + 1,
+                    other.shape.mesh.indices.begin() + 3);
+        CHECK(refuses(other));
+        other = box;
+        std::swap(other.shape.patches.front(), other.shape.patches.back());
+        CHECK(refuses(other));
+        other = box;
+        other.materials[0].reflectance.y += 0.125f;
+        CHECK(refuses(other));
+    }
+
+    TEST_CASE("light of one colour is known as well as that of any other") {
+        const Box box = lit_box(2);
+        double share[3], error[3];
+        for (int channel = 0; channel < 3; ++channel) {
+            Box lit = box;
+            for (Material& material : lit.materials) {
+                const float emission = material.emission.x, reflectance = material.reflectance.x;
+                material = {};
+                material.emission[channel] = emission;
+                material.reflectance[channel] = reflectance;
+            }
+            const Patches patches = patches_of(lit.shape, lit.materials);
+            auto solver = Solver::create(patches, quick());
+            REQUIRE(solver.has_value());
+            for (int run = 0; run < 5; ++run) solver->run();
+            share[channel] = solver->share_within(0.01);
+            error[channel] = solver->relative_error();
+        }
+        CHECK(share[0] > 0.0);
+        CHECK(share[0] < 0.99);
+        for (const int channel : {1, 2}) {
+            CHECK(share[channel] == share[0]);
+            CHECK(error[channel] == error[0]);
+        }
+    }
 }

@@ -88,6 +88,19 @@ TEST_SUITE("render/device") {
         CHECK(error_of(refused).code == ErrorCode::unsupported);
         CHECK(error_of(refused).message.find("VK_NO_such_extension") != std::string::npos);
     }
+    TEST_CASE("what Vulkan reports becomes an error of its kind that names the call") {
+        const auto code = [](VkResult result) { return vulkan_error(result, "vkQueueSubmit").code; };
+        CHECK(code(VK_ERROR_DEVICE_LOST) == ErrorCode::unavailable);
+        CHECK(code(VK_ERROR_SURFACE_LOST_KHR) == ErrorCode::unavailable);
+        CHECK(code(VK_ERROR_OUT_OF_HOST_MEMORY) == ErrorCode::out_of_range);
+        CHECK(code(VK_ERROR_OUT_OF_DEVICE_MEMORY) == ErrorCode::out_of_range);
+        CHECK(code(VK_ERROR_INITIALIZATION_FAILED) == ErrorCode::internal);
+        CHECK(code(VK_TIMEOUT) == ErrorCode::internal);
+        const std::string lost = vulkan_error(VK_ERROR_DEVICE_LOST, "vkQueueSubmit").message;
+        CHECK(lost.find("vkQueueSubmit: VK_ERROR_DEVICE_LOST") == 0);
+        CHECK(lost.find("create a new one") != std::string::npos);
+        CHECK(vulkan_error(VK_TIMEOUT, "vkWaitForFences").message == "vkWaitForFences: VK_TIMEOUT");
+    }
     TEST_CASE("the validation layer is alive: a deliberate hazard is reported") {
         CROFTON_REQUIRE_DEVICE(device);
         set_log_handler([](void*, LogLevel, std::string_view) {}, nullptr);

@@ -2,6 +2,7 @@
 // The scene's boxes against transformed_box() bit for bit and against exact arithmetic, on every instruction set.
 #include <doctest/doctest.h>
 #include <hwy/targets.h>
+#include <box_kernel.hpp>
 #include <cmath>
 #include <crofton/core/executor.hpp>
 #include <crofton/scene/scene.hpp>
@@ -125,6 +126,41 @@ TEST_SUITE("scene/box_kernel") {
                 }
                 CHECK(statistics.instances_invalid == invalid);
             }
+        }
+        hwy::SetSupportedTargetsForTest(0);
+    }
+
+    // A lane that is not done costs a scene time, though its box is the same.
+    TEST_CASE("a kernel does every box of its kind and no flat one, whatever the lanes held before") {
+        Random random{std::mt19937(5)};
+        const double weights[3] = {0.0, 0.0, 1.0};
+        for (std::int64_t rest = hwy::SupportedTargets(); rest != 0; rest &= rest - 1) {
+            hwy::SetSupportedTargetsForTest(rest & -rest);
+            CAPTURE(hwy::TargetName(rest & -rest));
+            for (std::size_t count = 1; count <= kBoxesAtOnce; ++count)
+                for (const bool sheared : {false, true})
+                    for (const double stale : {0.0, 1.0}) {
+                        BoxBlock block;
+                        std::fill(std::begin(block.done), std::end(block.done), stale);
+                        for (std::size_t k = 0; k < count; ++k) {
+                            Transform t{random.rotation(), random.vector(10.0)};
+                            if (sheared) t.linear[1] += 0.5 * t.linear[0];
+                            if (k % 5 == 4) t.linear[2] = glm::dvec3(0.0);
+                            const Obb box{random.vector(1.0), glm::mat3(1.0f), {1.0f, 2.0f, 3.0f}};
+                            const auto* const from = reinterpret_cast<const std::byte*>(&t);
+                            const auto* const shape = reinterpret_cast<const std::byte*>(&box);
+                            std::memcpy(block.center[k], shape, 24);
+                            for (std::size_t part = 0; part < 3; ++part) {
+                                std::memcpy(block.world[part][k], from + 32 * part, 32);
+                                std::memcpy(block.shape[part][k], shape + 24 + 16 * part, 16);
+                            }
+                        }
+                        if (sheared)
+                            transform_sheared_boxes(block, count, weights);
+                        else
+                            transform_boxes(block, count);
+                        for (std::size_t k = 0; k < count; ++k) CHECK(block.done[k] == (k % 5 == 4 ? 0.0 : 1.0));
+                    }
         }
         hwy::SetSupportedTargetsForTest(0);
     }

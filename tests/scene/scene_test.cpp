@@ -6,6 +6,8 @@
 #include <error_of.hpp>
 #include <limits>
 #include <random>
+#include <string>
+#include <vector>
 
 using namespace crofton;
 using namespace crofton::scene;
@@ -85,7 +87,15 @@ TEST_SUITE("scene/scene") {
             chain = scene.add_node(chain, from_trs({}, glm::dquat(1, 0, 0, 0), {1e14, 1e14, 1e14}).value()).value();
         const InstanceId lost = scene.add_instance(chain, mesh).value();
         const InstanceId fine = scene.add_instance(scene.add_node(kNone, moved(1.0)).value(), mesh).value();
+        std::vector<std::string> warnings;
+        set_log_handler(
+            [](void* to, LogLevel, std::string_view message) {
+                static_cast<std::vector<std::string>*>(to)->emplace_back(message);
+            },
+            &warnings);
         CHECK(scene.update().instances_invalid == 1);
+        REQUIRE(warnings.size() == 1);
+        CHECK(warnings[0].find("1 instances left the range") != std::string::npos);
         CHECK(scene.layer_masks()[lost] == 0);
         CHECK(scene.layer_masks()[fine] == ~0u);
         CHECK(validate(scene.world_boxes()[lost]).has_value());
@@ -93,6 +103,8 @@ TEST_SUITE("scene/scene") {
         REQUIRE(scene.set_local(1, from_trs({}, glm::dquat(1, 0, 0, 0), {1e-14, 1e-14, 1e-14}).value()).has_value());
         CHECK(scene.update().instances_invalid == 0);
         CHECK(scene.layer_masks()[lost] == ~0u);
+        CHECK(warnings.size() == 1);  // none about nothing
+        set_log_handler(nullptr, nullptr);
     }
 
     TEST_CASE("a chain of scales that overflows to infinity hides the instance, one that vanishes hides it too") {

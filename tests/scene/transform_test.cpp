@@ -158,6 +158,19 @@ TEST_SUITE("scene/transform") {
         }
     }
 
+    TEST_CASE("however small it becomes, a turned box keeps its turn: its axes are valid and those of the image") {
+        Random random{std::mt19937(19)};
+        const Obb box{{}, glm::mat3(1.0f), {1.0f, 2.0f, 3.0f}};
+        for (int exponent = 0; exponent < 300; ++exponent) {
+            Transform t;
+            const glm::dmat3 turn = random.rotation();
+            t.linear = std::pow(10.0, -exponent) * turn;
+            const auto image = transformed_box(t, box, measure::minimal_perimeter());
+            REQUIRE(image.has_value());
+            for (int k = 0; k < 3; ++k) CHECK(glm::distance(glm::dvec3(image->axes[k]), turn[k]) < 1e-6);
+        }
+    }
+
     TEST_CASE("a box moved out of the range of coordinates is an error, not a box") {
         Transform t;
         t.translation.x = 1e31;

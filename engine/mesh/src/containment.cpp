@@ -97,6 +97,10 @@ bool is_inside(const mesh::MeshTree& mesh, const RigidTransform& pose, const glm
 }  // namespace
 
 bool contains(const mesh::MeshTree& mesh, const glm::dvec3& point) {
+    // Outside of all coordinates of the mesh. So are NaN, infinity, and what exact arithmetic has no room for.
+    const double extent = static_cast<double>(mesh.extent());
+    for (int i = 0; i < 3; ++i)
+        if (!(std::abs(point[i]) <= extent)) return false;
     return is_inside(mesh, RigidTransform{}, point);
 }
 

@@ -16,8 +16,9 @@ namespace crofton::mesh::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 // The hierarchy of aligned boxes, grown by `error_bound`. Of each axis: where the ray meets the nearer face and the
-// farther one, seen from its start. The parameter is a fused or plain product less one made beforehand. The latter's
-// rounding moves a face by 2^-24 of the start, for which `error_bound` has room.
+// farther one, seen from its start. The parameter is a fused or plain product less one made beforehand. Let u be
+// 2^-24 of the start's and the mesh's largest coordinates together. The roundings of the start, the reciprocals and the
+// products move a face by less than 8 u. `error_bound` is 67 u.
 class AlignedBoxes {
   public:
     using Node = BoxNode;
@@ -48,9 +49,8 @@ class AlignedBoxes {
                 first = hn::Max(first, hn::MulSub(near, inverse_[i], near_start_[i]));
                 last = hn::Min(last, hn::MulSub(far, inverse_[i], far_start_[i]));
             }
-            // The reciprocals and the products are within 3 · 2^-24 each.
             hn::Store(first, d, entry + l);
-            lanes |= simd::mask_bits(d, hn::Le(hn::Mul(first, hn::Set(d, 1.0f - 0x1p-20f)), last)) << l;
+            lanes |= simd::mask_bits(d, hn::Le(first, last)) << l;
         }
         return lanes;
     }

@@ -62,7 +62,7 @@ class PacketBoxes {
                 first = hn::Max(first, hn::Min(hn::Mul(near, least), hn::Mul(near, most)));
                 last = hn::Min(last, hn::Max(hn::Mul(far, least), hn::Mul(far, most)));
             }
-            found |= simd::mask_bits(d, hn::Le(hn::Mul(first, hn::Set(d, 1.0f - 0x1p-20f)), last)) << l;
+            found |= simd::mask_bits(d, hn::Le(first, last)) << l;
         }
         return found;
     }
@@ -80,7 +80,7 @@ class PacketBoxes {
                 first = hn::Max(first, hn::MulSub(near, inverse, hn::Load(d, near_start_[i] + l)));
                 last = hn::Min(last, hn::MulSub(far, inverse, hn::Load(d, far_start_[i] + l)));
             }
-            const auto met = hn::Le(hn::Mul(first, hn::Set(d, 1.0f - 0x1p-20f)), last);
+            const auto met = hn::Le(first, last);
             least = hn::IfThenElse(met, hn::Min(least, first), least);
             found |= simd::mask_bits(d, met) << l;
         }

@@ -83,7 +83,8 @@ enum class Containment : std::uint8_t { none, a_inside_b, b_inside_a, partly };
 // As above where it is known that the surfaces do not meet.
 [[nodiscard]] Containment containment_of_disjoint(const mesh::MeshTree& a, const mesh::MeshTree& b,
                                                   const RigidTransform& b_to_a);
-// Whether the point lies within the closed pieces of the mesh, their surfaces included.
+// Whether the point lies within the closed pieces of the mesh, their surfaces included. One that is not
+// finite lies in none.
 [[nodiscard]] bool contains(const mesh::MeshTree& mesh, const glm::dvec3& point);
 
 struct MeshDistance {

@@ -41,7 +41,8 @@ struct VulkanContext {
     [[nodiscard]] std::uint32_t memory_type(std::uint32_t type_bits, VkMemoryPropertyFlags wanted) const;
 };
 
-// "what: VK_ERROR_…": `unavailable` for a lost device or a lost surface, `internal` for the rest.
+// "what: VK_ERROR_…": `unavailable` for a lost device or a lost surface, `out_of_range` where memory is full,
+// `internal` for the rest.
 [[nodiscard]] Error vulkan_error(VkResult result, const char* what);
 [[nodiscard]] inline tl::unexpected<Error> vulkan_failure(VkResult result, const char* what) {
     return tl::unexpected(vulkan_error(result, what));
