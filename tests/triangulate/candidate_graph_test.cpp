@@ -15,7 +15,7 @@ using namespace crofton::triangulate;
 
 namespace {
 
-// Whether some point lies in the isosceles triangle over the segment from p to q, on its left, with this tangent of the
+// Whether some point lies in the isosceles triangle over the segment from p to q, on its left. `tangent` is that of the
 // angles at p and q.
 bool has_witness(std::span<const glm::dvec2> points, const glm::dvec2& p, const glm::dvec2& q, double tangent) {
     const glm::dvec2 d = q - p;
