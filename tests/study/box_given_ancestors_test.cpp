@@ -6,7 +6,12 @@
 #include <crofton/study/bound_given_ancestors.hpp>
 #include <crofton/study/spatial_lines.hpp>
 #include <numbers>
+#include <utility>
 #include <vector>
+
+#include "ancestor_directions.hpp"
+#include "box_search.hpp"
+#include "rotation_cells.hpp"
 
 using namespace crofton;
 
@@ -72,6 +77,39 @@ TEST_SUITE("study/box_given_ancestors") {
             CHECK(found->value <= least * 1.03);
             CHECK(found->lower_bound >= 0.95 * found->value);
         }
+    }
+
+    TEST_CASE("no orientation of a cell is below the cell's bound, which comes near to the least of them") {
+        int close = 0, cells = 0;
+        for (std::uint64_t seed = 0; seed < 12; ++seed) {
+            const auto points = random_points(seed, 12, {1.0, 0.5, 0.4});
+            const auto ancestors = loose_ancestors(points, seed, 1 + static_cast<int>(seed % 2));
+            const study::AncestorDirections directions(ancestors);
+            glm::dvec3 origin(0.0);
+            for (const glm::dvec3& p : points) origin += p / static_cast<double>(points.size());
+            Vector<glm::dvec3> relative;
+            for (const glm::dvec3& p : points) relative.push_back(p - origin);
+            const study::BoxSearch search(std::move(relative), origin, directions);
+            sampling::Random random(34, seed);
+            for (int cell = 0; cell < 12; ++cell) {
+                const glm::dvec3 center = 0.4 * sampling::ball_point(random.point<3>());
+                const double half = 1e-3 * std::pow(4.0, cell % 4), bound = search.bound(center, half);
+                const double middle = search.measure_of(study::rotation_of(center));
+                double least = middle;
+                for (int i = 0; i < 40; ++i) {
+                    // The corners, and places within.
+                    glm::dvec3 at = center;
+                    for (int k = 0; k < 3; ++k)
+                        at[k] += half * (i < 8 ? ((i >> k & 1) != 0 ? 1.0 : -1.0) : random.uniform(-1.0, 1.0));
+                    least = std::min(least, search.measure_of(study::rotation_of(at)));
+                }
+                CHECK(bound <= least);
+                // What is of first order is not lost.
+                ++cells;
+                close += least - bound < 0.5 * (middle - least);
+            }
+        }
+        CHECK(close > cells / 4);
     }
 
     TEST_CASE("no turned box is below the bound, and the value is that of an adaptive quadrature with its own proof") {

@@ -89,6 +89,25 @@ TEST_SUITE("triangulate/triangulate") {
         CHECK(code(with({{6, 2}}, {{1, 1}, {8, 1}, {8, 4}})) == ErrorCode::degenerate);
     }
 
+    TEST_CASE("of nested holes an edge of the inner one is named, whichever point comes first") {
+        const std::vector<glm::dvec2> outer = {{1, 1}, {8, 1}, {8, 8}}, inner = {{4, 2}, {5, 2}, {5, 3}};
+        for (std::size_t first = 0; first < 3; ++first)
+            for (const bool outer_comes_first : {false, true}) {
+                Polygon p = polygon({{{0, 0}, {10, 0}, {10, 10}, {0, 10}}});
+                for (const auto* hole : {outer_comes_first ? &outer : &inner, outer_comes_first ? &inner : &outer}) {
+                    for (std::size_t i = 0; i < 3; ++i) p.points.push_back((*hole)[(first + i) % 3]);
+                    p.ring_ends.push_back(static_cast<std::uint32_t>(p.points.size()));
+                }
+                const std::uint64_t begin = outer_comes_first ? 7 : 4;  // of the inner hole's three points
+                const auto result = triangulate::triangulate(p);
+                REQUIRE_FALSE(result.has_value());
+                CHECK(error_of(result).item >= begin);
+                CHECK(error_of(result).item < begin + 3);
+                CHECK(error_of(result).message.find("holes 1 and 2 overlap or lie inside one another") !=
+                      std::string::npos);
+            }
+    }
+
     TEST_CASE("coordinates of any size work, too different ones are an error") {
         for (const double scale : {1e-300, 1e-155, 1e-12, 1.0, 1e12, 1e155, 1e300}) {
             auto p = polygon({{{0, 0}, {4, 0}, {4, 4}, {0, 4}}, {{1, 1}, {2, 1}, {2, 2}}});

@@ -55,6 +55,14 @@ TEST_SUITE("world/occlusion") {
         CHECK(occluders.empty());
         s.world.drawn_occluders(s.visible, occluders);
         CHECK(occluders.size() == 1);
+        // Of each index its verdict, whichever list it is in.
+        REQUIRE(s.visible.verdicts().size() == s.visible.size());
+        for (std::size_t i = 0; i < s.visible.size(); ++i)
+            CHECK(int(s.visible.verdict_of(s.visible.ids()[i])) == int(s.visible.verdicts()[i]));
+        CHECK(s.visible.verdict_of(s.wall.index) == occlude::Verdict::inside);
+        CHECK(s.visible.verdict_of(s.behind.index) == occlude::Verdict::occluded);
+        CHECK(s.visible.verdict_of(s.beside.index) != occlude::Verdict::outside);
+        CHECK(s.visible.verdict_of(1000) == occlude::Verdict::outside);
         // The picture: the wall in the middle, nothing at the edge.
         const occlude::OcclusionBuffer* buffer = s.visible.occlusion_buffer();
         REQUIRE(buffer != nullptr);
