@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What is wrong or extreme, body by body: a named error, or an answer that is right.
 #include <doctest/doctest.h>
+#include <algorithm>
 #include <cmath>
 #include <error_of.hpp>
 #include <limits>
@@ -114,6 +115,22 @@ TEST_SUITE("convex/bad input") {
         CHECK(cast({bar, origin}, {{}, {0, 0, turns}, {}}, {wall, out_of_reach}, {}).value().result ==
               CastResult::miss);
         CHECK(error_of(cast({bar, origin}, {{}, {0, 0, 2e5}, {}}, {wall, above}, {})).code == ErrorCode::out_of_range);
+    }
+
+    TEST_CASE("a cache that names corners which the bodies do not have changes no answer") {
+        const Body box = Body::box({1, 1, 1}).value(),
+                   triangle = Body::triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}).value();
+        for (const double x : {1.5, 0.5, -3.0}) {
+            const Placed a{box, at({})}, b{triangle, at({x, 0, 0})};
+            PairCache lost;
+            lost.count = 4;
+            std::fill_n(lost.on_a, 4, std::uint16_t{65535});
+            std::fill_n(lost.on_b, 4, std::uint16_t{65535});
+            PairCache once = lost, twice = lost;
+            CHECK(intersects(a, b, &once) == (x == 0.5));
+            const double gap = x == 1.5 ? 0.5 : x == 0.5 ? 0.0 : 1.0;
+            CHECK(distance(a, b, &twice).distance == doctest::Approx(gap).epsilon(1e-12));
+        }
     }
 
     TEST_CASE("poses that are lost meet nothing, and touch nowhere") {

@@ -114,6 +114,21 @@ TEST_SUITE("convex/box_pair") {
         CHECK(contact_manifold(a, b, {.margin = 8e-10}).count > 0);
     }
 
+    // Edges that are parallel to 1.2e-11: the axis across them parts the boxes. A face looks deeper than that axis's
+    // neighbours by less than a choice among faces tells.
+    TEST_CASE("two boxes that an axis across nearly parallel edges parts by less than 1e-15 m have no points") {
+        const Body cube = Body::box({1.0f, 1.0f, 1.0f}).value(), slab = Body::box({0.125f, 0.5f, 0.5f}).value();
+        const double angle = 1.2212201636500881e-11;
+        const RigidTransform low{glm::dmat3(1, 0, 0, 0, 0.8, 0.6, 0, -0.6, 0.8), {}};
+        const RigidTransform top{glm::dmat3(1, 0, -angle, 0.8 * angle, 0.6, 0.8, 0.6 * angle, -0.8, 0.6),
+                                 {-0x1.141b37c691c86p-2, 0x1.0cccccccccccdp+1, -0x1.999999999bb81p-4}};
+        const Placed a{cube, low}, b{slab, top};
+        REQUIRE_FALSE(intersects(a, b));
+        REQUIRE(distance(a, b).upper < 1e-13);
+        CHECK(contact_manifold(a, b).count == 0);
+        CHECK(contact_manifold(b, a).count == 0);
+    }
+
     TEST_CASE(
         "boxes of all forms have points iff they meet, as deep as is proven, cold and warm, skewed poses or not") {
         RandomBodies random(11);

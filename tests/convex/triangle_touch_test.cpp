@@ -2,6 +2,7 @@
 // Boxes, balls and capsules against one triangle of a surface, in closed form: against the certified bounds of
 // `penetration` and `distance`.
 #include <doctest/doctest.h>
+#include <optional>
 
 #include "surfaces.hpp"
 
@@ -65,6 +66,21 @@ int for_each_triangle(std::uint64_t seed, int count, const Check& check) {
     return checked;
 }
 
+// Poses of b along a direction, as close as numbers are: at one it meets a, at the next not.
+struct Brink {
+    RigidTransform meet, apart;
+};
+std::optional<Brink> brink(const Placed& a, const Body& b, const RigidTransform& about, const glm::dvec3& direction) {
+    const auto moved = [&](double t) { return RigidTransform{about.rotation, about.translation + t * direction}; };
+    double in = -1e-9, out = 1e-9;
+    if (!intersects(a, {b, moved(in)}) || intersects(a, {b, moved(out)})) return std::nullopt;
+    for (int k = 0; k < 30; ++k) {
+        const double middle = 0.5 * (in + out);
+        (intersects(a, {b, moved(middle)}) ? in : out) = middle;
+    }
+    return Brink{moved(in), moved(out)};
+}
+
 }  // namespace
 
 TEST_SUITE("convex/triangle_touch") {
@@ -122,6 +138,71 @@ TEST_SUITE("convex/triangle_touch") {
             CHECK(found.all()[0].depth <= deep.upper + tolerance);
         };
         CHECK(for_each_triangle(72, 5000, check) > 3000);
+    }
+
+    // The rounded normal of a sliver is not quite across its edges. Its corners differ along it by up to 1e-10 of the
+    // size.
+    TEST_CASE("a box's corner on a sliver has a point iff they meet, to the last bit") {
+        RandomBodies random(74);
+        Manifolds found;
+        int tried = 0;
+        for (int i = 0; i < 1500; ++i) {
+            glm::dvec3 corner[3] = {random.direction(), random.direction(), {}};
+            const double width = std::pow(10.0, random.number(-4.5, -3.0));
+            corner[2] = glm::mix(corner[0], corner[1], random.number(0.0, 1.0)) + width * random.direction();
+            Surface s;
+            for (std::uint32_t k = 0; k < 3; ++k) {
+                s.mesh.positions.emplace_back(corner[k]);
+                s.mesh.indices.push_back(k);
+            }
+            s.build();
+            const Body surface = s.body(), box = random.box();
+            const RigidTransform at{random.rotation(), {}}, turned{random.rotation(), {}};
+            const auto place = [&](std::uint32_t k) { return at.rotation * glm::dvec3(s.mesh.positions[k]); };
+            const glm::dvec3 u = place(1) - place(0), v = place(2) - place(0), n = glm::normalize(glm::cross(u, v));
+            const double share = random.number(0.0, 1.0), rest = random.number(0.0, 1.0 - share);
+            const glm::dvec3 own = convex::support_point(box, glm::transpose(turned.rotation) * -n);
+            const RigidTransform about{turned.rotation, place(0) + share * u + rest * v - turned.rotation * own};
+            const std::optional<Brink> poses = brink({surface, at}, box, about, n);
+            if (!poses) continue;
+            CAPTURE(i);
+            contact_manifolds({surface, at}, {box, poses->meet}, {}, found);
+            CHECK(found.all().size() == 1);
+            contact_manifolds({surface, at}, {box, poses->apart}, {}, found);
+            CHECK(found.all().empty());
+            ++tried;
+        }
+        CHECK(tried > 1200);
+    }
+
+    // The axis across edges so nearly parallel is not asked: its neighbours look up to 1e-10 of the size deeper.
+    TEST_CASE("a box above a triangle's edge, nearly parallel to its own, has points iff they meet") {
+        RandomBodies random(75);
+        Manifolds found;
+        Surface s;
+        s.mesh.positions = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0.25f}};
+        s.mesh.indices = {0, 1, 2};
+        s.build();
+        const Body surface = s.body(), box = Body::box({1.0f, 0.5f, 0.5f}).value();
+        for (int i = 0; i < 400; ++i) {
+            const double angle = std::pow(10.0, random.number(-12.0, -9.0)), slope = random.number(0.2, 1.3);
+            const glm::dmat3 turned =
+                glm::mat3_cast(glm::angleAxis(angle, glm::dvec3(0, 1, 0)) * glm::angleAxis(slope, glm::dvec3(1, 0, 0)));
+            glm::dvec3 own = convex::support_point(box, glm::transpose(turned) * glm::dvec3(0, -1, 0));
+            own.x = random.number(-0.5, 0.5);
+            const glm::dvec3 touch(random.number(-0.5, 0.5), 0, 0), up(0, 1, 0);
+            const std::optional<Brink> poses = brink({surface, at({})}, box, {turned, touch - turned * own}, up);
+            REQUIRE(poses.has_value());
+            CAPTURE(i);
+            for (const double height : {0.0, 1e-12, 1e-11}) {
+                const RigidTransform below{turned, poses->meet.translation - height * up},
+                    above{turned, poses->apart.translation + height * up};
+                contact_manifolds({surface, at({})}, {box, below}, {}, found);
+                CHECK_FALSE(found.all().empty());
+                contact_manifolds({surface, at({})}, {box, above}, {}, found);
+                CHECK(found.all().empty());
+            }
+        }
     }
 
     TEST_CASE("points lie on both bodies up to half the depth, whatever the features") {

@@ -142,7 +142,8 @@ Warm BoxToucher::ask(int& reference, int& face) {
     if (std::isnan(least_.extent)) return Warm::unknown;
     if (least_.extent < limit) return Warm::apart;
     const double kept = kKeptDepth * pair_.size;
-    const bool sure = std::abs(least_.extent) > axes_.error() + axes_.sliver_width();
+    // Another axis may be less deep by kSameDepth of the size, and a sliver beside it by its width.
+    const bool sure = std::abs(least_.extent) > axes_.error() + kSameDepth * pair_.size + axes_.sliver_width();
     if (reference != 0 && sure) {
         // Thin boxes may have passed to the face's other side, or be apart while the face is not left.
         const double extent = axes_.face_extent(reference == 1, face);

@@ -27,6 +27,10 @@ namespace {
 // (1e-5)² of the difference body's reach, squared, with (a + b)² ≤ 2 a² + 2 b².
 constexpr double kUncertain = 2e-10;
 
+// Of the size. Rounding moves an axis's extent by 1e-10. Each edge of the triangle that is parallel to one of the box
+// is left out, which may lose as much.
+constexpr double kDepthError = 4e-10;
+
 double length_of(const glm::dmat3& metric, const glm::dvec3& m) {
     return std::sqrt(glm::dot(m, metric * m));
 }
@@ -45,9 +49,12 @@ BoxTouch::BoxTouch(const Placed& box, const glm::dvec3& origin, double reach, do
 // Faces come first, and another axis must be less deep by more than rounding, so that the choice does not flicker.
 void BoxTouch::try_faces(const Local& t, Axis& least) const {
     const glm::dvec3& n = t.normal;
-    const double along = glm::dot(n, t.corner[0]), radius = glm::dot(half_, glm::abs(n)),
-                 length = length_of(metric_, n);
-    least = {along <= 0.0 ? n : -n, (radius - std::abs(along)) / length, length, 0};
+    const double radius = glm::dot(half_, glm::abs(n)), length = length_of(metric_, n);
+    // All corners count: a sliver's normal is rounded, and across none of its edges.
+    const double along[3] = {glm::dot(n, t.corner[0]), glm::dot(n, t.corner[1]), glm::dot(n, t.corner[2])};
+    const double front = std::max(along[0], std::max(along[1], along[2])) + radius,
+                 behind = radius - std::min(along[0], std::min(along[1], along[2]));
+    least = {front <= behind ? n : -n, std::min(front, behind) / length, length, 0};
     const double depth_margin = kSameDepth * size_;
     for (int k = 0; k < 3; ++k) {
         const double p = t.corner[0][k], q = t.corner[1][k], r = t.corner[2][k];
@@ -119,8 +126,8 @@ Warm BoxTouch::ask(const PlacedTriangle& triangle, Touch& touch) const {
     if (least.extent < limit) return Warm::apart;
     const bool certain = try_edges(t, least);
     if (least.extent < limit) return Warm::apart;
-    // Another axis may be less deep by kSameDepth of the size, and part the bodies.
-    if (!certain || !(std::abs(least.extent) > 2.0 * kSameDepth * size_)) return Warm::unknown;
+    // Another axis may be less deep, and part the bodies.
+    if (!certain || !(std::abs(least.extent) > (kSameDepth + kDepthError) * size_)) return Warm::unknown;
     const glm::dvec3 normal = Pair::local(to_local_, least.m);
     touch.normal = normal / glm::length(normal);
     if (!set_points(t, least, triangle, touch)) return Warm::unknown;

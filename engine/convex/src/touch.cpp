@@ -85,7 +85,8 @@ bool least_deep(const Placed& a, const Placed& b, const Pair& pair, const glm::d
     return along >= 0.0 && from_ball >= depths.least + pair.error;
 }
 
-// How far the points of a face are from one plane across a direction: hulls have faces that are not quite flat.
+// How far the points of a face are from one plane across a direction. Hulls have faces that are not quite flat; the
+// rounded normal of a sliver is not across it.
 double unevenness(const Patch& face, const glm::dvec3& direction) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (int i = 0; i < face.count; ++i) {
@@ -93,7 +94,7 @@ double unevenness(const Patch& face, const glm::dvec3& direction) {
         low = std::min(low, along);
         high = std::max(high, along);
     }
-    return face.count > 3 ? high - low : 0.0;
+    return high - low;
 }
 
 }  // namespace

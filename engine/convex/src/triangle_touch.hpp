@@ -21,7 +21,8 @@ struct PlacedTriangle {
 // axes are covectors of its own frame, m, of length √(mᵀ G m) in the world, where G is I but for that. An axis across
 // two edges is off by 8u size / |m| in direction. That moves its extent by no more than 1e-10 of the size, unless |m|
 // is below 1e-5 of the difference body's reach. Then the answer is `unknown`. Edges that are parallel to 1e-10 of the
-// size lose no more than that. The same holds for the normals of slivers.
+// size lose no more than that. The same holds for the normals of slivers. So the answer is `unknown`, too, where the
+// least extent is nearer to 0 than these together.
 class BoxTouch {
   public:
     // `reach` is the surface's; the box stands in the world, the triangles around the surface's origin.
