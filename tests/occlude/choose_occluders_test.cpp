@@ -284,6 +284,8 @@ TEST_SUITE("occlude/choose_occluders") {
         REQUIRE(candidates.set(77, candidate_of(box)).has_value());
         REQUIRE(choose_occluders(candidates, Camera{}, {.max_occluders = 2}, choice).has_value());
         CHECK(choice.ids == Vector<std::uint32_t>{77, 0});
+        choose_occluders(candidates, *occlusion_view_of(Camera{}), {.max_occluders = 3}, choice);
+        CHECK(choice.ids == Vector<std::uint32_t>{77, 0, 1});
     }
 
     TEST_CASE("all instruction sets choose the same, and nothing is allocated once warm") {
@@ -330,6 +332,27 @@ TEST_SUITE("occlude/choose_occluders") {
         transform.linear[0][0] = -2.0;
         c = candidate_of(found->occluders[0], transform);
         CHECK(c.areas[0] == glm::vec3(0, 0, 24));  // mirrored left to right it still faces +z
+    }
+
+    TEST_CASE("a patch that is closed counts as a box of its mean shadows, from all sides") {
+        FoundOccluder found;  // a box of 0.3 by 0.7 by 1.1
+        found.kind = OccluderKind::patch;
+        found.sides = Sides::front;
+        for (unsigned i = 0; i < 8; ++i)
+            found.surface.positions.push_back(
+                glm::vec3((i & 1u) != 0 ? 0.3f : 0.0f, (i & 2u) != 0 ? 0.7f : 0.0f, (i & 4u) != 0 ? 1.1f : 0.0f));
+        found.surface.indices = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
+                                 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
+        const OccluderCandidate box = candidate_of(found, {});
+        const double sizes[3] = {0.3, 0.7, 1.1};
+        for (int k = 0; k < 3; ++k) {
+            glm::vec3 area = box.areas[static_cast<std::size_t>(k)];
+            CHECK(area[k] == doctest::Approx(sizes[(k + 1) % 3] * sizes[(k + 2) % 3]));
+            area[k] = 0.0f;
+            CHECK(area == glm::vec3(0));
+        }
+        CHECK_FALSE(box.front_only);
+        CHECK(box.radius == doctest::Approx(0.5 * std::sqrt(0.09 + 0.49 + 1.21)));
     }
 
     TEST_CASE("a surface with a part that is turned away from the rest may be chosen from behind the rest") {
