@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A World's bodies in C: contacts that last, overlaps, casts, and bodies that are destroyed while they are used.
 #include <cmath>
+#include <cstring>
 
 #include "world_fixture.hpp"
 
@@ -87,8 +88,15 @@ TEST_SUITE("capi/world bodies") {
             CHECK(after.normal[k] == before.normal[k]);
         }
         CHECK(after.depth == before.depth);
-        CHECK(after.on_a.index == before.on_a.index);
-        CHECK(after.on_b.index == before.on_b.index);
+        CHECK(after.began == before.began);
+        for (int k = 0; k < 4; ++k) CHECK(after.memory[k] == before.memory[k]);
+        const auto same_feature = [](const crofton_feature& a, const crofton_feature& b) {
+            return a.kind == b.kind && a.index == b.index;
+        };
+        CHECK(same_feature(after.on_a, before.on_a));
+        CHECK(same_feature(after.on_b, before.on_b));
+        CHECK(std::memcmp(&after.part_a, &before.part_a, sizeof before.part_a) == 0);  // without bytes between members
+        CHECK(std::memcmp(&after.part_b, &before.part_b, sizeof before.part_b) == 0);
         CHECK(s.contacts(1)->phase == CROFTON_CONTACT_ENDED);
     }
 

@@ -3,6 +3,7 @@
 // `penetration` and `distance`.
 #include <doctest/doctest.h>
 #include <optional>
+#include <oracle/edges.hpp>
 
 #include "surfaces.hpp"
 
@@ -11,6 +12,15 @@ using namespace crofton::convex;
 using namespace crofton::testing;
 
 namespace {
+
+Surface triangle_of(const glm::dvec3 (&corner)[3]) {
+    Surface s;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+        s.mesh.positions.emplace_back(corner[k]);
+        s.mesh.indices.push_back(k);
+    }
+    return s;
+}
 
 // Of any form: also slivers, tiny ones, and edges along or nearly along the axes.
 Surface one_triangle(RandomBodies& random) {
@@ -23,12 +33,7 @@ Surface one_triangle(RandomBodies& random) {
     if (form >= 2)
         corner[1] = corner[0] + glm::dvec3(size, 0.0, 0.0) + (form == 2 ? 0.0 : skew * size) * random.direction();
     if (form == 4) corner[2] = corner[0] + glm::dvec3(0.0, 0.0, -size);
-    Surface s;
-    for (std::uint32_t k = 0; k < 3; ++k) {
-        s.mesh.positions.emplace_back(corner[k]);
-        s.mesh.indices.push_back(k);
-    }
-    return s;
+    return triangle_of(corner);
 }
 
 Body round_or_box(RandomBodies& random) {
@@ -72,12 +77,9 @@ struct Brink {
 };
 std::optional<Brink> brink(const Placed& a, const Body& b, const RigidTransform& about, const glm::dvec3& direction) {
     const auto moved = [&](double t) { return RigidTransform{about.rotation, about.translation + t * direction}; };
-    double in = -1e-9, out = 1e-9;
-    if (!intersects(a, {b, moved(in)}) || intersects(a, {b, moved(out)})) return std::nullopt;
-    for (int k = 0; k < 30; ++k) {
-        const double middle = 0.5 * (in + out);
-        (intersects(a, {b, moved(middle)}) ? in : out) = middle;
-    }
+    const auto meets = [&](double t) { return intersects(a, {b, moved(t)}); };
+    if (!meets(-1e-9) || meets(1e-9)) return std::nullopt;
+    const auto [in, out] = oracle::edge_between(-1e-9, 1e-9, meets);
     return Brink{moved(in), moved(out)};
 }
 
@@ -150,11 +152,7 @@ TEST_SUITE("convex/triangle_touch") {
             glm::dvec3 corner[3] = {random.direction(), random.direction(), {}};
             const double width = std::pow(10.0, random.number(-4.5, -3.0));
             corner[2] = glm::mix(corner[0], corner[1], random.number(0.0, 1.0)) + width * random.direction();
-            Surface s;
-            for (std::uint32_t k = 0; k < 3; ++k) {
-                s.mesh.positions.emplace_back(corner[k]);
-                s.mesh.indices.push_back(k);
-            }
+            Surface s = triangle_of(corner);
             s.build();
             const Body surface = s.body(), box = random.box();
             const RigidTransform at{random.rotation(), {}}, turned{random.rotation(), {}};

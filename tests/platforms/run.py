@@ -165,8 +165,8 @@ def fetch_llvm(folder, log):
     """What of LLVM's source package the C++ library needs: the whole is a gigabyte."""
     packages = download("bookworm", ["llvm-toolchain-14"], folder, log)
     (archive,) = packages.glob("llvm-toolchain-14_*.orig.tar.*")
-    run(["tar", "xf", archive, "-C", folder, "--strip-components=1", "--wildcards", "*/libcxx/*", "*/libcxxabi/*", "*/runtimes/*", "*/llvm-lit/*",
-         "*/cmake/*"], log)
+    run(["tar", "xf", archive, "-C", folder, "--strip-components=1", "--wildcards", "*/libcxx/*", "*/libcxxabi/*",
+         "*/runtimes/*", "*/llvm-lit/*", "*/cmake/*"], log)
 
 
 def fetch_newer(log):
