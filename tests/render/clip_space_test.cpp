@@ -5,7 +5,7 @@
 #include <limits>
 #include <random>
 
-#include "lavapipe.hpp"
+#include "test_device.hpp"
 
 using namespace crofton;
 using namespace crofton::render;
@@ -107,7 +107,7 @@ TEST_SUITE("geometry/clip_space") {
     TEST_CASE("nothing, and triangles of NaN, infinity, denormals and zero size, count as on lavapipe") {
         ClipPredictor predictor;
         CHECK(predictor.count({}, {}, glm::mat4(1.0f)) == 0);
-        CROFTON_REQUIRE_DEVICE(device);
+        CROFTON_REQUIRE_LAVAPIPE(device);
         Comparison comparison(*device);
         const float nan = std::nanf(""), tiny = std::numeric_limits<float>::denorm_min(), huge = 3e38f;
         const float values[] = {0.0f,  -0.0f,  1.0f,   -1.0f, 2.0f,  -2.0f,     0.5f,       tiny,
@@ -218,7 +218,7 @@ TEST_SUITE("geometry/clip_space") {
     }
     TEST_CASE(
         "agrees with lavapipe on 600,000 random triangles: crossing planes, behind the camera, degenerate, touching") {
-        CROFTON_REQUIRE_DEVICE(device);
+        CROFTON_REQUIRE_LAVAPIPE(device);
         Comparison comparison(*device);
         const glm::mat4 matrices[] = {some_matrix(),
                                       some_matrix(Projection::perspective, std::numeric_limits<double>::infinity()),
@@ -233,7 +233,7 @@ TEST_SUITE("geometry/clip_space") {
     }
     TEST_CASE(
         "back faces that are culled count all the same in meshes inside the clip planes, of one triangle or 50,000") {
-        CROFTON_REQUIRE_DEVICE(device);
+        CROFTON_REQUIRE_LAVAPIPE(device);
         Comparison comparison(*device);
         const glm::mat4 matrix = some_matrix();
         const glm::dvec3 ahead = glm::dvec3(1.0, 2.0, 3.0) + 20.0 * glm::normalize(glm::dvec3(0.3, -0.2, -1.0));
@@ -254,7 +254,7 @@ TEST_SUITE("geometry/clip_space") {
         CHECK(device->validation_messages().empty());
     }
     TEST_CASE("agrees with lavapipe for stretched, mirrored and far-off placements") {
-        CROFTON_REQUIRE_DEVICE(device);
+        CROFTON_REQUIRE_LAVAPIPE(device);
         Comparison comparison(*device);
         Camera camera;
         camera.position = {1e7, 20.0, -1e7};

@@ -12,7 +12,7 @@
 
 #include <crofton/render/resources.hpp>
 
-#include "lavapipe.hpp"
+#include "test_device.hpp"
 
 using namespace crofton;
 using namespace crofton::render;
@@ -160,8 +160,7 @@ TEST_SUITE("render/debug_labels") {
         }
         CHECK((plain->context().labels.set_name == nullptr));
         CHECK((plain->context().labels.begin == nullptr));
-        DeviceOptions options;
-        options.kind = DeviceKind::cpu;
+        DeviceOptions options = device_options();
         options.instance_extensions = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME};
         auto labelled = Device::create(options);
         REQUIRE(labelled);

@@ -5,7 +5,7 @@
 #include <error_of.hpp>
 #include <string>
 
-#include "lavapipe.hpp"
+#include "test_device.hpp"
 
 using namespace crofton;
 using namespace crofton::render;
@@ -46,8 +46,7 @@ TEST_SUITE("render/device") {
             return vkGetInstanceProcAddr(device->context().instance, "vkCreateDebugUtilsMessengerEXT") != nullptr;
         };
         CROFTON_REQUIRE_DEVICE(validated);
-        DeviceOptions options;
-        options.kind = DeviceKind::cpu;
+        DeviceOptions options = device_options();
         CHECK_FALSE(has_labels(options));
         options.instance_extensions = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME};
         CHECK(has_labels(options));
@@ -68,7 +67,7 @@ TEST_SUITE("render/device") {
         CHECK_FALSE(Device::create());
     }
     TEST_CASE("a device is found by part of its name in any case, and by CROFTON_DEVICE") {
-        CROFTON_REQUIRE_DEVICE(device);
+        CROFTON_REQUIRE_LAVAPIPE(device);
         DeviceOptions options;
         options.name = "LLVMpipe";
         const auto by_name = Device::create(options);

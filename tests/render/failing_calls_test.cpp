@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "lavapipe.hpp"
+#include "test_device.hpp"
 
 using namespace crofton;
 using namespace crofton::render;

@@ -3,7 +3,7 @@
 #include <crofton/render/clip_space.hpp>
 #include <cstdio>
 
-#include "lavapipe.hpp"
+#include "test_device.hpp"
 
 namespace {
 
@@ -50,7 +50,7 @@ int draw_crate(const crofton::TriangleMesh& crate_mesh, const glm::dvec3& transl
 
 TEST_SUITE("render/guide") {
     TEST_CASE("the example of the guide counts the triangles of a crate in view, and of one behind the camera") {
-        CROFTON_REQUIRE_DEVICE(device);
+        CROFTON_REQUIRE_LAVAPIPE(device);
         crofton::TriangleMesh square;  // two triangles across −z, a metre wide
         square.positions = {{-0.5f, -0.5f, 0.0f}, {0.5f, -0.5f, 0.0f}, {0.5f, 0.5f, 0.0f}, {-0.5f, 0.5f, 0.0f}};
         square.indices = {0, 1, 2, 0, 2, 3};

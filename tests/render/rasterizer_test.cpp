@@ -4,7 +4,7 @@
 #include <error_of.hpp>
 #include <random>
 
-#include "lavapipe.hpp"
+#include "test_device.hpp"
 
 using namespace crofton;
 using namespace crofton::render;

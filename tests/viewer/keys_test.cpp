@@ -50,6 +50,11 @@ TEST_SUITE("viewer/keys") {
         for (const pipeline::StatisticsColumn& column : pipeline::statistics_columns()) columns.insert(column.name);
         CHECK(rows == columns);
     }
+    TEST_CASE("triangles counted otherwise than predicted are a fault only where the device counts exactly") {
+        CHECK(viewer::clip_counts(8600, 8600, true) == "clipped: predicted 8 600 = 8 600 counted");
+        CHECK(viewer::clip_counts(8600, 8413, true) == "clipped: predicted 8 600 but 8 413 counted");
+        CHECK(viewer::clip_counts(8600, 8413, false) == "clipped: predicted 8 600, 8 413 counted");
+    }
     TEST_CASE("every key of the help does something: it changes a setting, the camera, time, or says something") {
         json events = json::array();
         int frame = 1;

@@ -77,7 +77,7 @@ Result<void> Session::build_interface() {
                          inset_size,
                          *depth,
                          depth_picture_,
-                         device_->name(),
+                         *device_,
                          is_recording_,
                          replaying_,
                          notices_,

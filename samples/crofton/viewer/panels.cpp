@@ -93,7 +93,7 @@ void legend(const PanelInput& input) {
 void heading(const PanelInput& input) {
     const double ms = input.frame_history.mean([](const HistoryEntry& e) { return e.frame_us * 1e-3; }, 30);
     ImGui::Text("%s: %.1f frames/s", input.loaded.source().name.c_str(), ms > 0.0 ? 1000.0 / ms : 0.0);
-    ImGui::TextDisabled("%s", input.device.c_str());
+    ImGui::TextDisabled("%s", input.device.name().c_str());
     const glm::dvec3& eye = input.eye.camera.position;
     ImGui::Text("eye %.1f %.1f %.1f m, %s %.3g m/s", eye.x, eye.y, eye.z,
                 input.eye.mode == CameraMode::orbit ? "in orbit," : "flying at", input.eye.speed);

@@ -3,6 +3,7 @@
 #pragma once
 #include <imgui.h>
 
+#include <crofton/render/device.hpp>
 #include <crofton/scene/scene.hpp>
 #include <deque>
 #include <optional>
@@ -61,7 +62,7 @@ struct PanelInput {
     ImVec2 inset_size;
     ImTextureID depth;  // null: none
     const DepthPicture& depth_picture;
-    const std::string& device;
+    const render::Device& device;
     bool recording, replaying;
     const std::deque<Notice>& notices;
     bool relayout;             // the window or the texts have another size: every panel goes back to its place

@@ -145,12 +145,16 @@ void table(const char* id, const PanelInput& input, std::span<const StatisticsRo
 void prediction(const PanelInput& input) {
     if (input.drawn == nullptr || !input.drawn->gpu) return;
     const Frame& frame = *input.drawn;
-    const bool same = frame.triangles_clipped == frame.gpu->clipping_primitives;
-    ImGui::TextColored(same ? ImVec4(0.4f, 0.9f, 0.4f, 1.0f) : ImVec4(1.0f, 0.5f, 0.3f, 1.0f),
-                       "clipped: predicted %s %s %s counted", with_thousands(frame.triangles_clipped).c_str(),
-                       same ? "=" : "but", with_thousands(frame.gpu->clipping_primitives).c_str());
+    const std::uint64_t predicted = frame.triangles_clipped, counted = frame.gpu->clipping_primitives;
+    const bool exactly = input.device.counts_exactly();
+    const ImVec4 same(0.4f, 0.9f, 0.4f, 1.0f), fault(1.0f, 0.5f, 0.3f, 1.0f);
+    ImGui::TextColored(predicted == counted ? same
+                       : exactly            ? fault
+                                            : ImGui::GetStyleColorVec4(ImGuiCol_Text),
+                       "%s", clip_counts(predicted, counted, exactly).c_str());
     if (ImGui::IsItemHovered())
-        ImGui::SetTooltip("triangles that clipping leaves, as computed on the CPU and as the device's counter says");
+        ImGui::SetTooltip("triangles that clipping leaves, as computed on the CPU and as the device's counter says%s",
+                          exactly ? "" : "; this device clips in its own way");
 }
 
 }  // namespace
@@ -163,6 +167,11 @@ std::string with_thousands(std::uint64_t value) {
         text += digits[i];
     }
     return text;
+}
+
+std::string clip_counts(std::uint64_t predicted, std::uint64_t counted, bool exactly) {
+    const char* between = predicted == counted ? " = " : exactly ? " but " : ", ";
+    return "clipped: predicted " + with_thousands(predicted) + between + with_thousands(counted) + " counted";
 }
 
 std::span<const StatisticsRow> main_rows() {
