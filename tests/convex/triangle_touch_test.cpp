@@ -174,18 +174,17 @@ TEST_SUITE("convex/triangle_touch") {
     }
 
     // Where a sliver's rounded normal leans by as much as the sliver is wide, its face parts nothing.
-    TEST_CASE("a box's corner over or below the middle of a thin sliver has the gap or depth of their faces") {
+    TEST_CASE("a box's corner just above the middle of a thin sliver has no point") {
         RandomBodies random(76);
         Manifolds found;
         for (int i = 0; i < 3000; ++i) {
-            const double width = std::pow(10.0, random.number(-9.5, -8.0));
+            const double width = std::pow(10.0, random.number(-8.5, -7.0));
             Surface s = triangle_of({{-1, 0, 0}, {1, 0, 0}, {random.number(-0.9, 0.9), width, 0}});
             s.build();
             const Body surface = s.body(), box = random.box();
             const RigidTransform at{random.rotation(), {}}, turned{random.rotation(), {}};
-            const double u = random.number(0.1, 0.8), height = random.number(0.01, 0.3) * width;
-            const glm::dvec3 up = at.rotation[2], third(s.mesh.positions[2]),
-                             middle = glm::dvec3(2.0 * u - 1.0, 0, 0) * 0.9 + 0.1 * third,
+            const double height = random.number(0.01, 0.15) * width;
+            const glm::dvec3 up = at.rotation[2], middle = glm::dvec3(s.mesh.positions[2]) / 3.0,
                              own = convex::support_point(box, glm::transpose(turned.rotation) * -up);
             const RigidTransform above{turned.rotation, at.rotation * middle - turned.rotation * own + height * up};
             if (intersects({surface, at}, {box, above})) continue;
