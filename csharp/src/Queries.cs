@@ -79,7 +79,7 @@ namespace Crofton {
         public Phase Phase;
         /// <summary>Unit, from first to second; 0 where no direction is known.</summary>
         public Vector3 Normal;
-        /// <summary>Moving the second by Depth * Normal parts them; 0 between meshes unless options ask for it.</summary>
+        /// <summary>Moving the second by Depth * Normal parts them; between meshes the deepest point's depth unless options ask for a way out.</summary>
         public double Depth;
         public ContactPoint[] Points;
         public MeshContact[] Triangles;

@@ -129,7 +129,8 @@ pub struct Contact<'a> {
     pub inside: Containment,
     /// Unit, from first to second; 0 where no direction is known.
     pub normal: [f64; 3],
-    /// Moving the second by `depth * normal` parts them; 0 between meshes unless options ask for it.
+    /// Moving the second by `depth * normal` parts them; between meshes the deepest point's depth
+    /// unless options ask for a way out.
     pub depth: f64,
     /// At most four.
     pub points: &'a [ContactPoint],

@@ -324,4 +324,19 @@ TEST_SUITE("bake/write_file") {
             CHECK(contents(path) == std::to_string(harmless));
         }
     }
+
+    TEST_CASE("a link to a file that is not there yet stays a link, and so does one that leads to it") {
+        const Folder folder;
+        const std::string link = folder.file("link"), first = folder.file("first");
+        std::filesystem::create_symlink("later", link);
+        std::filesystem::create_symlink(link, first);
+        REQUIRE(write(first, "new"));
+        CHECK(std::filesystem::is_symlink(first));
+        CHECK(std::filesystem::is_symlink(link));
+        CHECK(contents(folder.file("later")) == "new");
+        REQUIRE(write(link, "newer"));
+        CHECK(std::filesystem::is_symlink(link));
+        CHECK(contents(folder.file("later")) == "newer");
+        CHECK(folder.count() == 3);
+    }
 }

@@ -26,6 +26,11 @@ TEST_SUITE("capi/fit") {
         crofton_criterion criterion{};
         CHECK(crofton_criterion_for_rays(-1.0, &criterion) == CROFTON_OUT_OF_RANGE);
         CHECK(crofton_criterion_for_frustum(nullptr, &criterion) == CROFTON_INVALID_ARGUMENT);
+        auto camera = sized<crofton_camera>();
+        REQUIRE(crofton_camera_default(&camera) == CROFTON_OK);
+        camera.projection = 7;
+        CHECK(crofton_criterion_for_frustum(&camera, &criterion) == CROFTON_INVALID_ARGUMENT);
+        CHECK(criterion.volume_weight == 0.0);
         CHECK(crofton_fit_boxes(nullptr, 0, nullptr, &box) != CROFTON_OK);
     }
 

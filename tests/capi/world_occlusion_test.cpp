@@ -275,6 +275,11 @@ TEST_SUITE("capi/world occlusion") {
         two[1] = box;
         two[1].kind = 9;
         CHECK(crofton_world_set_occluders(world, s.mesh, two, 2) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_last_error_item() == 1);
+        two[1] = box;
+        two[1].position_count = 3;
+        CHECK(crofton_world_set_occluders(world, s.mesh, two, 2) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_last_error_item() == 1);
         two[1] = box;
         two[1].size = offsetof(crofton_occluder, mean_shadow);
         CHECK(crofton_world_set_occluders(world, s.mesh, two, 2) == CROFTON_WRONG_SIZE);

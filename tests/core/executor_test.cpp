@@ -57,6 +57,23 @@ TEST_SUITE("core/executor") {
             }
     }
 
+    TEST_CASE("a grain far above the count is one range, which one thread takes once") {
+        ThreadPool pool(4);
+        for (const std::size_t grain : {std::size_t{3}, std::size_t{1} << 62, std::size_t{1} << 63, ~std::size_t{0}})
+            for (int call = 0; call < 20; ++call) {
+                // The others are awake, and look for work while the first thread has the range.
+                std::atomic<int> work{0}, ranges{0};
+                pool.parallel_for(64, 1, [&](std::size_t, std::size_t, unsigned) {
+                    for (int i = 0; i < 500; ++i) ++work;
+                });
+                pool.parallel_for(3, grain, [&](std::size_t begin, std::size_t end, unsigned) {
+                    if (begin == 0 && end == 3 && ++ranges == 1)
+                        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+                });
+                REQUIRE(ranges == 1);
+            }
+    }
+
     TEST_CASE("a pool serves many short calls in a row") {
         ThreadPool pool(3);
         std::atomic<std::size_t> sum{0};

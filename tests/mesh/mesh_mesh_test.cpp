@@ -199,4 +199,29 @@ TEST_SUITE("mesh/mesh_mesh") {
         }
         CHECK(most > 2048);  // more than are sorted by their places
     }
+
+    TEST_CASE(
+        "under a pose that mirrors, contacts are those of the mirrored mesh, whose triangles look out as before") {
+        std::mt19937_64 random(12);
+        const TriangleMesh a = wavy_torus(1.0, 0.3, 0.2), b = wavy_torus(0.8, 0.4, 0.1);
+        TriangleMesh image = b;
+        for (glm::vec3& p : image.positions) p.z = -p.z;
+        for (std::size_t i = 0; i < image.indices.size(); i += 3) std::swap(image.indices[i + 1], image.indices[i + 2]);
+        const MeshTree of_a = tree_of(a), of_b = tree_of(b), of_image = tree_of(image);
+        for (int i = 0; i < 20; ++i) {
+            const RigidTransform pose = random_pose(random, 1.0);
+            RigidTransform mirrors = pose;
+            mirrors.rotation[2] = -mirrors.rotation[2];
+            Vector<MeshContact> found, expected;
+            contacts(of_a, of_b, mirrors, found);
+            contacts(of_a, of_image, pose, expected);
+            REQUIRE(found.size() == expected.size());
+            for (std::size_t k = 0; k < found.size(); ++k) {
+                REQUIRE(found[k].triangles == expected[k].triangles);
+                CHECK(glm::dot(found[k].normal, expected[k].normal) > 1.0 - 1e-9);
+                CHECK(glm::distance(found[k].segment.begin, expected[k].segment.begin) < 1e-9);
+                CHECK(glm::distance(found[k].segment.end, expected[k].segment.end) < 1e-9);
+            }
+        }
+    }
 }

@@ -240,4 +240,32 @@ TEST_SUITE("pvs/hidden") {
         CHECK(plain(Pvs::finish(bake, walls.placed, {}, pool).value().to_file().value()) ==
               plain(Pvs::finish(bake, walls.placed).value().to_file().value()));
     }
+
+    TEST_CASE("a body that its transform has flattened proves nothing, however it was turned") {
+        // An object in front of the flattened body, and eyes on both sides of it: those in front see the object.
+        Subject subject;
+        add_box(subject, box_around({0.0, 0.0, 5.0}, glm::dvec3(1e-4)));
+        const Cells cells = Cells::grid({{-1.0, -1.0, -2.0}, {1.0, 1.0, 1.0}}, {1, 1, 1}).value();
+        Bake bake = Bake::create(subject, cells, {.epsilon = 0.5}).value();
+        REQUIRE(bake.run({.lines = 1}).has_value());
+        REQUIRE_FALSE(bake.is_seen(0, 0));
+        occlude::FoundOccluder cube;
+        cube.box.half_extents = glm::vec3(1.0f);
+        occlude::FoundOccluder convex;
+        convex.kind = occlude::OccluderKind::convex;
+        for (const glm::dvec3& p : corners(cube.box)) convex.surface.positions.emplace_back(p);
+        convex.surface.indices = convex_hull(convex.surface.positions)->triangles;
+        sampling::Random random(3);
+        for (int i = 0; i < 400; ++i) {
+            const glm::dmat3 flat = i == 0
+                                        ? glm::dmat3(1, 0, 0, 0, 1, 0, -1, -1, 0)
+                                        : glm::dmat3(1, 0, 0, 0, 1, 0, 0, 0, 0) * sampling::rotation(random.point<3>());
+            for (const auto* occluder : {&cube, &convex}) {
+                const PlacedOccluder placed{occluder, {flat, {}}};
+                const Pvs sets = Pvs::finish(bake, {&placed, 1}).value();
+                REQUIRE(sets.find_cell({}) == 0);
+                CHECK(sets.state(0, 0) == PairState::unseen);
+            }
+        }
+    }
 }

@@ -142,6 +142,26 @@ TEST_SUITE("pvs/view") {
         CHECK(seen(heir));
     }
 
+    TEST_CASE("what moved before it ever rested is not judged by the set, also when it was hidden meanwhile") {
+        World world({.pairs = false});
+        const auto ball = [](double x) { return Sphere{{x, 0.0, -20.0}, 0.25}; };
+        const auto moved = world.add({.bound = ball(0.0)}).value(), rested = world.add({.bound = ball(1.0)}).value();
+        REQUIRE(world.update().has_value());
+        REQUIRE(world.set_bound(moved, ball(0.5)).has_value());
+        REQUIRE(world.update().has_value());
+        for (const bool hidden : {true, false}) {
+            REQUIRE(world.set_hidden(moved, hidden).has_value());
+            REQUIRE(world.set_hidden(rested, hidden).has_value());
+            REQUIRE(world.update().has_value());
+        }
+        for (int frame = 0; frame < 40; ++frame) REQUIRE(world.update().has_value());
+        CHECK(world.statistics().resting == 2);
+        const std::vector<std::uint64_t> none(1, 0);
+        VisibleObjects visible;
+        REQUIRE(world.view(Camera{}, visible, {.among = none}).has_value());
+        CHECK(std::vector(visible.ids().begin(), visible.ids().end()) == std::vector{moved.index});
+    }
+
     TEST_CASE("with occlusion the same objects are left out") {
         for (std::uint64_t seed = 1; seed <= 3; ++seed) {
             Town town(seed, 2000, 0.5);

@@ -42,6 +42,9 @@ TEST_SUITE("scene/planar_polygon") {
         p.polygon.points[2].x = std::numeric_limits<double>::quiet_NaN();
         CHECK(error_of(validate(p)).item == 2);
         p = square();
+        p.color.y = std::numeric_limits<float>::quiet_NaN();
+        CHECK(error_of(validate(p)).code == ErrorCode::non_finite);
+        p = square();
         p.v = 2.0 * p.u;
         CHECK(error_of(validate(p)).code == ErrorCode::degenerate);
         p.v = p.u + 1e-10 * square().v;  // nearly parallel

@@ -5,6 +5,8 @@
 #include <crofton/convex/query.hpp>
 #include <crofton/crofton.hpp>
 #include <error_of.hpp>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <map>
 #include <random>
 #include <set>
@@ -303,5 +305,72 @@ TEST_SUITE("world/bodies") {
         CHECK(kept > 100);
         CHECK(overlaps > 20);
         CHECK(hits > 20);
+    }
+
+    TEST_CASE("a body far from its own origin is told where it just touches a point") {
+        // A step of the last place of its coordinates wide; turned, and put back near the origin.
+        std::mt19937_64 random(5);
+        std::uniform_real_distribution<double> angle(0.0, 3.0), power(5.0, 22.0);
+        int touched = 0;
+        for (int i = 0; i < 500; ++i) {
+            const auto far = static_cast<float>(std::exp2(power(random)));
+            const float step = std::nextafter(far, 1e30f) - far;
+            std::vector<glm::vec3> points;
+            for (int k = 0; k < 8; ++k)
+                points.emplace_back(far + (k & 1 ? step : 0), 0.5f * far + (k & 2 ? step : 0), k & 4 ? step : 0);
+            const auto hull = convex::Hull::build(points);
+            if (!hull) continue;
+            const auto body = convex::Body::hull(*hull);
+            const glm::dquat turn(glm::dvec3(angle(random), 0.0, angle(random)));
+            RigidTransform pose{glm::mat3_cast(turn), {}};
+            pose.translation = -(pose.rotation * glm::dvec3(points[0]));
+            glm::dvec3 middle(0.0), top(-1e300, 0.0, 0.0);
+            for (const glm::vec3& p : points) {
+                const glm::dvec3 q = pose.rotation * glm::dvec3(p) + pose.translation;
+                middle += 0.125 * q;
+                if (q.x > top.x) top = q;
+            }
+            const auto point = convex::Body::box(glm::vec3(0.0f)).value();
+            const auto meets = [&](double t) {
+                return convex::intersects({body, pose}, {point, {glm::dmat3(1.0), middle + t * (top - middle)}});
+            };
+            double within = 0.0, beyond = 4.0;
+            if (!meets(within) || meets(beyond)) continue;
+            for (int k = 0; k < 80; ++k) {
+                const double t = 0.5 * (within + beyond);
+                (meets(t) ? within : beyond) = t;
+            }
+            World world;
+            REQUIRE(world.add({.bound = Obb{middle + within * (top - middle), glm::mat3(1.0f), {}}}).has_value());
+            REQUIRE(world.update().has_value());
+            Vector<ObjectRef> found;
+            world.overlap(body, pose, found);
+            CHECK(found.size() == 1);
+            ++touched;
+        }
+        CHECK(touched > 300);
+    }
+
+    TEST_CASE("boxes whose axes are left-handed or not quite orthonormal are no larger for bodies than they are") {
+        const auto s = std::sqrt(0.5f);
+        const auto ball = convex::Body::ball(0.05f).value();
+        for (int kind = 0; kind < 3; ++kind) {
+            CAPTURE(kind);
+            glm::mat3 axes(s, s, 0, -s, s, 0, 0, 0, 1);
+            if (kind == 1) axes[2] = -axes[2];
+            if (kind == 2) axes[0] *= 1.00002f, axes[1] += 3e-5f * axes[0];
+            const Obb box{{1.0, 2.0, 3.0}, axes, {1.0f, 1.0f, 1.0f}};
+            World world;
+            REQUIRE(world.add({.bound = box}).has_value());
+            REQUIRE(world.update().has_value());
+            // Beside the edge at 45 degrees, which a box along the coordinate axes would hold.
+            const RigidTransform beside{glm::dmat3(1.0), box.center + glm::dvec3(1.2, 1.2, 0.0)};
+            Vector<ObjectRef> found;
+            world.overlap(ball, beside, found);
+            CHECK(found.empty());
+            const auto gap = collide::distance(box, collide::Capsule{beside.translation, beside.translation, 0.05});
+            CHECK(world.closest(ball, beside, 9.0)->distance == doctest::Approx(gap.distance).epsilon(2e-4));
+            CHECK(world.closest(ball, beside, 9.0)->distance <= gap.distance * (1.0 + 1e-9));
+        }
     }
 }

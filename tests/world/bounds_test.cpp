@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Objects that are bounds alone.
 #include <doctest/doctest.h>
+#include <cmath>
 #include <crofton/crofton.hpp>
 #include <error_of.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 #include <limits>
+#include <oracle/random_boxes.hpp>
 #include <string>
 #include <vector>
 
@@ -284,5 +288,73 @@ TEST_SUITE("world/bounds") {
         for (int i = 4; i < 10; ++i) REQUIRE(world.remove(objects[std::size_t(i)]).has_value());
         REQUIRE(world.update().has_value());
         CHECK(world.pairs().size() == 6);
+    }
+
+    TEST_CASE("shapes that touch a box or pass it by an ulp are told as of the box alone, wherever it is") {
+        oracle::NearMisses random(31);
+        int touches = 0;
+        for (int i = 0; i < 600; ++i) {
+            const double far = std::exp2(random.number(0.0, 40.0)), radius = std::exp2(random.number(-5.0, 25.0));
+            const auto half = static_cast<float>(i % 2 ? std::exp2(random.number(-40.0, 2.0)) : 0.0);
+            const Obb box = box_at(far * random.direction(), half);
+            const int k = i % 3;
+            Sphere ball{box.center, radius};
+            ball.center[k] += (i % 4 < 2 ? 1.0 : -1.0) * (double{half} + radius);
+            World world;
+            REQUIRE(world.add({.bound = box}).has_value());
+            for (int update = 0; update < (i % 5 ? 1 : 4); ++update) REQUIRE(world.update().has_value());
+            for (int step = 0; step < 3; ++step) ball.center[k] = std::nextafter(ball.center[k], -kInfinity);
+            for (int step = 0; step < 6; ++step) {
+                const bool meets = collide::intersects(box, ball);
+                Vector<ObjectRef> found;
+                world.overlap(ball, found);
+                CHECK(found.size() == (meets ? 1 : 0));
+                world.overlap(collide::Capsule{ball.center, ball.center, radius}, found);
+                CHECK(found.size() == (meets ? 1 : 0));
+                touches += meets;
+                ball.center[k] = std::nextafter(ball.center[k], kInfinity);
+            }
+        }
+        CHECK(touches > 600);
+    }
+
+    TEST_CASE("a corner that axes at the limit of their deviation push out is met") {
+        // Axes a little long, all angles a little narrow: so the diagonal is long. Turned, so that it lies along x.
+        const double e = 0.9 * kMaxAxisDeviation / 2.0;
+        const glm::dmat3 narrow = (1.0 + e) * glm::dmat3(1.0, e, e, e, 1.0, e, e, e, 1.0);
+        const glm::dvec3 x = glm::normalize(glm::dvec3(1.0)), y = glm::normalize(glm::dvec3(1.0, -1.0, 0.0));
+        const glm::dmat3 turn = glm::transpose(glm::dmat3(x, y, glm::cross(x, y)));
+        const Obb box{{}, glm::mat3(turn * narrow), glm::vec3(1.0f)};
+        World world;
+        REQUIRE(world.add({.bound = box}).has_value());
+        REQUIRE(world.update().has_value());
+        Obb probe = box_at({}, 0.0f);
+        probe.center = corners(box)[7];
+        probe.center.x -= 1e-6;
+        REQUIRE(collide::intersects(box, probe));
+        Vector<ObjectRef> found;
+        world.overlap(probe, found);
+        CHECK(found.size() == 1);
+    }
+
+    TEST_CASE("a distance without end reaches from one side of all coordinates to the other") {
+        World world;
+        REQUIRE(world.add({.bound = box_at({9e29, 0.0, 0.0})}).has_value());
+        REQUIRE(world.update().has_value());
+        const auto nearest = world.closest(Sphere{{-9e29, 0.0, 0.0}, 1.0}, kInfinity);
+        REQUIRE(nearest.has_value());
+        CHECK(nearest->distance == doctest::Approx(1.8e30));
+        CHECK(!world.closest(Sphere{{-9e29, 0.0, 0.0}, 1.0}, 1e30));
+    }
+
+    TEST_CASE("balls smaller than any float meet where they touch") {
+        for (const double radius : {1e-46, 1e-45, 2e-45, 1e-40, 1e-38}) {
+            CAPTURE(radius);
+            World world;
+            REQUIRE(world.add({.bound = Sphere{{}, radius}}).has_value());
+            REQUIRE(world.add({.bound = Sphere{{2.0 * radius, 0.0, 0.0}, radius}}).has_value());
+            REQUIRE(world.update().has_value());
+            CHECK(world.pairs().size() == 1);
+        }
     }
 }

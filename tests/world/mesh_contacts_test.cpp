@@ -202,4 +202,62 @@ TEST_SUITE("world/mesh_contacts") {
         }
         CHECK(memory.bytes_in_use() == 0);
     }
+
+    TEST_CASE("a mirrored mesh touches as its mirror image does, scaled or not") {
+        // Cubes are their own mirror images.
+        const TriangleMesh cube = cube_mesh();
+        for (const bool box : {false, true})
+            for (const double width_a : {1.0, -1.0, 2.0, -2.0})
+                for (const double width_b : {1.0, -1.0, 2.0, -2.0}) {
+                    CAPTURE(box);
+                    CAPTURE(width_a);
+                    CAPTURE(width_b);
+                    World world;
+                    const auto mesh = world.add_mesh(described(cube)).value();
+                    const auto width = [](double x) { return glm::dmat3(x, 0, 0, 0, 1, 0, 0, 0, 1); };
+                    const glm::dvec3 place(std::abs(width_a) + std::abs(width_b) - 0.1, 0.3, 0.2);
+                    REQUIRE(world.add({.mesh = mesh, .transform = at({}, width(width_a))}).has_value());
+                    if (box) {
+                        const Obb other{place, glm::mat3(width_b > 0.0 ? 1 : -1, 0, 0, 0, 1, 0, 0, 0, 1),
+                                        glm::vec3(std::abs(width_b), 1.0, 1.0)};
+                        REQUIRE(world.add({.bound = other}).has_value());
+                    } else {
+                        REQUIRE(world.add({.mesh = mesh, .transform = at(place, width(width_b))}).has_value());
+                    }
+                    REQUIRE(world.update().has_value());
+                    REQUIRE(world.contacts().size() == 1);
+                    const Contact& contact = world.contacts()[0];
+                    CHECK(contact.normal.x > 0.99);
+                    CHECK(contact.depth == doctest::Approx(0.1).epsilon(0.01));
+                    // Triangles look out of the second body; their segments go round, seen from it.
+                    double around = 0.0;
+                    for (const mesh::MeshContact& found : contact.triangles) {
+                        const glm::dvec3 middle = 0.5 * (found.segment.begin + found.segment.end);
+                        CHECK(glm::dot(found.normal, middle - place) > 0.0);
+                        around += glm::cross(found.segment.begin - place, found.segment.end - place).x;
+                    }
+                    CHECK(around > 0.0);
+                }
+    }
+
+    TEST_CASE("rays hit what rotations and a flat scale have flattened in its plane") {
+        oracle::NearMisses random(24);
+        const TriangleMesh cube = cube_mesh();
+        const auto turn = [&] {
+            return glm::mat3_cast(
+                glm::dquat(glm::dvec3(random.number(0, 6), random.number(0, 6), random.number(0, 6))));
+        };
+        for (int i = 0; i < 200; ++i) {
+            World world;
+            const auto mesh = world.add_mesh(described(cube)).value();
+            const glm::dmat3 outer = turn();
+            const auto flat = world.add_node({.transform = at({}, outer * glm::dmat3(1, 0, 0, 0, 1, 0, 0, 0, 0))});
+            REQUIRE(world.add({.mesh = mesh, .node = flat.value(), .transform = at({}, turn())}).has_value());
+            REQUIRE(world.update().has_value());
+            const auto hit = world.raycast({5.0 * outer[2], -outer[2]});
+            REQUIRE(hit.has_value());
+            CHECK(hit->t == doctest::Approx(5.0).epsilon(1e-6));
+            CHECK(!world.raycast({5.0 * outer[2] + 4.0 * outer[0], -outer[2]}));
+        }
+    }
 }

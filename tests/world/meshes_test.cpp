@@ -223,4 +223,18 @@ TEST_SUITE("world/meshes") {
         CHECK(world.statistics().out_of_range == 0);
         CHECK(seen(world) == 1);
     }
+
+    TEST_CASE("an object has no transform to the world before its first update, also where its node was another's") {
+        World world;
+        const auto mesh = world.add_mesh(described(cube_mesh())).value();
+        const auto old = world.add({.mesh = mesh, .transform = at({5.0, 0.0, 0.0})}).value();
+        REQUIRE(world.update().has_value());
+        CHECK(world.transform_of(old)->translation.x == 5.0);
+        REQUIRE(world.remove(old).has_value());
+        const auto fresh = world.add({.mesh = mesh, .transform = at({7.0, 0.0, 0.0})}).value();
+        CHECK(error_of(world.transform_of(fresh)).code == ErrorCode::empty);
+        REQUIRE(world.set_hidden(fresh, true).has_value());
+        REQUIRE(world.update().has_value());
+        CHECK(world.transform_of(fresh)->translation.x == 7.0);
+    }
 }

@@ -24,12 +24,17 @@ tl::unexpected<Error> write_error(const std::string& path, const char* what, int
     return fail(ErrorCode::io, kNoItem, {path, ": ", what, ": ", std::strerror(reason)});
 }
 
-// The file that a link leads to; the path itself where it is none.
+// The file that a link leads to, which need not be there yet; the path itself where it is none, or leads in circles.
 std::string behind_links(const std::string& path) {
+    constexpr int kMostLinks = 40;  // as Linux follows
+    std::filesystem::path target = path;
     std::error_code error;
-    if (!std::filesystem::is_symlink(path, error)) return path;
-    const auto target = std::filesystem::weakly_canonical(path, error);
-    return error ? path : target.string();
+    for (int links = 0; std::filesystem::is_symlink(target, error); ++links) {
+        const auto next = std::filesystem::read_symlink(target, error);
+        if (error || links == kMostLinks) return path;
+        target = target.parent_path() / next;  // an absolute one takes its place
+    }
+    return target.string();
 }
 
 #if defined(CROFTON_POSIX_FILES)

@@ -20,6 +20,9 @@ crofton_status report(const Error& error, const char* function);
 // "argument fault", such as "radius is negative".
 crofton_status report_argument(crofton_status status, const char* function, const char* argument, const char* fault);
 
+// `status`, which has just been reported if it is a failure: that of item number `item`.
+[[nodiscard]] crofton_status of_item(crofton_status status, std::uint64_t item);
+
 [[nodiscard]] inline crofton_status status_of(const Result<void>& result, const char* function) {
     return result ? CROFTON_OK : report(result.error(), function);
 }

@@ -41,6 +41,11 @@ crofton_status report(const Error& error, const char* function) {
     return report(status, function, error.message.c_str(), error.item);
 }
 
+crofton_status of_item(crofton_status status, std::uint64_t item) {
+    if (status != CROFTON_OK) last_error.item = item;
+    return status;
+}
+
 }  // namespace crofton::capi
 
 const char* crofton_last_error() {

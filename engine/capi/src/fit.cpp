@@ -53,7 +53,7 @@ crofton_status crofton_criterion_minimal_perimeter(crofton_criterion* criterion)
 }
 
 crofton_status crofton_criterion_for_frustum(const crofton_camera* camera, crofton_criterion* criterion) {
-    CROFTON_CHECK(check_struct(camera, __func__));
+    CROFTON_CHECK(check_camera(camera, __func__));
     CROFTON_CHECK(check_pointer(criterion, __func__));
     const auto result = measure::for_frustum(to_camera(*camera));
     if (!result) return report(result.error(), __func__);

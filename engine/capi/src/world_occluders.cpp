@@ -26,11 +26,15 @@ void copy_bounds(const Aabb& bounds, double (&min)[3], double (&max)[3]) {
     }
 }
 
-crofton_status to_occluder(const crofton_occluder& given, const char* function, FoundOccluder& result) {
+crofton_status check_occluder(const crofton_occluder& given, const char* function) {
     if (given.kind > CROFTON_OCCLUDER_PATCH)
         return report(CROFTON_INVALID_ARGUMENT, function, "unknown kind of occluder");
     CROFTON_CHECK(check_array(given.positions, given.position_count, function, 3));
-    CROFTON_CHECK(check_array(given.indices, given.index_count, function));
+    return check_array(given.indices, given.index_count, function);
+}
+
+FoundOccluder to_occluder(const crofton_occluder& given) {
+    FoundOccluder result;
     result.kind = static_cast<occlude::OccluderKind>(given.kind);
     result.sides = given.is_one_sided ? occlude::Sides::front : occlude::Sides::both;
     result.box = to_box(&given.box);
@@ -45,7 +49,7 @@ crofton_status to_occluder(const crofton_occluder& given, const char* function, 
     if (given.has_eyes) result.eyes_within = to_bounds(given.eyes_min, given.eyes_max);
     result.mean_shadow = given.mean_shadow;
     result.gain = given.gain;
-    return CROFTON_OK;
+    return result;
 }
 
 occlude::FindOptions to_find_options(const crofton_find_options& given) {
@@ -83,11 +87,12 @@ crofton_status crofton_world_set_occluders(crofton_world* world, crofton_world_m
     const ExclusiveUse use(world, __func__);
     if (use.failed()) return use.status();
     CROFTON_CHECK(check_array(occluders, count, __func__));
-    Vector<FoundOccluder> given(count);
+    Vector<FoundOccluder> given;
     for (std::size_t i = 0; i < count; ++i) {
         crofton_occluder occluder;
-        CROFTON_CHECK(read_growing_at(occluders, i, __func__, occluder));
-        CROFTON_CHECK(to_occluder(occluder, __func__, given[i]));
+        CROFTON_CHECK(of_item(read_growing_at(occluders, i, __func__, occluder), i));
+        CROFTON_CHECK(of_item(check_occluder(occluder, __func__), i));
+        given.push_back(to_occluder(occluder));
     }
     return status_of(world->world.set_occluders(to_handle(mesh), given), __func__);
 }

@@ -99,6 +99,7 @@ void ThreadPool::parallel_for(std::size_t count, std::size_t grain, RangeTask bo
     // A nested call must not hand worker numbers to others while this worker's own body is still running.
     CROFTON_ASSERT(State::working_for != state_.get(), "parallel_for called from inside a body of the same pool");
     const std::lock_guard one_caller(state_->one_caller);
+    grain = std::min(grain, count);  // the same ranges, and `next` does not overflow
     State::Job job{body, count, grain, {}};
     bool wakes = false;
     {

@@ -122,9 +122,11 @@ void intersecting_triangles(const mesh::MeshTree& a, const mesh::MeshTree& b, co
 void contacts(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& b_to_a,
               Vector<MeshContact>& found, MeshStatistics* statistics) {
     found.clear();
+    // A pose that mirrors turns b's triangles round; their outer sides stay the outer ones.
+    const double side = glm::determinant(b_to_a.rotation) < 0.0 ? -1.0 : 1.0;
     for_each_hit(a, b, b_to_a, false, statistics, [&](const Hit& hit) {
         const Triangle first = triangle_of(hit.in_a, hit.lane_a), second = triangle_of(hit.in_b, hit.lane_b, b_to_a);
-        const glm::dvec3 normals[2] = {scaled_normal(first), scaled_normal(second)};
+        const glm::dvec3 normals[2] = {scaled_normal(first), side * scaled_normal(second)};
         MeshContact contact{hit.indices(), contact_segment(first, second, hit.edges), unit(normals[1])};
         SegmentOfContact& segment = contact.segment;
         if (glm::dot(glm::cross(normals[0], normals[1]), segment.end - segment.begin) < 0.0)

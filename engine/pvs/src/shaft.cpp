@@ -13,12 +13,19 @@ double at(const Plane& plane, const glm::dvec3& p) {
     return glm::dot(plane.normal, p) + plane.offset;
 }
 
-// The plane through p, its normal turned toward `inside`. False where it has no direction.
+// Relative to coordinates: what is thinner has no inside that can be told from their rounding.
+constexpr double kFlat = 1e-12;
+
+// The plane through p, its normal turned toward `inside`; both are points of the body. False where it has no direction.
+// False too where the body is flat: the normal might be turned the wrong way.
 bool add_plane(Blocker& body, glm::dvec3 normal, const glm::dvec3& p, const glm::dvec3& inside) {
     const double length = glm::length(normal);
     if (!(length > 0.0) || !std::isfinite(length)) return false;
     normal /= length;
-    if (glm::dot(normal, inside - p) < 0.0) normal = -normal;
+    const glm::dvec3 way = inside - p;
+    const double height = glm::dot(normal, way);
+    if (!(std::abs(height) > kFlat * (glm::length(p) + glm::length(inside)))) return false;
+    if (height < 0.0) normal = -normal;
     const double offset = -glm::dot(normal, p);
     if (!std::isfinite(offset)) return false;
     for (const Plane& plane : body.planes)

@@ -15,6 +15,8 @@ class BitSet {
     void resize(std::size_t size) {
         words_.resize((size + 63) / 64);
         summary_.resize((words_.size() + 63) / 64);
+        // Bits that lag name no words that are gone.
+        if (words_.size() % 64 != 0) summary_.back() &= (std::uint64_t{1} << words_.size() % 64) - 1;
     }
 
     void insert(std::size_t i) {

@@ -24,8 +24,9 @@ Result<void> validate(const PlanarPolygon& polygon) {
     for (std::size_t i = 0; i < points.size(); ++i)
         if (!std::isfinite(points[i].x) || !std::isfinite(points[i].y))
             return fail(ErrorCode::non_finite, i, {"polygon: point ", i, " is NaN or infinite"});
-    if (!is_finite(polygon.origin) || !is_finite(polygon.u) || !is_finite(polygon.v))
-        return fail(ErrorCode::non_finite, kNoItem, "polygon: its origin or an axis is NaN or infinite");
+    if (!is_finite(polygon.origin) || !is_finite(polygon.u) || !is_finite(polygon.v) ||
+        !is_finite(glm::dvec3(polygon.color)))
+        return fail(ErrorCode::non_finite, kNoItem, "polygon: its origin, an axis or its colour is NaN or infinite");
     if (!(glm::length(glm::cross(polygon.u, polygon.v)) > 1e-9 * glm::length(polygon.u) * glm::length(polygon.v)))
         return fail(ErrorCode::degenerate, kNoItem, "polygon: its axes are parallel or zero");
     return {};

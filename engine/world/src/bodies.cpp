@@ -37,6 +37,11 @@ TriangleMesh box_mesh(const glm::dmat3& linear, const glm::vec3& half) {
     return mesh;
 }
 
+// So that triangles whose vertices a mirroring map has moved look outward as before.
+void turn_round(TriangleMesh& mesh) {
+    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
+}
+
 // How large the nodes' boxes are beside the root: what queries cost grows with it.
 double spread_of(const mesh::MeshTree& tree) {
     double sum = 0.0;
@@ -145,6 +150,7 @@ void Bodies::build_own(const scene::Scene& scene, Own& own) const {
         turned.positions.reserve(mesh.positions.size());
         for (const glm::vec3& p : mesh.positions) turned.positions.push_back(glm::vec3(own.linear * glm::dvec3(p)));
     }
+    if (glm::determinant(own.linear) < 0.0) turn_round(turned);
     auto built = mesh::MeshTree::build(turned);
     detail::give_up_without_memory(built);
     own.is_usable = built.has_value();

@@ -5,6 +5,7 @@
 #include <crofton/convex/query.hpp>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 #include <limits>
 
 #include "world_state.hpp"
@@ -17,8 +18,11 @@ Aabb bounds_of(const convex::Body& body, const RigidTransform& pose) {
     const glm::dvec3 half = body.bounds().half_extents();
     glm::dvec3 half_size(0.0);
     for (int k = 0; k < 3; ++k) half_size += half[k] * glm::abs(pose.rotation[k]);
-    const glm::dvec3 center = pose.rotation * body.bounds().center() + pose.translation;
-    half_size = half_size * (1.0 + 1e-9) + 1e-12 * glm::abs(center);
+    const glm::dvec3 offset = body.bounds().center();
+    const glm::dvec3 center = pose.rotation * offset + pose.translation;
+    // The centre's sums round by 2^-53 of their parts, which may cancel.
+    const double parts = std::abs(offset.x) + std::abs(offset.y) + std::abs(offset.z);
+    half_size = half_size * (1.0 + 1e-9) + 1e-12 * glm::abs(center) + 1e-14 * (parts + glm::abs(pose.translation));
     return {center - half_size, center + half_size};
 }
 
@@ -54,14 +58,22 @@ World::State::Stand World::State::stand_of(std::uint32_t id) const {
         return {*convex::Body::ball(std::min(object.radius, static_cast<double>(convex::kMaxExtent))),
                 RigidTransform{glm::dmat3(1.0), box.center}};
     Stand stand{*convex::Body::box(glm::min(box.half_extents, glm::vec3(convex::kMaxExtent))), std::nullopt};
-    // A box whose axes are no rotation, which a flattened mesh may have, is the box around it.
     stand.pose = RigidTransform{glm::dmat3(box.axes), box.center};
-    if (!convex::validate_pose(*stand.pose)) {
-        const Aabb around = aabb_of(box);
-        const Obb aligned = obb_of(around);
-        stand = {*convex::Body::box(glm::min(aligned.half_extents, glm::vec3(convex::kMaxExtent))),
-                 RigidTransform{glm::dmat3(1.0), aligned.center}};
+    glm::dmat3& axes = stand.pose->rotation;
+    if (glm::determinant(axes) < 0.0) axes[2] = -axes[2];  // the same box
+    if (convex::validate_pose(*stand.pose)) return stand;
+    // Axes that are farther from a rotation than poses may be: the box along the nearest axes around it.
+    axes[0] = glm::normalize(axes[0]);
+    axes[1] = glm::normalize(axes[1] - glm::dot(axes[0], axes[1]) * axes[0]);
+    axes[2] = glm::cross(axes[0], axes[1]);
+    glm::vec3 half(0.0f);
+    for (int k = 0; k < 3; ++k) {
+        double along = 0.0;
+        for (int j = 0; j < 3; ++j)
+            along += static_cast<double>(box.half_extents[j]) * std::abs(glm::dot(axes[k], glm::dvec3(box.axes[j])));
+        half[k] = static_cast<float>(std::min(along * (1.0 + 0x1p-22), static_cast<double>(convex::kMaxExtent)));
     }
+    stand.body = *convex::Body::box(half);
     return stand;
 }
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <utility>
 
 #include "pair_order.hpp"
 
@@ -104,8 +106,10 @@ void ContactFinder::touch_triangles(const PosedTree& a, const PosedTree& b, Work
     }
     if (!touch.hit) return;
     touch.triangle_count = static_cast<std::uint32_t>(worker.found.size());
+    const bool mirrors = glm::determinant(a.pose.rotation) < 0.0;
     for (mesh::MeshContact contact : worker.found) {
         contact.segment = {transform(a.pose, contact.segment.begin), transform(a.pose, contact.segment.end)};
+        if (mirrors) std::swap(contact.segment.begin, contact.segment.end);  // to go round as MeshContact says
         contact.normal = a.pose.rotation * contact.normal;
         worker.triangles.push_back(contact);
     }

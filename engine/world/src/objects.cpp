@@ -25,8 +25,9 @@ Bound::Bound(const Aabb& aligned) : kind(BoundKind::aligned_box), box(obb_of(ali
 
 Bound::Bound(const Sphere& ball) : kind(BoundKind::ball), radius(ball.radius) {
     box.center = ball.center;
-    // A little more than the float's rounding.
-    box.half_extents = glm::vec3(static_cast<float>(ball.radius * (1.0 + 0x1p-22)));
+    // A little more than the float's rounding, which is 2^-150 at most where floats are subnormal.
+    const double enough = ball.radius > 0.0 ? ball.radius * (1.0 + 0x1p-22) + 0x1p-149 : ball.radius;
+    box.half_extents = glm::vec3(static_cast<float>(enough));
 }
 
 Result<void> World::State::check(ObjectHandle object, std::uint64_t item) const {

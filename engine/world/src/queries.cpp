@@ -23,8 +23,10 @@ namespace {
 Aabb bounds_of(const Obb& box) {
     return aabb_of(box);
 }
+// Sums round by 2^-53 of themselves.
 Aabb bounds_of(const Sphere& ball) {
-    return {ball.center - ball.radius, ball.center + ball.radius};
+    const glm::dvec3 half_size = ball.radius + 0x1p-50 * (glm::abs(ball.center) + ball.radius);
+    return {ball.center - half_size, ball.center + half_size};
 }
 Aabb bounds_of(const collide::Capsule& capsule) {
     Aabb bounds = bounds_of(Sphere{capsule.begin, capsule.radius});
@@ -64,9 +66,19 @@ collide::Distance gap_to(const collide::Capsule& shape, const world::Object& obj
     return gap;
 }
 
-// No further than rounding tells: boxes apart by less are near.
+// Whether a matrix can be inverted. A product of rotations and a flat scale may keep a determinant of rounding: 2^-52
+// of the product of its columns' lengths. The inverse of one that passes is off by a thousandth of the mesh's size at
+// most, and by rounding where nothing is nearly flat.
+bool is_invertible(const glm::dmat3& m) {
+    double sizes = 1.0;
+    for (int k = 0; k < 3; ++k) sizes *= std::abs(m[k].x) + std::abs(m[k].y) + std::abs(m[k].z);
+    return std::abs(glm::determinant(m)) > 1e-12 * sizes;
+}
+
+// No further than rounding tells: boxes apart by less are near. Axes deviate by 1e-4 each (kMaxAxisDeviation), which
+// lengthens a diagonal by 1.5e-4.
 double gap_between(const Aabb& a, const Obb& box) {
-    const glm::dvec3 radius(glm::length(glm::dvec3(box.half_extents)) * (1.0 + 1e-4));
+    const glm::dvec3 radius(glm::length(glm::dvec3(box.half_extents)) * (1.0 + 2e-4));
     const glm::dvec3 gap = glm::max(glm::max(box.center - radius - a.max, a.min - box.center - radius), 0.0);
     return std::max({gap.x, gap.y, gap.z});
 }
@@ -127,8 +139,8 @@ std::optional<ObjectHit> World::State::shape_hit(const Ray& ray, std::uint32_t i
     ObjectHit hit{table.handle(id), table.names.users[id], box_t, {}, kNoTriangle};
     if (const mesh::MeshTree* tree = bodies.mesh_tree_of(object)) {
         const scene::Transform& world = scene.world(scene.node_of(object.instance));
-        const glm::dmat3 inverse = glm::inverse(world.linear);
-        if (is_finite(inverse[0]) && is_finite(inverse[1]) && is_finite(inverse[2])) {
+        if (is_invertible(world.linear)) {
+            const glm::dmat3 inverse = glm::inverse(world.linear);
             const auto on_mesh = mesh::raycast(
                 Ray{inverse * (ray.origin - world.translation), inverse * ray.direction, ray.max_t}, *tree);
             if (!on_mesh) return std::nullopt;
@@ -217,15 +229,15 @@ void World::overlap(const collide::Capsule& shape, Vector<ObjectRef>& found, std
     state_->overlap(shape, found, layers);
 }
 
-// A limit that is rounded to 0 grows too.
-constexpr double kLeastGrowth = 1e-300;
+// A limit that is rounded to 0 grows too; one without end is beyond all that boxes and shapes may be.
+constexpr double kLeastGrowth = 1e-300, kFarthest = 1e300;
 
 // Within a small distance first: the tree is entered in no order of nearness.
 std::optional<ClosestObject> World::State::closest(const Aabb& bounds, double max_distance, std::uint32_t layers,
                                                    GapTo gap_to_object) const {
     std::optional<ClosestObject> nearest;
     if (!(max_distance >= 0.0)) return nearest;
-    max_distance = std::min(max_distance, kMaxCoordinate);
+    max_distance = std::min(max_distance, kFarthest);
     for (double limit = max_distance * 0x1p-12;; limit = std::min(std::max(8.0 * limit, kLeastGrowth), max_distance)) {
         double rest = limit;
         visit_near(bounds, limit, layers, [&](std::uint32_t id) {

@@ -70,6 +70,7 @@ void SpatialIndex::add_mover(ItemId item, const Obb& box, std::uint32_t last_mov
 void SpatialIndex::take(ItemId item) {
     const Item& taken = items_[item];
     if (taken.place == Place::moving) {
+        if (moving_.last_moved(taken.entry) != taken.last_moved) note_changed(item);
         const ItemId last = moving_.item(moving_.size() - 1);
         items_[last].entry = taken.entry;
         relisted_.push_back(item);
@@ -255,8 +256,6 @@ void SpatialIndex::attach(ItemId item) {
 void SpatialIndex::bring_to_rest(const Settings& settings, Changes& changes, Executor& executor) {
     rested_.clear();
     moving_.list_rested(now_, settings.updates_to_rest, rested_);
-    for (const ItemId item : rested_)
-        if (moving_.last_moved(items_[item].entry) != items_[item].last_moved) note_changed(item);
     const std::size_t items = tree_.item_count();
     const bool at_once = settings.rebuild_budget != 0 && items > kFewItems && is_built_at_once();
     const std::size_t most_waiting = std::max(kFewItems, at_once ? items / kWaitingToBuild : items);

@@ -59,6 +59,9 @@ Result<scene::Transform> World::transform_of(ObjectHandle object) const {
     const std::uint32_t instance = state_->table.objects[object.index].instance;
     if (instance == kNoIndex)
         return fail(ErrorCode::invalid_argument, object.index, "world: the object is a bound and has no transform");
+    if (!state_->index.has_box(object.index))
+        return fail(ErrorCode::empty, object.index,
+                    "world: the object has no transform to the world before the first update after it was added");
     return state_->scene.world(state_->scene.node_of(instance));
 }
 

@@ -159,9 +159,9 @@ CROFTON_API crofton_status crofton_world_set_layers(crofton_world* world, crofto
 CROFTON_API crofton_status crofton_world_set_collides_with(crofton_world* world, crofton_object object,
                                                            uint32_t layers);
 CROFTON_API crofton_status crofton_world_set_user(crofton_world* world, crofton_object object, uint64_t user);
-/* Gives an object a body, or with NULL takes it away, from the next update on. Pairs of objects that both have bodies
- * are in crofton_world_body_contacts instead of crofton_world_contact. The object's box stands for the body in pairs
- * and queries: what reaches beyond is missed. CROFTON_UNSUPPORTED: a half-space. */
+/* Gives an object a body, or with NULL takes it away: for pairs from the next update on, for queries at once. Pairs of
+ * objects that both have bodies are in crofton_world_body_contacts instead of crofton_world_contact. The object's box
+ * stands for the body in pairs and queries: what reaches beyond is missed. CROFTON_UNSUPPORTED: a half-space. */
 CROFTON_API crofton_status crofton_world_set_body(crofton_world* world, crofton_object object,
                                                   const crofton_body* body);
 
@@ -216,7 +216,7 @@ typedef struct crofton_object_contact {
     uint32_t phase;                        /* a crofton_contact_phase */
     uint32_t inside;                       /* a crofton_containment of first (a) and second (b) */
     double normal[3];                      /* unit, from first to second; 0 where no direction is known */
-    double depth;                          /* 0 between meshes unless options ask for it */
+    double depth;                          /* between meshes the deepest point's, unless options ask for a way out */
     const crofton_contact_point* points;   /* at most four, in the world; valid until the next update */
     const crofton_mesh_contact* triangles; /* of two meshes, or a mesh and a box; likewise */
     size_t point_count, triangle_count;
@@ -253,7 +253,7 @@ CROFTON_API crofton_status crofton_world_contains_mesh(const crofton_world* worl
 CROFTON_API crofton_status crofton_world_get_user(const crofton_world* world, crofton_object object, uint64_t* user);
 /* CROFTON_EMPTY before the first update after the object was added. */
 CROFTON_API crofton_status crofton_world_get_box(const crofton_world* world, crofton_object object, crofton_box* box);
-/* To the world's coordinates. Of an object with a mesh. */
+/* To the world's coordinates. Of an object with a mesh; CROFTON_EMPTY as above. */
 CROFTON_API crofton_status crofton_world_get_transform(const crofton_world* world, crofton_object object,
                                                        crofton_transform* transform);
 
@@ -357,7 +357,7 @@ CROFTON_API crofton_status crofton_world_cast(const crofton_world* world, const 
 
 /* Views of a World that leave out what is hidden: occluders in, what is seen out. docs/occlude.md is the guide. */
 
-/* The structs of this header may grow, as those of world.h. */
+/* The structs of this part may grow, as those of World. */
 
 typedef enum crofton_occluder_kind {
     CROFTON_OCCLUDER_BOX = 0,    /* inside a closed piece of the mesh */

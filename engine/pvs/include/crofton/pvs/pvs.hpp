@@ -145,7 +145,8 @@ class Bake {
     // All that is known, to be stored: the same bytes for the same lines.
     [[nodiscard]] Result<Vector<std::byte>> state() const;
     // Adds what a state of the same bake holds: a checkpoint, a part. Twice is once. Errors: damaged (parse); of
-    // another scene, other cells or options (invalid_argument); then nothing has changed.
+    // another scene, other cells or options (invalid_argument); then nothing has changed. States, here and below, and
+    // scene files are in memory that starts at a multiple of 64, as that of bake::MappedFile and Vector.
     [[nodiscard]] Result<void> add_state(std::span<const std::byte> state);
 
     struct State;

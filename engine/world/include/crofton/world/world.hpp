@@ -86,13 +86,14 @@ class World {
     Result<void> set_hidden(ObjectHandle object, bool hidden);    // in no answer until shown again
     Result<void> set_layers(ObjectHandle object, std::uint32_t layers);
     Result<void> set_collides_with(ObjectHandle object, std::uint32_t layers);
-    Result<void> set_user(ObjectHandle object, std::uint64_t user);
+    Result<void> set_user(ObjectHandle object, std::uint64_t user);  // at once, in pairs from the next update on
 
-    // Gives an object a body, or with nullptr takes it away, from the next update on. Pairs of objects that both have
-    // bodies are in body_contacts() instead of contacts(). What the body is a view of stays the caller's, alive and
-    // unchanged; to change it, set the body again. It stands where the object's transform, or the frame of its box or
-    // ball, puts it. Under a transform that is not rigid it touches nothing. The object's box stands for it in pairs
-    // and queries: what reaches beyond is missed. Error: a half-space, which has no box.
+    // Gives an object a body, or with nullptr takes it away: for pairs from the next update on, for queries at once.
+    // Pairs of objects that both have bodies are in body_contacts() instead of contacts(). What the body is a view of
+    // stays the caller's, alive and unchanged; to change it, set the body again. It stands where the object's
+    // transform, or the frame of its box or ball, puts it. Under a transform that is not rigid it touches nothing. The
+    // object's box stands for it in pairs and queries: what reaches beyond is missed. Error: a half-space, which has no
+    // box.
     Result<void> set_body(ObjectHandle object, const convex::Body* body);
 
     // A mesh must have triangles and pass validate(TriangleMesh).
@@ -123,8 +124,9 @@ class World {
     [[nodiscard]] bool contains(NodeHandle node) const;
     [[nodiscard]] std::size_t object_count() const;  // removed ones not counted
     [[nodiscard]] Result<std::uint64_t> user_of(ObjectHandle object) const;
-    [[nodiscard]] Result<Obb> box_of(ObjectHandle object) const;                     // as of the last update
-    [[nodiscard]] Result<scene::Transform> transform_of(ObjectHandle object) const;  // to the world; likewise
+    // As of the last update; before the first one after the object was added: an error (empty).
+    [[nodiscard]] Result<Obb> box_of(ObjectHandle object) const;
+    [[nodiscard]] Result<scene::Transform> transform_of(ObjectHandle object) const;  // to the world; of a mesh
 
     // Once a frame. Error: more than max_pairs pairs; then there are none, and all else is as it should be.
     Result<void> update(Executor& executor = serial_executor());
@@ -171,7 +173,8 @@ class World {
     void overlap(const Sphere& shape, Vector<ObjectRef>& found, std::uint32_t layers = ~0u) const;
     void overlap(const collide::Capsule& shape, Vector<ObjectRef>& found, std::uint32_t layers = ~0u) const;
     // The same for any body but a half-space, exactly; objects with bodies by these. Of bounds beyond
-    // convex::kMaxExtent that part alone. A pose that is not valid meets nothing.
+    // convex::kMaxExtent that part alone. A box whose axes deviate by more than 1e-6 is the least around it along the
+    // nearest orthonormal ones. A pose that is not valid meets nothing.
     void overlap(const convex::Body& shape, const RigidTransform& pose, Vector<ObjectRef>& found,
                  std::uint32_t layers = ~0u) const;
     // The first object that a moving body meets: as convex::cast against each one's body, ball or box at rest. Errors:
