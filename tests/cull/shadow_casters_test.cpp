@@ -199,6 +199,29 @@ TEST_SUITE("cull/shadow_casters") {
         CHECK(double(volume) > 1.7 * double(casting));
     }
 
+    TEST_CASE("a direction towards the sun may have any length") {
+        oracle::NearMisses random(7);
+        const ShadowScene scene(random, 0.0);
+        const glm::dvec3 toward(0.375, 1.0, 0.25);
+        cull::ShadowReceivers set;
+        Vector<std::uint32_t> expected, casters;
+        REQUIRE(set.set_sun(scene.view, scene.receivers, toward).has_value());
+        set.find_casters(scene.casters, expected);
+        CHECK(expected.size() > 0);
+        const Camera cascade = *cull::cascade_camera(Camera{}, 1.0, 2.0, toward, 1.0);
+        for (const int exponent : {160, 1020, -160, -540, -1060}) {
+            CAPTURE(exponent);
+            const glm::dvec3 scaled = std::ldexp(1.0, exponent) * toward;
+            REQUIRE(set.set_sun(scene.view, scene.receivers, scaled).has_value());
+            set.find_casters(scene.casters, casters);
+            CHECK(casters == expected);
+            const auto camera = cull::cascade_camera(Camera{}, 1.0, 2.0, scaled, 1.0);
+            REQUIRE(camera.has_value());
+            CHECK(camera->forward == cascade.forward);
+            CHECK(camera->position == cascade.position);
+        }
+    }
+
     TEST_CASE("setting receivers again allocates nothing") {
         oracle::NearMisses random(2);
         const ShadowScene scene(random, 0.0);

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/cull/lights.hpp>
+#include <crofton/geometry/finite.hpp>
 #include <glm/geometric.hpp>
 
 #include "exact/box_constraints.hpp"
+#include "shadows/direction.hpp"
 
 namespace crofton::cull {
 namespace {
@@ -269,14 +271,13 @@ class ReceiverPass {
 Result<void> ShadowReceivers::set_sun(const Frustum& view, std::span<const Obb> receivers,
                                       const glm::dvec3& toward_light, double shadow_length, std::uint32_t tiles) {
     if (auto valid = ReceiverPass::start(*this, view, receivers, tiles); !valid) return valid;
-    const double length = glm::length(toward_light);
-    if (!(length > 0.0 && length <= kMaxCoordinate) || !(shadow_length >= 0.0))
+    if (!is_finite(toward_light) || toward_light == glm::dvec3(0.0) || !(shadow_length >= 0.0))
         return fail(ErrorCode::invalid_argument, kNoItem,
                     "shadow receivers: a direction that is finite and not zero and a length of at least 0 are needed");
     is_sun_ = true;
     origin_ = view.origin;
     range_ = shadow_length;
-    ReceiverPass::set_axes(faces_[0], -toward_light);
+    ReceiverPass::set_axes(faces_[0], -of_moderate_length(toward_light));
     Rectangle2 picture{{{1e300, -1e300}, {1e300, -1e300}}};
     for (const Obb& receiver : receivers) {
         const Rectangle2 of = ReceiverPass(*this).rectangle_of(receiver, faces_[0]);
