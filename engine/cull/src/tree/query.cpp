@@ -95,6 +95,7 @@ void Query::run(std::span<const Obb> boxes, std::span<const std::uint32_t> layer
         for (std::size_t w = 0; w < chunk_words; ++w) {
             std::uint64_t visible = output.visible[w];
             if (!layer_masks.empty()) visible &= layer_bits(layer_masks.subspan(first + 64 * w));
+            if (view_.layer_mask == 0) visible = 0;  // without layer masks, too
             if (options_.limits) visible = wanted_bits(visible, boxes, layer_masks, first + 64 * w);
             if (first / 64 + w < options_.among.size()) visible &= options_.among[first / 64 + w];
             seen[first / 64 + w] = visible;
