@@ -92,6 +92,8 @@ TEST_SUITE("cull/shadow_casters") {
         CHECK(!set.set_point(view, receivers, {{0.0, 0.0, 0.0}, -1.0}).has_value());
         CHECK(!set.set_point(view, receivers, {{std::nan(""), 0.0, 0.0}, 1.0}).has_value());
         CHECK(!set.set_spot(view, receivers, {.axis = glm::vec3(0.0f)}).has_value());
+        CHECK(!set.set_spot(view, receivers, {.axis = {0.0f, HUGE_VALF, 0.0f}}).has_value());
+        CHECK(!set.set_spot(view, receivers, {.axis = {std::nanf(""), 1.0f, 0.0f}}).has_value());
         CHECK(!set.set_spot(view, receivers, {.cos_half_angle = 2.0f}).has_value());
         Frustum unknown = view;
         unknown.planes[0].offset = std::nan("");

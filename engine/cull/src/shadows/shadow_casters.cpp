@@ -320,10 +320,10 @@ Result<void> ShadowReceivers::set_spot(const Frustum& view, std::span<const Obb>
                                        std::uint32_t tiles) {
     const double cosine = static_cast<double>(light.cos_half_angle);
     const glm::dvec3 axis(light.axis);
-    if (!(cosine >= 0.0 && cosine <= 1.0) || !(glm::length(axis) > 0.0)) {
+    if (!(cosine >= 0.0 && cosine <= 1.0) || !is_finite(axis) || axis == glm::dvec3(0.0)) {
         face_count_ = 0;
         return fail(ErrorCode::invalid_argument, kNoItem,
-                    "shadow receivers: the spot's axis is zero or its cosine outside [0, 1]");
+                    "shadow receivers: the spot's axis is zero or not finite, or its cosine outside [0, 1]");
     }
     if (auto valid = set_point(view, {}, {light.apex, static_cast<double>(light.range)}, tiles); !valid) return valid;
     if (auto valid = ReceiverPass::start(*this, view, receivers, tiles); !valid) return valid;
