@@ -201,6 +201,25 @@ TEST_SUITE("cull/shadow_casters") {
         CHECK(double(volume) > 1.7 * double(casting));
     }
 
+    TEST_CASE("a beam that ends at the light is wanted, whichever way it points") {
+        const Frustum view = *frustum_of(Camera{});
+        const std::vector<Obb> receivers{{.center = {1.5, 0.0, -5.0}, .half_extents = glm::vec3(0.5f)}};
+        const glm::dvec3 light(0.0, 4.0, -5.0);
+        cull::ShadowReceivers of_point, of_spot;
+        REQUIRE(of_point.set_point(view, receivers, {light, 20.0}).has_value());
+        REQUIRE(of_spot.set_spot(view, receivers, {.apex = light, .axis = {0.0f, -1.0f, 0.0f}, .range = 20.0f}));
+        for (int axis = 0; axis < 3; ++axis)
+            for (const double side : {-1.0, 1.0}) {
+                Obb beam{.center = light};
+                beam.half_extents[axis] = 2.0f;
+                beam.center[axis] += 2.0 * side;
+                CHECK(of_point.wants(beam));
+                CHECK(of_spot.wants(beam));
+                beam.center[axis] += 4.0 * side;  // now it begins where the first one ends
+                CHECK(!of_point.wants(beam));
+            }
+    }
+
     TEST_CASE("a direction towards the sun may have any length") {
         oracle::NearMisses random(7);
         const ShadowScene scene(random, 0.0);

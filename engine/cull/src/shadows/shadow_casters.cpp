@@ -107,7 +107,7 @@ class ReceiverPass {
             const double size = std::fabs(d.x) + std::fabs(d.y) + std::fabs(d.z) +
                                 (set_.is_sun_ ? glm::length(box.center - set_.origin_) : 0.0);
             const double along = set_.is_sun_ ? 1.0 : glm::dot(d, face.axes[2]);
-            if (!set_.is_sun_ && along < 1e-3 * size) return {};
+            if (!set_.is_sun_ && !(along > 1e-3 * size)) return {};
             for (int k = 0; k < 2; ++k) {
                 const double at = glm::dot(d, face.axes[k]) / along, off = 4.0 * kOutward * size / along;
                 result.side[k].low = std::min(result.side[k].low, at - off);
