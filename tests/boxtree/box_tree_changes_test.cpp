@@ -207,6 +207,19 @@ TEST_SUITE("boxtree/box_tree changes") {
         CHECK(holds_all(tree));
     }
 
+    TEST_CASE("a step without bounds completes a rebuild, wherever it has come to") {
+        const oracle::Crowd crowd = oracle::random_crowd(40000, 0.0, 16);
+        for (const std::size_t first : {1u, 1000u, 45000u, 90000u, 170000u, 250000u, 330000u})
+            for (const std::size_t most : {~std::size_t{0}, ~std::size_t{0} / 2 + 1, ~std::size_t{0} / 4 + 1}) {
+                BoxTree tree = *BoxTree::build(crowd.boxes);
+                CAPTURE(first);
+                if (tree.rebuild_step(first)) continue;
+                int steps = 1;
+                while (steps < 9 && !tree.rebuild_step(most)) ++steps;
+                CHECK(steps < 9);
+            }
+    }
+
     TEST_CASE("items that move share leaves with each other alone, whether they were named or found out") {
         const oracle::Crowd crowd = oracle::random_crowd(40000, 0.0, 7);
         std::vector<ItemId> items;

@@ -244,6 +244,45 @@ TEST_SUITE("boxtree/stored") {
         check_refused_after([](Stored& s) { s.ranges[0].items = 700; }, "about its items");
     }
 
+    TEST_CASE("nodes in a row of single children are refused") {
+        check_refused_after(
+            [](Stored& s) {
+                const auto between = static_cast<boxtree::NodeId>(s.nodes.size());
+                const std::uint32_t below = s.nodes[0].child[0];
+                Node node = s.nodes[0];
+                node.count = 1;
+                node.parent = node.lane_in_parent = 0;
+                node.layers_every = node.layers_all[0];
+                for (unsigned lane = 1; lane < boxtree::kWidth; ++lane) {
+                    node.half_xy[lane] = boxtree::pair_of(-32767, -32767);
+                    node.middle_half_z[lane] = boxtree::pair_of(0, -32767);
+                }
+                s.nodes.push_back(node);
+                s.ranges.push_back(s.ranges[below]);
+                s.node_radii.push_back(s.node_radii[0]);
+                s.nodes[0].child[0] = s.nodes[below].parent = between;
+                s.nodes[below].lane_in_parent = 0;
+                ++s.header.height;
+            },
+            "fewer than two children");
+    }
+
+    TEST_CASE("nodes that promise other leaves than those below them are refused") {
+        // Leaves that exist and hold as many items: a query that accepts the whole node would list these.
+        const auto is_refused = [](auto change) {
+            for (const bool of_root : {true, false})
+                check_refused_after([&](Stored& s) { change(s.ranges[of_root ? 0 : s.nodes[0].child[0]]); },
+                                    "promises other leaves");
+        };
+        is_refused([](LeafRange& range) { range = {range.first, range.count - 1, 0}; });
+        is_refused([](LeafRange& range) { range = {range.first + 1, range.count - 1, 0}; });
+        is_refused([](LeafRange& range) { range = {range.first, 1, 0}; });
+        check_refused_after([](Stored& s) { std::swap(s.ranges[s.nodes[0].child[0]], s.ranges[s.nodes[0].child[1]]); },
+                            "promises other leaves");
+        // Of one child nothing is promised: then nothing can be of those above it.
+        check_refused_after([](Stored& s) { s.ranges[s.nodes[0].child[0]] = {}; }, "promises other leaves");
+    }
+
     TEST_CASE("leaves that lose items, name others or show other boxes are refused") {
         check_refused_after(
             [](Stored& s) {

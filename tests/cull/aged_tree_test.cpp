@@ -2,6 +2,7 @@
 // Views of trees that have lived.
 #include <doctest/doctest.h>
 #include <algorithm>
+#include <counting_memory.hpp>
 #include <crofton/boxtree/structure.hpp>
 #include <crofton/core/executor.hpp>
 #include <crofton/cull/cull.hpp>
@@ -153,5 +154,36 @@ TEST_SUITE("cull/aged trees") {
             if (cull::kCountStatistics) CHECK(visible.statistics().exact_tests == boxes.size());
         }
         CHECK(memory.overrun() == 0);
+    }
+
+    TEST_CASE("a tree that has doubled by insertions is asked by several threads within the memory that they have") {
+        testing::GuardedMemory memory;
+        {
+            ThreadPool pool(3);
+            AgedTree aged(oracle::random_crowd(36000, 0.0, 37));
+            oracle::NearMisses random(38);
+            while (aged.tree.item_count() < 72000) aged.insert(random, glm::dvec3(0.0));
+            for (int trial = 0; trial < 6; ++trial) check_view(aged, view_of(random, trial), CullMode::exact, pool);
+            check_view(aged, {Frustum{}}, CullMode::exact, pool);
+        }
+        CHECK(memory.overrun() == 0);
+    }
+
+    TEST_CASE("several threads take a few times the memory of one, of a tree that has doubled by insertions, too") {
+        const testing::CountingMemory counting;
+        ThreadPool pool(3);
+        AgedTree aged(oracle::random_crowd(36000, 0.0, 37));
+        oracle::NearMisses random(38);
+        while (aged.tree.item_count() < 72000) aged.insert(random, glm::dvec3(0.0));
+        const cull::View view{*frustum_of(Camera{.position = {0.0, 0.0, 200.0}})};
+        const auto taken = [&](Executor& executor) {
+            const std::size_t before = counting.bytes_in_use();
+            cull::VisibleSet visible;
+            cull::find_visible(aged.tree, view, visible, {}, executor);
+            CHECK(visible.size() > 60000);
+            return counting.bytes_in_use() - before;
+        };
+        const std::size_t of_one = taken(serial_executor());
+        CHECK(taken(pool) < 8 * of_one);
     }
 }

@@ -50,6 +50,12 @@ TEST_SUITE("cull/draw_limits") {
         CHECK(cull::is_worth_drawing({.radii = std::nan("")}, box, 0));
         CHECK(cull::is_worth_drawing({.least_radius = std::nan("")}, box, 0));
         CHECK(cull::is_worth_drawing({.item_distances = distances}, box, 0));
+        constexpr double kInfinity = std::numeric_limits<double>::infinity();
+        const float none[1] = {-std::numeric_limits<float>::infinity()};
+        CHECK(cull::is_worth_drawing({.radii = -kInfinity}, box, 0));
+        CHECK(cull::is_worth_drawing({.radii = -1e31}, box, 0));
+        CHECK(cull::is_worth_drawing({.item_distances = none}, box, 0));
+        CHECK(cull::is_worth_drawing({.layer_distances = std::vector<float>(32, none[0])}, box, 0));
         CHECK(cull::is_worth_drawing({.least_radius = 1.5}, box, 0));
         CHECK(!cull::is_worth_drawing({.least_radius = 1.75}, box, 0));
         CHECK(!cull::is_worth_drawing({.radii = -1.0}, box, 0));
@@ -308,6 +314,28 @@ TEST_SUITE("cull/draw_limits") {
                 cull::find_visible(tree, view, visible, {.limits = &limits});
                 REQUIRE(test::ranges::equal(visible.ids(), expected));
             }
+    }
+
+    TEST_CASE("boxes whose squares floats cannot hold are dropped within their own size") {
+        Camera camera;
+        cull::View view{*frustum_of(camera)};
+        view.frustum.plane_count = 5;
+        std::size_t dropped = 0;
+        for (const double radius : {1e19, 1.8e19, 1.9e19, 3e19, 1e25})
+            for (const double distance : {0.3, 0.6, 0.75, 0.9, 1.1}) {
+                const auto half = static_cast<float>(radius / std::sqrt(3.0));
+                const std::vector<Obb> boxes{
+                    {.center = {0.0, 0.0, -distance * radius}, .half_extents = glm::vec3(half)}};
+                const boxtree::BoxTree tree = *boxtree::BoxTree::build(boxes);
+                for (const double radii : {0.25, 0.5, 0.8, 1.0}) {
+                    const cull::DrawLimits limits{.radii = radii};
+                    cull::VisibleSet visible;
+                    cull::find_visible(tree, view, visible, {.limits = &limits});
+                    CHECK(visible.size() == (cull::is_worth_drawing(limits, boxes[0], 0) ? 1 : 0));
+                    dropped += visible.size() == 0;
+                }
+            }
+        CHECK(dropped > 40);
     }
 
     TEST_CASE("from an eye beyond all coordinates nothing is dropped") {

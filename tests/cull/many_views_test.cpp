@@ -44,6 +44,37 @@ TEST_SUITE("cull/many_views") {
         for (std::size_t i = 0; i < visible.size(); ++i) CHECK(expected.at(visible.ids()[i]) == visible.view_mask(i));
     }
 
+    TEST_CASE("a view of no layer sees nothing, of lists without layers as of trees") {
+        const oracle::Crowd crowd = oracle::random_crowd(5000, 0.0, 6);
+        const auto tree = boxtree::BoxTree::build(crowd.boxes);
+        cull::BoxSet set;
+        set.assign(crowd.boxes);
+        std::vector<cull::View> views(3, cull::View{*frustum_of(Camera{})});
+        views[1].layer_mask = 0;
+        views[2].layer_mask = 0;
+        views[2].frustum.plane_count = 0;  // vectors do not take it
+        std::vector<std::uint32_t> masks(crowd.boxes.size());
+        std::vector<cull::Statistics> statistics(views.size());
+        cull::find_visible(set, crowd.boxes, {}, views, masks, cull::CullMode::exact, serial_executor(), statistics);
+        cull::VisibleSet visible;
+        cull::find_visible(crowd.boxes, {}, views[0], visible);
+        CHECK(visible.size() > 0);
+        std::size_t seen = 0;
+        for (const std::uint32_t mask : masks) {
+            CHECK(mask <= 1);
+            seen += mask;
+        }
+        CHECK(seen == visible.size());
+        for (const cull::Statistics& of_view : statistics)
+            CHECK(of_view.boxes_tested == (cull::kCountStatistics ? crowd.boxes.size() : 0));
+        for (const auto& view : {views[1], views[2]}) {
+            cull::find_visible(crowd.boxes, {}, view, visible);
+            CHECK(visible.size() == 0);
+            cull::find_visible(*tree, view, visible);
+            CHECK(visible.size() == 0);
+        }
+    }
+
     TEST_CASE("a list for each view is what the view sees alone, with more threads than views and with fewer") {
         const oracle::Crowd crowd = oracle::random_crowd(3000, 0.0, 5);
         const auto tree = boxtree::BoxTree::build(crowd.boxes, crowd.layers);
@@ -119,6 +150,23 @@ TEST_SUITE("cull/shadow_volume") {
         CHECK(error_of(cull::shadow_volume(view, {std::nan(""), 0.0, 1.0})).code == ErrorCode::non_finite);
         CHECK(error_of(cull::shadow_volume(*cull::shadow_volume(view, {0.3, 1.0, 0.2}), {1.0, 0.0, 0.0})).code ==
               ErrorCode::invalid_argument);
+    }
+
+    TEST_CASE("a direction towards the light may have any length") {
+        const Frustum view = *frustum_of(Camera{});
+        const glm::dvec3 toward(0.375, 1.0, 0.25);
+        const Frustum expected = *cull::shadow_volume(view, toward);
+        REQUIRE(expected.plane_count > view.plane_count);
+        for (const int exponent : {1, 160, 1020, -1, -160, -540, -1060}) {
+            const auto volume = cull::shadow_volume(view, std::ldexp(1.0, exponent) * toward);
+            CAPTURE(exponent);
+            REQUIRE(volume.has_value());
+            REQUIRE(volume->plane_count == expected.plane_count);
+            for (std::uint32_t i = 0; i < expected.plane_count; ++i) {
+                CHECK(volume->planes[i].normal == expected.planes[i].normal);
+                CHECK(volume->planes[i].offset == expected.planes[i].offset);
+            }
+        }
     }
 
     TEST_CASE("a point belongs to the volume iff its way from the light meets the view") {

@@ -92,6 +92,8 @@ TEST_SUITE("cull/shadow_casters") {
         CHECK(!set.set_point(view, receivers, {{0.0, 0.0, 0.0}, -1.0}).has_value());
         CHECK(!set.set_point(view, receivers, {{std::nan(""), 0.0, 0.0}, 1.0}).has_value());
         CHECK(!set.set_spot(view, receivers, {.axis = glm::vec3(0.0f)}).has_value());
+        CHECK(!set.set_spot(view, receivers, {.axis = {0.0f, HUGE_VALF, 0.0f}}).has_value());
+        CHECK(!set.set_spot(view, receivers, {.axis = {std::nanf(""), 1.0f, 0.0f}}).has_value());
         CHECK(!set.set_spot(view, receivers, {.cos_half_angle = 2.0f}).has_value());
         Frustum unknown = view;
         unknown.planes[0].offset = std::nan("");
@@ -197,6 +199,48 @@ TEST_SUITE("cull/shadow_casters") {
         CHECK(casting > 500);
         CHECK(double(kept) < 1.3 * double(casting));
         CHECK(double(volume) > 1.7 * double(casting));
+    }
+
+    TEST_CASE("a beam that ends at the light is wanted, whichever way it points") {
+        const Frustum view = *frustum_of(Camera{});
+        const std::vector<Obb> receivers{{.center = {1.5, 0.0, -5.0}, .half_extents = glm::vec3(0.5f)}};
+        const glm::dvec3 light(0.0, 4.0, -5.0);
+        cull::ShadowReceivers of_point, of_spot;
+        REQUIRE(of_point.set_point(view, receivers, {light, 20.0}).has_value());
+        REQUIRE(of_spot.set_spot(view, receivers, {.apex = light, .axis = {0.0f, -1.0f, 0.0f}, .range = 20.0f}));
+        for (int axis = 0; axis < 3; ++axis)
+            for (const double side : {-1.0, 1.0}) {
+                Obb beam{.center = light};
+                beam.half_extents[axis] = 2.0f;
+                beam.center[axis] += 2.0 * side;
+                CHECK(of_point.wants(beam));
+                CHECK(of_spot.wants(beam));
+                beam.center[axis] += 4.0 * side;  // now it begins where the first one ends
+                CHECK(!of_point.wants(beam));
+            }
+    }
+
+    TEST_CASE("a direction towards the sun may have any length") {
+        oracle::NearMisses random(7);
+        const ShadowScene scene(random, 0.0);
+        const glm::dvec3 toward(0.375, 1.0, 0.25);
+        cull::ShadowReceivers set;
+        Vector<std::uint32_t> expected, casters;
+        REQUIRE(set.set_sun(scene.view, scene.receivers, toward).has_value());
+        set.find_casters(scene.casters, expected);
+        CHECK(expected.size() > 0);
+        const Camera cascade = *cull::cascade_camera(Camera{}, 1.0, 2.0, toward, 1.0);
+        for (const int exponent : {160, 1020, -160, -540, -1060}) {
+            CAPTURE(exponent);
+            const glm::dvec3 scaled = std::ldexp(1.0, exponent) * toward;
+            REQUIRE(set.set_sun(scene.view, scene.receivers, scaled).has_value());
+            set.find_casters(scene.casters, casters);
+            CHECK(casters == expected);
+            const auto camera = cull::cascade_camera(Camera{}, 1.0, 2.0, scaled, 1.0);
+            REQUIRE(camera.has_value());
+            CHECK(camera->forward == cascade.forward);
+            CHECK(camera->position == cascade.position);
+        }
     }
 
     TEST_CASE("setting receivers again allocates nothing") {

@@ -142,6 +142,18 @@ TEST_SUITE("occlude/find_visible") {
         CHECK(all.statistics().nodes_tested > 0);
     }
 
+    TEST_CASE("a view of no layer sees nothing, of a list without layers as of a tree") {
+        Random random(9);
+        const auto [scene, buffer, layers] = layered_crowd(random);
+        occlude::VisibleSet visible;
+        occlude::find_visible(scene.objects, {}, buffer, visible);
+        CHECK(visible.size() > 0);
+        occlude::find_visible(scene.objects, {}, buffer, visible, {.layer_mask = 0});
+        CHECK(visible.size() == 0);
+        occlude::find_visible(*boxtree::BoxTree::build(scene.objects), buffer, visible, {.layer_mask = 0});
+        CHECK(visible.size() == 0);
+    }
+
     TEST_CASE("of trees, lists and what moves: those in the layers and among the items that may be seen, no others") {
         Random random(8);
         const auto [scene, buffer, layers] = layered_crowd(random);

@@ -70,6 +70,45 @@ TEST_SUITE("occlude/hard cases") {
             }
     }
 
+    TEST_CASE("a box whose silhouette is the picture's rim, to the last digit, covers nothing") {
+        // Seen from beside, a box's far edge is drawn on the rim; all of the rest lies beyond it. Where the box is just
+        // not left out, its silhouette is the rim but for a few roundings. Its axes in any order, on either side.
+        std::size_t drawn = 0;
+        for (unsigned trial = 0; trial < 960; ++trial) {
+            const occlude::BufferSize size{320 + 8 * (trial % 100), 256};
+            Camera camera;
+            camera.fov_y = 0.8 + 1e-3 * trial;
+            camera.aspect = 1.25;
+            const auto view = *occlude::occlusion_view_of(camera);
+            const double half_width = 0.5 + 0.01 * (trial % 37), far = 10.0 + 0.37 * (trial % 50);
+            Obb box;
+            const glm::vec3 half(half_width, 1.0, 3.0);
+            const int first = static_cast<int>(trial) % 3, step = trial % 2 ? 1 : 2;
+            for (int k = 0; k < 3; ++k) {
+                const int j = (first + step * k) % 3;
+                box.axes[k] = glm::vec3(0.0f);
+                box.axes[k][j] = trial / 6 >> k & 1 ? -1.0f : 1.0f;
+                box.half_extents[k] = half[j];
+            }
+            auto buffer = *occlude::OcclusionBuffer::create(size);
+            const double side = trial / 48 % 2 ? -1.0 : 1.0;
+            const auto is_drawn = [&](double x) {
+                box.center = {side * x, 0.0, 3.0 - far};
+                buffer.draw(set_of({box}), view);
+                return buffer.statistics().pieces_drawn > 0;
+            };
+            double in = half_width, out = 1e3;
+            for (double x = 0.5 * (in + out); in < x && x < out; x = 0.5 * (in + out)) (is_drawn(x) ? in : out) = x;
+            for (int n = 0; n < 8; ++n, in = std::nextafter(in, 0.0)) {
+                if (!is_drawn(in)) continue;
+                ++drawn;
+                REQUIRE(buffer.count_covered() == 0);
+                REQUIRE(!buffer.hides(box_of({side * (in - half_width + 3.0), 0.0, -4.0 * far}, glm::vec3(0.5f))));
+            }
+        }
+        CHECK(drawn > 2000);
+    }
+
     TEST_CASE("an eye inside an occluder sees through it, and past it") {
         const std::vector<Obb> around = {box_of({0.0, 0.0, 0.0}, {2.0f, 2.0f, 2.0f})};
         const std::vector<Obb> both = {around[0], box_of({0.0, 0.0, -10.0}, {2.0f, 2.0f, 0.5f})};

@@ -18,7 +18,8 @@ namespace {
 constexpr std::size_t kSlotsPerItem = 16;  // slots cleared for the cost of one item added
 constexpr std::size_t kNodeLinked = 8, kLeafFilled = 32, kNodeBounded = 32;
 constexpr std::size_t kWordsPerItem = 16;
-constexpr std::size_t kItemMoved = 2, kItemPlaced = 64;  // of an item that is brought up to date
+constexpr std::size_t kMostBudget = ~std::size_t{0} / 64;  // so that no multiple of it, added to an index, overflows
+constexpr std::size_t kItemMoved = 2, kItemPlaced = 64;    // of an item that is brought up to date
 
 std::size_t steps(std::size_t budget, std::size_t cost) {
     return std::max<std::size_t>(budget / cost, 1);
@@ -87,6 +88,7 @@ void Rebuilder::note_changes(std::span<const ItemId> items) {
 
 Owner<Structure> Rebuilder::step(const Structure& current, Items& items, std::size_t budget) {
     last_step_ = {};
+    budget = std::min(budget, kMostBudget);
     if (!work_) {
         if (items.count_in_leaves() == 0) return {};
         work_ = Owner<Work>::make(current, items);

@@ -31,6 +31,21 @@ std::uint32_t items_without_gaps(LeafRange range, std::span<const std::uint8_t> 
     return (range.count - 1) * kWidth + leaf_counts[last];
 }
 
+// Whether the leaves below the children follow each other, as the node's range says.
+bool keeps_range(const Structure& structure, NodeId n) {
+    const Node& node = structure.nodes()[n];
+    const LeafRange range = structure.leaf_ranges()[n];
+    if (range.count == 0) return true;
+    std::uint64_t next = range.first;
+    for (std::uint32_t lane = 0; lane < node.count; ++lane) {
+        const std::uint32_t child = node.child[lane], id = child & ~kLeafBit;
+        const LeafRange below = child & kLeafBit ? LeafRange{id, 1} : structure.leaf_ranges()[id];
+        if (below.count == 0 || below.first != next) return false;
+        next += below.count;
+    }
+    return next == std::uint64_t{range.first} + range.count;
+}
+
 bool holds(const Node& node, const Axes& axes, unsigned lane, const Aabb& child) {
     if (child.is_empty()) return true;
     const Aabb bounds = bounds_of_lane(node, lane, axes);
@@ -110,11 +125,14 @@ Result<void> validate_node(const Structure& structure, NodeId n, Trust trust) {
     const LeafRange range = structure.leaf_ranges()[n];
     if (range.count > structure.leaves().size() || range.first > structure.leaves().size() - range.count)
         return broken(n, "a node's leaves do not exist");
+    if (!keeps_range(structure, n)) return broken(n, "a node promises other leaves than it has below");
     if (range.items != 0 && range.items != items_without_gaps(range, structure.leaf_counts()))
         return broken(n, "a node is wrong about its items");
     bool too_deep = false;
     if (!reaches_root(structure, n, too_deep))
         return broken(n, too_deep ? "a node is too deep, or in a cycle" : "a node is not below the root");
+    // Then there are no more nodes than leaves below any node, which queries rely on.
+    if (n != 0 && node.count < 2) return broken(n, "a node has fewer than two children");
     return {};
 }
 

@@ -60,7 +60,7 @@ class VisibleQuery {
             const std::size_t size = std::min<std::size_t>(64, boxes.size() - first);
             for (std::uint64_t rest = not_hidden(&boxes[first], nullptr, size); rest != 0; rest &= rest - 1) {
                 const std::size_t i = first + static_cast<std::size_t>(std::countr_zero(rest));
-                if ((layer_masks.empty() || (layer_masks[i] & options_.layer_mask)) &&
+                if (((layer_masks.empty() ? ~std::uint32_t{0} : layer_masks[i]) & options_.layer_mask) &&
                     cull::is_among(options_.among, static_cast<ItemId>(i)))
                     visible_.candidates_.push_back(static_cast<ItemId>(i));
             }

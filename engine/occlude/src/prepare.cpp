@@ -182,15 +182,17 @@ class Preparation {
         const double slope = -line.y / line.x, at_middle = -w / line.x;
         const double at_bottom = at_middle - slope * map_.half_height;
         const double at_top = at_middle + slope * map_.half_height;
-        double x = 0.0, y = 0.0;
-        if (std::fabs(at_bottom) <= map_.half_width) {
-            x = at_bottom;
-            y = -map_.half_height;
-        } else if (std::fabs(at_top) <= map_.half_width) {
-            x = at_top;
-            y = map_.half_height;
-        } else {
-            y = -at_middle / slope;
+        // A line that lies along the picture's rim may be a rounding beyond it at both ends: there it has no slope to
+        // divide by.
+        double x = at_bottom, y = -map_.half_height;
+        if (std::fabs(at_bottom) > map_.half_width) {
+            if (std::fabs(at_top) <= map_.half_width) {
+                x = at_top;
+                y = map_.half_height;
+            } else if ((at_bottom < 0.0) != (at_top < 0.0)) {
+                x = 0.0;
+                y = -at_middle / slope;
+            }
         }
         const bool left = line.x > 0.0;
         // In float: x, slope and y are rounded, a difference, a product and a sum are; |slope · difference| ≤ 2 width

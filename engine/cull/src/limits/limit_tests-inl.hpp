@@ -132,10 +132,11 @@ class LimitTester {
         return hn::Load(d, squares);
     }
 
-    // Whether distances are certainly small enough, and radii large enough, for all items. Squares that floats do not
-    // hold keep nothing.
-    HWY_INLINE MF within(VF square, VF radius_square, VF layer_square) const {
+    // Whether distances are certainly small enough, and radii large enough, for all items. Squares of distances that
+    // floats do not hold keep nothing; of radii they count as what floats hold.
+    HWY_INLINE MF within(VF square, VF radius_or_more, VF layer_square) const {
         const DF d;
+        const VF radius_square = hn::Min(radius_or_more, hn::Set(d, 3e38f));
         const VF safe = hn::Mul(square, hn::Set(d, 1.0f + 0x1p-10f));
         const VF radii = hn::Set(d, limits_.radii[0]);
         const MF near_enough = hn::Or(hn::Le(safe, hn::Mul(radius_square, radii)), hn::Eq(radii, hn::Inf(d)));

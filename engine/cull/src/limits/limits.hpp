@@ -2,6 +2,7 @@
 // Draw limits as queries use them.
 #pragma once
 #include <algorithm>
+#include <cmath>
 #include <crofton/cull/classify.hpp>
 #include <crofton/geometry/box.hpp>
 
@@ -14,7 +15,7 @@ namespace crofton::cull {
 
 // Whether a number limits anything.
 [[nodiscard]] inline bool counts(double limit) {
-    return limit <= kMaxCoordinate;
+    return std::fabs(limit) <= kMaxCoordinate;
 }
 
 // The farthest distance among the layers, or none.

@@ -115,6 +115,7 @@ class ListViews {
         : query_(query), layers_(layers), views_(views) {
         for (std::uint32_t v = 0; v < views.size(); ++v) {
             usable_[v] = is_usable(views[v].frustum);
+            if (layers.empty() && views[v].layer_mask == 0) blind_ |= 1u << v;
             (set_list_view<Bound>(views[v], kernel_views_[v]) ? vectors_ : singly_) |= 1u << v;
         }
     }
@@ -147,6 +148,7 @@ class ListViews {
                             .improper = own.improper};
             if (singly_ >> v & 1) chunk.ask_singly(v, count, layers, masks);
         }
+        for (std::size_t i = 0; blind_ != 0 && i < count; ++i) masks[i] &= ~blind_;
     }
 
   private:
@@ -178,6 +180,7 @@ class ListViews {
     KernelView kernel_views_[kMaxViews];
     bool usable_[kMaxViews];
     std::uint32_t vectors_ = 0, singly_ = 0;  // views that vectors can take, and the others
+    std::uint32_t blind_ = 0;                 // those of no layer, where the bounds have no masks
 };
 
 }  // namespace

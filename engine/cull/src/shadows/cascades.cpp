@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "lights/power.hpp"
+#include "shadows/direction.hpp"
 
 namespace crofton::cull {
 namespace {
@@ -68,13 +69,13 @@ Result<Camera> cascade_camera(const Camera& camera, double near, double far, con
     if (!frustum) return tl::unexpected(frustum.error());
     const Result<std::array<glm::dvec3, 8>> corners = frustum_corners(*frustum);
     if (!corners) return tl::unexpected(corners.error());
-    if (!is_finite(toward_light) || !(glm::length(toward_light) > 0.0))
+    if (!is_finite(toward_light) || toward_light == glm::dvec3(0.0))
         return fail(ErrorCode::degenerate, kNoItem, "cascade: the direction of the light is zero or not finite");
     if (!(caster_distance >= 0.0) || !std::isfinite(caster_distance))
         return fail(ErrorCode::out_of_range, kNoItem, "cascade: the distance of casters must be at least 0 and finite");
     Camera light;
     light.projection = Projection::orthographic;
-    light.forward = -glm::normalize(toward_light);
+    light.forward = -glm::normalize(of_moderate_length(toward_light));
     const glm::dvec3 a = glm::abs(light.forward);
     const glm::dvec3 other = a.x <= a.y && a.x <= a.z ? glm::dvec3(1, 0, 0)
                              : a.y <= a.z             ? glm::dvec3(0, 1, 0)

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/cull/lights.hpp>
+#include <crofton/geometry/finite.hpp>
 #include <glm/geometric.hpp>
 
 #include "exact/box_constraints.hpp"
+#include "shadows/direction.hpp"
 
 namespace crofton::cull {
 namespace {
@@ -105,7 +107,7 @@ class ReceiverPass {
             const double size = std::fabs(d.x) + std::fabs(d.y) + std::fabs(d.z) +
                                 (set_.is_sun_ ? glm::length(box.center - set_.origin_) : 0.0);
             const double along = set_.is_sun_ ? 1.0 : glm::dot(d, face.axes[2]);
-            if (!set_.is_sun_ && along < 1e-3 * size) return {};
+            if (!set_.is_sun_ && !(along > 1e-3 * size)) return {};
             for (int k = 0; k < 2; ++k) {
                 const double at = glm::dot(d, face.axes[k]) / along, off = 4.0 * kOutward * size / along;
                 result.side[k].low = std::min(result.side[k].low, at - off);
@@ -269,14 +271,13 @@ class ReceiverPass {
 Result<void> ShadowReceivers::set_sun(const Frustum& view, std::span<const Obb> receivers,
                                       const glm::dvec3& toward_light, double shadow_length, std::uint32_t tiles) {
     if (auto valid = ReceiverPass::start(*this, view, receivers, tiles); !valid) return valid;
-    const double length = glm::length(toward_light);
-    if (!(length > 0.0 && length <= kMaxCoordinate) || !(shadow_length >= 0.0))
+    if (!is_finite(toward_light) || toward_light == glm::dvec3(0.0) || !(shadow_length >= 0.0))
         return fail(ErrorCode::invalid_argument, kNoItem,
                     "shadow receivers: a direction that is finite and not zero and a length of at least 0 are needed");
     is_sun_ = true;
     origin_ = view.origin;
     range_ = shadow_length;
-    ReceiverPass::set_axes(faces_[0], -toward_light);
+    ReceiverPass::set_axes(faces_[0], -of_moderate_length(toward_light));
     Rectangle2 picture{{{1e300, -1e300}, {1e300, -1e300}}};
     for (const Obb& receiver : receivers) {
         const Rectangle2 of = ReceiverPass(*this).rectangle_of(receiver, faces_[0]);
@@ -319,10 +320,10 @@ Result<void> ShadowReceivers::set_spot(const Frustum& view, std::span<const Obb>
                                        std::uint32_t tiles) {
     const double cosine = static_cast<double>(light.cos_half_angle);
     const glm::dvec3 axis(light.axis);
-    if (!(cosine >= 0.0 && cosine <= 1.0) || !(glm::length(axis) > 0.0)) {
+    if (!(cosine >= 0.0 && cosine <= 1.0) || !is_finite(axis) || axis == glm::dvec3(0.0)) {
         face_count_ = 0;
         return fail(ErrorCode::invalid_argument, kNoItem,
-                    "shadow receivers: the spot's axis is zero or its cosine outside [0, 1]");
+                    "shadow receivers: the spot's axis is zero or not finite, or its cosine outside [0, 1]");
     }
     if (auto valid = set_point(view, {}, {light.apex, static_cast<double>(light.range)}, tiles); !valid) return valid;
     if (auto valid = ReceiverPass::start(*this, view, receivers, tiles); !valid) return valid;

@@ -32,6 +32,18 @@ void grow(Vector<T>& buffer, std::size_t size) {
     if (buffer.size() < size) buffer.resize(size);
 }
 
+// How many leaves a node one or two levels below the root may have below it. Where they are not consecutive, as many as
+// its children can have in a tree of this height.
+std::size_t most_leaves_below(const boxtree::Structure& structure, boxtree::NodeId n) {
+    if (const std::size_t leaves = structure.leaf_ranges()[n].count; leaves > 0) return leaves;
+    const boxtree::Node& node = structure.nodes()[n];
+    const std::size_t all = std::max(structure.leaves().size(), structure.nodes().size());
+    const unsigned depth = node.parent == 0 ? 1 : 2;
+    std::size_t most = node.count;
+    for (unsigned level = depth + 1; level < structure.height() && most < all; ++level) most *= boxtree::kWidth;
+    return std::min(most, all);
+}
+
 }  // namespace
 
 void leave_all_undecided(std::size_t count, ListKernelOutput& output) {
@@ -83,6 +95,7 @@ void Query::run(std::span<const Obb> boxes, std::span<const std::uint32_t> layer
         for (std::size_t w = 0; w < chunk_words; ++w) {
             std::uint64_t visible = output.visible[w];
             if (!layer_masks.empty()) visible &= layer_bits(layer_masks.subspan(first + 64 * w));
+            if (view_.layer_mask == 0) visible = 0;  // without layer masks, too
             if (options_.limits) visible = wanted_bits(visible, boxes, layer_masks, first + 64 * w);
             if (first / 64 + w < options_.among.size()) visible &= options_.among[first / 64 + w];
             seen[first / 64 + w] = visible;
@@ -213,9 +226,7 @@ void Query::run_parallel(const boxtree::BoxTree& tree, const TreeKernelInput& in
     // What each part can hold at most; 16 more for what vectors write past the end.
     const auto most = [&](std::uint64_t entry) {
         const auto child = static_cast<std::uint32_t>(entry >> 32);
-        if (child & boxtree::kLeafBit) return std::size_t{boxtree::kWidth};
-        const std::size_t leaves = structure.leaf_ranges()[child].count;
-        return boxtree::kWidth * (leaves > 0 ? leaves : std::max(structure.leaves().size(), structure.nodes().size()));
+        return boxtree::kWidth * (child & boxtree::kLeafBit ? 1 : most_leaves_below(structure, child));
     };
     std::size_t starts[kParts + 1] = {};
     const std::size_t parts = (tasks.count + kGrain - 1) / kGrain;
@@ -227,8 +238,7 @@ void Query::run_parallel(const boxtree::BoxTree& tree, const TreeKernelInput& in
     grow(visible_.part_inside_, starts[parts]);
     grow(visible_.part_straddling_, starts[parts]);
     grow(visible_.undecided_, starts[parts]);
-    // Below an entry there are no more nodes than leaves, if the builder made it; otherwise room for all of them is
-    // kept.
+    // Below an entry there are no more nodes than leaves.
     const auto work_size = [&](std::size_t p) { return (starts[p + 1] - starts[p]) / boxtree::kWidth * 2 + kPadding; };
     grow(visible_.work_, kWorkLists * (starts[parts] / boxtree::kWidth * 2 + kPadding * parts));
     static_assert(sizeof(SlotRun) == sizeof(visible_.runs_[0]));

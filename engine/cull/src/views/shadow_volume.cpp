@@ -4,6 +4,8 @@
 #include <crofton/geometry/finite.hpp>
 #include <glm/geometric.hpp>
 
+#include "shadows/direction.hpp"
+
 namespace crofton::cull {
 namespace {
 
@@ -43,12 +45,13 @@ Result<void> check(const Frustum& view, const glm::dvec3& light) {
 
 Result<Frustum> shadow_volume(const Frustum& view, const glm::dvec3& toward_light) {
     if (auto valid = check(view, toward_light); !valid) return tl::unexpected(valid.error());
-    const double length = glm::length(toward_light);
+    const glm::dvec3 direction = of_moderate_length(toward_light);
+    const double length = glm::length(direction);
     if (!(length > 0.0))
         return fail(ErrorCode::degenerate, kNoItem, "shadow volume: the direction of the light is zero");
     double at_light[Frustum::kMaxPlanes] = {};
     for (std::uint32_t i = 0; i < view.plane_count; ++i)
-        at_light[i] = glm::dot(view.planes[i].normal, toward_light / length);
+        at_light[i] = glm::dot(view.planes[i].normal, direction / length);
     return toward(view, at_light);
 }
 

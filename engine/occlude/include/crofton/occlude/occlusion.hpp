@@ -172,7 +172,7 @@ class OcclusionBuffer {
               Executor& executor = serial_executor());
 
     // True only if no point of the box is seen: each ray of the view that meets the box meets an occluder before it
-    // does. False where the box is outside the view, comes before the near plane, or is not valid.
+    // does. False where the box is outside the view, comes before the near plane, or is not finite.
     [[nodiscard]] bool hides(const Obb& box) const;
     // Bit i % 64 of word i / 64 for boxes[i]: as hides(). Requires one bit for each box.
     void find_hidden(std::span<const Obb> boxes, std::span<std::uint64_t> hidden,
