@@ -54,9 +54,10 @@ Nearest nearest_points(const Pair& pair, const PairCache* cache, double near, do
         }
         const double length = glm::length(s.nearest);
         // Rounding has stopped the descent. The direction may still get better: an error of it changes the length by
-        // its square alone. Round cores need that, as no exact search follows.
+        // its square alone. Round cores need that where the bounds are wide, as no exact search follows.
         if (!(length < last)) {
-            if (polytopes || !(length <= last * (1.0 + 0x1p-30))) break;
+            const bool close_enough = result.upper - result.lower <= 1e-9 * pair.size;
+            if (polytopes || close_enough || !(length <= last * (1.0 + 0x1p-30))) break;
         } else {
             last = length;
             result.simplex = s;
