@@ -328,4 +328,49 @@ TEST_SUITE("collide/broadphase") {
             for (Obb& box : boxes) box.center += step * random_vector(random);
         }
     }
+
+    TEST_CASE("after any error update_moved looks at all boxes") {
+        std::mt19937_64 random(21);
+        auto boxes = random_boxes(random, 300, 4.0);
+        Broadphase broadphase;
+        REQUIRE(broadphase.update(boxes).has_value());
+        for (int frame = 0; frame < 20; ++frame) {
+            std::vector<std::uint32_t> moved;
+            for (int i = 0; i < 10; ++i) {
+                moved.push_back(static_cast<std::uint32_t>(random() % boxes.size()));
+                boxes[moved.back()].center = boxes[random() % boxes.size()].center;
+            }
+            if (frame % 2 != 0) moved.push_back(300);
+            const std::vector<CollisionFilter> filters(frame % 2 != 0 ? 0 : 3);
+            REQUIRE_FALSE(broadphase.update_moved(boxes, moved, filters).has_value());
+            if (frame % 4 >= 2) REQUIRE_FALSE(broadphase.update(boxes, std::vector<CollisionFilter>(3)).has_value());
+            REQUIRE(broadphase.update_moved(boxes, {}).has_value());
+            CHECK(same(broadphase.pairs(), brute_force(boxes)));
+        }
+    }
+
+    TEST_CASE("where too many pairs are an error, those of the update before have ended") {
+        std::vector<Obb> boxes(64);
+        for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i].center.x = 1.5 * static_cast<double>(i);
+        for (Obb& box : boxes) box.half_extents = glm::vec3(1.0f);
+        const auto apart = boxes;
+        for (const bool few : {false, true}) {
+            Broadphase broadphase({.max_pairs = 63});
+            REQUIRE(broadphase.update(apart).has_value());
+            const auto before = brute_force(apart);
+            REQUIRE(before.size() == 63);
+            boxes = apart;
+            boxes[0].center.x = boxes[10].center.x;
+            const std::vector<std::uint32_t> moved{0, 1, 2, 3, 4, 5, 6};
+            for (std::size_t i = 1; i < 7; ++i) boxes[i].center = boxes[0].center;
+            if (!few) boxes[20].center = boxes[19].center;
+            REQUIRE_FALSE((few ? broadphase.update_moved(boxes, moved) : broadphase.update(boxes)).has_value());
+            CHECK(broadphase.pairs().empty());
+            CHECK(broadphase.began().empty());
+            CHECK(broadphase.stayed().empty());
+            CHECK(same(broadphase.ended(), before));
+            REQUIRE(broadphase.update_moved(apart, {}).has_value());
+            CHECK(same(broadphase.began(), before));
+        }
+    }
 }

@@ -254,4 +254,37 @@ TEST_SUITE("collide/tree_query") {
         visit_near(Aabb(), 1.0, tree, [&](boxtree::ItemId) { return static_cast<double>(++visits); });
         CHECK(visits == 0);
     }
+
+    TEST_CASE("bounds and distances without end are near to all, rays may be as long as numbers go") {
+        const oracle::Crowd crowd = crowd_of(300, 1e3, 31);
+        const boxtree::BoxTree tree = tree_of(crowd);
+        const auto count = [&](const Aabb& bounds, double distance) {
+            std::size_t visited = 0;
+            visit_near(bounds, distance, tree, [&](boxtree::ItemId) { return ++visited, distance; });
+            return visited;
+        };
+        constexpr double kMost = std::numeric_limits<double>::max(), kNoEnd = std::numeric_limits<double>::infinity();
+        for (const double distance : {1e31, 1e300, kMost, kNoEnd})
+            CHECK(count({glm::dvec3(1.0), glm::dvec3(2.0)}, distance) == crowd.boxes.size());
+        CHECK(count({glm::dvec3(-kMost), glm::dvec3(kMost)}, 0.0) == crowd.boxes.size());
+        CHECK(count({glm::dvec3(-kNoEnd), glm::dvec3(kNoEnd)}, 1.0) == 0);
+        NearMisses random(32);
+        std::size_t hits = 0;
+        for (int i = 0; i < 300; ++i) {
+            Ray ray = random_ray(random, crowd.boxes[random.index(300)].center, 5.0);
+            ray.direction /= glm::length(ray.direction);
+            const auto near = raycast(ray, tree);
+            for (const double length : {0x1p-500, 0x1p400, 0x1p600, 0x1p1000}) {
+                Ray scaled = ray;
+                scaled.direction *= length;
+                scaled.max_t /= length;
+                const auto far = raycast(scaled, tree);
+                REQUIRE(far.has_value() == near.has_value());
+                if (near) CHECK(far->item == near->item);
+                if (near) CHECK(far->t * length == doctest::Approx(near->t));
+            }
+            hits += near.has_value();
+        }
+        CHECK(hits > 50);
+    }
 }

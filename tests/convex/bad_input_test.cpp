@@ -141,4 +141,26 @@ TEST_SUITE("convex/bad input") {
             CHECK(contact_manifold({box, at({})}, {box, lost}, {.margin = 1.0}).count == 0);
         }
     }
+
+    TEST_CASE("a pose with one entry that is NaN or infinite meets nothing, wherever the entry is") {
+        const Body box = Body::box({1, 1, 1}).value();
+        const CompoundChild child{box, at({})};
+        const Compound compound = Compound::build({&child, 1}).value();
+        const Body bodies[] = {box,
+                               Body::ball(1).value(),
+                               Body::capsule(1, 0.5f).value(),
+                               Body::cylinder(1, 1).value(),
+                               Body::triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}).value(),
+                               Body::half_space({{0, 1, 0}, 0.5}).value(),
+                               Body::compound(compound)};
+        for (const double bad : {std::nan(""), HUGE_VAL})
+            for (const Body& body : bodies)
+                for (int i = 0; i < 12; ++i) {
+                    RigidTransform lost = at({0.2, 0.1, 0.0});
+                    CHECK(intersects({body, lost}, {box, at({})}));
+                    (i < 9 ? lost.rotation[i / 3][i % 3] : lost.translation[i - 9]) = bad;
+                    CHECK_FALSE(intersects({body, lost}, {box, at({})}));
+                    CHECK_FALSE(intersects({box, at({})}, {body, lost}));
+                }
+    }
 }

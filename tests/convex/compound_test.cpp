@@ -165,4 +165,43 @@ TEST_SUITE("convex/compound") {
         }
         CHECK(meeting > 10);
     }
+
+    TEST_CASE("a child far from the compound's origin meets what it meets alone, also where they only touch") {
+        RandomBodies random(7);
+        int meeting = 0;
+        for (int round = 0; round < 2000; ++round) {
+            const Body box = Body::box({1, 1, 1}).value();
+            const CompoundChild child{box, {random.rotation(), 1e6 * random.direction()}};
+            const Compound compound = Compound::build({&child, 1}).value();
+            RigidTransform pose{random.rotation(), {}};
+            pose.translation = random.direction() - pose.rotation * child.pose.translation;
+            const RigidTransform there = product(pose, child.pose);
+            RigidTransform other{round % 2 != 0 ? there.rotation : random.rotation(), 3.0 * random.direction()};
+            const Distance apart = distance({box, there}, {box, other});
+            const Penetration deep = penetration({box, there}, {box, other});
+            other.translation += deep.depth * deep.normal - apart.distance * apart.normal;
+            const bool meet = intersects({box, there}, {box, other});
+            CHECK(intersects({Body::compound(compound), pose}, {box, other}) == meet);
+            meeting += meet;
+        }
+        CHECK(meeting > 200);
+    }
+
+    TEST_CASE("a compound's cast far from the world's origin is that of its child, but for the place's rounding") {
+        RandomBodies random(8);
+        const Body box = Body::box({0.5f, 0.5f, 0.5f}).value();
+        for (int round = 0; round < 200; ++round) {
+            const CompoundChild child{box, {random.rotation(), random.direction()}};
+            const Compound compound = Compound::build({&child, 1}).value();
+            const RigidTransform pose{random.rotation(), glm::dvec3(1e10, -1e10, 1e10)},
+                there = product(pose, child.pose),
+                other{random.rotation(), pose.translation + 5.0 * random.direction()};
+            const Motion fly{2.0 * (pose.translation - other.translation), {}, {}};
+            const CastOptions close{.tolerance = 1e-9};
+            const Impact whole = cast({Body::compound(compound), pose}, {}, {box, other}, fly, close).value(),
+                         alone = cast({box, there}, {}, {box, other}, fly, close).value();
+            CHECK(whole.result == alone.result);
+            CHECK(std::abs(whole.time - alone.time) * 10.0 <= 5e-6);  // places are off by 2e-6
+        }
+    }
 }

@@ -154,4 +154,29 @@ TEST_SUITE("convex/height_field") {
         CHECK(impact.result == CastResult::hit);
         CHECK(impact.part_b.triangle / 2 % 1024 / 2 == doctest::Approx(300).epsilon(0.01));
     }
+
+    TEST_CASE("a triangle far from its own origin meets the field iff it meets one of its triangles") {
+        RandomBodies random(11);
+        const std::vector<float> heights(9, 0.0f);
+        const HeightField field = HeightField::build({3, 3, heights, {1, 1}, {}}).value();
+        int meeting = 0;
+        for (int round = 0; round < 2000; ++round) {
+            const glm::vec3 far(1e6 * random.direction());
+            const Body body = Body::triangle(far, far + glm::vec3(1, 0.5f, 0), far + glm::vec3(0, 1, 1)).value();
+            RigidTransform pose{random.rotation(), {}};
+            pose.translation =
+                glm::dvec3(random.number(0.5, 1.5), 0.0, random.number(0.5, 1.5)) - pose.rotation * glm::dvec3(far);
+            double lowest = HUGE_VAL;
+            for (int k = 0; k < 3; ++k)
+                lowest = std::min(lowest, (pose.rotation * body.vertex(k) + pose.translation).y);
+            pose.translation.y -= lowest;
+            bool meet = false;
+            for_triangles(field, [&](std::uint32_t, const Body& t) {
+                meet = meet || intersects({t, at({})}, {body, pose});
+            });
+            CHECK(intersects({Body::height_field(field), at({})}, {body, pose}) == meet);
+            meeting += meet;
+        }
+        CHECK(meeting > 200);
+    }
 }

@@ -171,4 +171,18 @@ TEST_SUITE("convex/hull") {
         CHECK(mass_properties(Body::ball(2).value()).value().inertia[1][1] ==
               doctest::Approx(0.4 * 4.0 * 32.0 / 3.0 * std::numbers::pi));
     }
+
+    TEST_CASE("no corner of a hull that was replaced is farther out than `excess`, where a step of float is large") {
+        RandomBodies random(6);
+        for (int round = 0; round < 40; ++round) {
+            const glm::dvec3 middle = (round % 2 != 0 ? 1e6 : 1e3) * random.direction();
+            std::vector<glm::vec3> points;
+            for (int i = 0; i < 100; ++i) points.emplace_back(middle + 2.0 * random.direction());
+            const Hull all = Hull::build(points).value(), few = Hull::build(points, {.max_vertices = 20}).value();
+            CHECK(few.excess() > 0.0);
+            const Body body = Body::hull(all);
+            for (const glm::vec3& v : few.vertices())
+                CHECK(closest_point({body, at({})}, glm::dvec3(v)).lower <= few.excess());
+        }
+    }
 }

@@ -367,4 +367,43 @@ TEST_SUITE("convex/manifold") {
             CHECK(area(m) >= 0.9 * area(fresh) - 1e-12);
         }
     }
+
+    TEST_CASE("a box next to a half-space has points iff they meet, however near") {
+        RandomBodies random(17);
+        int meeting = 0;
+        for (int i = 0; i < 2000; ++i) {
+            const Body ground = Body::half_space({random.direction(), random.number(-1, 1)}).value(),
+                       box = random.box();
+            const RigidTransform here{random.rotation(), random.direction()};
+            RigidTransform there{random.rotation(), random.direction()};
+            const Distance apart = distance({ground, here}, {box, there});
+            const Penetration deep = penetration({ground, here}, {box, there});
+            there.translation +=
+                deep.depth * deep.normal - apart.distance * apart.normal;  // they touch but for rounding
+            const bool meet = intersects({ground, here}, {box, there});
+            CHECK((contact_manifold({ground, here}, {box, there}).count > 0) == meet);
+            CHECK((contact_manifold({box, there}, {ground, here}).count > 0) == meet);
+            CHECK(contact_manifold({ground, here}, {box, there}, {.margin = 1e-9}).count > 0);
+            meeting += meet;
+        }
+        CHECK(meeting > 200);
+        CHECK(meeting < 1800);
+    }
+
+    TEST_CASE("a needle that sinks in near the rim leaves the face for the side that is nearer") {
+        RandomBodies random(18);
+        std::vector<glm::vec3> corners;
+        for (int i = 0; i < 8; ++i) corners.emplace_back(i & 1, i >> 1 & 1, i >> 2 & 1);
+        const Hull cube = Hull::build(corners).value();
+        const Body body = Body::hull(cube);
+        for (const glm::vec3& half : {glm::vec3(0, 1, 0), glm::vec3(0, 0, 0), glm::vec3(0.001f, 1, 0)}) {
+            const Body needle = Body::box(half).value();
+            PairCache cache;
+            const double y = 0.7 + static_cast<double>(half.y);
+            CHECK(contact_manifold({body, at({})}, {needle, at({0.5, y, 0.5})}, {}, &cache).normal.y == 1.0);
+            const Manifold m = contact_manifold({body, at({})}, {needle, at({0.99, y, 0.5})}, {}, &cache);
+            CHECK(m.normal.x == 1.0);
+            CHECK(m.depth == doctest::Approx(0.01 + static_cast<double>(half.x)));
+        }
+    }
 }

@@ -351,4 +351,54 @@ TEST_SUITE("convex/query") {
         CHECK(widest_gap <= 1e-9);
         CHECK(widest_depth <= 1e-5);
     }
+
+    TEST_CASE("one body at two poses is as deep in itself as its copy is, thinner than rounding of normals") {
+        RandomBodies random(9);
+        int overlapping = 0;
+        for (int i = 0; i < 3000; ++i) {
+            std::vector<glm::vec3> points;
+            const double y = std::pow(10.0, random.number(-8.5, -7.0)), z = std::pow(10.0, random.number(-8.5, -7.0));
+            const int count = 4 + random.index(8);
+            for (int k = 0; k < count; ++k)
+                points.emplace_back(random.number(-1, 1), y * random.number(-1, 1), z * random.number(-1, 1));
+            const Result<Hull> hull = Hull::build(points);
+            if (!hull) continue;
+            const Body body = Body::hull(*hull), copy = body;
+            const RigidTransform here{random.rotation(), {}};
+            RigidTransform there{here.rotation, 1e-8 * random.direction()};
+            const double turn = std::pow(10.0, random.number(-9.0, -1.0));
+            there.rotation = here.rotation * glm::mat3_cast(glm::angleAxis(turn, random.direction()));
+            const Penetration same = penetration({body, here}, {body, there}),
+                              other = penetration({body, here}, {copy, there});
+            CHECK(same.overlapping == other.overlapping);
+            CHECK(same.lower <= same.upper);
+            CHECK(same.lower == other.lower);
+            CHECK(same.upper == other.upper);
+            overlapping += same.overlapping;
+        }
+        CHECK(overlapping > 1000);
+    }
+
+    TEST_CASE("thin discs that nearly lie on each other and are apart by 2e-7 of the size do not meet") {
+        RandomBodies random(10);
+        int asked = 0;
+        for (int i = 0; i < 1500; ++i) {
+            const auto disc = [&] {
+                const auto height = static_cast<float>(std::pow(10.0, random.number(-4, -2)));
+                return Body::cylinder(height, static_cast<float>(random.number(0.05, 0.2))).value();
+            };
+            const Body a = disc(), b = disc();
+            const RigidTransform here{random.rotation(), {}};
+            const double turn = std::pow(10.0, random.number(-9, -1));
+            RigidTransform there{here.rotation * glm::mat3_cast(glm::angleAxis(turn, random.direction())),
+                                 std::pow(10.0, random.number(-4, -1.3)) * random.direction()};
+            const Penetration p = penetration({a, here}, {b, there});
+            if (!p.overlapping) continue;
+            const double size = a.reach() + b.reach() + glm::length(there.translation);
+            there.translation += p.normal * (p.upper + 2e-7 * size);
+            CHECK_FALSE(intersects({a, here}, {b, there}));
+            ++asked;
+        }
+        CHECK(asked > 300);
+    }
 }

@@ -251,4 +251,57 @@ TEST_SUITE("convex/surface_contact") {
         CHECK(step(at({0, 5, 0})) == 4);
         CHECK(points.empty());
     }
+
+    TEST_CASE("compounds slide over a floor of triangles and meet no inner edge, whichever of the two comes first") {
+        RandomBodies random(12);
+        const Surface s = ground(random, 24, 0.5, [](double, double) { return 0.0; });
+        const CompoundChild children[2] = {{Body::box({0.5f, 0.5f, 0.2f}).value(), at({0, 0, -0.3})},
+                                           {Body::box({0.5f, 0.5f, 0.2f}).value(), at({0, 0, 0.3})}};
+        const Compound compound = Compound::build(children).value();
+        // A mesh far away makes the whole one that has surfaces as well.
+        const CompoundChild mixed[2] = {children[0], {s.body(), at({0, 50, 0})}};
+        const Compound mixture = Compound::build(mixed).value();
+        Manifolds found;
+        for (const Sides sides : {Sides::front, Sides::both})
+            for (int i = 0; i < 1000; ++i) {
+                const Body floor = s.body(sides), body = Body::compound(i % 2 != 0 ? compound : mixture);
+                const RigidTransform pose =
+                    turned(random.number(0, 6.2), {random.number(-2, 2), 0.49, random.number(-2, 2)});
+                for (const double side : {1.0, -1.0}) {
+                    if (side > 0.0)
+                        contact_manifolds({floor, at({})}, {body, pose}, {.margin = 0.01}, found);
+                    else
+                        contact_manifolds({body, pose}, {floor, at({})}, {.margin = 0.01}, found);
+                    REQUIRE(found.all().size() == 1);
+                    CHECK(side * found.all()[0].normal.y >= 1.0 - 1e-9);
+                    CHECK(found.all()[0].depth == doctest::Approx(0.01));
+                    const ContactPoint& p = found.all()[0].points[0];
+                    CHECK((side > 0.0 ? p.part_b : p.part_a).child < 2);
+                }
+            }
+    }
+
+    TEST_CASE("front sides alone: a compound or a mesh that is below is left alone, whichever comes first") {
+        RandomBodies random(13);
+        const Surface s = ground(random, 16, 0.5, [](double, double) { return 0.0; });
+        const Body floor = s.body(Sides::front);
+        const CompoundChild child{Body::box({0.5f, 0.5f, 0.5f}).value(), at({})};
+        const Compound compound = Compound::build({&child, 1}).value();
+        Surface tooth;
+        tooth.mesh.positions = {{-0.5f, -0.5f, 0}, {0.5f, -0.5f, 0}, {0, 0.05f, 0.3f}};
+        tooth.mesh.indices = {0, 1, 2};
+        tooth.build();
+        Manifolds found;
+        for (const Body& b : {Body::compound(compound), tooth.body(), tooth.body(Sides::front)}) {
+            const double y = b.kind() == Kind::compound ? -0.45 : 0.0;
+            for (int i = 0; i < 50; ++i) {
+                const RigidTransform pose =
+                    turned(random.number(0, 6.2), {random.number(-2, 2), y, random.number(-2, 2)});
+                contact_manifolds({floor, at({})}, {b, pose}, {}, found);
+                for (const Manifold& m : found.all()) CHECK(m.normal.y > 0.0);
+                contact_manifolds({b, pose}, {floor, at({})}, {}, found);
+                for (const Manifold& m : found.all()) CHECK(m.normal.y < 0.0);
+            }
+        }
+    }
 }

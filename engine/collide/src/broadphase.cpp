@@ -4,6 +4,7 @@
 #include <atomic>
 #include <bit>
 #include <string>
+#include <utility>
 
 #include "bounds_meet.hpp"
 #include "box_lanes.hpp"
@@ -172,16 +173,23 @@ void Broadphase::State::keep_pairs_that_meet(std::span<const Obb> boxes, Vector<
     for (const BroadphaseWorker& worker : workers) statistics.boxes += worker.boxes;
 }
 
-Result<void> Broadphase::State::too_many_pairs() const {
+// `previous` are those of the update before; none are now.
+Result<void> Broadphase::State::drop_pairs() {
+    current = false;
+    statistics.rejected = static_cast<std::uint32_t>(rejected.size());
+    compare_pairs(previous, pairs, began, stayed, ended);
     return fail(ErrorCode::budget_exceeded, kNoItem,
                 {"broadphase: the bounds of more than ", options.max_pairs, " pairs meet"});
 }
 
+// After an error the pairs are no longer those of the last boxes: what moved in them is not known.
 Result<void> Broadphase::State::check(std::span<const Obb> boxes, std::span<const CollisionFilter> filters) {
+    const bool was_current = std::exchange(current, false);
     if (!filters.empty() && filters.size() != boxes.size())
         return fail(ErrorCode::invalid_argument, filters.size(), "broadphase: filters and boxes differ in number");
     if (boxes.size() >= 0xffffffffu)
         return fail(ErrorCode::out_of_range, boxes.size(), "broadphase: at most 2^32 - 2 boxes");
+    current = was_current;
     return {};
 }
 
@@ -208,7 +216,7 @@ Result<void> Broadphase::State::update_all(std::span<const Obb> boxes, std::span
         for (const BroadphaseWorker& worker : workers)
             rejected.insert(rejected.end(), worker.rejected.begin(), worker.rejected.end());
         std::sort(rejected.begin(), rejected.end());
-        if (!collect(executor)) return too_many_pairs();
+        if (!collect(executor)) return drop_pairs();
         sort_pairs(boxes.size(), filters);
         statistics.bound_pairs = pairs.size();
         keep_pairs_that_meet(boxes, pairs, executor);
@@ -232,9 +240,11 @@ Result<void> Broadphase::update_moved(std::span<const Obb> boxes, std::span<cons
     if (auto checked = s.check(boxes, filters); !checked) return checked;
     const bool few = moved.size() <= boxes.size() / kFewMovers && s.leaf_extent <= kWornOut * s.leaf_extent_when_sorted;
     if (!s.current || s.order.items().size() != boxes.size() || !few) return s.update_all(boxes, filters, executor);
-    if (!s.gather_movers(boxes.size(), moved))
+    if (!s.gather_movers(boxes.size(), moved)) {
+        s.current = false;
         return fail(ErrorCode::out_of_range, *std::max_element(moved.begin(), moved.end()),
                     "broadphase: an item in `moved` is no index of a box");
+    }
     return s.update_few(boxes, filters, executor);
 }
 

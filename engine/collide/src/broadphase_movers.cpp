@@ -80,16 +80,18 @@ bool Broadphase::State::find_candidates(std::span<const CollisionFilter> filters
     return true;
 }
 
-// The movers' pairs give way to those found.
-void Broadphase::State::replace_pairs() {
+// The movers' pairs give way to those found; false when there are too many then.
+bool Broadphase::State::replace_pairs() {
     kept.clear();
     lost.clear();
     for (const IdPair& pair : pairs) (is_moved[pair.first] | is_moved[pair.second] ? lost : kept).push_back(pair);
+    if (kept.size() + found.size() > options.max_pairs) return false;
     compare_pairs(lost, found, began, still, ended);
     pairs.resize(kept.size() + found.size());
     std::merge(kept.begin(), kept.end(), found.begin(), found.end(), pairs.begin());
     stayed.resize(kept.size() + still.size());
     std::merge(kept.begin(), kept.end(), still.begin(), still.end(), stayed.begin());
+    return true;
 }
 
 Result<void> Broadphase::State::update_few(std::span<const Obb> boxes, std::span<const CollisionFilter> filters,
@@ -99,18 +101,17 @@ Result<void> Broadphase::State::update_few(std::span<const Obb> boxes, std::span
     workers.resize(std::max<std::size_t>(workers.size(), executor.concurrency()));
     if (!nothing_to_do) {
         move_bounds(boxes);
-        const bool enough_room = find_candidates(filters);
+        bool enough_room = find_candidates(filters);
         statistics.bound_pairs = found.size();
         if (enough_room) {
             keep_pairs_that_meet(boxes, found, executor);
-            replace_pairs();
+            enough_room = replace_pairs();
         }
         for (const std::uint32_t item : movers) is_moved[item] = 0;
         if (!enough_room) {
             std::swap(pairs, previous);
             pairs.clear();
-            current = false;
-            return too_many_pairs();
+            return drop_pairs();
         }
     }
     statistics.box_pairs = pairs.size();

@@ -59,8 +59,8 @@ struct Broadphase::State {
     Vector<std::uint32_t> movers, mover_slots;
     Vector<IdPair> kept, lost, found, still;
 
-    [[nodiscard]] Result<void> too_many_pairs() const;
-    [[nodiscard]] static Result<void> check(std::span<const Obb> boxes, std::span<const CollisionFilter> filters);
+    [[nodiscard]] Result<void> drop_pairs();
+    [[nodiscard]] Result<void> check(std::span<const Obb> boxes, std::span<const CollisionFilter> filters);
     [[nodiscard]] Result<void> update_all(std::span<const Obb> boxes, std::span<const CollisionFilter> filters,
                                           Executor& executor);
     [[nodiscard]] Result<void> update_few(std::span<const Obb> boxes, std::span<const CollisionFilter> filters,
@@ -68,7 +68,7 @@ struct Broadphase::State {
     [[nodiscard]] bool gather_movers(std::size_t item_count, std::span<const std::uint32_t> moved);
     void move_bounds(std::span<const Obb> boxes);
     [[nodiscard]] bool find_candidates(std::span<const CollisionFilter> filters);
-    void replace_pairs();
+    [[nodiscard]] bool replace_pairs();
     [[nodiscard]] bool grow(SlotPairs& slots, BroadphaseWorker& worker) const;
     void refit(std::span<const Obb> boxes, Executor& executor);
     void bound_leaf(std::span<const Obb> boxes, std::size_t leaf, BroadphaseWorker& worker);

@@ -18,18 +18,20 @@ constexpr int kMortonBits = 9;              // per axis
 constexpr int kClassBits = 3;
 constexpr std::size_t kChunk = 4096;  // of the curve that is arranged anew
 
-bool all_finite(const Obb& box) {
-    return std::isfinite(box.center.x) && std::isfinite(box.center.y) && std::isfinite(box.center.z) &&
-           std::isfinite(box.half_extents.x) && std::isfinite(box.half_extents.y) && std::isfinite(box.half_extents.z);
+// Boxes beyond are invalid, and differences of theirs may be infinite.
+bool is_ordered(const Obb& box) {
+    return std::abs(box.center.x) <= kMaxCoordinate && std::abs(box.center.y) <= kMaxCoordinate &&
+           std::abs(box.center.z) <= kMaxCoordinate && std::isfinite(box.half_extents.x) &&
+           std::isfinite(box.half_extents.y) && std::isfinite(box.half_extents.z);
 }
 
-// Values of `measure` over an even sample of the boxes that are finite; empty when there are none.
+// Values of `measure` over an even sample of the boxes that have a place; empty when there are none.
 template <class Values, class Measure>
 void sample(std::span<const Obb> boxes, std::size_t count, Values& values, Measure measure) {
     values.clear();
     const std::size_t step = std::max<std::size_t>(1, boxes.size() / count);
     for (std::size_t i = 0; i < boxes.size() && values.size() < count; i += step)
-        if (all_finite(boxes[i])) values.push_back(measure(boxes[i]));
+        if (is_ordered(boxes[i])) values.push_back(measure(boxes[i]));
 }
 
 template <class Values, class Measure>
@@ -97,7 +99,7 @@ void SpaceOrder::sort(std::span<const Obb> boxes) {
     for (std::size_t n = 0; n < boxes.size(); ++n) {
         const Obb& box = boxes[n];
         std::uint32_t key = 0;
-        if (all_finite(box)) {
+        if (is_ordered(box)) {
             std::uint32_t cell[3];
             for (int i = 0; i < 3; ++i)
                 cell[i] =
@@ -146,7 +148,7 @@ void SpaceOrder::arrange(std::span<const Keyed> chunk, std::span<const Obb> boxe
         const Obb& box = boxes[chunk[n].item];
         places[n].item = chunk[n].item;
         for (int i = 0; i < 3; ++i)
-            places[n].center[i] = all_finite(box) ? static_cast<float>(box.center[i] - origin[i]) : 0.0f;
+            places[n].center[i] = is_ordered(box) ? static_cast<float>(box.center[i] - origin[i]) : 0.0f;
     }
     std::array<Range, 32> stack;
     std::size_t height = 0;

@@ -7,6 +7,7 @@
 #include <crofton/boxtree/structure.hpp>
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/collide/narrow_phase.hpp>
+#include <crofton/geometry/finite.hpp>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -115,7 +116,8 @@ void collect(const boxtree::BoxTree& tree, const Body& body, const Aabb& bounds,
 // Rounded outward: the sums by 2^-53 of themselves.
 Aabb grown(const Aabb& bounds, double distance) {
     if (distance == 0.0) return bounds;
-    const glm::dvec3 by = distance + 1e-15 * (glm::abs(bounds.min) + glm::abs(bounds.max) + distance);
+    const double near = std::min(distance, 1e300);  // which may be infinite
+    const glm::dvec3 by = near + 1e-15 * (glm::abs(bounds.min) + glm::abs(bounds.max) + near);
     return {bounds.min - by, bounds.max + by};
 }
 
@@ -129,13 +131,15 @@ Aabb around(const glm::dvec3& center, const glm::dvec3& half_size) {
 // moves across before it leaves the filter's range is below the filter's error bound.
 class Traveller {
   public:
-    explicit Traveller(const Ray& ray)
-        : origin_(ray.origin), length_(glm::length(ray.direction)), speed_(ray.direction / length_) {
+    explicit Traveller(const Ray& ray) : origin_(ray.origin), unit_(unit_of(ray.direction)) {
+        const glm::dvec3 direction = ray.direction / unit_;
+        length_ = glm::length(direction);
+        speed_ = direction / length_;
         for (int k = 0; k < 3; ++k) inverse_[static_cast<std::size_t>(k)] = inverse_of(speed_[k]);
     }
     // In the filter's distances; what it rounds is below the filter's error bound.
     [[nodiscard]] float distance(double t) const {
-        return static_cast<float>(std::min(t * length_, static_cast<double>(kFar)));
+        return static_cast<float>(std::min(t * unit_ * length_, static_cast<double>(kFar)));
     }
     // Along a node's axes where they are not the world's: what turning rounds is below the filter's error bound as
     // well.
@@ -167,8 +171,14 @@ class Traveller {
         return static_cast<float>(std::abs(speed) < 1e-18 ? std::copysign(1e18, speed) : 1.0 / speed);
     }
 
+    // A power of two, by which squares of the direction do not leave the range of doubles.
+    [[nodiscard]] static double unit_of(const glm::dvec3& direction) {
+        const glm::dvec3 m = glm::abs(direction);
+        return std::max(m.x, std::max(m.y, m.z)) < 0x1p500 ? 1.0 : 0x1p600;
+    }
+
     glm::dvec3 origin_;
-    double length_;
+    double unit_, length_;  // of the direction; the length in units
     glm::dvec3 speed_;
     std::array<float, 3> inverse_;
 };
@@ -182,8 +192,8 @@ struct RayStep {
 
 void visit_near(const Aabb& bounds, double distance, const boxtree::BoxTree& tree, NearVisitor visit,
                 std::uint32_t layers) {
+    if (!is_finite(bounds.min) || !is_finite(bounds.max)) return;
     Aabb near = grown(bounds, distance);
-    if (!std::isfinite(near.min.x + near.min.y + near.min.z + near.max.x + near.max.y + near.max.z)) return;
     const boxtree::Structure& structure = tree.structure();
     Stack<std::uint32_t> stack(structure);
     stack.push(0);

@@ -42,6 +42,7 @@ Result<Compound> Compound::build(std::span<const CompoundChild> children) {
             if (parts >= (std::uint64_t{1} << 31))
                 return fail(ErrorCode::out_of_range, i, "compound: 2^31 parts or more");
             if (inner != nullptr) result.depth_ = std::max(result.depth_, inner->depth() + 1);
+            result.has_surfaces_ = result.has_surfaces_ || has_surfaces(child.body);
             boxes.push_back(bounds_of(box_around({child.body, child.pose}, {})));
         }
         result.part_count_ = static_cast<std::uint32_t>(parts);
@@ -89,6 +90,8 @@ class CompoundSearch {
     CompoundSearch(const Compound& compound, const QueryBox& box, const PartSearch& search)
         : compound_(compound), box_(box), bounds_(bounds_of(box)), search_(search) {}
 
+    [[nodiscard]] static bool has_surfaces(const Compound& compound) { return compound.has_surfaces_; }
+
     bool descend(std::uint32_t at) const {
         const Compound::Node& node = compound_.nodes_[at];
         if (distance_between(node.box, bounds_) > search_.limit) return false;
@@ -126,6 +129,11 @@ class CompoundSearch {
     Aabb bounds_;
     const PartSearch& search_;
 };
+
+bool has_surfaces(const Body& body) {
+    return body.kind() == Kind::mesh || body.kind() == Kind::height_field ||
+           (body.kind() == Kind::compound && CompoundSearch::has_surfaces(*body.compound()));
+}
 
 bool search_compound(const Compound& compound, const QueryBox& box, const PartSearch& search) {
     return CompoundSearch(compound, box, search).descend(0);

@@ -94,7 +94,7 @@ bool half_space_meets(const Placed& half_space, const Placed& body) {
     const double apart = gap.gap - body.body.radius();
     if (apart > gap.error) return false;
     if (apart < -gap.error) return true;
-    if (std::isnan(apart)) return false;
+    if (!std::isfinite(apart)) return false;
     return body.body.is_polytope() ? meets_half_space(body, half_space) : apart <= 0.0;
 }
 

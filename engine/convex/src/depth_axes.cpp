@@ -64,7 +64,9 @@ glm::dvec3 product(const glm::dvec3& e, const glm::dvec3& f, double reach, doubl
     return n;
 }
 
-void offer_faces(const Body& body, const glm::dmat3& rotation, double side, Axes& axes, const Pair& pair) {
+void offer_faces(const Placed& placed, double side, Axes& axes) {
+    const Body& body = placed.body;
+    const glm::dmat3& rotation = placed.pose.rotation;
     for (const auto& t : triangles_of(body)) {
         // Edges are turned, not normals: a pose is rigid to 1e-6 alone.
         const glm::dvec3 a = body.vertex(t[0]), e = rotation * (body.vertex(t[1]) - a),
@@ -72,7 +74,6 @@ void offer_faces(const Body& body, const glm::dmat3& rotation, double side, Axes
         double turn = 0.0;
         glm::dvec3 n = product(e, f, body.reach(), turn);
         if (turn > 1e-11) {
-            const Placed placed{body, &body == &pair.a ? pair.pose_a : pair.pose_b};
             n = exact_edge_normal(Pair(placed, placed), t[0], t[1], t[0], t[2]);
             turn = 0x1p-48;
         }
@@ -87,8 +88,9 @@ void offer_faces(const Body& body, const glm::dmat3& rotation, double side, Axes
 Depth depth_by_axes(const Pair& pair, const Depth& known) {
     Axes axes(pair);
     axes.best = known;
-    offer_faces(pair.a, pair.pose_a.rotation, 1.0, axes, pair);
-    offer_faces(pair.b, pair.pose_b.rotation, -1.0, axes, pair);
+    // One body may stand at both poses.
+    offer_faces({pair.a, pair.pose_a}, 1.0, axes);
+    offer_faces({pair.b, pair.pose_b}, -1.0, axes);
     const auto first = edges_of(pair.a), second = edges_of(pair.b);
     for (const auto& e : first)
         for (const auto& f : second) {

@@ -40,6 +40,11 @@ Nearest nearest_points(const Pair& pair, const PairCache* cache, double near, do
     double last = std::numeric_limits<double>::infinity();
     result.upper = last;
     reduce(s, true);
+    if (s.count == 0) {  // a pose with NaN: it is near to nothing
+        result.meeting = Meeting::apart;
+        result.lower = last;
+        return result;
+    }
     for (int round = 0; round < kMaxRounds; ++round) {
         if (s.inside) {
             result.simplex = s;
@@ -48,10 +53,16 @@ Nearest nearest_points(const Pair& pair, const PairCache* cache, double near, do
             return result;
         }
         const double length = glm::length(s.nearest);
-        if (!(length < last)) break;  // rounding has stopped the descent
-        last = length;
-        result.simplex = s;
-        result.upper = glm::length(witness(s)) + pair.error;
+        // Rounding has stopped the descent. The direction may still get better: an error of it changes the length by
+        // its square alone. Round cores need that where the bounds are wide, as no exact search follows.
+        if (!(length < last)) {
+            const bool close_enough = result.upper - result.lower <= 1e-9 * pair.size;
+            if (polytopes || close_enough || !(length <= last * (1.0 + 0x1p-30))) break;
+        } else {
+            last = length;
+            result.simplex = s;
+            result.upper = glm::length(witness(s)) + pair.error;
+        }
         if (result.upper <= near || length <= tiny) break;
         double along = 0.0;
         const Corner next = pair.support(-s.nearest, along);

@@ -58,23 +58,23 @@ Result<CornerHull> hull_of_corners(const Points& points, std::size_t max_vertice
 // then a little farther.
 Result<CornerHull> grown(const CornerHull& small, const Points& points, double& excess) {
     Points chosen;
-    double outer_radius = 0.0;
     Vector<char> used(small.corners.size(), 0);
     for (const auto& t : small.hull.triangles)
         for (const std::uint32_t v : t) used[v] = 1;
     for (std::size_t i = 0; i < used.size(); ++i) {
-        if (used[i] == 0) continue;
-        chosen.push_back(small.corners[i]);
-        outer_radius = std::max(outer_radius, glm::length(small.corners[i] - small.hull.center));
+        if (used[i] != 0) chosen.push_back(small.corners[i]);
     }
     for (double more = small.hull.missing + 1e-7; more < 64.0; more = 1.25 * more + 1e-6) {
         Points moved;
-        for (const glm::dvec3& p : chosen)
+        double farthest = 0.0;
+        for (const glm::dvec3& p : chosen) {
             moved.emplace_back(glm::vec3(small.hull.center + (1.0 + more) * (p - small.hull.center)));
+            farthest = std::max(farthest, glm::distance(moved.back(), p));
+        }
         Result<CornerHull> result = hull_of_corners(moved, static_cast<std::size_t>(kMaxHullVertices));
         if (!result) return result;
         if (!contains_all(result->hull, result->corners, points)) continue;
-        excess = more * outer_radius * (1.0 + 1e-6);
+        excess = farthest * (1.0 + 1e-6);
         return result;
     }
     return fail(ErrorCode::degenerate, kNoItem,

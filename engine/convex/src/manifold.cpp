@@ -85,7 +85,8 @@ Manifold on_half_space(const Placed& a, const Placed& b, const ManifoldOptions& 
     Touch touch;
     touch.normal = gap.outward;
     touch.depth = meet ? std::max(-apart, 0.0) : -apart;
-    if (!(meet || apart <= options.margin)) return nothing();
+    // Told apart exactly, by less than rounding shows, counts as apart.
+    if (!(meet || (options.margin > 0.0 && apart <= options.margin))) return nothing();
     Patch patch;
     patch_along(b, -gap.outward, a.pose.translation, patch);
     GatheredPoints points;

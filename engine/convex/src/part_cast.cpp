@@ -14,8 +14,9 @@ namespace {
 constexpr int kManyParts = 24;  // in a stretch of time that is then halved
 constexpr int kMaxHalvings = 40;
 
-glm::dvec3 pivot_of(const Placed& placed, const Motion& motion) {
-    return placed.pose.rotation * motion.pivot + placed.pose.translation;
+// Of the pivot, from the body's origin.
+glm::dvec3 arm_of(const RigidTransform& pose, const Motion& motion) {
+    return pose.rotation * motion.pivot;
 }
 
 // Seeks the first touch of b with a's parts. A stretch of time in which b passes near many parts is halved, so that
@@ -29,7 +30,7 @@ class PartCaster {
         const Aabb& bounds = b.body.bounds();
         around_ = glm::length(bounds.half_extents()) + glm::length(bounds.center() - motion_b.pivot);
         b_turns_ = motion_b.spin != glm::dvec3(0.0);
-        apart_ = pivot_of(b, motion_b) - pivot_of(a, motion_a);
+        apart_ = (arm_of(b.pose, motion_b) - arm_of(a.pose, motion_a)) + (b.pose.translation - a.pose.translation);
     }
 
     void search(double from, double to, int halvings) {
@@ -39,14 +40,14 @@ class PartCaster {
         const QueryBox box = swept_box(pose, from, to);
         int count = 0;
         if (halvings < kMaxHalvings && to > from && !is_half_space(b_))
-            visit(pose, box, [&](const Part&) { return ++count > kManyParts; });
+            visit(box, [&](const Part&) { return ++count > kManyParts; });
         if (count > kManyParts && way(from, to) > 0.5 * around_) {
             const double middle = 0.5 * (from + to);
             search(from, middle, halvings + 1);
             return search(middle, to, halvings + 1);
         }
-        visit(pose, box, [&](const Part& part) {
-            cast_part(part, pose, from);
+        visit(box, [&](const Part& part) {
+            cast_part(part, from);
             return best_.time <= from && best_.result != CastResult::miss;
         });
     }
@@ -71,9 +72,8 @@ class PartCaster {
         const double middle = 0.5 * (from + to), speed = glm::length(velocity);
         const bool a_turns = motion_a_.spin != glm::dvec3(0.0);
         const glm::dmat3 back = glm::inverse(pose.rotation);
-        const glm::dvec3 pivot_a = pivot_of({a_.body, pose}, motion_a_);
-        // Where b's pivot would be, if a kept the place it has at `from`.
-        const glm::dvec3 center = apart_ + middle * velocity + pivot_a;
+        // Where b's pivot would be from a's origin, if a kept the place it has at `from`.
+        const glm::dvec3 center = apart_ + middle * velocity + arm_of(pose, motion_a_);
         QueryBox box;
         if (b_turns_ || a_turns || speed == 0.0 || to == from) {
             box.axes = glm::dmat3(1.0);
@@ -81,15 +81,24 @@ class PartCaster {
             if (a_turns) grown += (to - from) * glm::length(motion_a_.spin) * distance_at(middle, way(from, to));
             grown += 0.5 * (to - from) * speed;
             box.half = glm::dvec3(grown);
-            box.center = back * (center - pose.translation);
+            box.center = back * center;
+            box.rounding = rounding(to);
             if (b_turns_ || a_turns || speed == 0.0) return box;
         }
-        return along_way(pose, back, center, velocity / speed, 0.5 * (to - from) * speed);
+        box = along_way(back, center, velocity / speed, 0.5 * (to - from) * speed);
+        box.rounding = rounding(to);
+        return box;
+    }
+
+    // Of the bodies' places up to a time, as `moved` has them, from each other.
+    [[nodiscard]] double rounding(double time) const {
+        return 1e-15 * (glm::length(a_.pose.translation) + glm::length(b_.pose.translation) +
+                        time * (glm::length(motion_a_.velocity) + glm::length(motion_b_.velocity)));
     }
 
     // b does not turn: its box, swept along a unit vector.
-    [[nodiscard]] QueryBox along_way(const RigidTransform& pose, const glm::dmat3& back, const glm::dvec3& pivot,
-                                     const glm::dvec3& unit, double half_way) const {
+    [[nodiscard]] QueryBox along_way(const glm::dmat3& back, const glm::dvec3& pivot, const glm::dvec3& unit,
+                                     double half_way) const {
         const glm::dvec3 m = glm::abs(unit);
         const glm::dvec3 least = m.x <= m.y && m.x <= m.z ? glm::dvec3(1, 0, 0)
                                  : m.y <= m.z             ? glm::dvec3(0, 1, 0)
@@ -104,21 +113,22 @@ class PartCaster {
         box.half = box.half * 1.00001;  // a pose is orthonormal to 1e-6
         box.half.x += half_way;
         box.axes = back * axes;
-        box.center = back * (pivot + b_.pose.rotation * (bounds.center() - motion_b_.pivot) - pose.translation);
+        box.center = back * (pivot + b_.pose.rotation * (bounds.center() - motion_b_.pivot));
         return box;
     }
 
-    void visit(const RigidTransform& pose, const QueryBox& box, PartVisitor visitor) const {
+    // Parts stand as at time 0, whenever the box is of.
+    void visit(const QueryBox& box, PartVisitor visitor) const {
         const double margin = is_half_space(b_) ? kEverything : options_.tolerance + 1e-9 * (around_ + a_.body.reach());
-        visit_parts({a_.body, pose}, box, margin, visitor);
+        visit_parts(a_, box, margin, visitor);
     }
 
-    // The part stands as a does at `from`; it is cast from where it is at time 0.
-    void cast_part(const Part& part, const RigidTransform& pose, double from) {
-        const bool is_child = a_.body.kind() == Kind::compound;
-        const RigidTransform start = is_child ? within(a_.pose, within(inverse_of(pose), part.pose)) : a_.pose;
+    void cast_part(const Part& part, double from) {
+        const RigidTransform& start = part.pose;
         Motion motion = motion_a_;
-        motion.pivot = glm::inverse(start.rotation) * (pivot_of(a_, motion_a_) - start.translation);
+        if (a_.body.kind() == Kind::compound)
+            motion.pivot =
+                glm::inverse(start.rotation) * (arm_of(a_.pose, motion_a_) + (a_.pose.translation - start.translation));
         CastOptions options = options_;
         options.duration = best_.time;
         const Placed placed{part.body, start};
@@ -143,10 +153,6 @@ class PartCaster {
         return gap - 2.0 * options_.tolerance > speed * best_.time * (1.0 + 1e-9);
     }
 
-    [[nodiscard]] static RigidTransform inverse_of(const RigidTransform& pose) {
-        const glm::dmat3 back = glm::inverse(pose.rotation);
-        return {back, -(back * pose.translation)};
-    }
     [[nodiscard]] static Impact reversed(Impact impact) {
         impact.normal = -impact.normal;
         std::swap(impact.on_a, impact.on_b);

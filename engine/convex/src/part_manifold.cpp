@@ -48,10 +48,7 @@ class ManifoldFinder {
         } else if (a.body.is_convex()) {
             find(b, a, {}, true);
         } else {
-            visit_parts_near(a, b, options_.margin, [&](const Part& part) {
-                find(b, {part.body, part.pose}, part.id, true);
-                return false;
-            });
+            find_parts(a, b);
         }
         scratch_.list.finish(std::clamp(options_.max_points, 1, 8), found_.all_);
     }
@@ -60,6 +57,40 @@ class ManifoldFinder {
     static Manifolds::Scratch& scratch_of(Manifolds& found) {
         if (!found.scratch_) found.scratch_ = std::make_unique<Manifolds::Scratch>();
         return *found.scratch_;
+    }
+
+    // Both have parts. A surface's rules hold where it is asked as a whole: a's for b's convex parts, if a has any
+    // surface, and b's for all others of a.
+    void find_parts(const Placed& a, const Placed& b) {
+        if (has_surfaces(a.body)) {
+            const auto convex = [&](const Part& part) {
+                find(a, {part.body, part.pose}, part.id, false);
+                return false;
+            };
+            search_parts_near(b, a, convex, [](const PartSearch&, const Triangle&, std::uint32_t) {});
+            if (!has_surfaces(b.body)) return;
+            only_surfaces_ = true;
+        }
+        visit_parts_near(a, b, options_.margin, [&](const Part& part) {
+            set_front(part);
+            find(b, {part.body, part.pose}, part.id, true);
+            return false;
+        });
+    }
+
+    void search_parts_near(const Placed& a, const Placed& b, PartVisitor convex, TriangleVisitor triangle) const {
+        if (b.body.kind() == Kind::half_space)
+            visit_parts(a, {}, kEverything, convex, triangle);
+        else
+            visit_parts(a, box_around(b, a.pose), options_.margin, convex, triangle);
+    }
+
+    // A one-sided triangle that stands for a convex body pushes to its front as well.
+    void set_front(const Part& part) {
+        front_ = glm::dvec3(0.0);
+        if (part.sides != Sides::front) return;
+        const Triangle corners{part.body.vertex(0), part.body.vertex(1), part.body.vertex(2)};
+        front_ = placed_triangle(corners, part.pose, part.pose.translation).normal;
     }
 
     // The contacts of a, which has parts, and b, which is convex; `of_b`: b's part. Where several triangles meet in a
@@ -96,6 +127,7 @@ class ManifoldFinder {
         surfaces.clear();
         scratch_.triangles.clear();
         const auto convex = [&](const Part& part) {
+            if (only_surfaces_) return false;
             ManifoldOptions all_points = options_;
             all_points.max_points = 8;
             const Manifold m = contact_manifold({part.body, part.pose}, b, all_points);
@@ -113,13 +145,11 @@ class ManifoldFinder {
                 surfaces.push_back({of.pose, of.sides, of.child, of.reach});
             scratch_.triangles.push_back({corners, index, static_cast<std::uint32_t>(surfaces.size() - 1)});
         };
-        if (b.body.kind() == Kind::half_space)
-            visit_parts(a, {}, kEverything, convex, triangle);
-        else
-            visit_parts(a, box_around(b, a.pose), options_.margin, convex, triangle);
+        search_parts_near(a, b, convex, triangle);
     }
 
     void add(SurfaceContacts::Contact& contact, const PartId& of_a, const PartId& of_b, bool flip) {
+        if (flip && front_ != glm::dvec3(0.0) && glm::dot(front_, contact.normal) >= 0.0) contact.points.count = 0;
         for (int k = 0; k < contact.points.count; ++k) {
             ContactPoint& p = contact.points.point[k];
             p.part_a = flip ? of_b : of_a;
@@ -131,6 +161,8 @@ class ManifoldFinder {
     }
 
     const ManifoldOptions& options_;
+    bool only_surfaces_ = false;  // convex parts have been asked already
+    glm::dvec3 front_{0.0};       // of the triangle that stands for a convex body; 0 where it has two sides
     Manifolds& found_;
     Manifolds::Scratch& scratch_;
 };

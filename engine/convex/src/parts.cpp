@@ -28,8 +28,14 @@ FloatBox to_floats(const QueryBox& box) {
         for (int i = 0; i < 3; ++i) result.box.axes[k][i] = static_cast<float>(box.axes[k][i]);
         size += std::abs(box.center[k]) + 50.0 * box.half[k];  // axes are orthonormal to 4e-6 alone
     }
-    result.error_bound = static_cast<float>(0x1p-22 * size) + std::numeric_limits<float>::min();
+    result.error_bound = static_cast<float>(0x1p-22 * size + kWider * box.rounding) + std::numeric_limits<float>::min();
     return result;
+}
+
+// What a sum of these may be off by, turned or not.
+double rounding_of(const glm::dvec3& a, const glm::dvec3& b) {
+    const glm::dvec3 sum = glm::abs(a) + glm::abs(b);
+    return 1e-14 * (sum.x + sum.y + sum.z);
 }
 
 }  // namespace
@@ -40,19 +46,22 @@ QueryBox box_around(const Placed& placed, const RigidTransform& pose) {
     QueryBox box;
     box.axes = back * placed.pose.rotation;
     box.half = bounds.half_extents();
-    box.center = back * (placed.pose.rotation * bounds.center() + (placed.pose.translation - pose.translation));
+    const glm::dvec3 offset = placed.pose.translation - pose.translation;
+    box.center = back * (placed.pose.rotation * bounds.center() + offset);
+    box.rounding = rounding_of(bounds.center(), offset);
     return box;
 }
 
 QueryBox seen_from(const QueryBox& box, const RigidTransform& pose) {
     const glm::dmat3 back = glm::inverse(pose.rotation);
-    return {back * (box.center - pose.translation), box.half, back * box.axes};
+    return {back * (box.center - pose.translation), box.half, back * box.axes,
+            box.rounding * kWider + rounding_of(box.center, pose.translation)};
 }
 
 Aabb bounds_of(const QueryBox& box) {
     glm::dvec3 half_size(0.0);
     for (int k = 0; k < 3; ++k) half_size += box.half[k] * glm::abs(box.axes[k]);
-    half_size = half_size * (1.0 + 1e-12) + 1e-12 * glm::abs(box.center);
+    half_size = half_size * (1.0 + 1e-12) + 1e-12 * glm::abs(box.center) + kWider * box.rounding;
     return {box.center - half_size, box.center + half_size};
 }
 

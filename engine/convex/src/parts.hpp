@@ -16,9 +16,10 @@ using TriangleVisitor = FunctionRef<void(const PartSearch& of, const Triangle& c
 struct QueryBox {
     glm::dvec3 center{0.0}, half{0.0};
     glm::dmat3 axes{1.0};
+    double rounding = 0.0;  // how far the center may be off
 };
 
-// Around the body, in the frame of `pose`. Rounding is up to the callers below: 1e-12 of all numbers that go in.
+// Around the body, in the frame of `pose`.
 [[nodiscard]] QueryBox box_around(const Placed& body, const RigidTransform& pose);
 // The same box seen from the frame of `pose`.
 [[nodiscard]] QueryBox seen_from(const QueryBox& box, const RigidTransform& pose);
@@ -53,6 +54,9 @@ bool search_mesh(const mesh::MeshTree& mesh, const QueryBox& box, const PartSear
 bool search_field(const HeightField& field, const Aabb& box, const PartSearch& search);
 bool search_compound(const Compound& compound, const QueryBox& box, const PartSearch& search);
 bool search_parts(const Placed& body, const QueryBox& box, const PartSearch& search);
+
+// Whether the body is a mesh or a height field, or a compound that holds one.
+[[nodiscard]] bool has_surfaces(const Body& body);
 
 // Of two closed boxes, from below, also where they are told in a frame that is orthonormal to 1e-6 alone.
 [[nodiscard]] double distance_between(const Aabb& a, const Aabb& b);

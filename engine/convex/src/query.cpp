@@ -113,6 +113,7 @@ Distance distance(const Placed& a, const Placed& b, PairCache* cache) {
 }
 
 Distance distance_of(const Pair& pair, const Nearest& core) {
+    if (core.simplex.count == 0) return {};  // a pose with NaN
     const CorePoints points = core_points(core.simplex);
     const double ra = pair.a.radius(), rb = pair.b.radius(), rounding = ra + rb;
     const double between = glm::length(points.on_a - points.on_b);

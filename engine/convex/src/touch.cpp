@@ -47,7 +47,7 @@ double distance_within(const Prism& sides, const glm::dvec3& x) {
     return least < 0.0 ? -std::sqrt(-least) : std::sqrt(least);
 }
 
-// The same for the clipped polygon and the mean of its corners.
+// The same for the clipped polygon and the mean of its corners; 0 where it is a point.
 double inner_distance(const Clipped& clipped, const glm::dvec3& direction) {
     glm::dvec3 mean(0.0);
     for (int i = 0; i < clipped.count; ++i) mean += clipped.point[i].on_incident / static_cast<double>(clipped.count);
@@ -59,7 +59,7 @@ double inner_distance(const Clipped& clipped, const glm::dvec3& direction) {
         const double length = glm::length(outward);
         if (length > 0.0) least = std::min(least, std::abs(glm::dot(outward, p - mean)) / length);
     }
-    return least;
+    return least < std::numeric_limits<double>::infinity() ? least : 0.0;
 }
 
 // How far points of the difference body are beyond the origin along a unit vector.

@@ -306,6 +306,7 @@ class Compound {
     Vector<std::uint32_t> order_;
     std::uint32_t part_count_ = 0;
     int depth_ = 0;
+    bool has_surfaces_ = false;
 };
 
 // Exact formulas, rounded. A triangle has volume 0. Of compounds the sum over the children: what lies in two counts

@@ -63,10 +63,11 @@ struct Penetration {
     glm::dvec3 on_a{0.0}, on_b{0.0};  // deepest points: on_a − on_b = depth · normal
     PartId part_a{}, part_b{};        // of bodies of parts: those that are deepest in each other
 };
-// upper − lower ≤ 1e-9 of the size for polytopes, also rounded ones; 1e-5 for cylinders and cones. Expanding polytope
-// (van den Bergen 2001), checked afterwards from both sides; where that fails, all separating axes. Two half-spaces
-// overlap without end: depth, lower and upper are infinite. Of bodies of parts: of the two parts that are deepest in
-// each other. `lower` holds for the bodies; `upper` is infinite, since the motion may push parts into others.
+// upper − lower ≤ 1e-9 of the size for polytopes, also rounded ones. 1e-5 for cylinders and cones, but 1e-3 where all
+// ways out around an axis are as long. Expanding polytope (van den Bergen 2001), checked afterwards from both sides;
+// where that fails, all separating axes. Two half-spaces overlap without end: depth, lower and upper are infinite. Of
+// bodies of parts: of the two deepest. `lower` holds for the bodies; `upper` is infinite: parts may be pushed into
+// others.
 [[nodiscard]] Penetration penetration(const Placed& a, const Placed& b, PairCache* cache = nullptr);
 
 // From a point (in the world) to the body: a is the point.
@@ -146,10 +147,11 @@ class Manifolds {
 // deepest point. Each depth is along its own part's normal. Two convex bodies: one manifold, or none. On the edges and
 // vertices of a surface the internal-edge rule holds. Where a contact's normal would point into the surface beside it,
 // the triangle pushes along its face's normal. So what slides over a floor of many triangles meets the floor alone.
-// Where the rule would leave a body that meets the surface without any point, it does not hold.
-// Neighbours are triangles of the same body that share vertices of equal position. Surfaces with Sides::front push to
-// the front, and only bodies whose center is there (of mass for hulls; else the middle of the bounds). The cache serves
-// two convex bodies. No allocation once `found` has seen as many parts.
+// Where the rule would leave a body that meets the surface without any point, it does not hold. Between triangles of
+// two surfaces it is the second's rule. Neighbours are triangles of the same body that share vertices of equal
+// position. Surfaces with Sides::front push to the front, and only bodies whose center is there (of mass for hulls;
+// else the middle of the bounds). The cache serves two convex bodies. No allocation once `found` has seen as many
+// parts.
 void contact_manifolds(const Placed& a, const Placed& b, const ManifoldOptions& options, Manifolds& found,
                        PairCache* cache = nullptr);
 
