@@ -324,4 +324,29 @@ TEST_SUITE("fit/planar") {
             }
         }
     }
+
+    TEST_CASE("triangles contain points that are collinear but for their rounding, and are not much longer") {
+        std::mt19937_64 random(23);
+        std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+        for (int trial = 0; trial < 3000; ++trial) {
+            const glm::dvec2 along(uniform(random), uniform(random));
+            const double at = trial % 3 == 0 ? 1e5 * uniform(random) : 0.0;
+            Points points;
+            for (int i = 0; i < 3 + trial % 8; ++i) points.push_back(at + along * uniform(random));
+            double longest = 0.0;
+            for (const glm::dvec2& p : points)
+                for (const glm::dvec2& q : points) longest = std::max(longest, glm::distance(p, q));
+            for (const PlanarCriterion criterion : {PlanarCriterion::area, PlanarCriterion::perimeter}) {
+                if (criterion == PlanarCriterion::perimeter && trial % 10 != 0) continue;
+                const auto best = fit::minimal_triangle(view(points), criterion);
+                REQUIRE(best.has_value());
+                for (const glm::dvec2& p : points) {
+                    CHECK(orientation((*best)[0], (*best)[1], p) >= 0);
+                    CHECK(orientation((*best)[1], (*best)[2], p) >= 0);
+                    CHECK(orientation((*best)[2], (*best)[0], p) >= 0);
+                }
+                CHECK(measure_of(*best, PlanarCriterion::perimeter) <= 8.0 * longest + 1e-9);
+            }
+        }
+    }
 }

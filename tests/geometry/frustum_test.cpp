@@ -7,6 +7,7 @@
 #include <glm/matrix.hpp>
 #include <limits>
 #include <random>
+#include <utility>
 
 using namespace crofton;
 
@@ -66,6 +67,28 @@ TEST_SUITE("geometry/frustum") {
                 CHECK(frustum.has_value() == (off == 1e-8));
                 if (!frustum) CHECK(error_of(frustum).code == ErrorCode::degenerate);
             }
+    }
+
+    TEST_CASE(
+        "a view matrix with the translation of a camera 10,000 km away is not singular, nor is one of any length") {
+        for (const double distance : {1e3, 1e5, 1e7})
+            for (const double far : {1000.0, std::numeric_limits<double>::infinity()})
+                for (const double length : {1e-60, 1.0, 1e60}) {
+                    Camera camera;
+                    camera.position = distance * glm::dvec3(1.0, 0.7, -0.3);
+                    camera.forward = {0.3, -0.2, -0.9};
+                    camera.far_distance = far;
+                    const auto frustum = frustum_of(length * world_to_clip(camera), DepthRange::reversed_zero_to_one);
+                    REQUIRE(frustum.has_value());
+                    const glm::dvec3 ahead = glm::normalize(camera.forward);
+                    for (const auto& [along, inside] : {std::pair(0.05, false), std::pair(10.0, true)}) {
+                        const glm::dvec3 at = camera.position + along * ahead;
+                        bool within = true;
+                        for (const Plane& plane : frustum->view())
+                            within &= glm::dot(plane.normal, at) + plane.offset >= 0.0;
+                        CHECK(within == inside);
+                    }
+                }
     }
 
     TEST_CASE("a view matrix whose volume is empty is refused: a side that lies beyond infinity") {

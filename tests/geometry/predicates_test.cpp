@@ -90,6 +90,14 @@ TEST_SUITE("geometry/predicates") {
         }
     }
 
+    TEST_CASE("points of 1e-65 that differ in their last places are told inside and outside of a circle") {
+        const double place = std::nextafter(1e-65, 1.0) - 1e-65;
+        const auto at = [&](int x, int y) { return glm::dvec2(1e-65 + x * place, 1e-65 + y * place); };
+        CHECK(in_circle(at(0, 0), at(8, 0), at(0, 8), at(2, 2)) == 1);
+        CHECK(in_circle(at(0, 0), at(8, 0), at(0, 8), at(8, 8)) == 0);
+        CHECK(in_circle(at(0, 0), at(8, 0), at(0, 8), at(9, 8)) == -1);
+    }
+
     TEST_CASE("sees that 0.1, 0.2, 0.3 on the diagonal are collinear, and one unit in the last place off is not") {
         const double up = std::nextafter(0.3, 1.0);
         CHECK(orientation(glm::dvec2(0.1, 0.1), glm::dvec2(0.2, 0.2), glm::dvec2(0.3, 0.3)) == 0);

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <cmath>
+#include <crofton/geometry/predicates.hpp>
 #include <crofton/measure/measure.hpp>
 #include <crofton/sampling/sampling.hpp>
 #include <error_of.hpp>
 #include <numbers>
+#include <random>
 #include <vector>
 
 using namespace crofton;
@@ -81,5 +83,24 @@ TEST_SUITE("measure/planar") {
                      common = kinematic_measure(b, planar_measures_of_segment(2.0));
         CHECK(whole + common == doctest::Approx(kinematic_measure(b, planar_measures_of_rectangle(3.0, 2.0)) +
                                                 kinematic_measure(b, planar_measures_of_rectangle(2.0, 2.0))));
+    }
+
+    TEST_CASE(
+        "a hull's corners turn left and hold every point, exactly, also where points are collinear but for rounding") {
+        std::mt19937_64 random(17);
+        std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+        for (int trial = 0; trial < 2000; ++trial) {
+            const glm::dvec2 along(uniform(random), uniform(random));
+            std::vector<glm::dvec2> points;
+            for (int i = 0; i < 3 + trial % 8; ++i) points.push_back(0.3 + along * uniform(random));
+            const auto hull = convex_hull(points);
+            REQUIRE(hull.has_value());
+            const std::size_t n = hull->size();
+            for (std::size_t i = 0; i < n && n > 2; ++i) {
+                const glm::dvec2 &a = (*hull)[i], &b = (*hull)[(i + 1) % n];
+                CHECK(orientation(a, b, (*hull)[(i + 2) % n]) > 0);
+                for (const glm::dvec2& p : points) CHECK(orientation(a, b, p) >= 0);
+            }
+        }
     }
 }

@@ -157,4 +157,15 @@ TEST_SUITE("mesh/containment") {
         CHECK(penetration(a, b, {glm::dmat3(1.0), {0.1, 0.0, 0.0}}, {}).depth == doctest::Approx(1.4).epsilon(1e-4));
         CHECK(penetration(a, b, {glm::dmat3(1.0), {1.6, 0.1, 0.0}}, {}).depth == 0.0);
     }
+
+    TEST_CASE("points that coincide are parted by what their coordinates can tell") {
+        TriangleMesh point;
+        point.positions.assign(3, glm::vec3(1.0f, 2.0f, 3.0f));
+        point.indices = {0, 1, 2};
+        const auto a = tree_of(point);
+        const MeshDepth depth = penetration(a, a, {}, {});
+        CHECK(glm::length(depth.direction) == doctest::Approx(1.0));
+        CHECK(depth.depth < 1e-11);
+        CHECK_FALSE(intersects(a, a, {glm::dmat3(1.0), depth.depth * depth.direction}));
+    }
 }

@@ -6,6 +6,7 @@
 #include <crofton/mesh/mesh_query.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <random>
 
 #include "mesh/meshes.hpp"
 
@@ -150,5 +151,39 @@ TEST_SUITE("mesh/distance") {
         }
         CHECK(apart >= 30);
         CHECK(meeting >= 30);
+    }
+
+    TEST_CASE("edges that cross at a small angle, and slivers, are as far apart as they are") {
+        // Two long edges over each other, 1e-9 apart where they cross: their ends are ten times as far.
+        TriangleMesh low, high;
+        low.positions = {{-1.0f, 0.0f, 0.0f}, {1.0f, 0.0f, 0.0f}, {0.0f, 0.0f, -1.0f}};
+        high.positions = {{-1.0f, -1e-8f, 1e-9f}, {1.0f, 1e-8f, 1e-9f}, {0.0f, 0.0f, 1.0f}};
+        low.indices = high.indices = {0, 1, 2};
+        const auto a = tree_of(low), b = tree_of(high);
+        const double gap = double(1e-9f);
+        CHECK(distance(a, b, {}).distance == doctest::Approx(gap).epsilon(1e-6));
+        CHECK(closer_than(a, b, {}, 5e-9));
+        // A point over a sliver that is turned in space. Its foot is at a third of each corner, so that the height is
+        // known.
+        std::mt19937_64 random(51);
+        std::uniform_real_distribution<double> uniform(0.5, 1.0);
+        for (int trial = 0; trial < 2000; ++trial) {
+            const glm::dmat3 turn = glm::mat3_cast(random_rotation(random));
+            const double thin = std::ldexp(uniform(random), -trial % 40),
+                         height = std::ldexp(uniform(random), -trial % 30);
+            const Triangle sliver = {turn * glm::dvec3(-1.0, 0.0, 0.0), turn * glm::dvec3(uniform(random), 0.0, 0.0),
+                                     turn * glm::dvec3(0.1, thin, 0.0)};
+            const glm::dvec3 foot = (sliver[0] + sliver[1] + sliver[2]) / 3.0, above = foot + height * turn[2];
+            ClosestPoints best;
+            closest_of_triangles(sliver, {above, above, above}, best);
+            CHECK(std::abs(std::sqrt(best.squared) - height) < 1e-14);
+        }
+    }
+
+    TEST_CASE("a limit that no distance is below gives up at once: zero, a negative number, NaN") {
+        const auto a = tree_of(cube_mesh(1.0f));
+        for (const double limit : {0.0, -1.0, std::nan("")})
+            CHECK(distance(a, a, {}, limit).distance == std::numeric_limits<double>::infinity());
+        CHECK(distance(a, a, {}, 1e-200).distance == 0.0);
     }
 }

@@ -247,4 +247,41 @@ TEST_SUITE("mesh/mesh_refit") {
         REQUIRE(tree.refit(mesh.positions).has_value());
         CHECK(tree.pieces()[0].closed);
     }
+
+    TEST_CASE("where a refit has parted a piece, each part is asked whether another mesh contains it") {
+        const TriangleMesh cube = cube_mesh(1.0f);
+        const auto around = [&](float size) {
+            TriangleMesh mesh = cube;
+            for (glm::vec3& p : mesh.positions) p *= size;
+            return std::move(*MeshTree::build(mesh));
+        };
+        const MeshTree room = around(50.0f);
+        // Two cubes that share a corner by position; then one of separate triangles.
+        TriangleMesh pair = cube, soup;
+        TriangleMesh moved = cube;
+        for (glm::vec3& p : moved.positions) p += glm::vec3(2.0f);
+        append(pair, moved);
+        for (const std::uint32_t index : cube.indices) {
+            soup.indices.push_back(std::uint32_t(soup.positions.size()));
+            soup.positions.push_back(cube.positions[index]);
+        }
+        for (const TriangleMesh& mesh : {pair, soup}) {
+            MeshTree tree = refittable(mesh);
+            REQUIRE(tree.pieces().size() == 1);
+            CHECK(tree.pieces()[0].closed);
+            CHECK(containment(tree, room, {}) == Containment::a_inside_b);
+            TriangleMesh torn = mesh;
+            const std::size_t gone = mesh.positions.size() == 16 ? 8 : 3;  // a cube, or a triangle
+            for (std::size_t v = 0; v < gone; ++v) torn.positions[torn.positions.size() - 1 - v].x += 1000.0f;
+            REQUIRE(tree.refit(torn.positions).has_value());
+            CHECK_FALSE(tree.pieces()[0].closed);
+            CHECK(containment(tree, room, {}) == Containment::partly);
+            CHECK(containment(room, tree, {}) == Containment::partly);
+            const MeshTree copy = tree;
+            CHECK(containment(copy, room, {}) == Containment::partly);
+            REQUIRE(tree.refit(mesh.positions).has_value());
+            CHECK(tree.pieces()[0].closed);
+            CHECK(containment(tree, room, {}) == Containment::a_inside_b);
+        }
+    }
 }

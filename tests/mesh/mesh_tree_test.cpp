@@ -4,17 +4,21 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/mesh/mesh_parts.hpp>
+#include <crofton/mesh/mesh_query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <cstring>
 #include <error_of.hpp>
 #include <limits>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "../ranges.hpp"
+#include "mesh/meshes.hpp"
 
 using namespace crofton;
 using namespace crofton::mesh;
+using namespace crofton::testing;
 
 namespace {
 
@@ -188,5 +192,19 @@ TEST_SUITE("mesh/mesh_tree") {
                 for (int k = 0; k < 3; ++k)
                     CHECK(one->parts().nodes[n].half[k][lane] == two->parts().nodes[n].half[k][lane]);
             }
+    }
+
+    TEST_CASE("what is moved from is a tree of no triangles, and may be given another") {
+        const RigidTransform here;
+        MeshTree first = tree_of(cube_mesh(1.0f)), second = std::move(first);
+        CHECK(first.triangle_count() == 0);
+        CHECK(first.extent() == 0.0f);
+        CHECK_FALSE(intersects(first, second, here));
+        CHECK_FALSE(contains(first, {0.0, 0.0, 0.0}));
+        CHECK_FALSE(raycast(Ray{{-5.0, 0.1, 0.2}, {1.0, 0.0, 0.0}}, first).has_value());
+        first = std::move(second);
+        CHECK(contains(first, {0.0, 0.0, 0.0}));
+        CHECK(second.triangle_count() == 0);
+        CHECK_FALSE(closer_than(second, first, here, 1.0));
     }
 }

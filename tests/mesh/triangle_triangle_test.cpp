@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
+#include <crofton/geometry/closest_points.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -124,5 +125,46 @@ TEST_SUITE("mesh/triangle_triangle") {
                 }
             }
         }
+    }
+
+    TEST_CASE("where triangles meet lies on both: nearly in one plane, touching with a corner, slivers, segments") {
+        std::mt19937_64 random(71);
+        std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+        const auto vector = [&] { return glm::dvec3(uniform(random), uniform(random), uniform(random)); };
+        int met[4] = {};
+        for (int trial = 0; trial < 8000; ++trial) {
+            const int kind = trial % 4;
+            Triangle a, b;
+            if (kind == 1) {
+                // A corner of b lies on a side of a, a quarter along it, exactly; all in one plane.
+                const auto on_grid = [&](double cells) { return glm::round(vector() * cells) / cells; };
+                const glm::dvec3 p = on_grid(0x1p20), side = 4.0 * on_grid(0x1p18) * glm::dvec3(1.0, 1.0, 0.0);
+                const glm::dvec3 out(-side.y, side.x, 0.0), tip = p + 0.25 * side;
+                a = {p, p + side, p + 0.5 * side - out};
+                b = {tip, tip + out + uniform(random) * 0.3 * side, tip + 1.5 * out + uniform(random) * 0.3 * side};
+            } else {
+                const glm::dvec3 x = vector(), y = vector();
+                for (std::size_t v = 0; v < 3; ++v) {
+                    a[v] = x * uniform(random) + y * uniform(random);
+                    b[v] = x * uniform(random) + y * uniform(random);
+                    if (kind == 2) a[v] = x * uniform(random) + 1e-12 * vector();
+                }
+                if (kind == 3) b = {0.5 * (a[0] + a[1]), b[1], b[1]};
+            }
+            if (!intersects(a, b)) continue;
+            ++met[kind];
+            for (const SegmentOfContact& found : {contact_segment(a, b), contact_segment(b, a)})
+                for (const glm::dvec3& p : {found.begin, found.end})
+                    for (const Triangle& t : {a, b}) CHECK(glm::distance(p, closest_on_triangle(p, t)) < 1e-9);
+        }
+        for (const int count : met) CHECK(count > 100);
+    }
+
+    TEST_CASE("a triangle that is a point touches a side at that point") {
+        const Triangle a = {glm::dvec3(0, 0, 0), glm::dvec3(4, 0, 0), glm::dvec3(0, 4, 0)};
+        const glm::dvec3 on_side(1, 0, 0);
+        const SegmentOfContact found = contact_segment(a, {on_side, on_side, on_side});
+        CHECK(found.begin == on_side);
+        CHECK(found.end == on_side);
     }
 }

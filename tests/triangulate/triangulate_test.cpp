@@ -120,6 +120,11 @@ TEST_SUITE("triangulate/triangulate") {
                 CHECK(result->weight < 50.0 * scale);
             }
         }
+        // Beyond 2^1023, where a power of two above it is no double.
+        const auto largest = triangulate::triangulate(polygon({{{0, 0}, {1e308, 0}, {1e308, 1e308}, {0, 1e308}}}));
+        REQUIRE(largest.has_value());
+        CHECK(largest->triangles.size() == 2);
+        CHECK(largest->weight == doctest::Approx(std::sqrt(2.0) * 1e308));
         CHECK(code(polygon({{{0, 0}, {1e155, 0}, {1e155, 1e-155}}})) == ErrorCode::out_of_range);
     }
 

@@ -211,6 +211,34 @@ bool holds(const Triangle2& triangle, std::span<const glm::dvec2> points) {
     });
 }
 
+// Around points that are about as thin as their coordinates are rounded. By perimeter: little longer than the points,
+// and many times as thick at one end. By area: twice as long and twice as thick.
+Triangle2 around_flat(std::span<const glm::dvec2> hull, PlanarCriterion criterion) {
+    const glm::dvec2 origin = hull[0];
+    glm::dvec2 far(0.0);
+    double rounding = 0.0;
+    for (const glm::dvec2& p : hull) {
+        if (glm::length(p - origin) > glm::length(far)) far = p - origin;
+        rounding = std::max({rounding, 0x1p-52 * std::abs(p.x), 0x1p-52 * std::abs(p.y)});
+    }
+    const glm::dvec2 along = glm::normalize(far), across(-along.y, along.x);
+    glm::dvec2 low(0.0), high(0.0);
+    for (const glm::dvec2& p : hull) {
+        const glm::dvec2 d(glm::dot(p - origin, along), glm::dot(p - origin, across));
+        low = glm::min(low, d);
+        high = glm::max(high, d);
+    }
+    const double length = high.x - low.x, middle = 0.5 * (low.y + high.y);
+    const double longer = criterion == PlanarCriterion::area ? 1.0 : 0x1p-7;
+    for (double margin = 4.0 * rounding;; margin *= 2.0) {
+        const double begin = low.x - margin, end = high.x + margin + longer * length;
+        const double half = (0.5 * (high.y - low.y) + margin) * (end - begin) / (longer * length);
+        Triangle2 result{glm::dvec2(begin, middle - half), glm::dvec2(end, middle), glm::dvec2(begin, middle + half)};
+        for (glm::dvec2& c : result) c = origin + c.x * along + c.y * across;
+        if (holds(result, hull) || margin > length) return result;
+    }
+}
+
 }  // namespace
 
 Result<std::array<glm::dvec2, 3>> minimal_triangle(std::span<const glm::dvec2> points, PlanarCriterion criterion) {
@@ -228,18 +256,17 @@ Result<std::array<glm::dvec2, 3>> minimal_triangle(std::span<const glm::dvec2> p
         const Found found = criterion == PlanarCriterion::area ? least_area(polygon) : LeastPerimeter(polygon).run();
         if (found.value < best.value) best = found, base = i;
     }
-    if (!(best.value < kInfinity))
-        return fail(ErrorCode::degenerate, kNoItem, "minimal_triangle: the points are flat to within rounding");
     const glm::dvec2 x = glm::normalize(hull[(base + 1) % hull.size()] - hull[base]), y(-x.y, x.x);
     const glm::dvec2 middle = (best.corners[0] + best.corners[1] + best.corners[2]) / 3.0;
-    Triangle2 result;
-    for (double grown = 1.0, step = 0x1p-52;; grown = 1.0 + step, step *= 2.0) {
+    for (double grown = 1.0, step = 0x1p-52; best.value < kInfinity && grown <= 2.0; grown = 1.0 + step, step *= 2.0) {
+        Triangle2 result;
         for (std::size_t k = 0; k < 3; ++k) {
             const glm::dvec2 c = middle + grown * (best.corners[k] - middle);
             result[k] = hull[base] + c.x * x + c.y * y;
         }
-        if (holds(result, hull) || step > 1.0) return result;
+        if (holds(result, hull)) return result;
     }
+    return around_flat(hull, criterion);
 }
 
 }  // namespace crofton::fit

@@ -19,6 +19,7 @@ extern "C" {
 namespace crofton {
 namespace {
 
+constexpr std::uint32_t kNoPoint = ~std::uint32_t{0};
 constexpr double kFlat = 1e-12;
 constexpr double kStraight = 1e-15;  // distance from a line that rounding of the projection may feign
 
@@ -84,7 +85,7 @@ Result<Prepared> prepare(std::span<const Point> points) {
     const glm::dvec3 center = bounds.center(), half = bounds.half_extents();
     int exponent = 0;
     std::frexp(std::max({half.x, half.y, half.z}), &exponent);
-    const double scale = std::ldexp(1.0, -exponent);
+    const double scale = std::ldexp(1.0, -std::max(exponent, -1000));
     Prepared result;
     result.points.reserve(points.size());
     result.index.resize(points.size());
@@ -106,6 +107,24 @@ std::uint32_t argmax(const Vector<glm::dvec3>& points, const Measure& measure) {
             best = static_cast<std::uint32_t>(i);
         }
     return best;
+}
+
+// For each of these vertices the first point that is equal to it. Of equal points Qhull takes any, and so does the
+// upper chain of a planar hull.
+Vector<std::uint32_t> first_of_equal(const Vector<glm::dvec3>& points, Vector<std::uint32_t> vertices) {
+    const auto comes_before = [](const glm::dvec3& p, const glm::dvec3& q) {
+        return p.x != q.x ? p.x < q.x : p.y != q.y ? p.y < q.y : p.z < q.z;
+    };
+    std::sort(vertices.begin(), vertices.end(),
+              [&](std::uint32_t i, std::uint32_t j) { return comes_before(points[i], points[j]); });
+    Vector<std::uint32_t> first(points.size(), kNoPoint);
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+        const auto vertex =
+            std::lower_bound(vertices.begin(), vertices.end(), points[i],
+                             [&](std::uint32_t j, const glm::dvec3& p) { return comes_before(points[j], p); });
+        if (vertex != vertices.end() && points[*vertex] == points[i] && first[*vertex] == kNoPoint) first[*vertex] = i;
+    }
+    return first;
 }
 
 // Andrew's monotone chain in the plane spanned by x and y.
@@ -138,6 +157,8 @@ void planar_hull(const Vector<glm::dvec3>& points, const glm::dvec3& x, const gl
     for (std::size_t i = flat.size() - 1; i-- > 0;) push(flat[i], lower);
     while (size > 1 && chain[size - 1].at == chain[0].at) --size;
     for (std::size_t i = 0; i < size; ++i) hull.vertices.push_back(chain[i].index);
+    const Vector<std::uint32_t> first = first_of_equal(points, hull.vertices);
+    for (std::uint32_t& i : hull.vertices) i = first[i];
 }
 
 // Drops points well inside the polytope of the extreme points along 13 directions.
@@ -190,11 +211,13 @@ bool solid_hull(Prepared& prepared, ConvexHull& hull) {
     facetT* facet;
     Vector<std::array<std::uint32_t, 3>> faces;
     FORALLvertices hull.vertices.push_back(static_cast<std::uint32_t>(qh_pointid(qh, vertex->point)));
+    const Vector<std::uint32_t> first = first_of_equal(prepared.points, hull.vertices);
+    for (std::uint32_t& i : hull.vertices) i = first[i];
     FORALLfacets {
         std::uint32_t corner[3] = {0, 0, 0};
         int count = 0;
         FOREACHvertex_(facet->vertices) if (count < 3) corner[count++] =
-            static_cast<std::uint32_t>(qh_pointid(qh, vertex->point));
+            first[static_cast<std::uint32_t>(qh_pointid(qh, vertex->point))];
         // Qhull keeps the corners of a simplicial facet in the order of their ids; its normal tells which way is out.
         const glm::dvec3 a = prepared.points[corner[0]], b = prepared.points[corner[1]], c = prepared.points[corner[2]];
         if (glm::dot(glm::cross(b - a, c - a), glm::dvec3(facet->normal[0], facet->normal[1], facet->normal[2])) < 0.0)

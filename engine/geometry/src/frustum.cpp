@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <crofton/geometry/box.hpp>
 #include <crofton/geometry/camera.hpp>
@@ -16,6 +18,22 @@ void add(Frustum& frustum, const glm::dvec3& normal, double offset) {
 
 glm::dvec4 row(const glm::dmat4& m, int r) {
     return {m[0][r], m[1][r], m[2][r], m[3][r]};
+}
+
+// Up to rounding. Rows count by their directions, and the last column in units of the distance at which planes lie.
+// Seen from a far origin, all rows are mostly translation, and nearly parallel.
+bool is_singular(const std::array<glm::dvec4, 4>& rows) {
+    double distance = 1.0;
+    for (const glm::dvec4& r : rows)
+        if (const double size = glm::length(glm::dvec3(r)); size > 0.0)
+            distance = std::max(distance, std::abs(r.w) / size);
+    glm::dmat4 scaled(0.0);
+    for (int r = 0; r < 4; ++r) {
+        const glm::dvec4& row = rows[static_cast<std::size_t>(r)];
+        const glm::dvec4 in_units(glm::dvec3(row), row.w / distance);
+        scaled[r] = in_units / glm::length(in_units);
+    }
+    return !(std::abs(glm::determinant(scaled)) > 1e-14);
 }
 
 // The point where three planes meet; the caller knows that they do.
@@ -65,8 +83,7 @@ Result<Frustum> frustum_of(const glm::dmat4& to_clip, DepthRange depth, const gl
     if (!std::isfinite(origin.x) || !std::isfinite(origin.y) || !std::isfinite(origin.z))
         return fail(ErrorCode::non_finite, kNoItem, "view matrix: the origin is NaN or infinite");
     const glm::dvec4 x = row(to_clip, 0), y = row(to_clip, 1), z = row(to_clip, 2), w = row(to_clip, 3);
-    const double bound = glm::length(x) * glm::length(y) * glm::length(z) * glm::length(w);
-    if (!(std::abs(glm::determinant(to_clip)) > 1e-14 * bound))
+    if (is_singular({x, y, z, w}))
         return fail(ErrorCode::degenerate, kNoItem, "view matrix: singular, it projects space onto a plane or less");
     const glm::dvec4 low_z = depth == DepthRange::minus_one_to_one ? w + z : z;
     const glm::dvec4 high_z = w - z;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/core/recovery.hpp>
+#include <crofton/geometry/predicates.hpp>
 #include <crofton/measure/measure.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
@@ -55,8 +56,7 @@ Result<Vector<glm::dvec2>> convex_hull(std::span<const glm::dvec2> points) {
         Vector<glm::dvec2> hull;
         hull.reserve(sorted.size() + 1);
         const auto add = [&](const glm::dvec2& p, std::size_t floor) {
-            while (hull.size() >= floor + 2 && cross(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 0.0)
-                hull.pop_back();
+            while (hull.size() >= floor + 2 && orientation(hull[hull.size() - 2], hull.back(), p) <= 0) hull.pop_back();
             hull.push_back(p);
         };
         for (const glm::dvec2& p : sorted) add(p, 0);

@@ -94,6 +94,19 @@ bool is_inside(const mesh::MeshTree& mesh, const RigidTransform& pose, const glm
     return inside;
 }
 
+// One of each piece, and of each part where a refit has parted them.
+std::size_t points_asked(const MeshTree& mesh) {
+    return mesh.pieces().size() + mesh.parts().loose().size();
+}
+
+template <class IsInside>
+std::size_t count_inside(const MeshTree& mesh, const IsInside& is_inside) {
+    std::size_t inside = 0;
+    for (const MeshPiece& piece : mesh.pieces()) inside += is_inside(piece.vertex);
+    for (const glm::vec3& point : mesh.parts().loose()) inside += is_inside(point);
+    return inside;
+}
+
 }  // namespace
 
 bool contains(const mesh::MeshTree& mesh, const glm::dvec3& point) {
@@ -106,12 +119,11 @@ bool contains(const mesh::MeshTree& mesh, const glm::dvec3& point) {
 
 Containment containment_of_disjoint(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& b_to_a) {
     if (a.triangle_count() == 0 || b.triangle_count() == 0) return Containment::none;
-    std::size_t of_a = 0, of_b = 0;
-    for (const MeshPiece& piece : b.pieces())
-        of_b += is_inside(a, RigidTransform{}, transform(b_to_a, glm::dvec3(piece.vertex)));
-    if (of_b == b.pieces().size()) return Containment::b_inside_a;
-    for (const MeshPiece& piece : a.pieces()) of_a += is_inside(b, b_to_a, glm::dvec3(piece.vertex));
-    if (of_a == a.pieces().size()) return Containment::a_inside_b;
+    const std::size_t of_b = count_inside(
+        b, [&](const glm::vec3& p) { return is_inside(a, RigidTransform{}, transform(b_to_a, glm::dvec3(p))); });
+    if (of_b == points_asked(b)) return Containment::b_inside_a;
+    const std::size_t of_a = count_inside(a, [&](const glm::vec3& p) { return is_inside(b, b_to_a, glm::dvec3(p)); });
+    if (of_a == points_asked(a)) return Containment::a_inside_b;
     return of_a + of_b > 0 ? Containment::partly : Containment::none;
 }
 

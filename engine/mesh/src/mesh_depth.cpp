@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cmath>
 #include <crofton/mesh/mesh_parts.hpp>
 #include <crofton/mesh/mesh_query.hpp>
@@ -25,7 +26,9 @@ MeshDepth penetration(const mesh::MeshTree& a, const mesh::MeshTree& b, const Ri
         return intersects(a, b, pose) || containment_of_disjoint(a, b, pose) != Containment::none;
     };
     if (!meet_at(glm::dvec3(0.0))) return {};
-    const double size = size_of(a.parts().root_box) + size_of(b.parts().root_box);
+    // Of points, what their coordinates can tell.
+    const double extent = static_cast<double>(a.extent()) + static_cast<double>(b.extent());
+    const double size = std::max(size_of(a.parts().root_box) + size_of(b.parts().root_box), 1e-12 * extent);
     MeshDepth best{2.0 * size, glm::dvec3(0.0)};
     const auto try_direction = [&](const glm::dvec3& direction) {
         const double length = glm::length(direction);

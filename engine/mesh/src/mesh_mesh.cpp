@@ -159,7 +159,7 @@ glm::dvec3 center_of(const mesh::MeshBox& box) {
 MeshDistance distance(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& b_to_a, double limit,
                       MeshStatistics* statistics) {
     MeshDistance result;
-    if (is_empty(a) || is_empty(b)) return result;
+    if (is_empty(a) || is_empty(b) || !(limit > 0.0)) return result;
     ClosestPoints best;
     best.squared = limit * limit;
     Nearest nearest =

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <crofton/core/disjoint_sets.hpp>
 #include <numeric>
+#include <utility>
 
 namespace crofton::mesh {
 namespace {
@@ -48,7 +49,10 @@ class PieceFinder {
     [[nodiscard]] bool has_one_piece();
     void weld(Vector<std::uint32_t> vertices);
     [[nodiscard]] Vector<std::uint32_t> used_vertices() const;
+    [[nodiscard]] Vector<std::uint32_t> roots_of(std::span<const std::uint32_t> vertices);
     void number_pieces(MeshPieces& pieces);
+    void find_part_vertices(const Vector<std::uint32_t>& part_of, const Vector<std::uint32_t>& piece_of_root,
+                            MeshPieces& pieces);
 
     const TriangleMesh& mesh_;
     std::span<const std::uint32_t> triangles_;
@@ -109,6 +113,27 @@ void PieceFinder::weld(Vector<std::uint32_t> vertices) {
     }
 }
 
+// By vertex; of others nothing is said.
+Vector<std::uint32_t> PieceFinder::roots_of(std::span<const std::uint32_t> vertices) {
+    Vector<std::uint32_t> roots(mesh_.positions.size(), 0);
+    for (const std::uint32_t v : vertices) roots[v] = sets_.find(v);
+    return roots;
+}
+
+void PieceFinder::find_part_vertices(const Vector<std::uint32_t>& part_of, const Vector<std::uint32_t>& piece_of_root,
+                                     MeshPieces& pieces) {
+    Vector<std::uint8_t> met(mesh_.positions.size(), 0);
+    Vector<std::uint32_t> parts(pieces.vertex.size(), 0);
+    for (const std::uint32_t t : triangles_) {
+        const std::uint32_t v = corners(t)[0];
+        if (std::exchange(met[part_of[v]], std::uint8_t{1}) != 0) continue;
+        const std::uint32_t p = piece_of_root[sets_.find(v)];
+        pieces.part_vertices.push_back({v, p});
+        ++parts[p];
+    }
+    std::erase_if(pieces.part_vertices, [&](const PartVertex& part) { return parts[part.piece] == 1; });
+}
+
 void PieceFinder::number_pieces(MeshPieces& pieces) {
     constexpr std::uint32_t kUnnumbered = ~std::uint32_t{0};
     Vector<std::uint32_t> number(mesh_.positions.size(), kUnnumbered);
@@ -135,7 +160,10 @@ MeshPieces PieceFinder::find() {
     for (const Edge& edge : odd) ends.insert(ends.end(), {edge.low, edge.high});
     std::sort(ends.begin(), ends.end());
     ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-    weld(has_one_piece() ? ends : used_vertices());
+    const bool one_part = has_one_piece();
+    const Vector<std::uint32_t> welded_vertices = one_part ? ends : used_vertices();
+    const Vector<std::uint32_t> part_of = roots_of(welded_vertices);
+    weld(welded_vertices);
 
     MeshPieces pieces;
     number_pieces(pieces);
@@ -146,9 +174,13 @@ MeshPieces PieceFinder::find() {
         if (const Edge e = edge_of(lowest_[edge.low], lowest_[edge.high]); e.low != e.high) welded.push_back(e);
     welded.erase(keep_odd(welded.begin(), welded.end()), welded.end());
     for (const Edge& edge : welded) pieces.closed[piece_of_root[sets_.find(edge.low)]] = 0;
-    for (const std::uint32_t v : ends)
-        if (const std::uint32_t p = piece_of_root[sets_.find(v)]; lowest_[v] != v && pieces.closed[p] != 0)
-            pieces.welds.push_back({v, lowest_[v], p});
+    for (const std::uint32_t v : welded_vertices) {
+        if (lowest_[v] == v) continue;
+        const std::uint32_t p = piece_of_root[sets_.find(v)];
+        const bool closes = pieces.closed[p] != 0 && std::binary_search(ends.begin(), ends.end(), v);
+        if (closes || part_of[v] != part_of[lowest_[v]]) pieces.welds.push_back({v, lowest_[v], p});
+    }
+    if (!one_part) find_part_vertices(part_of, piece_of_root, pieces);
     return pieces;
 }
 

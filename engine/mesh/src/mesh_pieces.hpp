@@ -8,16 +8,22 @@
 
 namespace crofton::mesh {
 
-// A vertex and the lowest one of equal position, where that makes two edges one.
+// A vertex and the lowest one of equal position, where that makes two edges of a closed piece one, or joins a piece.
 struct WeldedVertex {
     std::uint32_t vertex, lowest, piece;
+};
+
+// A vertex of what hangs together by index, in a piece of several such parts.
+struct PartVertex {
+    std::uint32_t vertex, piece;
 };
 
 struct MeshPieces {
     Vector<std::uint32_t> vertex;  // of each piece: one of its lowest triangle; pieces are in the order of these
     Vector<std::uint8_t> closed;   // of each piece, as MeshPiece says
     Vector<std::uint32_t> piece;   // of each triangle asked about
-    Vector<WeldedVertex> welds;    // of closed pieces
+    Vector<WeldedVertex> welds;
+    Vector<PartVertex> part_vertices;
 };
 
 // Triangles are connected where they share a vertex: by index, or by equal position.

@@ -37,7 +37,7 @@ Result<void> MeshTree::check_positions(std::span<const glm::vec3> positions) con
 Result<void> MeshTree::refit(std::span<const glm::vec3> positions) {
     if (auto checked = check_positions(positions); !checked) return checked;
     MeshParts& parts = *parts_;
-    const MeshRefitData& refit = parts.refit;
+    MeshRefitData& refit = parts.refit;
     const float* const numbers = glm::value_ptr(positions.front());
     extent_ = move_leaves(numbers, refit.leaves.data(), parts.leaves.size(), parts.leaves.data());
     for (std::size_t n = 0; n < parts.nodes.size(); ++n)
@@ -52,8 +52,15 @@ Result<void> MeshTree::refit(std::span<const glm::vec3> positions) {
     }
     for (std::size_t p = 0; p < pieces_.size(); ++p)
         pieces_[p] = {positions[refit.piece_vertices[p]], refit.piece_closed[p] != 0};
-    for (const VertexWeld& weld : refit.welds)
-        if (positions[weld.vertex] != positions[weld.other]) pieces_[weld.piece].closed = false;
+    std::fill(refit.piece_parted.begin(), refit.piece_parted.end(), std::uint8_t{0});
+    for (const VertexWeld& weld : refit.welds) {
+        if (positions[weld.vertex] == positions[weld.other]) continue;
+        pieces_[weld.piece].closed = false;
+        refit.piece_parted[weld.piece] = 1;
+    }
+    parts.loose_count = 0;
+    for (const PieceWitness& witness : refit.witnesses)
+        if (refit.piece_parted[witness.piece] != 0) parts.loose_points[parts.loose_count++] = positions[witness.vertex];
     parts.refit_ray_nodes();
     return {};
 }

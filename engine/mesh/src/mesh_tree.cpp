@@ -204,6 +204,9 @@ void MeshTreeBuilder::set_pieces(std::span<const std::uint32_t> triangles) {
         tree_.pieces_.push_back({mesh_.positions[found.vertex[p]], found.closed[p] != 0});
     if (!options_.refittable) return;
     for (const WeldedVertex& weld : found.welds) made().refit.welds.push_back({weld.vertex, weld.lowest, weld.piece});
+    for (const PartVertex& part : found.part_vertices) made().refit.witnesses.push_back({part.vertex, part.piece});
+    made().refit.piece_parted.resize(found.vertex.size());
+    made().loose_points.resize(found.part_vertices.size());
     made().refit.piece_vertices = std::move(found.vertex);
     made().refit.piece_closed = std::move(found.closed);
 }
@@ -268,8 +271,22 @@ Result<MeshTree> MeshTreeBuilder::build() {
 
 MeshTree::MeshTree() = default;
 MeshTree::~MeshTree() = default;
-MeshTree::MeshTree(MeshTree&&) noexcept = default;
-MeshTree& MeshTree::operator=(MeshTree&&) noexcept = default;
+
+MeshTree::MeshTree(MeshTree&& other) noexcept
+    : rejected_(std::move(other.rejected_)),
+      pieces_(std::move(other.pieces_)),
+      triangle_count_(std::exchange(other.triangle_count_, 0)),
+      extent_(std::exchange(other.extent_, 0.0f)),
+      parts_(std::move(other.parts_)) {}
+
+MeshTree& MeshTree::operator=(MeshTree&& other) noexcept {
+    rejected_ = std::move(other.rejected_);
+    pieces_ = std::move(other.pieces_);
+    triangle_count_ = std::exchange(other.triangle_count_, 0);
+    extent_ = std::exchange(other.extent_, 0.0f);
+    parts_ = std::move(other.parts_);
+    return *this;
+}
 
 MeshTree::MeshTree(const MeshTree& other)
     : rejected_(other.rejected_),

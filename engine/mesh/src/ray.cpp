@@ -11,22 +11,12 @@
 #include <glm/geometric.hpp>
 
 #include <crofton/mesh/ray_box.hpp>
+#include "exact_vectors.hpp"
 #include "posed_mesh.hpp"
 #include "ray_mesh.hpp"
 
 namespace crofton::mesh {
 namespace {
-
-using Differences = std::array<Expansion<2>, 3>;
-
-Differences differences(const glm::dvec3& a, const glm::dvec3& b) {
-    return {exact_difference(a.x, b.x), exact_difference(a.y, b.y), exact_difference(a.z, b.z)};
-}
-
-std::array<Expansion<16>, 3> cross(const Differences& u, const Differences& v) {
-    const auto minor = [&](std::size_t i, std::size_t j) { return u[i] * v[j] - u[j] * v[i]; };
-    return {minor(1, 2), minor(2, 0), minor(0, 1)};
-}
 
 // Sign of det(direction, a − origin, b − origin), exactly.
 int side_of_edge(const Ray& ray, const glm::dvec3& a, const glm::dvec3& b) {

@@ -52,28 +52,38 @@ HWY_INLINE VD squared_to_segment(DD d, const Point& p, const Point& a, const Poi
 
 // Infinite unless the common perpendicular meets the first segment within.
 HWY_INLINE VD squared_between_lines(DD d, const Point& p, const Point& q, const Point& a, const Point& b) {
-    const Point u = minus(q, p), v = minus(b, a), w = minus(p, a);
-    const VD uu = rounded_dot(u, u), uv = rounded_dot(u, v), vv = rounded_dot(v, v), uw = rounded_dot(u, w),
-             vw = rounded_dot(v, w);
-    const VD determinant = rounded_minor(uu, vv, uv, uv), s = rounded_minor(uv, vw, vv, uw);
+    const Point u = minus(q, p), v = minus(b, a), n = rounded_cross(u, v);
+    const VD determinant = rounded_dot(n, n), s = rounded_dot(rounded_cross(minus(a, p), v), n);
     const MD within = hn::And(hn::Gt(s, hn::Zero(d)), hn::Lt(s, determinant));
     const VD squared = squared_to_segment(d, along(p, hn::Div(s, determinant), u), a, b);
     return hn::IfThenElse(within, squared, hn::Set(d, 1e308));
 }
 
+struct Face {
+    Point normal, inward[3];
+    VD length2;  // of the normal
+};
+
+HWY_INLINE Face face_of(DD d, const Point (&t)[3]) {
+    const Point side = minus(t[1], t[0]), across = rounded_cross(side, minus(t[2], t[0]));
+    const VD side2 = rounded_dot(side, side);
+    const VD tilt = hn::IfThenElseZero(hn::Gt(side2, hn::Zero(d)), hn::Div(rounded_dot(across, side), side2));
+    Face face;
+    face.normal = {hn::Sub(across.x, hn::Mul(tilt, side.x)), hn::Sub(across.y, hn::Mul(tilt, side.y)),
+                   hn::Sub(across.z, hn::Mul(tilt, side.z))};
+    face.length2 = rounded_dot(face.normal, face.normal);
+    for (int k = 0; k < 3; ++k) face.inward[k] = rounded_cross(face.normal, minus(t[(k + 1) % 3], t[k]));
+    return face;
+}
+
 // Infinite unless p's foot falls inside.
-HWY_INLINE VD squared_to_face(DD d, const Point& p, const Point (&t)[3]) {
+HWY_INLINE VD squared_to_face(DD d, const Point& p, const Point (&t)[3], const Face& face) {
     const VD zero = hn::Zero(d);
-    const Point n = rounded_cross(minus(t[1], t[0]), minus(t[2], t[0]));
-    const VD length2 = rounded_dot(n, n);
-    MD inside = hn::Gt(length2, zero);
-    for (int k = 0; k < 3; ++k) {
-        const Point inward = rounded_cross(n, minus(t[(k + 1) % 3], t[k]));
-        inside = hn::And(inside, hn::Ge(rounded_dot(inward, minus(p, t[k])), zero));
-    }
-    const VD height = hn::Div(rounded_dot(n, minus(p, t[0])), length2);
-    const Point foot = {hn::Sub(p.x, hn::Mul(height, n.x)), hn::Sub(p.y, hn::Mul(height, n.y)),
-                        hn::Sub(p.z, hn::Mul(height, n.z))};
+    MD inside = hn::Gt(face.length2, zero);
+    for (int k = 0; k < 3; ++k) inside = hn::And(inside, hn::Ge(rounded_dot(face.inward[k], minus(p, t[k])), zero));
+    const VD height = hn::Div(rounded_dot(face.normal, minus(p, t[0])), face.length2);
+    const Point foot = {hn::Sub(p.x, hn::Mul(height, face.normal.x)), hn::Sub(p.y, hn::Mul(height, face.normal.y)),
+                        hn::Sub(p.z, hn::Mul(height, face.normal.z))};
     return hn::IfThenElse(inside, squared_distance(p, foot), hn::Set(d, 1e308));
 }
 
@@ -88,10 +98,11 @@ HWY_INLINE std::uint32_t closer_lanes(const TrianglePairs& pairs, double limit) 
             a[v] = {hn::Load(d, pairs.a[v][0] + l), hn::Load(d, pairs.a[v][1] + l), hn::Load(d, pairs.a[v][2] + l)};
             b[v] = {hn::Load(d, pairs.b[v][0] + l), hn::Load(d, pairs.b[v][1] + l), hn::Load(d, pairs.b[v][2] + l)};
         }
+        const Face face_a = face_of(d, a), face_b = face_of(d, b);
         VD best = hn::Set(d, 1e308);
         for (int i = 0; i < 3; ++i) {
             const int i1 = (i + 1) % 3;
-            best = hn::Min(best, hn::Min(squared_to_face(d, a[i], b), squared_to_face(d, b[i], a)));
+            best = hn::Min(best, hn::Min(squared_to_face(d, a[i], b, face_b), squared_to_face(d, b[i], a, face_a)));
             for (int j = 0; j < 3; ++j) {
                 const int j1 = (j + 1) % 3;
                 best = hn::Min(best, squared_to_segment(d, a[i], b[j], b[j1]));

@@ -10,8 +10,8 @@
 namespace crofton::triangulate {
 namespace {
 
-// Predicates are exact for magnitudes within 1e±70; the caller's may lie anywhere. So they are scaled by a power of two
-// to at most 1, and must not be smaller than this unless 0.
+// Predicates are exact for magnitudes from 1e-65 to 1e70; the caller's may lie anywhere. So they are scaled by a power
+// of two to at most 2, and must not be smaller than this unless 0.
 constexpr double kSmallest = 0x1p-200;
 constexpr double kLargest = std::numeric_limits<double>::max();
 
@@ -72,7 +72,7 @@ Result<void> Domain::check(const Polygon& polygon) {
             return fail(ErrorCode::out_of_range, culprit,
                         {name_of(culprit).text, ": coordinates differ by more than 2^200 in size"});
         }
-        scale_ = std::ldexp(1.0, exponent);
+        scale_ = std::ldexp(1.0, std::min(exponent, 1023));  // 2^1024 is no double
     }
     return {};
 }

@@ -8,8 +8,8 @@
 
 namespace crofton {
 
-// Inputs must be finite; exact while |coordinates| lie in [1e-70, 1e70] or are 0 (degree-4 products stay within
-// double).
+// Inputs must be finite. Exact while |coordinates| lie in [1e-70, 1e70], of in_circle in [1e-65, 1e70], or are 0.
+// Products of three differences, and of four, then stay within double, down to the last place of the smallest.
 
 namespace detail {
 

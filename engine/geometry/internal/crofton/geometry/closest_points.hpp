@@ -27,26 +27,29 @@ struct ClosestPoints {
     return a + std::clamp(glm::dot(p - a, along) / length2, 0.0, 1.0) * along;
 }
 
-// Ends against the other segment, then the common perpendicular where it meets both.
+// Ends against the other segment, then the common perpendicular where it meets both. For lines at a small angle θ the
+// cross product errs by 2^-52/θ of itself, and so does the place along the lines. That moves the distance by 2^-52 of
+// their size. The determinant of dot products would err by 2^-52/θ².
 inline void closest_of_segments(const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& a, const glm::dvec3& b,
                                 ClosestPoints& best) {
     best.offer(p, closest_on_segment(p, a, b));
     best.offer(q, closest_on_segment(q, a, b));
     best.offer(closest_on_segment(a, p, q), a);
     best.offer(closest_on_segment(b, p, q), b);
-    const glm::dvec3 u = q - p, v = b - a, w = p - a;
-    const double uu = glm::dot(u, u), uv = glm::dot(u, v), vv = glm::dot(v, v), uw = glm::dot(u, w),
-                 vw = glm::dot(v, w);
-    const double determinant = uu * vv - uv * uv;
-    const double s = uv * vw - vv * uw;
+    const glm::dvec3 u = q - p, v = b - a, n = glm::cross(u, v);
+    const double determinant = glm::dot(n, n), s = glm::dot(glm::cross(a - p, v), n);
     if (!(s > 0.0 && s < determinant)) return;
     const glm::dvec3 on_first = p + s / determinant * u;
     best.offer(on_first, closest_on_segment(on_first, a, b));
 }
 
-// The foot of p's perpendicular on the triangle, where it falls inside.
+// The foot of p's perpendicular on the triangle, where it falls inside. The normal of a sliver whose sides meet at a
+// small angle θ errs by 2^-52/θ of itself. What of that lies along a side is taken out: it would tilt the plane over
+// the whole length. Across, the sliver is only θ times as wide.
 inline bool foot_inside(const glm::dvec3& p, const Triangle& t, glm::dvec3& foot) {
-    const glm::dvec3 n = glm::cross(t[1] - t[0], t[2] - t[0]);
+    const glm::dvec3 side = t[1] - t[0], across = glm::cross(side, t[2] - t[0]);
+    const double side2 = glm::dot(side, side);
+    const glm::dvec3 n = across - (side2 > 0.0 ? glm::dot(across, side) / side2 : 0.0) * side;
     const double length2 = glm::dot(n, n);
     if (!(length2 > 0.0)) return false;
     for (std::size_t k = 0; k < 3; ++k)

@@ -25,7 +25,7 @@ struct SegmentOfContact {
     glm::dvec3 begin{0.0}, end{0.0};
 };
 // Where two triangles that meet do so: the ends of their common segment, equal for a point. For coplanar triangles: the
-// ends of a longest diagonal of their common polygon, at most. Rounded to double.
+// ends of a longest diagonal of their common polygon, at most. Rounded: within 1e-9 of the triangles' size of both.
 [[nodiscard]] SegmentOfContact contact_segment(const Triangle& a, const Triangle& b);
 
 // Meshes against meshes, through their trees: do they meet, where, and how far apart are they?
@@ -64,8 +64,9 @@ void contacts(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTrans
               Vector<MeshContact>& found, MeshStatistics* statistics = nullptr);
 
 // A motion of b that ends the contact, containment included: `depth` along the unit vector `direction`. An upper bound
-// of the penetration depth, 0 where they do not meet. It is the shortest, to 1e-6 of the meshes' size, along these: the
-// axes of both meshes' frames and boxes, the mean normal of the contacts, the line of centres.
+// of the penetration depth, 0 where they do not meet. It is tried along these: the axes of both meshes' frames and
+// boxes, the mean normal of the contacts, the line of centres. Of meshes that stay apart once they are, as convex ones
+// do, it is the shortest of these motions, to 1e-6 of the meshes' size. Others may part earlier, and meet again.
 struct MeshDepth {
     double depth = 0.0;
     glm::dvec3 direction{0.0};

@@ -23,8 +23,9 @@ enum class MeshBoxes : std::uint8_t {
 
 struct MeshTreeOptions {
     MeshBoxes boxes = MeshBoxes::small_perimeter;
-    bool refittable = false;  // for meshes that deform: refit() needs 20 bytes more a triangle
-    bool rays = false;        // for meshes that many rays are cast at: prepare_rays() at once
+    // For meshes that deform: refit() needs 20 bytes more a triangle, and 12 a vertex that has another's position.
+    bool refittable = false;
+    bool rays = false;  // for meshes that many rays are cast at: prepare_rays() at once
 };
 
 // Triangles that share vertices, by index or by equal position, make a connected piece.
@@ -43,8 +44,8 @@ class MeshTree {
     ~MeshTree();
     MeshTree(const MeshTree& other);
     MeshTree& operator=(const MeshTree& other);
-    MeshTree(MeshTree&&) noexcept;
-    MeshTree& operator=(MeshTree&&) noexcept;
+    MeshTree(MeshTree&& other) noexcept;  // what is moved from is a tree of no triangles
+    MeshTree& operator=(MeshTree&& other) noexcept;
 
     // A triangle with a vertex that is NaN, infinite or beyond 1e12, or an index out of range, is left out and listed
     // in rejected(). The others are unharmed. Errors: no valid triangle; index count no multiple of three; 2^28
@@ -54,9 +55,10 @@ class MeshTree {
     // Moves the vertices: `positions` are those of the mesh that the tree was built from, in its order. Triangles stay
     // in their leaves; boxes turn with three of their vertices and are bounded anew. The result depends on the build
     // and on `positions` alone, not on earlier refits. Boxes widen as neighbours part: rebuild when queries slow down.
-    // A piece whose vertices of equal position part is open from then on. Allocates nothing. Errors, after which the
-    // tree is as before: a tree that is not refittable; another number of positions; a vertex of a triangle that is
-    // NaN, infinite or beyond 1e12.
+    // A piece is open while vertices have parted whose equal positions closed it or held it together. Its parts are
+    // then asked one by one whether another mesh contains them. Allocates nothing. Errors, after which the tree is as
+    // before: a tree that is not refittable; another number of positions; a vertex of a triangle that is NaN, infinite
+    // or beyond 1e12.
     [[nodiscard]] Result<void> refit(std::span<const glm::vec3> positions);
 
     // A hierarchy of aligned boxes for rays, a tenth more memory: with it a ray takes 7 to 35 % less time. Without it

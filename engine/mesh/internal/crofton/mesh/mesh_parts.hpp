@@ -5,12 +5,19 @@
 #include <crofton/mesh/mesh_layout.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <cstdint>
+#include <glm/vec3.hpp>
+#include <span>
 
 namespace crofton::mesh {
 
-// Two vertices of equal position that close a piece.
+// Two vertices of equal position that close a piece or hold it together.
 struct VertexWeld {
     std::uint32_t vertex, other, piece;
+};
+
+// A vertex of each part of a piece that equal positions hold together.
+struct PieceWitness {
+    std::uint32_t vertex, piece;
 };
 
 // Empty in a tree that is not refittable.
@@ -21,6 +28,8 @@ struct MeshRefitData {
     Vector<std::uint32_t> piece_vertices;
     Vector<std::uint8_t> piece_closed;  // at the build
     Vector<VertexWeld> welds;
+    Vector<PieceWitness> witnesses;
+    Vector<std::uint8_t> piece_parted;  // by the last refit
     std::size_t vertex_count = 0;
 };
 
@@ -30,6 +39,12 @@ struct MeshParts {
     Vector<BoxNode> ray_nodes;  // the root is the first; empty where rays are not prepared
     MeshBox root_box{};
     MeshRefitData refit;
+    // The first `loose_count` are points of the parts of pieces that the last refit has parted, one of each.
+    // Containment asks for them beside the pieces' own.
+    Vector<glm::vec3> loose_points;
+    std::size_t loose_count = 0;
+
+    [[nodiscard]] std::span<const glm::vec3> loose() const { return {loose_points.data(), loose_count}; }
 
     void refit_ray_nodes();
 };
