@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <string>
+#include <utility>
 
 #if defined(__unix__)
 #include <sys/wait.h>
@@ -69,6 +70,24 @@ TEST_SUITE("core/memory") {
         CHECK(at_beginning <= 1);
     }
 
+    TEST_CASE("an owner that is moved to itself keeps its object, one that is moved to another lets go of its own") {
+        struct Object {
+            int& ended;
+            ~Object() { ++ended; }
+        };
+        int first_ended = 0, second_ended = 0;
+        Owner<Object> first = Owner<Object>::make(Object{first_ended}),
+                      second = Owner<Object>::make(Object{second_ended});
+        first_ended = second_ended = 0;  // the temporaries
+        Owner<Object>& itself = first;
+        first = std::move(itself);
+        REQUIRE(first);
+        CHECK(first_ended == 0);
+        first = std::move(second);
+        CHECK(first_ended == 1);
+        CHECK(second_ended == 0);
+        CHECK_FALSE(second);
+    }
     TEST_CASE("containers take their memory from the host's hooks and give all of it back") {
         Counts counts;
         set_memory_hooks({counting_allocate, counting_release, &counts});

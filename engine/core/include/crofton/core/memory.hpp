@@ -67,8 +67,9 @@ class Owner {
     explicit Owner(T* object) : object_(object) {}
     Owner(Owner&& other) noexcept : object_(other.release()) {}
     Owner& operator=(Owner&& other) noexcept {
+        T* taken = other.release();  // first, so that moving to itself changes nothing
         Owner old(object_);
-        object_ = other.release();
+        object_ = taken;
         return *this;
     }
     ~Owner() {

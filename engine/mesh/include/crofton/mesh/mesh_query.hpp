@@ -110,8 +110,8 @@ struct MeshDistance {
 [[nodiscard]] std::optional<double> raycast(const Ray& ray, const Obb& box);
 
 // Whether the ray meets a triangle is decided exactly, edges and corners included, and the ray's start and end. So
-// nothing slips through between triangles that share an edge. t is rounded, but stays within 0 … max_t. A ray within
-// the plane of a triangle does not hit that triangle.
+// nothing slips through between triangles that share an edge. t is rounded, but stays within 0 … max_t; it is told
+// of directions whose length is from 1e-150 to 1e150. A ray within the plane of a triangle does not hit that triangle.
 [[nodiscard]] std::optional<double> raycast(const Ray& ray, const Triangle& triangle);
 
 struct RayHit {
