@@ -5,6 +5,7 @@
 #include <crofton/radiosity/lines.hpp>
 #include <crofton/radiosity/patches.hpp>
 #include <error_of.hpp>
+#include <glm/geometric.hpp>
 #include <limits>
 
 #include "shapes.hpp"
@@ -72,6 +73,48 @@ TEST_SUITE("radiosity/bundle_tracer") {
                     CHECK(d.wrong <= 2 + d.crossings / 20'000);
                 }
         CHECK(crossings > 100'000);
+    }
+
+    TEST_CASE("crossings are counted from where the lines start, also where the bundle is of another box") {
+        const TriangleMesh mesh = shapes::soup(200, 0.5f, 3);
+        const auto by_bundle = BundleTracer::build(mesh);
+        const auto by_line = LineTracer::build(mesh);
+        const Bundle bundle = make_bundle({{-3, -2, -1}, {9, 5, 4}}, 0.01, {0.3, 0.2}, 7);
+        std::vector<Line> lines;
+        for (std::size_t i = 0; i < bundle.cells(); ++i) lines.push_back(bundle.line(i));
+        BundleTracer::Scratch scratch;
+        LineHits ours, theirs;
+        by_bundle->all_hits(bundle, scratch, ours);
+        by_line->all_hits(lines, theirs);
+        REQUIRE(ours.hits.size() == theirs.hits.size());
+        CHECK(ours.hits.size() > 1000);
+        std::size_t wrong = 0;
+        for (std::size_t h = 0; h < ours.hits.size(); ++h) wrong += std::abs(ours.hits[h].t - theirs.hits[h].t) > 1e-3f;
+        CHECK(wrong <= 2);
+    }
+
+    TEST_CASE("a bundle through a long thin box has no more than some ten cells a line, and covers its shadow") {
+        const sampling::UnitPoints points(6, sampling::Sequence::quasi_random);
+        for (const glm::dvec3 size :
+             {glm::dvec3(1e5, 1.0, 0.0), glm::dvec3(1.0, 1e5, 2.0), glm::dvec3(3e3, 3e3, 0.1)}) {
+            const Aabb box{-0.25 * size, 0.75 * size};
+            const double shadow = 0.5 * (size.x * size.y + size.y * size.z + size.z * size.x);
+            for (std::uint64_t k = 0; k < 1000; ++k) {
+                const Bundle bundle = make_bundle(box, shadow / 1e5, points.at<2>(k), k);
+                CHECK(bundle.cells() <= (1u << 21));
+                CHECK(glm::dot(glm::cross(bundle.right, bundle.up), bundle.direction) ==
+                      doctest::Approx(1.0).epsilon(1e-12));
+                for (int c = 0; c < 8; ++c) {
+                    const glm::dvec3 corner(c & 1 ? box.min.x : box.max.x, c & 2 ? box.min.y : box.max.y,
+                                            c & 4 ? box.min.z : box.max.z);
+                    const glm::dvec3 d = (corner - bundle.corner) / bundle.cell;
+                    CHECK(glm::dot(d, bundle.right) >= 0.0);
+                    CHECK(glm::dot(d, bundle.right) <= bundle.columns);
+                    CHECK(glm::dot(d, bundle.up) >= 0.0);
+                    CHECK(glm::dot(d, bundle.up) <= bundle.rows);
+                }
+            }
+        }
     }
 
     TEST_CASE("every line of a closed room enters and leaves it") {

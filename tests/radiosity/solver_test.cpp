@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <crofton/core/executor.hpp>
 #include <crofton/radiosity/patches.hpp>
@@ -100,6 +101,10 @@ TEST_SUITE("radiosity/solver") {
         options.outside.sun = glm::vec3(1.0f);
         options.outside.to_sun = glm::dvec3(0.0);
         CHECK(error_of(Solver::create(dark, options)).code == ErrorCode::degenerate);
+        for (const double far : {1e200, HUGE_VAL, std::nan("")}) {
+            options.outside.to_sun = {0.0, far, 0.0};
+            CHECK(error_of(Solver::create(dark, options)).code == ErrorCode::out_of_range);
+        }
         options = quick();
         options.outside.sky = glm::vec3(1.0f);
         options.cutoff = 0.0;
@@ -212,6 +217,52 @@ TEST_SUITE("radiosity/solver") {
             CHECK(solver->irradiance()[0].x == doctest::Approx(3.0).epsilon(0.01));
             CHECK(solver->radiosity()[0].x == doctest::Approx(1.5).epsilon(0.01));
         }
+    }
+
+    TEST_CASE("a second run's expectation is the light itself, whatever the first one found: 2,000 of few lines") {
+        // A cube's walls, two of them black. From a wall, 0.19982 of what leaves it reaches the one opposite.
+        const double reflectance[6] = {0.99, 0.99, 0.0, 0.99, 0.0, 0.99}, opposite = 0.1998249;
+        Shape s;
+        s.room({0, 0, 0}, {1, 1, 1}, 0);
+        std::vector<Material> materials(6);
+        for (std::size_t i = 0; i < 6; ++i) materials[i].reflectance = glm::vec3(static_cast<float>(reflectance[i]));
+        materials[0].emission = glm::vec3(1.0f);
+        std::array<double, 6> light{};
+        for (int iteration = 0; iteration < 1000; ++iteration)
+            for (std::size_t i = 0; i < 6; ++i) {
+                double arrived = 0.0;
+                for (std::size_t j = 0; j < 6; ++j)
+                    if (j != i) arrived += light[j] * (j == (i ^ 1u) ? opposite : 0.25 * (1.0 - opposite));
+                light[i] = (i == 0 ? 1.0 : 0.0) + reflectance[i] * arrived;
+            }
+        double truth = 0.0;
+        for (const double b : light) truth += b;
+        const Patches patches = patches_of(s, materials);
+        SolverOptions options;
+        options.lines = 192;
+        options.first_shot = 64;
+        options.cutoff = 1e-4;
+        options.sequence = sampling::Sequence::pseudo_random;
+        constexpr int kSeeds = 2000;
+        double sum = 0.0, squares = 0.0;
+        for (int seed = 1; seed <= kSeeds; ++seed) {
+            options.seed = static_cast<std::uint64_t>(seed);
+            auto solver = Solver::create(patches, options);
+            REQUIRE(solver.has_value());
+            const auto all = [&] {
+                double result = 0.0;
+                for (const glm::vec3& b : solver->radiosity()) result += static_cast<double>(b.x);
+                return result;
+            };
+            solver->run();
+            const double first = all();
+            solver->run();
+            const double second = 2.0 * all() - first;
+            sum += second;
+            squares += second * second;
+        }
+        const double mean = sum / kSeeds, deviation = std::sqrt((squares / kSeeds - mean * mean) / kSeeds);
+        CHECK(std::abs(mean - truth) < 4.0 * deviation);
     }
 
     TEST_CASE("the estimated error is the true one's size, and four times the runs halve it") {

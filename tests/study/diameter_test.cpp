@@ -68,6 +68,36 @@ TEST_SUITE("study/diameter") {
         }
     }
 
+    TEST_CASE("corners a rounding apart hide no farther ones: clusters of up to five such points") {
+        for (int i = 0; i < 20'000; ++i) {
+            sampling::Random random(5, static_cast<std::uint64_t>(i));
+            std::vector<glm::dvec2> points;
+            for (std::size_t cluster = 3 + random.bits() % 6; cluster > 0; --cluster) {
+                const glm::dvec2 center(random.uniform(), random.uniform());
+                for (std::size_t k = 1 + random.bits() % 5; k > 0; --k) {
+                    points.push_back(center);
+                    for (std::size_t step = random.bits() % 5; step > 0; --step) {
+                        double& x = points.back()[static_cast<int>(random.bits() % 2)];
+                        x = std::nextafter(x, random.bits() % 2 ? 2.0 : -2.0);
+                    }
+                }
+            }
+            CHECK(diameter_of(points)->length == doctest::Approx(largest_distance(points)).epsilon(1e-14));
+        }
+    }
+
+    TEST_CASE("coordinates whose squares are no doubles any more") {
+        for (const double s : {0x1p-500, 0x1p-530, 0x1p-1000, 0x1p-1074}) {
+            const auto flat = diameter_of(std::vector<glm::dvec2>{{0, 0}, {3 * s, 0}, {3 * s, 4 * s}, {0, 4 * s}});
+            CHECK(flat->length == 5 * s);
+            CHECK(glm::abs(flat->to - flat->from) == glm::dvec2(3 * s, 4 * s));
+            const auto solid =
+                diameter_of(std::vector<glm::dvec3>{{0, 0, 0}, {s, 0, 0}, {s, 2 * s, 0}, {s, 2 * s, 2 * s}});
+            CHECK(solid->length == 3 * s);
+            CHECK(glm::abs(solid->to - solid->from) == glm::dvec3(s, 2 * s, 2 * s));
+        }
+    }
+
     TEST_CASE("the largest of all distances, and the largest breadth, of 2,000 random sets") {
         for (int i = 0; i < 2000; ++i) {
             sampling::Random random(4, static_cast<std::uint64_t>(i));

@@ -79,6 +79,21 @@ TEST_SUITE("study/k_dop") {
         CHECK(volume(26) > 4.0 / 3.0 * std::numbers::pi);
     }
 
+    TEST_CASE("far from the origin a k-DOP has the corners that it has there") {
+        const auto points = random_points(6, 50);
+        for (const std::uint32_t k : {14u, 18u, 26u}) {
+            const auto directions = *study::k_dop_directions(k);
+            const auto near = *study::k_dop_around(points, directions);
+            const double volume = measure::intrinsic_volumes_of_hull(near.corners)->volume;
+            for (const double offset : {1e6, 1e7, 1e8}) {
+                auto moved = points;
+                for (glm::dvec3& p : moved) p += glm::dvec3(offset, -0.75 * offset, 0.25 * offset);
+                const auto far = *study::k_dop_around(moved, directions);
+                CHECK(measure::intrinsic_volumes_of_hull(far.corners)->volume == doctest::Approx(volume).epsilon(1e-5));
+            }
+        }
+    }
+
     TEST_CASE("every point is inside, no bound undercuts the hull, and six faces cannot beat the best box") {
         for (std::uint64_t seed = 0; seed < 12; ++seed) {
             const auto points = random_points(seed, 12);

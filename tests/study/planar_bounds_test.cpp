@@ -82,6 +82,26 @@ TEST_SUITE("study/planar_bounds") {
         CHECK(optimal_rectangle(square, tight)->measure == doctest::Approx(4.0));
     }
 
+    TEST_CASE("an object that touches its ancestor is inside it far from the origin, too") {
+        const Rectangle rectangle{{0.5, 0.5}, {1.0, 0.0}, {0.5, 0.5}};
+        const std::vector<glm::dvec2> object = {{0.0, 0.0}, {1.0, 0.25}, {0.75, 1.0}, {0.25, 0.875}};
+        const auto near = optimal_disc(object, PlanarSupport(rectangle));
+        REQUIRE(near.has_value());
+        for (const double offset : {1e6, 1e8, -1e9}) {
+            std::vector<glm::dvec2> moved = object;
+            for (glm::dvec2& p : moved) p += offset;
+            const PlanarSupport around(Rectangle{rectangle.center + offset, rectangle.axis, rectangle.half_extents});
+            const auto disc = optimal_disc(moved, around);
+            REQUIRE(disc.has_value());
+            // About 1e-15 of the coordinates, in each of some ten pieces.
+            CHECK(std::abs(disc->measure - near->measure) < 1e-14 * std::abs(offset));
+            CHECK(optimal_box(moved, around).has_value());
+            CHECK(optimal_rectangle(moved, around).has_value());
+            moved[2].y += 0.01;
+            CHECK(error_of(optimal_disc(moved, around)).code == ErrorCode::invalid_argument);
+        }
+    }
+
     TEST_CASE("the paper's triangle: the best second circle has radius 1.871 l and saves 40.3 percent") {
         // The degenerate triangle is a segment of length 2l, its first circle has radius l (section 4 of the paper,
         // with formula (8) completed by its missing -4l). Closed form by d = sqrt(R^2 - 1): L1 + L2 - L_hull - 4.

@@ -6,6 +6,7 @@
 #include <crofton/core/recovery.hpp>
 #include <crofton/radiosity/lines.hpp>
 #include <crofton/sampling/sampling.hpp>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 
@@ -18,6 +19,8 @@ namespace {
 // Triangles over more cells than this are cut into rows, so that long thin ones do not name all cells of their box.
 constexpr std::int32_t kFewCells = 8;
 constexpr std::size_t kCandidates = 2048;
+// A grid of more cells than that is turned along the shadow: a thin box across its diagonal would leave most empty.
+constexpr double kMostCellsOfLine = 16.0, kFewCellsOfGrid = 0x1p16;
 
 std::uint32_t short_seed(std::uint64_t seed) {
     return static_cast<std::uint32_t>(seed ^ seed >> 32);
@@ -33,6 +36,7 @@ detail::GridFrame grid_frame(const Bundle& bundle, const glm::dvec3& origin) {
     }
     grid.shift[0] = static_cast<float>(glm::dot(right, origin - bundle.corner));
     grid.shift[1] = static_cast<float>(glm::dot(up, origin - bundle.corner));
+    grid.shift[2] = static_cast<float>(glm::dot(bundle.direction, origin - bundle.corner));
     grid.columns = static_cast<float>(bundle.columns);
     grid.rows = static_cast<float>(bundle.rows);
     return grid;
@@ -110,6 +114,28 @@ bool is_before(const Hit& a, const Hit& b, float tie) {
     return x != y ? x < y : a.triangle < b.triangle;
 }
 
+// How many cells the shadow of a box takes along each side of a bundle's grid. One to spare: shadows of corners are
+// rounded.
+glm::dvec2 cells_across(const Bundle& bundle, const glm::dvec3& half) {
+    const glm::dvec2 reach(glm::dot(glm::abs(bundle.right), half), glm::dot(glm::abs(bundle.up), half));
+    return glm::ceil(2.0 * reach / bundle.cell) + 1.0;
+}
+
+// Turns the grid along the longest of the shadows of the box's half edges. Let p be that and w half the shadow's width
+// across it. The grid is at most 6·|p| long and 2·w wide. The shadow has an area of 4·|p|·w at least, the sum of the
+// parallelograms of each two. So the grid has at most three times that, and the cells to spare.
+void turn_along_shadow(const glm::dvec3& half, Bundle& bundle) {
+    glm::dvec2 longest(0.0);
+    for (int k = 0; k < 3; ++k) {
+        const glm::dvec2 p = half[k] * glm::dvec2(bundle.right[k], bundle.up[k]);
+        if (glm::dot(p, p) > glm::dot(longest, longest)) longest = p;
+    }
+    longest /= glm::length(longest);
+    const glm::dvec3 right = bundle.right;
+    bundle.right = longest.x * right + longest.y * bundle.up;
+    bundle.up = longest.x * bundle.up - longest.y * right;
+}
+
 }  // namespace
 
 Bundle make_bundle(const Aabb& bounds, double cell_area, const std::array<double, 2>& u, std::uint64_t seed) {
@@ -121,15 +147,18 @@ Bundle make_bundle(const Aabb& bounds, double cell_area, const std::array<double
     bundle.cell = std::sqrt(cell_area);
     bundle.seed = seed;
     const glm::dvec3 half = bounds.half_extents(), d = glm::abs(bundle.direction);
-    const double across = glm::dot(glm::abs(bundle.right), half), along = glm::dot(glm::abs(bundle.up), half);
-    // A cell to spare: shadows of corners are rounded.
-    bundle.columns = static_cast<std::uint32_t>(std::ceil(2.0 * across / bundle.cell)) + 1;
-    bundle.rows = static_cast<std::uint32_t>(std::ceil(2.0 * along / bundle.cell)) + 1;
-    CROFTON_ASSERT(bundle.cells() <= std::size_t{1} << 24, "a bundle of too many cells");
+    bundle.lines = 4.0 * (d.x * half.y * half.z + d.y * half.z * half.x + d.z * half.x * half.y) / cell_area;
+    glm::dvec2 across = cells_across(bundle, half);
+    if (across.x * across.y > kMostCellsOfLine * bundle.lines + kFewCellsOfGrid) {
+        turn_along_shadow(half, bundle);
+        across = cells_across(bundle, half);
+    }
+    CROFTON_ASSERT(across.x * across.y <= 0x1p24, "a bundle of too many cells");
+    bundle.columns = static_cast<std::uint32_t>(across.x);
+    bundle.rows = static_cast<std::uint32_t>(across.y);
     bundle.corner = bounds.center() - 0.5 * bundle.cell *
                                           (static_cast<double>(bundle.columns) * bundle.right +
                                            static_cast<double>(bundle.rows) * bundle.up);
-    bundle.lines = 4.0 * (d.x * half.y * half.z + d.y * half.z * half.x + d.z * half.x * half.y) / cell_area;
     return bundle;
 }
 

@@ -39,7 +39,7 @@ void project(const DrawnTriangles* blocks, std::size_t count, const GridFrame& g
                 y[c] = along(grid.up, p, grid.shift[1]);
                 hn::Store(x[c], d, out.x[c] + at);
                 hn::Store(y[c], d, out.y[c] + at);
-                hn::Store(along(grid.forward, p, 0.0f), d, out.t[c] + at);
+                hn::Store(along(grid.forward, p, grid.shift[2]), d, out.t[c] + at);
             }
             const auto range = [&](const V* v, float end, std::int32_t* low, std::int32_t* high) {
                 const V least = hn::Max(zero, hn::Min(v[0], hn::Min(v[1], v[2])));

@@ -14,9 +14,9 @@ struct alignas(64) DrawnTriangles {
     float corner[3][3][kDrawLanes];  // [corner][axis]
 };
 
-// Space to grid: column = right·x + shift[0], row = up·x + shift[1], t = forward·x.
+// Space to grid: column = right·x + shift[0], row = up·x + shift[1], t = forward·x + shift[2].
 struct GridFrame {
-    float right[3], up[3], forward[3], shift[2];
+    float right[3], up[3], forward[3], shift[3];
     float columns, rows;
 };
 

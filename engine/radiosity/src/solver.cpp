@@ -16,6 +16,9 @@ namespace {
 constexpr std::uint64_t kFewerLinesAtFirst = 4, kFewerLines = 8;
 constexpr double kEarlierEnd = 10.0;
 constexpr std::uint64_t kGatherStream = 8;
+// Added after the first run. Bundles and blocks are numbered by run, times how many a run has. Later runs have fewer.
+// In the first one's stream they would draw some of its lines again, and their expectation would not be the light.
+constexpr std::uint64_t kLaterRuns = std::uint64_t{1} << 40;
 
 double absolute(const glm::dvec3& v) {
     return std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
@@ -31,8 +34,14 @@ Result<void> check(const SolverOptions& options) {
         return fail(ErrorCode::out_of_range, kNoItem, "radiosity: the cutoff must be positive");
     if (options.lines > std::uint64_t{1} << 40)
         return fail(ErrorCode::out_of_range, kNoItem, "radiosity: more than 2^40 lines in one gathering");
-    if (total(glm::dvec3(options.outside.sun)) > 0.0 && !(glm::length(options.outside.to_sun) > 0.0))
-        return fail(ErrorCode::degenerate, kNoItem, "radiosity: the direction to the sun has no length");
+    const double to_sun = glm::length(options.outside.to_sun);
+    if (total(glm::dvec3(options.outside.sun)) > 0.0) {
+        if (to_sun == 0.0)
+            return fail(ErrorCode::degenerate, kNoItem, "radiosity: the direction to the sun has no length");
+        if (!std::isfinite(to_sun))
+            return fail(ErrorCode::out_of_range, kNoItem,
+                        "radiosity: the direction to the sun is too long or not finite");
+    }
     return {};
 }
 
@@ -122,10 +131,11 @@ void Solver::run(Executor& executor) {
     }
     const std::uint64_t share = runs_ == 0 ? kFewerLinesAtFirst : kFewerLines;
     const std::uint64_t lines = std::max<std::uint64_t>(1, options_.lines / share);
+    const std::uint64_t streams = kGatherStream + 1 + (runs_ == 0 ? 0 : kLaterRuns);
     const double cutoff = runs_ == 0 ? options_.cutoff : kEarlierEnd * options_.cutoff;
     for (bounces_ = 0; bounces_ < options_.most_bounces && travelling > cutoff * light; ++bounces_) {
         arrived.assign(count, glm::dvec3(0.0));
-        gather({&leaving, glm::dvec3(0.0), lines, kGatherStream + 1 + bounces_}, arrived, executor);
+        gather({&leaving, glm::dvec3(0.0), lines, streams + bounces_}, arrived, executor);
         travelling = 0.0;
         for (std::size_t i = 0; i < count; ++i) {
             all[i] += arrived[i];

@@ -17,14 +17,30 @@ void consider(const Point& a, const Point& b, Diameter<Point>& best) {
     if (const double length = glm::distance(a, b); length > best.length) best = {length, a, b};
 }
 
-}  // namespace
+double cross(const glm::dvec2& a, const glm::dvec2& b) {
+    return a.x * b.y - a.y * b.x;
+}
 
-Result<Diameter<glm::dvec2>> diameter(std::span<const glm::dvec2> points) {
-    for (std::size_t i = 0; i < points.size(); ++i)
-        if (!(std::max(std::abs(points[i].x), std::abs(points[i].y)) <= kMaxCoordinate))
-            return fail(std::isfinite(points[i].x) && std::isfinite(points[i].y) ? ErrorCode::out_of_range
-                                                                                 : ErrorCode::non_finite,
-                        i, {"diameter: point ", i, " is NaN, infinite or beyond 1e30"});
+// Below this, squares of coordinates and of their differences may be no normal doubles.
+constexpr double kTiny = 0x1p-400;
+
+// That of points made larger by a power of two, in their own size: nothing but the length is rounded.
+template <class Point, class Find>
+Result<Diameter<Point>> by_larger_points(std::span<const Point> points, double largest, Find find) {
+    const int exponent = std::ilogb(largest);
+    const auto scaled = [](Point p, int by) {
+        for (int k = 0; k < Point::length(); ++k) p[k] = std::ldexp(p[k], by);
+        return p;
+    };
+    Vector<Point> larger;
+    for (const Point& p : points) larger.push_back(scaled(p, -exponent));
+    return find(std::span<const Point>(larger)).map([&](const Diameter<Point>& d) {
+        return Diameter<Point>{std::ldexp(d.length, exponent), scaled(d.from, exponent), scaled(d.to, exponent)};
+    });
+}
+
+// By rotating calipers around the hull.
+Result<Diameter<glm::dvec2>> planar_diameter(std::span<const glm::dvec2> points) {
     const auto hull = measure::convex_hull(points);
     if (!hull) return tl::unexpected(hull.error());
     const Vector<glm::dvec2>& p = *hull;
@@ -34,12 +50,9 @@ Result<Diameter<glm::dvec2>> diameter(std::span<const glm::dvec2> points) {
     std::size_t far = 1;
     for (std::size_t i = 0; i < p.size(); ++i) {
         const glm::dvec2 side = at(i + 1) - at(i);
-        const auto height = [&](std::size_t k) {
-            const glm::dvec2 d = at(k) - at(i);
-            return side.x * d.y - side.y * d.x;
-        };
         consider(at(i), at(far), best);
-        while (height(far + 1) > height(far)) {
+        // By the edge that leads on: corners a rounding apart have one height, but their difference is exact.
+        while (cross(side, at(far + 1) - at(far)) > 0.0) {
             far = (far + 1) % p.size();
             consider(at(i), at(far), best);
         }
@@ -51,7 +64,8 @@ Result<Diameter<glm::dvec2>> diameter(std::span<const glm::dvec2> points) {
     return best;
 }
 
-Result<Diameter<glm::dvec3>> diameter(std::span<const glm::dvec3> points) {
+// Over pairs of the hull's corners.
+Result<Diameter<glm::dvec3>> spatial_diameter(std::span<const glm::dvec3> points) {
     const auto hull = convex_hull(points);
     if (!hull) return tl::unexpected(hull.error());
     Aabb box;
@@ -73,6 +87,30 @@ Result<Diameter<glm::dvec3>> diameter(std::span<const glm::dvec3> points) {
             consider(corners[i].point, corners[j].point, best);
         }
     return best;
+}
+
+}  // namespace
+
+Result<Diameter<glm::dvec2>> diameter(std::span<const glm::dvec2> points) {
+    double largest = 0.0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const double size = std::max(std::abs(points[i].x), std::abs(points[i].y));
+        if (!(size <= kMaxCoordinate) || std::isnan(points[i].y))
+            return fail(std::isfinite(points[i].x) && std::isfinite(points[i].y) ? ErrorCode::out_of_range
+                                                                                 : ErrorCode::non_finite,
+                        i, {"diameter: point ", i, " is NaN, infinite or beyond 1e30"});
+        largest = std::max(largest, size);
+    }
+    if (largest < kTiny && largest > 0.0) return by_larger_points(points, largest, planar_diameter);
+    return planar_diameter(points);
+}
+
+Result<Diameter<glm::dvec3>> diameter(std::span<const glm::dvec3> points) {
+    double largest = 0.0;
+    for (const glm::dvec3& p : points) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    // NaN is left to the hull, which names it.
+    if (largest < kTiny && largest > 0.0) return by_larger_points(points, largest, spatial_diameter);
+    return spatial_diameter(points);
 }
 
 }  // namespace crofton::study

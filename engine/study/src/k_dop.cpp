@@ -18,16 +18,22 @@ namespace {
 
 // All points where three faces meet and no other cuts off.
 void find_corners(KDop& dop) {
-    double size = 0.0;
-    for (std::size_t i = 0; i < dop.low.size(); ++i) size = std::max(size, dop.high[i] - dop.low[i]);
-    const double tolerance = 1e-10 * size;
+    double size = 0.0, largest = 0.0;
+    for (std::size_t i = 0; i < dop.low.size(); ++i) {
+        size = std::max(size, dop.high[i] - dop.low[i]);
+        largest = std::max({largest, std::abs(dop.low[i]), std::abs(dop.high[i])});
+    }
     const std::size_t n = dop.directions.size();
     for (std::size_t i = 0; i < n; ++i)
         for (std::size_t j = i + 1; j < n; ++j)
             for (std::size_t k = j + 1; k < n; ++k) {
                 const glm::dmat3 rows =
                     glm::transpose(glm::dmat3(dop.directions[i], dop.directions[j], dop.directions[k]));
-                if (std::abs(glm::determinant(rows)) < 1e-9) continue;
+                const double determinant = std::abs(glm::determinant(rows));
+                if (determinant < 1e-9) continue;
+                // Far from the origin the offsets' own rounding counts, and more where the three faces are nearly
+                // parallel to a line.
+                const double tolerance = 1e-10 * size + 1e-15 * largest / determinant;
                 const glm::dmat3 inverse = glm::inverse(rows);
                 for (unsigned side = 0; side < 8; ++side) {
                     const glm::dvec3 p =

@@ -24,6 +24,16 @@ struct Problem {
     double tolerance = 0.0;  // absolute
 };
 
+// What the integrals of both may miss by: about 1e-15 of the largest coordinate in each piece (planar_lines.hpp). A
+// piece of the minimum begins where one of theirs does, or at one of two crossings within such a stretch.
+double rounding_of_integrals(const PlanarSupport& a, const PlanarSupport& b) {
+    double largest = 0.0;
+    for (const PlanarSupport* each : {&a, &b})
+        for (const PlanarSupport::Piece& p : each->pieces())
+            largest = std::max({largest, std::abs(p.point.x), std::abs(p.point.y)});
+    return 4e-15 * largest * static_cast<double>(a.pieces().size() + b.pieces().size());
+}
+
 Result<Problem> prepare(std::span<const glm::dvec2> object, const PlanarSupport& ancestors,
                         const BoundOptions& options) {
     auto hull = measure::convex_hull(object);
@@ -36,7 +46,7 @@ Result<Problem> prepare(std::span<const glm::dvec2> object, const PlanarSupport&
     problem.tolerance = std::max(options.tolerance, 1e-12) * problem.scale;
     // ∫ max(0, h_object − h_ancestors): rounding only, where an ancestor touches the object.
     const double outside = problem.own - integral_of_min(ancestors, own);
-    if (!(outside <= 1e-9 * problem.scale + 1e-300))
+    if (!(outside <= 1e-9 * problem.scale + rounding_of_integrals(ancestors, own) + 1e-300))
         return fail(ErrorCode::invalid_argument, kNoItem,
                     "optimal bound: the object is not inside its ancestors' bounds");
     return problem;

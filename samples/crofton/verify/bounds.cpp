@@ -74,7 +74,9 @@ void box_optima(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     for (int which = 0; which < 3; ++which) {
         const auto box = fit::fit_obb(std::span<const glm::dvec3>(kPoints),
                                       {.criterion = criteria[which], .quality = fit::Quality::exact});
-        if (!box) return;
+        if (!box)
+            return rows.push_back(
+                untried_row(std::string("the box of least ") + kLeastOf[std::size_t(which)], "theory.md section 3"));
         const auto c = corners(*box);
         boxes[std::size_t(which)] = faceted(Corners3(c.begin(), c.end()));
         rows.push_back(computed_row(
@@ -113,18 +115,20 @@ void box_optima(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
 void bounds_in_space_given_ancestor(std::vector<VerifyRow>& rows) {
     const std::span<const glm::dvec3> points(kPoints);
     const auto around = fit::fit_oriented(points, glm::mat3(sampling::rotation({0.3, 0.6, 0.1})));
-    if (!around) return;
+    if (!around) return rows.push_back(untried_row("bounds given a turned box", "theory.md (4)"));
     const study::ConvexBody ancestor = study::ConvexBody::box(*around);
     const auto row = [&](const char* claim, double value, study::ConvexBody bound) {
         const std::vector<study::ConvexBody> both = {ancestor, std::move(bound)};
-        if (const auto measured = study::measure_of_planes_hitting_all(both, {.max_cells = 100'000}))
-            rows.push_back(computed_row(claim, "theory.md (4)", value, measured->value, 4e-3 * value));
+        const auto measured = study::measure_of_planes_hitting_all(both, {.max_cells = 100'000});
+        rows.push_back(measured ? computed_row(claim, "theory.md (4)", value, measured->value, 4e-3 * value)
+                                : untried_row(claim, "theory.md (4)"));
     };
-    if (const auto ball = study::ball_given_ancestors(points, {&ancestor, 1}))
-        row("the ball that fewest planes hit together with an ancestor: its measure", ball->value,
-            study::ConvexBody::ball(ball->ball.center, ball->ball.radius));
+    const auto ball = study::ball_given_ancestors(points, {&ancestor, 1});
+    if (!ball) return rows.push_back(untried_row("the ball that fewest planes hit", "theory.md (4)"));
+    row("the ball that fewest planes hit together with an ancestor: its measure", ball->value,
+        study::ConvexBody::ball(ball->ball.center, ball->ball.radius));
     const auto box = study::box_given_ancestors(points, {&ancestor, 1}, {.tolerance = 0.05, .max_cells = 5000});
-    if (!box) return;
+    if (!box) return rows.push_back(untried_row("the box that fewest planes hit", "theory.md (4)"));
     row("the box that fewest planes hit together with an ancestor: its measure", box->value,
         study::ConvexBody::box(box->box));
     // Whatever the orientation, the certified bound is below.
@@ -137,8 +141,9 @@ void bounds_in_space_given_ancestor(std::vector<VerifyRow>& rows) {
         if (const auto measured = study::measure_of_planes_hitting_all(both, {.tolerance = 1e-3}))
             least = std::min(least, measured->value);
     }
-    rows.push_back(at_most_row("no turned box has less than the certified bound (ratio)", "theory.md (4)", 1.0,
-                               box->lower_bound / least, 1e-3));
+    const char* const claim = "no turned box has less than the certified bound (ratio)";
+    rows.push_back(std::isfinite(least) ? at_most_row(claim, "theory.md (4)", 1.0, box->lower_bound / least, 1e-3)
+                                        : untried_row(claim, "theory.md (4)"));
 }
 
 // Given its ancestor, a pentagon, this triangle's best rectangle has no side along one of its own.
@@ -180,7 +185,7 @@ void bounds_given_ancestor(std::vector<VerifyRow>& rows) {
         flush = std::min(flush, measured(std::atan2(side.y, side.x)));
     }
     const auto best = study::optimal_rectangle(triangle, *study::PlanarSupport::of_hull(around));
-    if (!best) return;
+    if (!best) return rows.push_back(untried_row("the best rectangle given a pentagon", "theory.md section 4"));
     rows.push_back(computed_row("the best rectangle given a pentagon, against a search over angles",
                                 "theory.md section 4", best->measure, least, 1e-5 * least));
     rows.push_back(wrong_row("the best rectangle given a pentagon has a flush side", "theory.md section 4",
@@ -246,7 +251,10 @@ void planar_optima(std::vector<VerifyRow>& rows) {
         }
         const auto found =
             fit::minimal_triangle(object, area ? fit::PlanarCriterion::area : fit::PlanarCriterion::perimeter);
-        if (!found) continue;
+        if (!found) {
+            rows.push_back(untried_row("the least triangle around a polygon", "theory.md section 3"));
+            continue;
+        }
         const auto measures = measure::planar_measures_of_convex_polygon(*found);
         const double value = area ? measures.area : measures.perimeter;
         rows.push_back(computed_row(std::string("the triangle of least ") + (area ? "area" : "perimeter") +

@@ -109,6 +109,7 @@ VerifyRow missed_pairs(const Baked& baked, const radiosity::LineTracer& tracer, 
             missed += !baked.bake.is_seen(cell, o);
         }
     }
+    if (above == 0) return untried_row("pairs that the bake missed: none is above epsilon", "theory.md (7)");
     char claim[200];
     std::snprintf(claim, sizeof claim,
                   "town, epsilon %.2g: of %llu pairs above it in %llu cells, found by 20 times the lines, missed per "
@@ -139,6 +140,7 @@ void wrong_rays(const Baked& baked, const VerifyOptions& options, std::vector<Ve
             hidden += state == pvs::PairState::hidden;
         }
     }
+    if (hits == 0) return rows.push_back(untried_row("rays that meet what is proved hidden", "docs/notes/pvs.md"));
     const pvs::PairCounts counts = baked.sets.counts();
     char claim[300];
     std::snprintf(
@@ -179,7 +181,8 @@ std::vector<VerifyRow> verify_pvs(const VerifyOptions& options) {
         return rows;
     }
     const auto tracer = radiosity::LineTracer::build(baked->scene.subject.mesh);
-    if (tracer) rows.push_back(missed_pairs(*baked, *tracer, options));
+    rows.push_back(tracer ? missed_pairs(*baked, *tracer, options)
+                          : untried_row("pairs that the bake missed", "theory.md (7)"));
     wrong_rays(*baked, options, rows);
     rows.push_back(wrong_pixels(*baked, options));
     return rows;

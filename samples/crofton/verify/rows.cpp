@@ -70,6 +70,10 @@ VerifyRow wrong_row(std::string claim, std::string source, double predicted, dou
     return result;
 }
 
+VerifyRow untried_row(std::string claim, std::string source) {
+    return computed_row("could not be tried: " + claim, std::move(source), 1.0, 0.0, 0.0);
+}
+
 Share share_of(std::uint64_t hits, std::uint64_t trials) {
     if (trials == 0) return {std::nan(""), std::nan("")};
     const double n = static_cast<double>(trials), p = static_cast<double>(hits) / n;

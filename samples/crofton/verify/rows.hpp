@@ -51,6 +51,9 @@ struct VerifyOptions {
 [[nodiscard]] VerifyRow wrong_row(std::string claim, std::string source, double predicted, double measured,
                                   double standard_error);
 
+// What could not be tried, as the engine gave an error or nothing to count: a row that does not hold.
+[[nodiscard]] VerifyRow untried_row(std::string claim, std::string source);
+
 // The share of `trials` that were hits, with its binomial standard error.
 struct Share {
     double value = 0.0;
