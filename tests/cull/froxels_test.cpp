@@ -278,8 +278,7 @@ TEST_SUITE("cull/froxels") {
             REQUIRE(cull::find_lights(grid, {}, std::vector<cull::SpotLight>{spot}, lights).has_value());
             return lights.lights().size();
         };
-        // From a froxel's side at -1, 0 or -4, across columns, rows and slices: three froxels, and a fourth that ends
-        // there where the gap is none.
+        // From a froxel's side across columns, rows and slices: three froxels. Without a gap a fourth ends there.
         for (int k = 0; k < 3; ++k)
             for (const double side : {1.0, -1.0})
                 for (const double gap : {0.0, 0x1p-44, 0x1p-40, 0x1p-34, 0x1p-28, 0x1p-20, 0x1p-12}) {

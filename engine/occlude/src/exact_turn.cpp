@@ -20,8 +20,8 @@ glm::dvec3 scaled(const glm::dvec3& v) {
 
 }  // namespace
 
-// In double each term a (p − q) is off by 3 u |a| (|p| + |q|) and the sum of three by 2 u more, u = 2^-53; 16 u are
-// taken. What underflows is below 1e-300 as long as |a| is at most 1e15.
+// In double each term a (p − q) is off by 3 u |a| (|p| + |q|), with u = 2^-53. The sum of three is off by 2 u more; 16
+// u are taken. What underflows is below 1e-300 as long as |a| is at most 1e15.
 int sign_of_determinant(const glm::dmat3& m) {
     double value = 0.0, size = 0.0;
     for (int k = 0; k < 3; ++k) {

@@ -17,7 +17,7 @@ namespace crofton::cull {
 namespace {
 
 constexpr double kLargestLight = 1e12;
-// A cone without a width is taken to have one, far below all rounding: with a sine of 0 support functions would take
+// A cone without a width is taken to have one, far below all rounding. With a sine of 0, support functions would take
 // what is straight behind the apex to be in the cone.
 constexpr double kLeastSine = 1e-30;
 
