@@ -270,6 +270,29 @@ TEST_SUITE("cull/froxels") {
         CHECK(dark > 1000);
     }
 
+    TEST_CASE("a spot without a width that begins just beyond a froxel and leads away does not light it") {
+        const cull::FroxelGrid grid = unit_grid();
+        cull::FroxelLights lights;
+        const auto count = [&](const glm::dvec3& apex, const glm::vec3& axis) {
+            const cull::SpotLight spot{apex, axis, 1.0f, 2.25f};
+            REQUIRE(cull::find_lights(grid, {}, std::vector<cull::SpotLight>{spot}, lights).has_value());
+            return lights.lights().size();
+        };
+        // From a froxel's side across columns, rows and slices: three froxels. Without a gap a fourth ends there.
+        for (int k = 0; k < 3; ++k)
+            for (const double side : {1.0, -1.0})
+                for (const double gap : {0.0, 0x1p-44, 0x1p-40, 0x1p-34, 0x1p-28, 0x1p-20, 0x1p-12}) {
+                    glm::dvec3 apex(-0.75, 0.25, -4.5);
+                    glm::vec3 axis(0.0f);
+                    apex[k] = std::round(apex[k]) + side * gap;
+                    axis[k] = float(side);
+                    CAPTURE(k);
+                    CAPTURE(side);
+                    CAPTURE(gap);
+                    CHECK(count(apex, axis) == (gap == 0.0 ? 4 : 3));
+                }
+    }
+
     TEST_CASE("half balls tilted by less than an axis in doubles can tell reach as deep as their rims do") {
         const cull::FroxelGrid grid = unit_grid();
         oracle::NearMisses random(200);

@@ -211,6 +211,101 @@ TEST_SUITE("occlude/choose_occluders") {
         CHECK_FALSE(may_use(flat, camera));
     }
 
+    TEST_CASE("however sheared a mesh stands, no eye beyond an open side uses the occluder, by exact arithmetic") {
+        std::mt19937_64 random(31);
+        std::uniform_real_distribution<double> unit(-1.0, 1.0);
+        const auto point = [&] { return glm::dvec3(unit(random), unit(random), unit(random)); };
+        FoundOccluder found;  // a box [−1, 1]³, open on one side
+        found.box.half_extents = glm::vec3(1);
+        found.surface.positions = {glm::vec3(-1), glm::vec3(1)};
+        found.piece_bounds = {glm::dvec3(-1), glm::dvec3(1)};
+        int used = 0, kept_out = 0;
+        for (int i = 0; i < 20000; ++i) {
+            const int axis = i % 3;
+            const bool upper = i % 2 == 0;
+            const double side = upper ? 1.0 : -1.0;
+            found.eyes_within = everywhere();
+            (upper ? found.eyes_within.max : found.eyes_within.min)[axis] = side;
+            scene::Transform transform;
+            const double flatness = std::pow(2.0, -static_cast<double>(random() % 48));
+            transform.linear[axis] = point();
+            transform.linear[(axis + 1) % 3] = point();
+            // Nearly along the next column, or in the plane of both.
+            transform.linear[(axis + 2) % 3] = unit(random) * transform.linear[(axis + 1) % 3] + flatness * point() +
+                                               (i % 5 == 0 ? unit(random) : 0.0) * transform.linear[axis];
+            transform.linear *= std::pow(2.0, static_cast<double>(random() % 40) - 20.0);
+            transform.translation = i % 4 == 0 ? glm::dvec3(0) : 1e3 * point();
+            glm::dvec3 local = 1e4 * point();
+            local[axis] = side * (1.0 + unit(random) * std::pow(2.0, -static_cast<double>(random() % 50)));
+            Camera camera;
+            camera.position = transform * local;
+            camera.near_distance = 1e-9;
+            // By Cramer's rule: the eye's coordinate along the axis, in the mesh.
+            const auto determinant = [&](bool of_eye) {
+                std::array<std::array<mpq_class, 3>, 3> m;
+                for (int c = 0; c < 3; ++c)
+                    for (int r = 0; r < 3; ++r)
+                        m[static_cast<std::size_t>(c)][static_cast<std::size_t>(r)] =
+                            of_eye && c == axis
+                                ? mpq_class(mpq_class(camera.position[r]) - mpq_class(transform.translation[r]))
+                                : mpq_class(transform.linear[c][r]);
+                return mpq_class(m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+                                 m[1][0] * (m[0][1] * m[2][2] - m[0][2] * m[2][1]) +
+                                 m[2][0] * (m[0][1] * m[1][2] - m[0][2] * m[1][1]));
+            };
+            const mpq_class whole = determinant(false);
+            if (whole == 0) continue;
+            const bool is_kept = determinant(true) / whole * side <= 1;
+            const bool may = may_use(candidate_of(found, transform).limits, camera);
+            CHECK_FALSE((may && !is_kept));
+            used += may;
+            kept_out += !is_kept;
+        }
+        CHECK(used > 1000);
+        CHECK(kept_out > 4000);
+    }
+
+    TEST_CASE("no parallel view enters by an open side, however sheared its picture, by exact arithmetic") {
+        std::mt19937_64 random(32);
+        std::uniform_real_distribution<double> unit(-1.0, 1.0);
+        const auto point = [&] { return glm::dvec3(unit(random), unit(random), unit(random)); };
+        int used = 0, kept_out = 0;
+        for (int i = 0; i < 20000; ++i) {
+            const double angle = std::pow(2.0, -static_cast<double>(random() % 28));
+            const glm::dvec3 x = point(), y = unit(random) * x + angle * point(), depth = glm::cross(x, y) / angle;
+            glm::dmat4 to_clip(0.0);
+            for (int k = 0; k < 3; ++k) {
+                to_clip[k][0] = x[k];
+                to_clip[k][1] = y[k];
+                to_clip[k][2] = 0.01 * depth[k];
+            }
+            to_clip[3] = {0.1, 0.2, 0.5, 1.0};
+            const auto view = occlusion_view_of(to_clip, DepthRange::zero_to_one);
+            if (!view || view->perspective) continue;
+            EyeLimits limits;
+            limits.plane_count = 1;
+            limits.planes[0].normal = glm::normalize(glm::cross(point(), glm::normalize(depth))) +
+                                      unit(random) * std::pow(2.0, -static_cast<double>(random() % 44)) * point();
+            std::array<mpq_class, 3> u, v;
+            for (std::size_t k = 0; k < 3; ++k) {
+                u[k] = x[static_cast<int>(k)];
+                v[k] = y[static_cast<int>(k)];
+            }
+            mpq_class enters = 0, forward = 0;  // along the rays
+            for (std::size_t k = 0; k < 3; ++k) {
+                const mpq_class ray = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
+                enters += ray * mpq_class(limits.planes[0].normal[static_cast<int>(k)]);
+                forward += ray * mpq_class(depth[static_cast<int>(k)]);
+            }
+            const bool may = may_use(limits, *view), is_kept = sgn(enters) * sgn(forward) <= 0;
+            CHECK_FALSE((may && !is_kept));
+            used += may;
+            kept_out += !is_kept;
+        }
+        CHECK(used > 4000);
+        CHECK(kept_out > 4000);
+    }
+
     TEST_CASE("an occluder that a parallel view's near plane cuts by less than rounding tells is not used") {
         // Chosen by a search for products that round to too much, all of them.
         const glm::dvec3 normal(0x1.002a2d8b69cc5p-1, 0x1.004245f308698p-1, -0x1.6a0902cbc084cp-1),

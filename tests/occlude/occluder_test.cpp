@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <box_mesh.hpp>
-#include <crofton/occlude/occluder.hpp>
+#include <crofton/occlude/occlusion.hpp>
 #include <error_of.hpp>
+#include <glm/geometric.hpp>
 #include <limits>
 
 using namespace crofton;
@@ -55,6 +56,40 @@ TEST_SUITE("occlude/occluder") {
         CHECK(error_of(set.add_convex(flat.positions)).code == ErrorCode::degenerate);
         CHECK(set.add_convex(bad.positions));
         CHECK(set.shape_count() == 3);
+    }
+
+    TEST_CASE("a transform that flattens but for its rounding is told by its exact determinant") {
+        // a, b and a + b, which is exact: in double the determinant comes to 1e-17.
+        const glm::dvec3 a(-0x1.4d223a689f2fcp-3, -0x1.003a374ea656cp-1, -0x1.aa42dc616b644p-2),
+            b(0x1.3683951aabdc2p-1, -0x1.a0414d6c909ap-5, -0x1.d729f50de481ap-2);
+        occlude::OccluderSet set;
+        TriangleMesh quad;  // faces +z
+        quad.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+        quad.indices = {0, 1, 2, 0, 2, 3};
+        const auto shape = set.add_surface(quad, occlude::Sides::front);
+        REQUIRE(shape);
+        CHECK(error_of(set.place(*shape, {glm::dmat3(a, b, a + b), glm::dvec3(0)})).code == ErrorCode::degenerate);
+        // Determinant 8.5e-19, in double -8.7e-19: +z stays on the side that the third column leads to.
+        const glm::dvec3 u(-0x1.df32729ba90cp-5, -0x1.b3c9ec1b903adp-1, 0x1.1e180b364f46p-3),
+            v(0x1.14f41ae07224p-2, -0x1.a46661cb18044p-1, 0x1.cc37b0ce96c6p-4),
+            w(0x1.8393a3497b07ep-3, -0x1.d7cf56b0a94p-10, -0x1.9f993b5020d18p-7);
+        const glm::dvec3 normal = glm::normalize(glm::cross(u, v));
+        for (const bool mirrored : {false, true}) {
+            occlude::OccluderSet one;
+            const auto same = one.add_surface(quad, occlude::Sides::front);
+            REQUIRE(same);
+            REQUIRE(one.place(*same, {32.0 * glm::dmat3(u, v, mirrored ? -w : w), glm::dvec3(0)}));
+            for (const double side : {1.0, -1.0}) {
+                Camera camera;
+                camera.position = 5.0 * side * normal;
+                camera.forward = -side * normal;
+                camera.up = u;
+                camera.fov_y = 0.5;
+                auto buffer = *occlude::OcclusionBuffer::create({.width = 64, .height = 64});
+                buffer.draw(one, *occlude::occlusion_view_of(camera));
+                CHECK((buffer.count_covered() > 0) == ((side > 0.0) != mirrored));
+            }
+        }
     }
 
     TEST_CASE("a transform that flattens a shape is refused") {

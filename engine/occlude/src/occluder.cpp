@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
 #include <crofton/occlude/occluder.hpp>
-#include <glm/matrix.hpp>
 #include <string>
 #include <utility>
 
+#include "exact_turn.hpp"
 #include "occluder_storage.hpp"
 
 namespace crofton::occlude {
@@ -22,13 +22,13 @@ Result<Occluder> occluder_of(const Obb& box, std::uint64_t item) {
 
 Result<Occluder> occluder_of(ShapeId shape, const scene::Transform& transform, std::uint64_t item) {
     if (auto valid = scene::validate(transform, item); !valid) return tl::unexpected(valid.error());
-    const double determinant = glm::determinant(transform.linear);
-    if (!(determinant != 0.0))
+    const int turn = sign_of_determinant(transform.linear);
+    if (turn == 0)
         return fail(ErrorCode::degenerate, item, "occluder: the transform flattens it; choose another scale");
     Occluder occluder;
     occluder.shape = shape;
     occluder.transform = transform;
-    occluder.mirrored = determinant < 0.0;
+    occluder.mirrored = turn < 0;
     return occluder;
 }
 

@@ -6,6 +6,8 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "exact_turn.hpp"
+
 namespace crofton::occlude {
 namespace {
 
@@ -105,7 +107,8 @@ Result<OcclusionView> occlusion_view_of(const glm::dmat4& to_clip, DepthRange de
         view.rows = {row_of(direction_of(x), 0.0), row_of(direction_of(y), 0.0), row_of(direction_of(w), 0.0),
                      row_of(glm::dvec3(0.0), 1.0)};
     } else {
-        glm::dvec3 away = glm::normalize(across);
+        // In each component, so that may_use() can tell from which side rays come upon a plane.
+        glm::dvec3 away = direction_across(direction_of(x), direction_of(y));
         if (glm::dot(away, frustum->planes[kNearPlane].normal) < 0.0) away = -away;
         view.origin = origin;
         view.rows = {row_of(direction_of(x) / w[3], x[3] / w[3]), row_of(direction_of(y) / w[3], y[3] / w[3]),

@@ -17,6 +17,9 @@ namespace crofton::cull {
 namespace {
 
 constexpr double kLargestLight = 1e12;
+// A cone without a width is taken to have one, far below all rounding. With a sine of 0, support functions would take
+// what is straight behind the apex to be in the cone.
+constexpr double kLeastSine = 1e-30;
 
 tl::unexpected<Error> bad_light(std::size_t light, ErrorCode code, const char* why) {
     return fail(code, light, {"light ", light, ": ", why});
@@ -114,7 +117,7 @@ class LightPass {
         to_frame(glm::normalize(glm::dvec3(spot.axis)), light.axis);
         light.radius = static_cast<double>(spot.range);
         light.cosine = static_cast<double>(spot.cos_half_angle);
-        light.sine = std::sqrt(1.0 - light.cosine * light.cosine);
+        light.sine = std::max(std::sqrt(1.0 - light.cosine * light.cosine), kLeastSine);
         return light;
     }
 

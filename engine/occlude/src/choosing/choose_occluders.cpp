@@ -6,10 +6,12 @@
 #include <crofton/geometry/finite.hpp>
 #include <crofton/occlude/occlusion.hpp>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <numbers>
 #include <string>
 
 #include "choosing/choose_kernel.hpp"
+#include "exact_turn.hpp"
 
 namespace crofton::occlude {
 namespace {
@@ -70,20 +72,24 @@ EyeLimits limits_of(const FoundOccluder& found, const scene::Transform& transfor
         error_bound += glm::abs(transform.linear[k]) * std::max(std::abs(piece.min[k]), std::abs(piece.max[k]));
     limits.left_out_within.min -= 0x1p-49 * error_bound;
     limits.left_out_within.max += 0x1p-49 * error_bound;
-    // An open side at coordinate c of the mesh's axis k: ±(c − row · (x − translation)) ≥ 0, with the row of the
-    // inverse that gives this coordinate. What rounding may do, the inverse's included, is taken off generously. A
-    // transform that flattens has no inverse: its planes are NaN and keep nothing.
-    const glm::dmat3 inverse = glm::inverse(transform.linear);
+    // An open side at coordinate c of the mesh's axis k lies in the plane through translation + c · linear[k] and along
+    // the other two columns. Its normal is right in each component, however sheared the mesh stands: what an eye far
+    // away makes of its rounding, may_use() takes off. What rounding does to the offset is taken off generously. A
+    // transform that flattens has no such planes: they are NaN and keep nothing.
+    const int turn = sign_of_determinant(transform.linear);
     for (int k = 0; k < 3; ++k)
         for (const bool upper : {true, false}) {
             const double at = upper ? found.eyes_within.max[k] : found.eyes_within.min[k];
             if (std::isinf(at)) continue;
-            const double sign = upper ? -1.0 : 1.0;
-            const glm::dvec3 row(inverse[0][k], inverse[1][k], inverse[2][k]);
+            const glm::dvec3 rising = turn == 0
+                                          ? glm::dvec3(std::numeric_limits<double>::quiet_NaN())
+                                          : static_cast<double>(turn) * direction_across(transform.linear[(k + 1) % 3],
+                                                                                         transform.linear[(k + 2) % 3]);
             Plane& plane = limits.planes[limits.plane_count++];
-            plane.normal = sign * row;
-            plane.offset = -sign * (at + glm::dot(row, transform.translation)) -
-                           0x1p-40 * (std::abs(at) + glm::dot(glm::abs(row), glm::abs(transform.translation)));
+            plane.normal = upper ? -rising : rising;
+            const glm::dvec3 along = at * transform.linear[k];
+            plane.offset = -glm::dot(plane.normal, transform.translation + along) -
+                           0x1p-40 * glm::dot(glm::abs(rising), glm::abs(transform.translation) + glm::abs(along));
         }
     return limits;
 }
@@ -128,7 +134,7 @@ OccluderCandidate candidate_of(const FoundOccluder& found, const scene::Transfor
         area += glm::length(normal);
     }
     // A reflection turns the winding round, and what is drawn with it.
-    if (glm::determinant(transform.linear) < 0.0) normals = -normals;
+    if (sign_of_determinant(transform.linear) < 0) normals = -normals;
     const double mean = glm::length(normals);
     if (found.kind == OccluderKind::patch && mean >= 0.9 * area) {
         result.areas[0] = glm::vec3(normals);
