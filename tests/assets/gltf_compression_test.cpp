@@ -133,6 +133,9 @@ TEST_SUITE("assets/gltf_compression") {
             {"bufferView", view}, {"attributes", {{"POSITION", unique}}}};
         asset.root["extensionsUsed"] = asset.root["extensionsRequired"] = {"KHR_draco_mesh_compression"};
         CHECK(triangles_of(asset) == triangles_of(plain()));
+        Asset strip = asset;  // what is decoded are triangles all the same
+        strip.root["meshes"][0]["primitives"][0]["mode"] = 5;
+        CHECK(triangles_of(strip) == triangles_of(plain()));
         for (const auto& [key, value] : {std::pair<const char*, Json>{"bufferView", 99},
                                          {"bufferView", 0},
                                          {"attributes", {{"POSITION", 77}}},

@@ -173,6 +173,53 @@ TEST_SUITE("assets/hostile_files") {
         CHECK(says(test_files::message(assets::load_scene(wad.path(), options)), "--max-nodes"));
     }
 
+    TEST_CASE("the limit of bytes holds for a file and all that it refers to together") {
+        Place place;
+        place.write("asset/a.bin", test_files::gltf_buffer());
+        const std::string text = test_files::gltf_json("[{\"mesh\":0}]", "\"bufferView\":1,\"count\":3",
+                                                       "\"byteLength\":44,\"uri\":\"a.bin\"");
+        place.write("asset/a.gltf", text);
+        assets::LoadOptions options;
+        options.limits.bytes = text.size() + 44;
+        CHECK(test_files::message(assets::load_scene(place.root + "/asset/a.gltf", options)) == "loaded");
+        --options.limits.bytes;
+        CHECK(says(test_files::message(assets::load_scene(place.root + "/asset/a.gltf", options)),
+                   "more than " + std::to_string(text.size() + 43) + " bytes, the limit: --max-bytes raises it"));
+
+        const std::string library(50, '#'), shape = "mtllib a.mtl\nmtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n";
+        place.write("asset/a.mtl", library);
+        place.write("asset/a.obj", shape);
+        options.limits.bytes = shape.size() + 2 * library.size();
+        CHECK(test_files::message(assets::load_scene(place.root + "/asset/a.obj", options)) == "loaded");
+        --options.limits.bytes;
+        CHECK(says(test_files::message(assets::load_scene(place.root + "/asset/a.obj", options)), "--max-bytes"));
+    }
+
+    TEST_CASE("images beside a document count as well, and are left out where they pass the limit of bytes") {
+        Place place;
+        // 1 x 1 pixel, in the Netpbm format.
+        const std::string image = std::string("P6 1 1 255\n") + "abc";
+        place.write("asset/a.ppm", image);
+        Asset asset = two_triangles();
+        const auto uv = asset.accessor(std::vector<float>{0, 0, 1, 0, 0, 1}, "VEC2");
+        asset.root["images"] = {{{"uri", "a.ppm"}}, {{"uri", "./a.ppm"}}};
+        asset.root["textures"] = {{{"source", 0}}, {{"source", 1}}};
+        for (int m = 0; m < 2; ++m) {
+            asset.root["materials"].push_back({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", m}}}}}});
+            asset.root["meshes"][m]["primitives"][0]["material"] = m;
+            asset.root["meshes"][m]["primitives"][0]["attributes"]["TEXCOORD_0"] = uv;
+        }
+        place.write("asset/a.glb", asset.glb());
+        assets::LoadOptions options;
+        for (const std::size_t missing : {0u, 1u}) {
+            options.limits.bytes = asset.glb().size() + 2 * image.size() - missing;
+            const auto source = assets::load_scene(place.root + "/asset/a.glb", options);
+            REQUIRE(source.has_value());
+            REQUIRE(source->warnings.size() == missing);
+            if (missing == 1) CHECK(says(source->warnings[0], "--max-bytes"));
+        }
+    }
+
     TEST_CASE("a small file that asks for much is refused before the memory is taken") {
         // Primitives that share one accessor: each would be a mesh of its own.
         Asset shared;
@@ -352,6 +399,14 @@ TEST_SUITE("assets/hostile_files") {
         CHECK(says(source->warnings[3], "line 8"));
         REQUIRE(source->scene.instance_count() == 1);
         CHECK(source->scene.mesh(0).positions[1] == glm::vec3(1.0f, 0.0f, 0.0f));
+        // Beyond what boxes can hold.
+        const TemporaryFile far("far.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2e30 0 0\nf 1 2 3\nf 1 2 4\n");
+        const auto near = assets::load_scene(far.path());
+        REQUIRE_MESSAGE(near.has_value(), test_files::message(near));
+        CHECK(near->scene.mesh(0).triangle_count() == 1);
+        REQUIRE(near->warnings.size() == 2);
+        CHECK(says(near->warnings[0], "line 4: vertex 4"));
+        CHECK(says(near->warnings[1], "line 6: face: vertex 4 makes no sense"));
         // Who computes from the numbers gets all of them or none.
         CHECK_FALSE(assets::read_obj(file.path()).has_value());
         CHECK(says(test_files::message(assets::load_scene(file.path(), {.strict = true})), "line 2"));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
+#include <assets/flat_scene.hpp>
 #include <assets/scene_source.hpp>
 #include <filesystem>
 
@@ -96,5 +97,19 @@ TEST_SUITE("assets/obj_loader") {
             triangles += source->scene.mesh(m).triangle_count();
         CHECK(triangles == 10133);
         CHECK(source->scene.instance_count() > 20);
+    }
+
+    TEST_CASE("a flat scene lacks the triangles of no area alone, however small the others are") {
+        for (const std::string unit : {"1e-9", "1e-3", "1", "1e9"}) {
+            CAPTURE(unit);
+            const TemporaryFile file("small.obj", "v 0 0 0\nv " + unit + " 0 0\nv 0 " + unit + " 0\nv -" + unit +
+                                                      " 0 0\nf 1 2 3\nf 1 2 4\nf 1 3 4\n");
+            auto source = assets::load_scene(file.path());
+            REQUIRE(source.has_value());
+            source->scene.update();
+            const auto flat = assets::flat_scene(*source);
+            REQUIRE(flat.has_value());
+            CHECK(flat->mesh.triangle_count() == 2);
+        }
     }
 }

@@ -127,6 +127,46 @@ TEST_SUITE("cli/collide") {
         CHECK(apart["depth"] == 0.0);
     }
 
+    // A tetrahedron with a corner at the origin and its faces counter-clockwise from outside, or a mirror image of it.
+    TEST_CASE("all: normals of a mesh that a scene mirrors point outward as well") {
+        const auto tetrahedron = [](const std::string& name, bool mirrored) {
+            const std::string path = scratch().file(name);
+            const float s = mirrored ? -1.0f : 1.0f;
+            std::string bytes;
+            for (const float x : {0.0f, 0.0f, 0.0f, s, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 1.0f})
+                bytes.append(reinterpret_cast<const char*>(&x), sizeof x);
+            for (const int i : {0, 2, 1, 0, 3, 2, 0, 1, 3, 1, 2, 3}) bytes += {static_cast<char>(i), '\0'};
+            // Counter-clockwise from outside before it is mirrored, too.
+            if (mirrored)
+                for (std::size_t t = 48; t < bytes.size(); t += 6)
+                    std::swap_ranges(bytes.begin() + static_cast<std::ptrdiff_t>(t + 2),
+                                     bytes.begin() + static_cast<std::ptrdiff_t>(t + 4),
+                                     bytes.begin() + static_cast<std::ptrdiff_t>(t + 4));
+            json root;
+            root["asset"]["version"] = "2.0";
+            root["scenes"] = json::array({{{"nodes", {0}}}});
+            root["nodes"] = json::array({{{"mesh", 0}, {"scale", {mirrored ? -1 : 1, 1, 1}}}});
+            root["meshes"] =
+                json::array({{{"primitives", json::array({{{"attributes", {{"POSITION", 0}}}, {"indices", 1}}})}}});
+            root["buffers"] = json::array({{{"byteLength", bytes.size()}, {"uri", name + ".bin"}}});
+            root["bufferViews"] = json::array(
+                {{{"buffer", 0}, {"byteLength", 48}}, {{"buffer", 0}, {"byteOffset", 48}, {"byteLength", 24}}});
+            root["accessors"] =
+                json::array({{{"bufferView", 0}, {"componentType", 5126}, {"count", 4}, {"type", "VEC3"}},
+                             {{"bufferView", 1}, {"componentType", 5123}, {"count", 12}, {"type", "SCALAR"}}});
+            write_contents(scratch().file(name + ".bin"), bytes);
+            write_contents(path, root.dump());
+            return path;
+        };
+        const std::string plain = tetrahedron("plain.gltf", false), mirrored = tetrahedron("mirrored.gltf", true);
+        const std::string rest = " --pose -0.25,-0.2,-0.15,1,0,0,0 --mode all";
+        const json expected = answer(plain + " " + plain + rest), got = answer(plain + " " + mirrored + rest);
+        REQUIRE(expected["contacts"].size() > 2);
+        CHECK(got["pairs"] == expected["pairs"]);
+        for (std::size_t i = 0; i < expected["contacts"].size(); ++i)
+            CHECK(got["contacts"][i]["normal"] == expected["contacts"][i]["normal"]);
+    }
+
     TEST_CASE("distance: how far, and between which points") {
         const std::string cube = cube_file("cube.obj", 1.0);
         const json apart = answer(cube + " " + cube + " --pose 5,6,0.5,1,0,0,0 --mode distance");

@@ -51,6 +51,7 @@ TEST_SUITE("cli/frames") {
             {scratch().file("empty.obj"), "empty.obj"},
             {scratch().file("far.gltf"), "node 0 'runaway' and all below it: left out: transform"},
             {"town --draw --no-draw", "draw"},
+            {"town --png pictures --no-draw", "--no-draw excludes --png"},
             {"town --occluders 10", "occlude"},
             {"town --occlude --occlusion-size 4x90", "4x90"},
         };

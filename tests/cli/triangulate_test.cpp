@@ -46,6 +46,35 @@ TEST_SUITE("cli/triangulate") {
         CHECK(std::filesystem::exists(scratch().file("latin.glb")));
     }
 
+    TEST_CASE("more points than --max-triangles are refused in every format") {
+        const std::string square = "[[0,0],[2,0],[2,2],[0,2]]";
+        const std::pair<const char*, std::string> files[] = {
+            {"four.poly", "P square 1\n4 0 0 2 0 2 2 0 2\n"},
+            {"four.json", "[" + square + "]"},
+            {"four.geojson", "{\"type\":\"Polygon\",\"coordinates\":[" + square + "]}"}};
+        for (const auto& [name, text] : files) {
+            CAPTURE(std::string(name));
+            write_contents(scratch().file(name), text);
+            CHECK(run_cli("triangulate '" + scratch().file(name) + "' --max-triangles 4").status == 0);
+            const CliRun run = run_cli("triangulate '" + scratch().file(name) + "' --max-triangles 3");
+            CHECK(run.status == 2);
+            CHECK(run.err.find("more than 3 triangles, the limit: --max-triangles raises it") != std::string::npos);
+        }
+    }
+
+    TEST_CASE("counts in a .poly file are whole numbers, and a byte that is 0 does not end it") {
+        const std::pair<std::string, const char*> files[] = {
+            {"P a 1\n3.5 0 0 1 0 0 1 1 1\n", "line 2: expected a ring's number of points"},
+            {"P a nan\n", "line 1: expected 'P name rings'"},
+            {"P a 1\n3 0 0 1 0 0 1\n" + std::string(1, '\0') + "P b 1\n3 0 0 1 0 0 1\n", "line 3: is no text"}};
+        for (const auto& [text, message] : files) {
+            write_contents(scratch().file("counts.poly"), text);
+            const CliRun run = run_cli("triangulate '" + scratch().file("counts.poly") + "'");
+            CHECK(run.status == 2);
+            CHECK(run.err.find(message) != std::string::npos);
+        }
+    }
+
     TEST_CASE("an invalid polygon is named with ring, point and position, the others are done") {
         write_contents(scratch().file("two.poly"), "P bow 1\n4 0 0 2 2 2 0 0 2\nP square 1\n4 0 0 2 0 2 2 0 2\n");
         const CliRun run = run_cli("triangulate '" + scratch().file("two.poly") + "' --json -");

@@ -62,7 +62,13 @@ TEST_SUITE("cli/usage") {
             CHECK(run.out.empty());
             CHECK(run.err.find(place) != std::string::npos);
         }
-        CHECK(run_cli("frames --no-draw --json a --csv a").err.find("named for two outputs") != std::string::npos);
+        for (const char* same :
+             {"--json a --csv a", "--csv a --report ./a", "--json a --trace a", "--json - --trace -"}) {
+            CAPTURE(std::string(same));
+            const CliRun run = run_cli("frames --no-draw --frames 1 " + std::string(same));
+            CHECK(run.status == 2);
+            CHECK(run.err.find("named for two outputs") != std::string::npos);
+        }
     }
 
     TEST_CASE("what is no plain file is written to and stays what it is, a full disk is an error") {

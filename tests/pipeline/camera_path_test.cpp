@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
+#include <unistd.h>
 #include <cmath>
+#include <cstdlib>
 #include <error_of.hpp>
+#include <filesystem>
+#include <fstream>
 
 #include "json/json.hpp"
 #include "pipeline/camera_path.hpp"
@@ -51,5 +55,23 @@ TEST_SUITE("pipeline/camera_path") {
                 for (const Camera& camera : path->cameras) CHECK(validate(camera).has_value());
                 CHECK(make_camera_path(options, bounds, {})->cameras.back().position == path->cameras.back().position);
             }
+    }
+
+    TEST_CASE("a frame of the scene that is no 32-bit number is refused with its entry") {
+        const std::string path = (std::filesystem::temp_directory_path() / "crofton-path-XXXXXX").string();
+        std::string name = path;
+        const int file = mkstemp(name.data());
+        REQUIRE(file >= 0);
+        close(file);
+        for (const auto& [frame, good] : {std::pair("4294967295", true), {"4294967296", false}, {"-1", false}}) {
+            std::ofstream(name) << "[{}, {\"scene_frame\": " << frame << "}]";
+            const auto loaded = load_camera_path(name);
+            REQUIRE(loaded.has_value() == good);
+            if (good)
+                CHECK(loaded->scene_frames[1] == 4294967295u);
+            else
+                CHECK(loaded.error().item == 1);
+        }
+        std::filesystem::remove(name);
     }
 }

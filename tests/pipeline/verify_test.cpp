@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <box_mesh.hpp>
+#include <cmath>
+#include <random>
 
+#include "pipeline/camera_path.hpp"
 #include "pipeline/verify.hpp"
 
 using namespace crofton;
@@ -64,5 +67,75 @@ TEST_SUITE("pipeline/verify") {
         CHECK(mismatches(elsewhere).culled_but_visible > 0);
         CHECK(mismatches(elsewhere).wrong_verdicts > 0);
         CHECK_FALSE(mismatches(elsewhere).messages.empty());
+    }
+
+    TEST_CASE("what is hidden is no mismatch: scaled to nothing, or out of the range of coordinates") {
+        for (const CullMode mode : {CullMode::tree, CullMode::flat, CullMode::none})
+            for (const BoundsKind kind : {BoundsKind::obb_perimeter, BoundsKind::aabb, BoundsKind::sphere}) {
+                CAPTURE(std::string(to_string(mode)));
+                CAPTURE(std::string(to_string(kind)));
+                Row row;
+                const auto far = row.scene.add_node(scene::kNone, {glm::dmat3(1e15), {0.0, 0.0, -9.0}});
+                const auto farther = row.scene.add_node(*far, {glm::dmat3(1e15), glm::dvec3(0.0)});
+                const auto farthest = row.scene.add_node(*farther, {glm::dmat3(1e15), glm::dvec3(0.0)});
+                const auto nothing = row.scene.add_node(scene::kNone, {glm::dmat3(0.0), {0.0, 0.0, -9.0}});
+                const auto beyond = row.scene.add_instance(*farthest, 0), point = row.scene.add_instance(*nothing, 0);
+                row.scene.update();
+                const Aabb focus = focus_of(row.scene);
+                CHECK(focus.max.x == 1.0);
+                const PipelineOptions options{.bounds = kind, .cull = mode};
+                auto pipeline = Pipeline::create(row.scene, {}, options, serial_executor());
+                REQUIRE_MESSAGE(pipeline.has_value(), pipeline.error().message);
+                auto frame = pipeline->run(Camera{});
+                REQUIRE(frame.has_value());
+                CHECK(pipeline->verdicts()[*beyond] == cull::Verdict::outside);
+                CHECK(pipeline->verdicts()[*point] == cull::Verdict::outside);
+                Verification verification;
+                verify_frame(row.scene, *pipeline, options, *frame, true, verification);
+                CHECK(verification.mismatches() == 0);
+                // Back again.
+                REQUIRE(row.scene.set_local(*farthest, {glm::dmat3(1e-30), glm::dvec3(0.0)}).has_value());
+                row.scene.update();
+                frame = pipeline->run(Camera{});
+                REQUIRE(frame.has_value());
+                CHECK(pipeline->verdicts()[*beyond] != cull::Verdict::outside);
+                Verification again;
+                verify_frame(row.scene, *pipeline, options, *frame, true, again);
+                CHECK(again.mismatches() == 0);
+            }
+    }
+
+    // Terms of a million cancel, so that what is rounded is far larger than what is left.
+    TEST_CASE("spheres and boxes hold the exact points of meshes that lie far from their own origin") {
+        std::mt19937_64 random(5);
+        const auto number = [&] { return static_cast<double>(random() >> 11) * 0x1p-52 - 1.0; };
+        const auto vector = [&] { return glm::dvec3(number(), number(), number()); };
+        for (int trial = 0; trial < 200; ++trial) {
+            TriangleMesh mesh;
+            const glm::dvec3 base = 1e6 * vector();
+            for (int k = 0; k < 3; ++k) mesh.positions.emplace_back(base + vector());
+            mesh.indices = {0, 1, 2};
+            const glm::dmat3 linear = trial % 2 == 0 ? glm::dmat3(number()) : glm::dmat3(vector(), vector(), vector());
+            scene::Scene scene;
+            const auto node = scene.add_node(scene::kNone, {linear, vector() - linear * base});
+            REQUIRE(scene.add_instance(*node, *scene.add_mesh(mesh)).has_value());
+            scene.update();
+            const scene::Transform& world = scene.world(0);
+            const Bounds spheres(scene, BoundsKind::sphere), boxes(scene, BoundsKind::aabb);
+            const Sphere& sphere = spheres.spheres()[0];
+            const Obb& box = boxes.boxes()[0];
+            for (const glm::vec3& p : mesh.positions) {
+                long double squared = 0.0L;
+                for (int axis = 0; axis < 3; ++axis) {
+                    long double q = world.translation[axis];
+                    for (int k = 0; k < 3; ++k)
+                        q += static_cast<long double>(world.linear[k][axis]) * static_cast<long double>(p[k]);
+                    const long double from_sphere = q - sphere.center[axis], from_box = q - box.center[axis];
+                    squared += from_sphere * from_sphere;
+                    CHECK(std::abs(from_box) <= static_cast<long double>(box.half_extents[axis]));
+                }
+                CHECK(std::sqrt(squared) <= static_cast<long double>(sphere.radius));
+            }
+        }
     }
 }

@@ -30,7 +30,8 @@ Result<FlatScene> flat_scene(const SceneSource& source, const ReadLimits& limits
             const auto vertex = [&](std::size_t k) { return mesh.indices[t + (mirrored ? 2 - k : k)]; };
             glm::vec3 p[3];
             for (std::size_t k = 0; k < 3; ++k) p[k] = glm::vec3(world * glm::dvec3(mesh.positions[vertex(k)]));
-            if (!(glm::length(glm::cross(glm::dvec3(p[1] - p[0]), glm::dvec3(p[2] - p[0]))) > 1e-12)) continue;
+            const glm::dvec3 origin(p[0]);
+            if (!(glm::length(glm::cross(glm::dvec3(p[1]) - origin, glm::dvec3(p[2]) - origin)) > 0.0)) continue;
             for (std::size_t k = 0; k < 3; ++k) {
                 all.mesh.indices.push_back(static_cast<std::uint32_t>(all.mesh.positions.size()));
                 all.mesh.positions.push_back(p[k]);

@@ -118,7 +118,7 @@ glm::vec3 TexturePyramid::sample(const glm::vec2& uv, float width) const {
 
 Result<void> MaterialColors::decode(std::size_t image, TexturePyramid& pyramid) {
     if (texels_ >= document_.limits.pixels) return over_limit("pixels", document_.limits.pixels);
-    const auto bytes = image_bytes(document_, image, folder_);
+    const auto bytes = image_bytes(document_, image, folder_, bytes_read_);
     if (!bytes) return tl::unexpected(bytes.error());
     if (auto decoded = pyramid.decode(*bytes, document_.limits); !decoded) return decoded;
     texels_ += pyramid.texels();

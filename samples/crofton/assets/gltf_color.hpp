@@ -37,7 +37,7 @@ class TexturePyramid {
 class MaterialColors {
   public:
     MaterialColors(const GltfDocument& document, std::string folder)
-        : document_(document), folder_(std::move(folder)) {}
+        : document_(document), folder_(std::move(folder)), bytes_read_(document.bytes_read) {}
 
     // Fills mesh.colors for a primitive of this material (null: none), whose uv and colour arrays may be empty.
     // A texture is averaged over what lies between a vertex and its neighbours: palettes stay crisp, photographs calm.
@@ -52,6 +52,7 @@ class MaterialColors {
     const GltfDocument& document_;
     std::string folder_;
     std::unordered_map<std::size_t, TexturePyramid> images_;
+    std::uint64_t bytes_read_;  // of all files
     std::uint64_t texels_ = 0;  // of all images, of the limit
 };
 

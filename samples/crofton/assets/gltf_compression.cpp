@@ -176,6 +176,9 @@ Result<void> decode_draco(GltfDocument& document, Json& primitive, const Json& c
     primitive["indices"] =
         append_accessor(document, indices, std::size_t{3} * faces, kGltfUnsignedInt, "SCALAR", kGltfIndexTarget);
     primitive["attributes"] = std::move(plain);
+    // A strip is decoded as plain triangles.
+    if (const auto mode = whole_number(primitive, "mode", kGltfTriangles); mode && *mode > kGltfTriangles)
+        primitive.erase("mode");
     return {};
 }
 

@@ -152,6 +152,7 @@ Result<GltfDocument> read_document(std::string_view file, const std::string& pat
     document.root = std::move(*root);
     document.other_chunks = container.other_chunks;
     document.limits = options.limits;
+    document.bytes_read = file.size();
     if (auto read = read_buffers(document, folder(path), container.binary, options.whole_buffers); !read)
         return tl::unexpected(read.error());
     if (auto plain = decompress(document); !plain) return tl::unexpected(plain.error());

@@ -19,6 +19,7 @@ struct GltfDocument {
     std::string other_chunks;           // of a binary file, behind those the specification knows
     std::vector<std::string> warnings;  // what an output will lack
     ReadLimits limits;                  // that it was read with
+    std::uint64_t bytes_read = 0;       // of its file and those that it refers to, within limits.bytes
 };
 
 struct DocumentOptions {
@@ -38,10 +39,11 @@ struct DocumentOptions {
 // Images named by URIs of files in `folder` into the first buffer, as read_gltf_document does it.
 void take_in_images(GltfDocument& document, const std::string& folder);
 
-// The bytes of an image's file, wherever they are: in a buffer, in its URI, in a file in `folder`. Errors: no such
-// image, a view beyond its buffer, a file that cannot be read.
+// The bytes of an image's file, wherever they are: in a buffer, in its URI, in a file in `folder`. Those of a file are
+// added to `bytes_read`, which begins as the document's and stays within its limit. Errors: no such image, a view
+// beyond its buffer, a file that cannot be read.
 [[nodiscard]] Result<std::string> image_bytes(const GltfDocument& document, std::size_t image,
-                                              const std::string& folder);
+                                              const std::string& folder, std::uint64_t& bytes_read);
 
 // One binary file: the first buffer as its binary chunk, others as data URIs. Errors: more than the 4 GiB that the
 // format can hold.

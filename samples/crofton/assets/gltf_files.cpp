@@ -17,11 +17,19 @@ const std::string* uri_of(const Json& object) {
     return uri && uri->is_string() ? &uri->get_ref<const std::string&>() : nullptr;
 }
 
-// What a URI stands for. Its name comes from whoever made the asset: only files below its folder are opened.
-Result<std::string> bytes_of(const std::string& uri, const std::string& folder, std::uint64_t limit) {
+// What a URI stands for. Its name comes from whoever made the asset: only files below its folder are opened. The bytes
+// of a file count, those of a data URI are part of the document's own file.
+Result<std::string> bytes_of(const std::string& uri, const std::string& folder, std::uint64_t limit,
+                             std::uint64_t& bytes_read) {
     if (is_data_uri(uri)) return decode_data_uri(uri);
     if (has_scheme(uri)) return fail(ErrorCode::unsupported, kNoItem, "'" + uri.substr(0, 80) + "' is not a file");
-    return read_file_below(folder, decode_percent(uri), limit);
+    const std::string name = decode_percent(uri);
+    auto bytes = read_file_below(folder, name, limit - std::min(limit, bytes_read));
+    if (bytes)
+        bytes_read += bytes->size();
+    else if (bytes.error().code == ErrorCode::budget_exceeded)
+        return in_file(folder + name, "with what was read before", over_limit("bytes", limit).value());
+    return bytes;
 }
 
 // What a document refers to in files beside it.
@@ -41,7 +49,6 @@ class FilesBeside {
                 if (whole || error.code == ErrorCode::budget_exceeded) return tl::unexpected<Error>(std::move(error));
                 document_.warnings.push_back(error.message);
             }
-            taken_ += bytes.size();
             document_.buffers.push_back(std::move(bytes));
         }
         return {};
@@ -56,26 +63,19 @@ class FilesBeside {
     }
 
   private:
-    [[nodiscard]] std::uint64_t bytes_left() const {
-        return document_.limits.bytes - std::min(taken_, document_.limits.bytes);
-    }
-
     // Without a URI and a chunk (the place of what is compressed elsewhere) it holds nothing. Of one that is too short
     // there is what there is.
     Result<void> read_buffer(const Json& description, const std::optional<std::string_view>& binary,
-                             std::string& bytes) const {
+                             std::string& bytes) {
         if (!description.is_object()) return fail(ErrorCode::parse, kNoItem, "is no object");
         const auto length = whole_number(description, "byteLength", 0);
         if (!length) return tl::unexpected(length.error());
         const std::string* uri = uri_of(description);
         if (!uri && !binary) return {};
-        auto read = uri ? bytes_of(*uri, folder_, bytes_left()) : Result<std::string>(*binary);
+        auto read =
+            uri ? bytes_of(*uri, folder_, document_.limits.bytes, document_.bytes_read) : Result<std::string>(*binary);
         if (!read) return tl::unexpected(read.error());
         bytes = std::move(*read);
-        if (bytes.size() > bytes_left()) {
-            bytes.clear();
-            return over_limit("bytes", document_.limits.bytes);
-        }
         if (bytes.size() < *length)
             return fail(ErrorCode::out_of_range, kNoItem,
                         std::to_string(bytes.size()) + " bytes, where byteLength is " + std::to_string(*length));
@@ -98,11 +98,10 @@ class FilesBeside {
             document_.warnings.push_back("image " + std::to_string(number) + ": " + why + "; its URI stays as it is");
         };
         if (!views_.contains(uri)) {
-            const auto bytes = bytes_of(uri, folder_, bytes_left());
+            const auto bytes = bytes_of(uri, folder_, document_.limits.bytes, document_.bytes_read);
             if (!bytes) return warn(bytes.error().message);
             const char* type = type_of(*bytes);
             if (!type) return warn(folder_ + decode_percent(uri) + ": of unknown type");
-            taken_ += bytes->size();
             views_[uri] = {append_view(document_, *bytes), type};
         }
         const auto& [view, type] = views_[uri];
@@ -117,7 +116,6 @@ class FilesBeside {
     };
     std::string folder_;
     GltfDocument& document_;
-    std::uint64_t taken_ = 0;  // bytes, of the limit
     std::map<std::string, ImageView> views_;
 };
 
@@ -132,10 +130,11 @@ void take_in_images(GltfDocument& document, const std::string& folder) {
     FilesBeside(folder, document).take_in_images();
 }
 
-Result<std::string> image_bytes(const GltfDocument& document, std::size_t image, const std::string& folder) {
+Result<std::string> image_bytes(const GltfDocument& document, std::size_t image, const std::string& folder,
+                                std::uint64_t& bytes_read) {
     const Json* description = entry(document.root, "images", image);
     if (!description) return fail(ErrorCode::out_of_range, image, "does not exist");
-    if (const std::string* uri = uri_of(*description)) return bytes_of(*uri, folder, document.limits.bytes);
+    if (const std::string* uri = uri_of(*description)) return bytes_of(*uri, folder, document.limits.bytes, bytes_read);
     const auto number = whole_number(*description, "bufferView", kNoNumber);
     const Json* view = number ? entry(document.root, "bufferViews", *number) : nullptr;
     if (!view) return fail(ErrorCode::out_of_range, image, "has neither a URI nor a buffer view");

@@ -75,6 +75,8 @@ class Converter {
              {std::pair("materials", &materials_), {"textures", &textures_}, {"images", &images_}})
             if (!list->empty()) root[key] = std::move(*list);
         document_.warnings = file_.warnings;
+        document_.limits = file_.limits;
+        document_.bytes_read = file_.bytes_read;
         take_in_images(document_, folder);
         return std::move(document_);
     }

@@ -95,6 +95,8 @@ class ObjReader {
 
     Result<ObjFile> read() {
         file_.parts.emplace_back();
+        file_.limits = options_.limits;
+        file_.bytes_read = text_.size();
         while (!text_.empty()) {
             if (++line_ % kLinesPerLook == 0)
                 if (auto in_time = deadline_.check(); !in_time) return in_file(path_, "", in_time.error());
@@ -298,11 +300,16 @@ class ObjReader {
 
     Result<void> load_library(std::string_view name) {
         if (auto in_time = deadline_.check(); !in_time) return in_time;
-        const auto text = read_file_below(folder(path_), std::string(name), options_.limits.bytes);
-        if (text)
+        const std::uint64_t limit = options_.limits.bytes;
+        const auto text = read_file_below(folder(path_), std::string(name), limit - std::min(limit, file_.bytes_read));
+        if (text) {
+            file_.bytes_read += text->size();
             read_materials(*text, materials_);
-        else if (file_.warnings.size() < kMostWarnings)
+        } else if (text.error().code == ErrorCode::budget_exceeded) {
+            return over_limit("bytes", limit);
+        } else if (file_.warnings.size() < kMostWarnings) {
             file_.warnings.push_back("line " + std::to_string(line_) + ": " + text.error().message);
+        }
         return {};
     }
 

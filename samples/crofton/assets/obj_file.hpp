@@ -33,6 +33,8 @@ struct ObjFile {
     std::vector<glm::vec3> normals;     // of any length
     std::vector<Part> parts;            // at least one; any may be without faces
     std::vector<std::string> warnings;  // material libraries, texture coordinates and normals that are not there
+    ReadLimits limits;                  // that it was read with
+    std::uint64_t bytes_read = 0;       // with its libraries, within limits.bytes
 };
 
 struct ObjOptions {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The faces of a Wavefront OBJ file as a scene.
+#include <crofton/geometry/box.hpp>
+
 #include "assets/file.hpp"
 #include "assets/obj_file.hpp"
 #include "assets/scene_source.hpp"
@@ -30,7 +32,7 @@ TriangleMesh mesh_of(const ObjFile& file, const ObjFile::Part& part, std::vector
 }  // namespace
 
 Result<SceneSource> load_obj(const std::string& path, const LoadOptions& options) {
-    auto read = read_obj(path, {.limits = options.limits, .leave_out = !options.strict});
+    auto read = read_obj(path, {.largest = kMaxCoordinate, .limits = options.limits, .leave_out = !options.strict});
     if (!read) return tl::unexpected(read.error());
     ObjFile& file = *read;
     SceneSource source{file_name(path), scene::Scene({options.criterion}), {}, {}, std::move(file.warnings), {}};

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cstdio>
 #include <filesystem>
+#include <set>
 #include <string_view>
 
 #include "frames_table.hpp"
@@ -46,13 +47,14 @@ Result<ImageSize> image_size_from(const std::string& text, const char* option, s
     return size;
 }
 
-Result<void> check_writable(const FramesOutput& output, const std::string& report) {
+Result<void> check_writable(const FramesOutput& output, const std::string& report, const std::string& trace) {
     if (output.json == "-" && output.csv == "-")
         return fail(ErrorCode::invalid_argument, kNoItem, "--json and --csv cannot both go to stdout");
-    for (const auto& [a, b] : {std::pair(output.json, output.csv), {output.json, report}, {output.csv, report}})
-        if (!a.empty() && a == b)
+    std::set<std::filesystem::path> places;
+    for (const std::string& file : {output.json, output.csv, report, trace})
+        if (!file.empty() && !places.insert(std::filesystem::path(file).lexically_normal()).second)
             return fail(ErrorCode::invalid_argument, kNoItem,
-                        a + ": named for two outputs, of which one would be lost");
+                        file + ": named for two outputs, of which one would be lost");
     if (output.png.empty()) return {};
     std::error_code error;
     std::filesystem::create_directories(output.png, error);

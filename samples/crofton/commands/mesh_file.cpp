@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "mesh_file.hpp"
 
+#include <glm/geometric.hpp>
 #include <limits>
+#include <utility>
 
 #include "assets/file.hpp"
 #include "assets/flat_scene.hpp"
@@ -47,7 +49,11 @@ Result<TriangleMesh> load_mesh(const std::string& path, const ReadOptions& optio
     const auto loaded = for_each_instance(path, options, [&](const TriangleMesh& mesh, const scene::Transform& world) {
         const auto base = static_cast<std::uint32_t>(all.positions.size());
         for (const glm::vec3& p : mesh.positions) all.positions.push_back(glm::vec3(world * glm::dvec3(p)));
+        const std::size_t first = all.indices.size();
         for (const std::uint32_t index : mesh.indices) all.indices.push_back(base + index);
+        // Mirrored, what was outside would be inside.
+        if (glm::dot(world.linear[0], glm::cross(world.linear[1], world.linear[2])) >= 0.0) return;
+        for (std::size_t i = first; i < all.indices.size(); i += 3) std::swap(all.indices[i + 1], all.indices[i + 2]);
     });
     if (!loaded) return tl::unexpected<Error>(loaded.error());
     return with_triangles(std::move(all), path);

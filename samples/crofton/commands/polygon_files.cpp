@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "polygon_files.hpp"
 
+#include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
@@ -22,19 +23,19 @@ tl::unexpected<Error> damaged(const std::string& path, const std::string& what) 
 class PolyReader {
   public:
     PolyReader(const std::string& path, const std::string& text, const assets::ReadLimits& limits)
-        : path_(path), at_(text.c_str()), limits_(limits) {}
+        : path_(path), at_(text.c_str()), end_(at_ + text.size()), limits_(limits) {}
 
     Result<PolygonFile> read() {
         PolygonFile file;
         for (std::string tag; word(tag);) {
             NamedPolygon named;
             double rings = 0.0;
-            if (tag != "P" || !word(named.name) || !number(rings) || rings < 1.0 || rings > 1e8) {
+            if (tag != "P" || !word(named.name) || !whole(rings) || rings < 1.0 || rings > 1e8) {
                 return damaged(path_, where("expected 'P name rings'"));
             }
             for (double r = 0.0; r < rings; ++r) {
                 double count = 0.0;
-                if (!number(count) || count < 0.0 || count > 1e9)
+                if (!whole(count) || count < 0.0 || count > 1e9)
                     return damaged(path_, where("expected a ring's number of points"));
                 for (double i = 0.0; i < count; ++i) {
                     glm::dvec2 p;
@@ -48,6 +49,7 @@ class PolyReader {
             }
             file.polygons.push_back(std::move(named));
         }
+        if (at_ != end_) return damaged(path_, where("is no text: a byte is 0"));
         return file;
     }
 
@@ -73,9 +75,10 @@ class PolyReader {
         at_ = end;
         return found;
     }
+    bool whole(double& result) { return number(result) && result == std::floor(result); }
 
     const std::string& path_;
-    const char* at_;
+    const char *at_, *end_;
     assets::ReadLimits limits_;
     std::size_t line_ = 1;
     std::uint64_t points_ = 0;
@@ -181,11 +184,16 @@ Result<PolygonFile> read_json(const std::string& path, const std::string& text, 
         NamedPolygon named{assets::file_name(path), {}};
         if (!append_rings(document, false, named.polygon)) return damaged(path, "expected rings, [[[x, y], …], …]");
         file.polygons.push_back(std::move(named));
-        return file;
+    } else if (document.is_object()) {
+        file.one_plane = true;
+        if (auto read = GeoJsonReader(path, file).read(document); !read) return tl::unexpected(read.error());
+    } else {
+        return damaged(path, "neither rings nor GeoJSON");
     }
-    if (!document.is_object()) return damaged(path, "neither rings nor GeoJSON");
-    file.one_plane = true;
-    if (auto read = GeoJsonReader(path, file).read(document); !read) return tl::unexpected(read.error());
+    std::uint64_t points = 0;
+    for (const NamedPolygon& named : file.polygons) points += named.polygon.points.size();
+    if (points > limits.triangles)
+        return assets::in_file(path, "", assets::over_limit("triangles", limits.triangles).value());
     return file;
 }
 
@@ -206,8 +214,6 @@ Result<PolygonFile> read_wad(const std::string& path, const std::string& text, c
         if (auto in_time = deadline.check(); !in_time) return assets::in_file(path, "", in_time.error());
         const auto level = assets::read_level(text, name);
         if (!level) return assets::in_file(path, "", level.error());
-        if (points > limits.triangles)
-            return assets::in_file(path, "", assets::over_limit("triangles", limits.triangles).value());
         const auto sectors = assets::sector_polygons(*level);
         for (std::size_t s = 0; s < sectors.size(); ++s) {
             const std::string sector = level->name + "_s" + std::to_string(s);
@@ -217,6 +223,8 @@ Result<PolygonFile> read_wad(const std::string& path, const std::string& text, c
                 points += sectors[s].polygons[i].points.size();
             }
         }
+        if (points > limits.triangles)
+            return assets::in_file(path, "", assets::over_limit("triangles", limits.triangles).value());
     }
     return file;
 }

@@ -42,16 +42,21 @@ double largest_stretch(const glm::dmat3& linear) {
     return std::sqrt(largest) * (1.0 + 16.0 * kRounding);
 }
 
+// Of a point's image: the sum of its terms' magnitudes along each axis, which cancel where the mesh lies far from its
+// own origin.
+glm::dvec3 size_of_image(const scene::Transform& world, const glm::dvec3& p) {
+    return glm::abs(world.linear[0]) * std::abs(p.x) + glm::abs(world.linear[1]) * std::abs(p.y) +
+           glm::abs(world.linear[2]) * std::abs(p.z) + glm::abs(world.translation);
+}
+
 Aabb world_aabb(const TriangleMesh& mesh, const scene::Transform& world) {
     Aabb box;
-    double size = 0.0;
+    glm::dvec3 largest(0.0);
     for (const glm::vec3& p : mesh.positions) {
-        const glm::dvec3 q = world.linear * glm::dvec3(p);
-        size = std::max({size, std::abs(q.x), std::abs(q.y), std::abs(q.z)});
-        box.include(q + world.translation);
+        box.include(world.linear * glm::dvec3(p) + world.translation);
+        largest = glm::max(largest, glm::abs(glm::dvec3(p)));
     }
-    for (int i = 0; i < 3; ++i) size = std::max(size, std::abs(world.translation[i]));
-    const glm::dvec3 rounding(4.0 * kRounding * size);
+    const glm::dvec3 rounding = 4.0 * kRounding * size_of_image(world, largest);
     box.min -= rounding;
     box.max += rounding;
     return box;
@@ -109,13 +114,18 @@ void Bounds::recompute(scene::InstanceId i) {
     const scene::Transform& world = scene_.world(scene_.node_of(i));
     if (kind_ == BoundsKind::aabb) {
         boxes_[i] = obb_of(world_aabb(scene_.mesh(scene_.mesh_of(i)), world));
+        if (!validate(boxes_[i])) boxes_[i] = scene_.world_boxes()[i];
         return;
     }
     const Sphere& local = mesh_spheres_[scene_.mesh_of(i)];
     Sphere& sphere = spheres_[i];
     sphere.center = world.linear * local.center + world.translation;
-    sphere.radius = local.radius * largest_stretch(world.linear) + 8.0 * kRounding * glm::length(sphere.center);
+    sphere.radius = local.radius * largest_stretch(world.linear) +
+                    8.0 * kRounding * glm::length(size_of_image(world, local.center));
     boxes_[i] = obb_of(Aabb{sphere.center - sphere.radius, sphere.center + sphere.radius});
+    if (validate(boxes_[i])) return;
+    boxes_[i] = scene_.world_boxes()[i];
+    sphere = {boxes_[i].center, glm::length(glm::dvec3(boxes_[i].half_extents))};
 }
 
 }  // namespace crofton::pipeline

@@ -23,7 +23,7 @@ enum class BoundsKind : std::uint8_t { sphere, aabb, obb_volume, obb_area, obb_p
 
 // The bound of every instance in world coordinates, kept up to date. For boxes of the scene's own kind these are the
 // scene's world boxes; AABBs and spheres are taken around the mesh's vertices, so that no kind is handicapped by
-// another's gaps.
+// another's gaps. Where those would leave the range of coordinates the scene's boxes stand in their place.
 class Bounds {
   public:
     Bounds(const scene::Scene& scene, BoundsKind kind);

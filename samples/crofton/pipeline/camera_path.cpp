@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <numbers>
 #include <random>
 
@@ -117,7 +118,7 @@ Aabb focus_of(const scene::Scene& scene) {
     std::vector<Extent> extents;
     double total = 0.0;
     for (scene::InstanceId i = 0; i < scene.instance_count(); ++i) {
-        if (scene.is_removed(i)) continue;
+        if (scene.layer_masks()[i] == 0) continue;
         const scene::MeshId mesh = scene.mesh_of(i);
         const scene::Transform& world = scene.world(scene.node_of(i));
         const glm::dvec3 center = world.linear * mesh_extents[mesh].center() + world.translation;
@@ -244,8 +245,8 @@ Result<CameraPath> load_camera_path(const std::string& path, const assets::ReadL
         result.scene_frames.push_back(static_cast<std::uint32_t>(number));
         const Json* scene_frame = entry.find("scene_frame");
         if (scene_frame == nullptr) continue;
-        if (!scene_frame->is_number_unsigned())
-            return fail(ErrorCode::parse, number, path + ": scene_frame must be a whole number");
+        if (!scene_frame->is_number_unsigned() || scene_frame->whole() > std::numeric_limits<std::uint32_t>::max())
+            return fail(ErrorCode::parse, number, path + ": scene_frame must be a whole number below 2^32");
         result.scene_frames.back() = static_cast<std::uint32_t>(scene_frame->whole());
     }
     return result;

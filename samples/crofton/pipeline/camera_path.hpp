@@ -16,7 +16,8 @@
 namespace crofton::pipeline {
 
 // The part of the scene worth looking at: the middle nine tenths of its triangles along each axis, by their instances'
-// boxes. A few far backdrops (hills, a sky dome) do not send the camera away. Empty for an empty scene.
+// boxes, without those that are hidden. A few far backdrops (hills, a sky dome) do not send the camera away. Empty for
+// an empty scene.
 [[nodiscard]] Aabb focus_of(const scene::Scene& scene);
 
 struct PathOptions {

@@ -196,10 +196,10 @@ struct Pipeline::State {
         return update_world();
     }
 
-    // Without culling every bound is all of space, and that straddles.
+    // Without culling every bound is all of space, and that straddles. What is hidden stays so.
     void list_all() {
         for (scene::InstanceId i = 0; i < scene.instance_count(); ++i)
-            if (!scene.is_removed(i)) visible_ids.push_back(i);
+            if (!scene.is_removed(i) && scene.layer_masks()[i] != 0) visible_ids.push_back(i);
         for (const scene::InstanceId i : visible_ids) verdicts[i] = cull::Verdict::straddling;
     }
 

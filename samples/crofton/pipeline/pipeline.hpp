@@ -63,7 +63,7 @@ class Pipeline {
     // of the scene itself, triangles_clipped, gpu and draw_us. Errors: an invalid camera.
     [[nodiscard]] Result<FrameStatistics> run(const Camera& camera);
 
-    // By instance, as of the last run(); `straddling` for all where culling is off.
+    // By instance, as of the last run(); `straddling` for all that is not hidden where culling is off.
     [[nodiscard]] std::span<const cull::Verdict> verdicts() const;
     [[nodiscard]] const Bounds& bounds() const;
     [[nodiscard]] std::span<const scene::InstanceId> movers() const;

@@ -57,8 +57,13 @@ class FrameVerifier : FrameReport {
     void check_instances(CullMode mode) {
         for (scene::InstanceId i = 0; i < scene_.instance_count(); ++i) {
             if (scene_.is_removed(i)) continue;
-            const ObjectTruth object = clip_object(i);
             const cull::Verdict verdict = pipeline_.verdicts()[i];
+            if (scene_.layer_masks()[i] == 0) {
+                if (verdict != cull::Verdict::outside)
+                    report(verification_.wrong_verdicts, "instance " + std::to_string(i) + " is hidden but was listed");
+                continue;
+            }
+            const ObjectTruth object = clip_object(i);
             if (object.meets == Truth::yes && verdict == cull::Verdict::outside)
                 report(verification_.culled_but_visible,
                        "instance " + std::to_string(i) + " is visible but was culled");

@@ -10,9 +10,10 @@
 
 namespace crofton::pipeline {
 
-// Adds to `verification` what differs in `frame`, which `pipeline` has just produced: every triangle of every instance
-// is clipped (nothing visible may be culled, triangles_passed must agree), every bound is clipped (verdicts), every
-// pair of movers is tested, the GPU's counts are compared where they were predicted exactly (`gpu_counts_exactly`).
+// Adds to `verification` what differs in `frame`, which `pipeline` has just produced. Every triangle of every instance
+// that is not hidden is clipped: nothing visible may be culled, triangles_passed must agree. Every bound is clipped
+// (verdicts), and every pair of movers is tested. The GPU's counts are compared where they were predicted exactly
+// (`gpu_counts_exactly`).
 void verify_frame(const scene::Scene& scene, const Pipeline& pipeline, const PipelineOptions& options,
                   const FrameStatistics& frame, bool gpu_counts_exactly, Verification& verification);
 
