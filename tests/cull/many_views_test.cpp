@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/core/executor.hpp>
+#include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/cull.hpp>
 #include <error_of.hpp>
 #include <map>
