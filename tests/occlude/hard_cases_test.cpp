@@ -74,7 +74,7 @@ TEST_SUITE("occlude/hard cases") {
         // Seen from beside, a box's far edge is drawn on the rim; all of the rest lies beyond it. Where the box is just
         // not left out, its silhouette is the rim but for a few roundings. Its axes in any order, on either side.
         std::size_t drawn = 0;
-        for (unsigned trial = 0; trial < 960; ++trial) {
+        for (unsigned trial = 0; trial < 240; ++trial) {
             const occlude::BufferSize size{320 + 8 * (trial % 100), 256};
             Camera camera;
             camera.fov_y = 0.8 + 1e-3 * trial;
@@ -106,7 +106,7 @@ TEST_SUITE("occlude/hard cases") {
                 REQUIRE(!buffer.hides(box_of({side * (in - half_width + 3.0), 0.0, -4.0 * far}, glm::vec3(0.5f))));
             }
         }
-        CHECK(drawn > 2000);
+        CHECK(drawn > 500);
     }
 
     TEST_CASE("an eye inside an occluder sees through it, and past it") {
