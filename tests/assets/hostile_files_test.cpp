@@ -204,7 +204,7 @@ TEST_SUITE("assets/hostile_files") {
         const auto uv = asset.accessor(std::vector<float>{0, 0, 1, 0, 0, 1}, "VEC2");
         asset.root["images"] = {{{"uri", "a.ppm"}}, {{"uri", "./a.ppm"}}};
         asset.root["textures"] = {{{"source", 0}}, {{"source", 1}}};
-        for (int m = 0; m < 2; ++m) {
+        for (std::size_t m = 0; m < 2; ++m) {
             asset.root["materials"].push_back({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", m}}}}}});
             asset.root["meshes"][m]["primitives"][0]["material"] = m;
             asset.root["meshes"][m]["primitives"][0]["attributes"]["TEXCOORD_0"] = uv;

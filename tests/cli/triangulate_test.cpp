@@ -52,9 +52,10 @@ TEST_SUITE("cli/triangulate") {
             {"four.poly", "P square 1\n4 0 0 2 0 2 2 0 2\n"},
             {"four.json", "[" + square + "]"},
             {"four.geojson", "{\"type\":\"Polygon\",\"coordinates\":[" + square + "]}"}};
-        for (const auto& [name, text] : files) {
-            CAPTURE(std::string(name));
-            write_contents(scratch().file(name), text);
+        for (const auto& file : files) {
+            const std::string name = file.first;
+            CAPTURE(name);
+            write_contents(scratch().file(name), file.second);
             CHECK(run_cli("triangulate '" + scratch().file(name) + "' --max-triangles 4").status == 0);
             const CliRun run = run_cli("triangulate '" + scratch().file(name) + "' --max-triangles 3");
             CHECK(run.status == 2);
