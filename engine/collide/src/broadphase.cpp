@@ -175,21 +175,17 @@ void Broadphase::State::keep_pairs_that_meet(std::span<const Obb> boxes, Vector<
 
 // `previous` are those of the update before; none are now.
 Result<void> Broadphase::State::drop_pairs() {
-    current = false;
     statistics.rejected = static_cast<std::uint32_t>(rejected.size());
     compare_pairs(previous, pairs, began, stayed, ended);
     return fail(ErrorCode::budget_exceeded, kNoItem,
                 {"broadphase: the bounds of more than ", options.max_pairs, " pairs meet"});
 }
 
-// After an error the pairs are no longer those of the last boxes: what moved in them is not known.
 Result<void> Broadphase::State::check(std::span<const Obb> boxes, std::span<const CollisionFilter> filters) {
-    const bool was_current = std::exchange(current, false);
     if (!filters.empty() && filters.size() != boxes.size())
         return fail(ErrorCode::invalid_argument, filters.size(), "broadphase: filters and boxes differ in number");
     if (boxes.size() >= 0xffffffffu)
         return fail(ErrorCode::out_of_range, boxes.size(), "broadphase: at most 2^32 - 2 boxes");
-    current = was_current;
     return {};
 }
 
@@ -199,7 +195,6 @@ Result<void> Broadphase::State::update_all(std::span<const Obb> boxes, std::span
     rejected.clear();
     std::swap(pairs, previous);
     pairs.clear();
-    current = false;
     workers.resize(std::max<std::size_t>(workers.size(), executor.concurrency()));
     if (!boxes.empty()) {
         origin = middle_of(boxes);
@@ -230,6 +225,7 @@ Result<void> Broadphase::State::update_all(std::span<const Obb> boxes, std::span
 
 Result<void> Broadphase::update(std::span<const Obb> boxes, std::span<const CollisionFilter> filters,
                                 Executor& executor) {
+    state_->current = false;
     if (auto checked = state_->check(boxes, filters); !checked) return checked;
     return state_->update_all(boxes, filters, executor);
 }
@@ -237,14 +233,14 @@ Result<void> Broadphase::update(std::span<const Obb> boxes, std::span<const Coll
 Result<void> Broadphase::update_moved(std::span<const Obb> boxes, std::span<const std::uint32_t> moved,
                                       std::span<const CollisionFilter> filters, Executor& executor) {
     State& s = *state_;
+    // After an error the pairs are no longer those of the last boxes: what moved in them is not known.
+    const bool was_current = std::exchange(s.current, false);
     if (auto checked = s.check(boxes, filters); !checked) return checked;
     const bool few = moved.size() <= boxes.size() / kFewMovers && s.leaf_extent <= kWornOut * s.leaf_extent_when_sorted;
-    if (!s.current || s.order.items().size() != boxes.size() || !few) return s.update_all(boxes, filters, executor);
-    if (!s.gather_movers(boxes.size(), moved)) {
-        s.current = false;
+    if (!was_current || s.order.items().size() != boxes.size() || !few) return s.update_all(boxes, filters, executor);
+    if (!s.gather_movers(boxes.size(), moved))
         return fail(ErrorCode::out_of_range, *std::max_element(moved.begin(), moved.end()),
                     "broadphase: an item in `moved` is no index of a box");
-    }
     return s.update_few(boxes, filters, executor);
 }
 

@@ -116,6 +116,7 @@ Result<void> Broadphase::State::update_few(std::span<const Obb> boxes, std::span
     }
     statistics.box_pairs = pairs.size();
     statistics.rejected = static_cast<std::uint32_t>(rejected.size());
+    current = true;
     return {};
 }
 

@@ -60,7 +60,7 @@ struct Broadphase::State {
     Vector<IdPair> kept, lost, found, still;
 
     [[nodiscard]] Result<void> drop_pairs();
-    [[nodiscard]] Result<void> check(std::span<const Obb> boxes, std::span<const CollisionFilter> filters);
+    [[nodiscard]] static Result<void> check(std::span<const Obb> boxes, std::span<const CollisionFilter> filters);
     [[nodiscard]] Result<void> update_all(std::span<const Obb> boxes, std::span<const CollisionFilter> filters,
                                           Executor& executor);
     [[nodiscard]] Result<void> update_few(std::span<const Obb> boxes, std::span<const CollisionFilter> filters,

@@ -67,7 +67,7 @@ class ManifoldFinder {
                 find(a, {part.body, part.pose}, part.id, false);
                 return false;
             };
-            search_parts_near(b, a, convex, [](const PartSearch&, const Triangle&, std::uint32_t) {});
+            visit_parts_near(b, a, options_.margin, convex, [](const PartSearch&, const Triangle&, std::uint32_t) {});
             if (!has_surfaces(b.body)) return;
             only_surfaces_ = true;
         }
@@ -76,13 +76,6 @@ class ManifoldFinder {
             find(b, {part.body, part.pose}, part.id, true);
             return false;
         });
-    }
-
-    void search_parts_near(const Placed& a, const Placed& b, PartVisitor convex, TriangleVisitor triangle) const {
-        if (b.body.kind() == Kind::half_space)
-            visit_parts(a, {}, kEverything, convex, triangle);
-        else
-            visit_parts(a, box_around(b, a.pose), options_.margin, convex, triangle);
     }
 
     // A one-sided triangle that stands for a convex body pushes to its front as well.
@@ -145,7 +138,7 @@ class ManifoldFinder {
                 surfaces.push_back({of.pose, of.sides, of.child, of.reach});
             scratch_.triangles.push_back({corners, index, static_cast<std::uint32_t>(surfaces.size() - 1)});
         };
-        search_parts_near(a, b, convex, triangle);
+        visit_parts_near(a, b, options_.margin, convex, triangle);
     }
 
     void add(SurfaceContacts::Contact& contact, const PartId& of_a, const PartId& of_b, bool flip) {

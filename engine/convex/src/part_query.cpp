@@ -49,6 +49,11 @@ bool visit_parts_near(const Placed& a, const Placed& b, double margin, PartVisit
     return visit_parts(a, box_around(b, a.pose), margin, visit);
 }
 
+void visit_parts_near(const Placed& a, const Placed& b, double margin, PartVisitor convex, TriangleVisitor triangle) {
+    if (is_half_space(b)) return visit_parts(a, {}, kEverything, convex, triangle);
+    visit_parts(a, box_around(b, a.pose), margin, convex, triangle);
+}
+
 bool parts_meet(const Placed& a, const Placed& b) {
     return visit_parts_near(a, b, 0.0, [&](const Part& part) { return intersects({part.body, part.pose}, b); });
 }

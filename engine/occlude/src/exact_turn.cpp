@@ -1,25 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "exact_turn.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <crofton/geometry/dyadic.hpp>
 #include <crofton/geometry/expansion.hpp>
+#include <crofton/geometry/moderate_length.hpp>
 #include <glm/geometric.hpp>
 
 namespace crofton::occlude {
-namespace {
-
-// Times a power of two, so that the largest component is in [1, 2).
-glm::dvec3 scaled(const glm::dvec3& v) {
-    const double largest = std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
-    if (!(largest > 0.0)) return v;
-    const int exponent = -std::ilogb(largest);
-    return {std::ldexp(v.x, exponent), std::ldexp(v.y, exponent), std::ldexp(v.z, exponent)};
-}
-
-}  // namespace
-
 // In double each term a (p − q) is off by 3 u |a| (|p| + |q|), with u = 2^-53. The sum of three is off by 2 u more; 16
 // u are taken. What underflows is below 1e-300 as long as |a| is at most 1e15.
 int sign_of_determinant(const glm::dmat3& m) {
@@ -38,13 +26,13 @@ int sign_of_determinant(const glm::dmat3& m) {
 }
 
 glm::dvec3 direction_across(const glm::dvec3& a, const glm::dvec3& b) {
-    const glm::dvec3 u = scaled(a), v = scaled(b);
+    const glm::dvec3 u = of_moderate_length(a), v = of_moderate_length(b);
     glm::dvec3 across;
     for (int k = 0; k < 3; ++k) {
         const int i = (k + 1) % 3, j = (k + 2) % 3;
         across[k] = (exact_product(u[i], v[j]) - exact_product(u[j], v[i])).estimate();
     }
-    across = scaled(across);
+    across = of_moderate_length(across);
     return across / glm::length(across);
 }
 

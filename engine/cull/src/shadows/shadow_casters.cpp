@@ -4,10 +4,10 @@
 #include <cmath>
 #include <crofton/cull/lights.hpp>
 #include <crofton/geometry/finite.hpp>
+#include <crofton/geometry/moderate_length.hpp>
 #include <glm/geometric.hpp>
 
 #include "exact/box_constraints.hpp"
-#include "shadows/direction.hpp"
 
 namespace crofton::cull {
 namespace {

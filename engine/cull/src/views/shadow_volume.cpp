@@ -2,9 +2,8 @@
 // The volume from which shadows fall into a view.
 #include <crofton/cull/cull.hpp>
 #include <crofton/geometry/finite.hpp>
+#include <crofton/geometry/moderate_length.hpp>
 #include <glm/geometric.hpp>
-
-#include "shadows/direction.hpp"
 
 namespace crofton::cull {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <glm/vec3.hpp>
 
-namespace crofton::cull {
+namespace crofton {
 
 // The direction times the power of two that brings its largest component to [1/2, 1), so that its square neither
 // overflows nor vanishes. It is finite; zero stays zero.
@@ -15,4 +15,4 @@ namespace crofton::cull {
     return {std::ldexp(direction.x, -exponent), std::ldexp(direction.y, -exponent), std::ldexp(direction.z, -exponent)};
 }
 
-}  // namespace crofton::cull
+}  // namespace crofton
