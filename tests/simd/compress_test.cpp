@@ -67,16 +67,16 @@ HWY_AFTER_NAMESPACE();
 
 namespace crofton::test {
 HWY_EXPORT(CountWrong);
-}
 
 TEST_SUITE("simd/compress") {
     TEST_CASE("the selected lanes come first, in their order, for every mask, and no lane beyond a vector is written") {
         for (std::int64_t rest = hwy::SupportedTargets(); rest != 0; rest &= rest - 1) {
             hwy::SetSupportedTargetsForTest(rest & -rest);
             CAPTURE(hwy::TargetName(rest & -rest));
-            CHECK(HWY_DYNAMIC_DISPATCH(crofton::test::CountWrong)() == 0);
+            CHECK(HWY_DYNAMIC_DISPATCH(CountWrong)() == 0);
         }
         hwy::SetSupportedTargetsForTest(0);
     }
 }
+}  // namespace crofton::test
 #endif

@@ -81,17 +81,17 @@ HWY_AFTER_NAMESPACE();
 namespace crofton::test {
 HWY_EXPORT(CountWrongRows);
 HWY_EXPORT(CountWrongBits);
-}  // namespace crofton::test
 
 TEST_SUITE("simd/gather_rows") {
     TEST_CASE("rows of four come out as four vectors, from any address, and bits at the places of a mask") {
         for (std::int64_t rest = hwy::SupportedTargets(); rest != 0; rest &= rest - 1) {
             hwy::SetSupportedTargetsForTest(rest & -rest);
             CAPTURE(hwy::TargetName(rest & -rest));
-            CHECK(HWY_DYNAMIC_DISPATCH(crofton::test::CountWrongRows)() == 0);
-            CHECK(HWY_DYNAMIC_DISPATCH(crofton::test::CountWrongBits)() == 0);
+            CHECK(HWY_DYNAMIC_DISPATCH(CountWrongRows)() == 0);
+            CHECK(HWY_DYNAMIC_DISPATCH(CountWrongBits)() == 0);
         }
         hwy::SetSupportedTargetsForTest(0);
     }
 }
+}  // namespace crofton::test
 #endif
