@@ -206,7 +206,7 @@ Result<Obb> Fitter::fit(std::span<const Point> points, const FitOptions& options
     if (auto valid = measure::validate(options.criterion); !valid) return tl::unexpected(valid.error());
     if (auto valid = assign(points); !valid) return tl::unexpected(valid.error());
     const Weights asked = normalised_weights(options.criterion, cloud_.unit()).weights;
-    if (points.size() > kSmallSet) return fit_large_set(asked, options);
+    if (cloud_.has_more_than(kSmallSet)) return fit_large_set(asked, options);
     return options.quality == Quality::fast ? fit_small_set_fast(asked) : fit_small_set_tight(asked, options.criterion);
 }
 
