@@ -328,6 +328,28 @@ TEST_SUITE("fit/fit") {
                 }
     }
 
+    TEST_CASE("merge names the box whose corners are beyond 1e30") {
+        std::vector<Obb> boxes(3);
+        boxes[1].center = glm::dvec3(5e29);
+        boxes[1].half_extents = glm::vec3(6e29f);
+        CHECK(validate(boxes[1]).has_value());
+        const Error error = error_of(fit::merge(boxes, measure::minimal_area()));
+        CHECK(error.code == ErrorCode::out_of_range);
+        CHECK(error.item == 1);
+        CHECK(fit::merge(std::span(boxes).subspan(1, 1), measure::minimal_area()).has_value());
+    }
+
+    TEST_CASE("points within 5e29 have a box that is valid, in any direction; beyond, half extents may exceed 1e30") {
+        for (const Quality quality : kQualities) {
+            const std::vector<glm::dvec3> near = {glm::dvec3(-5e29), glm::dvec3(5e29)},
+                                          far = {-near[1] * 2.0, near[1] * 2.0};
+            CHECK(validate(fit::fit_obb(view(near), {.quality = quality}).value()));
+            const Obb box = fit::fit_obb(view(far), {.quality = quality}).value();
+            CHECK(contains_all(box, far));
+            CHECK(error_of(validate(box)).code == ErrorCode::out_of_range);
+        }
+    }
+
     TEST_CASE("merge holds every corner of every box and one box is its own merge") {
         std::mt19937 random(17);
         std::normal_distribution<double> normal;
