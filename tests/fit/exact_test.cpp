@@ -239,6 +239,47 @@ TEST_SUITE("fit/exact") {
                    ->complete);
     }
 
+    TEST_CASE("of a flat set by volume the values told on the way are volumes: 0, not areas") {
+        std::mt19937 random(10);
+        const glm::dmat3 turn = random_rotation(random);
+        Points points;
+        for (int i = 0; i < 2000; ++i) {
+            const glm::dvec2 p = glm::normalize(glm::dvec2(random_point(random)));
+            points.push_back(turn * glm::dvec3(p, 0.0));
+        }
+        int calls = 0;
+        const auto look = [&](const fit::Progress& progress) {
+            CHECK(progress.value < 1e-6);
+            CHECK(progress.lower_bound == 0.0);
+            return ++calls < 10;
+        };
+        const FunctionRef<bool(const fit::Progress&)> callback(look);
+        CHECK(
+            fit::fit_exact(view(points), {.criterion = measure::minimal_volume(), .gap = 1e-9, .progress = &callback}));
+        CHECK(calls > 0);
+    }
+
+    TEST_CASE("weights of any size choose the same box: those of 1e-300 and of 1e300, far sets and near ones") {
+        std::mt19937 random(11);
+        for (const double size : {1e-9, 1.0, 1e25}) {
+            Points points = random_polytope(random, 12);
+            for (glm::dvec3& p : points) p *= size;
+            const auto expected = fit::fit_exact(view(points), {.criterion = {1.0, 0.0, 0.0}}).value();
+            CHECK(expected.complete);
+            for (const double weight : {0x1p-1000, 0x1p1000}) {
+                const measure::Criterion criterion{weight, 0.0, 0.0};
+                const auto fitted = fit::fit_exact(view(points), {.criterion = criterion}).value();
+                CAPTURE(size);
+                CAPTURE(weight);
+                CHECK(fitted.complete);
+                CHECK(fitted.box.axes == expected.box.axes);
+                CHECK(fitted.cells == expected.cells);
+                const auto quick = fit::fit_obb(view(points), {{1.0, 0.0, 0.0}}).value();
+                CHECK(fit::fit_obb(view(points), {criterion})->axes == quick.axes);
+            }
+        }
+    }
+
     TEST_CASE("each bound that is told on the way is a bound: no box is found below it later") {
         std::mt19937 random(7);
         int told = 0;

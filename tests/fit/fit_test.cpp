@@ -297,6 +297,59 @@ TEST_SUITE("fit/fit") {
         CHECK(!fit::fit_oriented(view(std::vector<glm::dvec3>(1)), glm::mat3(2.0f)));
     }
 
+    TEST_CASE("fit_oriented takes mirrored axes: the box is the same size as with the axes that they mirror") {
+        const std::vector<glm::dvec3> points = {{0, 0, 0}, {4, 1, 0}, {1, 3, 1}, {0, 0, 2}, {1, 1, 1}, {3, 0, 0}};
+        for (const std::size_t copies : {1u, 100u}) {
+            std::vector<glm::dvec3> all;
+            for (std::size_t i = 0; i < copies * points.size(); ++i)
+                all.push_back(points[i % points.size()] * (1.0 - 0.001 * static_cast<double>(i / points.size())));
+            const float c = 0.8f, s = 0.6f;
+            const glm::mat3 axes(glm::vec3(c, s, 0), glm::vec3(-s, c, 0), glm::vec3(0, 0, 1));
+            const glm::mat3 mirrored(axes[0], axes[1], -axes[2]);
+            const Obb box = fit::fit_oriented(view(all), axes).value();
+            const Obb other = fit::fit_oriented(view(all), mirrored).value();
+            CHECK(contains_all(other, all));
+            CHECK(volume(other) == doctest::Approx(volume(box)).epsilon(1e-6));
+            CHECK(glm::distance(other.center, box.center) < 1e-6);
+        }
+    }
+
+    TEST_CASE("points as near as the least doubles have a box that holds them") {
+        for (const double size : {1e-300, 1e-307, 1e-308, 1e-310, 1e-320, 5e-324})
+            for (const Quality quality : kQualities)
+                for (const std::size_t count : {2u, 40u, 400u}) {
+                    std::vector<glm::dvec3> points;
+                    for (std::size_t i = 0; i < count; ++i)
+                        points.push_back(size * glm::dvec3(i % 2, i / 2 % 3, i / 6 % 5));
+                    const Obb box = fit::fit_obb(view(points), {measure::minimal_area(), quality}).value();
+                    CHECK(contains_all(box, points));
+                    CHECK(validate(box).has_value());
+                    CHECK(edge_sum(box) < 1e-43);
+                }
+    }
+
+    TEST_CASE("merge names the box whose corners are beyond 1e30") {
+        std::vector<Obb> boxes(3);
+        boxes[1].center = glm::dvec3(5e29);
+        boxes[1].half_extents = glm::vec3(6e29f);
+        CHECK(validate(boxes[1]).has_value());
+        const Error error = error_of(fit::merge(boxes, measure::minimal_area()));
+        CHECK(error.code == ErrorCode::out_of_range);
+        CHECK(error.item == 1);
+        CHECK(fit::merge(std::span(boxes).subspan(1, 1), measure::minimal_area()).has_value());
+    }
+
+    TEST_CASE("points within 5e29 have a box that is valid, in any direction; beyond, half extents may exceed 1e30") {
+        for (const Quality quality : kQualities) {
+            const std::vector<glm::dvec3> near = {glm::dvec3(-5e29), glm::dvec3(5e29)},
+                                          far = {-near[1] * 2.0, near[1] * 2.0};
+            CHECK(validate(fit::fit_obb(view(near), {.quality = quality}).value()));
+            const Obb box = fit::fit_obb(view(far), {.quality = quality}).value();
+            CHECK(contains_all(box, far));
+            CHECK(error_of(validate(box)).code == ErrorCode::out_of_range);
+        }
+    }
+
     TEST_CASE("merge holds every corner of every box and one box is its own merge") {
         std::mt19937 random(17);
         std::normal_distribution<double> normal;

@@ -126,6 +126,57 @@ TEST_SUITE("fit/order") {
         }
     }
 
+    TEST_CASE("copies that make few points many change nothing: each point stands twice, 200 of them are 400") {
+        std::mt19937 random(46);
+        for (int run = 0; run < 10; ++run) {
+            const Points points = random_points(random, {1.0, 0.7, run % 2 == 0 ? 0.4 : 0.0}, 200);
+            Points twice = points;
+            twice.insert(twice.end(), points.begin(), points.end());
+            for (const Quality quality : {Quality::fast, Quality::tight})
+                for (const measure::Criterion& criterion : kCriteria) {
+                    const fit::FitOptions options{criterion, quality};
+                    CHECK(same_bits(*fit::fit_obb(std::span<const glm::dvec3>(points), options),
+                                    *fit::fit_obb(std::span<const glm::dvec3>(twice), options)));
+                    const auto floats = converted<glm::vec3>(points), floats_twice = converted<glm::vec3>(twice);
+                    CHECK(same_bits(*fit::fit_obb(std::span<const glm::vec3>(floats), options),
+                                    *fit::fit_obb(std::span<const glm::vec3>(floats_twice), options)));
+                }
+        }
+    }
+
+    TEST_CASE("nor do they where coordinates next to zero are lost beside the set's size: 100 points are 200") {
+        std::mt19937 random(47);
+        std::uniform_real_distribution<float> unit(-1.0f, 1.0f);
+        for (int run = 0; run < 20; ++run) {
+            std::vector<glm::vec3> points;
+            const auto or_nearly_zero = [&](bool is, float value) { return is ? value : 1e-20f * unit(random); };
+            for (int i = 0; i < 100; ++i) {
+                const float x = or_nearly_zero(i % 2 == 0, 1.0f), y = or_nearly_zero(i % 4 < 2, 0.7f);
+                points.emplace_back(x, y, or_nearly_zero(i % 8 < 4, 0.3f));
+            }
+            std::vector<glm::vec3> twice = points;
+            twice.insert(twice.end(), points.begin(), points.end());
+            for (const Quality quality : {Quality::fast, Quality::tight})
+                for (const measure::Criterion& criterion : kCriteria)
+                    CHECK(same_bits(*fit::fit_obb(std::span<const glm::vec3>(points), {criterion, quality}),
+                                    *fit::fit_obb(std::span<const glm::vec3>(twice), {criterion, quality})));
+        }
+    }
+
+    TEST_CASE("boxes with given axes do not change either, around turned grids, of which many points tie") {
+        std::mt19937 random(1);
+        for (int run = 0; run < 300; ++run) {
+            const glm::dmat3 turn = random_rotation(random);
+            std::vector<glm::vec3> points;
+            for (int i = 0; i < 200; ++i)
+                points.push_back(glm::vec3(turn * (0.1 * glm::dvec3(i % 6, i / 6 % 6, i / 36))));
+            std::vector<glm::vec3> twice = points;
+            twice.insert(twice.end(), points.begin(), points.end());
+            CHECK(same_bits(*fit::fit_oriented(std::span<const glm::vec3>(points), glm::mat3(turn)),
+                            *fit::fit_oriented(std::span<const glm::vec3>(twice), glm::mat3(turn))));
+        }
+    }
+
     TEST_CASE("value, bound and cells of the proof do not depend on the order either") {
         std::mt19937 random(44);
         for (int run = 0; run < 30; ++run)

@@ -114,6 +114,12 @@ TEST_SUITE("memory/fault") {
         sweep("fit_exact", [&] { return outcome_of(fit::fit_exact(span, {.gap = 1e-2})); });
         const auto many = boxes(20);
         sweep("merge", [&] { return outcome_of(fit::merge(many, measure::minimal_perimeter())); });
+        const Vector<glm::dvec2> flat{{0, 0}, {2, 0}, {2, 1}, {1, 3}, {0, 1}};
+        for (const auto by : {fit::PlanarCriterion::area, fit::PlanarCriterion::perimeter}) {
+            sweep("minimal_rectangle", [&] { return outcome_of(fit::minimal_rectangle(flat, by)); });
+            sweep("minimal_triangle", [&] { return outcome_of(fit::minimal_triangle(flat, by)); });
+        }
+        sweep("minimal_disc", [&] { return outcome_of(fit::minimal_disc(flat)); });
         Vector<std::uint32_t> indices(300), ends;
         for (std::uint32_t i = 0; i < 300; ++i) indices[i] = i;
         for (std::uint32_t i = 5; i <= 300; i += 5) ends.push_back(i);

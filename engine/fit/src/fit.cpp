@@ -23,7 +23,7 @@ Result<Obb> around(std::span<const Point> points, const glm::mat3& axes) {
     if (auto valid = validate(shape); !valid) return tl::unexpected(valid.error());
     PointCloud cloud;
     if (auto valid = cloud.assign(points); !valid) return tl::unexpected(valid.error());
-    return points.size() <= kSmallSet ? enclose_small_set(cloud, axes) : enclose(cloud, axes);
+    return cloud.has_more_than(kSmallSet) ? enclose(cloud, axes) : enclose_small_set(cloud, axes);
 }
 
 }  // namespace

@@ -206,7 +206,7 @@ Result<Obb> Fitter::fit(std::span<const Point> points, const FitOptions& options
     if (auto valid = measure::validate(options.criterion); !valid) return tl::unexpected(valid.error());
     if (auto valid = assign(points); !valid) return tl::unexpected(valid.error());
     const Weights asked = normalised_weights(options.criterion, cloud_.unit()).weights;
-    if (points.size() > kSmallSet) return fit_large_set(asked, options);
+    if (cloud_.has_more_than(kSmallSet)) return fit_large_set(asked, options);
     return options.quality == Quality::fast ? fit_small_set_fast(asked) : fit_small_set_tight(asked, options.criterion);
 }
 
@@ -226,11 +226,11 @@ Result<ExactFit> Fitter::exact(std::span<const Point> points, const ExactOptions
     const bool flat = weights.product == 0.0 && normalised.weights.product > 0.0 && normalised.weights.pairs == 0.0 &&
                       normalised.weights.sum == 0.0;
 
+    const double scale = flat ? 0.0 : normalised.scale;  // the search's values are areas then, and the volume is 0
+
     const Deadline deadline(options.time_budget_seconds);
     const auto keep_going = [&](double value, double bound, std::uint64_t cells) {
-        if (options.progress != nullptr &&
-            !(*options.progress)({value * normalised.scale, flat ? 0.0 : bound * normalised.scale, cells}))
-            return false;
+        if (options.progress != nullptr && !(*options.progress)({value * scale, bound * scale, cells})) return false;
         return !deadline.passed();
     };
     const FunctionRef<bool(double, double, std::uint64_t)> callback(keep_going);
@@ -240,9 +240,9 @@ Result<ExactFit> Fitter::exact(std::span<const Point> points, const ExactOptions
     ExactFit fit;
     fit.box = box_of(found.best.axes, weights, 3e-7);
     fit.value = options.criterion(measure::intrinsic_volumes_of_box(fit.box));
-    fit.lower_bound = flat ? 0.0 : std::min(found.lower_bound * normalised.scale, fit.value);
+    fit.lower_bound = std::min(found.lower_bound * scale, fit.value);
     fit.gap = fit.value > 0.0 ? (fit.value - fit.lower_bound) / fit.value : 0.0;
-    const double unrounded = flat ? 0.0 : found.best.value * normalised.scale;
+    const double unrounded = found.best.value * scale;
     fit.rounding = fit.value > 0.0 ? std::clamp((fit.value - unrounded) / fit.value, 0.0, fit.gap) : 0.0;
     fit.complete = found.complete;
     fit.cells = found.cells;

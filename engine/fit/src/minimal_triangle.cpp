@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/core/memory.hpp>
+#include <crofton/core/recovery.hpp>
 #include <crofton/fit/fit.hpp>
 #include <crofton/geometry/finite.hpp>
 #include <crofton/geometry/predicates.hpp>
@@ -239,9 +240,7 @@ Triangle2 around_flat(std::span<const glm::dvec2> hull, PlanarCriterion criterio
     }
 }
 
-}  // namespace
-
-Result<std::array<glm::dvec2, 3>> minimal_triangle(std::span<const glm::dvec2> points, PlanarCriterion criterion) {
+Result<Triangle2> best_triangle(std::span<const glm::dvec2> points, PlanarCriterion criterion) {
     if (auto valid = check_planar(points); !valid) return tl::unexpected(valid.error());
     const auto found_hull = measure::convex_hull(points);
     if (!found_hull) return tl::unexpected(found_hull.error());
@@ -267,6 +266,12 @@ Result<std::array<glm::dvec2, 3>> minimal_triangle(std::span<const glm::dvec2> p
         if (holds(result, hull)) return result;
     }
     return around_flat(hull, criterion);
+}
+
+}  // namespace
+
+Result<std::array<glm::dvec2, 3>> minimal_triangle(std::span<const glm::dvec2> points, PlanarCriterion criterion) {
+    return detail::recover([&] { return best_triangle(points, criterion); });
 }
 
 }  // namespace crofton::fit

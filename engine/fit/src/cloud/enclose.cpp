@@ -23,7 +23,10 @@ struct Slabs {
     explicit Slabs(const glm::mat3& axes) {
         const glm::dmat3 a(axes);
         for (int k = 0; k < 3; ++k) normals[k] = glm::cross(a[(k + 1) % 3], a[(k + 2) % 3]);
-        determinant = std::abs(glm::dot(normals[0], a[0]));
+        determinant = glm::dot(normals[0], a[0]);
+        if (determinant > 0.0) return;  // else the axes are mirrored
+        normals = -normals;
+        determinant = -determinant;
     }
 };
 

@@ -2,6 +2,7 @@
 #include "cloud/point_cloud.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <crofton/geometry/box.hpp>
 #include <crofton/geometry/finite.hpp>
@@ -19,6 +20,7 @@ constexpr double kErrorBound = 1e-13;
 // Clouds of this many chunks are worth a look at which points are inside: at a sample, then a block at a time. All are
 // looked at where the sample shows that they become this many times fewer.
 constexpr std::size_t kManyChunks = 64, kSampleChunks = 16, kBlock = 4096, kLeastGain = 6;
+constexpr int kLeastExponent = -1000;       // of the unit: its inverse is a double
 constexpr std::size_t kScanAllChunks = 16;  // up to this many, picking the promising ones costs more than it saves
 
 template <class T>
@@ -87,6 +89,7 @@ Result<void> PointCloud::assign_points(const T* points, std::size_t count) {
     const glm::dvec3 half = bounds_.half_extents();
     int exponent = 0;
     std::frexp(std::max({half.x, half.y, half.z}), &exponent);
+    exponent = std::max(exponent, kLeastExponent);
     unit_ = std::ldexp(1.0, exponent);
     scale_ = std::ldexp(1.0, -exponent);
     // find_extents on floats: |direction_i| ≤ 1 and |p_i − origin_i| ≤ unit. The direction is rounded once, the origin
@@ -131,6 +134,32 @@ void PointCloud::sorted(Vector<glm::dvec3>& points) {
         order_[static_cast<std::size_t>(static_cast<int>(ranks[i]))] = static_cast<std::uint32_t>(i);
     for (const std::uint32_t i : order_)
         if (i != kNoPoint) points.push_back(normalised(i));
+    // Points that differ by less than the set's size is rounded to may be one now, and in another order.
+    const auto is_not_before = [](const glm::dvec3& a, const glm::dvec3& b) { return !lexicographic(a, b); };
+    if (std::adjacent_find(points.begin(), points.end(), is_not_before) != points.end()) make_canonical(points);
+}
+
+bool PointCloud::has_more_than(std::size_t most) const {
+    if (count_ <= most) return false;
+    // A hash table with open addressing, at most half full.
+    std::size_t slots = 2;
+    while (slots < 2 * (most + 1)) slots *= 2;
+    Vector<glm::dvec3> different;
+    different.reserve(most + 1);
+    Vector<std::uint32_t> table(slots, 0);  // 1 + the index in `different`, 0 where a slot is free
+    for (std::size_t i = 0; i < count_; ++i) {
+        const glm::dvec3 p = normalised(i);
+        std::uint64_t hash = 0;
+        for (int k = 0; k < 3; ++k)
+            hash = (hash ^ std::bit_cast<std::uint64_t>(p[k])) * 0x9e3779b97f4a7c15u, hash ^= hash >> 32;
+        std::size_t slot = hash % slots;
+        while (table[slot] != 0 && different[table[slot] - 1] != p) slot = (slot + 1) % slots;
+        if (table[slot] != 0) continue;
+        different.push_back(p);
+        if (different.size() > most) return true;
+        table[slot] = static_cast<std::uint32_t>(different.size());
+    }
+    return false;
 }
 
 void PointCloud::project_boxes(const glm::dmat3& directions) {

@@ -47,6 +47,8 @@ class PointCloud {
         else
             kernels::slab_extents(doubles_, count_, &center.x, &normals[0].x, &low.x, &high.x);
     }
+    // Whether more than `most` points differ. Most clouds that have more show it early.
+    [[nodiscard]] bool has_more_than(std::size_t most) const;
     // The distinct points, normalised, in canonical order. Meant for small sets: quadratic up to 160 points.
     void sorted(Vector<glm::dvec3>& points);
 

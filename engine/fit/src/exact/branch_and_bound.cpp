@@ -74,7 +74,8 @@ class Search {
         // Widths below 1e-13 of the size are rounding of the coordinates: the proof leaves out what they may change.
         const double slopes = weights_.product * (w.x * w.y + w.y * w.z + w.z * w.x) +
                               2.0 * weights_.pairs * (w.x + w.y + w.z) + 3.0 * weights_.sum;
-        target_ = std::max(0.0, value * (1.0 - limits_.gap) - 1e-13 * slopes);
+        // It never rises, since cells were left out for what it was.
+        target_ = std::min(target_, std::max(0.0, value * (1.0 - limits_.gap) - 1e-13 * slopes));
     }
 
     // Asks the host now and then. `bound` is that of the cell which is about to be split.

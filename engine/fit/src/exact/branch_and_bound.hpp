@@ -13,7 +13,8 @@ namespace crofton::fit {
 struct SearchLimits {
     double gap = 2e-7;  // stop when the value is proved within this of the optimum, relatively
     std::uint64_t cells = std::numeric_limits<std::uint64_t>::max();
-    // Called every 64 splits with the best value and the proved bound so far; false stops the search. May be null.
+    // Called with the best value and the proved bound so far, each time that some 0.1 ms of work are done; false stops
+    // the search. May be null.
     const FunctionRef<bool(double value, double lower_bound, std::uint64_t cells)>* keep_going = nullptr;
 };
 

@@ -2,6 +2,7 @@
 #include "search/local_search.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <crofton/geometry/finite.hpp>
 #include <glm/geometric.hpp>
 
@@ -98,8 +99,13 @@ void tetrahedral_frames(std::span<const glm::dvec3> points, Vector<glm::dmat3>& 
         const double size = glm::length(normal);
         if (!(size > 0.0)) return;
         for (const glm::dvec3& edge : edges) {
-            const glm::dvec3 along = glm::normalize(edge), up = normal / size;
-            frames.push_back({along, glm::normalize(glm::cross(up, along)), up});
+            const glm::dvec3 along = glm::normalize(edge), up = normal / size, across = glm::cross(up, along);
+            if (!(glm::dot(across, across) > 0.25)) continue;  // the triangle is flat but for rounding
+            const glm::dvec3 second = glm::normalize(across);
+            // Rounding tilts the normal of a sliver along it. The proof of the exact search turns one of these frames,
+            // as if it were orthonormal.
+            const bool tilted = std::abs(glm::dot(up, along)) > 1e-12;
+            frames.push_back({along, second, tilted ? glm::cross(along, second) : up});
         }
     };
     if (!(farthest > 1e-30)) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A criterion's weights for boxes in normalised coordinates.
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <crofton/measure/measure.hpp>
 #include <numbers>
 
@@ -25,11 +27,16 @@ struct NormalisedWeights {
 // The weights for lengths in units of `unit`: V scales with its cube, F with its square. They are divided by the
 // largest, which changes no minimiser and keeps later products from overflow.
 [[nodiscard]] inline NormalisedWeights normalised_weights(const measure::Criterion& criterion, double unit) {
-    const Weights w{criterion.volume_weight * unit * unit, 2.0 * criterion.area_weight * unit,
-                    std::numbers::pi * criterion.mean_curvature_weight};
+    // Times a power of two first, which rounds nothing: weights of 1e300 are weights, too.
+    int exponent = 0;
+    std::frexp(std::max({criterion.volume_weight, criterion.area_weight, criterion.mean_curvature_weight}), &exponent);
+    const Weights w{std::ldexp(criterion.volume_weight, -exponent) * unit * unit,
+                    2.0 * std::ldexp(criterion.area_weight, -exponent) * unit,
+                    std::numbers::pi * std::ldexp(criterion.mean_curvature_weight, -exponent)};
     double largest = w.product > w.pairs ? w.product : w.pairs;
     if (w.sum > largest) largest = w.sum;
-    if (largest > 0.0) return {{w.product / largest, w.pairs / largest, w.sum / largest}, largest * unit};
+    if (largest > 0.0)
+        return {{w.product / largest, w.pairs / largest, w.sum / largest}, std::ldexp(largest * unit, exponent)};
     // Every weight underflowed: search by the first measure that the criterion asks for.
     return {{criterion.volume_weight > 0.0 ? 1.0 : 0.0, criterion.area_weight > 0.0 ? 1.0 : 0.0, 0.0}, 0.0};
 }
