@@ -72,6 +72,8 @@ class Domain {
     void find_side(Index begin, Index end);
     [[nodiscard]] bool label_triangles();
     [[nodiscard]] bool labels_fit();
+    [[nodiscard]] bool sides_fit() const;
+    [[nodiscard]] bool side_fits(Index input) const;
     [[nodiscard]] Result<void> enter(Index half_edge, State state);
     void flood(Index triangle);
     [[nodiscard]] Result<State> cross(State state, Index mark);

@@ -63,9 +63,10 @@ void Domain::find_side(Index begin, Index end) {
     for (Index i = begin; i < end; ++i) left_inside_[vertex_of_[i]] = left;
 }
 
-// Where all rings are simple and disjoint, each tells on which side of its edges the inside lies. If what they say fits
-// together in every triangle and across every edge, and leaves the outside out, it is the only answer: with the rings'
-// winding numbers w, inside = w(outer) − Σ w(hole), and all of them are 0 or 1; holes of one point tell nothing.
+// Where all rings are simple and disjoint, each tells on which side of its edges the inside lies. Labels that differ
+// across every edge and nowhere else, and leave the outside out, are the parity of the rings around a triangle. If
+// every ring also finds beside it what it tells, holes lie inside an odd number of rings and the outer ring inside an
+// even one: so the outer ring is around all others, and no hole around another. Holes of one point tell nothing.
 // Returns false if it does not fit, or if too many triangles lie far from the rings.
 bool Domain::label_triangles() {
     queue_.clear();
@@ -86,7 +87,7 @@ bool Domain::label_triangles() {
         }
         queue_.resize(kept);
     }
-    return queue_.empty() && labels_fit();
+    return queue_.empty() && labels_fit() && sides_fit();
 }
 
 bool Domain::labels_fit() {
@@ -102,9 +103,29 @@ bool Domain::labels_fit() {
     return wrong == 0 && inside != 0;
 }
 
+// Whether each ring finds the inside where find_side() says, by its first edge. Where triangles were replaced, labels
+// come from other rings.
+bool Domain::sides_fit() const {
+    Index begin = 0;
+    for (const Index end : polygon_->ring_ends) {
+        if (end - begin > 2 && !side_fits(begin)) return false;
+        begin = end;
+    }
+    return true;
+}
+
+bool Domain::side_fits(Index input) const {
+    const Index v = vertex_of_[input], mark = input + 1;
+    for (Index e = mesh_.vertex_edge[v];; e = mesh_.rotate(e)) {
+        if (mesh_.mark[e] == mark) return inside_[e / 4] == left_inside_[v];
+        // The edge from its other side, as behind one on the hull there is no triangle.
+        if (mesh_.mark[previous(e)] == mark) return inside_[e / 4] != left_inside_[v];
+    }
+}
+
 Result<void> Domain::find_inside() {
     const std::size_t count = mesh_.triangle_count();
-    if (!has_shared_positions() && label_triangles()) return check_holes();
+    if (!has_touching_rings() && label_triangles()) return check_holes();
     inside_.assign(count, kUnreached);
     inside_count_ = 0;
     regions_.clear();
