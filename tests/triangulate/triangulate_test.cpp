@@ -184,6 +184,22 @@ TEST_SUITE("triangulate/triangulate") {
         }
     }
 
+    TEST_CASE("a hole of two points divides the polygon and takes nothing away; outside it is an error") {
+        const auto with = [](std::initializer_list<glm::dvec2> hole) {
+            return polygon({{{0, 0}, {8, 0}, {8, 8}, {0, 8}}, hole});
+        };
+        for (const Method method : kMethods) {
+            CHECK(checked(with({{0, 0}, {8, 8}}), method) == "");  // from corner to corner
+            CHECK(checked(with({{4, 0}, {4, 8}}), method) == "");
+            CHECK(checked(with({{0, 0}, {8, 0}}), method) == "");  // along a side
+            CHECK(checked(with({{2, 0}, {8, 0}}), method) == "");
+        }
+        CHECK(code(with({{4, 8}, {4, 9}})) == ErrorCode::degenerate);
+        CHECK(code(with({{9, 9}, {10, 9}})) == ErrorCode::degenerate);
+        CHECK(code(polygon({{{0, 0}, {8, 0}, {8, 8}, {0, 8}}, {{2, 2}, {6, 2}, {6, 6}, {2, 6}}, {{2, 2}, {6, 6}}})) ==
+              ErrorCode::degenerate);
+    }
+
     TEST_CASE("either orientation of any ring gives counter-clockwise triangles") {
         auto p = polygon({{{0, 0}, {9, 0}, {9, 9}, {0, 9}}, {{2, 2}, {4, 2}, {4, 4}, {2, 4}}});
         for (int flips = 0; flips < 4; ++flips) {

@@ -79,11 +79,16 @@ class Domain {
     [[nodiscard]] Result<State> cross(State state, Index mark);
     [[nodiscard]] tl::unexpected<Error> overlap(Index mark, Index a, Index b) const;
     [[nodiscard]] Result<void> check_holes() const;
+    [[nodiscard]] Result<void> check_slits() const;
     [[nodiscard]] bool touches_inside(Index vertex) const;
     [[nodiscard]] Index edge_count(Index begin, Index end) const;
     void claim(Index half_edge, Index input);
     [[nodiscard]] Record record(Index id) const;
     [[nodiscard]] Index ring_of(Index input) const;
+    // Whether a ring is a hole of two points: an edge that bounds nothing.
+    [[nodiscard]] bool is_slit(Index ring) const {
+        return ring != 0 && polygon_->ring_ends[ring] - polygon_->ring_ends[ring - 1] == 2;
+    }
     [[nodiscard]] Index successor(Index input) const;
     // Ring, number and place of a point, for messages.
     struct Name {

@@ -13,7 +13,10 @@ constexpr int kPasses = 4;
 
 Result<Domain::State> Domain::cross(State state, Index mark) {
     crossed_rings_.clear();
-    for (Index id = mark - 1; id != kNone; id = record(id).next) crossed_rings_.push_back(ring_of(record(id).input));
+    for (Index id = mark - 1; id != kNone; id = record(id).next) {
+        const Index ring = ring_of(record(id).input);
+        if (!is_slit(ring)) crossed_rings_.push_back(ring);
+    }
     std::sort(crossed_rings_.begin(), crossed_rings_.end());
     Index entered = 0;
     for (std::size_t i = 0; i < crossed_rings_.size(); ++i) {
@@ -194,12 +197,29 @@ void Domain::flood(Index triangle) {
 
 // A hole of which no vertex touches the inside lies outside, within another hole, or is a spike there.
 Result<void> Domain::check_holes() const {
+    bool slits = false;
     for (std::size_t r = 1; r < polygon_->ring_count(); ++r) {
         const Index begin = polygon_->ring_ends[r - 1], end = polygon_->ring_ends[r];
+        slits |= is_slit(static_cast<Index>(r));
         bool touches = begin == end;
         for (Index i = begin; i < end && !touches; ++i) touches = touches_inside(vertex_of_[i]);
         if (!touches)
             return fail(ErrorCode::degenerate, begin, {name_of(begin).text, ": hole ", r, " lies outside the polygon"});
+    }
+    return slits ? check_slits() : Result<void>{};
+}
+
+// Each part of a hole of two points has the inside beside it.
+Result<void> Domain::check_slits() const {
+    for (Index e = 0; e < mesh_.origin.size(); ++e) {
+        const Index twin = mesh_.twin[e];
+        if ((e & 3u) == 3u || mesh_.mark[e] == 0 || inside(e / 4) || (twin != kNone && inside(twin / 4))) continue;
+        for (Index id = mesh_.mark[e] - 1; id != kNone; id = record(id).next) {
+            const Index input = record(id).input, ring = ring_of(input);
+            if (is_slit(ring))
+                return fail(ErrorCode::degenerate, input,
+                            {name_of(input).text, ": hole ", ring, " reaches outside the polygon"});
+        }
     }
     return {};
 }
