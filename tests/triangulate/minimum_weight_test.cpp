@@ -121,18 +121,6 @@ TEST_SUITE("triangulate/minimum_weight") {
         CHECK(compare(s, triangulator) == "");
     }
 
-    TEST_CASE(
-        "vertices behind a slit from here kill nothing: the only triangulations beside it need what they would kill") {
-        for (const Polygon& p : {polygon({{{3, 1}, {4, 0}, {4, 1}, {5, 1}, {3, 2}, {0, 2}}, {{5, 1}, {2, 2}, {5, 1}}}),
-                                 polygon({{{3, 1}, {4, 0}, {4, 1}, {5, 1}, {3, 2}, {0, 2}}, {{5, 1}, {2, 2}}})}) {
-            const auto result = triangulate::triangulate(p);
-            REQUIRE_MESSAGE(result.has_value(), error_of(result).message);
-            CHECK(result->optimal);
-            CHECK(result->triangles.size() == 5);
-            CHECK(oracle::check_triangulation(p, result->triangles, true) == "");
-        }
-    }
-
     TEST_CASE("agrees with the unpruned programme on random simple polygons, on and off grids") {
         std::mt19937_64 random(21);
         triangulate::Triangulator triangulator;
