@@ -90,6 +90,10 @@ class Domain {
         return ring != 0 && polygon_->ring_ends[ring] - polygon_->ring_ends[ring - 1] == 2;
     }
     [[nodiscard]] Index successor(Index input) const;
+    [[nodiscard]] Index predecessor(Index input) const;
+    [[nodiscard]] Index first_of_equals(Index input) const;
+    [[nodiscard]] bool holds(Index mark, Index input) const;
+    [[nodiscard]] Index point_at(Index v, Index mark, Index left_mark) const;
     // Ring, number and place of a point, for messages.
     struct Name {
         char text[128];
@@ -106,6 +110,7 @@ class Domain {
     Vector<std::uint32_t> codes_;
     Vector<Index> vertex_of_;       // input point → vertex
     Vector<Index> input_of_;        // vertex → its first input point
+    Vector<std::uint8_t> shared_;   // vertex → whether several input points lie there
     Vector<Index> next_vertex_;     // vertex → the one after its first input point, where the other way is no edge
     Vector<std::uint8_t> present_;  // vertices whose edge to the next one is in the Delaunay triangulation
     Vector<Record> records_;        // the explicit ones

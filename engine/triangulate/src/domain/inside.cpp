@@ -68,8 +68,8 @@ void Domain::find_side(Index begin, Index end) {
 
 // Where all rings are simple and disjoint, each tells on which side of its edges the inside lies. Labels that differ
 // across every edge and nowhere else, and leave the outside out, are the parity of the rings around a triangle. If
-// every ring also finds beside it what it tells, holes lie inside an odd number of rings and the outer ring inside an
-// even one: so the outer ring is around all others, and no hole around another. Holes of one point tell nothing.
+// every ring also finds beside it what it tells, holes lie inside an odd number of rings, and the outer ring inside an
+// even one. So the outer ring is around all others, and no hole around another. Holes of one point tell nothing.
 // Returns false if it does not fit, or if too many triangles lie far from the rings.
 bool Domain::label_triangles() {
     queue_.clear();
