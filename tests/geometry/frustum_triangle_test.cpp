@@ -88,6 +88,18 @@ TEST_SUITE("geometry/frustum_triangle") {
         CHECK(intersects(frustum, a, b, c));
     }
 
+    TEST_CASE("a product that underflows beside coordinates of 1e200 decides nothing") {
+        Frustum f;
+        f.plane_count = 3;
+        f.planes[0].normal = {0, -1, 0};
+        f.planes[1].normal = {-1, 0, 0};
+        f.planes[2].normal = {0.60599723665819105, -0.27299092327408053, -0.74715681417798863};
+        f.planes[2].offset = -2e-165;
+        const glm::dvec3 a(2e200, -2.2206440958587493e-166, -2e-155),
+            b(-0.20404383707379381, 2e-165, 0.83912725461959847), c(-1e-165, 0, 1.513632781101606e-166);
+        CHECK_FALSE(intersects(f, a, b, c));
+    }
+
     TEST_CASE("agrees with exact elimination to the last bit where a triangle begins to miss the frustum") {
         for (const double offset : {0.0, 1e6}) {
             oracle::NearMisses cases(6, offset);

@@ -235,6 +235,26 @@ TEST_SUITE("triangulate/planar_patches") {
         CHECK(used.size() == 10);
     }
 
+    TEST_CASE("the sides of a seam stay apart and in use, whichever triangle comes first") {
+        const std::uint32_t triangles[5][3] = {{5, 6, 0}, {1, 2, 3}, {4, 5, 0}, {1, 3, 4}, {4, 0, 1}};
+        for (std::size_t first = 0; first < 5; ++first) {
+            TriangleMesh mesh;  // a square; 3 and 5 are the seam's two ends on its side
+            mesh.positions = {{0, 0, 0}, {8, 0, 0}, {8, 8, 0}, {4, 8, 0}, {4, 3, 0}, {4, 8, 0}, {0, 8, 0}};
+            for (std::size_t t = 0; t < 5; ++t)
+                for (const std::uint32_t i : triangles[(first + t) % 5]) mesh.indices.push_back(i);
+            const auto report = retriangulate_planar_patches(mesh);
+            REQUIRE(report.has_value());
+            CHECK(report->improved == 1);
+            CHECK(std::set<std::uint32_t>(mesh.indices.begin(), mesh.indices.end()).size() == 7);
+            for (std::size_t t = 0; t < mesh.indices.size(); t += 3) {
+                const std::uint32_t* const corners = &mesh.indices[t];
+                float middle = 0.0f;
+                for (std::size_t k = 0; k < 3; ++k) middle += mesh.positions[corners[k]].x / 3.0f;
+                CHECK(std::count(corners, corners + 3, middle > 4.0f ? 5u : 3u) == 0);
+            }
+        }
+    }
+
     TEST_CASE("a patch that overlaps itself is left as it was, and says why") {
         // A fan that goes round one and a half times.
         TriangleMesh mesh;

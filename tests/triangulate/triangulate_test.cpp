@@ -89,6 +89,11 @@ TEST_SUITE("triangulate/triangulate") {
         CHECK(code(with({{6, 2}}, {{1, 1}, {8, 1}, {8, 4}})) == ErrorCode::degenerate);
     }
 
+    TEST_CASE("a hole outside is an error where no triangle beside it is left of the Delaunay triangulation") {
+        CHECK(code(polygon({{{3, 2}, {2, 2}, {6, 8}, {7, 4}}, {{0, 0}, {4, 0}, {7, 3}}})) == ErrorCode::degenerate);
+        CHECK(code(polygon({{{0, 1}, {12, 1}, {16, 2}, {15, 2}}, {{2, 0}, {0, 0}, {13, 1}}})) == ErrorCode::degenerate);
+    }
+
     TEST_CASE("of nested holes an edge of the inner one is named, whichever point comes first") {
         const std::vector<glm::dvec2> outer = {{1, 1}, {8, 1}, {8, 8}}, inner = {{4, 2}, {5, 2}, {5, 3}};
         for (std::size_t first = 0; first < 3; ++first)
@@ -177,6 +182,22 @@ TEST_SUITE("triangulate/triangulate") {
             CHECK(outer->triangles.size() == 3);
             CHECK(checked(polygon({{{0, 0}, {8, 0}, {8, 8}, {0, 8}}, {{3, 3}}, {{5, 5}, {5, 6}}}), method) == "");
         }
+    }
+
+    TEST_CASE("a hole of two points divides the polygon and takes nothing away; outside it is an error") {
+        const auto with = [](std::initializer_list<glm::dvec2> hole) {
+            return polygon({{{0, 0}, {8, 0}, {8, 8}, {0, 8}}, hole});
+        };
+        for (const Method method : kMethods) {
+            CHECK(checked(with({{0, 0}, {8, 8}}), method) == "");  // from corner to corner
+            CHECK(checked(with({{4, 0}, {4, 8}}), method) == "");
+            CHECK(checked(with({{0, 0}, {8, 0}}), method) == "");  // along a side
+            CHECK(checked(with({{2, 0}, {8, 0}}), method) == "");
+        }
+        CHECK(code(with({{4, 8}, {4, 9}})) == ErrorCode::degenerate);
+        CHECK(code(with({{9, 9}, {10, 9}})) == ErrorCode::degenerate);
+        CHECK(code(polygon({{{0, 0}, {8, 0}, {8, 8}, {0, 8}}, {{2, 2}, {6, 2}, {6, 6}, {2, 6}}, {{2, 2}, {6, 6}}})) ==
+              ErrorCode::degenerate);
     }
 
     TEST_CASE("either orientation of any ring gives counter-clockwise triangles") {

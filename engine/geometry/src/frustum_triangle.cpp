@@ -38,6 +38,8 @@ struct Rows {
 constexpr double kUnit = 0x1p-53;
 // Products this small may have lost bits to underflow; the exact path decides.
 constexpr double kTiny = 1e-200;
+// Added to the size of what is multiplied further: what underflow takes from it, 2^-1074, is then within the bounds.
+constexpr double kLost = 1e-290;
 
 Rows rows_of(const Frustum& frustum, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
     Rows result{frustum, {&a, &b, &c}, {}, frustum.plane_count + 3};
@@ -47,7 +49,7 @@ Rows rows_of(const Frustum& frustum, const glm::dvec3& a, const glm::dvec3& b, c
             const glm::dvec3 d = *result.corners[v] - frustum.origin;
             const double x = plane.normal.x * d.x, y = plane.normal.y * d.y, z = plane.normal.z * d.z;
             result.rows[i].value[v] = x + y + z + plane.offset;
-            result.rows[i].size[v] = std::fabs(x) + std::fabs(y) + std::fabs(z) + std::fabs(plane.offset);
+            result.rows[i].size[v] = std::fabs(x) + std::fabs(y) + std::fabs(z) + std::fabs(plane.offset) + kLost;
         }
     }
     for (std::uint32_t v = 0; v < 3; ++v) {
@@ -72,7 +74,7 @@ int determinant_sign(const Rows& rows, std::uint32_t i, std::uint32_t j, std::ui
     for (unsigned k = 0; k < 3; ++k) {
         const unsigned x = (k + 1) % 3, y = (k + 2) % 3;
         value += r.value[k] * (p.value[x] * q.value[y] - p.value[y] * q.value[x]);
-        size += r.size[k] * (p.size[x] * q.size[y] + p.size[y] * q.size[x]);
+        size += r.size[k] * (p.size[x] * q.size[y] + p.size[y] * q.size[x] + kLost);
     }
     const double bound = 50.0 * kUnit * size + kTiny;
     if (value > bound) return 1;

@@ -22,7 +22,7 @@ using D = hn::CappedTag<float, mesh::kMeshNodeWidth>;
 using V = hn::Vec<D>;
 
 // Rounding of the products and sums of one test, relative to the boxes' sizes: 16 roundings of 2^-24 at most, axes
-// orthonormal to 1e-6, and a margin.
+// orthonormal to 1.5e-6, and a margin.
 constexpr float kBoxError = 4e-6f;
 
 // A box, its rows padded for vector loads.

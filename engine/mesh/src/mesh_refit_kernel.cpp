@@ -149,8 +149,8 @@ HWY_INLINE float float_above(double value) {
 }
 
 // With H the sum of the half extents, points lie within 3.5 H of each other, in sum of coordinates. A difference, a
-// product and two sums in float are off by 4 · 2^-24 of that: 8.4e-7 H at either end. Axes that are orthonormal to 1e-6
-// bound the points along themselves, not along the box's edges: 3 · 1e-6 H. The margin is 6e-6 H.
+// product and two sums in float are off by 4 · 2^-24 of that: 8.4e-7 H at either end. Axes that are orthonormal
+// to 1.5e-6 bound the points along themselves, not along the box's edges: 3 · 1.5e-6 H. The margin is 6e-6 H.
 HWY_INLINE void store_box(const Slabs& slabs, std::uint32_t lane, MeshNode& node) {
     double middle[3], half[3], center[3];
     for (int k = 0; k < 3; ++k)

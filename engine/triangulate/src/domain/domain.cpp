@@ -87,12 +87,16 @@ void Domain::merge_vertices(const Polygon& polygon) {
     points_.clear();
     codes_.clear();
     input_of_.clear();
+    shared_.clear();
     vertex_of_.resize(positions.size());
     for (const auto& entry : order_.sort(positions)) {
         if (points_.empty() || points_.back() != positions[entry.index]) {
             points_.push_back(positions[entry.index]);
             codes_.push_back(entry.code);
             input_of_.push_back(entry.index);
+            shared_.push_back(0);
+        } else {
+            shared_.back() = 1;
         }
         vertex_of_[entry.index] = static_cast<Index>(points_.size() - 1);
     }
@@ -205,40 +209,6 @@ void Domain::claim(Index half_edge, Index input) {
     }
     mesh_.mark[half_edge] = mark;
     if (mesh_.twin[half_edge] != kNone) mesh_.mark[mesh_.twin[half_edge]] = mark;
-}
-
-Domain::Record Domain::record(Index id) const {
-    return id < vertex_of_.size() ? Record{id, kNone} : records_[id - vertex_of_.size()];
-}
-
-Index Domain::ring_of(Index input) const {
-    const auto& ends = polygon_->ring_ends;
-    if (input < ends[0]) return 0;
-    return static_cast<Index>(std::upper_bound(ends.begin(), ends.end(), input) - ends.begin());
-}
-
-Index Domain::successor(Index input) const {
-    const Index r = ring_of(input);
-    if (input + 1 != polygon_->ring_ends[r]) return input + 1;
-    return r == 0 ? 0 : polygon_->ring_ends[r - 1];
-}
-
-// Turning clockwise from the corner, the first constraint bounds its sector; the ring that made it has its point there.
-Index Domain::input_index(Index e) const {
-    const Index v = mesh_.origin[e];
-    if (!has_shared_positions()) return input_of_[v];
-    for (Index edge = e;;) {
-        for (Index id = mesh_.mark[edge] - 1; id != kNone; id = record(id).next) {
-            const Index input = record(id).input;
-            if (vertex_of_[input] == v) return input;
-            const Index end = successor(input);
-            if (vertex_of_[end] == v) return end;
-        }
-        const Index twin = mesh_.twin[edge];
-        if (twin == kNone) return input_of_[v];
-        edge = next(twin);
-        if (edge == e) return input_of_[v];
-    }
 }
 
 Domain::Name Domain::name_of(Index input) const {

@@ -72,17 +72,28 @@ class Domain {
     void find_side(Index begin, Index end);
     [[nodiscard]] bool label_triangles();
     [[nodiscard]] bool labels_fit();
+    [[nodiscard]] bool sides_fit() const;
+    [[nodiscard]] bool side_fits(Index input) const;
     [[nodiscard]] Result<void> enter(Index half_edge, State state);
     void flood(Index triangle);
     [[nodiscard]] Result<State> cross(State state, Index mark);
     [[nodiscard]] tl::unexpected<Error> overlap(Index mark, Index a, Index b) const;
     [[nodiscard]] Result<void> check_holes() const;
+    [[nodiscard]] Result<void> check_slits() const;
     [[nodiscard]] bool touches_inside(Index vertex) const;
     [[nodiscard]] Index edge_count(Index begin, Index end) const;
     void claim(Index half_edge, Index input);
     [[nodiscard]] Record record(Index id) const;
     [[nodiscard]] Index ring_of(Index input) const;
+    // Whether a ring is a hole of two points: an edge that bounds nothing.
+    [[nodiscard]] bool is_slit(Index ring) const {
+        return ring != 0 && polygon_->ring_ends[ring] - polygon_->ring_ends[ring - 1] == 2;
+    }
     [[nodiscard]] Index successor(Index input) const;
+    [[nodiscard]] Index predecessor(Index input) const;
+    [[nodiscard]] Index first_of_equals(Index input) const;
+    [[nodiscard]] bool holds(Index mark, Index input) const;
+    [[nodiscard]] Index point_at(Index v, Index mark, Index left_mark) const;
     // Ring, number and place of a point, for messages.
     struct Name {
         char text[128];
@@ -99,6 +110,7 @@ class Domain {
     Vector<std::uint32_t> codes_;
     Vector<Index> vertex_of_;       // input point → vertex
     Vector<Index> input_of_;        // vertex → its first input point
+    Vector<std::uint8_t> shared_;   // vertex → whether several input points lie there
     Vector<Index> next_vertex_;     // vertex → the one after its first input point, where the other way is no edge
     Vector<std::uint8_t> present_;  // vertices whose edge to the next one is in the Delaunay triangulation
     Vector<Record> records_;        // the explicit ones

@@ -13,7 +13,10 @@ constexpr int kPasses = 4;
 
 Result<Domain::State> Domain::cross(State state, Index mark) {
     crossed_rings_.clear();
-    for (Index id = mark - 1; id != kNone; id = record(id).next) crossed_rings_.push_back(ring_of(record(id).input));
+    for (Index id = mark - 1; id != kNone; id = record(id).next) {
+        const Index ring = ring_of(record(id).input);
+        if (!is_slit(ring)) crossed_rings_.push_back(ring);
+    }
     std::sort(crossed_rings_.begin(), crossed_rings_.end());
     Index entered = 0;
     for (std::size_t i = 0; i < crossed_rings_.size(); ++i) {
@@ -63,9 +66,10 @@ void Domain::find_side(Index begin, Index end) {
     for (Index i = begin; i < end; ++i) left_inside_[vertex_of_[i]] = left;
 }
 
-// Where all rings are simple and disjoint, each tells on which side of its edges the inside lies. If what they say fits
-// together in every triangle and across every edge, and leaves the outside out, it is the only answer: with the rings'
-// winding numbers w, inside = w(outer) − Σ w(hole), and all of them are 0 or 1; holes of one point tell nothing.
+// Where all rings are simple and disjoint, each tells on which side of its edges the inside lies. Labels that differ
+// across every edge and nowhere else, and leave the outside out, are the parity of the rings around a triangle. If
+// every ring also finds beside it what it tells, holes lie inside an odd number of rings, and the outer ring inside an
+// even one. So the outer ring is around all others, and no hole around another. Holes of one point tell nothing.
 // Returns false if it does not fit, or if too many triangles lie far from the rings.
 bool Domain::label_triangles() {
     queue_.clear();
@@ -86,7 +90,7 @@ bool Domain::label_triangles() {
         }
         queue_.resize(kept);
     }
-    return queue_.empty() && labels_fit();
+    return queue_.empty() && labels_fit() && sides_fit();
 }
 
 bool Domain::labels_fit() {
@@ -102,9 +106,29 @@ bool Domain::labels_fit() {
     return wrong == 0 && inside != 0;
 }
 
+// Whether each ring finds the inside where find_side() says, by its first edge. Where triangles were replaced, labels
+// come from other rings.
+bool Domain::sides_fit() const {
+    Index begin = 0;
+    for (const Index end : polygon_->ring_ends) {
+        if (end - begin > 2 && !side_fits(begin)) return false;
+        begin = end;
+    }
+    return true;
+}
+
+bool Domain::side_fits(Index input) const {
+    const Index v = vertex_of_[input], mark = input + 1;
+    for (Index e = mesh_.vertex_edge[v];; e = mesh_.rotate(e)) {
+        if (mesh_.mark[e] == mark) return inside_[e / 4] == left_inside_[v];
+        // The edge from its other side, as behind one on the hull there is no triangle.
+        if (mesh_.mark[previous(e)] == mark) return inside_[e / 4] != left_inside_[v];
+    }
+}
+
 Result<void> Domain::find_inside() {
     const std::size_t count = mesh_.triangle_count();
-    if (!has_shared_positions() && label_triangles()) return check_holes();
+    if (!has_touching_rings() && label_triangles()) return check_holes();
     inside_.assign(count, kUnreached);
     inside_count_ = 0;
     regions_.clear();
@@ -173,12 +197,29 @@ void Domain::flood(Index triangle) {
 
 // A hole of which no vertex touches the inside lies outside, within another hole, or is a spike there.
 Result<void> Domain::check_holes() const {
+    bool slits = false;
     for (std::size_t r = 1; r < polygon_->ring_count(); ++r) {
         const Index begin = polygon_->ring_ends[r - 1], end = polygon_->ring_ends[r];
+        slits |= is_slit(static_cast<Index>(r));
         bool touches = begin == end;
         for (Index i = begin; i < end && !touches; ++i) touches = touches_inside(vertex_of_[i]);
         if (!touches)
             return fail(ErrorCode::degenerate, begin, {name_of(begin).text, ": hole ", r, " lies outside the polygon"});
+    }
+    return slits ? check_slits() : Result<void>{};
+}
+
+// Each part of a hole of two points has the inside beside it.
+Result<void> Domain::check_slits() const {
+    for (Index e = 0; e < mesh_.origin.size(); ++e) {
+        const Index twin = mesh_.twin[e];
+        if ((e & 3u) == 3u || mesh_.mark[e] == 0 || inside(e / 4) || (twin != kNone && inside(twin / 4))) continue;
+        for (Index id = mesh_.mark[e] - 1; id != kNone; id = record(id).next) {
+            const Index input = record(id).input, ring = ring_of(input);
+            if (is_slit(ring))
+                return fail(ErrorCode::degenerate, input,
+                            {name_of(input).text, ": hole ", ring, " reaches outside the polygon"});
+        }
     }
     return {};
 }

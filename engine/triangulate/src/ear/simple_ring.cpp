@@ -53,7 +53,8 @@ bool SimpleRing::are_apart(std::span<const glm::dvec2> points, std::size_t a, st
     const Box& bound = bounds_[b];
     const std::size_t count = points.size();
     const auto point = [&](std::size_t i) -> const glm::dvec2& { return points[i == count ? 0 : i]; };
-    for (std::size_t k = 0; k < kWidth; ++k) {
+    // Of numbers beyond floats boxes are infinite, and meet those of unused edges.
+    for (std::size_t k = 0; k < kWidth && a * kWidth + k < count; ++k) {
         const float low_x = first.low_x[k], high_x = first.high_x[k];
         const float low_y = first.low_y[k], high_y = first.high_y[k];
         if (low_x > bound.high_x || high_x < bound.low_x || low_y > bound.high_y || high_y < bound.low_y) continue;
@@ -65,7 +66,7 @@ bool SimpleRing::are_apart(std::span<const glm::dvec2> points, std::size_t a, st
         for (std::size_t m = 0; m < kWidth; ++m) {
             if (meet[m] == 0) continue;
             const std::size_t j = b * kWidth + m;
-            if (j <= i + 1 || (i == 0 && j + 1 == count)) continue;
+            if (j <= i + 1 || j >= count || (i == 0 && j + 1 == count)) continue;
             if (edges_meet(point(i), point(i + 1), point(j), point(j + 1))) return false;
         }
     }

@@ -175,20 +175,29 @@ bool CandidateFinder::is_dark(View& view) const {
            area2 * dot(right, right) >= left_limit * left_limit * side2;
 }
 
-// Drops what the diamond test kills by witnesses among the neighbours in seen_[begin, end), one sector.
+// Drops what the diamond test kills by witnesses among the neighbours in seen_[begin, end), one sector. Witnesses
+// behind a slit from here do not count: what they see of the edge's other end the slit may hide.
 void CandidateFinder::filter(std::size_t begin, std::size_t end) {
     const auto& points = mesh_->points;
     if (end - begin < 3) return;
     vectors_.resize(end - begin);
     for (std::size_t i = begin; i < end; ++i) vectors_[i - begin] = points[seen_[i].vertex] - eye_;
-    std::size_t kept = begin + 1;
+    std::size_t kept = begin + 1, slit = 0;
     const std::size_t count = end - begin;
+    const auto is_constraint = [&](std::size_t i) {
+        return (seen_[begin + i].flags & CandidateGraph::kConstraint) != 0;
+    };
     for (std::size_t i = 1; i < count; ++i) {
-        bool keep = i + 1 == count || (seen_[begin + i].flags & CandidateGraph::kConstraint) != 0;
+        bool keep = i + 1 == count;
+        if (is_constraint(i)) {
+            keep = true;
+            slit = i;
+        }
         if (!keep) {
             const glm::dvec2 q = vectors_[i];
             const double q_square = dot(q, q);
-            const std::size_t low = i > kNeighbours ? i - kNeighbours : 0, high = std::min(count, i + kNeighbours + 1);
+            const std::size_t low = std::max(slit, i > kNeighbours ? i - kNeighbours : 0),
+                              high = std::min(count, i + kNeighbours + 1);
             Witness right = Witness::none, left = Witness::none;
             for (std::size_t j = i; j-- > low && right == Witness::none;) {
                 right = test_witness(q, q_square, vectors_[j], cross(vectors_[j], q));
@@ -196,6 +205,7 @@ void CandidateFinder::filter(std::size_t begin, std::size_t end) {
             if (right == Witness::kills) {
                 for (std::size_t j = i + 1; j < high && left == Witness::none; ++j) {
                     left = test_witness(q, q_square, vectors_[j], cross(q, vectors_[j]));
+                    if (is_constraint(j)) break;
                 }
             }
             keep = left != Witness::kills;

@@ -60,7 +60,7 @@ inline constexpr double kMaxAxisDeviation = 1e-4;
 // Corner i is at t_k = −1 where bit k of i is 0, +1 where it is 1; rounded to double.
 [[nodiscard]] std::array<glm::dvec3, 8> corners(const Obb& box);
 
-// True iff `point` lies in the exact parallelepiped, boundary included; decided exactly. `point` is finite.
+// True iff `point` lies in the exact parallelepiped, boundary included. Exact: coordinates are 0 or 1e-200 to 1e250.
 [[nodiscard]] bool contains(const Obb& box, const glm::dvec3& point);
 
 // The same for the slab between the two faces across axes[k] alone: the point is in the box iff it is in all three.

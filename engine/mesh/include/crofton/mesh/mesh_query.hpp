@@ -84,8 +84,8 @@ enum class Containment : std::uint8_t { none, a_inside_b, b_inside_a, partly };
 // As above where it is known that the surfaces do not meet.
 [[nodiscard]] Containment containment_of_disjoint(const mesh::MeshTree& a, const mesh::MeshTree& b,
                                                   const RigidTransform& b_to_a);
-// Whether the point lies within the closed pieces of the mesh, their surfaces included. One that is not
-// finite lies in none.
+// Whether the point lies within the closed pieces of the mesh, their surfaces included; exact while its coordinates are
+// 0 or at least 1e-70 in size. One that is not finite lies in none.
 [[nodiscard]] bool contains(const mesh::MeshTree& mesh, const glm::dvec3& point);
 
 struct MeshDistance {
@@ -118,7 +118,7 @@ struct RayHit {
     double t = 0.0;
     std::uint32_t triangle = 0;
 };
-// The nearest triangle, decided likewise; of hits with equal t that of the lowest index.
+// The nearest triangle, decided likewise for origins within 1e37; of hits with equal t that of the lowest index.
 [[nodiscard]] std::optional<RayHit> raycast(const Ray& ray, const mesh::MeshTree& mesh);
 // Many rays: hits[i] is what raycast(rays[i], mesh) gives, the same bits. Where rays are prepared
 // (MeshTree::prepare_rays), sixteen at a time go through the hierarchy as a packet. The closer they lie together, the

@@ -14,7 +14,7 @@ inline constexpr std::uint32_t kMeshLeaf = 0x80000000u;  // set in a child that 
 // it.
 struct alignas(64) MeshNode {
     float center[3][kMeshNodeWidth];
-    float axes[3][3][kMeshNodeWidth];  // [k][i]: component i of axis k; orthonormal to 1e-6
+    float axes[3][3][kMeshNodeWidth];  // [k][i]: component i of axis k; orthonormal to 1.5e-6
     float half[3][kMeshNodeWidth];
     std::uint32_t child[kMeshNodeWidth];
     std::uint32_t count;  // lanes in use: the first ones

@@ -50,8 +50,8 @@ struct Triangulation {
 // What input means that is not a simple polygon with disjoint simple holes inside it:
 // - a point is inside a ring if an odd number of the ring's edges lie between it and infinity. Rings may touch
 //   themselves and each other, at points or along edges;
-// - points at one position are one vertex: triangles name the index of the ring whose corner they fill, and of
-//   consecutive duplicates the first;
+// - points at one position are one vertex. Triangles name the index of the ring whose corner they fill, on either side
+//   of a slit its own. Of consecutive duplicates they name the first, or the ring's first point if that is one of them;
 // - a vertex on another edge splits that edge;
 // - an edge that one ring traverses there and back is no boundary. A spike pointing inside becomes a slit that
 //   triangles do not cross. One pointing outside vanishes and its tip is used by no triangle;
