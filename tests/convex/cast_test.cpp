@@ -154,7 +154,40 @@ TEST_SUITE("convex/cast") {
         CHECK(hits > 20);
     }
 
-    // For such a needle an algorithm in floating point alone finds a gap of 0.5 where there is none.
+    TEST_CASE(
+        "far from the origin, or flying fast together, boxes that graze by 1e-10 hit, and those that pass by it miss") {
+        // Squares of side 2 whose centres are apart by (x, y) with x + y = 4 − overlap meet at x = y = 2, or nearly.
+        const Body box = Body::box({1, 1, 1}).value();
+        const double far = 1e7, fast = 1e6 + 0.1;
+        for (const double overlap : {1e-10, -1e-10})
+            for (const double common : {0.0, fast})
+                for (int k = 0; k < 64; ++k) {
+                    const double ahead = 0.75 + k / 128.0, speed = 2.0 + 3.0 * k / 64.0;
+                    const glm::dvec3 corner(common == 0.0 ? far : 0.0, 0, 0), both(common, 0, 0);
+                    const RigidTransform here = at(corner),
+                                         there = at(corner + glm::dvec3(2.0 + ahead, 2.0 - ahead - overlap, 0));
+                    const CastOptions fine{.tolerance = 1e-12, .max_steps = 10000};
+                    const Impact impact =
+                        cast({box, here}, flying(both), {box, there}, flying(both + glm::dvec3(-speed, speed, 0)), fine)
+                            .value();
+                    CHECK(impact.result == (overlap > 0.0 ? CastResult::hit : CastResult::miss));
+                }
+    }
+
+    TEST_CASE("a gap that closes within a rounding of the time is a hit, after few steps") {
+        // A turning box's edge, √2 from the axis and at 45 degrees from below, goes down until it reaches the floor.
+        const Body box = Body::box({1, 1, 1}).value(), floor = Body::half_space({{0, -1, 0}, 0}).value();
+        const RigidTransform low = at({});
+        for (int k = 1; k <= 50; ++k) {
+            const double height = std::numbers::sqrt2 - 1e-3 * k;
+            const RigidTransform high = at({0, height, 0});
+            const Motion turn = flying({}, {0, 0, 1});
+            const Impact impact = cast({box, high}, turn, {floor, low}, {}, {.tolerance = 1e-16}).value();
+            CHECK(impact.result == CastResult::hit);
+            CHECK(impact.time == doctest::Approx(std::numbers::pi / 4 - std::acos(height / std::numbers::sqrt2)));
+        }
+    }
+
     // Where a point on an arm that turns by about 200 radians is pushed back most by rounding, of 4,000,000 tried.
     TEST_CASE("what rounding of an angle holds back is no miss: a turning point that grazes a box by 1e-14 hits it") {
         using Real = long double;
@@ -196,6 +229,7 @@ TEST_SUITE("convex/cast") {
         }
     }
 
+    // For such a needle an algorithm in floating point alone finds a gap of 0.5 where there is none.
     TEST_CASE("a needle a million times as long as wide is hit at once where a box overlaps it, else before") {
         const Body needle = Body::box({632832.0f, 0.75f, 1.0f}).value(),
                    box = Body::box({2.375f, 1.75f, 2.75f}).value();

@@ -83,24 +83,29 @@ double safe_step(const Together& advance, double gap, double limit) {
     return low;
 }
 
+// How far a vertex may be from where the real path has it at time t: at_start + t · growth. By rounding of the rotation
+// and of the way, here and in Advance.
+struct PathError {
+    double at_start = 0.0, growth = 0.0;
+};
+PathError path_error(const Placed& body, const Motion& motion) {
+    const double speed = glm::length(motion.velocity);
+    if (is_half_space(body)) return {0.0, 0x1p-47 * speed};
+    const double arm = body.body.reach() + glm::length(motion.pivot);
+    return {0x1p-47 * arm, 0x1p-47 * (arm * glm::length(motion.spin) + speed)};
+}
+
+// `growth` is that of both paths' errors, which come between the bodies as time goes on.
 double step_of(const Placed& a, const Motion& motion_a, const Placed& b, const Motion& motion_b,
-               const glm::dvec3& normal, double gap, double limit) {
-    if (is_half_space(a)) return step_of(b, motion_b, a, motion_a, -normal, gap, limit);
+               const glm::dvec3& normal, double growth, double gap, double limit) {
+    if (is_half_space(a)) return step_of(b, motion_b, a, motion_a, -normal, growth, gap, limit);
     const Advance advance_a(a, motion_a, normal);
     if (is_half_space(b)) {
-        const double closing = glm::dot(-normal, motion_b.velocity);
+        const double closing = glm::dot(-normal, motion_b.velocity) + growth;
         return safe_step([&](double s) { return advance_a(s) + s * closing; }, gap, limit);
     }
     const Advance advance_b(b, motion_b, -normal);
-    return safe_step([&](double s) { return advance_a(s) + advance_b(s); }, gap, limit);
-}
-
-// How far a vertex is from where the real path has it: by rounding of the rotation and of the translation.
-double path_error(const Placed& now, const Motion& motion, double time) {
-    const double shift = time * glm::length(motion.velocity);
-    if (is_half_space(now)) return 0x1p-48 * shift;
-    const double arm = now.body.reach() + glm::length(motion.pivot);
-    return 0x1p-48 * (arm * (1.0 + glm::length(motion.spin) * time) + shift);
+    return safe_step([&](double s) { return advance_a(s) + advance_b(s) + s * growth; }, gap, limit);
 }
 
 // As `distance`, where the bounds need not be close: a tenth of the distance, or the tolerance for a hit.
@@ -156,15 +161,22 @@ Result<Impact> cast(const Placed& a, const Motion& motion_a, const Placed& b, co
     return advance(a, motion_a, b, motion_b, options, 0.0, cache);
 }
 
+// All is asked in a frame that flies with a, from where a's origin stands at time 0. Far from the world's origin, or
+// where both fly fast, places in the world lack the digits that decide.
 Impact advance(const Placed& a, const Motion& motion_a, const Placed& b, const Motion& motion_b,
                const CastOptions& options, double start, PairCache* cache) {
     PairCache own;
     if (cache == nullptr) cache = &own;
+    const RigidTransform start_a{a.pose.rotation, glm::dvec3(0.0)},
+        start_b{b.pose.rotation, b.pose.translation - a.pose.translation};
+    const Motion turn_a{glm::dvec3(0.0), motion_a.spin, motion_a.pivot},
+        way_b{motion_b.velocity - motion_a.velocity, motion_b.spin, motion_b.pivot};
+    const PathError error_a = path_error(a, turn_a), error_b = path_error(b, way_b);
+    const double growth = error_a.growth + error_b.growth;
     Impact impact;
     impact.time = start;
     for (impact.steps = 1;; ++impact.steps) {
-        const RigidTransform pose_a = moved(a.pose, motion_a, impact.time),
-                             pose_b = moved(b.pose, motion_b, impact.time);
+        const RigidTransform pose_a = moved(start_a, turn_a, impact.time), pose_b = moved(start_b, way_b, impact.time);
         const Placed now_a{a.body, pose_a}, now_b{b.body, pose_b};
         const Distance d = rough_distance(now_a, now_b, options.tolerance, *cache);
         impact.distance = d.distance;
@@ -173,9 +185,10 @@ Impact advance(const Placed& a, const Motion& motion_a, const Placed& b, const M
             impact.normal = d.normal;
         else if (impact.steps == 1)
             impact.normal = penetration(now_a, now_b).normal;
-        impact.on_a = d.on_a;
-        impact.on_b = d.on_b;
-        const double error = path_error(now_a, motion_a, impact.time) + path_error(now_b, motion_b, impact.time);
+        const glm::dvec3 way_a = impact.time * motion_a.velocity;
+        impact.on_a = a.pose.translation + (d.on_a + way_a);
+        impact.on_b = a.pose.translation + (d.on_b + way_a);
+        const double error = error_a.at_start + error_b.at_start + growth * impact.time;
         const double gap = (d.lower - error) * (1.0 - 0x1p-40);
         if (d.distance < options.tolerance || !(gap > 0.0)) {
             impact.result = CastResult::hit;
@@ -186,8 +199,12 @@ Impact advance(const Placed& a, const Motion& motion_a, const Placed& b, const M
             return impact;
         }
         const double left = options.duration - impact.time;
-        const double step = step_of(now_a, motion_a, now_b, motion_b, d.normal, gap, left);
-        if (step >= left) break;  // the whole rest is safe
+        const double step = step_of(now_a, turn_a, now_b, way_b, d.normal, growth, gap, left);
+        if (step >= left) break;                  // the whole rest is safe
+        if (impact.time + step == impact.time) {  // the gap closes within a rounding of the time
+            impact.result = CastResult::hit;
+            return impact;
+        }
         impact.time += step;
     }
     impact.time = options.duration;

@@ -144,9 +144,9 @@ VerifyRow wrong_answers(const Class& kind, const VerifyOptions& options, bool ba
             add_pair(kind, trial, random, pairs);
         wrong += count_wrong(pairs, batch);
     }
-    return computed_row("boxes, " + std::string(kind.name) + (batch ? ", in batches" : ", one by one") +
-                            ", gaps of 1e-1 to 1e-15: " + std::to_string(trials) + " answers, none wrong",
-                        "separating axes in 128-bit integers", 0.0, static_cast<double>(wrong), 0.0);
+    return none_row("boxes, " + std::string(kind.name) + (batch ? ", in batches" : ", one by one") +
+                        ", gaps of 1e-1 to 1e-15: " + std::to_string(trials) + " answers, none wrong",
+                    "separating axes in 128-bit integers", trials, wrong);
 }
 
 }  // namespace

@@ -269,8 +269,7 @@ std::vector<VerifyRow> verify_bad_bodies(const VerifyOptions& options) {
         BodyTrial trial;
         for (std::uint64_t round = 0; round < std::max<std::uint64_t>(1, rounds / kind.share); ++round)
             kind.attempt(random, trial);
-        rows.push_back(computed_row(kind.claim, "bad input", 0.0, static_cast<double>(trial.wrong), 0.0));
-        rows.back().cases = trial.tried;
+        rows.push_back(none_row(kind.claim, "bad input", trial.tried, trial.wrong));
     }
     return rows;
 }

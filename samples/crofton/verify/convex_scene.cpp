@@ -25,9 +25,7 @@ struct Tally {
 };
 
 VerifyRow row_of(const std::string& claim, const char* source, const Tally& tally) {
-    VerifyRow row = computed_row(claim, source, 0.0, static_cast<double>(tally.wrong), 0.0);
-    row.cases = tally.cases;
-    return row;
+    return none_row(claim, source, tally.cases, tally.wrong);
 }
 
 std::string at_offset(double offset) {

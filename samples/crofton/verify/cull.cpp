@@ -86,9 +86,7 @@ void add_rows(const char* kind, double offset, const VerifyOptions& options, std
     char where[64];
     std::snprintf(where, sizeof where, "at camera offset %g, 1 um to 1 m deep", offset);
     const auto none = [&](const std::string& what, std::uint64_t cases, std::uint64_t measured) {
-        rows.push_back(computed_row(std::string(kind) + ": " + what + " " + where, "docs/notes/cull.md", 0.0,
-                                    static_cast<double>(measured), 0.0));
-        rows.back().cases = cases;
+        rows.push_back(none_row(std::string(kind) + ": " + what + " " + where, "docs/notes/cull.md", cases, measured));
     };
     none("of " + std::to_string(counts.meeting) + " proved visible none is culled,", counts.meeting,
          counts.false_culls);

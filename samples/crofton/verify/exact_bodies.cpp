@@ -174,10 +174,11 @@ bool is_clearly_inside(const std::vector<glm::dvec3>& w, std::size_t i, const gl
 
 }  // namespace
 
-ExactBody::ExactBody(const convex::Placed& placed) : triangles(triangles_of(placed.body)) {
+ExactBody::ExactBody(const convex::Placed& placed, const ExactWay& way) : triangles(triangles_of(placed.body)) {
     const ExactVector columns[3] = {exact(placed.pose.rotation[0]), exact(placed.pose.rotation[1]),
                                     exact(placed.pose.rotation[2])};
-    const ExactVector at = exact(placed.pose.translation);
+    ExactVector at = exact(placed.pose.translation);
+    for (std::size_t c = 0; c < 3; ++c) at[c] = at[c] + Dyadic(way.velocity[static_cast<int>(c)]) * Dyadic(way.time);
     for (int i = 0; i < placed.body.vertex_count(); ++i) {
         const ExactVector v = exact(placed.body.vertex(i));
         ExactVector image;
@@ -201,15 +202,17 @@ bool meet_exactly(const ExactBody& a, const ExactBody& b, std::span<const glm::d
     return meet_by_axes(a, b);
 }
 
-bool meet_exactly(const convex::Placed& a, const convex::Placed& b, const glm::dvec3& normal, std::uint64_t& by_axes) {
+bool meet_exactly(const convex::Placed& a, const convex::Placed& b, const glm::dvec3& normal, std::uint64_t& by_axes,
+                  const ExactWay& way_of_b) {
     // Guesses are made near a's origin, where coordinates are small.
     const RigidTransform near_a{a.pose.rotation, glm::dvec3(0.0)};
-    const RigidTransform near_b{b.pose.rotation, b.pose.translation - a.pose.translation};
+    const RigidTransform near_b{b.pose.rotation,
+                                (b.pose.translation - a.pose.translation) + way_of_b.time * way_of_b.velocity};
     const convex::Distance d = convex::distance({a.body, near_a}, {b.body, near_b});
     const convex::Penetration p = convex::penetration({a.body, near_a}, {b.body, near_b});
-    const std::array normals{normal, d.normal, convex::distance(a, b).normal};
+    const std::array normals{normal, d.normal};
     const std::array points{0.5 * (p.on_a + p.on_b), 0.5 * (d.on_a + d.on_b)};
-    return meet_exactly(ExactBody(a), ExactBody(b), normals, a.pose.translation, points, by_axes);
+    return meet_exactly(ExactBody(a), ExactBody(b, way_of_b), normals, a.pose.translation, points, by_axes);
 }
 
 bool depth_lies_between(const ExactBody& a, const ExactBody& b, double lower, double upper) {

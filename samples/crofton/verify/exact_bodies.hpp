@@ -11,11 +11,17 @@ namespace crofton::cli {
 
 using ExactVector = std::array<Dyadic, 3>;
 
-// The images of a body's stored corners under its stored pose. Of hulls, boxes and triangles.
+// A translation: velocity · time, not rounded.
+struct ExactWay {
+    glm::dvec3 velocity{0.0};
+    double time = 0.0;
+};
+
+// The images of a body's stored corners under its stored pose, at the end of a way. Of hulls, boxes and triangles.
 struct ExactBody {
     std::vector<ExactVector> points;
     std::vector<std::array<std::size_t, 3>> triangles;  // counter-clockwise seen from outside
-    explicit ExactBody(const convex::Placed& placed);
+    explicit ExactBody(const convex::Placed& placed, const ExactWay& way = {});
 };
 
 // By a plane across one of the `normals` (from a to b), or a common point: `origin` plus one of the `points`. Where
@@ -23,9 +29,10 @@ struct ExactBody {
 [[nodiscard]] bool meet_exactly(const ExactBody& a, const ExactBody& b, std::span<const glm::dvec3> normals,
                                 const glm::dvec3& origin, std::span<const glm::dvec3> points, std::uint64_t& by_axes);
 
-// The same of bodies that stand anywhere. Planes and points are guessed by the engine, and `normal` is tried too.
+// The same of bodies that stand anywhere, b at the end of a way. Planes and points are guessed by the engine, and
+// `normal` is tried too.
 [[nodiscard]] bool meet_exactly(const convex::Placed& a, const convex::Placed& b, const glm::dvec3& normal,
-                                std::uint64_t& by_axes);
+                                std::uint64_t& by_axes, const ExactWay& way_of_b = {});
 
 // Whether the depth of two bodies that meet lies in [lower, upper]: by all faces of the difference body, found among
 // all triples of its points. For bodies of few corners.

@@ -151,7 +151,10 @@ Ray random_ray(Random& random, const Camera& camera) {
 void look(Random& random, const Stage& stage, VisibleObjects& visible, std::vector<bool>& seen, SceneCounts& counts) {
     const Camera camera = camera_in(random, stage);
     const OcclusionOptions occlusion{.size = kSceneSizes[random.bits() % 4], .list_occluded = true};
-    if (!stage.world.view(camera, occlusion, visible)) return;
+    if (!stage.world.view(camera, occlusion, visible)) {
+        counts.rays += kRaysPerView;  // none is a witness
+        return;
+    }
     counts.hidden += visible.occluded_ids().size();
     counts.in_view += visible.occluded_ids().size() + visible.size();
     for (const std::uint32_t id : visible.ids()) seen[id] = true;
@@ -193,8 +196,7 @@ Result<std::vector<VerifyRow>> verify_occluded_scene(const std::string& name, co
                       offset, static_cast<unsigned long long>(counts.witnesses),
                       100.0 * static_cast<double>(counts.hidden) /
                           static_cast<double>(std::max<std::uint64_t>(1, counts.in_view)));
-        rows.push_back(computed_row(claim, "docs/notes/occlude.md", 0.0, static_cast<double>(counts.culled), 0.0));
-        rows.back().cases = counts.witnesses;
+        rows.push_back(none_row(claim, "docs/notes/occlude.md", counts.witnesses, counts.culled));
     }
     return rows;
 }

@@ -58,16 +58,21 @@ void add_behind(Random& random, const glm::dvec3& opening, OccludeSetup& setup) 
     setup.objects.push_back(box_at(random, opening + beyond * along, 1e-3, 0.3));
 }
 
-// Two walls side by side, from 1e-6 to a tenth apart, or touching.
+// Two walls side by side, from 1e-6 to a tenth apart; or touching, with things before them too.
 OccludeSetup gap(Random& random, double offset, bool touching) {
     OccludeSetup setup = empty_setup(random, offset);
     const glm::dvec3 middle = setup.camera.position + glm::dvec3(random.uniform(-2, 2), 0.0, -10.0);
     const double half_gap = touching ? 0.0 : 0.5e-6 * std::pow(1e5, random.uniform());
     setup.occluders = {box_of(middle - glm::dvec3(8.0 + half_gap, 0.0, 0.0), 8.0, 8.0, 0.1),
                        box_of(middle + glm::dvec3(8.0 + half_gap, 0.0, 0.0), 8.0, 8.0, 0.1)};
-    for (int i = 0; i < 64; ++i)
-        add_behind(random, middle + glm::dvec3(0.9 * half_gap * random.uniform(-1, 1), random.uniform(-4, 4), 0.0),
-                   setup);
+    for (int i = 0; i < 64; ++i) {
+        const glm::dvec3 opening =
+            middle + glm::dvec3(0.9 * half_gap * random.uniform(-1, 1), random.uniform(-4, 4), 0.0);
+        if (touching && i % 4 == 0)  // nothing is seen behind them
+            setup.objects.push_back(box_at(random, glm::mix(opening, setup.camera.position, 0.2), 1e-3, 0.3));
+        else
+            add_behind(random, opening, setup);
+    }
     return setup;
 }
 OccludeSetup narrow_gap(Random& random, double offset) {

@@ -140,7 +140,6 @@ void wrong_rays(const Baked& baked, const VerifyOptions& options, std::vector<Ve
             hidden += state == pvs::PairState::hidden;
         }
     }
-    if (hits == 0) return rows.push_back(untried_row("rays that meet what is proved hidden", "docs/notes/pvs.md"));
     const pvs::PairCounts counts = baked.sets.counts();
     char claim[300];
     std::snprintf(
@@ -149,8 +148,7 @@ void wrong_rays(const Baked& baked, const VerifyOptions& options, std::vector<Ve
         "the rays first meet one that no line has seen, at epsilon %.2g)",
         100.0 * static_cast<double>(counts.hidden) / static_cast<double>(counts.all()),
         static_cast<double>(drawn_less) / static_cast<double>(std::max<std::uint64_t>(1, hits)), baked.epsilon);
-    rows.push_back(computed_row(claim, "docs/notes/pvs.md", 0.0, static_cast<double>(hidden), 0.0));
-    rows.back().cases = hits;
+    rows.push_back(none_row(claim, "docs/notes/pvs.md", hits, hidden));
 }
 
 // Views from places that the bake knew nothing of.

@@ -70,6 +70,13 @@ VerifyRow wrong_row(std::string claim, std::string source, double predicted, dou
     return result;
 }
 
+VerifyRow none_row(std::string claim, std::string source, std::uint64_t cases, std::uint64_t wrong) {
+    if (cases == 0) return untried_row(std::move(claim), std::move(source));
+    VerifyRow result = computed_row(std::move(claim), std::move(source), 0.0, static_cast<double>(wrong), 0.0);
+    result.cases = cases;
+    return result;
+}
+
 VerifyRow untried_row(std::string claim, std::string source) {
     return computed_row("could not be tried: " + claim, std::move(source), 1.0, 0.0, 0.0);
 }

@@ -51,6 +51,9 @@ struct VerifyOptions {
 [[nodiscard]] VerifyRow wrong_row(std::string claim, std::string source, double predicted, double measured,
                                   double standard_error);
 
+// What must never happen: holds while `wrong` is 0. Where no case was tried it does not hold either.
+[[nodiscard]] VerifyRow none_row(std::string claim, std::string source, std::uint64_t cases, std::uint64_t wrong);
+
 // What could not be tried, as the engine gave an error or nothing to count: a row that does not hold.
 [[nodiscard]] VerifyRow untried_row(std::string claim, std::string source);
 

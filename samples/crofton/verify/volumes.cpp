@@ -188,7 +188,7 @@ void preferred(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     const Corners3 plain(corner.begin(), corner.end());
     const double half_width = 0.3;
     const auto band = study::QueryDistribution::band({0.0, 1.0, 0.0}, half_width);
-    if (!band) return;
+    if (!band) return rows.push_back(untried_row("preferred directions", "theory.md section 2"));
     Mean planes, lines;
     for (std::uint64_t batch = 0; batch < 128; ++batch) {
         const sampling::UnitPoints points(options.seed * 1000 + 410 + 64 * batch, sampling::Sequence::quasi_random);

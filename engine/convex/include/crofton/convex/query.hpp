@@ -188,8 +188,8 @@ struct Motion {
     glm::dvec3 pivot{0.0};
 };
 
-// Where the body is at time t: the pose whose stored numbers the cast asks about. Angles beyond 1e5 radians are
-// refused.
+// Where the body is at time t, rounded: the translation to the last digits of its coordinates, the rotation by 1e-15 a
+// radian.
 [[nodiscard]] RigidTransform moved(const RigidTransform& pose, const Motion& motion, double time);
 
 struct CastOptions {
@@ -200,7 +200,7 @@ struct CastOptions {
 
 enum class CastResult : std::uint8_t {
     miss,        // proven: the bodies do not touch in [0, duration]
-    hit,         // at `time` they are within the tolerance, and at no time before do they touch
+    hit,         // at `time` they are within the tolerance or rounding, and at no time before do they touch
     unresolved,  // max_steps were not enough: before `time` they do not touch; later is not known
 };
 struct Impact {
@@ -216,7 +216,9 @@ struct Impact {
 // Conservative advancement (Mirtich 1996) by a bound of second order. Each step ends before any vertex can have crossed
 // the plane that parts the bodies. That follows from its velocity across the plane and a bound of its acceleration. So
 // no wall is too thin. As `intersects`, a hit may be off by 1e-7 of the size with cylinders and cones. "Touch" is said
-// of the bodies as they move in real arithmetic; the rotation is off by 1e-15 a radian, which the bounds include.
+// of the bodies as they move in real arithmetic from their stored poses, wherever they are; `moved` rounds. Rounding
+// grows with the bodies, their gap, and their ways and turns as seen from a: below 1e-13 of (size + |pivot|) · (1 +
+// angle) + way. A gap that small may be told as a hit, never a touch as a miss.
 // Bodies of parts: the first time at which parts touch. A one-sided triangle that is first touched from behind is
 // passed through. Errors: NaN or infinite motions, a turn beyond 1e5 radians, options out of range, half-spaces turned.
 [[nodiscard]] Result<Impact> cast(const Placed& a, const Motion& motion_a, const Placed& b, const Motion& motion_b,

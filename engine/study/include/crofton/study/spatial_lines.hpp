@@ -9,7 +9,7 @@
 
 namespace crofton::study {
 
-// The exact value lies within `error` of `value` (rounding, about 1e-13 of it, apart).
+// The exact value lies within `error` of `value` (rounding, about 1e-13 of the coordinates, apart).
 struct Enclosure {
     double value = 0.0;
     double error = 0.0;
