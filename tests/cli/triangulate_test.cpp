@@ -33,6 +33,17 @@ TEST_SUITE("cli/triangulate") {
         CHECK(run_cli("triangulate").status == 2);
     }
 
+    TEST_CASE("--strict refuses a mesh whose material library is missing") {
+        const std::string in = scratch().file("bare.obj"), out = scratch().file("bare.glb");
+        write_contents(in, "mtllib nowhere.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+        const CliRun run = run_cli("triangulate '" + in + "' --strict --out '" + out + "'");
+        CHECK(run.status == 2);
+        CHECK(run.err.find("nowhere.mtl") != std::string::npos);
+        CHECK(run.err.find("(refused: --strict)") != std::string::npos);
+        CHECK_FALSE(std::filesystem::exists(out));
+        CHECK(run_cli("triangulate '" + in + "' --out '" + out + "'").status == 0);
+    }
+
     TEST_CASE("names that are no UTF-8 do not keep a mesh from being written") {
         write_contents(scratch().file("latin.mtl"),
                        "newmtl gr\xfcn\nKd 0 1 0\nmap_Kd \xfc.png\nnewmtl gr\xf6n\nKd 0 1 0\n");

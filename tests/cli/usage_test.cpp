@@ -62,12 +62,48 @@ TEST_SUITE("cli/usage") {
             CHECK(run.out.empty());
             CHECK(run.err.find(place) != std::string::npos);
         }
-        for (const char* same :
-             {"--json a --csv a", "--csv a --report ./a", "--json a --trace a", "--json - --trace -"}) {
-            CAPTURE(std::string(same));
-            const CliRun run = run_cli("frames --no-draw --frames 1 " + std::string(same));
+    }
+
+    TEST_CASE("two outputs into one file, or both to stdout, are refused by their names before the work") {
+        const std::string out = scratch().file("both"), link = scratch().file("both_link");
+        write_contents(out, "old");
+        std::filesystem::create_symlink(out, link);
+        const std::string first = " '" + out + "' ", second = " '" + link + "'";
+        const struct {
+            std::string command, first, second;
+        } pairs[] = {
+            {"triangulate town", "--json", "--out"},
+            {"triangulate a.poly", "--json", "--svg"},
+            {"view --no-window --after 1", "--screenshot", "--json"},
+            {"hierarchy --lines 1000", "--json", "--svg"},
+            {"pvs room --cells 1x1x1", "--state", "--out"},
+            {"radiosity room", "--out", "--png"},
+            {"radiosity room", "--json", "--checkpoint"},
+            {"bake room", "--output", "--json"},
+            {"fit room", "--json", "--svg"},
+            {"frames --no-draw --frames 1", "--report", "--trace"},
+        };
+        for (const auto& p : pairs) {
+            CAPTURE(p.command);
+            const CliRun run = run_cli(p.command + " " + p.first + first + p.second + second);
             CHECK(run.status == 2);
-            CHECK(run.err.find("named for two outputs") != std::string::npos);
+            CHECK(run.err.find(p.first + " and " + p.second + " name one file") != std::string::npos);
+            CHECK(contents_of(out) == "old");
+        }
+        for (const char* command : {"triangulate a.poly --json - --svg -", "hierarchy --lines 1000 --json - --svg -",
+                                    "fit room --json - --svg -"})
+            CHECK(run_cli(command).err.find("--json and --svg cannot both go to stdout") != std::string::npos);
+        CHECK(run_cli("frames --no-draw --frames 1 --json a --csv ./a").status == 2);
+        CHECK(run_cli("frames --no-draw --frames 1 --json - --csv -").status == 2);
+    }
+
+    TEST_CASE("an output that shares stdout with the command's own words is refused") {
+        for (const char* arguments : {"bake room -o -", "pvs room --cells 1x1x1 --svg -", "frames --no-draw --trace -",
+                                      "radiosity room --out -", "merge a b --out -"}) {
+            const CliRun run = run_cli(arguments);
+            CHECK(run.status == 2);
+            CHECK(run.out.empty());
+            CHECK(run.err.find("cannot go to stdout") != std::string::npos);
         }
     }
 

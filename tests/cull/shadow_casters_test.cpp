@@ -275,6 +275,9 @@ TEST_SUITE("cull/cascades") {
         CHECK(!cull::split_depths(0.0, 16.0, 0.5, splits).has_value());
         CHECK(!cull::split_depths(1.0, 1.0, 0.5, splits).has_value());
         CHECK(!cull::split_depths(1.0, std::nan(""), 0.5, splits).has_value());
+        CHECK(!cull::split_depths(1e-300, 1e300, 0.5, splits).has_value());  // the ratio is beyond any double
+        CHECK(cull::split_depths(1e-150, 1e150, 1.0, splits).has_value());
+        for (std::size_t i = 0; i < 5; ++i) CHECK(std::isfinite(splits[i]));
         CHECK(!cull::split_depths(1.0, 16.0, 1.5, splits).has_value());
         CHECK(!cull::split_depths(1.0, 16.0, 0.5, std::span(splits).first(1)).has_value());
     }

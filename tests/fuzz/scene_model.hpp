@@ -37,9 +37,8 @@ class LivingScene {
             const Obb& box = scene.world_boxes()[id];
             demand(std::memcmp(&box, &expected, sizeof box) == 0, "an instance's box");
             demand(scene.layer_masks()[id] == answer.mask, "an instance's layers");
-            if (instance.is_new || std::memcmp(&box, &before[id], sizeof box) != 0) moved.push_back(id);
             if (instance.is_new || answer.mask != masks[id]) relayered.push_back(id);
-            instance.is_new = false;
+            if (plain.settle(instance, answer, before[id], box)) moved.push_back(id);
         }
         const auto same = [](auto list, const auto& expected) {
             return std::equal(list.begin(), list.end(), expected.begin(), expected.end());

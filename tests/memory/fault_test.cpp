@@ -15,6 +15,7 @@
 #include <crofton/radiosity/lines.hpp>
 #include <crofton/radiosity/patches.hpp>
 #include <crofton/radiosity/solver.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <crofton/scene/scene.hpp>
 #include <crofton/triangulate/triangulate.hpp>
 #include <filesystem>
@@ -293,6 +294,12 @@ TEST_SUITE("memory/fault") {
         sweep("LineTracer::build", [&] { return outcome_of(radiosity::LineTracer::build(mesh)); });
         const auto patches = radiosity::make_patches(TriangleMesh(mesh), materials).value();
         sweep("Solver::create", [&] { return outcome_of(radiosity::Solver::create(patches)); });
+        const auto tracer = radiosity::LineTracer::build(mesh).value();
+        const radiosity::LineSource source({{0, 0, -1}, {4, 4, 1}}, radiosity::LineMethod::walls, 1);
+        // On this thread, whose memory for tracing is warm: others keep theirs.
+        sweep("factors_by_global_lines",
+              [&] { return outcome_of(radiosity::factors_by_global_lines(tracer, patches, source, 3)); });
+        sweep("LinesFromHull::make", [&] { return outcome_of(sampling::LinesFromHull::make(mesh)); });
         MESSAGE(failures_tried << " allocations failed in all");
     }
 }

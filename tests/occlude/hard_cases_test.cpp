@@ -4,6 +4,8 @@
 #include <hwy/targets.h>
 #include <crofton/core/executor.hpp>
 #include <crofton/occlude/occlusion.hpp>
+#include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
 #include <oracle/edges.hpp>
 
 #include "scenes.hpp"
@@ -369,5 +371,28 @@ TEST_SUITE("occlude/hard cases") {
             }
             hwy::SetSupportedTargetsForTest(0);
         }
+    }
+
+    TEST_CASE(
+        "a matrix of a camera very far from the origin is perspective, and one whose w grows sideways is refused") {
+        const glm::dvec3 eye(1e13, 3e12, -7e13);
+        for (const double factor : {1.0, 1e-13, 1e13}) {
+            glm::dmat4 matrix = glm::perspectiveRH_ZO(1.0, 1.5, 1e7, 1e15);
+            for (int r = 0; r < 4; ++r)
+                matrix[3][r] -= matrix[0][r] * eye.x + matrix[1][r] * eye.y + matrix[2][r] * eye.z;
+            const auto view = occlude::occlusion_view_of(factor * matrix, DepthRange::zero_to_one);
+            REQUIRE(view.has_value());
+            CHECK(view->perspective);
+            CHECK(glm::length(view->origin - eye) <= view->eye_error + 0.02);
+            const auto buffer =
+                picture({box_of(eye - glm::dvec3(0.0, 0.0, 1e8), {5e7f, 5e7f, 1e6f})}, *view, {320, 180});
+            CHECK(buffer.hides(box_of(eye - glm::dvec3(2e8, 0.0, 1e9), {1e8f, 1e8f, 1e6f})));
+            CHECK(!buffer.hides(box_of(eye - glm::dvec3(5.2e8, 0.0, 1e9), {1e8f, 1e8f, 1e6f})));
+        }
+        glm::dmat4 sideways = glm::orthoRH_ZO(-10.0, 10.0, -10.0, 10.0, 1.0, 100.0);
+        sideways[0][3] = 0.05;
+        const auto refused = occlude::occlusion_view_of(sideways, DepthRange::zero_to_one);
+        REQUIRE(!refused.has_value());
+        CHECK(refused.error().code == ErrorCode::unsupported);
     }
 }

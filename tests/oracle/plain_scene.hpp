@@ -2,6 +2,7 @@
 // What a scene should hold, computed anew from the roots each time: no order, no dirty marks, no lists.
 #pragma once
 #include <crofton/scene/scene.hpp>
+#include <cstring>
 #include <map>
 #include <optional>
 #include <set>
@@ -21,10 +22,12 @@ class PlainScene {
         scene::MeshId mesh;
         std::uint32_t mask;
         bool is_new = true;
+        scene::Transform place = {};  // as of the last update
     };
     struct Answer {
         std::optional<Obb> box;
         std::uint32_t mask = 0;
+        scene::Transform place;
     };
 
     std::map<scene::NodeId, Node> nodes;
@@ -56,10 +59,21 @@ class PlainScene {
         const scene::Transform place = world(instance.node);
         const auto box = scene::transformed_box(place, mesh_boxes.at(instance.mesh), measure::minimal_perimeter());
         Answer result;
+        result.place = place;
         if (!box) return result;
         result.box = *box;
         result.mask = scene::maps_to_point(place) ? 0 : mask(instance.node) & instance.mask;
         return result;
+    }
+
+    // Whether the instance has moved since the last update, at which it had the box `before`; once for each update.
+    [[nodiscard]] bool settle(Instance& instance, const Answer& answer, const Obb& before, const Obb& now) const {
+        const bool carried =
+            instance.place.linear != answer.place.linear || instance.place.translation != answer.place.translation;
+        const bool moved = instance.is_new || carried || std::memcmp(&before, &now, sizeof now) != 0;
+        instance.is_new = false;
+        instance.place = answer.place;
+        return moved;
     }
 
     void remove_instance(scene::InstanceId id) {

@@ -57,6 +57,15 @@ TEST_SUITE("pipeline/camera_path") {
             }
     }
 
+    TEST_CASE("a recording that is shorter than the frames starts over, and the scene with it") {
+        const auto name = std::filesystem::temp_directory_path() / ("crofton-short-" + std::to_string(getpid()));
+        std::ofstream(name) << R"([{"scene_frame": 100}, {"scene_frame": 101}, {}])";
+        const auto path = make_camera_path({.kind = name.string(), .frames = 7}, Aabb{{0, 0, 0}, {1, 1, 1}}, {});
+        std::filesystem::remove(name);
+        REQUIRE(path.has_value());
+        CHECK(path->scene_frames == std::vector<std::uint32_t>{100, 101, 2, 100, 101, 2, 100});
+    }
+
     TEST_CASE("a frame of the scene that is no 32-bit number is refused with its entry") {
         const std::string path = (std::filesystem::temp_directory_path() / "crofton-path-XXXXXX").string();
         std::string name = path;

@@ -212,9 +212,8 @@ struct Pair {
             const Obb expected = answer.box ? *answer.box : boxes[id];
             CHECK(std::memcmp(&box, &expected, sizeof box) == 0);
             CHECK(scene.layer_masks()[id] == answer.mask);
-            if (instance.is_new || std::memcmp(&box, &boxes[id], sizeof box) != 0) moved.push_back(id);
             if (instance.is_new || answer.mask != masks[id]) relayered.push_back(id);
-            instance.is_new = false;
+            if (plain.settle(instance, answer, boxes[id], box)) moved.push_back(id);
         }
         CHECK(list(scene.moved_instances()) == moved);
         CHECK(list(scene.relayered_instances()) == relayered);

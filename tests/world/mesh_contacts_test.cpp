@@ -3,6 +3,8 @@
 #include <doctest/doctest.h>
 #include <counting_memory.hpp>
 #include <crofton/mesh/mesh_query.hpp>
+#include <cstring>
+#include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 #include <map>
@@ -238,6 +240,34 @@ TEST_SUITE("world/mesh_contacts") {
                     }
                     CHECK(around > 0.0);
                 }
+    }
+
+    TEST_CASE("a mesh that is mirrored within its own box takes its contacts along") {
+        // Three of the eight corners of its box are a triangle.
+        TriangleMesh mesh;
+        for (int i = 0; i < 8; ++i)
+            mesh.positions.emplace_back(i & 1 ? 1.0f : -1.0f, i & 2 ? 2.0f : -2.0f, i & 4 ? 3.0f : -3.0f);
+        mesh.indices = {7, 6, 5};
+        World world;
+        const auto shape = world.add_mesh(described(mesh)).value();
+        const glm::dmat3 turn = glm::mat3_cast(glm::dquat(glm::dvec3(0.3, 0.4, 0.5)));
+        const auto object = world.add({.mesh = shape, .transform = at({}, turn)}).value();
+        world.add({.bound = Sphere{turn * glm::dvec3(1.0, 2.0, 3.0), 0.05}}).value();
+        REQUIRE(world.update().has_value());
+        CHECK(world.contacts().size() == 1);
+        const Obb box = world.box_of(object).value();
+        // What is mirrored along the third axis keeps the first two, and the third is their product.
+        const glm::dvec3 axis = glm::normalize(glm::cross(glm::dvec3(box.axes[0]), glm::dvec3(box.axes[1])));
+        const glm::dmat3 mirror = glm::dmat3(1.0) - 2.0 * glm::outerProduct(axis, axis);
+        for (int i = 0; i < 4; ++i) {
+            REQUIRE(world.set_transform(object, at({}, i % 2 == 0 ? mirror * turn : turn)).has_value());
+            REQUIRE(world.update().has_value());
+            const Obb now = world.box_of(object).value();
+            CHECK(std::memcmp(&box, &now, sizeof box) == 0);
+            REQUIRE(world.contacts().size() == 1);
+            CHECK((world.contacts()[0].phase == ContactPhase::ended) == (i % 2 == 0));
+            CHECK(world.statistics().boxes_changed == 1);
+        }
     }
 
     TEST_CASE("rays hit what rotations and a flat scale have flattened in its plane") {

@@ -6,7 +6,8 @@
 
 namespace crofton::occlude {
 
-// The sign of the determinant, exactly. Requires finite numbers.
+// The sign of the determinant, exactly. Requires finite numbers, of any size: orientation() is exact within 1e±70
+// alone.
 [[nodiscard]] int sign_of_determinant(const glm::dmat3& m);
 
 // Along a × b, with length 1, however small the angle between them. Each component is within 2^-49 of itself, unless it

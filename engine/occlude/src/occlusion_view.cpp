@@ -43,6 +43,16 @@ double least_w_of(const OcclusionView& view) {
     return 0.5 * least;
 }
 
+// Whether a row is one number over all that the frustum holds, but for a share of 1e-12 as rounding leaves it.
+bool is_constant(const Row& row, const Frustum& frustum, const glm::dvec3& origin) {
+    if (direction_of(row) == glm::dvec3(0.0)) return true;
+    const auto corners = frustum_corners(frustum);
+    return corners && std::all_of(corners->begin(), corners->end(), [&](const glm::dvec3& corner) {
+               return std::fabs(glm::dot(direction_of(row), corner + (frustum.origin - origin))) <=
+                      1e-12 * std::fabs(row[3]);
+           });
+}
+
 double near_radius_of(const OcclusionView& view) {
     double radius = 0.0;
     for (unsigned i = 0; i < 4; ++i) radius = std::max(radius, glm::length(near_corner(view, i)));
@@ -93,13 +103,15 @@ Result<OcclusionView> occlusion_view_of(const glm::dmat4& to_clip, DepthRange de
     if (frustum->plane_count < 5 ||
         !(glm::dot(near_normal, frustum->planes[kNearPlane].normal) > 0.999 * glm::length(near_normal)))
         return fail(ErrorCode::unsupported, kNoItem, "occlusion view: the matrix has no near plane");
-    // Rays are the lines through the point where the first two rows and w are 0, or along that direction.
+    // Rays are the lines through the point where the first two rows and w are 0. Where w is constant they are parallel.
     const glm::dvec3 across = glm::cross(direction_of(x), direction_of(y));
     const double turn = glm::dot(across, direction_of(w));
     const double size_x = glm::length(direction_of(x)), size_y = glm::length(direction_of(y)),
                  size_w = glm::length(direction_of(w)), scale = size_x * size_y * size_w;
-    view.perspective = std::fabs(turn) > 1e-12 * scale && size_w > 1e-12 * std::fabs(w[3]);
+    view.perspective = !is_constant(w, *frustum, origin);
     if (view.perspective) {
+        if (!(std::fabs(turn) > 1e-12 * scale))
+            return fail(ErrorCode::unsupported, kNoItem, "occlusion view: the matrix has no eye, and is not parallel");
         const glm::dvec3 eye = -(x[3] * glm::cross(direction_of(y), direction_of(w)) +
                                  y[3] * glm::cross(direction_of(w), direction_of(x)) + w[3] * across) /
                                turn;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <crofton/core/error.hpp>
+#include <crofton/core/recovery.hpp>
 #include <crofton/radiosity/patches.hpp>
 #include <string>
 
@@ -89,40 +90,42 @@ Result<FactorMatrix> factors_by_global_lines(const LineTracer& tracer, const Pat
     if (patches.count() > kMostPatches)
         return fail(ErrorCode::out_of_range, patches.count(),
                     "form factors: the full matrix is for 16384 patches at most");
-    FactorMatrix matrix;
-    matrix.size = patches.count();
-    matrix.transfers.assign(matrix.size * matrix.size, 0);
-    matrix.rays.assign(matrix.size, 0);
-    matrix.escaped.assign(matrix.size, 0);
-    // Waves of blocks: traced by any thread, counted by this one.
-    constexpr std::uint64_t kWave = 32;
-    Vector<LineHits> hits(static_cast<std::size_t>(std::min(kWave, blocks)));
-    for (std::uint64_t first = 0; first < blocks; first += kWave) {
-        const std::size_t count = static_cast<std::size_t>(std::min(kWave, blocks - first));
-        executor.parallel_for(count, 1, [&](std::size_t begin, std::size_t end, unsigned) {
-            Vector<Line> lines;
-            for (std::size_t b = begin; b < end; ++b) {
-                source.draw(first + b, lines);
-                tracer.all_hits(lines, hits[b]);
-            }
-        });
-        for (std::size_t b = 0; b < count; ++b) {
-            std::uint32_t begin = 0;
-            matrix.lines += hits[b].ends.size();
-            for (const std::uint32_t end : hits[b].ends) {
-                for_each_ray(std::span<const Hit>(hits[b].hits).subspan(begin, end - begin), patches,
-                             [&](std::uint32_t i, std::uint32_t j) {
-                                 ++matrix.rays[i];
-                                 if (j == kSky)
-                                     ++matrix.escaped[i];
-                                 else if (j != kBack)
-                                     ++matrix.transfers[i * matrix.size + j];
-                             });
-                begin = end;
+    return crofton::detail::recover([&]() -> Result<FactorMatrix> {
+        FactorMatrix matrix;
+        matrix.size = patches.count();
+        matrix.transfers.assign(matrix.size * matrix.size, 0);
+        matrix.rays.assign(matrix.size, 0);
+        matrix.escaped.assign(matrix.size, 0);
+        // Waves of blocks: traced by any thread, counted by this one.
+        constexpr std::uint64_t kWave = 32;
+        Vector<LineHits> hits(static_cast<std::size_t>(std::min(kWave, blocks)));
+        for (std::uint64_t first = 0; first < blocks; first += kWave) {
+            const std::size_t count = static_cast<std::size_t>(std::min(kWave, blocks - first));
+            crofton::detail::recoverable_for(executor, count, 1, [&](std::size_t begin, std::size_t end, unsigned) {
+                Vector<Line> lines;
+                for (std::size_t b = begin; b < end; ++b) {
+                    source.draw(first + b, lines);
+                    tracer.all_hits(lines, hits[b]);
+                }
+            });
+            for (std::size_t b = 0; b < count; ++b) {
+                std::uint32_t begin = 0;
+                matrix.lines += hits[b].ends.size();
+                for (const std::uint32_t end : hits[b].ends) {
+                    for_each_ray(std::span<const Hit>(hits[b].hits).subspan(begin, end - begin), patches,
+                                 [&](std::uint32_t i, std::uint32_t j) {
+                                     ++matrix.rays[i];
+                                     if (j == kSky)
+                                         ++matrix.escaped[i];
+                                     else if (j != kBack)
+                                         ++matrix.transfers[i * matrix.size + j];
+                                 });
+                    begin = end;
+                }
             }
         }
-    }
-    return matrix;
+        return matrix;
+    });
 }
 
 }  // namespace crofton::radiosity

@@ -49,9 +49,9 @@ struct StreamMemory {
         if (t.size() < 4 * count + 1024) resize_crossings(4 * count + 1024);
     }
     void resize_crossings(std::size_t count) {
-        t.resize(count);
         triangle.resize(count);
         line.resize(count);
+        t.resize(count);  // last: its size is the room that there is, also where memory ends before
     }
     void grow(detail::StreamEnd end) {
         if (end == detail::StreamEnd::lists_full)

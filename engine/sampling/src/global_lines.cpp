@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/core/error.hpp>
+#include <crofton/core/recovery.hpp>
 #include <crofton/sampling/sampling.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
@@ -95,20 +96,22 @@ Line line_from_box(const Obb& box, const std::array<double, 5>& u) {
 
 Result<LinesFromHull> LinesFromHull::make(const TriangleMesh& hull) {
     if (auto valid = validate(hull); !valid) return tl::unexpected(valid.error());
-    LinesFromHull result;
-    double area = 0.0;
-    for (std::size_t t = 0; t < hull.triangle_count(); ++t) {
-        const auto corner = [&](std::size_t k) { return glm::dvec3(hull.positions[hull.indices[3 * t + k]]); };
-        const glm::dvec3 first = corner(1) - corner(0), second = corner(2) - corner(0);
-        const glm::dvec3 normal = glm::cross(first, second);
-        const double twice_area = glm::length(normal);
-        if (twice_area == 0.0) continue;
-        result.faces_.push_back({corner(0), first, second, -normal / twice_area});
-        result.cumulative_area_.push_back(area += 0.5 * twice_area);
-    }
-    if (result.faces_.empty())
-        return fail(ErrorCode::empty, kNoItem, "lines from a hull: it has no face of positive area");
-    return result;
+    return detail::recover([&]() -> Result<LinesFromHull> {
+        LinesFromHull result;
+        double area = 0.0;
+        for (std::size_t t = 0; t < hull.triangle_count(); ++t) {
+            const auto corner = [&](std::size_t k) { return glm::dvec3(hull.positions[hull.indices[3 * t + k]]); };
+            const glm::dvec3 first = corner(1) - corner(0), second = corner(2) - corner(0);
+            const glm::dvec3 normal = glm::cross(first, second);
+            const double twice_area = glm::length(normal);
+            if (twice_area == 0.0) continue;
+            result.faces_.push_back({corner(0), first, second, -normal / twice_area});
+            result.cumulative_area_.push_back(area += 0.5 * twice_area);
+        }
+        if (result.faces_.empty())
+            return fail(ErrorCode::empty, kNoItem, "lines from a hull: it has no face of positive area");
+        return result;
+    });
 }
 
 Line LinesFromHull::operator()(const std::array<double, 5>& u) const {

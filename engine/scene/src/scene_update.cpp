@@ -14,18 +14,26 @@ namespace {
 
 constexpr std::size_t kGrain = 256;
 
-// outer ∘ inner, as operator* computes it.
-inline void compose(const Transform& outer, const Transform& inner, Transform& result) {
-    const auto image = [&](const glm::dvec3& v) {
-        return outer.linear[0] * v.x + outer.linear[1] * v.y + outer.linear[2] * v.z;
-    };
-    const glm::dvec3 x = image(inner.linear[0]), y = image(inner.linear[1]), z = image(inner.linear[2]);
-    const glm::dvec3 translation = image(inner.translation) + outer.translation;
+// Returns whether that is another transform.
+inline bool assign(const glm::dvec3& x, const glm::dvec3& y, const glm::dvec3& z, const glm::dvec3& translation,
+                   Transform& result) {
     // Number by number: a whole Transform would be put together on the stack, and its copy wait for that.
+    const bool differs =
+        result.linear[0] != x || result.linear[1] != y || result.linear[2] != z || result.translation != translation;
     result.linear[0] = x;
     result.linear[1] = y;
     result.linear[2] = z;
     result.translation = translation;
+    return differs;
+}
+
+// outer ∘ inner, as operator* computes it.
+inline bool compose(const Transform& outer, const Transform& inner, Transform& result) {
+    const auto image = [&](const glm::dvec3& v) {
+        return outer.linear[0] * v.x + outer.linear[1] * v.y + outer.linear[2] * v.z;
+    };
+    const glm::dvec3 x = image(inner.linear[0]), y = image(inner.linear[1]), z = image(inner.linear[2]);
+    return assign(x, y, z, image(inner.translation) + outer.translation, result);
 }
 
 // A lane of the kernel's input, and its output as a box.
@@ -167,14 +175,16 @@ void Scene::State::update_nodes(std::span<const NodeId> ids, UpdateWorker& worke
         prefetch(locals[later]);
         prefetch(worlds[later]);
         Node& node = nodes[id];
-        if (node.parent == kNone) {
-            worlds[id] = locals[id];
-        } else {
-            compose(worlds[node.parent], locals[id], worlds[id]);
-        }
+        const Transform& local = locals[id];
+        const bool carries = node.parent == kNone ? assign(local.linear[0], local.linear[1], local.linear[2],
+                                                           local.translation, worlds[id])
+                                                  : compose(worlds[node.parent], local, worlds[id]);
         const std::uint32_t mask = node.parent == kNone ? node.own_mask : nodes[node.parent].mask & node.own_mask;
         if (mask != node.mask) node.mask = mask;  // what is not written need not go back to memory; likewise below
-        for (InstanceId i = node.first_instance; i != kNone; i = instances[i].next_on_node) update_instance(i, worker);
+        for (InstanceId i = node.first_instance; i != kNone; i = instances[i].next_on_node) {
+            if (carries) instances[i].is_carried = true;
+            update_instance(i, worker);
+        }
     }
     set_boxes(worker);
     set_sheared_boxes(worker);
@@ -234,7 +244,8 @@ void Scene::State::set_careful_box(InstanceId id, UpdateWorker& worker) {
 void Scene::State::set_box(InstanceId id, const Obb& box, bool shown, UpdateWorker& worker) {
     Instance& instance = instances[id];
     const std::uint32_t mask = shown ? nodes[instance.node].mask & instance.own_mask : 0;
-    if (instance.is_new || !have_same_bits(box, boxes[id])) worker.moved.push_back(id);
+    if (instance.is_new || instance.is_carried || !have_same_bits(box, boxes[id])) worker.moved.push_back(id);
+    if (instance.is_carried) instance.is_carried = false;
     if (instance.is_new || mask != masks[id]) {
         worker.relayered.push_back(id);
         masks[id] = mask;

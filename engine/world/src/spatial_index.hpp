@@ -4,6 +4,7 @@
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/boxtree/structure.hpp>
 #include <crofton/core/memory.hpp>
+#include <crofton/geometry/same_bits.hpp>
 #include <crofton/world/world.hpp>
 
 #include "moving_list.hpp"
@@ -34,6 +35,13 @@ class SpatialIndex {
         else if (moving_.set_box(items_[item].entry, box, now_))
             moved_items_.push_back(item);
     }
+    // What stands in it has moved, also where its box is the same to the bit.
+    void set_box_of_moved(ItemId item, const Obb& box) {
+        const bool stays = has_box(item) && have_same_bits(this->box(item), box);
+        if (!stays) return set_box(item, box);
+        if (is_placed(item)) moved_items_.push_back(item);
+        note_changed(item);
+    }
     void set_shown(ItemId item, bool shown);
     void set_layers(ItemId item, std::uint32_t layers);
 
@@ -60,7 +68,7 @@ class SpatialIndex {
     }
 
     Changes update(const Settings& settings, Executor& executor);
-    // That the last update() found in the tree or the list and with another box. One may be named twice.
+    // That the last update() found in the tree or the list and moved. One may be named twice.
     [[nodiscard]] std::span<const ItemId> moved_items() const { return moved_items_; }
     // That have come into the list, left it or got another entry since the last commit(). One may be named twice.
     [[nodiscard]] std::span<const ItemId> relisted_items() const { return relisted_; }

@@ -132,7 +132,7 @@ void World::State::apply_scene(Executor& executor) {
         if (layers != 0) index.set_layers(object, layers);
     }
     for (const scene::InstanceId instance : scene.moved_instances()) {
-        index.set_box(object_of_instance[instance], scene.world_boxes()[instance]);
+        index.set_box_of_moved(object_of_instance[instance], scene.world_boxes()[instance]);
         occluders.note(object_of_instance[instance]);
     }
     pairs_changed |= bodies.update(scene, executor);

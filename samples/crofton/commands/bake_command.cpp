@@ -150,7 +150,7 @@ void add_bake_command(CommandLine& line) {
                  "Do not look for what hides other things; a second or more for each mesh of 100,000 triangles");
     command.option("--threads", options->threads, "0: one per core").whole_between(0, 256).show_default();
     command.option("--json", options->json, "Write the figures as JSON to this file; - for standard output")
-        .writable_file();
+        .writable_file_or_stdout();
     command.footer(
         "Exit status: 0 done, 2 bad usage, a scene that cannot be read or a .crofton file that is damaged.\n\n"
         "Examples:\n"

@@ -256,7 +256,7 @@ void add_collide_command(CommandLine& line) {
                    "Of a cast: x,y,z, the axis times the radians that B turns by in a time of 1");
     command.option("--duration", request->duration, "Of a cast: how long B moves").show_default();
     command.option("--json", request->json_path, "Write the answer as JSON to this file; - for standard output")
-        .writable_file();
+        .writable_file_or_stdout();
     command.footer(
         "A mesh inside the other, which is to be closed, counts as a hit and is reported in `contained`. Each piece "
         "is\n"

@@ -4,7 +4,10 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <iostream>
+#include <map>
+#include <system_error>
 
 #include "assets/file.hpp"
 
@@ -132,6 +135,32 @@ void demand_whole_numbers(CLI::App& app) {
             if (option->get_type_name().compare(0, 4, "UINT") == 0) option->check(whole);
 }
 
+constexpr const char* kWritableFile = "FILE";  // the type of options that name a file to write
+
+// What a path leads to: two names of one file are one place.
+std::string place_of(const std::string& path) {
+    std::error_code error;
+    const auto absolute = std::filesystem::absolute(path, error);
+    if (error || path == "-") return path;
+    const auto place = std::filesystem::weakly_canonical(absolute, error);
+    return error ? absolute.lexically_normal().string() : place.string();
+}
+
+// Two options that would write to one place, or nothing.
+std::string shared_output(const CLI::App& command) {
+    std::map<std::string, const CLI::Option*> places;
+    for (const CLI::Option* option : command.get_options()) {
+        if (option->get_type_name() != kWritableFile || option->count() == 0) continue;
+        const auto path = option->as<std::string>();
+        const auto [other, is_new] = places.emplace(place_of(path), option);
+        if (is_new) continue;
+        const std::string both = other->second->get_name() + " and " + option->get_name();
+        return path == "-" ? both + " cannot both go to stdout"
+                           : both + " name one file, '" + path + "': one output would be lost";
+    }
+    return {};
+}
+
 // `crofton help` and `crofton help fit` are `crofton --help` and `crofton fit --help`.
 std::vector<std::string> with_help_as_option(int argc, char** argv) {
     std::vector<std::string> arguments(argv + 1, argv + argc);
@@ -182,10 +211,20 @@ Option& Option::one_of(const std::vector<std::string>& words) {
 Option& Option::writable_file() {
     option_->check(CLI::Validator(
         [](std::string& path) {
-            const auto checked = assets::check_writable(path);
-            return checked ? std::string{} : checked.error().message;
+            return path == "-" ? std::string("'-': this output needs a file, it cannot go to stdout") : std::string{};
         },
         ""));
+    return writable_file_or_stdout();
+}
+
+Option& Option::writable_file_or_stdout() {
+    option_->type_name(kWritableFile)
+        ->check(CLI::Validator(
+            [](std::string& path) {
+                const auto checked = assets::check_writable(path);
+                return checked ? std::string{} : checked.error().message;
+            },
+            ""));
     return *this;
 }
 
@@ -233,7 +272,10 @@ void Command::footer(const std::string& text) {
 }
 
 void Command::action(std::function<int()> action) {
-    app_->callback([action = std::move(action), status = status_] { *status = action(); });
+    app_->callback([action = std::move(action), app = app_, status = status_] {
+        if (const std::string shared = shared_output(*app); !shared.empty()) throw CLI::ValidationError(shared);
+        *status = action();
+    });
 }
 
 CommandLine::CommandLine(const char* description, const std::string& version)

@@ -30,7 +30,10 @@ class Option {
     Option& positive();
     Option& not_negative();
     Option& one_of(const std::vector<std::string>& words);
-    Option& writable_file();  // refuses a folder, and a place where nothing can be written; "-" is stdout
+    // A file to write: refuses a folder, a place where nothing can be written, "-", and the file of another such
+    // option.
+    Option& writable_file();
+    Option& writable_file_or_stdout();  // the same, but "-" is stdout, for one option at a time
     Option& excludes(const Option& other);
     Option& needs(const Option& other);
 

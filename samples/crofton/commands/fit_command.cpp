@@ -117,6 +117,8 @@ int run_fit(const FitRequest& request) {
         return status ? *status : report_error("", status.error());
     }
     if (!request.views.empty()) {
+        if (!request.svg_path.empty())
+            return report_error("", Error{ErrorCode::invalid_argument, kNoItem, "fit: --views draws no --svg"});
         const auto status =
             run_fit_views({request.files, request.views, request.json_path, request.trees, request.read});
         return status ? *status : report_error("", status.error());
@@ -168,9 +170,9 @@ void add_fit_command(CommandLine& line) {
     command
         .option("--json", request->json_path,
                 "Write the boxes as JSON to this file; - for standard output, instead of the text")
-        .writable_file();
+        .writable_file_or_stdout();
     command.option("--svg", request->svg_path, "Draw hulls and boxes into this file; - for standard output")
-        .writable_file();
+        .writable_file_or_stdout();
     command
         .option(
             "--bounds", request->bounds,

@@ -120,8 +120,8 @@ class FramesRun {
         if (!tree) return tl::unexpected(tree.error());
         const double aspect = static_cast<double>(size->width) / size->height;
         if (options_.frames == 0u) return fail(ErrorCode::invalid_argument, kNoItem, "--frames must be at least 1");
-        if (auto writable = check_writable(options_.output, options_.report, options_.trace); !writable)
-            return writable;
+        if (!options_.output.png.empty())
+            if (auto made = make_picture_folder(options_.output.png); !made) return made;
         if (options_.threads != 1) pool_.emplace(options_.threads);
 
         // obb-frustum fits the boxes to the frustum in use: 60° with this aspect, and a depth of the order of a street.
@@ -351,8 +351,9 @@ void add_frames_command(CommandLine& line) {
         command.flag("--no-draw", options->no_draw, "Do not draw; counts are the CPU's alone").excludes(draw);
     command.flag("--verify", options->verify, "Check every frame by brute force; exit 1 on any mismatch");
     command.flag("--ids", options->output.ids, "List visible and colliding ids in the JSON");
-    command.option("--json", options->output.json, "Write everything as JSON; - for stdout").writable_file();
-    command.option("--csv", options->output.csv, "Write a line per frame as CSV; - for stdout").writable_file();
+    command.option("--json", options->output.json, "Write everything as JSON; - for stdout").writable_file_or_stdout();
+    command.option("--csv", options->output.csv, "Write a line per frame as CSV; - for stdout")
+        .writable_file_or_stdout();
     command.option("--png", options->output.png, "Write a picture per frame into this folder").excludes(no_draw);
     command.option("--report", options->report, "Write one self-contained HTML page: pictures, charts, summary")
         .writable_file();

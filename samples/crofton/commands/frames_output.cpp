@@ -6,7 +6,6 @@
 #include <charconv>
 #include <cstdio>
 #include <filesystem>
-#include <set>
 #include <string_view>
 
 #include "frames_table.hpp"
@@ -47,19 +46,11 @@ Result<ImageSize> image_size_from(const std::string& text, const char* option, s
     return size;
 }
 
-Result<void> check_writable(const FramesOutput& output, const std::string& report, const std::string& trace) {
-    if (output.json == "-" && output.csv == "-")
-        return fail(ErrorCode::invalid_argument, kNoItem, "--json and --csv cannot both go to stdout");
-    std::set<std::filesystem::path> places;
-    for (const std::string& file : {output.json, output.csv, report, trace})
-        if (!file.empty() && !places.insert(std::filesystem::path(file).lexically_normal()).second)
-            return fail(ErrorCode::invalid_argument, kNoItem,
-                        file + ": named for two outputs, of which one would be lost");
-    if (output.png.empty()) return {};
+Result<void> make_picture_folder(const std::string& folder) {
     std::error_code error;
-    std::filesystem::create_directories(output.png, error);
-    if (!std::filesystem::is_directory(output.png, error))
-        return fail(ErrorCode::io, kNoItem, output.png + ": cannot make this folder for the pictures");
+    std::filesystem::create_directories(folder, error);
+    if (!std::filesystem::is_directory(folder, error))
+        return fail(ErrorCode::io, kNoItem, folder + ": cannot make this folder for the pictures");
     return {};
 }
 

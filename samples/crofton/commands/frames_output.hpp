@@ -28,10 +28,7 @@ struct SceneFacts {
     std::uint64_t nodes = 0, instances = 0, triangles = 0;
 };
 
-// Before the work: no two outputs go to the same place, and the pictures' folder is made. `report`: the page's file;
-// `trace`: that of the zones.
-[[nodiscard]] Result<void> check_writable(const FramesOutput& output, const std::string& report,
-                                          const std::string& trace);
+[[nodiscard]] Result<void> make_picture_folder(const std::string& folder);
 
 // Pictures of an earlier run (frame_0000.png and so on, also unfinished ones) are removed from the folder, so that they
 // do not pass for this one's.

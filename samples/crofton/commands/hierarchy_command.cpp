@@ -198,8 +198,8 @@ void add_hierarchy_command(CommandLine& line) {
         .whole_between(1000, std::uint64_t{1} << 36)
         .show_default();
     command.option("--seed", options->seed, "The same seed gives the same lines").show_default();
-    command.option("--json", options->json, "Write the chains as JSON; - for stdout").writable_file();
-    command.option("--svg", options->svg, "Draw the chains; - for stdout").writable_file();
+    command.option("--json", options->json, "Write the chains as JSON; - for stdout").writable_file_or_stdout();
+    command.option("--svg", options->svg, "Draw the chains; - for stdout").writable_file_or_stdout();
     command.action([options] {
         const auto status = run_hierarchy(*options);
         return status ? *status : report_error("", status.error());

@@ -176,7 +176,7 @@ void add_lines_command(CommandLine& line) {
         .show_default();
     command.option("--seed", options->seed, "Seed of the lines and of the town").show_default();
     command.option("--map", options->map, "Which level of a .wad");
-    command.option("--json", options->json, "Write the comparison as JSON; - for stdout").writable_file();
+    command.option("--json", options->json, "Write the comparison as JSON; - for stdout").writable_file_or_stdout();
     add_read_options(command, options->read);
     command.action([options, blocks] {
         if (options->factors) {

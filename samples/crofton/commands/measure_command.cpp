@@ -182,7 +182,7 @@ void add_measure_command(CommandLine& line) {
         .whole_between(1000, std::uint64_t{1} << 40)
         .show_default();
     command.option("--seed", options->seed, "The same seed gives the same lines").show_default();
-    command.option("--json", options->json, "Write the table as JSON; - for stdout").writable_file();
+    command.option("--json", options->json, "Write the table as JSON; - for stdout").writable_file_or_stdout();
     add_read_options(command, options->read);
     command.action([options] {
         const auto done = run_measure(*options);

@@ -383,7 +383,7 @@ void add_pvs_command(CommandLine& line) {
     command.option("--threads", options->threads, "Worker threads; 0: one per core")
         .whole_between(0, 256)
         .show_default();
-    command.option("--json", options->json, "Write the figures as JSON; - for stdout").writable_file();
+    command.option("--json", options->json, "Write the figures as JSON; - for stdout").writable_file_or_stdout();
     add_read_options(command, options->read);
     command.action([options] {
         const auto done = run_pvs(*options);

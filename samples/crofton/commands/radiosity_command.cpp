@@ -338,7 +338,7 @@ void add_radiosity_command(CommandLine& line) {
     command.option("--stored-lines", options->stored_lines, "--light-field: about so many lines")
         .whole_between(1, 1 << 28)
         .show_default();
-    command.option("--json", options->json, "Write the figures as JSON; - for stdout").writable_file();
+    command.option("--json", options->json, "Write the figures as JSON; - for stdout").writable_file_or_stdout();
     command
         .option("--checkpoint,--state", options->checkpoint,
                 "Save to this file as time goes by; go on from it where it exists")

@@ -28,6 +28,12 @@ void print_warnings(const std::vector<std::string>& warnings) {
     if (warnings.size() > kMost) std::fprintf(stderr, "crofton: warning: and %zu more\n", warnings.size() - kMost);
 }
 
+Result<void> refuse_if_strict(const std::string& path, const std::vector<std::string>& warnings,
+                              const ReadOptions& read) {
+    if (!read.strict || warnings.empty()) return {};
+    return fail(ErrorCode::parse, kNoItem, path + ": " + warnings.front() + " (refused: --strict)");
+}
+
 Result<assets::SceneSource> load_updated_scene(const std::string& scene, const ReadOptions& read,
                                                assets::LoadOptions load, Executor& executor) {
     load.limits = read.limits;

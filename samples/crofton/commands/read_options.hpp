@@ -23,6 +23,10 @@ void add_read_options(Command& command, ReadOptions& options);
 // "crofton: warning: …" to stderr, a line each; at most 20, and how many there are besides.
 void print_warnings(const std::vector<std::string>& warnings);
 
+// With --strict: the first of these warnings about what was left out, as an error.
+[[nodiscard]] Result<void> refuse_if_strict(const std::string& path, const std::vector<std::string>& warnings,
+                                            const ReadOptions& read);
+
 // assets::load_scene with these limits, in place of those in `load`. Prints its warnings and brings it up to date.
 [[nodiscard]] Result<assets::SceneSource> load_updated_scene(const std::string& scene, const ReadOptions& read,
                                                              assets::LoadOptions load = {},

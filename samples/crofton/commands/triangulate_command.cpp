@@ -98,8 +98,8 @@ Result<int> run_polygons(const TriangulateOptions& options, Method method) {
     const auto file = read_polygons(options.file, options.map, options.read.limits);
     if (!file) return tl::unexpected(file.error());
     print_warnings(file->warnings);
-    if (options.read.strict && !file->warnings.empty())
-        return fail(ErrorCode::parse, kNoItem, options.file + ": " + file->warnings.front() + " (refused: --strict)");
+    if (auto whole = refuse_if_strict(options.file, file->warnings, options.read); !whole)
+        return tl::unexpected(whole.error());
     const auto& polygons = file->polygons;
     std::vector<Triangulation> results(polygons.size());
     Json entries = Json::array();
@@ -160,16 +160,11 @@ Result<int> run_triangulate(const TriangulateOptions& options) {
     catch_interrupts();
     const auto method = method_from(options.method);
     if (!method) return tl::unexpected(method.error());
-    if (options.json == "-" && options.svg == "-") {
-        return fail(ErrorCode::invalid_argument, kNoItem, "only one of --json and --svg can go to stdout");
-    }
     if (!(options.seconds >= 0.0))
         return fail(ErrorCode::invalid_argument, kNoItem, "--time-limit must not be negative");
     if (!(options.work >= 0.0)) return fail(ErrorCode::invalid_argument, kNoItem, "--work-limit must not be negative");
     if (!(options.attribute_tolerance >= 0.0))
         return fail(ErrorCode::invalid_argument, kNoItem, "--attribute-tolerance must not be negative");
-    if (options.json == "-" && options.out == "-")
-        return fail(ErrorCode::invalid_argument, kNoItem, "only one of --json and --out can go to stdout");
     if (options.has_tolerance && !(options.tolerance >= 0.0))
         return fail(ErrorCode::invalid_argument, kNoItem, "--tolerance must not be negative");
     const std::string kind = assets::extension(options.file);
@@ -247,10 +242,11 @@ void add_triangulate_command(CommandLine& line) {
     command.option("--frusta", options->frusta, "How many random frusta --compare measures with").show_default();
     command.option("--least-vertices", options->least_vertices, "--compare leaves smaller polygons out").show_default();
     command.flag("--no-indices", options->no_indices, "Leave the triangles out of the JSON");
-    command.option("--json", options->json, "Write results as JSON; - for stdout").writable_file();
-    command.option("--svg", options->svg, "Draw the polygons, at most 400 of them; - for stdout").writable_file();
+    command.option("--json", options->json, "Write results as JSON; - for stdout").writable_file_or_stdout();
+    command.option("--svg", options->svg, "Draw the polygons, at most 400 of them; - for stdout")
+        .writable_file_or_stdout();
     command.option("--out", options->out, "Write the asset with its patches triangulated anew, as .glb; - for stdout")
-        .writable_file();
+        .writable_file_or_stdout();
     add_read_options(command, options->read);
     command.action([options, tolerance] {
         options->has_tolerance = tolerance.given();

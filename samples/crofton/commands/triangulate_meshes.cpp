@@ -194,6 +194,8 @@ Result<int> run_meshes(const MeshRun& run) {
     if (!document) return tl::unexpected(document.error());
     for (const auto& warning : document->warnings)
         std::fprintf(stderr, "crofton: warning: %s: %s\n", run.file.c_str(), warning.c_str());
+    if (auto whole = refuse_if_strict(run.file, document->warnings, run.read); !whole)
+        return tl::unexpected(whole.error());
     assets::PatchSettings settings{run.triangulation, run.tolerance, run.attribute_tolerance};
     std::vector<PrimitivePatches> outcomes;
     {

@@ -90,7 +90,7 @@ void add_verify_command(CommandLine& line) {
     command
         .option("--json", request->json_path,
                 "Also write the rows as JSON to this file; - for standard output, instead of the table")
-        .writable_file();
+        .writable_file_or_stdout();
     command.footer(
         "`holds` says whether the claim's sentence is borne out; sentences that begin \"wrong, must be rejected\" hold "
         "when the\n"

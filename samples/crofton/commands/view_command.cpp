@@ -89,7 +89,8 @@ void add_view_command(CommandLine& line) {
     command.option("--after", options.frames, "quit after so many frames");
     command.option("--screenshot", options.screenshot, "the last frame as PNG").writable_file();
     command.option("--script", options.script, "JSON file of keys, cameras, switches and screenshots by frame");
-    command.option("--json", options.json, "statistics of all frames into this file, - for stdout").writable_file();
+    command.option("--json", options.json, "statistics of all frames into this file, - for stdout")
+        .writable_file_or_stdout();
     command.option("--output", options.output_folder, "folder for recorded paths, exports and screenshots")
         .show_default();
     command.option("--device", options.device, "part of the Vulkan device's name, or cpu");

@@ -159,7 +159,7 @@ Result<CameraPath> make_camera_path(const PathOptions& options, const Aabb& boun
         recorded->scene_frames.resize(options.frames);
         for (std::size_t i = length; i < options.frames; ++i) {
             recorded->cameras[i] = recorded->cameras[i % length];
-            recorded->scene_frames[i] = static_cast<std::uint32_t>(i);
+            recorded->scene_frames[i] = recorded->scene_frames[i % length];
         }
         return recorded;
     }

@@ -79,11 +79,10 @@ std::span<const ListChunk> BoundSet<Bound>::chunks() const {
 
 template <class Bound>
 void BoundSet<Bound>::resize(std::size_t size) {
-    size_ = size;
-    rows_.resize((size_ + 63) / 64 * 4);  // whole words of verdicts
-    records_.resize(size_);
-    chunks_.resize((size_ + kChunk - 1) / kChunk);
-    for (std::size_t i = size_; i < rows_.size() * 16; ++i) clear_row(rows_[i / 16], i % 16);
+    rows_.resize((size + 63) / 64 * 4);  // whole words of verdicts
+    records_.resize(size);
+    chunks_.resize((size + kChunk - 1) / kChunk);
+    for (std::size_t i = size; i < rows_.size() * 16; ++i) clear_row(rows_[i / 16], i % 16);
 }
 
 template <class Bound>
@@ -106,7 +105,7 @@ void BoundSet<Bound>::choose_frame(std::size_t c, std::span<const Bound> bounds)
     Aabb centers;
     double exponents = 0.0;
     std::size_t usable = 0;
-    for (const Bound& bound : bounds.subspan(c * kChunk, std::min(kChunk, size_ - c * kChunk))) {
+    for (const Bound& bound : bounds.subspan(c * kChunk, std::min(kChunk, size() - c * kChunk))) {
         if (!is_usable(bound)) continue;
         const Sphere ball = ball_around(bound);
         centers.include(ball.center);
@@ -127,8 +126,8 @@ void BoundSet<Bound>::choose_frame(std::size_t c, std::span<const Bound> bounds)
 // Writes all bounds of a chunk whose frame is chosen. Returns the first invalid one, or size().
 template <class Bound>
 std::size_t BoundSet<Bound>::fill_chunk(std::size_t c, std::span<const Bound> bounds) {
-    std::size_t invalid = size_;
-    const std::size_t first = c * kChunk, count = std::min(size_ - first, kChunk);
+    std::size_t invalid = size();
+    const std::size_t first = c * kChunk, count = std::min(size() - first, kChunk);
     ListChunk& chunk = chunks_[c];
     if constexpr (std::is_same_v<Bound, Obb>) {
         std::uint32_t rejected[kChunk];
@@ -165,7 +164,7 @@ template <class Bound>
 std::size_t BoundSet<Bound>::update(std::span<const Bound> bounds, Executor& executor) {
     const std::size_t laid_out = chunks_.size();
     resize(bounds.size());
-    std::atomic<std::size_t> first_invalid = size_;
+    std::atomic<std::size_t> first_invalid = size();
     executor.parallel_for(chunks_.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t c = begin; c < end; ++c) {
             if (c >= laid_out) choose_frame(c, bounds);
@@ -182,7 +181,7 @@ std::size_t BoundSet<Bound>::update(std::span<const Bound> bounds, Executor& exe
 
 template <class Bound>
 void BoundSet<Bound>::update(std::span<const std::uint32_t> items, std::span<const Bound> bounds) {
-    CROFTON_ASSERT(bounds.size() == size_, "update needs all bounds of the set");
+    CROFTON_ASSERT(bounds.size() == size(), "update needs all bounds of the set");
     for (; !items.empty(); items = items.subspan(std::min(items.size(), kWriteBatch))) {
         const std::span<const std::uint32_t> batch = items.first(std::min(items.size(), kWriteBatch));
         if constexpr (std::is_same_v<Bound, Obb>) {

@@ -48,7 +48,8 @@ TurnedRectangle smallest_rectangle(const std::array<glm::dvec2, 8>& points) {
 Result<void> split_depths(double near, double far, double share, std::span<double> splits) {
     const auto bad = [](const char* why) { return fail(ErrorCode::out_of_range, kNoItem, {"splits: ", why}); };
     if (splits.size() < 2) return bad("two places or more are needed, one more than there are cascades");
-    if (!(near > 0.0) || !(far > near) || !std::isfinite(far)) return bad("0 < near < far, finite, is needed");
+    if (!(near > 0.0) || !(far > near) || !std::isfinite(far) || !std::isfinite(far / near))
+        return bad("0 < near < far, finite as their ratio, is needed");
     if (!(share >= 0.0 && share <= 1.0)) return bad("the share must be in [0, 1]");
     const std::size_t count = splits.size() - 1;
     for (std::size_t i = 0; i <= count; ++i) {

@@ -48,7 +48,7 @@ CROFTON_API crofton_status crofton_scene_update(crofton_scene* scene, const crof
 /* By instance id, removed ones included (their layer mask is 0); valid until the scene's next non-const call. */
 CROFTON_API crofton_status crofton_scene_boxes(const crofton_scene* scene, const crofton_box** boxes,
                                                const uint32_t** layer_masks, size_t* count);
-/* Whose box changed in the last update, ascending; valid as above. */
+/* Whose box or world transform changed in the last update, ascending; valid as above. */
 CROFTON_API crofton_status crofton_scene_moved(const crofton_scene* scene, const uint32_t** instances, size_t* count);
 
 /* What does a view see? */

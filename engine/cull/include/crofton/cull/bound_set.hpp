@@ -62,7 +62,7 @@ class BoundSet {
     // must pass validate(Obb)), or size().
     std::size_t update(std::span<const Bound> bounds, Executor& executor = serial_executor());
 
-    [[nodiscard]] std::size_t size() const { return size_; }
+    [[nodiscard]] std::size_t size() const { return records_.size(); }
     [[nodiscard]] std::span<const RowBlock> rows() const;
     [[nodiscard]] std::span<const Record> records() const;
     [[nodiscard]] std::span<const ListChunk> chunks() const;
@@ -76,7 +76,6 @@ class BoundSet {
     void write(std::size_t i, const Bound& bound);
     [[nodiscard]] static bool wants_new_frame(const ListChunk& chunk);
 
-    std::size_t size_ = 0;
     Vector<RowBlock> rows_;
     Vector<Record> records_;
     Vector<ListChunk> chunks_;

@@ -21,13 +21,13 @@ class VisibleSet {
   public:
     // The items seen, each once. In ResultOrder::ascending they come by id. In ResultOrder::tree the order depends on
     // tree and view alone: those inside first, then those straddling, each part by and large along the tree.
-    [[nodiscard]] std::span<const boxtree::ItemId> ids() const { return {ids_.data(), size_}; }
-    [[nodiscard]] std::size_t size() const { return size_; }
-    [[nodiscard]] std::size_t inside_count() const { return inside_; }
+    [[nodiscard]] std::span<const boxtree::ItemId> ids() const { return {ids_.data(), size()}; }
+    [[nodiscard]] std::size_t size() const { return ids_.empty() ? 0 : size_; }  // empty: moved from
+    [[nodiscard]] std::size_t inside_count() const { return ids_.empty() ? 0 : inside_; }
     // In ResultOrder::ascending the verdict of ids()[i] is verdicts()[i]. In ResultOrder::tree there are none: the
     // first inside_count() ids are inside, the others straddle.
     [[nodiscard]] std::span<const Verdict> verdicts() const {
-        return {verdicts_.data(), verdicts_.empty() ? 0 : size_};
+        return {verdicts_.data(), verdicts_.empty() ? 0 : size()};
     }
     [[nodiscard]] const Statistics& statistics() const { return statistics_; }
 
@@ -113,14 +113,14 @@ class ManyVisible {
   public:
     // The items that at least one view sees, each once, in the order of the tree's slots. Those in leaves that each
     // view sees whole or not at all come first.
-    [[nodiscard]] std::span<const ItemId> ids() const { return {ids_.data(), size_}; }
+    [[nodiscard]] std::span<const ItemId> ids() const { return {ids_.data(), size()}; }
     // Bit v: view v sees ids()[i].
     [[nodiscard]] std::uint32_t view_mask(std::size_t i) const {
         std::uint32_t mask = 0;
         std::memcpy(&mask, masks_.data() + i * mask_bytes_, mask_bytes_);
         return mask;
     }
-    [[nodiscard]] std::size_t size() const { return size_; }
+    [[nodiscard]] std::size_t size() const { return ids_.empty() ? 0 : size_; }  // empty: moved from
 
   private:
     friend class ManyViewsQuery;

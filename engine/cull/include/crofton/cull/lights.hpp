@@ -158,8 +158,8 @@ class ShadowReceivers {
 
 // The practical split scheme (Zhang, Sun, Xu, Lun: "Parallel-split shadow maps", 2006). splits[i], i ≤ count, is
 // `share` of the way from equal steps to equal ratios between near and far. Fills `splits`, which has a place more than
-// there are cascades. Errors: fewer than two places; near, far or share not finite, near ≤ 0, far ≤ near, share outside
-// [0, 1].
+// there are cascades. Errors: fewer than two places; near, far, far / near or share not finite, near ≤ 0, far ≤ near,
+// share outside [0, 1].
 [[nodiscard]] Result<void> split_depths(double near, double far, double share, std::span<double> splits);
 
 // The sun's orthographic camera around what `camera` sees between two depths. It is the smallest rectangle across the

@@ -41,7 +41,8 @@ struct OcclusionView {
 
 // From a matrix, as frustum_of(matrix): perspective, parallel, off-centre, with an oblique near plane, reversed, with
 // an infinite far. The eye is computed from it, and rounded once; it is exact where the matrix takes positions relative
-// to the eye. Errors: as frustum_of(matrix); unsupported: no near plane.
+// to the eye. A w that differs by a share of 1e-12 over the frustum is constant: a parallel view. Errors: as
+// frustum_of(matrix); unsupported: no near plane; a w that is not constant, and no eye.
 [[nodiscard]] Result<OcclusionView> occlusion_view_of(const glm::dmat4& to_clip, DepthRange depth,
                                                       const glm::dvec3& origin = glm::dvec3(0.0));
 

@@ -135,7 +135,7 @@ class Scene {
 
     // What the last update() found, each list ascending and without repetition. An id that was removed and given out
     // again in between is in removed_instances() for its old instance. For its new one it is in the others.
-    [[nodiscard]] std::span<const InstanceId> moved_instances() const;      // new, or with another box
+    [[nodiscard]] std::span<const InstanceId> moved_instances() const;      // new, or with another box or transform
     [[nodiscard]] std::span<const InstanceId> relayered_instances() const;  // new, or with another layer mask
     [[nodiscard]] std::span<const InstanceId> removed_instances() const;  // there at the update() before, then removed
 
