@@ -22,7 +22,8 @@ py::array numbers(const py::handle& given, const char* name) {
 
 template <class T>
 py::array contiguous(const py::array& array) {
-    const auto result = py::array_t<T, py::array::c_style | py::array::forcecast>::ensure(array);
+    constexpr int kLayout = py::array::c_style | py::array::forcecast | py::detail::npy_api::NPY_ARRAY_ALIGNED_;
+    const auto result = py::array_t<T, kLayout>::ensure(array);
     if (!result) throw py::error_already_set();
     return result;
 }
@@ -129,6 +130,7 @@ py::array_t<T, py::array::c_style> integers(const py::handle& given, const char*
              std::string(name) + ": a number is negative or too large for " + std::to_string(8 * sizeof(T)) + " bits"});
     return result;
 }
+template py::array_t<std::uint16_t, py::array::c_style> integers(const py::handle&, const char*);
 template py::array_t<std::uint32_t, py::array::c_style> integers(const py::handle&, const char*);
 template py::array_t<std::uint64_t, py::array::c_style> integers(const py::handle&, const char*);
 

@@ -331,3 +331,70 @@ def test_a_projective_matrix_is_an_error(world):
     matrix[3, 0] = 1
     with pytest.raises(crofton.Error):
         world.add_node(transform=matrix)
+
+
+@pytest.mark.parametrize(
+    "origin, direction, max_t",
+    [((np.nan, 0, 0), (0, 0, -1), np.inf), ((0, 0, 0), (0, 0, 0), np.inf), ((0, 0, 0), (0, np.inf, -1), np.inf)],
+)
+def test_a_bad_ray_among_many_is_named(world, origin, direction, max_t):
+    world.add(ball=((0, 0, -5), 1.0))
+    world.update()
+    with pytest.raises(crofton.Error) as raised:
+        world.raycast_many([(0.0, 0, 0), origin], [(0.0, 0, -1), direction], max_t)
+    assert raised.value.item == 1
+
+
+@pytest.mark.parametrize("max_t", [-1.0, np.nan])
+def test_a_bad_length_of_rays_is_an_error(world, max_t):
+    with pytest.raises(crofton.Error):
+        world.raycast_many([(0.0, 0, 0)], [(0.0, 0, -1)], max_t)
+
+
+bad_shapes = [
+    {"ball": ((np.nan, 0, 0), 1.0)}, {"ball": ((0, 0, 0), -10.0)}, {"ball": ((0, 0, 0), np.inf)},
+    {"capsule": ((0, 0, 0), (0, np.inf, 0), 1.0)}, {"capsule": ((0, 0, 0), (0, 0, -9), -1.0)},
+]
+
+
+@pytest.mark.parametrize("shape", bad_shapes, ids=str)
+def test_a_bad_shape_is_an_error_and_not_an_empty_answer(world, shape):
+    world.add(ball=((0, 0, -5), 1.0))
+    world.update()
+    with pytest.raises(crofton.Error):
+        world.overlap(**shape)
+    with pytest.raises(crofton.Error):
+        world.closest(100.0, **shape)
+
+
+@pytest.mark.parametrize("limit", [np.nan, -1.0])
+def test_a_bad_limit_of_distance_is_an_error(world, limit):
+    with pytest.raises(crofton.Error):
+        world.closest(limit, ball=((0, 0, 0), 1.0))
+
+
+@pytest.mark.parametrize("call", [
+    lambda w: w.add(ball=5), lambda w: w.add(ball=((0, 0, 0),)), lambda w: w.add(ball=((0, 0, 0), "far")),
+    lambda w: w.add(aligned=3), lambda w: w.add(aligned="no"), lambda w: w.overlap(capsule=((0, 0, 0), 1.0)),
+    lambda w: crofton.Camera(height="high"), lambda w: crofton.fit_exact(np.eye(3), seconds="many"),
+    lambda w: crofton.triangulate([[0, 0], [1, 0], [0, 1]], work=-1),
+    lambda w: crofton.triangulate([[0, 0], [1, 0], [0, 1]], seconds=[]),
+])
+def test_what_is_no_number_and_no_shape_is_a_type_error(world, call):
+    with pytest.raises(TypeError, match="expected"):
+        call(world)
+
+
+def test_of_two_shapes_none_is_dropped_silently(world):
+    box, ball = crofton.Box((0, 0, 0), (1, 1, 1)), ((9, 0, 0), 1.0)
+    for call in (world.add, world.overlap, lambda **shapes: world.closest(1.0, **shapes)):
+        with pytest.raises(TypeError, match="one of"):
+            call(box=box, ball=ball)
+    assert len(world) == 0
+
+
+@pytest.mark.parametrize("indices", [[], np.zeros((0, 3), "u4"), np.zeros(0, "u2")], ids=repr)
+def test_no_indices_are_no_triangles(world, cube, indices):
+    with pytest.raises(crofton.Error) as raised:
+        world.add_mesh(cube[0][:6], indices)
+    assert raised.value.code == "empty"
