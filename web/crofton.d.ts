@@ -77,6 +77,7 @@ export interface World extends Owned {
     addMesh(positions: Float32Array, indices: Uint32Array | Uint16Array): MeshHandle;
     findOccluders(mesh: MeshHandle): void;
     setConvexOccluder(mesh: MeshHandle, positions: Float32Array): void;
+    /** `transform`: sixteen numbers by columns, the last row 0, 0, 0, 1. */
     add(object: { box?: BoxLike; ball?: { center: Vector; radius: number }; mesh?: MeshHandle; transform?: Vector;
         user?: number; hiddenLayers?: number; transparent?: boolean }): ObjectHandle;
     remove(object: ObjectHandle): void;
