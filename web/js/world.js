@@ -151,8 +151,8 @@ export class World extends Owned {
     }
     #writeTransform(at, transform) {
         if (transform.length !== 16) throw failure(1, 'a transform has 16 numbers, by columns');
-        if (transform[3] || transform[7] || transform[11] || transform[15] !== 1)
-            throw failure(1, 'the last row of a transform is 0, 0, 0, 1: it has 16 numbers, by columns');
+        if (![3, 7, 11, 15].every((i) => transform[i] === (i === 15 ? 1 : 0)))
+            throw failure(6, 'the last row of a transform is 0, 0, 0, 1: it has 16 numbers, by columns');
         const column = (c) => [transform[4 * c], transform[4 * c + 1], transform[4 * c + 2]];
         this.memory.doubles.set([0, 1, 2, 3].flatMap(column), at >> 3);
     }
