@@ -28,8 +28,11 @@ export interface Triangulation {
     gap: number;
     optimal: boolean;
 }
+/** The statuses of the C API, in words. */
+export type Status = 'invalid argument' | 'non finite' | 'out of range' | 'degenerate' | 'empty' | 'unsupported' | 'io' | 'parse' |
+    'cancelled' | 'budget exceeded' | 'unavailable' | 'stale handle' | 'internal' | 'bad handle' | 'wrong size' | 'busy' | 'out of memory';
 export class CroftonError extends Error {
-    readonly status: string;
+    readonly status: Status;
     /** Of the input; -1: none in particular. */
     readonly item: number;
 }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 import test from 'node:test';
 import assert from 'node:assert/strict';
+import { readFile } from 'node:fs/promises';
 import { load, hasSimd, CroftonError } from '../js/crofton.js';
+import { failure } from '../js/error.js';
 import { random, rotation, verdict } from './oracle.js';
 
 const BUILDS = (process.env.CROFTON_BUILDS ?? 'simd,plain').split(',');
@@ -21,6 +23,18 @@ function crowd(crofton, count, seed, spread = 60) {
 }
 const translation = (x, y, z) => [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, x, y, z, 1];
 
+test('statuses have the names of the C API, in the code and in its types', async () => {
+    const read = (path) => readFile(new URL(path, import.meta.url), 'utf8');
+    const header = await read('../../engine/capi/include/crofton/capi/base.h'), types = await read('../crofton.d.ts');
+    const body = header.match(/typedef enum crofton_status \{([^}]*)\}/)[1];
+    const names = [...body.matchAll(/CROFTON_(\w+) = (\d+)/g)].map(([, name, number]) => {
+        const words = name.toLowerCase().replaceAll('_', ' ');
+        assert.equal(failure(Number(number), 'a message').status, words);
+        return words;
+    });
+    const typed = [...types.match(/type Status = ([^;]*);/)[1].matchAll(/'([^']*)'/g)].map(([, name]) => name);
+    assert.deepEqual(['ok', ...typed], names);
+});
 test('hasSimd says whether SIMD is there', () => assert.equal(typeof hasSimd(), 'boolean'));
 test('a damaged binary is a clear error', () => assert.rejects(load({ wasmBinary: new Uint8Array(8) }), refused('unavailable')));
 test('without WebAssembly there is a clear error', async () => {
