@@ -88,14 +88,6 @@ template <class T, class Range>
     return result;
 }
 
-// A read-only array over memory that `owner` keeps.
-template <class T>
-[[nodiscard]] py::array_t<T> view_of(std::span<const T> values, const py::handle& owner) {
-    py::array_t<T> result({static_cast<py::ssize_t>(values.size())}, values.data(), owner);
-    result.attr("flags").attr("writeable") = false;
-    return result;
-}
-
 // Arrays of boxes have crofton.box_dtype, an Obb to a record: `center` three doubles, `axes` three floats for each of
 // three axes, `half_extents` three floats.
 [[nodiscard]] const py::dtype& box_dtype();
