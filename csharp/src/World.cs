@@ -169,7 +169,8 @@ namespace Crofton {
             Library.Check(Native.crofton_world_set_occludes(Handle, handle, occludes ? 1 : 0));
         }
 
-        /// <summary>Makes the changes take effect; once a frame.</summary>
+        /// <summary>Makes the changes take effect; once a frame. An exception: more than MaxPairs pairs; then there are none, and
+        /// all else is as it should be.</summary>
         public void Update() { lock (copying) Library.Check(Native.crofton_world_update(Handle, IntPtr.Zero)); }
 
         /// <summary>How many objects there are.</summary>
