@@ -28,8 +28,11 @@ export interface Triangulation {
     gap: number;
     optimal: boolean;
 }
+/** The statuses of the C API, in words. */
+export type Status = 'invalid argument' | 'non finite' | 'out of range' | 'degenerate' | 'empty' | 'unsupported' | 'io' | 'parse' |
+    'cancelled' | 'budget exceeded' | 'unavailable' | 'stale handle' | 'internal' | 'bad handle' | 'wrong size' | 'busy' | 'out of memory';
 export class CroftonError extends Error {
-    readonly status: string;
+    readonly status: Status;
     /** Of the input; -1: none in particular. */
     readonly item: number;
 }
@@ -77,6 +80,7 @@ export interface World extends Owned {
     addMesh(positions: Float32Array, indices: Uint32Array | Uint16Array): MeshHandle;
     findOccluders(mesh: MeshHandle): void;
     setConvexOccluder(mesh: MeshHandle, positions: Float32Array): void;
+    /** `transform`: sixteen numbers by columns, the last row 0, 0, 0, 1. */
     add(object: { box?: BoxLike; ball?: { center: Vector; radius: number }; mesh?: MeshHandle; transform?: Vector;
         user?: number; hiddenLayers?: number; transparent?: boolean }): ObjectHandle;
     remove(object: ObjectHandle): void;

@@ -58,7 +58,7 @@ namespace Crofton {
             var result = new T[(int)count];
             int size = Marshal.SizeOf(typeof(T));
             for (int i = 0; i < result.Length; ++i)
-                result[i] = (T)Marshal.PtrToStructure(IntPtr.Add(first, i * size), typeof(T));
+                result[i] = (T)Marshal.PtrToStructure(new IntPtr(first.ToInt64() + (long)i * size), typeof(T));
             return result;
         }
 

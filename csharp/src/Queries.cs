@@ -161,26 +161,31 @@ namespace Crofton {
 
         /// <summary>Objects whose boxes or balls meet, in order.</summary>
         public ObjectPair[] Pairs() {
-            IntPtr pairs;
-            UIntPtr count;
-            Library.Check(Native.crofton_world_pairs(Handle, out pairs, out count));
-            return Library.ToArray<ObjectPair>(pairs, count);
+            return Copy(() => {
+                IntPtr pairs;
+                UIntPtr count;
+                Library.Check(Native.crofton_world_pairs(Handle, out pairs, out count));
+                return Library.ToArray<ObjectPair>(pairs, count);
+            });
         }
         /// <summary>What touches, and what has ceased to, in the order of the pairs.</summary>
         public Contact[] Contacts() {
-            UIntPtr count;
-            Library.Check(Native.crofton_world_contact_count(Handle, out count));
-            var result = new Contact[(int)count];
-            for (int i = 0; i < result.Length; ++i) {
-                var c = new Native.ContactData { Size = Native.SizeOf<Native.ContactData>() };
-                Library.Check(Native.crofton_world_contact(Handle, (UIntPtr)i, ref c));
-                result[i] = new Contact {
-                    First = c.First, Second = c.Second, Phase = (Phase)c.Phase, Normal = c.Normal, Depth = c.Depth,
-                    Points = Library.ToArray<ContactPoint>(c.Points, c.PointCount),
-                    Triangles = Library.ToArray<MeshContact>(c.Triangles, c.TriangleCount)
-                };
-            }
-            return result;
+            return Copy(() => {
+                UIntPtr count;
+                Library.Check(Native.crofton_world_contact_count(Handle, out count));
+                var result = new Contact[(int)count];
+                for (int i = 0; i < result.Length; ++i) result[i] = ContactAt(i);
+                return result;
+            });
+        }
+        Contact ContactAt(int place) {
+            var c = new Native.ContactData { Size = Native.SizeOf<Native.ContactData>() };
+            Library.Check(Native.crofton_world_contact(Handle, (UIntPtr)place, ref c));
+            return new Contact {
+                First = c.First, Second = c.Second, Phase = (Phase)c.Phase, Normal = c.Normal, Depth = c.Depth,
+                Points = Library.ToArray<ContactPoint>(c.Points, c.PointCount),
+                Triangles = Library.ToArray<MeshContact>(c.Triangles, c.TriangleCount)
+            };
         }
 
         static FoundHandle Find() {

@@ -103,6 +103,7 @@ namespace Crofton {
                 Library.Check(Native.crofton_triangulate(handle, ref polygon, (uint)method, ref data));
                 var indices = new int[3 * (int)data.TriangleCount];
                 if (indices.Length > 0) Marshal.Copy(data.Indices, indices, 0, indices.Length);
+                GC.KeepAlive(this); // the indices are in the triangulator's memory
                 return new Triangulation { Indices = indices, Weight = data.Weight, Gap = data.Gap, IsOptimal = data.Optimal != 0 };
             } finally {
                 p.Free();

@@ -61,6 +61,7 @@ namespace Crofton {
         /// <summary>All 32 layers.</summary>
         public const uint AllLayers = uint.MaxValue;
         internal readonly WorldHandle Handle;
+        readonly object copying = new object();
 
         public World() : this(new WorldOptions()) { }
         public World(WorldOptions options) {
@@ -73,7 +74,7 @@ namespace Crofton {
             Library.Check(Native.crofton_world_create(ref data, out Handle));
         }
         /// <summary>Frees it; any later call throws ObjectDisposedException.</summary>
-        public void Dispose() { Handle.Dispose(); }
+        public void Dispose() { lock (copying) Handle.Dispose(); }
 
         /// <summary>Adds a mesh in its own frame: x, y, z of each vertex; three indices a triangle, counter-clockwise seen from
         /// outside, or null where three vertices are one. Both are copied.</summary>
@@ -168,8 +169,9 @@ namespace Crofton {
             Library.Check(Native.crofton_world_set_occludes(Handle, handle, occludes ? 1 : 0));
         }
 
-        /// <summary>Makes the changes take effect; once a frame.</summary>
-        public void Update() { Library.Check(Native.crofton_world_update(Handle, IntPtr.Zero)); }
+        /// <summary>Makes the changes take effect; once a frame. An exception: more than MaxPairs pairs; then there are none, and
+        /// all else is as it should be.</summary>
+        public void Update() { lock (copying) Library.Check(Native.crofton_world_update(Handle, IntPtr.Zero)); }
 
         /// <summary>How many objects there are.</summary>
         public int Count {
@@ -204,6 +206,16 @@ namespace Crofton {
             return transform;
         }
 
+        // Pairs and contacts lie in the world's memory until the next update: no update and no end of the world while
+        // they are copied.
+        T Copy<T>(Func<T> copy) {
+            lock (copying) {
+                var result = copy();
+                GC.KeepAlive(this);
+                return result;
+            }
+        }
+
         static uint Flag(bool value) { return value ? 1u : 0u; }
         static NodeHandle[] ToArray(NodeHandle? node) { return node.HasValue ? new[] { node.Value } : null; }
         static Native.ObjectData Describe(ulong user, uint layers, uint collidesWith) {
@@ -230,6 +242,7 @@ namespace Crofton {
         void WithMesh(float[] positions, uint[] indices, Func<Native.MeshData, int> call) {
             Library.NotNull(positions, "positions");
             if (positions.Length % 3 != 0) throw new ArgumentException("positions are x, y, z of each vertex", "positions");
+            if (indices != null && indices.Length == 0) throw new ArgumentException("there are none, so there is no triangle", "indices");
             var p = GCHandle.Alloc(positions, GCHandleType.Pinned);
             var i = indices == null ? default(GCHandle) : GCHandle.Alloc(indices, GCHandleType.Pinned);
             try {

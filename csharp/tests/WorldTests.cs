@@ -280,6 +280,9 @@ static class WorldTests {
             Expect.True(triangles.Length > 0 && triangles.All(t => t.FirstTriangle < 4 && t.SecondTriangle < 4));
         }
     }
+    [Test] static void NoIndicesAreNoTriangles() {
+        using (var world = new World()) Expect.Throws<ArgumentException>(() => world.AddMesh(new float[18], new uint[0]));
+    }
     [Test] static void ALimitOfPairsIsKept() {
         using (var world = new World(new WorldOptions { MaxPairs = 1 })) {
             for (int i = 0; i < 3; ++i) world.Add(Ball(0, 0, 0, 1));

@@ -26,6 +26,8 @@ box_dtype: np.dtype[Any]
 handle_dtype: np.dtype[Any]
 
 class Error(ValueError):
+    # 'invalid_argument', 'not_finite', 'out_of_range', 'degenerate', 'empty', 'unsupported', 'input/output', 'parse',
+    # 'cancelled', 'budget_exceeded', 'unavailable', 'stale_handle' or 'internal'
     code: str
     item: Optional[int]
 

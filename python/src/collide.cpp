@@ -2,6 +2,8 @@
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/collide/narrow_phase.hpp>
 #include <mutex>
+#include <span>
+#include <string>
 #include <utility>
 
 #include "convert.hpp"
@@ -42,8 +44,18 @@ py::array intersects(const py::handle& given_a, const py::handle& given_b) {
     return hits;
 }
 
+void check(std::span<const Obb> boxes, const char* name) {
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+        if (auto valid = validate(boxes[i], i); !valid) {
+            valid.error().message = std::string(name) + ": " + valid.error().message;
+            raise(valid.error());
+        }
+}
+
 py::array distance(const py::handle& given_a, const py::handle& given_b) {
     const BoxPairs pairs(given_a, given_b);
+    check(pairs.a.span(), "a");
+    check(pairs.b.span(), "b");
     py::array_t<double> result(static_cast<py::ssize_t>(pairs.count));
     double* out = result.mutable_data();
     unlocked([&] {
@@ -118,7 +130,8 @@ class Pairs {
 void bind_collide(py::module_& module) {
     module.def(
         "intersects", &intersects, py::arg("a"), py::arg("b"),
-        "Whether a[i] and b[i] share a point, exactly; touching counts. One box goes with all of the other side.");
+        "Whether a[i] and b[i] share a point, exactly; touching counts. One box goes with all of the other side. A box "
+        "with NaN or infinite members meets nothing.");
     module.def("distance", &distance, py::arg("a"), py::arg("b"),
                "How far a[i] and b[i] are apart; 0 where they meet.");
     module.def("penetration", &penetration, py::arg("a"), py::arg("b"),
@@ -127,8 +140,10 @@ void bind_collide(py::module_& module) {
                "Where two boxes touch: `normal` from a to b, `points` of shape (n, 3), n ≤ 4, and their `depths`.");
     py::class_<Pairs>(module, "Broadphase", "All pairs of boxes that meet, kept from frame to frame.")
         .def(py::init<bool>(), py::kw_only(), py::arg("exact_boxes") = true)
-        .def("update", &Pairs::update, py::arg("boxes"), py::arg("moved") = py::none(),
-             "boxes[i] is the same item as before. With `moved`, only these items have changed.")
+        .def(
+            "update", &Pairs::update, py::arg("boxes"), py::arg("moved") = py::none(),
+            "boxes[i] is the same item as before. With `moved`, only these items have changed. A box that is not valid "
+            "meets nothing.")
         .def_property_readonly(
             "pairs", [](Pairs& p) { return p.read([](auto& b) { return b.pairs(); }); },
             "indices of shape (n, 2), in order")

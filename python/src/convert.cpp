@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <limits>
 #include <mutex>
 #include <string>
+#include <vector>
 
 namespace crofton::python {
 namespace {
@@ -22,7 +24,8 @@ py::array numbers(const py::handle& given, const char* name) {
 
 template <class T>
 py::array contiguous(const py::array& array) {
-    const auto result = py::array_t<T, py::array::c_style | py::array::forcecast>::ensure(array);
+    constexpr int kLayout = py::array::c_style | py::array::forcecast | py::detail::npy_api::NPY_ARRAY_ALIGNED_;
+    const auto result = py::array_t<T, kLayout>::ensure(array);
     if (!result) throw py::error_already_set();
     return result;
 }
@@ -81,6 +84,31 @@ py::array records(const py::handle& given, const py::dtype& dtype, const char* n
     return array.attr("astype")(dtype, py::arg("order") = "C", py::arg("copy") = true);
 }
 
+template <class T>
+[[noreturn]] void raise_size(const char* name) {
+    raise({ErrorCode::out_of_range, kNoItem,
+           std::string(name) + ": a number is negative or too large for " + std::to_string(8 * sizeof(T)) + " bits"});
+}
+
+// A list of ints that NumPy takes for doubles, as some are beyond 2^63 and others are not.
+template <class T>
+py::array_t<T, py::array::c_style> integers_of_list(const py::handle& given, const char* name) {
+    const bool is_list = py::isinstance<py::list>(given) || py::isinstance<py::tuple>(given);
+    std::vector<T> values;
+    for (const py::handle one : is_list ? py::reinterpret_borrow<py::object>(given) : py::list()) {
+        if (!PyLong_Check(one.ptr())) raise_type(std::string(name) + ": an array of integers is expected");
+        const unsigned long long value = PyLong_AsUnsignedLongLong(one.ptr());
+        if (PyErr_Occurred()) {
+            PyErr_Clear();
+            raise_size<T>(name);
+        }
+        if (value > std::numeric_limits<T>::max()) raise_size<T>(name);
+        values.push_back(static_cast<T>(value));
+    }
+    if (values.empty()) raise_type(std::string(name) + ": an array of integers is expected");
+    return array_of<T>(values);
+}
+
 }  // namespace
 
 void raise(const Error& error) {
@@ -117,18 +145,15 @@ template class Points<3>;
 template <class T>
 py::array_t<T, py::array::c_style> integers(const py::handle& given, const char* name) {
     const py::array array = numbers(given, name);
-    if (array.dtype().kind() == 'f' && array.size() > 0)
-        raise_type(std::string(name) + ": an array of integers is expected");
+    if (array.dtype().kind() == 'f' && array.size() > 0) return integers_of_list<T>(given, name);
     const py::array flat = array.attr("ravel")();
     if (flat.dtype().equal(py::dtype::of<T>()) && has_layout(flat, py::dtype::of<T>()))
         return py::reinterpret_borrow<py::array_t<T, py::array::c_style>>(flat);
     py::array result = contiguous<T>(flat);
-    if (!py::module_::import("numpy").attr("array_equal")(result, flat).cast<bool>())
-        raise(
-            {ErrorCode::out_of_range, kNoItem,
-             std::string(name) + ": a number is negative or too large for " + std::to_string(8 * sizeof(T)) + " bits"});
+    if (!py::module_::import("numpy").attr("array_equal")(result, flat).cast<bool>()) raise_size<T>(name);
     return result;
 }
+template py::array_t<std::uint16_t, py::array::c_style> integers(const py::handle&, const char*);
 template py::array_t<std::uint32_t, py::array::c_style> integers(const py::handle&, const char*);
 template py::array_t<std::uint64_t, py::array::c_style> integers(const py::handle&, const char*);
 

@@ -18,8 +18,8 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
-#include <variant>
 
 namespace crofton::python {
 
@@ -69,6 +69,7 @@ extern template class Points<3>;
 // Numbers of exactly the type T, one dimension; other integer types are converted if no value is lost.
 template <class T>
 [[nodiscard]] py::array_t<T, py::array::c_style> integers(const py::handle& given, const char* name);
+extern template py::array_t<std::uint16_t, py::array::c_style> integers(const py::handle&, const char*);
 extern template py::array_t<std::uint32_t, py::array::c_style> integers(const py::handle&, const char*);
 extern template py::array_t<std::uint64_t, py::array::c_style> integers(const py::handle&, const char*);
 
@@ -84,14 +85,6 @@ template <class T, class Range>
     const auto n = static_cast<py::ssize_t>(values.size());
     py::array_t<T> result(width == 0 ? std::vector<py::ssize_t>{n} : std::vector<py::ssize_t>{n, width});
     if (n > 0) std::memcpy(result.mutable_data(), values.data(), static_cast<std::size_t>(result.nbytes()));
-    return result;
-}
-
-// A read-only array over memory that `owner` keeps.
-template <class T>
-[[nodiscard]] py::array_t<T> view_of(std::span<const T> values, const py::handle& owner) {
-    py::array_t<T> result({static_cast<py::ssize_t>(values.size())}, values.data(), owner);
-    result.attr("flags").attr("writeable") = false;
     return result;
 }
 
@@ -127,6 +120,17 @@ class Handles {
 extern template class Handles<ObjectHandle>;
 extern template class Handles<NodeHandle>;
 [[nodiscard]] py::array handles_of(std::span<const ObjectHandle> handles);
+
+// One number. Raises TypeError for what is none, or does not fit.
+template <class T>
+[[nodiscard]] T number_of(const py::handle& given, const char* name) {
+    try {
+        return given.cast<T>();
+    } catch (const py::cast_error&) {
+        raise_type(std::string(name) +
+                   (std::is_integral_v<T> ? ": a whole number from 0 on is expected" : ": a number is expected"));
+    }
+}
 
 [[nodiscard]] glm::dvec3 vector_of(const py::handle& given, const char* name);
 [[nodiscard]] py::tuple tuple_of(const glm::dvec3& v);
@@ -166,6 +170,8 @@ class Watch {
     explicit Watch(py::object progress) : progress_(std::move(progress)) {}
     // False: stop. Costs next to nothing but every 50 ms.
     bool go_on(double first, double second = 0.0);
+    // Ctrl-C, or an exception of the callable.
+    [[nodiscard]] bool is_raised() const { return raised_ != nullptr; }
     // After the call, with the lock: raises what stopped it.
     void raise_if_stopped();
 

@@ -86,7 +86,9 @@ void bind_cull(py::module_& module) {
     module.attr("STRADDLING") = static_cast<int>(cull::Verdict::straddling);
     module.attr("INSIDE") = static_cast<int>(cull::Verdict::inside);
     module.def("classify", &classify, py::arg("view"), py::arg("boxes"), py::kw_only(), py::arg("conservative") = false,
-               "OUTSIDE, STRADDLING or INSIDE for each box, exactly. `view` is a Camera or a Frustum.");
+               "OUTSIDE, STRADDLING or INSIDE for each box, exactly. `view` is a Camera or a Frustum. A box that is "
+               "not finite "
+               "straddles, here and in lists: what may be visible is never left out.");
     module.def(
         "find_visible", &find_visible, py::arg("view"), py::arg("boxes"), py::kw_only(), py::arg("layers") = py::none(),
         py::arg("layer_mask") = ~0u, py::arg("conservative") = false,

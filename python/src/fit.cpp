@@ -30,7 +30,7 @@ fit::ExactFit fit_exact(const py::handle& given, const py::handle& criterion, do
     fit::ExactOptions options;
     options.criterion = criterion_of(criterion);
     options.gap = gap;
-    if (!seconds.is_none()) options.time_budget_seconds = seconds.cast<double>();
+    if (!seconds.is_none()) options.time_budget_seconds = number_of<double>(seconds, "seconds");
     options.progress = &reference;
     auto result = points.visit([&](auto span) { return unlocked([&] { return fit::fit_exact(span, options); }); });
     watch.raise_if_stopped();

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
+#include <cmath>
 #include <crofton/cull/cull.hpp>
 #include <crofton/geometry/box.hpp>
 #include <cstdio>
+#include <limits>
 #include <string>
 
 #include "convert.hpp"
@@ -14,10 +16,17 @@ py::array_t<float> axes_of(const Obb& box) {
     return py::array_t<float>({3, 3}, &box.axes[0][0]);
 }
 
+// The least float that is not below a number, so that a box holds what it held.
+float rounded_up(double value) {
+    const auto nearest = static_cast<float>(value);
+    return double{nearest} < value ? std::nextafter(nearest, std::numeric_limits<float>::infinity()) : nearest;
+}
+
 Obb make_box(const py::handle& center, const py::handle& half_extents, const py::object& axes) {
     Obb box;
     box.center = vector_of(center, "center");
-    box.half_extents = glm::vec3(vector_of(half_extents, "half_extents"));
+    const glm::dvec3 half = vector_of(half_extents, "half_extents");
+    for (int k = 0; k < 3; ++k) box.half_extents[k] = rounded_up(half[k]);
     if (!axes.is_none()) {
         const Points<3> rows(axes, "axes");
         if (rows.size() != 3) raise_type("axes: an array of shape (3, 3) is expected");
@@ -48,7 +57,7 @@ Camera make_camera(const py::handle& position, const py::handle& forward, const 
     camera.far_distance = far_distance;
     if (!height.is_none()) {
         camera.projection = Projection::orthographic;
-        camera.height = height.cast<double>();
+        camera.height = number_of<double>(height, "height");
     }
     value_of(validate(camera));
     return camera;
@@ -94,7 +103,9 @@ py::array corners_of(const Obb& box) {
 void bind_geometry(py::module_& module) {
     py::class_<Obb>(module, "Box", "An oriented box: centre in double; axes and half extents in single precision.")
         .def(py::init(&make_box), py::arg("center"), py::arg("half_extents"), py::arg("axes") = py::none(),
-             "`axes[k]` is the direction of axis k, of unit length; without axes they are x, y and z.")
+             "`axes[k]` is the direction of axis k, of unit length; without axes they are x, y and z. Half extents "
+             "become the "
+             "next floats above.")
         .def_property_readonly("center", [](const Obb& b) { return py::array_t<double>(3, &b.center[0]); })
         .def_property_readonly("axes", &axes_of, "axes[k] is the direction of axis k")
         .def_property_readonly("half_extents", [](const Obb& b) { return py::array_t<float>(3, &b.half_extents[0]); })

@@ -38,7 +38,7 @@ PYBIND11_MODULE(_crofton, module) {
                                  "." + std::to_string(CROFTON_VERSION_PATCH);
     module.attr("Error") = py::reinterpret_steal<py::object>(PyErr_NewExceptionWithDoc(
         "crofton.Error",
-        "Bad data. `code` is a short name such as 'non_finite'; `item` is the index of the offending input, or None.",
+        "Bad data. `code` is a short name such as 'not_finite'; `item` is the index of the offending input, or None.",
         PyExc_ValueError, nullptr));
     module.attr("box_dtype") = box_dtype();
     module.attr("handle_dtype") = handle_dtype();

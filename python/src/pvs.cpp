@@ -139,7 +139,7 @@ Pvs bake(const py::handle& positions, const py::handle& indices, const py::objec
         choice_of<occlude::Sides>("sides", sides, {{"both", occlude::Sides::both}, {"front", occlude::Sides::front}})};
     wanted.proof.surface_steps = surface_steps;
     wanted.proof.near_radius = near_radius;
-    if (!seconds.is_none()) wanted.limits.seconds = seconds.cast<double>();
+    if (!seconds.is_none()) wanted.limits.seconds = number_of<double>(seconds, "seconds");
     Watch watch(progress);
     wanted.limits.user = &watch;
     wanted.limits.go_on = [](void* user, double share) { return static_cast<Watch*>(user)->go_on(share, 1.0); };
@@ -156,6 +156,7 @@ Pvs bake(const py::handle& positions, const py::handle& indices, const py::objec
         auto lines = pvs::Bake::create(subject, where, wanted.bake);
         if (!lines) return tl::unexpected(std::move(lines.error()));
         if (auto ran = lines->run(wanted.limits, *threads); !ran) return tl::unexpected(std::move(ran.error()));
+        if (watch.is_raised()) return fail(ErrorCode::cancelled, kNoItem, "pvs: stopped");  // without the proofs
         return Pvs::finish(*lines, {}, wanted.proof, *threads);
     });
     watch.raise_if_stopped();

@@ -55,8 +55,8 @@ PolygonTriangles run(const py::handle& given, const std::string& method, const p
     Watch watch(progress);
     triangulate::TriangulateOptions options;
     options.method = method_of(method);
-    if (!seconds.is_none()) options.seconds = seconds.cast<double>();
-    if (!work.is_none()) options.work = work.cast<std::uint64_t>();
+    if (!seconds.is_none()) options.seconds = number_of<double>(seconds, "seconds");
+    if (!work.is_none()) options.work = number_of<std::uint64_t>(work, "work");
     options.user = &watch;
     options.progress = [](void* user, double share) { return static_cast<Watch*>(user)->go_on(share, 1.0); };
     auto found = unlocked([&] { return triangulate::triangulate(result.polygon, options); });

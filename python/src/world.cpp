@@ -9,6 +9,7 @@
 
 #include "convert.hpp"
 #include "module.hpp"
+#include "shapes.hpp"
 #include "view.hpp"
 
 namespace crofton::python {
@@ -31,8 +32,10 @@ struct MeshArrays {
         const py::array array = py::array::ensure(given_indices);
         if (!array) PyErr_Clear();
         const bool is_short = array && array.dtype().equal(py::dtype::of<std::uint16_t>());
-        indices = is_short ? py::array(py::array_t<std::uint16_t, py::array::c_style>(array.attr("ravel")()))
+        indices = is_short ? py::array(integers<std::uint16_t>(array, "indices"))
                            : py::array(integers<std::uint32_t>(given_indices, "indices"));
+        // The library takes no indices for "three positions are one triangle".
+        if (indices.size() == 0) raise({ErrorCode::empty, kNoItem, "indices: there are none, so there is no triangle"});
     }
     [[nodiscard]] PointsView points() const {
         return positions.is_float() ? PointsView(positions.floats()) : PointsView(positions.doubles());
@@ -46,23 +49,6 @@ struct MeshArrays {
         return result;
     }
 };
-
-// One of: a Box, a tuple (center, radius), a tuple (low, high) as aligned=.
-Bound bound_of(const py::object& box, const py::object& ball, const py::object& aligned) {
-    if (!box.is_none()) {
-        if (!py::isinstance<Obb>(box)) raise_type("box: a Box is expected");
-        return Bound(box.cast<const Obb&>());
-    }
-    if (!ball.is_none()) {
-        const auto pair = ball.cast<std::pair<py::object, double>>();
-        return Bound(Sphere{vector_of(pair.first, "ball"), pair.second});
-    }
-    if (!aligned.is_none()) {
-        const auto pair = aligned.cast<std::pair<py::object, py::object>>();
-        return Bound(Aabb{vector_of(pair.first, "aligned"), vector_of(pair.second, "aligned")});
-    }
-    return {};
-}
 
 template <class H>
 H handle_or_null(const py::object& given, const char* name) {
@@ -89,27 +75,6 @@ struct HitRecord {
     std::uint32_t triangle, hit;
     std::uint64_t user;
 };
-
-struct BodyShape {
-    std::variant<Obb, Sphere, collide::Capsule> shape;
-};
-
-BodyShape shape_of(const py::object& box, const py::object& ball, const py::object& capsule) {
-    if (!box.is_none()) {
-        if (!py::isinstance<Obb>(box)) raise_type("box: a Box is expected");
-        return {box.cast<const Obb&>()};
-    }
-    if (!ball.is_none()) {
-        const auto pair = ball.cast<std::pair<py::object, double>>();
-        return {Sphere{vector_of(pair.first, "ball"), pair.second}};
-    }
-    if (!capsule.is_none()) {
-        const auto three = capsule.cast<std::tuple<py::object, py::object, double>>();
-        return {collide::Capsule{vector_of(std::get<0>(three), "capsule"), vector_of(std::get<1>(three), "capsule"),
-                                 std::get<2>(three)}};
-    }
-    raise_type("one of box=, ball= and capsule= is expected");
-}
 
 // A World and a lock: changes need it for themselves, questions share it. Taken without the interpreter's lock.
 class PyWorld {
@@ -257,9 +222,11 @@ py::array PyWorld::raycast_many(const py::handle& origins, const py::handle& dir
     };
     py::array_t<HitRecord> result(static_cast<py::ssize_t>(along.size()));
     HitRecord* out = result.mutable_data();
-    ask([&](const World& world) {
+    value_of(ask([&](const World& world) -> Result<void> {
         for (std::size_t i = 0; i < along.size(); ++i) {
-            const auto hit = world.raycast({at(from, i), at(along, i), max_t}, layers);
+            const Ray ray{at(from, i), at(along, i), max_t};
+            if (auto valid = validate(ray, i); !valid) return valid;
+            const auto hit = world.raycast(ray, layers);
             out[i] = {};
             out[i].t = std::numeric_limits<double>::infinity();
             out[i].index = kNoIndex;
@@ -273,7 +240,8 @@ py::array PyWorld::raycast_many(const py::handle& origins, const py::handle& dir
                       1,
                       hit->user};
         }
-    });
+        return {};
+    }));
     return result;
 }
 
@@ -302,7 +270,8 @@ void bind_answers(py::module_& module) {
         .def_readonly("users", &Seen::users, "their user numbers")
         .def_readonly("verdicts", &Seen::verdicts, "STRADDLING or INSIDE for each")
         .def_readonly("occluded_ids", &Seen::occluded_ids, "in the view's frustum, and hidden by others")
-        .def_readonly("depth", &Seen::depth, "the depth buffer, (height, width), larger is nearer; or None")
+        .def_readonly("depth", &Seen::depth,
+                      "the depth buffer, (height, width), the bottom row first, larger is nearer; or None")
         .def_property_readonly("statistics",
                                [](const Seen& s) {
                                    py::dict d;
@@ -487,10 +456,10 @@ void bind_questions(py::class_<PyWorld>& type) {
             "overlap",
             [](const PyWorld& world, const py::object& box, const py::object& ball, const py::object& capsule,
                std::uint32_t layers) {
-                const BodyShape body = shape_of(box, ball, capsule);
+                const Shape shape = shape_of(box, ball, capsule);
                 Vector<ObjectRef> found;
                 world.ask([&](const World& w) {
-                    std::visit([&](const auto& shape) { w.overlap(shape, found, layers); }, body.shape);
+                    std::visit([&](const auto& one) { w.overlap(one, found, layers); }, shape);
                 });
                 std::vector<ObjectHandle> handles;
                 for (const ObjectRef& ref : found) handles.push_back(ref.object);
@@ -502,10 +471,10 @@ void bind_questions(py::class_<PyWorld>& type) {
             "closest",
             [](const PyWorld& world, double max_distance, const py::object& box, const py::object& ball,
                const py::object& capsule, std::uint32_t layers) {
-                const BodyShape body = shape_of(box, ball, capsule);
+                const Shape shape = shape_of(box, ball, capsule);
+                check_limit(max_distance, "max_distance");
                 return world.ask([&](const World& w) {
-                    return std::visit([&](const auto& shape) { return w.closest(shape, max_distance, layers); },
-                                      body.shape);
+                    return std::visit([&](const auto& one) { return w.closest(one, max_distance, layers); }, shape);
                 });
             },
             py::arg("max_distance"), py::kw_only(), py::arg("box") = py::none(), py::arg("ball") = py::none(),
@@ -602,7 +571,7 @@ void bind_changes(py::class_<PyWorld>& type) {
                 for_handles<ObjectHandle>(world, objects,
                                           [](World& w, ObjectHandle handle, std::size_t) { return w.remove(handle); });
             },
-            py::arg("objects"), "One object or many.")
+            py::arg("objects"), "One object or many: all but those refused; the error names the first.")
         .def(
             "set_transform",
             [](PyWorld& world, ObjectHandle object, const py::handle& matrix) {
@@ -617,9 +586,12 @@ void bind_changes(py::class_<PyWorld>& type) {
                 value_of(world.change([&](World& w) { return w.set_transform(node, transform); }));
             },
             py::arg("handle"), py::arg("transform"))
-        .def("set_transforms", &set_transforms<ObjectHandle>, py::arg("objects"), py::arg("transforms"))
-        .def("set_node_transforms", &set_transforms<NodeHandle>, py::arg("nodes"), py::arg("transforms"))
-        .def("set_boxes", &set_boxes, py::arg("objects"), py::arg("boxes"))
+        .def("set_transforms", &set_transforms<ObjectHandle>, py::arg("objects"), py::arg("transforms"),
+             "Of objects with a mesh. All but those refused change; the error names the first.")
+        .def("set_node_transforms", &set_transforms<NodeHandle>, py::arg("nodes"), py::arg("transforms"),
+             "As set_transforms.")
+        .def("set_boxes", &set_boxes, py::arg("objects"), py::arg("boxes"),
+             "Of objects that were added with a bound, which becomes a box. Refused ones as in set_transforms.")
         .def(
             "set_hidden",
             [](PyWorld& world, const py::object& objects, bool hidden) {
@@ -627,7 +599,7 @@ void bind_changes(py::class_<PyWorld>& type) {
                     return w.set_hidden(handle, hidden);
                 });
             },
-            py::arg("objects"), py::arg("hidden"))
+            py::arg("objects"), py::arg("hidden"), "Hidden ones are in no answer. Refused ones as in set_transforms.")
         .def(
             "set_layers",
             [](PyWorld& world, const py::object& objects, std::uint32_t layers) {
@@ -635,14 +607,16 @@ void bind_changes(py::class_<PyWorld>& type) {
                     return w.set_layers(handle, layers);
                 });
             },
-            py::arg("objects"), py::arg("layers"))
+            py::arg("objects"), py::arg("layers"), "Refused ones as in set_transforms.")
         .def(
             "update",
             [](PyWorld& world) {
                 const auto threads = executor();
                 value_of(world.change([&](World& w) { return w.update(*threads); }));
             },
-            "Makes all changes since the last call count. Once a frame.")
+            "Makes all changes since the last call count. Once a frame. Error: more than `max_pairs` pairs; then there "
+            "are "
+            "none, and all else is as it should be.")
         .def_property_readonly("statistics", [](const PyWorld& world) {
             const WorldStatistics s = world.ask([](const World& w) { return w.statistics(); });
             py::dict d;

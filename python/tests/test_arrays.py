@@ -163,3 +163,17 @@ def test_integers_that_do_not_fit_are_an_error(bad):
 def test_real_numbers_are_no_indices():
     with pytest.raises(TypeError, match="ends"):
         crofton.fit_many(rows("f4"), [4.5])
+
+
+def test_the_code_that_the_readme_names_is_one():
+    with pytest.raises(crofton.Error) as raised:
+        crofton.fit_obb(np.full((4, 3), np.nan))
+    assert raised.value.code == "not_finite"
+    assert repr(raised.value.code) in crofton.Error.__doc__
+
+
+@pytest.mark.parametrize("half", [0.7, 0.1, 0.3, 1e-50, 16777217.0])
+def test_a_box_holds_the_points_at_its_half_extents(half):
+    box = crofton.Box((0, 0, 0), (half, half, half))
+    assert box.contains((half, -half, half))
+    assert (box.half_extents == crofton.boxes([[0, 0, 0]], half)["half_extents"][0]).all()

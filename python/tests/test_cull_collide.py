@@ -206,3 +206,12 @@ def test_bad_extents_are_an_error(half_extents):
 def test_skew_axes_are_an_error():
     with pytest.raises(crofton.Error):
         crofton.Box((0, 0, 0), (1, 1, 1), [[1, 0, 0], [0.5, 1, 0], [0, 0, 1]])
+
+
+@pytest.mark.parametrize("side", ["a", "b"])
+def test_a_box_that_is_none_has_no_distance(side):
+    good, bad = crofton.boxes(np.zeros((3, 3)), 1), crofton.boxes(np.zeros((3, 3)), 1)
+    bad["center"][1] = np.nan
+    with pytest.raises(crofton.Error, match=f"^{side}: ") as raised:
+        crofton.distance(*((bad, good) if side == "a" else (good, bad)))
+    assert raised.value.item == 1

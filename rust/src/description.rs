@@ -3,7 +3,7 @@
 use crate::error::wrong;
 #[cfg(doc)]
 use crate::World;
-use crate::{sys, Mesh, Node, Obb, Result, Transform};
+use crate::{sys, Error, Mesh, Node, Obb, Result, Status, Transform};
 use std::{mem::size_of, os::raw::c_void, ptr};
 
 /// A mesh's positions, in the caller's memory.
@@ -68,6 +68,11 @@ impl<'a> MeshData<'a> {
             Indices::U32(i) => (i.as_ptr() as *const c_void, i.len(), 0),
             Indices::U16(i) => (i.as_ptr() as *const c_void, i.len(), 1),
         };
+        // The library takes no indices for `Indices::None`.
+        if index_count == 0 && !indices.is_null() {
+            let message = "the slice of indices is empty, so there is no triangle".to_owned();
+            return Err(Error { status: Status::Empty, message, item: None });
+        }
         Ok(sys::MeshData {
             size: size_of::<sys::MeshData>(),
             positions,

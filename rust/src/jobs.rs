@@ -27,13 +27,15 @@ unsafe impl Executor for Threads {
     }
 
     fn parallel_for(&self, count: usize, grain: usize, task: &(dyn Fn(usize, usize, u32) + Sync)) {
-        let next = AtomicUsize::new(0);
+        let ranges = if count == 0 { 0 } else { (count - 1) / grain + 1 };
+        let next = AtomicUsize::new(0); // range: places would pass the largest number where the grain is large
         let work = |worker: u32| loop {
-            let begin = next.fetch_add(grain, Ordering::Relaxed);
-            if begin >= count {
+            let range = next.fetch_add(1, Ordering::Relaxed);
+            if range >= ranges {
                 break;
             }
-            task(begin, (begin + grain).min(count), worker);
+            let begin = range * grain;
+            task(begin, begin + grain.min(count - begin), worker);
         };
         std::thread::scope(|scope| {
             for worker in 1..self.concurrency() {

@@ -219,7 +219,8 @@ impl World {
         check(unsafe { sys::crofton_world_set_user(self.raw, object, user) })
     }
 
-    /// Makes the changes take effect; once a frame.
+    /// Makes the changes take effect; once a frame. Error: more than [`WorldOptions::max_pairs`] pairs; then there are
+    /// none, and all else is as it should be.
     pub fn update(&mut self) -> Result<()> {
         check(unsafe { sys::crofton_world_update(self.raw, ptr::null()) })
     }

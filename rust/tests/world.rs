@@ -228,3 +228,30 @@ fn an_error_is_the_threads_own() {
         }
     });
 }
+
+#[test]
+fn no_indices_are_no_triangles() {
+    let mut world = World::new().unwrap();
+    let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    for indices in [Indices::U32(&[]), Indices::U16(&[])] {
+        let data = MeshData { vertices: Vertices::F32(&corners), indices, without_triangles: false };
+        assert_eq!(world.add_mesh(&data).unwrap_err().status, Status::Empty);
+    }
+    let data = MeshData { vertices: Vertices::F32(&corners), indices: Indices::None, without_triangles: false };
+    assert!(world.add_mesh(&data).is_ok());
+}
+
+#[test]
+fn threads_do_each_range_once_whatever_the_grain() {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+    for (count, grain) in [(5, usize::MAX / 2 + 1), (5, usize::MAX), (5, 2), (5, 5), (0, 3), (7, 1)] {
+        let times: Vec<AtomicUsize> = (0..count).map(|_| AtomicUsize::new(0)).collect();
+        Threads(4).parallel_for(count, grain, &|begin, end, worker| {
+            assert!(begin < end && worker < 4);
+            for time in &times[begin..end] {
+                time.fetch_add(1, Ordering::Relaxed);
+            }
+        });
+        assert!(times.iter().all(|t| t.load(Ordering::Relaxed) == 1));
+    }
+}

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 import { failure } from './error.js';
-import { Owned, create } from './memory.js';
+import { Owned, create, indicesOf } from './memory.js';
 
 /** The answer to a query, in memory that is kept. Its arrays are views: valid until its next query or any growth of memory. */
 export class VisibleSet extends Owned {
@@ -48,9 +48,9 @@ export class Tree extends Owned {
     /** `items`: ids; item items[i] becomes box i. Call refit before the next query. */
     move(items, boxes) {
         if (items.length !== boxes.length) throw failure(3, `${items.length} items and ${boxes.length} boxes`);
-        this.memory.lend([Uint32Array.from(items)], (at) => this.memory.call('tree_move', this.handle, at, boxes.handle, items.length));
+        this.memory.lend([indicesOf(items, 'items')], (at) => this.memory.call('tree_move', this.handle, at, boxes.handle, items.length));
     }
-    remove(item) { this.memory.call('tree_remove', this.handle, item); }
+    remove(item) { this.memory.call('tree_remove', this.handle, indicesOf([item], 'item')[0]); }
     refit() { this.memory.call('tree_refit', this.handle); }
 }
 

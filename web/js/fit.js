@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 import { failure } from './error.js';
-import { checkArray } from './memory.js';
+import { checkArray, checkGroups } from './memory.js';
 
-const QUALITY = { fast: 0, tight: 1, exact: 2 };
+const QUALITY = { __proto__: null, fast: 0, tight: 1, exact: 2 };
 
 /** A box around points, x y z each, best by the criterion: weights of volume, area and mean curvature. */
 export function fitBox(memory, points, { quality = 'tight', criterion } = {}) {
     checkArray(points, [Float32Array, Float64Array], 'points');
     if (!(quality in QUALITY)) throw failure(1, `quality is one of ${Object.keys(QUALITY).join(', ')}`);
-    if (points.length % 3) throw failure(1, `points must have three numbers each, and there are ${points.length}`);
+    checkGroups(points, 3, 'points');
     const kind = points instanceof Float32Array ? 'fit_floats' : 'fit_doubles';
     return memory.lend([points, new Uint8Array(128)], (place, at) => {
         memory.words.set([32, QUALITY[quality]], at >> 2);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 import { failure } from './error.js';
-import { Owned, checkArray } from './memory.js';
+import { Owned, checkArray, numbersOf } from './memory.js';
 
 export const BOX = 72;
 
@@ -23,7 +23,7 @@ export class Boxes extends Owned {
         for (let at = (this.handle >> 2) + 6, i = 0; i < count; ++i, at += 18) floats[at] = floats[at + 4] = floats[at + 8] = 1;
     }
     #at(i) {
-        if (!(i >= 0 && i < this.length)) throw failure(3, `Boxes: there is no box ${i} of ${this.length}`);
+        if (!(Number.isInteger(i) && i >= 0 && i < this.length)) throw failure(3, `Boxes: there is no box ${i} of ${this.length}`);
         return this.handle + i * BOX;
     }
     /**
@@ -67,7 +67,7 @@ export class Boxes extends Owned {
     get bytes() { return this.memory.bytes.subarray(this.handle, this.handle + this.length * BOX); }
 }
 
-const DEPTH = { reversed: 0, zeroToOne: 1, minusOneToOne: 2 };
+const DEPTH = { __proto__: null, reversed: 0, zeroToOne: 1, minusOneToOne: 2 };
 
 /** A view volume: of a camera, or of a matrix and the range of its depths. Held as a view, ready for calls. */
 export class Frustum extends Owned {
@@ -96,7 +96,7 @@ export class Frustum extends Owned {
         if (matrix?.length !== 16) throw failure(1, 'matrix must have 16 numbers');
         const at = this.memory.scratch(160);
         this.memory.doubles.set(matrix, at >> 3);
-        if (origin) this.memory.doubles.set(origin, (at >> 3) + 16);
+        if (origin) this.memory.doubles.set(numbersOf(origin, 3, 'origin'), (at >> 3) + 16);
         this.memory.call('frustum_from_matrix', at, DEPTH[depth], origin ? at + 128 : 0, this.handle + 8);
         return this;
     }

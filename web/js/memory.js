@@ -18,6 +18,26 @@ export function checkArray(array, kinds, what) {
     return array;
 }
 
+/** A vector's numbers. Throws where there are more or fewer than `count`. */
+export function numbersOf(vector, count, what) {
+    const numbers = Array.from(vector ?? []);
+    if (numbers.length !== count) throw failure(1, `${what} must have ${count} numbers, and there are ${numbers.length}`);
+    return numbers;
+}
+
+/** Throws where an array does not hold whole groups of so many numbers. */
+export function checkGroups(array, count, what) {
+    if (array.length % count) throw failure(1, `${what} must have ${count} numbers each, and there are ${array.length}`);
+}
+
+/** Indices as the library takes them. Throws for what is no whole number of 32 bits. */
+export function indicesOf(numbers, what) {
+    const indices = Uint32Array.from(numbers);
+    const bad = indices.findIndex((index, i) => index !== numbers[i]);
+    if (bad >= 0) throw failure(3, `${what}: ${numbers[bad]} is no index`, bad);
+    return indices;
+}
+
 export class Memory {
     #bytes; #doubles; #floats; #words;
     #thrown; #hook = 0; #scratch = 0; #scratchBytes = 0;
@@ -98,6 +118,7 @@ export class Memory {
 
     /** `logger(level, message)`. What it throws comes out of the call that logged, once that is done. */
     setLogger(logger) {
+        if (logger && typeof logger !== 'function') throw failure(1, 'a logger is a function, or null');
         const hook = logger && this.module.addFunction((_user, level, message) => {
             try {
                 logger(level, this.text(message));

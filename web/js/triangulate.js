@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 import { failure } from './error.js';
-import { Owned, checkArray, create } from './memory.js';
+import { Owned, checkArray, checkGroups, create, indicesOf } from './memory.js';
 
-const METHOD = { ear: 0, delaunay: 1, minimumWeight: 2 };
+const METHOD = { __proto__: null, ear: 0, delaunay: 1, minimumWeight: 2 };
 
 /** Polygons with holes to triangles; keeps its memory from one polygon to the next. */
 export class Triangulator extends Owned {
@@ -10,9 +10,10 @@ export class Triangulator extends Owned {
     /** `points`: x y each; `ringEnds`: where each ring ends, the outer one first. `indices` is a copy, three a triangle. */
     triangulate(points, ringEnds = [points.length / 2], method = 'minimumWeight') {
         checkArray(points, [Float64Array], 'points');
+        checkGroups(points, 2, 'points');
         if (!(method in METHOD)) throw failure(1, `method is one of ${Object.keys(METHOD).join(', ')}`);
         const { memory } = this, { handle } = this;
-        return memory.lend([points, Uint32Array.from(ringEnds), new Uint8Array(64)], (corners, ends, at) => {
+        return memory.lend([points, indicesOf(ringEnds, 'ringEnds'), new Uint8Array(64)], (corners, ends, at) => {
             const first = at >> 2;
             memory.words.set([20, corners, points.length >> 1, ends, ringEnds.length], first);
             memory.words[first + 6] = 40;

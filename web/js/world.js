@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 import { failure } from './error.js';
-import { Owned, checkArray, create } from './memory.js';
+import { Owned, checkArray, checkGroups, create, numbersOf } from './memory.js';
 import { BOX, roundedUp, writeCamera } from './geometry.js';
 
 const ALL = 0xffffffff;
@@ -47,6 +47,8 @@ export class World extends Owned {
     addMesh(positions, indices) {
         checkArray(positions, [Float32Array], 'positions');
         checkArray(indices, [Uint32Array, Uint16Array], 'indices');
+        checkGroups(positions, 3, 'positions');
+        if (indices.length === 0) throw failure(5, 'there are no indices, so there is no triangle');
         const { memory } = this, { handle } = this;
         return memory.lend([positions, indices, new Uint8Array(48)], (places, corners, at) => {
             const isShort = indices instanceof Uint16Array ? 1 : 0;
@@ -62,6 +64,7 @@ export class World extends Owned {
     /** One convex occluder of a mesh: the hull of `positions`, within what is drawn. */
     setConvexOccluder(mesh, positions) {
         checkArray(positions, [Float32Array], 'positions');
+        checkGroups(positions, 3, 'positions');
         const { memory } = this, { handle } = this;
         memory.lend([positions, new Uint8Array(248)], (places, at) => {
             memory.words.set([232, 2, 0, places, positions.length / 3], at >> 2);
@@ -128,17 +131,17 @@ export class World extends Owned {
     }
     /** The nearest hit of a ray, `{ object, user, t, point, triangle }`, or null. */
     raycast(origin, direction, maxT = Infinity, layers = ALL) {
-        const { memory } = this, at = memory.scratch(112), { doubles, words } = memory;
-        doubles.set([...origin, ...direction, maxT], at >> 3);
+        const { memory } = this, at = memory.scratch(112), hit = at + 56 >> 2;
+        memory.doubles.set([...numbersOf(origin, 3, 'origin'), ...numbersOf(direction, 3, 'direction'), maxT], at >> 3);
         memory.call('world_raycast', this.handle, at, 1, layers, at + 56);
-        const hit = at + 56 >> 2;
+        const { doubles, words } = memory;  // the call may have made the memory grow
         if (words[hit] === ALL) return null;
         return { object: this.#handleAt(at + 56), user: words[hit + 2] + 2 ** 32 * words[hit + 3], t: doubles[at + 72 >> 3],
             point: [...doubles.subarray(at + 80 >> 3, at + 104 >> 3)], triangle: words[hit + 12] === ALL ? -1 : words[hit + 12] };
     }
 
     #give(handle, at) {
-        if (!Number.isInteger(handle?.index)) throw failure(14, 'this is no object or mesh of a world');
+        if (!Number.isInteger(handle?.index) || !Number.isInteger(handle.generation)) throw failure(14, 'this is no object or mesh of a world');
         this.memory.words.set([handle.index, handle.generation], at >> 2);
         return at;
     }
@@ -148,15 +151,17 @@ export class World extends Owned {
     }
     #writeTransform(at, transform) {
         if (transform.length !== 16) throw failure(1, 'a transform has 16 numbers, by columns');
+        if (![3, 7, 11, 15].every((i) => transform[i] === (i === 15 ? 1 : 0)))
+            throw failure(6, 'the last row of a transform is 0, 0, 0, 1: it has 16 numbers, by columns');
         const column = (c) => [transform[4 * c], transform[4 * c + 1], transform[4 * c + 2]];
         this.memory.doubles.set([0, 1, 2, 3].flatMap(column), at >> 3);
     }
     #writeBound(at, box, ball) {
         const { words, doubles, floats } = this.memory;
         words[at >> 2] = box ? 1 : 3;
-        if (ball) return doubles.set([...ball.center, ball.radius], at + 128 >> 3);
-        doubles.set(box.center, at + 8 >> 3);
-        floats.set(box.axes ?? [1, 0, 0, 0, 1, 0, 0, 0, 1], at + 32 >> 2);
-        floats.set(Array.from(box.halfExtents, roundedUp), at + 8 + BOX - 12 >> 2);
+        if (ball) return doubles.set([...numbersOf(ball.center, 3, 'center'), ball.radius], at + 128 >> 3);
+        doubles.set(numbersOf(box.center, 3, 'center'), at + 8 >> 3);
+        floats.set(numbersOf(box.axes ?? [1, 0, 0, 0, 1, 0, 0, 0, 1], 9, 'axes'), at + 32 >> 2);
+        floats.set(numbersOf(box.halfExtents, 3, 'halfExtents').map(roundedUp), at + 8 + BOX - 12 >> 2);
     }
 }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 import test from 'node:test';
 import assert from 'node:assert/strict';
+import { readFile } from 'node:fs/promises';
 import { load, hasSimd, CroftonError } from '../js/crofton.js';
+import { failure } from '../js/error.js';
 import { random, rotation, verdict } from './oracle.js';
 
 const BUILDS = (process.env.CROFTON_BUILDS ?? 'simd,plain').split(',');
@@ -21,6 +23,18 @@ function crowd(crofton, count, seed, spread = 60) {
 }
 const translation = (x, y, z) => [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, x, y, z, 1];
 
+test('statuses have the names of the C API, in the code and in its types', async () => {
+    const read = (path) => readFile(new URL(path, import.meta.url), 'utf8');
+    const header = await read('../../engine/capi/include/crofton/capi/base.h'), types = await read('../crofton.d.ts');
+    const body = header.match(/typedef enum crofton_status \{([^}]*)\}/)[1];
+    const names = [...body.matchAll(/CROFTON_(\w+) = (\d+)/g)].map(([, name, number]) => {
+        const words = name.toLowerCase().replaceAll('_', ' ');
+        assert.equal(failure(Number(number), 'a message').status, words);
+        return words;
+    });
+    const typed = [...types.match(/type Status = ([^;]*);/)[1].matchAll(/'([^']*)'/g)].map(([, name]) => name);
+    assert.deepEqual(['ok', ...typed], names);
+});
 test('hasSimd says whether SIMD is there', () => assert.equal(typeof hasSimd(), 'boolean'));
 test('a damaged binary is a clear error', () => assert.rejects(load({ wasmBinary: new Uint8Array(8) }), refused('unavailable')));
 test('without WebAssembly there is a clear error', async () => {
@@ -304,4 +318,54 @@ for (const build of BUILDS) {
     here('an object without a shape is refused', () => assert.throws(() => new crofton.World().add({}), refused('invalid argument')));
     here('a mesh with a missing corner is refused', () => assert.throws(
         () => new crofton.World().addMesh(new Float32Array(9), new Uint32Array([0, 1, 3])), CroftonError));
+
+    const ball = { center: [0, 0, -5], radius: 1 }, cube = { center: [0, 0, 0], halfExtents: [1, 1, 1] };
+    const oneBall = () => { const world = new crofton.World(), object = world.add({ ball }); world.update(); return { world, object }; };
+    for (const [what, wrong] of Object.entries({
+        'a ray of four numbers': (world) => world.raycast([0, 0, 0], [0, 0, -1, 0]),
+        'an origin of two numbers': (world) => world.raycast([0, 0], [0, 0, -1]),
+        'a center of two numbers': (world) => world.add({ ball: { center: [3, 0], radius: 1 } }),
+        'a center of four numbers': (world) => world.add({ ball: { center: [3, 0, 0, 1], radius: 1 } }),
+        'half extents of two numbers': (world) => world.add({ box: { ...cube, halfExtents: [1, 1] } }),
+        'half extents that are one number': (world) => world.add({ box: { ...cube, halfExtents: 1 } }),
+        'a center of a box of two numbers': (world) => world.add({ box: { ...cube, center: [0, 0] } }),
+        'twelve numbers as axes': (world) => world.add({ box: { ...cube, axes: [1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0] } }),
+        'a handle without a generation': (world) => world.remove({ index: 0 }),
+        'positions that are no threes': (world) => world.addMesh(new Float32Array(10), new Uint32Array([0, 1, 2])),
+        'no indices': (world) => world.addMesh(new Float32Array(9), new Uint32Array(0)),
+        'a matrix by rows': (world) => world.add({ mesh: world.addMesh(CUBE.positions, CUBE.indices),
+            transform: [1, 0, 0, 7, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1] }),
+        'an origin of a matrix of two numbers': () => new crofton.Frustum({ matrix: translation(0, 0, 0), origin: [1, 2] }),
+        'a place between two boxes': () => new crofton.Boxes(3).set(1.5, [0, 0, 0], [1, 1, 1]),
+        'the removal of no item': () => new crofton.Tree(new crofton.Boxes(3)).remove(undefined),
+        'the move of item 2^32': () => new crofton.Tree(new crofton.Boxes(3)).move([2 ** 32], new crofton.Boxes(1)),
+        'an odd number of coordinates': () => new crofton.Triangulator().triangulate(new Float64Array([0, 0, 1, 0, 1, 1, 5])),
+        'a ring that ends within a point': () => new crofton.Triangulator().triangulate(new Float64Array([0, 0, 1, 0, 1, 1]), [2.5]),
+        'a method that all objects have': () => new crofton.Triangulator().triangulate(new Float64Array([0, 0, 1, 0, 1, 1]), [3], 'toString'),
+        'a logger that is no function': () => crofton.setLogger('console'),
+    })) {
+        here(`${what}: an error, and the world is as it was`, () => {
+            const { world, object } = oneBall();
+            assert.throws(() => wrong(world), CroftonError);
+            assert.ok(world.contains(object) && world.count === 1);
+        });
+    }
+    here('a bad item is named by its place', () => assert.throws(
+        () => new crofton.Tree(new crofton.Boxes(3)).move([1, -1], new crofton.Boxes(2)), (error) => error.item === 1));
+    here('vectors may be any array-like', () =>
+        assert.equal(oneBall().world.raycast({ length: 3, 0: 0, 1: 0, 2: 0 }, new Float32Array([0, 0, -1])).t, 4));
+    here('a ray is answered where the memory grows during the call', () => {
+        const { world } = oneBall(), { memory } = world, { module } = memory, ask = module._crofton_world_raycast;
+        try {
+            module._crofton_world_raycast = (...given) => {
+                const before = memory.bytes.length, places = [];
+                while (memory.bytes.length === before) places.push(memory.allocate(1 << 22, 'memory'));
+                places.forEach((place) => memory.free(place));
+                return ask(...given);
+            };
+            assert.deepEqual(world.raycast([0, 0, 0], [0, 0, -1]).point, [0, 0, -4]);
+        } finally {
+            module._crofton_world_raycast = ask;
+        }
+    });
 }

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: MIT
+"""What a World says of rays, shapes, numbers and indices that are none."""
+import numpy as np
+import pytest
+
+import crofton
+
+
+@pytest.fixture
+def world():
+    return crofton.World()
+
+
+@pytest.mark.parametrize(
+    "origin, direction, max_t",
+    [((np.nan, 0, 0), (0, 0, -1), np.inf), ((0, 0, 0), (0, 0, 0), np.inf), ((0, 0, 0), (0, np.inf, -1), np.inf)],
+)
+def test_a_bad_ray_among_many_is_named(world, origin, direction, max_t):
+    world.add(ball=((0, 0, -5), 1.0))
+    world.update()
+    with pytest.raises(crofton.Error) as raised:
+        world.raycast_many([(0.0, 0, 0), origin], [(0.0, 0, -1), direction], max_t)
+    assert raised.value.item == 1
+
+
+@pytest.mark.parametrize("max_t", [-1.0, np.nan])
+def test_a_bad_length_of_rays_is_an_error(world, max_t):
+    with pytest.raises(crofton.Error):
+        world.raycast_many([(0.0, 0, 0)], [(0.0, 0, -1)], max_t)
+
+
+bad_shapes = [
+    {"ball": ((np.nan, 0, 0), 1.0)}, {"ball": ((0, 0, 0), -10.0)}, {"ball": ((0, 0, 0), np.inf)},
+    {"capsule": ((0, 0, 0), (0, np.inf, 0), 1.0)}, {"capsule": ((0, 0, 0), (0, 0, -9), -1.0)},
+]
+
+
+@pytest.mark.parametrize("shape", bad_shapes, ids=str)
+def test_a_bad_shape_is_an_error_and_not_an_empty_answer(world, shape):
+    world.add(ball=((0, 0, -5), 1.0))
+    world.update()
+    with pytest.raises(crofton.Error):
+        world.overlap(**shape)
+    with pytest.raises(crofton.Error):
+        world.closest(100.0, **shape)
+
+
+@pytest.mark.parametrize("limit", [np.nan, -1.0])
+def test_a_bad_limit_of_distance_is_an_error(world, limit):
+    with pytest.raises(crofton.Error):
+        world.closest(limit, ball=((0, 0, 0), 1.0))
+
+
+@pytest.mark.parametrize("call", [
+    lambda w: w.add(ball=5), lambda w: w.add(ball=((0, 0, 0),)), lambda w: w.add(ball=((0, 0, 0), "far")),
+    lambda w: w.add(aligned=3), lambda w: w.add(aligned="no"), lambda w: w.overlap(capsule=((0, 0, 0), 1.0)),
+    lambda w: crofton.Camera(height="high"), lambda w: crofton.fit_exact(np.eye(3), seconds="many"),
+    lambda w: crofton.triangulate([[0, 0], [1, 0], [0, 1]], work=-1),
+    lambda w: crofton.triangulate([[0, 0], [1, 0], [0, 1]], seconds=[]),
+])
+def test_what_is_no_number_and_no_shape_is_a_type_error(world, call):
+    with pytest.raises(TypeError, match="expected"):
+        call(world)
+
+
+def test_of_two_shapes_none_is_dropped_silently(world):
+    box, ball = crofton.Box((0, 0, 0), (1, 1, 1)), ((9, 0, 0), 1.0)
+    for call in (world.add, world.overlap, lambda **shapes: world.closest(1.0, **shapes)):
+        with pytest.raises(TypeError, match="one of"):
+            call(box=box, ball=ball)
+    assert len(world) == 0
+
+
+@pytest.mark.parametrize("users", [[1, 2**63], (2**64 - 1, 0), [2**63, 2**63 + 1], [3, 4]], ids=str)
+def test_user_numbers_in_a_list_are_given_back(world, users):
+    handles = world.add_boxes(crofton.boxes(np.zeros((2, 3)), 1), users=users)
+    assert [world.user_of(crofton.ObjectHandle(*map(int, h))) for h in handles] == list(users)
+
+
+@pytest.mark.parametrize("users, error", [([-1, 2**63], crofton.Error), ([1.5, 2], TypeError), ([2**63, 0.5], TypeError)])
+def test_user_numbers_that_are_none_add_nothing(world, users, error):
+    with pytest.raises(error):
+        world.add_boxes(crofton.boxes(np.zeros((2, 3)), 1), users=users)
+    assert len(world) == 0
+
+
+@pytest.mark.parametrize("indices", [[], np.zeros((0, 3), "u4"), np.zeros(0, "u2")], ids=repr)
+def test_no_indices_are_no_triangles(world, cube, indices):
+    with pytest.raises(crofton.Error) as raised:
+        world.add_mesh(cube[0][:6], indices)
+    assert raised.value.code == "empty"
