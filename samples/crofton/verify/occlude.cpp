@@ -151,10 +151,13 @@ void ask_for_pixels(Random& random, const OccludeSetup& setup, const Blockers& b
     }
 }
 
+// A few set-ups more where none of these rays is a witness or no square is covered.
 template <class Make>
 OccludeCounts run_setups(Random& random, std::uint64_t rays, const Make& make) {
+    constexpr int kMostMore = 100;
     OccludeCounts counts;
-    while (counts.rays < rays) {
+    const auto lacks = [&] { return counts.free == 0 || counts.covered_rays == 0; };
+    for (int more = 0; counts.rays < rays || (lacks() && more < kMostMore); more += counts.rays >= rays) {
         const OccludeSetup setup = make();
         occlude::OccluderSet set;
         for (const Obb& box : setup.occluders) (void)set.place(box);
