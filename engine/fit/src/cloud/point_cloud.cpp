@@ -151,7 +151,7 @@ bool PointCloud::has_more_than(std::size_t most) const {
         const glm::dvec3 p = normalised(i);
         std::uint64_t hash = 0;
         for (int k = 0; k < 3; ++k)
-            hash = (hash ^ std::bit_cast<std::uint64_t>(p[k])) * 0x9e3779b97f4a7c15u, hash ^= hash >> 32;
+            hash = (hash ^ std::bit_cast<std::uint64_t>(p[k] + 0.0)) * 0x9e3779b97f4a7c15u, hash ^= hash >> 32;
         std::size_t slot = hash % slots;
         while (table[slot] != 0 && different[table[slot] - 1] != p) slot = (slot + 1) % slots;
         if (table[slot] != 0) continue;
