@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <algorithm>
-#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/core/executor.hpp>
 #include <crofton/cull/bound_set.hpp>
-#include <crofton/cull/cull.hpp>
 #include <crofton/cull/list_layout.hpp>
 #include <limits>
 #include <oracle/exact_bounds.hpp>
 #include <oracle/random_boxes.hpp>
-#include <utility>
 #include <vector>
 
 using namespace crofton;
@@ -34,45 +31,6 @@ TEST_SUITE("cull/bound_set") {
                 CHECK(bits.verdict(i) == cull::classify(view.frustum, crowd.boxes[i]));
             CHECK(bits.verdict(17) == Verdict::straddling);
         }
-    }
-
-    TEST_CASE("what has been moved from is empty, and answers again once it is used") {
-        const oracle::Crowd crowd = oracle::random_crowd(300, 0.0, 5);
-        BoxSet set;
-        set.assign(crowd.boxes);
-        BoxSet other(std::move(set));
-        CHECK(other.size() == 300);
-        CHECK(set.size() == 0);
-        set = std::move(other);
-        CHECK(set.size() == 300);
-        CHECK(other.size() == 0);
-        cull::VerdictBits bits;
-        cull::find_visible(other, {}, {*frustum_of(Camera{})}, bits);
-        CHECK(bits.visible.empty());
-        other.assign(crowd.boxes);
-        CHECK(other.size() == 300);
-
-        const auto tree = *boxtree::BoxTree::build(crowd.boxes);
-        const cull::View views[1] = {{*frustum_of(Camera{})}};
-        cull::VisibleSet visible;
-        cull::find_visible(tree, views[0], visible, {.order = cull::ResultOrder::tree});
-        cull::ManyVisible many;
-        cull::find_visible(tree, views, many);
-        const std::size_t seen = visible.size();
-        REQUIRE(visible.inside_count() > 0);
-        REQUIRE(many.size() == seen);
-        const cull::VisibleSet kept(std::move(visible));
-        const cull::ManyVisible kept_many(std::move(many));
-        CHECK(kept.size() == seen);
-        CHECK(kept_many.size() == seen);
-        CHECK(visible.size() == 0);
-        CHECK(visible.ids().empty());
-        CHECK(visible.inside_count() == 0);
-        CHECK(visible.verdicts().empty());
-        CHECK(many.size() == 0);
-        CHECK(many.ids().empty());
-        cull::find_visible(tree, views[0], visible);
-        CHECK(visible.size() == seen);
     }
 
     TEST_CASE("an empty set, a view without planes and normals that are not unit are all answered") {

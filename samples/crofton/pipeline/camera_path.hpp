@@ -36,8 +36,8 @@ struct CameraPath {
 };
 
 // `bounds` frames the scene (y up); `walk` is where a pedestrian may go, for `street`, and may be empty: then the path
-// leads along the longer side of the bounds, low above the ground. A recording shorter than `frames` starts over, and the scene with it.
-// Errors: an unknown kind, an unreadable or invalid file, empty bounds.
+// leads along the longer side of the bounds, low above the ground. A recording shorter than `frames` starts over, and
+// the scene with it. Errors: an unknown kind, an unreadable or invalid file, empty bounds.
 [[nodiscard]] Result<CameraPath> make_camera_path(const PathOptions& options, const Aabb& bounds,
                                                   std::span<const glm::dvec3> walk);
 

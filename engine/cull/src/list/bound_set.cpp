@@ -73,6 +73,11 @@ std::span<const typename BoundSet<Bound>::Record> BoundSet<Bound>::records() con
     return records_;
 }
 template <class Bound>
+std::size_t BoundSet<Bound>::size() const {
+    return records_.size();
+}
+
+template <class Bound>
 std::span<const ListChunk> BoundSet<Bound>::chunks() const {
     return chunks_;
 }

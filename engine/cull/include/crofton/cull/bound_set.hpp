@@ -62,7 +62,7 @@ class BoundSet {
     // must pass validate(Obb)), or size().
     std::size_t update(std::span<const Bound> bounds, Executor& executor = serial_executor());
 
-    [[nodiscard]] std::size_t size() const { return records_.size(); }
+    [[nodiscard]] std::size_t size() const;
     [[nodiscard]] std::span<const RowBlock> rows() const;
     [[nodiscard]] std::span<const Record> records() const;
     [[nodiscard]] std::span<const ListChunk> chunks() const;
