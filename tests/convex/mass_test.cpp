@@ -80,6 +80,17 @@ TEST_SUITE("convex/mass") {
         CHECK(std::abs(mass.inertia[0][1]) < 1e-14);
     }
 
+    TEST_CASE("a needle's inertia about its axis is as precise as the others") {
+        const glm::vec3 half(1e-3f, 1e-3f, 1e3f);
+        std::vector<glm::vec3> corners;
+        for (int i = 0; i < 8; ++i)
+            corners.push_back(half * glm::vec3((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1, (i & 4) != 0 ? 1 : -1));
+        const MassProperties box = mass_properties(Body::box(half).value()).value();
+        const Hull hull = Hull::build(corners).value();
+        for (int k = 0; k < 3; ++k)
+            CHECK(hull.mass().inertia[k][k] / box.inertia[k][k] == doctest::Approx(1.0).epsilon(1e-13));
+    }
+
     TEST_CASE("a hull that is a box has the box's mass when rounded, wherever its frame is") {
         std::vector<glm::vec3> corners;
         for (int i = 0; i < 8; ++i)

@@ -24,7 +24,10 @@ MassProperties mass_of(const Moments& moments, const glm::dvec3& origin) {
     const glm::dvec3 mean = moments.volume > 0.0 ? moments.first / moments.volume : glm::dvec3(0.0);
     mass.center = origin + mean;
     const glm::dmat3 central = moments.second - moments.volume * glm::outerProduct(mean, mean);
-    mass.inertia = (central[0][0] + central[1][1] + central[2][2]) * glm::dmat3(1.0) - central;
+    mass.inertia = -central;
+    // Not the trace less the entry: of a needle nothing would be left.
+    for (int k = 0; k < 3; ++k)
+        mass.inertia[k][k] = central[(k + 1) % 3][(k + 1) % 3] + central[(k + 2) % 3][(k + 2) % 3];
     return mass;
 }
 
