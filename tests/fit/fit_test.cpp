@@ -339,7 +339,7 @@ TEST_SUITE("fit/fit") {
         CHECK(fit::merge(std::span(boxes).subspan(1, 1), measure::minimal_area()).has_value());
     }
 
-    TEST_CASE("points within 5e29 have a box that is valid, in any direction; beyond, half extents may exceed 1e30") {
+    TEST_CASE("points within 5e29 have a valid box in any direction, and beyond half extents may exceed 1e30") {
         for (const Quality quality : kQualities) {
             const std::vector<glm::dvec3> near = {glm::dvec3(-5e29), glm::dvec3(5e29)},
                                           far = {-near[1] * 2.0, near[1] * 2.0};

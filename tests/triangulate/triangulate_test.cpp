@@ -184,7 +184,7 @@ TEST_SUITE("triangulate/triangulate") {
         }
     }
 
-    TEST_CASE("a hole of two points divides the polygon and takes nothing away; outside it is an error") {
+    TEST_CASE("a hole of two points divides the polygon and takes nothing away, and outside it is an error") {
         const auto with = [](std::initializer_list<glm::dvec2> hole) {
             return polygon({{{0, 0}, {8, 0}, {8, 8}, {0, 8}}, hole});
         };
