@@ -95,6 +95,7 @@ TEST_SUITE("cli/usage") {
             CHECK(run_cli(command).err.find("--json and --svg cannot both go to stdout") != std::string::npos);
         CHECK(run_cli("frames --no-draw --frames 1 --json a --csv ./a").status == 2);
         CHECK(run_cli("frames --no-draw --frames 1 --json - --csv -").status == 2);
+        CHECK(run_cli("frames --no-draw --frames 1 --json /dev/null --csv /dev/null").status == 0);
     }
 
     TEST_CASE("an output that shares stdout with the command's own words is refused") {

@@ -152,6 +152,8 @@ std::string shared_output(const CLI::App& command) {
     for (const CLI::Option* option : command.get_options()) {
         if (option->get_type_name() != kWritableFile || option->count() == 0) continue;
         const auto path = option->as<std::string>();
+        std::error_code error;
+        if (std::filesystem::is_character_file(path, error)) continue;  // /dev/null takes any number
         const auto [other, is_new] = places.emplace(place_of(path), option);
         if (is_new) continue;
         const std::string both = other->second->get_name() + " and " + option->get_name();
