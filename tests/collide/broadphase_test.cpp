@@ -292,6 +292,9 @@ TEST_SUITE("collide/broadphase") {
         CHECK(error_of(result).code == ErrorCode::out_of_range);
         CHECK(error_of(result).item == 300);
         CHECK(same(broadphase.pairs(), pairs));
+        const auto many = broadphase.update_moved(boxes, std::vector<std::uint32_t>(boxes.size(), 300));
+        REQUIRE_FALSE(many.has_value());  // as many as there are boxes: all are looked at
+        CHECK(error_of(many).item == 300);
         // All boxes far away: the order is worn out, and made anew.
         auto far = boxes;
         for (int frame = 0; frame < 40; ++frame) {

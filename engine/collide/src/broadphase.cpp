@@ -236,11 +236,11 @@ Result<void> Broadphase::update_moved(std::span<const Obb> boxes, std::span<cons
     // After an error the pairs are no longer those of the last boxes: what moved in them is not known.
     const bool was_current = std::exchange(s.current, false);
     if (auto checked = s.check(boxes, filters); !checked) return checked;
+    if (const auto last = std::max_element(moved.begin(), moved.end()); last != moved.end() && *last >= boxes.size())
+        return fail(ErrorCode::out_of_range, *last, "broadphase: an item in `moved` is no index of a box");
     const bool few = moved.size() <= boxes.size() / kFewMovers && s.leaf_extent <= kWornOut * s.leaf_extent_when_sorted;
     if (!was_current || s.order.items().size() != boxes.size() || !few) return s.update_all(boxes, filters, executor);
-    if (!s.gather_movers(boxes.size(), moved))
-        return fail(ErrorCode::out_of_range, *std::max_element(moved.begin(), moved.end()),
-                    "broadphase: an item in `moved` is no index of a box");
+    s.gather_movers(boxes.size(), moved);
     return s.update_few(boxes, filters, executor);
 }
 

@@ -8,8 +8,7 @@
 namespace crofton::collide {
 
 // False where an item is out of range; the marks are as before then.
-bool Broadphase::State::gather_movers(std::size_t item_count, std::span<const std::uint32_t> moved) {
-    if (std::any_of(moved.begin(), moved.end(), [&](std::uint32_t item) { return item >= item_count; })) return false;
+void Broadphase::State::gather_movers(std::size_t item_count, std::span<const std::uint32_t> moved) {
     movers.clear();
     mover_slots.clear();
     is_moved.resize(item_count, 0);
@@ -19,7 +18,6 @@ bool Broadphase::State::gather_movers(std::size_t item_count, std::span<const st
         movers.push_back(item);
         mover_slots.push_back(order.slots()[item]);
     }
-    return true;
 }
 
 // Sixteen boxes at a time, then the bounds above each.

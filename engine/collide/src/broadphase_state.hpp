@@ -65,7 +65,7 @@ struct Broadphase::State {
                                           Executor& executor);
     [[nodiscard]] Result<void> update_few(std::span<const Obb> boxes, std::span<const CollisionFilter> filters,
                                           Executor& executor);
-    [[nodiscard]] bool gather_movers(std::size_t item_count, std::span<const std::uint32_t> moved);
+    void gather_movers(std::size_t item_count, std::span<const std::uint32_t> moved);
     void move_bounds(std::span<const Obb> boxes);
     [[nodiscard]] bool find_candidates(std::span<const CollisionFilter> filters);
     [[nodiscard]] bool replace_pairs();
