@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <crofton/collide/broadphase.hpp>
 #include <oracle/exact_boxes.hpp>
+#include <vector>
 
 #include "shapes.hpp"
 
@@ -85,8 +86,15 @@ CROFTON_FUZZ(in) {
             filters.resize(boxes.size());
             for (std::size_t i = old; i < filters.size(); ++i) filters[i] = {in.layers(), in.layers()};
         }
+        const bool moved_alone = in.flag();
+        if (moved_alone && std::erase(moved, static_cast<std::uint32_t>(boxes.size())) > 0) {
+            // The box that was dropped had moved before.
+            const std::vector<std::uint32_t> gone{static_cast<std::uint32_t>(boxes.size())};
+            demand(!broadphase.update_moved(boxes, gone, filters).has_value(), "an item that is no index is refused");
+            demand(listed(broadphase.pairs()) == before, "a refusal keeps the pairs");
+        }
         const auto result =
-            in.flag() ? broadphase.update_moved(boxes, moved, filters) : broadphase.update(boxes, filters);
+            moved_alone ? broadphase.update_moved(boxes, moved, filters) : broadphase.update(boxes, filters);
         demand(result.has_value(), "an update");
         check(broadphase, boxes, filters, before);
         before = listed(broadphase.pairs());

@@ -7,7 +7,7 @@
 
 namespace crofton::collide {
 
-// False where an item is out of range; the marks are as before then.
+// Of `moved`, each item once.
 void Broadphase::State::gather_movers(std::size_t item_count, std::span<const std::uint32_t> moved) {
     movers.clear();
     mover_slots.clear();
