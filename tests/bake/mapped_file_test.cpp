@@ -26,6 +26,14 @@ TEST_SUITE("bake/mapped_file") {
         CHECK_FALSE(MappedFile::open("."));
     }
 
+    TEST_CASE("a path that goes on after a zero byte is refused, not cut there") {
+        const crofton::bake_test::TemporaryFile file({});
+        REQUIRE(MappedFile::open(file.path()));
+        const auto cut = MappedFile::open(file.path() + std::string("\0.other", 7));
+        REQUIRE_FALSE(cut);
+        CHECK(error_of(cut).code == crofton::ErrorCode::invalid_argument);
+    }
+
     TEST_CASE("an empty file is empty, another one is its bytes, moves included") {
         const crofton::bake_test::TemporaryFile empty({});
         REQUIRE(MappedFile::open(empty.path()));

@@ -146,6 +146,14 @@ TEST_SUITE("bake/write_file") {
         CHECK(folder.count() == 1);
     }
 
+    TEST_CASE("a path that goes on after a zero byte is refused, not cut there") {
+        const Folder folder;
+        const auto cut = write(folder.file("old") + std::string("\0.new", 5), "x");
+        REQUIRE_FALSE(cut);
+        CHECK(error_of(cut).code == ErrorCode::invalid_argument);
+        CHECK(folder.count() == 0);
+    }
+
     TEST_CASE("a write that the disk has no room for leaves the old file, and nothing beside it") {
         const Folder folder;
         const std::string path = folder.file("scene");

@@ -3,6 +3,7 @@
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/cull.hpp>
+#include <crofton/cull/lights.hpp>
 #include <oracle/random_boxes.hpp>
 #include <utility>
 
@@ -47,5 +48,25 @@ TEST_SUITE("cull/moved_from") {
         CHECK(many.ids().empty());
         cull::find_visible(tree, views[0], visible);
         CHECK(visible.size() == seen);
+    }
+
+    TEST_CASE("a grid of froxels that was not built, or was moved from, has none, and no lights") {
+        auto built = *cull::FroxelGrid::build(Camera{}, {.columns = 4, .rows = 3, .slices = 2});
+        const Sphere light[1] = {{{0.0, 0.0, -5.0}, 4.0f}};
+        cull::FroxelLights lights;
+        REQUIRE(cull::find_lights(built, light, {}, lights));
+        REQUIRE_FALSE(lights.lights().empty());
+        const cull::FroxelGrid kept(std::move(built));
+        CHECK(kept.size() == 24);
+        const cull::FroxelGrid unbuilt;
+        for (const cull::FroxelGrid* grid : {&unbuilt, static_cast<const cull::FroxelGrid*>(&built)}) {
+            CHECK(grid->size() == 0);
+            CHECK(grid->columns() == 0);
+            REQUIRE(cull::find_lights(*grid, light, {}, lights));
+            CHECK(lights.offsets().size() == 1);
+            CHECK(lights.lights().empty());
+        }
+        REQUIRE(cull::find_lights(kept, light, {}, lights));
+        CHECK_FALSE(lights.lights().empty());
     }
 }

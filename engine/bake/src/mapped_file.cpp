@@ -130,6 +130,8 @@ void unmap(std::span<const std::byte>) {}
 }  // namespace
 
 Result<MappedFile> MappedFile::open(const std::string& path, const FileOptions& options) {
+    if (path.find('\0') != std::string::npos)
+        return fail(ErrorCode::invalid_argument, kNoItem, {path.c_str(), ": the path goes on after a zero byte"});
     const auto opened = open_bytes(path, options);
     if (!opened) return tl::unexpected(opened.error());
     return MappedFile(opened->bytes, opened->mapped);

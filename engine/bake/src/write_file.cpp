@@ -176,6 +176,8 @@ Result<void> write_directly(const std::string& path, std::span<const std::byte> 
 }  // namespace
 
 Result<void> write_file(const std::string& path, std::span<const std::byte> bytes) {
+    if (path.find('\0') != std::string::npos)
+        return fail(ErrorCode::invalid_argument, kNoItem, {path.c_str(), ": the path goes on after a zero byte"});
     // Links of /proc lead to pipes that have no path of their own: these are opened by the link.
     return detail::recover([&]() -> Result<void> {
         if (is_special(path)) return write_directly(path, bytes);

@@ -64,11 +64,19 @@ class LightPass {
           points_(points),
           spots_(spots),
           result_(result),
-          kernel_grid_{{grid.size_[0], grid.size_[1], grid.size_[2]},
-                       FroxelArrays<float>(grid.floats_.data(), grid.size_),
-                       FroxelArrays<double>(grid.doubles_.data(), grid.size_),
+          size_{grid.columns(), grid.rows(), grid.slices()},
+          kernel_grid_{{size_[0], size_[1], size_[2]},
+                       FroxelArrays<float>(grid.floats_.data(), size_),
+                       FroxelArrays<double>(grid.doubles_.data(), size_),
                        grid.spread_,
                        grid.start_} {}
+
+    // For a grid without froxels.
+    static Result<void> list_nothing(FroxelLights& result) {
+        result.offsets_.assign(1, 0);
+        result.exact_tests_ = 0;
+        return {};
+    }
 
     Result<void> run(Executor& executor) {
         const std::size_t lights = points_.size() + spots_.size();
@@ -182,12 +190,14 @@ class LightPass {
     std::span<const Sphere> points_;
     std::span<const SpotLight> spots_;
     FroxelLights& result_;
+    std::uint32_t size_[3];
     FroxelKernelGrid kernel_grid_;
 };
 
 Result<void> find_lights(const FroxelGrid& grid, std::span<const Sphere> points, std::span<const SpotLight> spots,
                          FroxelLights& result, Executor& executor) {
     if (auto valid = check_lights(points, spots); !valid) return valid;
+    if (grid.size() == 0) return LightPass::list_nothing(result);
     return LightPass(grid, points, spots, result).run(executor);
 }
 

@@ -65,7 +65,6 @@ Result<FroxelGrid> FroxelGrid::build(const Camera& camera, const FroxelOptions& 
     const bool perspective = camera.projection == Projection::perspective;
     FroxelGrid grid;
     const std::uint32_t size[3] = {options.columns, options.rows, options.slices};
-    std::copy_n(size, 3, grid.size_);
     grid.origin_ = camera.position;
     const glm::dmat3 rotation = world_to_view_rotation(camera);
     for (int k = 0; k < 3; ++k)
@@ -109,7 +108,7 @@ Result<FroxelGrid> FroxelGrid::build(const Camera& camera, const FroxelOptions& 
 Frustum FroxelGrid::froxel(std::uint32_t index) const {
     Frustum result;
     result.origin = origin_;
-    const std::uint32_t at[3] = {index % size_[0], index / size_[0] % size_[1], index / size_[0] / size_[1]};
+    const std::uint32_t at[3] = {index % columns(), index / columns() % rows(), index / columns() / rows()};
     for (unsigned axis = 0; axis < 3; ++axis) {
         const Plane& beyond = planes_[axis][at[axis] + 1];
         result.planes[result.plane_count++] = planes_[axis][at[axis]];

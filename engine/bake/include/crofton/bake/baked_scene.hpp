@@ -30,7 +30,7 @@ struct FileOptions {
 // Read-only.
 class MappedFile {
   public:
-    // Errors name the path and the system's reason. Folders, pipes and devices are refused.
+    // Errors name the path and the system's reason. Folders, pipes, devices and a path with a zero byte are refused.
     [[nodiscard]] static Result<MappedFile> open(const std::string& path, const FileOptions& options = {});
     ~MappedFile();
     MappedFile(MappedFile&& other) noexcept;
@@ -149,7 +149,7 @@ class BakedScene {
 // as it was. A PATH.partial left behind is used up by the next write to PATH. Who has the old file open or mapped keeps
 // its contents, since the new file is another inode. Writers of one path wait for each other; the last one wins. A link
 // stays a link, permissions stay, and what is no regular file (a pipe, /dev/null) is written to directly. Errors name
-// the path and the system's reason.
+// the path and the system's reason. A zero byte in the path is refused.
 [[nodiscard]] Result<void> write_file(const std::string& path, std::span<const std::byte> bytes);
 
 }  // namespace crofton::bake

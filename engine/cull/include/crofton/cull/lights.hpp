@@ -35,23 +35,27 @@ class FroxelGrid {
     // view wider or higher than 176 degrees; numbers beyond 1e12.
     [[nodiscard]] static Result<FroxelGrid> build(const Camera& camera, const FroxelOptions& options = {});
 
-    [[nodiscard]] std::uint32_t columns() const { return size_[0]; }
-    [[nodiscard]] std::uint32_t rows() const { return size_[1]; }
-    [[nodiscard]] std::uint32_t slices() const { return size_[2]; }
-    [[nodiscard]] std::size_t size() const { return std::size_t{size_[0]} * size_[1] * size_[2]; }
+    // All are 0 for a grid that was not built, or has been moved from. find_lights lists nothing for it.
+    [[nodiscard]] std::uint32_t columns() const { return count(0); }
+    [[nodiscard]] std::uint32_t rows() const { return count(1); }
+    [[nodiscard]] std::uint32_t slices() const { return count(2); }
+    [[nodiscard]] std::size_t size() const { return std::size_t{count(0)} * count(1) * count(2); }
     // Columns are neighbours, then rows, then slices.
     [[nodiscard]] std::uint32_t index(std::uint32_t column, std::uint32_t row, std::uint32_t slice) const {
-        return (slice * size_[1] + row) * size_[0] + column;
+        return (slice * rows() + row) * columns() + column;
     }
-    // Its six planes: left, right, bottom, top, near, far.
+    // Its six planes: left, right, bottom, top, near, far. Requires an index below size().
     [[nodiscard]] Frustum froxel(std::uint32_t index) const;
     [[nodiscard]] std::span<const double> depths() const { return depths_; }
 
   private:
     friend class LightPass;
+    [[nodiscard]] std::uint32_t count(int axis) const {
+        return planes_[axis].empty() ? 0 : static_cast<std::uint32_t>(planes_[axis].size() - 1);
+    }
+
     glm::dvec3 origin_{0.0}, axes_[3] = {};  // right, up, forward
-    std::uint32_t size_[3] = {0, 0, 0};
-    Vector<Plane> planes_[3];  // those that keep what is to the right, above, beyond
+    Vector<Plane> planes_[3];                // those that keep what is to the right, above, beyond
     Vector<double> depths_;
     Vector<double> doubles_;  // for kernels: src/lights/froxel_kernel.hpp
     Vector<float> floats_;
