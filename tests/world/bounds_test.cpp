@@ -2,12 +2,15 @@
 // Objects that are bounds alone.
 #include <doctest/doctest.h>
 #include <cmath>
+#include <crofton/convex/query.hpp>
 #include <crofton/crofton.hpp>
 #include <error_of.hpp>
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
 #include <oracle/random_boxes.hpp>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -355,6 +358,32 @@ TEST_SUITE("world/bounds") {
             REQUIRE(world.add({.bound = Sphere{{2.0 * radius, 0.0, 0.0}, radius}}).has_value());
             REQUIRE(world.update().has_value());
             CHECK(world.pairs().size() == 1);
+        }
+    }
+
+    TEST_CASE("a box whose axes are not quite orthonormal is met at its corners") {
+        const auto speck = convex::Body::ball(1e-14).value();
+        std::mt19937_64 rng(8);
+        std::uniform_real_distribution<float> number(-1.0f, 1.0f), size(1.0f, 2.0f);
+        for (int round = 0; round < 100; ++round) {
+            CAPTURE(round);
+            glm::mat3 axes =
+                glm::mat3_cast(glm::normalize(glm::quat(1.5f + number(rng), number(rng), number(rng), number(rng))));
+            axes[0] *= 1.0f + 2e-5f * number(rng);
+            axes[1] += 3e-5f * axes[0];
+            const Obb box{{0.0, 0.0, 0.0}, axes, {size(rng), size(rng), size(rng)}};
+            World world;
+            REQUIRE(world.add({.bound = box}).has_value());
+            REQUIRE(world.update().has_value());
+            for (unsigned corner = 0; corner < 8; ++corner) {
+                RigidTransform at;
+                for (int k = 0; k < 3; ++k)
+                    at.translation += (corner >> k & 1 ? 1.0 : -1.0) * static_cast<double>(box.half_extents[k]) *
+                                      glm::dvec3(box.axes[k]);
+                Vector<ObjectRef> found;
+                world.overlap(speck, at, found);
+                CHECK(found.size() == 1);
+            }
         }
     }
 }
