@@ -29,8 +29,8 @@ export interface Triangulation {
     optimal: boolean;
 }
 /** The statuses of the C API, in words. */
-export type Status = 'invalid argument' | 'non finite' | 'out of range' | 'degenerate' | 'empty' | 'unsupported' | 'io' | 'parse' |
-    'cancelled' | 'budget exceeded' | 'unavailable' | 'stale handle' | 'internal' | 'bad handle' | 'wrong size' | 'busy' | 'out of memory';
+export type Status = 'invalid argument' | 'not finite' | 'out of range' | 'degenerate' | 'empty' | 'unsupported' | 'input/output' | 'parse' |
+    'cancelled' | 'budget exceeded' | 'unavailable' | 'stale handle' | 'internal' | 'bad handle' | 'wrong struct size' | 'busy' | 'out of memory';
 export class CroftonError extends Error {
     readonly status: Status;
     /** Of the input; -1: none in particular. */

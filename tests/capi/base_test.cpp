@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <crofton/core/error.hpp>
 #include <crofton/core/version.hpp>
+#include <fstream>
+#include <iterator>
+#include <string>
 #include <thread>
 
 #include "handles.hpp"
@@ -51,6 +54,21 @@ TEST_SUITE("capi/base") {
                   crofton::to_string(static_cast<crofton::ErrorCode>(status - 1)));
         CHECK(std::string(crofton_status_name(CROFTON_BUSY)) == "busy");
         CHECK(std::string(crofton_status_name(77)) == "unknown status");
+    }
+
+    TEST_CASE("the web package has the same names of statuses") {
+        std::ifstream file(CROFTON_WEB_STATUSES);
+        std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+        text = text.substr(0, text.find(']'));
+        std::string names, expected;
+        for (std::size_t at = text.find('\''); at != std::string::npos; at = text.find('\'', at + 1)) {
+            const std::size_t end = text.find('\'', at + 1);
+            names += text.substr(at + 1, end - at - 1) + ", ";
+            at = end;
+        }
+        for (int status = CROFTON_OK; status <= CROFTON_OUT_OF_MEMORY; ++status)
+            expected += std::string(crofton_status_name(status)) + ", ";
+        CHECK(names == expected);
     }
 
     TEST_CASE("the library tells its versions") {

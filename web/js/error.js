@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 
-const NAMES = ['ok', 'invalid argument', 'non finite', 'out of range', 'degenerate', 'empty', 'unsupported', 'io', 'parse',
-    'cancelled', 'budget exceeded', 'unavailable', 'stale handle', 'internal', 'bad handle', 'wrong size', 'busy',
+const NAMES = ['ok', 'invalid argument', 'not finite', 'out of range', 'degenerate', 'empty', 'unsupported', 'input/output', 'parse',
+    'cancelled', 'budget exceeded', 'unavailable', 'stale handle', 'internal', 'bad handle', 'wrong struct size', 'busy',
     'out of memory'];
 
 /** What went wrong: `status` in words, a sentence, and which item of the input (-1: none in particular). */

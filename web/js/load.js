@@ -16,7 +16,7 @@ async function bytesOf(url) {
         return readFile(url);
     }
     const answer = await fetch(url);
-    if (!answer.ok) throw failure('io', `${url.href} could not be loaded: ${answer.status} ${answer.statusText}`);
+    if (!answer.ok) throw failure('input/output', `${url.href} could not be loaded: ${answer.status} ${answer.statusText}`);
     return new Uint8Array(await answer.arrayBuffer());
 }
 

@@ -160,7 +160,7 @@ for (const build of BUILDS) {
     here('validate names the box that is none', () => {
         const boxes = new crofton.Boxes(3);
         boxes.set(2, [NaN, 0, 0], [1, 1, 1]);
-        assert.throws(() => boxes.validate(), (error) => refused('non finite')(error) && error.item === 2);
+        assert.throws(() => boxes.validate(), (error) => refused('not finite')(error) && error.item === 2);
     });
     here('a box that is not there is refused', () => assert.throws(() => new crofton.Boxes(2).set(2, [0, 0, 0], [1, 1, 1]), refused('out of range')));
     here('arrays of the wrong length are refused', () => assert.throws(() => new crofton.Boxes(2).setAll(new Float64Array(5), new Float32Array(6)), refused('out of range')));
@@ -234,7 +234,7 @@ for (const build of BUILDS) {
         assert.ok(volume(crofton.fitBox(points, { quality: 'exact', criterion: { volume: 1 } })) <= volume(crofton.fitBox(points, { quality: 'exact' })) * (1 + 1e-5));
     });
     here('no points are refused', () => assert.throws(() => crofton.fitBox(new Float32Array(0)), refused('empty')));
-    here('points that are not finite are refused by their item', () => assert.throws(() => crofton.fitBox(new Float32Array([0, 0, 0, NaN, 0, 0])), refused('non finite')));
+    here('points that are not finite are refused by their item', () => assert.throws(() => crofton.fitBox(new Float32Array([0, 0, 0, NaN, 0, 0])), refused('not finite')));
     here('a list instead of an array is refused', () => assert.throws(() => crofton.fitBox([1, 2, 3]), refused('invalid argument')));
 
     for (const method of ['ear', 'delaunay', 'minimumWeight'])
