@@ -152,7 +152,7 @@ def minimise(build, name, record):
     shutil.rmtree(small, ignore_errors=True)
     small.mkdir()
     before = len(list(corpus.iterdir()))
-    subprocess.run([build / "bin" / f"fuzz_{name}", "-merge=1", small, corpus], capture_output=True, check=True)
+    subprocess.run([build / "bin" / f"fuzz_{name}", "-merge=1", "-use_counters=0", small, corpus], capture_output=True, check=True)
     shutil.rmtree(corpus)
     small.rename(corpus)
     print(f"fuzz_{name}: {before} inputs become {len(list(corpus.iterdir()))}", flush=True)
