@@ -17,8 +17,8 @@ export interface LoadOptions {
     wasmBinary?: ArrayBuffer | Uint8Array;
 }
 export interface CullOptions { conservative?: boolean; treeOrder?: boolean }
-export interface ObjectHandle { readonly index: number; readonly generation: number }
-export type MeshHandle = ObjectHandle;
+export interface ObjectHandle { readonly kind: 'object'; readonly index: number; readonly generation: number }
+export interface MeshHandle { readonly kind: 'mesh'; readonly index: number; readonly generation: number }
 export interface Hit { object: ObjectHandle; user: number; t: number; point: number[]; triangle: number }
 export interface Triangulation {
     indices: Uint32Array;

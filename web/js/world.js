@@ -54,12 +54,12 @@ export class World extends Owned {
             const isShort = indices instanceof Uint16Array ? 1 : 0;
             memory.words.set([36, places, positions.length / 3, 0, corners, indices.length, 0, isShort], at >> 2);
             memory.call('world_add_mesh', handle, at, at + 40);
-            return this.#handleAt(at + 40);
+            return this.#handleAt(at + 40, 'mesh');
         });
     }
     /** Takes boxes of `mesh` that hide what is behind them, where it is closed; needed before objects occlude. */
     findOccluders(mesh) {
-        this.memory.call('world_find_occluders', this.handle, this.#give(mesh, this.memory.scratch(16)), 0);
+        this.memory.call('world_find_occluders', this.handle, this.#give(mesh, 'mesh', this.memory.scratch(16)), 0);
     }
     /** One convex occluder of a mesh: the hull of `positions`, within what is drawn. */
     setConvexOccluder(mesh, positions) {
@@ -68,7 +68,7 @@ export class World extends Owned {
         const { memory } = this, { handle } = this;
         memory.lend([positions, new Uint8Array(248)], (places, at) => {
             memory.words.set([232, 2, 0, places, positions.length / 3], at >> 2);
-            memory.call('world_set_occluders', handle, this.#give(mesh, at + 232), at, 1);
+            memory.call('world_set_occluders', handle, this.#give(mesh, 'mesh', at + 232), at, 1);
         });
     }
 
@@ -83,30 +83,30 @@ export class World extends Owned {
         if (transform) this.#writeTransform(at + 224, transform), words[first + 5] = at + 224;
         if (mesh) {
             words[first + 6] = 1;
-            this.#give(mesh, at + 32);
+            this.#give(mesh, 'mesh', at + 32);
         }
         words[first + 12] = hiddenLayers;
         words[first + 14] = transparent ? 1 : 0;
         memory.call('world_add', this.handle, at, at + 320);
-        return this.#handleAt(at + 320);
+        return this.#handleAt(at + 320, 'object');
     }
-    remove(object) { this.memory.call('world_remove', this.handle, this.#give(object, this.memory.scratch(16))); }
+    remove(object) { this.memory.call('world_remove', this.handle, this.#give(object, 'object', this.memory.scratch(16))); }
     setHidden(object, hidden) {
-        this.memory.call('world_set_hidden', this.handle, this.#give(object, this.memory.scratch(16)), hidden ? 1 : 0);
+        this.memory.call('world_set_hidden', this.handle, this.#give(object, 'object', this.memory.scratch(16)), hidden ? 1 : 0);
     }
     setBox(object, box) {
         const at = this.memory.scratch(176);
         this.#writeBound(at, box);
-        this.memory.call('world_set_bound', this.handle, this.#give(object, at + 160), at);
+        this.memory.call('world_set_bound', this.handle, this.#give(object, 'object', at + 160), at);
     }
     setTransform(object, transform) {
         const at = this.memory.scratch(112);
         this.#writeTransform(at, transform);
-        this.memory.call('world_set_transforms', this.handle, this.#give(object, at + 96), 0, at, 0, 1);
+        this.memory.call('world_set_transforms', this.handle, this.#give(object, 'object', at + 96), 0, at, 0, 1);
     }
     contains(object) {
         const at = this.memory.scratch(16);
-        this.memory.call('world_contains', this.handle, this.#give(object, at), at + 8);
+        this.memory.call('world_contains', this.handle, this.#give(object, 'object', at), at + 8);
         return this.memory.words[at + 8 >> 2] === 1;
     }
     get count() {
@@ -136,18 +136,20 @@ export class World extends Owned {
         memory.call('world_raycast', this.handle, at, 1, layers, at + 56);
         const { doubles, words } = memory;  // the call may have made the memory grow
         if (words[hit] === ALL) return null;
-        return { object: this.#handleAt(at + 56), user: words[hit + 2] + 2 ** 32 * words[hit + 3], t: doubles[at + 72 >> 3],
+        return { object: this.#handleAt(at + 56, 'object'), user: words[hit + 2] + 2 ** 32 * words[hit + 3], t: doubles[at + 72 >> 3],
             point: [...doubles.subarray(at + 80 >> 3, at + 104 >> 3)], triangle: words[hit + 12] === ALL ? -1 : words[hit + 12] };
     }
 
-    #give(handle, at) {
-        if (!Number.isInteger(handle?.index) || !Number.isInteger(handle.generation)) throw failure(14, 'this is no object or mesh of a world');
+    // Objects and meshes count from 0 each: `kind` tells a mesh from the object of the same number.
+    #give(handle, kind, at) {
+        if (handle?.kind !== kind || !Number.isInteger(handle.index) || !Number.isInteger(handle.generation))
+            throw failure(14, `this is no ${kind} of a world`);
         this.memory.words.set([handle.index, handle.generation], at >> 2);
         return at;
     }
-    #handleAt(at) {
+    #handleAt(at, kind) {
         const [index, generation] = this.memory.words.subarray(at >> 2, (at >> 2) + 2);
-        return { index, generation };
+        return { kind, index, generation };
     }
     #writeTransform(at, transform) {
         if (transform.length !== 16) throw failure(1, 'a transform has 16 numbers, by columns');
