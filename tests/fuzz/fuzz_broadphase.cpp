@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <crofton/collide/broadphase.hpp>
 #include <oracle/exact_boxes.hpp>
+#include <span>
 #include <vector>
 
 #include "shapes.hpp"
@@ -87,10 +88,10 @@ CROFTON_FUZZ(in) {
             for (std::size_t i = old; i < filters.size(); ++i) filters[i] = {in.layers(), in.layers()};
         }
         const bool moved_alone = in.flag();
-        if (moved_alone && std::erase(moved, static_cast<std::uint32_t>(boxes.size())) > 0) {
-            // The box that was dropped had moved before.
-            const std::vector<std::uint32_t> gone{static_cast<std::uint32_t>(boxes.size())};
-            demand(!broadphase.update_moved(boxes, gone, filters).has_value(), "an item that is no index is refused");
+        const auto dropped = static_cast<std::uint32_t>(boxes.size());  // the index that a dropped box had
+        if (moved_alone && std::erase(moved, dropped) > 0) {
+            demand(!broadphase.update_moved(boxes, std::span(&dropped, 1), filters).has_value(),
+                   "an item that is no index is refused");
             demand(listed(broadphase.pairs()) == before, "a refusal keeps the pairs");
         }
         const auto result =

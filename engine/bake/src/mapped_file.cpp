@@ -8,6 +8,8 @@
 #include <cstring>
 #include <utility>
 
+#include "path.hpp"
+
 #if defined(__unix__) || defined(__APPLE__)
 #define CROFTON_MMAP 1
 #include <fcntl.h>
@@ -130,8 +132,7 @@ void unmap(std::span<const std::byte>) {}
 }  // namespace
 
 Result<MappedFile> MappedFile::open(const std::string& path, const FileOptions& options) {
-    if (path.find('\0') != std::string::npos)
-        return fail(ErrorCode::invalid_argument, kNoItem, {path.c_str(), ": the path goes on after a zero byte"});
+    if (auto checked = check_path(path); !checked) return tl::unexpected(checked.error());
     const auto opened = open_bytes(path, options);
     if (!opened) return tl::unexpected(opened.error());
     return MappedFile(opened->bytes, opened->mapped);

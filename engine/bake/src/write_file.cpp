@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <utility>
 
+#include "path.hpp"
+
 #if defined(__unix__) || defined(__APPLE__)
 #define CROFTON_POSIX_FILES 1
 #include <fcntl.h>
@@ -176,8 +178,7 @@ Result<void> write_directly(const std::string& path, std::span<const std::byte> 
 }  // namespace
 
 Result<void> write_file(const std::string& path, std::span<const std::byte> bytes) {
-    if (path.find('\0') != std::string::npos)
-        return fail(ErrorCode::invalid_argument, kNoItem, {path.c_str(), ": the path goes on after a zero byte"});
+    if (auto checked = check_path(path); !checked) return checked;
     // Links of /proc lead to pipes that have no path of their own: these are opened by the link.
     return detail::recover([&]() -> Result<void> {
         if (is_special(path)) return write_directly(path, bytes);

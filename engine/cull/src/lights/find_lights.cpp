@@ -60,16 +60,7 @@ class LightPass {
   public:
     LightPass(const FroxelGrid& grid, std::span<const Sphere> points, std::span<const SpotLight> spots,
               FroxelLights& result)
-        : grid_(grid),
-          points_(points),
-          spots_(spots),
-          result_(result),
-          size_{grid.columns(), grid.rows(), grid.slices()},
-          kernel_grid_{{size_[0], size_[1], size_[2]},
-                       FroxelArrays<float>(grid.floats_.data(), size_),
-                       FroxelArrays<double>(grid.doubles_.data(), size_),
-                       grid.spread_,
-                       grid.start_} {}
+        : grid_(grid), points_(points), spots_(spots), result_(result), kernel_grid_(kernel_grid_of(grid)) {}
 
     // For a grid without froxels.
     static Result<void> list_nothing(FroxelLights& result) {
@@ -91,6 +82,15 @@ class LightPass {
 
   private:
     static_assert(sizeof(LitRun) == sizeof(FroxelLights::Run));
+
+    static FroxelKernelGrid kernel_grid_of(const FroxelGrid& grid) {
+        const std::uint32_t size[3] = {grid.columns(), grid.rows(), grid.slices()};
+        return {{size[0], size[1], size[2]},
+                FroxelArrays<float>(grid.floats_.data(), size),
+                FroxelArrays<double>(grid.doubles_.data(), size),
+                grid.spread_,
+                grid.start_};
+    }
 
     struct Context {
         const LightPass* pass;
@@ -190,7 +190,6 @@ class LightPass {
     std::span<const Sphere> points_;
     std::span<const SpotLight> spots_;
     FroxelLights& result_;
-    std::uint32_t size_[3];
     FroxelKernelGrid kernel_grid_;
 };
 
