@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Nodes and leaves against draw limits, 16 lanes at a time. Compiled once per instruction set (Highway).
+#include <hwy/cache_control.h>
+
 #include "lanes-inl.hpp"
 #include "limits/kernel_limits.hpp"
 #include "tree/block_tests-inl.hpp"
