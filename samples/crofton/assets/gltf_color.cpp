@@ -38,45 +38,47 @@ std::vector<float> footprints(const std::vector<float>& uv, const TriangleMesh& 
     return sum;
 }
 
+// Fills a level with averages of texel(i), i from 0 to width * height, by blocks that leave none out.
+template <class Texel, class Level>
+void average_blocks(int width, int height, const Texel& texel, Level& level) {
+    const auto size = [](int side) { return static_cast<std::size_t>(side); };
+    level.texels.reserve(size(level.width) * size(level.height));
+    for (std::size_t y = 0; y < size(level.height); ++y)
+        for (std::size_t x = 0; x < size(level.width); ++x) {
+            const std::size_t left = x * size(width) / size(level.width),
+                              right = (x + 1) * size(width) / size(level.width);
+            const std::size_t top = y * size(height) / size(level.height),
+                              bottom = (y + 1) * size(height) / size(level.height);
+            glm::vec4 sum(0.0f);
+            for (std::size_t j = top; j < bottom; ++j)
+                for (std::size_t i = left; i < right; ++i) sum += texel(j * size(width) + i);
+            level.texels.push_back(sum / static_cast<float>((right - left) * (bottom - top)));
+        }
+}
+
 }  // namespace
 
-// One texel for 2 × 2, or for 2 × 1 where one side has come down to 1.
+// One texel for a block of 2 × 2; of 3 where a side is odd, and of 1 where it has come down to that.
 TexturePyramid::Level TexturePyramid::half(const Level& fine) {
     Level coarse{std::max(1, fine.width / 2), std::max(1, fine.height / 2), {}};
-    coarse.texels.reserve(static_cast<std::size_t>(coarse.width) * static_cast<std::size_t>(coarse.height));
-    const auto at = [&](int x, int y) {
-        return fine
-            .texels[static_cast<std::size_t>(std::min(y, fine.height - 1)) * static_cast<std::size_t>(fine.width) +
-                    static_cast<std::size_t>(std::min(x, fine.width - 1))];
-    };
-    for (int y = 0; y < coarse.height; ++y)
-        for (int x = 0; x < coarse.width; ++x)
-            coarse.texels.push_back(
-                0.25f * (at(2 * x, 2 * y) + at(2 * x + 1, 2 * y) + at(2 * x, 2 * y + 1) + at(2 * x + 1, 2 * y + 1)));
+    average_blocks(
+        fine.width, fine.height, [&](std::size_t i) { return fine.texels[i]; }, coarse);
     return coarse;
 }
 
-// The finest level that is kept: averages of blocks of 2^n × 2^n pixels.
+// The finest level that is kept: averages of blocks of about 2^n × 2^n pixels.
 TexturePyramid::Level TexturePyramid::finest(const unsigned char* pixels, int width, int height) {
     float linear[256];
     for (int v = 0; v < 256; ++v) linear[v] = linear_from_srgb(static_cast<float>(v) / 255.0f);
     int block = 1;
     while (width / block > kMaxKeptSide || height / block > kMaxKeptSide) block *= 2;
     Level level{std::max(1, width / block), std::max(1, height / block), {}};
-    level.texels.reserve(static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height));
-    for (int y = 0; y < level.height; ++y)
-        for (int x = 0; x < level.width; ++x) {
-            const int right = std::min(width, (x + 1) * block), bottom = std::min(height, (y + 1) * block);
-            glm::vec4 sum(0.0f);
-            for (int j = y * block; j < bottom; ++j)
-                for (int i = x * block; i < right; ++i) {
-                    const std::size_t at = static_cast<std::size_t>(j) * static_cast<std::size_t>(width);
-                    const unsigned char* p = pixels + 4 * (at + static_cast<std::size_t>(i));
-                    const float alpha = static_cast<float>(p[3]) / 255.0f;
-                    sum += glm::vec4(linear[p[0]] * alpha, linear[p[1]] * alpha, linear[p[2]] * alpha, alpha);
-                }
-            level.texels.push_back(sum / static_cast<float>((right - x * block) * (bottom - y * block)));
-        }
+    const auto texel = [&](std::size_t i) {
+        const unsigned char* p = pixels + 4 * i;
+        const float alpha = static_cast<float>(p[3]) / 255.0f;
+        return glm::vec4(linear[p[0]] * alpha, linear[p[1]] * alpha, linear[p[2]] * alpha, alpha);
+    };
+    average_blocks(width, height, texel, level);
     return level;
 }
 
