@@ -5,7 +5,6 @@
 #include <assets/data_uri.hpp>
 #include <assets/file.hpp>
 #include <assets/gltf_document.hpp>
-#include <assets/obj_file.hpp>
 #include <assets/scene_source.hpp>
 #include <filesystem>
 #include <fstream>
@@ -372,43 +371,5 @@ TEST_SUITE("assets/hostile_files") {
         binary[4] = 1;
         const TemporaryFile old("old.glb", binary);
         CHECK(says(test_files::message(assets::load_scene(old.path())), "is glTF version 1.0"));
-    }
-
-    TEST_CASE("OBJ: a UTF-8 mark is skipped, UTF-16 and binary garbage say so, bad lines spoil only themselves") {
-        const auto load_text = [](const std::string& text) {
-            const TemporaryFile file("shape.obj", text);
-            return test_files::message(assets::load_scene(file.path()));
-        };
-        const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
-        CHECK(load_text("\xEF\xBB\xBF" + triangle) == "loaded");
-        std::string wide = "\xFF\xFE";
-        for (const char c : triangle) wide += {c, '\0'};
-        CHECK(says(load_text(wide), "UTF-16"));
-        CHECK(says(load_text(std::string("\xFE\xFF\0v", 4)), "UTF-16"));
-        CHECK(says(load_text(std::string("\x7f"
-                                         "ELF\2\1\1\0\0\0",
-                                         10)),
-                   "is no text: byte 7 is 0"));
-        const TemporaryFile file("mixed.obj", "v 0 0 0\nv x 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\nf 1 3 99\nf 1\n");
-        const auto source = assets::load_scene(file.path());
-        REQUIRE_MESSAGE(source.has_value(), test_files::message(source));
-        REQUIRE(source->warnings.size() == 4);
-        CHECK(says(source->warnings[0], "line 2: vertex 2"));
-        CHECK(says(source->warnings[1], "line 5: face: vertex 2 makes no sense"));
-        CHECK(says(source->warnings[2], "line 7: face: vertex 99 of 4"));
-        CHECK(says(source->warnings[3], "line 8"));
-        REQUIRE(source->scene.instance_count() == 1);
-        CHECK(source->scene.mesh(0).positions[1] == glm::vec3(1.0f, 0.0f, 0.0f));
-        // Beyond what boxes can hold.
-        const TemporaryFile far("far.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2e30 0 0\nf 1 2 3\nf 1 2 4\n");
-        const auto near = assets::load_scene(far.path());
-        REQUIRE_MESSAGE(near.has_value(), test_files::message(near));
-        CHECK(near->scene.mesh(0).triangle_count() == 1);
-        REQUIRE(near->warnings.size() == 2);
-        CHECK(says(near->warnings[0], "line 4: vertex 4"));
-        CHECK(says(near->warnings[1], "line 6: face: vertex 4 makes no sense"));
-        // Who computes from the numbers gets all of them or none.
-        CHECK_FALSE(assets::read_obj(file.path()).has_value());
-        CHECK(says(test_files::message(assets::load_scene(file.path(), {.strict = true})), "line 2"));
     }
 }

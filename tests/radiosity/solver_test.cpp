@@ -6,61 +6,16 @@
 #include <crofton/core/executor.hpp>
 #include <crofton/radiosity/patches.hpp>
 #include <crofton/radiosity/solver.hpp>
-#include <cstring>
 #include <error_of.hpp>
 
+#include "lit_box.hpp"
 #include "shapes.hpp"
 
 using namespace crofton;
 using namespace crofton::radiosity;
-using shapes::Shape;
+using namespace shapes;
 
 namespace {
-
-Patches patches_of(const Shape& shape, const std::vector<Material>& materials) {
-    auto patches = make_patches(shape.mesh, shape.patches, materials);
-    REQUIRE_MESSAGE(patches.has_value(), patches.error().message);
-    return std::move(*patches);
-}
-
-SolverOptions quick() {
-    SolverOptions options;
-    options.lines = 1 << 12;
-    options.first_shot = 1 << 14;
-    return options;
-}
-
-bool same(std::span<const glm::vec3> a, std::span<const glm::vec3> b) {
-    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
-}
-
-// A room cut into cells × cells patches a wall, with a lamp on the ceiling: the box of every radiosity paper.
-struct Box {
-    Shape shape;
-    std::vector<Material> materials;
-};
-Box lit_box(int cells) {
-    Box box;
-    const auto wall = [&](glm::vec3 corner, glm::vec3 u, glm::vec3 v, glm::vec3 color, bool ceiling) {
-        u /= static_cast<float>(cells);
-        v /= static_cast<float>(cells);
-        for (int i = 0; i < cells; ++i)
-            for (int j = 0; j < cells; ++j) {
-                const bool lamp = ceiling && i == cells / 2 && j == cells / 2;
-                box.shape.parallelogram(corner + static_cast<float>(i) * u + static_cast<float>(j) * v, u, v,
-                                        static_cast<std::uint32_t>(box.materials.size()));
-                box.materials.push_back({lamp ? glm::vec3(10.0f, 9.0f, 7.0f) : glm::vec3(0.0f), color});
-            }
-    };
-    const glm::vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1), white(0.7f);
-    wall({0, 0, 0}, y, z, {0.6f, 0.05f, 0.05f}, false);
-    wall(x, z, y, {0.1f, 0.5f, 0.1f}, false);
-    wall({0, 0, 0}, z, x, white, false);
-    wall(y, x, z, white, true);
-    wall({0, 0, 0}, x, y, white, false);
-    wall(z, y, x, white, false);
-    return box;
-}
 
 // The full system B = E + R·F·B with factors from local lines, iterated to the end: shares no code with the solver's
 // walks.
@@ -309,76 +264,6 @@ TEST_SUITE("radiosity/solver") {
         CHECK(told <= true_share + 0.03);
         CHECK(told >= true_share - 0.25);
         CHECK(true_share < 0.98);
-    }
-
-    TEST_CASE("the same bits for any number of threads, and after a checkpoint") {
-        const Box box = lit_box(3);
-        const Patches patches = patches_of(box.shape, box.materials);
-        ThreadPool pool(4);
-        for (const Transport transport : {Transport::global, Transport::local}) {
-            SolverOptions options = quick();
-            options.transport = transport;
-            auto serial = Solver::create(patches, options), parallel = Solver::create(patches, options),
-                 resumed = Solver::create(patches, options);
-            serial->run();
-            const auto saved = serial->checkpoint();
-            serial->run();
-            parallel->run(pool);
-            parallel->run(pool);
-            REQUIRE(resumed->resume(saved).has_value());
-            resumed->run();
-            CHECK(same(serial->radiosity(), parallel->radiosity()));
-            CHECK(same(serial->radiosity(), resumed->radiosity()));
-            CHECK(resumed->runs() == 2);
-        }
-    }
-
-    TEST_CASE("damaged checkpoints, and those of other options, are refused") {
-        const Box box = lit_box(2);
-        const Patches patches = patches_of(box.shape, box.materials);
-        auto solver = Solver::create(patches, quick());
-        solver->run();
-        const auto saved = solver->checkpoint();
-        for (std::size_t size : {std::size_t{0}, std::size_t{10}, saved.size() - 1})
-            CHECK(error_of(solver->resume(std::span(saved).first(size))).code == ErrorCode::parse);
-        auto damaged = saved;
-        for (std::size_t i = 0; i < damaged.size(); i += 37) {
-            damaged[i] ^= std::byte{16};
-            CHECK_FALSE(solver->resume(damaged).has_value());
-            damaged[i] ^= std::byte{16};
-        }
-        SolverOptions other = quick();
-        other.seed = 2;
-        CHECK(error_of(Solver::create(patches, other)->resume(saved)).code == ErrorCode::invalid_argument);
-        CHECK(solver->resume(saved).has_value());
-    }
-
-    TEST_CASE("checkpoints of patches that differ in one corner, one triangle, one material are refused") {
-        const Box box = lit_box(2);
-        const Patches patches = patches_of(box.shape, box.materials);
-        auto solver = Solver::create(patches, quick());
-        solver->run();
-        const auto saved = solver->checkpoint();
-        const auto refuses = [&](const Box& other) {
-            const Patches others = patches_of(other.shape, other.materials);
-            auto resumed = Solver::create(others, quick());
-            REQUIRE(resumed.has_value());
-            return error_of(resumed->resume(saved)).code == ErrorCode::invalid_argument;
-        };
-        Box other = box;
-        other.shape.mesh.positions.back() *= 1.5f;
-        CHECK(refuses(other));
-        // The same triangle from its next corner.
-        other = box;
-        std::rotate(other.shape.mesh.indices.begin(), other.shape.mesh.indices.begin() + 1,
-                    other.shape.mesh.indices.begin() + 3);
-        CHECK(refuses(other));
-        other = box;
-        std::swap(other.shape.patches.front(), other.shape.patches.back());
-        CHECK(refuses(other));
-        other = box;
-        other.materials[0].reflectance.y += 0.125f;
-        CHECK(refuses(other));
     }
 
     TEST_CASE("light of one colour is known as well as that of any other") {
