@@ -100,17 +100,23 @@ class Together:
             self.by_file[file] = []
 
     def _mend(self, file, line):
-        """Makes a constant on a line that does not compile one that is set at the start, or drops the line's mutants."""
+        """Makes a constant on a line that does not compile one that is set at the start, or drops the line's mutants.
+
+        Those of the line before, where it has none: a function that must not return and does is an error at its end.
+        """
         text = self.originals[file]
         if "constexpr " in text.split("\n")[line - 1] and line not in self.relaxed.setdefault(file, set()):
             self.relaxed[file].add(line)
             return True
-        there = lambda e: text.count("\n", 0, e.begin) + 1 <= line <= text.count("\n", 0, e.end) + 1
-        dropped = [mutant for edit, mutant in self.by_file[file] if there(edit)]
-        for mutant in dropped:
-            print(f"does not compile so: {mutant.name}", flush=True)
-        self.by_file[file] = [(edit, mutant) for edit, mutant in self.by_file[file] if not there(edit)]
-        return bool(dropped)
+        for at in (line, line - 1):
+            there = lambda e: text.count("\n", 0, e.begin) + 1 <= at <= text.count("\n", 0, e.end) + 1
+            dropped = [mutant for edit, mutant in self.by_file[file] if there(edit)]
+            for mutant in dropped:
+                print(f"does not compile so: {mutant.name}", flush=True)
+            self.by_file[file] = [(edit, mutant) for edit, mutant in self.by_file[file] if not there(edit)]
+            if dropped:
+                return True
+        return False
 
     def judge(self, number, mutant, limits, known):
         """(status, by what) of one: first the case that caught it last time, then all quick ones, then the slow."""
