@@ -219,14 +219,16 @@ py::array_t<double> cell_boxes(const Pvs& sets) {
     return result;
 }
 
-Pvs from_bytes(const py::bytes& given) {
+constexpr std::uint64_t kMostPairs = pvs::ReadLimits{}.pairs;
+
+Pvs from_bytes(const py::bytes& given, std::uint64_t most_pairs) {
     const std::string_view text = given;
     // Memory that starts at a multiple of 64.
     std::vector<std::byte> room(text.size() + 64);
     const std::size_t past = reinterpret_cast<std::uintptr_t>(room.data()) % 64;
     std::byte* const start = room.data() + (past == 0 ? 0 : 64 - past);
     if (!text.empty()) std::memcpy(start, text.data(), text.size());
-    return value_of(Pvs::from_memory({start, text.size()}));
+    return value_of(Pvs::from_memory({start, text.size()}, {most_pairs}));
 }
 
 py::bytes to_bytes(const Pvs& sets) {
@@ -266,9 +268,14 @@ void bind_pvs(py::module_& module) {
             "0 (400 is good for levels): what the triangles hide is also proved. After `seconds`, or when "
             "`progress(share, 1.0)` returns False, what was found so far counts, and `epsilon` says what it is worth.")
         .def_static(
-            "open", [](const std::string& path) { return value_of(unlocked([&] { return Pvs::open(path); })); },
-            py::arg("path"), "A file with sets: of `crofton pvs --out`, or of to_bytes().")
-        .def_static("from_bytes", &from_bytes, py::arg("file"))
+            "open",
+            [](const std::string& path, std::uint64_t most_pairs) {
+                return value_of(unlocked([&] { return Pvs::open(path, {most_pairs}); }));
+            },
+            py::arg("path"), py::arg("most_pairs") = kMostPairs,
+            "A file with sets: of `crofton pvs --out`, or of to_bytes(). With more than so many pairs of a cell and an "
+            "object it is refused: a small file may hold very many, and each takes a byte while it is read.")
+        .def_static("from_bytes", &from_bytes, py::arg("file"), py::arg("most_pairs") = kMostPairs)
         .def("to_bytes", &to_bytes, "A .crofton file of its own.")
         .def("find_cell", &find_cell, py::arg("eye"), "The cell that holds a point; None: none, or one that is solid.")
         .def("visible", &visible, py::arg("eye"), py::arg("mode") = "conservative",

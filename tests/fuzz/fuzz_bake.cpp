@@ -1,34 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Baked scenes whose checksums are right, whatever they hold: an adversary would have made them so, too.
 #include <crofton/bake/baked_scene.hpp>
-#include <crofton/bake/checksum.hpp>
-#include <crofton/bake/container.hpp>
 #include <cstring>
 
+#include "mend_checksums.hpp"
 #include "use_tree.hpp"
 
 namespace {
 
 using namespace crofton;
-
-void mend_checksums(std::span<std::byte> file) {
-    bake::Header header;
-    if (file.size() < sizeof header) return;
-    std::memcpy(&header, file.data(), sizeof header);
-    header.file_size = file.size();
-    if (header.section_count > bake::kMaxSections ||
-        sizeof header + header.section_count * sizeof(bake::Section) > file.size())
-        return;
-    const std::span table(reinterpret_cast<bake::Section*>(file.data() + sizeof header), header.section_count);
-    for (bake::Section& section : table)
-        if (section.offset <= file.size() && section.size <= file.size() - section.offset)
-            section.checksum = bake::checksum(file.subspan(section.offset, section.size));
-    header.table_checksum = 0;
-    const std::uint64_t sums[] = {bake::checksum(std::as_bytes(std::span(&header, 1))),
-                                  bake::checksum(std::as_bytes(table))};
-    header.table_checksum = bake::checksum(std::as_bytes(std::span(sums)));
-    std::memcpy(file.data(), &header, sizeof header);
-}
 
 // Reads every byte that the views lead to.
 void read_all(const bake::BakedScene& scene) {
@@ -61,7 +41,7 @@ void read_all(const bake::BakedScene& scene) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     Vector<std::byte> file(size);
     if (size > 0) std::memcpy(file.data(), data, size);
-    mend_checksums(file);
+    fuzz::mend_checksums(file);
     auto scene = bake::BakedScene::from_memory(file);
     if (!scene) return 0;
     read_all(*scene);

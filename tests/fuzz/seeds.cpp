@@ -5,6 +5,8 @@
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/scene/scene.hpp>
 
+#include "fuzz/small_bakes.hpp"
+
 namespace {
 
 using namespace crofton;
@@ -82,6 +84,37 @@ void write_bakes(Folder out) {
     }
 }
 
+// With what the first byte chooses in fuzz_states.
+void write_states(Folder out) {
+    const auto add = [&](char reader, const Vector<std::byte>& bytes) {
+        out.add(reader + std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+    };
+    pvs::Bake bake = fuzz::small_bake();
+    (void)bake.run({.shard = {1, 3}});
+    add('\1', *bake.state());
+    (void)bake.run();
+    add('\1', *bake.state());
+    add('\0', *pvs::Pvs::finish(bake)->to_file());
+    pvs::ConvexCell cell;
+    for (std::size_t i = 0; i < 8; ++i) cell.corners[i] = {i & 1 ? 4.0 : -4.0, i & 2 ? 2.0 : 0.0, i & 4 ? 2.0 : 0.0};
+    const Aabb boxes[] = {{{-4.0, 0.0, 0.0}, {1.0, 2.0, 2.0}}, {{-1.0, 0.0, 0.0}, {4.0, 2.0, 2.0}}};
+    for (const auto& cells : {*pvs::Cells::convex(std::array{cell, cell}), *pvs::Cells::boxes(boxes)}) {
+        auto other = *pvs::Bake::create(fuzz::small_subject(), cells, {.epsilon = 0.1, .confidence = 0.5});
+        (void)other.run();
+        add('\0', *pvs::Pvs::finish(other)->to_file());
+    }
+    for (const std::uint32_t shards : {1u, 3u}) {
+        auto light = *radiosity::Bake::create(fuzz::small_patches(), fuzz::small_options(), fuzz::kSmallRuns);
+        (void)light.run({.shard = {0, shards}});
+        add('\2', *light.state());
+    }
+    auto solver = *radiosity::Solver::create(fuzz::small_patches(), fuzz::small_options());
+    for (int run = 0; run < 2; ++run) {
+        solver.run();
+        add('\3', solver.checkpoint());
+    }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -91,6 +124,7 @@ int main(int argc, char** argv) {
     write_polygons({root, "polygons"});
     write_trees({root, "tree"});
     write_bakes({root, "bake"});
+    write_states({root, "states"});
     Folder(root, "camera_path")
         .add(std::string("{\"cameras\":[{\"position\":[0,1,2],\"forward\":[0,0,-1],\"up\":[0,1,0],\"fov_y\":60,"
                          "\"near\":0.1,\"far\":100}]}"));

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 #include <algorithm>
 #include <cmath>
+#include <counting_memory.hpp>
 #include <crofton/geometry/predicates.hpp>
 #include <error_of.hpp>
 #include <glm/geometric.hpp>
@@ -167,6 +168,16 @@ TEST_SUITE("pvs/cells") {
             CHECK(inside > 100);
             CHECK(outside > 300);
         }
+    }
+
+    TEST_CASE("boxes that all lie on each other take no more memory than some words each") {
+        const std::vector<Aabb> boxes(40'000, Aabb{{0.0, 0.0, 0.0}, {1.0, 2.0, 3.0}});
+        const CountingMemory memory;
+        const auto cells = Cells::boxes(boxes);
+        REQUIRE(cells.has_value());
+        CHECK(memory.bytes_in_use() < 400 * boxes.size());
+        CHECK(cells->find({0.5, 0.5, 0.5}) == 0);
+        CHECK(cells->find({0.5, 2.5, 0.5}) == kNoCell);
     }
 
     TEST_CASE("of boxes that overlap the first holds the point") {

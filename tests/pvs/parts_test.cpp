@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
+#include <counting_memory.hpp>
 #include <crofton/bake/container.hpp>
 #include <crofton/pvs/pvs.hpp>
 #include <error_of.hpp>
@@ -162,5 +163,39 @@ TEST_SUITE("pvs/parts") {
         CHECK_FALSE(forged([](std::string_view name, std::vector<std::byte>& bytes) {
             if (name == "pvs_bake") bytes[15] = std::byte{0x80};
         }));
+    }
+
+    TEST_CASE("states of very many ranges are read and added up one range at a time") {
+        constexpr std::uint64_t kRanges = 100'000;
+        struct Header {
+            std::uint64_t fingerprint = 0, cells = 1, blocks = std::uint64_t{1} << 40;
+            std::uint32_t objects = 1, sides = 0;
+            double epsilon = 1e-3, confidence = 0.9;
+        };
+        // Every fourth block from `first` on.
+        const auto state = [](std::uint64_t first, const std::uint16_t flags) {
+            const Header header;
+            const std::uint64_t seen = 0;
+            std::vector<std::uint64_t> ranges;
+            for (std::uint64_t i = 0; i < kRanges; ++i)
+                for (const std::uint64_t end : {first + 4 * i, first + 4 * i + 1}) ranges.push_back(end);
+            bake::Writer writer;
+            writer.add("pvs_bake", std::span(&header, 1));
+            writer.add_bytes("pvs_done", std::as_bytes(std::span(ranges)), 16);
+            writer.add("pvs_flag", std::span(&flags, 1));
+            writer.add("pvs_seen", std::span(&seen, 1));
+            return writer.finish();
+        };
+        const auto even = state(0, 1), odd = state(2, 16);
+        {
+            const CountingMemory memory;
+            CHECK(missing_shards(even, 3).value().size() == 3);
+            CHECK(memory.allocations() < 100);
+        }
+        const auto sum = merged({odd, even, odd});
+        REQUIRE(sum.has_value());
+        const auto reader = bake::Reader::open(*sum).value();
+        CHECK(reader.sections()[1].size == 2 * kRanges * 16);
+        CHECK(reader.section<std::uint16_t>("pvs_flag").value()[0] == 17);
     }
 }

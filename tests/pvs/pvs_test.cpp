@@ -4,6 +4,7 @@
 #include <crofton/bake/container.hpp>
 #include <crofton/crofton.hpp>
 #include <crofton/pvs/pvs.hpp>
+#include <cstring>
 #include <error_of.hpp>
 #include <vector>
 
@@ -128,6 +129,33 @@ TEST_SUITE("pvs/pvs") {
                 }
         CHECK(refused > 50);
         CHECK(Pvs::open("/no/such/file.crofton").error().message.find("/no/such/file") != std::string::npos);
+    }
+
+    TEST_CASE("a small file that asks for very many pairs is refused before the memory is taken") {
+        const Pvs pvs = baked(random_subject(1, 30), Cells::grid(kBounds, {4, 1, 4}).value());
+        const auto file = pvs.to_file().value();
+        const std::uint64_t all = pvs.cells().size() * pvs.object_count();
+        CHECK(Pvs::from_memory(file, {.pairs = all}).has_value());
+        const auto error = error_of(Pvs::from_memory(file, {.pairs = all - 1}));
+        CHECK(error.code == ErrorCode::out_of_range);
+        CHECK(error.message.find("ReadLimits::pairs") != std::string::npos);
+        // 2^21 cells and 1,000 objects in 2 MB, none of them seen from anywhere.
+        const auto reader = bake::Reader::open(file).value();
+        bake::Writer writer;
+        for (const bake::Section& section : reader.sections()) {
+            std::vector<std::byte> bytes(file.begin() + static_cast<std::ptrdiff_t>(section.offset),
+                                         file.begin() + static_cast<std::ptrdiff_t>(section.offset + section.size));
+            std::string_view name(section.name, 8);
+            name = name.substr(0, name.find('\0'));
+            const std::uint32_t counts[4] = {2048, 1, 1024, 1000};  // the last one: objects
+            if (name == "pvs_head") std::memcpy(bytes.data() + 6 * sizeof(double), counts, sizeof counts);
+            if (name == "pvs_kind") bytes.assign(1 << 21, std::byte{2});
+            if (name == "pvs_from") bytes.assign(16 * sizeof(std::uint64_t), std::byte{0xff});
+            if (name == "pvs_pair") bytes.assign(200'000, std::byte{0xff});
+            writer.add_bytes(name, bytes, section.element_size);
+        }
+        const auto large = writer.finish();
+        CHECK(error_of(Pvs::from_memory(large)).code == ErrorCode::out_of_range);
     }
 
     TEST_CASE("states of neighbours that are alike take a small part of a bit") {

@@ -312,7 +312,7 @@ Result<void> Bake::run(const RunLimits& limits, Executor& executor) {
                                                  for (std::size_t i = begin; i < end; ++i)
                                                      tracing.trace(todo.begin + i);
                                              });
-            found.done.add(todo);
+            found.done.add(std::span(&todo, 1));
             lines += (todo.end - todo.begin) * LinePlan::kBlock;
         }
     });

@@ -20,7 +20,8 @@ struct BlockRange {
 // Sorted, apart from each other.
 class BlockRanges {
   public:
-    void add(BlockRange range);
+    // Requires ranges that are not empty, sorted and apart. All or, without memory, nothing.
+    void add(std::span<const BlockRange> ranges);
     [[nodiscard]] std::uint64_t count() const;
     [[nodiscard]] std::uint64_t count_within(BlockRange range) const;
     // The first blocks of `range` that are not in here, at most `most` of them; empty where all are.
@@ -28,6 +29,7 @@ class BlockRanges {
     [[nodiscard]] std::span<const BlockRange> all() const { return ranges_; }
 
   private:
+    [[nodiscard]] std::span<const BlockRange> beyond(std::uint64_t block) const;  // those that end behind it
     Vector<BlockRange> ranges_;
 };
 

@@ -8,21 +8,28 @@
 
 namespace crofton::pvs {
 
-void BlockRanges::add(BlockRange range) {
-    if (range.begin >= range.end) return;
+void BlockRanges::add(std::span<const BlockRange> ranges) {
     Vector<BlockRange> all;
-    for (const BlockRange& each : ranges_) {
-        if (each.end < range.begin) {
-            all.push_back(each);
-        } else if (each.begin > range.end) {
+    all.reserve(ranges_.size() + ranges.size());
+    const auto append = [&](const BlockRange& range) {
+        if (all.empty() || range.begin > all.back().end)
             all.push_back(range);
-            range = each;  // the rest follow as they are
-        } else {
-            range = {(std::min)(range.begin, each.begin), (std::max)(range.end, each.end)};
-        }
+        else
+            all.back().end = (std::max)(all.back().end, range.end);
+    };
+    auto own = ranges_.begin();
+    for (const BlockRange& range : ranges) {
+        for (; own != ranges_.end() && own->begin < range.begin; ++own) append(*own);
+        append(range);
     }
-    all.push_back(range);
+    std::for_each(own, ranges_.end(), append);
     ranges_ = std::move(all);
+}
+
+std::span<const BlockRange> BlockRanges::beyond(std::uint64_t block) const {
+    const auto first = std::upper_bound(ranges_.begin(), ranges_.end(), block,
+                                        [](std::uint64_t at, const BlockRange& each) { return at < each.end; });
+    return std::span(ranges_).subspan(static_cast<std::size_t>(first - ranges_.begin()));
 }
 
 std::uint64_t BlockRanges::count() const {
@@ -31,17 +38,16 @@ std::uint64_t BlockRanges::count() const {
 
 std::uint64_t BlockRanges::count_within(BlockRange range) const {
     std::uint64_t count = 0;
-    for (const BlockRange& each : ranges_) {
-        const std::uint64_t begin = (std::max)(each.begin, range.begin), end = (std::min)(each.end, range.end);
-        count += end > begin ? end - begin : 0;
+    for (const BlockRange& each : beyond(range.begin)) {
+        if (each.begin >= range.end) break;
+        count += (std::min)(each.end, range.end) - (std::max)(each.begin, range.begin);
     }
     return count;
 }
 
 BlockRange BlockRanges::first_gap(BlockRange range, std::uint64_t most) const {
     BlockRange gap = range;
-    for (const BlockRange& each : ranges_) {
-        if (each.end <= gap.begin) continue;
+    for (const BlockRange& each : beyond(range.begin)) {
         if (each.begin > gap.begin) {
             gap.end = (std::min)(gap.end, each.begin);
             break;
@@ -87,17 +93,15 @@ Result<Found> found_from(std::span<const std::byte> bytes) {
         if (range.begin >= range.end || range.end > found.name.blocks || (end != 0 && range.begin <= end))
             return damaged("its ranges of lines do not ascend");
         end = range.end;
-        found.done.add(range);
     }
+    found.done.add(*done);
     found.flags.assign(flags->begin(), flags->end());
     found.seen.assign(seen->begin(), seen->end());
     return found;
 }
 
 void add(const Found& part, Found& to) {
-    BlockRanges done = to.done;  // all that may fail comes first
-    for (const BlockRange& range : part.done.all()) done.add(range);
-    to.done = std::move(done);
+    to.done.add(part.done.all());  // all that may fail comes first
     for (std::size_t i = 0; i < to.seen.size(); ++i) to.seen[i] |= part.seen[i];
     for (std::size_t i = 0; i < to.flags.size(); ++i) to.flags[i] |= part.flags[i];
 }

@@ -81,7 +81,7 @@ struct PvsFile {
         writer.add("pvs_pair", std::span<const std::byte>(code));
     }
 
-    static Result<Pvs> read(const bake::Reader& reader) {
+    static Result<Pvs> read(const bake::Reader& reader, const ReadLimits& limits) {
         const auto head = reader.section<Head>("pvs_head");
         const auto boxes = reader.section<Aabb>("pvs_box");
         const auto kinds = reader.section<CellKind>("pvs_kind");
@@ -108,7 +108,12 @@ struct PvsFile {
         pvs.epsilon_ = head->front().epsilon, pvs.confidence_ = head->front().confidence;
         if (kinds->size() != pvs.cells_.size() || baked->size() != pvs.words())
             return damaged("sections are not as long as the header says");
-        if (pvs.cells_.size() * pvs.objects_ > most_pairs(code->size())) return damaged("too few bytes for its pairs");
+        const std::uint64_t all = std::uint64_t{pvs.cells_.size()} * pvs.objects_;
+        if (all > most_pairs(code->size())) return damaged("too few bytes for its pairs");
+        if (all > limits.pairs)
+            return fail(ErrorCode::out_of_range, kNoItem,
+                        {"potentially visible sets: ", all, " pairs of a cell and an object, where the limit is ",
+                         limits.pairs, " (ReadLimits::pairs)"});
         for (std::size_t c = 0; c < kinds->size(); ++c)
             if ((*kinds)[c] > CellKind::open) return damaged("a cell of no known kind", c);
         pvs.kinds_.assign(kinds->begin(), kinds->end());
@@ -156,19 +161,19 @@ Result<Vector<std::byte>> Pvs::to_file(std::span<const std::byte> scene_file) co
     });
 }
 
-Result<Pvs> Pvs::from_memory(std::span<const std::byte> file) {
+Result<Pvs> Pvs::from_memory(std::span<const std::byte> file, const ReadLimits& limits) {
     return crofton::detail::recover([&]() -> Result<Pvs> {
         const auto reader = bake::Reader::open(file);
         if (!reader) return tl::unexpected(reader.error());
-        return PvsFile::read(*reader);
+        return PvsFile::read(*reader, limits);
     });
 }
 
-Result<Pvs> Pvs::open(const std::string& path) {
+Result<Pvs> Pvs::open(const std::string& path, const ReadLimits& limits) {
     return crofton::detail::recover([&]() -> Result<Pvs> {
         const auto file = bake::MappedFile::open(path);
         if (!file) return tl::unexpected(file.error());
-        auto pvs = from_memory(file->bytes());
+        auto pvs = from_memory(file->bytes(), limits);
         if (!pvs) return fail(pvs.error().code, pvs.error().item, {path, ": ", pvs.error().message});
         return pvs;
     });

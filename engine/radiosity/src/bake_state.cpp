@@ -4,6 +4,7 @@
 #include <bit>
 #include <crofton/core/recovery.hpp>
 #include <cstring>
+#include <iterator>
 
 #include "bake_sums.hpp"
 
@@ -52,6 +53,12 @@ void add_values(const Bake::Sum& from, Bake::Sum& to) {
     }
 }
 
+// The first sum that ends behind the chain.
+auto first_beyond(const Bake::Sums& sums, std::uint64_t chain) {
+    return std::upper_bound(sums.all.begin(), sums.all.end(), chain,
+                            [](std::uint64_t c, const Bake::Sum& each) { return c < each.end; });
+}
+
 bool is_node(const SumHeader& sum, std::uint64_t chains) {
     if (sum.begin >= sum.end || sum.end > chains) return false;
     const std::uint64_t size = sum.end - sum.begin;
@@ -67,34 +74,33 @@ ChainRange chains_of(const Shard& shard, std::uint64_t runs) {
 }
 
 bool has_chain(const Bake::Sums& sums, std::uint64_t chain) {
-    return std::any_of(sums.all.begin(), sums.all.end(),
-                       [&](const Bake::Sum& sum) { return sum.begin <= chain && chain < sum.end; });
+    const auto sum = first_beyond(sums, chain);
+    return sum != sums.all.end() && sum->begin <= chain;
 }
 
 void add(Bake::Sum sum, Bake::Sums& sums) {
-    // Nodes of a tree: two of them are apart, or one holds the other.
-    for (const Bake::Sum& each : sums.all)
-        if (each.begin <= sum.begin && sum.end <= each.end) return;
-    const auto within = [&](const Bake::Sum& each) { return sum.begin <= each.begin && each.end <= sum.end; };
-    sums.all.erase(std::remove_if(sums.all.begin(), sums.all.end(), within), sums.all.end());
+    // Nodes of a tree, in order: two of them are apart, or one holds the other.
+    auto at = sums.all.begin() + (first_beyond(sums, sum.begin) - sums.all.cbegin());
+    if (at != sums.all.end() && at->begin <= sum.begin && sum.end <= at->end) return;
+    auto last = at;
+    while (last != sums.all.end() && last->end <= sum.end) ++last;
+    at = sums.all.erase(at, last);
     for (;;) {
         const std::uint64_t size = sum.end - sum.begin;
         const bool is_left = sum.begin / size % 2 == 0;
-        const std::uint64_t other = is_left ? sum.end : sum.begin - size;
-        const auto found = std::find_if(sums.all.begin(), sums.all.end(), [&](const Bake::Sum& each) {
-            return each.begin == other && each.end == other + size;
-        });
-        if (found == sums.all.end()) break;
-        Bake::Sum left = is_left ? std::move(sum) : std::move(*found);
-        const Bake::Sum right = is_left ? std::move(*found) : std::move(sum);
-        sums.all.erase(found);
+        const bool is_there = is_left ? at != sums.all.end() && at->begin == sum.end && at->end == sum.end + size
+                                      : at != sums.all.begin() && std::prev(at)->begin == sum.begin - size &&
+                                            std::prev(at)->end == sum.begin;
+        if (!is_there) break;
+        if (!is_left) --at;
+        Bake::Sum left = is_left ? std::move(sum) : std::move(*at);
+        const Bake::Sum right = is_left ? std::move(*at) : std::move(sum);
+        at = sums.all.erase(at);
         add_values(right, left);
         left.end = right.end;
         sum = std::move(left);
     }
-    const auto after =
-        std::find_if(sums.all.begin(), sums.all.end(), [&](const Bake::Sum& each) { return each.begin > sum.begin; });
-    sums.all.insert(after, std::move(sum));
+    sums.all.insert(at, std::move(sum));
 }
 
 Vector<std::byte> to_bytes(const Bake::Sums& sums) {
@@ -126,7 +132,8 @@ Result<Bake::Sums> sums_from(std::span<const std::byte> bytes) {
     std::memcpy(&check, bytes.data() + bytes.size() - sizeof check, sizeof check);
     if (check != hash_of(bytes.first(bytes.size() - sizeof check))) return damaged("damaged");
     const std::uint64_t room = bytes.size() - sizeof header - sizeof check;
-    if (header.patches > kMostPatchesOfState || header.runs > kMostRuns) return damaged("its header makes no sense");
+    if (header.patches == 0 || header.patches > kMostPatchesOfState || header.runs > kMostRuns)
+        return damaged("its header makes no sense");
     const std::uint64_t each = sizeof(SumHeader) + header.patches * kBytesOfPatch;
     if (room % each != 0 || room / each != header.sums) return damaged("it is not as long as its header says");
     Bake::Sums sums;
@@ -188,11 +195,9 @@ Result<Vector<std::uint32_t>> missing_shards(std::span<const std::byte> state, s
         Vector<std::uint32_t> missing;
         for (std::uint32_t i = 0; i < count; ++i) {
             const ChainRange shard = chains_of({i, count}, sums->runs);
-            for (std::uint64_t chain = shard.begin; chain < shard.end; ++chain)
-                if (!has_chain(*sums, chain)) {
-                    missing.push_back(i);
-                    break;
-                }
+            std::uint64_t chain = shard.begin;
+            while (chain < shard.end && has_chain(*sums, chain)) chain = first_beyond(*sums, chain)->end;
+            if (chain < shard.end) missing.push_back(i);
         }
         return missing;
     });

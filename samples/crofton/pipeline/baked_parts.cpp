@@ -31,7 +31,8 @@ Result<void> check_same(const bake::BakedScene& baked, const scene::Scene& scene
     return {};
 }
 
-Result<BakedParts> parts_of(std::span<const std::byte> file, const scene::Scene& scene) {
+Result<BakedParts> parts_of(std::span<const std::byte> file, const scene::Scene& scene,
+                            const assets::ReadLimits& limits) {
     const auto reader = bake::Reader::open(file);
     if (!reader) return tl::unexpected(reader.error());
     BakedParts parts;
@@ -44,7 +45,7 @@ Result<BakedParts> parts_of(std::span<const std::byte> file, const scene::Scene&
             parts.occluders = std::make_shared<const SceneOccluders>(scene_occluders_from(scene, *baked->occluders()));
     }
     if (reader->has("pvs_head")) {
-        auto sets = pvs::Pvs::from_memory(file);
+        auto sets = pvs::Pvs::from_memory(file, {.pairs = limits.bytes});  // a byte each
         if (!sets) return tl::unexpected(sets.error());
         if (!is_baked_of(*sets, scene))
             parts.left_out.push_back(of_another_scene("its visible sets are of other triangles or places").value());
@@ -83,7 +84,7 @@ Result<BakedParts> load_baked_parts(const std::string& path, const scene::Scene&
                                     const assets::ReadLimits& limits) {
     const auto file = bake::MappedFile::open(path, {.access = bake::FileAccess::read, .largest = limits.bytes});
     if (!file) return tl::unexpected(file.error());
-    auto parts = parts_of(file->bytes(), scene);
+    auto parts = parts_of(file->bytes(), scene, limits);
     if (!parts) return fail(parts.error().code, parts.error().item, {path, ": ", parts.error().message});
     for (Error& error : parts->left_out) error.message = path + ": " + std::string(error.message);
     return parts;

@@ -200,6 +200,11 @@ struct PairCounts {
     [[nodiscard]] std::uint64_t all() const { return hidden + unseen + seen; }
 };
 
+// What a file may ask for. A byte may stand for 16,000 pairs, each of which takes a byte while the file is read.
+struct ReadLimits {
+    std::uint64_t pairs = std::uint64_t{1} << 30;  // of a cell and an object
+};
+
 // The finished sets. Const calls from any thread; none of those asked each frame allocates once `kept` has grown.
 class Pvs {
   public:
@@ -235,10 +240,10 @@ class Pvs {
     // A .crofton file of its own, or `scene_file` (by bake::bake) with the sets as further sections. Errors: a scene
     // file that is damaged, or that has such sections already.
     [[nodiscard]] Result<Vector<std::byte>> to_file(std::span<const std::byte> scene_file = {}) const;
-    // Errors: as bake::BakedScene::open; a file without such sections (parse).
-    [[nodiscard]] static Result<Pvs> open(const std::string& path);
+    // Errors: as bake::BakedScene::open; a file without such sections (parse); more than the limits (out_of_range).
+    [[nodiscard]] static Result<Pvs> open(const std::string& path, const ReadLimits& limits = {});
     // From memory that starts at a multiple of 64; copied.
-    [[nodiscard]] static Result<Pvs> from_memory(std::span<const std::byte> file);
+    [[nodiscard]] static Result<Pvs> from_memory(std::span<const std::byte> file, const ReadLimits& limits = {});
 
   private:
     friend struct PvsFile;
