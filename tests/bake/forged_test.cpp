@@ -67,6 +67,7 @@ BakedOccluders three_kinds() {
     body.box.half_extents = {1, 1, 1};
     body.piece_bounds = {glm::dvec3(-2.0), glm::dvec3(2.0)};
     body.mean_shadow = 1.5;
+    body.gain = 2.5;
     patch.kind = occlude::OccluderKind::patch;
     patch.sides = occlude::Sides::front;
     patch.surface.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
@@ -221,6 +222,10 @@ TEST_SUITE("bake/forged") {
         CHECK(box.eyes_within.max.y == 5.0);
         CHECK(box.eyes_within.min.y == -std::numeric_limits<double>::infinity());
         CHECK(box.piece_bounds.is_empty());
+        const occlude::FoundOccluder& body = baked->occluders()->kinds[0][1];
+        CHECK(body.mean_shadow == 1.5);
+        CHECK(body.gain == 2.5);
+        CHECK(body.piece_bounds.min == glm::dvec3(-2.0));
         const occlude::FoundOccluder& patch = baked->occluders()->kinds[2][0];
         CHECK(patch.surface.positions.size() == 3);
         CHECK(patch.surface.indices == Vector<std::uint32_t>{2, 1, 0});

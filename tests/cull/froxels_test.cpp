@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 #include <hwy/targets.h>
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <counting_memory.hpp>
@@ -13,6 +14,7 @@
 #include <limits>
 #include <oracle/exact_bounds.hpp>
 #include <oracle/exact_spot.hpp>
+#include <utility>
 #include <vector>
 
 #include "../ranges.hpp"
@@ -87,9 +89,11 @@ TEST_SUITE("cull/froxels") {
         Camera endless = camera;
         endless.far_distance = std::numeric_limits<double>::infinity();
         CHECK(code(endless, {}) == ErrorCode::invalid_argument);
-        Camera far_away = camera;
-        far_away.position.y = 1e13;
-        CHECK(code(far_away, {}) == ErrorCode::out_of_range);
+        for (int k = 0; k < 3; ++k) {
+            Camera far_away = camera;
+            far_away.position[k] = 1e13;
+            CHECK(code(far_away, {}) == ErrorCode::out_of_range);
+        }
         Camera wide = camera;
         wide.fov_y = 3.13;
         CHECK(code(wide, {}) == ErrorCode::out_of_range);
@@ -98,8 +102,41 @@ TEST_SUITE("cull/froxels") {
         CHECK(code(camera, {4, 4, 2, behind}) == ErrorCode::out_of_range);
         CHECK(error_of(cull::FroxelGrid::build(camera, {4, 4, 2, unknown})).item == 1);
         CHECK(code(camera, {4, 4, 3, same}) == ErrorCode::invalid_argument);
+        const double close[] = {1.0, 1.0 + 0x1p-21, 2.0}, apart[] = {1.0, 1.0 + 0x1p-19, 2.0};
+        CHECK(code(camera, {4, 4, 2, close}) == ErrorCode::out_of_range);
+        CHECK(cull::FroxelGrid::build(camera, {4, 4, 2, apart}).has_value());
         const double depths[] = {1.0, 2.0, 1e6};
         CHECK(cull::FroxelGrid::build(endless, {4, 4, 2, depths}).has_value());
+    }
+
+    TEST_CASE("components and cosines below 2^-30 are read as 0, larger ones are not") {
+        const cull::FroxelGrid grid = unit_grid();
+        const auto columns_of = [&](const cull::SpotLight& spot) {
+            cull::FroxelLights lights;
+            REQUIRE(cull::find_lights(grid, {}, std::array{spot}, lights).has_value());
+            std::uint32_t lowest = 8, highest = 0;
+            for (const std::uint32_t f : froxels_of(lights, grid, 0)) {
+                lowest = std::min(lowest, f % 8);
+                highest = std::max(highest, f % 8);
+            }
+            return std::pair(lowest, highest);
+        };
+        // A half ball just left of the middle: columns 0 to 3. Its side leans across the middle only if it may lean.
+        cull::SpotLight spot;
+        spot.apex = {-0x1p-31, 0.5, -5.0};
+        spot.range = 1000.0f;
+        spot.cos_half_angle = 0.0f;
+        spot.axis = {-1.0f, 0x1p-31f, 0.0f};
+        CHECK(columns_of(spot) == std::pair(0u, 3u));
+        spot.axis = {-1.0f, 0x1p-29f, 0.0f};
+        CHECK(columns_of(spot) == std::pair(0u, 4u));
+        // From far above: right of the middle but for a hair, unless the cone is narrower than a half ball.
+        spot.apex = {-0x1p-31, 100.0, -5.0};
+        spot.axis = {1.0f, 0.0f, 0.0f};
+        spot.cos_half_angle = 0x1p-31f;
+        CHECK(columns_of(spot) == std::pair(3u, 7u));
+        spot.cos_half_angle = 0x1p-29f;
+        CHECK(columns_of(spot) == std::pair(4u, 7u));
     }
 
     TEST_CASE("lights that are not valid are named, and leave the lists as they were") {

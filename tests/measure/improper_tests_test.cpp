@@ -65,6 +65,13 @@ TEST_SUITE("measure/improper_tests") {
         CHECK(planar == doctest::Approx(pi));  // the exact value: of a disc's places in a disc
     }
 
+    TEST_CASE("of balls and discs the outer measure is the difference of two larger ones") {
+        const auto ball = intrinsic_volumes_of_sphere;
+        const auto disc = planar_measures_of_disc;
+        CHECK(improper_outside(ball(4.0), ball(2.0), ball(1.0)) == doctest::Approx(4.0 / 3.0 * pi * (216.0 - 125.0)));
+        CHECK(improper_outside(disc(4.0), disc(2.0), disc(1.0)) == doctest::Approx(pi * (36.0 - 25.0)));
+    }
+
     TEST_CASE("a bound that is the object misleads nobody, and rays contain nothing") {
         const IntrinsicVolumes box = intrinsic_volumes_of_box(1.0, 2.0, 3.0);
         CHECK(improper_outside(intrinsic_volumes_of_sphere(4.0), box, box) == 0.0);

@@ -53,6 +53,27 @@ bool same_boxes(const Scene& a, const Scene& b) {
 }  // namespace
 
 TEST_SUITE("scene/scene") {
+    TEST_CASE("what is flat has moved when it is stretched across, though its box stays") {
+        for (int k = 0; k < 3; ++k) {
+            CAPTURE(k);
+            TriangleMesh flat = tetrahedron();
+            for (glm::vec3& p : flat.positions) p[k] = 0.0f;
+            Scene scene;
+            const NodeId node = scene.add_node(kNone, {}).value();
+            (void)scene.add_instance(node, scene.add_mesh(flat).value()).value();
+            scene.update();
+            Transform stretched;
+            stretched.linear[k] *= 2.0;
+            REQUIRE(scene.set_local(node, stretched));
+            scene.update();
+            CHECK(scene.moved_instances().size() == 1);
+            CHECK(scene.world(node).linear[k][k] == 2.0);
+            REQUIRE(scene.set_local(node, stretched));
+            scene.update();
+            CHECK(scene.moved_instances().empty());
+        }
+    }
+
     TEST_CASE("invalid meshes, nodes and instances are refused by name and leave the scene as it was") {
         Scene scene;
         CHECK(error_of(scene.add_mesh({}, "void")).code == ErrorCode::empty);

@@ -88,6 +88,10 @@ TEST_SUITE("study/light_field") {
         REQUIRE(drawn.has_value());
         for (const glm::vec3& pixel : drawn->picture.pixels)
             CHECK(glm::distance(pixel, glm::vec3(0.5f, 1.0f, 2.0f)) < 1e-6f);
+        const auto row = field.draw(camera_in_room(), 48, 1, {}), column = field.draw(camera_in_room(), 1, 32, {});
+        for (const auto* line : {&row, &column})
+            for (const glm::vec3& pixel : (*line)->picture.pixels)
+                CHECK(glm::distance(pixel, glm::vec3(0.5f, 1.0f, 2.0f)) < 1e-6f);
         // Every line crosses the box twice, and its surface sees lines at the density asked for.
         CHECK(field.crossings() == 2 * field.lines());
         CHECK(static_cast<double>(field.lines()) == doctest::Approx(20000.0).epsilon(0.03));
