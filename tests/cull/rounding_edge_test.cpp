@@ -2,6 +2,7 @@
 // Inputs that use up one error bound of culling each: normals that round as far as they can, centres half a quantum
 // off, centres that rounding alone puts inside.
 #include <doctest/doctest.h>
+#include <gmpxx.h>
 #include <algorithm>
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/cull/bound_set.hpp>
@@ -228,5 +229,45 @@ TEST_SUITE("cull/rounding edges") {
             CHECK(test::ranges::equal(visible.ids(), expected));
             CHECK(expected.size() > 20);
         }
+    }
+
+    TEST_CASE("a plane that cuts off a segment's end by less than rounding tells is not left out") {
+        // Found by a search for products and sums that round to too much, nearly all of them by half a unit. The
+        // second plane leaves the segment's end alone, and the first cuts it off, or just does not.
+        struct Badly {
+            glm::dvec3 normal, center;
+        };
+        const Badly rounded[] = {{{0x1.002ca9bc1d7ccp-1, 0x1.000acf6158668p-1, 0x1.667b5b6607061p-1},
+                                  {0x1.0031df7ac6e14p+1, 0x1.0018ade0d8566p+1, 0x1.6db9965553c1bp+1}},
+                                 {{0x1.003500d334ef1p-1, 0x1.00065c59acbd2p-1, 0x1.66b53abe002acp-1},
+                                  {0x1.0034da4f3a815p+1, 0x1.003d37bfa93e6p+1, 0x1.6dffe2a26f131p+1}},
+                                 {{0x1.000e326a73292p-1, 0x1.00202b473e7cp-1, 0x1.66aa7458d77ep-1},
+                                  {0x1.003be9fe3afd2p+1, 0x1.00316d741fe44p+1, 0x1.6dc7b46671379p+1}}};
+        int cut_off = 0, left = 0;
+        for (const auto& [normal, center] : rounded)
+            for (const float half : {0x1p-10f, 0x1p-4f, 0x1p-1f})
+                for (int axis = 0; axis < 3; ++axis) {
+                    Obb segment;
+                    segment.center = center;
+                    segment.half_extents = glm::vec3(0.0f);
+                    segment.half_extents[axis] = half;
+                    glm::dvec3 end = center, back(0.0);
+                    end[axis] -= static_cast<double>(half);  // exactly
+                    back[axis] = -1.0;
+                    mpq_class along = 0;
+                    for (int k = 0; k < 3; ++k) along += mpq_class(normal[k]) * mpq_class(end[k]);
+                    for (int step = -8; step <= 8; ++step) {
+                        const double offset = -along.get_d() + step * 0x1p-51;
+                        Frustum frustum;
+                        frustum.plane_count = 2;
+                        frustum.planes[0] = {normal, offset};
+                        frustum.planes[1] = {back, end[axis]};
+                        const bool meets = along + mpq_class(offset) >= 0;
+                        CHECK((cull::classify(frustum, segment) != cull::Verdict::outside) == meets);
+                        (meets ? left : cut_off) += 1;
+                    }
+                }
+        CHECK(cut_off > 150);
+        CHECK(left > 150);
     }
 }
