@@ -310,7 +310,8 @@ class Compound {
 };
 
 // Exact formulas, rounded. A triangle has volume 0. Of compounds the sum over the children: what lies in two counts
-// twice. Errors: half-spaces, meshes and height fields, which have no volume (`unsupported`; of a compound's child the
+// twice. There the inertia about the axis of a child that is h times as long as thick is off by h² roundings. Errors:
+// half-spaces, meshes and height fields, which have no volume (`unsupported`; of a compound's child the
 // item is the child).
 [[nodiscard]] Result<MassProperties> mass_properties(const Body& body);
 
