@@ -186,6 +186,31 @@ TEST_SUITE("capi/world") {
         CHECK(crofton_world_add(world, &description, &object) == stale);
     }
 
+    TEST_CASE("a handle that was never set names nothing, also where there is a first object, node and mesh") {
+        const WorldHandle world = make_world();
+        const crofton_world_mesh mesh = add_tetrahedron(world);
+        const crofton_object object = add_bound(world, box_bound(box_at(0, 0, 0)));
+        crofton_node node{};
+        REQUIRE(crofton_world_add_node(world.get(), nullptr, nullptr, ~0u, &node) == CROFTON_OK);
+        REQUIRE(mesh.index == 0);
+        REQUIRE(object.index == 0);
+        REQUIRE(node.index == 0);
+        const Tetrahedron tetrahedron;
+        const crofton_mesh_data data = data_of(tetrahedron);
+        const crofton_status stale = CROFTON_STALE_HANDLE;
+        CHECK(crofton_world_remove(world.get(), {}) == stale);
+        CHECK(mentions(crofton_last_error(), "never set"));
+        CHECK(crofton_world_remove_node(world.get(), {}) == stale);
+        CHECK(crofton_world_replace_mesh(world.get(), {}, &data) == stale);
+        auto description = sized<crofton_object_description>();
+        description.has_mesh = 1;
+        crofton_object never{};
+        CHECK(crofton_world_add(world.get(), &description, &never) == stale);
+        int contains = 7;
+        CHECK(crofton_world_contains(world.get(), {}, &contains) == CROFTON_OK);
+        CHECK(contains == 0);
+    }
+
     TEST_CASE("numbers that are none are refused, and spoil nothing") {
         const SmallWorld s;
         crofton_world* const world = s.world.get();
