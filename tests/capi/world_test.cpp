@@ -315,7 +315,7 @@ TEST_SUITE("capi/world") {
         }
     }
 
-    TEST_CASE("a result lists the objects of the world that was viewed, and of no other") {
+    TEST_CASE("a result lists the objects of the world that was viewed, until its next update, and of no other") {
         SmallWorld s;
         const crofton_view view = default_view();
         crofton_object_ref refs[2] = {};
@@ -326,6 +326,14 @@ TEST_SUITE("capi/world") {
         CHECK(refs[1].user == 0);
         CHECK(crofton_visible_objects_list(s.visible.get(), s.world.get(), 1, refs, 2) == CROFTON_OK);
         CHECK(crofton_visible_objects_list(s.visible.get(), s.world.get(), 2, refs, 2) == CROFTON_OUT_OF_RANGE);
+        // An index may be another object's after an update.
+        REQUIRE(crofton_world_remove(s.world.get(), s.box) == CROFTON_OK);
+        update(s.world);
+        CHECK(add_bound(s.world, box_bound(box_at(0, 0, 50)), 8).index == s.box.index);
+        CHECK(crofton_visible_objects_list(s.visible.get(), s.world.get(), 0, refs, 2) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_visible_in_views_list(s.in_views.get(), s.world.get(), 0, refs, nullptr, 2) ==
+              CROFTON_INVALID_ARGUMENT);
+        CHECK(refs[0].user == 7);
         s.world = make_world();  // perhaps where the other one was
         CHECK(crofton_visible_objects_list(s.visible.get(), s.world.get(), 0, refs, 2) == CROFTON_INVALID_ARGUMENT);
         CHECK(crofton_visible_in_views_list(s.in_views.get(), s.world.get(), 0, refs, nullptr, 2) ==
