@@ -283,6 +283,15 @@ TEST_SUITE("capi/world occlusion") {
         two[1] = box;
         two[1].size = offsetof(crofton_occluder, mean_shadow);
         CHECK(crofton_world_set_occluders(world, s.mesh, two, 2) == CROFTON_WRONG_SIZE);
+        two[1] = two[0];
+        two[1].has_eyes = 1;
+        two[1].eyes_max[1] = kNotANumber;
+        CHECK(crofton_world_set_occluders(world, s.mesh, two, 2) == CROFTON_NON_FINITE);
+        CHECK(crofton_last_error_item() == 1);
+        two[1] = two[0];
+        two[1].has_piece = 1;
+        two[1].piece_min[2] = kNotANumber;
+        CHECK(crofton_world_set_occluders(world, s.mesh, two, 2) == CROFTON_NON_FINITE);
         CHECK(crofton_world_set_occluders(world, s.mesh, nullptr, 2) == CROFTON_INVALID_ARGUMENT);
         CHECK(crofton_world_set_occluders(world, s.mesh, two, SIZE_MAX / 2) == CROFTON_OUT_OF_RANGE);
         crofton_world_mesh stale = s.mesh;
