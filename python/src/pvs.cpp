@@ -219,6 +219,12 @@ py::array_t<double> cell_boxes(const Pvs& sets) {
     return result;
 }
 
+// From a str, bytes or a pathlib.Path. Raises TypeError for others.
+Pvs open(const py::object& given) {
+    const std::string path = py::module_::import("os").attr("fsencode")(given).cast<py::bytes>();
+    return value_of(unlocked([&] { return Pvs::open(path); }));
+}
+
 Pvs from_bytes(const py::bytes& given) {
     const std::string_view text = given;
     // Memory that starts at a multiple of 64.
@@ -265,9 +271,7 @@ void bind_pvs(py::module_& module) {
             "its cell's lines is missed with at most 1 - confidence, all pairs together. `surface_steps` above "
             "0 (400 is good for levels): what the triangles hide is also proved. After `seconds`, or when "
             "`progress(share, 1.0)` returns False, what was found so far counts, and `epsilon` says what it is worth.")
-        .def_static(
-            "open", [](const std::string& path) { return value_of(unlocked([&] { return Pvs::open(path); })); },
-            py::arg("path"), "A file with sets: of `crofton pvs --out`, or of to_bytes().")
+        .def_static("open", &open, py::arg("path"), "A file with sets: of `crofton pvs --out`, or of to_bytes().")
         .def_static("from_bytes", &from_bytes, py::arg("file"))
         .def("to_bytes", &to_bytes, "A .crofton file of its own.")
         .def("find_cell", &find_cell, py::arg("eye"), "The cell that holds a point; None: none, or one that is solid.")
