@@ -19,13 +19,14 @@ namespace Crofton {
         /// <summary>The objects and the caller's numbers, by index; only the first Count are of the last view.</summary>
         public ObjectRef[] Objects { get { return objects; } }
 
-        internal void Read(World world) {
+        internal int Read(World world) {
             IntPtr ids;
             UIntPtr count;
             Library.Check(Native.crofton_visible_objects_ids(Handle, out ids, out count, IntPtr.Zero, IntPtr.Zero));
-            if (objects.Length < (int)count) objects = new ObjectRef[(int)count + (int)count / 2];
-            Library.Check(Native.crofton_visible_objects_list(Handle, world.Handle, UIntPtr.Zero, objects, count));
-            Count = (int)count;
+            var listed = objects.Length < (int)count ? new ObjectRef[(int)count + (int)count / 2] : objects;
+            Library.Check(Native.crofton_visible_objects_list(Handle, world.Handle, UIntPtr.Zero, listed, count));
+            objects = listed;
+            return Count = (int)count;
         }
     }
 
@@ -91,8 +92,10 @@ namespace Crofton {
             Library.NotNull(frustum, "frustum");
             Library.NotNull(visible, "visible");
             var view = new Native.ViewData { Size = Native.SizeOf<Native.ViewData>(), LayerMask = layers, Frustum = frustum.Data };
-            Library.Check(Native.crofton_world_view(Handle, ref view, IntPtr.Zero, IntPtr.Zero, visible.Handle));
-            visible.Read(this);
+            Read(() => {
+                Library.Check(Native.crofton_world_view(Handle, ref view, IntPtr.Zero, IntPtr.Zero, visible.Handle));
+                return visible.Read(this);
+            });
         }
 
         /// <summary>What a camera sees, without what is hidden behind occluders; nothing visible is left out.</summary>
@@ -104,11 +107,13 @@ namespace Crofton {
             view.Camera = Marshal.AllocHGlobal(Marshal.SizeOf(typeof(Native.CameraData)));
             try {
                 Marshal.StructureToPtr(camera.Data(), view.Camera, false);
-                Library.Check(Native.crofton_world_view_occluding(Handle, ref view, ref options, IntPtr.Zero, IntPtr.Zero, visible.Handle));
+                Read(() => {
+                    Library.Check(Native.crofton_world_view_occluding(Handle, ref view, ref options, IntPtr.Zero, IntPtr.Zero, visible.Handle));
+                    return visible.Read(this);
+                });
             } finally {
                 Marshal.FreeHGlobal(view.Camera);
             }
-            visible.Read(this);
         }
 
         /// <summary>The nearest hit of a ray: triangles of meshes, boxes and balls.</summary>
@@ -161,7 +166,7 @@ namespace Crofton {
 
         /// <summary>Objects whose boxes or balls meet, in order.</summary>
         public ObjectPair[] Pairs() {
-            return Copy(() => {
+            return Read(() => {
                 IntPtr pairs;
                 UIntPtr count;
                 Library.Check(Native.crofton_world_pairs(Handle, out pairs, out count));
@@ -170,7 +175,7 @@ namespace Crofton {
         }
         /// <summary>What touches, and what has ceased to, in the order of the pairs.</summary>
         public Contact[] Contacts() {
-            return Copy(() => {
+            return Read(() => {
                 UIntPtr count;
                 Library.Check(Native.crofton_world_contact_count(Handle, out count));
                 var result = new Contact[(int)count];

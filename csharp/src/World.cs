@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 using System;
 using System.Runtime.InteropServices;
+using System.Threading;
 
 namespace Crofton {
     /// <summary>An object of a World: an index that is used again and a generation that tells its users apart.</summary>
@@ -61,7 +62,7 @@ namespace Crofton {
         /// <summary>All 32 layers.</summary>
         public const uint AllLayers = uint.MaxValue;
         internal readonly WorldHandle Handle;
-        readonly object copying = new object();
+        readonly ReaderWriterLockSlim updating = new ReaderWriterLockSlim();
 
         public World() : this(new WorldOptions()) { }
         public World(WorldOptions options) {
@@ -74,7 +75,7 @@ namespace Crofton {
             Library.Check(Native.crofton_world_create(ref data, out Handle));
         }
         /// <summary>Frees it; any later call throws ObjectDisposedException.</summary>
-        public void Dispose() { lock (copying) Handle.Dispose(); }
+        public void Dispose() { Change(Handle.Dispose); }
 
         /// <summary>Adds a mesh in its own frame: x, y, z of each vertex; three indices a triangle, counter-clockwise seen from
         /// outside, or null where three vertices are one. Both are copied.</summary>
@@ -171,7 +172,7 @@ namespace Crofton {
 
         /// <summary>Makes the changes take effect; once a frame. An exception: more than MaxPairs pairs; then there are none, and
         /// all else is as it should be.</summary>
-        public void Update() { lock (copying) Library.Check(Native.crofton_world_update(Handle, IntPtr.Zero)); }
+        public void Update() { Change(() => Library.Check(Native.crofton_world_update(Handle, IntPtr.Zero))); }
 
         /// <summary>How many objects there are.</summary>
         public int Count {
@@ -206,13 +207,24 @@ namespace Crofton {
             return transform;
         }
 
-        // Pairs and contacts lie in the world's memory until the next update: no update and no end of the world while
-        // they are copied.
-        T Copy<T>(Func<T> copy) {
-            lock (copying) {
-                var result = copy();
+        // What a view has found is looked up in the world, and pairs and contacts lie in its memory: no update and no end
+        // of the world between the two calls that read them.
+        T Read<T>(Func<T> read) {
+            updating.EnterReadLock();
+            try {
+                var result = read();
                 GC.KeepAlive(this);
                 return result;
+            } finally {
+                updating.ExitReadLock();
+            }
+        }
+        void Change(Action change) {
+            updating.EnterWriteLock();
+            try {
+                change();
+            } finally {
+                updating.ExitWriteLock();
             }
         }
 

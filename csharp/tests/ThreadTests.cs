@@ -39,6 +39,30 @@ static class ThreadTests {
             }
         }
     }
+    // What a view has found is looked up in the world by a second call of the library.
+    [Test] static void AViewIsOfOneUpdateWhileAnotherThreadUpdates() {
+        using (var world = new World(new WorldOptions { WithoutContacts = true }))
+        using (var visible = new VisibleObjects()) {
+            for (int i = 0; i < 50; ++i) world.Add(Bound.Ball(new Vector3(0, 0, -5), 1), (ulong)i);
+            world.Update();
+            var frustum = new Camera().Frustum();
+            var stop = false;
+            var updates = new Thread(() => {
+                while (!Volatile.Read(ref stop)) Patiently(() => { world.Update(); return 0; });
+            });
+            updates.Start();
+            try {
+                for (int i = 0; i < 30000; ++i) {
+                    Patiently(() => { world.View(frustum, visible); return 0; });
+                    Expect.Equal(50, visible.Count);
+                    Expect.Equal(49ul, visible.Objects[49].User);
+                }
+            } finally {
+                Volatile.Write(ref stop, true);
+                updates.Join();
+            }
+        }
+    }
     // Makes each call until the world is not busy; gives the last one's answer.
     static T Patiently<T>(params Func<T>[] calls) {
         T result = default(T);

@@ -41,6 +41,16 @@ static class WorldTests {
             Expect.Equal(9ul, world.User(next));
         }
     }
+    [Test] static void AHandleThatWasNeverSetNamesNothing() {
+        ObjectHandle[] o;
+        using (var world = Row(1, out o)) {
+            Expect.True(!world.Contains(default(ObjectHandle)));
+            Expect.Fails(Status.StaleHandle, () => world.Remove(new ObjectHandle()));
+            world.AddMesh(Tetrahedron, Faces);
+            Expect.Fails(Status.StaleHandle, () => world.RemoveMesh(new MeshHandle()));
+            Expect.Equal(1, world.Count);
+        }
+    }
     [Test] static void UserDataIsGivenBack() {
         ObjectHandle[] o;
         using (var world = Row(1, out o)) {

@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: MIT
+import os
 from typing import Any, Callable, Optional, Sequence, Tuple, Union
 
 import numpy as np
@@ -15,6 +16,7 @@ AnyBoxes = Union["Box", Array]  # an array of box_dtype
 Objects = Union["ObjectHandle", Sequence["ObjectHandle"], Array]  # an array of handle_dtype
 Nodes = Union["NodeHandle", Sequence["NodeHandle"], Array]
 Progress = Optional[Callable[[float, float], Optional[bool]]]
+AnyPath = Union[str, bytes, "os.PathLike[str]"]
 Ball = Tuple[Vector, float]
 Capsule = Tuple[Vector, Vector, float]
 
@@ -253,7 +255,7 @@ class Pvs:
              confidence: float = 0.999, seed: int = 1, sides: str = "both", surface_steps: int = 0,
              near_radius: float = 0.5, seconds: Optional[float] = None, progress: Progress = None) -> Pvs: ...
     @staticmethod
-    def open(path: str, most_pairs: int = 2**30) -> Pvs: ...
+    def open(path: AnyPath, most_pairs: int = 2**30) -> Pvs: ...
     @staticmethod
     def from_bytes(file: bytes, most_pairs: int = 2**30) -> Pvs: ...
     def to_bytes(self) -> bytes: ...

@@ -117,7 +117,11 @@ void raise(const Error& error) {
         throw py::error_already_set();
     }
     const py::object type = py::module_::import("crofton._crofton").attr("Error");
-    py::object instance = type(error.message);
+    // A path in it may be no UTF-8.
+    const auto message = py::reinterpret_steal<py::object>(
+        PyUnicode_DecodeUTF8(error.message.data(), static_cast<py::ssize_t>(error.message.size()), "backslashreplace"));
+    if (!message) throw py::error_already_set();
+    py::object instance = type(message);
     std::string code = to_string(error.code);
     std::replace(code.begin(), code.end(), ' ', '_');
     instance.attr("code") = code;

@@ -221,6 +221,12 @@ py::array_t<double> cell_boxes(const Pvs& sets) {
 
 constexpr std::uint64_t kMostPairs = pvs::ReadLimits{}.pairs;
 
+// From a str, bytes or a pathlib.Path. Raises TypeError for others.
+Pvs open(const py::object& given, std::uint64_t most_pairs) {
+    const std::string path = py::module_::import("os").attr("fsencode")(given).cast<py::bytes>();
+    return value_of(unlocked([&] { return Pvs::open(path, {most_pairs}); }));
+}
+
 Pvs from_bytes(const py::bytes& given, std::uint64_t most_pairs) {
     const std::string_view text = given;
     // Memory that starts at a multiple of 64.
@@ -268,11 +274,7 @@ void bind_pvs(py::module_& module) {
             "0 (400 is good for levels): what the triangles hide is also proved. After `seconds`, or when "
             "`progress(share, 1.0)` returns False, what was found so far counts, and `epsilon` says what it is worth.")
         .def_static(
-            "open",
-            [](const std::string& path, std::uint64_t most_pairs) {
-                return value_of(unlocked([&] { return Pvs::open(path, {most_pairs}); }));
-            },
-            py::arg("path"), py::arg("most_pairs") = kMostPairs,
+            "open", &open, py::arg("path"), py::arg("most_pairs") = kMostPairs,
             "A file with sets: of `crofton pvs --out`, or of to_bytes(). With more than so many pairs of a cell and an "
             "object it is refused: a small file may hold very many, and each takes a byte while it is read.")
         .def_static("from_bytes", &from_bytes, py::arg("file"), py::arg("most_pairs") = kMostPairs)

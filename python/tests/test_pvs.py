@@ -122,6 +122,31 @@ def test_floats_and_doubles_and_far_levels_see_the_same(sets):
         assert (other.visible(eye, "statistical") == sets.visible(LEFT_EYE, "statistical")).all()
 
 
+def test_a_path_is_a_str_bytes_or_a_path_of_pathlib(sets, tmp_path):
+    path = tmp_path / "level.crofton"
+    path.write_bytes(sets.to_bytes())
+    for same in (path, str(path), bytes(path)):
+        assert crofton.Pvs.open(same).cell_count == sets.cell_count
+    for wrong in (None, 3, [str(path)]):
+        with pytest.raises(TypeError):
+            crofton.Pvs.open(wrong)
+
+
+def test_a_path_with_a_zero_byte_is_refused_by_name(sets, tmp_path):
+    path = tmp_path / "level.crofton"
+    path.write_bytes(sets.to_bytes())
+    for cut in (str(path) + "\0", str(path) + "\0.other", bytes(path) + b"\0"):
+        with pytest.raises(crofton.Error, match="zero byte") as error:
+            crofton.Pvs.open(cut)
+        assert error.value.code == "invalid_argument"
+
+
+def test_a_path_that_is_no_utf_8_is_told_all_the_same(tmp_path):
+    for path in (bytes(tmp_path) + b"/\xff.crofton", str(tmp_path) + "/\udcff.crofton"):
+        with pytest.raises(crofton.Error, match=r"/\\xff\.crofton"):
+            crofton.Pvs.open(path)
+
+
 def test_a_file_gives_the_sets_back(sets, tmp_path):
     path = tmp_path / "level.crofton"
     path.write_bytes(sets.to_bytes())

@@ -172,6 +172,7 @@ TEST_SUITE("capi/bodies") {
         const crofton_transform here = translation(0, 0, 0);
         const crofton_body* no_child = nullptr;
         CHECK(crofton_body_compound(&no_child, &here, 1, &none) == CROFTON_BAD_HANDLE);
+        CHECK(crofton_last_error_item() == 0);
         CHECK(none == nullptr);
     }
 

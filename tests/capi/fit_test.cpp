@@ -32,6 +32,11 @@ TEST_SUITE("capi/fit") {
         CHECK(crofton_criterion_for_frustum(&camera, &criterion) == CROFTON_INVALID_ARGUMENT);
         CHECK(criterion.volume_weight == 0.0);
         CHECK(crofton_fit_boxes(nullptr, 0, nullptr, &box) != CROFTON_OK);
+        crofton_box boxes[2] = {box_at(0, 0, 0), box_at(4, 0, 0)};
+        boxes[1].half_extents[0] = -1.0f;
+        CHECK(crofton_fit_boxes(boxes, 2, nullptr, &box) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_last_error_item() == 1);
+        CHECK(mentions(crofton_last_error(), "crofton_fit_boxes"));
     }
 
     TEST_CASE("the corners of a box give it back, from floats and doubles") {

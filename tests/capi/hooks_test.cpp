@@ -157,6 +157,19 @@ TEST_SUITE("capi/hooks") {
         CHECK(seen(boxes, &jobs) == seen(boxes, nullptr));
     }
 
+    TEST_CASE("a concurrency that no machine has is refused, before memory is asked for") {
+        const auto boxes = row_of_boxes(2000);
+        const Broadphase broadphase = make_broadphase();
+        crofton::ThreadPool pool(2);
+        const auto update = [&](uint32_t concurrency) {
+            const crofton_jobs jobs{sizeof jobs, &pool, concurrency, pool_for};
+            return crofton_broadphase_update(broadphase.get(), boxes.data(), nullptr, boxes.size(), &jobs);
+        };
+        CHECK(update(65536) == CROFTON_OK);
+        CHECK(update(65537) == CROFTON_OUT_OF_RANGE);
+        CHECK(update(~0u) == CROFTON_OUT_OF_RANGE);
+    }
+
     TEST_CASE("messages of the library reach the host's log, and NULL gives it back") {
         REQUIRE(crofton_set_log_hook(
                     [](void* user, uint32_t level, const char* message) {

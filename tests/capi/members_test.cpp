@@ -2,6 +2,7 @@
 // Members of structs and parameters that other tests leave at their defaults: each does what its header says.
 #include <algorithm>
 #include <array>
+#include <climits>
 #include <cmath>
 #include <cstring>
 #include <set>
@@ -46,7 +47,7 @@ TEST_SUITE("capi/members") {
         CHECK(names.count("unknown status") == 0);
         CHECK(names.count("") == 0);
         CHECK(crofton_status_name(CROFTON_BAD_HANDLE) == std::string("bad handle"));
-        for (const int none : {-1, -2, CROFTON_OUT_OF_MEMORY + 1, 1 << 30})
+        for (const int none : {-1, -2, CROFTON_OUT_OF_MEMORY + 1, 1 << 30, INT_MAX, INT_MIN})
             CHECK(crofton_status_name(none) == std::string("unknown status"));
     }
 

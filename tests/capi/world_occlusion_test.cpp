@@ -283,6 +283,15 @@ TEST_SUITE("capi/world occlusion") {
         two[1] = box;
         two[1].size = offsetof(crofton_occluder, mean_shadow);
         CHECK(crofton_world_set_occluders(world, s.mesh, two, 2) == CROFTON_WRONG_SIZE);
+        two[1] = two[0];
+        two[1].has_eyes = 1;
+        two[1].eyes_max[1] = kNotANumber;
+        CHECK(crofton_world_set_occluders(world, s.mesh, two, 2) == CROFTON_NON_FINITE);
+        CHECK(crofton_last_error_item() == 1);
+        two[1] = two[0];
+        two[1].has_piece = 1;
+        two[1].piece_min[2] = kNotANumber;
+        CHECK(crofton_world_set_occluders(world, s.mesh, two, 2) == CROFTON_NON_FINITE);
         CHECK(crofton_world_set_occluders(world, s.mesh, nullptr, 2) == CROFTON_INVALID_ARGUMENT);
         CHECK(crofton_world_set_occluders(world, s.mesh, two, SIZE_MAX / 2) == CROFTON_OUT_OF_RANGE);
         crofton_world_mesh stale = s.mesh;
@@ -325,5 +334,31 @@ TEST_SUITE("capi/world occlusion") {
               CROFTON_INVALID_ARGUMENT);
         CHECK(crofton_world_views_occluding(world, &s.view, 33, nullptr, nullptr, nullptr,
                                             make_visible_in_views().get()) == CROFTON_OUT_OF_RANGE);
+    }
+
+    TEST_CASE("of no views at all, too, the options and the jobs are looked at") {
+        const Walled s;
+        const VisibleInViewsHandle visible = make_visible_in_views();
+        const auto look = [&](const crofton_occlusion_options* occlusion, const crofton_cull_options* options,
+                              const crofton_jobs* jobs) {
+            return crofton_world_views_occluding(s.world.get(), nullptr, 0, occlusion, options, jobs, visible.get());
+        };
+        const crofton_occlusion_options no_occlusion{};
+        const crofton_cull_options no_options{};
+        const crofton_jobs no_jobs{}, no_function{sizeof no_jobs, nullptr, 1, nullptr};
+        CHECK(look(nullptr, nullptr, nullptr) == CROFTON_OK);
+        CHECK(look(&no_occlusion, nullptr, nullptr) == CROFTON_WRONG_SIZE);
+        CHECK(look(nullptr, &no_options, nullptr) == CROFTON_WRONG_SIZE);
+        CHECK(look(nullptr, nullptr, &no_jobs) == CROFTON_WRONG_SIZE);
+        CHECK(look(nullptr, nullptr, &no_function) == CROFTON_INVALID_ARGUMENT);
+    }
+
+    TEST_CASE("of several views the one that is wrong is named") {
+        Walled s;
+        crofton_occluding_view views[3] = {s.view, s.view, s.view};
+        views[2].camera = nullptr;
+        CHECK(crofton_world_views_occluding(s.world.get(), views, 3, nullptr, nullptr, nullptr,
+                                            make_visible_in_views().get()) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_last_error_item() == 2);
     }
 }

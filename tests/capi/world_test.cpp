@@ -186,6 +186,31 @@ TEST_SUITE("capi/world") {
         CHECK(crofton_world_add(world, &description, &object) == stale);
     }
 
+    TEST_CASE("a handle that was never set names nothing, also where there is a first object, node and mesh") {
+        const WorldHandle world = make_world();
+        const crofton_world_mesh mesh = add_tetrahedron(world);
+        const crofton_object object = add_bound(world, box_bound(box_at(0, 0, 0)));
+        crofton_node node{};
+        REQUIRE(crofton_world_add_node(world.get(), nullptr, nullptr, ~0u, &node) == CROFTON_OK);
+        REQUIRE(mesh.index == 0);
+        REQUIRE(object.index == 0);
+        REQUIRE(node.index == 0);
+        const Tetrahedron tetrahedron;
+        const crofton_mesh_data data = data_of(tetrahedron);
+        const crofton_status stale = CROFTON_STALE_HANDLE;
+        CHECK(crofton_world_remove(world.get(), {}) == stale);
+        CHECK(mentions(crofton_last_error(), "never set"));
+        CHECK(crofton_world_remove_node(world.get(), {}) == stale);
+        CHECK(crofton_world_replace_mesh(world.get(), {}, &data) == stale);
+        auto description = sized<crofton_object_description>();
+        description.has_mesh = 1;
+        crofton_object never{};
+        CHECK(crofton_world_add(world.get(), &description, &never) == stale);
+        int contains = 7;
+        CHECK(crofton_world_contains(world.get(), {}, &contains) == CROFTON_OK);
+        CHECK(contains == 0);
+    }
+
     TEST_CASE("numbers that are none are refused, and spoil nothing") {
         const SmallWorld s;
         crofton_world* const world = s.world.get();
@@ -290,7 +315,7 @@ TEST_SUITE("capi/world") {
         }
     }
 
-    TEST_CASE("a result lists the objects of the world that was viewed, and of no other") {
+    TEST_CASE("a result lists the objects of the world that was viewed, until its next update, and of no other") {
         SmallWorld s;
         const crofton_view view = default_view();
         crofton_object_ref refs[2] = {};
@@ -301,6 +326,14 @@ TEST_SUITE("capi/world") {
         CHECK(refs[1].user == 0);
         CHECK(crofton_visible_objects_list(s.visible.get(), s.world.get(), 1, refs, 2) == CROFTON_OK);
         CHECK(crofton_visible_objects_list(s.visible.get(), s.world.get(), 2, refs, 2) == CROFTON_OUT_OF_RANGE);
+        // An index may be another object's after an update.
+        REQUIRE(crofton_world_remove(s.world.get(), s.box) == CROFTON_OK);
+        update(s.world);
+        CHECK(add_bound(s.world, box_bound(box_at(0, 0, 50)), 8).index == s.box.index);
+        CHECK(crofton_visible_objects_list(s.visible.get(), s.world.get(), 0, refs, 2) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_visible_in_views_list(s.in_views.get(), s.world.get(), 0, refs, nullptr, 2) ==
+              CROFTON_INVALID_ARGUMENT);
+        CHECK(refs[0].user == 7);
         s.world = make_world();  // perhaps where the other one was
         CHECK(crofton_visible_objects_list(s.visible.get(), s.world.get(), 0, refs, 2) == CROFTON_INVALID_ARGUMENT);
         CHECK(crofton_visible_in_views_list(s.in_views.get(), s.world.get(), 0, refs, nullptr, 2) ==

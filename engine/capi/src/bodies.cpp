@@ -165,7 +165,7 @@ crofton_status crofton_body_compound(const crofton_body* const* children, const 
         parts.reserve(count);
         for (std::size_t i = 0; i < count; ++i) {
             const SharedUse use(children[i], function);
-            if (use.failed()) return report(use.status(), function, "a child is no body", i);
+            if (use.failed()) return of_item(use.status(), i);
             parts.push_back(children[i]->data);
         }
         return create_compound(body, function, std::move(parts), poses);

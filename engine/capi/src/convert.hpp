@@ -60,6 +60,7 @@ class HostJobs final : public Executor {
   private:
     const crofton_jobs* jobs_;
 };
+[[nodiscard]] crofton_status check_valid_boxes(const crofton_box* boxes, std::size_t count, const char* function);
 [[nodiscard]] crofton_status check_jobs(const crofton_jobs* jobs, const char* function);
 
 }  // namespace crofton::capi

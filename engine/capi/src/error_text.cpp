@@ -76,7 +76,6 @@ const char* crofton_status_name(int status) {
         default:
             break;
     }
-    const int code = status - 1;
-    if (code < 0 || code > static_cast<int>(crofton::ErrorCode::internal)) return "unknown status";
-    return crofton::to_string(static_cast<crofton::ErrorCode>(code));
+    if (status < 1 || status > CROFTON_INTERNAL) return "unknown status";
+    return crofton::to_string(static_cast<crofton::ErrorCode>(status - 1));
 }

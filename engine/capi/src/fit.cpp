@@ -81,7 +81,7 @@ crofton_status crofton_fit_doubles(const double* points, size_t point_count, con
 
 crofton_status crofton_fit_boxes(const crofton_box* boxes, size_t count, const crofton_criterion* criterion,
                                  crofton_box* box) {
-    CROFTON_CHECK(crofton_boxes_validate(boxes, count));
+    CROFTON_CHECK(check_valid_boxes(boxes, count, __func__));
     CROFTON_CHECK(check_pointer(box, __func__));
     const measure::Criterion choice = criterion ? to_criterion(*criterion) : measure::minimal_perimeter();
     CROFTON_CHECK(status_of(validate(choice), __func__));

@@ -33,6 +33,13 @@ crofton_status check_camera(const crofton_camera* camera, const char* function) 
     return CROFTON_OK;
 }
 
+crofton_status check_valid_boxes(const crofton_box* boxes, std::size_t count, const char* function) {
+    CROFTON_CHECK(check_array(boxes, count, function));
+    for (std::size_t i = 0; i < count; ++i)
+        if (const auto valid = validate(to_boxes(boxes, count)[i], i); !valid) return report(valid.error(), function);
+    return CROFTON_OK;
+}
+
 }  // namespace crofton::capi
 
 using namespace crofton;
@@ -84,10 +91,7 @@ crofton_status crofton_frustum_from_matrix(const double to_clip[16], uint32_t de
 }
 
 crofton_status crofton_boxes_validate(const crofton_box* boxes, size_t count) {
-    CROFTON_CHECK(check_array(boxes, count, __func__));
-    for (std::size_t i = 0; i < count; ++i)
-        if (const auto valid = validate(to_boxes(boxes, count)[i], i); !valid) return report(valid.error(), __func__);
-    return CROFTON_OK;
+    return check_valid_boxes(boxes, count, __func__);
 }
 
 crofton_status crofton_box_transform(const crofton_transform* transform, const crofton_box* box, crofton_box* result) {

@@ -61,6 +61,9 @@ crofton_status check_jobs(const crofton_jobs* jobs, const char* function) {
     CROFTON_CHECK(check_optional(jobs, function));
     if (jobs && (jobs->concurrency == 0 || !jobs->parallel_for))
         return report(CROFTON_INVALID_ARGUMENT, function, "jobs need a parallel_for and a concurrency of 1 or more");
+    // Each worker may get memory of its own: a number that was never set would ask for all there is.
+    if (jobs && jobs->concurrency > 65536)
+        return report(CROFTON_OUT_OF_RANGE, function, "jobs have a concurrency of more than 65536");
     return CROFTON_OK;
 }
 

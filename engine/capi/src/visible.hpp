@@ -7,7 +7,7 @@
 
 #include "world.hpp"
 
-// Results look their objects up in the world: `serial` says in which.
+// Results look their objects up in the world: `serial` says in which, and after which update.
 struct crofton_visible_objects {
     static constexpr std::uint32_t kKind = 0x43724f09;
     crofton::capi::Header header;
@@ -29,7 +29,8 @@ namespace crofton::capi {
 template <class Visible>
 [[nodiscard]] crofton_status check_viewed(const Visible& visible, const crofton_world& world, const char* function) {
     if (visible.serial == world.serial) return CROFTON_OK;
-    return report(CROFTON_INVALID_ARGUMENT, function, "the result is not of a view of this world");
+    return report(CROFTON_INVALID_ARGUMENT, function,
+                  "the result is not of a view of this world, or the world has been updated since");
 }
 
 }  // namespace crofton::capi

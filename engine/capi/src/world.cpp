@@ -304,6 +304,7 @@ crofton_status crofton_world_update(crofton_world* world, const crofton_jobs* jo
     if (use.failed()) return use.status();
     CROFTON_CHECK(check_jobs(jobs, __func__));
     HostJobs executor(jobs);
+    world->serial = next_serial();  // indices may be other objects' now
     return status_of(world->world.update(executor), __func__);
 }
 

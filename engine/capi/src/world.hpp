@@ -12,7 +12,7 @@ struct crofton_world {
     static constexpr std::uint32_t kKind = 0x43724f08;
     crofton::capi::Header header;
     crofton::World world;
-    std::uint64_t serial;                                 // unlike that of any other world of the process, and not 0
+    std::uint64_t serial;  // of its state after an update: unlike any other of the process, and not 0
     crofton::Vector<crofton::capi::SharedBody> bodies{};  // by object, so that they live as long as they are used
 };
 

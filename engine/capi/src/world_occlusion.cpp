@@ -136,20 +136,19 @@ crofton_status crofton_world_views_occluding(const crofton_world* world, const c
     CROFTON_CHECK(check_array(views, count, __func__));
     if (count > cull::kMaxViews) return report(CROFTON_OUT_OF_RANGE, __func__, "more than 32 views");
     std::array<OccludingView, cull::kMaxViews> occluding;
-    Asked asked;
     const crofton_draw_limits* limits = nullptr;
     for (std::size_t v = 0; v < count; ++v) {
         crofton_occluding_view given;
         CROFTON_CHECK(read_growing_at(views, v, __func__, given));
-        CROFTON_CHECK(to_view(given, __func__, occluding[v]));
-        if (v == 0) {
+        CROFTON_CHECK(of_item(to_view(given, __func__, occluding[v]), v));
+        if (v == 0)
             limits = given.limits;
-            CROFTON_CHECK(to_asked(limits, occlusion, options, jobs, __func__, asked));
-        } else if (given.limits && given.limits != limits) {
+        else if (given.limits && given.limits != limits)
             return report(CROFTON_INVALID_ARGUMENT, __func__,
                           "a view has other limits than the first, whose limits count for all", v);
-        }
     }
+    Asked asked;
+    CROFTON_CHECK(to_asked(limits, occlusion, options, jobs, __func__, asked));
     HostJobs executor(jobs);
     CROFTON_CHECK(status_of(world->world.view(std::span<const OccludingView>(occluding).first(count), asked.occlusion,
                                               visible->visible, asked.cull.options, executor),

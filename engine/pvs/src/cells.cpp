@@ -136,7 +136,7 @@ std::span<const Plane> Cells::planes(std::size_t cell) const {
 }
 
 std::uint32_t Cells::find(const glm::dvec3& point) const {
-    if (!holds(bounds_, point)) return kNoCell;
+    if (!holds(bounds_, point) || size() == 0) return kNoCell;  // 0: moved from
     if (!is_grid()) {
         for (const std::uint32_t i : voxels_->boxes_near(point)) {
             if (!holds(boxes_[i], point)) continue;

@@ -89,7 +89,7 @@ PairCounts Pvs::counts() const {
 
 std::uint32_t Pvs::find_cell(const glm::dvec3& eye) const {
     const std::uint32_t cell = cells_.find(eye);
-    return cell == kNoCell || is_empty(kinds_[cell]) ? kNoCell : cell;
+    return cell >= kinds_.size() || is_empty(kinds_[cell]) ? kNoCell : cell;  // kNoCell; or moved from
 }
 
 std::span<const std::uint64_t> Pvs::visible_from(std::uint32_t cell, Mode mode) const {

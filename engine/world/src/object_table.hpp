@@ -24,9 +24,17 @@ struct Object {
 
 // Grows the room by an eighth: what is loaded and then changes a little does not double its memory.
 template <class T>
-void resize(Vector<T>& items, std::size_t size) {
+void resize(Vector<T>& items, std::size_t size, const T& value = T()) {
     if (size > items.capacity()) items.reserve(size + size / 8 + 16);
-    items.resize(size);
+    items.resize(size, value);
+}
+
+// A handle that is all 0 names nothing: in C that is one that was never set.
+inline constexpr std::uint32_t kFirstGeneration = 1;
+
+// Makes the handles of this generation stale.
+inline void renew(std::uint32_t& generation) {
+    if (++generation == 0) generation = kFirstGeneration;
 }
 
 struct ObjectTable {
@@ -37,7 +45,7 @@ struct ObjectTable {
     void add(std::uint32_t index, const Object& object, std::uint64_t user) {
         if (index >= objects.size()) {
             resize(objects, index + std::size_t{1});
-            resize(names.generations, index + std::size_t{1});
+            resize(names.generations, index + std::size_t{1}, kFirstGeneration);
             resize(names.users, index + std::size_t{1});
         }
         objects[index] = object;
@@ -48,7 +56,7 @@ struct ObjectTable {
     // Handles become stale at once; the index is free once the spatial index has removed it too.
     void remove(std::uint32_t index) {
         objects[index].alive = false;
-        ++names.generations[index];
+        renew(names.generations[index]);
         --count;
     }
     [[nodiscard]] bool contains(ObjectHandle handle) const {

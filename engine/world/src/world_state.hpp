@@ -26,7 +26,7 @@ struct Generations {
 
     void add(std::uint32_t id) {
         if (id >= alive.size()) {
-            generations.resize(id + std::size_t{1}, 0);
+            generations.resize(id + std::size_t{1}, world::kFirstGeneration);
             alive.resize(id + std::size_t{1}, 0);
         }
         alive[id] = 1;
@@ -34,7 +34,7 @@ struct Generations {
     void remove(std::uint32_t id) {
         if (id >= alive.size() || !alive[id]) return;
         alive[id] = 0;
-        ++generations[id];
+        world::renew(generations[id]);
     }
     template <class Tag>
     [[nodiscard]] bool contains(Handle<Tag> handle) const {

@@ -75,7 +75,7 @@ typedef void (*crofton_range_task)(void* task_data, size_t begin, size_t end, ui
 typedef struct crofton_jobs {
     size_t size;
     void* user;
-    uint32_t concurrency; /* at least 1 */
+    uint32_t concurrency; /* 1 to 65536 */
     void (*parallel_for)(void* user, size_t count, size_t grain, crofton_range_task task, void* task_data);
 } crofton_jobs;
 

@@ -24,7 +24,7 @@ extern "C" {
 typedef struct crofton_world crofton_world;
 
 /* An index that is used again and a generation that tells its users apart; index CROFTON_NONE: none. A call that takes
- * the handle of what has been removed returns CROFTON_STALE_HANDLE. */
+ * the handle of what has been removed returns CROFTON_STALE_HANDLE. Generations begin at 1: so it does for {0, 0}. */
 typedef struct crofton_object {
     uint32_t index, generation;
 } crofton_object;
@@ -273,7 +273,7 @@ CROFTON_API crofton_status crofton_world_view_camera(const crofton_world* world,
 CROFTON_API crofton_status crofton_visible_objects_ids(const crofton_visible_objects* visible, const uint32_t** ids,
                                                        size_t* count, const uint8_t** verdicts, size_t* inside_count);
 /* Writes the objects from place `first` on, at most `capacity`. `world` is the one that was viewed; ask before it next
- * changes. */
+ * changes. After its next update it is CROFTON_INVALID_ARGUMENT. */
 CROFTON_API crofton_status crofton_visible_objects_list(const crofton_visible_objects* visible,
                                                         const crofton_world* world, size_t first,
                                                         crofton_object_ref* objects, size_t capacity);
@@ -474,8 +474,9 @@ CROFTON_API crofton_status crofton_visible_objects_depth(const crofton_visible_o
 CROFTON_API crofton_status crofton_visible_in_views_depth(const crofton_visible_in_views* visible, size_t view,
                                                           uint32_t* width, uint32_t* height, float* nearness,
                                                           size_t capacity);
-/* Both write at most `capacity` occluders, and how many there are to *count. `world` is the one that was viewed; ask
- * before its next update. The first names those that hide an object, none where it is not hidden, and is slow. */
+/* Both write at most `capacity` occluders, and how many there are to *count. `world` is the one that was viewed; after
+ * its next update it is CROFTON_INVALID_ARGUMENT. The first names those that hide an object, none where it is not
+ * hidden, and is slow. */
 CROFTON_API crofton_status crofton_world_hidden_by(const crofton_world* world, crofton_object object,
                                                    const crofton_visible_objects* visible,
                                                    crofton_occluder_ref* occluders, size_t capacity, size_t* count);

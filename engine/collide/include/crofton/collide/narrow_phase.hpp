@@ -60,7 +60,7 @@ class PackedBoxes {
     [[nodiscard]] const glm::dvec3& origin() const { return origin_; }
 
   private:
-    std::span<const Obb> boxes_;
+    ResetOnMove<std::span<const Obb>> boxes_;
     Vector<BoxBlock> blocks_;
     glm::dvec3 origin_{0.0};
 };

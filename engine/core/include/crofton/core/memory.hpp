@@ -50,6 +50,32 @@ struct Allocator {
 template <class T>
 using Vector = std::vector<T, Allocator<T>>;
 
+// A value beside vectors: moved from, it is T() again, as they are empty. Then a class of both needs no moves of its
+// own.
+template <class T>
+class ResetOnMove {
+  public:
+    ResetOnMove() = default;
+    ResetOnMove(const T& value) : value_(value) {}
+    ResetOnMove(const ResetOnMove&) = default;
+    ResetOnMove& operator=(const ResetOnMove&) = default;
+    ResetOnMove(ResetOnMove&& other) noexcept : value_(other.take()) {}
+    ResetOnMove& operator=(ResetOnMove&& other) noexcept {
+        value_ = other.take();
+        return *this;
+    }
+    ~ResetOnMove() = default;
+    operator const T&() const { return value_; }
+
+  private:
+    T take() {
+        const T taken = value_;
+        value_ = T();
+        return taken;
+    }
+    T value_{};
+};
+
 // Owns an object of a class that only its own sources know, in memory of the hooks. As std::unique_ptr, whose header
 // would cost everyone who includes ours a third more.
 template <class T>

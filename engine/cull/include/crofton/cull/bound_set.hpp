@@ -142,15 +142,15 @@ class MovingBoxes {
 
     [[nodiscard]] std::span<const ItemId> items() const { return items_; }
     [[nodiscard]] std::span<const Obb> boxes() const { return boxes_; }
-    [[nodiscard]] std::size_t size() const { return items_.size(); }
+    [[nodiscard]] std::size_t size() const { return items().size(); }
     [[nodiscard]] const BoxSet& set() const { return sets_[now_]; }  // over boxes()
 
   private:
     void begin_staging();
     void finish_chunk(std::size_t c, std::span<const Obb> boxes);
 
-    std::span<const ItemId> items_;
-    std::span<const Obb> boxes_;
+    ResetOnMove<std::span<const ItemId>> items_;
+    ResetOnMove<std::span<const Obb>> boxes_;
     BoxSet sets_[2];                // an update is written into the one, and counts once all of it is known to be good
     Vector<std::uint64_t> staged_;  // one bit an entry: written into that set; empty: nothing is staged
     unsigned now_ = 0;

@@ -151,7 +151,8 @@ class ShadowReceivers {
         glm::dvec3 axes[3];
         double low[2], size[2];  // of the picture, and of a tile
     };
-    std::uint32_t tiles_ = 0, face_count_ = 0;
+    std::uint32_t tiles_ = 0;
+    ResetOnMove<std::uint32_t> face_count_;
     bool is_sun_ = true;
     glm::dvec3 origin_{0.0};
     double range_ = 0.0;    // how far a shadow goes: of the sun behind its caster, else from the light

@@ -236,7 +236,7 @@ class VisibleSet {
     Vector<std::uint64_t> bits_;
     cull::VisibleSet visible_;
     VisibleStatistics statistics_;
-    std::size_t size_ = 0;
+    ResetOnMove<std::size_t> size_;
 };
 
 struct VisibleOptions {

@@ -250,7 +250,7 @@ class Pvs {
     [[nodiscard]] std::size_t words() const { return (std::size_t{objects_} + 63) / 64; }
 
     Cells cells_;
-    std::uint32_t objects_ = 0;
+    ResetOnMove<std::uint32_t> objects_;
     std::uint64_t subject_ = 0;
     double epsilon_ = 1.0, confidence_ = 0.0;
     Vector<CellKind> kinds_;

@@ -79,7 +79,7 @@ class VisibleObjects {
     [[nodiscard]] const occlude::VisibleSet& seen() const;
     cull::VisibleSet set_;
     world::OccludedViewOwner occluded_;
-    bool hides_ = false;
+    ResetOnMove<bool> hides_;
     const world::ObjectNames* names_ = nullptr;
     Vector<std::uint64_t> among_;  // CullOptions::among and what has changed since
 };
@@ -110,7 +110,7 @@ class VisibleInViews {
     Vector<world::OccludedViewOwner> occluded_;  // at least view_count_
     Vector<std::uint32_t> ids_, masks_;          // masks by object
     std::size_t view_count_ = 0;
-    bool hides_ = false;
+    ResetOnMove<bool> hides_;
     const world::ObjectNames* names_ = nullptr;
 };
 

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: MIT
+// What a World is told.
+#include <pybind11/stl.h>
+
+#include "shapes.hpp"
+#include "world.hpp"
+
+namespace crofton::python {
+namespace {
+
+// Points and indices that keep their arrays alive.
+struct MeshArrays {
+    Points<3> positions;
+    py::array indices;
+
+    MeshArrays(const py::handle& given, const py::object& given_indices) : positions(given, "positions") {
+        if (given_indices.is_none()) return;
+        const py::array array = py::array::ensure(given_indices);
+        if (!array) PyErr_Clear();
+        const bool is_short = array && array.dtype().equal(py::dtype::of<std::uint16_t>());
+        indices = is_short ? py::array(integers<std::uint16_t>(array, "indices"))
+                           : py::array(integers<std::uint32_t>(given_indices, "indices"));
+        // The library takes no indices for "three positions are one triangle".
+        if (indices.size() == 0) raise({ErrorCode::empty, kNoItem, "indices: there are none, so there is no triangle"});
+    }
+    [[nodiscard]] PointsView points() const {
+        return positions.is_float() ? PointsView(positions.floats()) : PointsView(positions.doubles());
+    }
+    [[nodiscard]] MeshDescription description() const {
+        MeshDescription result{.positions = points()};
+        if (!indices) return result;
+        const auto size = static_cast<std::size_t>(indices.size());
+        result.indices = indices.itemsize() == 2 ? IndicesView(static_cast<const std::uint16_t*>(indices.data()), size)
+                                                 : IndicesView(static_cast<const std::uint32_t*>(indices.data()), size);
+        return result;
+    }
+};
+
+template <class H>
+H handle_or_null(const py::object& given, const char* name) {
+    if (given.is_none()) return {};
+    if (!py::isinstance<H>(given)) raise_type(std::string(name) + ": another kind of handle is expected");
+    return given.cast<H>();
+}
+
+// All or none: what was added before an error is taken out again.
+template <class F>
+py::array add_all(PyWorld& to, std::size_t count, const py::object& users, F&& description) {
+    py::array_t<std::uint64_t, py::array::c_style> held;
+    if (!users.is_none()) {
+        held = integers<std::uint64_t>(users, "users");
+        if (static_cast<std::size_t>(held.size()) != count)
+            raise({ErrorCode::invalid_argument, kNoItem, "users: as many as objects are expected"});
+    }
+    std::vector<ObjectHandle> handles;
+    handles.reserve(count);
+    auto failed = to.change([&](World& world) -> Result<void> {
+        for (std::size_t i = 0; i < count; ++i) {
+            ObjectDescription one = description(i);
+            if (held.size() > 0) one.user = held.data()[i];
+            auto added = world.add(one);
+            if (!added) {
+                for (const ObjectHandle handle : handles) (void)world.remove(handle);
+                added.error().item = i;
+                return tl::unexpected(added.error());
+            }
+            handles.push_back(*added);
+        }
+        return {};
+    });
+    value_of(std::move(failed));
+    return handles_of(handles);
+}
+
+ObjectHandle add(PyWorld& to, const py::object& mesh, const py::object& node, const py::object& transform,
+                 const py::object& box, const py::object& ball, const py::object& aligned, std::uint64_t user,
+                 std::uint32_t layers, std::uint32_t collides_with, bool occludes) {
+    ObjectDescription description;
+    description.mesh = handle_or_null<MeshHandle>(mesh, "mesh");
+    description.node = handle_or_null<NodeHandle>(node, "node");
+    if (!transform.is_none()) description.transform = transform_of(transform, "transform");
+    description.bound = bound_of(box, ball, aligned);
+    description.user = user;
+    description.layers = layers;
+    description.collides_with = collides_with;
+    description.occludes = occludes;
+    return value_of(to.change([&](World& world) { return world.add(description); }));
+}
+
+py::array add_boxes(PyWorld& to, const py::handle& given, const py::object& users, std::uint32_t layers,
+                    std::uint32_t collides_with) {
+    const Boxes boxes(given, "boxes");
+    return add_all(to, boxes.span().size(), users, [&](std::size_t i) {
+        return ObjectDescription{.bound = boxes.span()[i], .layers = layers, .collides_with = collides_with};
+    });
+}
+py::array add_instances(PyWorld& to, MeshHandle mesh, const py::handle& given, const py::object& users,
+                        std::uint32_t layers, std::uint32_t collides_with) {
+    const auto transforms = transforms_of(given, "transforms");
+    return add_all(to, transforms.size(), users, [&](std::size_t i) {
+        return ObjectDescription{
+            .mesh = mesh, .transform = transforms[i], .layers = layers, .collides_with = collides_with};
+    });
+}
+
+// For set_transforms, set_boxes, remove: objects or nodes, one or many.
+template <class H, class F>
+void for_handles(PyWorld& world, const py::handle& given, F&& f) {
+    const Handles<H> handles(given, "handles");
+    std::size_t i = 0;
+    value_of(world.change([&](World& w) -> Result<void> {
+        Result<void> first;
+        for (const H handle : handles.span()) {
+            if (auto done = f(w, handle, i); !done && first) {
+                first = done;
+                first.error().item = i;
+            }
+            ++i;
+        }
+        return first;
+    }));
+}
+
+template <class H>
+void set_transforms(PyWorld& world, const py::handle& given, const py::handle& matrices) {
+    const Handles<H> handles(given, "handles");
+    const auto transforms = transforms_of(matrices, "transforms");
+    if (transforms.size() != handles.span().size())
+        raise({ErrorCode::invalid_argument, kNoItem, "transforms: as many as handles are expected"});
+    value_of(world.change([&](World& w) { return w.set_transforms(handles.span(), transforms); }));
+}
+
+void set_boxes(PyWorld& world, const py::handle& given, const py::handle& given_boxes) {
+    const Handles<ObjectHandle> handles(given, "handles");
+    const Boxes boxes(given_boxes, "boxes");
+    if (boxes.span().size() != handles.span().size())
+        raise({ErrorCode::invalid_argument, kNoItem, "boxes: as many as handles are expected"});
+    value_of(world.change([&](World& w) { return w.set_bounds(handles.span(), boxes.span()); }));
+}
+
+}  // namespace
+
+void bind_world_changes(py::class_<PyWorld>& type) {
+    type.def(
+            "add_mesh",
+            [](PyWorld& world, const py::handle& positions, const py::object& indices, bool triangles, bool occluders) {
+                const MeshArrays arrays(positions, indices);
+                MeshDescription description = arrays.description();
+                description.triangles = triangles;
+                description.occluders = occluders;
+                return value_of(world.change([&](World& w) { return w.add_mesh(description); }));
+            },
+            py::arg("positions"), py::arg("indices") = py::none(), py::kw_only(), py::arg("triangles") = true,
+            py::arg("occluders") = false,
+            "A mesh of points (n, 3) and indices, three a triangle. With occluders it hides what is behind it.")
+        .def(
+            "set_vertices",
+            [](PyWorld& world, MeshHandle mesh, const py::handle& positions) {
+                const MeshArrays arrays(positions, py::none());
+                value_of(world.change([&](World& w) { return w.set_vertices(mesh, arrays.points()); }));
+            },
+            py::arg("mesh"), py::arg("positions"), "Other positions, as many as before.")
+        .def(
+            "add_node",
+            [](PyWorld& world, const py::object& parent, const py::object& transform, std::uint32_t layers) {
+                NodeDescription description;
+                description.parent = handle_or_null<NodeHandle>(parent, "parent");
+                if (!transform.is_none()) description.transform = transform_of(transform, "transform");
+                description.layers = layers;
+                return value_of(world.change([&](World& w) { return w.add_node(description); }));
+            },
+            py::arg("parent") = py::none(), py::arg("transform") = py::none(), py::arg("layers") = ~0u)
+        .def("add", &add, py::kw_only(), py::arg("mesh") = py::none(), py::arg("node") = py::none(),
+             py::arg("transform") = py::none(), py::arg("box") = py::none(), py::arg("ball") = py::none(),
+             py::arg("aligned") = py::none(), py::arg("user") = 0, py::arg("layers") = ~0u,
+             py::arg("collides_with") = ~0u, py::arg("occludes") = true,
+             "An object: a mesh, placed by `transform` under `node` or in the world; or a bound: a Box, a ball "
+             "(center, radius) or an aligned box (low, high).")
+        .def("add_boxes", &add_boxes, py::arg("boxes"), py::kw_only(), py::arg("users") = py::none(),
+             py::arg("layers") = ~0u, py::arg("collides_with") = ~0u,
+             "One object a box. Returns an array of handle_dtype. All or none.")
+        .def("add_instances", &add_instances, py::arg("mesh"), py::arg("transforms"), py::kw_only(),
+             py::arg("users") = py::none(), py::arg("layers") = ~0u, py::arg("collides_with") = ~0u,
+             "One object of the mesh a matrix, shape (n, 4, 4). All or none.")
+        .def(
+            "remove",
+            [](PyWorld& world, NodeHandle node) { value_of(world.change([&](World& w) { return w.remove(node); })); },
+            py::arg("node"), "With all nodes and objects below it.")
+        .def(
+            "remove",
+            [](PyWorld& world, MeshHandle mesh) { value_of(world.change([&](World& w) { return w.remove(mesh); })); },
+            py::arg("mesh"), "An error while objects use it.")
+        .def(
+            "remove",
+            [](PyWorld& world, const py::object& objects) {
+                for_handles<ObjectHandle>(world, objects,
+                                          [](World& w, ObjectHandle handle, std::size_t) { return w.remove(handle); });
+            },
+            py::arg("objects"), "One object or many: all but those refused; the error names the first.")
+        .def(
+            "set_transform",
+            [](PyWorld& world, ObjectHandle object, const py::handle& matrix) {
+                const auto transform = transform_of(matrix, "transform");
+                value_of(world.change([&](World& w) { return w.set_transform(object, transform); }));
+            },
+            py::arg("handle"), py::arg("transform"))
+        .def(
+            "set_transform",
+            [](PyWorld& world, NodeHandle node, const py::handle& matrix) {
+                const auto transform = transform_of(matrix, "transform");
+                value_of(world.change([&](World& w) { return w.set_transform(node, transform); }));
+            },
+            py::arg("handle"), py::arg("transform"))
+        .def("set_transforms", &set_transforms<ObjectHandle>, py::arg("objects"), py::arg("transforms"),
+             "Of objects with a mesh. All but those refused change; the error names the first.")
+        .def("set_node_transforms", &set_transforms<NodeHandle>, py::arg("nodes"), py::arg("transforms"),
+             "As set_transforms.")
+        .def("set_boxes", &set_boxes, py::arg("objects"), py::arg("boxes"),
+             "Of objects that were added with a bound, which becomes a box. Refused ones as in set_transforms.")
+        .def(
+            "set_hidden",
+            [](PyWorld& world, const py::object& objects, bool hidden) {
+                for_handles<ObjectHandle>(world, objects, [hidden](World& w, ObjectHandle handle, std::size_t) {
+                    return w.set_hidden(handle, hidden);
+                });
+            },
+            py::arg("objects"), py::arg("hidden"), "Hidden ones are in no answer. Refused ones as in set_transforms.")
+        .def(
+            "set_layers",
+            [](PyWorld& world, const py::object& objects, std::uint32_t layers) {
+                for_handles<ObjectHandle>(world, objects, [layers](World& w, ObjectHandle handle, std::size_t) {
+                    return w.set_layers(handle, layers);
+                });
+            },
+            py::arg("objects"), py::arg("layers"), "Refused ones as in set_transforms.")
+        .def(
+            "update",
+            [](PyWorld& world) {
+                const auto threads = executor();
+                value_of(world.change([&](World& w) { return w.update(*threads); }));
+            },
+            "Makes all changes since the last call count. Once a frame. Error: more than `max_pairs` pairs; then there "
+            "are "
+            "none, and all else is as it should be.")
+        .def_property_readonly("statistics", [](const PyWorld& world) {
+            const WorldStatistics s = world.ask([](const World& w) { return w.statistics(); });
+            py::dict d;
+            d["objects"] = s.objects;
+            d["resting"] = s.resting;
+            d["moving"] = s.moving;
+            d["boxes_changed"] = s.boxes_changed;
+            d["out_of_range"] = s.out_of_range;
+            return d;
+        });
+}
+
+}  // namespace crofton::python

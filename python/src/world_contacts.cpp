@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// What touches in a World.
+#include <pybind11/stl.h>
+
+#include "world.hpp"
+
+namespace crofton::python {
+namespace {
+
+// A copy of a Contact, whose spans end with the next update.
+struct ContactCopy {
+    ObjectRef first, second;
+    ContactPhase phase;
+    glm::dvec3 normal;
+    double depth;
+    std::vector<collide::ContactPoint> points;
+};
+
+std::vector<ContactCopy> contacts_of(const PyWorld& world) {
+    return world.ask([](const World& w) {
+        std::vector<ContactCopy> result;
+        for (const Contact& c : w.contacts())
+            result.push_back({c.first, c.second, c.phase, c.normal, c.depth, {c.points.begin(), c.points.end()}});
+        return result;
+    });
+}
+
+const char* phase_name(ContactPhase phase) {
+    return phase == ContactPhase::began ? "began" : phase == ContactPhase::stayed ? "stayed" : "ended";
+}
+
+py::array pairs_of(const PyWorld& world) {
+    std::vector<std::uint32_t> indices;
+    world.ask([&](const World& w) {
+        for (const ObjectPair& pair : w.pairs()) {
+            indices.push_back(pair.first.object.index);
+            indices.push_back(pair.second.object.index);
+        }
+    });
+    py::array_t<std::uint32_t> result = array_of<std::uint32_t>(indices);
+    return result.reshape({static_cast<py::ssize_t>(indices.size() / 2), py::ssize_t{2}});
+}
+
+}  // namespace
+
+void bind_world_contacts(py::module_& module, py::class_<PyWorld>& type) {
+    py::class_<ContactCopy>(module, "Contact", "Two objects that touch, or that did in the update before.")
+        .def_property_readonly("first", [](const ContactCopy& c) { return c.first; })
+        .def_property_readonly("second", [](const ContactCopy& c) { return c.second; })
+        .def_property_readonly(
+            "phase", [](const ContactCopy& c) { return phase_name(c.phase); }, "'began', 'stayed' or 'ended'")
+        .def_property_readonly(
+            "normal", [](const ContactCopy& c) { return tuple_of(c.normal); }, "unit, from the first to the second")
+        .def_readonly("depth", &ContactCopy::depth)
+        .def("__repr__",
+             [](const ContactCopy& c) {
+                 return format("Contact(%llu and %llu, %s, depth=%g, %d points)",
+                               static_cast<unsigned long long>(c.first.user),
+                               static_cast<unsigned long long>(c.second.user), phase_name(c.phase), c.depth,
+                               static_cast<int>(c.points.size()));
+             })
+        .def_property_readonly("points", [](const ContactCopy& c) {
+            py::array_t<double> points({static_cast<py::ssize_t>(c.points.size()), py::ssize_t{3}});
+            for (std::size_t i = 0; i < c.points.size(); ++i)
+                for (int k = 0; k < 3; ++k) points.mutable_at(i, k) = c.points[i].position[k];
+            return points;
+        });
+    type.def_property_readonly("pairs", &pairs_of, "indices of objects whose boxes or balls meet, shape (n, 2)")
+        .def_property_readonly("contacts", &contacts_of, "the Contacts of the last update");
+}
+
+}  // namespace crofton::python
