@@ -42,6 +42,11 @@ TEST_SUITE("study/k_dop") {
         CHECK(error_of(study::best_k_dop(points, axes, {})).code == ErrorCode::invalid_argument);
         points[3].x = std::nan("");
         CHECK(error_of(study::k_dop_around(points, axes)).item == 3);
+        // Points that are none of the k-DOP's: no hull of it contains them.
+        const std::vector<glm::dvec3> beside = {{9.0, 0.0, 0.0}};
+        const std::vector<glm::dvec3> corners = {{0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}};
+        CHECK(error_of(study::hull_around(*study::k_dop_around(corners, axes), beside)).code ==
+              ErrorCode::invalid_argument);
         const std::vector<glm::dvec3> plane = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
         CHECK(error_of(study::best_k_dop(plane, axes, measure::minimal_area())).code == ErrorCode::degenerate);
     }

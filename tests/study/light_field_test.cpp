@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/study/light_field.hpp>
+#include <error_of.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <vector>
@@ -54,6 +55,11 @@ Camera camera_in_room() {
 }  // namespace
 
 TEST_SUITE("study/light_field") {
+    TEST_CASE("a light field of no lines draws nothing, and says so") {
+        CHECK(error_of(study::LightField().draw(Camera{}, 4, 4, {})).code == ErrorCode::empty);
+        CHECK(study::LightField().arrivals({0.0, 0.0, 0.0}, 1.0).empty());
+    }
+
     TEST_CASE("bad options, cameras and pictures are refused") {
         const TriangleMesh mesh = room();
         const auto tracer = *radiosity::LineTracer::build(mesh);

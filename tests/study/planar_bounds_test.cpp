@@ -127,6 +127,55 @@ TEST_SUITE("study/planar_bounds") {
         CHECK(best->measure - best->lower_bound <= 1e-9 * 2.0 * pi);
     }
 
+    TEST_CASE("the lower bound is as close as promised where discs up to half-planes are as good within a millionth") {
+        const std::vector<glm::dvec2> segment = {{-1.0, 0.0}, {1.0, 0.0}};
+        for (const double height : {1e-2, 1e-3, 3e-4, 1e-4}) {
+            std::vector<glm::dvec2> roof = segment;
+            roof.emplace_back(0.0, height);
+            const PlanarSupport ancestor = *PlanarSupport::of_hull(roof);
+            for (const double tolerance : {1e-9, 1e-12}) {
+                const auto disc = optimal_disc(segment, ancestor, {.tolerance = tolerance});
+                REQUIRE(disc.has_value());
+                // 1e-14: rounding of the integrals
+                CHECK(disc->measure - disc->lower_bound <= tolerance * ancestor.integral() + 1e-14);
+            }
+        }
+    }
+
+    TEST_CASE("points very near one another, NaN for a tolerance and noise for a measure end the search") {
+        const PlanarSupport ancestor(Disc{{0.0, 0.0}, 1.0});
+        const double nan = std::nan("");
+        for (const double size : {1e-50, 1e-99, 1e-120, 1e-160, 1e-200, 1e-310}) {
+            const std::vector<glm::dvec2> points = {{-size, 0.0}, {size, 0.0}, {0.0, size}};
+            const auto disc = optimal_disc(points, ancestor);
+            REQUIRE(disc.has_value());
+            CHECK(disc->measure == doctest::Approx(0.0));
+            CHECK(disc->lower_bound <= disc->measure);
+            CHECK(holds(disc->bound, points));
+        }
+        const std::vector<glm::dvec2> segment = {{-0.5, 0.0}, {0.5, 0.0}};
+        const auto disc = optimal_disc(segment, ancestor, {.tolerance = nan});
+        const auto rectangle = optimal_rectangle(segment, ancestor, {.tolerance = 1e-9});
+        REQUIRE(disc.has_value());
+        CHECK(disc->measure == doctest::Approx(optimal_disc(segment, ancestor)->measure));
+        CHECK(rectangle.has_value());
+        // The rounding of integrals here, about 1e-6, is more than the measure.
+        const std::vector<glm::dvec2> far = {{1e9, 1e9}, {1e9 + 1.2e-7, 1e9}, {1e9, 1e9 + 1.2e-7}};
+        const PlanarSupport own = *PlanarSupport::of_hull(far);
+        CHECK(optimal_disc(far, own).has_value());
+        CHECK(optimal_rectangle(far, own).has_value());
+    }
+
+    TEST_CASE("ancestors too small or too large for cubes of their size are refused") {
+        for (const double size : {1e-310, 1e-160, 1e-90, 1e110, 1e155, 1e300}) {
+            const std::vector<glm::dvec2> points = {{-size, 0.0}, {size, 0.0}};
+            const PlanarSupport around(Disc{{0.0, 0.0}, 2.0 * size});
+            CHECK(error_of(optimal_disc(points, around)).code == ErrorCode::out_of_range);
+            CHECK(error_of(optimal_box(points, around)).code == ErrorCode::out_of_range);
+            CHECK(error_of(optimal_rectangle(points, around)).code == ErrorCode::out_of_range);
+        }
+    }
+
     TEST_CASE("regular polygons, whose corners are all concyclic, are bounded to the promised tolerance") {
         for (const int n : {3, 4, 5, 12, 100, 1000}) {
             std::vector<glm::dvec2> points;

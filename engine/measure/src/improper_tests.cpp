@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <crofton/geometry/trigonometry.hpp>
 #include <crofton/measure/measure.hpp>
 #include <numbers>
 
@@ -26,9 +27,9 @@ double rest(double a, double b) {
 // square root of the area and the mean width of K' and object therefore sum to no more than the query's. Area and mean
 // width bound a volume (isoperimetric inequality, Urysohn).
 double containing(const IntrinsicVolumes& query, const IntrinsicVolumes& object) {
-    const double by_volume = rest(std::cbrt(query.volume), std::cbrt(object.volume));
-    const double by_area = rest(std::sqrt(query.area), std::sqrt(object.area)) / std::cbrt(6.0 * std::sqrt(pi));
-    const double by_width = rest(query.mean_curvature, object.mean_curvature) / (4.0 * pi) * std::cbrt(4.0 / 3.0 * pi);
+    const double by_volume = rest(cube_root(query.volume), cube_root(object.volume));
+    const double by_area = rest(std::sqrt(query.area), std::sqrt(object.area)) / cube_root(6.0 * std::sqrt(pi));
+    const double by_width = rest(query.mean_curvature, object.mean_curvature) / (4.0 * pi) * cube_root(4.0 / 3.0 * pi);
     const double least = std::min({by_volume, by_area, by_width});
     return least * least * least;
 }

@@ -183,7 +183,8 @@ Result<convex::Hull> hull_around(const KDop& dop, std::span<const glm::dvec3> po
         for (double& high : grown.high) high += pad;
         find_corners(grown);
         auto hull = convex::Hull::build(Vector<glm::vec3>(grown.corners.begin(), grown.corners.end()));
-        if (!hull || contains(*hull, points) || !(pad < size)) return hull;
+        if (!hull || contains(*hull, points)) return hull;
+        if (!(pad < size)) return fail(ErrorCode::invalid_argument, kNoItem, "k-DOP: it does not contain the points");
     }
 }
 

@@ -178,6 +178,7 @@ Result<LightField::Drawn> LightField::draw(const Camera& camera, std::uint32_t w
                                            const DrawOptions& options) const {
     const auto rays = PictureRays::of(camera, width, height);
     if (!rays) return tl::unexpected(rays.error());
+    if (bundles_.empty()) return fail(ErrorCode::empty, kNoItem, "light field: nothing was recorded");
     if (!(options.samples >= 1e-3 && options.samples <= 1e3) || options.blend < 1 || options.blend > options.hiders ||
         options.hiders > 64 || !(options.depth_step > 0.0))
         return fail(ErrorCode::out_of_range, kNoItem, "light field: draw options out of range");

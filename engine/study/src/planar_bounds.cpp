@@ -17,11 +17,16 @@ namespace {
 
 using std::numbers::pi;
 
+// Sizes whose cubes are finite and not 0. What is smaller than the least distance is below the rounding of all
+// measures.
+constexpr double kLeastSize = 1e-80, kLargestSize = 1e100, kLeastDistance = 1e-100;
+
 struct Problem {
-    Vector<glm::dvec2> hull;
-    double scale = 0.0;      // the measure of the ancestors alone
-    double own = 0.0;        // the measure of the object itself, a lower bound for all bounds
-    double tolerance = 0.0;  // absolute
+    Vector<glm::dvec2> corners;  // of the object's hull
+    Vector<glm::dvec2> hull;     // the same, but of those too near to one another only one
+    double scale = 0.0;          // the measure of the ancestors alone
+    double own = 0.0;            // the measure of the object itself, a lower bound for all bounds
+    double tolerance = 0.0;      // absolute
 };
 
 // What the integrals of both may miss by: about 1e-15 of the largest coordinate in each piece (planar_lines.hpp). A
@@ -39,14 +44,28 @@ Result<Problem> prepare(std::span<const glm::dvec2> object, const PlanarSupport&
     auto hull = measure::convex_hull(object);
     if (!hull) return tl::unexpected(hull.error());
     Problem problem;
-    problem.hull = std::move(*hull);
+    problem.corners = std::move(*hull);
+    for (const glm::dvec2& p : problem.corners) {
+        const auto apart = [&](const glm::dvec2& q) {
+            return std::max(std::abs(p.x - q.x), std::abs(p.y - q.y)) >= kLeastDistance;
+        };
+        if (problem.hull.empty() || (apart(problem.hull.back()) && apart(problem.hull.front())))
+            problem.hull.push_back(p);
+    }
     problem.scale = ancestors.integral();
     const PlanarSupport own = PlanarSupport::of_convex_polygon(problem.hull);
     problem.own = own.integral();
-    problem.tolerance = std::max(options.tolerance, 1e-12) * problem.scale;
+    double largest = 0.0;
+    for (const PlanarSupport::Piece& p : ancestors.pieces())
+        largest = std::max({largest, std::abs(p.point.x), std::abs(p.point.y), std::abs(p.radius)});
+    if (!(largest <= kLargestSize) || (problem.corners.size() > 1 && largest < kLeastSize))
+        return fail(ErrorCode::out_of_range, kNoItem,
+                    "optimal bound: the size of the ancestors' bounds must lie in [1e-80, 1e100]");
+    const double rounding = rounding_of_integrals(ancestors, own);
+    problem.tolerance = std::max(std::max(1e-12, options.tolerance) * problem.scale, rounding);
     // ∫ max(0, h_object − h_ancestors): rounding only, where an ancestor touches the object.
     const double outside = problem.own - integral_of_min(ancestors, own);
-    if (!(outside <= 1e-9 * problem.scale + rounding_of_integrals(ancestors, own) + 1e-300))
+    if (!(outside <= 1e-9 * problem.scale + rounding + 1e-300))
         return fail(ErrorCode::invalid_argument, kNoItem,
                     "optimal bound: the object is not inside its ancestors' bounds");
     return problem;
@@ -101,22 +120,23 @@ class DiscSearch {
         if (edge.end == kInfinity) open_.push_back({e, end, kInfinity, at_end, kInfinity});
     }
 
-    // max r″ on an interval, r = √(half² + t²), r″ = half²/r³.
+    // max r″·Δt² on an interval, r = √(half² + t²), r″ = half²/r³.
     double bend(const Stretch& s) const {
-        const double half = edges_[s.edge].half;
+        const double half = edges_[s.edge].half, length = s.end - s.begin;
         const double nearest = s.begin <= 0.0 && s.end >= 0.0 ? 0.0 : std::min(std::abs(s.begin), std::abs(s.end));
         const double r = std::sqrt(half * half + nearest * nearest);
-        return half * half / (r * r * r);
+        return (half / r) * (half / r) * length * (length / r);
     }
 
     void examine(const Stretch& s) {
         const double half = edges_[s.edge].half;
         if (s.begin == -kInfinity || s.end == kInfinity) {
-            // Beyond t the disc contains that of radius |t| instead of r(t): the measure is 2π·(r − |t|) less at most.
+            // Beyond t the discs contain this one's part on the centre's side of the two corners. Its support is less
+            // within an angle of atan(half/t) to either side of the outward normal there, by at most r − t.
             const bool forward = s.end == kInfinity;
             const double t = std::abs(forward ? s.begin : s.end), value = forward ? s.at_begin : s.at_end;
-            const double bound = value - 2.0 * pi * half * half / (std::sqrt(half * half + t * t) + t);
-            // Discs a million times the object are half-planes: up to rounding their measure is that of the ancestors.
+            const double bound = value - 2.0 * half * (half / t) * (half / (std::sqrt(half * half + t * t) + t));
+            // That is 1e-12 of the object where the disc is a million times as large.
             if (bound >= target() || t > 1e6 * half) return drop(bound);
             const double further = forward ? 2.0 * s.begin : 2.0 * s.end, at_further = measured(s.edge, further);
             open_.push_back(forward ? Stretch{s.edge, s.begin, further, value, at_further}
@@ -125,8 +145,7 @@ class DiscSearch {
                                     : Stretch{s.edge, -kInfinity, further, kInfinity, at_further});
             return;
         }
-        const double length = s.end - s.begin;
-        const double bound = std::min(s.at_begin, s.at_end) - 0.25 * pi * bend(s) * length * length;
+        const double bound = std::min(s.at_begin, s.at_end) - 0.25 * pi * bend(s);
         const double middle = 0.5 * (s.begin + s.end);
         if (bound >= target() || !(s.begin < middle && middle < s.end)) return drop(bound);
         const double value = measured(s.edge, middle);
@@ -242,6 +261,7 @@ void enclose(std::span<const glm::dvec2> hull, Disc& disc) {
     for (const glm::dvec2& p : hull) disc.radius = std::max(disc.radius, glm::length(p - disc.center));
     const double size = std::abs(disc.center.x) + std::abs(disc.center.y) + disc.radius;
     disc.radius += 4.0 * std::numeric_limits<double>::epsilon() * size;
+    if (hull.size() > 1) disc.radius += kLeastDistance;  // lengths whose squares vanish
 }
 void enclose(std::span<const glm::dvec2> hull, Rectangle& rectangle) {
     const glm::dvec2 across(-rectangle.axis.y, rectangle.axis.x);
@@ -266,7 +286,7 @@ Result<OptimalBound<Disc>> optimal_disc(std::span<const glm::dvec2> object, cons
         result = {{problem->hull[0], 0.0}, 0.0, 0.0, 0};
     else
         result = DiscSearch(*problem, ancestors).run();
-    enclose(problem->hull, result.bound);
+    enclose(problem->corners, result.bound);
     return result;
 }
 
@@ -277,7 +297,7 @@ Result<OptimalBound<Rectangle>> optimal_box(std::span<const glm::dvec2> object, 
     result.bound = rectangle_at(problem->hull, 0.0, support_corners(problem->hull, 0.0));
     result.measure = result.lower_bound = integral_of_min(ancestors, PlanarSupport(result.bound));
     result.evaluations = 1;
-    enclose(problem->hull, result.bound);
+    enclose(problem->corners, result.bound);
     return result;
 }
 
@@ -286,7 +306,7 @@ Result<OptimalBound<Rectangle>> optimal_rectangle(std::span<const glm::dvec2> ob
     const auto problem = prepare(object, ancestors, options);
     if (!problem) return tl::unexpected(problem.error());
     auto result = RectangleSearch(*problem, ancestors).run();
-    enclose(problem->hull, result.bound);
+    enclose(problem->corners, result.bound);
     return result;
 }
 

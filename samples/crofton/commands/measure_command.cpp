@@ -16,6 +16,7 @@
 #include "json/json.hpp"
 #include "mesh_file.hpp"
 #include "report.hpp"
+#include "verify/bodies.hpp"
 #include "verify/rows.hpp"
 
 namespace crofton::cli {
@@ -25,25 +26,6 @@ struct MeasureOptions {
     std::string file, json;
     std::uint64_t lines = 100'000, seed = 1;
     ReadOptions read;
-};
-
-// The mean of what was added, with its standard error.
-class MeanAndError {
-  public:
-    void add(double x) {
-        sum_ += x;
-        squares_ += x * x;
-        ++count_;
-    }
-    [[nodiscard]] double value() const { return sum_ / static_cast<double>(count_); }
-    [[nodiscard]] double standard_error() const {
-        const double n = static_cast<double>(count_), mean = value();
-        return std::sqrt(std::max(0.0, squares_ / n - mean * mean) / n);
-    }
-
-  private:
-    double sum_ = 0.0, squares_ = 0.0;
-    std::uint64_t count_ = 0;
 };
 
 // A convex solid as the half-spaces { x : dot(normal, x) ≤ offset } of its faces.
@@ -92,7 +74,7 @@ double area_of(const TriangleMesh& mesh) {
     return sum;
 }
 
-VerifyRow row(const char* claim, const char* formula, double exact, double factor, const MeanAndError& mean) {
+VerifyRow row(const char* claim, const char* formula, double exact, double factor, const Mean& mean) {
     return measured_row(claim, formula, exact, factor * mean.value(), factor * mean.standard_error());
 }
 
@@ -103,7 +85,7 @@ void hull_rows(std::span<const glm::dvec3> points, const ConvexHull& hull, const
     const double ball_area = source.surface_area();
     if (hull.rank == 3) {
         const HalfSpaces solid(points, hull);
-        MeanAndError hits, chords;
+        Mean hits, chords;
         Vector<Line> lines;
         for (std::uint64_t block = 0; block < blocks; ++block) {
             source.draw(block, lines);
@@ -119,7 +101,7 @@ void hull_rows(std::span<const glm::dvec3> points, const ConvexHull& hull, const
     }
     study::ConvexBody body;
     for (const std::uint32_t v : hull.vertices) body.points.push_back(points[v]);
-    MeanAndError breadths;
+    Mean breadths;
     const sampling::UnitPoints numbers(options.seed);
     for (std::uint64_t i = 0; i < blocks * radiosity::LineSource::kBlock; ++i)
         breadths.add(study::breadth(body, sampling::direction(numbers.at<2>(i))));

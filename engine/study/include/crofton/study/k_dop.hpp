@@ -23,7 +23,8 @@ struct KDop {
     Vector<glm::dvec3> corners;
 };
 
-// The least of its directions around the points: every slab touches two of them. Directions may have any length but 0.
+// The least of its directions around the points: every slab touches two of them. Directions may have any length whose
+// square is neither 0 nor infinite.
 // Errors: no points, NaN or infinite ones (by index); more than 64 directions; a direction that is 0 or not finite (by
 // index); directions that all lie in a plane.
 [[nodiscard]] Result<KDop> k_dop_around(std::span<const glm::dvec3> points, std::span<const glm::dvec3> directions);
@@ -50,8 +51,8 @@ struct BestKDopOptions {
                                           const measure::Criterion& criterion, const BestKDopOptions& options = {});
 
 // The k-DOP as a body that culling takes (cull::classify). Its corners are rounded to floats and moved out by a few
-// 2^-22 of their size until the hull contains every point, in exact arithmetic. Errors: no points, as
-// convex::Hull::build.
+// 2^-22 of their size until the hull contains every point, in exact arithmetic. Errors: no points; points far outside
+// the k-DOP; as convex::Hull::build.
 [[nodiscard]] Result<convex::Hull> hull_around(const KDop& dop, std::span<const glm::dvec3> points);
 
 }  // namespace crofton::study

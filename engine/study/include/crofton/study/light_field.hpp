@@ -57,7 +57,7 @@ class LightField {
     // at its true place in the picture. Pixels take the nearest of these points, hidden ones left out. The ball is the
     // least that gives the samples asked for, so with more lines it shrinks, and with it the error. Errors: as
     // validate(Camera); an orthographic camera; a picture of no size or beyond 2^24 pixels; options out of range; no
-    // line near the eye.
+    // line near the eye, or nothing recorded.
     [[nodiscard]] Result<Drawn> draw(const Camera& camera, std::uint32_t width, std::uint32_t height,
                                      const DrawOptions& options) const;
 

@@ -11,7 +11,8 @@
 namespace crofton::study {
 
 // `measure`: of the lines that hit the bound and all ancestors. No bound of its kind has one below `lower_bound`, which
-// is within the tolerance of `measure` unless noted. `bound` contains every point.
+// is within the tolerance of `measure`. `bound` contains every point. Both numbers have the integrals' rounding: at
+// most 4e-15 of the largest |coordinate| for each piece of the two support functions.
 template <class Bound>
 struct OptimalBound {
     Bound bound;
@@ -21,12 +22,13 @@ struct OptimalBound {
 };
 
 struct BoundOptions {
-    double tolerance = 1e-9;  // relative to the measure of the ancestors alone; at least 1e-12
+    double tolerance = 1e-9;  // relative to the measure of the ancestors alone; at least 1e-12, and the rounding
 };
 
 // `ancestors` is the lower envelope of the ancestors' support functions (lower_envelope; a single figure as it is).
-// Errors of all three: no points, a point NaN or infinite (by index), an object that its ancestors' bounds do not
-// contain.
+// Errors of all three: no points; a point NaN or infinite (by index); an object that its ancestors' bounds do not
+// contain. The largest |coordinate| or radius of the ancestors must lie in [1e-80, 1e100]; around a point it may be
+// less.
 //
 // optimal_disc searches along the farthest-point Voronoi diagram. The measure is ∫ min(h_ancestors, h_K), since all
 // contain the object, and grows with K. So a disc that touches the object in one point only can shrink towards it, and
