@@ -64,6 +64,14 @@ TEST_SUITE("cli/usage") {
         }
     }
 
+    TEST_CASE("what is missing, and what --cells may be, is said") {
+        CHECK(run_cli("fit").err.find("an argument is missing: files") != std::string::npos);
+        CHECK(run_cli("collide a.obj").err.find("an argument is missing: B") != std::string::npos);
+        const CliRun cells = run_cli("pvs room --cells 4x4 --out p.crofton");
+        CHECK(cells.status == 2);
+        CHECK(cells.err.find("--cells 4x4: there is no such file; a grid is three numbers") != std::string::npos);
+    }
+
     TEST_CASE("two outputs into one file, or both to stdout, are refused by their names before the work") {
         const std::string out = scratch().file("both"), link = scratch().file("both_link");
         write_contents(out, "old");
@@ -93,6 +101,14 @@ TEST_SUITE("cli/usage") {
         for (const char* command : {"triangulate a.poly --json - --svg -", "hierarchy --lines 1000 --json - --svg -",
                                     "fit room --json - --svg -"})
             CHECK(run_cli(command).err.find("--json and --svg cannot both go to stdout") != std::string::npos);
+        // Through two links to a file that is not there yet.
+        const std::string later = scratch().file("later"), to_later = scratch().file("to_later");
+        std::filesystem::create_symlink("later", to_later);
+        std::filesystem::create_symlink(to_later, scratch().file("to_link"));
+        const CliRun run =
+            run_cli("triangulate a.poly --json '" + later + "' --svg '" + scratch().file("to_link") + "'");
+        CHECK(run.status == 2);
+        CHECK(run.err.find("--json and --svg name one file") != std::string::npos);
         CHECK(run_cli("frames --no-draw --frames 1 --json a --csv ./a").status == 2);
         CHECK(run_cli("frames --no-draw --frames 1 --json - --csv -").status == 2);
         CHECK(run_cli("frames --no-draw --frames 1 --json /dev/null --csv /dev/null").status == 0);

@@ -109,7 +109,10 @@ std::string reason(const CLI::App& app, const CLI::ParseError& error, const std:
     }
     if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) return unexpected(command, arguments);
     if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) return of_conversion(command, error.what());
-    return error.what();
+    const std::string what = error.what();
+    const std::size_t required = what.find(" is required");
+    return what[0] == '-' || required == std::string::npos ? what
+                                                           : "an argument is missing: " + what.substr(0, required);
 }
 
 std::string usage_error(const CLI::App& app, const CLI::ParseError& error, const std::vector<std::string>& arguments) {
@@ -142,7 +145,12 @@ std::string place_of(const std::string& path) {
     std::error_code error;
     const auto absolute = std::filesystem::absolute(path, error);
     if (error || path == "-") return path;
-    const auto place = std::filesystem::weakly_canonical(absolute, error);
+    // Of a link to a file that is not there yet, where that will be.
+    std::filesystem::path end = absolute;
+    for (int links = 0; links < 40 && !std::filesystem::exists(end, error) && std::filesystem::is_symlink(end, error);
+         ++links)
+        end = end.parent_path() / std::filesystem::read_symlink(end, error);
+    const auto place = std::filesystem::weakly_canonical(end, error);
     return error ? absolute.lexically_normal().string() : place.string();
 }
 

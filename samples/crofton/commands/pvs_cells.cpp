@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <sstream>
@@ -153,6 +154,10 @@ Result<pvs::Cells> cells_from(const std::string& text, const Aabb& eyes, const a
     if (take_number(at, counts.x) && take(at, 'x') && take_number(at, counts.y) && take(at, 'x') &&
         take_number(at, counts.z) && *at == '\0')
         return pvs::Cells::grid(eyes, counts);
+    std::error_code error;
+    if (!std::filesystem::exists(text, error))
+        return fail(ErrorCode::invalid_argument, kNoItem,
+                    "--cells " + text + ": there is no such file; a grid is three numbers, as 64x2x64; or take rooms");
     return cells_of_file(text, limits);
 }
 
