@@ -7,19 +7,14 @@
 #include <random>
 #include <vector>
 
+#include "random_rotation.hpp"
+
 using namespace crofton;
 using fit::Quality;
 
 namespace {
 
 using Points = std::vector<glm::dvec3>;
-
-glm::dmat3 random_rotation(std::mt19937& random) {
-    std::normal_distribution<double> normal;
-    const glm::dvec3 a = glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
-    const glm::dvec3 b = glm::normalize(glm::cross(a, glm::dvec3(normal(random), normal(random), normal(random))));
-    return {a, b, glm::cross(a, b)};
-}
 
 // `count` points of a box with these half extents, turned and moved.
 Points random_points(std::mt19937& random, const glm::dvec3& half, int count) {
