@@ -103,22 +103,25 @@ py::array add_instances(PyWorld& to, MeshHandle mesh, const py::handle& given, c
     });
 }
 
-// For set_transforms, set_boxes, remove: objects or nodes, one or many.
-template <class H, class F>
-void for_handles(PyWorld& world, const py::handle& given, F&& f) {
-    const Handles<H> handles(given, "handles");
-    std::size_t i = 0;
+// Changes objects, one or many: all but those refused; the error names the first.
+template <class F>
+void for_objects(PyWorld& world, const py::handle& given, F&& f) {
+    const Handles<ObjectHandle> handles(given, "handles");
     value_of(world.change([&](World& w) -> Result<void> {
         Result<void> first;
-        for (const H handle : handles.span()) {
-            if (auto done = f(w, handle, i); !done && first) {
+        for (std::size_t i = 0; i < handles.span().size(); ++i)
+            if (auto done = f(w, handles.span()[i]); !done && first) {
                 first = done;
                 first.error().item = i;
             }
-            ++i;
-        }
         return first;
     }));
+}
+
+template <class H>
+void set_transform(PyWorld& world, H handle, const py::handle& matrix) {
+    const auto transform = transform_of(matrix, "transform");
+    value_of(world.change([&](World& w) { return w.set_transform(handle, transform); }));
 }
 
 template <class H>
@@ -193,24 +196,11 @@ void bind_world_changes(py::class_<PyWorld>& type) {
         .def(
             "remove",
             [](PyWorld& world, const py::object& objects) {
-                for_handles<ObjectHandle>(world, objects,
-                                          [](World& w, ObjectHandle handle, std::size_t) { return w.remove(handle); });
+                for_objects(world, objects, [](World& w, ObjectHandle handle) { return w.remove(handle); });
             },
             py::arg("objects"), "One object or many: all but those refused; the error names the first.")
-        .def(
-            "set_transform",
-            [](PyWorld& world, ObjectHandle object, const py::handle& matrix) {
-                const auto transform = transform_of(matrix, "transform");
-                value_of(world.change([&](World& w) { return w.set_transform(object, transform); }));
-            },
-            py::arg("handle"), py::arg("transform"))
-        .def(
-            "set_transform",
-            [](PyWorld& world, NodeHandle node, const py::handle& matrix) {
-                const auto transform = transform_of(matrix, "transform");
-                value_of(world.change([&](World& w) { return w.set_transform(node, transform); }));
-            },
-            py::arg("handle"), py::arg("transform"))
+        .def("set_transform", &set_transform<ObjectHandle>, py::arg("handle"), py::arg("transform"))
+        .def("set_transform", &set_transform<NodeHandle>, py::arg("handle"), py::arg("transform"))
         .def("set_transforms", &set_transforms<ObjectHandle>, py::arg("objects"), py::arg("transforms"),
              "Of objects with a mesh. All but those refused change; the error names the first.")
         .def("set_node_transforms", &set_transforms<NodeHandle>, py::arg("nodes"), py::arg("transforms"),
@@ -220,17 +210,15 @@ void bind_world_changes(py::class_<PyWorld>& type) {
         .def(
             "set_hidden",
             [](PyWorld& world, const py::object& objects, bool hidden) {
-                for_handles<ObjectHandle>(world, objects, [hidden](World& w, ObjectHandle handle, std::size_t) {
-                    return w.set_hidden(handle, hidden);
-                });
+                for_objects(world, objects,
+                            [hidden](World& w, ObjectHandle handle) { return w.set_hidden(handle, hidden); });
             },
             py::arg("objects"), py::arg("hidden"), "Hidden ones are in no answer. Refused ones as in set_transforms.")
         .def(
             "set_layers",
             [](PyWorld& world, const py::object& objects, std::uint32_t layers) {
-                for_handles<ObjectHandle>(world, objects, [layers](World& w, ObjectHandle handle, std::size_t) {
-                    return w.set_layers(handle, layers);
-                });
+                for_objects(world, objects,
+                            [layers](World& w, ObjectHandle handle) { return w.set_layers(handle, layers); });
             },
             py::arg("objects"), py::arg("layers"), "Refused ones as in set_transforms.")
         .def(
@@ -240,8 +228,7 @@ void bind_world_changes(py::class_<PyWorld>& type) {
                 value_of(world.change([&](World& w) { return w.update(*threads); }));
             },
             "Makes all changes since the last call count. Once a frame. Error: more than `max_pairs` pairs; then there "
-            "are "
-            "none, and all else is as it should be.")
+            "are none, and all else is as it should be.")
         .def_property_readonly("statistics", [](const PyWorld& world) {
             const WorldStatistics s = world.ask([](const World& w) { return w.statistics(); });
             py::dict d;

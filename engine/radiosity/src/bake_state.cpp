@@ -196,7 +196,9 @@ Result<Vector<std::uint32_t>> missing_shards(std::span<const std::byte> state, s
         for (std::uint32_t i = 0; i < count; ++i) {
             const ChainRange shard = chains_of({i, count}, sums->runs);
             std::uint64_t chain = shard.begin;
-            while (chain < shard.end && has_chain(*sums, chain)) chain = first_beyond(*sums, chain)->end;
+            for (auto sum = first_beyond(*sums, chain);
+                 chain < shard.end && sum != sums->all.end() && sum->begin <= chain; ++sum)
+                chain = sum->end;
             if (chain < shard.end) missing.push_back(i);
         }
         return missing;

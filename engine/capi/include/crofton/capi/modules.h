@@ -651,8 +651,7 @@ typedef enum crofton_pvs_mode {
 
 #define CROFTON_PVS_NO_CELL 0xffffffffu
 
-/* Sets of more than 2^30 pairs of a cell and an object are refused (CROFTON_OUT_OF_RANGE): each takes a byte meanwhile.
- */
+/* More than 2^30 pairs of a cell and an object are refused (CROFTON_OUT_OF_RANGE): each takes a byte meanwhile. */
 CROFTON_API crofton_status crofton_pvs_open(const char* path, crofton_pvs** pvs);
 CROFTON_API crofton_status crofton_pvs_destroy(crofton_pvs* pvs);
 /* Numbers of cells and of objects; either may be NULL. */

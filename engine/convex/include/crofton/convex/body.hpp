@@ -311,8 +311,8 @@ class Compound {
 
 // Exact formulas, rounded. A triangle has volume 0. Of compounds the sum over the children: what lies in two counts
 // twice. There the inertia about the axis of a child that is h times as long as thick is off by h² roundings. Errors:
-// half-spaces, meshes and height fields, which have no volume (`unsupported`; of a compound's child the
-// item is the child).
+// half-spaces, meshes and height fields, which have no volume (`unsupported`; of a compound's child the item is the
+// child).
 [[nodiscard]] Result<MassProperties> mass_properties(const Body& body);
 
 // The farthest point of the body along `direction` (finite, of any length; of length 0 some point of the body), in its
