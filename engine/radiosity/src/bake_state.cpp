@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "bake_sums.hpp"
+#include "fnv1a.hpp"
 
 namespace crofton::radiosity {
 namespace {
@@ -21,12 +22,6 @@ struct SumHeader {
 };
 constexpr std::uint64_t kMostPatchesOfState = std::uint64_t{1} << 32;
 constexpr std::uint64_t kBytesOfPatch = 2 * sizeof(glm::dvec3) + 2 * sizeof(std::uint64_t);
-
-std::uint64_t hash_of(std::span<const std::byte> bytes) {  // FNV-1a
-    std::uint64_t h = kBakeMagic;
-    for (const std::byte b : bytes) h = (h ^ static_cast<std::uint64_t>(b)) * 1099511628211u;
-    return h;
-}
 
 tl::unexpected<Error> damaged(const char* what) {
     return fail(ErrorCode::parse, kNoItem, {"state of a bake of light: ", what});
@@ -118,7 +113,7 @@ Vector<std::byte> to_bytes(const Bake::Sums& sums) {
         put(&head, sizeof head);
         for_each_array(sum, [&](const auto& values) { put(values.data(), values.size() * sizeof(values[0])); });
     }
-    const std::uint64_t check = hash_of(std::span(bytes).first(bytes.size() - sizeof(std::uint64_t)));
+    const std::uint64_t check = fnv1a(kBakeMagic, std::span(bytes).first(bytes.size() - sizeof(std::uint64_t)));
     put(&check, sizeof check);
     return bytes;
 }
@@ -130,7 +125,7 @@ Result<Bake::Sums> sums_from(std::span<const std::byte> bytes) {
         return damaged("damaged, or not one of ours");
     std::memcpy(&header, bytes.data(), sizeof header);
     std::memcpy(&check, bytes.data() + bytes.size() - sizeof check, sizeof check);
-    if (check != hash_of(bytes.first(bytes.size() - sizeof check))) return damaged("damaged");
+    if (check != fnv1a(kBakeMagic, bytes.first(bytes.size() - sizeof check))) return damaged("damaged");
     const std::uint64_t room = bytes.size() - sizeof header - sizeof check;
     if (header.patches == 0 || header.patches > kMostPatchesOfState || header.runs > kMostRuns)
         return damaged("its header makes no sense");

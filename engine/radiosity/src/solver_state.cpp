@@ -6,6 +6,8 @@
 #include <cstring>
 #include <limits>
 
+#include "fnv1a.hpp"
+
 namespace crofton::radiosity {
 namespace {
 
@@ -14,12 +16,6 @@ constexpr std::uint64_t kMagic = 0x32796469'6f736964u;  // names this format and
 struct Header {
     std::uint64_t magic = kMagic, fingerprint = 0, patches = 0, runs = 0, lines = 0, unseen = 0, seen = 0;
 };
-
-std::uint64_t hash(std::uint64_t seed, const void* data, std::size_t bytes) {  // FNV-1a
-    const auto* p = static_cast<const unsigned char*>(data);
-    for (std::size_t i = 0; i < bytes; ++i) seed = (seed ^ p[i]) * 1099511628211u;
-    return seed;
-}
 
 // Light and its squares, then the counts of rays, by patch.
 std::size_t state_bytes(std::size_t patches) {
@@ -114,7 +110,8 @@ double Solver::unseen() const {
 
 std::uint64_t Solver::fingerprint() const {
     std::uint64_t h = 14695981039346656037u;
-    const auto add = [&](const auto& value) { h = hash(h, &value, sizeof value); };
+    const auto add_all = [&](const auto& values) { h = fnv1a(h, std::as_bytes(std::span(values))); };
+    const auto add = [&](const auto& value) { h = fnv1a(h, std::as_bytes(std::span(&value, 1))); };
     add(options_.lines);
     add(options_.first_shot);
     add(method_);
@@ -126,10 +123,11 @@ std::uint64_t Solver::fingerprint() const {
     add(options_.outside.sky);
     add(options_.outside.sun);
     add(options_.outside.to_sun);
-    h = hash(h, patches_->mesh.positions.data(), patches_->mesh.positions.size() * sizeof(glm::vec3));
-    h = hash(h, patches_->mesh.indices.data(), patches_->mesh.indices.size() * sizeof(std::uint32_t));
-    h = hash(h, patches_->patch_of_triangle.data(), patches_->patch_of_triangle.size() * sizeof(std::uint32_t));
-    return hash(h, patches_->materials.data(), patches_->materials.size() * sizeof(Material));
+    add_all(patches_->mesh.positions);
+    add_all(patches_->mesh.indices);
+    add_all(patches_->patch_of_triangle);
+    add_all(patches_->materials);
+    return h;
 }
 
 void Solver::forget() {
@@ -155,7 +153,7 @@ Vector<std::byte> Solver::checkpoint() const {
     put(squares_.data(), squares_.size() * sizeof(glm::dvec3));
     put(drawn_.data(), drawn_.size() * sizeof(std::uint64_t));
     put(buried_.data(), buried_.size() * sizeof(std::uint64_t));
-    const std::uint64_t check = hash(kMagic, bytes.data(), bytes.size() - sizeof(std::uint64_t));
+    const std::uint64_t check = fnv1a(kMagic, std::span(bytes).first(bytes.size() - sizeof(std::uint64_t)));
     put(&check, sizeof check);
     return bytes;
 }
@@ -166,7 +164,7 @@ Result<void> Solver::resume(std::span<const std::byte> bytes) {
     if (bytes.size() < sizeof header + sizeof check) return fail(ErrorCode::parse, kNoItem, "checkpoint: too short");
     std::memcpy(&header, bytes.data(), sizeof header);
     std::memcpy(&check, bytes.data() + bytes.size() - sizeof check, sizeof check);
-    if (header.magic != kMagic || check != hash(kMagic, bytes.data(), bytes.size() - sizeof check))
+    if (header.magic != kMagic || check != fnv1a(kMagic, bytes.first(bytes.size() - sizeof check)))
         return fail(ErrorCode::parse, kNoItem, "checkpoint: damaged, or not one of ours");
     if (header.patches != sum_.size() || header.fingerprint != fingerprint() ||
         bytes.size() != sizeof header + state_bytes(sum_.size()) + sizeof check)

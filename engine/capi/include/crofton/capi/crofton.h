@@ -62,7 +62,7 @@ typedef struct crofton_world_statistics {
 } crofton_world_statistics;
 
 /* A mesh in its own frame, in the caller's arrays; World copies what it needs. Three indices a triangle,
- * counter-clockwise seen from outside; without indices three positions are one. */
+ * counter-clockwise seen from outside; with an index_count of 0 three positions are one. */
 typedef struct crofton_mesh_data {
     size_t size;
     const void* positions; /* x y z; of any alignment */

@@ -113,8 +113,8 @@ class IndicesView {
     std::size_t size_ = 0;
 };
 
-// A mesh in its own frame; World copies what it needs. Three indices a triangle (a, b, c); without indices three
-// positions are one. Outside is where cross(b − a, c − a) points: triangles are counter-clockwise seen from there in
+// A mesh in its own frame; World copies what it needs. Three indices a triangle (a, b, c); with an empty `indices`
+// three positions are one. Outside is where cross(b − a, c − a) points: triangles are counter-clockwise seen from there in
 // right-handed coordinates, clockwise in left-handed ones.
 struct MeshDescription {
     PointsView positions = {};
