@@ -68,6 +68,18 @@ TEST_SUITE("collide/shapes") {
         CHECK_FALSE(intersects(box, Triangle{glm::dvec3(0.0), glm::dvec3(1.0), glm::dvec3(0.0, kNan, 0.0)}));
     }
 
+    TEST_CASE("balls and capsules beyond the largest coordinate meet nothing") {
+        const Obb box{{}, glm::mat3(1.0f), {1, 1, 1}};
+        for (const double far : {1.1e30, 1e154, 1e155, 1e200, 1e308}) {
+            CAPTURE(far);
+            CHECK_FALSE(intersects(box, Sphere{{far, 0, 0}, 1.0}));
+            CHECK_FALSE(intersects(box, Capsule{{far, 0, 0}, {far, 1, 0}, 1.0}));
+            CHECK_FALSE(intersects(box, Capsule{{1, 2, 3}, {far, 1, 0}, 1.0}));
+            CHECK_FALSE(intersects(box, Sphere{{}, far}));
+        }
+        CHECK_FALSE(intersects(box, Sphere{{kMaxCoordinate, 0, 0}, 1.0}));
+        CHECK(intersects(box, Sphere{{kMaxCoordinate, 0, 0}, kMaxCoordinate}));
+    }
     TEST_CASE("half-spaces and boxes whose roundings add up to a sixteenth of the filter's bound, and more") {
         // Found by a search for the greatest sum of roundings: 2.6 to 3 half units in the last place of the terms' sum.
         const struct {

@@ -350,6 +350,22 @@ TEST_SUITE("world/bounds") {
         CHECK(!world.closest(Sphere{{-9e29, 0.0, 0.0}, 1.0}, 1e30));
     }
 
+    TEST_CASE("balls and capsules beyond the largest coordinate meet nothing, and nothing is near them") {
+        World world;
+        REQUIRE(world.add({.bound = Obb{}}).has_value());
+        REQUIRE(world.add({.bound = Sphere{{3, 0, 0}, 1.0}}).has_value());
+        REQUIRE(world.update().has_value());
+        Vector<ObjectRef> found;
+        for (const double far : {1.1e30, 1e155, 1e200, 1e308}) {
+            CAPTURE(far);
+            CHECK(!world.closest(Sphere{{far, 0, 0}, 1.0}, INFINITY));
+            CHECK(!world.closest(collide::Capsule{{}, {0, far, 0}, 1.0}, INFINITY));
+            world.overlap(Sphere{{}, far}, found);
+            CHECK(found.empty());
+            world.overlap(collide::Capsule{{-far, 0, 0}, {far, 0, 0}, 1.0}, found);
+            CHECK(found.empty());
+        }
+    }
     TEST_CASE("balls smaller than any float meet where they touch") {
         for (const double radius : {1e-46, 1e-45, 2e-45, 1e-40, 1e-38}) {
             CAPTURE(radius);

@@ -95,7 +95,8 @@ struct Capsule {
 
 // Touching counts, NaN meets nothing. Half-spaces { x : dot(normal, x) + offset ≥ 0 } and triangles: exact for the
 // stored numbers, for every valid box and coordinates of 0 or magnitude in [1e-70, 1e30]. Spheres and capsules: a gap
-// or overlap below 1e-13 of the coordinates' size may be told either way.
+// or overlap below 1e-13 of the coordinates' size may be told either way; one with a number beyond kMaxCoordinate meets
+// nothing.
 [[nodiscard]] bool intersects(const Obb& box, const Plane& half_space);
 [[nodiscard]] bool intersects(const Obb& box, const Triangle& triangle);
 [[nodiscard]] bool intersects(const Obb& box, const Sphere& sphere);
@@ -107,8 +108,9 @@ struct Distance {
     double distance = 0.0;            // 0 when they meet
     glm::dvec3 on_a{0.0}, on_b{0.0};  // nearest points; of boxes that meet, one point within 1e-6 of the size of both
 };
-// Whether it is 0 is exact: iff intersects(a, b). Else within 1e-12 of the size, which is the sum of the half extents
-// and of the offset of the centres.
+
+// For numbers up to kMaxCoordinate. Whether the distance is 0 is exact: iff intersects(a, b). Else within 1e-12 of the
+// size, which is the sum of the half extents and of the offset of the centres.
 [[nodiscard]] Distance distance(const Obb& a, const Obb& b);
 // The same for a capsule's segment, minus the radius; 0 iff intersects(box, capsule). A ball is a capsule whose ends
 // are equal.

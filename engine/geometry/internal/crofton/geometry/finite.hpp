@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Infinity, and whether numbers are finite.
+// Infinity, and whether numbers are finite and in range.
 #pragma once
 #include <cmath>
+#include <crofton/geometry/box.hpp>
 #include <glm/vec3.hpp>
 #include <limits>
 
@@ -11,6 +12,11 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 [[nodiscard]] inline bool is_finite(const glm::dvec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+// Whether a body may be there. False for NaN.
+[[nodiscard]] inline bool is_in_range(const glm::dvec3& v) {
+    return std::abs(v.x) <= kMaxCoordinate && std::abs(v.y) <= kMaxCoordinate && std::abs(v.z) <= kMaxCoordinate;
 }
 
 }  // namespace crofton
