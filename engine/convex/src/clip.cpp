@@ -15,7 +15,8 @@ struct ClipCorner {
     int before, after;
 };
 
-// Returns −1 − the number of corners in `to`, or `count` with nothing written where none is outside.
+// Returns −1 − the number of corners in `to`, or `count` with nothing written where none is outside. Two corners are a
+// segment, which crosses the side once.
 template <class Height>
 int clip_side(const ClipCorner* from, int count, Height height_of, int side, ClipCorner* to) {
     double height[kMaxClipped + 1], most = 0.0;
@@ -34,7 +35,7 @@ int clip_side(const ClipCorner* from, int count, Height height_of, int side, Cli
             if (ha == 0.0 && hb > 0.0) to[kept].after = -1 - side;
             ++kept;
         }
-        if ((ha < 0.0 && hb > 0.0) || (ha > 0.0 && hb < 0.0)) {
+        if (((ha < 0.0 && hb > 0.0) || (ha > 0.0 && hb < 0.0)) && (count > 2 || i == 0)) {
             const glm::dvec3& b = from[i + 1 == count ? 0 : i + 1].point;
             to[kept].point = a.point + ha / (ha - hb) * (b - a.point);
             to[kept].before = ha < 0.0 ? a.after : -1 - side;

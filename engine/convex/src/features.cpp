@@ -62,6 +62,17 @@ glm::dvec3 turned_normal(const glm::dmat3& r, const glm::dvec3& n) {
     return glm::normalize(n.x * glm::cross(r[1], r[2]) + n.y * glm::cross(r[2], r[0]) + n.z * glm::cross(r[0], r[1]));
 }
 
+glm::dvec3 triangle_normal(const glm::dmat3& rotation, const Triangle& corners) {
+    const glm::dvec3 n = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+    return n == glm::dvec3(0.0) ? n : turned_normal(rotation, n);
+}
+
+bool is_narrow(const Patch& triangle) {
+    const glm::dvec3 *p = triangle.point, u = p[1] - p[0], v = p[2] - p[1], w = p[0] - p[2];
+    const double longest2 = std::max({glm::dot(u, u), glm::dot(v, v), glm::dot(w, w)});
+    return !(glm::length(glm::cross(u, w)) > 1e-6 * longest2);
+}
+
 int face_along(const Body& body, const glm::dvec3& d) {
     if (body.kind() == Kind::box) {
         const glm::dvec3 m = glm::abs(d);
@@ -95,8 +106,9 @@ void patch_of_face(const Placed& placed, int face, const glm::dvec3& origin, Pat
             add(patch, place(body.vertex(vertices[k])), vertices[k], edges[k]);
     } else {
         for (int k = 0; k < 3; ++k) add(patch, place(body.vertex(k)), k, k);
-        const glm::dvec3 n = glm::cross(patch.point[1] - patch.point[0], patch.point[2] - patch.point[0]);
-        patch.normal = glm::length(n) > 0.0 ? glm::normalize(n) : glm::dvec3(0.0);
+        patch.normal = is_narrow(patch)
+                           ? glm::dvec3(0.0)
+                           : triangle_normal(place.rotation, {body.vertex(0), body.vertex(1), body.vertex(2)});
     }
 }
 

@@ -11,7 +11,7 @@ inline constexpr int kMaxPatch = kMaxHullVertices;
 // the next.
 struct Patch {
     int count = 0;
-    glm::dvec3 normal{0.0};  // unit, outward; of segments and points the direction asked for
+    glm::dvec3 normal{0.0};  // unit, outward; of segments and points the direction asked for; 0 of narrow triangles
     Feature self;            // the face, or of segments the edge, or of points the vertex
     glm::dvec3 point[kMaxPatch];
     std::uint16_t vertex[kMaxPatch], edge[kMaxPatch];
@@ -39,6 +39,12 @@ inline constexpr std::uint8_t kBoxFaces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0,
 
 // The unit normal of a body's image under a rotation that is rigid to 1e-6 alone: the cofactors turn normals.
 [[nodiscard]] glm::dvec3 turned_normal(const glm::dmat3& rotation, const glm::dvec3& normal);
+// Whether a triangle's sides are too nearly parallel to clip another patch by them: a millionth of its length wide.
+// Where they cross would be off along them by rounding over that angle. Its patch has the normal 0.
+[[nodiscard]] bool is_narrow(const Patch& triangle);
+// Of a triangle's image, from its corners in the body's frame, which are floats: rounded world coordinates would tilt
+// that of a narrow one. 0 where the corners lie on a line.
+[[nodiscard]] glm::dvec3 triangle_normal(const glm::dmat3& rotation, const Triangle& corners);
 
 // The face of a polytope that looks most along a direction of the body's frame; −1 where it has none.
 [[nodiscard]] int face_along(const Body& body, const glm::dvec3& local);

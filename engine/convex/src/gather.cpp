@@ -12,6 +12,10 @@ bool nearly_parallel(const Patch& a, const Patch& b) {
     return glm::dot(n, n) <= 1e-3 * glm::dot(u, u) * glm::dot(v, v);
 }
 
+bool has_same_id(const ContactPoint& p, const ContactPoint& q) {
+    return p.on_a == q.on_a && p.on_b == q.on_b;
+}
+
 }  // namespace
 
 void Gatherer::add(const glm::dvec3& core_a, const glm::dvec3& core_b, const Feature& on_a, const Feature& on_b) {
@@ -40,8 +44,15 @@ bool Gatherer::lacks_deepest(double tolerance) const {
 
 void Gatherer::add_deepest() {
     of_.margin = HUGE_VAL;
+    const int before = points.count;
     add(touch_.on_a, touch_.on_b, touch_.feature_a, touch_.feature_b);
-    if (points.count > 0) points.point[points.count - 1].depth = touch_.depth;  // it was the last added
+    if (points.count == before) return;
+    ContactPoint deepest = points.point[--points.count];
+    deepest.depth = touch_.depth;
+    int place = 0;
+    while (place < points.count && !has_same_id(points.point[place], deepest)) ++place;
+    points.point[place] = deepest;
+    points.count = std::max(points.count, place + 1);
 }
 
 int gather_patches(const Patch& a, const Patch& b, const glm::dvec3& normal, Clipped& clipped, Gatherer& gatherer) {

@@ -25,7 +25,8 @@ class Gatherer {
     void add(const Clipped& clipped, bool reference_is_a);
     // Whether the patches have left out the deepest place by more than `tolerance`.
     [[nodiscard]] bool lacks_deepest(double tolerance) const;
-    void add_deepest();  // the touch's features are known
+    // In place of a point with the same id, where there is one. The touch's features are known.
+    void add_deepest();
 
     GatheredPoints& points;
 

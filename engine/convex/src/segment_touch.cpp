@@ -52,12 +52,6 @@ void offer_edge(NearestPair& best, int k, const glm::dvec3& p, const glm::dvec3&
 
 }  // namespace
 
-void PlacedTriangle::set_normal() {
-    const glm::dvec3 n = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
-    const double length = glm::length(n);
-    normal = length > 0.0 ? n / length : glm::dvec3(0.0);
-}
-
 PlacedTriangle placed_corners(const Triangle& corners, const RigidTransform& pose, const glm::dvec3& origin) {
     const glm::dvec3 offset = pose.translation - origin;
     PlacedTriangle t;
@@ -67,7 +61,7 @@ PlacedTriangle placed_corners(const Triangle& corners, const RigidTransform& pos
 
 PlacedTriangle placed_triangle(const Triangle& corners, const RigidTransform& pose, const glm::dvec3& origin) {
     PlacedTriangle t = placed_corners(corners, pose, origin);
-    t.set_normal();
+    t.normal = triangle_normal(pose.rotation, corners);
     return t;
 }
 

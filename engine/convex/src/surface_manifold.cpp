@@ -22,6 +22,7 @@ void triangle_patch(const PlacedTriangle& t, const glm::dvec3& direction, Patch&
         patch.edge[k] = kEdge[behind ? 1 : 0][k];
         patch.point[k] = t.corner[patch.vertex[k]];
     }
+    if (is_narrow(patch)) patch.normal = glm::dvec3(0.0);
 }
 
 double deepest(const GatheredPoints& points) {
@@ -49,7 +50,7 @@ void SurfaceContacts::ask(const NearTriangle& near, std::uint32_t index, EdgeRul
     Touch touch;
     Warm warm = box_ ? box_->ask(t, touch) : Warm::unknown;
     if (warm == Warm::apart) return;
-    t.set_normal();
+    t.normal = triangle_normal(surface_.pose.rotation, near.corners);
     if (segment_) warm = segment_->ask(t, touch);
     if (warm == Warm::apart) return;
     std::optional<Body> triangle;

@@ -8,7 +8,6 @@ namespace crofton::convex {
 // A surface's triangle in the world: its corners around the surface's origin, its unit normal, zero where it has none.
 struct PlacedTriangle {
     glm::dvec3 corner[3], normal;
-    void set_normal();
 };
 // Without the normal.
 [[nodiscard]] PlacedTriangle placed_corners(const Triangle& corners, const RigidTransform& pose,
