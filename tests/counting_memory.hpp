@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Counts what the engine allocates while it lives.
+// Counts what the engine allocates while it lives, on any thread.
 #pragma once
+#include <atomic>
 #include <crofton/core/memory.hpp>
 #include <cstddef>
 
@@ -29,7 +30,7 @@ class CountingMemory {
         free_block(memory);
     }
 
-    std::size_t allocations_ = 0, bytes_in_use_ = 0;
+    std::atomic<std::size_t> allocations_ = 0, bytes_in_use_ = 0;
 };
 
 }  // namespace crofton::testing

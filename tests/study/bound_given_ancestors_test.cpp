@@ -17,6 +17,10 @@ TEST_SUITE("study/bound_given_ancestors") {
         CHECK(error_of(bound_given_ancestors({}, {}, queries, measure::minimal_area())).code == ErrorCode::empty);
         const std::vector<glm::dvec3> point = {glm::dvec3(0.0)};
         CHECK_FALSE(bound_given_ancestors(point, {}, queries, {}).has_value());
+        Obb ancestors[2];
+        ancestors[1].half_extents.x = -1.0f;
+        const auto refused = bound_given_ancestors(point, ancestors, queries, measure::minimal_area());
+        CHECK(error_of(refused).item == 1);
     }
 
     TEST_CASE("it is never worse than the plain fit, and contains every point") {

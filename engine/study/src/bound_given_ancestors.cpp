@@ -78,6 +78,8 @@ Result<BoundGivenAncestors> bound_given_ancestors(std::span<const glm::dvec3> po
     if (auto valid = measure::validate(criterion); !valid) return tl::unexpected(valid.error());
     if (!(options.tolerance >= 0.0 && options.tolerance < 1.0))
         return fail(ErrorCode::invalid_argument, kNoItem, "bound given ancestors: `tolerance` must lie in [0, 1)");
+    for (std::size_t i = 0; i < ancestors.size(); ++i)
+        if (auto valid = validate(ancestors[i], i); !valid) return tl::unexpected(valid.error());
     const auto plain = fit::fit_obb(points, {.criterion = criterion});
     if (!plain) return tl::unexpected(plain.error());
     const auto hull = convex_hull(points);

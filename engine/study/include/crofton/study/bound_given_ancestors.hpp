@@ -33,7 +33,8 @@ struct BoundGivenAncestorsOptions {
 // query that hits the object's hull hits every box around it. One that hits what is common to all tight boxes of a cell
 // of orientations hits each of them. Queries that touch within rounding may be off. Cells shrink the gap in proportion
 // to their size, so it stays wide for few of them (docs/notes/measure.md). The box contains all points. Errors: as
-// fit_obb; a criterion that fails validate; a tolerance outside [0, 1).
+// fit_obb; an ancestor that fails validate(Obb), by its index; a criterion that fails validate; a tolerance outside [0,
+// 1).
 [[nodiscard]] Result<BoundGivenAncestors> bound_given_ancestors(std::span<const glm::dvec3> points,
                                                                 std::span<const Obb> ancestors,
                                                                 const study::QuerySample& queries,
