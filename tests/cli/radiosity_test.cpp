@@ -112,6 +112,17 @@ TEST_SUITE("cli/radiosity") {
         CHECK(whole.json().at("mean_radiosity") == one.json().at("mean_radiosity"));
         CHECK(contents_of(scratch().file("light_sum")) == contents_of(scratch().file("one_light")));
 
+        // 28 runs are four chains: of five parts one has none.
+        std::size_t without = 0;
+        for (int i = 0; i < 5; ++i) {
+            const CliRun part = run_cli(base + "--shard " + std::to_string(i) + "/5 --state " + quoted("fifth"));
+            CHECK(part.status == 0);
+            CHECK(part.out.find("inf") == std::string::npos);
+            without += part.out.find("this part has no runs") != std::string::npos;
+            std::filesystem::remove(scratch().file("fifth"));
+        }
+        CHECK(without == 1);
+
         REQUIRE(run_cli(base + "--seed 2 --state " + quoted("other_light")).status == 0);
         const CliRun other =
             run_cli("merge " + quoted("light0") + " " + quoted("other_light") + " --out " + quoted("light_sum"));

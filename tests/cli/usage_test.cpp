@@ -8,6 +8,7 @@ using namespace crofton::test;
 
 TEST_SUITE("cli/usage") {
     TEST_CASE("without a sub-command, or with one that does not exist, the exit status is 2 and stdout stays empty") {
+        CHECK(run_cli("").err.find("crofton: a sub-command is missing") == 0);
         for (const char* arguments : {"", "no-such-command", "--no-such-option"}) {
             const CliRun run = run_cli(arguments);
             CHECK(run.status == 2);
@@ -49,6 +50,78 @@ TEST_SUITE("cli/usage") {
             CHECK(run.err.find(std::string("--seed: '") + seed + "' is not a whole number") != std::string::npos);
         }
         CHECK(run_cli("frames --threads 9999").err.find("--threads") != std::string::npos);
+    }
+
+    TEST_CASE("NaN, infinity, and numbers out of range are refused, and the message says what is wanted") {
+        const struct {
+            const char *arguments, *reason;
+        } cases[] = {
+            {"frames --no-draw --frames 1 --max-seconds 0", "--max-seconds: '0' is not a number above 0"},
+            {"frames --no-draw --frames 1 --max-seconds nan", "--max-seconds: 'nan' is not a number above 0"},
+            {"frames --no-draw --frames 1 --max-seconds inf", "--max-seconds: 'inf' is not a number above 0"},
+            {"frames --no-draw --frames 1 --max-seconds x", "--max-seconds: 'x' is not a number"},
+            {"radiosity room --error nan", "--error: 'nan' is not a number above 0"},
+            {"radiosity room --sun -1", "--sun: '-1' is not a number from 0"},
+            {"fit room --budget nan", "--budget: 'nan' is not a number from 0"},
+            {"fit room --bounds all --region nan", "--region: 'nan' is not a number in [1 - 1e+09]"},
+            {"view --no-window --after 1 --scale nan", "--scale: 'nan' is not a number in [0.5 - 8]"},
+        };
+        for (const auto& c : cases) {
+            CAPTURE(c.arguments);
+            const CliRun run = run_cli(c.arguments);
+            CHECK(run.status == 2);
+            CHECK(run.out.empty());
+            CHECK(run.err.find(c.reason) != std::string::npos);
+        }
+        CHECK(run_cli("frames room --no-draw --frames 1 --max-seconds 1e3").status == 0);
+    }
+
+    TEST_CASE("an option that does nothing without another one is refused without it") {
+        const struct {
+            const char *arguments, *option, *other;
+        } cases[] = {
+            {"fit room --region 5", "--region", "--bounds"},
+            {"fit room --triangle-cost 5", "--triangle-cost", "--bounds"},
+            {"fit room --directions '1,0,0'", "--directions", "--bounds"},
+            {"fit room --trees", "--trees", "--views"},
+            {"collide room room --max-vertices 9", "--max-vertices", "--hulls"},
+            {"lines room --patches 9", "--patches", "--factors"},
+            {"radiosity room --stored-lines 9", "--stored-lines", "--light-field"},
+            {"pvs room --cells 1x1x1 --with-scene", "--with-scene", "--out"},
+            {"pvs room --cells 1x1x1 --eye 1,1,1", "--eye", "--svg"},
+        };
+        for (const auto& c : cases) {
+            CAPTURE(c.arguments);
+            const CliRun run = run_cli(c.arguments);
+            CHECK(run.status == 2);
+            CHECK(run.err.find(std::string(c.option) + " requires " + c.other) != std::string::npos);
+        }
+        for (const char* option : {"--velocity 1,0,0", "--spin 1,0,0", "--duration 2"}) {
+            const CliRun run = run_cli(std::string("collide room room ") + option);
+            CHECK(run.status == 2);
+            CHECK(run.err.find("--velocity, --spin and --duration go with --mode cast") != std::string::npos);
+        }
+    }
+
+    TEST_CASE("an output that is also read is refused before anything is lost") {
+        REQUIRE(run_cli("triangulate room --out '" + scratch().file("room.glb") + "'").status == 0);
+        const std::string scene = scratch().file("room.glb"), link = scratch().file("room_link.csv");
+        const std::string before = contents_of(scene);
+        std::filesystem::create_symlink(scene, link);
+        for (const std::string& arguments : {"frames '" + scene + "' --no-draw --frames 1 --csv '" + link + "'",
+                                             "fit room '" + scene + "' --svg '" + scene + "'",
+                                             "frames --camera '" + scene + "' --json '" + scene + "'"}) {
+            CAPTURE(arguments);
+            const CliRun run = run_cli(arguments);
+            CHECK(run.status == 2);
+            CHECK(run.err.find(" would replace '" + scene + "', which is read") != std::string::npos);
+            CHECK(contents_of(scene) == before);
+        }
+        // States are read and written by intent.
+        const std::string state = " --state '" + scratch().file("own.state") + "'";
+        const std::string bake = "radiosity room --edge 2 --shadow-cuts 0 --runs 2" + state;
+        CHECK(run_cli(bake).status == 0);
+        CHECK(run_cli(bake).status == 0);
     }
 
     TEST_CASE("a place where nothing can be written is refused before the work") {

@@ -59,13 +59,15 @@ TEST_SUITE("engines/documentation") {
                                       lines_of("samples/hello_cull/main.cpp"), lines_of("samples/hello_frame/main.cpp"),
                                       lines_of("samples/c_hello/main.c"),
                                       lines_of("samples/executors/tbb_executor.hpp")};
-        // The guide docs/<module>.md takes its examples from tests/<module>/guide_test.cpp.
+        // The pages take their examples from tests/<module>/guide_test.cpp.
         for (const auto& folder : std::filesystem::directory_iterator(CROFTON_SOURCE_DIR "/tests")) {
             const std::string module = folder.path().filename().string();
             if (!std::filesystem::exists(folder.path() / "guide_test.cpp")) continue;
             sources.push_back(lines_of("tests/" + module + "/guide_test.cpp"));
             pages.push_back({"docs/" + module + ".md", 1});
         }
+        for (const auto& file : std::filesystem::directory_iterator(CROFTON_SOURCE_DIR "/docs"))
+            if (file.path().extension() == ".md") pages.push_back({"docs/" + file.path().filename().string(), 0});
         CHECK(pages.size() > 2);
         for (const Page& page : pages) {
             const auto blocks = code_blocks(lines_of(page.name));

@@ -236,7 +236,7 @@ int run_collide(const CollideRequest& request) {
 void add_collide_command(CommandLine& line) {
     auto request = std::make_shared<CollideRequest>();
     Command command = line.command("collide", "Do two meshes meet, where, how deep, or how far apart are they?");
-    command.option("A", request->a, "Mesh file (.obj, or any scene format)").required();
+    command.option("A", request->a, "Mesh file (.obj, or any scene format; of a .wad the first level)").required();
     command.option("B", request->b, "Mesh file that the pose moves").required();
     command.option("--pose", request->pose, "Of B in A's frame: tx,ty,tz,qw,qx,qy,qz or a file with these numbers");
     command
@@ -245,16 +245,20 @@ void add_collide_command(CommandLine& line) {
                 "contain: is one inside the other; cast: when does B, which moves, first touch A")
         .one_of({"any", "all", "distance", "contain", "cast"})
         .show_default();
-    command.flag("--hulls", request->hulls, "Ask the convex hulls of the vertices instead of the triangles");
+    const Option hulls =
+        command.flag("--hulls", request->hulls, "Ask the convex hulls of the vertices instead of the triangles");
     command
         .option("--max-vertices", request->max_vertices,
                 "Of a hull: one with more becomes a larger one, whose excess is reported")
         .whole_between(4, convex::kMaxHullVertices)
-        .show_default();
-    command.option("--velocity", request->velocity, "Of a cast: x,y,z that B moves by in a time of 1");
-    command.option("--spin", request->spin,
-                   "Of a cast: x,y,z, the axis times the radians that B turns by in a time of 1");
-    command.option("--duration", request->duration, "Of a cast: how long B moves").show_default();
+        .show_default()
+        .needs(hulls);
+    const Option velocity =
+        command.option("--velocity", request->velocity, "Of a cast: x,y,z that B moves by in a time of 1");
+    const Option spin = command.option("--spin", request->spin,
+                                       "Of a cast: x,y,z, the axis times the radians that B turns by in a time of 1");
+    const Option duration =
+        command.option("--duration", request->duration, "Of a cast: how long B moves").show_default();
     command.option("--json", request->json_path, "Write the answer as JSON to this file; - for standard output")
         .writable_file_or_stdout();
     command.footer(
@@ -274,7 +278,13 @@ void add_collide_command(CommandLine& line) {
         "  crofton collide bunny.obj cow.obj --hulls --mode all\n"
         "  crofton collide bunny.obj cow.obj --pose 5,0,0,1,0,0,0 --mode cast --velocity -10,0,0 --spin 0,9,0");
     add_read_options(command, request->read);
-    command.action([request] { return run_collide(*request); });
+    command.action([=] {
+        if (request->mode != "cast" && (velocity.given() || spin.given() || duration.given())) {
+            std::fputs("crofton: --velocity, --spin and --duration go with --mode cast\n", stderr);
+            return static_cast<int>(kBadInput);
+        }
+        return run_collide(*request);
+    });
 }
 
 }  // namespace crofton::cli

@@ -4,9 +4,11 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <map>
+#include <sstream>
 #include <system_error>
 
 #include "assets/file.hpp"
@@ -109,6 +111,7 @@ std::string reason(const CLI::App& app, const CLI::ParseError& error, const std:
     }
     if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) return unexpected(command, arguments);
     if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) return of_conversion(command, error.what());
+    if (&command == &app) return "a sub-command is missing";
     const std::string what = error.what();
     const std::size_t required = what.find(" is required");
     return what[0] == '-' || required == std::string::npos ? what
@@ -171,6 +174,36 @@ std::string shared_output(const CLI::App& command) {
     return {};
 }
 
+// An output that would replace a file that is read, or nothing. Words without a dot or a slash, as town, name no file.
+std::string replaced_input(const CLI::App& command) {
+    std::map<std::string, std::string> inputs;  // by place
+    for (const CLI::Option* option : command.get_options())
+        if (option->get_type_name() != kWritableFile)
+            for (const std::string& word : option->results()) {
+                std::error_code error;
+                if (word.find_first_of("./") != std::string::npos && std::filesystem::is_regular_file(word, error))
+                    inputs.emplace(place_of(word), word);
+            }
+    for (const CLI::Option* option : command.get_options()) {
+        if (option->get_type_name() != kWritableFile || option->count() == 0) continue;
+        const auto input = inputs.find(place_of(option->as<std::string>()));
+        if (input != inputs.end())
+            return option->get_name() + " would replace '" + input->second + "', which is read: name another file";
+    }
+    return {};
+}
+
+// Numbers that `allowed` takes; neither NaN nor infinity. `name` stands in the help.
+template <class Allowed>
+CLI::Validator finite_number(const std::string& wanted, const std::string& name, Allowed allowed) {
+    return {[wanted, allowed](std::string& text) {
+                double value = 0.0;
+                const bool fits = CLI::detail::lexical_cast(text, value) && std::isfinite(value) && allowed(value);
+                return fits ? std::string{} : "'" + text + "' is not a number " + wanted;
+            },
+            name};
+}
+
 // `crofton help` and `crofton help fit` are `crofton --help` and `crofton fit --help`.
 std::vector<std::string> with_help_as_option(int argc, char** argv) {
     std::vector<std::string> arguments(argv + 1, argv + argc);
@@ -199,17 +232,20 @@ Option& Option::whole_between(std::uint64_t low, std::uint64_t high) {
 }
 
 Option& Option::between(double low, double high) {
-    option_->check(CLI::Range(low, high));
+    std::ostringstream range;
+    range << "in [" << low << " - " << high << "]";
+    option_->check(
+        finite_number(range.str(), range.str(), [=](double value) { return low <= value && value <= high; }));
     return *this;
 }
 
 Option& Option::positive() {
-    option_->check(CLI::PositiveNumber);
+    option_->check(finite_number("above 0", "POSITIVE", [](double value) { return value > 0.0; }));
     return *this;
 }
 
 Option& Option::not_negative() {
-    option_->check(CLI::NonNegativeNumber);
+    option_->check(finite_number("from 0", "NONNEGATIVE", [](double value) { return value >= 0.0; }));
     return *this;
 }
 
@@ -284,6 +320,7 @@ void Command::footer(const std::string& text) {
 void Command::action(std::function<int()> action) {
     app_->callback([action = std::move(action), app = app_, status = status_] {
         if (const std::string shared = shared_output(*app); !shared.empty()) throw CLI::ValidationError(shared);
+        if (const std::string replaced = replaced_input(*app); !replaced.empty()) throw CLI::ValidationError(replaced);
         *status = action();
     });
 }

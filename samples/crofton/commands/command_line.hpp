@@ -31,7 +31,7 @@ class Option {
     Option& not_negative();
     Option& one_of(const std::vector<std::string>& words);
     // A file to write: refuses a folder, a place where nothing can be written, "-", and the file of another such
-    // option.
+    // option or of an input.
     Option& writable_file();
     Option& writable_file_or_stdout();  // the same, but "-" is stdout, for one option at a time
     Option& excludes(const Option& other);

@@ -156,7 +156,11 @@ int run_fit(const FitRequest& request) {
 void add_fit_command(CommandLine& line) {
     auto request = std::make_shared<FitRequest>();
     Command command = line.command("fit", "The best oriented box around each mesh, for a criterion of your choice");
-    command.option("files", request->files, "OBJ, glTF, GLB or WAD files; only their vertices count").required();
+    command
+        .option(
+            "files", request->files,
+            "OBJ, glTF, GLB or WAD files; only their vertices count; of a WAD the first level, or with --planar all")
+        .required();
     command.option("--criterion", request->criterion, kCriterionSyntax).show_default();
     command
         .option("--quality", request->quality,
@@ -173,27 +177,33 @@ void add_fit_command(CommandLine& line) {
         .writable_file_or_stdout();
     command.option("--svg", request->svg_path, "Draw hulls and boxes into this file; - for standard output")
         .writable_file_or_stdout();
-    command
-        .option(
-            "--bounds", request->bounds,
-            "Compare sphere, boxes and k-DOPs by C_v + p C_p, a test's time and what passes it: all of them, or the "
-            "best for each mesh")
-        .one_of({"all", "best"});
+    const Option bounds = command
+                              .option("--bounds", request->bounds,
+                                      "Compare sphere, boxes and k-DOPs by C_v + p C_p, a test's time and what passes "
+                                      "it: all of them, or the "
+                                      "best for each mesh")
+                              .one_of({"all", "best"});
     command.option("--region", request->region, "--bounds: queries hit a ball of so many times the mesh's radius")
         .between(1.0, 1e9)
-        .show_default();
+        .show_default()
+        .needs(bounds);
     command.option("--triangle-cost", request->triangle_cost, "--bounds: nanoseconds for a triangle that is passed on")
         .not_negative()
-        .show_default();
-    command.option("--directions", request->directions,
-                   "--bounds: a k-DOP of these too, as x,y,z;x,y,z;...: one of each pair of opposite faces");
-    command.option(
+        .show_default()
+        .needs(bounds);
+    command
+        .option("--directions", request->directions,
+                "--bounds: a k-DOP of these too, as x,y,z;x,y,z;...: one of each pair of opposite faces")
+        .needs(bounds);
+    const Option views = command.option(
         "--views", request->views,
         "Boxes for the directions of a recorded camera path (the JSON of `crofton frames`), beside those for "
         "uniform ones, and the improper tests of both");
-    command.flag("--trees", request->trees,
-                 "--views: the files are scenes; the nodes that the path visits in trees for its directions and in "
-                 "plain ones");
+    command
+        .flag("--trees", request->trees,
+              "--views: the files are scenes; the nodes that the path visits in trees for its directions and in "
+              "plain ones")
+        .needs(views);
     command.flag(
         "--planar", request->planar,
         "Polygons (.poly, .json, .geojson, .wad): the best rectangles, disc and triangles, by perimeter and by "

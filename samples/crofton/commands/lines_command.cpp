@@ -166,11 +166,13 @@ void add_lines_command(CommandLine& line) {
                                       "Blocks of 1024 lines per estimate; 5000 with --factors where not given")
                               .whole_between(1, 100000)
                               .show_default();
-    command.flag("--factors", options->factors,
-                 "Form factors instead: of standard pairs beside their known values, or of scenes, and what these say");
+    const Option factors = command.flag(
+        "--factors", options->factors,
+        "Form factors instead: of standard pairs beside their known values, or of scenes, and what these say");
     command.option("--patches", options->patches, "--factors: merge small triangles until there are no more patches")
         .whole_between(2, 16384)
-        .show_default();
+        .show_default()
+        .needs(factors);
     command.option("--repeats", options->repeats, "Estimates per method, for its error")
         .whole_between(2, 10000)
         .show_default();

@@ -27,6 +27,10 @@ Result<int> run_merge(const MergeRequest& options) {
         states.push_back(files.back().bytes());
     }
     const bool of_light = radiosity::is_bake_state(states.front());
+    for (std::size_t i = 1; i < states.size(); ++i)
+        if (!of_light && radiosity::is_bake_state(states[i]))
+            return fail(ErrorCode::invalid_argument, kNoItem,
+                        options.parts[i] + ": is of a bake of light, and " + options.parts.front() + " is not");
     const auto sum = of_light ? radiosity::merge_states(states) : pvs::merge_states(states);
     if (!sum) {
         const bool names_part = sum.error().item < options.parts.size();

@@ -367,10 +367,12 @@ void add_pvs_command(CommandLine& line) {
                 "Sides of triangles that a proof by the scene's own surface may visit; 0: bodies alone; "
                 "without, 10000 in levels (minutes for thousands of cells), else 0")
         .whole_between(0, 1'000'000);
-    command.option("--out", options->out, "Write the sets to this .crofton file").writable_file().excludes(shard);
-    command.flag("--with-scene", options->with_scene, "Put the baked scene into the same file");
-    command.option("--svg", options->svg, "Write a map with what one cell sees").writable_file().excludes(shard);
-    command.option("--eye", options->eye, "x,y,z: the map's cell holds it; without, the middle one");
+    const Option out =
+        command.option("--out", options->out, "Write the sets to this .crofton file").writable_file().excludes(shard);
+    command.flag("--with-scene", options->with_scene, "Put the baked scene into the same file").needs(out);
+    const Option svg =
+        command.option("--svg", options->svg, "Write a map with what one cell sees").writable_file().excludes(shard);
+    command.option("--eye", options->eye, "x,y,z: the map's cell holds it; without, the middle one").needs(svg);
     command
         .option("--views", options->views,
                 "Look at the sets from so many random places: wrong pixels and triangles in either mode, "

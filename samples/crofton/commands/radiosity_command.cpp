@@ -175,7 +175,7 @@ Result<int> run_radiosity(const RadiosityOptions& options) {
     if (!parameters) return tl::unexpected(parameters.error());
     if (!options.shard.empty() && (options.runs == 0 || options.checkpoint.empty()))
         return fail(ErrorCode::invalid_argument, kNoItem,
-                    "--shard needs --runs, of the whole bake, and --checkpoint: the part to write");
+                    "--shard needs --runs, of the whole bake, and --state: the part to write");
     const auto source = load_updated_scene(options.scene, options.read, {.map = options.map, .seed = options.seed});
     if (!source) return tl::unexpected(source.error());
     const auto flat = assets::flat_scene(*source, options.read.limits);
@@ -261,6 +261,12 @@ Result<int> run_radiosity(const RadiosityOptions& options) {
         if (auto written = write_json(options.json, report); !written) return tl::unexpected(written.error());
         return status;
     }
+    if (solver->runs() == 0) {
+        std::printf(
+            "%s: this part has no runs: they are made in chains of eight, and there are more parts than chains\n",
+            source->name.c_str());
+        return status;
+    }
     std::printf("%s: %zu patches, %llu runs, %llu lines in %.1f s, relative error %.3f %%\n", source->name.c_str(),
                 lit->patches.count(), static_cast<unsigned long long>(solver->runs()),
                 static_cast<unsigned long long>(solver->lines_traced()), seconds, 100.0 * solver->relative_error());
@@ -329,15 +335,18 @@ void add_radiosity_command(CommandLine& line) {
         .show_default();
     command.option("--out", options->out, "Write the lit scene as .glb").writable_file().excludes(shard);
     command.option("--png", options->png, "Write a picture of it").writable_file().excludes(shard);
-    command
-        .option("--light-field", options->light_field,
+    const Option light_field =
+        command
+            .option(
+                "--light-field", options->light_field,
                 "Store global lines with the light along them, draw a picture from these lines alone, and say how far "
                 "it is from the scene's own")
-        .writable_file()
-        .excludes(shard);
+            .writable_file()
+            .excludes(shard);
     command.option("--stored-lines", options->stored_lines, "--light-field: about so many lines")
         .whole_between(1, 1 << 28)
-        .show_default();
+        .show_default()
+        .needs(light_field);
     command.option("--json", options->json, "Write the figures as JSON; - for stdout").writable_file_or_stdout();
     command
         .option("--checkpoint,--state", options->checkpoint,
