@@ -68,6 +68,7 @@ BakedOccluders three_kinds() {
     body.piece_bounds = {glm::dvec3(-2.0), glm::dvec3(2.0)};
     body.mean_shadow = 1.5;
     body.gain = 2.5;
+    body.edges = 30;
     patch.kind = occlude::OccluderKind::patch;
     patch.sides = occlude::Sides::front;
     patch.surface.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
@@ -225,6 +226,7 @@ TEST_SUITE("bake/forged") {
         const occlude::FoundOccluder& body = baked->occluders()->kinds[0][1];
         CHECK(body.mean_shadow == 1.5);
         CHECK(body.gain == 2.5);
+        CHECK(body.edges == 30);
         CHECK(body.piece_bounds.min == glm::dvec3(-2.0));
         const occlude::FoundOccluder& patch = baked->occluders()->kinds[2][0];
         CHECK(patch.surface.positions.size() == 3);

@@ -344,6 +344,9 @@ TEST_SUITE("collide/convex_query") {
         CHECK(m.depth == doctest::Approx(0.25));
         CHECK(m.normal.z == doctest::Approx(1.0));
         CHECK(contact_manifold(ground, cube_box({0.0, 0.0, 1.5})).count == 0);
+        const Manifold resting = contact_manifold(ground, cube_box({0.0, 0.0, 1.0}));
+        CHECK(resting.count == 4);
+        CHECK(resting.depth == 0.0);
         CHECK(penetration(ground, cube_box({0.0, 0.0, 0.5})).depth == doctest::Approx(0.5));
         CHECK(penetration(ground, cube_box({0.0, 0.0, 1.5})).depth == doctest::Approx(-0.5));
     }

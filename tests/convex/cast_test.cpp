@@ -261,4 +261,29 @@ TEST_SUITE("convex/cast") {
         }
         CHECK(hits == 200);
     }
+
+    TEST_CASE("a cone without width is not hit beside a needle that it has not reached") {
+        const glm::vec3 corners[] = {{-1.64845915e-12f, -1.64845915e-12f, -1.64845915e-12f},
+                                     {-237568.0f, -0.124838918f, 0.0f},
+                                     {-0.125f, -0.125f, -0.124838918f},
+                                     {0.0f, -0.125f, 0.125f}};
+        const Hull hull = Hull::build(corners).value();
+        const Body needle = Body::hull(hull), cone = Body::cone(2.0f, 0.0f).value();
+        const RigidTransform a{{{-0.55526853944677645, 0.64040469271337863, -0.53062103110537095},
+                                {-0.53062103110537095, 0.2184910128080938, 0.81896458938757943},
+                                {0.64040469271337863, 0.73630395005919702, 0.2184910128080938}},
+                               {-9.0, -7.25, -1.6484591469634324e-12}},
+            b{{{-1.0000000000000004, 0.0, 0.0},
+               {0.0, -2.2204460492503131e-16, 1.0000000000000002},
+               {0.0, 1.0000000000000002, -2.2204460492503131e-16}},
+              {1.6807887671119808, 3.1757186480358079, 8.5616808734836152}};
+        const Motion motion_a{{10.625, 10.625, 10.625}, {}, glm::dvec3(-0.125)},
+            motion_b{glm::dvec3(-0.125), {0, 0, 3.8125}, {}};
+        const CastOptions options{.duration = 3.46875, .tolerance = 0.015625};
+        const auto impact = cast({needle, a}, motion_a, {cone, b}, motion_b, options);
+        REQUIRE(impact.has_value());
+        REQUIRE(impact->result == CastResult::hit);
+        const RigidTransform now_a = moved(a, motion_a, impact->time), now_b = moved(b, motion_b, impact->time);
+        CHECK(distance({needle, now_a}, {cone, now_b}).lower <= options.tolerance);
+    }
 }

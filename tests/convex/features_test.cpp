@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/convex/query.hpp>
+#include <crofton/mesh/mesh_tree.hpp>
 
 #include "random_bodies.hpp"
 
@@ -86,5 +87,35 @@ TEST_SUITE("convex/features") {
         CHECK(named[0][2] > 200);
         CHECK(named[1][1] > 200);
         CHECK(named[2][0] > 200);
+    }
+
+    TEST_CASE("so do those of balls and capsules on a surface's triangle") {
+        RandomBodies random(9);
+        int named[3] = {};
+        for (int i = 0; i < 1500; ++i) {
+            TriangleMesh mesh;
+            for (const glm::vec3& p : random.points(3)) mesh.positions.push_back(p);
+            mesh.indices = {0, 1, 2};
+            const auto tree = mesh::MeshTree::build(mesh).value();
+            const Body surface = Body::mesh(tree).value(),
+                       triangle = Body::triangle(mesh.positions[0], mesh.positions[1], mesh.positions[2]).value(),
+                       round = i % 2 == 0 ? Body::ball(0.3).value() : Body::capsule(0.7f, 0.2f).value();
+            const CasePair where =
+                nearly_touching(random, triangle, round, -std::pow(10.0, random.number(-6, -2)), 0.0);
+            const Placed part{triangle, where.pose_a}, other{round, where.pose_b};
+            Manifolds found;
+            contact_manifolds({surface, where.pose_a}, other, {.max_points = 8}, found);
+            CAPTURE(i);
+            for (const Manifold& m : found.all())
+                for (int k = 0; k < m.count; ++k) {
+                    const ContactPoint& point = m.points[k];
+                    const glm::dvec3 half = 0.5 * point.depth * m.normal;
+                    CHECK(distance_to_feature(part, point.on_a, point.position + half) <= 1e-8);
+                    CHECK(distance_to_feature(other, point.on_b, point.position - half + round.radius() * m.normal) <=
+                          1e-8);
+                    ++named[static_cast<int>(point.on_a.kind)];
+                }
+        }
+        for (const int count : named) CHECK(count > 100);
     }
 }

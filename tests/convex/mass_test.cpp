@@ -129,6 +129,16 @@ TEST_SUITE("convex/mass") {
         }
     }
 
+    TEST_CASE("a rounded cone has Steiner's volume") {
+        const double radius = 0.5, height = 1.5, r = 0.25, slant = std::hypot(radius, height);
+        const double volume = kPi * radius * radius * height / 3, area = kPi * radius * (radius + slant);
+        // The side, whose curvature across is height / slant over the radius; the rim, by its outer angle.
+        const double mean_curvature = kPi * height + kPi * radius * (kPi - std::atan2(height, radius));
+        const Body cone = Body::rounded(Body::cone(0.75f, 0.5f).value(), r).value();
+        CHECK(mass_properties(cone).value().volume ==
+              doctest::Approx(volume + area * r + mean_curvature * r * r + 4 * kPi / 3 * r * r * r).epsilon(1e-14));
+    }
+
     TEST_CASE("a rounded cylinder without height, a cone without height and one without radius are what they are") {
         const auto rounded = [](const Body& core) {
             return mass_properties(Body::rounded(core, 0.5f).value()).value();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "core_query.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "exact_gjk.hpp"
@@ -9,6 +10,13 @@ namespace crofton::convex {
 
 Nearest core_distance(const Pair& pair, const PairCache* cache, double near, double far) {
     Nearest found = nearest_points(pair, cache, near, far);
+    // Beside a needle rounding may stop the descent early. From where it begins without a cache it may go on; no exact
+    // search follows for round cores.
+    if (cache != nullptr && !pair.has_polytope_cores() && found.meeting == Meeting::unknown && !found.simplex.inside &&
+        found.upper > std::max(near, 1e-9 * pair.size)) {
+        const Nearest cold = nearest_points(pair, nullptr, near, far);
+        if (cold.meeting != Meeting::unknown || cold.upper < found.upper) found = cold;
+    }
     if (!pair.has_polytope_cores() || found.meeting == Meeting::meeting) return found;
     const bool cut_short = found.meeting == Meeting::apart && (found.lower > far || found.upper <= near);
     if (cut_short) return found;
