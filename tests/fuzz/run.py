@@ -146,6 +146,7 @@ def pack(name, folder):
 
 def minimise(build, name, record):
     corpus = build / "corpus" / name
+    unpack(name, corpus)  # a new build has none of them in its own corpus
     if not corpus.is_dir():
         return
     small = corpus.with_suffix(".small")

@@ -95,7 +95,7 @@ struct Capsule {
 
 // Touching counts, NaN meets nothing. Half-spaces { x : dot(normal, x) + offset ≥ 0 } and triangles: exact for the
 // stored numbers, for every valid box and coordinates of 0 or magnitude in [1e-70, 1e30]. Spheres and capsules: a gap
-// or overlap below 1e-13 of the coordinates' size may be told either way; one with a number beyond kMaxCoordinate meets
+// or overlap below 1e-13 of the coordinates' size may be told either way. One with a number beyond kMaxCoordinate meets
 // nothing.
 [[nodiscard]] bool intersects(const Obb& box, const Plane& half_space);
 [[nodiscard]] bool intersects(const Obb& box, const Triangle& triangle);

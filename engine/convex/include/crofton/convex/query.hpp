@@ -114,10 +114,10 @@ struct ManifoldOptions {
 // frame before is kept while its normal is proven to be the least deep. That holds within 1e-4 of the pair's size.
 // Normal and depth are then those of that face. With a cache and more points than are wanted, those of the frame
 // before stay. One of them must be as deep within 1e-4 of the size, and they must span nine tenths of the area. Points
-// are off by 1e-9 of the pair's size, by 1e-5 where a hull's face is not quite flat (HullOptions), with cylinders and
-// cones by as much as the depth may be. Sides of round bodies that are parallel within 2 degrees have a point at each
-// end of their common stretch, midway between them also where they pass each other. Of bodies of parts: the deepest of
-// the manifolds below; this allocates.
+// are off by 1e-9 of the pair's size, by 1e-5 where a hull's face is not quite flat (HullOptions). With cylinders and
+// cones they are off by as much as the depth may be. Round sides that are parallel within 2 degrees have a point at
+// each end of their common stretch. It is midway between them, also where they pass each other. Of bodies of parts: the
+// deepest of the manifolds below; this allocates.
 [[nodiscard]] Manifold contact_manifold(const Placed& a, const Placed& b, const ManifoldOptions& options = {},
                                         PairCache* cache = nullptr);
 

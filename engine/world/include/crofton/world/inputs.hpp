@@ -113,9 +113,9 @@ class IndicesView {
     std::size_t size_ = 0;
 };
 
-// A mesh in its own frame; World copies what it needs. Three indices a triangle (a, b, c); with an empty `indices`
-// three positions are one. Outside is where cross(b − a, c − a) points: triangles are counter-clockwise seen from there in
-// right-handed coordinates, clockwise in left-handed ones.
+// A mesh in its own frame; World copies what it needs. Three indices a triangle (a, b, c). Without any, three positions
+// are one. Outside is where cross(b − a, c − a) points: triangles are counter-clockwise seen from there
+// in right-handed coordinates, clockwise in left-handed ones.
 struct MeshDescription {
     PointsView positions = {};
     IndicesView indices = {};

@@ -169,8 +169,7 @@ class World {
     void raycast_all(const Ray& ray, Vector<ObjectHit>& hits, std::uint32_t layers = ~0u) const;
 
     // Whose box or ball meets the shape; by index. Meshes by their boxes. Here and in closest() a box that is not
-    // valid, and a ball or capsule with a number that is NaN or beyond kMaxCoordinate, meets nothing and has nothing
-    // near.
+    // valid meets nothing and has nothing near. So do balls and capsules with NaN or numbers beyond kMaxCoordinate.
     void overlap(const Obb& shape, Vector<ObjectRef>& found, std::uint32_t layers = ~0u) const;
     void overlap(const Sphere& shape, Vector<ObjectRef>& found, std::uint32_t layers = ~0u) const;
     void overlap(const collide::Capsule& shape, Vector<ObjectRef>& found, std::uint32_t layers = ~0u) const;
