@@ -56,6 +56,22 @@ TEST_SUITE("study/ball_given_ancestors") {
         CHECK(glm::distance(best->ball.center, segment[1]) <= best->ball.radius * (1.0 + 1e-12));
     }
 
+    TEST_CASE("the measures are the same far from the origin") {
+        const glm::dvec3 away(1e6, -2e6, 3e5);
+        std::vector<glm::dvec3> here = {{0, 0, 0}, {1, 0, 0}, {0, 0.5, 0.25}}, there = here;
+        for (glm::dvec3& p : there) p += away;
+        const std::vector<study::ConvexBody> near = {study::ConvexBody::ball({0.5, 0.25, 0.0}, 1.5)},
+                                             far = {study::ConvexBody::ball(away + glm::dvec3(0.5, 0.25, 0.0), 1.5)};
+        const auto a = study::ball_given_ancestors(here, near, {.tolerance = 0.05});
+        const auto b = study::ball_given_ancestors(there, far, {.tolerance = 0.05});
+        REQUIRE(a.has_value());
+        REQUIRE(b.has_value());
+        CHECK(b->value == doctest::Approx(a->value).epsilon(1e-6));
+        CHECK(b->plain_value == doctest::Approx(a->plain_value).epsilon(1e-6));
+        CHECK(b->lower_bound == doctest::Approx(a->lower_bound).epsilon(1e-6));
+        for (const glm::dvec3& p : there) CHECK(glm::distance(p, b->ball.center) <= b->ball.radius);
+    }
+
     TEST_CASE("no ball that a random search finds lies below the bound, by the quadrature of theory.md (4)") {
         for (std::uint64_t seed = 0; seed < 4; ++seed) {
             sampling::Random random(26, seed);

@@ -86,6 +86,18 @@ TEST_SUITE("study/diameter") {
         }
     }
 
+    TEST_CASE("points a rounding beside a line") {
+        for (int i = 0; i < 5000; ++i) {
+            sampling::Random random(6, static_cast<std::uint64_t>(i));
+            std::vector<glm::dvec2> points;
+            for (std::size_t k = 2 + random.bits() % 30; k > 0; --k) {
+                const double t = random.uniform(-1.0, 1.0);
+                points.push_back({0.3 * t, 0.5 * t});
+            }
+            CHECK(diameter_of(points)->length == doctest::Approx(largest_distance(points)).epsilon(1e-14));
+        }
+    }
+
     TEST_CASE("coordinates whose squares are no doubles any more") {
         for (const double s : {0x1p-500, 0x1p-530, 0x1p-1000, 0x1p-1074}) {
             const auto flat = diameter_of(std::vector<glm::dvec2>{{0, 0}, {3 * s, 0}, {3 * s, 4 * s}, {0, 4 * s}});

@@ -47,6 +47,9 @@ TEST_SUITE("study/k_dop") {
         const std::vector<glm::dvec3> corners = {{0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}};
         CHECK(error_of(study::hull_around(*study::k_dop_around(corners, axes), beside)).code ==
               ErrorCode::invalid_argument);
+        const std::vector<glm::dvec3> unknown = {{0.5, 0.5, 0.5}, {0.5, std::nan(""), 0.5}};
+        CHECK(error_of(study::hull_around(*study::k_dop_around(corners, axes), unknown)).code == ErrorCode::non_finite);
+        CHECK(error_of(study::hull_around(*study::k_dop_around(corners, axes), unknown)).item == 1);
         const std::vector<glm::dvec3> plane = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
         CHECK(error_of(study::best_k_dop(plane, axes, measure::minimal_area())).code == ErrorCode::degenerate);
     }

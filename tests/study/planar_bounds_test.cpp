@@ -189,6 +189,28 @@ TEST_SUITE("study/planar_bounds") {
         }
     }
 
+    TEST_CASE("corners a rounding beside a line: what is measured is the bound that is returned") {
+        for (int trial = 0; trial < 400; ++trial) {
+            Random random(12, static_cast<std::uint64_t>(trial));
+            const glm::dmat2 turn = planar_rotation(trial % 4 == 0 ? 0.25 * (trial / 4 % 4) : random.uniform());
+            const double bulge = std::pow(10.0, random.uniform(-18.0, -8.0));
+            std::vector<glm::dvec2> points;
+            for (int i = 0; i < 20; ++i) {
+                const double y = trial % 2 == 0 ? random.uniform(-1.0, 1.0) : 0.25 * static_cast<double>(i % 9) - 1.0;
+                points.push_back(turn * glm::dvec2(-bulge * y * y, y));
+            }
+            if (trial % 3 == 0) points.push_back(turn * glm::dvec2(-0.3, 0.1));
+            const PlanarSupport ancestor(Disc{{0.1, 0.0}, 1.5});
+            const auto disc = optimal_disc(points, ancestor, {1e-6});
+            const auto rectangle = optimal_rectangle(points, ancestor, {1e-4});
+            REQUIRE(disc.has_value());
+            REQUIRE(rectangle.has_value());
+            CHECK(disc->measure == doctest::Approx(integral_of_min(ancestor, disc->bound)).epsilon(1e-10));
+            CHECK(rectangle->measure ==
+                  doctest::Approx(integral_of_min(ancestor, PlanarSupport(rectangle->bound))).epsilon(1e-10));
+        }
+    }
+
     TEST_CASE("no enclosing circle that a fine search finds is better") {
         Random random(11);
         for (int trial = 0; trial < 60; ++trial) {

@@ -91,6 +91,24 @@ TEST_SUITE("study/planar_lines") {
         CHECK(PlanarSupport::of_convex_polygon(segment).integral() == doctest::Approx(10.0).epsilon(1e-14));
     }
 
+    TEST_CASE("a nearly straight row of corners has the perimeter of its sides, however its angles are rounded") {
+        for (int i = 0; i < 20'000; ++i) {
+            Random random(2, static_cast<std::uint64_t>(i));
+            const double bulge = std::pow(10.0, random.uniform(-18.0, -8.0));
+            std::vector<glm::dvec2> points;
+            for (std::size_t k = 2 + random.bits() % 12; k > 0; --k) {
+                const double y = random.uniform(-1.0, 1.0);
+                points.push_back({-bulge * y * y, y});
+                for (int quarter = 0; quarter < i % 4; ++quarter) points.back() = {-points.back().y, points.back().x};
+            }
+            const auto corners = *convex_hull(points);
+            double sides = 0.0;
+            for (std::size_t k = 0; k < corners.size(); ++k)
+                sides += glm::distance(corners[k], corners[(k + 1) % corners.size()]);
+            CHECK(std::abs(PlanarSupport::of_convex_polygon(corners).integral() - sides) < 1e-13);
+        }
+    }
+
     TEST_CASE("support values are those of the farthest point") {
         Random random(1);
         for (int trial = 0; trial < 200; ++trial) {

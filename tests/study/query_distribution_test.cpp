@@ -27,6 +27,20 @@ Obb turned_box(std::uint64_t seed) {
 }  // namespace
 
 TEST_SUITE("study/query_distribution") {
+    TEST_CASE("directions may have any length") {
+        for (const double length : {0x1p-1060, 0x1p-530, 1.0, 0x1p600, 0x1p1021}) {
+            const std::vector<glm::dvec3> one = {length * glm::dvec3(0.75, 1.0, 3.0)};
+            const auto samples = QueryDistribution::samples(one);
+            REQUIRE(samples.has_value());
+            CHECK(samples->mean_cosine({0, 0, 1}) == doctest::Approx(12.0 / 13.0).epsilon(1e-14));
+            const auto band = QueryDistribution::band(one[0], 0.2);
+            REQUIRE(band.has_value());
+            CHECK(
+                band->mean_cosine({0, 0, 1}) ==
+                doctest::Approx(QueryDistribution::band({0.75, 1.0, 3.0}, 0.2)->mean_cosine({0, 0, 1})).epsilon(1e-14));
+        }
+    }
+
     TEST_CASE("flat bands, zero and NaN directions, and weights that do not add up are refused by name") {
         CHECK_FALSE(QueryDistribution::band({0, 0, 0}, 0.1).has_value());
         CHECK_FALSE(QueryDistribution::band({0, std::nan(""), 0}, 0.1).has_value());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <cmath>
+#include <crofton/cull/cull.hpp>
 #include <crofton/measure/measure.hpp>
 #include <crofton/sampling/sampling.hpp>
 #include <crofton/study/query_sample.hpp>
@@ -79,6 +80,37 @@ TEST_SUITE("study/query_sample") {
         }
         CHECK(straddled > 0);
         CHECK(straddled < met);
+    }
+
+    TEST_CASE("a frustum close to a wide plate misses it, though the plate's axes are not quite orthogonal") {
+        Camera camera;
+        camera.near_distance = 0.002, camera.far_distance = 0.01;
+        const Sphere region{glm::dvec3(0.0), 0.002};
+        constexpr std::uint32_t count = 1 << 14;
+        const auto sample = *QuerySample::frusta(camera, region, count, 3);
+        Obb plate = turned_box();
+        plate.center = glm::dvec3(0.0);
+        plate.half_extents = glm::vec3(100.0f, 100.0f, 1e-6f);
+        // The same frusta, as the class draws them, for cull's exact test.
+        const auto corners = *frustum_corners(*frustum_of(camera));
+        Aabb range;
+        for (const glm::dvec3& corner : corners) range.include(corner);
+        range.min -= glm::dvec3(region.radius);
+        range.max += glm::dvec3(region.radius);
+        const UnitPoints points(3, Sequence::quasi_random);
+        int hit = 0, differ = 0;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const RigidTransform motion = sampling::motion(range, points.at<6>(i));
+            Camera placed = camera;
+            placed.position = -(motion.rotation * motion.translation);
+            placed.forward = motion.rotation * camera.forward;
+            placed.up = motion.rotation * camera.up;
+            const bool truly = cull::classify(*frustum_of(placed), plate) != cull::Verdict::outside;
+            hit += truly;
+            differ += truly != sample.hits(i, plate);
+        }
+        CHECK(hit > 1000);
+        CHECK(differ == 0);
     }
 
     TEST_CASE("queries that hit two boxes agree with the exact measures (4) and (5)") {

@@ -5,8 +5,11 @@
 #include <crofton/sampling/sampling.hpp>
 #include <crofton/study/spatial_lines.hpp>
 #include <error_of.hpp>
+#include <glm/geometric.hpp>
 #include <numbers>
 #include <vector>
+
+#include "direction_cells.hpp"
 
 using namespace crofton;
 using namespace crofton::measure;
@@ -39,6 +42,29 @@ TEST_SUITE("study/spatial_lines") {
         CHECK(error_of(measure_of_lines_hitting_all(bodies)).code == ErrorCode::non_finite);
         bodies[1] = ConvexBody::ball(glm::dvec3(0.0), -1.0);
         CHECK(error_of(measure_of_planes_hitting_all(bodies)).item == 1);
+        for (const double far : {1e31, 1e200, 1.7e308}) {
+            bodies[1] = ConvexBody::ball(glm::dvec3(0.0), far);
+            CHECK(error_of(measure_of_lines_hitting_all(bodies)).item == 1);
+            bodies[1] = box(glm::dvec3(-far), glm::dvec3(far));
+            CHECK(error_of(measure_of_lines_hitting_all(bodies)).code == ErrorCode::out_of_range);
+            CHECK(error_of(measure_of_planes_hitting_all(bodies)).item == 1);
+        }
+    }
+
+    TEST_CASE("small triangles of directions have weights that add up to their area") {
+        for (const double size : {1e-3, 1e-4, 1e-5, 1e-6}) {
+            Random random(1);
+            for (int i = 0; i < 100; ++i) {
+                const glm::dvec3 n = direction(random.point<2>());
+                const auto [x, y] = orthonormal_frame(n);
+                const DirectionTriangle t = {glm::normalize(n + size * x), glm::normalize(n + size * y),
+                                             glm::normalize(n - size * (x + y))};
+                const auto weights = linear_weights(t);
+                const glm::dvec3 integral = weights[0] * t[0] + weights[1] * t[1] + weights[2] * t[2];
+                const glm::dvec3 flat = 0.5 * glm::cross(t[1] - t[0], t[2] - t[0]);
+                CHECK(glm::length(integral) == doctest::Approx(glm::length(flat)).epsilon(4.0 * size * size + 1e-9));
+            }
+        }
     }
 
     TEST_CASE("points and parallel segments: nothing hits them but what hits all") {
@@ -48,6 +74,14 @@ TEST_SUITE("study/spatial_lines") {
         const std::vector<ConvexBody> segment = {{{glm::dvec3(0.0), glm::dvec3(0.0, 3.0, 4.0)}, 0.0}};
         check(measure_of_planes_hitting_all(segment), intrinsic_volumes_of_segment(5.0).mean_curvature);
         CHECK(measure_of_lines_hitting_all(segment, {.tolerance = 1e-2, .max_cells = 2000})->value == 0.0);
+    }
+
+    TEST_CASE("many cells too small to change a rounded sum add up all the same") {
+        const glm::dvec3 end(1e-9, 3e-10, 1.0);
+        const std::vector<ConvexBody> segment = {{{glm::dvec3(0.0), end}, 0.0}};
+        const auto m = measure_of_planes_hitting_all(segment, {.tolerance = 0.0, .max_cells = 300'000});
+        REQUIRE(m.has_value());
+        CHECK(std::abs(m->value - pi * glm::length(end)) <= m->error + 1e-13);
     }
 
     TEST_CASE("planes that hit one body have measure M, to the error promised") {

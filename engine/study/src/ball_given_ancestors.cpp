@@ -26,8 +26,12 @@ struct BallCell {
 
 class BallSearch {
   public:
-    BallSearch(std::span<const glm::dvec3> points, const AncestorDirections& directions)
-        : points_(points), normals_(directions.normals), ancestors_(directions.limits) {}
+    // All relative to `origin`, amid the points: the directions' sum is not quite zero, which far away would count.
+    BallSearch(std::span<const glm::dvec3> points, const glm::dvec3& origin, const AncestorDirections& directions)
+        : normals_(directions.normals), ancestors_(directions.limits) {
+        for (const glm::dvec3& p : points) points_.push_back(p - origin);
+        for (std::size_t i = 0; i < normals_.size(); ++i) ancestors_[i] -= glm::dot(normals_[i], origin);
+    }
 
     [[nodiscard]] double radius_at(const glm::dvec3& center) const {
         double r = 0.0;
@@ -63,8 +67,9 @@ class BallSearch {
         return 4.0 * pi * *std::min_element(sums.begin(), sums.end()) / static_cast<double>(normals_.size());
     }
 
-    void run(const Sphere& least, const BallOptions& options, BallGivenAncestors& result) {
-        const double largest = options.largest * least.radius;
+    // `least` is the radius of the smallest ball, whose centre is the origin.
+    void run(double least, const BallOptions& options, BallGivenAncestors& result) {
+        const double largest = options.largest * least;
         const auto lower = [](const BallCell& a, const BallCell& b) {
             return a.bound != b.bound ? a.bound > b.bound : a.age > b.age;
         };
@@ -75,8 +80,8 @@ class BallSearch {
                 result.value = value, result.ball = {center, radius_at(center)};
         };
         // Every centre within `largest` of the object's points lies in this cube.
-        heap.push_back({least.center, largest, bound(least.center, largest, largest), 0});
-        consider(least.center);
+        heap.push_back({glm::dvec3(0.0), largest, bound(glm::dvec3(0.0), largest, largest), 0});
+        consider(glm::dvec3(0.0));
         result.cells = 1;
         while (!heap.empty() && result.cells < options.max_cells &&
                heap.front().bound < result.value * (1.0 - options.tolerance)) {
@@ -103,9 +108,9 @@ class BallSearch {
     }
 
   private:
-    std::span<const glm::dvec3> points_;
+    Vector<glm::dvec3> points_;
     const Vector<glm::dvec3>& normals_;
-    const Vector<double>& ancestors_;
+    Vector<double> ancestors_;
     double dropped_ = std::numeric_limits<double>::infinity();
 };
 
@@ -120,18 +125,21 @@ Result<BallGivenAncestors> ball_given_ancestors(std::span<const glm::dvec3> poin
     const auto least = fit::minimal_sphere(points);
     if (!least) return tl::unexpected(least.error());
     const AncestorDirections directions(ancestors);
-    BallSearch search(points, directions);
     if (!directions.contain(points))
         return fail(ErrorCode::invalid_argument, kNoItem,
                     "ball given ancestors: the object is not inside its ancestors' bounds");
+    BallSearch search(points, least->center, directions);
     BallGivenAncestors result;
-    result.ball = *least;
-    result.value = result.plain_value = search.measure_of(least->center);
+    result.ball = {glm::dvec3(0.0), least->radius};
+    result.value = result.plain_value = search.measure_of(glm::dvec3(0.0));
     result.lower_bound = 0.0;
     if (least->radius > 0.0)
-        search.run(*least, options, result);
+        search.run(least->radius, options, result);
     else
         result.lower_bound = result.value;
+    result.ball.center += least->center;
+    for (const glm::dvec3& p : points)
+        result.ball.radius = std::max(result.ball.radius, glm::distance(p, result.ball.center));
     return result;
 }
 

@@ -3,7 +3,9 @@
 #include <cmath>
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/box.hpp>
+#include <crofton/geometry/expansion.hpp>
 #include <crofton/geometry/mesh.hpp>
+#include <crofton/geometry/predicates.hpp>
 #include <crofton/measure/measure.hpp>
 #include <crofton/study/diameter.hpp>
 #include <glm/geometric.hpp>
@@ -17,8 +19,14 @@ void consider(const Point& a, const Point& b, Diameter<Point>& best) {
     if (const double length = glm::distance(a, b); length > best.length) best = {length, a, b};
 }
 
-double cross(const glm::dvec2& a, const glm::dvec2& b) {
-    return a.x * b.y - a.y * b.x;
+// Whether (b − a) × (d − c) > 0, exactly: a filter with Shewchuk's bound as in predicates.hpp, then expansions.
+bool turns_left(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c, const glm::dvec2& d) {
+    const double left = (b.x - a.x) * (d.y - c.y), right = (b.y - a.y) * (d.x - c.x);
+    const double cross = left - right;
+    if (std::abs(cross) >= detail::kOrientationBound * (std::abs(left) + std::abs(right))) return cross > 0.0;
+    return (exact_difference(b.x, a.x) * exact_difference(d.y, c.y) -
+            exact_difference(b.y, a.y) * exact_difference(d.x, c.x))
+               .sign() > 0;
 }
 
 // Below this, squares of coordinates and of their differences may be no normal doubles.
@@ -49,10 +57,8 @@ Result<Diameter<glm::dvec2>> planar_diameter(std::span<const glm::dvec2> points)
     // The corner farthest from each side; while it moves on, its distances to both ends of the side are looked at.
     std::size_t far = 1;
     for (std::size_t i = 0; i < p.size(); ++i) {
-        const glm::dvec2 side = at(i + 1) - at(i);
         consider(at(i), at(far), best);
-        // By the edge that leads on: corners a rounding apart have one height, but their difference is exact.
-        while (cross(side, at(far + 1) - at(far)) > 0.0) {
+        while (turns_left(at(i), at(i + 1), at(far), at(far + 1))) {
             far = (far + 1) % p.size();
             consider(at(i), at(far), best);
         }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <crofton/core/memory.hpp>
+#include <crofton/geometry/expansion.hpp>
 #include <crofton/geometry/trigonometry.hpp>
 #include <crofton/study/spatial_lines.hpp>
 #include <cstdint>
@@ -22,16 +23,23 @@ struct CellBounds {
 
 // Σ weights[k]·f(corners[k]) is the exact integral over the triangle of any f linear in n: ∫ n dω is half the sum, over
 // the sides, of angle × unit normal of the side's plane.
+// By differences of corners, and by how much longer an arc is than its sine: small triangles lose less to cancellation.
 [[nodiscard]] inline std::array<double, 3> linear_weights(const DirectionTriangle& t) {
-    glm::dvec3 integral(0.0);
+    const glm::dvec3 twice_area = glm::cross(t[1] - t[0], t[2] - t[0]);
+    glm::dvec3 integral = 0.5 * twice_area;
     std::array<glm::dvec3, 3> crossed;
     for (std::size_t k = 0; k < 3; ++k) {
         const glm::dvec3 &a = t[(k + 1) % 3], &b = t[(k + 2) % 3];
-        crossed[k] = glm::cross(a, b);
-        const double sine = glm::length(crossed[k]);
-        integral += 0.5 * arc_tangent(sine, glm::dot(a, b)) / sine * crossed[k];
+        crossed[k] = glm::cross(a, b - a);
+        const double squared = glm::dot(crossed[k], crossed[k]), sine = std::sqrt(squared);
+        // arc / sine − 1
+        const double longer =
+            squared < 1e-3
+                ? squared * (1.0 / 6.0 + squared * (3.0 / 40.0 + squared * (5.0 / 112.0 + squared * (35.0 / 1152.0))))
+                : arc_tangent(sine, glm::dot(a, b)) / sine - 1.0;
+        integral += 0.5 * longer * crossed[k];
     }
-    const double determinant = glm::dot(t[0], crossed[0]);
+    const double determinant = glm::dot(t[0], twice_area);
     std::array<double, 3> weights;
     for (std::size_t k = 0; k < 3; ++k) weights[k] = glm::dot(crossed[k], integral) / determinant;
     return weights;
@@ -42,6 +50,17 @@ struct CellBounds {
     const double volume = glm::dot(t[0], glm::cross(t[1], t[2]));
     return 2.0 * arc_tangent(volume, 1.0 + glm::dot(t[0], t[1]) + glm::dot(t[1], t[2]) + glm::dot(t[2], t[0]));
 }
+
+// Of many terms far smaller than their sum, with what each addition rounds off.
+struct LongSum {
+    double high = 0.0, low = 0.0;
+    void operator+=(double term) {
+        const auto [sum, lost] = detail::two_sum(high, term);
+        high = sum;
+        low += lost;
+    }
+    [[nodiscard]] double total() const { return high + low; }
+};
 
 // bound(triangle) → CellBounds. Deterministic: ties by age.
 template <class Bound>
@@ -77,9 +96,9 @@ Enclosure integrate_directions(const QuadratureOptions& options, Bound bound) {
         for (const DirectionTriangle& quarter : {DirectionTriangle{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}})
             add(quarter);
     }
-    CellBounds sum;
-    for (const Cell& cell : heap)
-        sum.low += cell.bounds.low, sum.value += cell.bounds.value, sum.high += cell.bounds.high;
+    LongSum lows, values, highs;
+    for (const Cell& cell : heap) lows += cell.bounds.low, values += cell.bounds.value, highs += cell.bounds.high;
+    const CellBounds sum{lows.total(), values.total(), highs.total()};
     const double value = std::clamp(sum.value, sum.low, std::max(sum.low, sum.high));
     return {value, std::max(sum.high - value, value - sum.low), age};
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <crofton/geometry/expansion.hpp>
 #include <crofton/geometry/finite.hpp>
 #include <crofton/geometry/trigonometry.hpp>
 #include <glm/geometric.hpp>
@@ -11,10 +12,19 @@
 namespace crofton::study {
 namespace {
 
+// (b − a) × (c − a) within a few roundings of itself: corners nearly on a line have circles all the same, and the side
+// their centres lie on is decided by the sign.
+double twice_area(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
+    const double left = (b.x - a.x) * (c.y - a.y), right = (b.y - a.y) * (c.x - a.x);
+    if (std::abs(left - right) > 0.5 * (std::abs(left) + std::abs(right))) return left - right;
+    return (exact_difference(b.x, a.x) * exact_difference(c.y, a.y) -
+            exact_difference(b.y, a.y) * exact_difference(c.x, a.x))
+        .estimate();
+}
+
 // Where the circle through a, b and c has its centre on the bisector of a and b, along the left normal of a → b.
 double place_of_center(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
-    const glm::dvec2 side = b - a;
-    const double height = (side.x * (c.y - a.y) - side.y * (c.x - a.x)) / glm::length(side);
+    const double height = twice_area(a, b, c) / glm::length(b - a);
     return glm::dot(c - a, c - b) / (2.0 * height);
 }
 
@@ -66,9 +76,9 @@ class Ring {
     void push(std::uint32_t i) {
         const glm::dvec2 a = corners_[before_[i]], b = corners_[i], c = corners_[after_[i]];
         const glm::dvec2 ab = b - a, bc = c - b, ac = c - a;
-        const double twice_area = std::abs(ab.x * bc.y - ab.y * bc.x);
-        const double radius = glm::length(ab) * glm::length(bc) * glm::length(ac) / (2.0 * twice_area);
-        heap_.push({radius, arc_tangent(twice_area, -glm::dot(ab, bc)), i, ++version_[i]});
+        const double doubled = std::abs(twice_area(a, b, c));
+        const double radius = glm::length(ab) * glm::length(bc) * glm::length(ac) / (2.0 * doubled);
+        heap_.push({radius, arc_tangent(doubled, -glm::dot(ab, bc)), i, ++version_[i]});
     }
     std::uint32_t pop() {
         for (;;) {

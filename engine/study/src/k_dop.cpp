@@ -174,6 +174,8 @@ Result<BestKDop> best_k_dop(std::span<const glm::dvec3> points, std::span<const 
 
 Result<convex::Hull> hull_around(const KDop& dop, std::span<const glm::dvec3> points) {
     if (points.empty()) return fail(ErrorCode::empty, kNoItem, "k-DOP: no points");
+    for (std::size_t i = 0; i < points.size(); ++i)
+        if (!is_finite(points[i])) return fail(ErrorCode::non_finite, i, "k-DOP: a point is NaN or infinite");
     double size = 0.0;
     for (std::size_t i = 0; i < dop.low.size(); ++i)
         size = std::max({size, std::abs(dop.low[i]), std::abs(dop.high[i])});

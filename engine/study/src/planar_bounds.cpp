@@ -185,6 +185,19 @@ std::array<std::size_t, 4> support_corners(std::span<const glm::dvec2> hull, dou
     return support;
 }
 
+// Corners that support a little larger angle: from corner to corner, since rounded angles of sides nearly parallel may
+// come in another order than the sides.
+void move_on(std::span<const glm::dvec2> hull, double theta, std::array<std::size_t, 4>& support) {
+    const glm::dvec2 axis = cosine_sine(theta), across(-axis.y, axis.x);
+    const glm::dvec2 directions[4] = {axis, across, -axis, -across};
+    for (std::size_t k = 0; k < 4; ++k)
+        for (std::size_t steps = 0; steps < hull.size(); ++steps) {
+            const std::size_t next = (support[k] + 1) % hull.size();
+            if (!(glm::dot(hull[next] - hull[support[k]], directions[k]) > 0.0)) break;
+            support[k] = next;
+        }
+}
+
 struct Turn {
     double begin, end;
     double at_begin, at_end;
@@ -201,26 +214,21 @@ class RectangleSearch {
     OptimalBound<Rectangle> run() {
         const std::span<const glm::dvec2> hull = problem_.hull;
         // Where a side's normal, turned into the first quarter, changes one of the four support corners.
-        struct Event {
-            double angle;
-            std::size_t side, direction;
-        };
-        Vector<Event> events;
+        Vector<double> events;
         for (std::size_t i = 0; i < hull.size(); ++i) {
             const glm::dvec2 side = hull[(i + 1) % hull.size()] - hull[i];
             const double angle = arc_tangent(-side.x, side.y);
-            const double quarter = std::floor(angle / (0.5 * pi));
-            events.push_back({angle - 0.5 * pi * quarter, i, static_cast<std::size_t>(static_cast<int>(quarter) & 3)});
+            events.push_back(std::min(angle - 0.5 * pi * std::floor(angle / (0.5 * pi)), 0.5 * pi));
         }
-        std::sort(events.begin(), events.end(), [](const Event& a, const Event& b) { return a.angle < b.angle; });
+        events.push_back(0.5 * pi);
+        std::sort(events.begin(), events.end());
         auto support = support_corners(hull, 0.0);
         double begin = 0.0;
-        for (std::size_t e = 0; e <= events.size(); ++e) {
-            const double end = e < events.size() ? std::min(events[e].angle, 0.5 * pi) : 0.5 * pi;
-            if (begin < end) open_.push_back({begin, end, measured(begin, support), measured(end, support), support});
-            if (e == events.size()) break;
-            begin = std::max(begin, end);
-            support[events[e].direction] = (events[e].side + 1) % hull.size();
+        for (const double end : events) {
+            if (!(begin < end)) continue;
+            move_on(hull, 0.5 * (begin + end), support);
+            open_.push_back({begin, end, measured(begin, support), measured(end, support), support});
+            begin = end;
         }
         for (std::size_t i = 0; i < open_.size(); ++i) examine(Turn(open_[i]));
         result_.lower_bound = std::max(std::min(dropped_, result_.measure), std::min(problem_.own, result_.measure));

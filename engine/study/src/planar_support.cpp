@@ -39,13 +39,19 @@ Result<PlanarSupport> PlanarSupport::of_hull(std::span<const glm::dvec2> points)
 
 PlanarSupport PlanarSupport::of_convex_polygon(std::span<const glm::dvec2> corners) {
     const std::size_t n = corners.size();
+    const auto side = [&](std::size_t i) { return corners[(i + 1) % n] - corners[i % n]; };
+    // Whether the outward normal of a side lies in [0, π). By signs, which a difference has exactly: where the order of
+    // the sides begins must not hang on rounded angles.
+    const auto in_first_half = [](const glm::dvec2& d) { return d.x < 0.0 || (d.x == 0.0 && d.y > 0.0); };
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < n; ++i)
+        if (in_first_half(side(i)) && !in_first_half(side(i + n - 1))) first = i;
     // Corner i + 1 takes over from corner i at the outward normal of the side between them.
     Vector<Piece> changes;
     changes.reserve(n);
-    for (std::size_t i = 0; i < n && n > 1; ++i) {
-        const glm::dvec2 side = corners[(i + 1) % n] - corners[i];
-        double angle = arc_tangent(-side.x, side.y);
-        if (angle < 0.0) angle += 2.0 * pi;
+    for (std::size_t i = first; i < first + n && n > 1; ++i) {
+        double angle = arc_tangent(-side(i).x, side(i).y);
+        if (angle <= 0.0 && !in_first_half(side(i))) angle += 2.0 * pi;
         changes.push_back({std::min(angle, 2.0 * pi), corners[(i + 1) % n], 0.0});
     }
     PlanarSupport result;
@@ -53,9 +59,6 @@ PlanarSupport PlanarSupport::of_convex_polygon(std::span<const glm::dvec2> corne
         result.append(0.0, {0.0, corners[0], 0.0});
         return result;
     }
-    const auto first = std::min_element(changes.begin(), changes.end(),
-                                        [](const Piece& a, const Piece& b) { return a.begin < b.begin; });
-    std::rotate(changes.begin(), first, changes.end());
     result.append(0.0, changes.back());
     for (const Piece& change : changes) result.append(change.begin, change);
     return result;

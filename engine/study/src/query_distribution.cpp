@@ -5,11 +5,13 @@
 #include <crofton/geometry/camera.hpp>
 #include <crofton/geometry/finite.hpp>
 #include <crofton/geometry/mesh.hpp>
+#include <crofton/geometry/moderate_length.hpp>
 #include <crofton/geometry/trigonometry.hpp>
 #include <crofton/sampling/sampling.hpp>
 #include <crofton/study/query_distribution.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
+#include <optional>
 #include <string>
 
 namespace crofton::study {
@@ -17,6 +19,12 @@ namespace {
 
 using std::numbers::pi;
 constexpr std::uint64_t kUniformDirections = 4096;
+
+// The unit vector along a direction of any length; nothing for one that is zero or not finite.
+std::optional<glm::dvec3> unit_along(const glm::dvec3& direction) {
+    if (!is_finite(direction) || direction == glm::dvec3(0.0)) return std::nullopt;
+    return glm::normalize(of_moderate_length(direction));
+}
 
 // Number i of n: even heights, and longitudes by the golden angle.
 glm::dvec3 even_direction(std::uint64_t i, std::uint64_t n, double highest) {
@@ -30,16 +38,15 @@ glm::dvec3 even_direction(std::uint64_t i, std::uint64_t n, double highest) {
 }  // namespace
 
 Result<QueryDistribution> QueryDistribution::band(const glm::dvec3& up, double half_width) {
-    const double length = glm::length(up);
-    if (!is_finite(up) || !(length > 0.0) || !std::isfinite(length))
-        return fail(ErrorCode::invalid_argument, kNoItem, "query distribution: `up` is zero or not finite");
+    const auto axis = unit_along(up);
+    if (!axis) return fail(ErrorCode::invalid_argument, kNoItem, "query distribution: `up` is zero or not finite");
     if (!(half_width > 0.0 && half_width <= 0.5 * pi))
         return fail(ErrorCode::invalid_argument, kNoItem, "query distribution: half_width must lie in (0, pi/2]");
-    const auto [x, y] = sampling::orthonormal_frame(up / length);
+    const auto [x, y] = sampling::orthonormal_frame(*axis);
     QueryDistribution result;
     for (std::uint64_t i = 0; i < kUniformDirections; ++i) {
         const glm::dvec3 d = even_direction(i, kUniformDirections, sine(half_width));
-        result.directions_.push_back(d.x * x + d.y * y + d.z * (up / length));
+        result.directions_.push_back(d.x * x + d.y * y + d.z * *axis);
     }
     result.weights_.assign(result.directions_.size(), 1.0 / static_cast<double>(kUniformDirections));
     return result;
@@ -54,15 +61,15 @@ Result<QueryDistribution> QueryDistribution::samples(std::span<const glm::dvec3>
     QueryDistribution result;
     double sum = 0.0;
     for (std::size_t i = 0; i < directions.size(); ++i) {
-        const double length = glm::length(directions[i]);
-        if (!is_finite(directions[i]) || !(length > 0.0) || !std::isfinite(length))
+        const auto unit = unit_along(directions[i]);
+        if (!unit)
             return fail(ErrorCode::invalid_argument, i,
                         {"query distribution: direction ", i, " is zero or not finite"});
         const double weight = weights.empty() ? 1.0 : weights[i];
         if (!(weight >= 0.0) || !std::isfinite(weight))
             return fail(ErrorCode::invalid_argument, i,
                         {"query distribution: weight ", i, " is negative or not finite"});
-        result.directions_.push_back(directions[i] / length);
+        result.directions_.push_back(*unit);
         result.weights_.push_back(weight);
         sum += weight;
     }

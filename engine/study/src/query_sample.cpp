@@ -199,11 +199,11 @@ bool QuerySample::frustum_hits(const Query& q, const Obb& box, bool* contained) 
             low = std::min(low, glm::dot(n, corner)), high = std::max(high, glm::dot(n, corner));
         return at + radius < low || at - radius > high;
     };
-    std::array<glm::dvec3, 3> axes;
-    for (int k = 0; k < 3; ++k) {
-        axes[static_cast<std::size_t>(k)] = back * glm::dvec3(box.axes[k]);
-        if (apart(axes[static_cast<std::size_t>(k)])) return false;
-    }
+    // Stored axes are not quite orthogonal, so a face's normal is a cross product of two.
+    const std::array<glm::dvec3, 3> axes = {back * glm::dvec3(box.axes[0]), back * glm::dvec3(box.axes[1]),
+                                            back * glm::dvec3(box.axes[2])};
+    for (std::size_t k = 0; k < 3; ++k)
+        if (apart(glm::cross(axes[k], axes[(k + 1) % 3]))) return false;
     for (const glm::dvec3& a : axes)
         for (const glm::dvec3& e : edges_)
             if (apart(glm::cross(a, e))) return false;

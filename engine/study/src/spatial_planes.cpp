@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <crofton/geometry/finite.hpp>
 #include <limits>
 #include <numbers>
 
@@ -10,11 +11,12 @@ Result<void> validate_bodies(std::span<const ConvexBody> bodies) {
     if (bodies.empty()) return fail(ErrorCode::empty, kNoItem, "lines hitting all: no bodies");
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         if (bodies[i].points.empty()) return fail(ErrorCode::empty, i, "lines hitting all: a body without points");
-        if (!(bodies[i].radius >= 0.0) || !std::isfinite(bodies[i].radius))
-            return fail(ErrorCode::invalid_argument, i, "lines hitting all: a radius is negative or not finite");
+        if (!(bodies[i].radius >= 0.0 && bodies[i].radius <= kMaxCoordinate))
+            return fail(ErrorCode::invalid_argument, i, "lines hitting all: a radius is negative, NaN or beyond 1e30");
         for (const glm::dvec3& p : bodies[i].points)
-            if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-                return fail(ErrorCode::non_finite, i, "lines hitting all: a point is NaN or infinite");
+            if (!is_in_range(p))
+                return fail(is_finite(p) ? ErrorCode::out_of_range : ErrorCode::non_finite, i,
+                            "lines hitting all: a point is NaN, infinite or beyond 1e30");
     }
     return {};
 }

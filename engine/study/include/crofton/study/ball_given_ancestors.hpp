@@ -28,7 +28,8 @@ struct BallGivenAncestors {
 // That is so since all hold the object. Branch and bound over centres c = c₀ + δ. For any point p of the object the
 // radius is at least |p − c₀| + e·δ, e the unit vector from p to c₀. So h is at least a linear function of δ, the mean
 // of min(A, that) is concave, and over a cube least in a corner. Errors: no points; NaN or infinite ones (by index); as
-// validate_bodies for ancestors; an object that sticks out of them; options out of range.
+// validate_bodies for ancestors; an object that sticks out of them across one of these directions; options out of
+// range.
 [[nodiscard]] Result<BallGivenAncestors> ball_given_ancestors(std::span<const glm::dvec3> points,
                                                               std::span<const ConvexBody> ancestors,
                                                               const BallOptions& options = {});

@@ -61,7 +61,7 @@ class BinaryTree {
     // by area. Bounds that it changes become axis-aligned. Ids of removed items are used again. Errors: as
     // validate(Obb).
     [[nodiscard]] Result<ItemId> insert(const Obb& box);
-    // False where there is no such item. The bounds above shrink again.
+    // False where there is no such item. The boxes above shrink again; bounds that change become axis-aligned.
     bool remove(ItemId item);
 
     [[nodiscard]] std::size_t item_count() const { return item_count_; }

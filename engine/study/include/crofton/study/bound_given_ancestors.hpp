@@ -59,7 +59,7 @@ struct BoxGivenAncestors {
 // of half side tan(π/8), since quarter turns change no box. Per direction the box's support is at least a linear
 // function of the turn, minus a remainder of second order. The mean of min(ancestors' support, that) is concave, so
 // over a cell it is least in a corner (docs/notes/measure.md). Errors: as fit_obb and validate_bodies; an object that
-// sticks out of its ancestors; one without extent; options out of range.
+// sticks out of its ancestors across one of these directions; one without extent; options out of range.
 [[nodiscard]] Result<BoxGivenAncestors> box_given_ancestors(std::span<const glm::dvec3> points,
                                                             std::span<const ConvexBody> ancestors,
                                                             const BoxGivenAncestorsOptions& options = {});

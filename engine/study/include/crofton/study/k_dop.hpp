@@ -51,8 +51,8 @@ struct BestKDopOptions {
                                           const measure::Criterion& criterion, const BestKDopOptions& options = {});
 
 // The k-DOP as a body that culling takes (cull::classify). Its corners are rounded to floats and moved out by a few
-// 2^-22 of their size until the hull contains every point, in exact arithmetic. Errors: no points; points far outside
-// the k-DOP; as convex::Hull::build.
+// 2^-22 of their size until the hull contains every point, in exact arithmetic. Errors: no points; NaN or infinite ones
+// (by index); points far outside the k-DOP; as convex::Hull::build.
 [[nodiscard]] Result<convex::Hull> hull_around(const KDop& dop, std::span<const glm::dvec3> points);
 
 }  // namespace crofton::study

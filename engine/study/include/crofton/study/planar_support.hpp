@@ -10,7 +10,8 @@
 namespace crofton::study {
 
 // A function h of the angle φ in [0, 2π] made of pieces dot(point, (cos φ, sin φ)) + radius. Such are the support
-// functions of figures bounded by arcs and segments, and their minima and maxima.
+// functions of figures bounded by arcs and segments, and their minima and maxima. The largest coordinate or radius must
+// lie in [1e-100, 1e100] or be 0, since differences of pieces are squared.
 class PlanarSupport {
   public:
     struct Piece {

@@ -25,7 +25,8 @@ struct QuadratureOptions {
 // max(0, min_i h_i(n) + min_i h_i(−n)). Two bodies that meet: M₁ + M₂ − M_hull. The half sphere is cut into spherical
 // triangles, the one with the widest bounds first. On each, support functions lie above a tangent and below the chord
 // through the corners, since they are convex. Both are linear in n and integrated exactly. Error ∝ 1/cells or better.
-// Errors: no bodies, a body without points, non-finite numbers, a negative radius; item = the body.
+// Errors: no bodies, a body without points, numbers that are NaN, infinite or beyond kMaxCoordinate, a negative radius;
+// item = the body.
 [[nodiscard]] Result<Enclosure> measure_of_planes_hitting_all(std::span<const ConvexBody> bodies,
                                                               const QuadratureOptions& options = {});
 
