@@ -6,6 +6,7 @@
 
 #include "ancestor_directions.hpp"
 #include "box_search.hpp"
+#include "direction_cells.hpp"
 
 namespace crofton::study {
 

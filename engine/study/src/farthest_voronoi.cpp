@@ -12,8 +12,8 @@
 namespace crofton::study {
 namespace {
 
-// (b − a) × (c − a) within a few roundings of itself: corners nearly on a line have circles all the same, and the side
-// their centres lie on is decided by the sign.
+// (b − a) × (c − a) within a few roundings of itself. Corners nearly on a line have circles all the same; the sign says
+// on which side their centres lie.
 double twice_area(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
     const double left = (b.x - a.x) * (c.y - a.y), right = (b.y - a.y) * (c.x - a.x);
     if (std::abs(left - right) > 0.5 * (std::abs(left) + std::abs(right))) return left - right;

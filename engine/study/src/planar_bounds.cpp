@@ -185,8 +185,8 @@ std::array<std::size_t, 4> support_corners(std::span<const glm::dvec2> hull, dou
     return support;
 }
 
-// Corners that support a little larger angle: from corner to corner, since rounded angles of sides nearly parallel may
-// come in another order than the sides.
+// Corners that support a little larger angle. From corner to corner: rounded angles of sides nearly parallel may come
+// in another order than the sides.
 void move_on(std::span<const glm::dvec2> hull, double theta, std::array<std::size_t, 4>& support) {
     const glm::dvec2 axis = cosine_sine(theta), across(-axis.y, axis.x);
     const glm::dvec2 directions[4] = {axis, across, -axis, -across};
