@@ -2,23 +2,13 @@
 // Manifolds where one body touches with a segment: a side of what is round, an edge, a triangle without area.
 #include <doctest/doctest.h>
 #include <crofton/convex/query.hpp>
-#include <set>
 
+#include "contact_ids.hpp"
 #include "random_bodies.hpp"
 
 using namespace crofton;
 using namespace crofton::convex;
 using namespace crofton::testing;
-
-namespace {
-
-std::size_t distinct_ids(const Manifold& m) {
-    std::set<std::pair<Feature, Feature>> result;
-    for (int i = 0; i < m.count; ++i) result.insert({m.points[i].on_a, m.points[i].on_b});
-    return result.size();
-}
-
-}  // namespace
 
 TEST_SUITE("convex/segment_manifold") {
     TEST_CASE("a capsule that lies across a box has a point above each of two edges, told once") {
@@ -32,7 +22,7 @@ TEST_SUITE("convex/segment_manifold") {
                 const Placed low{box, ground}, high{capsule, lying};
                 const Manifold m = first ? contact_manifold(low, high) : contact_manifold(high, low);
                 REQUIRE(m.count == 2);
-                CHECK(distinct_ids(m) == 2);
+                CHECK(ids(m).size() == 2);
                 CHECK(m.depth == doctest::Approx(0.1));
                 const double left = std::max(-1.0, shift - 3.0), right = std::min(1.0, shift + 3.0);
                 const bool turned = m.points[0].position.x > m.points[1].position.x;
@@ -58,7 +48,7 @@ TEST_SUITE("convex/segment_manifold") {
             const CasePair where = nearly_touching(random, flat, round, -std::pow(10.0, random.number(-6, -1)), 0.0);
             const Manifold m = contact_manifold({flat, where.pose_a}, {round, where.pose_b}, {.max_points = 8});
             CAPTURE(i);
-            CHECK(distinct_ids(m) == static_cast<std::size_t>(m.count));
+            CHECK(ids(m).size() == static_cast<std::size_t>(m.count));
             points += m.count;
         }
         CHECK(points > 2000);

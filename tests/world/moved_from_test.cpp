@@ -17,16 +17,12 @@
 #include <crofton/world/world.hpp>
 #include <utility>
 
+#include "box_at.hpp"
+
 using namespace crofton;
+using testing::box_at;
 
 namespace {
-
-Obb box_at(double x, double y, double z) {
-    Obb box;
-    box.center = {x, y, z};
-    box.half_extents = glm::vec3(1.0f);
-    return box;
-}
 
 TriangleMesh cube() {
     TriangleMesh mesh;
@@ -39,7 +35,7 @@ TriangleMesh cube() {
 
 World one_box() {
     World world;
-    REQUIRE(world.add({.bound = Bound(box_at(0, 0, -5))}).has_value());
+    REQUIRE(world.add({.bound = Bound(box_at({0, 0, -5}, 1.0f))}).has_value());
     REQUIRE(world.update().has_value());
     return world;
 }
@@ -95,7 +91,7 @@ TEST_SUITE("world/moved_from") {
     }
 
     TEST_CASE("what a depth buffer leaves visible, moved from, is nothing") {
-        const Obb boxes[1] = {box_at(0, 0, -5)};
+        const Obb boxes[1] = {box_at({0, 0, -5}, 1.0f)};
         auto buffer = *occlude::OcclusionBuffer::create();
         buffer.draw(occlude::OccluderSet(), forward().view);
         occlude::VisibleSet visible;
@@ -108,7 +104,7 @@ TEST_SUITE("world/moved_from") {
     }
 
     TEST_CASE("lists of boxes that have been moved from are empty, and see nothing") {
-        const Obb boxes[2] = {box_at(0, 0, -5), box_at(3, 0, -5)};
+        const Obb boxes[2] = {box_at({0, 0, -5}, 1.0f), box_at({3, 0, -5}, 1.0f)};
         auto tree = *boxtree::BoxTree::build(boxes);
         const boxtree::ItemId items[2] = {0, 1};
         for (const boxtree::ItemId item : items) REQUIRE(tree.detach(item).has_value());
@@ -131,16 +127,16 @@ TEST_SUITE("world/moved_from") {
     }
 
     TEST_CASE("receivers of shadows that have been moved from want no caster") {
-        const Obb receivers[1] = {box_at(0, 0, -5)};
+        const Obb receivers[1] = {box_at({0, 0, -5}, 1.0f)};
         cull::ShadowReceivers set;
         REQUIRE(set.set_sun(*frustum_of(Camera{}), receivers, {0, 1, 0}).has_value());
         const cull::ShadowReceivers kept(std::move(set));
-        CHECK(kept.wants(box_at(0, 3, -5)));
-        CHECK_FALSE(set.wants(box_at(0, 3, -5)));
+        CHECK(kept.wants(box_at({0, 3, -5}, 1.0f)));
+        CHECK_FALSE(set.wants(box_at({0, 3, -5}, 1.0f)));
     }
 
     TEST_CASE("visible sets that have been moved from hold no cell: all is drawn") {
-        pvs::Subject subject{cube(), {}, {}, {box_at(0, 0, 0)}};
+        pvs::Subject subject{cube(), {}, {}, {box_at({0, 0, 0}, 1.0f)}};
         subject.object_of.assign(subject.mesh.triangle_count(), 0);
         const Aabb room[1] = {{{-3, -3, -3}, {-2, -2, -2}}};
         const glm::dvec3 eye(-2.5);
@@ -179,7 +175,7 @@ TEST_SUITE("world/moved_from") {
     }
 
     TEST_CASE("every class that may be moved can be assigned to and destroyed afterwards") {
-        const Obb boxes[2] = {box_at(0, 0, -5), box_at(3, 0, -5)};
+        const Obb boxes[2] = {box_at({0, 0, -5}, 1.0f), box_at({3, 0, -5}, 1.0f)};
         const TriangleMesh mesh = cube();
         move_around(one_box(), World());
         move_around(scene::Scene(), scene::Scene());

@@ -5,6 +5,7 @@
 #include <error_of.hpp>
 #include <limits>
 
+#include "box_at.hpp"
 #include "occlusion_town.hpp"
 
 using namespace crofton;
@@ -18,8 +19,8 @@ struct BehindAWall {
     MeshHandle mesh = world.add_mesh(description_of(cuboid({5.0f, 5.0f, 0.5f}), true)).value();
     NodeHandle node = world.add_node({.transform = at(0.0, 0.0, -10.0)}).value();
     ObjectHandle wall = world.add({.mesh = mesh, .node = node, .user = 7}).value();
-    ObjectHandle behind = world.add({.bound = box_at(0.0, 0.0, -20.0), .user = 9}).value();
-    ObjectHandle beside = world.add({.bound = box_at(-14.0, 0.0, -20.0)}).value();
+    ObjectHandle behind = world.add({.bound = box_at({0.0, 0.0, -20.0}), .user = 9}).value();
+    ObjectHandle beside = world.add({.bound = box_at({-14.0, 0.0, -20.0})}).value();
     VisibleObjects visible;
 
     [[nodiscard]] bool hides(const cull::CullOptions& options = {}, std::uint32_t layer_mask = ~0u) {
@@ -163,13 +164,13 @@ TEST_SUITE("world/occlusion") {
         }
         // What moves is asked as well.
         for (int i = 0; i < 5; ++i) {
-            REQUIRE(s.world.set_bound(s.behind, box_at(0.1 * i, 0.0, -20.0)).has_value());
+            REQUIRE(s.world.set_bound(s.behind, box_at({0.1 * i, 0.0, -20.0})).has_value());
             CHECK(s.hides());
         }
         CHECK(s.world.statistics().moving >= 1);
-        REQUIRE(s.world.set_bound(s.behind, box_at(0.0, 7.0, -20.0)).has_value());
+        REQUIRE(s.world.set_bound(s.behind, box_at({0.0, 7.0, -20.0})).has_value());
         CHECK(s.hides());  // 7.5 of 20 behind 5 of 9.5
-        REQUIRE(s.world.set_bound(s.behind, box_at(0.0, 0.0, -8.0)).has_value());
+        REQUIRE(s.world.set_bound(s.behind, box_at({0.0, 0.0, -8.0})).has_value());
         CHECK_FALSE(s.hides());
     }
 
@@ -229,8 +230,8 @@ TEST_SUITE("world/occlusion") {
         World world;
         const auto mesh = world.add_mesh(description_of(cuboid({5.0f, 5.0f, 0.5f}), true)).value();
         const auto wall = world.add({.mesh = mesh, .transform = at(0.0, 0.0, -10.0), .only_occludes = true}).value();
-        (void)world.add({.bound = box_at(0.0, 0.0, -20.0)}).value();
-        CHECK(error_of(world.add({.bound = box_at(0.0, 0.0, -20.0), .only_occludes = true})).code ==
+        (void)world.add({.bound = box_at({0.0, 0.0, -20.0})}).value();
+        CHECK(error_of(world.add({.bound = box_at({0.0, 0.0, -20.0}), .only_occludes = true})).code ==
               ErrorCode::invalid_argument);
         REQUIRE(world.update().has_value());
         VisibleObjects visible;

@@ -23,13 +23,6 @@ inline MeshDescription description_of(const TriangleMesh& mesh, bool occluders) 
     return {.positions = mesh.positions, .indices = mesh.indices, .occluders = occluders};
 }
 
-inline Obb box_at(double x, double y, double z, float half = 0.5f) {
-    Obb box;
-    box.center = {x, y, z};
-    box.half_extents = glm::vec3(half);
-    return box;
-}
-
 inline scene::Transform at(double x, double y, double z) {
     return {glm::dmat3(1.0), {x, y, z}};
 }

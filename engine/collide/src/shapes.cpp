@@ -32,20 +32,16 @@ Verdict ball_meets(const Obb& box, const Sphere& ball) {
     return below > ball.radius + error_bound ? Verdict::apart : Verdict::open;
 }
 
-bool is_valid_ball(const Sphere& sphere) {
-    return is_in_range(sphere.center) && sphere.radius >= 0.0 && sphere.radius <= kMaxCoordinate;
-}
-
 }  // namespace
 
 bool intersects(const Obb& box, const Sphere& sphere) {
-    if (!is_valid_ball(sphere) || !validate(box)) return false;
+    if (!is_in_range(sphere) || !validate(box)) return false;
     if (const Verdict verdict = ball_meets(box, sphere); verdict != Verdict::open) return verdict == Verdict::meets;
     return distance(box, Capsule{sphere.center, sphere.center, sphere.radius}).distance <= 0.0;
 }
 
 bool intersects(const Obb& box, const Capsule& capsule) {
-    if (!is_in_range(capsule.begin) || !is_valid_ball(Sphere{capsule.end, capsule.radius}) || !validate(box))
+    if (!is_in_range(capsule.begin) || !is_in_range(Sphere{capsule.end, capsule.radius}) || !validate(box))
         return false;
     // A segment is a triangle without area: its core is decided exactly.
     if (intersects(box, Triangle{capsule.begin, capsule.end, capsule.end})) return true;

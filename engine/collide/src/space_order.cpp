@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <crofton/collide/box_block.hpp>
+#include <crofton/geometry/finite.hpp>
 #include <glm/common.hpp>
 #include <utility>
 
@@ -20,9 +21,7 @@ constexpr std::size_t kChunk = 4096;  // of the curve that is arranged anew
 
 // Boxes beyond are invalid, and differences of theirs may be infinite.
 bool is_ordered(const Obb& box) {
-    return std::abs(box.center.x) <= kMaxCoordinate && std::abs(box.center.y) <= kMaxCoordinate &&
-           std::abs(box.center.z) <= kMaxCoordinate && std::isfinite(box.half_extents.x) &&
-           std::isfinite(box.half_extents.y) && std::isfinite(box.half_extents.z);
+    return is_in_range(box.center) && is_finite(glm::dvec3(box.half_extents));
 }
 
 // Values of `measure` over an even sample of the boxes that have a place; empty when there are none.

@@ -23,6 +23,10 @@ void patch_along(const Placed& placed, const glm::dvec3& direction, const glm::d
 // The patch of one face of a hull, box or triangle.
 void patch_of_face(const Placed& placed, int face, const glm::dvec3& origin, Patch& patch);
 
+[[nodiscard]] inline bool has_same_id(const ContactPoint& p, const ContactPoint& q) {
+    return p.on_a == q.on_a && p.on_b == q.on_b && p.part_a == q.part_a && p.part_b == q.part_b;
+}
+
 // The feature that the given vertices of a core span: a vertex, an edge, a face.
 [[nodiscard]] Feature feature_of(const Body& body, const int* vertices, int count);
 

@@ -12,10 +12,6 @@ bool nearly_parallel(const Patch& a, const Patch& b) {
     return glm::dot(n, n) <= 1e-3 * glm::dot(u, u) * glm::dot(v, v);
 }
 
-bool has_same_id(const ContactPoint& p, const ContactPoint& q) {
-    return p.on_a == q.on_a && p.on_b == q.on_b;
-}
-
 }  // namespace
 
 void Gatherer::add(const glm::dvec3& core_a, const glm::dvec3& core_b, const Feature& on_a, const Feature& on_b) {

@@ -2,14 +2,9 @@
 #include <algorithm>
 #include <crofton/convex/query.hpp>
 
+#include "features.hpp"
+
 namespace crofton::convex {
-namespace {
-
-bool same_id(const ContactPoint& a, const ContactPoint& b) {
-    return a.on_a == b.on_a && a.on_b == b.on_b && a.part_a == b.part_a && a.part_b == b.part_b;
-}
-
-}  // namespace
 
 std::size_t track(std::span<const Manifold> manifolds, Vector<TrackedPoint>& points) {
     const std::size_t before = points.size();
@@ -20,7 +15,7 @@ std::size_t track(std::span<const Manifold> manifolds, Vector<TrackedPoint>& poi
             now.contact = manifold.points[i];
             now.normal = manifold.normal;
             for (std::size_t old = kept; old < before; ++old) {
-                if (!same_id(points[old].contact, now.contact)) continue;
+                if (!has_same_id(points[old].contact, now.contact)) continue;
                 now.began = false;
                 std::copy_n(points[old].memory, 4, now.memory);
                 std::swap(points[old], points[kept++]);

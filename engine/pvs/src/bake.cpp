@@ -7,6 +7,7 @@
 #include <cmath>
 #include <crofton/bake/checksum.hpp>
 #include <crofton/core/recovery.hpp>
+#include <crofton/geometry/finite.hpp>
 #include <utility>
 
 #include "bake_data.hpp"
@@ -229,9 +230,7 @@ Result<void> check(const Subject& subject, const Cells& cells, const BakeOptions
     for (std::size_t t = 0; t < subject.object_of.size(); ++t)
         if (subject.object_of[t] >= subject.boxes.size())
             return fail(ErrorCode::out_of_range, t, "pvs: a triangle's object has no box");
-    for (int k = 0; k < 3; ++k)
-        if (!(std::abs(subject.origin[k]) <= kMaxCoordinate))
-            return fail(ErrorCode::non_finite, kNoItem, "pvs: the origin is not finite");
+    if (!is_in_range(subject.origin)) return fail(ErrorCode::non_finite, kNoItem, "pvs: the origin is not finite");
     if (subject.boxes.size() > 0xffffffffu || cells.size() * subject.boxes.size() > kMaxPairs)
         return fail(ErrorCode::out_of_range, cells.size() * subject.boxes.size(),
                     "pvs: more than 2^34 pairs of a cell and an object: take fewer cells, or put objects together");

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/core/recovery.hpp>
+#include <crofton/geometry/finite.hpp>
 #include <crofton/pvs/pvs.hpp>
 #include <glm/geometric.hpp>
 
@@ -13,12 +14,6 @@ namespace crofton::pvs {
 namespace {
 
 constexpr std::uint64_t kMaxCells = std::uint64_t{1} << 24;
-
-bool is_finite(const Aabb& box) {
-    for (int k = 0; k < 3; ++k)
-        if (!(std::abs(box.min[k]) <= kMaxCoordinate && std::abs(box.max[k]) <= kMaxCoordinate)) return false;
-    return true;
-}
 
 int positive_extents(const Aabb& box) {
     int count = 0;
@@ -34,7 +29,7 @@ bool holds(const Aabb& box, const glm::dvec3& p) {
 }  // namespace
 
 Result<Cells> Cells::grid(const Aabb& bounds, const glm::uvec3& counts) {
-    if (!is_finite(bounds)) return fail(ErrorCode::non_finite, kNoItem, "cells: the bounds are not finite");
+    if (!is_in_range(bounds)) return fail(ErrorCode::non_finite, kNoItem, "cells: the bounds are not finite");
     if (positive_extents(bounds) < 3)
         return fail(ErrorCode::degenerate, kNoItem,
                     "cells: the bounds of a grid need a positive extent along each axis");
@@ -59,7 +54,7 @@ Result<Cells> Cells::boxes(std::span<const Aabb> boxes) {
         if (boxes.size() > kMaxCells) return fail(ErrorCode::out_of_range, boxes.size(), "cells: more than 2^24");
         Cells cells;
         for (std::size_t i = 0; i < boxes.size(); ++i) {
-            if (!is_finite(boxes[i])) return fail(ErrorCode::non_finite, i, "cells: a box is not finite");
+            if (!is_in_range(boxes[i])) return fail(ErrorCode::non_finite, i, "cells: a box is not finite");
             if (boxes[i].is_empty()) return fail(ErrorCode::empty, i, "cells: a box is empty: min is above max");
             if (positive_extents(boxes[i]) < 2)
                 return fail(ErrorCode::degenerate, i,
@@ -80,9 +75,8 @@ Result<Cells> Cells::convex(std::span<const ConvexCell> convex) {
         for (std::size_t i = 0; i < convex.size(); ++i) {
             Aabb box;
             for (const glm::dvec3& p : convex[i].corners) {
-                for (int k = 0; k < 3; ++k)
-                    if (!(std::abs(p[k]) <= kMaxCoordinate))
-                        return fail(ErrorCode::non_finite, i, "cells: a corner of a convex cell is not finite");
+                if (!is_in_range(p))
+                    return fail(ErrorCode::non_finite, i, "cells: a corner of a convex cell is not finite");
                 box.include(p);
             }
             const ConvexCellFaces faces = faces_of(convex[i]);

@@ -3,13 +3,14 @@
 #include <cmath>
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/box.hpp>
-#include <crofton/geometry/expansion.hpp>
 #include <crofton/geometry/mesh.hpp>
 #include <crofton/geometry/predicates.hpp>
 #include <crofton/measure/measure.hpp>
 #include <crofton/study/diameter.hpp>
 #include <glm/geometric.hpp>
 #include <string>
+
+#include "exact_cross.hpp"
 
 namespace crofton::study {
 namespace {
@@ -24,9 +25,7 @@ bool turns_left(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c, c
     const double left = (b.x - a.x) * (d.y - c.y), right = (b.y - a.y) * (d.x - c.x);
     const double cross = left - right;
     if (std::abs(cross) >= detail::kOrientationBound * (std::abs(left) + std::abs(right))) return cross > 0.0;
-    return (exact_difference(b.x, a.x) * exact_difference(d.y, c.y) -
-            exact_difference(b.y, a.y) * exact_difference(d.x, c.x))
-               .sign() > 0;
+    return exact_cross(a, b, c, d).sign() > 0;
 }
 
 // Below this, squares of coordinates and of their differences may be no normal doubles.

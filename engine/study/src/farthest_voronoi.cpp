@@ -3,11 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <crofton/geometry/expansion.hpp>
 #include <crofton/geometry/finite.hpp>
 #include <crofton/geometry/trigonometry.hpp>
 #include <glm/geometric.hpp>
 #include <queue>
+
+#include "exact_cross.hpp"
 
 namespace crofton::study {
 namespace {
@@ -17,9 +18,7 @@ namespace {
 double twice_area(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
     const double left = (b.x - a.x) * (c.y - a.y), right = (b.y - a.y) * (c.x - a.x);
     if (std::abs(left - right) > 0.5 * (std::abs(left) + std::abs(right))) return left - right;
-    return (exact_difference(b.x, a.x) * exact_difference(c.y, a.y) -
-            exact_difference(b.y, a.y) * exact_difference(c.x, a.x))
-        .estimate();
+    return exact_cross(a, b, a, c).estimate();
 }
 
 // Where the circle through a, b and c has its centre on the bisector of a and b, along the left normal of a → b.

@@ -38,10 +38,10 @@ bool is_valid(const Obb& box) {
     return validate(box).has_value();
 }
 bool is_valid(const Sphere& ball) {
-    return is_in_range(ball.center) && ball.radius >= 0.0 && ball.radius <= kMaxCoordinate;
+    return is_in_range(ball);
 }
 bool is_valid(const collide::Capsule& capsule) {
-    return is_in_range(capsule.begin) && is_valid(Sphere{capsule.end, capsule.radius});
+    return is_in_range(capsule.begin) && is_in_range(Sphere{capsule.end, capsule.radius});
 }
 
 bool meets_ball(const Obb& shape, const Sphere& ball) {

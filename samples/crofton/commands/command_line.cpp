@@ -157,11 +157,16 @@ std::string place_of(const std::string& path) {
     return error ? absolute.lexically_normal().string() : place.string();
 }
 
+// Whether an option was given that names a file to write.
+bool is_output(const CLI::Option* option) {
+    return option->get_type_name() == kWritableFile && option->count() > 0;
+}
+
 // Two options that would write to one place, or nothing.
 std::string shared_output(const CLI::App& command) {
     std::map<std::string, const CLI::Option*> places;
     for (const CLI::Option* option : command.get_options()) {
-        if (option->get_type_name() != kWritableFile || option->count() == 0) continue;
+        if (!is_output(option)) continue;
         const auto path = option->as<std::string>();
         std::error_code error;
         if (std::filesystem::is_character_file(path, error)) continue;  // /dev/null takes any number
@@ -185,7 +190,7 @@ std::string replaced_input(const CLI::App& command) {
                     inputs.emplace(place_of(word), word);
             }
     for (const CLI::Option* option : command.get_options()) {
-        if (option->get_type_name() != kWritableFile || option->count() == 0) continue;
+        if (!is_output(option)) continue;
         const auto input = inputs.find(place_of(option->as<std::string>()));
         if (input != inputs.end())
             return option->get_name() + " would replace '" + input->second + "', which is read: name another file";

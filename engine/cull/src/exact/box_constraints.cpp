@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "exact/box_constraints.hpp"
 
+#include <crofton/geometry/finite.hpp>
+
 namespace crofton::cull {
 namespace {
 
-bool within(const glm::dvec3& v, double limit) {
-    return std::fabs(v.x) <= limit && std::fabs(v.y) <= limit && std::fabs(v.z) <= limit;
+// As unit vectors are, with much to spare.
+bool is_short(const glm::dvec3& v) {
+    return std::fabs(v.x) <= 2.0 && std::fabs(v.y) <= 2.0 && std::fabs(v.z) <= 2.0;
 }
 
 }  // namespace
@@ -32,24 +35,24 @@ Dyadic exact_entry(const Plane& plane, const glm::dvec3& origin, const Aabb& box
 }
 
 bool is_usable(const Obb& box) {
-    if (!within(box.center, kMaxCoordinate) || !within(glm::dvec3(box.half_extents), kMaxCoordinate)) return false;
+    if (!is_in_range(box.center) || !is_in_range(glm::dvec3(box.half_extents))) return false;
     for (int k = 0; k < 3; ++k)
-        if (!within(glm::dvec3(box.axes[k]), 2.0)) return false;
+        if (!is_short(glm::dvec3(box.axes[k]))) return false;
     return true;
 }
 
 bool is_usable(const Aabb& box) {
-    return !box.is_empty() && within(box.min, kMaxCoordinate) && within(box.max, kMaxCoordinate);
+    return !box.is_empty() && is_in_range(box);
 }
 
 bool is_usable(const Sphere& sphere) {
-    return within(sphere.center, kMaxCoordinate) && sphere.radius >= 0.0 && sphere.radius <= kMaxCoordinate;
+    return is_in_range(sphere);
 }
 
 bool is_usable(const Frustum& frustum) {
-    if (!within(frustum.origin, kMaxCoordinate)) return false;
+    if (!is_in_range(frustum.origin)) return false;
     for (const Plane& plane : frustum.view())
-        if (!within(plane.normal, 2.0) || !(std::fabs(plane.offset) <= 1e50)) return false;
+        if (!is_short(plane.normal) || !(std::fabs(plane.offset) <= 1e50)) return false;
     return true;
 }
 

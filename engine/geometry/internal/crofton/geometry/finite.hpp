@@ -3,6 +3,7 @@
 #pragma once
 #include <cmath>
 #include <crofton/geometry/box.hpp>
+#include <crofton/geometry/shapes.hpp>
 #include <glm/vec3.hpp>
 #include <limits>
 
@@ -17,6 +18,13 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Whether a body may be there. False for NaN.
 [[nodiscard]] inline bool is_in_range(const glm::dvec3& v) {
     return std::abs(v.x) <= kMaxCoordinate && std::abs(v.y) <= kMaxCoordinate && std::abs(v.z) <= kMaxCoordinate;
+}
+[[nodiscard]] inline bool is_in_range(const Aabb& box) {
+    return is_in_range(box.min) && is_in_range(box.max);
+}
+// Whether a ball is one that answers are given for.
+[[nodiscard]] inline bool is_in_range(const Sphere& ball) {
+    return is_in_range(ball.center) && ball.radius >= 0.0 && ball.radius <= kMaxCoordinate;
 }
 
 }  // namespace crofton
