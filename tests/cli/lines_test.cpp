@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "run_cli.hpp"
 
@@ -14,6 +16,26 @@ TEST_SUITE("cli/lines") {
             const CliRun run = run_cli(arguments);
             CHECK(run.status == 2);
             CHECK_FALSE(run.err.empty());
+        }
+    }
+
+    TEST_CASE("estimates of two seeds share no draw") {
+        // Crossings per line of each method. The room is the same for all seeds.
+        const auto crossings = [](const char* seed_and_repeats) {
+            const CliRun run = run_cli(std::string("lines room --blocks 2 --json - --seed ") + seed_and_repeats);
+            CHECK(run.status == 0);
+            const auto report = run.json();
+            std::vector<double> means;
+            for (const auto& method : report.at("methods")) means.push_back(method.at("mean_crossings"));
+            return means;
+        };
+        // Two estimates of seed 1, and two of seed 2, are the four of seed 1.
+        const auto first = crossings("1 --repeats 2"), second = crossings("2 --repeats 2");
+        const auto four = crossings("1 --repeats 4");
+        REQUIRE(four.size() == 8);
+        for (std::size_t i = 0; i < 8; ++i) {
+            CAPTURE(i);
+            CHECK(four[i] == doctest::Approx((first[i] + second[i]) / 2.0).epsilon(1e-12));
         }
     }
 

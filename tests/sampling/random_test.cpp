@@ -31,6 +31,16 @@ TEST_SUITE("sampling/random") {
         CHECK(seen.size() == 900);
     }
 
+    TEST_CASE("repetitions under different seeds share no seed, and those of seed 1 count from 1") {
+        for (const std::uint64_t count : {1u, 12u, 128u}) {
+            std::set<std::uint64_t> seen;
+            for (std::uint64_t seed = 0; seed < 20; ++seed)
+                for (std::uint64_t i = 0; i < count; ++i) seen.insert(seed_of_repetition(seed, i, count));
+            CHECK(seen.size() == 20 * count);
+            CHECK(seed_of_repetition(1, count - 1, count) == count);
+        }
+    }
+
     TEST_CASE("many numbers at once are those one by one, on every instruction set") {
         for (std::int64_t rest = hwy::SupportedTargets(); rest != 0; rest &= rest - 1) {
             hwy::SetSupportedTargetsForTest(rest & -rest);

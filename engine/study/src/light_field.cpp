@@ -104,7 +104,8 @@ Result<LightField> LightField::record(const radiosity::LineTracer& scene, LightA
         radiosity::LineHits hits;
         for (std::size_t b = begin; b < end; ++b) {
             Bundle& bundle = field.bundles_[b];
-            bundle.lines = radiosity::make_bundle(scene.bounds(), cell_area, points.at<2>(b), options.seed + b);
+            bundle.lines = radiosity::make_bundle(scene.bounds(), cell_area, points.at<2>(b),
+                                                  sampling::seed_of_repetition(options.seed, b, count));
             lines.clear();
             for (std::size_t c = 0; c < bundle.lines.cells(); ++c) lines.push_back(bundle.lines.line(c));
             scene.all_hits(lines, hits);

@@ -75,7 +75,7 @@ Json compare(const char* method, sampling::Sequence sequence, double surface, co
     Seen all;
     const auto start = std::chrono::steady_clock::now();
     for (std::uint32_t r = 0; r < options.repeats; ++r) {
-        const Seen seen = look(options.seed + r);
+        const Seen seen = look(sampling::seed_of_repetition(options.seed, r, options.repeats));
         squares += std::pow(seen.crossings * seen.surface_area / (2.0 * seen.lines) / surface - 1.0, 2.0);
         all.lines += seen.lines;
         all.crossings += seen.crossings;

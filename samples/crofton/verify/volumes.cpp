@@ -190,8 +190,10 @@ void preferred(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     const auto band = study::QueryDistribution::band({0.0, 1.0, 0.0}, half_width);
     if (!band) return rows.push_back(untried_row("preferred directions", "theory.md section 2"));
     Mean planes, lines;
-    for (std::uint64_t batch = 0; batch < 128; ++batch) {
-        const sampling::UnitPoints points(options.seed * 1000 + 410 + 64 * batch, sampling::Sequence::quasi_random);
+    constexpr std::uint64_t batches = 128;
+    for (std::uint64_t batch = 0; batch < batches; ++batch) {
+        const std::uint64_t seed = 1346 + 64 * sampling::seed_of_repetition(options.seed, batch, batches);
+        const sampling::UnitPoints points(seed, sampling::Sequence::quasi_random);
         double breadths = 0.0, shadows = 0.0;
         for (std::uint64_t i = 0; i < 64; ++i) {
             const auto u = points.at<2>(i);

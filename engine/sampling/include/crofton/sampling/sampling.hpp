@@ -52,6 +52,13 @@ class Random {
     bool has_spare_ = false;
 };
 
+// The seed of number `number` of `count` repetitions under one seed: no two seeds share one, as `seed + number` would.
+// Those of seed 1 are 1, 2, 3, …
+[[nodiscard]] constexpr std::uint64_t seed_of_repetition(std::uint64_t seed, std::uint64_t number,
+                                                         std::uint64_t count) {
+    return 1 + (seed - 1) * count + number;
+}
+
 enum class Sequence : std::uint8_t {
     pseudo_random,  // independent points: errors have the usual binomial size
     quasi_random,   // evenly spread points: smaller errors, but no binomial estimate of them; vary the seed for one
