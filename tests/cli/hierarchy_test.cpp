@@ -39,5 +39,6 @@ TEST_SUITE("cli/hierarchy") {
         const CliRun drawn = run_cli("hierarchy --lines 1000 --svg -");
         CHECK(drawn.out.rfind("<svg", 0) == 0);
         CHECK(drawn.out.find("a triangle: boxes") != std::string::npos);
+        CHECK(drawn.out.find(">level 3<") != std::string::npos);
     }
 }

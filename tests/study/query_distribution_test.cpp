@@ -80,6 +80,11 @@ TEST_SUITE("study/query_distribution") {
                 CHECK(d->measure_of_planes(study::ConvexBody::box(box)) ==
                       doctest::Approx(k.mean_curvature).epsilon(1e-3));
             }
+            // Without sampling, also for a box of rounded axes, and one that is grown (Steiner's formula).
+            study::ConvexBody body = study::ConvexBody::box(box);
+            CHECK(uniform.measure_of_planes(body) == doctest::Approx(k.mean_curvature).epsilon(1e-6));
+            body.radius = 0.5;
+            CHECK(uniform.measure_of_planes(body) == doctest::Approx(k.mean_curvature + 2.0 * pi).epsilon(1e-6));
         }
     }
 

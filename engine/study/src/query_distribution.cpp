@@ -7,9 +7,11 @@
 #include <crofton/geometry/mesh.hpp>
 #include <crofton/geometry/moderate_length.hpp>
 #include <crofton/geometry/trigonometry.hpp>
+#include <crofton/measure/measure.hpp>
 #include <crofton/sampling/sampling.hpp>
 #include <crofton/study/query_distribution.hpp>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -18,7 +20,7 @@ namespace crofton::study {
 namespace {
 
 using std::numbers::pi;
-constexpr std::uint64_t kUniformDirections = 4096;
+constexpr std::uint64_t kBandDirections = 4096;
 
 // The unit vector along a direction of any length; nothing for one that is zero or not finite.
 std::optional<glm::dvec3> unit_along(const glm::dvec3& direction) {
@@ -44,11 +46,11 @@ Result<QueryDistribution> QueryDistribution::band(const glm::dvec3& up, double h
         return fail(ErrorCode::invalid_argument, kNoItem, "query distribution: half_width must lie in (0, pi/2]");
     const auto [x, y] = sampling::orthonormal_frame(*axis);
     QueryDistribution result;
-    for (std::uint64_t i = 0; i < kUniformDirections; ++i) {
-        const glm::dvec3 d = even_direction(i, kUniformDirections, sine(half_width));
+    for (std::uint64_t i = 0; i < kBandDirections; ++i) {
+        const glm::dvec3 d = even_direction(i, kBandDirections, sine(half_width));
         result.directions_.push_back(d.x * x + d.y * y + d.z * *axis);
     }
-    result.weights_.assign(result.directions_.size(), 1.0 / static_cast<double>(kUniformDirections));
+    result.weights_.assign(result.directions_.size(), 1.0 / static_cast<double>(kBandDirections));
     return result;
 }
 
@@ -119,12 +121,11 @@ double QueryDistribution::measure_of_planes(const Obb& box) const {
 }
 
 double QueryDistribution::measure_of_planes(const ConvexBody& body) const {
-    double sum = 0.0;
     if (directions_.empty()) {
-        for (std::uint64_t i = 0; i < kUniformDirections; ++i)
-            sum += breadth(body, even_direction(i, kUniformDirections, 1.0));
-        return 2.0 * pi * sum / static_cast<double>(kUniformDirections);
+        const auto core = measure::intrinsic_volumes_of_hull(body.points);
+        return core ? core->mean_curvature + 4.0 * pi * body.radius : std::numeric_limits<double>::quiet_NaN();
     }
+    double sum = 0.0;
     for (std::size_t i = 0; i < directions_.size(); ++i) sum += weights_[i] * breadth(body, directions_[i]);
     return 2.0 * pi * sum;
 }

@@ -53,16 +53,20 @@ int show(const BakeOptions& options, const char* verb, const Times& times, const
         triangles += baked.mesh(i).indices.size() / 3;
         polygons += baked.polygon(i) ? 1 : 0;
     }
-    if (options.json != "-")
+    if (options.json != "-") {
         std::printf(
             "%s: %s in %.1f ms (%.1f ms of CPU); %zu instances of %zu meshes (%llu triangles, %llu triangulated "
             "polygons), %zu nodes, "
-            "a tree of height %u, %llu occluders on %zu nodes, %.1f MB\n",
+            "a tree of height %u, %llu occluders on %zu nodes, %.1f MB",
             path.c_str(), verb, times.milliseconds, times.cpu_milliseconds, baked.instances().size(),
             baked.mesh_count(), static_cast<unsigned long long>(triangles), static_cast<unsigned long long>(polygons),
             baked.nodes().size(), baked.tree().structure().height(),
             static_cast<unsigned long long>(occluder_count(baked)),
             baked.occluders() ? baked.occluders()->nodes.size() : 0, static_cast<double>(bytes) / 1e6);
+        if (times.occluder_milliseconds > 0.0)
+            std::printf("; before that the occluders were found in %.1f ms", times.occluder_milliseconds);
+        std::printf("\n");
+    }
     if (options.json.empty()) return kSuccess;
     const auto written = write_json(options.json, {{"file", path},
                                                    {"version", bake::kVersion},
@@ -113,7 +117,7 @@ class BakeRun {
         const Stopwatch finding;
         if (!options_.no_occluders)
             occluders = pipeline::to_baked(pipeline::find_scene_occluders(source->scene, executor()));
-        const double finding_ms = finding.milliseconds();
+        const double finding_ms = options_.no_occluders ? 0.0 : finding.milliseconds();
         const Stopwatch watch;
         const auto file = bake::bake(source->scene, executor(), *tree, occluders ? &*occluders : nullptr);
         const Times times{watch.milliseconds(), watch.cpu_milliseconds(), finding_ms};

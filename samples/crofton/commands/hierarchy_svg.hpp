@@ -23,7 +23,7 @@ struct Chain {
     std::vector<ChainLevel> levels;
 };
 
-// A panel a chain, three in a row; levels from dark to light.
+// A panel a chain, three in a row, and a line that says which level has which colour.
 [[nodiscard]] std::string hierarchy_svg(const std::vector<Chain>& chains);
 
 }  // namespace crofton::cli

@@ -298,7 +298,10 @@ void add_radiosity_command(CommandLine& line) {
         "  crofton radiosity level.wad --map MAP01 --method local --json -\n");
     command.option("scene", options->scene, "town, room, or a .glb, .gltf, .obj or .wad file").required();
     const Option lines =
-        command.option("--lines", options->lines, "Trace about this many lines, in two runs or more").show_default();
+        command
+            .option("--lines", options->lines,
+                    "Make runs, two at least, until so many lines are traced; patches decide how many a run has")
+            .show_default();
     const Option error =
         command
             .option("--error", options->error,

@@ -31,7 +31,8 @@ class QueryDistribution {
     [[nodiscard]] double mean_cosine(const glm::dvec3& u) const;
 
     // The measure of the planes with such normals that hit the body, 2π × the mean breadth. Of a box it is 2π Σ edge_k
-    // · mean_cosine(axis_k), of others a sum over the directions. A uniform density takes 4,096 of them.
+    // · mean_cosine(axis_k), of others a sum over the directions. For uniform directions it is M; NaN where a point is
+    // not finite, or none is there.
     [[nodiscard]] double measure_of_planes(const Obb& box) const;
     [[nodiscard]] double measure_of_planes(const ConvexBody& body) const;
     // The measure of the lines with such directions, 2π × the mean shadow: of a box 2π Σ face_k · mean_cosine(axis_k),
