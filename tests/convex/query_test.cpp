@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
+#include <gmpxx.h>
 #include <crofton/convex/query.hpp>
 #include <cstddef>
 #include <cstdlib>
@@ -61,6 +62,23 @@ Wrong count_wrong(std::uint64_t seed, int pairs, double gap, double offset) {
 }  // namespace
 
 TEST_SUITE("convex/query") {
+    TEST_CASE("the depth of two balls lies between its bounds, in rationals") {
+        RandomBodies random(31);
+        int meeting = 0;
+        for (int i = 0; i < 20'000; ++i) {
+            const Body a = Body::ball(random.number(0.0, 1.0)).value();
+            const Body b = Body::ball(std::exp2(random.number(-30.0, 0.0))).value();
+            const double between = (a.radius() + b.radius()) * (1.0 - std::exp2(random.number(-50.0, 0.0)));
+            const Penetration p = penetration({a, at({0, 0, 0})}, {b, at({between, 0, 0})});
+            if (p.depth <= 0.0) continue;
+            ++meeting;
+            const mpq_class depth = mpq_class(a.radius()) + mpq_class(b.radius()) - mpq_class(between);
+            CHECK(mpq_class(p.lower) <= depth);
+            CHECK(depth <= mpq_class(p.upper));
+        }
+        CHECK(meeting > 19'000);
+    }
+
     TEST_CASE("a pose with NaN meets nothing, and a pose that mirrors is refused") {
         const Body box = Body::box({1, 1, 1}).value();
         RigidTransform bad = at({});

@@ -45,6 +45,27 @@ TEST_SUITE("cull/many_views") {
         for (std::size_t i = 0; i < visible.size(); ++i) CHECK(expected.at(visible.ids()[i]) == visible.view_mask(i));
     }
 
+    TEST_CASE("where all is seen, leaves that lack an item list nothing in its place") {
+        const oracle::Crowd crowd = oracle::random_crowd(4096, 0.0, 7);
+        cull::View everything{*frustum_of(Camera{})};
+        everything.frustum.planes[0] = {{0.0, 0.0, 1.0}, 1e6};
+        everything.frustum.plane_count = 1;
+        const std::vector<cull::View> views(2, everything);
+        cull::ManyVisible visible;
+        // Leaves go to the kernel sixteen by sixteen: only in one of them something is missing.
+        for (cull::ItemId removed = 5; removed < 4096; removed += 97) {
+            auto tree = boxtree::BoxTree::build(crowd.boxes);
+            REQUIRE(tree->remove(removed).has_value());
+            cull::find_visible(*tree, views, visible);
+            std::vector<cull::ItemId> ids(visible.ids().begin(), visible.ids().end());
+            std::sort(ids.begin(), ids.end());
+            CAPTURE(removed);
+            CHECK(ids.size() == 4095);
+            CHECK(std::adjacent_find(ids.begin(), ids.end()) == ids.end());
+            CHECK_FALSE(std::binary_search(ids.begin(), ids.end(), removed));
+        }
+    }
+
     TEST_CASE("a view of no layer sees nothing, of lists without layers as of trees") {
         const oracle::Crowd crowd = oracle::random_crowd(5000, 0.0, 6);
         const auto tree = boxtree::BoxTree::build(crowd.boxes);

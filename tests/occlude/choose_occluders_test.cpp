@@ -95,6 +95,20 @@ TEST_SUITE("occlude/choose_occluders") {
         CHECK_FALSE(choose_occluders(candidates, camera, {}, choice).has_value());
     }
 
+    TEST_CASE("a box's candidate has the areas of its faces along its axes, and the ball around its corners") {
+        std::mt19937_64 random(8);
+        for (int i = 0; i < 20; ++i) {
+            const Obb box = random_box(random, 10.0);
+            const OccluderCandidate candidate = candidate_of(box);
+            const glm::vec3& h = box.half_extents;
+            const float faces[3] = {4.0f * h.y * h.z, 4.0f * h.z * h.x, 4.0f * h.x * h.y};
+            for (std::size_t k = 0; k < 3; ++k)
+                CHECK(glm::distance(candidate.areas[k], faces[k] * box.axes[static_cast<int>(k)]) <= 1e-6f * faces[k]);
+            CHECK(candidate.radius == doctest::Approx(double{glm::length(h)}).epsilon(1e-6));
+            CHECK(candidate.center == box.center);
+        }
+    }
+
     TEST_CASE("those that cover most are chosen, as the definition in double says, at any place") {
         std::mt19937_64 random(1);
         for (int trial = 0; trial < 40; ++trial) {

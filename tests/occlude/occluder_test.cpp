@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
+#include <gmpxx.h>
 #include <box_mesh.hpp>
 #include <crofton/occlude/occlusion.hpp>
 #include <error_of.hpp>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 #include <limits>
+#include <random>
+
+#include "../../engine/occlude/src/exact_turn.hpp"
 
 using namespace crofton;
 
@@ -90,6 +95,30 @@ TEST_SUITE("occlude/occluder") {
                 CHECK((buffer.count_covered() > 0) == ((side > 0.0) != mirrored));
             }
         }
+    }
+
+    TEST_CASE("the sign of a determinant that rounding hides is that of rationals") {
+        std::mt19937_64 random(9);
+        std::uniform_real_distribution<double> number(-1.0, 1.0);
+        int wrong_in_double = 0;
+        for (int i = 0; i < 20'000; ++i) {
+            // The last row is a sum of the others, rounded.
+            glm::dmat3 m;
+            const double s = number(random), t = number(random);
+            for (int k = 0; k < 3; ++k) {
+                m[0][k] = number(random), m[1][k] = number(random);
+                m[2][k] = s * m[0][k] + t * m[1][k];
+            }
+            mpq_class exact = 0;
+            for (int k = 0; k < 3; ++k) {
+                const int u = (k + 1) % 3, v = (k + 2) % 3;
+                exact += mpq_class(m[0][k]) *
+                         (mpq_class(m[1][u]) * mpq_class(m[2][v]) - mpq_class(m[1][v]) * mpq_class(m[2][u]));
+            }
+            if (glm::determinant(m) * sgn(exact) <= 0.0) ++wrong_in_double;
+            REQUIRE(occlude::sign_of_determinant(m) == sgn(exact));
+        }
+        CHECK(wrong_in_double > 100);
     }
 
     TEST_CASE("a transform that flattens a shape is refused") {
