@@ -292,6 +292,37 @@ TEST_SUITE("fit/fit") {
         CHECK(!fit::fit_oriented(view(std::vector<glm::dvec3>(1)), glm::mat3(2.0f)));
     }
 
+    TEST_CASE("where a half extent is about to become the next float, it is still the least that holds all points") {
+        std::mt19937 random(14);
+        std::normal_distribution<double> normal;
+        for (int run = 0; run < 150; ++run) {
+            const glm::mat3 axes(random_rotation(random));
+            std::vector<glm::dvec3> points, scaled;
+            for (int i = 0; i < (run % 10 == 0 ? 300 : 8); ++i)
+                points.emplace_back(normal(random), normal(random), normal(random));
+            const auto fit_scaled = [&](double scale) {
+                scaled.clear();
+                for (const glm::dvec3& p : points) scaled.push_back(scale * p);
+                return fit::fit_oriented(view(scaled), axes).value();
+            };
+            // By bisection, to neighbouring doubles.
+            const int k = run % 3;
+            double low = 1.0, high = 1.0 + 0x1p-22;
+            const float first = fit_scaled(low).half_extents[k];
+            REQUIRE(fit_scaled(high).half_extents[k] > first);
+            while (std::nextafter(low, 2.0) < high) {
+                const double middle = 0.5 * (low + high);
+                (fit_scaled(middle).half_extents[k] > first ? high : low) = middle;
+            }
+            for (const double scale : {low, high}) {
+                Obb box = fit_scaled(scale);
+                CHECK(contains_all(box, scaled));
+                box.half_extents[k] = std::nextafter(box.half_extents[k], 0.0f);
+                CHECK(!contains_all(box, scaled));
+            }
+        }
+    }
+
     TEST_CASE("fit_oriented takes mirrored axes: the box is the same size as with the axes that they mirror") {
         const std::vector<glm::dvec3> points = {{0, 0, 0}, {4, 1, 0}, {1, 3, 1}, {0, 0, 2}, {1, 1, 1}, {3, 0, 0}};
         for (const std::size_t copies : {1u, 100u}) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The farthest points of a cloud along three directions: found by floats that round, and decided in double.
 #include <doctest/doctest.h>
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <random>
@@ -42,5 +43,42 @@ TEST_SUITE("fit/point_cloud") {
             REQUIRE(supports[2 * k] == (apart > 0.0 ? first : second));
         }
         CHECK(near > 1000);
+    }
+
+    TEST_CASE(
+        "where chunks are cells of a long cloud and most are skipped, the support points are those of all points") {
+        std::mt19937_64 random(51);
+        std::uniform_real_distribution<double> number(0.0, 1.0);
+        fit::PointCloud cloud;
+        std::vector<glm::vec3> points;
+        for (int trial = 0; trial < 60; ++trial) {
+            glm::dmat3 directions;
+            directions[0] = glm::normalize(glm::dvec3(1.0, 0.4 * number(random), 0.4 * number(random)));
+            directions[1] =
+                glm::normalize(glm::cross(glm::dvec3(0.4 * number(random), 0.4 * number(random), 1.0), directions[0]));
+            directions[2] = glm::cross(directions[0], directions[1]);
+            // 5 x 5 x 5 cells of 128 points, shorter along one axis than along the next.
+            glm::dvec3 size;
+            for (int k = 0; k < 3; ++k) size[(k + trial) % 3] = std::pow(3.0, trial % 2 == 0 ? k : -k);
+            const glm::dvec3 shift = 0.3 * size * glm::dvec3(number(random), number(random), number(random));
+            points.clear();
+            for (int cell = 0; cell < 125; ++cell)
+                for (int i = 0; i < 128; ++i) {
+                    const glm::dvec3 at(cell % 5, cell / 5 % 5, cell / 25);
+                    const glm::dvec3 within(number(random), number(random), number(random));
+                    points.emplace_back(shift + size * ((at + within) / 5.0 - 0.5));
+                }
+            REQUIRE(cloud.assign(points).has_value());
+            const fit::Supports supports = cloud.supports(directions);
+            for (std::size_t side = 0; side < 6; ++side) {
+                const glm::dvec3 along = (side % 2 == 0 ? 1.0 : -1.0) * directions[static_cast<int>(side / 2)];
+                double farthest = -HUGE_VAL;
+                for (const glm::vec3& p : points)
+                    farthest = std::max(farthest, glm::dot((glm::dvec3(p) - cloud.origin()) / cloud.unit(), along));
+                CAPTURE(trial);
+                CAPTURE(side);
+                CHECK(glm::dot(supports[side], along) == doctest::Approx(farthest).epsilon(1e-14));
+            }
+        }
     }
 }

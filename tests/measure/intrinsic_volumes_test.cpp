@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
+#include <array>
 #include <cmath>
 #include <crofton/geometry/camera.hpp>
 #include <crofton/measure/measure.hpp>
@@ -27,9 +28,34 @@ TEST_SUITE("measure/intrinsic_volumes") {
         CHECK(error_of(intrinsic_volumes_of_polytope(v, open)).code == ErrorCode::degenerate);
         CHECK(error_of(intrinsic_volumes_of_polytope(v, out)).item == 2);
         CHECK(error_of(intrinsic_volumes_of_polytope(v, {})).code == ErrorCode::invalid_argument);
-        std::vector<glm::dvec3> bad = v;
-        bad[3].z = std::nan("");
-        CHECK(error_of(intrinsic_volumes_of_polytope(bad, open)).item == 3);
+        for (int k = 0; k < 3; ++k)
+            for (const double number : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+                std::vector<glm::dvec3> bad = v;
+                bad[3][k] = number;
+                CHECK(error_of(intrinsic_volumes_of_polytope(bad, open)).item == 3);
+                CHECK(error_of(intrinsic_volumes_of_polytope(bad, open)).code == ErrorCode::non_finite);
+            }
+    }
+
+    TEST_CASE("tetrahedra that share an edge are no polytope, whether it comes first or last") {
+        std::vector<glm::dvec3> v = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, -1, 0}};
+        for (const bool last : {false, true}) {
+            // The shared edge has the lowest numbers, or the highest.
+            const auto number = [&](std::uint32_t i) { return last ? 5 - i : i; };
+            std::vector<glm::dvec3> points(6);
+            for (std::uint32_t i = 0; i < 6; ++i) points[number(i)] = v[i];
+            std::vector<std::uint32_t> surface;
+            for (const std::uint32_t other : {2u, 4u}) {
+                const std::uint32_t corners[4] = {0, 1, other, other + 1};
+                for (const std::array<int, 3>& face : {std::array{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}})
+                    for (const int c : face) surface.push_back(number(corners[c]));
+            }
+            CAPTURE(last);
+            CHECK(error_of(intrinsic_volumes_of_polytope(points, surface)).code == ErrorCode::degenerate);
+            // Each by itself is one.
+            CHECK(intrinsic_volumes_of_polytope(points, std::span(surface).first(12)).has_value());
+            CHECK(intrinsic_volumes_of_polytope(points, std::span(surface).last(12)).has_value());
+        }
     }
 
     TEST_CASE("a flat triangle given by both sides is a flat polygon") {
