@@ -48,8 +48,11 @@ TEST_SUITE("pvs/bake") {
         subject.mesh.positions[3].y = std::numeric_limits<float>::infinity();
         CHECK(error_of(Bake::create(subject, cells)).item == 3);
         subject.mesh.positions[3].y = 0.0f;
-        subject.boxes[2].half_extents.x = -1.0f;
-        CHECK(error_of(Bake::create(subject, cells)).item == 2);
+        for (std::size_t i = 0; i < subject.boxes.size(); ++i) {
+            Subject bad = subject;
+            bad.boxes[i].half_extents.x = -1.0f;
+            CHECK(error_of(Bake::create(bad, cells)).item == i);
+        }
         CHECK(error_of(Bake::create(Subject{}, cells)).code == ErrorCode::empty);
         CHECK(error_of(Bake::create(random_subject(1, 5), Cells{})).code == ErrorCode::empty);
         subject.object_of.pop_back();

@@ -106,6 +106,13 @@ TEST_SUITE("pvs/cells") {
             CHECK(cells.planes(0).size() == 6);
             CHECK(cells.planes(1).size() == 5);
             CHECK(cells.planes(2).size() == 4);
+            // Corners in the middle of an edge change nothing.
+            ConvexCell marked = prism;
+            marked.corners[6] = 0.5 * (prism.corners[0] + prism.corners[2]);
+            marked.corners[7] = 0.5 * (prism.corners[1] + prism.corners[3]);
+            const Cells again = Cells::convex(std::vector<ConvexCell>{marked}).value();
+            CHECK(again.planes(0).size() == 5);
+            CHECK(again.surface(0) == doctest::Approx(cells.surface(1)).epsilon(epsilon));
             const Cells box = Cells::boxes(std::vector<Aabb>{cells.box(0)}).value();
             CHECK(box.surface(0) == doctest::Approx(52.0).epsilon(epsilon));
             sampling::Random random(2);

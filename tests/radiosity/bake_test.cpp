@@ -8,6 +8,7 @@
 #include <error_of.hpp>
 #include <vector>
 
+#include "../../engine/radiosity/src/fnv1a.hpp"
 #include "shapes.hpp"
 
 using namespace crofton;
@@ -186,5 +187,39 @@ TEST_SUITE("radiosity/bake") {
         CHECK(error_of(refused).item == 1);
         CHECK(bake.add_state(state).has_value());
         CHECK(bake.runs_done() == 24);
+    }
+
+    TEST_CASE("forged states with right checksums are refused where their chains are none, or do not ascend") {
+        const Job job;
+        const auto state = job.part(0, 2);  // chains 0 and 1 in one sum, 2 in another
+        // Words of 64 bits: the magic number, the fingerprint, patches, runs, sums; then each sum, which begins with
+        // the range of its chains; the checksum.
+        constexpr std::size_t kHeader = 5;
+        std::vector<std::uint64_t> words(state.size() / 8);
+        std::memcpy(words.data(), state.data(), state.size());
+        REQUIRE(words[kHeader - 1] == 2);
+        const std::size_t length = (words.size() - kHeader - 1) / 2;
+        const auto taken = [&](auto&& change) {
+            std::vector<std::uint64_t> forged = words;
+            change(forged);
+            forged.back() = fnv1a(forged[0], std::as_bytes(std::span(forged).first(forged.size() - 1)));
+            return job.start().add_state(std::as_bytes(std::span(forged))).has_value();
+        };
+        const auto range = [&](std::size_t sum, std::uint64_t begin, std::uint64_t end) {
+            return [=](std::vector<std::uint64_t>& forged) {
+                forged[kHeader + sum * length] = begin;
+                forged[kHeader + sum * length + 1] = end;
+            };
+        };
+        CHECK(taken([](auto&) {}));
+        CHECK(taken(range(1, 3, 4)));
+        CHECK_FALSE(taken(range(1, 3, 5)));  // no node: two that begin at an odd one
+        CHECK_FALSE(taken(range(1, 4, 8)));  // beyond the last chain
+        CHECK_FALSE(taken(range(1, 3, 3)));
+        CHECK_FALSE(taken(range(1, 1, 2)));  // a node, and part of the one before
+        CHECK_FALSE(taken([&](std::vector<std::uint64_t>& forged) {
+            const auto first = forged.begin() + kHeader, second = first + static_cast<std::ptrdiff_t>(length);
+            std::swap_ranges(first, second, second);
+        }));
     }
 }

@@ -132,7 +132,6 @@ Result<BallGivenAncestors> ball_given_ancestors(std::span<const glm::dvec3> poin
     BallGivenAncestors result;
     result.ball = {glm::dvec3(0.0), least->radius};
     result.value = result.plain_value = search.measure_of(glm::dvec3(0.0));
-    result.lower_bound = 0.0;
     if (least->radius > 0.0)
         search.run(least->radius, options, result);
     else
