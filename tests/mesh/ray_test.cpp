@@ -22,7 +22,10 @@ TEST_SUITE("mesh/ray") {
         const double nan = std::numeric_limits<double>::quiet_NaN();
         CHECK_FALSE(raycast(Ray{{nan, 0.0, 0.0}}, *mesh).has_value());
         CHECK_FALSE(raycast(Ray{{1.0, 0.0, -5.0}, {0.0, 0.0, 0.0}}, *mesh).has_value());
-        CHECK_FALSE(raycast(Ray{{1.0, 0.0, -5.0}, {0.0, 0.0, 1.0}, -1.0}, *mesh).has_value());
+        for (const double limit : {-1.0, nan}) {
+            CHECK_FALSE(raycast(Ray{{1.0, 0.0, -5.0}, {0.0, 0.0, 1.0}, limit}, *mesh).has_value());
+            CHECK_FALSE(hits_any(Ray{{1.0, 0.0, -5.0}, {0.0, 0.0, 1.0}, limit}, *mesh));
+        }
         CHECK(raycast(Ray{{1.0, 0.0, -5.0}}, *mesh).has_value());
         CHECK_FALSE(raycast(Ray{{0.0, 0.0, -5.0}, {0.0, nan, 1.0}}, Obb{}).has_value());
         const Triangle triangle{glm::dvec3(-1, -1, 0), glm::dvec3(1, -1, 0), glm::dvec3(0, 1, 0)};

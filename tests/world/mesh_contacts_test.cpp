@@ -270,6 +270,33 @@ TEST_SUITE("world/mesh_contacts") {
         }
     }
 
+    TEST_CASE("a stretched mesh that is replaced within its own box takes its contacts along") {
+        // Of a cube's corners three are a triangle: those beside one corner, or beside the opposite one.
+        TriangleMesh near, far;
+        for (int i = 0; i < 8; ++i)
+            near.positions.emplace_back(i & 1 ? 1.0f : -1.0f, i & 2 ? 1.0f : -1.0f, i & 4 ? 1.0f : -1.0f);
+        far.positions = near.positions;
+        near.indices = {7, 6, 5};
+        far.indices = {0, 1, 2};
+        for (const double stretch : {1.0, 2.0}) {
+            World world;
+            const auto shape = world.add_mesh(described(near)).value();
+            const glm::dmat3 linear = glm::dmat3(stretch, 0, 0, 0, 1, 0, 0, 0, 1);
+            REQUIRE(world.add({.mesh = shape, .transform = at({}, linear)}).has_value());
+            REQUIRE(world.add({.bound = Sphere{linear * glm::dvec3(1.0), 0.05}}).has_value());
+            REQUIRE(world.update().has_value());
+            REQUIRE(world.contacts().size() == 1);
+            for (int i = 0; i < 4; ++i) {
+                REQUIRE(world.replace_mesh(shape, described(i % 2 == 0 ? far : near)).has_value());
+                REQUIRE(world.update().has_value());
+                REQUIRE(world.contacts().size() == 1);
+                CAPTURE(stretch);
+                CAPTURE(i);
+                CHECK((world.contacts()[0].phase == ContactPhase::ended) == (i % 2 == 0));
+            }
+        }
+    }
+
     TEST_CASE("rays hit what rotations and a flat scale have flattened in its plane") {
         oracle::NearMisses random(24);
         const TriangleMesh cube = cube_mesh();
