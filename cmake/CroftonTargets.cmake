@@ -1,7 +1,15 @@
 # SPDX-License-Identifier: MIT
 # What every target of ours shares, and how an engine module is declared.
 
-# Warnings, contraction, sanitizers: for our own targets only, never for a consumer's.
+# Every rounding that the source has, and no other.
+function(crofton_round_as_written target)
+    # Contraction off: a*b+c rounds twice on every instruction set, so filters keep their proven bounds and verdicts agree.
+    # Where g++ 12 puts two statements into one vector, it forgets to round to float what becomes double again: boxes then
+    # lack points. It is wrong at -O2 and at -O3; loops are right. tests/geometry/rounding_test.cpp sees it.
+    target_compile_options(${target} PRIVATE -ffp-contract=off $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-fno-tree-slp-vectorize>)
+endfunction()
+
+# Warnings, rounding, sanitizers: for our own targets only, never for a consumer's.
 # crofton_own_target(TARGET [LIGHT] [UNITY])
 # LIGHT: optimised builds compile it with -O1, as its own code takes no time worth saving.
 # UNITY: its sources may be compiled together: no two of them define the same name in an anonymous namespace.
@@ -30,14 +38,11 @@ function(crofton_own_target target)
     endif()
     target_compile_features(${target} PUBLIC cxx_std_20)
     set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF C_STANDARD 11)
-    # Contraction off: a*b+c rounds twice on every instruction set, so filters keep their proven bounds and verdicts agree.
-    target_compile_options(${target} PRIVATE -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow
+    crofton_round_as_written(${target})
+    target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow
         $<$<COMPILE_LANGUAGE:CXX>:-Wconversion>
         # g++ 12 is wrong about the unused tail of a fixed-capacity array, and about "text" + string (GCC bug 105329).
         $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-maybe-uninitialized -Wno-restrict>
-        # Where g++ 12 puts two statements into one vector, it forgets to round to float what becomes double again: boxes
-        # then lack points. It is wrong at -O2 and at -O3; loops are right. tests/geometry/rounding_test.cpp sees it.
-        $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-fno-tree-slp-vectorize>
         $<$<BOOL:${CROFTON_WERROR}>:-Werror>)
     if(CROFTON_FUZZ AND CROFTON_SANITIZE)
         target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link)
