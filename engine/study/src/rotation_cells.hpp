@@ -20,8 +20,8 @@ inline constexpr double kHalfOfAllRotations = 0.41421356237309515;
     glm::dmat3 result;
     const double scale = 2.0 / (1.0 + glm::dot(g, g));
     for (int k = 0; k < 3; ++k) {
-        glm::dvec3 e(0.0);
-        e[k] = 1.0;
+        // Not by e[k] = 1: with -O2 and AVX-512 g++ 12 then makes a matrix of rank 1.
+        const glm::dvec3 e(k == 0 ? 1.0 : 0.0, k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0);
         const glm::dvec3 once = glm::cross(g, e);
         result[k] = e + scale * (once + glm::cross(g, once));
     }
