@@ -8,6 +8,7 @@
 #include <error_of.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
+#include <oracle/edges.hpp>
 #include <random>
 #include <vector>
 
@@ -305,15 +306,12 @@ TEST_SUITE("fit/fit") {
                 for (const glm::dvec3& p : points) scaled.push_back(scale * p);
                 return fit::fit_oriented(view(scaled), axes).value();
             };
-            // By bisection, to neighbouring doubles.
             const int k = run % 3;
-            double low = 1.0, high = 1.0 + 0x1p-22;
-            const float first = fit_scaled(low).half_extents[k];
-            REQUIRE(fit_scaled(high).half_extents[k] > first);
-            while (std::nextafter(low, 2.0) < high) {
-                const double middle = 0.5 * (low + high);
-                (fit_scaled(middle).half_extents[k] > first ? high : low) = middle;
-            }
+            const double large = 1.0 + 0x1p-22;
+            const float first = fit_scaled(1.0).half_extents[k];
+            REQUIRE(fit_scaled(large).half_extents[k] > first);
+            const auto [low, high] = oracle::edge_between(
+                1.0, large, [&](double scale) { return fit_scaled(scale).half_extents[k] <= first; });
             for (const double scale : {low, high}) {
                 Obb box = fit_scaled(scale);
                 CHECK(contains_all(box, scaled));

@@ -9,21 +9,15 @@
 
 namespace {
 
-#if defined(__GNUC__)
-#define CROFTON_TEST_ALONE __attribute__((noinline))
-#else
-#define CROFTON_TEST_ALONE
-#endif
-
-CROFTON_TEST_ALONE void round_two(const double* from, double* to) {
+[[gnu::noinline]] void round_two(const double* from, double* to) {
     const float first = static_cast<float>(from[0]), second = static_cast<float>(from[1]);
     to[0] = static_cast<double>(first);
     to[1] = static_cast<double>(second);
 }
-CROFTON_TEST_ALONE glm::dvec2 rounded(const glm::dvec2& v) {
+[[gnu::noinline]] glm::dvec2 rounded(const glm::dvec2& v) {
     return glm::dvec2(glm::vec2(v));
 }
-CROFTON_TEST_ALONE glm::dvec3 rounded(const glm::dvec3& v) {
+[[gnu::noinline]] glm::dvec3 rounded(const glm::dvec3& v) {
     return glm::dvec3(glm::vec3(v));
 }
 

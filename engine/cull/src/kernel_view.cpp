@@ -2,7 +2,6 @@
 // Makes the kernels' view for each query: no more than the query needs, and without branches or calls.
 #include "kernel_view.hpp"
 
-#include <crofton/geometry/finite.hpp>
 #include <cstdlib>
 
 #include "exact/box_constraints.hpp"
@@ -12,8 +11,11 @@ namespace crofton::cull {
 
 bool set_planes(const View& view, KernelView& result) {
     const Frustum& frustum = view.frustum;
-    bool takes = frustum.plane_count > 0 && is_in_range(frustum.origin);
-    for (int j = 0; j < 3; ++j) result.origin[j] = frustum.origin[j];
+    bool takes = frustum.plane_count > 0;
+    for (int j = 0; j < 3; ++j) {
+        result.origin[j] = frustum.origin[j];
+        takes &= std::fabs(frustum.origin[j]) <= kMaxCoordinate;
+    }
     result.plane_count = frustum.plane_count;
     result.layer_mask = view.layer_mask;
     for (std::uint32_t i = 0; i < frustum.plane_count; ++i) {

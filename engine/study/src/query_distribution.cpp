@@ -28,9 +28,9 @@ std::optional<glm::dvec3> unit_along(const glm::dvec3& direction) {
     return glm::normalize(of_moderate_length(direction));
 }
 
-// Number i of n: even heights, and longitudes by the golden angle.
-glm::dvec3 even_direction(std::uint64_t i, std::uint64_t n, double highest) {
-    const double z = highest * (2.0 * (static_cast<double>(i) + 0.5) / static_cast<double>(n) - 1.0);
+// Number i of a band: even heights, and longitudes by the golden angle.
+glm::dvec3 even_direction(std::uint64_t i, double highest) {
+    const double z = highest * (2.0 * (static_cast<double>(i) + 0.5) / static_cast<double>(kBandDirections) - 1.0);
     const double turns = static_cast<double>(i) * 0.6180339887498949;
     const glm::dvec2 circle = cosine_sine(2.0 * pi * (turns - std::floor(turns)));
     const double r = std::sqrt(1.0 - z * z);
@@ -47,7 +47,7 @@ Result<QueryDistribution> QueryDistribution::band(const glm::dvec3& up, double h
     const auto [x, y] = sampling::orthonormal_frame(*axis);
     QueryDistribution result;
     for (std::uint64_t i = 0; i < kBandDirections; ++i) {
-        const glm::dvec3 d = even_direction(i, kBandDirections, sine(half_width));
+        const glm::dvec3 d = even_direction(i, sine(half_width));
         result.directions_.push_back(d.x * x + d.y * y + d.z * *axis);
     }
     result.weights_.assign(result.directions_.size(), 1.0 / static_cast<double>(kBandDirections));

@@ -114,10 +114,12 @@ class BakeRun {
             {.map = options_.map, .seed = options_.seed, .instances = options_.instances}, executor());
         if (!source) return report_error("", source.error());
         std::optional<bake::BakedOccluders> occluders;
-        const Stopwatch finding;
-        if (!options_.no_occluders)
+        double finding_ms = 0.0;
+        if (!options_.no_occluders) {
+            const Stopwatch finding;
             occluders = pipeline::to_baked(pipeline::find_scene_occluders(source->scene, executor()));
-        const double finding_ms = options_.no_occluders ? 0.0 : finding.milliseconds();
+            finding_ms = finding.milliseconds();
+        }
         const Stopwatch watch;
         const auto file = bake::bake(source->scene, executor(), *tree, occluders ? &*occluders : nullptr);
         const Times times{watch.milliseconds(), watch.cpu_milliseconds(), finding_ms};
