@@ -30,7 +30,7 @@ packages=(
 )
 test_packages=(chromium)
 check_packages=(clang libclang-rt-dev clang-format clang-tidy llvm gdb)
-matrix_packages=(clang libclang-rt-dev clang-19 libclang-rt-19-dev)
+matrix_packages=(clang llvm libclang-rt-dev clang-19 llvm-19 libclang-rt-19-dev)
 engine_packages=(libdraco-dev libmeshoptimizer-dev libogre-1.12-dev libopenscenegraph-dev libbullet-dev libtbb-dev doxygen)
 python_packages=(python3-dev python3-numpy python3-pytest python3-setuptools python3-wheel python3-pip python3-venv pybind11-dev)
 rust_packages=(cargo)
