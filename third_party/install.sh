@@ -38,7 +38,7 @@ csharp_packages=(mono-mcs mono-runtime libmono-system-core4.0-cil)
 web_packages=(emscripten nodejs node-typescript dpkg-dev chromium doxygen)
 packaging_packages=(debhelper dpkg-dev help2man lintian abigail-tools)
 slurm_packages=(slurm-wlm munge)
-platform_packages=(clang libc++-14-dev libc++abi-14-dev g++-i686-linux-gnu g++-riscv64-linux-gnu g++-aarch64-linux-gnu qemu-user
+platform_packages=(m4 clang libc++-14-dev libc++abi-14-dev g++-i686-linux-gnu g++-riscv64-linux-gnu g++-aarch64-linux-gnu qemu-user
     g++-mingw-w64-x86-64-posix wine64 wine emscripten nodejs dpkg-dev make)
 bench_packages=(libbenchmark-dev libcgal-dev libfcl-dev libbullet-dev libembree-dev libode-dev)
 
