@@ -3,7 +3,7 @@
 // sixteen; and the time to build either. `bench_lines [--target=NAME] [--benchmark_filter=…]`; counters: lines/s.
 #include <benchmark/benchmark.h>
 
-#include <crofton/radiosity/lines.hpp>
+#include <crofton/lines/lines.hpp>
 #include <map>
 #include <memory>
 #include <string>

@@ -140,7 +140,7 @@ void run_meshes(const OcclusionTown& town, const Camera& camera, int repeats) {
             return;
         }
         for (const Obb& house : town.houses) {
-            scene::Transform transform;
+            Transform transform;
             for (int k = 0; k < 3; ++k)
                 transform.linear[k] = glm::dvec3(house.axes[k]) * static_cast<double>(house.half_extents[k]);
             transform.translation = house.center;

@@ -123,7 +123,7 @@ void look(const World& world, const occlude::OccluderSet& surface, const std::ve
 }
 
 // All triangles, where they stand.
-void append(TriangleMesh& to, const TriangleMesh& mesh, const scene::Transform& transform, const glm::dvec3& middle) {
+void append(TriangleMesh& to, const TriangleMesh& mesh, const Transform& transform, const glm::dvec3& middle) {
     const auto first = static_cast<std::uint32_t>(to.positions.size());
     for (const glm::vec3& p : mesh.positions)
         to.positions.push_back(glm::vec3(transform.linear * glm::dvec3(p) + (transform.translation - middle)));

@@ -27,9 +27,9 @@ class Comparison {
   public:
     explicit Comparison(const bench::Quake3Level& level) : level_(level), ours_(level.clusters * level.clusters) {}
 
-    void trace(const radiosity::LineTracer& tracer, const radiosity::LineSource& source, std::uint64_t blocks) {
+    void trace(const lines::LineTracer& tracer, const lines::LineSource& source, std::uint64_t blocks) {
         bench::for_each_line(tracer, source, blocks,
-                             [&](const Line& line, std::span<const radiosity::Hit> hits) { follow(line, hits); });
+                             [&](const Line& line, std::span<const lines::Hit> hits) { follow(line, hits); });
     }
 
     void print(const std::string& name, std::uint64_t lines) const {
@@ -50,7 +50,7 @@ class Comparison {
     }
 
   private:
-    void follow(const Line& line, std::span<const radiosity::Hit> hits) {
+    void follow(const Line& line, std::span<const lines::Hit> hits) {
         const double size = 4.0 * glm::length(glm::dvec3(1 << 16));
         double begin = -size;
         for (std::size_t h = 0; h <= hits.size(); ++h) {
@@ -97,7 +97,7 @@ int main(int count, char** arguments) {
     for (int i = 1; i < count; ++i) {
         const std::string path = arguments[i];
         if (path == "--lines" && i + 1 < count) {
-            blocks = std::strtoull(arguments[++i], nullptr, 10) / radiosity::LineSource::kBlock;
+            blocks = std::strtoull(arguments[++i], nullptr, 10) / lines::LineSource::kBlock;
             continue;
         }
         const std::vector<char> file = bytes_of(path);
@@ -106,14 +106,14 @@ int main(int count, char** arguments) {
             std::fprintf(stderr, "%s: %s\n", path.c_str(), level.error().message.c_str());
             continue;
         }
-        const auto tracer = radiosity::LineTracer::build(level->mesh);
+        const auto tracer = lines::LineTracer::build(level->mesh);
         if (!tracer) {
             std::fprintf(stderr, "%s: %s\n", path.c_str(), tracer.error().message.c_str());
             continue;
         }
         Comparison comparison(*level);
-        comparison.trace(*tracer, {tracer->bounds(), radiosity::LineMethod::walls, 1}, blocks);
-        comparison.print(path.substr(path.rfind('/') + 1), blocks * radiosity::LineSource::kBlock);
+        comparison.trace(*tracer, {tracer->bounds(), lines::LineMethod::walls, 1}, blocks);
+        comparison.print(path.substr(path.rfind('/') + 1), blocks * lines::LineSource::kBlock);
     }
     return 0;
 }

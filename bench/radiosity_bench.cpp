@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <crofton/radiosity/lines.hpp>
+#include <crofton/lines/lines.hpp>
 #include <crofton/radiosity/patches.hpp>
 #include <crofton/sampling/sampling.hpp>
 #include <memory>

@@ -56,7 +56,7 @@ EmbreeScene::~EmbreeScene() {
     rtcReleaseScene(data_->scene);
 }
 
-void EmbreeScene::first_hits(std::span<const radiosity::FirstHitQuery> rays, std::span<radiosity::Hit> result) const {
+void EmbreeScene::first_hits(std::span<const lines::FirstHitQuery> rays, std::span<lines::Hit> result) const {
     for (std::size_t begin = 0; begin < rays.size(); begin += 16) {
         const std::size_t count = std::min<std::size_t>(16, rays.size() - begin);
         alignas(64) int valid[16];
@@ -82,7 +82,7 @@ void EmbreeScene::first_hits(std::span<const radiosity::FirstHitQuery> rays, std
         rtcInitIntersectContext(&context);
         rtcIntersect16(valid, data_->scene, &context, &packet);
         for (std::size_t i = 0; i < count; ++i) {
-            radiosity::Hit& hit = result[begin + i];
+            lines::Hit& hit = result[begin + i];
             hit = {};
             if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
             const glm::vec3 normal(packet.hit.Ng_x[i], packet.hit.Ng_y[i], packet.hit.Ng_z[i]);
@@ -96,7 +96,7 @@ namespace {
 
 struct Recorder {
     RTCIntersectContext context;  // the first member: Embree hands it on
-    std::vector<radiosity::Hit> hits[16];
+    std::vector<lines::Hit> hits[16];
 };
 
 void record(const RTCFilterFunctionNArguments* arguments) {
@@ -117,7 +117,7 @@ void record(const RTCFilterFunctionNArguments* arguments) {
 
 }  // namespace
 
-void EmbreeScene::all_hits(std::span<const Line> lines, radiosity::LineHits& result) const {
+void EmbreeScene::all_hits(std::span<const Line> lines, lines::LineHits& result) const {
     static thread_local Recorder recorder;
     result.hits.clear();
     result.ends.clear();
@@ -151,7 +151,7 @@ void EmbreeScene::all_hits(std::span<const Line> lines, radiosity::LineHits& res
         for (std::size_t i = 0; i < count; ++i) {
             auto& hits = recorder.hits[i];
             std::sort(hits.begin(), hits.end(),
-                      [](const radiosity::Hit& a, const radiosity::Hit& b) { return a.t < b.t; });
+                      [](const lines::Hit& a, const lines::Hit& b) { return a.t < b.t; });
             result.hits.insert(result.hits.end(), hits.begin(), hits.end());
             result.ends.push_back(static_cast<std::uint32_t>(result.hits.size()));
         }
@@ -168,8 +168,8 @@ bool EmbreeScene::available() {
 }
 EmbreeScene::EmbreeScene(const TriangleMesh&, bool) {}
 EmbreeScene::~EmbreeScene() = default;
-void EmbreeScene::first_hits(std::span<const radiosity::FirstHitQuery>, std::span<radiosity::Hit>) const {}
-void EmbreeScene::all_hits(std::span<const Line>, radiosity::LineHits&) const {}
+void EmbreeScene::first_hits(std::span<const lines::FirstHitQuery>, std::span<lines::Hit>) const {}
+void EmbreeScene::all_hits(std::span<const Line>, lines::LineHits&) const {}
 
 }  // namespace crofton::bench
 #endif

@@ -2,7 +2,7 @@
 // Rays through Embree, where it is installed.
 #pragma once
 #include <crofton/geometry/mesh.hpp>
-#include <crofton/radiosity/lines.hpp>
+#include <crofton/lines/lines.hpp>
 #include <memory>
 #include <span>
 
@@ -17,11 +17,11 @@ class EmbreeScene {
 
     // As LineTracer::first_hits, sixteen rays at a time, one thread; `skip` is replaced by a start 10^-6 of the scene's
     // size away.
-    void first_hits(std::span<const radiosity::FirstHitQuery> rays, std::span<radiosity::Hit> result) const;
+    void first_hits(std::span<const lines::FirstHitQuery> rays, std::span<lines::Hit> result) const;
 
     // As LineTracer::all_hits, for lines that start outside of the scene: sixteen rays at a time, every crossing kept
     // by a filter, then sorted.
-    void all_hits(std::span<const Line> lines, radiosity::LineHits& result) const;
+    void all_hits(std::span<const Line> lines, lines::LineHits& result) const;
 
   private:
     struct Data;

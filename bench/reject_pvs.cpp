@@ -48,9 +48,9 @@ class Comparison {
     Comparison(const assets::WadLevel& level, std::string reject)
         : level_(level), reject_(std::move(reject)), sectors_(level.sectors.size()), ours_(sectors_ * sectors_) {}
 
-    void trace(const radiosity::LineTracer& tracer, const radiosity::LineSource& source, const glm::dvec3& origin,
+    void trace(const lines::LineTracer& tracer, const lines::LineSource& source, const glm::dvec3& origin,
                std::uint64_t blocks) {
-        bench::for_each_line(tracer, source, blocks, [&](const Line& line, std::span<const radiosity::Hit> hits) {
+        bench::for_each_line(tracer, source, blocks, [&](const Line& line, std::span<const lines::Hit> hits) {
             if (hits.empty()) return;
             cross_level({line.point + origin, line.direction});
             follow(hits);
@@ -109,7 +109,7 @@ class Comparison {
         std::sort(crossings_.begin(), crossings_.end(), [](const Crossing& x, const Crossing& y) { return x.t < y.t; });
     }
 
-    void follow(std::span<const radiosity::Hit> hits) {
+    void follow(std::span<const lines::Hit> hits) {
         for (std::size_t h = 0; h + 1 < hits.size(); ++h)
             if (hits[h + 1].t - hits[h].t > kShortest)
                 witness(static_cast<double>(hits[h].t), static_cast<double>(hits[h + 1].t));
@@ -151,11 +151,11 @@ bool compare(const std::string& path, const std::string& wad, const std::string&
     const auto subject = pvs::subject_of(source->scene);
     const std::string reject = reject_lump(wad, map);
     if (!subject || reject.size() * 8 < level->sectors.size() * level->sectors.size()) return false;
-    const auto tracer = radiosity::LineTracer::build(subject->mesh);
+    const auto tracer = lines::LineTracer::build(subject->mesh);
     if (!tracer) return false;
     Comparison comparison(*level, reject);
-    comparison.trace(*tracer, {tracer->bounds(), radiosity::LineMethod::walls, 1}, subject->origin, blocks);
-    comparison.print(blocks * radiosity::LineSource::kBlock);
+    comparison.trace(*tracer, {tracer->bounds(), lines::LineMethod::walls, 1}, subject->origin, blocks);
+    comparison.print(blocks * lines::LineSource::kBlock);
     return true;
 }
 
@@ -170,7 +170,7 @@ int main(int count, char** arguments) {
     for (int i = 1; i < count; ++i) {
         const std::string argument = arguments[i];
         if (argument == "--lines" && i + 1 < count) {
-            blocks = std::strtoull(arguments[++i], nullptr, 10) / radiosity::LineSource::kBlock;
+            blocks = std::strtoull(arguments[++i], nullptr, 10) / lines::LineSource::kBlock;
         } else if (path.empty()) {
             path = argument;
             std::ifstream file(path, std::ios::binary);

@@ -30,9 +30,9 @@ struct Places {
         for (std::size_t i = 0; i < movers; ++i)
             all[i].translation[static_cast<int>(i % 3)] += frame % 2 == 0 ? 0.05 : -0.05;
     }
-    [[nodiscard]] std::span<const scene::Transform> moved() const { return std::span(all).first(movers); }
+    [[nodiscard]] std::span<const Transform> moved() const { return std::span(all).first(movers); }
 
-    std::vector<scene::Transform> all;
+    std::vector<Transform> all;
     std::size_t movers;
 };
 
@@ -40,7 +40,7 @@ struct Places {
 struct Graph {
     explicit Graph(const Places& places) {
         const auto id = scene.add_mesh(cube()).value();
-        for (const scene::Transform& place : places.all) {
+        for (const Transform& place : places.all) {
             nodes.push_back(scene.add_node(scene::kNone, place).value());
             must(scene.add_instance(nodes.back(), id).has_value(), "an instance");
         }
@@ -88,7 +88,7 @@ struct Meshes {
     explicit Meshes(const Places& places) : world(kViewsOnly) {
         const TriangleMesh mesh = cube();
         const auto handle = world.add_mesh({.positions = mesh.positions, .indices = mesh.indices}).value();
-        for (const scene::Transform& place : places.all) {
+        for (const Transform& place : places.all) {
             nodes.push_back(world.add_node({.transform = place}).value());
             must(world.add({.mesh = handle, .node = nodes.back()}).has_value(), "an object");
         }

@@ -3,17 +3,22 @@
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/crofton)
-get_property(include_dirs GLOBAL PROPERTY CROFTON_INCLUDE_DIRS)
+get_property(include_dirs GLOBAL PROPERTY CROFTON_INCLUDE_DIRS_OF_crofton)
 foreach(dir IN LISTS include_dirs)
     install(DIRECTORY ${dir}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 endforeach()
 install(TARGETS crofton EXPORT crofton-targets)
 install(EXPORT crofton-targets NAMESPACE crofton:: DESTINATION ${package_dir})
 # Each with headers of its own: `cmake --install` takes all, with `--component Unspecified` the library alone.
-foreach(component study render)
+foreach(component bake study render)
     if(TARGET crofton_${component})
-        install(DIRECTORY ${PROJECT_SOURCE_DIR}/engine/${component}/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
-                COMPONENT ${component})
+        get_property(include_dirs GLOBAL PROPERTY CROFTON_INCLUDE_DIRS_OF_${component})
+        list(REMOVE_DUPLICATES include_dirs)
+        foreach(dir IN LISTS include_dirs)
+            if(EXISTS ${dir})
+                install(DIRECTORY ${dir}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT ${component})
+            endif()
+        endforeach()
         install(TARGETS crofton_${component} EXPORT crofton-${component}-targets
                 ARCHIVE COMPONENT ${component} LIBRARY COMPONENT ${component} RUNTIME COMPONENT ${component})
         install(EXPORT crofton-${component}-targets NAMESPACE crofton:: DESTINATION ${package_dir} COMPONENT ${component})
@@ -52,6 +57,8 @@ configure_file(${CMAKE_CURRENT_LIST_DIR}/crofton.pc.in ${PROJECT_BINARY_DIR}/cro
 # What C++ needs besides, -std=c++20, would be an error in C.
 configure_file(${CMAKE_CURRENT_LIST_DIR}/crofton-cxx.pc.in ${PROJECT_BINARY_DIR}/crofton-cxx.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/crofton.pc ${PROJECT_BINARY_DIR}/crofton-cxx.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+configure_file(${CMAKE_CURRENT_LIST_DIR}/crofton-bake.pc.in ${PROJECT_BINARY_DIR}/crofton-bake.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/crofton-bake.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT bake)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md
               ${PROJECT_SOURCE_DIR}/CONTRIBUTING.md ${PROJECT_SOURCE_DIR}/SECURITY.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES ${PROJECT_SOURCE_DIR}/engine/crofton.natvis ${PROJECT_SOURCE_DIR}/engine/crofton_gdb.py DESTINATION ${CMAKE_INSTALL_DATADIR}/crofton)

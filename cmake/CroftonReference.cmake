@@ -4,7 +4,7 @@ find_package(Doxygen QUIET)
 if(NOT DOXYGEN_FOUND)
     return()
 endif()
-file(GLOB reference_dirs ${PROJECT_SOURCE_DIR}/engine/*/include)
+file(GLOB reference_dirs ${PROJECT_SOURCE_DIR}/engine/*/*/include ${PROJECT_SOURCE_DIR}/engine/c_api/include ${PROJECT_SOURCE_DIR}/engine/render/include)
 list(JOIN reference_dirs " " CROFTON_REFERENCE_DIRS)
 configure_file(${CMAKE_CURRENT_LIST_DIR}/Doxyfile.in ${PROJECT_BINARY_DIR}/Doxyfile @ONLY)
 add_custom_target(docs

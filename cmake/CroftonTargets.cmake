@@ -5,7 +5,7 @@
 function(crofton_round_as_written target)
     # Contraction off: a*b+c rounds twice on every instruction set, so filters keep their proven bounds and verdicts agree.
     # Where g++ 12 puts two statements into one vector, it forgets to round to float what becomes double again: boxes then
-    # lack points. It is wrong at -O2 and at -O3; loops are right. tests/geometry/rounding_test.cpp sees it.
+    # lack points. It is wrong at -O2 and at -O3; loops are right. tests/base/geometry/rounding_test.cpp sees it.
     target_compile_options(${target} PRIVATE -ffp-contract=off $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-fno-tree-slp-vectorize>)
 endfunction()
 
@@ -63,13 +63,19 @@ function(crofton_own_target target)
     endif()
 endfunction()
 
-# crofton_module(NAME cull DEPENDS scene tree SOURCES src/a.cpp … [HOT src/a.cpp …] [LINK hwy] [UNITY])
+# crofton_module(NAME cull [LIBRARY bake] DEPENDS boxtree … SOURCES src/a.cpp … [HOT src/a.cpp …] [LINK hwy] [UNITY])
 # One engine module = one object library that sees its own headers and those of the modules it names, nothing else:
-# an include against the direction of docs/architecture.md does not compile. Headers in internal/ are for other modules
-# only: they are not installed. HOT: of the sources, no kernels, but compiled with CROFTON_KERNEL_OPTIONS as these are.
+# an include against the direction of docs/architecture.md does not compile. LIBRARY: the library that gathers it,
+# crofton where none is named. Headers in internal/ are for other modules only: they are not installed. HOT: of the
+# sources, no kernels, but compiled with CROFTON_KERNEL_OPTIONS as these are.
 function(crofton_module)
-    cmake_parse_arguments(ARG "UNITY" "NAME" "DEPENDS;SOURCES;HOT;LINK" ${ARGN})
-    set(target crofton_${ARG_NAME})
+    cmake_parse_arguments(ARG "UNITY" "NAME;LIBRARY" "DEPENDS;SOURCES;HOT;LINK" ${ARGN})
+    set(target crofton_${ARG_NAME}_objects)
+    set(library crofton)
+    if(ARG_LIBRARY)
+        set(library ${ARG_LIBRARY})
+    endif()
+    crofton_check_room(${ARG_NAME} ${ARG_DEPENDS})
     add_library(${target} OBJECT ${ARG_SOURCES})
     if(ARG_UNITY)
         set(unity UNITY)
@@ -90,9 +96,55 @@ function(crofton_module)
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET default)
     target_link_libraries(${target} PUBLIC crofton_settings crofton_third_party PRIVATE ${ARG_LINK})
     foreach(dependency IN LISTS ARG_DEPENDS)
-        target_link_libraries(${target} PUBLIC crofton_${dependency})
+        target_link_libraries(${target} PUBLIC crofton_${dependency}_objects)
     endforeach()
-    set_property(GLOBAL APPEND PROPERTY CROFTON_MODULES ${ARG_NAME})
-    set_property(GLOBAL APPEND PROPERTY CROFTON_PRIVATE_LINK ${ARG_LINK})
-    set_property(GLOBAL APPEND PROPERTY CROFTON_INCLUDE_DIRS ${CMAKE_CURRENT_SOURCE_DIR}/include)
+    set_property(GLOBAL APPEND PROPERTY CROFTON_MODULES_OF_${library} ${ARG_NAME})
+    set_property(GLOBAL APPEND PROPERTY CROFTON_LINK_OF_${library} ${ARG_LINK})
+    set_property(GLOBAL APPEND PROPERTY CROFTON_INCLUDE_DIRS_OF_${library} ${CMAKE_CURRENT_SOURCE_DIR}/include)
+endfunction()
+
+# Ends with an error where a module of this folder names one of a room below its own.
+function(crofton_check_room module)
+    cmake_path(RELATIVE_PATH CMAKE_CURRENT_SOURCE_DIR BASE_DIRECTORY ${PROJECT_SOURCE_DIR}/engine OUTPUT_VARIABLE room)
+    string(REGEX REPLACE "/.*" "" room ${room})
+    set_property(GLOBAL PROPERTY CROFTON_ROOM_OF_${module} ${room})
+    list(FIND CROFTON_ROOMS ${room} place)
+    foreach(dependency IN LISTS ARGN)
+        get_property(other GLOBAL PROPERTY CROFTON_ROOM_OF_${dependency})
+        list(FIND CROFTON_ROOMS "${other}" other_place)
+        if(place GREATER -1 AND (NOT other OR other_place GREATER place))
+            message(FATAL_ERROR "engine/${room}: `${module}` uses `${dependency}`, which is in no room above it (docs/architecture.md)")
+        endif()
+    endforeach()
+endfunction()
+
+# crofton_library(bake [libraries it is built on …]): gathers the modules that name it. Targets: crofton, or crofton_bake
+# and the alias crofton::bake.
+function(crofton_library name)
+    foreach(property MODULES LINK INCLUDE_DIRS)
+        get_property(${property} GLOBAL PROPERTY CROFTON_${property}_OF_${name})
+    endforeach()
+    list(REMOVE_DUPLICATES LINK)
+    set(target crofton)
+    if(NOT name STREQUAL crofton)
+        set(target crofton_${name})
+    endif()
+    add_library(${target})
+    add_library(crofton::${name} ALIAS ${target})
+    foreach(module IN LISTS MODULES)
+        target_sources(${target} PRIVATE $<TARGET_OBJECTS:crofton_${module}_objects>)
+    endforeach()
+    foreach(dir IN LISTS INCLUDE_DIRS)
+        target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${dir}>)
+    endforeach()
+    target_include_directories(${target} PUBLIC $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+    crofton_own_target(${target})
+    if(BUILD_SHARED_LIBS AND NOT APPLE AND NOT WIN32)
+        target_link_options(${target} PRIVATE -Wl,--version-script=${PROJECT_SOURCE_DIR}/cmake/crofton.map)
+        set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/crofton.map)
+    endif()
+    set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} LINKER_LANGUAGE CXX VERSION ${PROJECT_VERSION} SOVERSION 0)
+    target_link_libraries(${target} PUBLIC $<BUILD_INTERFACE:crofton_settings> glm::glm tl::expected ${ARGN} PRIVATE ${LINK})
+    # What the headers of an installed build were compiled with.
+    target_compile_definitions(${target} INTERFACE $<INSTALL_INTERFACE:$<$<NOT:$<BOOL:${CROFTON_STATISTICS}>>:CROFTON_NO_STATISTICS=1>>)
 endfunction()

@@ -22,10 +22,10 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 # Language: its README, and how many commands of its first block lead to the result.
 PATHS = {
     "c++": ("README.md", 1),
-    "python": ("python/README.md", 2),
-    "rust": ("rust/README.md", 2),
-    "csharp": ("csharp/README.md", 2),
-    "web": ("web/README.md", 2),
+    "python": ("bindings/python/README.md", 2),
+    "rust": ("bindings/rust/README.md", 2),
+    "csharp": ("bindings/csharp/README.md", 2),
+    "web": ("bindings/web/README.md", 2),
 }
 
 

@@ -6,10 +6,10 @@
 #   third_party/install.sh --bench    also the benchmarks' framework and the peers measured beside us
 #   third_party/install.sh --checks   also clang, its formatter and its linter, and gdb, for .ci/run and .ci/long
 #   third_party/install.sh --matrix   also all compilers of .ci/matrix (docs/testing.md, "The matrix")
-#   third_party/install.sh --python   also what the Python package needs (python/README.md)
-#   third_party/install.sh --rust     also what the Rust crate needs (rust/README.md)
-#   third_party/install.sh --csharp   also what the C# classes need (csharp/README.md)
-#   third_party/install.sh --web      also what the npm package needs (web/README.md)
+#   third_party/install.sh --python   also what the Python package needs (bindings/python/README.md)
+#   third_party/install.sh --rust     also what the Rust crate needs (bindings/rust/README.md)
+#   third_party/install.sh --csharp   also what the C# classes need (bindings/csharp/README.md)
+#   third_party/install.sh --web      also what the npm package needs (bindings/web/README.md)
 #   third_party/install.sh --packages also what makes and checks packages (packaging/README.md)
 #   third_party/install.sh --slurm    also the job system of samples/slurm, whose test starts a cluster on this machine
 #   third_party/install.sh --platforms  also compilers and emulators of other targets (docs/testing.md, "Platforms")

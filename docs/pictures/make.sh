@@ -16,7 +16,7 @@ cp "$work"/town/*0003.png town.png
 "$crofton" frames town --camera street --frames 120 --size 960x540 --png "$work/street"
 cp "$work"/street/*0035.png street.png
 ./crofton.py >crofton.svg
-./modules.py >modules.svg
+./rooms.py >rooms.svg
 if command -v chromium >/dev/null; then
     "$crofton" frames town --frames 120 --camera street --occlude --size 640x360 --verify --report "$work/report.html"
     chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --user-data-dir="$work/chromium" \

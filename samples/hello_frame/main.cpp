@@ -16,7 +16,7 @@ int main() {
 
     std::vector<crofton::ObjectHandle> crates;
     for (int i = 0; i < 100; ++i) {
-        const crofton::scene::Transform place{glm::dmat3(1.0), {4.0 * (i % 10), 0.0, -4.0 * (i / 10)}};
+        const crofton::Transform place{glm::dmat3(1.0), {4.0 * (i % 10), 0.0, -4.0 * (i / 10)}};
         crates.push_back(world.add({.mesh = *mesh, .transform = place, .user = std::uint64_t(i)}).value());
     }
     // An object may be a bound alone: a box, an aligned box or a ball.

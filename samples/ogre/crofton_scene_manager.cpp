@@ -32,9 +32,9 @@ Aabb to_aabb(const Ogre::AxisAlignedBox& box) {
     return result;
 }
 
-scene::Transform transform_of(const SceneNode& node) {
+Transform transform_of(const SceneNode& node) {
     const Ogre::Affine3& matrix = node._getFullTransform();
-    scene::Transform transform;
+    Transform transform;
     for (unsigned row = 0; row < 3; ++row) {
         const auto r = static_cast<int>(row);
         for (int column = 0; column < 3; ++column)
@@ -151,7 +151,7 @@ void SceneManager::make_unbounded(SceneNode& node) {
 void SceneManager::follow_occluder(SceneNode& node) {
     const auto& attached = node.getAttachedObjects();
     const auto* entity = attached.size() == 1 ? dynamic_cast<const Ogre::Entity*>(attached[0]) : nullptr;
-    const scene::Transform transform = transform_of(node);
+    const Transform transform = transform_of(node);
     const bool hides = entity && is_solid(*entity) && glm::determinant(transform.linear) > 0.0;
     const MeshHandle mesh = hides ? occluder_meshes_.of(*entity->getMesh()) : MeshHandle();
     if (mesh.is_null()) return forget_occluder(node);

@@ -13,7 +13,7 @@ namespace {
 // The child's own box turned by its transform; around other kinds of nodes the axis-aligned box.
 Obb box_of(osg::Node& node) {
     osg::ComputeBoundsVisitor bounds;
-    scene::Transform transform;
+    Transform transform;
     if (osg::MatrixTransform* child = node.asTransform() ? node.asTransform()->asMatrixTransform() : nullptr) {
         child->traverse(bounds);
         const osg::Matrix& matrix = child->getMatrix();  // row vectors: v · M

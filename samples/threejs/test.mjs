@@ -5,12 +5,12 @@ import { existsSync } from 'node:fs';
 import { readFile } from 'node:fs/promises';
 import { extname, join, normalize } from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { Browser, missing } from '../../web/test/browser.js';
+import { Browser, missing } from '../../bindings/web/test/browser.js';
 
 const ROOT = fileURLToPath(new URL('../../', import.meta.url));
 const least = Number(process.env.CROFTON_LEAST_RATIO ?? 20);
 const why = missing ?? (existsSync(`${ROOT}samples/threejs/node_modules/three`) ? null : 'no three.js; `npm install` here')
-    ?? (existsSync(`${ROOT}web/wasm/simd.wasm`) ? null : 'the package is not built; web/test.sh');
+    ?? (existsSync(`${ROOT}bindings/web/wasm/simd.wasm`) ? null : 'the package is not built; bindings/web/test.sh');
 if (why) {
     console.log(`threejs: skipped, ${why}`);
     process.exit(0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Lines and light in the same bits everywhere.
-#include <crofton/radiosity/lines.hpp>
+#include <crofton/lines/lines.hpp>
 #include <crofton/radiosity/patches.hpp>
 #include <crofton/radiosity/solver.hpp>
 
@@ -27,7 +27,7 @@ radiosity::Patches patches() {
     return *radiosity::make_patches(std::move(mesh), materials);
 }
 
-radiosity::SolverOptions options(std::uint64_t lines, std::optional<radiosity::LineMethod> method,
+radiosity::SolverOptions options(std::uint64_t lines, std::optional<lines::LineMethod> method,
                                  radiosity::Transport transport) {
     radiosity::SolverOptions result;
     result.lines = lines;
@@ -40,7 +40,7 @@ std::uint64_t light(Executor& executor) {
     Digest digest;
     const radiosity::Patches scene = patches();
     for (const auto method :
-         {radiosity::LineMethod::bundles, radiosity::LineMethod::walls, radiosity::LineMethod::disc}) {
+         {lines::LineMethod::bundles, lines::LineMethod::walls, lines::LineMethod::disc}) {
         auto solver = *radiosity::Solver::create(scene, options(4000, method, radiosity::Transport::global));
         for (int run = 0; run < 2; ++run) solver.run(executor);
         digest.add(solver.radiosity()).add(solver.relative_error());
@@ -53,20 +53,20 @@ std::uint64_t light(Executor& executor) {
 std::uint64_t crossings() {
     Digest digest;
     const radiosity::Patches scene = patches();
-    const auto tracer = *radiosity::LineTracer::build(scene.mesh);
-    const auto bundles = *radiosity::BundleTracer::build(scene.mesh);
+    const auto tracer = *lines::LineTracer::build(scene.mesh);
+    const auto bundles = *lines::BundleTracer::build(scene.mesh);
     Vector<Line> lines;
-    radiosity::LineHits hits;
+    lines::LineHits hits;
     const auto add = [&] {
-        for (const radiosity::Hit& hit : hits.hits)
+        for (const lines::Hit& hit : hits.hits)
             digest.add(hit.t).add(hit.triangle).add(static_cast<std::uint8_t>(hit.front));
         digest.add(hits.ends);
     };
-    radiosity::LineSource(tracer.bounds(), radiosity::LineMethod::sphere_points, 71).draw(0, lines);
+    lines::LineSource(tracer.bounds(), lines::LineMethod::sphere_points, 71).draw(0, lines);
     tracer.all_hits(lines, hits);
     add();
-    radiosity::BundleTracer::Scratch scratch;
-    bundles.all_hits(radiosity::make_bundle(bundles.bounds(), 0.01, {0.3, 0.6}, 72), scratch, hits);
+    lines::BundleTracer::Scratch scratch;
+    bundles.all_hits(lines::make_bundle(bundles.bounds(), 0.01, {0.3, 0.6}, 72), scratch, hits);
     add();
     return digest.value();
 }

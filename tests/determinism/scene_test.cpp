@@ -19,7 +19,7 @@ scene::Scene moving_scene(Executor& executor) {
     const auto mesh = *scene.add_mesh(torus(12, 6, 0.2), "torus");
     std::vector<scene::NodeId> nodes;
     const auto transform = [&] {
-        scene::Transform local{sampling::rotation(random.point<3>()), 5.0 * sampling::direction(random.point<2>())};
+        Transform local{sampling::rotation(random.point<3>()), 5.0 * sampling::direction(random.point<2>())};
         if (index(random, 3) == 0) local.linear[0] *= -1.5;
         return local;
     };
@@ -54,7 +54,7 @@ TEST_SUITE("determinism/scene") {
         const scene::Scene scene = moving_scene(serial_executor());
         const TriangleMesh mesh = torus(12, 6, 0.2);
         for (scene::InstanceId i = 0; i < scene.instance_count(); ++i) {
-            const scene::Transform& world = scene.world(static_cast<scene::NodeId>(i));
+            const Transform& world = scene.world(static_cast<scene::NodeId>(i));
             for (const glm::vec3& p : mesh.positions) CHECK(contains(scene.world_boxes()[i], world * glm::dvec3(p)));
         }
     }

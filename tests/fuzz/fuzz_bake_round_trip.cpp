@@ -41,7 +41,7 @@ void compare(const scene::Scene& scene, const bake::BakedScene& baked) {
     for (scene::NodeId n = 0; n < scene.node_count(); ++n) {
         if (scene.is_node_removed(n)) continue;
         demand(baked.nodes()[n].parent == scene.parent_of(n), "a baked node's parent");
-        demand(std::memcmp(&baked.nodes()[n].world, &scene.world(n), sizeof(scene::Transform)) == 0, "a baked node");
+        demand(std::memcmp(&baked.nodes()[n].world, &scene.world(n), sizeof(Transform)) == 0, "a baked node");
     }
 }
 

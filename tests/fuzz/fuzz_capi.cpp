@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The C API called in any order with any numbers: arrays are as long as their counts say, handles live, dead or NULL.
+#include <crofton/capi/bake.h>
 #include <crofton/capi/crofton.h>
 #include <fuzzer/FuzzedDataProvider.h>
 

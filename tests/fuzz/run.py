@@ -2,20 +2,15 @@
 # SPDX-License-Identifier: MIT
 """Runs the fuzzers one after another, keeps what they have learnt, and counts their executions.
 
-tests/fuzz/run.py [NAME …] [--build FOLDER] [--seconds S] [--rounds R] [--jobs J] [--record]
-tests/fuzz/run.py --report     the table of executions so far, nothing run
-tests/fuzz/run.py --minimise   keeps of each corpus what reaches something of its own, nothing else run;
-                               --record writes what is left into tests/fuzz/corpora
+tests/fuzz/run.py [NAME …] [--build FOLDER] [--seconds S] [--rounds R] [--jobs J]
+tests/fuzz/run.py --report     executions of this build so far, nothing run
+tests/fuzz/run.py --minimise   keeps of each corpus what reaches something of its own, nothing else run
 
-A fuzzer begins with the seeds of fuzz_seeds, with tests/fuzz/corpora/NAME.txt, and with FOLDER/corpus/NAME, to which it
-adds. What it finds is left in FOLDER/found, and the exit status is 1. Executions are added up in FOLDER/executions.json;
---record also adds them to tests/fuzz/executions.csv, from which docs/testing.md has its figure. Both are written after
-each fuzzer, and when the run is interrupted or terminated. A line of a corpus in tests/fuzz/corpora is an input in
-base64; the readers of files have none, as theirs are long. Python 3.11, nothing else.
+A fuzzer begins with the seeds of fuzz_seeds and with FOLDER/corpus/NAME, to which it adds. What it finds is left in
+FOLDER/found, and the exit status is 1: make it a small literal input in the module's own tests. Executions are added up
+in FOLDER/executions.json, after each fuzzer and when the run is interrupted or terminated. Python 3.11, nothing else.
 """
 import argparse
-import base64
-import csv
 import fcntl
 import json
 import os
@@ -30,9 +25,6 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-RECORD = ROOT / "tests" / "fuzz" / "executions.csv"
-CORPORA = ROOT / "tests" / "fuzz" / "corpora"
-GOAL = 10**9
 # The longest input, in bytes: what a target can read of one small scene.
 LONGEST = {"boxes": 96, "triangles": 96, "classify": 128, "convex": 160, "fit": 96, "triangulate": 96, "casts": 160, "mesh": 192,
            "scene_graph": 256, "broadphase": 256, "occlusion": 192, "moving": 256, "tree_life": 384, "world": 256,
@@ -44,35 +36,13 @@ def fuzzers(build):
     return sorted(p.name[5:] for p in (build / "bin").glob("fuzz_*") if p.name != "fuzz_seeds" and os.access(p, os.X_OK))
 
 
-def read_record():
-    """Executions by (fuzzer, sanitized)."""
-    if not RECORD.exists():
-        return {}
-    with RECORD.open() as file:
-        return {(row["fuzzer"], row["sanitized"]): int(row["executions"]) for row in csv.DictReader(file)}
-
-
-def write_record(counts):
-    with RECORD.open("w", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(["fuzzer", "sanitized", "executions"])
-        for (name, sanitized), count in sorted(counts.items()):
-            writer.writerow([name, sanitized, count])
-
-
-def report():
-    counts = read_record()
-    print("| fuzzer | under the sanitizers | without |\n|---|---|---|")
-    for name in sorted({name for name, _ in counts}):
-        print(f"| `fuzz_{name}` | {counts.get((name, 'yes'), 0):,} | {counts.get((name, 'no'), 0):,} |")
-    total = sum(counts.values())
-    print(f"| all | {sum(c for (_, s), c in counts.items() if s == 'yes'):,} | {sum(c for (_, s), c in counts.items() if s == 'no'):,} |")
-    print(f"{total:,} executions of {GOAL:,}: {100 * total / GOAL:.2f} %")
-
-
-def is_sanitized(build):
-    cache = (build / "CMakeCache.txt").read_text()
-    return "yes" if re.search(r"^CROFTON_SANITIZE:\w+=.+", cache, re.M) else "no"
+def report(build):
+    ledger = build / "executions.json"
+    counts = json.loads(ledger.read_text()) if ledger.exists() else {}
+    print("| fuzzer | executions |\n|---|---|")
+    for name, count in sorted(counts.items()):
+        print(f"| `fuzz_{name}` | {count:,} |")
+    print(f"| all | {sum(counts.values()):,} |")
 
 
 def stop(*_):
@@ -111,42 +81,21 @@ def fuzz(build, name, options, seeds):
     print(f"fuzz_{name}: {count:,} executions{told}, {'nothing found' if good else 'FAILED'}", flush=True)
     if not good:
         print("\n".join(line for line in last if re.search(r"fuzz:|ERROR|SUMMARY|Test unit|#\d|error", line)))
-    keep_count(build, name, count, options.record)
+    keep_count(build, name, count)
     return count, good
 
 
-def keep_count(build, name, count, record):
-    ledger, sanitized = build / "executions.json", is_sanitized(build)
+def keep_count(build, name, count):
+    ledger = build / "executions.json"
     with bookkeeping, (build / "executions.lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         counts = json.loads(ledger.read_text()) if ledger.exists() else {}
         counts[name] = counts.get(name, 0) + count
         ledger.write_text(json.dumps(counts, indent=1))
-        if record:
-            known = read_record()
-            known[name, sanitized] = known.get((name, sanitized), 0) + count
-            write_record(known)
 
 
-def unpack(name, folder):
-    """Writes the inputs of tests/fuzz/corpora into a folder, a file each."""
-    packed = CORPORA / f"{name}.txt"
-    if not packed.exists():
-        return
-    folder.mkdir(parents=True, exist_ok=True)
-    for number, line in enumerate(packed.read_text().split()):
-        (folder / f"kept_{number}").write_bytes(base64.b64decode(line))
-
-
-def pack(name, folder):
-    CORPORA.mkdir(exist_ok=True)
-    inputs = sorted((path.read_bytes() for path in folder.iterdir()), key=lambda bytes_: (len(bytes_), bytes_))
-    (CORPORA / f"{name}.txt").write_text("".join(base64.b64encode(bytes_).decode() + "\n" for bytes_ in inputs if bytes_))
-
-
-def minimise(build, name, record):
+def minimise(build, name):
     corpus = build / "corpus" / name
-    unpack(name, corpus)  # a new build has none of them in its own corpus
     if not corpus.is_dir():
         return
     small = corpus.with_suffix(".small")
@@ -157,8 +106,6 @@ def minimise(build, name, record):
     shutil.rmtree(corpus)
     small.rename(corpus)
     print(f"fuzz_{name}: {before} inputs become {len(list(corpus.iterdir()))}", flush=True)
-    if record and name in LONGEST:
-        pack(name, corpus)
 
 
 def main():
@@ -168,26 +115,23 @@ def main():
     parser.add_argument("--seconds", type=int, default=120, help="how long each one runs")
     parser.add_argument("--rounds", type=int, default=1, help="how often all of them run, one after another")
     parser.add_argument("--jobs", type=int, default=1, help="fuzzers at a time")
-    parser.add_argument("--record", action="store_true", help="add executions, or minimised corpora, to the repository's")
     parser.add_argument("--report", action="store_true")
     parser.add_argument("--minimise", action="store_true")
     options = parser.parse_args()
     if options.report:
-        return report()
+        return report(options.build.resolve())
     build = options.build.resolve()
     names = options.names or fuzzers(build)
     unknown = set(names) - set(fuzzers(build))
     if unknown or not names:
         sys.exit(f"no such fuzzers in {build}/bin: {', '.join(sorted(unknown)) or 'none is built'}")
     if options.minimise:
-        return [minimise(build, name, options.record) for name in names] and None
+        return [minimise(build, name) for name in names] and None
     signal.signal(signal.SIGINT, stop)
     signal.signal(signal.SIGTERM, stop)
     with tempfile.TemporaryDirectory() as seeds:
         if (build / "bin" / "fuzz_seeds").exists():
             subprocess.run([build / "bin" / "fuzz_seeds", seeds], check=True)
-        for name in names:
-            unpack(name, Path(seeds) / name)
         with ThreadPoolExecutor(options.jobs) as pool:
             results = list(pool.map(lambda name: fuzz(build, name, options, Path(seeds)), names * options.rounds))
     counts = json.loads((build / "executions.json").read_text())

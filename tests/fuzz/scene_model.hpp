@@ -57,8 +57,8 @@ class LivingScene {
     crofton::testing::PlainScene plain;
 
   private:
-    static scene::Transform transform(Shapes& in) {
-        scene::Transform result{in.rotation(), in.point()};
+    static Transform transform(Shapes& in) {
+        Transform result{in.rotation(), in.point()};
         const unsigned kind = in.below(6);
         if (kind == 0) result.linear = glm::dmat3(0.0);
         if (kind == 1) result.linear *= in.grid();
@@ -80,7 +80,7 @@ class LivingScene {
     }
     void add_node(Shapes& in) {
         const scene::NodeId parent = plain.nodes.empty() || in.below(4) == 0 ? scene::kNone : pick(in, plain.nodes);
-        const scene::Transform local = transform(in);
+        const Transform local = transform(in);
         const std::uint32_t mask = in.layers();
         const auto node = scene.add_node(parent, local, mask, in.flag() ? "node" : "");
         demand(node.has_value() && !plain.nodes.contains(*node), "add_node");

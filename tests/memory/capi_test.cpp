@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Memory ends in a call of the C API: what creates a handle says CROFTON_OUT_OF_MEMORY and leaves `*handle` alone; the
 // others end the program as the C++ API does.
+#include <crofton/capi/bake.h>
 #include <crofton/capi/crofton.h>
 #include <doctest/doctest.h>
 

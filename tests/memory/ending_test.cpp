@@ -62,7 +62,7 @@ struct Lived {
         node = world.add_node().value();
         for (const Obb& box : boxes(100)) objects.push_back(world.add({.bound = Bound(box)}).value());
         for (int i = 0; i < 4; ++i) {
-            scene::Transform place;
+            Transform place;
             place.translation = {2.5 * i, 0.0, -10.0};
             objects.push_back(world.add({.mesh = mesh, .node = node, .transform = place}).value());
         }
@@ -221,7 +221,7 @@ TEST_SUITE("memory/ending") {
             for (int frame = 0; frame < 3; ++frame) {
                 for (std::size_t i = 0; i < 30; ++i)
                     (void)world.set_bound(lived.objects[i], Bound(moved(more[i], frame)));
-                scene::Transform place;
+                Transform place;
                 place.translation.x = frame;
                 (void)world.set_transform(lived.node, place);
                 (void)world.update();
@@ -271,7 +271,7 @@ TEST_SUITE("memory/ending") {
         }
         scene.update();
         sweep_ending("Scene::update", [&] {
-            scene::Transform place;
+            Transform place;
             place.translation.x = 1.0;
             for (const scene::NodeId node : nodes) (void)scene.set_local(node, place);
             (void)scene.set_parent(nodes[3], nodes[4]);

@@ -12,7 +12,7 @@
 #include <crofton/measure/measure.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <crofton/pvs/pvs.hpp>
-#include <crofton/radiosity/lines.hpp>
+#include <crofton/lines/lines.hpp>
 #include <crofton/radiosity/patches.hpp>
 #include <crofton/radiosity/solver.hpp>
 #include <crofton/sampling/sampling.hpp>
@@ -77,7 +77,7 @@ scene::Scene small_scene() {
     scene::Scene scene;
     const auto mesh = scene.add_mesh(grid(2), "grid with a name that is too long for a small string").value();
     for (int i = 0; i < 40; ++i) {
-        scene::Transform place;
+        Transform place;
         place.translation.x = 5.0 * i;
         const auto node = scene.add_node(scene::kNone, place, ~0u, "node with a name that is too long for one").value();
         static_cast<void>(scene.add_instance(node, mesh).value());
@@ -290,12 +290,12 @@ TEST_SUITE("memory/fault") {
         sweep("make_patches", [&] { return outcome_of(radiosity::make_patches(copy_of(mesh), materials)); });
         sweep("refine", [&] { return outcome_of(radiosity::refine(mesh, 0.4)); });
         sweep("mend_t_junctions", [&] { return outcome_of(radiosity::mend_t_junctions(mesh, 1e-4)); });
-        sweep("BundleTracer::build", [&] { return outcome_of(radiosity::BundleTracer::build(mesh)); });
-        sweep("LineTracer::build", [&] { return outcome_of(radiosity::LineTracer::build(mesh)); });
+        sweep("BundleTracer::build", [&] { return outcome_of(lines::BundleTracer::build(mesh)); });
+        sweep("LineTracer::build", [&] { return outcome_of(lines::LineTracer::build(mesh)); });
         const auto patches = radiosity::make_patches(TriangleMesh(mesh), materials).value();
         sweep("Solver::create", [&] { return outcome_of(radiosity::Solver::create(patches)); });
-        const auto tracer = radiosity::LineTracer::build(mesh).value();
-        const radiosity::LineSource source({{0, 0, -1}, {4, 4, 1}}, radiosity::LineMethod::walls, 1);
+        const auto tracer = lines::LineTracer::build(mesh).value();
+        const lines::LineSource source({{0, 0, -1}, {4, 4, 1}}, lines::LineMethod::walls, 1);
         // On this thread, whose memory for tracing is warm: others keep theirs.
         sweep("factors_by_global_lines",
               [&] { return outcome_of(radiosity::factors_by_global_lines(tracer, patches, source, 3)); });

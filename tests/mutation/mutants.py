@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Mutants: deliberate faults of the engine's sources, written down (*.txt) or made by rule."""
+"""Mutants: deliberate faults of the engine's sources, made by rule."""
 import hashlib
 import re
 from dataclasses import dataclass, field
@@ -14,46 +14,14 @@ class Mutant:
     replace: str
     why: str
     tests: list = field(default_factory=list)
-    equivalent: str = ""  # the reason why no test can tell it from the original
-    switch: str = ""  # what stands in the place of `find` where $ON says whether the mutant is in force
-    at: int = -1  # where the text begins, for mutants made by rule
-
-    @property
-    def module(self):
-        return self.file.split("/")[1]
+    module: str = ""
+    at: int = 0  # where the text begins
 
     def apply(self, text):
-        """The text of the file with the fault in it. ValueError if the place is not there exactly once."""
-        at = self.at
-        if at < 0:
-            if text.count(self.find) != 1:
-                raise ValueError(f"{self.name}: the text to find is {text.count(self.find)} times in {self.file}, not once")
-            at = text.index(self.find)
-        return text[:at] + self.replace + text[at + len(self.find):]
-
-
-def read_list(path):
-    """Blocks of `key: value` lines, each begun by `[name]`. `find` and `with` may have several lines, each with its key."""
-    mutants, block = [], None
-    for number, line in enumerate(path.read_text().splitlines(), 1):
-        if not line.strip() or line.startswith("#"):
-            continue
-        if line.startswith("["):
-            block = {"name": line.strip("[]")}
-            mutants.append(block)
-            continue
-        key, colon, value = line.partition(":")
-        if block is None or not colon or key not in ("file", "find", "with", "why", "tests", "equivalent", "switch"):
-            raise ValueError(f"{path}:{number}: expected [name] or one of file, find, with, why, tests, equivalent, switch")
-        value = value[1:] if value.startswith(" ") else value
-        block[key] = block[key] + "\n" + value if key in block else value
-    for block in mutants:
-        missing = {"file", "find", "with", "why"} - block.keys()
-        if missing:
-            raise ValueError(f"{path}: [{block['name']}] lacks {', '.join(sorted(missing))}")
-    return [Mutant(b["name"], b["file"], b["find"], b["with"], b["why"], b.get("tests", "").split(), b.get("equivalent", ""),
-                   b.get("switch", ""))
-            for b in mutants]
+        """The text of the file with the fault in it. ValueError if the place is not there."""
+        if text[self.at:self.at + len(self.find)] != self.find:
+            raise ValueError(f"{self.name}: {self.file} has changed")
+        return text[:self.at] + self.replace + text[self.at + len(self.find):]
 
 
 # What may stand in its place, and what the fault is.
@@ -100,11 +68,11 @@ def _candidates(text):
         at += len(line)
 
 
-def by_rule(root, module, count, seed, tests):
+def by_rule(root, folder, count, seed, tests):
     """`count` places of a module's sources, as many of each rule. The places are drawn by a hash of their own text, so
     that a change elsewhere moves few draws."""
-    drawn = {}
-    for path in sorted((root / "engine" / module / "src").rglob("*.cpp")):
+    module, drawn = folder.split("/")[-1], {}
+    for path in sorted((root / "engine" / folder / "src").rglob("*.cpp")):
         file = str(path.relative_to(root))
         text = path.read_text()
         seen = {}
@@ -116,7 +84,7 @@ def by_rule(root, module, count, seed, tests):
             digest = hashlib.sha256(f"{seed}|{key}|{seen[key]}".encode()).hexdigest()
             name = f"{module}-{rule.replace(' ', '-')}-{digest[:8]}"
             what = f"{rule}: {text[begin:end]!r} becomes {replacement!r} in: {line}"
-            mutant = Mutant(name, file, text[begin:end], replacement, what, tests, at=begin)
+            mutant = Mutant(name, file, text[begin:end], replacement, what, tests, module, begin)
             drawn.setdefault(rule, []).append((digest, mutant))
     ranked = [(place, rule, mutant) for rule, list_ in sorted(drawn.items())
               for place, (_, mutant) in enumerate(sorted(list_, key=lambda pair: pair[0]))]

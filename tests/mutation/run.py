@@ -5,15 +5,14 @@
 tests/mutation/run.py [NAME|MODULE|FILE …]   those that a word selects (all without one); resumes where it was stopped
 tests/mutation/run.py --together [WORD …]    those of them that fit into one build: minutes instead of hours
 tests/mutation/run.py --sanitize [WORD …]    the same under the sanitizers, as .ci/run has it: for what writes beyond an array
-tests/mutation/run.py --seed 22 [WORD …]     other faults by rule than those that the tests were mended for
+tests/mutation/run.py --seed 22 [WORD …]     other faults than those of the last draw
 tests/mutation/run.py --list                 what there is, nothing run
 tests/mutation/run.py --report               the table of what is known, nothing run
 
-Exit status: 0 if every mutant that has no reason to survive is caught, 1 if one survives, 2 if the harness cannot run.
+Exit status: 0 if every mutant is caught, 1 if one survives (it may be one that no test can tell from the original), 2 if the harness cannot run.
 docs/testing.md says how to read it. Python 3.11, nothing else.
 """
 import argparse
-import csv
 import hashlib
 import json
 import os
@@ -26,20 +25,19 @@ import threading
 import time
 from pathlib import Path
 
-from mutants import Mutant, by_rule, read_list
+from mutants import by_rule
 from together import try_together
 
 ROOT = Path(__file__).resolve().parents[2]
-LISTS = ROOT / "tests" / "mutation"
 SEED = 21
 # By rule: how many of each module, and whose tests must catch them.
 RULES = {
-    "bake": (4, ["bake"]), "boxtree": (10, ["boxtree", "cull"]), "capi": (8, ["capi"]), "collide": (14, ["collide"]),
-    "convex": (10, ["convex"]), "occlude": (10, ["occlude"]),
-    "core": (4, ["core"]), "cull": (14, ["cull"]), "fit": (12, ["fit"]), "geometry": (8, ["geometry"]),
-    "measure": (5, ["measure"]), "mesh": (10, ["mesh"]), "pvs": (10, ["pvs"]), "radiosity": (8, ["radiosity"]), "render": (5, ["render"]),
-    "sampling": (4, ["sampling"]), "scene": (8, ["scene"]), "study": (6, ["study"]), "triangulate": (12, ["triangulate"]),
-    "world": (8, ["world"]),
+    "base/core": (4, ["core"]), "base/geometry": (8, ["geometry"]), "base/sampling": (4, ["sampling"]),
+    "bounds/measure": (5, ["measure"]), "bounds/fit": (12, ["fit"]), "bounds/boxtree": (10, ["boxtree", "cull"]),
+    "shape/mesh": (10, ["mesh"]), "shape/convex": (10, ["convex"]), "shape/collide": (14, ["collide"]),
+    "view/cull": (14, ["cull"]), "view/occlude": (10, ["occlude"]), "world/scene": (8, ["scene"]), "world/world": (8, ["world"]),
+    "c_api": (8, ["capi"]), "bake/triangulate": (12, ["triangulate"]), "bake/lines": (4, ["radiosity"]), "bake/files": (4, ["bake"]),
+    "bake/pvs": (10, ["pvs"]), "study/radiosity": (5, ["radiosity"]), "study/study": (6, ["study"]), "render": (5, ["render"]),
 }
 
 
@@ -171,26 +169,7 @@ class Scratch:
 
 
 def all_mutants(seed=SEED):
-    """Those of the lists, and those drawn by rule with the seed. Reasons to be equivalent are known for SEED's draw."""
-    mutants = [m for path in sorted(LISTS.glob("*.txt")) if path.name != "equivalent.txt" for m in read_list(path)]
-    for mutant in mutants:
-        mutant.tests = mutant.tests or [mutant.module]
-    reasons = {}
-    for line in (LISTS / "equivalent.txt").read_text().splitlines():
-        if line and not line.startswith("#"):
-            name, _, reason = line.partition(": ")
-            reasons[name] = reason
-    for module, (count, tests) in RULES.items():
-        for mutant in by_rule(ROOT, module, count, seed, tests):
-            mutant.equivalent = reasons.pop(mutant.name, "")
-            mutants.append(mutant)
-    if reasons and seed == SEED:
-        sys.exit(f"equivalent.txt names what is not drawn: {', '.join(reasons)}")
-    names = [m.name for m in mutants]
-    twice = {n for n in names if names.count(n) > 1}
-    if twice:
-        sys.exit(f"mutants of one name: {', '.join(sorted(twice))}")
-    return mutants
+    return [mutant for folder, (count, tests) in RULES.items() for mutant in by_rule(ROOT, folder, count, seed, tests)]
 
 
 def digest(paths):
@@ -211,26 +190,8 @@ class Known:
     def __init__(self, work):
         self.path = work / "results.json"
         self.lock = threading.Lock()
-        self.record = LISTS / "judged.csv"
-        self.all = self._read_record() if self.record.exists() else {}
-        if self.path.exists():
-            self.all |= json.loads(self.path.read_text())
+        self.all = json.loads(self.path.read_text()) if self.path.exists() else {}
         self.digests = {}  # as of the start: files may be edited while mutants are tried in the copy
-
-    _COLUMNS = ("status", "by", "file", "tests", "replace")
-
-    def _read_record(self):
-        with open(self.record, newline="") as file:
-            return {row.pop("name"): row for row in csv.DictReader(file)}
-
-    def write_record(self, mutants):
-        """What is known of the mutants as they are, for the repository: name, status, by what, and of which text."""
-        with open(self.record, "w", newline="") as file:
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerow(("name",) + self._COLUMNS)
-            for mutant in sorted(mutants, key=lambda m: m.name):
-                if result := self.get(mutant):
-                    writer.writerow([mutant.name] + [result[c] for c in self._COLUMNS])
 
     def last(self, mutant):
         """What caught it last time."""
@@ -244,8 +205,8 @@ class Known:
     def tests_digest(self, tests):
         key = tuple(tests)
         if key not in self.digests:
-            folders = [ROOT / "tests" / t for t in tests] + [ROOT / "tests" / "oracle"]
-            self.digests[key] = digest(sorted(p for f in folders for p in f.rglob("*") if p.is_file()))
+            files = [p for p in (ROOT / "tests").rglob("*") if p.is_file() and {*tests, "oracle"} & {q.name for q in p.parents}]
+            self.digests[key] = digest(sorted(files))
         return self.digests[key]
 
     def get(self, mutant):
@@ -267,27 +228,23 @@ class Known:
 
 def report(mutants, known):
     """The table, and whether nothing survives."""
-    columns = ("caught", "survived", "equivalent", "invalid", "untried")
+    columns = ("caught", "survived", "invalid", "untried")
     rows, survivors, stale = {}, [], []
     for mutant in mutants:
         row = rows.setdefault(mutant.module, dict.fromkeys(columns, 0))
         result = known.get(mutant)
         status = result["status"] if result else "untried"
-        if mutant.equivalent and status == "caught":
-            print(f"not equivalent after all: {mutant.name}, caught by {result['by']}")
-        elif mutant.equivalent:
-            status = "equivalent"
         if status == "survived":
             survivors.append(mutant)
         if status == "untried" and mutant.name in known.all:
             stale.append(mutant.name)
         row[status] += 1
     rows["all"] = {c: sum(r[c] for r in rows.values()) for c in columns}
-    print("| module | mutants | caught | survived | equivalent | score |\n|---|---|---|---|---|---|")
+    print("| module | mutants | caught | survived | score |\n|---|---|---|---|---|")
     for name, row in sorted(rows.items(), key=lambda item: (item[0] == "all", item[0])):
         judged = row["caught"] + row["survived"]
         score = f"{100 * row['caught'] / judged:.1f} %" if judged else "–"
-        print(f"| {name} | {judged + row['equivalent']} | {row['caught']} | {row['survived']} | {row['equivalent']} | {score} |")
+        print(f"| {name} | {judged} | {row['caught']} | {row['survived']} | {score} |")
     total = rows["all"]
     print(f"Not judged: {total['invalid']} do not build, {total['untried']} are not tried yet.")
     if stale:
@@ -305,19 +262,13 @@ def main():
     parser.add_argument("--fresh", action="store_true", help="forget earlier results of those selected")
     parser.add_argument("--together", action="store_true", help="only those that fit into one build, switched on in turn")
     parser.add_argument("--sanitize", action="store_true", help="--together, under the sanitizers")
-    parser.add_argument("--record", action="store_true", help="write judged.csv: what is known, for the repository")
-    parser.add_argument("--hand", action="store_true", help="only those that are written down")
-    parser.add_argument("--seed", type=int, default=SEED, help=f"draw others by rule than the record has ({SEED})")
+    parser.add_argument("--seed", type=int, default=SEED, help=f"draw others than those of seed {SEED}")
     parser.add_argument("--minutes", type=float, default=1e9, help="begin no mutant after so long")
     parser.add_argument("--work", type=Path, default=ROOT / "build" / "mutation", help="folder of the copy and the results")
     parser.add_argument("-j", "--jobs", type=int, default=2, help="compilations, or mutants, at a time")
     options = parser.parse_args()
     options.together |= options.sanitize
-    if options.record and options.seed != SEED:
-        parser.error(f"the record is of the draw with --seed {SEED}")
     mutants = every = all_mutants(options.seed)
-    if options.hand:
-        mutants = [m for m in mutants if m.at < 0]
     if options.select:
         chosen = lambda m: any(w in (m.module, m.file) or m.name.startswith(w) for w in options.select)
         mutants = [m for m in mutants if chosen(m)]
@@ -325,7 +276,7 @@ def main():
         mutant.apply((ROOT / mutant.file).read_text())  # a place that is gone is an error, not a survivor
     if options.list:
         for mutant in mutants:
-            print(f"{mutant.name}: {mutant.file}: {mutant.why}{' [equivalent]' if mutant.equivalent else ''}")
+            print(f"{mutant.name}: {mutant.file}: {mutant.why}")
         print(f"{len(mutants)} mutants")
         return 0
     options.work.mkdir(parents=True, exist_ok=True)
@@ -333,16 +284,14 @@ def main():
     if options.fresh:
         for mutant in mutants:
             known.all.pop(mutant.name, None)
-    if options.record:
-        known.write_record(all_mutants())
-    if not options.report and not options.record:
+    if not options.report:
         scratch = Scratch(options.work.resolve(), options.jobs, {}, options.together, options.sanitize)
         scratch.copy()
         scratch.configure()
         started = time.monotonic()
-        todo = [m for m in mutants if not m.equivalent and known.get(m) is None]
+        todo = [m for m in mutants if known.get(m) is None]
         if options.together:
-            try_together(scratch, [m for m in every if not m.equivalent], todo, known, options.minutes, options.jobs)
+            try_together(scratch, every, todo, known, options.minutes, options.jobs)
             return 0 if report(mutants, known) else 1
         for number, mutant in enumerate(sorted(todo, key=lambda m: (m.file.endswith("hpp"), m.tests, m.file)), 1):
             if time.monotonic() - started > 60 * options.minutes:

@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: MIT
 # Read by the scratch build of tests/mutation/run.py, after `project`: a mutant should cost one small compilation.
 function(crofton_mutation_settings)
-    get_property(modules GLOBAL PROPERTY CROFTON_MODULES)
-    list(TRANSFORM modules PREPEND crofton_)
-    foreach(target IN LISTS modules ITEMS crofton_study crofton_render)
+    foreach(library crofton bake study render)
+        get_property(modules GLOBAL PROPERTY CROFTON_MODULES_OF_${library})
+        list(APPEND targets ${modules})
+    endforeach()
+    list(TRANSFORM targets REPLACE "(.+)" "crofton_\\1_objects")
+    foreach(target IN LISTS targets)
         if(TARGET ${target})
             set_target_properties(${target} PROPERTIES UNITY_BUILD OFF)
             target_compile_options(${target} PRIVATE -O1)

@@ -136,9 +136,7 @@ def _plain(text):
 
 def edit(text, number, mutant):
     """The Edit of a mutant, or None where it cannot be switched."""
-    at = mutant.at if mutant.at >= 0 else text.index(mutant.find)
-    if mutant.switch:
-        return Edit(at, at + len(mutant.find), number, mutant.switch, False)
+    at = mutant.at
     plain = _plain(text)
     begin, end, new = _trim(text, at, mutant.find, mutant.replace)
     found = _expression(text, plain, begin, end, new)

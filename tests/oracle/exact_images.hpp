@@ -3,13 +3,13 @@
 #pragma once
 #include <array>
 #include <crofton/geometry/expansion.hpp>
-#include <crofton/scene/transform.hpp>
+#include <crofton/geometry/transform.hpp>
 
 namespace crofton::testing {
 
 // Whether linear·v + translation, taken in reals, lies in the box: the exact image is the sum of doubles below, and the
 // box is the set of |det(d, a_i, a_j)| ≤ h_k·|det(a)|. Exact in expansions throughout.
-inline bool contains_exact_image(const Obb& box, const scene::Transform& t, const glm::dvec3& v) {
+inline bool contains_exact_image(const Obb& box, const Transform& t, const glm::dvec3& v) {
     const auto component = [&](int i) {
         return exact_product(t.linear[0][i], v.x) + exact_product(t.linear[1][i], v.y) +
                exact_product(t.linear[2][i], v.z) + (exact(t.translation[i]) - exact(box.center[i]));

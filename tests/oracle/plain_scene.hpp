@@ -14,7 +14,7 @@ class PlainScene {
   public:
     struct Node {
         scene::NodeId parent;
-        scene::Transform local;
+        Transform local;
         std::uint32_t mask;
     };
     struct Instance {
@@ -22,12 +22,12 @@ class PlainScene {
         scene::MeshId mesh;
         std::uint32_t mask;
         bool is_new = true;
-        scene::Transform place = {};  // as of the last update
+        Transform place = {};  // as of the last update
     };
     struct Answer {
         std::optional<Obb> box;
         std::uint32_t mask = 0;
-        scene::Transform place;
+        Transform place;
     };
 
     std::map<scene::NodeId, Node> nodes;
@@ -41,10 +41,10 @@ class PlainScene {
         return false;
     }
 
-    [[nodiscard]] scene::Transform world(scene::NodeId node) const {
+    [[nodiscard]] Transform world(scene::NodeId node) const {
         std::vector<scene::NodeId> way;
         for (; node != scene::kNone; node = nodes.at(node).parent) way.push_back(node);
-        scene::Transform result = nodes.at(way.back()).local;
+        Transform result = nodes.at(way.back()).local;
         for (auto at = way.rbegin() + 1; at != way.rend(); ++at) result = result * nodes.at(*at).local;
         return result;
     }
@@ -56,13 +56,13 @@ class PlainScene {
     }
 
     [[nodiscard]] Answer answer(const Instance& instance) const {
-        const scene::Transform place = world(instance.node);
+        const Transform place = world(instance.node);
         const auto box = scene::transformed_box(place, mesh_boxes.at(instance.mesh), measure::minimal_perimeter());
         Answer result;
         result.place = place;
         if (!box) return result;
         result.box = *box;
-        result.mask = scene::maps_to_point(place) ? 0 : mask(instance.node) & instance.mask;
+        result.mask = maps_to_point(place) ? 0 : mask(instance.node) & instance.mask;
         return result;
     }
 

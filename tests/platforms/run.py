@@ -10,7 +10,7 @@ tests/platforms/run.py --write                               puts that table int
 tests/platforms/run.py --check                               whether docs/testing.md has that table
 
 A cell is a compiler and a target, set as a preset of CMakePresets.json says. Its build lies in build/platforms/CELL; the
-results of all are in results.json beside this script. Two runs may try different cells at a time. Cells are made cheap:
+results of all are in build/platforms/results.json. Two runs may try different cells at a time. Cells are made cheap:
 little optimisation, one instruction set, ccache where it is installed, least priority. The digests come first, one file
 of tests after another; then the tests of the modules (core and geometry unless told). What is left of a cell that was
 stopped is done by the next run: a part is done again only where its program has changed. A part that takes longer than
@@ -37,7 +37,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 WORK = ROOT / "build" / "platforms"
 SOURCES = WORK / "sources"
-RESULTS = ROOT / "tests" / "platforms" / "results.json"
+RESULTS = ROOT / "build" / "platforms" / "results.json"
 DIGESTS = "test_determinism"
 MODULES = "core,geometry"
 PRESETS = json.loads((ROOT / "CMakePresets.json").read_text())["configurePresets"]

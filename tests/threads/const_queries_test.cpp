@@ -237,7 +237,7 @@ TEST_SUITE("threads/const_queries") {
             ObjectDescription description;
             if (i % 8 == 0) {
                 description.mesh = *id;
-                description.transform = scene::Transform{glm::dmat3(1.0), 25.0 * random.direction()};
+                description.transform = Transform{glm::dmat3(1.0), 25.0 * random.direction()};
             } else {
                 description.bound = oracle::random_box(random, glm::dvec3(0.0), 30.0);
             }
@@ -273,7 +273,7 @@ TEST_SUITE("threads/const_queries") {
         scene::Scene scene;
         const auto id = *scene.add_mesh(bumpy(4), "mesh");
         for (int i = 0; i < 60; ++i) {
-            scene::Transform place;
+            Transform place;
             place.translation = box_of(i).center;
             const auto node = *scene.add_node(scene::kNone, place, ~0u, "node");
             REQUIRE(scene.add_instance(node, id).has_value());

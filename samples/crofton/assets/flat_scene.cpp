@@ -24,7 +24,7 @@ Result<FlatScene> flat_scene(const SceneSource& source, const ReadLimits& limits
         const scene::MeshId id = scene.mesh_of(i);
         const TriangleMesh& mesh = scene.mesh(id);
         const bool glows = id < source.emission.size() && !source.emission[id].empty();
-        const scene::Transform& world = scene.world(scene.node_of(i));
+        const Transform& world = scene.world(scene.node_of(i));
         const bool mirrored = glm::dot(world.linear[0], glm::cross(world.linear[1], world.linear[2])) < 0.0;
         for (std::size_t t = 0; t < mesh.indices.size(); t += 3) {
             const auto vertex = [&](std::size_t k) { return mesh.indices[t + (mirrored ? 2 - k : k)]; };

@@ -13,7 +13,7 @@ std::string_view bytes_of(std::span<const T> values) {
     return {reinterpret_cast<const char*>(values.data()), values.size_bytes()};
 }
 
-Json node_of(const scene::Transform& t, scene::MeshId mesh) {
+Json node_of(const Transform& t, scene::MeshId mesh) {
     Json matrix = Json::array();
     for (int column = 0; column < 3; ++column) {
         for (int row = 0; row < 3; ++row) matrix.push_back(t.linear[column][row]);

@@ -30,7 +30,7 @@ Result<std::optional<std::vector<double>>> numbers(const Json& object, const cha
                 std::string("its ") + key + " has not " + std::to_string(count) + " numbers");
 }
 
-Result<scene::Transform> transform_of(const Json& node) {
+Result<Transform> transform_of(const Json& node) {
     const auto matrix = numbers(node, "matrix", 16), translation = numbers(node, "translation", 3),
                turn = numbers(node, "rotation", 4), scale = numbers(node, "scale", 3);
     for (const auto* part : {&matrix, &translation, &turn, &scale})
@@ -38,7 +38,7 @@ Result<scene::Transform> transform_of(const Json& node) {
     if (*matrix) {
         glm::dmat4 m;
         for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = (**matrix)[static_cast<std::size_t>(i)];
-        return scene::from_matrix(m);
+        return from_matrix(m);
     }
     const auto vector = [](const std::optional<std::vector<double>>& v, double otherwise) {
         return v ? glm::dvec3((*v)[0], (*v)[1], (*v)[2]) : glm::dvec3(otherwise);
@@ -48,7 +48,7 @@ Result<scene::Transform> transform_of(const Json& node) {
     const double length = glm::length(rotation);
     if (!(length > 1e-6) || !std::isfinite(length))
         return fail(ErrorCode::degenerate, kNoItem, "its rotation is no quaternion of length one");
-    return scene::from_trs(vector(*translation, 0.0), rotation / length, vector(*scale, 1.0));
+    return from_trs(vector(*translation, 0.0), rotation / length, vector(*scale, 1.0));
 }
 
 // emissiveFactor · KHR_materials_emissive_strength; textures of it are not read.
@@ -163,7 +163,7 @@ class GltfReader {
         return {};
     }
 
-    Result<scene::NodeId> add_node(const std::string& name, const Json& node, const scene::Transform& local,
+    Result<scene::NodeId> add_node(const std::string& name, const Json& node, const Transform& local,
                                    scene::NodeId parent) {
         const Json* own = member(node, "name");
         const auto id =

@@ -2,7 +2,7 @@
 // Shapes that the town is made of, added one by one to a mesh of flat-coloured faces.
 #pragma once
 #include <crofton/geometry/mesh.hpp>
-#include <crofton/scene/transform.hpp>
+#include <crofton/geometry/transform.hpp>
 #include <glm/vec3.hpp>
 #include <span>
 #include <vector>
@@ -16,7 +16,7 @@ namespace crofton::assets {
 // Faces share no vertices, so that each keeps its colour and its edge. Coordinates go through `frame`, double to float.
 class MeshBuilder {
   public:
-    scene::Transform frame;
+    Transform frame;
 
     // Counter-clockwise seen from outside.
     void triangle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::vec3& color);

@@ -96,7 +96,7 @@ std::vector<scene::InstanceId> instances_on(const scene::Scene& scene, std::vect
 }
 
 // Around the blocks in the town's middle, on the pavement.
-std::vector<glm::dvec3> make_walk(const Grid& grid, const scene::Transform& root) {
+std::vector<glm::dvec3> make_walk(const Grid& grid, const Transform& root) {
     const std::size_t i = (grid.x_lines.size() - 1) / 2, j = (grid.z_lines.size() - 1) / 2;
     const std::size_t i0 = i > 0 ? i - 1 : 0, j0 = j > 0 ? j - 1 : 0;
     const std::size_t i1 = std::min(i + 1, grid.x_lines.size() - 1), j1 = std::min(j + 1, grid.z_lines.size() - 1);
@@ -116,7 +116,7 @@ Result<SceneSource> make_town(const LoadOptions& options) {
     if (wanted > kMaxInstances)
         return fail(ErrorCode::out_of_range, wanted, "town: at most 1000000 instances, not " + std::to_string(wanted));
     SceneSource source{"town", scene::Scene({options.criterion}), {}, {}, {}, {}};
-    const scene::Transform turn = *scene::from_trs({}, glm::angleAxis(kTurn, glm::dvec3(0, 1, 0)), glm::dvec3(1.0));
+    const Transform turn = *from_trs({}, glm::angleAxis(kTurn, glm::dvec3(0, 1, 0)), glm::dvec3(1.0));
     const auto root = source.scene.add_node(scene::kNone, turn, ~0u, "town");
     if (!root) return tl::unexpected(root.error());
     const double blocks = std::max(1.0, std::round(wanted / kInstancesPerBlock));
@@ -134,7 +134,7 @@ Result<SceneSource> make_town(const LoadOptions& options) {
 
     struct Crane {
         scene::NodeId node;
-        scene::Transform start;
+        Transform start;
     };
     std::vector<Crane> cranes;
     std::vector<scene::NodeId> moving;
@@ -159,7 +159,7 @@ Result<SceneSource> make_town(const LoadOptions& options) {
         }
         for (const Crane& crane : cranes)
             (void)scene.set_local(
-                crane.node, crane.start * *scene::from_trs({}, glm::angleAxis(0.12 * seconds, glm::dvec3(0, 1, 0)),
+                crane.node, crane.start * *from_trs({}, glm::angleAxis(0.12 * seconds, glm::dvec3(0, 1, 0)),
                                                            glm::dvec3(1.0)));
     };
     source.one_sided.assign(source.scene.mesh_count(), 1);  // where both sides show, both are built

@@ -11,8 +11,8 @@ constexpr int kHousesPerWidth = 12;
 constexpr double kCraneHeight = 30.0;
 constexpr double kCableLength = 14.0;
 
-scene::Transform turned(double x, double y, double z, double turn, double scale = 1.0) {
-    return *scene::from_trs({x, y, z}, glm::angleAxis(turn, glm::dvec3(0, 1, 0)), glm::dvec3(scale));
+Transform turned(double x, double y, double z, double turn, double scale = 1.0) {
+    return *from_trs({x, y, z}, glm::angleAxis(turn, glm::dvec3(0, 1, 0)), glm::dvec3(scale));
 }
 
 }  // namespace
@@ -47,7 +47,7 @@ scene::MeshId Builder::any(const std::vector<scene::MeshId>& list) {
     return list[static_cast<std::size_t>(library_.pick(static_cast<int>(list.size())))];
 }
 
-scene::NodeId Builder::place(const Parts& parts, const scene::Transform& transform, scene::NodeId parent) {
+scene::NodeId Builder::place(const Parts& parts, const Transform& transform, scene::NodeId parent) {
     if (status_ && !library_.status()) status_ = library_.status();
     if (!status_) return scene::kNone;
     const auto node = scene_.add_node(parent == scene::kNone ? root_ : parent, transform);
@@ -69,7 +69,7 @@ void Builder::place_tree(double x, double z, double least, double most) {
     place(any(trees_), x, z, turn, scale);
 }
 
-void Builder::add_row(double length, const scene::Transform& frame) {
+void Builder::add_row(double length, const Transform& frame) {
     double x = 0.0;
     while (length - x >= kLeastWidth) {
         const int left = static_cast<int>(std::lround(length - x));
@@ -79,7 +79,7 @@ void Builder::add_row(double length, const scene::Transform& frame) {
         if (left <= kMostWidth) width = left;
         const auto& types = houses_[width];
         place(types[static_cast<std::size_t>(library_.pick(kHousesPerWidth))],
-              frame * scene::Transform{glm::dmat3(1.0), {x, 0.0, 0.0}});
+              frame * Transform{glm::dmat3(1.0), {x, 0.0, 0.0}});
         x += width;
     }
 }

@@ -38,7 +38,7 @@ class Builder {
     void add_countryside(const Grid& grid);
 
     // A node of the root with an instance of each part; kNone after the first error, which status() holds.
-    scene::NodeId place(const Parts& parts, const scene::Transform& transform, scene::NodeId parent = scene::kNone);
+    scene::NodeId place(const Parts& parts, const Transform& transform, scene::NodeId parent = scene::kNone);
     scene::NodeId place(scene::MeshId mesh, double x, double z, double turn, double scale = 1.0);
     [[nodiscard]] const Result<void>& status() const { return status_; }
     [[nodiscard]] const std::vector<scene::NodeId>& jibs() const { return jibs_; }
@@ -48,7 +48,7 @@ class Builder {
         scene::MeshId paving, lawn, setts, gravel, kerb;
     };
     const Ground& ground(const Block& block, bool courtyard);
-    void add_row(double length, const scene::Transform& frame);
+    void add_row(double length, const Transform& frame);
     void place_tree(double x, double z, double least_scale, double most_scale);
     scene::MeshId any(const std::vector<scene::MeshId>& list);
 

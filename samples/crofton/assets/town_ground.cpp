@@ -74,7 +74,7 @@ void Builder::add_streets(const Grid& grid) {
     const auto crossing =
         library_.add_polygon({rectangle(h, h)}, {}, {1, 0, 0}, {0, 0, -1}, srgb(90, 90, 92), "crossing");
     const auto at = [](double x, double z, double turn) {
-        return *scene::from_trs({x, 0.0, z}, glm::angleAxis(turn, glm::dvec3(0, 1, 0)), glm::dvec3(1.0));
+        return *from_trs({x, 0.0, z}, glm::angleAxis(turn, glm::dvec3(0, 1, 0)), glm::dvec3(1.0));
     };
     for (std::size_t j = 0; j < grid.z_lines.size(); ++j)
         for (std::size_t i = 0; i < grid.x_lines.size(); ++i) {
@@ -133,7 +133,7 @@ void Builder::add_countryside(const Grid& grid) {
             const double y = hill(x - cx, z - cz, outside) - 1.0;
             const double scale = random.uniform(1.0, 1.6), turn = random.uniform(0.0, 6.28);
             place(Parts{any(library_.chance(0.5) ? conifers_ : trees_)},
-                  *scene::from_trs({x, y, z}, glm::angleAxis(turn, glm::dvec3(0, 1, 0)), glm::dvec3(scale)));
+                  *from_trs({x, y, z}, glm::angleAxis(turn, glm::dvec3(0, 1, 0)), glm::dvec3(scale)));
         }
     }
 }

@@ -255,13 +255,13 @@ Parts make_house(Library& library, int width) {
     }
     parts.push_back(library.add(b, "front joinery"));
     MeshBuilder rear;
-    rear.frame = scene::Transform{glm::dmat3(-1, 0, 0, 0, 1, 0, 0, 0, -1), {w, 0, -d}};
+    rear.frame = Transform{glm::dmat3(-1, 0, 0, 0, 1, 0, 0, 0, -1), {w, 0, -d}};
     add_joinery(rear, library, back, s.trim, scaled(s.door, 0.8), scaled(s.trim, 0.8), true);
     if (!attic.empty()) {
         const Opening& o = attic[0];
         for (const bool left : {true, false}) {
-            rear.frame = left ? scene::Transform{glm::dmat3(0, 0, 1, 0, 1, 0, -1, 0, 0), {0, 0, -d}}
-                              : scene::Transform{glm::dmat3(0, 0, -1, 0, 1, 0, 1, 0, 0), {w, 0, 0}};
+            rear.frame = left ? Transform{glm::dmat3(0, 0, 1, 0, 1, 0, -1, 0, 0), {0, 0, -d}}
+                              : Transform{glm::dmat3(0, 0, -1, 0, 1, 0, 1, 0, 0), {w, 0, 0}};
             add_joinery(rear, library, {o}, s.trim, s.door, scaled(s.trim, 0.8), true);
         }
     }

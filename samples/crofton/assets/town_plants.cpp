@@ -42,7 +42,7 @@ scene::MeshId make_conifer(Library& library) {
         const double t = static_cast<double>(k) / kTiers;
         const double base = height * (0.12 + 0.78 * t), top = std::min(height, base + 0.30 * height);
         const double r = radius * (1.0 - 0.84 * t), turn = random.uniform(0.0, 1.0);
-        b.frame = *scene::from_trs({}, glm::angleAxis(turn, glm::dvec3(0, 1, 0)), glm::dvec3(1.0));
+        b.frame = *from_trs({}, glm::angleAxis(turn, glm::dvec3(0, 1, 0)), glm::dvec3(1.0));
         b.tube({0, base, 0}, {0, top, 0}, r, 0.0, 11, scaled(needles, 0.85 + 0.3 * t), false);
     }
     return library.add(b, "conifer");

@@ -23,7 +23,7 @@ Rectangle driven(const Loop& loop) {
             0.5 * (loop.z1 - loop.z0) + outward};
 }
 
-scene::Transform facing(const glm::dvec3& middle, const glm::dvec3& direction) {
+Transform facing(const glm::dvec3& middle, const glm::dvec3& direction) {
     const glm::dvec3 forward = glm::normalize(direction), up(0, 1, 0);
     return {glm::dmat3(forward, up, glm::cross(forward, up)), middle};
 }
@@ -67,14 +67,14 @@ glm::dvec3 Loop::at(double distance) const {
     return {r.x, 0.0, r.z};
 }
 
-scene::Transform pose(const Driver& driver, double seconds) {
+Transform pose(const Driver& driver, double seconds) {
     const double s = driver.start + driver.speed * seconds;
     const glm::dvec3 front = driver.loop.at(s), back = driver.loop.at(s - driver.wheelbase);
     return facing(0.5 * (front + back), front - back);
 }
 
-scene::Transform trailer_pose(const Driver& driver, double seconds) {
-    const scene::Transform body = pose(driver, seconds);
+Transform trailer_pose(const Driver& driver, double seconds) {
+    const Transform body = pose(driver, seconds);
     const glm::dvec3 hinge = body * glm::dvec3(-driver.hitch, 0.0, 0.0);
     const double s = driver.start + driver.speed * seconds - 0.5 * driver.wheelbase - driver.hitch;
     return facing(hinge, hinge - driver.loop.at(s - kTrailerBase));

@@ -30,7 +30,7 @@ struct Driver {
 };
 
 // Where the driver's front axle path has taken its body after `seconds`: origin at the wheelbase's middle.
-[[nodiscard]] scene::Transform pose(const Driver& driver, double seconds);
-[[nodiscard]] scene::Transform trailer_pose(const Driver& driver, double seconds);
+[[nodiscard]] Transform pose(const Driver& driver, double seconds);
+[[nodiscard]] Transform trailer_pose(const Driver& driver, double seconds);
 
 }  // namespace crofton::assets::town

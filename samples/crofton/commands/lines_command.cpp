@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <crofton/radiosity/lines.hpp>
+#include <crofton/lines/lines.hpp>
 #include <crofton/radiosity/patches.hpp>
 #include <cstdio>
 
@@ -17,7 +17,7 @@
 namespace crofton::cli {
 namespace {
 
-using radiosity::LineMethod;
+using lines::LineMethod;
 
 struct LinesOptions {
     std::vector<std::string> scenes;
@@ -34,24 +34,24 @@ struct Seen {
     double surface_area = 0.0;  // of the body that the lines fill
 };
 
-Seen by_lines(const radiosity::LineTracer& tracer, const radiosity::LineSource& source, const LinesOptions& options) {
-    const auto seen = radiosity::visibility_complexity(tracer, source, options.blocks);
-    const double n = static_cast<double>(options.blocks * radiosity::LineSource::kBlock);
+Seen by_lines(const lines::LineTracer& tracer, const lines::LineSource& source, const LinesOptions& options) {
+    const auto seen = lines::visibility_complexity(tracer, source, options.blocks);
+    const double n = static_cast<double>(options.blocks * lines::LineSource::kBlock);
     return {n, n * seen.mean_crossings, n * (std::pow(seen.deviation, 2.0) + std::pow(seen.mean_crossings, 2.0)),
             n * (1.0 - seen.wasted), source.surface_area()};
 }
 
 // As many bundles as there are blocks / 2, of the size that the solver takes: a cell as large as a triangle.
-Seen by_bundles(const radiosity::BundleTracer& tracer, double cell_area, double box_area, std::uint64_t seed,
+Seen by_bundles(const lines::BundleTracer& tracer, double cell_area, double box_area, std::uint64_t seed,
                 sampling::Sequence sequence, const LinesOptions& options) {
     const sampling::UnitPoints points(seed, sequence);
-    radiosity::BundleTracer::Scratch scratch;
-    radiosity::LineHits hits;
+    lines::BundleTracer::Scratch scratch;
+    lines::LineHits hits;
     Seen seen;
     seen.surface_area = box_area;
     const std::uint64_t bundles = std::max<std::uint64_t>(1, options.blocks / 2);
     for (std::uint64_t k = 0; k < bundles; ++k) {
-        const auto bundle = radiosity::make_bundle(tracer.bounds(), cell_area, points.at<2>(k), seed << 32 | k);
+        const auto bundle = lines::make_bundle(tracer.bounds(), cell_area, points.at<2>(k), seed << 32 | k);
         tracer.all_hits(bundle, scratch, hits);
         seen.lines += 0.25 * box_area / cell_area;  // as many as are meant: on average over directions
         std::uint32_t begin = 0;
@@ -103,25 +103,25 @@ Result<void> run_lines(const LinesOptions& options) {
     const Vector<radiosity::Material> materials(mesh.triangle_count());
     const auto patches = radiosity::make_patches(mesh, materials);
     if (!patches) return tl::unexpected(patches.error());
-    const auto tracer = radiosity::LineTracer::build(mesh);
+    const auto tracer = lines::LineTracer::build(mesh);
     if (!tracer) return tl::unexpected(tracer.error());
     double surface = 0.0;
     for (const double area : patches->areas) surface += area;
-    const auto bundles = radiosity::BundleTracer::build(mesh);
+    const auto bundles = lines::BundleTracer::build(mesh);
     if (!bundles) return tl::unexpected(bundles.error());
-    const double box_area = radiosity::LineSource(tracer->bounds(), LineMethod::walls, 1).surface_area();
+    const double box_area = lines::LineSource(tracer->bounds(), LineMethod::walls, 1).surface_area();
     const double cell_area = surface / static_cast<double>(mesh.triangle_count());
     Json rows = Json::array();
     for (const sampling::Sequence sequence : {sampling::Sequence::pseudo_random, sampling::Sequence::quasi_random}) {
         for (const LineMethod method : {LineMethod::sphere_points, LineMethod::disc, LineMethod::walls})
             rows.push_back(compare(radiosity::to_string(method), sequence, surface, options, [&](std::uint64_t seed) {
-                return by_lines(*tracer, radiosity::LineSource(tracer->bounds(), method, seed, sequence), options);
+                return by_lines(*tracer, lines::LineSource(tracer->bounds(), method, seed, sequence), options);
             }));
         rows.push_back(compare("bundles", sequence, surface, options, [&](std::uint64_t seed) {
             return by_bundles(*bundles, cell_area, box_area, seed, sequence, options);
         }));
     }
-    const char* best = radiosity::to_string(radiosity::choose_method(*tracer, options.seed));
+    const char* best = radiosity::to_string(lines::choose_method(*tracer, options.seed));
     if (!options.json.empty())
         return write_json(options.json, {{"scene", source->name},
                                          {"triangles", mesh.triangle_count()},

@@ -61,13 +61,13 @@ Result<SceneComplexity> look_at(const std::string& scene, const FactorsRun& run)
     const auto flat = assets::flat_scene(*source, run.read.limits);
     if (!flat) return tl::unexpected(flat.error());
     const TriangleMesh& mesh = flat->mesh;
-    const auto tracer = radiosity::LineTracer::build(mesh);
+    const auto tracer = lines::LineTracer::build(mesh);
     if (!tracer) return tl::unexpected(tracer.error());
     const Vector<std::uint32_t> numbers = patch_numbers(mesh, tracer->bounds(), run.patches);
     const Vector<radiosity::Material> materials(std::size_t{*std::max_element(numbers.begin(), numbers.end())} + 1);
     const auto patches = radiosity::make_patches(mesh, numbers, materials);
     if (!patches) return tl::unexpected(patches.error());
-    const radiosity::LineSource lines(tracer->bounds(), radiosity::LineMethod::walls, run.seed);
+    const lines::LineSource lines(tracer->bounds(), lines::LineMethod::walls, run.seed);
     const auto matrix = radiosity::factors_by_global_lines(*tracer, *patches, lines, run.blocks);
     if (!matrix) return tl::unexpected(matrix.error());
     const auto information = study::mutual_information(*matrix);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <crofton/geometry/mesh.hpp>
 #include <crofton/measure/measure.hpp>
-#include <crofton/radiosity/lines.hpp>
+#include <crofton/lines/lines.hpp>
 #include <crofton/sampling/sampling.hpp>
 #include <crofton/study/convex_body.hpp>
 #include <cstdio>
@@ -80,8 +80,8 @@ VerifyRow row(const char* claim, const char* formula, double exact, double facto
 
 // The hull's F and V by the lines that the mesh's own area was counted with, and M by as many breadths.
 void hull_rows(std::span<const glm::dvec3> points, const ConvexHull& hull, const measure::IntrinsicVolumes& exact,
-               const radiosity::LineSource& source, const MeasureOptions& options, std::vector<VerifyRow>& rows) {
-    const std::uint64_t blocks = options.lines / radiosity::LineSource::kBlock + 1;
+               const lines::LineSource& source, const MeasureOptions& options, std::vector<VerifyRow>& rows) {
+    const std::uint64_t blocks = options.lines / lines::LineSource::kBlock + 1;
     const double ball_area = source.surface_area();
     if (hull.rank == 3) {
         const HalfSpaces solid(points, hull);
@@ -103,7 +103,7 @@ void hull_rows(std::span<const glm::dvec3> points, const ConvexHull& hull, const
     for (const std::uint32_t v : hull.vertices) body.points.push_back(points[v]);
     Mean breadths;
     const sampling::UnitPoints numbers(options.seed);
-    for (std::uint64_t i = 0; i < blocks * radiosity::LineSource::kBlock; ++i)
+    for (std::uint64_t i = 0; i < blocks * lines::LineSource::kBlock; ++i)
         breadths.add(study::breadth(body, sampling::direction(numbers.at<2>(i))));
     rows.push_back(row("its hull's integral of mean curvature M", "mean breadth · 2 pi", exact.mean_curvature,
                        2.0 * std::numbers::pi, breadths));
@@ -117,14 +117,14 @@ Result<void> run_measure(const MeasureOptions& options) {
     if (!hull) return tl::unexpected(hull.error());
     const auto exact = measure::intrinsic_volumes_of_hull(points);
     if (!exact) return tl::unexpected(exact.error());
-    const auto tracer = radiosity::LineTracer::build(*mesh);
+    const auto tracer = lines::LineTracer::build(*mesh);
     if (!tracer) return tl::unexpected(tracer.error());
     if (hull->rank < 2)
         return fail(ErrorCode::empty, kNoItem, options.file + ": all vertices lie on one line, which no line hits");
 
-    const radiosity::LineSource source(tracer->bounds(), radiosity::LineMethod::disc, options.seed);
+    const lines::LineSource source(tracer->bounds(), lines::LineMethod::disc, options.seed);
     const auto seen =
-        radiosity::visibility_complexity(*tracer, source, options.lines / radiosity::LineSource::kBlock + 1);
+        lines::visibility_complexity(*tracer, source, options.lines / lines::LineSource::kBlock + 1);
     std::vector<VerifyRow> rows;
     const double error = seen.deviation / std::sqrt(static_cast<double>(seen.lines));
     rows.push_back(measured_row("the triangles' area S", "crossings a line · F0 / 2", area_of(*mesh),

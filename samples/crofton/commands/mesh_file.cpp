@@ -46,7 +46,7 @@ Result<TriangleMesh> load_obj_mesh(const std::string& path, const ReadOptions& o
 Result<TriangleMesh> load_mesh(const std::string& path, const ReadOptions& options) {
     if (assets::extension(path) == "obj") return load_obj_mesh(path, options);
     TriangleMesh all;
-    const auto loaded = for_each_instance(path, options, [&](const TriangleMesh& mesh, const scene::Transform& world) {
+    const auto loaded = for_each_instance(path, options, [&](const TriangleMesh& mesh, const Transform& world) {
         const auto base = static_cast<std::uint32_t>(all.positions.size());
         for (const glm::vec3& p : mesh.positions) all.positions.push_back(glm::vec3(world * glm::dvec3(p)));
         const std::size_t first = all.indices.size();
@@ -66,7 +66,7 @@ Result<std::vector<glm::dvec3>> load_points(const std::string& path, const ReadO
         if (!file) return tl::unexpected<Error>(file.error());
         points = std::move(file->positions);
     } else if (const auto loaded = for_each_instance(path, options,
-                                                     [&](const TriangleMesh& mesh, const scene::Transform& world) {
+                                                     [&](const TriangleMesh& mesh, const Transform& world) {
                                                          for (const glm::vec3& p : mesh.positions)
                                                              points.push_back(world * glm::dvec3(p));
                                                      });

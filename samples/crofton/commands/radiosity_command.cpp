@@ -43,9 +43,9 @@ Result<radiosity::SolverOptions> solver_options(const RadiosityOptions& options)
     if (options.method == "local")
         result.transport = radiosity::Transport::local;
     else if (options.method == "bundles")
-        result.method = radiosity::LineMethod::bundles;
+        result.method = lines::LineMethod::bundles;
     else if (options.method == "walls")
-        result.method = radiosity::LineMethod::walls;
+        result.method = lines::LineMethod::walls;
     else if (options.method != "global")
         return fail(ErrorCode::invalid_argument, kNoItem,
                     "--method: " + options.method + " is none of local, global, bundles, walls");
@@ -205,7 +205,7 @@ Result<int> run_radiosity(const RadiosityOptions& options) {
         if (auto written = write_lit_picture(options.png, picture, *camera, 1280, 720, sky); !written)
             return tl::unexpected(written.error());
     }
-    const auto tracer = radiosity::LineTracer::build(lit->patches.mesh);
+    const auto tracer = lines::LineTracer::build(lit->patches.mesh);
     if (!tracer) return tl::unexpected(tracer.error());
     std::optional<LightFieldReport> field;
     if (!options.light_field.empty()) {
@@ -223,8 +223,8 @@ Result<int> run_radiosity(const RadiosityOptions& options) {
         if (!compared) return tl::unexpected(compared.error());
         reference = *compared;
     }
-    const auto seen = radiosity::visibility_complexity(
-        *tracer, radiosity::LineSource(tracer->bounds(), radiosity::LineMethod::walls, options.seed), 50);
+    const auto seen = lines::visibility_complexity(
+        *tracer, lines::LineSource(tracer->bounds(), lines::LineMethod::walls, options.seed), 50);
     glm::dvec3 mean(0.0);
     double area = 0.0;
     for (std::size_t i = 0; i < lit->patches.count(); ++i) {

@@ -4,7 +4,7 @@
 #include <crofton/core/executor.hpp>
 #include <crofton/geometry/camera.hpp>
 #include <crofton/geometry/mesh.hpp>
-#include <crofton/radiosity/lines.hpp>
+#include <crofton/lines/lines.hpp>
 #include <string>
 
 #include "json/json.hpp"
@@ -13,7 +13,7 @@ namespace crofton::cli {
 
 struct LightFieldRun {
     const TriangleMesh& light;  // three vertices a triangle, colours: what leaves there
-    const radiosity::LineTracer& tracer;
+    const lines::LineTracer& tracer;
     glm::vec3 sky;
     const Camera& camera;
     float exposure;

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <crofton/radiosity/lines.hpp>
+#include <crofton/lines/lines.hpp>
 #include <crofton/render/device.hpp>
 #include <crofton/render/rasterizer.hpp>
 #include <cstdio>
@@ -115,9 +115,9 @@ Result<LitScene> lit_scene(const assets::FlatScene& scene, double edge, const st
     auto refined = lengths.edge > 0.0 ? radiosity::refine(mended->mesh, radiosity::EdgeLength(lengths))
                                       : radiosity::refine(mended->mesh, edge);
     if (!refined) return tl::unexpected(refined.error());
-    std::optional<radiosity::LineTracer> tracer;
+    std::optional<lines::LineTracer> tracer;
     if (sun) {
-        auto built = radiosity::LineTracer::build(refined->mesh);
+        auto built = lines::LineTracer::build(refined->mesh);
         if (!built) return tl::unexpected(built.error());
         tracer.emplace(std::move(*built));
         auto cut = radiosity::refine_at_shadows(*tracer, refined->mesh, sun->to_sun, sun->halvings);

@@ -44,12 +44,12 @@ double largest_stretch(const glm::dmat3& linear) {
 
 // Of a point's image: the sum of its terms' magnitudes along each axis, which cancel where the mesh lies far from its
 // own origin.
-glm::dvec3 size_of_image(const scene::Transform& world, const glm::dvec3& p) {
+glm::dvec3 size_of_image(const Transform& world, const glm::dvec3& p) {
     return glm::abs(world.linear[0]) * std::abs(p.x) + glm::abs(world.linear[1]) * std::abs(p.y) +
            glm::abs(world.linear[2]) * std::abs(p.z) + glm::abs(world.translation);
 }
 
-Aabb world_aabb(const TriangleMesh& mesh, const scene::Transform& world) {
+Aabb world_aabb(const TriangleMesh& mesh, const Transform& world) {
     Aabb box;
     glm::dvec3 largest(0.0);
     for (const glm::vec3& p : mesh.positions) {
@@ -111,7 +111,7 @@ void Bounds::update() {
 }
 
 void Bounds::recompute(scene::InstanceId i) {
-    const scene::Transform& world = scene_.world(scene_.node_of(i));
+    const Transform& world = scene_.world(scene_.node_of(i));
     if (kind_ == BoundsKind::aabb) {
         boxes_[i] = obb_of(world_aabb(scene_.mesh(scene_.mesh_of(i)), world));
         if (!validate(boxes_[i])) boxes_[i] = scene_.world_boxes()[i];

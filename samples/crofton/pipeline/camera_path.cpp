@@ -120,7 +120,7 @@ Aabb focus_of(const scene::Scene& scene) {
     for (scene::InstanceId i = 0; i < scene.instance_count(); ++i) {
         if (scene.layer_masks()[i] == 0) continue;
         const scene::MeshId mesh = scene.mesh_of(i);
-        const scene::Transform& world = scene.world(scene.node_of(i));
+        const Transform& world = scene.world(scene.node_of(i));
         const glm::dvec3 center = world.linear * mesh_extents[mesh].center() + world.translation;
         const glm::dvec3 half = mesh_extents[mesh].half_extents();
         const glm::dvec3 half_size = glm::abs(world.linear[0]) * half.x + glm::abs(world.linear[1]) * half.y +

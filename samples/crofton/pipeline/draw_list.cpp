@@ -72,7 +72,7 @@ DrawList::DrawList(const scene::Scene& scene, std::span<const scene::InstanceId>
             parts_.push_back(shared[mesh]);
             continue;
         }
-        const scene::Transform& world = scene.world(scene.node_of(instance));
+        const Transform& world = scene.world(scene.node_of(instance));
         const glm::dmat3 normals = normal_matrix(world.linear);
         const glm::dvec3 offset = world.translation - baked_origin_;
         placed.assign(meshes[mesh].vertices.begin(), meshes[mesh].vertices.end());
@@ -108,7 +108,7 @@ void DrawList::select(std::span<const scene::InstanceId> visible, const Camera& 
     transforms_[1].unlit = 1.0f;
     for (const std::uint32_t rank : selected_) {
         std::uint32_t transform = unlit_[rank];
-        const scene::Transform& world = scene_.world(scene_.node_of(instances_[rank]));
+        const Transform& world = scene_.world(scene_.node_of(instances_[rank]));
         if (!baked_[rank]) {
             transform = static_cast<std::uint32_t>(transforms_.size());
             transforms_.push_back(render::draw_transform(to_clip(world.linear, world.translation), world.linear));
@@ -129,7 +129,7 @@ void DrawList::sort_front_to_back(std::span<const scene::InstanceId> visible, co
     for (const scene::InstanceId instance : visible) {
         const std::uint32_t rank = ranks_[instance];
         const Aabb& bounds = parts_[rank].bounds;
-        const scene::Transform& world = scene_.world(scene_.node_of(instance));
+        const Transform& world = scene_.world(scene_.node_of(instance));
         const glm::dvec3 middle = bounds.center(), half = bounds.half_extents();
         const glm::dvec3 center = baked_[rank] ? middle + baked_origin_ : world.linear * middle + world.translation;
         const double radius = baked_[rank] ? glm::length(half) : glm::length(world.linear * half);

@@ -43,7 +43,7 @@ std::uint32_t count_distinct(std::vector<std::uint32_t>& objects) {
 
 }  // namespace
 
-FreeSpace::FreeSpace(pvs::Subject subject, radiosity::LineTracer tracer, const Aabb& focus)
+FreeSpace::FreeSpace(pvs::Subject subject, lines::LineTracer tracer, const Aabb& focus)
     : subject_(std::move(subject)), tracer_(std::move(tracer)) {
     const glm::dvec3 size = focus.max - focus.min;
     size_ = std::hypot(size.x, size.z);
@@ -59,7 +59,7 @@ std::optional<FreeSpace> FreeSpace::find(const scene::Scene& scene, const Aabb& 
     if (triangles > kMostTriangles) return std::nullopt;
     auto subject = pvs::subject_of(scene);
     if (!subject) return std::nullopt;
-    auto tracer = radiosity::LineTracer::build(subject->mesh);
+    auto tracer = lines::LineTracer::build(subject->mesh);
     if (!tracer) return std::nullopt;
     FreeSpace space(std::move(*subject), std::move(*tracer), focus);
     if (!(space.eye_height_ > 0.0)) return std::nullopt;
@@ -82,7 +82,7 @@ void FreeSpace::find_places(const Aabb& focus) {
                                 focus.min.z + (z + 0.5) / columns_.y * (focus.max.z - focus.min.z));
             lines.push_back({glm::dvec3(at.x - subject_.origin.x, top, at.z - subject_.origin.z), {0.0, -1.0, 0.0}});
         }
-    radiosity::LineHits found;
+    lines::LineHits found;
     tracer_.all_hits(lines, found);
     std::uint32_t begin = 0;
     for (std::uint32_t column = 0; column < lines.size(); ++column) {
@@ -133,14 +133,14 @@ bool FreeSpace::is_free(const glm::dvec3& from, const glm::dvec3& to) const {
     const glm::dvec3 along = (to - from) / length;
     const glm::dvec3 across(-along.z, 0.0, along.x);
     const double half = kHalfWidth * eye_height_ / std::max(glm::length(across), 1e-6);
-    std::array<radiosity::FirstHitQuery, 4> queries;
-    std::array<radiosity::Hit, 4> hits;
+    std::array<lines::FirstHitQuery, 4> queries;
+    std::array<lines::Hit, 4> hits;
     const std::array<glm::dvec3, 4> offsets{glm::dvec3(0.0), half * across, -half * across,
                                             glm::dvec3(0.0, -kKnee * eye_height_, 0.0)};
     for (std::size_t i = 0; i < offsets.size(); ++i) queries[i].line = {from - subject_.origin + offsets[i], along};
     tracer_.first_hits(queries, hits);
-    return std::all_of(hits.begin(), hits.end(), [&](const radiosity::Hit& hit) {
-        return hit.triangle == radiosity::Hit::kNothing || static_cast<double>(hit.t) > 1.001 * length;
+    return std::all_of(hits.begin(), hits.end(), [&](const lines::Hit& hit) {
+        return hit.triangle == lines::Hit::kNothing || static_cast<double>(hit.t) > 1.001 * length;
     });
 }
 
@@ -206,7 +206,7 @@ std::vector<glm::dvec3> FreeSpace::walk() const {
 }
 
 FreeSpace::Sight FreeSpace::look_around(const glm::dvec3& eye) const {
-    std::vector<radiosity::FirstHitQuery> queries(kDirections);
+    std::vector<lines::FirstHitQuery> queries(kDirections);
     Sight sight;
     sight.hits.resize(kDirections);
     for (std::uint32_t i = 0; i < kDirections; ++i) queries[i].line = {eye - subject_.origin, direction_of(i)};
@@ -214,7 +214,7 @@ FreeSpace::Sight FreeSpace::look_around(const glm::dvec3& eye) const {
     std::vector<std::uint32_t> objects;
     double level = 0.0, level_hits = 0.0;
     for (std::uint32_t i = 0; i < kDirections; ++i) {
-        const bool hit = sight.hits[i].triangle != radiosity::Hit::kNothing;
+        const bool hit = sight.hits[i].triangle != lines::Hit::kNothing;
         const bool is_level = std::abs(direction_of(i).y) < kLevel;
         level += is_level ? 1.0 : 0.0;
         level_hits += is_level && hit ? 1.0 : 0.0;
@@ -238,8 +238,8 @@ glm::dvec3 FreeSpace::best_heading(const Sight& sight) const {
         objects.clear();
         double openness = 0.0;
         for (std::uint32_t i = 0; i < kDirections; ++i) {
-            const radiosity::Hit& hit = sight.hits[i];
-            if (glm::dot(direction_of(i), forward) < 0.75 || hit.triangle == radiosity::Hit::kNothing) continue;
+            const lines::Hit& hit = sight.hits[i];
+            if (glm::dot(direction_of(i), forward) < 0.75 || hit.triangle == lines::Hit::kNothing) continue;
             objects.push_back(subject_.object_of[hit.triangle]);
             openness += std::min(static_cast<double>(hit.t) / size_, 1.0) / kDirections;
         }

@@ -3,7 +3,7 @@
 #pragma once
 #include <crofton/geometry/box.hpp>
 #include <crofton/pvs/pvs.hpp>
-#include <crofton/radiosity/lines.hpp>
+#include <crofton/lines/lines.hpp>
 #include <crofton/scene/scene.hpp>
 #include <optional>
 #include <span>
@@ -19,7 +19,7 @@ struct Stand {
 
 // Places of an eye over floors, with ways between neighbours. A floor faces up, with room above to stand. A way is free
 // where lines at eye height, at each side and at half the height meet nothing. Of places that ways connect the most are
-// kept, of two such regions the lower one. y is up. Lines are single precision: see radiosity::LineTracer.
+// kept, of two such regions the lower one. y is up. Lines are single precision: see lines::LineTracer.
 class FreeSpace {
   public:
     // Vertical lines over `focus`, kColumns along its longer side. Nothing where no line meets a floor, and of
@@ -36,7 +36,7 @@ class FreeSpace {
     [[nodiscard]] std::optional<Stand> best_stand() const;
 
   private:
-    FreeSpace(pvs::Subject subject, radiosity::LineTracer tracer, const Aabb& focus);
+    FreeSpace(pvs::Subject subject, lines::LineTracer tracer, const Aabb& focus);
     void find_places(const Aabb& focus);
     void keep_largest_region();
     [[nodiscard]] std::vector<std::uint32_t> neighbours_of(std::uint32_t place) const;
@@ -47,7 +47,7 @@ class FreeSpace {
     [[nodiscard]] bool is_straight(std::span<const std::uint32_t> way) const;
     // What lines in all directions meet.
     struct Sight {
-        std::vector<radiosity::Hit> hits;      // by direction
+        std::vector<lines::Hit> hits;      // by direction
         double surrounded = 0.0, backs = 0.0;  // shares: of level lines that meet something, of lines that meet a back
         std::uint32_t objects = 0;
     };
@@ -56,7 +56,7 @@ class FreeSpace {
     [[nodiscard]] double level_share() const;  // of ways that hardly rise or fall
 
     pvs::Subject subject_;
-    radiosity::LineTracer tracer_;
+    lines::LineTracer tracer_;
     double eye_height_ = 0.0, spacing_ = 0.0, size_ = 0.0;
     glm::uvec2 columns_{0};
     std::vector<glm::dvec3> places_;              // ascending by column, then by height

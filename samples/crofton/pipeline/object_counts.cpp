@@ -17,7 +17,7 @@ ObjectCounts ObjectCounter::count(const scene::Scene& scene, const Frustum& frus
             counts.triangles_passed += mesh.triangle_count();
             continue;
         }
-        const scene::Transform& world = scene.world(scene.node_of(instance));
+        const Transform& world = scene.world(scene.node_of(instance));
         points_.resize(mesh.positions.size());
         outside_.resize(mesh.positions.size());
         bool all_inside = true;

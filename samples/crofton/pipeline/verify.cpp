@@ -113,7 +113,7 @@ class FrameVerifier : FrameReport {
 
     ObjectTruth clip_object(scene::InstanceId instance) const {
         const TriangleMesh& mesh = scene_.mesh(scene_.mesh_of(instance));
-        const scene::Transform& world = scene_.world(scene_.node_of(instance));
+        const Transform& world = scene_.world(scene_.node_of(instance));
         ObjectTruth truth;
         for (std::size_t t = 0; t + 2 < mesh.indices.size(); t += 3) {
             glm::dvec3 triangle[3];

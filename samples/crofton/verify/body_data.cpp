@@ -75,7 +75,7 @@ Result<BodyData> data_of_scene(const std::string& source, const assets::LoadOpti
         if (has_hulls.size() <= id) has_hulls.resize(id + std::size_t{1});
         if (!has_hulls[id]) add_mesh(mesh, data);
         has_hulls[id] = true;
-        const scene::Transform& world = scene.world(scene.node_of(i));
+        const Transform& world = scene.world(scene.node_of(i));
         for (glm::vec3& p : mesh.positions) p = glm::vec3(world.linear * glm::dvec3(p) + world.translation);
         append(all, mesh);
     }

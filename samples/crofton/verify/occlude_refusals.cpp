@@ -77,7 +77,7 @@ class RefusalTrial {
         judge(set_.place(box), code, 1);
         judge(set_.move(box_, box), code, box_);
     }
-    void must_refuse(const scene::Transform& transform, ErrorCode code) {
+    void must_refuse(const Transform& transform, ErrorCode code) {
         judge(set_.place(shape_, transform), code, kAnyItem);
     }
     void must_hide_as_before() {

@@ -6,7 +6,7 @@
 #include <crofton/mesh/mesh_query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <crofton/pvs/pvs.hpp>
-#include <crofton/radiosity/lines.hpp>
+#include <crofton/lines/lines.hpp>
 #include <crofton/sampling/sampling.hpp>
 #include <cstdio>
 
@@ -59,7 +59,7 @@ Result<Baked> bake_town(const VerifyOptions& options) {
 }
 
 // The objects at the ends of the gaps that the line has within the box, each once.
-void add_ends(std::span<const radiosity::Hit> hits, const pvs::Subject& subject, const Line& line, const Aabb& box,
+void add_ends(std::span<const lines::Hit> hits, const pvs::Subject& subject, const Line& line, const Aabb& box,
               std::vector<std::uint32_t>& ends) {
     double begin = -HUGE_VAL, end = HUGE_VAL;
     for (int k = 0; k < 3; ++k) {
@@ -85,7 +85,7 @@ void add_ends(std::span<const radiosity::Hit> hits, const pvs::Subject& subject,
 // lines estimate so: for p = ε they have 20·ln(P/δ) hits in the mean, about 400, so a standard deviation of 5 % of ε
 // at most. A pair estimated above ε is thus above 0.8·ε, but for one in 30,000, and was missed with a chance of
 // (δ/P)^0.8. Gaps shorter than a hundredth of a cell's height do not count, so estimates are rather low.
-VerifyRow missed_pairs(const Baked& baked, const radiosity::LineTracer& tracer, const VerifyOptions& options) {
+VerifyRow missed_pairs(const Baked& baked, const lines::LineTracer& tracer, const VerifyOptions& options) {
     std::uint64_t missed = 0, above = 0;
     const auto lines = static_cast<std::uint64_t>(20.0 * baked.lines_a_cell);
     for (std::uint64_t i = 0; i < kCellsAsked; ++i) {
@@ -95,7 +95,7 @@ VerifyRow missed_pairs(const Baked& baked, const radiosity::LineTracer& tracer, 
         const Aabb box{world.min - baked.scene.subject.origin, world.max - baked.scene.subject.origin};
         Vector<Line> all;
         for (std::uint64_t n = 0; n < lines; ++n) all.push_back(sampling::line_from_box(box, random.point<5>()));
-        radiosity::LineHits hits;
+        lines::LineHits hits;
         tracer.all_hits(all, hits);
         std::vector<std::uint64_t> counts(baked.scene.subject.boxes.size(), 0);
         std::vector<std::uint32_t> ends;
@@ -178,7 +178,7 @@ std::vector<VerifyRow> verify_pvs(const VerifyOptions& options) {
         rows.push_back(computed_row("the town is baked: " + baked.error().message, "docs/pvs.md", 1.0, 0.0, 0.0));
         return rows;
     }
-    const auto tracer = radiosity::LineTracer::build(baked->scene.subject.mesh);
+    const auto tracer = lines::LineTracer::build(baked->scene.subject.mesh);
     rows.push_back(tracer ? missed_pairs(*baked, *tracer, options)
                           : untried_row("pairs that the bake missed", "theory.md (7)"));
     wrong_rays(*baked, options, rows);

@@ -19,7 +19,7 @@ mesh::MeshContact moved(mesh::MeshContact contact, const RigidTransform& pose) {
 InstanceBodies::InstanceBodies(const scene::Scene& scene) : scene_(&scene), of_mesh_(scene.mesh_count()) {}
 
 InstanceBodies::Placed InstanceBodies::place(scene::InstanceId instance) {
-    const scene::Transform& world = scene_->world(scene_->node_of(instance));
+    const Transform& world = scene_->world(scene_->node_of(instance));
     const RigidTransform pose{world.linear, world.translation};
     if (convex::validate_pose(pose)) return {&of_mesh_[scene_->mesh_of(instance)], pose};
     Shape& own = own_[instance];
@@ -48,7 +48,7 @@ const convex::Hull* InstanceBodies::hull_of(scene::InstanceId instance, Shape& s
 }
 
 std::optional<mesh::RayHit> InstanceBodies::raycast(const Ray& ray, scene::InstanceId instance) {
-    const scene::Transform& world = scene_->world(scene_->node_of(instance));
+    const Transform& world = scene_->world(scene_->node_of(instance));
     const glm::dmat3 inverse = glm::inverse(world.linear);
     for (int k = 0; k < 9; ++k)
         if (!std::isfinite(inverse[k / 3][k % 3])) return std::nullopt;

@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: MIT */
+/* Holds the layout that js/ writes by hand to what the headers say, and turns 64-bit results into numbers. */
+#include <crofton/capi/bake.h>
+#include <crofton/capi/crofton.h>
+
+#define AT(type, member, place) _Static_assert(offsetof(type, member) == (place), #type "." #member " has moved")
+#define SIZE(type, bytes) _Static_assert(sizeof(type) == (bytes), #type " has another size")
+
+SIZE(crofton_box, 72);
+AT(crofton_box, axes, 24);
+AT(crofton_box, half_extents, 60);
+SIZE(crofton_transform, 96);
+SIZE(crofton_camera, 128);
+AT(crofton_camera, position, 8);
+AT(crofton_camera, projection, 80);
+AT(crofton_camera, fov_y, 88);
+SIZE(crofton_frustum, 416);
+AT(crofton_frustum, origin, 8);
+AT(crofton_frustum, planes, 32);
+SIZE(crofton_view, 424);
+AT(crofton_view, frustum, 8);
+SIZE(crofton_cull_options, 24);
+SIZE(crofton_cull_statistics, 56);
+AT(crofton_cull_statistics, nodes_tested, 8);
+SIZE(crofton_fit_options, 32);
+AT(crofton_fit_options, criterion, 8);
+SIZE(crofton_polygon, 20);
+SIZE(crofton_triangulation, 40);
+AT(crofton_triangulation, weight, 16);
+AT(crofton_triangulation, optimal, 32);
+SIZE(crofton_mesh_data, 36);
+SIZE(crofton_world_options, 56);
+AT(crofton_world_options, without_pairs, 4);
+SIZE(crofton_bound, 160);
+AT(crofton_bound, box, 8);
+AT(crofton_bound, center, 128);
+SIZE(crofton_object_description, 64);
+AT(crofton_object_description, user, 8);
+AT(crofton_object_description, mesh, 32);
+SIZE(crofton_ray, 56);
+SIZE(crofton_object_hit, 56);
+AT(crofton_object_hit, t, 16);
+AT(crofton_object_hit, triangle, 48);
+SIZE(crofton_occlusion_options, 28);
+SIZE(crofton_occluding_view, 56);
+AT(crofton_occluding_view, origin, 16);
+SIZE(crofton_occluder, 232);
+AT(crofton_occluder, box, 32);
+SIZE(crofton_occlusion_statistics, 72);
+
+/* The item of the last error; -1: none in particular. */
+double crofton_web_error_item(void) {
+    const uint64_t item = crofton_last_error_item();
+    return item == CROFTON_NO_ITEM ? -1.0 : (double)item;
+}

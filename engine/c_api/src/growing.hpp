@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// Structs of callers that were compiled against an older header, in which they were smaller.
+#pragma once
+#include <cstring>
+
+#include <crofton/capi/call.hpp>
+
+namespace crofton::capi {
+
+// A struct has never ended within its alignment, so other sizes are mistakes. A larger one may hold what this library
+// does not know: ignoring it would be a guess.
+template <class Struct>
+[[nodiscard]] crofton_status check_growing(const Struct* argument, const char* function) {
+    if (!argument) return report(CROFTON_INVALID_ARGUMENT, function, "a struct is NULL");
+    if (argument->size < sizeof argument->size || argument->size > sizeof(Struct) ||
+        argument->size % alignof(Struct) != 0)
+        return report(CROFTON_WRONG_SIZE, function, "a struct's `size` is larger than this library knows, or no size");
+    return CROFTON_OK;
+}
+
+// Copies what the caller's struct has; the other members of `copy` are 0.
+template <class Struct>
+[[nodiscard]] crofton_status read_growing(const Struct* argument, const char* function, Struct& copy) {
+    CROFTON_CHECK(check_growing(argument, function));
+    copy = {};
+    std::memcpy(&copy, argument, argument->size);
+    return CROFTON_OK;
+}
+
+// Item i of an array of such structs, each as far from the next as the first one says its size is.
+template <class Struct>
+[[nodiscard]] crofton_status read_growing_at(const Struct* first, std::size_t i, const char* function, Struct& copy) {
+    CROFTON_CHECK(check_growing(first, function));
+    const auto* item = reinterpret_cast<const Struct*>(reinterpret_cast<const unsigned char*>(first) + i * first->size);
+    CROFTON_CHECK(read_growing(item, function, copy));
+    return copy.size == first->size ? CROFTON_OK
+                                    : report(CROFTON_WRONG_SIZE, function, "structs of an array differ in `size`", i);
+}
+
+// Writes as much of `source` as the caller's struct, which has been checked, has room for. Its size stays.
+template <class Struct>
+void write_growing(Struct source, Struct* result) {
+    source.size = result->size;
+    std::memcpy(static_cast<void*>(result), &source, source.size);
+}
+
+}  // namespace crofton::capi

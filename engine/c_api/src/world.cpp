@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: MIT
+#include <crofton/capi/crofton.h>
+
+#include <algorithm>
+#include <atomic>
+
+#include <crofton/capi/convert.hpp>
+#include <crofton/capi/numbers.hpp>
+#include "growing.hpp"
+#include "world.hpp"
+
+using namespace crofton;
+using namespace crofton::capi;
+
+static_assert(CROFTON_NONE == kNoIndex);
+
+namespace {
+
+std::size_t clamp_to_size(std::uint64_t value) {
+    return static_cast<std::size_t>(std::min<std::uint64_t>(value, SIZE_MAX));
+}
+
+WorldOptions to_world_options(const crofton_world_options& given) {
+    WorldOptions options;
+    options.pairs = given.without_pairs == 0;
+    options.contacts = given.without_contacts == 0;
+    options.containment = given.without_containment == 0;
+    options.mesh_depth = given.with_mesh_depth != 0;
+    if (given.max_pairs != 0) options.max_pairs = clamp_to_size(given.max_pairs);
+    if (given.rebuild_budget != 0) options.rebuild_budget = clamp_to_size(given.rebuild_budget);
+    if (given.without_rebuild != 0) options.rebuild_budget = 0;
+    if (given.updates_to_rest != 0) options.updates_to_rest = given.updates_to_rest;
+    options.contact_margin = given.contact_margin;
+    return options;
+}
+
+// `count` values of `bytes` bytes each, `stride` bytes apart.
+crofton_status check_stride(const void* first, std::size_t count, std::size_t bytes, std::size_t stride,
+                            const char* function) {
+    if (!first && count > 0) return report(CROFTON_INVALID_ARGUMENT, function, "an array is NULL");
+    if (stride < bytes) return report(CROFTON_INVALID_ARGUMENT, function, "a stride is smaller than what it strides");
+    if (count > PTRDIFF_MAX / stride) return report(CROFTON_OUT_OF_RANGE, function, "a count is larger than any array");
+    return CROFTON_OK;
+}
+
+bool is_aligned(const void* first, std::size_t alignment) {
+    return reinterpret_cast<std::uintptr_t>(first) % alignment == 0;
+}
+
+// Reads the caller's array of C structs as their C++ twins.
+template <class Twin, class Struct>
+crofton_status to_strided(const Struct* first, std::size_t count, std::size_t stride, const char* function,
+                          Strided<Twin>& result) {
+    static_assert(sizeof(Twin) == sizeof(Struct) && alignof(Twin) == alignof(Struct));
+    if (stride == 0) stride = sizeof(Struct);
+    CROFTON_CHECK(check_stride(first, count, sizeof(Struct), stride, function));
+    if (stride % alignof(Struct) != 0 || !is_aligned(first, alignof(Struct)))
+        return report(CROFTON_INVALID_ARGUMENT, function, "an array or its stride is not aligned as its type");
+    result = {reinterpret_cast<const Twin*>(first), count, stride};
+    return CROFTON_OK;
+}
+
+// Many items of two arrays: what the calls with strides have in common.
+template <class First, class Second, class A, class B, class Change>
+crofton_status change_many(crofton_world* world, const A* a, std::size_t a_stride, const B* b, std::size_t b_stride,
+                           std::size_t count, const char* function, Change apply) {
+    const ExclusiveUse use(world, function);
+    if (use.failed()) return use.status();
+    Strided<First> first;
+    Strided<Second> second;
+    CROFTON_CHECK(to_strided(a, count, a_stride, function, first));
+    CROFTON_CHECK(to_strided(b, count, b_stride, function, second));
+    return status_of(apply(world->world, first, second), function);
+}
+
+template <class Change>
+crofton_status change(crofton_world* world, const char* function, Change apply) {
+    const ExclusiveUse use(world, function);
+    if (use.failed()) return use.status();
+    return status_of(apply(world->world), function);
+}
+
+// Writes a handle where the call succeeded.
+template <class Handle, class Given>
+crofton_status hand_out(const Result<Handle>& result, Given* given, const char* function) {
+    if (!result) return report(result.error(), function);
+    *given = {result->index, result->generation};
+    return CROFTON_OK;
+}
+
+crofton_status to_points(const crofton_mesh_data& data, const char* function, PointsView& points) {
+    const std::size_t packed = 3 * (data.is_double ? sizeof(double) : sizeof(float));
+    const std::size_t stride = data.position_stride ? data.position_stride : packed;
+    CROFTON_CHECK(check_stride(data.positions, data.position_count, packed, stride, function));
+    if (data.is_double)
+        points = {static_cast<const double*>(data.positions), data.position_count, stride};
+    else
+        points = {static_cast<const float*>(data.positions), data.position_count, stride};
+    return CROFTON_OK;
+}
+
+crofton_status to_indices(const crofton_mesh_data& data, const char* function, IndicesView& indices) {
+    const std::size_t bytes = data.is_short ? sizeof(std::uint16_t) : sizeof(std::uint32_t);
+    CROFTON_CHECK(check_stride(data.indices, data.index_count, bytes, bytes, function));
+    if (!is_aligned(data.indices, bytes))
+        return report(CROFTON_INVALID_ARGUMENT, function, "the indices are not aligned as their type");
+    if (data.is_short)
+        indices = {static_cast<const std::uint16_t*>(data.indices), data.index_count};
+    else
+        indices = {static_cast<const std::uint32_t*>(data.indices), data.index_count};
+    return CROFTON_OK;
+}
+
+crofton_status to_mesh_description(const crofton_mesh_data* given, const char* function, MeshDescription& description) {
+    crofton_mesh_data data;
+    CROFTON_CHECK(read_growing(given, function, data));
+    CROFTON_CHECK(to_points(data, function, description.positions));
+    CROFTON_CHECK(to_indices(data, function, description.indices));
+    description.triangles = data.without_triangles == 0;
+    return CROFTON_OK;
+}
+
+crofton_status to_bound(const crofton_bound& given, const char* function, Bound& bound) {
+    switch (given.kind) {
+        case CROFTON_BOUND_NONE:
+            bound = Bound();
+            return CROFTON_OK;
+        case CROFTON_BOUND_BOX:
+            bound = Bound(to_box(&given.box));
+            return CROFTON_OK;
+        case CROFTON_BOUND_ALIGNED_BOX:
+            bound = Bound(Aabb{to_vector(given.min), to_vector(given.max)});
+            return CROFTON_OK;
+        case CROFTON_BOUND_BALL:
+            bound = Bound(Sphere{to_vector(given.center), given.radius});
+            return CROFTON_OK;
+        default:
+            return report(CROFTON_INVALID_ARGUMENT, function, "unknown kind of bound");
+    }
+}
+
+crofton_status to_object_description(const crofton_object_description* argument, const char* function,
+                                     ObjectDescription& description) {
+    crofton_object_description given;
+    CROFTON_CHECK(read_growing(argument, function, given));
+    if (given.has_mesh) description.mesh = to_handle(given.mesh);
+    if (given.has_node) description.node = to_handle(given.node);
+    if (given.transform) description.transform = to_transform(*given.transform);
+    if (given.bound) CROFTON_CHECK(to_bound(*given.bound, function, description.bound));
+    description.user = given.user;
+    description.layers = ~given.hidden_layers;
+    description.collides_with = ~given.ignored_layers;
+    description.occludes = given.transparent == 0;
+    description.only_occludes = given.only_occludes != 0;
+    return CROFTON_OK;
+}
+
+std::uint64_t next_serial() {
+    static std::atomic<std::uint64_t> last{0};
+    return ++last;
+}
+
+}  // namespace
+
+crofton_status crofton_world_create(const crofton_world_options* options, crofton_world** world) {
+    CROFTON_CHECK(check_pointer(world, __func__));
+    crofton_world_options given{};
+    if (options) CROFTON_CHECK(read_growing(options, __func__, given));
+    CROFTON_CHECK(check_length(given.contact_margin, "contact_margin", __func__));
+    const char* const function = __func__;
+    return recover(function, [&] { return create(world, function, World(to_world_options(given)), next_serial()); });
+}
+
+crofton_status crofton_world_destroy(crofton_world* world) {
+    return destroy(world, __func__);
+}
+
+crofton_status crofton_world_add_mesh(crofton_world* world, const crofton_mesh_data* data, crofton_world_mesh* mesh) {
+    const ExclusiveUse use(world, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_pointer(mesh, __func__));
+    MeshDescription description;
+    CROFTON_CHECK(to_mesh_description(data, __func__, description));
+    return hand_out(world->world.add_mesh(description), mesh, __func__);
+}
+
+crofton_status crofton_world_replace_mesh(crofton_world* world, crofton_world_mesh mesh,
+                                          const crofton_mesh_data* data) {
+    const ExclusiveUse use(world, __func__);
+    if (use.failed()) return use.status();
+    MeshDescription description;
+    CROFTON_CHECK(to_mesh_description(data, __func__, description));
+    return status_of(world->world.replace_mesh(to_handle(mesh), description), __func__);
+}
+
+crofton_status crofton_world_set_vertices(crofton_world* world, crofton_world_mesh mesh,
+                                          const crofton_mesh_data* data) {
+    const ExclusiveUse use(world, __func__);
+    if (use.failed()) return use.status();
+    crofton_mesh_data given;
+    PointsView positions;
+    CROFTON_CHECK(read_growing(data, __func__, given));
+    CROFTON_CHECK(to_points(given, __func__, positions));
+    return status_of(world->world.set_vertices(to_handle(mesh), positions), __func__);
+}
+
+crofton_status crofton_world_remove_mesh(crofton_world* world, crofton_world_mesh mesh) {
+    return change(world, __func__, [&](World& w) { return w.remove(to_handle(mesh)); });
+}
+
+crofton_status crofton_world_add_node(crofton_world* world, const crofton_node* parent,
+                                      const crofton_transform* transform, uint32_t layers, crofton_node* node) {
+    const ExclusiveUse use(world, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_pointer(node, __func__));
+    NodeDescription description;
+    if (parent) description.parent = to_handle(*parent);
+    if (transform) description.transform = to_transform(*transform);
+    description.layers = layers;
+    return hand_out(world->world.add_node(description), node, __func__);
+}
+
+crofton_status crofton_world_remove_node(crofton_world* world, crofton_node node) {
+    return change(world, __func__, [&](World& w) { return w.remove(to_handle(node)); });
+}
+
+crofton_status crofton_world_set_parent(crofton_world* world, crofton_node node, const crofton_node* parent) {
+    return change(world, __func__,
+                  [&](World& w) { return w.set_parent(to_handle(node), parent ? to_handle(*parent) : NodeHandle()); });
+}
+
+crofton_status crofton_world_set_node_layers(crofton_world* world, crofton_node node, uint32_t layers) {
+    return change(world, __func__, [&](World& w) { return w.set_layers(to_handle(node), layers); });
+}
+
+crofton_status crofton_world_set_node_transforms(crofton_world* world, const crofton_node* nodes, size_t node_stride,
+                                                 const crofton_transform* transforms, size_t transform_stride,
+                                                 size_t count) {
+    return change_many<NodeHandle, Transform>(
+        world, nodes, node_stride, transforms, transform_stride, count, __func__,
+        [](World& w, Strided<NodeHandle> n, Strided<Transform> t) { return w.set_transforms(n, t); });
+}
+
+crofton_status crofton_world_add(crofton_world* world, const crofton_object_description* description,
+                                 crofton_object* object) {
+    const ExclusiveUse use(world, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_pointer(object, __func__));
+    ObjectDescription given;
+    CROFTON_CHECK(to_object_description(description, __func__, given));
+    return hand_out(world->world.add(given), object, __func__);
+}
+
+crofton_status crofton_world_remove(crofton_world* world, crofton_object object) {
+    return change(world, __func__, [&](World& w) { return w.remove(to_handle(object)); });
+}
+
+crofton_status crofton_world_set_transforms(crofton_world* world, const crofton_object* objects, size_t object_stride,
+                                            const crofton_transform* transforms, size_t transform_stride,
+                                            size_t count) {
+    return change_many<ObjectHandle, Transform>(
+        world, objects, object_stride, transforms, transform_stride, count, __func__,
+        [](World& w, Strided<ObjectHandle> o, Strided<Transform> t) { return w.set_transforms(o, t); });
+}
+
+crofton_status crofton_world_set_boxes(crofton_world* world, const crofton_object* objects, size_t object_stride,
+                                       const crofton_box* boxes, size_t box_stride, size_t count) {
+    return change_many<ObjectHandle, Obb>(
+        world, objects, object_stride, boxes, box_stride, count, __func__,
+        [](World& w, Strided<ObjectHandle> o, Strided<Obb> b) { return w.set_bounds(o, b); });
+}
+
+crofton_status crofton_world_set_bound(crofton_world* world, crofton_object object, const crofton_bound* bound) {
+    const ExclusiveUse use(world, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_pointer(bound, __func__));
+    Bound given;
+    CROFTON_CHECK(to_bound(*bound, __func__, given));
+    return status_of(world->world.set_bound(to_handle(object), given), __func__);
+}
+
+crofton_status crofton_world_set_mesh(crofton_world* world, crofton_object object, crofton_world_mesh mesh) {
+    return change(world, __func__, [&](World& w) { return w.set_mesh(to_handle(object), to_handle(mesh)); });
+}
+
+crofton_status crofton_world_set_hidden(crofton_world* world, crofton_object object, int hidden) {
+    return change(world, __func__, [&](World& w) { return w.set_hidden(to_handle(object), hidden != 0); });
+}
+
+crofton_status crofton_world_set_layers(crofton_world* world, crofton_object object, uint32_t layers) {
+    return change(world, __func__, [&](World& w) { return w.set_layers(to_handle(object), layers); });
+}
+
+crofton_status crofton_world_set_collides_with(crofton_world* world, crofton_object object, uint32_t layers) {
+    return change(world, __func__, [&](World& w) { return w.set_collides_with(to_handle(object), layers); });
+}
+
+crofton_status crofton_world_set_user(crofton_world* world, crofton_object object, uint64_t user) {
+    return change(world, __func__, [&](World& w) { return w.set_user(to_handle(object), user); });
+}
+
+crofton_status crofton_world_update(crofton_world* world, const crofton_jobs* jobs) {
+    const ExclusiveUse use(world, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_jobs(jobs, __func__));
+    HostJobs executor(jobs);
+    world->serial = next_serial();  // indices may be other objects' now
+    return status_of(world->world.update(executor), __func__);
+}
+
+crofton_status crofton_world_get_statistics(const crofton_world* world, crofton_world_statistics* statistics) {
+    const SharedUse use(world, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_growing(statistics, __func__));
+    const WorldStatistics& s = world->world.statistics();
+    write_growing({sizeof *statistics, s.objects, s.resting, s.moving, s.box_pairs_tested, s.contact_pairs_tested,
+                   s.boxes_changed, s.nodes_updated, s.out_of_range, s.tree_built ? 1u : 0u},
+                  statistics);
+    return CROFTON_OK;
+}

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+// A World, as the functions of several headers see it.
+#pragma once
+#include <crofton/capi/crofton.h>
+
+#include <crofton/world/world.hpp>
+
+#include "bodies.hpp"
+#include <crofton/capi/call.hpp>
+
+struct crofton_world {
+    static constexpr std::uint32_t kKind = 0x43724f08;
+    crofton::capi::Header header;
+    crofton::World world;
+    std::uint64_t serial;  // of its state after an update: unlike any other of the process, and not 0
+    crofton::Vector<crofton::capi::SharedBody> bodies{};  // by object, so that they live as long as they are used
+};
+
+namespace crofton::capi {
+
+static_assert(sizeof(crofton_object) == sizeof(ObjectHandle) && alignof(crofton_object) == alignof(ObjectHandle));
+static_assert(offsetof(crofton_object, generation) == offsetof(ObjectHandle, generation));
+
+[[nodiscard]] inline ObjectHandle to_handle(crofton_object object) {
+    return {object.index, object.generation};
+}
+[[nodiscard]] inline NodeHandle to_handle(crofton_node node) {
+    return {node.index, node.generation};
+}
+[[nodiscard]] inline MeshHandle to_handle(crofton_world_mesh mesh) {
+    return {mesh.index, mesh.generation};
+}
+[[nodiscard]] inline crofton_object_ref to_c_ref(const ObjectRef& ref) {
+    return {{ref.object.index, ref.object.generation}, ref.user};
+}
+
+}  // namespace crofton::capi

@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <crofton/geometry/camera.hpp>
+#include <crofton/geometry/finite.hpp>
+#include <crofton/occlude/occlusion.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include "choosing/choose_kernel.hpp"
+#include "exact_turn.hpp"
+
+namespace crofton::occlude {
+namespace {
+
+constexpr double kMostCoordinate = 1e15;
+constexpr std::uint64_t kSpare = 32;  // sorted beyond the budget
+constexpr std::size_t kPadding = 64;  // so that a vector that starts at a candidate stays within the columns
+
+ChooseView choose_view_of(const OccluderCandidates& candidates, const OcclusionView& given,
+                          const ChooseBudget& budget) {
+    ChooseView view;
+    const auto row = [&](std::size_t r) { return glm::dvec3(given.rows[r][0], given.rows[r][1], given.rows[r][2]); };
+    const glm::dvec3 eye = given.origin - candidates.origin(), forward = -row(3);
+    const Frustum& frustum = given.frustum;
+    view.plane_count = std::min<std::size_t>(frustum.plane_count, view.planes.size());
+    for (std::size_t p = 0; p < view.plane_count; ++p) {
+        const Plane& plane = frustum.planes[p];
+        for (int k = 0; k < 3; ++k) view.planes[p][static_cast<std::size_t>(k)] = static_cast<float>(plane.normal[k]);
+        view.planes[p][3] = static_cast<float>(plane.offset + glm::dot(plane.normal, given.origin - frustum.origin));
+    }
+    view.perspective = given.perspective;
+    // The window is 2 units wide and high.
+    const double whole = given.perspective ? 4.0 * std::numbers::pi : 4.0 / glm::length(glm::cross(row(0), row(1)));
+    view.scale = static_cast<float>(1.0 / whole);
+    view.least = std::max(budget.least_cover, 1e-30f);
+    view.bounded = !budget.objects.is_empty();
+    for (int k = 0; k < 3; ++k) {
+        const auto i = static_cast<std::size_t>(k);
+        view.eye[i] = static_cast<float>(eye[k]);
+        view.forward[i] = static_cast<float>(forward[k]);
+        view.low[i] = static_cast<float>(budget.objects.min[k] - candidates.origin()[k]);
+        view.high[i] = static_cast<float>(budget.objects.max[k] - candidates.origin()[k]);
+    }
+    return view;
+}
+
+// Sorted by worth, then by id: 32 bits of each in a key, the larger worth as the smaller number. Bits of
+// positive floats are ordered as the floats are.
+std::uint64_t key_of(float worth, std::uint32_t id) {
+    return std::uint64_t{~std::bit_cast<std::uint32_t>(worth)} << 32 | id;
+}
+
+// Nearest to `p` of the box.
+glm::dvec3 nearest_in(const Aabb& box, const glm::dvec3& p) {
+    return glm::clamp(p, box.min, box.max);
+}
+
+EyeLimits limits_of(const FoundOccluder& found, const Transform& transform) {
+    EyeLimits limits;
+    const Aabb& piece = found.piece_bounds;
+    for (unsigned i = 0; i < 8; ++i)
+        limits.left_out_within.include(transform * glm::dvec3((i & 1u) ? piece.max.x : piece.min.x,
+                                                              (i & 2u) ? piece.max.y : piece.min.y,
+                                                              (i & 4u) ? piece.max.z : piece.min.z));
+    // Four roundings of numbers of these sizes.
+    glm::dvec3 error_bound = glm::abs(transform.translation);
+    for (int k = 0; k < 3; ++k)
+        error_bound += glm::abs(transform.linear[k]) * std::max(std::abs(piece.min[k]), std::abs(piece.max[k]));
+    limits.left_out_within.min -= 0x1p-49 * error_bound;
+    limits.left_out_within.max += 0x1p-49 * error_bound;
+    // An open side at coordinate c of the mesh's axis k lies in the plane through translation + c · linear[k] and along
+    // the other two columns. Its normal is right in each component, however sheared the mesh stands: what an eye far
+    // away makes of its rounding, may_use() takes off. What rounding does to the offset is taken off generously. A
+    // transform that flattens has no such planes: they are NaN and keep nothing.
+    const int turn = sign_of_determinant(transform.linear);
+    for (int k = 0; k < 3; ++k)
+        for (const bool upper : {true, false}) {
+            const double at = upper ? found.eyes_within.max[k] : found.eyes_within.min[k];
+            if (std::isinf(at)) continue;
+            const glm::dvec3 rising = turn == 0
+                                          ? glm::dvec3(std::numeric_limits<double>::quiet_NaN())
+                                          : static_cast<double>(turn) * direction_across(transform.linear[(k + 1) % 3],
+                                                                                         transform.linear[(k + 2) % 3]);
+            Plane& plane = limits.planes[limits.plane_count++];
+            plane.normal = upper ? -rising : rising;
+            const glm::dvec3 along = at * transform.linear[k];
+            plane.offset = -glm::dot(plane.normal, transform.translation + along) -
+                           0x1p-40 * glm::dot(glm::abs(rising), glm::abs(transform.translation) + glm::abs(along));
+        }
+    return limits;
+}
+
+}  // namespace
+
+OccluderCandidate candidate_of(const Obb& box) {
+    OccluderCandidate result;
+    result.center = box.center;
+    const glm::dvec3 half(box.half_extents);
+    for (int k = 0; k < 3; ++k)
+        result.areas[static_cast<std::size_t>(k)] =
+            box.axes[k] * (4.0f * box.half_extents[(k + 1) % 3] * box.half_extents[(k + 2) % 3]);
+    double square = 0.0;
+    for (const glm::dvec3& corner : corners(box))
+        square = std::max(square, glm::dot(corner - box.center, corner - box.center));
+    result.radius = std::sqrt(square);
+    return result;
+}
+
+OccluderCandidate candidate_of(const FoundOccluder& found, const Transform& transform) {
+    OccluderCandidate result;
+    Aabb bounds;
+    const TriangleMesh& mesh = found.surface;
+    for (const glm::vec3& p : mesh.positions) bounds.include(transform * glm::dvec3(p));
+    result.center = bounds.is_empty() ? transform.translation : bounds.center();
+    double square = 0.0, area = 0.0;
+    for (const glm::vec3& p : mesh.positions) {
+        const glm::dvec3 offset = transform * glm::dvec3(p) - result.center;
+        square = std::max(square, glm::dot(offset, offset));
+    }
+    result.radius = std::sqrt(square);
+    result.edges = found.edges;
+    glm::dvec3 normals(0.0), shadows(0.0);
+    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+        const glm::dvec3 a = transform.linear * glm::dvec3(mesh.positions[mesh.indices[i]]),
+                         b = transform.linear * glm::dvec3(mesh.positions[mesh.indices[i + 1]]),
+                         c = transform.linear * glm::dvec3(mesh.positions[mesh.indices[i + 2]]);
+        const glm::dvec3 normal = 0.5 * glm::cross(b - a, c - a);
+        normals += normal;
+        shadows += 0.5 * glm::abs(normal);
+        area += glm::length(normal);
+    }
+    // A reflection turns the winding round, and what is drawn with it.
+    if (sign_of_determinant(transform.linear) < 0) normals = -normals;
+    const double mean = glm::length(normals);
+    if (found.kind == OccluderKind::patch && mean >= 0.9 * area) {
+        result.areas[0] = glm::vec3(normals);
+        // Parts that are turned away from the others are seen from behind them.
+        result.front_only = found.sides == Sides::front && mean >= 0.999 * area;
+        return result;
+    }
+    if (found.kind == OccluderKind::patch) {
+        for (int k = 0; k < 3; ++k) result.areas[static_cast<std::size_t>(k)][k] = static_cast<float>(shadows[k]);
+        return result;
+    }
+    if (found.kind != OccluderKind::convex) {
+        for (int k = 0; k < 3; ++k) {
+            const glm::dvec3 u = transform.linear *
+                                 glm::dvec3(found.box.axes[(k + 1) % 3] * found.box.half_extents[(k + 1) % 3]),
+                             v = transform.linear *
+                                 glm::dvec3(found.box.axes[(k + 2) % 3] * found.box.half_extents[(k + 2) % 3]);
+            result.areas[static_cast<std::size_t>(k)] = glm::vec3(4.0 * glm::cross(u, v));
+        }
+    } else {
+        for (int k = 0; k < 3; ++k) result.areas[static_cast<std::size_t>(k)][k] = static_cast<float>(area / 6.0);
+    }
+    result.limits = limits_of(found, transform);
+    return result;
+}
+
+bool may_use(const EyeLimits& limits, const Camera& camera) {
+    const auto view = occlusion_view_of(camera);
+    return view && may_use(limits, *view);
+}
+
+bool may_use(const EyeLimits& limits, const OcclusionView& view) {
+    const Aabb& box = limits.left_out_within;
+    const glm::dvec3& eye = view.origin;
+    if (view.perspective) {
+        const double near_radius = (1.0 + 1e-9) * (view.near_radius + view.eye_error);
+        if (!box.is_empty() && !(glm::distance(nearest_in(box, eye), eye) > near_radius)) return false;
+        for (std::uint32_t i = 0; i < limits.plane_count; ++i) {
+            const Plane& plane = limits.planes[i];
+            const double error_bound =
+                0x1p-48 * glm::dot(glm::abs(plane.normal), glm::abs(eye)) + view.eye_error * glm::length(plane.normal);
+            if (!(glm::dot(plane.normal, eye) + plane.offset >= error_bound)) return false;
+        }
+        return true;
+    }
+    const Plane& near_plane = view.frustum.planes[4];
+    if (!box.is_empty()) {
+        const glm::dvec3 &normal = near_plane.normal, &origin = view.frustum.origin;
+        const glm::dvec3 nearest(normal.x > 0.0 ? box.min.x : box.max.x, normal.y > 0.0 ? box.min.y : box.max.y,
+                                 normal.z > 0.0 ? box.min.z : box.max.z);
+        const double error_bound =
+            0x1p-48 * (glm::dot(glm::abs(normal), glm::abs(nearest) + glm::abs(origin)) + std::abs(near_plane.offset));
+        if (!(glm::dot(normal, nearest - origin) + near_plane.offset >= error_bound)) return false;
+    }
+    const glm::dvec3 forward(-view.rows[3][0], -view.rows[3][1], -view.rows[3][2]);
+    for (std::uint32_t i = 0; i < limits.plane_count; ++i) {
+        const glm::dvec3& normal = limits.planes[i].normal;
+        if (!(glm::dot(forward, normal) <= -0x1p-40 * glm::length(normal))) return false;
+    }
+    return true;
+}
+
+Result<void> OccluderCandidates::check(std::uint32_t id, const OccluderCandidate& candidate) const {
+    bool finite = is_finite(candidate.center) && std::isfinite(candidate.radius);
+    for (const glm::vec3& area : candidate.areas) finite = finite && is_finite(glm::dvec3(area));
+    if (!finite) return fail(ErrorCode::non_finite, id, "occluder candidate: NaN or infinite");
+    const glm::dvec3 size = glm::abs(candidate.center);
+    if (std::max({size.x, size.y, size.z, candidate.radius}) > kMostCoordinate || candidate.radius < 0.0)
+        return fail(ErrorCode::out_of_range, id, "occluder candidate: beyond 1e15, or a negative radius");
+    return {};
+}
+
+void OccluderCandidates::write(std::uint32_t id, const OccluderCandidate& candidate) {
+    const glm::vec3 center(candidate.center - origin_);
+    for (int k = 0; k < 3; ++k) columns_[static_cast<std::size_t>(k)][id] = center[k];
+    columns_[3][id] = static_cast<float>(candidate.radius);
+    for (std::size_t a = 0; a < 3; ++a)
+        for (int k = 0; k < 3; ++k) columns_[4 + 3 * a + static_cast<std::size_t>(k)][id] = candidate.areas[a][k];
+    columns_[13][id] = candidate.front_only ? 1.0f : 0.0f;
+    edges_[id] = candidate.edges;
+    layers_[id] = candidate.layers;
+    limits_[id] = candidate.limits;
+}
+
+Result<std::uint32_t> OccluderCandidates::add(const OccluderCandidate& candidate) {
+    const auto id = static_cast<std::uint32_t>(size());
+    if (auto status = check(id, candidate); !status) return tl::unexpected(status.error());
+    if (id == 0) origin_ = candidate.center;
+    for (Vector<float>& column : columns_) column.resize(id + 1 + kPadding, 0.0f);
+    edges_.push_back(0);
+    layers_.push_back(0);
+    limits_.emplace_back();
+    write(id, candidate);
+    return id;
+}
+
+Result<void> OccluderCandidates::set(std::uint32_t id, const OccluderCandidate& candidate) {
+    if (id >= size()) return fail(ErrorCode::out_of_range, id, "occluder candidate: no such id");
+    if (auto status = check(id, candidate); !status) return status;
+    write(id, candidate);
+    return {};
+}
+
+void OccluderCandidates::reserve(std::size_t count) {
+    for (Vector<float>& column : columns_) column.reserve(count + kPadding);
+    edges_.reserve(count);
+    layers_.reserve(count);
+    limits_.reserve(count);
+}
+
+void OccluderCandidates::clear() {
+    for (Vector<float>& column : columns_) column.clear();
+    edges_.clear();
+    layers_.clear();
+    limits_.clear();
+}
+
+Result<void> choose_occluders(const OccluderCandidates& candidates, const Camera& camera, const ChooseBudget& budget,
+                              OccluderChoice& choice) {
+    choice.ids.clear();
+    const auto view = occlusion_view_of(camera);
+    if (!view) return tl::unexpected(view.error());
+    choose_occluders(candidates, *view, budget, choice);
+    return {};
+}
+
+void choose_occluders(const OccluderCandidates& candidates, const OcclusionView& view, const ChooseBudget& budget,
+                      OccluderChoice& choice) {
+    choice.ids.clear();
+    const ChooseView choose_view = choose_view_of(candidates, view, budget);
+    choice.values.resize(candidates.size() + kPadding);
+    choice.seen.resize(candidates.size() + kPadding);
+    std::array<const float*, OccluderCandidates::kColumns> columns{};
+    for (std::size_t k = 0; k < columns.size(); ++k) columns[k] = candidates.column(k);
+    const std::size_t seen =
+        measure_cover(columns.data(), candidates.size(), choose_view, choice.seen.data(), choice.values.data());
+    choice.order.clear();
+    for (std::size_t i = 0; i < seen; ++i) choice.order.push_back(key_of(choice.values[i], choice.seen[i]));
+    // Sorted as far as needed: those that may not be used are few, and the next ones take their places.
+    auto sorted = choice.order.begin();
+    std::uint32_t edges = 0;
+    while (choice.ids.size() < budget.max_occluders && sorted != choice.order.end()) {
+        const auto first = sorted;
+        const auto left = static_cast<std::uint64_t>(choice.order.end() - first);
+        sorted += static_cast<std::ptrdiff_t>(std::min(left, std::uint64_t{budget.max_occluders} + kSpare));
+        std::nth_element(first, sorted, choice.order.end());
+        std::sort(first, sorted);
+        for (auto key = first; key != sorted && choice.ids.size() < budget.max_occluders; ++key) {
+            const auto id = static_cast<std::uint32_t>(*key);
+            if (candidates.edges(id) > budget.max_edges - edges) continue;
+            if (!(candidates.layers(id) & budget.layer_mask) || !may_use(candidates.limits(id), view)) continue;
+            edges += candidates.edges(id);
+            choice.ids.push_back(id);
+        }
+    }
+}
+
+}  // namespace crofton::occlude

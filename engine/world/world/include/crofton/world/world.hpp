@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: MIT
+// The front door: objects in, what is seen and what touches out.
+#pragma once
+#include <crofton/boxtree/box_tree.hpp>
+#include <crofton/collide/narrow_phase.hpp>
+#include <crofton/core/executor.hpp>
+#include <crofton/core/memory.hpp>
+#include <crofton/cull/cull.hpp>
+#include <crofton/geometry/shapes.hpp>
+#include <crofton/world/answers.hpp>
+#include <crofton/world/inputs.hpp>
+#include <optional>
+#include <span>
+
+namespace crofton {
+
+namespace convex {
+class Body;
+struct CastOptions;
+struct Motion;
+}  // namespace convex
+
+inline constexpr std::size_t kAutomatic = ~std::size_t{0};
+
+// A profiler's functions. Zones are told when they begin and end, on the thread that runs them, nested on each thread.
+// Several views at once run on the executor's threads. Names are constants that live as long as the program. A function
+// that is null is not called; none may throw.
+struct TraceHooks {
+    void (*begin)(void* user, const char* zone) = nullptr;
+    void (*end)(void* user, const char* zone) = nullptr;
+    void (*count)(void* user, const char* counter, double value) = nullptr;
+    void* user = nullptr;
+};
+
+struct WorldOptions {
+    bool pairs = true;            // false: neither pairs nor contacts are looked for
+    bool contacts = true;         // false: pairs alone
+    bool containment = true;      // a closed mesh around another object touches it
+    double contact_margin = 0.0;  // ≥ 0: gaps up to this between bodies are contacts, as far as the objects' boxes meet
+    bool mesh_depth = false;      // a way out of contacts between meshes, which costs more than finding them
+    std::size_t max_pairs = std::size_t{1} << 24;  // more are an error, not an exhausted memory
+    // Items' worth of background work on the tree an update (BoxTree::rebuild_step), beside what changes make
+    // necessary; kAutomatic: a 128th of the objects and 512. 0: none, and no allocation.
+    std::size_t rebuild_budget = kAutomatic;
+    std::uint32_t updates_to_rest = 16;  // without moving, until an object counts as resting again
+    boxtree::Orientation tree = boxtree::Orientation::aligned;  // of the tree of what rests
+    TraceHooks trace = {};                                      // told of the stages of updates and views
+};
+
+// As of the last update.
+struct WorldStatistics {
+    std::size_t objects = 0, resting = 0, moving = 0;  // shown ones: in the tree, in the list
+    std::uint32_t boxes_changed = 0;                   // in this update; also of meshes that moved within their boxes
+    bool tree_built = false;                           // all at once: much has come to rest, or come and gone
+    std::uint64_t box_pairs_tested = 0, contact_pairs_tested = 0;
+    std::uint64_t body_pairs_computed = 0;  // whose contacts of bodies were found anew; what rests has none
+    collide::BatchStatistics box_tests;     // how the pairs of boxes were told apart
+    double contacts_us = 0.0;               // microseconds of this update that pairs and contacts took
+    std::uint32_t nodes_updated = 0;
+    std::uint32_t out_of_range =
+        0;  // objects that the product of transforms has put beyond it: hidden until they return
+};
+
+// Owns nodes, meshes, objects, the tree of what rests and the list of what moves; which is which it finds out.
+// Changes take effect in update(). Const calls answer as of the last update and may run on any number of threads; the
+// others need the World for themselves. An error names the item and leaves all as it was. Calls that take many handles
+// do what they can and return the first error; its item is the place among the handles. Errors of all calls: a stale
+// handle (stale_handle); numbers that are NaN, infinite or out of range, for which see validate(Obb) and
+// validate(Transform). A transform may flatten: zero scale hides, a flat scale gives a flat box.
+class World {
+  public:
+    explicit World(const WorldOptions& options = {});
+    ~World();
+    World(World&&) noexcept;
+    World& operator=(World&&) noexcept;
+
+    Result<ObjectHandle> add(const ObjectDescription& description);
+    Result<void> remove(ObjectHandle object);
+    // Of an object that was added with a transform.
+    Result<void> set_transform(ObjectHandle object, const Transform& transform);
+    Result<void> set_transforms(Strided<ObjectHandle> objects, Strided<Transform> transforms);
+    // Of an object that was added with a bound.
+    Result<void> set_bound(ObjectHandle object, const Bound& bound);
+    Result<void> set_bounds(Strided<ObjectHandle> objects, Strided<Obb> boxes);
+    Result<void> set_mesh(ObjectHandle object, MeshHandle mesh);  // of an object that has one
+    Result<void> set_hidden(ObjectHandle object, bool hidden);    // in no answer until shown again
+    Result<void> set_layers(ObjectHandle object, std::uint32_t layers);
+    Result<void> set_collides_with(ObjectHandle object, std::uint32_t layers);
+    Result<void> set_user(ObjectHandle object, std::uint64_t user);  // at once, in pairs from the next update on
+
+    // Gives an object a body, or with nullptr takes it away: for pairs from the next update on, for queries at once.
+    // Pairs of objects that both have bodies are in body_contacts() instead of contacts(). What the body is a view of
+    // stays the caller's, alive and unchanged; to change it, set the body again. It stands where the object's
+    // transform, or the frame of its box or ball, puts it. Under a transform that is not rigid it touches nothing. The
+    // object's box stands for it in pairs and queries: what reaches beyond is missed. Error: a half-space, which has no
+    // box.
+    Result<void> set_body(ObjectHandle object, const convex::Body* body);
+
+    // A mesh must have triangles and pass validate(TriangleMesh).
+    Result<MeshHandle> add_mesh(const MeshDescription& description);
+    Result<void> replace_mesh(MeshHandle mesh, const MeshDescription& description);
+    Result<void> set_vertices(MeshHandle mesh, PointsView positions);  // as many as before: a mesh that deforms
+    Result<void> remove(MeshHandle mesh);                              // error: objects use it
+
+    // What objects of a mesh hide other objects with, in views that ask for occlusion. They are found in its triangles,
+    // which takes time, or given, in the mesh's frame. Given ones must lie within what is drawn of the mesh, and be
+    // opaque. One is a box (kind and box alone are enough), the convex hull of surface.positions, or a patch of any
+    // triangles. Store what was found, and give it the next time. Replacing a mesh or its vertices forgets its
+    // occluders. Errors name the occluder: as occlude::find_occluders and occlude::OccluderSet.
+    Result<void> find_occluders(MeshHandle mesh, const occlude::FindOptions& options = {});
+    Result<void> set_occluders(MeshHandle mesh, std::span<const occlude::FoundOccluder> occluders);
+    [[nodiscard]] std::span<const occlude::FoundOccluder> occluders_of(MeshHandle mesh) const;  // none: empty
+    Result<void> set_occludes(ObjectHandle object, bool occludes);  // as ObjectDescription; of an object with a mesh
+
+    Result<NodeHandle> add_node(const NodeDescription& description = {});
+    Result<void> remove(NodeHandle node);  // with all nodes and objects below it
+    Result<void> set_transform(NodeHandle node, const Transform& transform);
+    Result<void> set_transforms(Strided<NodeHandle> nodes, Strided<Transform> transforms);
+    Result<void> set_parent(NodeHandle node, NodeHandle parent_or_null);  // error: the node itself or one below it
+    Result<void> set_layers(NodeHandle node, std::uint32_t layers);
+
+    [[nodiscard]] bool contains(ObjectHandle object) const;
+    [[nodiscard]] bool contains(MeshHandle mesh) const;
+    [[nodiscard]] bool contains(NodeHandle node) const;
+    [[nodiscard]] std::size_t object_count() const;  // removed ones not counted
+    [[nodiscard]] Result<std::uint64_t> user_of(ObjectHandle object) const;
+    // As of the last update; before the first one after the object was added: an error (empty).
+    [[nodiscard]] Result<Obb> box_of(ObjectHandle object) const;
+    [[nodiscard]] Result<Transform> transform_of(ObjectHandle object) const;  // to the world; of a mesh
+
+    // Once a frame. Error: more than max_pairs pairs; then there are none, and all else is as it should be.
+    Result<void> update(Executor& executor = serial_executor());
+    [[nodiscard]] const WorldStatistics& statistics() const;
+    // For overlays and measurements: the tree of what rests. Items are the objects' indices.
+    [[nodiscard]] const boxtree::BoxTree& tree() const;
+
+    // What a view sees, by the objects' boxes, exactly as the mode says. At most cull::kMaxViews views in one pass.
+    // A single view leaves out what is not in options.among, the objects' indices: baked sets (docs/pvs.md). Never left
+    // out is what has moved since it was first updated, or has an index that another object had before.
+    // Errors of the first: as validate(Camera).
+    Result<void> view(const Camera& camera, VisibleObjects& visible, const cull::CullOptions& options = {},
+                      Executor& executor = serial_executor()) const;
+    void view(const cull::View& view, VisibleObjects& visible, const cull::CullOptions& options = {},
+              Executor& executor = serial_executor()) const;
+    void view(std::span<const cull::View> views, VisibleInViews& visible,
+              cull::CullMode mode = cull::CullMode::exact) const;
+
+    // The same, and what other objects hide is left out: never what is seen (docs/occlude.md). Ascending, whatever
+    // options.order says. An object hides with its mesh's occluders where the view draws it: shown, in a layer of the
+    // view, within options.limits. Any number of calls at once, each with its own `visible`. The same bits for any
+    // executor. Nothing is allocated once `visible` has held as many. Errors: a camera that is not valid; a buffer's
+    // size out of its range. Not more than cull::kMaxViews views.
+    Result<void> view(const Camera& camera, const OcclusionOptions& occlusion, VisibleObjects& visible,
+                      const cull::CullOptions& options = {}, Executor& executor = serial_executor()) const;
+    Result<void> view(const OccludingView& view, const OcclusionOptions& occlusion, VisibleObjects& visible,
+                      const cull::CullOptions& options = {}, Executor& executor = serial_executor()) const;
+    Result<void> view(std::span<const OccludingView> views, const OcclusionOptions& occlusion, VisibleInViews& visible,
+                      const cull::CullOptions& options = {}, Executor& executor = serial_executor()) const;
+    // Of a view with occlusion, before the next update: which occluders hide an object (none where it is not hidden).
+    // Also which were drawn, those worth most first. The first draws all of them again, and allocates.
+    Result<void> hidden_by(ObjectHandle object, const VisibleObjects& visible, Vector<OccluderRef>& occluders) const;
+    void drawn_occluders(const VisibleObjects& visible, Vector<OccluderRef>& occluders) const;
+
+    // Triangles of meshes, balls and boxes, whichever an object has. Objects removed since the last update are in none
+    // of the answers.
+    [[nodiscard]] std::optional<ObjectHit> raycast(const Ray& ray, std::uint32_t layers = ~0u) const;
+    [[nodiscard]] bool raycast_any(const Ray& ray, std::uint32_t layers = ~0u) const;
+    // Every object's nearest hit, by t, then by index.
+    void raycast_all(const Ray& ray, Vector<ObjectHit>& hits, std::uint32_t layers = ~0u) const;
+
+    // Whose box or ball meets the shape; by index. Meshes by their boxes. Here and in closest() a box that is not
+    // valid meets nothing and has nothing near. So do balls and capsules with NaN or numbers beyond kMaxCoordinate.
+    void overlap(const Obb& shape, Vector<ObjectRef>& found, std::uint32_t layers = ~0u) const;
+    void overlap(const Sphere& shape, Vector<ObjectRef>& found, std::uint32_t layers = ~0u) const;
+    void overlap(const collide::Capsule& shape, Vector<ObjectRef>& found, std::uint32_t layers = ~0u) const;
+    // The same for any body but a half-space, exactly; objects with bodies by these. Of bounds beyond
+    // convex::kMaxExtent that part alone. A box whose axes deviate by more than 1e-6 is the least around it along the
+    // nearest orthonormal ones. A pose that is not valid meets nothing.
+    void overlap(const convex::Body& shape, const RigidTransform& pose, Vector<ObjectRef>& found,
+                 std::uint32_t layers = ~0u) const;
+    // The first object that a moving body meets: as convex::cast against each one's body, ball or box at rest. Errors:
+    // of convex::cast; a half-space; a pose that is not valid.
+    [[nodiscard]] Result<std::optional<BodyHit>> cast(const convex::Body& shape, const RigidTransform& pose,
+                                                      const convex::Motion& motion, const convex::CastOptions& options,
+                                                      std::uint32_t layers = ~0u) const;
+    // The box or ball nearest to the shape, no farther than max_distance; of several the lowest index.
+    [[nodiscard]] std::optional<ClosestObject> closest(const Sphere& shape, double max_distance,
+                                                       std::uint32_t layers = ~0u) const;
+    [[nodiscard]] std::optional<ClosestObject> closest(const Obb& shape, double max_distance,
+                                                       std::uint32_t layers = ~0u) const;
+    [[nodiscard]] std::optional<ClosestObject> closest(const collide::Capsule& shape, double max_distance,
+                                                       std::uint32_t layers = ~0u) const;
+    // The same for any body but a half-space; objects with bodies by these. Within the bounds that convex::distance
+    // proves. Nothing for a pose that is not valid.
+    [[nodiscard]] std::optional<ClosestObject> closest(const convex::Body& shape, const RigidTransform& pose,
+                                                       double max_distance, std::uint32_t layers = ~0u) const;
+
+    // Found by update(): objects whose boxes or balls meet, in order; and of them those that touch, with those that no
+    // longer do.
+    [[nodiscard]] std::span<const ObjectPair> pairs() const;
+    [[nodiscard]] std::span<const Contact> contacts() const;
+    // Of objects that both have bodies, in order. Pairs of which neither has moved are not computed again.
+    [[nodiscard]] std::span<const BodyContact> body_contacts() const;
+
+  private:
+    struct State;
+    Owner<State> state_;
+};
+
+}  // namespace crofton

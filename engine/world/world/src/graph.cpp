@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+// Nodes and meshes.
+#include <algorithm>
+#include <cstring>
+#include <string>
+
+#include "for_each_pair.hpp"
+#include "world_state.hpp"
+
+namespace crofton {
+namespace {
+
+TriangleMesh to_mesh(const MeshDescription& description) {
+    TriangleMesh mesh;
+    mesh.positions.resize(description.positions.size());
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) mesh.positions[i] = description.positions[i];
+    const bool indexed = description.indices.size() > 0;
+    mesh.indices.resize(indexed ? description.indices.size() : mesh.positions.size());
+    for (std::size_t i = 0; i < mesh.indices.size(); ++i)
+        mesh.indices[i] = indexed ? description.indices[i] : static_cast<std::uint32_t>(i);
+    return mesh;
+}
+
+}  // namespace
+
+glm::vec3 PointsView::operator[](std::size_t i) const {
+    const std::byte* at = first_ + i * stride_;
+    if (!is_double_) {
+        float point[3];
+        std::memcpy(point, at, sizeof point);
+        return {point[0], point[1], point[2]};
+    }
+    double point[3];
+    std::memcpy(point, at, sizeof point);
+    return {static_cast<float>(point[0]), static_cast<float>(point[1]), static_cast<float>(point[2])};
+}
+
+Result<void> World::State::check(NodeHandle node, std::uint64_t item) const {
+    if (nodes.contains(node)) return {};
+    return fail(ErrorCode::stale_handle, item, "world: the node has been removed, or never was in this world");
+}
+
+Result<void> World::State::check(MeshHandle mesh, std::uint64_t item) const {
+    if (meshes.contains(mesh)) return {};
+    return fail(ErrorCode::stale_handle, item, "world: the mesh has been removed, or never was in this world");
+}
+
+Result<MeshHandle> World::add_mesh(const MeshDescription& description) {
+    State& s = *state_;
+    const auto mesh = s.scene.add_mesh(to_mesh(description));
+    if (!mesh) return tl::unexpected(mesh.error());
+    if (description.occluders)
+        if (auto found = s.set_found_occluders(*mesh, {}); !found) {
+            (void)s.scene.remove_mesh(*mesh);
+            return tl::unexpected(found.error());
+        }
+    s.bodies.set_mesh(*mesh, description.triangles);
+    s.meshes.add(*mesh);
+    return MeshHandle{*mesh, s.meshes.generations[*mesh]};
+}
+
+Result<void> World::replace_mesh(MeshHandle mesh, const MeshDescription& description) {
+    if (auto known = state_->check(mesh, mesh.index); !known) return known;
+    TriangleMesh replacement = to_mesh(description);
+    occlude::FoundOccluders found;
+    if (description.occluders) {
+        auto looked_for = occlude::find_occluders(replacement);
+        if (!looked_for) return tl::unexpected(looked_for.error());
+        found = std::move(*looked_for);
+    }
+    auto replaced = state_->scene.replace_mesh(mesh.index, std::move(replacement));
+    if (!replaced) return replaced;
+    state_->bodies.set_mesh(mesh.index, description.triangles);
+    return state_->occluders.set(mesh.index, found.occluders);
+}
+
+Result<void> World::set_vertices(MeshHandle mesh, PointsView positions) {
+    State& s = *state_;
+    if (auto known = s.check(mesh, mesh.index); !known) return known;
+    s.vertices.resize(positions.size());
+    for (std::size_t i = 0; i < positions.size(); ++i) s.vertices[i] = positions[i];
+    auto set = s.scene.set_vertices(mesh.index, s.vertices);
+    if (!set) return set;
+    s.bodies.note_deformed(mesh.index);
+    s.occluders.clear(mesh.index);
+    return set;
+}
+
+Result<void> World::remove(MeshHandle mesh) {
+    if (auto known = state_->check(mesh, mesh.index); !known) return known;
+    auto removed = state_->scene.remove_mesh(mesh.index);
+    if (!removed) return removed;
+    state_->meshes.remove(mesh.index);
+    state_->occluders.clear(mesh.index);
+    return removed;
+}
+
+Result<NodeHandle> World::add_node(const NodeDescription& description) {
+    State& s = *state_;
+    scene::NodeId parent = scene::kNone;
+    if (!description.parent.is_null()) {
+        if (auto known = s.check(description.parent, kNoItem); !known) return tl::unexpected(known.error());
+        parent = description.parent.index;
+    }
+    const auto node = s.scene.add_node(parent, description.transform, description.layers);
+    if (!node) return tl::unexpected(node.error());
+    s.nodes.add(*node);
+    return NodeHandle{*node, s.nodes.generations[*node]};
+}
+
+Result<void> World::remove(NodeHandle node) {
+    State& s = *state_;
+    if (auto known = s.check(node, node.index); !known) return known;
+    s.scene.visit_subtree(
+        node.index, [&](scene::NodeId below) { s.nodes.remove(below); },
+        [&](scene::InstanceId instance) { s.mark_removed(s.object_of_instance[instance]); });
+    return s.scene.remove_node(node.index);
+}
+
+Result<void> World::State::set_transform(NodeHandle node, const Transform& transform, std::uint64_t item) {
+    if (!nodes.contains(node)) return check(node, item);
+    return set_local(node.index, transform, item);
+}
+
+// The scene checks the transform; an error names the caller's item.
+Result<void> World::State::set_local(scene::NodeId node, const Transform& transform, std::uint64_t item) {
+    auto set = scene.set_local(node, transform);
+    if (!set) set.error().item = item;
+    return set;
+}
+
+Result<void> World::set_transform(NodeHandle node, const Transform& transform) {
+    return state_->set_transform(node, transform, node.index);
+}
+
+Result<void> World::set_transforms(Strided<NodeHandle> nodes, Strided<Transform> transforms) {
+    if (nodes.size() != transforms.size()) return fail_sizes();
+    State& s = *state_;
+    constexpr std::size_t kAtOnce = 64;
+    const bool side_by_side = transforms.stride() == sizeof(Transform);
+    Result<void> first;
+    for (std::size_t begin = 0; begin < nodes.size(); begin += kAtOnce) {
+        const std::size_t end = std::min(begin + kAtOnce, nodes.size());
+        scene::NodeId ids[kAtOnce];
+        std::size_t count = 0;
+        while (begin + count < end && s.nodes.contains(nodes[begin + count])) {
+            ids[count] = nodes[begin + count].index;
+            ++count;
+        }
+        // All of them, or, where one is bad, none: then one by one.
+        if (side_by_side && begin + count == end && s.scene.set_local({ids, count}, {&transforms[begin], count}))
+            continue;
+        for (std::size_t i = begin; i < end; ++i) {
+            auto set = s.set_transform(nodes[i], transforms[i], i);
+            if (!set && first) first = std::move(set);
+        }
+    }
+    return first;
+}
+
+Result<void> World::set_parent(NodeHandle node, NodeHandle parent) {
+    if (auto known = state_->check(node, node.index); !known) return known;
+    if (!parent.is_null())
+        if (auto known = state_->check(parent, parent.index); !known) return known;
+    return state_->scene.set_parent(node.index, parent.index);
+}
+
+Result<void> World::set_layers(NodeHandle node, std::uint32_t layers) {
+    if (auto known = state_->check(node, node.index); !known) return known;
+    return state_->scene.set_layer_mask(node.index, layers);
+}
+
+}  // namespace crofton

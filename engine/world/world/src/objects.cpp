@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: MIT
+// Objects: adding, changing, removing.
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "for_each_pair.hpp"
+#include "world_state.hpp"
+
+namespace crofton {
+namespace {
+
+Result<void> validate(const Bound& bound, std::uint64_t item) {
+    if (bound.kind == BoundKind::none)
+        return fail(ErrorCode::invalid_argument, item, "world: an object needs a mesh or a bound");
+    if (bound.kind == BoundKind::ball && !(bound.radius >= 0.0))
+        return fail(std::isnan(bound.radius) ? ErrorCode::non_finite : ErrorCode::invalid_argument, item,
+                    "ball: the radius is negative or NaN");
+    return crofton::validate(bound.box, item);
+}
+
+}  // namespace
+
+Bound::Bound(const Aabb& aligned) : kind(BoundKind::aligned_box), box(obb_of(aligned)) {}
+
+Bound::Bound(const Sphere& ball) : kind(BoundKind::ball), radius(ball.radius) {
+    box.center = ball.center;
+    // A little more than the float's rounding, which is 2^-150 at most where floats are subnormal.
+    const double enough = ball.radius > 0.0 ? ball.radius * (1.0 + 0x1p-22) + 0x1p-149 : ball.radius;
+    box.half_extents = glm::vec3(static_cast<float>(enough));
+}
+
+Result<void> World::State::check(ObjectHandle object, std::uint64_t item) const {
+    if (table.contains(object)) return {};
+    if (object.index >= table.objects.size())
+        return fail(ErrorCode::stale_handle, item, "world: the handle names no object of this world");
+    if (object.generation < world::kFirstGeneration)
+        return fail(ErrorCode::stale_handle, item, "world: the object's handle was never set");
+    return fail(ErrorCode::stale_handle, item,
+                {"world: object ", object.index, " of generation ", object.generation, " has been removed"});
+}
+
+StagedChange& World::State::stage(std::uint32_t object) {
+    std::uint32_t& entry = table.objects[object].staged;
+    if (entry == kNoIndex) {
+        entry = static_cast<std::uint32_t>(staged.size());
+        staged.emplace_back();
+        staged.back().object = object;
+    }
+    return staged[entry];
+}
+
+// A mesh object's instance, on the node that was given or on one of its own.
+Result<void> World::State::hang(world::Object& object, const ObjectDescription& description) {
+    if (auto known = check(description.mesh, kNoItem); !known) return known;
+    scene::NodeId node = scene::kNone;
+    if (!description.node.is_null()) {
+        if (auto known = check(description.node, kNoItem); !known) return known;
+        node = description.node.index;
+    }
+    if (node == scene::kNone || description.transform) {
+        const auto own = scene.add_node(node, description.transform.value_or(Transform()));
+        if (!own) return tl::unexpected(own.error());
+        node = object.own_node = *own;
+    }
+    const auto instance = scene.add_instance(node, description.mesh.index);
+    if (!instance) return tl::unexpected(instance.error());
+    object.instance = *instance;
+    return scene.set_instance_layers(*instance, description.layers);
+}
+
+Result<ObjectHandle> World::add(const ObjectDescription& description) {
+    State& s = *state_;
+    world::Object object;
+    object.layers = description.layers;
+    object.collides_with = description.collides_with;
+    object.occludes = description.occludes;
+    object.only_occludes = description.only_occludes;
+    const bool has_mesh = !description.mesh.is_null();
+    if (has_mesh && description.bound.kind != BoundKind::none)
+        return fail(ErrorCode::invalid_argument, kNoItem, "world: an object has a mesh or a bound, not both");
+    if (!has_mesh && (description.transform || !description.node.is_null()))
+        return fail(ErrorCode::invalid_argument, kNoItem,
+                    "world: a bound is given in the world's coordinates, without node and transform");
+    if (!has_mesh && description.only_occludes)
+        return fail(ErrorCode::invalid_argument, kNoItem, "world: what only occludes needs a mesh with occluders");
+    const auto item = s.index.add(description.layers);
+    if (!item) return tl::unexpected(item.error());
+    if (auto valid = has_mesh ? s.hang(object, description) : validate(description.bound, kNoItem); !valid) {
+        s.index.remove(*item);
+        return tl::unexpected(valid.error());
+    }
+    s.table.add(*item, object, description.user);
+    StagedChange& change = s.stage(*item);
+    change.has_bound = !has_mesh;
+    change.bound = description.bound;
+    if (has_mesh) {
+        if (s.object_of_instance.size() <= object.instance)
+            s.object_of_instance.resize(object.instance + std::size_t{1}, kNoIndex);
+        s.object_of_instance[object.instance] = *item;
+    }
+    return s.table.handle(*item);
+}
+
+void World::State::mark_removed(std::uint32_t object) {
+    table.remove(object);
+    movers.forget(object);
+    removed.push_back(object);
+}
+
+Result<void> World::remove(ObjectHandle handle) {
+    State& s = *state_;
+    if (auto known = s.check(handle, handle.index); !known) return known;
+    const world::Object& object = s.table.objects[handle.index];
+    s.mark_removed(handle.index);
+    if (object.own_node != kNoIndex) return s.scene.remove_node(object.own_node);
+    if (object.instance != kNoIndex) return s.scene.remove_instance(object.instance);
+    return {};
+}
+
+Result<void> World::State::set_transform(ObjectHandle handle, const Transform& transform, std::uint64_t item) {
+    if (auto known = check(handle, item); !known) return known;
+    const world::Object& object = table.objects[handle.index];
+    if (object.own_node == kNoIndex)
+        return fail(ErrorCode::invalid_argument, item,
+                    object.instance == kNoIndex ? "world: the object is a bound: set_bound moves it"
+                                                : "world: the object has its node's transform: move the node, or add "
+                                                  "the object with a transform");
+    return set_local(object.own_node, transform, item);
+}
+
+Result<void> World::set_transform(ObjectHandle object, const Transform& transform) {
+    return state_->set_transform(object, transform, object.index);
+}
+
+Result<void> World::set_transforms(Strided<ObjectHandle> objects, Strided<Transform> transforms) {
+    return for_each_pair(objects, transforms,
+                         [&](ObjectHandle object, const Transform& transform, std::size_t i) {
+                             return state_->set_transform(object, transform, i);
+                         });
+}
+
+Result<void> World::State::set_bound(ObjectHandle object, const Bound& bound, std::uint64_t item) {
+    if (auto known = check(object, item); !known) return known;
+    if (table.objects[object.index].instance != kNoIndex)
+        return fail(ErrorCode::invalid_argument, item, "world: the object has a mesh: set_transform moves it");
+    if (auto valid = validate(bound, item); !valid) return valid;
+    if (stage_box_of_mover(object.index, bound.kind, bound.box, bound.radius)) return {};
+    StagedChange& change = stage(object.index);
+    change.has_bound = true;
+    change.bound = bound;
+    movers.forget(object.index);  // until the update, boxes go among the changes too
+    return {};
+}
+
+// The short way, without an entry among the changes. False where it does not lead: the box is staged nowhere then.
+bool World::State::stage_box_of_mover(std::uint32_t id, BoundKind kind, const Obb& box, double radius) {
+    const world::Object& object = table.objects[id];
+    if (object.kind != kind || object.radius != radius) return false;
+    if (object.staged != kNoIndex && staged[object.staged].has_bound) return false;
+    return index.stage_box(id, box);
+}
+
+Result<void> World::set_bound(ObjectHandle object, const Bound& bound) {
+    return state_->set_bound(object, bound, object.index);
+}
+
+Result<void> World::set_bounds(Strided<ObjectHandle> objects, Strided<Obb> boxes) {
+    if (objects.size() != boxes.size()) return fail_sizes();
+    State& s = *state_;
+    constexpr std::size_t kAtOnce = 128;  // are checked, and then found in the cache
+    Result<void> first;
+    for (std::size_t begin = 0; begin < boxes.size(); begin += kAtOnce) {
+        const std::size_t end = std::min(begin + kAtOnce, boxes.size());
+        std::uint32_t entries[kAtOnce];
+        const std::size_t movers = s.movers.list_entries(objects, begin, end, entries);
+        const std::size_t staged = s.index.stage_movers({entries, movers}, &boxes[begin], boxes.stride());
+        for (std::size_t i = begin + staged; i < end; ++i) {
+            auto set = s.set_bound(objects[i], boxes[i], i);
+            if (!set && first) first = std::move(set);
+        }
+    }
+    return first;
+}
+
+Result<void> World::set_mesh(ObjectHandle object, MeshHandle mesh) {
+    State& s = *state_;
+    if (auto known = s.check(object, object.index); !known) return known;
+    if (auto known = s.check(mesh, mesh.index); !known) return known;
+    const std::uint32_t instance = s.table.objects[object.index].instance;
+    if (instance == kNoIndex)
+        return fail(ErrorCode::invalid_argument, object.index, "world: the object is a bound and takes no mesh");
+    s.stage(object.index);
+    return s.scene.set_instance_mesh(instance, mesh.index);
+}
+
+Result<void> World::set_body(ObjectHandle object, const convex::Body* body) {
+    if (auto known = state_->check(object, object.index); !known) return known;
+    if (body != nullptr && body->kind() == convex::Kind::half_space)
+        return fail(ErrorCode::unsupported, object.index,
+                    "world: a half-space has no box; give the object a large box instead");
+    state_->body_contacts.set(object.index, body);
+    state_->pairs_changed = true;
+    return {};
+}
+
+Result<void> World::set_hidden(ObjectHandle object, bool hidden) {
+    if (auto known = state_->check(object, object.index); !known) return known;
+    state_->table.objects[object.index].shown = !hidden;
+    state_->stage(object.index);
+    return {};
+}
+
+Result<void> World::set_layers(ObjectHandle object, std::uint32_t layers) {
+    if (auto known = state_->check(object, object.index); !known) return known;
+    world::Object& changed = state_->table.objects[object.index];
+    if (changed.instance != kNoIndex) return state_->scene.set_instance_layers(changed.instance, layers);
+    changed.layers = layers;
+    state_->stage(object.index);
+    return {};
+}
+
+Result<void> World::set_collides_with(ObjectHandle object, std::uint32_t layers) {
+    if (auto known = state_->check(object, object.index); !known) return known;
+    state_->table.objects[object.index].collides_with = layers;
+    state_->pairs_changed = true;
+    return {};
+}
+
+Result<void> World::set_user(ObjectHandle object, std::uint64_t user) {
+    if (auto known = state_->check(object, object.index); !known) return known;
+    state_->table.names.users[object.index] = user;
+    state_->pairs_changed = true;
+    return {};
+}
+
+}  // namespace crofton

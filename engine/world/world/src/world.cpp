@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+#include <chrono>
+#include <crofton/boxtree/box_tree.hpp>
+#include <crofton/core/memory.hpp>
+
+#include "trace_zone.hpp"
+#include "world_state.hpp"
+
+namespace crofton {
+
+World::World(const WorldOptions& options) : state_(Owner<State>::make(options)) {}
+World::~World() = default;
+World::World(World&&) noexcept = default;
+World& World::operator=(World&&) noexcept = default;
+
+bool World::contains(ObjectHandle object) const {
+    return state_->table.contains(object);
+}
+bool World::contains(MeshHandle mesh) const {
+    return state_->meshes.contains(mesh);
+}
+bool World::contains(NodeHandle node) const {
+    return state_->nodes.contains(node);
+}
+std::size_t World::object_count() const {
+    return state_->table.count;
+}
+const WorldStatistics& World::statistics() const {
+    return state_->statistics;
+}
+const boxtree::BoxTree& World::tree() const {
+    return state_->index.tree();
+}
+std::span<const ObjectPair> World::pairs() const {
+    return state_->finder.pairs();
+}
+std::span<const Contact> World::contacts() const {
+    return state_->finder.contacts();
+}
+std::span<const BodyContact> World::body_contacts() const {
+    return state_->body_contacts.contacts();
+}
+
+Result<std::uint64_t> World::user_of(ObjectHandle object) const {
+    if (auto known = state_->check(object, object.index); !known) return tl::unexpected(known.error());
+    return state_->table.names.users[object.index];
+}
+
+Result<Obb> World::box_of(ObjectHandle object) const {
+    if (auto known = state_->check(object, object.index); !known) return tl::unexpected(known.error());
+    if (!state_->index.has_box(object.index))
+        return fail(ErrorCode::empty, object.index,
+                    "world: the object has no box before the first update after it was added");
+    return state_->index.box(object.index);
+}
+
+Result<Transform> World::transform_of(ObjectHandle object) const {
+    if (auto known = state_->check(object, object.index); !known) return tl::unexpected(known.error());
+    const std::uint32_t instance = state_->table.objects[object.index].instance;
+    if (instance == kNoIndex)
+        return fail(ErrorCode::invalid_argument, object.index, "world: the object is a bound and has no transform");
+    if (!state_->index.has_box(object.index))
+        return fail(ErrorCode::empty, object.index,
+                    "world: the object has no transform to the world before the first update after it was added");
+    return state_->scene.world(state_->scene.node_of(instance));
+}
+
+void World::State::apply_changes() {
+    for (const std::uint32_t object : removed) {
+        index.remove(object);
+        bodies.forget(object);
+        body_contacts.set(object, nullptr);
+        occluders.note(object);
+    }
+    pairs_changed |= !removed.empty();
+    removed.clear();
+    for (const StagedChange& change : staged) {
+        world::Object& object = table.objects[change.object];
+        object.staged = kNoIndex;
+        if (!object.alive) continue;
+        if (object.instance != kNoIndex) {
+            object.mesh = scene.mesh_of(object.instance);
+            show(change.object);
+            pairs_changed = true;
+            body_contacts.note(change.object);
+            continue;
+        }
+        index.set_layers(change.object, object.layers);
+        index.set_shown(change.object, object.shown);
+        if (!change.has_bound) continue;
+        if (object.kind != change.bound.kind || object.radius != change.bound.radius) {
+            pairs_changed = true;
+            body_contacts.note(change.object);
+        }
+        object.kind = change.bound.kind;
+        object.radius = change.bound.radius;
+        rebound.push_back(change.object);
+        index.set_box(change.object, change.bound.box);
+    }
+    staged.clear();
+}
+
+// An object with a mesh, after what decides it has changed.
+void World::State::show(std::uint32_t id) {
+    const world::Object& object = table.objects[id];
+    index.set_shown(id, object.shown && !object.only_occludes && scene.layer_masks()[object.instance] != 0);
+    occluders.note(id);
+}
+
+// Whose box has an entry in the list for set_bounds().
+void World::State::note_movers() {
+    const auto note = [&](std::uint32_t id) {
+        const world::Object& object = table.objects[id];
+        const bool is_box = object.alive && object.kind == BoundKind::box;
+        movers.set(table.handle(id), is_box ? index.mover_entry(id) : kNoIndex);
+    };
+    for (const std::uint32_t id : index.relisted_items()) note(id);
+    for (const std::uint32_t id : rebound) note(id);
+    rebound.clear();
+}
+
+// What the scene's nodes have moved.
+void World::State::apply_scene(Executor& executor) {
+    const scene::UpdateStatistics updated = scene.update(executor);
+    statistics.nodes_updated = updated.nodes_updated;
+    statistics.out_of_range = updated.instances_invalid;
+    index.commit();
+    apply_changes();
+    for (const scene::InstanceId instance : scene.relayered_instances()) {
+        const std::uint32_t object = object_of_instance[instance], layers = scene.layer_masks()[instance];
+        show(object);
+        if (layers != 0) index.set_layers(object, layers);
+    }
+    for (const scene::InstanceId instance : scene.moved_instances()) {
+        index.set_box_of_moved(object_of_instance[instance], scene.world_boxes()[instance]);
+        occluders.note(object_of_instance[instance]);
+    }
+    pairs_changed |= bodies.update(scene, executor);
+}
+
+Result<void> World::update(Executor& executor) {
+    State& s = *state_;
+    const TraceHooks& trace = s.options.trace;
+    const world::TraceZone zone(trace, "World::update");
+    s.statistics = {};
+    {
+        const world::TraceZone part(trace, "update: transforms");
+        s.apply_scene(executor);
+    }
+    const auto changes = [&] {
+        const world::TraceZone part(trace, "update: tree and movers");
+        return s.index.update(
+            {.rebuild_budget = s.options.rebuild_budget, .updates_to_rest = s.options.updates_to_rest}, executor);
+    }();
+    s.note_movers();
+    {
+        const world::TraceZone part(trace, "update: occluders");
+        s.update_occluders();
+    }
+    Result<void> found;
+    const bool changed = changes.boxes > 0 || s.pairs_changed, moved_only = !s.pairs_changed && !changes.members;
+    s.pairs_changed = false;
+    const auto start = std::chrono::steady_clock::now();
+    if (s.options.pairs && changed) {
+        const world::TraceZone part(trace, "update: pairs and contacts");
+        found = s.finder.update(s.table, s.index, s.scene, s.bodies, s.body_contacts, moved_only, executor);
+        if (s.options.contacts)
+            s.body_contacts.update(s.finder.pairs(), s.table, s.index, s.scene, s.options.contact_margin, executor);
+    }
+    if (!s.options.pairs || !s.options.contacts) s.body_contacts.forget_changes();
+    if (!changed) s.finder.stay();
+    if (!changed) s.body_contacts.stay();
+    s.statistics.contacts_us =
+        std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
+    if (!found) s.pairs_changed = true;
+    world::trace_count(trace, "boxes changed", changes.boxes);
+    world::trace_count(trace, "pairs", s.finder.pairs().size());
+    s.statistics.objects = s.table.count;
+    s.statistics.resting = s.index.tree().item_count();
+    s.statistics.moving = s.index.moving().size();
+    s.statistics.boxes_changed = changes.boxes;
+    s.statistics.tree_built = changes.tree_built;
+    s.statistics.box_pairs_tested = changed ? s.finder.broadphase().bound_pairs : 0;
+    if (changed) s.statistics.box_tests = s.finder.broadphase().boxes;
+    s.statistics.body_pairs_computed = s.options.pairs && s.options.contacts ? s.body_contacts.computed() : 0;
+    s.statistics.contact_pairs_tested = changed ? s.finder.pairs().size() : 0;
+    return found;
+}
+
+}  // namespace crofton

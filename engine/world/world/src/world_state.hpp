@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+// What a World keeps.
+#pragma once
+#include <crofton/collide/broadphase.hpp>
+#include <crofton/world/world.hpp>
+
+#include "body_contacts.hpp"
+#include "contact_finder.hpp"
+#include "object_table.hpp"
+#include "occluders.hpp"
+#include "spatial_index.hpp"
+
+namespace crofton {
+
+// What an object gets in the next update(), beside its layers and whether it is shown.
+struct StagedChange {
+    std::uint32_t object = kNoIndex;
+    bool has_bound = false;
+    Bound bound;
+};
+
+// Which of the scene's ids have been given out as handles, and how often.
+struct Generations {
+    Vector<std::uint32_t> generations;
+    Vector<std::uint8_t> alive;
+
+    void add(std::uint32_t id) {
+        if (id >= alive.size()) {
+            generations.resize(id + std::size_t{1}, world::kFirstGeneration);
+            alive.resize(id + std::size_t{1}, 0);
+        }
+        alive[id] = 1;
+    }
+    void remove(std::uint32_t id) {
+        if (id >= alive.size() || !alive[id]) return;
+        alive[id] = 0;
+        world::renew(generations[id]);
+    }
+    template <class Tag>
+    [[nodiscard]] bool contains(Handle<Tag> handle) const {
+        return handle.index < alive.size() && alive[handle.index] && generations[handle.index] == handle.generation;
+    }
+};
+
+struct World::State {
+    explicit State(const WorldOptions& chosen) : options(chosen), index(chosen.tree), finder(chosen) {}
+
+    WorldOptions options;
+    WorldStatistics statistics;
+    world::ObjectTable table;
+    world::SpatialIndex index;
+    world::MoverTable movers;
+    world::Bodies bodies;
+    world::ContactFinder finder;
+    world::BodyContacts body_contacts;
+    world::Occluders occluders;
+    Aabb object_bounds;  // about; where there are occluders
+    scene::Scene scene;
+    Generations nodes, meshes;
+    Vector<std::uint32_t> object_of_instance;
+    Vector<glm::vec3> vertices;  // scratch
+    Vector<StagedChange> staged;
+    Vector<std::uint32_t> removed, rebound;  // the second: objects that have got a bound in this update
+    bool pairs_changed = false;              // something other than a box
+
+    [[nodiscard]] Result<void> check(ObjectHandle object, std::uint64_t item) const;
+    [[nodiscard]] Result<void> check(NodeHandle node, std::uint64_t item) const;
+    [[nodiscard]] Result<void> check(MeshHandle mesh, std::uint64_t item) const;
+    StagedChange& stage(std::uint32_t object);
+    [[nodiscard]] Result<void> hang(world::Object& object, const ObjectDescription& description);
+    [[nodiscard]] Result<void> set_bound(ObjectHandle object, const Bound& bound, std::uint64_t item);
+    [[nodiscard]] Result<void> set_transform(ObjectHandle object, const Transform& transform,
+                                             std::uint64_t item);
+    [[nodiscard]] Result<void> set_transform(NodeHandle node, const Transform& transform, std::uint64_t item);
+    [[nodiscard]] Result<void> set_local(scene::NodeId node, const Transform& transform, std::uint64_t item);
+    [[nodiscard]] bool stage_box_of_mover(std::uint32_t object, BoundKind kind, const Obb& box, double radius);
+    void mark_removed(std::uint32_t object);
+    void apply_changes();
+    void note_movers();
+    void apply_scene(Executor& executor);
+    void show(std::uint32_t object);
+    void update_occluders();
+    [[nodiscard]] Result<void> set_found_occluders(scene::MeshId mesh, const occlude::FindOptions& how);
+    // CullOptions::among with the bits of what has changed since such a set can have been made; in `both`, or as it is.
+    [[nodiscard]] std::span<const std::uint64_t> among_and_changed(std::span<const std::uint64_t> among,
+                                                                   Vector<std::uint64_t>& both) const;
+    [[nodiscard]] Result<void> find_visible(const OccludingView& view, const OcclusionOptions& occlusion,
+                                            const cull::CullOptions& how, Executor& executor,
+                                            world::OccludedView& result) const;
+
+    // An object's body, or what stands for it: a ball or box. No pose: it meets nothing.
+    struct Stand {
+        convex::Body body;
+        std::optional<RigidTransform> pose;
+    };
+    [[nodiscard]] Stand stand_of(std::uint32_t object) const;
+
+    // How far along the ray an object's own shape is met, no farther than the ray goes; its box is met at `box_t`.
+    [[nodiscard]] std::optional<ObjectHit> shape_hit(const Ray& ray, std::uint32_t object, double box_t) const;
+    // Visits objects whose boxes the ray meets; the visitor answers how far along the ray others are of interest.
+    void visit_along(const Ray& ray, std::uint32_t layers, collide::RayVisitor visit) const;
+    // Visits objects whose boxes are within `distance` of `bounds`, and some others.
+    void visit_near(const Aabb& bounds, double distance, std::uint32_t layers, collide::NearVisitor visit) const;
+    template <class Shape>
+    void overlap(const Shape& shape, Vector<ObjectRef>& found, std::uint32_t layers) const;
+    // How far an object is, and the nearest points: first the shape's, then the object's.
+    using GapTo = FunctionRef<collide::Distance(std::uint32_t object)>;
+    // `bounds` are around the shape.
+    [[nodiscard]] std::optional<ClosestObject> closest(const Aabb& bounds, double max_distance, std::uint32_t layers,
+                                                       GapTo gap_to_object) const;
+    template <class Shape>
+    [[nodiscard]] std::optional<ClosestObject> closest(const Shape& shape, double max_distance,
+                                                       std::uint32_t layers) const;
+};
+
+}  // namespace crofton

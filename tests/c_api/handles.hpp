@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+// Handles that destroy themselves, and structs with their size set, for the tests of the C API.
+#pragma once
+#include <crofton/capi/bake.h>
+#include <crofton/capi/crofton.h>
+#include <doctest/doctest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace crofton::capi_test {
+
+template <class Handle, crofton_status (*kDestroy)(Handle*)>
+struct Destroy {
+    void operator()(Handle* handle) const { kDestroy(handle); }
+};
+template <class Handle, crofton_status (*kDestroy)(Handle*)>
+using Owned = std::unique_ptr<Handle, Destroy<Handle, kDestroy>>;
+using Scene = Owned<crofton_scene, crofton_scene_destroy>;
+using Tree = Owned<crofton_tree, crofton_tree_destroy>;
+using VisibleSet = Owned<crofton_visible_set, crofton_visible_set_destroy>;
+using Broadphase = Owned<crofton_broadphase, crofton_broadphase_destroy>;
+using Collider = Owned<crofton_collider, crofton_collider_destroy>;
+using Triangulator = Owned<crofton_triangulator, crofton_triangulator_destroy>;
+using WorldHandle = Owned<crofton_world, crofton_world_destroy>;
+using VisibleObjectsHandle = Owned<crofton_visible_objects, crofton_visible_objects_destroy>;
+using VisibleInViewsHandle = Owned<crofton_visible_in_views, crofton_visible_in_views_destroy>;
+using BodyHandle = Owned<crofton_body, crofton_body_destroy>;
+using BodyContactsHandle = Owned<crofton_body_contacts, crofton_body_contacts_destroy>;
+using Found = Owned<crofton_found, crofton_found_destroy>;
+
+template <class OwnedHandle, class... Arguments>
+OwnedHandle make(crofton_status (*create)(Arguments..., typename OwnedHandle::pointer*), Arguments... arguments) {
+    typename OwnedHandle::pointer handle = nullptr;
+    REQUIRE(create(arguments..., &handle) == CROFTON_OK);
+    return OwnedHandle(handle);
+}
+inline Scene make_scene() {
+    return make<Scene>(crofton_scene_create);
+}
+inline VisibleSet make_visible_set() {
+    return make<VisibleSet>(crofton_visible_set_create);
+}
+inline Broadphase make_broadphase() {
+    return make<Broadphase>(crofton_broadphase_create);
+}
+inline Triangulator make_triangulator() {
+    return make<Triangulator>(crofton_triangulator_create);
+}
+inline WorldHandle make_world(const crofton_world_options* options = nullptr) {
+    crofton_world* world = nullptr;
+    REQUIRE(crofton_world_create(options, &world) == CROFTON_OK);
+    return WorldHandle(world);
+}
+inline VisibleObjectsHandle make_visible_objects() {
+    return make<VisibleObjectsHandle>(crofton_visible_objects_create);
+}
+inline VisibleInViewsHandle make_visible_in_views() {
+    return make<VisibleInViewsHandle>(crofton_visible_in_views_create);
+}
+inline Found make_found() {
+    return make<Found>(crofton_found_create);
+}
+
+template <class Struct>
+Struct sized() {
+    Struct result{};
+    result.size = sizeof result;
+    return result;
+}
+
+inline crofton_box box_at(double x, double y, double z, float half = 0.5f) {
+    return {{x, y, z}, {1, 0, 0, 0, 1, 0, 0, 0, 1}, {half, half, half}};
+}
+
+inline crofton_view default_view() {
+    auto camera = sized<crofton_camera>();
+    REQUIRE(crofton_camera_default(&camera) == CROFTON_OK);
+    auto view = sized<crofton_view>();
+    view.layer_mask = ~0u;
+    view.frustum.size = sizeof view.frustum;
+    REQUIRE(crofton_frustum_from_camera(&camera, &view.frustum) == CROFTON_OK);
+    return view;
+}
+
+// A tetrahedron with its right angle at the origin and legs of one.
+struct Tetrahedron {
+    std::vector<float> positions{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+    std::vector<std::uint32_t> indices{0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
+    crofton_mesh mesh() const {
+        return {sizeof(crofton_mesh), positions.data(), positions.size() / 3,
+                indices.data(),       indices.size(),   "tetrahedron"};
+    }
+};
+
+inline Collider make_collider(float size = 1.0f) {
+    Tetrahedron tetrahedron;
+    for (float& x : tetrahedron.positions) x *= size;
+    const crofton_mesh mesh = tetrahedron.mesh();
+    crofton_collider* collider = nullptr;
+    REQUIRE(crofton_collider_create(&mesh, &collider) == CROFTON_OK);
+    return Collider(collider);
+}
+
+inline crofton_transform translation(double x, double y, double z) {
+    return {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {x, y, z}};
+}
+
+inline crofton_bound box_bound(const crofton_box& box) {
+    crofton_bound bound{};
+    bound.kind = CROFTON_BOUND_BOX;
+    bound.box = box;
+    return bound;
+}
+inline crofton_bound ball_bound(double x, double y, double z, double radius) {
+    crofton_bound bound{};
+    bound.kind = CROFTON_BOUND_BALL;
+    bound.center[0] = x;
+    bound.center[1] = y;
+    bound.center[2] = z;
+    bound.radius = radius;
+    return bound;
+}
+
+inline bool mentions(const char* text, const char* part) {
+    return std::string(text).find(part) != std::string::npos;
+}
+
+}  // namespace crofton::capi_test

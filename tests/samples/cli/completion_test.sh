@@ -1,0 +1,52 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# What bash completes: packaging/crofton.bash is sourced and its function called as bash would.
+#   tests/samples/cli/completion_test.sh FOLDER    of the program `crofton`
+set -uo pipefail
+cd "$(dirname "$0")/../.."
+if ((BASH_VERSINFO[0] < 4)); then
+    echo "skipped: bash is older than 4"
+    exit 0
+fi
+PATH=$1:$PATH LC_ALL=C
+export PATH LC_ALL
+bash -n packaging/crofton.bash || exit 1
+source packaging/crofton.bash
+
+# completed WORD…: what is offered for the last of these words, in one line and in order.
+completed() {
+    COMP_WORDS=("$@")
+    COMP_CWORD=$(($# - 1))
+    COMPREPLY=()
+    _crofton
+    printf '%s\n' "${COMPREPLY[@]}" | sort | paste -sd' '
+}
+
+failed=0
+# expect WANTED WORD…
+expect() {
+    local wanted=$1 found
+    shift
+    found=$(completed "$@")
+    [[ $found == "$wanted" ]] && return
+    echo "\`$*\` is completed to '$found', not to '$wanted'"
+    failed=1
+}
+
+expect frames crofton fr
+expect 'measure merge' crofton me
+expect '--help --version' crofton --
+expect '' crofton nothing
+expect '--trace --tree' crofton frames --tr
+expect '--trace' crofton frames town --frames 3 --trac
+expect 'exact fast tight' crofton fit --quality ''
+expect 'tight' crofton fit --quality ti
+expect 'README.md' crofton frames READ
+expect '' crofton nothing --tr
+# Each command of the help is offered, and each has options.
+for command in $(crofton --help | sed -n '/^Subcommands:/,$s/^  \([a-z]*\) .*/\1/p'); do
+    expect "$command" crofton "$command"
+    [[ " $(completed crofton "$command" --) " == *' --help '* ]] || { echo "$command: no options are offered"; failed=1; }
+done
+[[ $(complete -p crofton) == *_crofton* ]] || { echo 'the function is not registered'; failed=1; }
+exit $failed
