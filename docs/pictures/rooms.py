@@ -14,7 +14,7 @@ LIBRARIES = [("crofton::crofton", "a game links it", ["base", "bounds", "shape",
              ("crofton::bake", "tools link it too", ["bake"], "#fdf0e0", "#b06f2f"),
              ("crofton::study", "teaching and research", ["study"], "#eef6ea", "#4f8a3a"),
              ("crofton::render", "uses base only", ["render"], "#f4ecf7", "#7d4f94")]
-WIDTH, ROW, LEFT, BOX = 760, 58, 190, 104
+WIDTH, ROW, LEFT, BOX = 900, 58, 190, 104
 
 
 def main():
