@@ -151,7 +151,7 @@ FrameTimes views(std::size_t count, std::size_t moving_count, int frames, cull::
         [&](int frame) {
             worlds.move(frame);
             objects.update(worlds.moved());
-            objects.world.view(view, objects.seen, {.order = order});
+            (void)objects.world.view({.volume = view.frustum, .layers = view.layer_mask, .order = order}, objects.seen);
             must(objects.seen.size() == parts.seen(), "the views differ");
         });
 }

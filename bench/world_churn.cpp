@@ -80,8 +80,8 @@ AgainstFresh against_fresh(const Churn& churn, const cull::View& view) {
                fresh_within_bytes = static_cast<double>(most_bytes_in_use - before);
     VisibleObjects seen, seen_fresh;
     const FrameTimes times = compare(
-        50, [&](int) { fresh.view(view, seen_fresh, {.order = cull::ResultOrder::tree}); },
-        [&](int) { churn.world.view(view, seen, {.order = cull::ResultOrder::tree}); });
+        50, [&](int) { (void)fresh.view({.volume = view.frustum, .order = cull::ResultOrder::tree}, seen_fresh); },
+        [&](int) { (void)churn.world.view({.volume = view.frustum, .order = cull::ResultOrder::tree}, seen); });
     must(seen.size() == seen_fresh.size(), "the views differ");
     return {times.world, times.by_hand, fresh_bytes, fresh_within_bytes};
 }

@@ -146,7 +146,7 @@ FrameTimes views(std::size_t count, std::size_t moving_count, int frames) {
         [&](int frame) {
             worlds.move(frame);
             objects.update(worlds);
-            objects.world.view(view, seen, {.order = cull::ResultOrder::tree});
+            (void)objects.world.view({.volume = view.frustum, .order = cull::ResultOrder::tree}, seen);
             must(seen.size() == parts.seen(), "the views differ");
         });
 }

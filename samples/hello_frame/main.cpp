@@ -34,7 +34,7 @@ int main() {
         world.update();                             // once a frame; takes the host's job system
 
         // Const from here on, from any thread.
-        world.view(camera, visible);
+        world.view({.camera = camera}, visible);
         seen = visible.size();
         for (std::size_t i = 0; i < visible.size(); ++i) {
             // draw(models[visible[i].user]);

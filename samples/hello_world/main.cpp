@@ -13,8 +13,8 @@ int main() {
     crofton::VisibleObjects visible;  // keeps its memory from frame to frame
     for (int frame = 0; frame < 60; ++frame) {
         (void)world.set_bound(ball, crofton::Sphere{{frame - 30.0, 0.0, -10.0}, 1.0});
-        world.update();               // once a frame; the queries below are const
-        world.view(camera, visible);  // visible[i].object is what to draw
+        world.update();                           // once a frame; the queries below are const
+        world.view({.camera = camera}, visible);  // visible[i].object is what to draw
         for (const crofton::Contact& contact : world.contacts())
             if (contact.phase == crofton::ContactPhase::began)
                 std::printf("frame %d: the ball touches crate %u\n", frame, contact.first.object.index);

@@ -253,16 +253,16 @@ void SceneManager::queue_objects(SceneNode& node, Ogre::Camera* camera, Ogre::Vi
 
 // A depth buffer has the camera's own eye and planes: what looks through another frustum or a mirror goes without.
 void SceneManager::find_visible(const Ogre::Camera& camera, bool only_shadow_casters) {
-    const cull::View plain{.frustum = frustum_of(camera)};
+    const ViewRequest plain{.volume = frustum_of(camera)};
     const bool is_plain = !use_occlusion_ || only_shadow_casters || camera.getCullingFrustum() ||
                           camera.isReflected() || camera.isCustomNearClipPlaneEnabled();
     const glm::dmat4 to_clip = to_glm(camera.getProjectionMatrix()) * to_glm(camera.getViewMatrix(true));
-    auto view = occlude::occlusion_view_of(to_clip, DepthRange::minus_one_to_one);
-    if (is_plain || !view) return world_.view(plain, visible_);
-    view->frustum = plain.frustum;
+    const ViewRequest occluding{.matrix = ViewMatrix{to_clip, DepthRange::minus_one_to_one},
+                                .volume = plain.volume,
+                                .layers = _getCombinedVisibilityMask(),
+                                .occlusion = OcclusionOptions{}};
     for (;;) {
-        const OccludingView occluding{*view, _getCombinedVisibilityMask()};
-        if (!world_.view(occluding, {}, visible_)) return world_.view(plain, visible_);
+        if (is_plain || !world_.view(occluding, visible_)) return (void)world_.view(plain, visible_);
         world_.drawn_occluders(visible_, drawn_occluders_);
         bool right = true;
         for (const OccluderRef& occluder : drawn_occluders_)

@@ -74,7 +74,7 @@ void CullCallback::operator()(osg::Node* node, osg::NodeVisitor* visitor) {
     }
     update_world(visitor->getTraversalNumber());
     const auto start = std::chrono::steady_clock::now();
-    world_.view(cull::View{.frustum = frustum_of(culler->getCurrentCullingSet())}, visible_);
+    (void)world_.view({.volume = frustum_of(culler->getCurrentCullingSet())}, visible_);
     last_cull_microseconds_ =
         std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
     for (std::size_t i = 0; i < visible_.size(); ++i)

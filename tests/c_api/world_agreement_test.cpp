@@ -4,6 +4,7 @@
 #include <cstring>
 #include <limits>
 
+#include "../view_request.hpp"
 #include "both_worlds.hpp"
 
 using namespace crofton;
@@ -127,7 +128,7 @@ std::size_t compare_views(const BothWorlds& both, NearMisses& random) {
         options.tree_order = v % 2;
         const cull::CullOptions cull_options{.order = v % 2 ? cull::ResultOrder::tree : cull::ResultOrder::ascending};
         REQUIRE(crofton_world_view_camera(both.c.get(), &c_camera, &options, &both.jobs, seen.get()) == CROFTON_OK);
-        REQUIRE(both.world.view(camera, visible, cull_options).has_value());
+        REQUIRE(both.world.view({.camera = camera, .order = cull_options.order}, visible).has_value());
         compare_visible(both, seen.get(), visible);
         total += visible.size();
         views[v] = {.frustum = frustum_of(camera).value(), .layer_mask = 1u << random.index(4) | 1u};
@@ -136,13 +137,13 @@ std::size_t compare_views(const BothWorlds& both, NearMisses& random) {
         c_views[v].frustum.size = sizeof(crofton_frustum);
         REQUIRE(crofton_frustum_from_camera(&c_camera, &c_views[v].frustum) == CROFTON_OK);
         REQUIRE(crofton_world_view(both.c.get(), &c_views[v], &options, nullptr, seen.get()) == CROFTON_OK);
-        both.world.view(views[v], visible, cull_options);
+        REQUIRE(both.world.view(request_of(views[v], cull_options.order), visible).has_value());
         compare_visible(both, seen.get(), visible);
     }
     const VisibleInViewsHandle in_views = make_visible_in_views();
     VisibleInViews expected;
     REQUIRE(crofton_world_views(both.c.get(), c_views.data(), 3, nullptr, in_views.get()) == CROFTON_OK);
-    both.world.view(views, expected);
+    REQUIRE(both.world.view(requests_of(views), expected).has_value());
     const std::uint32_t* ids = nullptr;
     std::size_t count = 0;
     REQUIRE(crofton_visible_in_views_ids(in_views.get(), &ids, &count) == CROFTON_OK);

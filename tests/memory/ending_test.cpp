@@ -244,8 +244,9 @@ TEST_SUITE("memory/ending") {
         });
         sweep_ending("views", [&] {
             VisibleObjects visible;
-            (void)world.view(Camera{}, visible);
-            (void)world.view(Camera{}, OcclusionOptions{.size = {32, 32}, .list_occluded = true}, visible);
+            (void)world.view({.camera = Camera{}}, visible);
+            (void)world.view(
+                {.camera = Camera{}, .occlusion = OcclusionOptions{.size = {32, 32}, .list_occluded = true}}, visible);
             Vector<OccluderRef> occluders;
             world.drawn_occluders(visible, occluders);
             (void)world.hidden_by(lived.objects[0], visible, occluders);

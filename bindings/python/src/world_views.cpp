@@ -23,27 +23,25 @@ Seen view(const PyWorld& python_world, const py::handle& given, std::uint32_t la
           std::pair<std::uint32_t, std::uint32_t> size) {
     const bool is_camera = py::isinstance<Camera>(given);
     if (occlusion && !is_camera) raise_type("view: with occlusion a Camera is expected");
-    const Camera camera = is_camera ? given.cast<Camera>() : Camera{};
-    const cull::View seen = view_of(given, layers);
-    const cull::CullOptions options{.mode = conservative ? cull::CullMode::conservative : cull::CullMode::exact};
-    const OcclusionOptions hiding{.size = {size.first, size.second}, .list_occluded = true};
+    ViewRequest request{.layers = layers, .mode = conservative ? cull::CullMode::conservative : cull::CullMode::exact};
+    if (occlusion) {
+        request.camera = given.cast<Camera>();
+        request.occlusion = OcclusionOptions{.size = {size.first, size.second}, .list_occluded = true};
+    } else {
+        request.volume = view_of(given, layers).frustum;
+    }
     VisibleObjects visible;
     std::vector<ObjectHandle> handles;
     std::vector<std::uint64_t> users;
     std::vector<float> nearness;
     const auto threads = executor();
     value_of(python_world.ask([&](const World& world) -> Result<void> {
+        if (auto found = world.view(request, visible, *threads); !found) return found;
         if (occlusion) {
-            auto view = occlude::occlusion_view_of(camera);
-            if (!view) return tl::unexpected(view.error());
-            if (auto found = world.view(OccludingView{*view, layers}, hiding, visible, options, *threads); !found)
-                return found;
             if (const auto* buffer = visible.occlusion_buffer()) {
                 nearness.resize(std::size_t{buffer->size().width} * buffer->size().height);
                 buffer->read(nearness);
             }
-        } else {
-            world.view(seen, visible, options, *threads);
         }
         for (std::size_t i = 0; i < visible.size(); ++i) {
             handles.push_back(visible[i].object);

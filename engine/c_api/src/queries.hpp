@@ -9,8 +9,8 @@
 
 #include <crofton/capi/call.hpp>
 #include <crofton/capi/convert.hpp>
-#include "growing.hpp"
 #include <crofton/capi/numbers.hpp>
+#include "growing.hpp"
 
 namespace crofton::capi {
 

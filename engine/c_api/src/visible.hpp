@@ -13,14 +13,12 @@ struct crofton_visible_objects {
     crofton::capi::Header header;
     crofton::VisibleObjects visible{};
     std::uint64_t serial = 0;
-    crofton::cull::View view{};  // here, so that a query need not clear planes that it does not use
 };
 struct crofton_visible_in_views {
     static constexpr std::uint32_t kKind = 0x43724f0b;
     crofton::capi::Header header;
     crofton::VisibleInViews visible{};
     std::uint64_t serial = 0;
-    std::array<crofton::cull::View, crofton::cull::kMaxViews> views{};
 };
 
 namespace crofton::capi {

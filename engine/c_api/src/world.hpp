@@ -5,8 +5,8 @@
 
 #include <crofton/world/world.hpp>
 
-#include "bodies.hpp"
 #include <crofton/capi/call.hpp>
+#include "bodies.hpp"
 
 struct crofton_world {
     static constexpr std::uint32_t kKind = 0x43724f08;

@@ -2,6 +2,8 @@
 #include <crofton/capi/crofton.h>
 
 #include <algorithm>
+#include <optional>
+#include <span>
 
 #include <crofton/capi/convert.hpp>
 #include "growing.hpp"
@@ -13,53 +15,57 @@ using namespace crofton::capi;
 
 namespace {
 
-crofton_status to_occlusion(const crofton_occlusion_options* argument, const char* function, OcclusionOptions& result) {
+crofton_status read_occlusion(const crofton_occlusion_options* argument, const char* function,
+                              std::optional<OcclusionOptions>& result) {
     crofton_occlusion_options given{};
     if (argument) CROFTON_CHECK(read_growing(argument, function, given));
-    result.enabled = given.disabled == 0;
-    if (given.width) result.size.width = given.width;
-    if (given.height) result.size.height = given.height;
-    if (given.max_occluders) result.max_occluders = given.max_occluders;
-    if (given.least_cover != 0.0f) result.least_cover = given.least_cover;
-    result.list_occluded = given.list_occluded != 0;
+    if (given.disabled != 0) return CROFTON_OK;
+    result.emplace();
+    if (given.width) result->size.width = given.width;
+    if (given.height) result->size.height = given.height;
+    if (given.max_occluders) result->max_occluders = given.max_occluders;
+    if (given.least_cover != 0.0f) result->least_cover = given.least_cover;
+    result->list_occluded = given.list_occluded != 0;
     return CROFTON_OK;
 }
 
-template <class View>
-crofton_status hand_over(const Result<View>& view, const char* function, OccludingView& result) {
-    if (!view) return report(view.error(), function);
-    result.view = *view;
-    return CROFTON_OK;
-}
-
-crofton_status to_view(const crofton_occluding_view& given, const char* function, OccludingView& result) {
-    result.layer_mask = ~given.hidden_layers;
+crofton_status read_eye(const crofton_occluding_view& given, const char* function, ViewRequest& result) {
+    result.layers = ~given.hidden_layers;
     if (given.camera) {
         CROFTON_CHECK(check_camera(given.camera, function));
-        return hand_over(occlude::occlusion_view_of(to_camera(*given.camera)), function, result);
+        result.camera = to_camera(*given.camera);
+        return CROFTON_OK;
     }
     CROFTON_CHECK(check_pointer(given.to_clip, function));
     if (given.depth > CROFTON_DEPTH_MINUS_ONE_TO_ONE)
         return report(CROFTON_INVALID_ARGUMENT, function, "unknown depth range");
-    glm::dmat4 matrix;
-    std::memcpy(static_cast<void*>(&matrix), given.to_clip, sizeof matrix);
-    return hand_over(occlude::occlusion_view_of(matrix, static_cast<DepthRange>(given.depth), to_vector(given.origin)),
-                     function, result);
+    result.matrix = ViewMatrix{matrix_of(std::span<const double, 16>(given.to_clip, 16), MatrixOrder::columns),
+                               static_cast<DepthRange>(given.depth), to_vector(given.origin)};
+    return CROFTON_OK;
 }
 
-// What a call is asked with, beside its views.
+// What a call is asked with besides its views.
 struct Asked {
-    OcclusionOptions occlusion;
+    std::optional<OcclusionOptions> occlusion;
     CullAsked cull;
 };
 
 crofton_status to_asked(const crofton_draw_limits* limits, const crofton_occlusion_options* occlusion,
                         const crofton_cull_options* options, const crofton_jobs* jobs, const char* function,
                         Asked& asked) {
-    CROFTON_CHECK(to_occlusion(occlusion, function, asked.occlusion));
+    CROFTON_CHECK(read_occlusion(occlusion, function, asked.occlusion));
     CROFTON_CHECK(read_options(options, function, asked.cull));
     CROFTON_CHECK(check_jobs(jobs, function));
     return read_limits(limits, function, asked.cull);
+}
+
+// With occlusion the order is ascending, whatever the options say.
+void add_options(const Asked& asked, ViewRequest& request) {
+    request.occlusion = asked.occlusion;
+    request.limits = asked.cull.options.limits;
+    request.among = asked.cull.options.among;
+    request.order = asked.occlusion ? cull::ResultOrder::ascending : asked.cull.options.order;
+    request.mode = asked.cull.options.mode;
 }
 
 crofton_status write_statistics(const OcclusionStatistics& s, crofton_occlusion_statistics* result,
@@ -116,11 +122,11 @@ crofton_status crofton_world_view_occluding(const crofton_world* world, const cr
     CROFTON_CHECK(read_growing(view, __func__, given));
     Asked asked;
     CROFTON_CHECK(to_asked(given.limits, occlusion, options, jobs, __func__, asked));
-    OccludingView occluding;
-    CROFTON_CHECK(to_view(given, __func__, occluding));
+    ViewRequest request;
+    CROFTON_CHECK(read_eye(given, __func__, request));
+    add_options(asked, request);
     HostJobs executor(jobs);
-    CROFTON_CHECK(status_of(
-        world->world.view(occluding, asked.occlusion, visible->visible, asked.cull.options, executor), __func__));
+    CROFTON_CHECK(status_of(world->world.view(request, visible->visible, executor), __func__));
     visible->serial = world->serial;
     return CROFTON_OK;
 }
@@ -135,12 +141,12 @@ crofton_status crofton_world_views_occluding(const crofton_world* world, const c
     if (use.failed()) return use.status();
     CROFTON_CHECK(check_array(views, count, __func__));
     if (count > cull::kMaxViews) return report(CROFTON_OUT_OF_RANGE, __func__, "more than 32 views");
-    std::array<OccludingView, cull::kMaxViews> occluding;
+    std::array<ViewRequest, cull::kMaxViews> requests;
     const crofton_draw_limits* limits = nullptr;
     for (std::size_t v = 0; v < count; ++v) {
         crofton_occluding_view given;
         CROFTON_CHECK(read_growing_at(views, v, __func__, given));
-        CROFTON_CHECK(of_item(to_view(given, __func__, occluding[v]), v));
+        CROFTON_CHECK(of_item(read_eye(given, __func__, requests[v]), v));
         if (v == 0)
             limits = given.limits;
         else if (given.limits && given.limits != limits)
@@ -149,10 +155,13 @@ crofton_status crofton_world_views_occluding(const crofton_world* world, const c
     }
     Asked asked;
     CROFTON_CHECK(to_asked(limits, occlusion, options, jobs, __func__, asked));
+    for (std::size_t v = 0; v < count; ++v) {
+        add_options(asked, requests[v]);
+        requests[v].among = {};  // of one eye
+    }
     HostJobs executor(jobs);
-    CROFTON_CHECK(status_of(world->world.view(std::span<const OccludingView>(occluding).first(count), asked.occlusion,
-                                              visible->visible, asked.cull.options, executor),
-                            __func__));
+    CROFTON_CHECK(status_of(
+        world->world.view(std::span<const ViewRequest>(requests).first(count), visible->visible, executor), __func__));
     visible->serial = world->serial;
     return CROFTON_OK;
 }
@@ -175,7 +184,7 @@ crofton_status crofton_visible_in_views_get_occlusion_statistics(const crofton_v
                                                                  crofton_occlusion_statistics* statistics) {
     const SharedUse use(visible, __func__);
     if (use.failed()) return use.status();
-    if (view >= visible->visible.occlusion_view_count())
+    if (!visible->visible.occlusion_buffer(view))
         return report(CROFTON_OUT_OF_RANGE, __func__, "there are fewer views with occlusion", view);
     return write_statistics(visible->visible.occlusion_statistics(view), statistics, __func__);
 }
@@ -193,9 +202,9 @@ crofton_status crofton_visible_in_views_depth(const crofton_visible_in_views* vi
                                               uint32_t* height, float* nearness, size_t capacity) {
     const SharedUse use(visible, __func__);
     if (use.failed()) return use.status();
-    if (view >= visible->visible.occlusion_view_count())
+    if (!visible->visible.occlusion_buffer(view))
         return report(CROFTON_OUT_OF_RANGE, __func__, "there are fewer views with occlusion", view);
-    return write_depth(visible->visible.occlusion_buffer(view), width, height, nearness, capacity, __func__);
+    return write_depth(*visible->visible.occlusion_buffer(view), width, height, nearness, capacity, __func__);
 }
 
 crofton_status crofton_world_hidden_by(const crofton_world* world, crofton_object object,

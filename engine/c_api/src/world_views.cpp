@@ -2,6 +2,8 @@
 #include <crofton/capi/crofton.h>
 
 #include <algorithm>
+#include <array>
+#include <span>
 
 #include "queries.hpp"
 #include "visible.hpp"
@@ -10,6 +12,13 @@ using namespace crofton;
 using namespace crofton::capi;
 
 namespace {
+
+ViewRequest to_request(const CullAsked& asked) {
+    return {.limits = asked.options.limits,
+            .among = asked.options.among,
+            .order = asked.options.order,
+            .mode = asked.options.mode};
+}
 
 // How many objects to write: those from place `first` on, of the world that was viewed.
 template <class Visible>
@@ -45,7 +54,10 @@ crofton_status crofton_world_view(const crofton_world* world, const crofton_view
     CullAsked asked;
     CROFTON_CHECK(read_query(view, options, jobs, __func__, asked));
     HostJobs executor(jobs);
-    world->world.view(set_view(*visible, *view), visible->visible, asked.options, executor);
+    ViewRequest request = to_request(asked);
+    copy_frustum(view->frustum, request.volume.emplace());
+    request.layers = view->layer_mask;
+    CROFTON_CHECK(status_of(world->world.view(request, visible->visible, executor), __func__));
     visible->serial = world->serial;
     return CROFTON_OK;
 }
@@ -62,8 +74,9 @@ crofton_status crofton_world_view_camera(const crofton_world* world, const croft
     CROFTON_CHECK(read_options(options, __func__, asked));
     CROFTON_CHECK(check_jobs(jobs, __func__));
     HostJobs executor(jobs);
-    CROFTON_CHECK(
-        status_of(world->world.view(to_camera(*camera), visible->visible, asked.options, executor), __func__));
+    ViewRequest request = to_request(asked);
+    request.camera = to_camera(*camera);
+    CROFTON_CHECK(status_of(world->world.view(request, visible->visible, executor), __func__));
     visible->serial = world->serial;
     return CROFTON_OK;
 }
@@ -116,8 +129,14 @@ crofton_status crofton_world_views(const crofton_world* world, const crofton_vie
     for (std::size_t i = 0; i < count; ++i) CROFTON_CHECK(check_view(&views[i], __func__));
     CullAsked asked;
     CROFTON_CHECK(read_options(options, __func__, asked));
-    for (std::size_t i = 0; i < count; ++i) copy_view(views[i], visible->views[i]);
-    world->world.view(std::span<const cull::View>(visible->views).first(count), visible->visible, asked.options.mode);
+    std::array<ViewRequest, cull::kMaxViews> requests;
+    for (std::size_t i = 0; i < count; ++i) {
+        requests[i].mode = asked.options.mode;
+        copy_frustum(views[i].frustum, requests[i].volume.emplace());
+        requests[i].layers = views[i].layer_mask;
+    }
+    CROFTON_CHECK(
+        status_of(world->world.view(std::span<const ViewRequest>(requests).first(count), visible->visible), __func__));
     visible->serial = world->serial;
     return CROFTON_OK;
 }

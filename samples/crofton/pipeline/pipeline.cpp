@@ -219,27 +219,24 @@ struct Pipeline::State {
     void list_visible(const Frustum& frustum) {
         for (const scene::InstanceId i : visible_ids) verdicts[i] = cull::Verdict::outside;
         visible_ids.clear();
-        const cull::CullOptions how{.mode = options.mode};
         switch (options.cull) {
             case CullMode::none:
                 return list_all();
             case CullMode::flat:
-                cull::find_visible(bounds.boxes(), scene.layer_masks(), {frustum}, visible_in_list, how, executor);
+                cull::find_visible(bounds.boxes(), scene.layer_masks(), {frustum}, visible_in_list,
+                                   {.mode = options.mode}, executor);
                 return list(frustum, visible_in_list.ids(), visible_in_list.verdicts());
             case CullMode::tree:
-                world.view({frustum, kSeenLayer}, visible, how, executor);
+                (void)world.view({.volume = frustum, .layers = kSeenLayer, .mode = options.mode}, visible, executor);
                 return list(frustum, visible.ids(), visible.verdicts());
         }
     }
 
     Result<void> find_not_hidden(const Camera& camera, const Frustum& frustum, OccludedFrame& frame) {
         const auto start = Clock::now();
-        const auto view = occlude::occlusion_view_of(camera);
-        if (!view) return tl::unexpected(view.error());
-        if (auto seen =
-                world.view({*view, kSeenLayer}, *options.occlusion, not_hidden, {.mode = options.mode}, executor);
-            !seen)
-            return seen;
+        const ViewRequest request{
+            .camera = camera, .layers = kSeenLayer, .occlusion = options.occlusion, .mode = options.mode};
+        if (auto seen = world.view(request, not_hidden, executor); !seen) return seen;
         frame.occlude_us = microseconds_since(start);
         frame.occluders = not_hidden.occlusion_statistics().occluders_drawn;
         for (const std::uint32_t id : not_hidden.ids())

@@ -107,8 +107,8 @@ Vector<std::uint32_t> owned_pixels(const Looked& all, const Camera& camera) {
 Vector<bool> not_occluded(const Looked& all, const Camera& camera, VisibleObjects& visible) {
     Vector<bool> found(all.subject.boxes.size(), !all.occluding);
     if (!all.occluding) return found;
-    const auto view = occlude::occlusion_view_of(camera);
-    if (!view || !all.occluding->world().view({*view, kSeenLayer}, OcclusionOptions{}, visible)) {
+    if (!all.occluding->world().view({.camera = camera, .layers = kSeenLayer, .occlusion = OcclusionOptions{}},
+                                     visible)) {
         found.assign(found.size(), true);
         return found;
     }

@@ -151,7 +151,7 @@ Ray random_ray(Random& random, const Camera& camera) {
 void look(Random& random, const Stage& stage, VisibleObjects& visible, std::vector<bool>& seen, SceneCounts& counts) {
     const Camera camera = camera_in(random, stage);
     const OcclusionOptions occlusion{.size = kSceneSizes[random.bits() % 4], .list_occluded = true};
-    if (!stage.world.view(camera, occlusion, visible)) {
+    if (!stage.world.view({.camera = camera, .occlusion = occlusion}, visible)) {
         counts.rays += kRaysPerView;  // none is a witness
         return;
     }

@@ -170,7 +170,7 @@ Result<void> Session::cull() {
     for (Cascade& cascade : cascades_) {
         const auto frustum = frustum_of(cascade.camera);
         if (!frustum) return tl::unexpected(frustum.error());
-        loaded_->pipeline().world().view({*frustum, pipeline::kSeenLayer}, cascade_visible_);
+        (void)loaded_->pipeline().world().view({.volume = *frustum, .layers = pipeline::kSeenLayer}, cascade_visible_);
         cascade.visible = cascade_visible_.size();
     }
     list_drawn();

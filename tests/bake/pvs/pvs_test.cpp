@@ -191,7 +191,7 @@ TEST_SUITE("pvs/pvs") {
             Camera camera;
             camera.position = sampling::box_point({{-12.0, 0.5, -12.0}, {12.0, 2.5, 12.0}}, random.point<3>());
             camera.forward = sampling::direction(random.point<2>());
-            REQUIRE(world.view(camera, visible).has_value());
+            REQUIRE(world.view({.camera = camera}, visible).has_value());
             const std::uint32_t cell = pvs.keep_visible(camera.position, Mode::statistical, visible.ids(), kept);
             CHECK(cell == pvs.find_cell(camera.position));
             std::vector<std::uint32_t> expected;

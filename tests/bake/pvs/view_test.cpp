@@ -78,12 +78,12 @@ TEST_SUITE("pvs/view") {
                 Camera camera;
                 camera.fov_y = 0.9;
                 camera = sampling::random_camera(camera, {{-80.0, 1.0, -80.0}, {80.0, 3.0, 80.0}}, random.point<6>());
-                cull::CullOptions plain, among;
+                ViewRequest plain{.camera = camera}, among{.camera = camera};
                 plain.order = among.order = frame % 2 ? cull::ResultOrder::tree : cull::ResultOrder::ascending;
                 among.among = town.words;
                 Executor& executor = frame % 3 ? serial_executor() : static_cast<Executor&>(pool);
-                REQUIRE(town.world.view(camera, all, plain, executor).has_value());
-                REQUIRE(town.world.view(camera, some, among, executor).has_value());
+                REQUIRE(town.world.view(plain, all, executor).has_value());
+                REQUIRE(town.world.view(among, some, executor).has_value());
                 REQUIRE(sorted(some.ids()) == sorted(town.kept(all.ids())));
                 left_out += all.size() - some.size();
                 const auto inside = all.ids().first(all.inside_count());
@@ -104,8 +104,9 @@ TEST_SUITE("pvs/view") {
         const std::vector<std::uint64_t> none(8, 0);  // room for those that come later
         const auto seen = [&](const ObjectHandle& object) {
             VisibleObjects plain, hiding;
-            REQUIRE(world.view(Camera{}, plain, {.among = none}).has_value());
-            REQUIRE(world.view(Camera{}, OcclusionOptions{}, hiding, {.among = none}).has_value());
+            REQUIRE(world.view({.camera = Camera{}, .among = none}, plain).has_value());
+            REQUIRE(
+                world.view({.camera = Camera{}, .occlusion = OcclusionOptions{}, .among = none}, hiding).has_value());
             CHECK(sorted(plain.ids()) == sorted(hiding.ids()));
             return std::count(plain.ids().begin(), plain.ids().end(), object.index) == 1;
         };
@@ -158,7 +159,7 @@ TEST_SUITE("pvs/view") {
         CHECK(world.statistics().resting == 2);
         const std::vector<std::uint64_t> none(1, 0);
         VisibleObjects visible;
-        REQUIRE(world.view(Camera{}, visible, {.among = none}).has_value());
+        REQUIRE(world.view({.camera = Camera{}, .among = none}, visible).has_value());
         CHECK(std::vector(visible.ids().begin(), visible.ids().end()) == std::vector{moved.index});
     }
 
@@ -180,9 +181,10 @@ TEST_SUITE("pvs/view") {
             VisibleObjects all, some, plain;
             Camera camera;
             camera.position = {0.0, 3.0, 0.0};
-            REQUIRE(town.world.view(camera, plain).has_value());
-            REQUIRE(town.world.view(camera, OcclusionOptions{}, all).has_value());
-            REQUIRE(town.world.view(camera, OcclusionOptions{}, some, {.among = town.words}).has_value());
+            REQUIRE(town.world.view({.camera = camera}, plain).has_value());
+            REQUIRE(town.world.view({.camera = camera, .occlusion = OcclusionOptions{}}, all).has_value());
+            REQUIRE(town.world.view({.camera = camera, .occlusion = OcclusionOptions{}, .among = town.words}, some)
+                        .has_value());
             CHECK(all.size() < plain.size());
             CHECK(some.size() < all.size());
             CHECK(sorted(some.ids()) == sorted(town.kept(all.ids())));

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "../../ranges.hpp"
+#include "../../view_request.hpp"
 #include "model.hpp"
 #include "new_counter.hpp"
 
@@ -58,9 +59,9 @@ void check_answers(const World& world, const Model& model, NearMisses& random) {
     for (cull::View& view : views) view = random_view(random);
     for (const cull::View& view : views) {
         const auto expected = model.visible(view);
-        world.view(view, visible);
+        REQUIRE(world.view(request_of(view), visible));
         CHECK(std::vector(visible.ids().begin(), visible.ids().end()) == expected);
-        world.view(view, visible, {.order = cull::ResultOrder::tree});
+        REQUIRE(world.view(request_of(view, cull::ResultOrder::tree), visible));
         std::vector<std::uint32_t> seen(visible.ids().begin(), visible.ids().end());
         std::sort(seen.begin(), seen.end());
         CHECK(seen == expected);
@@ -70,7 +71,7 @@ void check_answers(const World& world, const Model& model, NearMisses& random) {
         }
     }
     VisibleInViews in_views;
-    world.view(views, in_views);
+    REQUIRE(world.view(requests_of(views), in_views));
     for (std::size_t v = 0; v < views.size(); ++v) {
         std::vector<std::uint32_t> seen;
         for (std::size_t i = 0; i < in_views.size(); ++i)
@@ -219,8 +220,8 @@ TEST_SUITE("world/bounds changes") {
             }));
             VisibleObjects a, b;
             const cull::View view = random_view(random);
-            serial.view(view, a);
-            parallel.view(view, b, {}, pool);
+            REQUIRE(serial.view(request_of(view), a));
+            REQUIRE(parallel.view(request_of(view), b, pool));
             CHECK(test::ranges::equal(a.ids(), b.ids()));
         }
     }
@@ -246,8 +247,8 @@ TEST_SUITE("world/bounds changes") {
                 for (std::size_t i = 0; i < boxes.size(); i += 3) boxes[i].center.x += shift;
                 REQUIRE(world.set_bounds(objects, boxes).has_value());
                 REQUIRE(world.update().has_value());
-                world.view(views[0], visible);
-                world.view(views, in_views);
+                REQUIRE(world.view(request_of(views[0]), visible));
+                REQUIRE(world.view(requests_of(views), in_views));
                 const Ray ray{{-90.0, 0.0, 0.0}, {1.0, 0.0, 0.0}};
                 world.raycast_all(ray, hits);
                 CHECK(world.raycast(ray).has_value());
@@ -307,10 +308,10 @@ TEST_SUITE("world/bounds changes") {
             std::uint64_t tested = 0, tested_fresh = 0;
             for (int i = 0; i < 100; ++i) {
                 const cull::View view = random_view(random);
-                world.view({.frustum = view.frustum}, visible);
+                REQUIRE(world.view({.volume = view.frustum}, visible));
                 tested += visible.statistics().nodes_tested + visible.statistics().boxes_tested;
                 const std::size_t seen = visible.size();
-                fresh.view({.frustum = view.frustum}, visible);
+                REQUIRE(fresh.view({.volume = view.frustum}, visible));
                 tested_fresh += visible.statistics().nodes_tested + visible.statistics().boxes_tested;
                 CHECK(visible.size() == seen);
             }

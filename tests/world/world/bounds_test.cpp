@@ -26,7 +26,7 @@ TEST_SUITE("world/bounds") {
         Vector<ObjectHit> hits(1);
         Vector<ObjectRef> found(1);
         for (int update = 0; update < 2; ++update) {
-            REQUIRE(world.view(Camera(), visible).has_value());
+            REQUIRE(world.view({.camera = Camera()}, visible).has_value());
             CHECK(visible.size() == 0);
             CHECK(!world.raycast({}));
             CHECK(!world.raycast_any({}));
@@ -275,7 +275,7 @@ TEST_SUITE("world/bounds") {
         VisibleObjects visible;
         Camera camera;
         camera.position.z = 10.0;
-        REQUIRE(world.view(camera, visible).has_value());
+        REQUIRE(world.view({.camera = camera}, visible).has_value());
         CHECK(visible.size() == 10);
         CHECK_FALSE(world.update().has_value());
         for (int i = 4; i < 10; ++i) REQUIRE(world.remove(objects[std::size_t(i)]).has_value());

@@ -6,6 +6,8 @@
 #include <oracle/random_boxes.hpp>
 #include <vector>
 
+#include "../../view_request.hpp"
+
 using namespace crofton;
 
 namespace {
@@ -66,7 +68,7 @@ TEST_SUITE("world/conventions") {
         const auto ask = [](const World& world, const cull::View& view, const Ray& ray, const Sphere& ball) {
             Answers answers;
             VisibleObjects visible;
-            world.view(view, visible);
+            (void)world.view(request_of(view), visible);
             answers.visible.assign(visible.ids().begin(), visible.ids().end());
             for (const ObjectPair& pair : world.pairs())
                 answers.pairs.emplace_back(pair.first.object.index, pair.second.object.index);

@@ -27,7 +27,7 @@ inline std::size_t seen(const World& world) {
     VisibleObjects visible;
     Camera camera;
     camera.position.z = 50.0;
-    REQUIRE(world.view(camera, visible).has_value());
+    REQUIRE(world.view({.camera = camera}, visible).has_value());
     return visible.size();
 }
 

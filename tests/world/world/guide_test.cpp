@@ -67,7 +67,7 @@ TEST_SUITE("world/guide") {
         // once
         world.update(jobs);
         // and then whatever it wants to know.
-        world.view(camera, visible);
+        world.view({.camera = camera}, visible);
         for (std::size_t i = 0; i < visible.size(); ++i) draw(visible[i].user);
         for (const crofton::Contact& contact : world.contacts()) {
             if (contact.phase == crofton::ContactPhase::began) start_sound(contact.first.user, contact.second.user);
@@ -90,15 +90,15 @@ TEST_SUITE("world/guide") {
         if (!house) return fail_loading(house.error().message);
         world.add({.mesh = *house, .transform = crofton::Transform{glm::dmat3(1.0), {0.0, 0.0, -10.0}}});
         world.update(jobs);
-        world.view(camera, crofton::OcclusionOptions{}, visible);  // without what the house hides
+        world.view({.camera = camera, .occlusion = crofton::OcclusionOptions{}},
+                   visible);  // without what the house hides
 
         CHECK(visible.size() == 1);
 
         // A left-handed engine with y up, depth from 0 to 1 and its own matrices:
         const glm::dmat4 view = glm::lookAtLH(glm::dvec3(0.0), glm::dvec3(0.0, 0.0, -1.0), glm::dvec3(0.0, 1.0, 0.0));
         const glm::dmat4 to_clip = glm::perspectiveLH_ZO(1.0, 16.0 / 9.0, 0.1, 1000.0) * view;
-        const auto frustum = crofton::frustum_of(to_clip, crofton::DepthRange::zero_to_one);
-        if (frustum) world.view(crofton::cull::View{.frustum = *frustum, .layer_mask = 1}, visible);
+        world.view({.matrix = crofton::ViewMatrix{to_clip, crofton::DepthRange::zero_to_one}, .layers = 1}, visible);
 
         CHECK(visible.size() == 9);  // the trigger is in layer 2 alone
     }

@@ -8,10 +8,10 @@
 #include <crofton/convex/query.hpp>
 #include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/lights.hpp>
+#include <crofton/lines/lines.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <crofton/occlude/occlusion.hpp>
 #include <crofton/pvs/pvs.hpp>
-#include <crofton/lines/lines.hpp>
 #include <crofton/scene/scene.hpp>
 #include <crofton/triangulate/triangulate.hpp>
 #include <crofton/world/world.hpp>
@@ -40,10 +40,8 @@ World one_box() {
     return world;
 }
 
-OccludingView forward() {
-    OccludingView view;
-    view.view = *occlude::occlusion_view_of(Camera{});
-    return view;
+ViewRequest forward() {
+    return {.camera = Camera{}, .occlusion = OcclusionOptions{}};
 }
 
 // What a class promises that owns a state which it alone knows: it may be assigned to, and destroyed.
@@ -64,7 +62,7 @@ TEST_SUITE("world/moved_from") {
     TEST_CASE("the answer to a view that has been moved from is empty, and may be asked for again") {
         const World world = one_box();
         VisibleObjects visible;
-        REQUIRE(world.view(forward(), OcclusionOptions{}, visible).has_value());
+        REQUIRE(world.view(forward(), visible).has_value());
         const VisibleObjects kept(std::move(visible));
         CHECK(kept.size() == 1);
         CHECK(visible.size() == 0);
@@ -72,21 +70,21 @@ TEST_SUITE("world/moved_from") {
         CHECK_FALSE(visible.has_occlusion());
         CHECK(visible.occlusion_buffer() == nullptr);
         CHECK(visible.occlusion_statistics().occluders_drawn == 0);
-        REQUIRE(world.view(forward(), OcclusionOptions{}, visible).has_value());
+        REQUIRE(world.view(forward(), visible).has_value());
         CHECK(visible.size() == 1);
     }
 
     TEST_CASE("the answer to many views that has been moved from is empty, and may be asked for again") {
         const World world = one_box();
-        const OccludingView views[2] = {forward(), forward()};
+        const ViewRequest views[2] = {forward(), forward()};
         VisibleInViews visible;
-        REQUIRE(world.view(std::span(views), OcclusionOptions{}, visible).has_value());
+        REQUIRE(world.view(std::span(views), visible).has_value());
         const VisibleInViews kept(std::move(visible));
-        CHECK(kept.occlusion_view_count() == 2);
+        CHECK(kept.view_count() == 2);
         CHECK(visible.size() == 0);
-        CHECK(visible.occlusion_view_count() == 0);
-        REQUIRE(world.view(std::span(views), OcclusionOptions{}, visible).has_value());
-        CHECK(visible.occlusion_view_count() == 2);
+        CHECK(visible.view_count() == 0);
+        REQUIRE(world.view(std::span(views), visible).has_value());
+        CHECK(visible.view_count() == 2);
         CHECK(visible.size() == 1);
     }
 

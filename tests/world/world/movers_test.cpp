@@ -6,6 +6,7 @@
 #include <limits>
 #include <oracle/random_boxes.hpp>
 
+#include "../../view_request.hpp"
 #include "model.hpp"
 
 using namespace crofton;
@@ -22,7 +23,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> listed_pairs(const World& w
 
 std::vector<std::uint32_t> seen_ids(const World& world, const cull::View& view) {
     VisibleObjects visible;
-    world.view(view, visible);
+    (void)world.view(request_of(view), visible);
     return {visible.ids().begin(), visible.ids().end()};
 }
 

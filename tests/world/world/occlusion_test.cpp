@@ -23,10 +23,13 @@ struct BehindAWall {
     ObjectHandle beside = world.add({.bound = box_at({-14.0, 0.0, -20.0})}).value();
     VisibleObjects visible;
 
-    [[nodiscard]] bool hides(const cull::CullOptions& options = {}, std::uint32_t layer_mask = ~0u) {
+    [[nodiscard]] bool hides(const cull::DrawLimits* limits = nullptr, std::uint32_t layers = ~0u) {
         REQUIRE(world.update().has_value());
-        const auto view = occlude::occlusion_view_of(Camera());
-        REQUIRE(world.view(OccludingView{*view, layer_mask}, {.list_occluded = true}, visible, options).has_value());
+        const ViewRequest request{.camera = Camera(),
+                                  .layers = layers,
+                                  .occlusion = OcclusionOptions{.list_occluded = true},
+                                  .limits = limits};
+        REQUIRE(world.view(request, visible).has_value());
         const auto contains = [](std::span<const std::uint32_t> ids, ObjectHandle object) {
             return std::binary_search(ids.begin(), ids.end(), object.index);
         };
@@ -74,7 +77,7 @@ TEST_SUITE("world/occlusion") {
         buffer->read(pixels);
         CHECK(pixels[135 * 480 + 240] == buffer->nearness(240, 135));
         // Without the switch.
-        REQUIRE(s.world.view(Camera(), {.enabled = false}, s.visible).has_value());
+        REQUIRE(s.world.view({.camera = Camera()}, s.visible).has_value());
         CHECK(s.visible.size() == 3);
         CHECK(!s.visible.has_occlusion());
         CHECK(s.visible.occlusion_buffer() == nullptr);
@@ -98,8 +101,8 @@ TEST_SUITE("world/occlusion") {
         }
         SUBCASE("in another layer, by itself or by its node") {
             REQUIRE(s.world.set_layers(s.wall, 2).has_value());
-            CHECK_FALSE(s.hides({}, 1));
-            CHECK(s.hides({}, 3));
+            CHECK_FALSE(s.hides(nullptr, 1));
+            CHECK(s.hides(nullptr, 3));
             REQUIRE(s.world.set_layers(s.node, 1).has_value());
             CHECK_FALSE(s.hides());
         }
@@ -124,15 +127,16 @@ TEST_SUITE("world/occlusion") {
         SUBCASE("too small or too far for the view") {
             cull::DrawLimits limits;
             limits.least_radius = 20.0;
-            REQUIRE(s.world.view(Camera(), {}, s.visible, {.limits = &limits}).has_value());
+            REQUIRE(s.world.view({.camera = Camera(), .occlusion = OcclusionOptions{}, .limits = &limits}, s.visible)
+                        .has_value());
             CHECK(s.visible.size() == 0);
             std::vector<float> distances(3, 1e9f);
             distances[s.wall.index] = 5.0f;
             cull::DrawLimits by_item;
             by_item.item_distances = distances;
-            CHECK_FALSE(s.hides({.limits = &by_item}));
+            CHECK_FALSE(s.hides(&by_item));
             distances[s.wall.index] = 15.0f;
-            CHECK(s.hides({.limits = &by_item}));
+            CHECK(s.hides(&by_item));
         }
         SUBCASE("another mesh, other vertices") {
             const auto small = s.world.add_mesh(description_of(cuboid({0.1f, 0.1f, 0.1f}), true)).value();
@@ -222,8 +226,10 @@ TEST_SUITE("world/occlusion") {
         CHECK(error_of(s.world.set_occludes({}, true)).code == ErrorCode::stale_handle);
         Vector<OccluderRef> none;
         CHECK(error_of(s.world.hidden_by({}, s.visible, none)).code == ErrorCode::stale_handle);
-        CHECK(error_of(s.world.view(Camera(), {.size = {4, 270}}, s.visible)).code == ErrorCode::out_of_range);
-        CHECK(error_of(s.world.view(Camera{.fov_y = -1.0}, {}, s.visible)).code != ErrorCode::out_of_memory);
+        CHECK(error_of(s.world.view({.camera = Camera(), .occlusion = OcclusionOptions{.size = {4, 270}}}, s.visible))
+                  .code == ErrorCode::out_of_range);
+        CHECK(error_of(s.world.view({.camera = Camera{.fov_y = -1.0}, .occlusion = OcclusionOptions{}}, s.visible))
+                  .code != ErrorCode::out_of_memory);
     }
 
     TEST_CASE("what only occludes is in no answer") {
@@ -235,14 +241,14 @@ TEST_SUITE("world/occlusion") {
               ErrorCode::invalid_argument);
         REQUIRE(world.update().has_value());
         VisibleObjects visible;
-        REQUIRE(world.view(Camera(), visible).has_value());
+        REQUIRE(world.view({.camera = Camera()}, visible).has_value());
         CHECK(visible.size() == 1);
-        REQUIRE(world.view(Camera(), OcclusionOptions{}, visible).has_value());
+        REQUIRE(world.view({.camera = Camera(), .occlusion = OcclusionOptions{}}, visible).has_value());
         CHECK(visible.size() == 0);
         CHECK_FALSE(world.raycast({{0, 0, 0}, {0, 0, -1}, 15.0}).has_value());
         REQUIRE(world.set_hidden(wall, true).has_value());
         REQUIRE(world.update().has_value());
-        REQUIRE(world.view(Camera(), OcclusionOptions{}, visible).has_value());
+        REQUIRE(world.view({.camera = Camera(), .occlusion = OcclusionOptions{}}, visible).has_value());
         CHECK(visible.size() == 1);
     }
 }

@@ -53,10 +53,10 @@ TEST_SUITE("world/trace") {
         CHECK(told.ended.back() == "World::update");
         CHECK(told.counts["pairs"] == 1.0);
         VisibleObjects visible;
-        REQUIRE(world.view(Camera{}, visible).has_value());
+        REQUIRE(world.view({.camera = Camera{}}, visible).has_value());
         CHECK(told.ended.back() == "World::view");
         CHECK(told.counts["objects in view"] == static_cast<double>(visible.ids().size()));
-        REQUIRE(world.view(Camera{}, OcclusionOptions{}, visible).has_value());
+        REQUIRE(world.view({.camera = Camera{}, .occlusion = OcclusionOptions{}}, visible).has_value());
         CHECK(told.has("view: draw occluders"));
         CHECK(told.ended.back() == "World::view with occlusion");
         CHECK(told.counts["objects not hidden"] == 2.0);

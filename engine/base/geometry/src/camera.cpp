@@ -7,6 +7,21 @@
 #include <numbers>
 
 namespace crofton {
+namespace {
+
+template <class Number>
+glm::dmat4 read_matrix(std::span<const Number, 16> numbers, MatrixOrder order) {
+    glm::dmat4 matrix;
+    for (int k = 0; k < 16; ++k) {
+        const int column = order == MatrixOrder::columns ? k / 4 : k % 4;
+        const int row = order == MatrixOrder::columns ? k % 4 : k / 4;
+        matrix[column][row] = double{numbers[static_cast<std::size_t>(k)]};
+    }
+    return matrix;
+}
+
+}  // namespace
+
 Result<void> validate(const Camera& camera) {
     const auto bad = [](ErrorCode code, const char* why) { return fail(code, kNoItem, why); };
     if (!is_finite(camera.position) || !is_finite(camera.forward) || !is_finite(camera.up))
@@ -37,6 +52,14 @@ glm::dmat3 world_to_view_rotation(const Camera& camera) {
     const glm::dvec3 right = glm::normalize(glm::cross(forward, camera.up));
     const glm::dvec3 up = glm::cross(right, forward);
     return glm::dmat3(right.x, up.x, -forward.x, right.y, up.y, -forward.y, right.z, up.z, -forward.z);
+}
+
+glm::dmat4 matrix_of(std::span<const float, 16> numbers, MatrixOrder order) {
+    return read_matrix(numbers, order);
+}
+
+glm::dmat4 matrix_of(std::span<const double, 16> numbers, MatrixOrder order) {
+    return read_matrix(numbers, order);
 }
 
 glm::dmat4 view_to_clip(const Camera& camera, DepthRange depth) {

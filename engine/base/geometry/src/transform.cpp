@@ -58,7 +58,7 @@ Result<void> validate(const Transform& transform, std::uint64_t item) {
             return bad(ErrorCode::non_finite, "transform: the matrix holds a NaN or infinite number");
     if (!is_finite(transform.translation))
         return bad(ErrorCode::non_finite, "transform: the translation is NaN or infinite");
-    if (!glm::all(glm::lessThanEqual(glm::abs(transform.translation), glm::dvec3(kLargest))))
+    if (!glm::all(glm::lessThanEqual(glm::abs(transform.translation), glm::dvec3(kLargestTransformEntry))))
         return bad(ErrorCode::out_of_range, "transform: the translation exceeds 1e15");
     return bad(ErrorCode::out_of_range, "transform: the matrix scales by more than 1e15");
 }

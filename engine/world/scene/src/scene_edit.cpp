@@ -4,8 +4,8 @@
 #include <crofton/fit/fit.hpp>
 #include <utility>
 
+#include <crofton/geometry/valid_transform.hpp>
 #include "scene_checks.hpp"
-#include "valid_transform.hpp"
 
 namespace crofton::scene {
 

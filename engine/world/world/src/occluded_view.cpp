@@ -63,14 +63,4 @@ const occlude::OcclusionBuffer* VisibleObjects::occlusion_buffer() const {
     return hides_ ? &*occluded_->buffer : nullptr;
 }
 
-OcclusionStatistics VisibleInViews::occlusion_statistics(std::size_t view) const {
-    CROFTON_ASSERT(view < occlusion_view_count(), "the view was asked for with occlusion");
-    return occluded_[view]->statistics();
-}
-
-const occlude::OcclusionBuffer& VisibleInViews::occlusion_buffer(std::size_t view) const {
-    CROFTON_ASSERT(view < occlusion_view_count(), "the view was asked for with occlusion");
-    return *occluded_[view]->buffer;
-}
-
 }  // namespace crofton

@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Views that leave out what is hidden; which occluders there are, and which hide an object.
-#include <algorithm>
-#include <array>
-#include <bit>
+// Which occluders there are, and which hide an object.
 #include <crofton/boxtree/structure.hpp>
 #include <crofton/core/error.hpp>
 #include <crofton/cull/classify.hpp>
-#include <optional>
 
-#include "must.hpp"
 #include "occluded_view.hpp"
-#include "trace_zone.hpp"
 #include "world_state.hpp"
 
 namespace crofton {
@@ -60,100 +54,6 @@ void World::State::update_occluders() {
                                    double{box.half_extents.z});
         object_bounds.include({box.center - l1_radius, box.center + l1_radius});
     }
-}
-
-Result<void> World::State::find_visible(const OccludingView& view, const OcclusionOptions& occlusion,
-                                        const cull::CullOptions& how, Executor& executor,
-                                        world::OccludedView& result) const {
-    if (auto sized = result.resize(occlusion.size); !sized) return sized;
-    const world::TraceZone zone(options.trace, "World::view with occlusion");
-    Vector<std::uint32_t>& ids = result.choice.ids;
-    occlude::choose_occluders(occluders.candidates(), view.view,
-                              {.max_occluders = occlusion.max_occluders,
-                               .least_cover = occlusion.least_cover,
-                               .objects = object_bounds,
-                               .layer_mask = view.layer_mask},
-                              result.choice);
-    // What the view does not draw hides nothing.
-    if (how.limits)
-        ids.erase(std::remove_if(ids.begin(), ids.end(),
-                                 [&](std::uint32_t id) {
-                                     const std::uint32_t object = occluders.object_of(id);
-                                     const std::uint32_t common = occluders.candidates().layers(id) & view.layer_mask;
-                                     return !cull::is_worth_drawing(*how.limits, index.box(object), object, common);
-                                 }),
-                  ids.end());
-    {
-        const world::TraceZone part(options.trace, "view: draw occluders");
-        result.buffer->draw(occluders.set(), ids, view.view, executor);
-    }
-    const world::TraceZone part(options.trace, "view: what is not hidden");
-    occlude::find_visible(index.tree(), index.moving(), *result.buffer, result.visible,
-                          {.layer_mask = view.layer_mask, .mode = how.mode, .limits = how.limits, .among = how.among});
-    world::trace_count(options.trace, "objects not hidden", result.visible.size());
-    return {};
-}
-
-Result<void> World::view(const Camera& camera, const OcclusionOptions& occlusion, VisibleObjects& visible,
-                         const cull::CullOptions& options, Executor& executor) const {
-    if (!occlusion.enabled) return view(camera, visible, options, executor);
-    const auto occlusion_view = occlude::occlusion_view_of(camera);
-    if (!occlusion_view) return tl::unexpected(occlusion_view.error());
-    return view(OccludingView{*occlusion_view}, occlusion, visible, options, executor);
-}
-
-Result<void> World::view(const OccludingView& view, const OcclusionOptions& occlusion, VisibleObjects& visible,
-                         const cull::CullOptions& options, Executor& executor) const {
-    const cull::View plain{view.view.frustum, view.layer_mask};
-    if (!occlusion.enabled) {
-        this->view(plain, visible, options, executor);
-        return {};
-    }
-    if (!visible.occluded_) visible.occluded_ = world::make_occluded_view();
-    cull::CullOptions how = options;
-    how.among = state_->among_and_changed(options.among, visible.among_);
-    if (auto found = state_->find_visible(view, occlusion, how, executor, *visible.occluded_); !found) return found;
-    visible.names_ = &state_->table.names;
-    visible.hides_ = true;
-    visible.occluded_->occluded.clear();
-    if (!occlusion.list_occluded) return {};
-    how.order = cull::ResultOrder::ascending;
-    cull::find_visible(state_->index.tree(), state_->index.moving(), plain, visible.set_, how, executor);
-    visible.occluded_->list_occluded(visible.set_.ids());
-    return {};
-}
-
-Result<void> World::view(std::span<const OccludingView> views, const OcclusionOptions& occlusion,
-                         VisibleInViews& visible, const cull::CullOptions& options, Executor& executor) const {
-    CROFTON_ASSERT(views.size() <= cull::kMaxViews, "no more than 32 views");
-    if (!occlusion.enabled) {
-        std::array<cull::View, cull::kMaxViews> plain;
-        for (std::size_t v = 0; v < views.size(); ++v) plain[v] = {views[v].view.frustum, views[v].layer_mask};
-        view(std::span(plain).first(views.size()), visible, options.mode);
-        return {};
-    }
-    while (visible.occluded_.size() < views.size()) visible.occluded_.push_back(world::make_occluded_view());
-    for (std::size_t v = 0; v < views.size(); ++v)
-        if (auto sized = visible.occluded_[v]->resize(occlusion.size); !sized) return sized;
-    cull::CullOptions how = options;
-    how.among = {};  // of one eye
-    executor.parallel_for(views.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
-        for (std::size_t v = begin; v < end; ++v)
-            world::must(state_->find_visible(views[v], occlusion, how, serial_executor(), *visible.occluded_[v]));
-    });
-    visible.names_ = &state_->table.names;
-    visible.hides_ = true;
-    visible.view_count_ = views.size();
-    for (const std::uint32_t id : visible.ids_) visible.masks_[id] = 0;
-    visible.ids_.clear();
-    if (visible.masks_.size() < state_->index.size()) visible.masks_.resize(state_->index.size(), 0);
-    for (std::size_t v = 0; v < views.size(); ++v)
-        for (const std::uint32_t id : visible.occluded_[v]->visible.ids()) {
-            if (visible.masks_[id] == 0) visible.ids_.push_back(id);
-            visible.masks_[id] |= 1u << v;
-        }
-    std::sort(visible.ids_.begin(), visible.ids_.end());
-    return {};
 }
 
 Result<void> World::hidden_by(ObjectHandle object, const VisibleObjects& visible,

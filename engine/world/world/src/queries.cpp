@@ -85,41 +85,6 @@ double gap_between(const Aabb& a, const Obb& box) {
 
 }  // namespace
 
-Result<void> World::view(const Camera& camera, VisibleObjects& visible, const cull::CullOptions& options,
-                         Executor& executor) const {
-    const auto frustum = frustum_of(camera);
-    if (!frustum) return tl::unexpected(frustum.error());
-    view(cull::View{.frustum = *frustum}, visible, options, executor);
-    return {};
-}
-
-std::span<const std::uint64_t> World::State::among_and_changed(std::span<const std::uint64_t> among,
-                                                               Vector<std::uint64_t>& both) const {
-    const std::span<const std::uint64_t> changed = index.changed();
-    if (changed.empty()) return among;
-    both.assign(among.begin(), among.end());
-    for (std::size_t w = 0; w < std::min(both.size(), changed.size()); ++w) both[w] |= changed[w];
-    return both;
-}
-
-void World::view(const cull::View& view, VisibleObjects& visible, const cull::CullOptions& options,
-                 Executor& executor) const {
-    const world::TraceZone zone(state_->options.trace, "World::view");
-    visible.names_ = &state_->table.names;
-    visible.hides_ = false;
-    cull::CullOptions how = options;
-    how.among = state_->among_and_changed(options.among, visible.among_);
-    cull::find_visible(state_->index.tree(), state_->index.moving(), view, visible.set_, how, executor);
-    world::trace_count(state_->options.trace, "objects in view", visible.set_.size());
-}
-
-void World::view(std::span<const cull::View> views, VisibleInViews& visible, cull::CullMode mode) const {
-    const world::TraceZone zone(state_->options.trace, "World::view of many");
-    visible.names_ = &state_->table.names;
-    visible.hides_ = false;
-    cull::find_visible(state_->index.tree(), state_->index.moving(), views, visible.set_, mode);
-}
-
 void World::State::visit_along(const Ray& ray, std::uint32_t layers, collide::RayVisitor visit) const {
     Ray rest = ray;
     const auto visit_living = [&](std::uint32_t object, double t) {

@@ -69,8 +69,7 @@ struct World::State {
     StagedChange& stage(std::uint32_t object);
     [[nodiscard]] Result<void> hang(world::Object& object, const ObjectDescription& description);
     [[nodiscard]] Result<void> set_bound(ObjectHandle object, const Bound& bound, std::uint64_t item);
-    [[nodiscard]] Result<void> set_transform(ObjectHandle object, const Transform& transform,
-                                             std::uint64_t item);
+    [[nodiscard]] Result<void> set_transform(ObjectHandle object, const Transform& transform, std::uint64_t item);
     [[nodiscard]] Result<void> set_transform(NodeHandle node, const Transform& transform, std::uint64_t item);
     [[nodiscard]] Result<void> set_local(scene::NodeId node, const Transform& transform, std::uint64_t item);
     [[nodiscard]] bool stage_box_of_mover(std::uint32_t object, BoundKind kind, const Obb& box, double radius);
@@ -84,9 +83,9 @@ struct World::State {
     // CullOptions::among with the bits of what has changed since such a set can have been made; in `both`, or as it is.
     [[nodiscard]] std::span<const std::uint64_t> among_and_changed(std::span<const std::uint64_t> among,
                                                                    Vector<std::uint64_t>& both) const;
-    [[nodiscard]] Result<void> find_visible(const OccludingView& view, const OcclusionOptions& occlusion,
-                                            const cull::CullOptions& how, Executor& executor,
-                                            world::OccludedView& result) const;
+    // Draws the occluders that are worth most to the view into the result's buffer, then asks what they do not hide.
+    void draw_and_ask(const occlude::OcclusionView& view, const OcclusionOptions& occlusion, std::uint32_t layers,
+                      const cull::CullOptions& how, Executor& executor, world::OccludedView& result) const;
 
     // An object's body, or what stands for it: a ball or box. No pose: it meets nothing.
     struct Stand {

@@ -282,7 +282,7 @@ CROFTON_API crofton_status crofton_visible_objects_get_statistics(const crofton_
 
 CROFTON_API crofton_status crofton_visible_in_views_create(crofton_visible_in_views** visible);
 CROFTON_API crofton_status crofton_visible_in_views_destroy(crofton_visible_in_views* visible);
-/* What up to 32 views see, each object once, in the order of the tree; `options` or NULL. */
+/* What up to 32 views see, each object once, ascending; `options` or NULL: their mode counts. */
 CROFTON_API crofton_status crofton_world_views(const crofton_world* world, const crofton_view* views, size_t count,
                                                const crofton_cull_options* options, crofton_visible_in_views* visible);
 CROFTON_API crofton_status crofton_visible_in_views_ids(const crofton_visible_in_views* visible, const uint32_t** ids,

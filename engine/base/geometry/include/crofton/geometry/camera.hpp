@@ -48,6 +48,13 @@ struct Camera {
 // view_to_clip · world_to_view, the translation included: rounds at large coordinates, see frustum_of(Camera) instead.
 [[nodiscard]] glm::dmat4 world_to_clip(const Camera& camera, DepthRange depth = DepthRange::reversed_zero_to_one);
 
+// How sixteen numbers list a matrix. `columns`: column after column, for column vectors (GLM, OpenGL, Vulkan, Unity);
+// DirectXMath's row vectors stored row after row are the same sixteen numbers. `rows`: row after row, for column
+// vectors (Unreal's and many engines' transposed matrices).
+enum class MatrixOrder : std::uint8_t { columns, rows };
+[[nodiscard]] glm::dmat4 matrix_of(std::span<const float, 16> numbers, MatrixOrder order);
+[[nodiscard]] glm::dmat4 matrix_of(std::span<const double, 16> numbers, MatrixOrder order);
+
 // A view volume as half-spaces around an origin: what culling tests against.
 
 // The exact set { x : dot(planes[i].normal, x − origin) + planes[i].offset ≥ 0 for all i < plane_count } of the stored

@@ -60,7 +60,7 @@ class VisibleObjects {
     [[nodiscard]] std::span<const cull::Verdict> verdicts() const {
         return hides_ ? seen().verdicts() : set_.verdicts();
     }
-    // Of the frustum's query: with occlusion that of OcclusionOptions::list_occluded, if it was asked for.
+    // Of the query by the view volume. With occlusion: that of OcclusionOptions::list_occluded, if it was asked for.
     [[nodiscard]] const cull::Statistics& statistics() const { return set_.statistics(); }
     [[nodiscard]] ObjectRef ref(std::uint32_t id) const { return {{id, names_->generations[id]}, names_->users[id]}; }
 
@@ -84,33 +84,38 @@ class VisibleObjects {
     Vector<std::uint64_t> among_;  // CullOptions::among and what has changed since
 };
 
-// What up to 32 views see, each object once.
+// What up to 32 views see, each object once, in memory that is kept from frame to frame.
 class VisibleInViews {
   public:
     [[nodiscard]] std::size_t size() const { return ids().size(); }
-    // With occlusion ascending.
+    // Indices: ascending, or by and large along the tree if the requests asked for tree order.
     [[nodiscard]] std::span<const std::uint32_t> ids() const {
-        return hides_ ? std::span<const std::uint32_t>(ids_.data(), ids_.size()) : set_.ids();
+        return listed_ ? std::span<const std::uint32_t>(ids_.data(), ids_.size()) : set_.ids();
     }
     [[nodiscard]] ObjectRef operator[](std::size_t i) const {
         const std::uint32_t id = ids()[i];
         return {{id, names_->generations[id]}, names_->users[id]};
     }
     // Bit v: view v sees it.
-    [[nodiscard]] std::uint32_t view_mask(std::size_t i) const { return hides_ ? masks_[ids_[i]] : set_.view_mask(i); }
+    [[nodiscard]] std::uint32_t view_mask(std::size_t i) const { return listed_ ? masks_[ids_[i]] : set_.view_mask(i); }
 
-    // Of the last views with occlusion; without, or before them: none.
-    [[nodiscard]] std::size_t occlusion_view_count() const { return hides_ ? view_count_ : 0; }
+    // How many views the last call asked for, and what the occlusion of one of them drew and asked; zeros for a view
+    // without occlusion.
+    [[nodiscard]] std::size_t view_count() const { return view_count_; }
     [[nodiscard]] OcclusionStatistics occlusion_statistics(std::size_t view) const;
-    [[nodiscard]] const occlude::OcclusionBuffer& occlusion_buffer(std::size_t view) const;
+    // A view's depth buffer, or nullptr for a view without occlusion.
+    [[nodiscard]] const occlude::OcclusionBuffer* occlusion_buffer(std::size_t view) const;
 
   private:
     friend class World;
-    cull::ManyVisible set_;
-    Vector<world::OccludedViewOwner> occluded_;  // at least view_count_
-    Vector<std::uint32_t> ids_, masks_;          // masks by object
-    std::size_t view_count_ = 0;
-    ResetOnMove<bool> hides_;
+    void forget_ids();
+    void list_ascending(std::size_t objects);  // ids_ and masks_ from set_, or from each_
+    cull::ManyVisible set_;                    // of views that are answered in one walk
+    Vector<VisibleObjects> each_;              // of views that are not: at least view_count_
+    Vector<std::uint32_t> ids_, masks_;        // masks by object: 0 but for those in ids_
+    Vector<std::uint64_t> bits_;               // by object, while ids are put in order
+    ResetOnMove<std::size_t> view_count_;
+    ResetOnMove<bool> one_walk_, listed_;
     const world::ObjectNames* names_ = nullptr;
 };
 

@@ -4,13 +4,16 @@
 #include <array>
 #include <compare>
 #include <crofton/core/version.hpp>
+#include <crofton/cull/cull.hpp>
 #include <crofton/geometry/box.hpp>
+#include <crofton/geometry/camera.hpp>
 #include <crofton/geometry/shapes.hpp>
+#include <crofton/geometry/transform.hpp>
 #include <crofton/occlude/occluder.hpp>
 #include <crofton/occlude/occlusion.hpp>
-#include <crofton/geometry/transform.hpp>
 #include <cstddef>
 #include <cstdint>
+#include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <span>
@@ -127,9 +130,9 @@ struct MeshDescription {
 };
 
 struct NodeDescription {
-    NodeHandle parent = {};           // null: none
-    Transform transform = {};  // relative to the parent
-    std::uint32_t layers = ~0u;       // of all below: an object is in those that it and all nodes above it have
+    NodeHandle parent = {};      // null: none
+    Transform transform = {};    // relative to the parent
+    std::uint32_t layers = ~0u;  // of all below: an object is in those that it and all nodes above it have
 };
 
 enum class BoundKind : std::uint8_t { none, box, aligned_box, ball };
@@ -163,19 +166,43 @@ struct ObjectDescription {
     bool only_occludes = false;
 };
 
-// How a view hides objects behind others.
+// How a view leaves out what other objects hide.
 struct OcclusionOptions {
-    bool enabled = true;
     occlude::BufferSize size = {480, 270};  // pixels of the depth buffer; more find more and cost more
-    std::uint32_t max_occluders = 256;      // drawn: those that are worth most to the view
-    float least_cover = 2e-5f;              // of the sphere of directions: smaller ones are left out
-    bool list_occluded = false;             // also list what is hidden, which costs a query without occlusion
+    std::uint32_t max_occluders = 256;      // at most so many are drawn: those that are worth most to the view
+    float least_cover = 2e-5f;              // of the sphere of directions: smaller occluders are not drawn
+    bool list_occluded = false;             // also list what is hidden, which costs a second query
 };
 
-// A view: a camera, or an engine's own matrix by occlude::occlusion_view_of; and the layers that it draws.
-struct OccludingView {
-    occlude::OcclusionView view;
-    std::uint32_t layer_mask = ~0u;
+// An engine's own view: the matrix that takes world positions, relative to `origin`, to clip space. The engine's
+// numbers become a dmat4 by matrix_of (crofton/geometry/camera.hpp).
+struct ViewMatrix {
+    glm::dmat4 to_clip{1.0};
+    DepthRange depth = DepthRange::reversed_zero_to_one;
+    glm::dvec3 origin{0.0};
+};
+
+// What World::view is asked.
+struct ViewRequest {
+    // Where the view looks from: set a camera, a matrix or a volume.
+    std::optional<Camera> camera = {};
+    std::optional<ViewMatrix> matrix = {};
+    // Any convex volume, such as a shadow's. It has no eye: for occlusion set a camera or a matrix as well, and objects
+    // are tested against the volume instead of theirs.
+    std::optional<Frustum> volume = {};
+
+    std::uint32_t layers = ~0u;  // lists objects that share a layer with these
+    // If set, objects that others hide are left out: never one that is seen (docs/occlude.md). An object hides with its
+    // mesh's occluders if the view draws it: shown, in one of `layers`, within `limits`. Not with ResultOrder::tree.
+    std::optional<OcclusionOptions> occlusion = {};
+    // Leaves out what is too small or too far. The caller's, alive for the call.
+    const cull::DrawLimits* limits = nullptr;
+    // If not empty, bit i % 64 of word i / 64 says whether the object with index i may be seen at all: baked sets
+    // (docs/pvs.md). Objects beyond its end may be seen, and so may those that have moved since they were first updated
+    // or whose index another object had before.
+    std::span<const std::uint64_t> among = {};
+    cull::ResultOrder order = cull::ResultOrder::ascending;
+    cull::CullMode mode = cull::CullMode::exact;
 };
 
 }  // namespace crofton

@@ -134,28 +134,19 @@ class World {
     // For overlays and measurements: the tree of what rests. Items are the objects' indices.
     [[nodiscard]] const boxtree::BoxTree& tree() const;
 
-    // What a view sees, by the objects' boxes, exactly as the mode says. At most cull::kMaxViews views in one pass.
-    // A single view leaves out what is not in options.among, the objects' indices: baked sets (docs/pvs.md). Never left
-    // out is what has moved since it was first updated, or has an index that another object had before.
-    // Errors of the first: as validate(Camera).
-    Result<void> view(const Camera& camera, VisibleObjects& visible, const cull::CullOptions& options = {},
+    // Lists what a view sees, by the objects' boxes: exactly as the request's mode says. May be called from any number
+    // of threads at once, each with its own `visible`. The same bits for any executor. Allocates nothing once `visible`
+    // has held as many objects. Errors name what cannot be obeyed: none or several of camera, matrix and volume; a
+    // camera or matrix that is not valid; a volume of more than 12 planes; occlusion with a volume or with tree order;
+    // a depth buffer's size out of its range.
+    Result<void> view(const ViewRequest& request, VisibleObjects& visible,
                       Executor& executor = serial_executor()) const;
-    void view(const cull::View& view, VisibleObjects& visible, const cull::CullOptions& options = {},
-              Executor& executor = serial_executor()) const;
-    void view(std::span<const cull::View> views, VisibleInViews& visible,
-              cull::CullMode mode = cull::CullMode::exact) const;
-
-    // The same, and what other objects hide is left out: never what is seen (docs/occlude.md). Ascending, whatever
-    // options.order says. An object hides with its mesh's occluders where the view draws it: shown, in a layer of the
-    // view, within options.limits. Any number of calls at once, each with its own `visible`. The same bits for any
-    // executor. Nothing is allocated once `visible` has held as many. Errors: a camera that is not valid; a buffer's
-    // size out of its range. Not more than cull::kMaxViews views.
-    Result<void> view(const Camera& camera, const OcclusionOptions& occlusion, VisibleObjects& visible,
-                      const cull::CullOptions& options = {}, Executor& executor = serial_executor()) const;
-    Result<void> view(const OccludingView& view, const OcclusionOptions& occlusion, VisibleObjects& visible,
-                      const cull::CullOptions& options = {}, Executor& executor = serial_executor()) const;
-    Result<void> view(std::span<const OccludingView> views, const OcclusionOptions& occlusion, VisibleInViews& visible,
-                      const cull::CullOptions& options = {}, Executor& executor = serial_executor()) const;
+    // The same for up to 32 views: each object once, with a mask of the views that see it. Views without occlusion and
+    // candidates, with equal limits and mode, are answered in one walk through the tree. Further errors, whose item is
+    // the place among the requests: more than 32 views; views of different orders; tree order where the views are not
+    // answered in one walk.
+    Result<void> view(std::span<const ViewRequest> requests, VisibleInViews& visible,
+                      Executor& executor = serial_executor()) const;
     // Of a view with occlusion, before the next update: which occluders hide an object (none where it is not hidden).
     // Also which were drawn, those worth most first. The first draws all of them again, and allocates.
     Result<void> hidden_by(ObjectHandle object, const VisibleObjects& visible, Vector<OccluderRef>& occluders) const;

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: MIT
+// What one view or many see: checks a request, then asks the tree, with or without occlusion.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <crofton/core/error.hpp>
+#include <optional>
+
+#include "must.hpp"
+#include "occluded_view.hpp"
+#include "trace_zone.hpp"
+#include "world_state.hpp"
+
+namespace crofton {
+namespace {
+
+// The volume of a view, and for occlusion its eye.
+struct Eye {
+    cull::View plain;
+    occlude::OcclusionView occluding;  // if the request asks for occlusion
+};
+
+Result<void> check(const ViewRequest& request, std::uint64_t item) {
+    const auto refuse = [&](const char* why) { return fail(ErrorCode::invalid_argument, item, why); };
+    const bool has_eye = request.camera || request.matrix;
+    if (!has_eye && !request.volume) return refuse("view: set `camera`, `matrix` or `volume`");
+    if (request.camera && request.matrix) return refuse("view: set `camera` or `matrix`, not both");
+    if (request.volume && request.volume->plane_count > Frustum::kMaxPlanes)
+        return fail(ErrorCode::out_of_range, item, "view: a volume has at most 12 planes");
+    if (!request.occlusion) {
+        if (has_eye && request.volume)
+            return refuse("view: a volume beside a camera or matrix is for occlusion; set one of them");
+        return {};
+    }
+    if (!has_eye) return refuse("view: occlusion needs a `camera` or a `matrix`, because a volume has no eye");
+    if (request.order == cull::ResultOrder::tree)
+        return refuse("view: with occlusion objects come in ascending order; ask for that order");
+    return {};
+}
+
+// An error of a request that is one of many names its place.
+Error at_item(Error error, std::uint64_t item) {
+    if (item != kNoItem) error.item = item;
+    return error;
+}
+
+Result<Eye> eye_of(const ViewRequest& request, std::uint64_t item) {
+    if (auto good = check(request, item); !good) return tl::unexpected(good.error());
+    Eye eye;
+    eye.plain.layer_mask = request.layers;
+    if (request.occlusion) {
+        const auto view = request.camera ? occlude::occlusion_view_of(*request.camera)
+                                         : occlude::occlusion_view_of(request.matrix->to_clip, request.matrix->depth,
+                                                                      request.matrix->origin);
+        if (!view) return tl::unexpected(at_item(view.error(), item));
+        eye.occluding = *view;
+        if (request.volume) eye.occluding.frustum = *request.volume;
+        eye.plain.frustum = eye.occluding.frustum;
+        return eye;
+    }
+    if (request.volume) {
+        eye.plain.frustum = *request.volume;
+        return eye;
+    }
+    const auto frustum = request.camera
+                             ? frustum_of(*request.camera)
+                             : frustum_of(request.matrix->to_clip, request.matrix->depth, request.matrix->origin);
+    if (!frustum) return tl::unexpected(at_item(frustum.error(), item));
+    eye.plain.frustum = *frustum;
+    return eye;
+}
+
+// Whether one walk through the tree answers all requests.
+bool fit_one_walk(std::span<const ViewRequest> requests) {
+    return std::all_of(requests.begin(), requests.end(), [&](const ViewRequest& request) {
+        return !request.occlusion && request.among.empty() && request.limits == requests[0].limits &&
+               request.mode == requests[0].mode;
+    });
+}
+
+}  // namespace
+
+std::span<const std::uint64_t> World::State::among_and_changed(std::span<const std::uint64_t> among,
+                                                               Vector<std::uint64_t>& both) const {
+    const std::span<const std::uint64_t> changed = index.changed();
+    if (changed.empty()) return among;
+    both.assign(among.begin(), among.end());
+    for (std::size_t w = 0; w < std::min(both.size(), changed.size()); ++w) both[w] |= changed[w];
+    return both;
+}
+
+void World::State::draw_and_ask(const occlude::OcclusionView& view, const OcclusionOptions& occlusion,
+                                std::uint32_t layers, const cull::CullOptions& how, Executor& executor,
+                                world::OccludedView& result) const {
+    const world::TraceZone zone(options.trace, "World::view with occlusion");
+    Vector<std::uint32_t>& ids = result.choice.ids;
+    occlude::choose_occluders(occluders.candidates(), view,
+                              {.max_occluders = occlusion.max_occluders,
+                               .least_cover = occlusion.least_cover,
+                               .objects = object_bounds,
+                               .layer_mask = layers},
+                              result.choice);
+    // What the view does not draw hides nothing.
+    if (how.limits)
+        ids.erase(std::remove_if(ids.begin(), ids.end(),
+                                 [&](std::uint32_t id) {
+                                     const std::uint32_t object = occluders.object_of(id);
+                                     const std::uint32_t common = occluders.candidates().layers(id) & layers;
+                                     return !cull::is_worth_drawing(*how.limits, index.box(object), object, common);
+                                 }),
+                  ids.end());
+    {
+        const world::TraceZone part(options.trace, "view: draw occluders");
+        result.buffer->draw(occluders.set(), ids, view, executor);
+    }
+    const world::TraceZone part(options.trace, "view: what is not hidden");
+    occlude::find_visible(index.tree(), index.moving(), *result.buffer, result.visible,
+                          {.layer_mask = layers, .mode = how.mode, .limits = how.limits, .among = how.among});
+    world::trace_count(options.trace, "objects not hidden", result.visible.size());
+}
+
+Result<void> World::view(const ViewRequest& request, VisibleObjects& visible, Executor& executor) const {
+    const auto eye = eye_of(request, kNoItem);
+    if (!eye) return tl::unexpected(eye.error());
+    cull::CullOptions how{request.mode, request.order, request.limits, {}};
+    how.among = state_->among_and_changed(request.among, visible.among_);
+    if (!request.occlusion) {
+        const world::TraceZone zone(state_->options.trace, "World::view");
+        visible.names_ = &state_->table.names;
+        visible.hides_ = false;
+        cull::find_visible(state_->index.tree(), state_->index.moving(), eye->plain, visible.set_, how, executor);
+        world::trace_count(state_->options.trace, "objects in view", visible.set_.size());
+        return {};
+    }
+    if (!visible.occluded_) visible.occluded_ = world::make_occluded_view();
+    if (auto sized = visible.occluded_->resize(request.occlusion->size); !sized) return sized;
+    state_->draw_and_ask(eye->occluding, *request.occlusion, request.layers, how, executor, *visible.occluded_);
+    visible.names_ = &state_->table.names;
+    visible.hides_ = true;
+    visible.occluded_->occluded.clear();
+    if (!request.occlusion->list_occluded) return {};
+    cull::find_visible(state_->index.tree(), state_->index.moving(), eye->plain, visible.set_, how, executor);
+    visible.occluded_->list_occluded(visible.set_.ids());
+    return {};
+}
+
+Result<void> World::view(std::span<const ViewRequest> requests, VisibleInViews& visible, Executor& executor) const {
+    if (requests.size() > cull::kMaxViews)
+        return fail(ErrorCode::out_of_range, requests.size(), "view: more than 32 views in one call");
+    std::array<cull::View, cull::kMaxViews> plain;
+    for (std::size_t v = 0; v < requests.size(); ++v) {
+        const auto eye = eye_of(requests[v], v);
+        if (!eye) return tl::unexpected(eye.error());
+        plain[v] = eye->plain;
+        if (requests[v].order != requests[0].order)
+            return fail(ErrorCode::invalid_argument, v, "view: views of one call are listed in one order");
+    }
+    const bool one_walk = fit_one_walk(requests);
+    const bool ascending = requests.empty() || requests[0].order == cull::ResultOrder::ascending;
+    if (!one_walk && !ascending)
+        return fail(ErrorCode::invalid_argument, kNoItem,
+                    "view: tree order needs views without candidates, with equal limits and mode; ask for ascending");
+    visible.forget_ids();
+    if (one_walk) {
+        const world::TraceZone zone(state_->options.trace, "World::view of many");
+        const cull::CullMode mode = requests.empty() ? cull::CullMode::exact : requests[0].mode;
+        const cull::DrawLimits* limits = requests.empty() ? nullptr : requests[0].limits;
+        cull::find_visible(state_->index.tree(), state_->index.moving(),
+                           std::span<const cull::View>(plain).first(requests.size()), visible.set_, mode, limits);
+    } else {
+        while (visible.each_.size() < requests.size()) visible.each_.emplace_back();
+        for (std::size_t v = 0; v < requests.size(); ++v) {
+            if (!requests[v].occlusion) continue;
+            if (!visible.each_[v].occluded_) visible.each_[v].occluded_ = world::make_occluded_view();
+            if (auto sized = visible.each_[v].occluded_->resize(requests[v].occlusion->size); !sized)
+                return tl::unexpected(at_item(sized.error(), v));
+        }
+        executor.parallel_for(requests.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
+            for (std::size_t v = begin; v < end; ++v) world::must(view(requests[v], visible.each_[v]));
+        });
+    }
+    visible.names_ = &state_->table.names;
+    visible.view_count_ = requests.size();
+    visible.one_walk_ = one_walk;
+    visible.listed_ = ascending;
+    if (ascending) visible.list_ascending(state_->index.size());
+    return {};
+}
+
+void VisibleInViews::forget_ids() {
+    for (const std::uint32_t id : ids_) masks_[id] = 0;
+    ids_.clear();
+}
+
+void VisibleInViews::list_ascending(std::size_t objects) {
+    if (masks_.size() < objects) masks_.resize(objects, 0);
+    bits_.assign((objects + 63) / 64, 0);
+    const auto add = [&](std::uint32_t id, std::uint32_t mask) {
+        masks_[id] |= mask;
+        bits_[id / 64] |= std::uint64_t{1} << (id % 64);
+    };
+    if (one_walk_)
+        for (std::size_t i = 0; i < set_.size(); ++i) add(set_.ids()[i], set_.view_mask(i));
+    else
+        for (std::size_t v = 0; v < view_count_; ++v)
+            for (const std::uint32_t id : each_[v].ids()) add(id, std::uint32_t{1} << v);
+    for (std::size_t w = 0; w < bits_.size(); ++w)
+        for (std::uint64_t rest = bits_[w]; rest != 0; rest &= rest - 1)
+            ids_.push_back(static_cast<std::uint32_t>(64 * w) + static_cast<std::uint32_t>(std::countr_zero(rest)));
+}
+
+OcclusionStatistics VisibleInViews::occlusion_statistics(std::size_t view) const {
+    return view < view_count_ && !one_walk_ ? each_[view].occlusion_statistics() : OcclusionStatistics();
+}
+
+const occlude::OcclusionBuffer* VisibleInViews::occlusion_buffer(std::size_t view) const {
+    return view < view_count_ && !one_walk_ ? each_[view].occlusion_buffer() : nullptr;
+}
+
+}  // namespace crofton
