@@ -56,15 +56,16 @@ TEST_SUITE("engines/documentation") {
         };
         std::vector<Page> pages = {{"docs/integrate.md", 8}, {"README.md", 1}};
         std::vector<Lines> sources = {lines_of("tests/samples/engines/integrate_test.cpp"),
-                                      lines_of("samples/hello_cull/main.cpp"), lines_of("samples/hello_frame/main.cpp"),
+                                      lines_of("samples/hello_cull/main.cpp"),
+                                      lines_of("samples/hello_world/main.cpp"),
+                                      lines_of("samples/hello_frame/main.cpp"),
                                       lines_of("samples/c_hello/main.c"),
                                       lines_of("samples/executors/tbb_executor.hpp")};
-        // The pages take their examples from tests/<module>/guide_test.cpp.
-        for (const auto& folder : std::filesystem::directory_iterator(CROFTON_SOURCE_DIR "/tests")) {
-            const std::string module = folder.path().filename().string();
-            if (!std::filesystem::exists(folder.path() / "guide_test.cpp")) continue;
-            sources.push_back(lines_of("tests/" + module + "/guide_test.cpp"));
-            pages.push_back({"docs/" + module + ".md", 1});
+        // The pages take their examples from tests/<room>/<module>/guide_test.cpp.
+        for (const auto& file : std::filesystem::recursive_directory_iterator(CROFTON_SOURCE_DIR "/tests")) {
+            if (file.path().filename() != "guide_test.cpp") continue;
+            sources.push_back(lines_of(file.path().lexically_relative(CROFTON_SOURCE_DIR).string()));
+            pages.push_back({"docs/" + file.path().parent_path().filename().string() + ".md", 1});
         }
         for (const auto& file : std::filesystem::directory_iterator(CROFTON_SOURCE_DIR "/docs"))
             if (file.path().extension() == ".md") pages.push_back({"docs/" + file.path().filename().string(), 0});
