@@ -5,7 +5,7 @@
 packaging/first_results.py [c++] [python] [rust] [csharp] [web]     all of them where none is named
 
 Each language has a clone of its own, so nothing is built before. At most three commands count, with `git clone`. A
-compiler cache is switched off. Prints the table of docs/first_hour.md, whose processor time is that of all processes
+compiler cache is switched off. Prints a table whose processor time is that of all processes
 that a command started. What is missing of Debian's packages is downloaded. Exit status 1 where a command fails, or
 ends without its result because a tool is missing; its output is then shown.
 """

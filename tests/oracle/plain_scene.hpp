@@ -2,6 +2,7 @@
 // What a scene should hold, computed anew from the roots each time: no order, no dirty marks, no lists.
 #pragma once
 #include <crofton/scene/scene.hpp>
+#include <crofton/scene/transformed_box.hpp>
 #include <cstring>
 #include <map>
 #include <optional>

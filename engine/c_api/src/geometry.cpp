@@ -5,6 +5,7 @@
 
 #include <crofton/capi/call.hpp>
 #include <crofton/capi/convert.hpp>
+#include <crofton/scene/transformed_box.hpp>
 
 namespace crofton::capi {
 

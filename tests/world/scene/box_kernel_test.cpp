@@ -6,6 +6,7 @@
 #include <cmath>
 #include <crofton/core/executor.hpp>
 #include <crofton/scene/scene.hpp>
+#include <crofton/scene/transformed_box.hpp>
 #include <cstring>
 #include <limits>
 #include <random>

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <crofton/geometry/camera.hpp>
 #include <crofton/scene/scene.hpp>
+#include <crofton/scene/transformed_box.hpp>
 #include <cstring>
 #include <glm/gtc/quaternion.hpp>
 #include <random>

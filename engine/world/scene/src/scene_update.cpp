@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <crofton/core/error.hpp>
 #include <crofton/geometry/same_bits.hpp>
+#include <crofton/scene/transformed_box.hpp>
 #include <cstring>
 #include <string>
 #include <utility>
