@@ -8,6 +8,7 @@
 #include <OgreRoot.h>
 
 #include <chrono>
+#include <crofton/scene/transformed_box.hpp>
 #include <cstdint>
 #include <glm/matrix.hpp>
 #include <optional>

@@ -2,6 +2,7 @@
 #include "crofton_cull_callback.hpp"
 
 #include <chrono>
+#include <crofton/scene/transformed_box.hpp>
 #include <osg/ComputeBoundsVisitor>
 #include <osg/MatrixTransform>
 #include <osg/Notify>
