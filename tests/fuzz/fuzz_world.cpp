@@ -2,7 +2,7 @@
 // A World of boxes and balls, changed in any order: views, rays, overlaps and pairs against a plain list.
 #include <algorithm>
 #include <crofton/crofton.hpp>
-#include <world/model.hpp>
+#include <world/world/model.hpp>
 
 #include "../view_request.hpp"
 #include "shapes.hpp"

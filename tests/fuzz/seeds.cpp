@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // fuzz_seeds FOLDER: writes what each fuzzer begins with into FOLDER/<fuzzer>/.
-#include <assets/test_files.hpp>
+#include <samples/assets/test_files.hpp>
 #include <crofton/bake/baked_scene.hpp>
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/scene/scene.hpp>

@@ -21,7 +21,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include <pvs/subjects.hpp>
+#include <bake/pvs/subjects.hpp>
 
 #include "failing_memory.hpp"
 #include "shapes.hpp"

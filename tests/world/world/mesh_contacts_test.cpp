@@ -8,7 +8,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 #include <map>
-#include <mesh/meshes.hpp>
+#include <shape/mesh/meshes.hpp>
 #include <oracle/random_boxes.hpp>
 #include <set>
 

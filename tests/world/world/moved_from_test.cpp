@@ -91,7 +91,7 @@ TEST_SUITE("world/moved_from") {
     TEST_CASE("what a depth buffer leaves visible, moved from, is nothing") {
         const Obb boxes[1] = {box_at({0, 0, -5}, 1.0f)};
         auto buffer = *occlude::OcclusionBuffer::create();
-        buffer.draw(occlude::OccluderSet(), forward().view);
+        buffer.draw(occlude::OccluderSet(), *occlude::occlusion_view_of(Camera{}));
         occlude::VisibleSet visible;
         occlude::find_visible(boxes, {}, buffer, visible);
         const occlude::VisibleSet kept(std::move(visible));
