@@ -41,7 +41,7 @@ void check_views(fuzz::Shapes& in, const World& world, const oracle::Model& mode
         }
     }
     VisibleInViews in_views;
-    world.view(views, in_views);
+    demand(world.view(views, in_views).has_value(), "three views fit one pass");
     for (std::size_t v = 0; v < views.size(); ++v) {
         Ids seen;
         for (std::size_t i = 0; i < in_views.size(); ++i)

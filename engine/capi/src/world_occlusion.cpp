@@ -220,7 +220,7 @@ crofton_status crofton_world_drawn_occluders(const crofton_world* world, const c
     if (use.failed()) return use.status();
     CROFTON_CHECK(check_asked_of(*world, *visible, occluders, capacity, count, __func__));
     Vector<OccluderRef> found;
-    world->world.drawn_occluders(visible->visible, found);
+    CROFTON_CHECK(status_of(world->world.drawn_occluders(visible->visible, found), __func__));
     write_occluders(found, occluders, capacity, count);
     return CROFTON_OK;
 }

@@ -117,7 +117,9 @@ crofton_status crofton_world_views(const crofton_world* world, const crofton_vie
     CullAsked asked;
     CROFTON_CHECK(read_options(options, __func__, asked));
     for (std::size_t i = 0; i < count; ++i) copy_view(views[i], visible->views[i]);
-    world->world.view(std::span<const cull::View>(visible->views).first(count), visible->visible, asked.options.mode);
+    CROFTON_CHECK(status_of(
+        world->world.view(std::span<const cull::View>(visible->views).first(count), visible->visible, asked.options),
+        __func__));
     visible->serial = world->serial;
     return CROFTON_OK;
 }

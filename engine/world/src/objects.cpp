@@ -32,12 +32,8 @@ Bound::Bound(const Sphere& ball) : kind(BoundKind::ball), radius(ball.radius) {
 
 Result<void> World::State::check(ObjectHandle object, std::uint64_t item) const {
     if (table.contains(object)) return {};
-    if (object.index >= table.objects.size())
-        return fail(ErrorCode::stale_handle, item, "world: the handle names no object of this world");
-    if (object.generation < world::kFirstGeneration)
-        return fail(ErrorCode::stale_handle, item, "world: the object's handle was never set");
-    return fail(ErrorCode::stale_handle, item,
-                {"world: object ", object.index, " of generation ", object.generation, " has been removed"});
+    return world::refuse("object", object.index, object.generation, table.names.generations, table.first_generation,
+                         item);
 }
 
 StagedChange& World::State::stage(std::uint32_t object) {

@@ -110,33 +110,32 @@ Result<void> World::view(const OccludingView& view, const OcclusionOptions& occl
         return {};
     }
     if (!visible.occluded_) visible.occluded_ = world::make_occluded_view();
+    world::OccludedView& result = *visible.occluded_;
     cull::CullOptions how = options;
     how.among = state_->among_and_changed(options.among, visible.among_);
-    if (auto found = state_->find_visible(view, occlusion, how, executor, *visible.occluded_); !found) return found;
+    if (auto found = state_->find_visible(view, occlusion, how, executor, result); !found) return found;
     visible.names_ = &state_->table.names;
     visible.hides_ = true;
-    visible.occluded_->occluded.clear();
-    if (!occlusion.list_occluded) return {};
-    how.order = cull::ResultOrder::ascending;
+    result.occluded.clear();
+    result.by_tree = how.order == cull::ResultOrder::tree;
+    if (!occlusion.list_occluded && !result.by_tree) return {};
     cull::find_visible(state_->index.tree(), state_->index.moving(), plain, visible.set_, how, executor);
-    visible.occluded_->list_occluded(visible.set_.ids());
+    result.split(visible.set_, state_->index.size());
+    if (!occlusion.list_occluded) result.occluded.clear();
     return {};
 }
 
 Result<void> World::view(std::span<const OccludingView> views, const OcclusionOptions& occlusion,
                          VisibleInViews& visible, const cull::CullOptions& options, Executor& executor) const {
-    CROFTON_ASSERT(views.size() <= cull::kMaxViews, "no more than 32 views");
-    if (!occlusion.enabled) {
-        std::array<cull::View, cull::kMaxViews> plain;
-        for (std::size_t v = 0; v < views.size(); ++v) plain[v] = {views[v].view.frustum, views[v].layer_mask};
-        view(std::span(plain).first(views.size()), visible, options.mode);
-        return {};
-    }
+    if (auto few = cull::check_view_count(views.size()); !few) return few;
+    std::array<cull::View, cull::kMaxViews> plain;
+    for (std::size_t v = 0; v < views.size(); ++v) plain[v] = {views[v].view.frustum, views[v].layer_mask};
+    if (!occlusion.enabled) return view(std::span(plain).first(views.size()), visible, options, executor);
     while (visible.occluded_.size() < views.size()) visible.occluded_.push_back(world::make_occluded_view());
     for (std::size_t v = 0; v < views.size(); ++v)
         if (auto sized = visible.occluded_[v]->resize(occlusion.size); !sized) return sized;
     cull::CullOptions how = options;
-    how.among = {};  // of one eye
+    how.among = state_->among_and_changed(options.among, visible.among_);
     executor.parallel_for(views.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t v = begin; v < end; ++v)
             world::must(state_->find_visible(views[v], occlusion, how, serial_executor(), *visible.occluded_[v]));
@@ -144,22 +143,34 @@ Result<void> World::view(std::span<const OccludingView> views, const OcclusionOp
     visible.names_ = &state_->table.names;
     visible.hides_ = true;
     visible.view_count_ = views.size();
-    for (const std::uint32_t id : visible.ids_) visible.masks_[id] = 0;
+    visible.start_list(state_->index.size());
+    for (std::size_t v = 0; v < views.size(); ++v) visible.add(visible.occluded_[v]->visible.ids(), v);
+    if (how.order == cull::ResultOrder::ascending) {
+        visible.sort();
+        return {};
+    }
+    if (auto asked = cull::find_visible(state_->index.tree(), state_->index.moving(),
+                                        std::span<const cull::View>(plain).first(views.size()), visible.set_, how.mode,
+                                        how.limits);
+        !asked)
+        return asked;
     visible.ids_.clear();
-    if (visible.masks_.size() < state_->index.size()) visible.masks_.resize(state_->index.size(), 0);
-    for (std::size_t v = 0; v < views.size(); ++v)
-        for (const std::uint32_t id : visible.occluded_[v]->visible.ids()) {
-            if (visible.masks_[id] == 0) visible.ids_.push_back(id);
-            visible.masks_[id] |= 1u << v;
-        }
-    std::sort(visible.ids_.begin(), visible.ids_.end());
+    for (const std::uint32_t id : visible.set_.ids())
+        if (visible.masks_[id] != 0) visible.ids_.push_back(id);
     return {};
+}
+
+Result<void> World::State::check_viewed(const world::ObjectNames* viewed) const {
+    if (!viewed || viewed == &table.names) return {};
+    return fail(ErrorCode::invalid_argument, kNoItem,
+                "world: the visible objects are of a view of another World: ask the one that was viewed");
 }
 
 Result<void> World::hidden_by(ObjectHandle object, const VisibleObjects& visible,
                               Vector<OccluderRef>& occluders) const {
     occluders.clear();
     if (auto known = state_->check(object, object.index); !known) return known;
+    if (auto own = state_->check_viewed(visible.names_); !own) return own;
     if (!visible.hides_ || !state_->index.has_box(object.index)) return {};
     Vector<occlude::OccluderId> ids;
     visible.occluded_->buffer->hidden_by(state_->index.box(object.index), ids);
@@ -170,13 +181,15 @@ Result<void> World::hidden_by(ObjectHandle object, const VisibleObjects& visible
     return {};
 }
 
-void World::drawn_occluders(const VisibleObjects& visible, Vector<OccluderRef>& occluders) const {
+Result<void> World::drawn_occluders(const VisibleObjects& visible, Vector<OccluderRef>& occluders) const {
     occluders.clear();
-    if (!visible.hides_) return;
+    if (auto own = state_->check_viewed(visible.names_); !own) return own;
+    if (!visible.hides_) return {};
     for (const occlude::OccluderId id : visible.occluded_->choice.ids) {
         const ObjectRef ref = state_->table.ref(state_->occluders.object_of(id));
         occluders.push_back({ref.object, ref.user, state_->occluders.place_of(id)});
     }
+    return {};
 }
 
 }  // namespace crofton

@@ -113,11 +113,42 @@ void World::view(const cull::View& view, VisibleObjects& visible, const cull::Cu
     world::trace_count(state_->options.trace, "objects in view", visible.set_.size());
 }
 
-void World::view(std::span<const cull::View> views, VisibleInViews& visible, cull::CullMode mode) const {
+// Each view alone where there are threads and the order does not say who comes after whom; else all in one pass.
+Result<void> World::view(std::span<const cull::View> views, VisibleInViews& visible, const cull::CullOptions& options,
+                         Executor& executor) const {
+    if (auto few = cull::check_view_count(views.size()); !few) return few;
     const world::TraceZone zone(state_->options.trace, "World::view of many");
+    const boxtree::BoxTree& tree = state_->index.tree();
+    const cull::MovingBoxes& moving = state_->index.moving();
     visible.names_ = &state_->table.names;
     visible.hides_ = false;
-    cull::find_visible(state_->index.tree(), state_->index.moving(), views, visible.set_, mode);
+    visible.lists_ = false;
+    cull::CullOptions how = options;
+    how.among = state_->among_and_changed(options.among, visible.among_);
+    const bool ascending = how.order == cull::ResultOrder::ascending;
+    if (ascending && views.size() > 1 && executor.concurrency() > 1) {
+        how.order = cull::ResultOrder::tree;  // which costs nothing
+        if (visible.alone_.size() < views.size()) visible.alone_.resize(views.size());
+        executor.parallel_for(views.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
+            for (std::size_t v = begin; v < end; ++v)
+                cull::find_visible(tree, moving, views[v], visible.alone_[v], how, serial_executor());
+        });
+        visible.start_list(state_->index.size());
+        for (std::size_t v = 0; v < views.size(); ++v) visible.add(visible.alone_[v].ids(), v);
+        visible.sort();
+        return {};
+    }
+    if (auto asked = cull::find_visible(tree, moving, views, visible.set_, how.mode, how.limits); !asked) return asked;
+    if (!ascending && how.among.empty()) return {};
+    visible.start_list(state_->index.size());
+    for (std::size_t i = 0; i < visible.set_.size(); ++i) {
+        const std::uint32_t id = visible.set_.ids()[i];
+        if (!cull::is_among(how.among, id) && state_->index.mover_entry(id) == kNoIndex) continue;
+        visible.ids_.push_back(id);
+        visible.masks_[id] = visible.set_.view_mask(i);
+    }
+    if (ascending) visible.sort();
+    return {};
 }
 
 void World::State::visit_along(const Ray& ray, std::uint32_t layers, collide::RayVisitor visit) const {

@@ -52,15 +52,14 @@ struct OcclusionStatistics {
 class VisibleObjects {
   public:
     [[nodiscard]] std::size_t size() const { return ids().size(); }
-    [[nodiscard]] std::span<const std::uint32_t> ids() const { return hides_ ? seen().ids() : set_.ids(); }  // indices
+    [[nodiscard]] std::span<const std::uint32_t> ids() const { return hides_ ? seen_ids() : set_.ids(); }  // indices
     [[nodiscard]] ObjectRef operator[](std::size_t i) const { return ref(ids()[i]); }
     // In CullOptions' tree order the first so many are inside the view, the others straddle its boundary; in ascending
     // order verdicts() says it of each.
-    [[nodiscard]] std::size_t inside_count() const { return hides_ ? seen().inside_count() : set_.inside_count(); }
-    [[nodiscard]] std::span<const cull::Verdict> verdicts() const {
-        return hides_ ? seen().verdicts() : set_.verdicts();
-    }
-    // Of the frustum's query: with occlusion that of OcclusionOptions::list_occluded, if it was asked for.
+    [[nodiscard]] std::size_t inside_count() const { return hides_ ? seen_inside_count() : set_.inside_count(); }
+    [[nodiscard]] std::span<const cull::Verdict> verdicts() const { return hides_ ? seen_verdicts() : set_.verdicts(); }
+    // Of the frustum's query: with occlusion that of OcclusionOptions::list_occluded or of tree order, if either was
+    // asked for.
     [[nodiscard]] const cull::Statistics& statistics() const { return set_.statistics(); }
     [[nodiscard]] ObjectRef ref(std::uint32_t id) const { return {{id, names_->generations[id]}, names_->users[id]}; }
 
@@ -76,7 +75,9 @@ class VisibleObjects {
 
   private:
     friend class World;
-    [[nodiscard]] const occlude::VisibleSet& seen() const;
+    [[nodiscard]] std::span<const std::uint32_t> seen_ids() const;  // not hidden
+    [[nodiscard]] std::size_t seen_inside_count() const;
+    [[nodiscard]] std::span<const cull::Verdict> seen_verdicts() const;
     cull::VisibleSet set_;
     world::OccludedViewOwner occluded_;
     ResetOnMove<bool> hides_;
@@ -88,16 +89,16 @@ class VisibleObjects {
 class VisibleInViews {
   public:
     [[nodiscard]] std::size_t size() const { return ids().size(); }
-    // With occlusion ascending.
+    // In CullOptions' order.
     [[nodiscard]] std::span<const std::uint32_t> ids() const {
-        return hides_ ? std::span<const std::uint32_t>(ids_.data(), ids_.size()) : set_.ids();
+        return lists_ ? std::span<const std::uint32_t>(ids_.data(), ids_.size()) : set_.ids();
     }
     [[nodiscard]] ObjectRef operator[](std::size_t i) const {
         const std::uint32_t id = ids()[i];
         return {{id, names_->generations[id]}, names_->users[id]};
     }
     // Bit v: view v sees it.
-    [[nodiscard]] std::uint32_t view_mask(std::size_t i) const { return hides_ ? masks_[ids_[i]] : set_.view_mask(i); }
+    [[nodiscard]] std::uint32_t view_mask(std::size_t i) const { return lists_ ? masks_[ids_[i]] : set_.view_mask(i); }
 
     // Of the last views with occlusion; without, or before them: none.
     [[nodiscard]] std::size_t occlusion_view_count() const { return hides_ ? view_count_ : 0; }
@@ -106,11 +107,18 @@ class VisibleInViews {
 
   private:
     friend class World;
+    void start_list(std::size_t objects);
+    void add(std::span<const std::uint32_t> ids, std::size_t view);
+    void sort();
     cull::ManyVisible set_;
+    Vector<cull::VisibleSet> alone_;             // of each view
     Vector<world::OccludedViewOwner> occluded_;  // at least view_count_
-    Vector<std::uint32_t> ids_, masks_;          // masks by object
+    Vector<std::uint32_t> ids_, masks_;          // masks by object: 0, but for those of ids_
+    Vector<std::uint64_t> bits_;                 // scratch: those of ids_
+    Vector<std::uint64_t> among_;                // CullOptions::among and what has changed since
     std::size_t view_count_ = 0;
     ResetOnMove<bool> hides_;
+    ResetOnMove<bool> lists_;  // the answer is in ids_ and masks_
     const world::ObjectNames* names_ = nullptr;
 };
 

@@ -25,8 +25,9 @@ inline constexpr std::uint32_t kNoIndex = ~std::uint32_t{0};
 // Indices are dense: below the largest number of things that lived at once, so that they may index the caller's own
 // arrays. An object's index is free again after the next update; those removed since the last one count as well. Nodes
 // share their indices with the objects that have a transform or no node. A handle whose thing has been removed is
-// stale: calls that take it fail with ErrorCode::stale_handle. Generations begin at 1, so {0, 0} is no one's handle,
-// and come back after 2^32 - 1 removals of one index.
+// stale: calls that take it fail with ErrorCode::stale_handle. So do calls that are given a handle of another World:
+// generations begin elsewhere in each World of the process, 1 in the first. They are never 0, so {0, 0} is no one's
+// handle. Generations come back after 2^32 - 1 removals of one index; those of n Worlds lie at least 2^32 / 3 n apart.
 template <class Tag>
 struct Handle {
     std::uint32_t index = kNoIndex;

@@ -134,22 +134,24 @@ class World {
     // For overlays and measurements: the tree of what rests. Items are the objects' indices.
     [[nodiscard]] const boxtree::BoxTree& tree() const;
 
-    // What a view sees, by the objects' boxes, exactly as the mode says. At most cull::kMaxViews views in one pass.
-    // A single view leaves out what is not in options.among, the objects' indices: baked sets (docs/pvs.md). Never left
-    // out is what has moved since it was first updated, or has an index that another object had before.
-    // Errors of the first: as validate(Camera).
+    // What a view sees, by the objects' boxes, exactly as the mode says. Every option is obeyed: the order, the limits,
+    // and options.among, the indices of objects that may be seen at all: baked sets (docs/pvs.md). An object that has
+    // moved since it was first updated, or has an index that another object had before, is never left out for `among`.
+    // Many views share one set of limits, thus one eye, and one `among`. In tree order they are walked in one pass on
+    // the calling thread; in ascending order an executor with threads takes a view each. Answers are the same for any
+    // executor. Errors: as validate(Camera); out_of_range: more than cull::kMaxViews views.
     Result<void> view(const Camera& camera, VisibleObjects& visible, const cull::CullOptions& options = {},
                       Executor& executor = serial_executor()) const;
     void view(const cull::View& view, VisibleObjects& visible, const cull::CullOptions& options = {},
               Executor& executor = serial_executor()) const;
-    void view(std::span<const cull::View> views, VisibleInViews& visible,
-              cull::CullMode mode = cull::CullMode::exact) const;
+    Result<void> view(std::span<const cull::View> views, VisibleInViews& visible, const cull::CullOptions& options = {},
+                      Executor& executor = serial_executor()) const;
 
-    // The same, and what other objects hide is left out: never what is seen (docs/occlude.md). Ascending, whatever
-    // options.order says. An object hides with its mesh's occluders where the view draws it: shown, in a layer of the
-    // view, within options.limits. Any number of calls at once, each with its own `visible`. The same bits for any
-    // executor. Nothing is allocated once `visible` has held as many. Errors: a camera that is not valid; a buffer's
-    // size out of its range. Not more than cull::kMaxViews views.
+    // The same, and what other objects hide is left out: never what is seen (docs/occlude.md). Tree order costs a query
+    // without occlusion on top. An object hides with its mesh's occluders where the view draws it: shown, in a layer of
+    // the view, within options.limits. Any number of calls at once, each with its own `visible`. The same bits for any
+    // executor. Nothing is allocated once `visible` has held as many. Errors: as above; a buffer's size out of its
+    // range.
     Result<void> view(const Camera& camera, const OcclusionOptions& occlusion, VisibleObjects& visible,
                       const cull::CullOptions& options = {}, Executor& executor = serial_executor()) const;
     Result<void> view(const OccludingView& view, const OcclusionOptions& occlusion, VisibleObjects& visible,
@@ -157,9 +159,10 @@ class World {
     Result<void> view(std::span<const OccludingView> views, const OcclusionOptions& occlusion, VisibleInViews& visible,
                       const cull::CullOptions& options = {}, Executor& executor = serial_executor()) const;
     // Of a view with occlusion, before the next update: which occluders hide an object (none where it is not hidden).
-    // Also which were drawn, those worth most first. The first draws all of them again, and allocates.
+    // Also which were drawn, those worth most first. The first draws all of them again, and allocates. Errors of both:
+    // invalid_argument where `visible` is of another World.
     Result<void> hidden_by(ObjectHandle object, const VisibleObjects& visible, Vector<OccluderRef>& occluders) const;
-    void drawn_occluders(const VisibleObjects& visible, Vector<OccluderRef>& occluders) const;
+    Result<void> drawn_occluders(const VisibleObjects& visible, Vector<OccluderRef>& occluders) const;
 
     // Triangles of meshes, balls and boxes, whichever an object has. Objects removed since the last update are in none
     // of the answers.
