@@ -25,7 +25,8 @@ To same_bytes(const From& from) {
 struct BothWorlds {
     World world{{.mesh_depth = true}};
     WorldHandle c;
-    std::vector<crofton_object> objects;  // their handles are the same in both
+    std::vector<crofton_object> objects;  // of the one in C
+    std::uint32_t lead = 0;               // of generations in the other: they begin elsewhere in each World
     std::vector<bool> has_mesh;
     std::vector<crofton_node> nodes;
     ThreadPool pool{3};
@@ -42,8 +43,13 @@ struct BothWorlds {
                 count, grain, [&](std::size_t begin, std::size_t end, unsigned w) { task(data, begin, end, w); });
         };
     }
-    [[nodiscard]] ObjectHandle object(std::size_t i) const { return same_bytes<ObjectHandle>(objects[i]); }
-    [[nodiscard]] NodeHandle node(std::size_t i) const { return same_bytes<NodeHandle>(nodes[i]); }
+    [[nodiscard]] ObjectHandle object(std::size_t i) const { return twin<ObjectHandle>(objects[i]); }
+    [[nodiscard]] NodeHandle node(std::size_t i) const { return twin<NodeHandle>(nodes[i]); }
+    // What a handle of the World in C is in the other.
+    template <class Handle, class Given>
+    [[nodiscard]] Handle twin(const Given& given) const {
+        return {given.index, given.generation + lead};
+    }
 };
 
 inline Transform random_transform(oracle::NearMisses& random) {
@@ -83,8 +89,9 @@ inline std::array<crofton_world_mesh, 2> add_meshes(BothWorlds& both) {
     const auto first = both.world.add_mesh(
         {.positions = {&vertices[0].position.x, vertices.size(), sizeof(Vertex)}, .indices = indices});
     const auto second = both.world.add_mesh({.positions = corners});
-    REQUIRE(first.value() == same_bytes<MeshHandle>(meshes[0]));
-    REQUIRE(second.value() == same_bytes<MeshHandle>(meshes[1]));
+    both.lead = first.value().generation - meshes[0].generation;
+    REQUIRE(first.value() == both.twin<MeshHandle>(meshes[0]));
+    REQUIRE(second.value() == both.twin<MeshHandle>(meshes[1]));
     return meshes;
 }
 
@@ -100,7 +107,7 @@ inline void add_nodes(BothWorlds& both, oracle::NearMisses& random, std::size_t 
         const auto transform = same_bytes<crofton_transform>(description.transform);
         crofton_node node{};
         REQUIRE(crofton_world_add_node(both.c.get(), parent, &transform, description.layers, &node) == CROFTON_OK);
-        REQUIRE(both.world.add_node(description).value() == same_bytes<NodeHandle>(node));
+        REQUIRE(both.world.add_node(description).value() == both.twin<NodeHandle>(node));
         both.nodes.push_back(node);
     }
 }
@@ -129,7 +136,7 @@ inline void add_object(BothWorlds& both, oracle::NearMisses& random, const std::
     if (has_mesh) {
         c.has_mesh = 1;
         c.mesh = meshes[random.index(2)];
-        description.mesh = same_bytes<MeshHandle>(c.mesh);
+        description.mesh = both.twin<MeshHandle>(c.mesh);
         if (random.index(2)) {
             const std::size_t node = random.index(static_cast<unsigned>(both.nodes.size()));
             c.has_node = 1;
@@ -150,7 +157,7 @@ inline void add_object(BothWorlds& both, oracle::NearMisses& random, const std::
     c.ignored_layers = ~description.collides_with;
     crofton_object object{};
     REQUIRE(crofton_world_add(both.c.get(), &c, &object) == CROFTON_OK);
-    REQUIRE(both.world.add(description).value() == same_bytes<ObjectHandle>(object));
+    REQUIRE(both.world.add(description).value() == both.twin<ObjectHandle>(object));
     both.objects.push_back(object);
     both.has_mesh.push_back(has_mesh);
 }

@@ -13,14 +13,14 @@ using oracle::NearMisses;
 
 namespace {
 
-bool same_ref(const crofton_object_ref& a, const ObjectRef& b) {
-    return a.object.index == b.object.index && a.object.generation == b.object.generation && a.user == b.user;
+bool same_ref(const BothWorlds& both, const crofton_object_ref& a, const ObjectRef& b) {
+    return both.twin<ObjectHandle>(a.object) == b.object && a.user == b.user;
 }
 bool same_vector(const double* a, const glm::dvec3& b) {
     return a[0] == b.x && a[1] == b.y && a[2] == b.z;
 }
-bool same_hit(const crofton_object_hit& a, const ObjectHit& b) {
-    return same_ref({a.object, a.user}, {b.object, b.user}) && a.t == b.t && same_vector(a.point, b.point) &&
+bool same_hit(const BothWorlds& both, const crofton_object_hit& a, const ObjectHit& b) {
+    return same_ref(both, {a.object, a.user}, {b.object, b.user}) && a.t == b.t && same_vector(a.point, b.point) &&
            a.triangle == b.triangle;
 }
 
@@ -51,8 +51,8 @@ std::size_t compare_contacts(const BothWorlds& both) {
     REQUIRE(crofton_world_pairs(both.c.get(), &pairs, &count) == CROFTON_OK);
     REQUIRE(count == both.world.pairs().size());
     for (std::size_t i = 0; i < count; ++i) {
-        CHECK(same_ref(pairs[i].first, both.world.pairs()[i].first));
-        CHECK(same_ref(pairs[i].second, both.world.pairs()[i].second));
+        CHECK(same_ref(both, pairs[i].first, both.world.pairs()[i].first));
+        CHECK(same_ref(both, pairs[i].second, both.world.pairs()[i].second));
     }
     REQUIRE(crofton_world_contact_count(both.c.get(), &count) == CROFTON_OK);
     REQUIRE(count == both.world.contacts().size());
@@ -60,8 +60,8 @@ std::size_t compare_contacts(const BothWorlds& both) {
         const Contact& expected = both.world.contacts()[i];
         auto contact = sized<crofton_object_contact>();
         REQUIRE(crofton_world_contact(both.c.get(), i, &contact) == CROFTON_OK);
-        CHECK(same_ref(contact.first, expected.first));
-        CHECK(same_ref(contact.second, expected.second));
+        CHECK(same_ref(both, contact.first, expected.first));
+        CHECK(same_ref(both, contact.second, expected.second));
         CHECK(contact.phase == static_cast<std::uint32_t>(expected.phase));
         CHECK(contact.inside == static_cast<std::uint32_t>(expected.inside));
         CHECK(same_vector(contact.normal, expected.normal));
@@ -97,7 +97,7 @@ void compare_visible(const BothWorlds& both, const crofton_visible_objects* c, c
     REQUIRE(crofton_visible_objects_list(c, both.c.get(), half, refs.data() + half, count) == CROFTON_OK);
     for (std::size_t i = 0; i < count; ++i) {
         CHECK(ids[i] == expected.ids()[i]);
-        CHECK(same_ref(refs[i], expected[i]));
+        CHECK(same_ref(both, refs[i], expected[i]));
         if (verdicts) CHECK(verdicts[i] == static_cast<std::uint8_t>(expected.verdicts()[i]));
     }
     auto statistics = sized<crofton_cull_statistics>();
@@ -154,7 +154,7 @@ std::size_t compare_views(const BothWorlds& both, NearMisses& random) {
             CROFTON_OK);
     for (std::size_t i = 0; i < count; ++i) {
         CHECK(ids[i] == expected.ids()[i]);
-        CHECK(same_ref(refs[i], expected[i]));
+        CHECK(same_ref(both, refs[i], expected[i]));
         CHECK(masks[i] == expected.view_mask(i));
     }
     return total;
@@ -178,7 +178,7 @@ std::size_t compare_rays(const BothWorlds& both, NearMisses& random) {
     for (std::size_t i = 0; i < rays.size(); ++i) {
         const auto nearest = both.world.raycast(rays[i], layers);
         CHECK((hits[i].object.index != CROFTON_NONE) == nearest.has_value());
-        CHECK((nearest ? same_hit(hits[i], *nearest) : std::isinf(hits[i].t)));
+        CHECK((nearest ? same_hit(both, hits[i], *nearest) : std::isinf(hits[i].t)));
         int any = 7;
         REQUIRE(crofton_world_raycast_any(both.c.get(), &c_rays[i], layers, &any) == CROFTON_OK);
         CHECK(any == (nearest ? 1 : 0));
@@ -188,27 +188,28 @@ std::size_t compare_rays(const BothWorlds& both, NearMisses& random) {
         std::size_t count = 0;
         REQUIRE(crofton_found_hits(found.get(), &all, &count) == CROFTON_OK);
         REQUIRE(count == expected.size());
-        for (std::size_t k = 0; k < count; ++k) CHECK(same_hit(all[k], expected[k]));
+        for (std::size_t k = 0; k < count; ++k) CHECK(same_hit(both, all[k], expected[k]));
         total += count;
     }
     return total;
 }
 
-void compare_found(const Found& found, const Vector<ObjectRef>& expected) {
+void compare_found(const BothWorlds& both, const Found& found, const Vector<ObjectRef>& expected) {
     const crofton_object_ref* objects = nullptr;
     const crofton_object_hit* hits = nullptr;
     std::size_t count = 0;
     REQUIRE(crofton_found_objects(found.get(), &objects, &count) == CROFTON_OK);
     REQUIRE(count == expected.size());
-    for (std::size_t i = 0; i < count; ++i) CHECK(same_ref(objects[i], expected[i]));
+    for (std::size_t i = 0; i < count; ++i) CHECK(same_ref(both, objects[i], expected[i]));
     REQUIRE(crofton_found_hits(found.get(), &hits, &count) == CROFTON_OK);
     CHECK(count == 0);
 }
 
-void compare_closest(const crofton_closest_object& c, const std::optional<ClosestObject>& expected) {
+void compare_closest(const BothWorlds& both, const crofton_closest_object& c,
+                     const std::optional<ClosestObject>& expected) {
     CHECK((c.object.index != CROFTON_NONE) == expected.has_value());
     if (!expected) return;
-    CHECK(same_ref({c.object, c.user}, {expected->object, expected->user}));
+    CHECK(same_ref(both, {c.object, c.user}, {expected->object, expected->user}));
     CHECK(c.distance == expected->distance);
     CHECK(same_vector(c.on_shape, expected->on_shape));
     CHECK(same_vector(c.on_object, expected->on_object));
@@ -227,21 +228,21 @@ void compare_shapes(const BothWorlds& both, NearMisses& random) {
     auto closest = sized<crofton_closest_object>();
     REQUIRE(crofton_world_overlap_box(c, &c_box, layers, found.get()) == CROFTON_OK);
     both.world.overlap(box, expected, layers);
-    compare_found(found, expected);
+    compare_found(both, found, expected);
     REQUIRE(crofton_world_overlap_ball(c, &ball.center.x, ball.radius, layers, found.get()) == CROFTON_OK);
     both.world.overlap(ball, expected, layers);
-    compare_found(found, expected);
+    compare_found(both, found, expected);
     REQUIRE(crofton_world_overlap_capsule(c, &capsule.begin.x, &capsule.end.x, capsule.radius, layers, found.get()) ==
             CROFTON_OK);
     both.world.overlap(capsule, expected, layers);
-    compare_found(found, expected);
+    compare_found(both, found, expected);
     REQUIRE(crofton_world_closest_to_box(c, &c_box, limit, layers, &closest) == CROFTON_OK);
-    compare_closest(closest, both.world.closest(box, limit, layers));
+    compare_closest(both, closest, both.world.closest(box, limit, layers));
     REQUIRE(crofton_world_closest_to_ball(c, &ball.center.x, ball.radius, limit, layers, &closest) == CROFTON_OK);
-    compare_closest(closest, both.world.closest(ball, limit, layers));
+    compare_closest(both, closest, both.world.closest(ball, limit, layers));
     REQUIRE(crofton_world_closest_to_capsule(c, &capsule.begin.x, &capsule.end.x, capsule.radius, limit, layers,
                                              &closest) == CROFTON_OK);
-    compare_closest(closest, both.world.closest(capsule, limit, layers));
+    compare_closest(both, closest, both.world.closest(capsule, limit, layers));
 }
 
 void compare_statistics(const BothWorlds& both) {

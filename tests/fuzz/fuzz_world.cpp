@@ -33,7 +33,7 @@ void check_views(fuzz::Shapes& in, const World& world, const oracle::Model& mode
     VisibleObjects visible;
     for (cull::View& view : views) {
         view = {in.frustum(), in.layers()};
-        demand(world.view(request_of(view), visible).has_value());
+        demand(world.view(request_of(view), visible).has_value(), "a view is answered");
         // A ball is seen by the box around it.
         demand(Ids(visible.ids().begin(), visible.ids().end()) == model.visible(view), "what a world's view sees");
         for (std::size_t i = 0; i < visible.size(); ++i) {
@@ -42,7 +42,7 @@ void check_views(fuzz::Shapes& in, const World& world, const oracle::Model& mode
         }
     }
     VisibleInViews in_views;
-    demand(world.view(requests_of(views), in_views).has_value());
+    demand(world.view(requests_of(views), in_views).has_value(), "three views fit one pass");
     for (std::size_t v = 0; v < views.size(); ++v) {
         Ids seen;
         for (std::size_t i = 0; i < in_views.size(); ++i)

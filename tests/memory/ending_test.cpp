@@ -248,7 +248,7 @@ TEST_SUITE("memory/ending") {
             (void)world.view(
                 {.camera = Camera{}, .occlusion = OcclusionOptions{.size = {32, 32}, .list_occluded = true}}, visible);
             Vector<OccluderRef> occluders;
-            world.drawn_occluders(visible, occluders);
+            REQUIRE(world.drawn_occluders(visible, occluders).has_value());
             (void)world.hidden_by(lived.objects[0], visible, occluders);
         });
         sweep_ending("queries", [&] {

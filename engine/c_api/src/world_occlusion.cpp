@@ -59,12 +59,11 @@ crofton_status to_asked(const crofton_draw_limits* limits, const crofton_occlusi
     return read_limits(limits, function, asked.cull);
 }
 
-// With occlusion the order is ascending, whatever the options say.
 void add_options(const Asked& asked, ViewRequest& request) {
     request.occlusion = asked.occlusion;
     request.limits = asked.cull.options.limits;
     request.among = asked.cull.options.among;
-    request.order = asked.occlusion ? cull::ResultOrder::ascending : asked.cull.options.order;
+    request.order = asked.cull.options.order;
     request.mode = asked.cull.options.mode;
 }
 
@@ -157,7 +156,6 @@ crofton_status crofton_world_views_occluding(const crofton_world* world, const c
     CROFTON_CHECK(to_asked(limits, occlusion, options, jobs, __func__, asked));
     for (std::size_t v = 0; v < count; ++v) {
         add_options(asked, requests[v]);
-        requests[v].among = {};  // of one eye
     }
     HostJobs executor(jobs);
     CROFTON_CHECK(status_of(
@@ -229,7 +227,7 @@ crofton_status crofton_world_drawn_occluders(const crofton_world* world, const c
     if (use.failed()) return use.status();
     CROFTON_CHECK(check_asked_of(*world, *visible, occluders, capacity, count, __func__));
     Vector<OccluderRef> found;
-    world->world.drawn_occluders(visible->visible, found);
+    CROFTON_CHECK(status_of(world->world.drawn_occluders(visible->visible, found), __func__));
     write_occluders(found, occluders, capacity, count);
     return CROFTON_OK;
 }

@@ -131,7 +131,7 @@ crofton_status crofton_world_views(const crofton_world* world, const crofton_vie
     CROFTON_CHECK(read_options(options, __func__, asked));
     std::array<ViewRequest, cull::kMaxViews> requests;
     for (std::size_t i = 0; i < count; ++i) {
-        requests[i].mode = asked.options.mode;
+        requests[i] = to_request(asked);
         copy_frustum(views[i].frustum, requests[i].volume.emplace());
         requests[i].layers = views[i].layer_mask;
     }

@@ -97,6 +97,78 @@ TEST_SUITE("cull/many_views") {
         }
     }
 
+    TEST_CASE("33 views are refused by each query of one pass, which leaves its answer as it was") {
+        const oracle::Crowd crowd = oracle::random_crowd(300, 0.0, 6);
+        const auto tree = boxtree::BoxTree::build(crowd.boxes);
+        REQUIRE(tree.has_value());
+        cull::BoxSet set;
+        set.assign(crowd.boxes);
+        const std::vector<cull::View> views(33, cull::View{*frustum_of(Camera{})});
+        const auto fit = std::span(views).first(32);
+        std::vector<std::uint32_t> masks(crowd.boxes.size(), 7);
+        cull::ManyVisible visible;
+        const cull::MovingBoxes moving;
+        REQUIRE(cull::find_visible(*tree, fit, visible).has_value());
+        const std::size_t seen = visible.size();
+        for (const Result<void>& asked :
+             {cull::find_visible(*tree, views, visible), cull::find_visible(*tree, moving, views, visible),
+              cull::find_visible(set, crowd.boxes, {}, views, masks)}) {
+            const Error error = error_of(asked);
+            CHECK(error.code == ErrorCode::out_of_range);
+            CHECK(error.item == 32);
+            CHECK(error.message.find("33 views") != std::string::npos);
+        }
+        CHECK(visible.size() == seen);
+        CHECK(masks == std::vector<std::uint32_t>(masks.size(), 7));
+        REQUIRE(cull::find_visible(set, crowd.boxes, {}, fit, masks).has_value());
+        CHECK(std::count(masks.begin(), masks.end(), ~0u) == std::ptrdiff_t(seen));
+    }
+
+    TEST_CASE("a list of any length is shared among threads, with the same answer, order and statistics") {
+        const oracle::Crowd crowd = oracle::random_crowd(70000, 0.0, 8);
+        struct Counting : Executor {
+            std::size_t calls = 0;
+            [[nodiscard]] unsigned concurrency() const override { return 8; }
+            void parallel_for(std::size_t count, std::size_t grain, RangeTask body) override {
+                ++calls;  // backwards, as no thread is sure to be first
+                for (std::size_t left = (count + grain - 1) / grain; left-- > 0;)
+                    body(left * grain, std::min(count, (left + 1) * grain), 0);
+            }
+        };
+        oracle::NearMisses random(5, 0.0);
+        ThreadPool two(2), seven(7);
+        cull::VisibleSet serial, threaded;
+        for (const std::size_t size : {0u, 1u, 4095u, 16383u, 16384u, 16385u, 40001u, 70000u})
+            for (unsigned choice = 0; choice < 8; ++choice) {
+                const auto boxes = std::span(crowd.boxes).first(size);
+                const auto layers = std::span(crowd.layers).first(choice & 1u ? size : 0);
+                cull::View view{*frustum_of(random.camera()), 0x55u};
+                if (choice == 7) view.frustum.planes[1].offset = std::nan("");
+                cull::DrawLimits limits;
+                limits.eye = view.frustum.origin;
+                limits.radii = 30.0;
+                const std::vector<std::uint64_t> among(300, 0x0ff0f0f0ff0f0f0fu);
+                cull::CullOptions how{.mode = choice & 2u ? cull::CullMode::conservative : cull::CullMode::exact,
+                                      .order = choice & 4u ? cull::ResultOrder::tree : cull::ResultOrder::ascending};
+                if (choice % 3 == 1) how.limits = &limits;
+                if (choice % 3 == 2) how.among = among;
+                cull::find_visible(boxes, layers, view, serial, how);
+                Counting counting;
+                for (Executor* executor : {static_cast<Executor*>(&two), static_cast<Executor*>(&seven),
+                                           static_cast<Executor*>(&counting)}) {
+                    cull::find_visible(boxes, layers, view, threaded, how, *executor);
+                    CHECK(test::ranges::equal(serial.ids(), threaded.ids()));
+                    CHECK(test::ranges::equal(serial.verdicts(), threaded.verdicts()));
+                    CHECK(serial.inside_count() == threaded.inside_count());
+                    CHECK(serial.statistics().boxes_tested == threaded.statistics().boxes_tested);
+                    CHECK(serial.statistics().straddling == threaded.statistics().straddling);
+                    CHECK(serial.statistics().exact_tests == threaded.statistics().exact_tests);
+                    CHECK(serial.statistics().improper == threaded.statistics().improper);
+                }
+                CHECK((counting.calls > 0) == (size >= 16384));
+            }
+    }
+
     TEST_CASE("a list for each view is what the view sees alone, with more threads than views and with fewer") {
         const oracle::Crowd crowd = oracle::random_crowd(3000, 0.0, 5);
         const auto tree = boxtree::BoxTree::build(crowd.boxes, crowd.layers);

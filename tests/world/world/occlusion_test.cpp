@@ -57,7 +57,7 @@ TEST_SUITE("world/occlusion") {
         CHECK(occluders[0].place == 0);
         REQUIRE(s.world.hidden_by(s.beside, s.visible, occluders).has_value());
         CHECK(occluders.empty());
-        s.world.drawn_occluders(s.visible, occluders);
+        REQUIRE(s.world.drawn_occluders(s.visible, occluders).has_value());
         CHECK(occluders.size() == 1);
         // Of each index its verdict, whichever list it is in.
         REQUIRE(s.visible.verdicts().size() == s.visible.size());

@@ -26,10 +26,10 @@ void find_visible(const boxtree::BoxTree& tree, std::span<const View> views, std
 }
 
 void find_visible(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks, const View& view,
-                  VisibleSet& visible, const CullOptions& options, Executor&) {
+                  VisibleSet& visible, const CullOptions& options, Executor& executor) {
     CROFTON_ASSERT(layer_masks.empty() || layer_masks.size() == boxes.size(),
                    "cull needs one layer mask per box, or none");
-    Query(view, visible, options).run(boxes, layer_masks);
+    Query(view, visible, options).run(boxes, layer_masks, executor);
 }
 
 }  // namespace crofton::cull

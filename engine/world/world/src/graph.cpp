@@ -36,13 +36,11 @@ glm::vec3 PointsView::operator[](std::size_t i) const {
 }
 
 Result<void> World::State::check(NodeHandle node, std::uint64_t item) const {
-    if (nodes.contains(node)) return {};
-    return fail(ErrorCode::stale_handle, item, "world: the node has been removed, or never was in this world");
+    return nodes.check("node", node, item);
 }
 
 Result<void> World::State::check(MeshHandle mesh, std::uint64_t item) const {
-    if (meshes.contains(mesh)) return {};
-    return fail(ErrorCode::stale_handle, item, "world: the mesh has been removed, or never was in this world");
+    return meshes.check("mesh", mesh, item);
 }
 
 Result<MeshHandle> World::add_mesh(const MeshDescription& description) {

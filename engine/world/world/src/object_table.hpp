@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 // What a World knows of its objects beside their boxes. Indices are the spatial index's.
 #pragma once
+#include <crofton/core/error.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/world/answers.hpp>
 #include <crofton/world/inputs.hpp>
+#include <span>
 
 namespace crofton::world {
 
@@ -29,23 +31,33 @@ void resize(Vector<T>& items, std::size_t size, const T& value = T()) {
     items.resize(size, value);
 }
 
-// A handle that is all 0 names nothing: in C that is one that was never set.
-inline constexpr std::uint32_t kFirstGeneration = 1;
+// Where the generations of one more World begin. Each World of the process begins elsewhere, far from all others, so
+// that a handle of another World is no one's here. The first begins at 1.
+[[nodiscard]] std::uint32_t next_first_generation();
 
-// Makes the handles of this generation stale.
+// Makes the handles of this generation stale. A handle that is all 0 names nothing: in C that is one that was never
+// set.
 inline void renew(std::uint32_t& generation) {
-    if (++generation == 0) generation = kFirstGeneration;
+    if (++generation == 0) ++generation;
 }
 
+// The error of a handle that is not alive. `thing` is what it should name; `generations` are those of this World's
+// things, which began at `first`.
+[[nodiscard]] Result<void> refuse(const char* thing, std::uint32_t index, std::uint32_t generation,
+                                  std::span<const std::uint32_t> generations, std::uint32_t first, std::uint64_t item);
+
 struct ObjectTable {
+    explicit ObjectTable(std::uint32_t first) : first_generation(first) {}
+
     Vector<Object> objects;
     ObjectNames names;
+    std::uint32_t first_generation;
     std::size_t count = 0;  // alive
 
     void add(std::uint32_t index, const Object& object, std::uint64_t user) {
         if (index >= objects.size()) {
             resize(objects, index + std::size_t{1});
-            resize(names.generations, index + std::size_t{1}, kFirstGeneration);
+            resize(names.generations, index + std::size_t{1}, first_generation);
             resize(names.users, index + std::size_t{1});
         }
         objects[index] = object;

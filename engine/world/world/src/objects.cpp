@@ -32,12 +32,8 @@ Bound::Bound(const Sphere& ball) : kind(BoundKind::ball), radius(ball.radius) {
 
 Result<void> World::State::check(ObjectHandle object, std::uint64_t item) const {
     if (table.contains(object)) return {};
-    if (object.index >= table.objects.size())
-        return fail(ErrorCode::stale_handle, item, "world: the handle names no object of this world");
-    if (object.generation < world::kFirstGeneration)
-        return fail(ErrorCode::stale_handle, item, "world: the object's handle was never set");
-    return fail(ErrorCode::stale_handle, item,
-                {"world: object ", object.index, " of generation ", object.generation, " has been removed"});
+    return world::refuse("object", object.index, object.generation, table.names.generations, table.first_generation,
+                         item);
 }
 
 StagedChange& World::State::stage(std::uint32_t object) {
@@ -134,10 +130,9 @@ Result<void> World::set_transform(ObjectHandle object, const Transform& transfor
 }
 
 Result<void> World::set_transforms(Strided<ObjectHandle> objects, Strided<Transform> transforms) {
-    return for_each_pair(objects, transforms,
-                         [&](ObjectHandle object, const Transform& transform, std::size_t i) {
-                             return state_->set_transform(object, transform, i);
-                         });
+    return for_each_pair(objects, transforms, [&](ObjectHandle object, const Transform& transform, std::size_t i) {
+        return state_->set_transform(object, transform, i);
+    });
 }
 
 Result<void> World::State::set_bound(ObjectHandle object, const Bound& bound, std::uint64_t item) {

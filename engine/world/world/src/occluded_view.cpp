@@ -2,7 +2,9 @@
 #include "occluded_view.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <crofton/core/error.hpp>
+#include <crofton/cull/cull.hpp>
 
 namespace crofton {
 
@@ -24,12 +26,16 @@ Result<void> OccludedView::resize(const occlude::BufferSize& size) {
     return {};
 }
 
-void OccludedView::list_occluded(std::span<const std::uint32_t> in_frustum) {
-    occluded.resize(in_frustum.size());
-    const auto seen = visible.ids();
-    const auto end =
-        std::set_difference(in_frustum.begin(), in_frustum.end(), seen.begin(), seen.end(), occluded.begin());
-    occluded.resize(static_cast<std::size_t>(end - occluded.begin()));
+void OccludedView::split(const cull::VisibleSet& in_frustum, std::size_t count) {
+    cull::to_bits(visible.ids(), count, bits);
+    in_order.clear();
+    for (std::size_t i = 0; i < in_frustum.size(); ++i) {
+        if (i == in_frustum.inside_count()) inside_in_order = in_order.size();
+        const std::uint32_t id = in_frustum.ids()[i];
+        (bits[id / 64] >> (id % 64) & 1 ? in_order : occluded).push_back(id);
+    }
+    if (in_frustum.inside_count() == in_frustum.size()) inside_in_order = in_order.size();
+    std::sort(occluded.begin(), occluded.end());
 }
 
 OcclusionStatistics OccludedView::statistics() const {
@@ -38,8 +44,16 @@ OcclusionStatistics OccludedView::statistics() const {
 
 }  // namespace world
 
-const occlude::VisibleSet& VisibleObjects::seen() const {
-    return occluded_->visible;
+std::span<const std::uint32_t> VisibleObjects::seen_ids() const {
+    return occluded_->by_tree ? std::span<const std::uint32_t>(occluded_->in_order) : occluded_->visible.ids();
+}
+
+std::size_t VisibleObjects::seen_inside_count() const {
+    return occluded_->by_tree ? occluded_->inside_in_order : occluded_->visible.inside_count();
+}
+
+std::span<const cull::Verdict> VisibleObjects::seen_verdicts() const {
+    return occluded_->by_tree ? std::span<const cull::Verdict>() : occluded_->visible.verdicts();
 }
 
 std::span<const std::uint32_t> VisibleObjects::occluded_ids() const {
@@ -47,10 +61,12 @@ std::span<const std::uint32_t> VisibleObjects::occluded_ids() const {
 }
 
 occlude::Verdict VisibleObjects::verdict_of(std::uint32_t index) const {
-    const auto seen_ids = ids(), hidden = occluded_ids();
-    const auto at = std::lower_bound(seen_ids.begin(), seen_ids.end(), index);
-    if (at != seen_ids.end() && *at == index)
-        return static_cast<occlude::Verdict>(verdicts()[static_cast<std::size_t>(at - seen_ids.begin())]);
+    const auto ascending = hides_ ? occluded_->visible.ids() : ids(), hidden = occluded_ids();
+    const auto at = std::lower_bound(ascending.begin(), ascending.end(), index);
+    if (at != ascending.end() && *at == index) {
+        const auto seen = hides_ ? occluded_->visible.verdicts() : verdicts();
+        return static_cast<occlude::Verdict>(seen[static_cast<std::size_t>(at - ascending.begin())]);
+    }
     return std::binary_search(hidden.begin(), hidden.end(), index) ? occlude::Verdict::occluded
                                                                    : occlude::Verdict::outside;
 }

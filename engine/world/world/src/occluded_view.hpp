@@ -13,11 +13,16 @@ struct OccludedView {
     occlude::OccluderChoice choice;
     occlude::VisibleSet visible;
     Vector<std::uint32_t> occluded;
+    Vector<std::uint32_t> in_order;  // those that are visible, in the tree's order
+    std::size_t inside_in_order = 0;
+    bool by_tree = false;        // asked for in the tree's order
+    Vector<std::uint64_t> bits;  // scratch
 
     // A buffer of this size, new where it was another. Errors: as OcclusionBuffer::create.
     [[nodiscard]] Result<void> resize(const occlude::BufferSize& size);
-    // Those of `in_frustum`, ascending, that are not visible.
-    void list_occluded(std::span<const std::uint32_t> in_frustum);
+    // Tells those of the frustum's query that are visible, in their order there, from those that are not, ascending.
+    // Objects are below `count`.
+    void split(const cull::VisibleSet& in_frustum, std::size_t count);
     [[nodiscard]] OcclusionStatistics statistics() const;
 };
 

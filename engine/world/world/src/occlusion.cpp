@@ -56,10 +56,17 @@ void World::State::update_occluders() {
     }
 }
 
+Result<void> World::State::check_viewed(const world::ObjectNames* viewed) const {
+    if (!viewed || viewed == &table.names) return {};
+    return fail(ErrorCode::invalid_argument, kNoItem,
+                "world: the visible objects are of a view of another World: ask the one that was viewed");
+}
+
 Result<void> World::hidden_by(ObjectHandle object, const VisibleObjects& visible,
                               Vector<OccluderRef>& occluders) const {
     occluders.clear();
     if (auto known = state_->check(object, object.index); !known) return known;
+    if (auto own = state_->check_viewed(visible.names_); !own) return own;
     if (!visible.hides_ || !state_->index.has_box(object.index)) return {};
     Vector<occlude::OccluderId> ids;
     visible.occluded_->buffer->hidden_by(state_->index.box(object.index), ids);
@@ -70,13 +77,15 @@ Result<void> World::hidden_by(ObjectHandle object, const VisibleObjects& visible
     return {};
 }
 
-void World::drawn_occluders(const VisibleObjects& visible, Vector<OccluderRef>& occluders) const {
+Result<void> World::drawn_occluders(const VisibleObjects& visible, Vector<OccluderRef>& occluders) const {
     occluders.clear();
-    if (!visible.hides_) return;
+    if (auto own = state_->check_viewed(visible.names_); !own) return own;
+    if (!visible.hides_) return {};
     for (const occlude::OccluderId id : visible.occluded_->choice.ids) {
         const ObjectRef ref = state_->table.ref(state_->occluders.object_of(id));
         occluders.push_back({ref.object, ref.user, state_->occluders.place_of(id)});
     }
+    return {};
 }
 
 }  // namespace crofton

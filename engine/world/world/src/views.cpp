@@ -33,8 +33,6 @@ Result<void> check(const ViewRequest& request, std::uint64_t item) {
         return {};
     }
     if (!has_eye) return refuse("view: occlusion needs a `camera` or a `matrix`, because a volume has no eye");
-    if (request.order == cull::ResultOrder::tree)
-        return refuse("view: with occlusion objects come in ascending order; ask for that order");
     return {};
 }
 
@@ -133,57 +131,84 @@ Result<void> World::view(const ViewRequest& request, VisibleObjects& visible, Ex
         return {};
     }
     if (!visible.occluded_) visible.occluded_ = world::make_occluded_view();
-    if (auto sized = visible.occluded_->resize(request.occlusion->size); !sized) return sized;
-    state_->draw_and_ask(eye->occluding, *request.occlusion, request.layers, how, executor, *visible.occluded_);
+    world::OccludedView& result = *visible.occluded_;
+    if (auto sized = result.resize(request.occlusion->size); !sized) return sized;
+    state_->draw_and_ask(eye->occluding, *request.occlusion, request.layers, how, executor, result);
     visible.names_ = &state_->table.names;
     visible.hides_ = true;
-    visible.occluded_->occluded.clear();
-    if (!request.occlusion->list_occluded) return {};
+    result.occluded.clear();
+    result.by_tree = request.order == cull::ResultOrder::tree;
+    if (!request.occlusion->list_occluded && !result.by_tree) return {};
     cull::find_visible(state_->index.tree(), state_->index.moving(), eye->plain, visible.set_, how, executor);
-    visible.occluded_->list_occluded(visible.set_.ids());
+    result.split(visible.set_, state_->index.size());
+    if (!request.occlusion->list_occluded) result.occluded.clear();
     return {};
 }
 
 Result<void> World::view(std::span<const ViewRequest> requests, VisibleInViews& visible, Executor& executor) const {
-    if (requests.size() > cull::kMaxViews)
-        return fail(ErrorCode::out_of_range, requests.size(), "view: more than 32 views in one call");
-    std::array<cull::View, cull::kMaxViews> plain;
+    if (auto few = cull::check_view_count(requests.size()); !few) return few;
+    std::array<cull::View, cull::kMaxViews> volumes;
     for (std::size_t v = 0; v < requests.size(); ++v) {
         const auto eye = eye_of(requests[v], v);
         if (!eye) return tl::unexpected(eye.error());
-        plain[v] = eye->plain;
+        volumes[v] = eye->plain;
         if (requests[v].order != requests[0].order)
-            return fail(ErrorCode::invalid_argument, v, "view: views of one call are listed in one order");
+            return fail(ErrorCode::invalid_argument, v, "view: the views of one call are listed in one order");
     }
-    const bool one_walk = fit_one_walk(requests);
+    const std::span<const cull::View> views = std::span(volumes).first(requests.size());
     const bool ascending = requests.empty() || requests[0].order == cull::ResultOrder::ascending;
-    if (!one_walk && !ascending)
-        return fail(ErrorCode::invalid_argument, kNoItem,
-                    "view: tree order needs views without candidates, with equal limits and mode; ask for ascending");
+    const bool shared_out = ascending && requests.size() > 1 && executor.concurrency() > 1;
+    const bool one_walk = fit_one_walk(requests) && !shared_out;
     visible.forget_ids();
+    const std::size_t objects = state_->index.size();
+    if (visible.masks_.size() < objects) visible.masks_.resize(objects, 0);
+    visible.bits_.assign((objects + 63) / 64, 0);
     if (one_walk) {
         const world::TraceZone zone(state_->options.trace, "World::view of many");
-        const cull::CullMode mode = requests.empty() ? cull::CullMode::exact : requests[0].mode;
-        const cull::DrawLimits* limits = requests.empty() ? nullptr : requests[0].limits;
-        cull::find_visible(state_->index.tree(), state_->index.moving(),
-                           std::span<const cull::View>(plain).first(requests.size()), visible.set_, mode, limits);
+        const ViewRequest& first = requests.empty() ? ViewRequest() : requests[0];
+        const auto walked = cull::find_visible(state_->index.tree(), state_->index.moving(), views, visible.set_,
+                                               first.mode, first.limits);
+        if (!walked) return walked;
+        for (std::size_t i = 0; ascending && i < visible.set_.size(); ++i)
+            visible.add(visible.set_.ids()[i], visible.set_.view_mask(i));
     } else {
-        while (visible.each_.size() < requests.size()) visible.each_.emplace_back();
-        for (std::size_t v = 0; v < requests.size(); ++v) {
-            if (!requests[v].occlusion) continue;
-            if (!visible.each_[v].occluded_) visible.each_[v].occluded_ = world::make_occluded_view();
-            if (auto sized = visible.each_[v].occluded_->resize(requests[v].occlusion->size); !sized)
-                return tl::unexpected(at_item(sized.error(), v));
-        }
-        executor.parallel_for(requests.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
-            for (std::size_t v = begin; v < end; ++v) world::must(view(requests[v], visible.each_[v]));
-        });
+        if (auto answered = view_each(requests, visible, executor); !answered) return answered;
     }
     visible.names_ = &state_->table.names;
     visible.view_count_ = requests.size();
     visible.one_walk_ = one_walk;
-    visible.listed_ = ascending;
-    if (ascending) visible.list_ascending(state_->index.size());
+    visible.listed_ = ascending || !one_walk;
+    if (ascending) visible.list_ascending();
+    if (ascending || one_walk) return {};
+    // In the order of a walk that finds all of them, and some more.
+    const auto walked = cull::find_visible(state_->index.tree(), state_->index.moving(), views, visible.set_,
+                                           cull::CullMode::conservative);
+    if (!walked) return walked;
+    for (const std::uint32_t id : visible.set_.ids())
+        if (visible.masks_[id] != 0) visible.ids_.push_back(id);
+    return {};
+}
+
+// Every request by itself. Buffers are made first, so that nothing can fail while threads share the requests.
+Result<void> World::view_each(std::span<const ViewRequest> requests, VisibleInViews& visible,
+                              Executor& executor) const {
+    while (visible.each_.size() < requests.size()) visible.each_.emplace_back();
+    for (std::size_t v = 0; v < requests.size(); ++v) {
+        if (!requests[v].occlusion) continue;
+        if (!visible.each_[v].occluded_) visible.each_[v].occluded_ = world::make_occluded_view();
+        if (auto sized = visible.each_[v].occluded_->resize(requests[v].occlusion->size); !sized)
+            return tl::unexpected(at_item(sized.error(), v));
+    }
+    executor.parallel_for(requests.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
+        for (std::size_t v = begin; v < end; ++v) {
+            ViewRequest request = requests[v];
+            request.order =
+                request.occlusion ? cull::ResultOrder::ascending : cull::ResultOrder::tree;  // the quicker one
+            world::must(view(request, visible.each_[v]));
+        }
+    });
+    for (std::size_t v = 0; v < requests.size(); ++v)
+        for (const std::uint32_t id : visible.each_[v].ids()) visible.add(id, std::uint32_t{1} << v);
     return {};
 }
 
@@ -192,18 +217,12 @@ void VisibleInViews::forget_ids() {
     ids_.clear();
 }
 
-void VisibleInViews::list_ascending(std::size_t objects) {
-    if (masks_.size() < objects) masks_.resize(objects, 0);
-    bits_.assign((objects + 63) / 64, 0);
-    const auto add = [&](std::uint32_t id, std::uint32_t mask) {
-        masks_[id] |= mask;
-        bits_[id / 64] |= std::uint64_t{1} << (id % 64);
-    };
-    if (one_walk_)
-        for (std::size_t i = 0; i < set_.size(); ++i) add(set_.ids()[i], set_.view_mask(i));
-    else
-        for (std::size_t v = 0; v < view_count_; ++v)
-            for (const std::uint32_t id : each_[v].ids()) add(id, std::uint32_t{1} << v);
+void VisibleInViews::add(std::uint32_t id, std::uint32_t views) {
+    masks_[id] |= views;
+    bits_[id / 64] |= std::uint64_t{1} << (id % 64);
+}
+
+void VisibleInViews::list_ascending() {
     for (std::size_t w = 0; w < bits_.size(); ++w)
         for (std::uint64_t rest = bits_[w]; rest != 0; rest &= rest - 1)
             ids_.push_back(static_cast<std::uint32_t>(64 * w) + static_cast<std::uint32_t>(std::countr_zero(rest)));

@@ -21,12 +21,15 @@ struct StagedChange {
 
 // Which of the scene's ids have been given out as handles, and how often.
 struct Generations {
+    explicit Generations(std::uint32_t the_first) : first(the_first) {}
+
+    std::uint32_t first;
     Vector<std::uint32_t> generations;
     Vector<std::uint8_t> alive;
 
     void add(std::uint32_t id) {
         if (id >= alive.size()) {
-            generations.resize(id + std::size_t{1}, world::kFirstGeneration);
+            generations.resize(id + std::size_t{1}, first);
             alive.resize(id + std::size_t{1}, 0);
         }
         alive[id] = 1;
@@ -40,10 +43,22 @@ struct Generations {
     [[nodiscard]] bool contains(Handle<Tag> handle) const {
         return handle.index < alive.size() && alive[handle.index] && generations[handle.index] == handle.generation;
     }
+    template <class Tag>
+    [[nodiscard]] Result<void> check(const char* thing, Handle<Tag> handle, std::uint64_t item) const {
+        if (contains(handle)) return {};
+        return world::refuse(thing, handle.index, handle.generation, generations, first, item);
+    }
 };
 
 struct World::State {
-    explicit State(const WorldOptions& chosen) : options(chosen), index(chosen.tree), finder(chosen) {}
+    explicit State(const WorldOptions& chosen) : State(chosen, world::next_first_generation()) {}
+    State(const WorldOptions& chosen, std::uint32_t first_generation)
+        : options(chosen),
+          table(first_generation),
+          index(chosen.tree),
+          finder(chosen),
+          nodes(first_generation),
+          meshes(first_generation) {}
 
     WorldOptions options;
     WorldStatistics statistics;
@@ -66,6 +81,7 @@ struct World::State {
     [[nodiscard]] Result<void> check(ObjectHandle object, std::uint64_t item) const;
     [[nodiscard]] Result<void> check(NodeHandle node, std::uint64_t item) const;
     [[nodiscard]] Result<void> check(MeshHandle mesh, std::uint64_t item) const;
+    [[nodiscard]] Result<void> check_viewed(const world::ObjectNames* viewed) const;
     StagedChange& stage(std::uint32_t object);
     [[nodiscard]] Result<void> hang(world::Object& object, const ObjectDescription& description);
     [[nodiscard]] Result<void> set_bound(ObjectHandle object, const Bound& bound, std::uint64_t item);

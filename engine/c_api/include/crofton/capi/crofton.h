@@ -282,7 +282,7 @@ CROFTON_API crofton_status crofton_visible_objects_get_statistics(const crofton_
 
 CROFTON_API crofton_status crofton_visible_in_views_create(crofton_visible_in_views** visible);
 CROFTON_API crofton_status crofton_visible_in_views_destroy(crofton_visible_in_views* visible);
-/* What up to 32 views see, each object once, ascending; `options` or NULL: their mode counts. */
+/* What up to 32 views see, each object once; `options` (its order, limits and `among` count for all) or NULL. */
 CROFTON_API crofton_status crofton_world_views(const crofton_world* world, const crofton_view* views, size_t count,
                                                const crofton_cull_options* options, crofton_visible_in_views* visible);
 CROFTON_API crofton_status crofton_visible_in_views_ids(const crofton_visible_in_views* visible, const uint32_t** ids,
@@ -443,7 +443,7 @@ CROFTON_API crofton_status crofton_world_get_occluder(const crofton_world* world
 /* Whether an object with a mesh hides others (1, as at first) or not (0), as where it is drawn transparent. */
 CROFTON_API crofton_status crofton_world_set_occludes(crofton_world* world, crofton_object object, int occludes);
 
-/* As crofton_world_view, ascending, without what is hidden; `occlusion`, `options`, `jobs` or NULL. */
+/* As crofton_world_view, without what is hidden; `occlusion`, `options`, `jobs` or NULL. */
 CROFTON_API crofton_status crofton_world_view_occluding(const crofton_world* world, const crofton_occluding_view* view,
                                                         const crofton_occlusion_options* occlusion,
                                                         const crofton_cull_options* options, const crofton_jobs* jobs,

@@ -205,12 +205,12 @@ void find_visible(const BoundSet<Bound>& set, std::type_identity_t<std::span<con
 }
 
 template <class Bound>
-void find_visible(const BoundSet<Bound>& set, std::type_identity_t<std::span<const Bound>> bounds,
-                  std::span<const std::uint32_t> layer_masks, std::span<const View> views,
-                  std::span<std::uint32_t> view_masks, CullMode mode, Executor& executor,
-                  std::span<Statistics> statistics) {
+Result<void> find_visible(const BoundSet<Bound>& set, std::type_identity_t<std::span<const Bound>> bounds,
+                          std::span<const std::uint32_t> layer_masks, std::span<const View> views,
+                          std::span<std::uint32_t> view_masks, CullMode mode, Executor& executor,
+                          std::span<Statistics> statistics) {
+    if (auto few = check_view_count(views.size()); !few) return few;
     CROFTON_ASSERT(bounds.size() == set.size(), "cull needs the bounds that the set was given");
-    CROFTON_ASSERT(views.size() <= kMaxViews, "at most 32 views fit one pass");
     CROFTON_ASSERT(view_masks.size() == set.size(), "cull needs one view mask per bound");
     CROFTON_ASSERT(layer_masks.empty() || layer_masks.size() == set.size(),
                    "cull needs one layer mask per bound, or none");
@@ -225,6 +225,7 @@ void find_visible(const BoundSet<Bound>& set, std::type_identity_t<std::span<con
         const std::lock_guard lock(summing);
         for (std::size_t v = 0; v < statistics.size(); ++v) statistics[v] += cost[v];
     });
+    return {};
 }
 
 std::size_t list_bits(std::span<const std::uint64_t> bits, std::span<ItemId> ids) {
@@ -236,9 +237,9 @@ std::size_t list_bits(std::span<const std::uint64_t> bits, std::span<ItemId> ids
                                VerdictBits&, CullMode, Executor&);                                                \
     template void find_visible(const BoundSet<Bound>&, std::type_identity_t<std::span<const Bound>>, const View&, \
                                const DrawLimits&, VerdictBits&, CullMode, Executor&);                             \
-    template void find_visible(const BoundSet<Bound>&, std::type_identity_t<std::span<const Bound>>,              \
-                               std::span<const std::uint32_t>, std::span<const View>, std::span<std::uint32_t>,   \
-                               CullMode, Executor&, std::span<Statistics>);
+    template Result<void> find_visible(const BoundSet<Bound>&, std::type_identity_t<std::span<const Bound>>,      \
+                                       std::span<const std::uint32_t>, std::span<const View>,                     \
+                                       std::span<std::uint32_t>, CullMode, Executor&, std::span<Statistics>);
 CROFTON_CULL_LIST_QUERIES(Obb)
 CROFTON_CULL_LIST_QUERIES(Aabb)
 CROFTON_CULL_LIST_QUERIES(Sphere)

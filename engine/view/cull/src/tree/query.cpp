@@ -10,6 +10,7 @@
 #include <cstring>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <mutex>
 
 #include "exact/box_constraints.hpp"
 #include "id_bits_kernel.hpp"
@@ -23,7 +24,7 @@ namespace {
 // Room behind each list: vector stores write past the end.
 constexpr std::size_t kPadding = boxtree::kWidth, kListPadding = 64;
 // A query of fewer items is over before another thread has woken.
-constexpr std::size_t kParallelItems = 65536;
+constexpr std::size_t kParallelItems = 65536, kParallelBoxes = 16384;  // of a tree; of a list
 // A mark in an item's number; ids are below 2^30.
 constexpr std::uint32_t kInside = 0x80000000u;
 
@@ -74,7 +75,8 @@ void Query::start(std::size_t items) {
     grow(visible_.straddling_, items + kPadding);
 }
 
-void Query::run(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks) {
+// Each chunk writes its own words, so that threads may share them.
+void Query::run(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks, Executor& executor) {
     visible_.statistics_ = {};
     const std::size_t words = (boxes.size() + 63) / 64;
     grow(visible_.bits_, 2 * words);
@@ -82,27 +84,44 @@ void Query::run(std::span<const Obb> boxes, std::span<const std::uint32_t> layer
     const glm::dvec3 origin = glm::abs(view_.frustum.origin);
     KernelView view;
     const bool vectors = set_planes(view_, view) && std::max({origin.x, origin.y, origin.z}) <= kFarthestOrigin;
-    ListKernelOutput output;
-    for (std::size_t first = 0; first < boxes.size(); first += kChunk) {
-        const std::size_t count = std::min(kChunk, boxes.size() - first), chunk_words = (count + 63) / 64;
-        if (vectors)
-            run_direct_kernel(
-                {reinterpret_cast<const unsigned char*>(&boxes[first]), count, &view, options_.mode == CullMode::exact},
-                output);
-        else
-            leave_all_undecided(count, output);
-        decide(boxes.subspan(first, count), output);
-        for (std::size_t w = 0; w < chunk_words; ++w) {
-            std::uint64_t visible = output.visible[w];
-            if (!layer_masks.empty()) visible &= layer_bits(layer_masks.subspan(first + 64 * w));
-            if (view_.layer_mask == 0) visible = 0;  // without layer masks, too
-            if (options_.limits) visible = wanted_bits(visible, boxes, layer_masks, first + 64 * w);
-            if (first / 64 + w < options_.among.size()) visible &= options_.among[first / 64 + w];
-            seen[first / 64 + w] = visible;
-            marked[first / 64 + w] = visible & ~output.inside[w];
-        }
+    const ListChunks list{boxes, layer_masks, vectors ? &view : nullptr, seen, marked};
+    const std::size_t chunks = (boxes.size() + kChunk - 1) / kChunk;
+    if (boxes.size() < kParallelBoxes || executor.concurrency() == 1) {
+        visible_.statistics_ = ask(list, 0, chunks);
+    } else {
+        std::mutex summing;
+        executor.parallel_for(chunks, 1, [&](std::size_t begin, std::size_t end, unsigned) {
+            const Statistics cost = Query(view_, visible_, options_).ask(list, begin, end);
+            const std::lock_guard lock(summing);
+            visible_.statistics_ += cost;
+        });
     }
     finish(seen, marked, words, boxes.size());
+}
+
+Statistics Query::ask(const ListChunks& list, std::size_t begin, std::size_t end) {
+    Statistics statistics;
+    ListKernelOutput output;
+    for (std::size_t first = begin * kChunk; first < std::min(end * kChunk, list.boxes.size()); first += kChunk) {
+        const std::span<const Obb> boxes = list.boxes.subspan(first, std::min(kChunk, list.boxes.size() - first));
+        if (list.view)
+            run_direct_kernel({reinterpret_cast<const unsigned char*>(boxes.data()), boxes.size(), list.view,
+                               options_.mode == CullMode::exact},
+                              output);
+        else
+            leave_all_undecided(boxes.size(), output);
+        decide(boxes, output, statistics);
+        for (std::size_t w = 0; w < (boxes.size() + 63) / 64; ++w) {
+            std::uint64_t visible = output.visible[w];
+            if (!list.layer_masks.empty()) visible &= layer_bits(list.layer_masks.subspan(first + 64 * w));
+            if (view_.layer_mask == 0) visible = 0;  // without layer masks, too
+            if (options_.limits) visible = wanted_bits(visible, list.boxes, list.layer_masks, first + 64 * w);
+            if (first / 64 + w < options_.among.size()) visible &= options_.among[first / 64 + w];
+            list.seen[first / 64 + w] = visible;
+            list.marked[first / 64 + w] = visible & ~output.inside[w];
+        }
+    }
+    return statistics;
 }
 
 // Which of the first 64 layer masks share a layer with the view.
@@ -126,7 +145,7 @@ std::uint64_t Query::wanted_bits(std::uint64_t visible, std::span<const Obb> box
 }
 
 // Decides what the kernel left undecided of these boxes, and counts for the statistics.
-void Query::decide(std::span<const Obb> boxes, ListKernelOutput& output) {
+void Query::decide(std::span<const Obb> boxes, ListKernelOutput& output, Statistics& statistics) const {
     std::size_t rejected = 0;
     for (std::size_t n = 0; n < output.undecided_count; ++n) {
         const std::uint32_t i = output.undecided[n];
@@ -140,9 +159,9 @@ void Query::decide(std::span<const Obb> boxes, ListKernelOutput& output) {
                     classify(view_.frustum, boxes[i], CullMode::conservative) != Verdict::outside;
     }
     if (!kCountStatistics) return;
-    visible_.statistics_.boxes_tested += boxes.size();
-    visible_.statistics_.exact_tests += output.resolved_count + output.undecided_count;
-    visible_.statistics_.improper += output.improper + rejected;
+    statistics.boxes_tested += boxes.size();
+    statistics.exact_tests += output.resolved_count + output.undecided_count;
+    statistics.improper += output.improper + rejected;
 }
 
 // Lists the ids of the bits in `seen`; those that are also in `marked` straddle.

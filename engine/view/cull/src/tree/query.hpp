@@ -28,7 +28,7 @@ class Query {
     Query(const View& view, VisibleSet& visible, const CullOptions& options, const MovingBoxes* moving = nullptr)
         : view_(view), visible_(visible), options_(options), moving_(moving) {}
 
-    void run(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks);
+    void run(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks, Executor& executor);
     void run(const boxtree::BoxTree& tree, Executor& executor);
 
   private:
@@ -63,7 +63,15 @@ class Query {
     void finish(const boxtree::BoxTree& tree, std::size_t inside, std::size_t straddling, Executor& executor);
     void finish(std::size_t inside, std::size_t straddling, std::size_t items);
     [[nodiscard]] std::uint64_t layer_bits(std::span<const std::uint32_t> layer_masks) const;
-    void decide(std::span<const Obb> boxes, ListKernelOutput& output);
+    // What of a list is seen, a chunk at a time: bits of all boxes, and of those that straddle.
+    struct ListChunks {
+        std::span<const Obb> boxes;
+        std::span<const std::uint32_t> layer_masks;
+        const KernelView* view;  // nullptr: vectors cannot take it
+        std::uint64_t *seen, *marked;
+    };
+    [[nodiscard]] Statistics ask(const ListChunks& list, std::size_t begin, std::size_t end);
+    void decide(std::span<const Obb> boxes, ListKernelOutput& output, Statistics& statistics) const;
     void finish(const std::uint64_t* seen, const std::uint64_t* marked, std::size_t words, std::size_t items);
     std::size_t list_marked(const std::uint64_t* seen, const std::uint64_t* marked, std::size_t words);
     [[nodiscard]] std::size_t sort(std::size_t inside, std::size_t straddling, std::size_t items);

@@ -84,7 +84,7 @@ class ManyViewsQuery {
     void add_moving(const MovingBoxes& moving, ManyVisible& visible) const {
         grow(visible.moving_masks_, moving.size());
         const std::span<std::uint32_t> masks = std::span(visible.moving_masks_).first(moving.size());
-        find_visible(moving.set(), moving.boxes(), {}, views_, masks, mode_);
+        (void)find_visible(moving.set(), moving.boxes(), {}, views_, masks, mode_);  // few enough: checked before
         for (std::size_t k = 0; k < masks.size(); ++k) {
             if (masks[k] == 0) continue;
             const ItemId item = moving.items()[k];
@@ -157,16 +157,24 @@ class ManyViewsQuery {
     const DrawLimits* limits_;
 };
 
-void find_visible(const boxtree::BoxTree& tree, std::span<const View> views, ManyVisible& visible, CullMode mode,
-                  const DrawLimits* limits) {
-    CROFTON_ASSERT(views.size() <= kMaxViews, "at most 32 views fit one pass");
-    ManyViewsQuery(tree, views, mode, limits).run(visible);
+Result<void> check_view_count(std::size_t views) {
+    if (views <= kMaxViews) return {};
+    return fail(ErrorCode::out_of_range, kMaxViews,
+                {"cull: ", views, " views; one pass takes at most ", kMaxViews, ": ask in several passes"});
 }
 
-void find_visible(const boxtree::BoxTree& resting, const MovingBoxes& moving, std::span<const View> views,
-                  ManyVisible& visible, CullMode mode, const DrawLimits* limits) {
-    CROFTON_ASSERT(views.size() <= kMaxViews, "at most 32 views fit one pass");
+Result<void> find_visible(const boxtree::BoxTree& tree, std::span<const View> views, ManyVisible& visible,
+                          CullMode mode, const DrawLimits* limits) {
+    if (auto few = check_view_count(views.size()); !few) return few;
+    ManyViewsQuery(tree, views, mode, limits).run(visible);
+    return {};
+}
+
+Result<void> find_visible(const boxtree::BoxTree& resting, const MovingBoxes& moving, std::span<const View> views,
+                          ManyVisible& visible, CullMode mode, const DrawLimits* limits) {
+    if (auto few = check_view_count(views.size()); !few) return few;
     ManyViewsQuery(resting, views, mode, limits).run(visible, &moving);
+    return {};
 }
 
 }  // namespace crofton::cull

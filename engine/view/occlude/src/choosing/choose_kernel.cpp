@@ -26,21 +26,23 @@ HWY_INLINE VF dot_of(const VF* a, const VF* b) {
     return hn::Add(hn::Add(hn::Mul(a[0], b[0]), hn::Mul(a[1], b[1])), hn::Mul(a[2], b[2]));
 }
 
-// How far the ray along `along`, of length `length`, runs on from the point before it leaves the bounds.
+// How long the ray along `along`, of length `length`, is in the bounds from the point on.
 HWY_INLINE VF way_behind(const VF* point, const VF* along, VF length, const ChooseView& view) {
     const DF d;
-    VF steps = hn::Set(d, 1e30f);
+    VF end = hn::Set(d, 1e30f), begin = hn::Zero(d);
     for (std::size_t k = 0; k < 3; ++k) {
         const auto upward = hn::Ge(along[k], hn::Zero(d));
         const VF size = hn::Max(hn::Abs(along[k]), hn::Set(d, 1e-20f));
         const VF high = hn::Sub(hn::Set(d, view.high[k]), point[k]), low = hn::Sub(point[k], hn::Set(d, view.low[k]));
-        steps = hn::Min(steps, hn::Div(hn::IfThenElse(upward, high, low), size));
+        end = hn::Min(end, hn::Div(hn::IfThenElse(upward, high, low), size));
+        begin = hn::Max(begin, hn::Div(hn::Neg(hn::IfThenElse(upward, low, high)), size));
     }
-    return hn::Mul(hn::Max(steps, hn::Zero(d)), length);
+    return hn::Mul(hn::Max(hn::Sub(end, begin), hn::Zero(d)), length);
 }
 
 struct Worth {
-    VF cover, value;
+    VF value;  // negative: what is covered, where one ray does not tell what that is worth
+    hn::Mask<DF> keep;
 };
 
 // Sums of products are rounded step by step, never fused: so all instruction sets agree.
@@ -70,33 +72,38 @@ HWY_INLINE Worth worth_of(const float* const* columns, std::size_t i, const Choo
         faced = hn::Add(faced, hn::Abs(signed_area));
     }
     VF cover = hn::Mul(faced, hn::Set(d, view.scale)), length = hn::Set(d, 1.0f);
+    const VF radius_square = hn::Mul(radius, radius);
+    auto large = hn::Gt(radius_square, hn::Set(d, view.large_square));
     if (view.perspective) {
         // Nearer than half the radius the quotient means nothing.
-        const VF near = hn::Mul(hn::Mul(radius, radius), hn::Set(d, 0.25f));
+        const VF near = hn::Mul(radius_square, hn::Set(d, 0.25f));
+        large = hn::Gt(radius_square, hn::Mul(dot_of(center, center), hn::Set(d, 0.0625f)));
         const VF square = hn::Max(hn::Max(dot_of(center, center), near), hn::Set(d, 1e-30f));
         length = hn::Sqrt(square);
         cover = hn::Div(hn::Div(cover, square), length);
     }
     cover = hn::IfThenElseZero(in_view, cover);
-    if (!view.bounded) return {cover, cover};
-    return {cover, hn::Mul(cover, way_behind(point, along, length, view))};
+    if (!view.bounded) return {cover, hn::Ge(cover, hn::Set(d, view.least))};
+    const VF value = hn::Mul(cover, way_behind(point, along, length, view));
+    large = hn::And(large, in_view);
+    const auto one_ray = hn::AndNot(large, hn::Gt(value, zero));
+    const VF many_rays = hn::Neg(hn::Max(cover, hn::Set(d, 1e-30f)));
+    return {hn::IfThenElse(one_ray, value, many_rays), hn::Or(large, hn::Ge(cover, hn::Set(d, view.least)))};
 }
 
 std::size_t run_cover(const float* const* columns, std::size_t count, const ChooseView& view, std::uint32_t* seen,
                       float* values) {
     const DF d;
-    const VF least = hn::Set(d, view.least);
     std::size_t found = 0;
     HWY_ALIGN float value[hn::MaxLanes(d)];
     for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
         const Worth worth = worth_of(columns, i, view);
-        const auto keep = hn::Ge(worth.cover, least);
-        if (hn::AllFalse(d, keep)) continue;
-        hn::Store(hn::IfThenElseZero(keep, worth.value), d, value);
+        if (hn::AllFalse(d, worth.keep)) continue;
+        hn::Store(hn::IfThenElseZero(worth.keep, worth.value), d, value);
         for (std::size_t k = 0; k < hn::Lanes(d) && i + k < count; ++k) {
             seen[found] = static_cast<std::uint32_t>(i + k);
             values[found] = value[k];
-            found += value[k] > 0.0f ? 1 : 0;
+            found += value[k] != 0.0f ? 1 : 0;
         }
     }
     return found;

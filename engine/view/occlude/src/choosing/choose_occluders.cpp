@@ -11,6 +11,7 @@
 #include <string>
 
 #include "choosing/choose_kernel.hpp"
+#include "choosing/large_worth.hpp"
 #include "exact_turn.hpp"
 
 namespace crofton::occlude {
@@ -36,6 +37,7 @@ ChooseView choose_view_of(const OccluderCandidates& candidates, const OcclusionV
     // The window is 2 units wide and high.
     const double whole = given.perspective ? 4.0 * std::numbers::pi : 4.0 / glm::length(glm::cross(row(0), row(1)));
     view.scale = static_cast<float>(1.0 / whole);
+    view.large_square = given.perspective ? 0.0f : static_cast<float>(whole / 64.0);
     view.least = std::max(budget.least_cover, 1e-30f);
     view.bounded = !budget.objects.is_empty();
     for (int k = 0; k < 3; ++k) {
@@ -107,6 +109,7 @@ OccluderCandidate candidate_of(const Obb& box) {
     for (const glm::dvec3& corner : corners(box))
         square = std::max(square, glm::dot(corner - box.center, corner - box.center));
     result.radius = std::sqrt(square);
+    for (int k = 0; k < 3; ++k) result.half_size += glm::abs(box.axes[k]) * box.half_extents[k];
     return result;
 }
 
@@ -122,6 +125,7 @@ OccluderCandidate candidate_of(const FoundOccluder& found, const Transform& tran
         square = std::max(square, glm::dot(offset, offset));
     }
     result.radius = std::sqrt(square);
+    if (!bounds.is_empty()) result.half_size = glm::vec3(0.5 * (bounds.max - bounds.min));
     result.edges = found.edges;
     glm::dvec3 normals(0.0), shadows(0.0);
     for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
@@ -198,7 +202,8 @@ bool may_use(const EyeLimits& limits, const OcclusionView& view) {
 }
 
 Result<void> OccluderCandidates::check(std::uint32_t id, const OccluderCandidate& candidate) const {
-    bool finite = is_finite(candidate.center) && std::isfinite(candidate.radius);
+    bool finite =
+        is_finite(candidate.center) && std::isfinite(candidate.radius) && is_finite(glm::dvec3(candidate.half_size));
     for (const glm::vec3& area : candidate.areas) finite = finite && is_finite(glm::dvec3(area));
     if (!finite) return fail(ErrorCode::non_finite, id, "occluder candidate: NaN or infinite");
     const glm::dvec3 size = glm::abs(candidate.center);
@@ -217,6 +222,8 @@ void OccluderCandidates::write(std::uint32_t id, const OccluderCandidate& candid
     edges_[id] = candidate.edges;
     layers_[id] = candidate.layers;
     limits_[id] = candidate.limits;
+    half_sizes_[id] = candidate.half_size == glm::vec3(0.0f) ? glm::vec3(static_cast<float>(candidate.radius))
+                                                             : glm::abs(candidate.half_size);
 }
 
 Result<std::uint32_t> OccluderCandidates::add(const OccluderCandidate& candidate) {
@@ -227,6 +234,7 @@ Result<std::uint32_t> OccluderCandidates::add(const OccluderCandidate& candidate
     edges_.push_back(0);
     layers_.push_back(0);
     limits_.emplace_back();
+    half_sizes_.emplace_back();
     write(id, candidate);
     return id;
 }
@@ -243,6 +251,7 @@ void OccluderCandidates::reserve(std::size_t count) {
     edges_.reserve(count);
     layers_.reserve(count);
     limits_.reserve(count);
+    half_sizes_.reserve(count);
 }
 
 void OccluderCandidates::clear() {
@@ -250,6 +259,7 @@ void OccluderCandidates::clear() {
     edges_.clear();
     layers_.clear();
     limits_.clear();
+    half_sizes_.clear();
 }
 
 Result<void> choose_occluders(const OccluderCandidates& candidates, const Camera& camera, const ChooseBudget& budget,
@@ -272,7 +282,14 @@ void choose_occluders(const OccluderCandidates& candidates, const OcclusionView&
     const std::size_t seen =
         measure_cover(columns.data(), candidates.size(), choose_view, choice.seen.data(), choice.values.data());
     choice.order.clear();
-    for (std::size_t i = 0; i < seen; ++i) choice.order.push_back(key_of(choice.values[i], choice.seen[i]));
+    const LargeWorth large(view, budget.objects, candidates.origin());
+    for (std::size_t i = 0; i < seen; ++i) {
+        const std::uint32_t id = choice.seen[i];
+        if (!(candidates.layers(id) & budget.layer_mask)) continue;
+        float worth = choice.values[i];
+        if (worth < 0.0f) worth = large.of(candidates, id, -worth, choose_view.least);
+        if (worth > 0.0f) choice.order.push_back(key_of(worth, id));
+    }
     // Sorted as far as needed: those that may not be used are few, and the next ones take their places.
     auto sorted = choice.order.begin();
     std::uint32_t edges = 0;
@@ -285,7 +302,7 @@ void choose_occluders(const OccluderCandidates& candidates, const OcclusionView&
         for (auto key = first; key != sorted && choice.ids.size() < budget.max_occluders; ++key) {
             const auto id = static_cast<std::uint32_t>(*key);
             if (candidates.edges(id) > budget.max_edges - edges) continue;
-            if (!(candidates.layers(id) & budget.layer_mask) || !may_use(candidates.limits(id), view)) continue;
+            if (!may_use(candidates.limits(id), view)) continue;
             edges += candidates.edges(id);
             choice.ids.push_back(id);
         }

@@ -102,10 +102,10 @@ void find_visible(const BoundSet<Bound>& set, std::type_identity_t<std::span<con
 // in all layers; layers are looked at last, so that `statistics`, one per view or none, count all bounds. Requires one
 // view mask, and one layer mask or none, per bound. Allocates nothing.
 template <class Bound>
-void find_visible(const BoundSet<Bound>& set, std::type_identity_t<std::span<const Bound>> bounds,
-                  std::span<const std::uint32_t> layer_masks, std::span<const View> views,
-                  std::span<std::uint32_t> view_masks, CullMode mode = CullMode::exact,
-                  Executor& executor = serial_executor(), std::span<Statistics> statistics = {});
+Result<void> find_visible(const BoundSet<Bound>& set, std::type_identity_t<std::span<const Bound>> bounds,
+                          std::span<const std::uint32_t> layer_masks, std::span<const View> views,
+                          std::span<std::uint32_t> view_masks, CullMode mode = CullMode::exact,
+                          Executor& executor = serial_executor(), std::span<Statistics> statistics = {});
 
 // The indices of the bits that are set, ascending, into `ids`, which needs room for 16 more than there are; returns how
 // many.
@@ -162,8 +162,8 @@ class MovingBoxes {
 void find_visible(const boxtree::BoxTree& resting, const MovingBoxes& moving, const View& view, VisibleSet& visible,
                   const CullOptions& options = {}, Executor& executor = serial_executor());
 
-// Up to 32 views in one pass; the items that move come last.
-void find_visible(const boxtree::BoxTree& resting, const MovingBoxes& moving, std::span<const View> views,
-                  ManyVisible& visible, CullMode mode = CullMode::exact, const DrawLimits* limits = nullptr);
+// Up to kMaxViews views in one pass, more are an error; the items that move come last.
+Result<void> find_visible(const boxtree::BoxTree& resting, const MovingBoxes& moving, std::span<const View> views,
+                          ManyVisible& visible, CullMode mode = CullMode::exact, const DrawLimits* limits = nullptr);
 
 }  // namespace crofton::cull

@@ -68,6 +68,9 @@ struct View {
 
 inline constexpr std::size_t kMaxViews = 32;  // in one pass
 
+// Error: more than kMaxViews, which do not fit one pass (out_of_range; item: the first view too many).
+[[nodiscard]] Result<void> check_view_count(std::size_t views);
+
 // Tree order costs nothing and is the same on every run. A renderer that lays its items out in the tree's order
 // (BoxTree::slot_items) gets long ascending runs.
 enum class ResultOrder : std::uint8_t { ascending, tree };
@@ -75,8 +78,8 @@ enum class ResultOrder : std::uint8_t { ascending, tree };
 struct CullOptions {
     CullMode mode = CullMode::exact;
     ResultOrder order = ResultOrder::ascending;
-    // What is too small or too far is left out. A query without limits costs what it did; one with limits uses no other
-    // thread.
+    // What is too small or too far is left out. A query without limits costs what it did; one of a tree with limits
+    // uses no other thread.
     const DrawLimits* limits = nullptr;
     // Items that may be seen at all: bit i % 64 of word i / 64 is item i. Items beyond the span may be seen, and so may
     // all if it is empty. pvs::Pvs::visible_from() gives such sets. In a query of what rests and what moves it says
@@ -96,7 +99,7 @@ void find_visible(const boxtree::BoxTree& tree, const View& view, VisibleSet& vi
                   Executor& executor = serial_executor());
 
 // Item i is boxes[i] with layer mask layer_masks[i], or all layers if that span is empty. Boxes that are not finite are
-// straddling: reported, never lost.
+// straddling: reported, never lost. From 16,384 boxes on the executor's threads share the list.
 void find_visible(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks, const View& view,
                   VisibleSet& visible, const CullOptions& options = {}, Executor& executor = serial_executor());
 
@@ -135,10 +138,10 @@ class ManyVisible {
 };
 
 // For each view the items that find_visible() finds for it alone, within `limits` if there are any: one eye for all
-// views. Requires at most 32 views. Allocates nothing once `visible` has been used for as many views of a tree of this
-// size.
-void find_visible(const boxtree::BoxTree& tree, std::span<const View> views, ManyVisible& visible,
-                  CullMode mode = CullMode::exact, const DrawLimits* limits = nullptr);
+// views. Allocates nothing once `visible` has been used for as many views of a tree of this size. Error: more than
+// kMaxViews views.
+Result<void> find_visible(const boxtree::BoxTree& tree, std::span<const View> views, ManyVisible& visible,
+                          CullMode mode = CullMode::exact, const DrawLimits* limits = nullptr);
 
 // Visible items as a bit set, or as runs that one draw call takes.
 

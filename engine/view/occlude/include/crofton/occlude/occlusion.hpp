@@ -11,8 +11,8 @@
 #include <crofton/geometry/box.hpp>
 #include <crofton/geometry/camera.hpp>
 #include <crofton/geometry/shapes.hpp>
-#include <crofton/occlude/occluder.hpp>
 #include <crofton/geometry/transform.hpp>
+#include <crofton/occlude/occluder.hpp>
 #include <cstdint>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
@@ -65,7 +65,8 @@ struct EyeLimits {
 // How large an occluder looks from where, and where it must not be used. World coordinates.
 struct OccluderCandidate {
     glm::dvec3 center{0.0};
-    double radius = 0.0;  // of a ball around the center that contains the occluder
+    double radius = 0.0;        // of a ball around the center that contains the occluder
+    glm::vec3 half_size{0.0f};  // of its bounds along the world's axes, around the center; 0: those of the ball
     // Seen along a unit direction d it covers the area Σ |dot(d, areas[k])|. Of a box, areas[k] is the area of the
     // faces across axis k times the axis. Of a patch, areas[0] is its area times its normal; the others are 0.
     std::array<glm::vec3, 3> areas{};
@@ -99,6 +100,7 @@ class OccluderCandidates {
     [[nodiscard]] std::uint32_t edges(std::uint32_t id) const { return edges_[id]; }
     [[nodiscard]] std::uint32_t layers(std::uint32_t id) const { return layers_[id]; }
     [[nodiscard]] const EyeLimits& limits(std::uint32_t id) const { return limits_[id]; }
+    [[nodiscard]] const glm::vec3& half_size(std::uint32_t id) const { return half_sizes_[id]; }
 
   private:
     [[nodiscard]] Result<void> check(std::uint32_t id, const OccluderCandidate& candidate) const;
@@ -108,6 +110,7 @@ class OccluderCandidates {
     std::array<Vector<float>, kColumns> columns_;
     Vector<std::uint32_t> edges_, layers_;
     Vector<EyeLimits> limits_;
+    Vector<glm::vec3> half_sizes_;
 };
 
 struct ChooseBudget {
@@ -118,7 +121,10 @@ struct ChooseBudget {
     float least_cover = 2e-5f;
     // Where the objects are that may be hidden. What lies behind an occluder is then counted: how far the ray from the
     // eye through its center runs on in these bounds. So the ground, with nothing below, is worth nothing, and of two
-    // walls that look alike the nearer one is worth more. Empty: all that covers alike is worth the same.
+    // walls that look alike the nearer one is worth more. 25 rays are asked instead, through the part of the picture
+    // where the occluder and these bounds meet, if the occluder looks large (its ball's radius is more than a quarter
+    // of its distance, or an eighth of a parallel view's picture) or nothing is behind its center: a tall wall hides
+    // low objects with its foot. Empty: all that covers alike is worth the same.
     Aabb objects = {};
     std::uint32_t layer_mask = ~0u;  // only candidates that share a layer with it
 };

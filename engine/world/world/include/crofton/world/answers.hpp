@@ -52,15 +52,14 @@ struct OcclusionStatistics {
 class VisibleObjects {
   public:
     [[nodiscard]] std::size_t size() const { return ids().size(); }
-    [[nodiscard]] std::span<const std::uint32_t> ids() const { return hides_ ? seen().ids() : set_.ids(); }  // indices
+    [[nodiscard]] std::span<const std::uint32_t> ids() const { return hides_ ? seen_ids() : set_.ids(); }  // indices
     [[nodiscard]] ObjectRef operator[](std::size_t i) const { return ref(ids()[i]); }
     // In CullOptions' tree order the first so many are inside the view, the others straddle its boundary; in ascending
     // order verdicts() says it of each.
-    [[nodiscard]] std::size_t inside_count() const { return hides_ ? seen().inside_count() : set_.inside_count(); }
-    [[nodiscard]] std::span<const cull::Verdict> verdicts() const {
-        return hides_ ? seen().verdicts() : set_.verdicts();
-    }
-    // Of the query by the view volume. With occlusion: that of OcclusionOptions::list_occluded, if it was asked for.
+    [[nodiscard]] std::size_t inside_count() const { return hides_ ? seen_inside_count() : set_.inside_count(); }
+    [[nodiscard]] std::span<const cull::Verdict> verdicts() const { return hides_ ? seen_verdicts() : set_.verdicts(); }
+    // Of the query by the view volume. With occlusion: that of OcclusionOptions::list_occluded or of tree order, if
+    // either was asked for.
     [[nodiscard]] const cull::Statistics& statistics() const { return set_.statistics(); }
     [[nodiscard]] ObjectRef ref(std::uint32_t id) const { return {{id, names_->generations[id]}, names_->users[id]}; }
 
@@ -76,7 +75,9 @@ class VisibleObjects {
 
   private:
     friend class World;
-    [[nodiscard]] const occlude::VisibleSet& seen() const;
+    [[nodiscard]] std::span<const std::uint32_t> seen_ids() const;  // not hidden
+    [[nodiscard]] std::size_t seen_inside_count() const;
+    [[nodiscard]] std::span<const cull::Verdict> seen_verdicts() const;
     cull::VisibleSet set_;
     world::OccludedViewOwner occluded_;
     ResetOnMove<bool> hides_;
@@ -109,11 +110,12 @@ class VisibleInViews {
   private:
     friend class World;
     void forget_ids();
-    void list_ascending(std::size_t objects);  // ids_ and masks_ from set_, or from each_
-    cull::ManyVisible set_;                    // of views that are answered in one walk
-    Vector<VisibleObjects> each_;              // of views that are not: at least view_count_
-    Vector<std::uint32_t> ids_, masks_;        // masks by object: 0 but for those in ids_
-    Vector<std::uint64_t> bits_;               // by object, while ids are put in order
+    void add(std::uint32_t id, std::uint32_t views);
+    void list_ascending();               // ids_ from bits_
+    cull::ManyVisible set_;              // of views that are answered in one walk
+    Vector<VisibleObjects> each_;        // of views that are not: at least view_count_
+    Vector<std::uint32_t> ids_, masks_;  // masks by object: 0 but for those in ids_
+    Vector<std::uint64_t> bits_;         // by object, while ids are put in order
     ResetOnMove<std::size_t> view_count_;
     ResetOnMove<bool> one_walk_, listed_;
     const world::ObjectNames* names_ = nullptr;

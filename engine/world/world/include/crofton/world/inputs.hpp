@@ -28,8 +28,9 @@ inline constexpr std::uint32_t kNoIndex = ~std::uint32_t{0};
 // Indices are dense: below the largest number of things that lived at once, so that they may index the caller's own
 // arrays. An object's index is free again after the next update; those removed since the last one count as well. Nodes
 // share their indices with the objects that have a transform or no node. A handle whose thing has been removed is
-// stale: calls that take it fail with ErrorCode::stale_handle. Generations begin at 1, so {0, 0} is no one's handle,
-// and come back after 2^32 - 1 removals of one index.
+// stale: calls that take it fail with ErrorCode::stale_handle. So do calls that are given a handle of another World:
+// generations begin elsewhere in each World of the process, 1 in the first. They are never 0, so {0, 0} is no one's
+// handle. Generations come back after 2^32 - 1 removals of one index; those of n Worlds lie at least 2^32 / 3 n apart.
 template <class Tag>
 struct Handle {
     std::uint32_t index = kNoIndex;
@@ -193,7 +194,7 @@ struct ViewRequest {
 
     std::uint32_t layers = ~0u;  // lists objects that share a layer with these
     // If set, objects that others hide are left out: never one that is seen (docs/occlude.md). An object hides with its
-    // mesh's occluders if the view draws it: shown, in one of `layers`, within `limits`. Not with ResultOrder::tree.
+    // mesh's occluders if the view draws it: shown, in one of `layers`, within `limits`.
     std::optional<OcclusionOptions> occlusion = {};
     // Leaves out what is too small or too far. The caller's, alive for the call.
     const cull::DrawLimits* limits = nullptr;

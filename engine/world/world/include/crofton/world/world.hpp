@@ -134,23 +134,27 @@ class World {
     // For overlays and measurements: the tree of what rests. Items are the objects' indices.
     [[nodiscard]] const boxtree::BoxTree& tree() const;
 
-    // Lists what a view sees, by the objects' boxes: exactly as the request's mode says. May be called from any number
-    // of threads at once, each with its own `visible`. The same bits for any executor. Allocates nothing once `visible`
-    // has held as many objects. Errors name what cannot be obeyed: none or several of camera, matrix and volume; a
-    // camera or matrix that is not valid; a volume of more than 12 planes; occlusion with a volume or with tree order;
-    // a depth buffer's size out of its range.
+    // Lists what a view sees, by the objects' boxes: exactly as the request's mode says.
+    //
+    // May be called from any number of threads at once, each with its own `visible`. Gives the same bits for any
+    // executor. Allocates nothing once `visible` has held as many objects. Tree order with occlusion costs a second
+    // query. Errors name what cannot be obeyed: no camera, matrix or volume, or two that contradict each other; a
+    // camera or matrix that is not valid; a volume of more than 12 planes; occlusion without an eye; a depth buffer's
+    // size out of its range.
     Result<void> view(const ViewRequest& request, VisibleObjects& visible,
                       Executor& executor = serial_executor()) const;
-    // The same for up to 32 views: each object once, with a mask of the views that see it. Views without occlusion and
-    // candidates, with equal limits and mode, are answered in one walk through the tree. Further errors, whose item is
-    // the place among the requests: more than 32 views; views of different orders; tree order where the views are not
-    // answered in one walk.
+    // The same for up to 32 views: each object once, with a mask of the views that see it.
+    //
+    // Views without occlusion and candidates, with equal limits and mode, are answered in one walk through the tree;
+    // others one by one, shared among the executor's threads. Further errors, whose item is the place among the
+    // requests: more than 32 views; views of different orders.
     Result<void> view(std::span<const ViewRequest> requests, VisibleInViews& visible,
                       Executor& executor = serial_executor()) const;
     // Of a view with occlusion, before the next update: which occluders hide an object (none where it is not hidden).
-    // Also which were drawn, those worth most first. The first draws all of them again, and allocates.
+    // Also which were drawn, those worth most first. The first draws all of them again, and allocates. Errors of both:
+    // invalid_argument where `visible` is of another World.
     Result<void> hidden_by(ObjectHandle object, const VisibleObjects& visible, Vector<OccluderRef>& occluders) const;
-    void drawn_occluders(const VisibleObjects& visible, Vector<OccluderRef>& occluders) const;
+    Result<void> drawn_occluders(const VisibleObjects& visible, Vector<OccluderRef>& occluders) const;
 
     // Triangles of meshes, balls and boxes, whichever an object has. Objects removed since the last update are in none
     // of the answers.
@@ -194,6 +198,8 @@ class World {
     [[nodiscard]] std::span<const BodyContact> body_contacts() const;
 
   private:
+    [[nodiscard]] Result<void> view_each(std::span<const ViewRequest> requests, VisibleInViews& visible,
+                                         Executor& executor) const;
     struct State;
     Owner<State> state_;
 };
