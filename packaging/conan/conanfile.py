@@ -13,7 +13,7 @@ required_conan_version = ">=2.0"
 
 class CroftonConan(ConanFile):
     name = "crofton"
-    version = "0.2.0"
+    version = "0.3.0"
     description = "Exact culling, collision detection and bounds for games, chosen by integral geometry"
     license = "MIT"
     topics = ("culling", "collision-detection", "geometry", "games")

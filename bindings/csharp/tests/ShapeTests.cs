@@ -101,6 +101,6 @@ static class ShapeTests {
         Expect.Sequence(new string[0], declared.Except(exported).ToArray());
     }
     [Test] static void VersionsAgree() {
-        Expect.Equal("0.2.0", Library.Version);
+        Expect.Equal("0.3.0", Library.Version);
     }
 }
