@@ -71,18 +71,26 @@ Feature reference_feature(const Feature& self, const std::uint16_t* vertex, cons
 
 }  // namespace
 
-// An edge without length, of a face of a flat box, bounds the face along its length.
+// Short edges are taken from the body's own numbers. They may turn inward by the unevenness of a hull's face, so that
+// they bound the polygon from farther out, where all of its corners are inside.
 void find_sides(const Patch& polygon, const glm::dvec3& direction, Prism& sides) {
     sides.count = polygon.count;
+    double longest2 = 0.0, farthest2 = 0.0;
+    for (int k = 0; k < polygon.count; ++k) {
+        const glm::dvec3 way = polygon.point[k] - polygon.point[0];
+        longest2 = std::max(longest2, glm::dot(way, way));
+        farthest2 = std::max(farthest2, glm::dot(polygon.point[k], polygon.point[k]));
+    }
     for (int k = 0; k < polygon.count; ++k) {
         const glm::dvec3 &p = polygon.point[k], &q = polygon.point[k + 1 < polygon.count ? k + 1 : 0];
-        sides.outward[k] = glm::cross(q - p, direction);
-        if (p == q) {
-            glm::dvec3 middle(0.0);
-            for (int i = 0; i < polygon.count; ++i) middle += polygon.point[i] / static_cast<double>(polygon.count);
-            sides.outward[k] = p - middle;
-        }
+        glm::dvec3 edge = q - p;
+        const double length2 = glm::dot(edge, edge);
+        const bool is_short = length2 <= 1e-4 * longest2;
+        if (length2 <= 1e-12 * farthest2) edge = exact_edge(polygon, k);
+        sides.outward[k] = glm::cross(edge, direction);
         sides.level[k] = glm::dot(sides.outward[k], p);
+        for (int i = 0; is_short && i < polygon.count; ++i)
+            sides.level[k] = std::max(sides.level[k], glm::dot(sides.outward[k], polygon.point[i]));
     }
 }
 

@@ -39,6 +39,17 @@ Nearest core_distance(const Pair& pair, const PairCache* cache, double near, dou
     return found;
 }
 
+// A distance is right to the square of what its points are off.
+void align_points(const Pair& pair, const glm::dvec3& normal, Nearest& found) {
+    const glm::dvec3 way = witness(found.simplex);
+    const double off = glm::length(way - glm::dot(way, normal) * normal);
+    if (!pair.has_polytope_cores() || !(off > 1e-10 * pair.size)) return;
+    const ExactNearest exact = exact_nearest(pair, found.simplex, true);
+    if (exact.meet) return;
+    found.simplex = exact.simplex;
+    found.normal = exact.normal;
+}
+
 namespace {
 
 // The deepest points: with b moved out of a along the normal and a little farther they are the nearest ones. If those
@@ -49,14 +60,15 @@ void find_face(const Pair& pair, Depth& depth) {
         const glm::dvec3 shift = (depth.upper + beyond) * depth.normal;
         RigidTransform moved = pair.pose_b;
         moved.translation += shift;
-        const Nearest apart = core_distance(Pair({pair.a, pair.pose_a}, {pair.b, moved}), nullptr, 0.0,
-                                            std::numeric_limits<double>::max());
+        const Pair moved_pair({pair.a, pair.pose_a}, {pair.b, moved});
+        Nearest apart = core_distance(moved_pair, nullptr, 0.0, std::numeric_limits<double>::max());
+        if (apart.meeting == Meeting::apart) align_points(moved_pair, depth.normal, apart);
         depth.face = apart.simplex;
         for (int i = 0; i < depth.face.count; ++i) {
             depth.face.corner[i].on_b -= shift;
             depth.face.corner[i].w += shift;
         }
-        const glm::dvec3 way = shift + witness(apart.simplex);
+        const glm::dvec3 way = witness(depth.face);
         const double length = glm::length(way);
         if (!(length > 0.0)) break;
         const double upper = pair.extent(way / length) + pair.error;

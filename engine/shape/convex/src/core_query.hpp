@@ -10,6 +10,10 @@ namespace crofton::convex {
 // search was cut short by `near` or `far` the bounds are closer than 1e-10 of the size.
 [[nodiscard]] Nearest core_distance(const Pair& pair, const PairCache* cache, double near, double far);
 
+// Of cores apart: finds the nearest points, and the normal, anew in exact arithmetic where the way between them is off
+// `normal` by more than 1e-10 of the size. For polytopes.
+void align_points(const Pair& pair, const glm::dvec3& normal, Nearest& found);
+
 // What `distance` tells of it.
 [[nodiscard]] Distance distance_of(const Pair& pair, const Nearest& core);
 

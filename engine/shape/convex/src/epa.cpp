@@ -209,8 +209,11 @@ void Polytope::finish(int nearest) {
         least = std::min(least, s.weight[k]);
         sum += s.weight[k];
     }
-    result_.has_face = result_.normal == face.normal && least >= -1e-9 * sum;
     for (int k = 0; k < 3; ++k) s.weight[k] = std::max(0.0, s.weight[k] / sum);
+    // The weights of a sliver are rounding: they need not give the foot.
+    const glm::dvec3 off = witness(s) - foot;
+    result_.has_face =
+        result_.normal == face.normal && least >= -1e-9 * sum && glm::dot(off, off) <= 1e-22 * pair_.size * pair_.size;
 }
 
 }  // namespace

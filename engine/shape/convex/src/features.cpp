@@ -25,14 +25,27 @@ void add(Patch& patch, const glm::dvec3& point, int vertex, int edge) {
     patch.edge[patch.count++] = static_cast<std::uint16_t>(edge);
 }
 
-void disc(const Body& body, const Frame& place, bool upper, Patch& patch) {
+void add_only(Patch& patch, const glm::dvec3& point, int vertex, int edge) {
+    patch.self = {FeatureKind::vertex, static_cast<std::uint16_t>(vertex)};
+    add(patch, point, vertex, edge);
+}
+
+// Of the rims of a cylinder or cone: 0 to 7 below, 8 to 15 above.
+glm::dvec3 rim_point(const Body& body, int vertex) {
     const double radius = body.half_extents().x, height = body.half_extents().y;
+    const double(&at)[2] = kEighths[vertex & 7];
+    return {radius * at[0], vertex < 8 ? -height : height, radius * at[1]};
+}
+
+void disc(const Body& body, const Frame& place, bool upper, Patch& patch) {
+    const double height = body.half_extents().y;
+    if (body.half_extents().x == 0.0)
+        return add_only(patch, place({0.0, upper ? height : -height, 0.0}), upper ? 17 : 16, 16);
     patch.self = {FeatureKind::face, static_cast<std::uint16_t>(upper ? 1 : 0)};
     patch.normal = upper ? place.rotation[1] : -place.rotation[1];
     for (int k = 0; k < 8; ++k) {
-        const int at = upper ? (8 - k) % 8 : k;  // from x towards z is clockwise seen from above
-        const glm::dvec3 p(radius * kEighths[at][0], upper ? height : -height, radius * kEighths[at][1]);
-        add(patch, place(p), (upper ? 8 : 0) + at, (upper ? 8 : 0) + (upper ? (at + 7) % 8 : at));
+        const int at = (upper ? 8 : 0) + (upper ? (8 - k) % 8 : k);  // from x towards z is clockwise seen from above
+        add(patch, place(rim_point(body, at)), at, upper ? 8 + (at + 7) % 8 : at);
     }
 }
 
@@ -45,12 +58,13 @@ void round_patch(const Body& body, const Frame& place, const glm::dvec3& local, 
     const double length = std::sqrt(4.0 * height * height + radius * radius);
     const double side = !cone ? across : length > 0.0 ? (2.0 * height * across + radius * local.y) / length : 0.0;
     const double cap = cone ? -local.y : std::abs(local.y);
-    if (cap >= side || !(across > 0.0)) {
-        if (!cone || local.y < 0.0) return disc(body, place, local.y > 0.0, patch);
-        patch.self = {FeatureKind::vertex, 17};
-        return add(patch, place({0.0, height, 0.0}), 17, 16);
+    const bool flat = height == 0.0;  // a disc, seen from either side
+    if (flat ? std::abs(local.y) >= across : cap >= side || !(across > 0.0)) {
+        if (!cone || flat || local.y < 0.0) return disc(body, place, local.y > 0.0, patch);
+        return add_only(patch, place({0.0, height, 0.0}), 17, 16);
     }
     const glm::dvec3 rim(radius * (local.x / across), 0.0, radius * (local.z / across));
+    if (flat) return add_only(patch, place(rim), 16, 16);
     patch.self = {FeatureKind::edge, 16};
     add(patch, place({rim.x, -height, rim.z}), 16, 16);
     add(patch, place(cone ? glm::dvec3(0.0, height, 0.0) : glm::dvec3(rim.x, height, rim.z)), 17, 16);
@@ -67,10 +81,16 @@ glm::dvec3 triangle_normal(const glm::dmat3& rotation, const Triangle& corners) 
     return n == glm::dvec3(0.0) ? n : turned_normal(rotation, n);
 }
 
-bool is_narrow(const Patch& triangle) {
-    const glm::dvec3 *p = triangle.point, u = p[1] - p[0], v = p[2] - p[1], w = p[0] - p[2];
-    const double longest2 = std::max({glm::dot(u, u), glm::dot(v, v), glm::dot(w, w)});
-    return !(glm::length(glm::cross(u, w)) > 1e-6 * longest2);
+bool is_narrow(const Patch& polygon) {
+    glm::dvec3 area(0.0), before = polygon.point[1] - polygon.point[0];
+    double longest2 = glm::dot(before, before);
+    for (int k = 2; k < polygon.count; ++k) {
+        const glm::dvec3 way = polygon.point[k] - polygon.point[0], side = way - before;
+        area += glm::cross(before, way);
+        longest2 = std::max({longest2, glm::dot(way, way), glm::dot(side, side)});
+        before = way;
+    }
+    return !(glm::length(area) > 1e-6 * longest2);
 }
 
 int face_along(const Body& body, const glm::dvec3& d) {
@@ -91,12 +111,22 @@ void patch_of_face(const Placed& placed, int face, const glm::dvec3& origin, Pat
     const Body& body = placed.body;
     const Frame place{placed.pose.rotation, placed.pose.translation - origin};
     patch.count = 0;
+    patch.of = &placed;
     patch.self = {FeatureKind::face, static_cast<std::uint16_t>(face)};
     if (body.kind() == Kind::box) {
         const auto& corners = kBoxFaces[face];
         glm::dvec3 outward(0.0);
         outward[face / 2] = (face & 1) != 0 ? 1.0 : -1.0;
         patch.normal = turned_normal(place.rotation, outward);
+        const glm::dvec3& half = body.half_extents();
+        const int u = (face / 2 + 1) % 3, v = (face / 2 + 2) % 3;
+        if (half[u] == 0.0 && half[v] == 0.0) return add_only(patch, place(body.vertex(corners[0])), corners[0], 0);
+        if (half[u] == 0.0 || half[v] == 0.0) {
+            const int low = corners[0], high = low | 1 << (half[u] > 0.0 ? u : v);
+            patch.self = {FeatureKind::edge, box_edge(low, high)};
+            add(patch, place(body.vertex(low)), low, patch.self.index);
+            return add(patch, place(body.vertex(high)), high, patch.self.index);
+        }
         for (int k = 0; k < 4; ++k)
             add(patch, place(body.vertex(corners[k])), corners[k], box_edge(corners[k], corners[(k + 1) % 4]));
     } else if (body.kind() == Kind::hull) {
@@ -104,6 +134,7 @@ void patch_of_face(const Placed& placed, int face, const glm::dvec3& origin, Pat
         patch.normal = turned_normal(place.rotation, body.hull()->face_normal(face));
         for (std::size_t k = 0; k < vertices.size(); ++k)
             add(patch, place(body.vertex(vertices[k])), vertices[k], edges[k]);
+        if (is_narrow(patch)) patch.normal = glm::dvec3(0.0);
     } else {
         for (int k = 0; k < 3; ++k) add(patch, place(body.vertex(k)), k, k);
         patch.normal = is_narrow(patch)
@@ -117,6 +148,7 @@ void patch_along(const Placed& placed, const glm::dvec3& direction, const glm::d
     const glm::dvec3 local = Pair::local(placed.pose.rotation, direction);
     if (const int face = face_along(body, local); face >= 0) {
         patch_of_face(placed, face, origin, patch);
+        if (patch.count < 3) patch.normal = direction;
         if (body.vertex_count() == 3 && glm::dot(patch.normal, direction) < 0.0) {  // from behind
             std::swap(patch.point[1], patch.point[2]);
             std::swap(patch.vertex[1], patch.vertex[2]);
@@ -127,10 +159,23 @@ void patch_along(const Placed& placed, const glm::dvec3& direction, const glm::d
     }
     const Frame place{placed.pose.rotation, placed.pose.translation - origin};
     patch.count = 0;
+    patch.of = &placed;
     patch.normal = direction;
     if (!body.has_polytope_core()) return round_patch(body, place, local, patch);
+    if (body.vertex_count() == 2 && body.vertex(0) == body.vertex(1))
+        return add_only(patch, place(body.vertex(0)), local.y > 0.0 ? 1 : 0, 0);
     for (int k = 0; k < body.vertex_count(); ++k) add(patch, place(body.vertex(k)), k, 0);
     patch.self = {patch.count == 1 ? FeatureKind::vertex : FeatureKind::edge, 0};
+}
+
+glm::dvec3 exact_edge(const Patch& patch, int k) {
+    const int next = k + 1 < patch.count ? k + 1 : 0;
+    if (patch.of == nullptr) return patch.point[next] - patch.point[k];
+    const Body& body = patch.of->body;
+    const auto local = [&](int i) {
+        return body.has_polytope_core() ? body.vertex(patch.vertex[i]) : rim_point(body, patch.vertex[i]);
+    };
+    return patch.of->pose.rotation * (local(next) - local(k));
 }
 
 Feature feature_of(const Body& body, const int* vertices, int count) {

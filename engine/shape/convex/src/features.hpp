@@ -11,16 +11,21 @@ inline constexpr int kMaxPatch = kMaxHullVertices;
 // the next.
 struct Patch {
     int count = 0;
-    glm::dvec3 normal{0.0};  // unit, outward; of segments and points the direction asked for; 0 of narrow triangles
+    glm::dvec3 normal{0.0};  // unit, outward; of segments and points the direction asked for; 0 of narrow polygons
     Feature self;            // the face, or of segments the edge, or of points the vertex
     glm::dvec3 point[kMaxPatch];
     std::uint16_t vertex[kMaxPatch], edge[kMaxPatch];
+    const Placed* of = nullptr;  // none: the points are all that is known
 };
+
+// From point k to the next, from the numbers of the body: of a short edge the difference of the points is rounding.
+[[nodiscard]] glm::dvec3 exact_edge(const Patch& patch, int k);
 
 // Of the body's core; the face most nearly across `direction` (unit, in the world).
 void patch_along(const Placed& placed, const glm::dvec3& direction, const glm::dvec3& origin, Patch& patch);
 
-// The patch of one face of a hull, box or triangle.
+// The patch of one face of a hull, box or triangle. A box's face without width is a segment or a point, with the normal
+// of the face.
 void patch_of_face(const Placed& placed, int face, const glm::dvec3& origin, Patch& patch);
 
 [[nodiscard]] inline bool has_same_id(const ContactPoint& p, const ContactPoint& q) {
@@ -43,9 +48,9 @@ inline constexpr std::uint8_t kBoxFaces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0,
 
 // The unit normal of a body's image under a rotation that is rigid to 1e-6 alone: the cofactors turn normals.
 [[nodiscard]] glm::dvec3 turned_normal(const glm::dmat3& rotation, const glm::dvec3& normal);
-// Whether a triangle's sides are too nearly parallel to clip another patch by them: a millionth of its length wide.
+// Whether a polygon's sides are too nearly parallel to clip another patch by them: a millionth of its length wide.
 // Where they cross would be off along them by rounding over that angle. Its patch has the normal 0.
-[[nodiscard]] bool is_narrow(const Patch& triangle);
+[[nodiscard]] bool is_narrow(const Patch& polygon);
 // Of a triangle's image, from its corners in the body's frame, which are floats: rounded world coordinates would tilt
 // that of a narrow one. 0 where the corners lie on a line.
 [[nodiscard]] glm::dvec3 triangle_normal(const glm::dmat3& rotation, const Triangle& corners);

@@ -12,6 +12,28 @@ bool nearly_parallel(const Patch& a, const Patch& b) {
     return glm::dot(n, n) <= 1e-3 * glm::dot(u, u) * glm::dot(v, v);
 }
 
+bool is_sharp(const Patch& segment) {
+    const Body& body = segment.of->body;
+    return body.radius() == 0.0 && (body.has_polytope_core() || body.half_extents().x == 0.0);
+}
+
+// Round sides still touch beside each other. A segment without width touches what is opposite to it alone.
+bool are_opposite(const Clipped& clipped, const glm::dvec3& normal, double length) {
+    for (int i = 0; i < clipped.count; ++i) {
+        const glm::dvec3 way = clipped.point[i].on_incident - clipped.point[i].on_reference;
+        if (glm::length(way - glm::dot(way, normal) * normal) > 1e-9 * length) return false;
+    }
+    return true;
+}
+
+void gather_segments(const Patch& a, const Patch& b, const glm::dvec3& normal, Clipped& clipped, Gatherer& gatherer) {
+    if (!nearly_parallel(a, b)) return;
+    clip_segments(a, b, clipped);
+    const double length = glm::length(a.point[1] - a.point[0]) + glm::length(b.point[1] - b.point[0]);
+    if ((is_sharp(a) || is_sharp(b)) && !are_opposite(clipped, normal, length)) return;
+    gatherer.add(clipped, true);
+}
+
 }  // namespace
 
 void Gatherer::add(const glm::dvec3& core_a, const glm::dvec3& core_b, const Feature& on_a, const Feature& on_b) {
@@ -54,7 +76,7 @@ void Gatherer::add_deepest() {
 int gather_patches(const Patch& a, const Patch& b, const glm::dvec3& normal, Clipped& clipped, Gatherer& gatherer) {
     if (a.count < 2 || b.count < 2) return 0;
     if (a.count == 2 && b.count == 2) {
-        if (nearly_parallel(a, b)) clip_segments(a, b, clipped), gatherer.add(clipped, true);
+        gather_segments(a, b, normal, clipped, gatherer);
         return 0;
     }
     const double along_a = a.count > 2 ? glm::dot(a.normal, normal) : -1.0;

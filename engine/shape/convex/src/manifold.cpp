@@ -22,6 +22,12 @@ Gathering gathering_of(const Placed& a, const Placed& b, double margin) {
     return {a.pose.translation, a.body.radius(), b.body.radius(), margin};
 }
 
+// The faces of other boxes are segments or points.
+bool is_solid_box(const Body& body) {
+    const glm::dvec3& half = body.half_extents();
+    return body.kind() == Kind::box && half.x > 0.0 && half.y > 0.0 && half.z > 0.0;
+}
+
 // A point's id in one number that is not 0. Features of convex bodies have indices below 1024.
 std::uint32_t number_of(const ContactPoint& p) {
     const auto feature = [](const Feature& f) { return static_cast<std::uint32_t>(f.kind) << 10 | f.index; };
@@ -124,7 +130,7 @@ Manifold contact_manifold(const Placed& a, const Placed& b, const ManifoldOption
     if (is_half_space(a)) return is_half_space(b) ? nothing() : on_half_space(a, b, options, cache);
     if (is_half_space(b)) return flipped(on_half_space(b, a, options, cache));
     const Pair pair(a, b);
-    if (a.body.kind() == Kind::box && b.body.kind() == Kind::box) {
+    if (is_solid_box(a.body) && is_solid_box(b.body)) {
         Touch touch;
         GatheredPoints points;
         const Warm answer = touch_of_boxes(a, b, pair, options.margin, cache, touch, points);

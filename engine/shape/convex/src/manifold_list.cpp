@@ -3,55 +3,82 @@
 
 #include <algorithm>
 #include <glm/geometric.hpp>
+#include <numeric>
 
 namespace crofton::convex {
 namespace {
 
-constexpr double kSameNormal = 0.9962;  // 5 degrees
+constexpr double kSameNormal = 0.99619469809174555;  // the cosine of 5 degrees
+constexpr std::uint32_t kUnnumbered = ~std::uint32_t{0};
 
 }  // namespace
 
 void ManifoldList::clear() {
-    directions_.clear();
+    parts_.clear();
     points_.clear();
-    direction_of_.clear();
 }
 
 void ManifoldList::add(const glm::dvec3& normal, std::span<const ContactPoint> points) {
     if (points.empty()) return;
     double depth = points[0].depth;
     for (const ContactPoint& p : points) depth = std::max(depth, p.depth);
-    std::size_t at = 0;
-    while (at < directions_.size() && glm::dot(directions_[at].normal, normal) < kSameNormal) ++at;
-    if (at == directions_.size()) directions_.push_back({normal, depth, 0});
-    Direction& direction = directions_[at];
-    if (depth > direction.depth) {
-        direction.normal = normal;
-        direction.depth = depth;
+    parts_.push_back(
+        {normal, depth, static_cast<std::uint32_t>(points_.size()), static_cast<std::uint32_t>(points.size()), 0});
+    points_.insert(points_.end(), points.begin(), points.end());
+}
+
+void ManifoldList::assign_manifolds() {
+    normals_.clear();
+    by_depth_.resize(parts_.size());
+    std::iota(by_depth_.begin(), by_depth_.end(), 0u);
+    std::sort(by_depth_.begin(), by_depth_.end(), [&](std::uint32_t i, std::uint32_t j) {
+        return parts_[i].depth != parts_[j].depth ? parts_[i].depth > parts_[j].depth : i < j;
+    });
+    for (const std::uint32_t i : by_depth_) {
+        Touching& part = parts_[i];
+        double most = kSameNormal;
+        part.manifold = kUnnumbered;
+        for (std::size_t k = 0; k < normals_.size(); ++k) {
+            const double agreement = glm::dot(normals_[k], part.normal);
+            if (agreement < most || (agreement == most && part.manifold != kUnnumbered)) continue;
+            most = agreement;
+            part.manifold = static_cast<std::uint32_t>(k);
+        }
+        if (part.manifold != kUnnumbered) continue;
+        part.manifold = static_cast<std::uint32_t>(normals_.size());
+        normals_.push_back(part.normal);
     }
-    direction.count += static_cast<std::uint32_t>(points.size());
-    for (const ContactPoint& p : points) {
-        points_.push_back(p);
-        direction_of_.push_back(static_cast<std::uint32_t>(at));
+}
+
+// In the order in which their first parts came, which changes less from frame to frame than depths do.
+void ManifoldList::number_by_first_part(std::size_t count) {
+    number_.assign(count, kUnnumbered);
+    std::uint32_t next = 0;
+    for (Touching& part : parts_) {
+        std::uint32_t& number = number_[part.manifold];
+        if (number == kUnnumbered) number = next++;
+        part.manifold = number;
     }
 }
 
 void ManifoldList::finish(int most, Vector<Manifold>& manifolds) {
-    manifolds.resize(directions_.size());
-    first_.clear();
-    std::uint32_t sum = 0;
-    for (const Direction& direction : directions_) {
-        first_.push_back(sum);
-        sum += direction.count;
+    assign_manifolds();
+    const std::size_t count = normals_.size();
+    number_by_first_part(count);
+    manifolds.resize(count);
+    for (std::size_t k = 0; k < count; ++k) manifolds[number_[k]].normal = normals_[k];
+    first_.assign(count + 1, 0);
+    for (const Touching& part : parts_) first_[part.manifold + std::size_t{1}] += part.count;
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    sorted_.resize(points_.size());
+    for (const Touching& part : parts_) {
+        std::copy_n(points_.begin() + part.first, part.count, sorted_.begin() + first_[part.manifold]);
+        first_[part.manifold] += part.count;
     }
-    const bool one = directions_.size() == 1;  // sorted already
-    sorted_.resize(one ? 0 : points_.size());
-    for (std::size_t i = 0; !one && i < points_.size(); ++i) sorted_[first_[direction_of_[i]]++] = points_[i];
     std::uint32_t begin = 0;
-    for (std::size_t k = 0; k < directions_.size(); ++k) {
-        manifolds[k].normal = directions_[k].normal;
-        thin_out(manifolds[k], (one ? points_ : sorted_).data() + begin, static_cast<int>(directions_[k].count), most);
-        begin += directions_[k].count;
+    for (std::size_t k = 0; k < count; ++k) {  // first_ is where each ends, by now
+        thin_out(manifolds[k], sorted_.data() + begin, static_cast<int>(first_[k] - begin), most);
+        begin = first_[k];
     }
 }
 

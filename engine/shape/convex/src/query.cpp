@@ -151,11 +151,12 @@ Penetration penetration(const Placed& a, const Placed& b, PairCache* cache) {
     Penetration p;
     if (!finite_pair(pair)) return p;
     const double ra = a.body.radius(), rb = b.body.radius(), rounding = ra + rb;
-    const Nearest core = core_distance(pair, cache, 0.0, rounding);
+    Nearest core = core_distance(pair, cache, 0.0, rounding);
     remember(core, cache);
     CorePoints points;
     const double error_bound = 0x1p-52 * rounding;
     if (core.meeting == Meeting::apart) {
+        if (core.lower <= rounding) align_points(pair, core.normal, core);
         points = core_points(core.simplex);
         const double between = glm::length(points.on_a - points.on_b);
         if (rounding == 0.0 || core.lower > rounding || between > rounding) return p;

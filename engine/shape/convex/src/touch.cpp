@@ -102,10 +102,11 @@ double unevenness(const Patch& face, const glm::dvec3& direction) {
 bool find_touch(const Pair& pair, double margin, PairCache* cache, Touch& touch) {
     if (!(pair.size < std::numeric_limits<double>::infinity())) return false;
     const double rounding = pair.a.radius() + pair.b.radius();
-    const Nearest core = core_distance(pair, cache, 0.0, rounding + margin);
+    Nearest core = core_distance(pair, cache, 0.0, rounding + margin);
     remember(core, cache);
     if (core.meeting == Meeting::apart) {
         if (core.lower > rounding + margin) return false;
+        if (rounding + margin > 0.0) align_points(pair, core.normal, core);
         set_points(core.simplex, touch);
         touch.depth = rounding - glm::length(touch.on_a - touch.on_b);
         touch.normal = core.normal;

@@ -145,15 +145,16 @@ class Manifolds {
     std::unique_ptr<Scratch> scratch_;
 };
 
-// Replaces what `found` has. Manifolds of parts whose normals agree within 5 degrees are one, with the normal of its
-// deepest point. Each depth is along its own part's normal. Two convex bodies: one manifold, or none. On the edges and
-// vertices of a surface the internal-edge rule holds. Where a contact's normal would point into the surface beside it,
-// the triangle pushes along its face's normal. So what slides over a floor of many triangles meets the floor alone.
-// Where the rule would leave a body that meets the surface without any point, it does not hold. Between triangles of
-// two surfaces it is the second's rule. Neighbours are triangles of the same body that share vertices of equal
-// position. Surfaces with Sides::front push to the front, and only bodies whose center is there (of mass for hulls;
-// else the middle of the bounds). The cache serves two convex bodies. No allocation once `found` has seen as many
-// parts.
+// Replaces what `found` has. Parts whose normals agree within 5 degrees share a manifold. The deepest part comes first:
+// each next part joins the manifold whose normal agrees best, within 5 degrees, else it begins its own. So a point's
+// own normal is within 5 degrees of its manifold's, which is that of its deepest point, and no two manifolds agree as
+// well. Each depth is along its own part's normal. Two convex bodies: one manifold, or none. On the edges and vertices
+// of a surface the internal-edge rule holds. Where a contact's normal would point into the surface beside it, the
+// triangle pushes along its face's normal. So what slides over a floor of many triangles meets the floor alone. Where
+// the rule would leave a body that meets the surface without any point, it does not hold. Between triangles of two
+// surfaces it is the second's rule. Neighbours are triangles of the same body that share vertices of equal position.
+// Surfaces with Sides::front push to the front, and only bodies whose center is there (of mass for hulls; else the
+// middle of the bounds). The cache serves two convex bodies. No allocation once `found` has seen as many parts.
 void contact_manifolds(const Placed& a, const Placed& b, const ManifoldOptions& options, Manifolds& found,
                        PairCache* cache = nullptr);
 
