@@ -247,4 +247,70 @@ TEST_SUITE("collide/shapes") {
         CHECK_FALSE(intersects(box, Capsule{{-5.0, 1.5, 0.0}, {5.0, 1.5, 0.0}, 0.499999}));
         CHECK_FALSE(intersects(box, Capsule{{-5.0, 3.5, 0.0}, {0.0, 0.0, 9.0}, 0.5}));
     }
+
+    TEST_CASE("a ball whose center lies in a box leaves it by the depth along the normal, and by no shorter way") {
+        std::mt19937_64 random(31);
+        std::uniform_real_distribution<double> unit(0.0, 1.0);
+        for (int i = 0; i < 20000; ++i) {
+            Obb box = random_box(random, i % 3 == 0 ? 1e6 : 1.0);
+            if (i % 7 == 0) box.half_extents.y = 1e-4f;
+            // Anywhere within, beside a face, an edge or a corner by one in 10^0 to 10^15, and on them.
+            glm::dvec3 center = box.center;
+            for (int k = 0; k < 3; ++k) {
+                double share = 2.0 * unit(random) - 1.0;
+                if (random() % 3 == 0) share = std::copysign(1.0 - std::pow(10.0, -15.0 * unit(random)), share);
+                if (random() % 40 == 0) share = std::copysign(1.0, share);
+                if (random() % 40 == 0) share = 0.0;
+                center += share * double(box.half_extents[k]) * glm::dvec3(box.axes[k]);
+            }
+            const Sphere ball{center, unit(random)};
+            const double size = glm::length(glm::dvec3(box.half_extents)) + ball.radius,
+                         slack = 1e-12 * size + 4e-13 * glm::length(box.center);
+            CAPTURE(i);
+            const Manifold m = contact_manifold(box, ball);
+            if (!intersects(box, ball)) {
+                CHECK(m.count == 0);
+                continue;
+            }
+            REQUIRE(m.count == 1);
+            CHECK(m.points[0].depth == m.depth);
+            CHECK(glm::length(m.normal) == doctest::Approx(1.0).epsilon(1e-14));
+            CHECK(glm::distance(m.points[0].position, center - (ball.radius - 0.5 * m.depth) * m.normal) <= slack);
+            const auto meets = [&](const glm::dvec3& way) {
+                return intersects(box, Sphere{center + way, ball.radius});
+            };
+            CHECK_FALSE(meets((m.depth + slack) * m.normal));
+            if (m.depth <= slack) continue;
+            CHECK(meets((m.depth - slack) * m.normal));
+            for (int k = 0; k < 3; ++k)
+                for (const double side : {-1.0, 1.0})
+                    CHECK(meets(side * (m.depth - slack) *
+                                glm::normalize(
+                                    glm::cross(glm::dvec3(box.axes[(k + 1) % 3]), glm::dvec3(box.axes[(k + 2) % 3])))));
+            CHECK(meets((m.depth - slack) * glm::normalize(random_vector(random))));
+        }
+    }
+
+    TEST_CASE("a ball above a box's face, edge or corner touches at the nearest point of the box") {
+        std::mt19937_64 random(32);
+        std::uniform_real_distribution<double> unit(0.0, 1.0);
+        int touching = 0;
+        for (int i = 0; i < 20000; ++i) {
+            const Obb box = random_box(random);
+            const glm::dvec3 center = box.center + 1.7 * random_vector(random);
+            const Sphere ball{center, unit(random)};
+            // The least of all points of the box's surface, by descent along each face.
+            const Distance nearest = distance(box, Capsule{center, center, 0.0});
+            const Manifold m = contact_manifold(box, ball);
+            CHECK((m.count == 1) == intersects(box, ball));
+            if (m.count == 0 || !(nearest.distance > 1e-6)) continue;
+            const glm::dvec3 n = (center - nearest.on_a) / nearest.distance;
+            CHECK(glm::distance(m.normal, n) <= 1e-12 / nearest.distance);
+            CHECK(std::abs(m.depth - (ball.radius - nearest.distance)) <= 1e-12);
+            CHECK(glm::distance(m.points[0].position, center - (ball.radius - 0.5 * m.depth) * n) <=
+                  1e-12 / nearest.distance);
+            ++touching;
+        }
+        CHECK(touching > 3000);
+    }
 }

@@ -204,4 +204,58 @@ TEST_SUITE("convex/compound") {
             CHECK(std::abs(whole.time - alone.time) * 10.0 <= 5e-6);  // places are off by 2e-6
         }
     }
+
+    TEST_CASE("a compound far out answers as its child where the rounded product of the poses puts it") {
+        RandomBodies random(9);
+        const Body cube = Body::box({0.5f, 0.5f, 0.5f}).value();
+        int touching = 0;
+        for (int round = 0; round < 3000; ++round) {
+            const double far = std::pow(10.0, random.number(0, 12));
+            const bool nested = round % 3 == 0, turned = round % 2 == 0;
+            const CompoundChild child{cube, {turned ? random.rotation() : glm::dmat3(1.0), 0.7 * random.direction()}};
+            const Compound inner = Compound::build({&child, 1}).value();
+            const CompoundChild middle{Body::compound(inner), {glm::dmat3(1.0), 0.9 * random.direction()}};
+            const Compound compound = Compound::build({nested ? &middle : &child, 1}).value();
+            const Body whole = Body::compound(compound);
+            const RigidTransform pose{turned ? random.rotation() : glm::dmat3(1.0), far * random.direction()};
+            RigidTransform part = nested ? product(pose, middle.pose) : pose;
+            part = product(part, child.pose);
+            // Axes alike: the sum of the half extents away, or the next number beside it, along one axis.
+            RigidTransform other{glm::dmat3(1.0), part.translation};
+            const int k = round % 5 == 0 ? 1 : 0;
+            other.translation[k] += round % 7 == 0 ? -1.0 : 1.0;
+            if (round % 3 == 1) other.translation[k] = std::nextafter(other.translation[k], 1e300);
+            const Placed a{whole, pose}, alone{cube, part}, b{cube, other};
+            const bool meet = intersects(alone, b);
+            touching += meet;
+            CAPTURE(round);
+            CHECK(intersects(a, b) == meet);
+            CHECK(intersects(b, a) == meet);
+            const Distance d = distance(a, b), expected = distance(alone, b);
+            CHECK(d.distance == expected.distance);
+            CHECK(d.lower <= expected.upper);
+            CHECK(d.upper >= expected.lower);
+            CHECK(d.on_a == expected.on_a);
+            CHECK(d.on_b == expected.on_b);
+            CHECK(d.normal == expected.normal);
+            const Penetration p = penetration(a, b), alone_deep = penetration(alone, b);
+            CHECK(p.overlapping == meet);
+            CHECK(p.depth == alone_deep.depth);
+            CHECK(p.normal == alone_deep.normal);
+            CHECK(p.on_a == alone_deep.on_a);
+            CHECK(p.on_b == alone_deep.on_b);
+            Manifolds found;
+            contact_manifolds(a, b, {}, found);
+            const Manifold m = contact_manifold(alone, b);
+            CHECK(found.all().size() == (m.count > 0 ? 1 : 0));
+            CHECK(found.all().empty() != meet);
+            if (!found.all().empty()) CHECK(found.all()[0].count == m.count);
+            // Two compounds.
+            const CompoundChild at_home{cube, {}};
+            const Compound second = Compound::build({&at_home, 1}).value();
+            CHECK(intersects(a, {Body::compound(second), other}) == meet);
+        }
+        CHECK(touching > 500);
+        CHECK(touching < 2900);
+    }
 }

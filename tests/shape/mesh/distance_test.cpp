@@ -4,6 +4,7 @@
 #include <cmath>
 #include <crofton/geometry/closest_points.hpp>
 #include <crofton/mesh/mesh_query.hpp>
+#include <crofton/mesh/point_distance.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <random>
@@ -185,5 +186,61 @@ TEST_SUITE("mesh/distance") {
         for (const double limit : {0.0, -1.0, std::nan("")})
             CHECK(distance(a, a, {}, limit).distance == std::numeric_limits<double>::infinity());
         CHECK(distance(a, a, {}, 1e-200).distance == 0.0);
+    }
+
+    TEST_CASE("the nearest point of a mesh to a point is the least of all its triangles") {
+        std::mt19937_64 random(17);
+        for (int trial = 0; trial < 60; ++trial) {
+            TriangleMesh mesh = wavy_torus(1.0, 0.3, 0.2, 5 + trial % 8, 4 + trial % 5);
+            if (trial % 5 == 0) mesh = box_mesh({-0.7f, -0.7f, -1.9f}, {1.3f, 0.3f, 2.1f});
+            if (trial % 3 == 0)
+                for (glm::vec3& p : mesh.positions) p.y *= 1e-6f;  // slivers
+            const MeshTree tree = tree_of(mesh);
+            for (int i = 0; i < 200; ++i) {
+                glm::dvec3 point = std::pow(10.0, double(i % 7) - 3.0) * random_vector(random);
+                if (i % 4 == 0) point += vertex(mesh, random() % mesh.triangle_count(), 0);
+                double least = std::numeric_limits<double>::infinity();
+                for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
+                    least = std::min(least, glm::distance(point, closest_on_triangle(point, triangle(mesh, t, {}))));
+                const MeshDistance found = distance_to_point(tree, point);
+                const double slack = 1e-12 * (glm::length(point) + 2.0);
+                CHECK(std::abs(found.distance - least) <= slack);
+                CHECK(found.on_b == point);
+                CHECK(std::abs(glm::distance(found.on_a, point) - found.distance) <= slack);
+                const Triangle nearest = triangle(mesh, found.triangles.first, {});
+                CHECK(glm::distance(found.on_a, closest_on_triangle(found.on_a, nearest)) <= slack);
+            }
+        }
+    }
+
+    TEST_CASE("a point is at distance 0 of a mesh iff it lies on a triangle, exactly") {
+        std::mt19937_64 random(18);
+        const TriangleMesh mesh = wavy_torus(1.0, 0.3, 0.2, 12, 9);
+        TriangleMesh point_mesh;
+        point_mesh.positions = {glm::vec3(0.0f)};
+        point_mesh.indices = {0, 0, 0};
+        const MeshTree tree = tree_of(mesh), dot = tree_of(point_mesh);
+        int on = 0, off = 0;
+        for (int i = 0; i < 4000; ++i) {
+            const Triangle t = triangle(mesh, random() % mesh.triangle_count(), {});
+            // Corners, middles of edges and dyadic points of the face, and the next numbers beside them.
+            glm::dvec3 point = i % 3 == 0   ? t[0]
+                               : i % 3 == 1 ? 0.5 * t[0] + 0.5 * t[1]
+                                            : 0.5 * t[0] + 0.25 * (t[1] + t[2]);
+            if (i % 2 == 0) point[i % 3] = std::nextafter(point[i % 3], i % 4 == 0 ? 9.0 : -9.0);
+            const double asked = distance_to_point(tree, point).distance;
+            CHECK((asked == 0.0) == intersects(tree, dot, {glm::dmat3(1.0), point}));
+            ++(asked == 0.0 ? on : off);
+        }
+        CHECK(on > 1000);
+        CHECK(off > 500);
+    }
+
+    TEST_CASE("a point so far that float has no room for it has a nearest point, one that is not finite none") {
+        const MeshTree tree = tree_of(cube_mesh());
+        for (const double far : {1e14, 1e16, 1e20, 1e29})
+            CHECK(distance_to_point(tree, {far, 0.2, 0.1}).distance == doctest::Approx(far));
+        for (const double bad : {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()})
+            CHECK(distance_to_point(tree, {0.0, bad, 0.0}).distance == std::numeric_limits<double>::infinity());
     }
 }

@@ -102,6 +102,56 @@ TEST_SUITE("world/mesh_contacts") {
         CHECK(world.pairs().size() > 3);
     }
 
+    TEST_CASE("a ball whose center is in a room leaves it by the nearest wall, whether a mesh or a box is the room") {
+        oracle::NearMisses random(23);
+        const glm::dvec3 half(6.0, 5.0, 4.0);
+        const TriangleMesh walls = box_mesh(glm::vec3(-half), glm::vec3(half)), unit = cube_mesh();
+        for (int kind = 0; kind < 3; ++kind) {  // a mesh, a scaled mesh, a box
+            World world;
+            const MeshHandle mesh = world.add_mesh(described(kind == 0 ? walls : unit)).value();
+            struct Expected {
+                double depth;
+                glm::dvec3 normal, on_wall, deepest;
+            };
+            std::map<std::uint32_t, Expected> expected;
+            for (int i = 0; i < 300; ++i) {
+                const glm::dmat3 turn = glm::mat3_cast(
+                    glm::dquat(glm::dvec3(random.number(0, 6), random.number(0, 6), random.number(0, 6))));
+                const glm::dvec3 place(40.0 * i, 0.0, 0.0);
+                glm::dmat3 linear = turn;
+                for (int k = 0; kind == 1 && k < 3; ++k) linear[k] *= half[k];
+                if (kind == 2)
+                    (void)world.add({.bound = Obb{place, glm::mat3(turn), glm::vec3(half)}}).value();
+                else
+                    (void)world.add({.mesh = mesh, .transform = at(place, linear)}).value();
+                glm::dvec3 local;
+                for (int k = 0; k < 3; ++k) local[k] = random.number(-0.999, 0.999) * half[k];
+                const double radius = random.number(0.1, 2.0);
+                const auto ball = world.add({.bound = Sphere{place + turn * local, radius}}).value();
+                int k = 0;
+                for (int j = 1; j < 3; ++j)
+                    if (half[j] - std::abs(local[j]) < half[k] - std::abs(local[k])) k = j;
+                const double gap = half[k] - std::abs(local[k]), side = local[k] < 0.0 ? -1.0 : 1.0;
+                glm::dvec3 wall = local;
+                wall[k] = side * half[k];
+                Expected& e = expected[ball.index];
+                e = {radius + gap, side * turn[k], place + turn * wall, {}};
+                e.deepest = place + turn * local - (radius - 0.5 * e.depth) * e.normal;
+            }
+            REQUIRE(world.update().has_value());
+            REQUIRE(world.contacts().size() == expected.size());
+            for (const Contact& contact : world.contacts()) {
+                const Expected& e = expected.at(contact.second.object.index);
+                const double slack = kind == 0 ? 1e-9 : 1e-5;  // boxes and scaled meshes are kept in float
+                CHECK(std::abs(contact.depth - e.depth) <= slack);
+                CHECK(glm::distance(contact.normal, e.normal) <= slack);
+                REQUIRE(contact.points.size() == 1);
+                CHECK(contact.points[0].depth == contact.depth);
+                CHECK(glm::distance(contact.points[0].position, kind == 2 ? e.deepest : e.on_wall) <= 2.0 * slack);
+            }
+        }
+    }
+
     TEST_CASE("pairs of moving meshes that touch are those of all pairs of their triangles") {
         oracle::NearMisses random(22);
         World serial, parallel;

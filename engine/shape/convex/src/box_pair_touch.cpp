@@ -133,7 +133,7 @@ Warm BoxToucher::stays(bool of_a, int face, double limit) {
 }
 
 Warm BoxToucher::ask(int& reference, int& face) {
-    const double limit = -(rounding_ + margin_) - axes_.error();
+    const double limit = -(rounding_ + margin_) - axes_.error() - pair_.doubt();
     if (reference != 0) {
         if (const Warm warm = stays(reference == 1, face, limit); warm != Warm::unknown) return warm;
         points_.count = 0;
@@ -171,7 +171,7 @@ Warm BoxToucher::ask(int& reference, int& face) {
 Warm touch_of_boxes(const Placed& a, const Placed& b, const Pair& pair, double margin, PairCache* cache, Touch& touch,
                     GatheredPoints& points) {
     if (!(pair.size < std::numeric_limits<double>::infinity())) return Warm::unknown;
-    const double rounding = a.body.radius() + b.body.radius(), limit = -(rounding + margin);
+    const double limit = -(pair.rounding() + margin + pair.doubt());
     if (cache != nullptr && cache->reference == 0 && cache->axis != glm::dvec3(0.0) &&
         pair.extent(cache->axis) < limit * (1.0 + 0x1p-50) - pair.error)
         return Warm::apart;
@@ -181,6 +181,8 @@ Warm touch_of_boxes(const Placed& a, const Placed& b, const Pair& pair, double m
     const Warm answer = toucher.ask(reference, face);
     // Another axis may be less deep by kSameDepth of the size, and leave the boxes farther apart than the margin.
     const double least_depth = -margin + kSameDepth * pair.size;
+    const bool doubtful = pair.doubt() > 0.0 && std::abs(touch.depth) <= pair.doubt() + kSameDepth * pair.size;
+    if (answer == Warm::touching && doubtful) return Warm::unknown;
     if (answer == Warm::unknown || (answer == Warm::touching && !(touch.depth >= least_depth))) return Warm::unknown;
     if (cache != nullptr) {
         cache->axis = answer == Warm::apart ? toucher.separating_normal() : touch.normal;

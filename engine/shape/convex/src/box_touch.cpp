@@ -107,7 +107,8 @@ Warm BoxTouch::ask(const PlacedTriangle& triangle, Touch& touch) const {
     if (!(size_ < std::numeric_limits<double>::infinity())) return Warm::unknown;
     Local t;
     for (int v = 0; v < 3; ++v) t.corner[v] = to_local_ * (triangle.corner[v] - offset_);
-    const double limit = -(margin_ + box_.body.radius()) - 2.0 * error_;
+    const double doubt = box_.body.radius() > 0.0 ? (kSameDepth + kDepthError) * size_ : 0.0;
+    const double limit = -(margin_ + box_.body.radius()) - 2.0 * error_ - doubt;
     for (int k = 0; k < 3; ++k) {
         const double p = t.corner[0][k], q = t.corner[1][k], r = t.corner[2][k];
         const double nearest = std::max(std::min(p, std::min(q, r)), -std::max(p, std::max(q, r)));
@@ -133,6 +134,8 @@ Warm BoxTouch::ask(const PlacedTriangle& triangle, Touch& touch) const {
     if (!set_points(t, least, triangle, touch)) return Warm::unknown;
     touch.known = true;
     touch.depth = least.extent + box_.body.radius();
+    // Whether bodies as near to a touch as this meet is left to the search that decides it for all queries.
+    if (doubt > 0.0 && std::abs(touch.depth) <= doubt) return Warm::unknown;
     return touch.depth >= -margin_ ? Warm::touching : Warm::apart;
 }
 

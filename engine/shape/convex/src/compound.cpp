@@ -125,7 +125,7 @@ class CompoundSearch {
     }
 
     const Compound& compound_;
-    const QueryBox& box_;
+    const QueryBox& box_;  // of the caller
     Aabb bounds_;
     const PartSearch& search_;
 };
@@ -135,8 +135,14 @@ bool has_surfaces(const Body& body) {
            (body.kind() == Kind::compound && CompoundSearch::has_surfaces(*body.compound()));
 }
 
+// The children stand at rounded products of poses, which the box, told in the compound's frame, knows nothing of. With
+// u = 2^-53, a product is off by 4u of its terms.
 bool search_compound(const Compound& compound, const QueryBox& box, const PartSearch& search) {
-    return CompoundSearch(compound, box, search).descend(0);
+    const glm::dvec3 reach = (glm::max)(glm::abs(compound.bounds().min), glm::abs(compound.bounds().max)),
+                     size = glm::abs(search.pose.translation) + reach;
+    QueryBox wider = box;
+    wider.rounding += 0x1p-49 * (size.x + size.y + size.z);
+    return CompoundSearch(compound, wider, search).descend(0);
 }
 
 }  // namespace crofton::convex

@@ -8,7 +8,7 @@
 
 namespace crofton::convex {
 
-Nearest core_distance(const Pair& pair, const PairCache* cache, double near, double far) {
+Nearest core_distance(const Pair& pair, const PairCache* cache, double near, double far, double accuracy) {
     Nearest found = nearest_points(pair, cache, near, far);
     // Beside a needle rounding may stop the descent early. From where it begins without a cache it may go on; no exact
     // search follows for round cores.
@@ -18,9 +18,9 @@ Nearest core_distance(const Pair& pair, const PairCache* cache, double near, dou
         if (cold.meeting != Meeting::unknown || cold.upper < found.upper) found = cold;
     }
     if (!pair.has_polytope_cores() || found.meeting == Meeting::meeting) return found;
-    const bool cut_short = found.meeting == Meeting::apart && (found.lower > far || found.upper <= near);
-    if (cut_short) return found;
-    const bool close_enough = found.upper - found.lower <= 0.5e-10 * pair.size;
+    const bool surely_near = near > 0.0 && found.upper <= near;
+    if (surely_near || (found.meeting == Meeting::apart && (found.lower > far || found.upper <= near))) return found;
+    const bool close_enough = found.upper - found.lower <= accuracy * pair.size;
     if (found.meeting == Meeting::apart && close_enough) return found;
     // The corners seem to contain the origin: a distance of 0, which is none if they turn out to be apart.
     const bool seems_inside = found.simplex.inside;
@@ -48,6 +48,53 @@ void align_points(const Pair& pair, const glm::dvec3& normal, Nearest& found) {
     if (exact.meet) return;
     found.simplex = exact.simplex;
     found.normal = exact.normal;
+}
+
+namespace {
+
+// An order of placed bodies that is the same whichever comes first in a query.
+bool comes_first(const Body& a, const RigidTransform& pose_a, const Body& b, const RigidTransform& pose_b) {
+    if (a.kind() != b.kind()) return a.kind() < b.kind();
+    if (a.radius() != b.radius()) return a.radius() < b.radius();
+    if (a.reach() != b.reach()) return a.reach() < b.reach();
+    for (int k = 0; k < 3; ++k)
+        if (pose_a.translation[k] != pose_b.translation[k]) return pose_a.translation[k] < pose_b.translation[k];
+    for (int k = 0; k < 3; ++k)
+        for (int i = 0; i < 3; ++i)
+            if (pose_a.rotation[k][i] != pose_b.rotation[k][i]) return pose_a.rotation[k][i] < pose_b.rotation[k][i];
+    return true;
+}
+
+// Of the pair in the other order, seen from this one.
+Nearest seen_from_other(Nearest nearest, const glm::dvec3& offset) {
+    for (int i = 0; i < nearest.simplex.count; ++i) {
+        Corner& corner = nearest.simplex.corner[i];
+        corner = {corner.on_b + offset, corner.on_a + offset, -corner.w, corner.b, corner.a};
+    }
+    nearest.simplex.nearest = -nearest.simplex.nearest;
+    nearest.normal = -nearest.normal;
+    return nearest;
+}
+
+Nearest deciding_search(const Pair& pair) {
+    constexpr double kAccuracy = 0.25 * kRoundedDoubt, kFar = std::numeric_limits<double>::infinity();
+    if (comes_first(pair.a, pair.pose_a, pair.b, pair.pose_b))
+        return core_distance(pair, nullptr, 0.0, kFar, kAccuracy);
+    const Pair other({pair.b, pair.pose_b}, {pair.a, pair.pose_a});
+    return seen_from_other(core_distance(other, nullptr, 0.0, kFar, kAccuracy), pair.offset);
+}
+
+}  // namespace
+
+bool settle(const Pair& pair, Nearest& core) {
+    const double rounding = pair.rounding(), doubt = pair.doubt();
+    if (core.meeting == Meeting::meeting) return true;
+    if (doubt == 0.0) return core.meeting != Meeting::apart;
+    if (core.lower > rounding + doubt) return false;
+    if (core.upper < rounding - doubt) return true;
+    core = deciding_search(pair);
+    // Without a plane that parts them the cores count as meeting.
+    return core.meeting != Meeting::apart || glm::length(witness(core.simplex)) <= rounding;
 }
 
 namespace {

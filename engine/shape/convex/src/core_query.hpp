@@ -7,15 +7,21 @@
 namespace crofton::convex {
 
 // nearest_points, where needed followed by exact arithmetic: of polytopes `meeting` is never unknown, and unless the
-// search was cut short by `near` or `far` the bounds are closer than 1e-10 of the size.
-[[nodiscard]] Nearest core_distance(const Pair& pair, const PairCache* cache, double near, double far);
+// search was cut short by `near` or `far` the bounds are closer than 2 · `accuracy` of the size.
+[[nodiscard]] Nearest core_distance(const Pair& pair, const PairCache* cache, double near, double far,
+                                    double accuracy = 0.5e-10);
+
+// Whether the bodies meet: what all queries tell, so that they agree. `core` is of any search whose `near` is at most,
+// and whose `far` at least the rounding, by `doubt`. Where its bounds are nearer to the rounding than that, one search
+// decides that depends on the two placed bodies alone, not on their order, a cache or the query; it replaces `core`.
+[[nodiscard]] bool settle(const Pair& pair, Nearest& core);
 
 // Of cores apart: finds the nearest points, and the normal, anew in exact arithmetic where the way between them is off
 // `normal` by more than 1e-10 of the size. For polytopes.
 void align_points(const Pair& pair, const glm::dvec3& normal, Nearest& found);
 
 // What `distance` tells of it.
-[[nodiscard]] Distance distance_of(const Pair& pair, const Nearest& core);
+[[nodiscard]] Distance distance_of(const Pair& pair, Nearest core);
 
 // Of cores that meet: of polytopes the bounds are closer than 1e-9 of the size.
 [[nodiscard]] Depth core_depth(const Pair& pair, const Simplex& start);

@@ -7,6 +7,10 @@
 
 namespace crofton::convex {
 
+// How near to a touch a round body's answer depends on the search, of the size: with cores of corners alone, and with
+// cylinders and cones.
+inline constexpr double kRoundedDoubt = 4e-12, kRoundDoubt = 1e-7;
+
 // A point of the difference body of the cores, in the world's axes around a's origin.
 struct Corner {
     glm::dvec3 on_a, on_b, w;  // w = on_a − on_b
@@ -46,6 +50,13 @@ struct Pair {
         return p.along + (q.along - glm::dot(d, offset));
     }
     [[nodiscard]] bool has_polytope_cores() const { return a.has_polytope_core() && b.has_polytope_core(); }
+    [[nodiscard]] double rounding() const { return a.radius() + b.radius(); }
+    // Cores whose distance is known to be farther than this from `rounding` are decided by any search that knows it.
+    // Others are left to `settle`. 0 of polytopes, which are decided exactly.
+    [[nodiscard]] double doubt() const {
+        if (!has_polytope_cores()) return kRoundDoubt * size;
+        return rounding() > 0.0 ? kRoundedDoubt * size : 0.0;
+    }
 
     const Body &a, &b;
     const RigidTransform &pose_a, &pose_b;

@@ -5,15 +5,27 @@
 #include <limits>
 
 #include "core_query.hpp"
+#include "pair.hpp"
 
 namespace crofton::convex {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+// Bodies of parts and a body this near to them, or nearer, may be told to meet: `Pair::doubt` of any pair of parts. An
+// offset between parts is at most twice as large as the size here.
+double doubt_of_parts(const Placed& a, const Placed& b) {
+    const auto has_corners = [](const Body& body) {
+        return body.has_polytope_core() || body.kind() == Kind::mesh || body.kind() == Kind::height_field;
+    };
+    const double size = a.body.reach() + b.body.reach() + glm::length(b.pose.translation - a.pose.translation);
+    return 4.0 * (has_corners(a.body) && has_corners(b.body) ? kRoundedDoubt : kRoundDoubt) * size;
+}
+
 // Improves `best` by the distances of a's parts from b, nearest first.
 void search_nearest(const Placed& a, const Placed& b, Distance& best, double& lower) {
-    double limit = best.distance;
+    const double doubt = doubt_of_parts(a, b);
+    double limit = std::max(best.distance, doubt);
     const auto visit = [&](const Part& part) {
         const Placed placed{part.body, part.pose};
         Distance d;
@@ -32,7 +44,7 @@ void search_nearest(const Placed& a, const Placed& b, Distance& best, double& lo
         if (d.distance < best.distance) {
             best = d;
             best.part_a = part.id;
-            limit = d.distance;
+            limit = std::max(d.distance, doubt);
         }
         return best.distance == 0.0;
     };
@@ -46,12 +58,12 @@ void search_nearest(const Placed& a, const Placed& b, Distance& best, double& lo
 
 bool visit_parts_near(const Placed& a, const Placed& b, double margin, PartVisitor visit) {
     if (is_half_space(b)) return visit_parts(a, {}, kEverything, visit);
-    return visit_parts(a, box_around(b, a.pose), margin, visit);
+    return visit_parts(a, box_around(b, a.pose), margin + doubt_of_parts(a, b), visit);
 }
 
 void visit_parts_near(const Placed& a, const Placed& b, double margin, PartVisitor convex, TriangleVisitor triangle) {
     if (is_half_space(b)) return visit_parts(a, {}, kEverything, convex, triangle);
-    visit_parts(a, box_around(b, a.pose), margin, convex, triangle);
+    visit_parts(a, box_around(b, a.pose), margin + doubt_of_parts(a, b), convex, triangle);
 }
 
 bool parts_meet(const Placed& a, const Placed& b) {

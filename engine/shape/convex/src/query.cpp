@@ -87,17 +87,14 @@ bool intersects(const Placed& a, const Placed& b, PairCache* cache) {
     }
     const Pair pair(a, b);
     if (!finite_pair(pair)) return false;
-    const double rounding = a.body.radius() + b.body.radius();
+    const double near = std::max(0.0, pair.rounding() - 1.5 * pair.doubt()), far = pair.rounding() + 1.5 * pair.doubt();
     if (cache != nullptr && cache->count < 4 && cache->axis != glm::dvec3(0.0)) {
         // A plane that parted them before; its normal's length is 1 within 4u.
-        if (pair.extent(cache->axis) < -rounding * (1.0 + 0x1p-50) - pair.error) return false;
+        if (pair.extent(cache->axis) < -far * (1.0 + 0x1p-50) - pair.error) return false;
     }
-    const Nearest core = core_distance(pair, cache, rounding, rounding);
+    Nearest core = core_distance(pair, cache, near, far);
     remember(core, cache);
-    if (core.meeting == Meeting::meeting) return true;
-    if (rounding == 0.0) return core.meeting != Meeting::apart;
-    if (core.lower > rounding) return false;
-    return core.upper <= rounding || 0.5 * (core.lower + core.upper) <= rounding;
+    return settle(pair, core);
 }
 
 Distance distance(const Placed& a, const Placed& b, PairCache* cache) {
@@ -112,17 +109,17 @@ Distance distance(const Placed& a, const Placed& b, PairCache* cache) {
     return distance_of(pair, core);
 }
 
-Distance distance_of(const Pair& pair, const Nearest& core) {
+Distance distance_of(const Pair& pair, Nearest core) {
     if (core.simplex.count == 0) return {};  // a pose with NaN
+    const bool meet = settle(pair, core);
     const CorePoints points = core_points(core.simplex);
     const double ra = pair.a.radius(), rb = pair.b.radius(), rounding = ra + rb;
     const double between = glm::length(points.on_a - points.on_b);
     Distance d;
     d.on_a = pair.pose_a.translation + points.on_a;
     d.on_b = pair.pose_a.translation + points.on_b;
-    const bool apart = core.meeting == Meeting::apart && (rounding == 0.0 || between > rounding);
-    if (!apart) {
-        if (core.meeting == Meeting::apart) d.on_a += ra / rounding * (d.on_b - d.on_a);
+    if (meet) {
+        if (core.meeting == Meeting::apart && rounding > 0.0) d.on_a += ra / rounding * (d.on_b - d.on_a);
         d.on_b = d.on_a;
         return d;
     }
@@ -139,7 +136,7 @@ Distance near_distance(const Placed& a, const Placed& b, double far) {
     if (is_half_space(a) || is_half_space(b)) return distance(a, b);
     const Pair pair(a, b);
     if (!finite_pair(pair)) return {};
-    return distance_of(pair, core_distance(pair, nullptr, 0.0, far + a.body.radius() + b.body.radius()));
+    return distance_of(pair, core_distance(pair, nullptr, 0.0, far + pair.rounding() + 1.5 * pair.doubt()));
 }
 
 Penetration penetration(const Placed& a, const Placed& b, PairCache* cache) {
@@ -151,18 +148,18 @@ Penetration penetration(const Placed& a, const Placed& b, PairCache* cache) {
     Penetration p;
     if (!finite_pair(pair)) return p;
     const double ra = a.body.radius(), rb = b.body.radius(), rounding = ra + rb;
-    Nearest core = core_distance(pair, cache, 0.0, rounding);
+    Nearest core = core_distance(pair, cache, 0.0, rounding + 1.5 * pair.doubt());
     remember(core, cache);
+    if (core.simplex.count == 0 || !settle(pair, core)) return p;
     CorePoints points;
     const double error_bound = 0x1p-52 * rounding;
     if (core.meeting == Meeting::apart) {
-        if (core.lower <= rounding) align_points(pair, core.normal, core);
+        if (rounding > 0.0) align_points(pair, core.normal, core);
         points = core_points(core.simplex);
         const double between = glm::length(points.on_a - points.on_b);
-        if (rounding == 0.0 || core.lower > rounding || between > rounding) return p;
-        p.depth = rounding - between;
+        p.depth = std::max(0.0, rounding - between);
         p.lower = std::max(0.0, rounding - core.upper - error_bound);
-        p.upper = rounding - core.lower + error_bound;
+        p.upper = std::max(p.depth, rounding - core.lower + error_bound);
         p.normal = core.normal;
     } else {
         const Depth depth = core_depth(pair, core.simplex);

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "pair.hpp"
 #include "triangle_touch.hpp"
 
 namespace crofton::convex {
@@ -69,7 +70,9 @@ SegmentTouch::SegmentTouch(const Placed& body, const glm::dvec3& origin, double 
     : count_(body.body.vertex_count()), radius_(body.body.radius()), limit_(body.body.radius() + margin) {
     const glm::dvec3 offset = body.pose.translation - origin;
     for (int i = 0; i < 2; ++i) end_[i] = body.pose.rotation * body.body.vertex(std::min(i, count_ - 1)) + offset;
-    error_ = 0x1p-48 * (reach + body.body.reach() + glm::length(offset));
+    const double size = reach + body.body.reach() + glm::length(offset);
+    error_ = 0x1p-48 * size;
+    doubt_ = kRoundedDoubt * size + 2.0 * error_;
 }
 
 Warm SegmentTouch::ask(const PlacedTriangle& t, Touch& touch) const {
@@ -79,8 +82,7 @@ Warm SegmentTouch::ask(const PlacedTriangle& t, Touch& touch) const {
     const double second = glm::dot(t.normal, edge[0]), third = -glm::dot(t.normal, edge[2]);
     const double top = std::max(0.0, std::max(second, third)), bottom = std::min(0.0, std::min(second, third));
     const double height[2] = {glm::dot(t.normal, end_[0] - t.corner[0]), glm::dot(t.normal, end_[1] - t.corner[0])};
-    const double low = std::min(height[0], height[1]), high = std::max(height[0], height[1]),
-                 far = limit_ + 2.0 * error_;
+    const double low = std::min(height[0], height[1]), high = std::max(height[0], height[1]), far = limit_ + doubt_;
     if (low - top > far || high - bottom < -far) return Warm::apart;
     NearestPair best;
     for (int i = 0; i < count_; ++i) {
@@ -98,8 +100,9 @@ Warm SegmentTouch::ask(const PlacedTriangle& t, Touch& touch) const {
         std::min(glm::dot(n, end_[0] - best.on_triangle), glm::dot(n, end_[1] - best.on_triangle)) -
         std::max(glm::dot(n, t.corner[0] - best.on_triangle),
                  std::max(glm::dot(n, t.corner[1] - best.on_triangle), glm::dot(n, t.corner[2] - best.on_triangle)));
-    if (lower - 2.0 * error_ > limit_) return Warm::apart;
-    if (!(distance - lower <= 64.0 * error_)) return Warm::unknown;
+    if (lower - doubt_ > limit_) return Warm::apart;
+    // Whether bodies as near to a touch as this meet is left to the search that decides it for all queries.
+    if (!(distance - lower <= 64.0 * error_) || std::abs(distance - radius_) <= doubt_) return Warm::unknown;
     touch.normal = n;
     touch.depth = radius_ - distance;
     touch.on_a = best.on_triangle;

@@ -101,17 +101,19 @@ double unevenness(const Patch& face, const glm::dvec3& direction) {
 
 bool find_touch(const Pair& pair, double margin, PairCache* cache, Touch& touch) {
     if (!(pair.size < std::numeric_limits<double>::infinity())) return false;
-    const double rounding = pair.a.radius() + pair.b.radius();
-    Nearest core = core_distance(pair, cache, 0.0, rounding + margin);
+    const double rounding = pair.rounding();
+    Nearest core = core_distance(pair, cache, 0.0, rounding + margin + 1.5 * pair.doubt());
     remember(core, cache);
+    if (core.simplex.count == 0) return false;
+    const bool meet = settle(pair, core);
+    if (!meet && (margin == 0.0 || core.lower > rounding + margin)) return false;
     if (core.meeting == Meeting::apart) {
-        if (core.lower > rounding + margin) return false;
         if (rounding + margin > 0.0) align_points(pair, core.normal, core);
         set_points(core.simplex, touch);
         touch.depth = rounding - glm::length(touch.on_a - touch.on_b);
+        touch.depth = meet ? std::max(0.0, touch.depth) : std::min(0.0, touch.depth);
         touch.normal = core.normal;
-        // Told apart exactly, by less than rounding shows, counts as apart.
-        return touch.depth >= -margin && !(touch.depth >= 0.0 && rounding == 0.0 && margin == 0.0);
+        return touch.depth >= -margin;
     }
     const Depth depth = core_depth(pair, core.simplex);
     set_points(depth.face, touch);
@@ -147,8 +149,8 @@ Warm touch_at_face(const Placed& a, const Placed& b, const Pair& pair, double ma
     touch.normal = on_a ? out : -out;
     double depth = 0.0;
     const Corner deepest = pair.support(touch.normal, depth);
-    const double rounding = pair.a.radius() + pair.b.radius(), kept = kept_share * pair.size;
-    if (-depth - pair.error > rounding + margin) return Warm::apart;
+    const double rounding = pair.rounding(), kept = kept_share * pair.size;
+    if (-depth - pair.error > rounding + margin + pair.doubt()) return Warm::apart;
     // Contacts nearer than rounding tells are decided exactly by the other way.
     if (std::abs(depth) <= 4.0 * pair.error) return Warm::unknown;
     patch_along(incident, -out, a.pose.translation, other);
@@ -191,6 +193,7 @@ Warm touch_at_face(const Placed& a, const Placed& b, const Pair& pair, double ma
         depth -= std::max(0.0, least);
     }
     touch.depth = depth + rounding;
+    if (rounding > 0.0 && std::abs(touch.depth) <= pair.doubt() + pair.error) return Warm::unknown;
     // Other points than those of the face may be nearer to each other: no proof that the bodies are apart.
     return touch.depth >= -margin ? Warm::touching : Warm::unknown;
 }

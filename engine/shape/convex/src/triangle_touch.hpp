@@ -58,7 +58,7 @@ class SegmentTouch {
   private:
     glm::dvec3 end_[2];
     int count_;
-    double radius_, error_, limit_;
+    double radius_, error_, doubt_, limit_;
 };
 
 }  // namespace crofton::convex

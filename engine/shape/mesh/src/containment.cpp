@@ -24,9 +24,9 @@ enum class Crossing : std::uint8_t { none, crosses, touches };
 
 // Does the ray from p along +z cross the triangle?
 Crossing crossing(const glm::dvec3& p, const Triangle& t) {
-    const glm::dvec3 low = glm::min(t[0], glm::min(t[1], t[2])), high = glm::max(t[0], glm::max(t[1], t[2]));
-    const bool within = low.x <= p.x && p.x <= high.x && low.y <= p.y && p.y <= high.y && low.z <= p.z && p.z <= high.z;
-    if (within && segment_meets_triangle(p, p, t)) return Crossing::touches;
+    const glm::dvec3 low = (glm::min)(t[0], (glm::min)(t[1], t[2])), high = (glm::max)(t[0], (glm::max)(t[1], t[2]));
+    if (p.x < low.x || high.x < p.x || p.y < low.y || high.y < p.y || high.z < p.z) return Crossing::none;
+    if (low.z <= p.z && segment_meets_triangle(p, p, t)) return Crossing::touches;
     const bool covers = is_right_of(p, t[0], t[1]) ^ is_right_of(p, t[1], t[2]) ^ is_right_of(p, t[2], t[0]);
     if (!covers) return Crossing::none;
     const int turn = orientation_2d(t[0], t[1], t[2], 0, 1);
@@ -62,13 +62,20 @@ bool may_meet(const MeshRay& ray, const mesh::MeshNode& node, std::uint32_t lane
     return true;
 }
 
-// Parity of the crossings of p's ray with the closed pieces of the posed mesh; on their surface counts as inside.
-bool is_inside(const mesh::MeshTree& mesh, const RigidTransform& pose, const glm::dvec3& p) {
+// The ray from p along +z in the frame of a mesh, which stands at `pose`; without one, in p's frame.
+MeshRay upward_ray(const mesh::MeshTree& mesh, const RigidTransform* pose, const glm::dvec3& p) {
+    const glm::dvec3 up(0.0, 0.0, 1.0);
+    const double size = static_cast<double>(mesh.extent()) + glm::length(p);
+    if (pose == nullptr) return {p, up, 2e-6 * size};
+    const RigidTransform back = inverse(*pose);
+    return {transform(back, p), back.rotation * up, 2e-6 * (size + glm::length(pose->translation))};
+}
+
+// Parity of the crossings of p's ray with the closed pieces of the mesh; on their surface counts as inside.
+bool is_inside(const mesh::MeshTree& mesh, const RigidTransform* pose, const glm::dvec3& p) {
     const std::span<const MeshPiece> pieces = mesh.pieces();
     if (std::none_of(pieces.begin(), pieces.end(), [](const MeshPiece& piece) { return piece.closed; })) return false;
-    const RigidTransform back = inverse(pose);
-    const MeshRay ray{transform(back, p), back.rotation * glm::dvec3(0.0, 0.0, 1.0),
-                      2e-6 * (static_cast<double>(mesh.extent()) + glm::length(p) + glm::length(pose.translation))};
+    const MeshRay ray = upward_ray(mesh, pose, p);
     const MeshParts& parts = mesh.parts();
     std::uint32_t stack[256];
     std::uint32_t height = 0;
@@ -85,7 +92,8 @@ bool is_inside(const mesh::MeshTree& mesh, const RigidTransform& pose, const glm
             const mesh::MeshLeaf& leaf = parts.leaves[node.child[lane] & ~mesh::kMeshLeaf];
             for (std::uint32_t i = 0; i < leaf.count; ++i) {
                 if (!pieces[leaf.piece[i]].closed) continue;
-                const Crossing found = crossing(p, triangle_of(leaf, i, pose));
+                const Crossing found =
+                    crossing(p, pose == nullptr ? triangle_of(leaf, i) : triangle_of(leaf, i, *pose));
                 if (found == Crossing::touches) return true;
                 inside ^= found == Crossing::crosses;
             }
@@ -114,15 +122,15 @@ bool contains(const mesh::MeshTree& mesh, const glm::dvec3& point) {
     const double extent = static_cast<double>(mesh.extent());
     for (int i = 0; i < 3; ++i)
         if (!(std::abs(point[i]) <= extent)) return false;
-    return is_inside(mesh, RigidTransform{}, point);
+    return is_inside(mesh, nullptr, point);
 }
 
 Containment containment_of_disjoint(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& b_to_a) {
     if (a.triangle_count() == 0 || b.triangle_count() == 0) return Containment::none;
-    const std::size_t of_b = count_inside(
-        b, [&](const glm::vec3& p) { return is_inside(a, RigidTransform{}, transform(b_to_a, glm::dvec3(p))); });
+    const std::size_t of_b =
+        count_inside(b, [&](const glm::vec3& p) { return is_inside(a, nullptr, transform(b_to_a, glm::dvec3(p))); });
     if (of_b == points_asked(b)) return Containment::b_inside_a;
-    const std::size_t of_a = count_inside(a, [&](const glm::vec3& p) { return is_inside(b, b_to_a, glm::dvec3(p)); });
+    const std::size_t of_a = count_inside(a, [&](const glm::vec3& p) { return is_inside(b, &b_to_a, glm::dvec3(p)); });
     if (of_a == points_asked(a)) return Containment::a_inside_b;
     return of_a + of_b > 0 ? Containment::partly : Containment::none;
 }

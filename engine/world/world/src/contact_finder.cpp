@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "contact_finder.hpp"
 #include <crofton/mesh/mesh_query.hpp>
+#include <crofton/mesh/point_distance.hpp>
 
 #include <algorithm>
 #include <glm/geometric.hpp>
@@ -129,7 +130,7 @@ void ContactFinder::touch_triangles(const PosedTree& a, const PosedTree& b, Work
 void ContactFinder::touch_ball(const PosedTree& mesh, const PosedTree& center, double radius, Worker& worker,
                                Touch& touch) const {
     const RigidTransform to_mesh = relative(mesh.pose, center.pose);
-    const mesh::MeshDistance gap = mesh::distance(*mesh.tree, *center.tree, to_mesh);
+    const mesh::MeshDistance gap = mesh::distance_to_point(*mesh.tree, to_mesh.translation);
     const bool inside = options_.containment && mesh::contains(*mesh.tree, to_mesh.translation);
     touch.hit = inside || gap.distance <= radius;
     if (!touch.hit) return;

@@ -30,9 +30,9 @@
 
 // Which Crofton the headers are of (macros), and which is linked (functions).
 #define CROFTON_VERSION_MAJOR 0
-#define CROFTON_VERSION_MINOR 2
+#define CROFTON_VERSION_MINOR 3
 #define CROFTON_VERSION_PATCH 0
-// One number to compare: #if CROFTON_VERSION >= CROFTON_MAKE_VERSION(0, 2, 0)
+// One number to compare: #if CROFTON_VERSION >= CROFTON_MAKE_VERSION(0, 3, 0)
 #define CROFTON_MAKE_VERSION(major, minor, patch) ((major)*1000000 + (minor)*1000 + (patch))
 #define CROFTON_VERSION CROFTON_MAKE_VERSION(CROFTON_VERSION_MAJOR, CROFTON_VERSION_MINOR, CROFTON_VERSION_PATCH)
 

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <crofton/geometry/closest_points.hpp>
+#include <crofton/mesh/mesh_parts.hpp>
+#include <crofton/mesh/near_triangles.hpp>
+#include <crofton/mesh/point_distance.hpp>
+
+#include "exact_signs.hpp"
+#include "posed_mesh.hpp"
+
+namespace crofton::mesh {
+namespace {
+
+// A point off every triangle is never nearer.
+constexpr double kLeastSquaredToPoint = 1e-300;
+// Coordinates beyond this are out of the range of the tree's search in float.
+constexpr double kMostForTree = 1e14;
+
+// Whether the triangle's plane is surely farther from the point than the root of `squared`. The normal is off by
+// 2^-50 |e| |f|: where that matters by more than a ten-thousandth, the plane tells nothing.
+bool is_beyond(const glm::dvec3& point, const Triangle& t, double squared) {
+    const glm::dvec3 e = t[1] - t[0], f = t[2] - t[0], way = point - t[0], normal = glm::cross(e, f);
+    const double along = glm::dot(normal, way), along2 = along * along;
+    return along2 * 0.999 > squared * glm::dot(normal, normal) &&
+           along2 > 1e-20 * (glm::dot(e, e) * glm::dot(f, f) * glm::dot(way, way));
+}
+
+}  // namespace
+
+MeshDistance distance_to_point(const MeshTree& mesh, const glm::dvec3& point) {
+    MeshDistance result;
+    const double reach = std::abs(point.x) + std::abs(point.y) + std::abs(point.z);
+    if (mesh.triangle_count() == 0 || !(reach < std::numeric_limits<double>::infinity())) return result;
+    const double size = reach + static_cast<double>(mesh.extent());
+    MeshBox box{};
+    for (int k = 0; k < 3; ++k) {
+        box.center[k] = static_cast<float>(point[k]);
+        box.axes[k][k] = 1.0f;
+    }
+    // Nearer than rounding tells, each triangle is asked exactly.
+    const double doubtful = 1e-12 * size, least = doubtful * doubtful;
+    double squared = std::numeric_limits<double>::infinity();  // of what is worth a visit
+    double best = squared;
+    const auto visit = [&](const MeshLeaf& leaf, std::uint32_t lane) {
+        const Triangle triangle = triangle_of(leaf, lane);
+        if (is_beyond(point, triangle, squared)) return false;
+        const glm::dvec3 nearest = closest_on_triangle(point, triangle), way = point - nearest;
+        const double distance = std::max(glm::dot(way, way), kLeastSquaredToPoint);
+        const TrianglePair indices{leaf.triangle[lane], 0};
+        if (distance <= least && segment_meets_triangle(point, point, triangle)) {
+            result = {0.0, point, point, indices};
+            return true;
+        }
+        if (distance < best) {
+            best = distance;
+            squared = std::max(best, least);
+            result = {std::sqrt(best), nearest, point, indices};
+        }
+        return false;
+    };
+    if (size > kMostForTree) {
+        for (const MeshLeaf& leaf : mesh.parts().leaves)
+            for (std::uint32_t lane = 0; lane < leaf.count; ++lane)
+                if (visit(leaf, lane)) return result;
+        return result;
+    }
+    // The center in float is off by 2^-24 of itself.
+    const float rounding = static_cast<float>(0x1p-22 * reach) + std::numeric_limits<float>::min();
+    visit_nearest_triangles(mesh.parts().nodes.data(), mesh.parts().leaves.data(), box, rounding, squared, visit);
+    return result;
+}
+
+}  // namespace crofton::mesh
