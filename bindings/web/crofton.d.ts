@@ -19,7 +19,7 @@ export interface LoadOptions {
 export interface CullOptions { conservative?: boolean; treeOrder?: boolean }
 export interface ObjectHandle { readonly kind: 'object'; readonly index: number; readonly generation: number }
 export interface MeshHandle { readonly kind: 'mesh'; readonly index: number; readonly generation: number }
-export interface Hit { object: ObjectHandle; user: number; t: number; point: number[]; triangle: number }
+export interface Hit { object: ObjectHandle; user: number; t: number; point: number[]; triangle: number; normal: number[]; startedInside: boolean }
 export interface Triangulation {
     indices: Uint32Array;
     /** Total length of the diagonals. */

@@ -39,9 +39,16 @@ namespace Crofton {
         public double T;
         public Vector3 Point;
         uint triangle;
+        /// <summary>Of a body that is a compound: which.</summary>
+        public uint Child;
+        /// <summary>Of unit length, of the surface, to the side that the ray comes from; 0 if it began inside.</summary>
+        public Vector3 Normal;
+        byte startedInside;
+        /// <summary>Whether the ray began in the body, box or ball: T is 0.</summary>
+        public bool StartedInside { get { return startedInside != 0; } }
         /// <summary>Whether the ray meets anything; the other members count only then.</summary>
         public bool IsHit { get { return Object.Index != uint.MaxValue; } }
-        /// <summary>Of the object's mesh.</summary>
+        /// <summary>Of the object's mesh or its body's surface.</summary>
         public uint? Triangle { get { return triangle == uint.MaxValue ? (uint?)null : triangle; } }
     }
 

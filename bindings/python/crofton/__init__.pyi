@@ -175,6 +175,8 @@ class Hit:
     user: int
     t: float
     point: Vec3
+    normal: Vec3
+    started_inside: bool
     triangle: Optional[int]
 
 class Closest:

@@ -72,6 +72,10 @@ void bind_world_queries(py::module_& module, py::class_<PyWorld>& type) {
         .def_readonly("user", &ObjectHit::user)
         .def_readonly("t", &ObjectHit::t, "how far along the ray, in lengths of its direction")
         .def_property_readonly("point", [](const ObjectHit& h) { return tuple_of(h.point); })
+        .def_property_readonly(
+            "normal", [](const ObjectHit& h) { return tuple_of(h.normal); },
+            "unit, of the surface, to the side that the ray comes from; 0 if it began inside")
+        .def_readonly("started_inside", &ObjectHit::started_inside, "the ray began in the box or ball: t is 0")
         .def("__repr__",
              [](const ObjectHit& h) {
                  return format("Hit(user=%llu, t=%g, point=(%g, %g, %g))", static_cast<unsigned long long>(h.user), h.t,

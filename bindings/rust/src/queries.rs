@@ -19,10 +19,19 @@ pub struct ObjectHit {
     /// In the world's coordinates.
     pub point: [f64; 3],
     triangle: u32,
+    /// Of a body that is a compound: which.
+    pub child: u32,
+    /// Of unit length, of the surface, to the side that the ray comes from; 0 if it began inside.
+    pub normal: [f64; 3],
+    started_inside: u8,
 }
 
 impl ObjectHit {
-    /// Of the object's mesh.
+    /// Whether the ray began in the body, box or ball: `t` is 0.
+    pub fn started_inside(&self) -> bool {
+        self.started_inside != 0
+    }
+    /// Of the object's mesh or its body's surface.
     pub fn triangle(&self) -> Option<u32> {
         (self.triangle != NONE).then_some(self.triangle)
     }
@@ -273,5 +282,14 @@ impl World {
 }
 
 fn no_hit() -> ObjectHit {
-    ObjectHit { object: Object { index: NONE, generation: 0 }, user: 0, t: 0.0, point: [0.0; 3], triangle: NONE }
+    ObjectHit {
+        object: Object { index: NONE, generation: 0 },
+        user: 0,
+        t: 0.0,
+        point: [0.0; 3],
+        triangle: NONE,
+        child: 0,
+        normal: [0.0; 3],
+        started_inside: 0,
+    }
 }

@@ -129,15 +129,16 @@ export class World extends Owned {
         memory.call('world_view_occluding', this.handle, at + 128, at + 192, 0, 0, visible.handle);
         return visible;
     }
-    /** The nearest hit of a ray, `{ object, user, t, point, triangle }`, or null. */
+    /** The nearest hit of a ray, `{ object, user, t, point, triangle, normal, startedInside }`, or null. */
     raycast(origin, direction, maxT = Infinity, layers = ALL) {
-        const { memory } = this, at = memory.scratch(112), hit = at + 56 >> 2;
+        const { memory } = this, at = memory.scratch(144), hit = at + 56 >> 2;
         memory.doubles.set([...numbersOf(origin, 3, 'origin'), ...numbersOf(direction, 3, 'direction'), maxT], at >> 3);
         memory.call('world_raycast', this.handle, at, 1, layers, at + 56);
         const { doubles, words } = memory;  // the call may have made the memory grow
         if (words[hit] === ALL) return null;
         return { object: this.#handleAt(at + 56, 'object'), user: words[hit + 2] + 2 ** 32 * words[hit + 3], t: doubles[at + 72 >> 3],
-            point: [...doubles.subarray(at + 80 >> 3, at + 104 >> 3)], triangle: words[hit + 12] === ALL ? -1 : words[hit + 12] };
+            point: [...doubles.subarray(at + 80 >> 3, at + 104 >> 3)], triangle: words[hit + 12] === ALL ? -1 : words[hit + 12],
+            normal: [...doubles.subarray(at + 112 >> 3, at + 136 >> 3)], startedInside: (words[hit + 20] & 255) !== 0 };
     }
 
     // Objects and meshes count from 0 each: `kind` tells a mesh from the object of the same number.

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Questions asked of two bodies, and the contacts of a pair that last.
 #include <algorithm>
+#include <limits>
 
 #include <crofton/capi/numbers.hpp>
 #include "bodies.hpp"
+#include "queries.hpp"
 
 using namespace crofton;
 using namespace crofton::capi;
@@ -149,6 +151,26 @@ crofton_status crofton_body_closest_point(const crofton_placed* body, const doub
     const PlacedBody placed(body, __func__);
     CROFTON_CHECK(placed.status());
     write_growing(to_c_distance(convex::closest_point(placed.placed(), to_vector(point))), distance);
+    return CROFTON_OK;
+}
+
+crofton_status crofton_body_raycast(const crofton_placed* body, const crofton_ray* ray, crofton_body_ray_hit* hit) {
+    CROFTON_CHECK(check_pointer(ray, __func__));
+    CROFTON_CHECK(check_growing(hit, __func__));
+    Ray checked;
+    CROFTON_CHECK(to_ray(*ray, __func__, kNoItem, checked));
+    const PlacedBody placed(body, __func__);
+    CROFTON_CHECK(placed.status());
+    crofton_body_ray_hit result{};
+    result.t = std::numeric_limits<double>::infinity();
+    if (const auto met = convex::raycast(placed.placed(), checked)) {
+        result.t = met->t;
+        copy_out(met->point, result.point);
+        copy_out(met->normal, result.normal);
+        result.part = to_c_part(met->part);
+        result.started_inside = met->started_inside ? 1 : 0;
+    }
+    write_growing(result, hit);
     return CROFTON_OK;
 }
 

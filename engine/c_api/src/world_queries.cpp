@@ -25,7 +25,10 @@ static_assert(sizeof(crofton_object_hit) == sizeof(ObjectHit) &&
               offsetof(crofton_object_hit, user) == offsetof(ObjectHit, user) &&
               offsetof(crofton_object_hit, t) == offsetof(ObjectHit, t) &&
               offsetof(crofton_object_hit, point) == offsetof(ObjectHit, point) &&
-              offsetof(crofton_object_hit, triangle) == offsetof(ObjectHit, triangle));
+              offsetof(crofton_object_hit, triangle) == offsetof(ObjectHit, triangle) &&
+              offsetof(crofton_object_hit, child) == offsetof(ObjectHit, child) &&
+              offsetof(crofton_object_hit, normal) == offsetof(ObjectHit, normal) &&
+              offsetof(crofton_object_hit, started_inside) == offsetof(ObjectHit, started_inside) && sizeof(bool) == 1);
 static_assert(sizeof(crofton_contact_point) == sizeof(collide::ContactPoint) &&
               offsetof(crofton_contact_point, depth) == offsetof(collide::ContactPoint, depth));
 static_assert(sizeof(crofton_mesh_contact) == sizeof(mesh::MeshContact) &&
@@ -39,12 +42,15 @@ namespace {
 constexpr double kNoDistance = std::numeric_limits<double>::infinity();
 
 crofton_object_hit to_c_hit(const std::optional<ObjectHit>& hit) {
-    if (!hit) return {{CROFTON_NONE, 0}, 0, kNoDistance, {}, CROFTON_NONE};
+    if (!hit) return {{CROFTON_NONE, 0}, 0, kNoDistance, {}, CROFTON_NONE, 0, {}, 0};
     return {{hit->object.index, hit->object.generation},
             hit->user,
             hit->t,
             {hit->point.x, hit->point.y, hit->point.z},
-            hit->triangle};
+            hit->triangle,
+            hit->child,
+            {hit->normal.x, hit->normal.y, hit->normal.z},
+            static_cast<std::uint8_t>(hit->started_inside ? 1 : 0)};
 }
 
 // Writes what is asked of a world as it is.

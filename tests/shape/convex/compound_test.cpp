@@ -47,17 +47,76 @@ Tree random_tree(RandomBodies& random, int children, int levels, const Surface* 
 }  // namespace
 
 TEST_SUITE("convex/compound") {
-    TEST_CASE("no children, bad poses and half-spaces are named errors, with the child") {
+    TEST_CASE("no children and bad poses are named errors, with the child") {
         CHECK(error_of(Compound::build({})).code == ErrorCode::empty);
-        const Body box = Body::box({1, 1, 1}).value(), floor = Body::half_space({{0, 1, 0}, 0}).value();
-        std::vector<CompoundChild> children{{box, at({})}, {floor, at({})}};
-        REQUIRE_FALSE(Compound::build(children).has_value());
-        CHECK(error_of(Compound::build(children)).code == ErrorCode::unsupported);
-        CHECK(error_of(Compound::build(children)).item == 1);
+        const Body box = Body::box({1, 1, 1}).value();
+        std::vector<CompoundChild> children{{box, at({})}, {box, at({})}};
         children[1] = {box, at({0, NAN, 0})};
         REQUIRE_FALSE(Compound::build(children).has_value());
         CHECK(error_of(Compound::build(children)).code == ErrorCode::non_finite);
         CHECK(error_of(Compound::build(children)).item == 1);
+    }
+
+    TEST_CASE("a compound with half-spaces is ground without end: it answers as its children, in either order") {
+        RandomBodies random(4110);
+        for (int round = 0; round < 300; ++round) {
+            const bool all_ground = round % 5 == 0;
+            std::vector<CompoundChild> children;
+            children.push_back({Body::half_space({random.direction(), random.number(-1.0, 1.0)}).value(),
+                                {random.rotation(), random.direction()}});
+            if (!all_ground)
+                for (int i = 0; i < 7; ++i)
+                    children.push_back({random.polytope(12), {random.rotation(), 4.0 * random.direction()}});
+            const Compound level = Compound::build(children).value();
+            CHECK(!Body::compound(level).is_bounded());
+            // Ground within a compound is ground as well.
+            const CompoundChild within{Body::compound(level), {random.rotation(), random.direction()}};
+            const Compound outer = Compound::build({&within, 1}).value();
+            const RigidTransform pose{random.rotation(), 5.0 * random.direction()};
+            const RigidTransform inner{pose.rotation * within.pose.rotation,
+                                       pose.rotation * within.pose.translation + pose.translation};
+            const std::vector<CompoundChild> balls{{Body::ball(0.5).value(), at({0.3, 0, 0})},
+                                                   {random.box(), at({-0.6, 0, 0})}};
+            const Compound pair = Compound::build(balls).value();
+            const Body body = round % 3 == 0 ? Body::compound(pair) : random.polytope(12);
+            const RigidTransform place{random.rotation(), pose.translation + 6.0 * random.direction()};
+            const Placed ground{Body::compound(outer), pose}, thing{body, place};
+            bool meets = false;
+            double nearest = HUGE_VAL, deepest = 0.0, first = HUGE_VAL;
+            const Motion fall{.velocity = 8.0 * random.direction(), .spin = 2.0 * random.direction()};
+            for (const CompoundChild& child : children) {
+                const RigidTransform at{inner.rotation * child.pose.rotation,
+                                        inner.rotation * child.pose.translation + inner.translation};
+                const Placed part{child.body, at};
+                meets = meets || intersects(part, thing);
+                nearest = std::min(nearest, distance(part, thing).distance);
+                deepest = std::max(deepest, penetration(part, thing).depth);
+                const auto impact = cast(thing, fall, part, {}).value();
+                if (impact.result == CastResult::hit) first = std::min(first, impact.time);
+            }
+            CAPTURE(round);
+            for (const bool swap : {false, true}) {
+                const Placed &a = swap ? thing : ground, &b = swap ? ground : thing;
+                CHECK(intersects(a, b) == meets);
+                CHECK(distance(a, b).distance == doctest::Approx(nearest).epsilon(1e-8));
+                CHECK(penetration(a, b).depth == doctest::Approx(deepest).epsilon(1e-8));
+                Manifolds found;
+                contact_manifolds(a, b, {}, found);
+                CHECK(found.all().empty() == !meets);
+                const auto impact = swap ? cast(a, fall, b, {}).value() : cast(a, {}, b, fall).value();
+                CHECK((impact.result == CastResult::hit) == (first < HUGE_VAL));
+                if (first < HUGE_VAL) CHECK(impact.time == doctest::Approx(first).epsilon(1e-4));
+            }
+            CHECK(error_of(cast(ground, fall, thing, {})).code == ErrorCode::unsupported);
+            CHECK(error_of(cast(thing, {}, ground, fall)).item == 1);
+            CHECK(error_of(cast(ground, {}, ground, {})).code == ErrorCode::unsupported);
+            CHECK(error_of(mass_properties(Body::compound(level))).code == ErrorCode::unsupported);
+            int lines = 0;
+            outline(ground, [&](const glm::dvec3& from, const glm::dvec3& to) {
+                lines += std::isfinite(glm::length(from) + glm::length(to)) ? 1 : -1000;
+            });
+            CHECK(lines > 0);
+        }
     }
 
     TEST_CASE("compounds in compounds: sixteen deep work, the seventeenth is a named error, so a thousand never nest") {

@@ -145,10 +145,10 @@ Result<Impact> cast(const Placed& a, const Motion& motion_a, const Placed& b, co
     if (Result<void> good = check(options); !good) return tl::unexpected(good.error());
     if (Result<void> good = check(motion_a, options, 0); !good) return tl::unexpected(good.error());
     if (Result<void> good = check(motion_b, options, 1); !good) return tl::unexpected(good.error());
-    if ((is_half_space(a) && motion_a.spin != glm::dvec3(0.0)) ||
-        (is_half_space(b) && motion_b.spin != glm::dvec3(0.0)))
-        return fail(ErrorCode::unsupported, is_half_space(a) ? 0 : 1, "cast: a half-space cannot turn; turn the other");
-    if (is_half_space(a) && is_half_space(b))
+    const bool a_turns = is_unbounded(a) && motion_a.spin != glm::dvec3(0.0);
+    if (a_turns || (is_unbounded(b) && motion_b.spin != glm::dvec3(0.0)))
+        return fail(ErrorCode::unsupported, a_turns ? 0 : 1, "cast: a half-space cannot turn; turn the other");
+    if (is_unbounded(a) && is_unbounded(b))
         return fail(ErrorCode::unsupported, 1, "cast: two half-spaces; ask `distance` at the two times");
     if (!a.body.is_convex()) return cast_parts(a, motion_a, b, motion_b, options, 0.0);
     if (!b.body.is_convex()) {

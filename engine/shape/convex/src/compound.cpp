@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <cmath>
 #include <crofton/convex/body.hpp>
 #include <crofton/core/recovery.hpp>
-#include <numeric>
 
 #include "parts.hpp"
+#include "ray.hpp"
 
 namespace crofton::convex {
 namespace {
@@ -13,9 +14,6 @@ constexpr std::uint32_t kLeafSize = 4;
 
 Result<void> check(const CompoundChild& child, std::uint64_t item) {
     if (Result<void> good = validate_pose(child.pose, item); !good) return good;
-    if (child.body.kind() == Kind::half_space)
-        return fail(ErrorCode::unsupported, item,
-                    {"compound: child ", item, " is a half-space; make it an object of its own"});
     if (child.body.compound() != nullptr && child.body.compound()->depth() >= kMaxCompoundDepth)
         return fail(ErrorCode::out_of_range, item,
                     {"compound: child ", item, " holds compounds ", kMaxCompoundDepth,
@@ -44,11 +42,14 @@ Result<Compound> Compound::build(std::span<const CompoundChild> children) {
             if (inner != nullptr) result.depth_ = std::max(result.depth_, inner->depth() + 1);
             result.has_surfaces_ = result.has_surfaces_ || has_surfaces(child.body);
             boxes.push_back(bounds_of(box_around({child.body, child.pose}, {})));
+            (child.body.is_bounded() ? result.order_ : result.unbounded_).push_back(static_cast<std::uint32_t>(i));
         }
         result.part_count_ = static_cast<std::uint32_t>(parts);
-        result.order_.resize(children.size());
-        std::iota(result.order_.begin(), result.order_.end(), 0u);
-        result.split(0, static_cast<std::uint32_t>(children.size()), boxes);
+        if (!result.order_.empty()) {
+            result.split(0, static_cast<std::uint32_t>(result.order_.size()), boxes);
+            result.bounds_ = result.nodes_.front().box;
+        }
+        if (!result.unbounded_.empty()) result.bounds_ = {glm::dvec3(-HUGE_VAL), glm::dvec3(HUGE_VAL)};
         return result;
     });
 }
@@ -91,7 +92,20 @@ class CompoundSearch {
         : compound_(compound), box_(box), bounds_(bounds_of(box)), search_(search) {}
 
     [[nodiscard]] static bool has_surfaces(const Compound& compound) { return compound.has_surfaces_; }
+    // How far its bounded children reach from its origin along each axis.
+    [[nodiscard]] static glm::dvec3 reach_of(const Compound& compound) {
+        if (compound.nodes_.empty()) return glm::dvec3(0.0);
+        const Aabb& box = compound.nodes_.front().box;
+        return (glm::max)(glm::abs(box.min), glm::abs(box.max));
+    }
 
+    bool run() const {
+        for (const std::uint32_t child : compound_.unbounded_)
+            if (visit(child)) return true;
+        return !compound_.nodes_.empty() && descend(0);
+    }
+
+  private:
     bool descend(std::uint32_t at) const {
         const Compound::Node& node = compound_.nodes_[at];
         if (distance_between(node.box, bounds_) > search_.limit) return false;
@@ -107,7 +121,6 @@ class CompoundSearch {
         return descend(near) || descend(far);
     }
 
-  private:
     bool visit(std::uint32_t index) const {
         const CompoundChild& child = compound_.children_[index];
         const RigidTransform pose = within(search_.pose, child.pose);
@@ -120,7 +133,8 @@ class CompoundSearch {
                                child.body.reach(),
                                search_.on_triangle};
         const QueryBox box = seen_from(box_, child.pose);
-        if (distance_between(child.body.bounds(), bounds_of(box)) > search_.limit) return false;
+        if (child.body.is_bounded() && distance_between(child.body.bounds(), bounds_of(box)) > search_.limit)
+            return false;
         return search_parts({child.body, pose}, box, inner);
     }
 
@@ -138,11 +152,45 @@ bool has_surfaces(const Body& body) {
 // The children stand at rounded products of poses, which the box, told in the compound's frame, knows nothing of. With
 // u = 2^-53, a product is off by 4u of its terms.
 bool search_compound(const Compound& compound, const QueryBox& box, const PartSearch& search) {
-    const glm::dvec3 reach = (glm::max)(glm::abs(compound.bounds().min), glm::abs(compound.bounds().max)),
-                     size = glm::abs(search.pose.translation) + reach;
+    const glm::dvec3 size = glm::abs(search.pose.translation) + CompoundSearch::reach_of(compound);
     QueryBox wider = box;
     wider.rounding += 0x1p-49 * (size.x + size.y + size.z);
-    return CompoundSearch(compound, wider, search).descend(0);
+    return CompoundSearch(compound, wider, search).run();
+}
+
+class CompoundRay {
+  public:
+    CompoundRay(const Compound& compound, const NearRay& ray, ChildVisitor visit)
+        : compound_(compound), ray_(ray), visit_(visit) {}
+
+    void run() const {
+        for (const std::uint32_t child : compound_.unbounded_) visit(child);
+        if (!compound_.nodes_.empty()) descend(0);
+    }
+
+  private:
+    void visit(std::uint32_t child) const { visit_(compound_.children_[child], compound_.first_part_[child]); }
+
+    void descend(std::uint32_t at) const {
+        const Compound::Node& node = compound_.nodes_[at];
+        // A child stands at a rounded product of poses, as far as that from its box.
+        const glm::dvec3 size = glm::abs(node.box.min) + glm::abs(node.box.max);
+        double from = 0.0;
+        if (!passes_box(ray_, node.box, ray_.error + 1e-14 * (size.x + size.y + size.z), from)) return;
+        if (node.right != 0) {
+            descend(at + 1);
+            return descend(node.right);
+        }
+        for (std::uint32_t i = node.begin; i < node.end; ++i) visit(compound_.order_[i]);
+    }
+
+    const Compound& compound_;
+    const NearRay& ray_;
+    ChildVisitor visit_;
+};
+
+void visit_children_along(const Compound& compound, const NearRay& ray, ChildVisitor visit) {
+    CompoundRay(compound, ray, visit).run();
 }
 
 }  // namespace crofton::convex

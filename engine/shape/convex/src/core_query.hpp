@@ -42,5 +42,9 @@ struct HalfSpaceGap {
 [[nodiscard]] inline bool is_half_space(const Placed& body) {
     return body.body.kind() == Kind::half_space;
 }
+// A half-space, or a compound that holds one.
+[[nodiscard]] inline bool is_unbounded(const Placed& body) {
+    return !body.body.is_bounded();
+}
 
 }  // namespace crofton::convex

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "parts.hpp"
+#include "ray.hpp"
 
 namespace crofton::convex {
 namespace {
@@ -209,6 +210,95 @@ class FieldSearch {
 
 bool search_field(const HeightField& field, const Aabb& box, const PartSearch& search) {
     return FieldSearch(field, box, search).run();
+}
+
+// The descent along a ray, the blocks it comes to first first.
+class FieldRay {
+  public:
+    FieldRay(const HeightField& field, Sides sides, const NearRay& ray)
+        : field_(field), sides_(sides), ray_(ray), rest_(ray) {}
+
+    std::optional<NearHit> run() {
+        const auto top = static_cast<std::uint32_t>(field_.levels_.size()) - 1;
+        double from = 0.0;
+        if (passes(top, 0, 0, from)) descend(top, 0, 0);
+        return best_;
+    }
+
+  private:
+    struct Child {
+        std::uint32_t column, row;
+        double from;
+    };
+
+    // The box of `width` cells from a corner on.
+    bool passes_cells(std::uint32_t i, std::uint32_t j, std::uint32_t width, float low, float high, double& from) {
+        const auto end = [&](std::uint32_t k, std::uint32_t count) {
+            return static_cast<double>(std::min(k + width, count - 1));
+        };
+        const glm::dvec2 spacing = field_.spacing_;
+        const Aabb box{
+            {static_cast<double>(i) * spacing.x, static_cast<double>(low), static_cast<double>(j) * spacing.y},
+            {end(i, field_.columns_) * spacing.x, static_cast<double>(high), end(j, field_.rows_) * spacing.y}};
+        return passes_box(rest_, box, ray_.error, from);
+    }
+    bool passes(std::uint32_t level, std::uint32_t i, std::uint32_t j, double& from) {
+        const HeightField::Level& at = field_.levels_[level];
+        const HeightField::Span& span = field_.spans_[at.first + std::size_t{j} * at.columns + i];
+        if (span.low > span.high) return false;  // holes
+        const std::uint32_t shift = 2 * level + 2;
+        return passes_cells(i << shift, j << shift, 1u << shift, span.low, span.high, from);
+    }
+
+    void descend(std::uint32_t level, std::uint32_t column, std::uint32_t row) {
+        const bool to_cells = level == 0;
+        const std::uint32_t columns = to_cells ? field_.columns_ - 1 : field_.levels_[level - 1].columns,
+                            rows = to_cells ? field_.rows_ - 1 : field_.levels_[level - 1].rows;
+        Child child[kBlock * kBlock];
+        int count = 0;
+        for (std::uint32_t j = row * kBlock; j < std::min((row + 1) * kBlock, rows); ++j)
+            for (std::uint32_t i = column * kBlock; i < std::min((column + 1) * kBlock, columns); ++i) {
+                double from = 0.0;
+                if (!(to_cells ? passes_cell(i, j, from) : passes(level - 1, i, j, from))) continue;
+                int place = count++;
+                for (; place > 0 && child[place - 1].from > from; --place) child[place] = child[place - 1];
+                child[place] = {i, j, from};
+            }
+        for (int k = 0; k < count; ++k) {
+            if (child[k].from > rest_.max_t) return;
+            if (to_cells)
+                meet_cell(child[k].column, child[k].row);
+            else
+                descend(level - 1, child[k].column, child[k].row);
+        }
+    }
+    bool passes_cell(std::uint32_t i, std::uint32_t j, double& from) {
+        if (field_.material(j * (field_.columns_ - 1) + i) == kHole) return false;
+        const float* const h = field_.heights_.data() + std::size_t{j} * field_.columns_ + i;
+        const auto [low, high] = std::minmax({h[0], h[1], h[field_.columns_], h[field_.columns_ + 1]});
+        return passes_cells(i, j, 1, low, high, from);
+    }
+    void meet_cell(std::uint32_t i, std::uint32_t j) {
+        const std::uint32_t cell = j * (field_.columns_ - 1) + i;
+        for (std::uint32_t triangle = 2 * cell; triangle < 2 * cell + 2; ++triangle) {
+            auto hit = meet_triangle(field_.triangle(triangle), sides_, ray_);
+            if (!hit) continue;
+            hit->triangle = triangle;
+            if (best_ && (hit->t > best_->t || (hit->t == best_->t && triangle > best_->triangle))) continue;
+            best_ = hit;
+            rest_.max_t = hit->t;
+        }
+    }
+
+    const HeightField& field_;
+    const Sides sides_;
+    const NearRay& ray_;
+    NearRay rest_;  // up to the best
+    std::optional<NearHit> best_;
+};
+
+std::optional<NearHit> meet_field(const HeightField& field, Sides sides, const NearRay& ray) {
+    return FieldRay(field, sides, ray).run();
 }
 
 }  // namespace crofton::convex

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Bodies and contacts as lines, for whoever draws them.
+#include <algorithm>
 #include <crofton/convex/query.hpp>
 #include <crofton/geometry/trigonometry.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
+
+#include "parts.hpp"
 
 namespace crofton::convex {
 namespace {
@@ -143,7 +146,7 @@ void outline(const Placed& body, LineVisitor line) {
     // All parts are near the middle, within the body's own reach.
     const Result<Body> point = Body::ball(0.0f);
     Vector<Part> parts;
-    parts_near(body, {*point, body.pose}, 2.0 * body.body.reach(), parts);
+    parts_near(body, {*point, body.pose}, std::min(2.0 * body.body.reach(), kEverything), parts);
     for (const Part& part : parts) draw_convex(part.body, part.pose, line);
 }
 

@@ -39,7 +39,7 @@ class PartCaster {
         const RigidTransform pose = moved(a_.pose, motion_a_, from);
         const QueryBox box = swept_box(pose, from, to);
         int count = 0;
-        if (halvings < kMaxHalvings && to > from && !is_half_space(b_))
+        if (halvings < kMaxHalvings && to > from && !is_unbounded(b_))
             visit(box, [&](const Part&) { return ++count > kManyParts; });
         if (count > kManyParts && way(from, to) > 0.5 * around_) {
             const double middle = 0.5 * (from + to);
@@ -119,8 +119,9 @@ class PartCaster {
 
     // Parts stand as at time 0, whenever the box is of.
     void visit(const QueryBox& box, PartVisitor visitor) const {
-        const double margin = is_half_space(b_) ? kEverything : options_.tolerance + 1e-9 * (around_ + a_.body.reach());
-        visit_parts(a_, box, margin, visitor);
+        if (is_unbounded(b_)) return (void)visit_parts(a_, {}, kEverything, visitor);
+        const double reach = is_unbounded(a_) ? 0.0 : a_.body.reach();
+        visit_parts(a_, box, options_.tolerance + 1e-9 * (around_ + reach), visitor);
     }
 
     void cast_part(const Part& part, double from) {
@@ -146,7 +147,8 @@ class PartCaster {
     [[nodiscard]] bool comes_later(const Placed& part) const {
         const glm::dvec3 velocity = motion_b_.velocity - motion_a_.velocity;
         const double speed = glm::length(velocity);
-        if (b_turns_ || motion_a_.spin != glm::dvec3(0.0) || !(speed > 0.0) || is_half_space(b_)) return false;
+        if (b_turns_ || motion_a_.spin != glm::dvec3(0.0) || !(speed > 0.0) || is_unbounded(b_)) return false;
+        if (is_half_space(part)) return false;
         if (!b_.body.is_convex()) return false;
         const Pair pair(part, b_);
         const double gap = -pair.extent(-velocity / speed) - pair.error - part.body.radius() - b_.body.radius();

@@ -48,7 +48,7 @@ void search_nearest(const Placed& a, const Placed& b, Distance& best, double& lo
         }
         return best.distance == 0.0;
     };
-    if (is_half_space(b))
+    if (is_unbounded(b))
         visit_parts(a, {}, kEverything, visit);
     else
         visit_nearest_parts(a, box_around(b, a.pose), limit, visit);
@@ -57,12 +57,12 @@ void search_nearest(const Placed& a, const Placed& b, Distance& best, double& lo
 }  // namespace
 
 bool visit_parts_near(const Placed& a, const Placed& b, double margin, PartVisitor visit) {
-    if (is_half_space(b)) return visit_parts(a, {}, kEverything, visit);
+    if (is_unbounded(b)) return visit_parts(a, {}, kEverything, visit);
     return visit_parts(a, box_around(b, a.pose), margin + doubt_of_parts(a, b), visit);
 }
 
 void visit_parts_near(const Placed& a, const Placed& b, double margin, PartVisitor convex, TriangleVisitor triangle) {
-    if (is_half_space(b)) return visit_parts(a, {}, kEverything, convex, triangle);
+    if (is_unbounded(b)) return visit_parts(a, {}, kEverything, convex, triangle);
     visit_parts(a, box_around(b, a.pose), margin + doubt_of_parts(a, b), convex, triangle);
 }
 

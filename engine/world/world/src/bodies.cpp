@@ -53,6 +53,17 @@ double spread_of(const mesh::MeshTree& tree) {
     return whole > 0.0 ? sum / whole : 0.0;
 }
 
+Vector<std::uint32_t> places_in(const mesh::MeshTree& tree) {
+    Vector<std::uint32_t> places;
+    if (tree.triangle_count() == 0) return places;
+    places.assign(tree.triangle_count() + tree.rejected().size(), 0);
+    const Vector<mesh::MeshLeaf>& leaves = tree.parts().leaves;
+    for (std::uint32_t leaf = 0; leaf < leaves.size(); ++leaf)
+        for (std::uint32_t lane = 0; lane < leaves[leaf].count; ++lane)
+            places[leaves[leaf].triangle[lane]] = leaf * mesh::kMeshLeafWidth + lane;
+    return places;
+}
+
 constexpr double kWornOut = 1.5;  // times the spread at the build: then a tree is built anew
 
 }  // namespace
@@ -80,6 +91,7 @@ void Bodies::update_tree(const TriangleMesh& triangles, Mesh& mesh) {
     detail::give_up_without_memory(built);
     mesh.is_usable = built.has_value();
     mesh.tree = built ? std::move(*built) : mesh::MeshTree();
+    mesh.places = places_in(mesh.tree);
     mesh.can_refit = mesh.is_usable && mesh.deforms;
     if (mesh.can_refit) mesh.spread = spread_of(mesh.tree);
 }
@@ -95,12 +107,23 @@ bool Bodies::update(const scene::Scene& scene, Executor& executor) {
         if (revision != 0 && meshes_[mesh].wants_triangles)
             to_build_.push_back(mesh);
         else
-            meshes_[mesh].tree = {}, meshes_[mesh].is_usable = meshes_[mesh].can_refit = false;
+            meshes_[mesh].tree = {}, meshes_[mesh].places = {},
+            meshes_[mesh].is_usable = meshes_[mesh].can_refit = false;
     }
     executor.parallel_for(to_build_.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t i = begin; i < end; ++i) update_tree(scene.mesh(to_build_[i]), meshes_[to_build_[i]]);
     });
     return changed;
+}
+
+Triangle Bodies::triangle_of(const Object& object, std::uint32_t triangle) const {
+    const Mesh& mesh = meshes_[object.mesh];
+    const std::uint32_t place = mesh.places[triangle], lane = place % mesh::kMeshLeafWidth;
+    const mesh::MeshLeaf& leaf = mesh.tree.parts().leaves[place / mesh::kMeshLeafWidth];
+    Triangle corners;
+    for (std::size_t v = 0; v < 3; ++v)
+        corners[v] = {glm::vec3(leaf.vertex[v][0][lane], leaf.vertex[v][1][lane], leaf.vertex[v][2][lane])};
+    return corners;
 }
 
 void Bodies::begin() {

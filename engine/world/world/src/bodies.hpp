@@ -36,6 +36,9 @@ class Bodies {
         return has && meshes_[object.mesh].is_usable ? &meshes_[object.mesh].tree : nullptr;
     }
 
+    // A triangle of the tree of an object's mesh, in its frame. Requires that there is one.
+    [[nodiscard]] Triangle triangle_of(const Object& object, std::uint32_t triangle) const;
+
     // Objects that prepare() is called for between begin() and build() can be asked for their tree afterwards, until
     // something changes.
     void begin();
@@ -48,6 +51,7 @@ class Bodies {
   private:
     struct Mesh {
         mesh::MeshTree tree;
+        Vector<std::uint32_t> places;  // of triangles in the tree's leaves, by index: leaf · kMeshLeafWidth + lane
         std::uint64_t revision = 0;
         double spread = 0.0;  // of the tree's boxes when it was built
         bool wants_triangles = true, is_usable = false;

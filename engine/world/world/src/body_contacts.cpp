@@ -8,11 +8,11 @@
 namespace crofton::world {
 
 // The pairs of two bodies, each with its state in the update before. Both lists are in order.
-void BodyContacts::list(std::span<const ObjectPair> pairs) {
+void BodyContacts::list(std::span<const ObjectPair> pairs, const ObjectBodies& bodies) {
     touches_.clear();
     std::size_t old = 0;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-        if (!has(pairs[i].first.object.index) || !has(pairs[i].second.object.index)) continue;
+        if (!bodies.has(pairs[i].first.object.index) || !bodies.has(pairs[i].second.object.index)) continue;
         while (old < states_.size() && is_before(states_[old].pair, pairs[i])) ++old;
         Touch& touch = touches_.emplace_back();
         touch.pair = static_cast<std::uint32_t>(i);
@@ -22,22 +22,22 @@ void BodyContacts::list(std::span<const ObjectPair> pairs) {
 }
 
 void BodyContacts::note_moved(const SpatialIndex& index) {
-    moved_.assign(bodies_.size(), 0);
+    moved_.assign(index.size(), 0);
     for (const auto items : {index.moved_items(), std::span<const std::uint32_t>(changed_)})
         for (const std::uint32_t item : items)
             if (item < moved_.size()) moved_[item] = 1;
     changed_.clear();
 }
 
-void BodyContacts::update(std::span<const ObjectPair> pairs, const ObjectTable& table, const SpatialIndex& index,
-                          const scene::Scene& scene, double margin, Executor& executor) {
+void BodyContacts::update(std::span<const ObjectPair> pairs, const ObjectBodies& bodies, const ObjectTable& table,
+                          const SpatialIndex& index, const scene::Scene& scene, double margin, Executor& executor) {
     computed_ = 0;
-    if (count_ == 0 && states_.empty()) {
+    if (bodies.count() == 0 && states_.empty()) {
         changed_.clear();
         return contacts_.clear();
     }
     note_moved(index);
-    list(pairs);
+    list(pairs, bodies);
     workers_.resize(std::max<std::size_t>(workers_.size(), executor.concurrency()));
     for (Worker& worker : workers_) worker.points.clear();
     executor.parallel_for(touches_.size(), kPairsATask, [&](std::size_t begin, std::size_t end, unsigned w) {
@@ -58,10 +58,10 @@ void BodyContacts::update(std::span<const ObjectPair> pairs, const ObjectTable& 
                 for (convex::TrackedPoint& point : worker.pair_points) point.began = false;
             } else {
                 touch.computed = true;
-                const auto pose_a = pose_of(table.objects[a], index.box(a), scene),
-                           pose_b = pose_of(table.objects[b], index.box(b), scene);
+                const auto pose_a = bodies.pose_of(a, table.objects[a], index.box(a), scene),
+                           pose_b = bodies.pose_of(b, table.objects[b], index.box(b), scene);
                 if (!pose_a || !pose_b) continue;
-                convex::contact_manifolds({*bodies_[a], *pose_a}, {*bodies_[b], *pose_b}, {.margin = margin},
+                convex::contact_manifolds({bodies.body(a), *pose_a}, {bodies.body(b), *pose_b}, {.margin = margin},
                                           worker.found, &touch.cache);
                 convex::track(worker.found.all(), worker.pair_points);
             }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Bodies of objects, and where they touch from update to update.
+// Where bodies of objects touch from update to update.
 #pragma once
 #include <crofton/convex/query.hpp>
 #include <crofton/scene/scene.hpp>
-#include <optional>
 
+#include "object_bodies.hpp"
 #include "object_table.hpp"
 #include "spatial_index.hpp"
 
@@ -12,17 +12,13 @@ namespace crofton::world {
 
 class BodyContacts {
   public:
-    void set(std::uint32_t object, const convex::Body* body);  // nullptr: none
-    [[nodiscard]] bool has(std::uint32_t object) const { return object < bodies_.size() && bodies_[object]; }
-    [[nodiscard]] const convex::Body& body(std::uint32_t object) const { return *bodies_[object]; }
-
-    // Where the object's body stands has changed otherwise than by its box.
+    // The object's body, or where it stands, has changed otherwise than by its box.
     void note(std::uint32_t object) { changed_.push_back(object); }
     void forget_changes() { changed_.clear(); }  // where contacts are not asked for
 
     // Pairs are computed that are new, or of an object among the index's moved_items(), or with another body, or noted.
-    void update(std::span<const ObjectPair> pairs, const ObjectTable& table, const SpatialIndex& index,
-                const scene::Scene& scene, double margin, Executor& executor);
+    void update(std::span<const ObjectPair> pairs, const ObjectBodies& bodies, const ObjectTable& table,
+                const SpatialIndex& index, const scene::Scene& scene, double margin, Executor& executor);
     void stay();  // nothing has changed
     [[nodiscard]] std::span<const BodyContact> contacts() const { return contacts_; }
     [[nodiscard]] std::size_t computed() const { return computed_; }  // pairs, in the last update or stay
@@ -46,13 +42,11 @@ class BodyContacts {
         convex::Manifolds found;
         Vector<convex::TrackedPoint> points, pair_points;
     };
-    void list(std::span<const ObjectPair> pairs);
+    void list(std::span<const ObjectPair> pairs, const ObjectBodies& bodies);
     void note_moved(const SpatialIndex& index);
     void gather(std::span<const ObjectPair> pairs);
     void add(const ObjectPair& pair, ContactPhase phase, std::uint32_t first_point, std::uint32_t count);
 
-    Vector<std::optional<convex::Body>> bodies_;  // by object
-    std::size_t count_ = 0;                       // bodies
     std::size_t computed_ = 0;
     Vector<std::uint32_t> changed_;  // noted since the last update
     Vector<std::uint8_t> moved_;     // by object, in this update
@@ -62,8 +56,5 @@ class BodyContacts {
     Vector<convex::TrackedPoint> points_, next_points_;
     Vector<BodyContact> contacts_;
 };
-
-// Where an object's body stands; nothing where its transform is not rigid.
-[[nodiscard]] std::optional<RigidTransform> pose_of(const Object& object, const Obb& box, const scene::Scene& scene);
 
 }  // namespace crofton::world

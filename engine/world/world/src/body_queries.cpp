@@ -43,7 +43,7 @@ Aabb swept_bounds(const convex::Body& body, const RigidTransform& pose, const co
 }
 
 Result<void> check(const convex::Body& shape, const RigidTransform& pose) {
-    if (shape.kind() == convex::Kind::half_space)
+    if (!shape.is_bounded())
         return fail(ErrorCode::unsupported, kNoItem, "world: a half-space meets nearly all; ask with a bounded body");
     return convex::validate_pose(pose);
 }
@@ -53,7 +53,7 @@ Result<void> check(const convex::Body& shape, const RigidTransform& pose) {
 World::State::Stand World::State::stand_of(std::uint32_t id) const {
     const world::Object& object = table.objects[id];
     const Obb& box = index.box(id);
-    if (body_contacts.has(id)) return {body_contacts.body(id), world::pose_of(object, box, scene)};
+    if (object_bodies.has(id)) return {object_bodies.body(id), object_bodies.pose_of(id, object, box, scene)};
     if (object.kind == BoundKind::ball)
         return {*convex::Body::ball(std::min(object.radius, static_cast<double>(convex::kMaxExtent))),
                 RigidTransform{glm::dmat3(1.0), box.center}};

@@ -46,40 +46,51 @@ std::span<const T> append(const Vector<T>& from, std::uint32_t first, std::uint3
 ContactFinder::ContactFinder(const WorldOptions& options)
     : options_(options), broadphase_({.exact_boxes = true, .max_pairs = options.max_pairs}) {}
 
-void ContactFinder::list_colliders(const ObjectTable& table, const SpatialIndex& index) {
+void ContactFinder::list_colliders(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene,
+                                   const ObjectBodies& bodies_of) {
     colliders_.clear();
     boxes_.clear();
     filters_.clear();
     collider_of_.assign(table.objects.size(), kNoIndex);
     for (std::uint32_t i = 0; i < table.objects.size(); ++i) {
         const Object& object = table.objects[i];
-        if (!object.alive || object.collides_with == 0 || !index.is_placed(i)) continue;
+        if (!object.alive || object.collides_with == 0 || !index.is_placed(i) || bodies_of.is_unbounded(i)) continue;
         const std::uint32_t layers = index.layers(i);
         if (layers == 0) continue;
         collider_of_[i] = static_cast<std::uint32_t>(colliders_.size());
         colliders_.push_back(i);
-        boxes_.push_back(index.box(i));
+        boxes_.push_back(bodies_of.collider_box(i, object, index.box(i), scene, options_.contact_margin / 2.0));
         filters_.push_back({layers, object.collides_with});
     }
 }
 
-void ContactFinder::move_colliders(const SpatialIndex& index) {
+void ContactFinder::move_colliders(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene,
+                                   const ObjectBodies& bodies_of) {
     moved_.clear();
     for (const ItemId item : index.moved_items()) {
         const std::uint32_t collider = item < collider_of_.size() ? collider_of_[item] : kNoIndex;
         if (collider == kNoIndex) continue;
-        boxes_[collider] = index.box(item);
+        boxes_[collider] =
+            bodies_of.collider_box(item, table.objects[item], index.box(item), scene, options_.contact_margin / 2.0);
         moved_.push_back(collider);
     }
 }
 
 // Colliders ascend, so that pairs of objects are in the order of pairs of boxes.
-void ContactFinder::list_pairs(const ObjectTable& table) {
+void ContactFinder::list_pairs(const ObjectTable& table, const SpatialIndex& index, const ObjectBodies& bodies_of) {
     pairs_.clear();
     for (const IdPair& pair : broadphase_.pairs()) {
         const std::uint32_t first = colliders_[pair.first], second = colliders_[pair.second];
-        if (!bounds_meet(table.objects[first], boxes_[pair.first], table.objects[second], boxes_[pair.second]))
+        const Obb &box_a = index.box(first), &box_b = index.box(second);
+        if (options_.contact_margin > 0.0 && (bodies_of.has(first) || bodies_of.has(second))) {
+            // Two bodies are asked as far as the contact margin, beyond boxes and balls.
+            if (!(bodies_of.has(first) && bodies_of.has(second)) &&
+                (!collide::intersects(box_a, box_b) ||
+                 !bounds_meet(table.objects[first], box_a, table.objects[second], box_b)))
+                continue;
+        } else if (!bounds_meet(table.objects[first], box_a, table.objects[second], box_b)) {
             continue;
+        }
         pairs_.push_back({table.ref(first), table.ref(second)});
     }
 }
@@ -143,7 +154,7 @@ void ContactFinder::touch_ball(const PosedTree& mesh, const PosedTree& center, d
 }
 
 void ContactFinder::find_contacts(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene,
-                                  Bodies& bodies, const BodyContacts& bodies_of, Executor& executor) {
+                                  Bodies& bodies, const ObjectBodies& bodies_of, Executor& executor) {
     const auto have_bodies = [&](const ObjectPair& pair) {
         return bodies_of.has(pair.first.object.index) && bodies_of.has(pair.second.object.index);
     };
@@ -237,16 +248,16 @@ void ContactFinder::gather() {
 }
 
 Result<void> ContactFinder::update(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene,
-                                   Bodies& bodies, const BodyContacts& bodies_of, bool moved_only, Executor& executor) {
+                                   Bodies& bodies, const ObjectBodies& bodies_of, bool moved_only, Executor& executor) {
     Result<void> found;
     if (moved_only) {
-        move_colliders(index);
+        move_colliders(table, index, scene, bodies_of);
         found = broadphase_.update_moved(boxes_, moved_, filters_, executor);
     } else {
-        list_colliders(table, index);
+        list_colliders(table, index, scene, bodies_of);
         found = broadphase_.update(boxes_, filters_, executor);
     }
-    list_pairs(table);
+    list_pairs(table, index, bodies_of);
     if (options_.contacts) {
         find_contacts(table, index, scene, bodies, bodies_of, executor);
         gather();

@@ -5,7 +5,7 @@
 #include <crofton/world/world.hpp>
 
 #include "bodies.hpp"
-#include "body_contacts.hpp"
+#include "object_bodies.hpp"
 #include "object_table.hpp"
 #include "spatial_index.hpp"
 
@@ -29,7 +29,7 @@ class ContactFinder {
     // After the updates of these. `moved_only`: since the update before no more has changed than the boxes of the
     // index's moved_items(). Pairs of two bodies are left to `bodies_of`. Error: as Broadphase::update.
     Result<void> update(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene, Bodies& bodies,
-                        const BodyContacts& bodies_of, bool moved_only, Executor& executor);
+                        const ObjectBodies& bodies_of, bool moved_only, Executor& executor);
     // Nothing has changed since the update before.
     void stay();
 
@@ -42,11 +42,13 @@ class ContactFinder {
         Vector<collide::ContactPoint> points;
         Vector<mesh::MeshContact> triangles, found;
     };
-    void list_colliders(const ObjectTable& table, const SpatialIndex& index);
-    void move_colliders(const SpatialIndex& index);
-    void list_pairs(const ObjectTable& table);
+    void list_colliders(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene,
+                        const ObjectBodies& bodies_of);
+    void move_colliders(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene,
+                        const ObjectBodies& bodies_of);
+    void list_pairs(const ObjectTable& table, const SpatialIndex& index, const ObjectBodies& bodies_of);
     void find_contacts(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene, Bodies& bodies,
-                       const BodyContacts& bodies_of, Executor& executor);
+                       const ObjectBodies& bodies_of, Executor& executor);
     void touch_bounds(const ObjectTable& table, const SpatialIndex& index, const ObjectPair& pair, Worker& worker,
                       Touch& touch) const;
     void touch_triangles(const PosedTree& a, const PosedTree& b, Worker& worker, Touch& touch) const;

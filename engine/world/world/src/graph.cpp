@@ -5,6 +5,7 @@
 #include <string>
 
 #include "for_each_pair.hpp"
+#include "must.hpp"
 #include "world_state.hpp"
 
 namespace crofton {
@@ -122,9 +123,37 @@ Result<void> World::State::set_transform(NodeHandle node, const Transform& trans
 
 // The scene checks the transform; an error names the caller's item.
 Result<void> World::State::set_local(scene::NodeId node, const Transform& transform, std::uint64_t item) {
+    const Transform before = mesh_bodies > 0 ? scene.local(node) : Transform();
     auto set = scene.set_local(node, transform);
-    if (!set) set.error().item = item;
-    return set;
+    if (!set) {
+        set.error().item = item;
+        return set;
+    }
+    // What scales alike before and after leaves all shapes below as they are.
+    if (mesh_bodies == 0 || (world::is_similarity(before.linear) && world::is_similarity(transform.linear))) return set;
+    auto scales = check_bodies_below(node, item);
+    if (!scales) world::must(scene.set_local(node, before));
+    return scales;
+}
+
+Transform World::State::world_to_be(scene::NodeId node) const {
+    Transform world = scene.local(node);
+    for (scene::NodeId above = scene.parent_of(node); above != scene::kNone; above = scene.parent_of(above))
+        world = scene.local(above) * world;
+    return world;
+}
+
+Result<void> World::State::check_bodies_below(scene::NodeId node, std::uint64_t item) const {
+    Result<void> first;
+    scene.visit_subtree(
+        node, [](scene::NodeId) {},
+        [&](scene::InstanceId instance) {
+            const std::uint32_t object = object_of_instance[instance];
+            if (!first || !object_bodies.has(object)) return;
+            const glm::dmat3 linear = world_to_be(scene.node_of(instance)).linear;
+            first = world::ObjectBodies::check(object_bodies.own_body(object), linear, item);
+        });
+    return first;
 }
 
 Result<void> World::set_transform(NodeHandle node, const Transform& transform) {
@@ -145,8 +174,9 @@ Result<void> World::set_transforms(Strided<NodeHandle> nodes, Strided<Transform>
             ids[count] = nodes[begin + count].index;
             ++count;
         }
-        // All of them, or, where one is bad, none: then one by one.
-        if (side_by_side && begin + count == end && s.scene.set_local({ids, count}, {&transforms[begin], count}))
+        // All of them, or, where one is bad, none: then one by one. So are those that bodies may hang on.
+        if (side_by_side && s.mesh_bodies == 0 && begin + count == end &&
+            s.scene.set_local({ids, count}, {&transforms[begin], count}))
             continue;
         for (std::size_t i = begin; i < end; ++i) {
             auto set = s.set_transform(nodes[i], transforms[i], i);
@@ -160,7 +190,13 @@ Result<void> World::set_parent(NodeHandle node, NodeHandle parent) {
     if (auto known = state_->check(node, node.index); !known) return known;
     if (!parent.is_null())
         if (auto known = state_->check(parent, parent.index); !known) return known;
-    return state_->scene.set_parent(node.index, parent.index);
+    State& s = *state_;
+    const scene::NodeId before = s.scene.parent_of(node.index);
+    auto set = s.scene.set_parent(node.index, parent.index);
+    if (!set || s.mesh_bodies == 0) return set;
+    auto scales = s.check_bodies_below(node.index, node.index);
+    if (!scales) world::must(s.scene.set_parent(node.index, before));
+    return scales;
 }
 
 Result<void> World::set_layers(NodeHandle node, std::uint32_t layers) {

@@ -152,6 +152,12 @@ Result<void> World::State::set_bound(ObjectHandle object, const Bound& bound, st
 bool World::State::stage_box_of_mover(std::uint32_t id, BoundKind kind, const Obb& box, double radius) {
     const world::Object& object = table.objects[id];
     if (object.kind != kind || object.radius != radius) return false;
+    if (object_bodies.has(id)) {
+        Bound bound(box);
+        bound.kind = kind;
+        bound.radius = radius;
+        if (object_bodies.is_grown(id) || !object_bodies.fits(id, bound)) return false;
+    }
     if (object.staged != kNoIndex && staged[object.staged].has_bound) return false;
     return index.stage_box(id, box);
 }
@@ -190,12 +196,20 @@ Result<void> World::set_mesh(ObjectHandle object, MeshHandle mesh) {
 }
 
 Result<void> World::set_body(ObjectHandle object, const convex::Body* body) {
-    if (auto known = state_->check(object, object.index); !known) return known;
-    if (body != nullptr && body->kind() == convex::Kind::half_space)
-        return fail(ErrorCode::unsupported, object.index,
-                    "world: a half-space has no box; give the object a large box instead");
-    state_->body_contacts.set(object.index, body);
-    state_->pairs_changed = true;
+    State& s = *state_;
+    if (auto known = s.check(object, object.index); !known) return known;
+    const std::uint32_t id = object.index, instance = s.table.objects[id].instance;
+    if (body != nullptr && instance != kNoIndex) {
+        const glm::dmat3 linear = s.world_to_be(s.scene.node_of(instance)).linear;
+        if (auto scales = world::ObjectBodies::check(*body, linear, id); !scales) return scales;
+    }
+    s.mesh_bodies += body != nullptr && instance != kNoIndex ? 1 : 0;
+    s.object_bodies.set(id, body);
+    s.body_contacts.note(id);
+    s.movers.forget(id);  // until the update
+    s.pairs_changed = true;
+    if (body != nullptr && instance != kNoIndex && s.index.has_box(id))
+        (void)s.object_bodies.scale(id, s.scene.world(s.scene.node_of(instance)).linear);  // told by the next update
     return {};
 }
 

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "ray_ball.hpp"
+#include "ray_normal.hpp"
 #include "trace_zone.hpp"
 #include "world_state.hpp"
 
@@ -66,6 +67,35 @@ collide::Distance gap_to(const collide::Capsule& shape, const world::Object& obj
     return gap;
 }
 
+collide::Distance gap_to_ground(const world::GroundShape& ground, const Obb& shape) {
+    return world::gap_to(ground, shape);
+}
+collide::Distance gap_to_ground(const world::GroundShape& ground, const collide::Capsule& shape) {
+    return world::gap_to(ground, shape);
+}
+collide::Distance gap_to_ground(const world::GroundShape& ground, const Sphere& shape) {
+    return world::gap_to(ground, collide::Capsule{shape.center, shape.center, shape.radius});
+}
+
+// A ray whose direction is far from 1 in size, with one near 1: its parameters are the caller's times `per_t`, a power
+// of two. Others, and those that are none, stay as they are.
+struct EvenRay {
+    Ray ray;
+    int exponent = 0;
+
+    explicit EvenRay(const Ray& of) : ray(of) {
+        const glm::dvec3 size = glm::abs(of.direction);
+        const double most = std::max(size.x, std::max(size.y, size.z));
+        if (!(most > 0.0 && std::isfinite(most)) || (most >= 0x1p-100 && most <= 0x1p100)) return;
+        exponent = std::ilogb(most);
+        for (int k = 0; k < 3; ++k) ray.direction[k] = std::scalbn(of.direction[k], -exponent);
+        ray.max_t = std::scalbn(of.max_t, exponent);
+    }
+    void restore(ObjectHit& hit) const {
+        if (exponent != 0) hit.t = std::scalbn(hit.t, -exponent);
+    }
+};
+
 // Whether a matrix can be inverted. A product of rotations and a flat scale may keep a determinant of rounding: 2^-52
 // of the product of its columns' lengths. The inverse of one that passes is off by a thousandth of the mesh's size at
 // most, and by rounding where nothing is nearly flat.
@@ -88,10 +118,13 @@ double gap_between(const Aabb& a, const Obb& box) {
 void World::State::visit_along(const Ray& ray, std::uint32_t layers, collide::RayVisitor visit) const {
     Ray rest = ray;
     const auto visit_living = [&](std::uint32_t object, double t) {
-        if (table.objects[object].alive) rest.max_t = visit(object, t);
+        if (table.objects[object].alive && !object_bodies.is_unbounded(object)) rest.max_t = visit(object, t);
         return rest.max_t;
     };
-    collide::visit_along(ray, index.tree(), visit_living, layers);
+    for (const std::uint32_t object : object_bodies.unbounded())
+        if (rest.max_t >= 0.0 && is_ground(object, layers)) rest.max_t = visit(object, 0.0);
+    if (!(rest.max_t >= 0.0)) return;
+    collide::visit_along(rest, index.tree(), visit_living, layers);
     const cull::MovingBoxes& moving = index.moving();
     for (std::size_t i = 0; i < moving.size() && rest.max_t >= 0.0; ++i) {
         if ((index.layers(moving.items()[i]) & layers) == 0) continue;
@@ -99,9 +132,26 @@ void World::State::visit_along(const Ray& ray, std::uint32_t layers, collide::Ra
     }
 }
 
+std::optional<ObjectHit> World::State::body_hit(const Ray& ray, std::uint32_t id) const {
+    const Stand stand = stand_of(id);
+    if (!stand.pose) return std::nullopt;
+    const auto met = convex::raycast({stand.body, *stand.pose}, ray);
+    if (!met) return std::nullopt;
+    ObjectHit hit{table.handle(id), table.names.users[id], met->t, met->point};
+    hit.normal = met->normal;
+    hit.started_inside = met->started_inside;
+    hit.child = met->part.child;
+    const convex::Body& part =
+        stand.body.compound() != nullptr ? stand.body.compound()->part(met->part.child).body : stand.body;
+    if (!part.is_convex()) hit.triangle = met->part.triangle;
+    return hit;
+}
+
 std::optional<ObjectHit> World::State::shape_hit(const Ray& ray, std::uint32_t id, double box_t) const {
     const world::Object& object = table.objects[id];
-    ObjectHit hit{table.handle(id), table.names.users[id], box_t, {}, kNoTriangle};
+    if (object_bodies.has(id)) return body_hit(ray, id);
+    ObjectHit hit{table.handle(id), table.names.users[id], box_t};
+    hit.normal = world::normal_of(ray, index.box(id), box_t);
     if (const mesh::MeshTree* tree = bodies.mesh_tree_of(object)) {
         const Transform& world = scene.world(scene.node_of(object.instance));
         if (is_invertible(world.linear)) {
@@ -111,20 +161,25 @@ std::optional<ObjectHit> World::State::shape_hit(const Ray& ray, std::uint32_t i
             if (!on_mesh) return std::nullopt;
             hit.t = on_mesh->t;
             hit.triangle = on_mesh->triangle;
+            hit.normal = world::normal_of(ray, bodies.triangle_of(object, on_mesh->triangle), world.linear);
         }
     } else if (object.kind == BoundKind::ball) {
-        const auto t = world::raycast(ray, {index.box(id).center, object.radius});
+        const Sphere ball = world::ball_of(object, index.box(id));
+        const auto t = world::raycast(ray, ball);
         if (!t) return std::nullopt;
         hit.t = *t;
+        hit.normal = world::normal_of(ray, ball, *t);
     }
     hit.point = ray.origin + hit.t * ray.direction;
+    hit.started_inside = hit.normal == glm::dvec3(0.0);
     return hit;
 }
 
 std::optional<ObjectHit> World::raycast(const Ray& ray, std::uint32_t layers) const {
     std::optional<ObjectHit> nearest;
-    Ray rest = ray;
-    state_->visit_along(ray, layers, [&](std::uint32_t object, double t) {
+    const EvenRay even(ray);
+    Ray rest = even.ray;
+    state_->visit_along(even.ray, layers, [&](std::uint32_t object, double t) {
         const auto hit = state_->shape_hit(rest, object, t);
         if (hit && (!nearest || hit->t < nearest->t || object < nearest->object.index)) {
             nearest = hit;
@@ -132,24 +187,28 @@ std::optional<ObjectHit> World::raycast(const Ray& ray, std::uint32_t layers) co
         }
         return rest.max_t;
     });
+    if (nearest) even.restore(*nearest);
     return nearest;
 }
 
 bool World::raycast_any(const Ray& ray, std::uint32_t layers) const {
     bool any = false;
-    state_->visit_along(ray, layers, [&](std::uint32_t object, double t) {
-        any = any || state_->shape_hit(ray, object, t).has_value();
-        return any ? -1.0 : ray.max_t;
+    const EvenRay even(ray);
+    state_->visit_along(even.ray, layers, [&](std::uint32_t object, double t) {
+        any = any || state_->shape_hit(even.ray, object, t).has_value();
+        return any ? -1.0 : even.ray.max_t;
     });
     return any;
 }
 
 void World::raycast_all(const Ray& ray, Vector<ObjectHit>& hits, std::uint32_t layers) const {
     hits.clear();
-    state_->visit_along(ray, layers, [&](std::uint32_t object, double t) {
-        if (const auto hit = state_->shape_hit(ray, object, t)) hits.push_back(*hit);
-        return ray.max_t;
+    const EvenRay even(ray);
+    state_->visit_along(even.ray, layers, [&](std::uint32_t object, double t) {
+        if (const auto hit = state_->shape_hit(even.ray, object, t)) hits.push_back(*hit);
+        return even.ray.max_t;
     });
+    for (ObjectHit& hit : hits) even.restore(hit);
     std::sort(hits.begin(), hits.end(), [](const ObjectHit& a, const ObjectHit& b) {
         return a.t != b.t ? a.t < b.t : a.object.index < b.object.index;
     });
@@ -157,8 +216,15 @@ void World::raycast_all(const Ray& ray, Vector<ObjectHit>& hits, std::uint32_t l
 
 void World::State::visit_near(const Aabb& bounds, double distance, std::uint32_t layers,
                               collide::NearVisitor visit) const {
+    for (const std::uint32_t object : object_bodies.unbounded())
+        if (is_ground(object, layers)) distance = visit(object);
+    visit_bounded_near(bounds, distance, layers, visit);
+}
+
+void World::State::visit_bounded_near(const Aabb& bounds, double distance, std::uint32_t layers,
+                                      collide::NearVisitor visit) const {
     const auto visit_living = [&](std::uint32_t object) {
-        if (table.objects[object].alive) distance = visit(object);
+        if (table.objects[object].alive && !object_bodies.is_unbounded(object)) distance = visit(object);
         return distance;
     };
     collide::visit_near(bounds, distance, index.tree(), visit_living, layers);
@@ -173,6 +239,10 @@ void World::State::overlap(const Shape& shape, Vector<ObjectRef>& found, std::ui
     found.clear();
     if (!is_valid(shape)) return;
     visit_near(bounds_of(shape), 0.0, layers, [&](std::uint32_t id) {
+        if (object_bodies.is_unbounded(id)) {
+            if (gap_to_ground(ground_shape(id), shape).distance <= 0.0) found.push_back(table.ref(id));
+            return 0.0;
+        }
         const world::Object& object = table.objects[id];
         const Obb& box = index.box(id);
         const bool meets = object.kind == BoundKind::ball ? meets_ball(shape, Sphere{box.center, object.radius})
@@ -221,8 +291,10 @@ template <class Shape>
 std::optional<ClosestObject> World::State::closest(const Shape& shape, double max_distance,
                                                    std::uint32_t layers) const {
     if (!is_valid(shape)) return std::nullopt;
-    return closest(bounds_of(shape), max_distance, layers,
-                   [&](std::uint32_t id) { return gap_to(shape, table.objects[id], index.box(id)); });
+    return closest(bounds_of(shape), max_distance, layers, [&](std::uint32_t id) {
+        if (object_bodies.is_unbounded(id)) return gap_to_ground(ground_shape(id), shape);
+        return gap_to(shape, table.objects[id], index.box(id));
+    });
 }
 
 std::optional<ClosestObject> World::closest(const Sphere& shape, double max_distance, std::uint32_t layers) const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // In place of contact_finder.cpp and body_contacts.cpp where CROFTON_CONTACTS is off: a World that views and casts
 // rays, in less code. To ask it for pairs is an error.
+#include "body_contacts.hpp"
 #include "contact_finder.hpp"
 
 namespace crofton::world {
@@ -9,13 +10,13 @@ ContactFinder::ContactFinder(const WorldOptions& options)
     : options_(options), broadphase_({.exact_boxes = true, .max_pairs = options.max_pairs}) {}
 
 Result<void> ContactFinder::update(const ObjectTable&, const SpatialIndex&, const scene::Scene&, Bodies&,
-                                   const BodyContacts&, bool, Executor&) {
+                                   const ObjectBodies&, bool, Executor&) {
     return fail(ErrorCode::unsupported, kNoItem, "World::update: this build of the library finds no pairs");
 }
 void ContactFinder::stay() {}
 
-void BodyContacts::update(std::span<const ObjectPair>, const ObjectTable&, const SpatialIndex&, const scene::Scene&,
-                          double, Executor&) {}
+void BodyContacts::update(std::span<const ObjectPair>, const ObjectBodies&, const ObjectTable&, const SpatialIndex&,
+                          const scene::Scene&, double, Executor&) {}
 void BodyContacts::stay() {}
 
 }  // namespace crofton::world

@@ -32,10 +32,10 @@ const boxtree::BoxTree& World::tree() const {
     return state_->index.tree();
 }
 std::span<const ObjectPair> World::pairs() const {
-    return state_->finder.pairs();
+    return state_->ground.is_used() ? state_->ground.pairs() : state_->finder.pairs();
 }
 std::span<const Contact> World::contacts() const {
-    return state_->finder.contacts();
+    return state_->ground.is_used() ? state_->ground.contacts() : state_->finder.contacts();
 }
 std::span<const BodyContact> World::body_contacts() const {
     return state_->body_contacts.contacts();
@@ -69,7 +69,8 @@ void World::State::apply_changes() {
     for (const std::uint32_t object : removed) {
         index.remove(object);
         bodies.forget(object);
-        body_contacts.set(object, nullptr);
+        object_bodies.forget(object);
+        body_contacts.note(object);
         occluders.note(object);
     }
     pairs_changed |= !removed.empty();
@@ -88,16 +89,59 @@ void World::State::apply_changes() {
         index.set_layers(change.object, object.layers);
         index.set_shown(change.object, object.shown);
         if (!change.has_bound) continue;
-        if (object.kind != change.bound.kind || object.radius != change.bound.radius) {
-            pairs_changed = true;
-            body_contacts.note(change.object);
-        }
-        object.kind = change.bound.kind;
-        object.radius = change.bound.radius;
-        rebound.push_back(change.object);
-        index.set_box(change.object, change.bound.box);
+        update_bound(change.object, change.bound);
     }
     staged.clear();
+}
+
+// The bound as given or, where the object's body is larger, a box around both.
+void World::State::update_bound(std::uint32_t id, const Bound& given) {
+    const Bound bound = object_bodies.has(id) || object_bodies.is_grown(id) ? object_bodies.cover(id, given) : given;
+    world::Object& object = table.objects[id];
+    if (object.kind != bound.kind || object.radius != bound.radius) {
+        pairs_changed = true;
+        body_contacts.note(id);
+    }
+    object.kind = bound.kind;
+    object.radius = bound.radius;
+    rebound.push_back(id);
+    index.set_box(id, bound.box);
+}
+
+Bound World::State::bound_of(std::uint32_t id) const {
+    if (object_bodies.is_grown(id)) return object_bodies.given(id);
+    Bound bound(index.box(id));
+    bound.kind = table.objects[id].kind;
+    bound.radius = table.objects[id].radius;
+    return bound;
+}
+
+// After the scene's update, and the bounds that were set. Error: a transform that does not scale its object's body.
+Result<void> World::State::update_bodies() {
+    Result<void> first;
+    const auto update_mesh = [&](std::uint32_t id) {
+        const scene::InstanceId instance = table.objects[id].instance;
+        const Transform& world = scene.world(scene.node_of(instance));
+        Obb box = scene.world_boxes()[instance];
+        if (object_bodies.has(id)) {
+            if (auto scaled = object_bodies.scale(id, world.linear); !scaled && first) first = std::move(scaled);
+            box = object_bodies.cover(id, box, world);
+        }
+        index.set_box_of_moved(id, box);
+    };
+    for (const std::uint32_t id : object_bodies.fresh()) {
+        if (!table.objects[id].alive || !index.has_box(id)) continue;
+        if (table.objects[id].instance == kNoIndex)
+            update_bound(id, bound_of(id));
+        else
+            update_mesh(id);
+    }
+    object_bodies.forget_fresh();
+    for (const scene::InstanceId instance : scene.moved_instances()) {
+        update_mesh(object_of_instance[instance]);
+        occluders.note(object_of_instance[instance]);
+    }
+    return first;
 }
 
 // An object with a mesh, after what decides it has changed.
@@ -111,7 +155,7 @@ void World::State::show(std::uint32_t id) {
 void World::State::note_movers() {
     const auto note = [&](std::uint32_t id) {
         const world::Object& object = table.objects[id];
-        const bool is_box = object.alive && object.kind == BoundKind::box;
+        const bool is_box = object.alive && object.kind == BoundKind::box && !object_bodies.has(id);
         movers.set(table.handle(id), is_box ? index.mover_entry(id) : kNoIndex);
     };
     for (const std::uint32_t id : index.relisted_items()) note(id);
@@ -120,7 +164,7 @@ void World::State::note_movers() {
 }
 
 // What the scene's nodes have moved.
-void World::State::apply_scene(Executor& executor) {
+Result<void> World::State::apply_scene(Executor& executor) {
     const scene::UpdateStatistics updated = scene.update(executor);
     statistics.nodes_updated = updated.nodes_updated;
     statistics.out_of_range = updated.instances_invalid;
@@ -131,11 +175,9 @@ void World::State::apply_scene(Executor& executor) {
         show(object);
         if (layers != 0) index.set_layers(object, layers);
     }
-    for (const scene::InstanceId instance : scene.moved_instances()) {
-        index.set_box_of_moved(object_of_instance[instance], scene.world_boxes()[instance]);
-        occluders.note(object_of_instance[instance]);
-    }
+    auto scaled = update_bodies();
     pairs_changed |= bodies.update(scene, executor);
+    return scaled;
 }
 
 Result<void> World::update(Executor& executor) {
@@ -143,10 +185,10 @@ Result<void> World::update(Executor& executor) {
     const TraceHooks& trace = s.options.trace;
     const world::TraceZone zone(trace, "World::update");
     s.statistics = {};
-    {
+    const Result<void> scaled = [&] {
         const world::TraceZone part(trace, "update: transforms");
-        s.apply_scene(executor);
-    }
+        return s.apply_scene(executor);
+    }();
     const auto changes = [&] {
         const world::TraceZone part(trace, "update: tree and movers");
         return s.index.update(
@@ -163,18 +205,24 @@ Result<void> World::update(Executor& executor) {
     const auto start = std::chrono::steady_clock::now();
     if (s.options.pairs && changed) {
         const world::TraceZone part(trace, "update: pairs and contacts");
-        found = s.finder.update(s.table, s.index, s.scene, s.bodies, s.body_contacts, moved_only, executor);
-        if (s.options.contacts)
-            s.body_contacts.update(s.finder.pairs(), s.table, s.index, s.scene, s.options.contact_margin, executor);
+        found = s.finder.update(s.table, s.index, s.scene, s.bodies, s.object_bodies, moved_only, executor);
+        s.ground.set_used(!s.object_bodies.unbounded().empty());
+        if (s.ground.is_used()) s.update_ground();
+        if (s.options.contacts) {
+            if (s.ground.is_used()) s.update_ground_contacts();
+            s.body_contacts.update(pairs(), s.object_bodies, s.table, s.index, s.scene, s.options.contact_margin,
+                                   executor);
+        }
     }
     if (!s.options.pairs || !s.options.contacts) s.body_contacts.forget_changes();
     if (!changed) s.finder.stay();
+    if (!changed) s.ground.stay();
     if (!changed) s.body_contacts.stay();
     s.statistics.contacts_us =
         std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
     if (!found) s.pairs_changed = true;
     world::trace_count(trace, "boxes changed", changes.boxes);
-    world::trace_count(trace, "pairs", s.finder.pairs().size());
+    world::trace_count(trace, "pairs", pairs().size());
     s.statistics.objects = s.table.count;
     s.statistics.resting = s.index.tree().item_count();
     s.statistics.moving = s.index.moving().size();
@@ -183,8 +231,8 @@ Result<void> World::update(Executor& executor) {
     s.statistics.box_pairs_tested = changed ? s.finder.broadphase().bound_pairs : 0;
     if (changed) s.statistics.box_tests = s.finder.broadphase().boxes;
     s.statistics.body_pairs_computed = s.options.pairs && s.options.contacts ? s.body_contacts.computed() : 0;
-    s.statistics.contact_pairs_tested = changed ? s.finder.pairs().size() : 0;
-    return found;
+    s.statistics.contact_pairs_tested = changed ? pairs().size() : 0;
+    return found ? scaled : found;
 }
 
 }  // namespace crofton

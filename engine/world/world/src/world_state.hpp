@@ -6,6 +6,8 @@
 
 #include "body_contacts.hpp"
 #include "contact_finder.hpp"
+#include "ground.hpp"
+#include "object_bodies.hpp"
 #include "object_table.hpp"
 #include "occluders.hpp"
 #include "spatial_index.hpp"
@@ -67,7 +69,9 @@ struct World::State {
     world::MoverTable movers;
     world::Bodies bodies;
     world::ContactFinder finder;
+    world::ObjectBodies object_bodies;
     world::BodyContacts body_contacts;
+    world::Ground ground;
     world::Occluders occluders;
     Aabb object_bounds;  // about; where there are occluders
     scene::Scene scene;
@@ -76,6 +80,7 @@ struct World::State {
     Vector<glm::vec3> vertices;  // scratch
     Vector<StagedChange> staged;
     Vector<std::uint32_t> removed, rebound;  // the second: objects that have got a bound in this update
+    std::size_t mesh_bodies = 0;             // objects with a mesh and a body, at least: removed ones may count
     bool pairs_changed = false;              // something other than a box
 
     [[nodiscard]] Result<void> check(ObjectHandle object, std::uint64_t item) const;
@@ -92,8 +97,19 @@ struct World::State {
     void mark_removed(std::uint32_t object);
     void apply_changes();
     void note_movers();
-    void apply_scene(Executor& executor);
+    [[nodiscard]] Result<void> apply_scene(Executor& executor);
     void show(std::uint32_t object);
+    // Of objects with bodies, or with some until now: what stands in the index for them. `bound`: that they have got.
+    [[nodiscard]] Result<void> update_bodies();
+    void update_bound(std::uint32_t object, const Bound& bound);
+    [[nodiscard]] Bound bound_of(std::uint32_t object) const;  // as given, of an object without a mesh
+    // Whether the bodies of what hangs on a node, and below it, may have their transforms. As set, not as updated.
+    [[nodiscard]] Result<void> check_bodies_below(scene::NodeId node, std::uint64_t item) const;
+    [[nodiscard]] Transform world_to_be(scene::NodeId node) const;
+    [[nodiscard]] world::GroundShape ground_shape(std::uint32_t object) const;
+    [[nodiscard]] bool is_ground(std::uint32_t object, std::uint32_t layers) const;
+    void update_ground();
+    void update_ground_contacts();
     void update_occluders();
     [[nodiscard]] Result<void> set_found_occluders(scene::MeshId mesh, const occlude::FindOptions& how);
     // CullOptions::among with the bits of what has changed since such a set can have been made; in `both`, or as it is.
@@ -112,10 +128,13 @@ struct World::State {
 
     // How far along the ray an object's own shape is met, no farther than the ray goes; its box is met at `box_t`.
     [[nodiscard]] std::optional<ObjectHit> shape_hit(const Ray& ray, std::uint32_t object, double box_t) const;
+    [[nodiscard]] std::optional<ObjectHit> body_hit(const Ray& ray, std::uint32_t object) const;
     // Visits objects whose boxes the ray meets; the visitor answers how far along the ray others are of interest.
     void visit_along(const Ray& ray, std::uint32_t layers, collide::RayVisitor visit) const;
     // Visits objects whose boxes are within `distance` of `bounds`, and some others.
     void visit_near(const Aabb& bounds, double distance, std::uint32_t layers, collide::NearVisitor visit) const;
+    void visit_bounded_near(const Aabb& bounds, double distance, std::uint32_t layers,
+                            collide::NearVisitor visit) const;
     template <class Shape>
     void overlap(const Shape& shape, Vector<ObjectRef>& found, std::uint32_t layers) const;
     // How far an object is, and the nearest points: first the shape's, then the object's.

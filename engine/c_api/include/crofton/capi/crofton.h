@@ -160,8 +160,10 @@ CROFTON_API crofton_status crofton_world_set_collides_with(crofton_world* world,
                                                            uint32_t layers);
 CROFTON_API crofton_status crofton_world_set_user(crofton_world* world, crofton_object object, uint64_t user);
 /* Gives an object a body, or with NULL takes it away: for pairs from the next update on, for queries at once. Pairs of
- * objects that both have bodies are in crofton_world_body_contacts instead of crofton_world_contact. The object's box
- * stands for the body in pairs and queries: what reaches beyond is missed. CROFTON_UNSUPPORTED: a half-space. */
+ * objects that both have bodies are in crofton_world_body_contacts instead of crofton_world_contact. From the next update
+ * on the object's box also covers the body. Half-spaces, and compounds that hold some, are ground without end. The
+ * object's transform scales the body. CROFTON_UNSUPPORTED: a transform that turns it into another kind of body, as an
+ * uneven scale does with a ball; calls that move objects and nodes refuse such transforms too. */
 CROFTON_API crofton_status crofton_world_set_body(crofton_world* world, crofton_object object,
                                                   const crofton_body* body);
 
@@ -187,7 +189,10 @@ typedef struct crofton_object_hit {
     uint64_t user;
     double t; /* the ray's */
     double point[3];
-    uint32_t triangle; /* of the object's mesh, or CROFTON_NONE */
+    uint32_t triangle;      /* of the object's mesh or of its body's surface, or CROFTON_NONE */
+    uint32_t child;         /* of a body that is a compound: which */
+    double normal[3];       /* unit, of the surface, to the side that the ray comes from; 0 if it began inside */
+    uint8_t started_inside; /* 1: the ray began in the body, box or ball, and t is 0; else 0 */
 } crofton_object_hit;
 
 typedef struct crofton_closest_object {
@@ -293,7 +298,7 @@ CROFTON_API crofton_status crofton_visible_in_views_list(const crofton_visible_i
                                                          crofton_object_ref* objects, uint32_t* view_masks,
                                                          size_t capacity);
 
-/* Rays meet triangles of meshes, boxes and balls. hits[i] is the nearest of rays[i]. */
+/* Rays meet bodies; of objects without one triangles of meshes, boxes and balls. hits[i] is the nearest of rays[i]. */
 CROFTON_API crofton_status crofton_world_raycast(const crofton_world* world, const crofton_ray* rays, size_t count,
                                                  uint32_t layer_mask, crofton_object_hit* hits);
 /* *hit is 1 where the ray hits anything, else 0. */

@@ -500,12 +500,26 @@ typedef struct crofton_ray_hit {
     uint32_t index; /* of a collider: the triangle; of a tree: the item; CROFTON_NONE: no hit, and t is infinite */
 } crofton_ray_hit;
 
+/* Where a ray first meets a body. */
+typedef struct crofton_body_ray_hit {
+    size_t size;
+    double t; /* the ray's; infinite: it hits nothing, and all else is 0 */
+    double point[3];
+    double normal[3]; /* unit, of the surface, to the side that the ray comes from; 0 if it began inside */
+    crofton_part part;
+    uint32_t started_inside; /* 1: the ray began in a solid body, and t is 0; else 0 */
+} crofton_body_ray_hit;
+
 /* *t is where the ray enters the box, 0 where it starts inside, infinite where it misses. */
 CROFTON_API crofton_status crofton_box_raycast(const crofton_box* box, const crofton_ray* ray, double* t);
 /* The nearest triangle. Nothing slips through between triangles that share an edge; a ray within the plane of a
  * triangle does not hit that triangle. */
 CROFTON_API crofton_status crofton_collider_raycast(const crofton_collider* collider, const crofton_ray* rays,
                                                     size_t count, crofton_ray_hit* hits);
+/* Fills a struct whose `size` is set. A solid body that the ray begins in is hit at 0, without a normal; triangles, meshes
+ * and height fields have no inside. */
+CROFTON_API crofton_status crofton_body_raycast(const crofton_placed* body, const crofton_ray* ray,
+                                                crofton_body_ray_hit* hit);
 /* *hit is 1 where the ray hits any triangle, else 0: quicker than which. */
 CROFTON_API crofton_status crofton_collider_hits_any(const crofton_collider* collider, const crofton_ray* ray,
                                                      int* hit);

@@ -11,6 +11,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <span>
 
 namespace crofton::mesh {
@@ -130,6 +131,8 @@ enum class Sides : std::uint8_t {
     front,  // contacts push to the front; what comes from behind passes
 };
 
+inline constexpr double kInfiniteReach = std::numeric_limits<double>::infinity();
+
 // A small value; of a hull, mesh, height field or compound it is a view, which the caller keeps alive and unchanged.
 // Solids of revolution stand along the frame's y axis, with the origin half way up. Made by the functions below, which
 // refuse NaN, infinite and negative lengths, and lengths beyond kMaxExtent. Zero lengths are allowed and give a
@@ -164,8 +167,9 @@ class Body {
     [[nodiscard]] const mesh::MeshTree* mesh() const { return mesh_; }
     [[nodiscard]] const HeightField* height_field() const { return field_; }
     [[nodiscard]] const Compound* compound() const { return compound_; }
-    // Around the body in its frame, rounded outward; infinite for half-spaces.
+    // Around the body in its frame, rounded outward; infinite for half-spaces and compounds that hold some.
     [[nodiscard]] const Aabb& bounds() const { return bounds_; }
+    [[nodiscard]] bool is_bounded() const { return reach_ < kInfiniteReach; }
     [[nodiscard]] double radius() const { return radius_; }  // of the rounding; of balls and capsules
     [[nodiscard]] const Hull* hull() const { return hull_; }
     [[nodiscard]] const Plane& plane() const { return plane_; }
@@ -182,7 +186,7 @@ class Body {
     // Corner i of a box is on the + side of axis k where bit k of i is set.
     [[nodiscard]] const double* column(int k) const { return hull_ != nullptr ? hull_->column(k) : corners_[k]; }
     [[nodiscard]] int padded_count() const { return hull_ != nullptr ? hull_->padded_count() : padded_; }
-    // Of the ball around the frame's origin that contains the core, rounded up; infinite for half-spaces.
+    // Of the ball around the frame's origin that contains the core, rounded up; infinite where bounds() are.
     [[nodiscard]] double reach() const { return reach_; }
 
   private:
@@ -247,6 +251,7 @@ class HeightField {
 
   private:
     friend class FieldSearch;
+    friend class FieldRay;
     struct Span {
         float low, high;  // of heights; low > high where all cells are holes
     };
@@ -279,8 +284,9 @@ struct CompoundChild {
 // A tree over the children. A child stands where the product of the poses puts it, rounded to double.
 class Compound {
   public:
-    // Copies the children; what they are views of stays the caller's. Errors: no children; a pose that is not valid or
-    // mirrors, a half-space, compounds in compounds deeper than kMaxCompoundDepth (item: the child).
+    // Copies the children; what they are views of stays the caller's. A half-space is ground without end: the compound
+    // then has no bounds. Errors: no children; a pose that is not valid or mirrors, compounds in compounds deeper than
+    // kMaxCompoundDepth (item: the child).
     [[nodiscard]] static Result<Compound> build(std::span<const CompoundChild> children);
 
     [[nodiscard]] std::span<const CompoundChild> children() const { return children_; }
@@ -289,10 +295,11 @@ class Compound {
     [[nodiscard]] std::uint32_t part_count() const { return part_count_; }
     // The child of that number, with its pose in its own compound. Requires part < part_count().
     [[nodiscard]] const CompoundChild& part(std::uint32_t part) const;
-    [[nodiscard]] const Aabb& bounds() const { return nodes_.front().box; }
+    [[nodiscard]] const Aabb& bounds() const { return bounds_; }  // infinite with half-spaces
 
   private:
     friend class CompoundSearch;
+    friend class CompoundRay;
     struct Node {
         Aabb box;
         std::uint32_t begin = 0, end = 0;  // of order_; all children below
@@ -302,8 +309,10 @@ class Compound {
 
     Vector<CompoundChild> children_;
     Vector<std::uint32_t> first_part_;  // by child
-    Vector<Node> nodes_;
-    Vector<std::uint32_t> order_;
+    Vector<Node> nodes_;                // of the bounded children; may be none
+    Vector<std::uint32_t> order_;       // bounded children
+    Vector<std::uint32_t> unbounded_;   // children that hold half-spaces
+    Aabb bounds_;
     std::uint32_t part_count_ = 0;
     int depth_ = 0;
     bool has_surfaces_ = false;

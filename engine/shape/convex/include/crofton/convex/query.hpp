@@ -7,6 +7,7 @@
 #include <crofton/core/memory.hpp>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 
 namespace crofton::convex {
@@ -72,6 +73,31 @@ struct Penetration {
 
 // From a point (in the world) to the body: a is the point.
 [[nodiscard]] Distance closest_point(const Placed& body, const glm::dvec3& point);
+
+// Where a ray first meets a body.
+struct RayHit {
+    double t = 0.0;          // the ray's: in [0, max_t]
+    glm::dvec3 point{0.0};   // at t; on the body's surface
+    glm::dvec3 normal{0.0};  // unit, of the surface there, to the side that the ray comes from; 0 if it began inside
+    bool started_inside = false;
+    PartId part{};  // that is met; of several at the same t the lowest
+};
+// Returns the first point of the ray in the body, or nothing.
+//
+// A ray that begins in a solid body has started inside: t is 0, the point is its origin, the normal is 0. "In" is said
+// as by `intersects` of a ball of radius 0 at the origin, of cylinders and cones by their distance, within 1e-15 of the
+// size. Triangles, meshes and height fields have no inside: a ray that begins within one hits the nearest triangle. A
+// ray that lies in the plane of a triangle does not hit that triangle, as in mesh::raycast. One-sided triangles are
+// passed from behind.
+//
+// The point is the ray's first in a body that is larger or smaller by at most 1e-13 of its size, where the size is
+// reach() and radius() together (of half-spaces: the distance from the ray's origin to the frame's). So a ray that
+// passes the surface nearer than that may hit or miss, and t · |direction| is off by at most that by the cosine between
+// the ray and the normal, and 2^-51 of itself. This holds however far away the ray begins, and for directions of any
+// length. Rays within a surface meet its triangles exactly, so that nothing slips through between two that share an
+// edge. No allocation. Nothing is hit by a ray whose origin or direction is NaN or infinite, whose direction is 0, or
+// whose max_t is NaN or negative, nor at a pose that is not valid: validate(Ray) and validate_pose tell why.
+[[nodiscard]] std::optional<RayHit> raycast(const Placed& body, const Ray& ray);
 
 // Where two bodies touch: points a physics step can hold on to from frame to frame.
 

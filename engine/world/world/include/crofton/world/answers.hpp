@@ -128,7 +128,10 @@ struct ObjectHit {
     std::uint64_t user = 0;
     double t = 0.0;  // the ray's
     glm::dvec3 point{0.0};
-    std::uint32_t triangle = kNoTriangle;  // of the object's mesh
+    std::uint32_t triangle = kNoTriangle;  // of the object's mesh, or of the body's surface
+    std::uint32_t child = 0;               // of a body that is a compound: which (convex::PartId)
+    glm::dvec3 normal{0.0};       // unit, of the surface, to the side that the ray comes from; 0 if it began inside
+    bool started_inside = false;  // the ray began in the body, box or ball: t is 0; meshes have no inside
 };
 
 struct ClosestObject {

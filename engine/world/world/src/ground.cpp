@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: MIT
+#include "ground.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include "pair_order.hpp"
+#include "world_state.hpp"
+
+namespace crofton {
+namespace world {
+namespace {
+
+constexpr double kFar = 4e30;  // beyond all boxes
+
+double height_of(const Plane& plane, const glm::dvec3& point) {
+    return glm::dot(plane.normal, point) + plane.offset;
+}
+
+Aabb bounds_of(const convex::Body& body, const RigidTransform& pose) {
+    const glm::dvec3 half = body.bounds().half_extents();
+    glm::dvec3 size(0.0);
+    for (int k = 0; k < 3; ++k) size += half[k] * glm::abs(pose.rotation[k]);
+    const glm::dvec3 center = pose.rotation * body.bounds().center() + pose.translation;
+    size = size * (1.0 + 1e-9) + 1e-12 * glm::abs(center);
+    return {center - size, center + size};
+}
+
+// Keeps the nearer, told by how far the shape's nearest point is above the plane.
+void keep_nearer(collide::Distance& best, double height, const glm::dvec3& on_shape, const Plane& plane) {
+    const double distance = std::max(height, 0.0);
+    if (!(distance < best.distance)) return;
+    best = {distance, on_shape, on_shape - distance * -plane.normal};
+    if (height <= 0.0) best.on_b = on_shape;
+}
+
+}  // namespace
+
+void GroundShape::add(const convex::Body& body, const RigidTransform& pose) {
+    if (body.is_bounded()) return rest.include(bounds_of(body, pose));
+    if (body.kind() == convex::Kind::half_space) {
+        const glm::dvec3 normal = glm::transpose(glm::inverse(pose.rotation)) * body.plane().normal;
+        const double length = glm::length(normal);
+        const glm::dvec3 unit = normal / length;
+        planes.push_back({unit, body.plane().offset / length - glm::dot(unit, pose.translation)});
+        return;
+    }
+    for (const convex::CompoundChild& child : body.compound()->children())
+        add(child.body,
+            {pose.rotation * child.pose.rotation, pose.rotation * child.pose.translation + pose.translation});
+}
+
+bool GroundShape::is_near(const Obb& box, double margin) const {
+    for (const Plane& plane : planes) {
+        double reach = margin * (1.0 + 1e-9);
+        for (int k = 0; k < 3; ++k)
+            reach +=
+                static_cast<double>(box.half_extents[k]) * std::abs(glm::dot(plane.normal, glm::dvec3(box.axes[k])));
+        const glm::dvec3 c = glm::abs(box.center);
+        const double rounding = 1e-14 * (c.x + c.y + c.z + std::abs(plane.offset) + reach);
+        if (height_of(plane, box.center) >= -reach - rounding) return true;
+    }
+    if (rest.min.x > rest.max.x) return false;
+    const Aabb bounds = aabb_of(box);
+    for (int k = 0; k < 3; ++k)
+        if (bounds.min[k] > rest.max[k] + margin || bounds.max[k] < rest.min[k] - margin) return false;
+    return true;
+}
+
+Aabb GroundShape::around(const Plane& plane) {
+    Aabb bounds{glm::dvec3(-kFar), glm::dvec3(kFar)};
+    for (int k = 0; k < 3; ++k) {
+        if (plane.normal[(k + 1) % 3] != 0.0 || plane.normal[(k + 2) % 3] != 0.0) continue;
+        const double level = -plane.offset / plane.normal[k], slack = 1e-14 * std::abs(level);
+        if (plane.normal[k] < 0.0)
+            bounds.max[k] = level + slack;
+        else
+            bounds.min[k] = level - slack;
+    }
+    return bounds;
+}
+
+collide::Distance gap_to(const GroundShape& ground, const collide::Capsule& shape) {
+    collide::Distance best{HUGE_VAL, {}, {}};
+    for (const Plane& plane : ground.planes) {
+        const double begin = height_of(plane, shape.begin), end = height_of(plane, shape.end);
+        const glm::dvec3 deepest = (begin >= end ? shape.begin : shape.end) + shape.radius * plane.normal;
+        keep_nearer(best, -(std::max(begin, end) + shape.radius), deepest, plane);
+    }
+    if (ground.rest.min.x > ground.rest.max.x) return best;
+    collide::Distance gap = collide::distance(obb_of(ground.rest), shape);
+    std::swap(gap.on_a, gap.on_b);
+    return gap.distance < best.distance ? gap : best;
+}
+
+collide::Distance gap_to(const GroundShape& ground, const Obb& shape) {
+    collide::Distance best{HUGE_VAL, {}, {}};
+    for (const Plane& plane : ground.planes) {
+        glm::dvec3 deepest = shape.center;
+        for (int k = 0; k < 3; ++k) {
+            const glm::dvec3 side = static_cast<double>(shape.half_extents[k]) * glm::dvec3(shape.axes[k]);
+            deepest += glm::dot(plane.normal, side) >= 0.0 ? side : -side;
+        }
+        keep_nearer(best, -height_of(plane, deepest), deepest, plane);
+    }
+    if (ground.rest.min.x > ground.rest.max.x) return best;
+    const collide::Distance gap = collide::distance(shape, obb_of(ground.rest));
+    return gap.distance < best.distance ? gap : best;
+}
+
+void Ground::start() {
+    before_.clear();
+    for (const Touching& touch : touching_) before_.push_back(touch.pair);
+    pairs_.clear();
+    touching_.clear();
+    points_.clear();
+}
+
+void Ground::merge_pairs(std::span<const ObjectPair> found) {
+    std::sort(pairs_.begin(), pairs_.end(), is_before);
+    pairs_.erase(std::unique(pairs_.begin(), pairs_.end(), are_same), pairs_.end());
+    all_pairs_.resize(found.size() + pairs_.size());
+    std::merge(found.begin(), found.end(), pairs_.begin(), pairs_.end(), all_pairs_.begin(), is_before);
+}
+
+void Ground::add_contact(const ObjectPair& pair, const convex::Manifold& manifold) {
+    const auto first = static_cast<std::uint32_t>(points_.size());
+    for (int i = 0; i < manifold.count; ++i) points_.push_back({manifold.points[i].position, manifold.points[i].depth});
+    touching_.push_back({pair, manifold.normal, manifold.depth, first, static_cast<std::uint32_t>(manifold.count)});
+}
+
+void Ground::merge_contacts(std::span<const Contact> found) {
+    Vector<Contact> own;
+    std::size_t old = 0;
+    const auto add_ended = [&](const ObjectPair& pair) {
+        Contact& contact = own.emplace_back();
+        contact.first = pair.first;
+        contact.second = pair.second;
+        contact.phase = ContactPhase::ended;
+    };
+    for (const Touching& touch : touching_) {
+        for (; old < before_.size() && is_before(before_[old], touch.pair); ++old) add_ended(before_[old]);
+        const bool met = old < before_.size() && !is_before(touch.pair, before_[old]);
+        const bool stayed = met && are_same(before_[old], touch.pair);
+        if (met && !stayed) add_ended(before_[old]);
+        old += met ? 1 : 0;
+        Contact& contact = own.emplace_back();
+        contact.first = touch.pair.first;
+        contact.second = touch.pair.second;
+        contact.phase = stayed ? ContactPhase::stayed : ContactPhase::began;
+        contact.normal = touch.normal;
+        contact.depth = touch.depth;
+        contact.points = {points_.data() + touch.first_point, touch.point_count};
+    }
+    for (; old < before_.size(); ++old) add_ended(before_[old]);
+    all_contacts_.resize(found.size() + own.size());
+    std::merge(found.begin(), found.end(), own.begin(), own.end(), all_contacts_.begin(),
+               [](const Contact& a, const Contact& b) {
+                   return is_before({a.first, a.second}, {b.first, b.second});
+               });
+}
+
+void Ground::stay() {
+    std::size_t kept = 0;
+    for (Contact& contact : all_contacts_) {
+        if (contact.phase == ContactPhase::ended) continue;
+        contact.phase = ContactPhase::stayed;
+        all_contacts_[kept++] = contact;
+    }
+    all_contacts_.resize(kept);
+}
+
+}  // namespace world
+
+world::GroundShape World::State::ground_shape(std::uint32_t id) const {
+    world::GroundShape shape;
+    if (const auto pose = object_bodies.pose_of(id, table.objects[id], index.box(id), scene))
+        shape.add(object_bodies.body(id), *pose);
+    return shape;
+}
+
+bool World::State::is_ground(std::uint32_t id, std::uint32_t layers) const {
+    return table.objects[id].alive && index.is_placed(id) && (index.layers(id) & layers) != 0;
+}
+
+// The pairs of ground with all that it may meet, and contacts with what has no body.
+void World::State::update_ground() {
+    ground.start();
+    const double margin = options.contact_margin;
+    for (const std::uint32_t id : object_bodies.unbounded()) {
+        const world::Object& object = table.objects[id];
+        if (!is_ground(id, ~0u) || object.collides_with == 0) continue;
+        const world::GroundShape shape = ground_shape(id);
+        const auto add = [&](std::uint32_t other) {
+            if ((index.layers(id) & table.objects[other].collides_with) == 0 ||
+                (index.layers(other) & object.collides_with) == 0)
+                return;
+            ground.add({table.ref(std::min(id, other)), table.ref(std::max(id, other))});
+        };
+        for (const std::uint32_t other : object_bodies.unbounded())
+            if (other > id && is_ground(other, ~0u)) add(other);
+        const auto visit = [&](std::uint32_t other) {
+            if (shape.is_near(index.box(other), object_bodies.has(other) ? margin : 0.0)) add(other);
+            return margin;
+        };
+        for (const Plane& plane : shape.planes)
+            visit_bounded_near(world::GroundShape::around(plane), margin, ~0u, visit);
+        if (shape.rest.min.x <= shape.rest.max.x) visit_bounded_near(shape.rest, margin, ~0u, visit);
+    }
+    ground.merge_pairs(finder.pairs());
+}
+
+// Of a pair of which one has no body its mesh's triangles, its ball or its box touch the ground.
+void World::State::update_ground_contacts() {
+    for (const ObjectPair& pair : ground.own_pairs()) {
+        const std::uint32_t a = pair.first.object.index, b = pair.second.object.index;
+        if (object_bodies.has(a) && object_bodies.has(b)) continue;
+        const bool swapped = object_bodies.has(b);
+        const std::uint32_t base = swapped ? b : a, other = swapped ? a : b;
+        const Stand level = stand_of(base);
+        Stand thing = stand_of(other);
+        std::unique_ptr<world::ScaledBody> scaled;
+        const world::Object& object = table.objects[other];
+        if (const mesh::MeshTree* tree = bodies.mesh_tree_of(object)) {
+            const Transform& world = scene.world(scene.node_of(object.instance));
+            const world::SplitMap map = world::split(world.linear);
+            auto triangles = convex::Body::mesh(*tree);
+            auto made = triangles ? world::ScaledBody::make(*triangles, map, other)
+                                  : Result<std::unique_ptr<world::ScaledBody>>(nullptr);
+            if (made && *made) {
+                scaled = std::move(*made);
+                thing = {scaled->body(), RigidTransform{map.rotation, world.translation}};
+            }
+        }
+        if (!level.pose || !thing.pose) continue;
+        const convex::Placed first{swapped ? thing.body : level.body, swapped ? *thing.pose : *level.pose},
+            second{swapped ? level.body : thing.body, swapped ? *level.pose : *thing.pose};
+        const convex::Manifold manifold = convex::contact_manifold(first, second);
+        if (manifold.count > 0) ground.add_contact(pair, manifold);
+    }
+    ground.merge_contacts(finder.contacts());
+}
+
+}  // namespace crofton

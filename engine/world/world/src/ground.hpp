@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+// Objects whose bodies have no bounds: what meets them, beside what the broadphase finds.
+#pragma once
+#include <crofton/collide/narrow_phase.hpp>
+#include <crofton/convex/query.hpp>
+#include <crofton/core/memory.hpp>
+#include <crofton/world/answers.hpp>
+
+namespace crofton::world {
+
+// The half-spaces of a body in the world, with unit normals, and a box around all else.
+struct GroundShape {
+    Vector<Plane> planes;
+    Aabb rest;
+
+    void add(const convex::Body& body, const RigidTransform& pose);
+    // Whether the box is within `margin`, as far as rounding tells: then yes.
+    [[nodiscard]] bool is_near(const Obb& box, double margin) const;
+    // Around a half-space, as far as an axis bounds it; coordinates are within 1e30.
+    static Aabb around(const Plane& plane);
+};
+
+// A ball or capsule, or a box, from the nearest of the planes.
+[[nodiscard]] collide::Distance gap_to(const GroundShape& ground, const collide::Capsule& shape);
+[[nodiscard]] collide::Distance gap_to(const GroundShape& ground, const Obb& shape);
+
+// Pairs with ground, contacts of ground with what has no body, and all of the World's with these among them.
+class Ground {
+  public:
+    struct Touching {
+        ObjectPair pair;
+        glm::dvec3 normal{0.0};
+        double depth = 0.0;
+        std::uint32_t first_point = 0, point_count = 0;
+    };
+
+    void start();
+    void add(const ObjectPair& pair) { pairs_.push_back(pair); }
+    // All pairs in order, with the finder's.
+    void merge_pairs(std::span<const ObjectPair> found);
+    [[nodiscard]] std::span<const ObjectPair> own_pairs() const { return pairs_; }
+    void add_contact(const ObjectPair& pair, const convex::Manifold& manifold);
+    void merge_contacts(std::span<const Contact> found);
+    void stay();
+
+    [[nodiscard]] bool is_used() const { return is_used_; }
+    [[nodiscard]] std::span<const ObjectPair> pairs() const { return all_pairs_; }
+    [[nodiscard]] std::span<const Contact> contacts() const { return all_contacts_; }
+    void set_used(bool used) { is_used_ = used || !before_.empty(); }
+
+  private:
+    bool is_used_ = false;  // there is ground, or was in the update before
+    Vector<ObjectPair> pairs_, all_pairs_, before_;
+    Vector<Touching> touching_;
+    Vector<collide::ContactPoint> points_;
+    Vector<Contact> all_contacts_;
+};
+
+}  // namespace crofton::world

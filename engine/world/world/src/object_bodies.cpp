@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+#include "object_bodies.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <crofton/geometry/same_bits.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+namespace crofton::world {
+namespace {
+
+constexpr double kSlack = 1.0 + 0x1p-40;  // outweighs what bounds of bodies are rounded by
+
+bool is_rigid(const glm::dmat3& linear) {
+    return convex::validate_pose({linear, glm::dvec3(0.0)}).has_value();
+}
+
+bool has_nothing(const glm::dmat3& linear) {
+    return linear[0] == glm::dvec3(0.0) && linear[1] == glm::dvec3(0.0) && linear[2] == glm::dvec3(0.0);
+}
+
+}  // namespace
+
+RigidTransform frame_of(BoundKind kind, const Obb& box) {
+    RigidTransform frame{glm::dmat3(1.0), box.center};
+    if (kind == BoundKind::ball || is_rigid(glm::dmat3(box.axes))) {
+        if (kind != BoundKind::ball) frame.rotation = glm::dmat3(box.axes);
+        return frame;
+    }
+    // Axes of boxes may be off by more than those of poses, or left-handed.
+    glm::dmat3 axes(box.axes);
+    axes[0] = glm::normalize(axes[0]);
+    axes[1] = glm::normalize(axes[1] - glm::dot(axes[0], axes[1]) * axes[0]);
+    axes[2] = glm::cross(axes[0], axes[1]);
+    frame.rotation = axes;
+    return frame;
+}
+
+Obb box_around(const Obb& box, const convex::Body& body, const RigidTransform& pose, double margin) {
+    const glm::dmat3 axes(box.axes), to_box = glm::inverse(axes), turn = to_box * pose.rotation;
+    const Aabb& bounds = body.bounds();
+    const glm::dvec3 middle = to_box * (pose.translation - box.center) + turn * bounds.center();
+    const glm::dvec3 half = bounds.half_extents(), given(box.half_extents);
+    glm::dvec3 needed(margin * (1.0 + 1e-3));  // axes are unit vectors within 1e-4
+    for (int k = 0; k < 3; ++k) needed += half[k] * glm::abs(turn[k]);
+    const glm::dvec3 low = middle - needed, high = middle + needed;
+    bool covers = true;
+    for (int k = 0; k < 3; ++k) covers = covers && -low[k] <= given[k] * kSlack && high[k] <= given[k] * kSlack;
+    if (covers) return box;
+    const glm::dvec3 from = glm::min(-given, low), to = glm::max(given, high), center = 0.5 * (from + to);
+    Obb grown = box;
+    grown.center = box.center + axes * center;
+    const double rounding = 0x1p-50 * (std::abs(grown.center.x) + std::abs(grown.center.y) + std::abs(grown.center.z));
+    for (int k = 0; k < 3; ++k)
+        grown.half_extents[k] =
+            static_cast<float>((0.5 * (to[k] - from[k])) * (1.0 + 0x1p-22) + rounding * (1.0 + 0x1p-22) + 0x1p-149);
+    return grown;
+}
+
+void ObjectBodies::list_unbounded(std::uint32_t object) {
+    const auto place = std::lower_bound(unbounded_.begin(), unbounded_.end(), object);
+    const bool listed = place != unbounded_.end() && *place == object;
+    if (listed == is_unbounded(object)) return;
+    if (listed)
+        unbounded_.erase(place);
+    else
+        unbounded_.insert(place, object);
+}
+
+void ObjectBodies::set(std::uint32_t object, const convex::Body* body) {
+    if (body == nullptr && !has(object)) return;
+    if (object >= entries_.size()) entries_.resize(object + std::size_t{1});
+    Entry& entry = entries_[object];
+    count_ -= entry.own ? 1 : 0;
+    count_ += body != nullptr ? 1 : 0;
+    entry.own.reset();
+    if (body != nullptr) entry.own = *body;
+    entry.scaled.reset();
+    entry.nowhere = false;
+    fresh_.push_back(object);
+    list_unbounded(object);
+}
+
+void ObjectBodies::forget(std::uint32_t object) {
+    if (object >= entries_.size()) return;
+    count_ -= entries_[object].own ? 1 : 0;
+    entries_[object] = {};
+    list_unbounded(object);
+}
+
+std::optional<RigidTransform> ObjectBodies::pose_of(std::uint32_t id, const Object& object, const Obb& box,
+                                                    const scene::Scene& scene) const {
+    const Entry& entry = entries_[id];
+    if (object.instance == kNoIndex) {
+        if (entry.given.kind != BoundKind::none) return frame_of(entry.given.kind, entry.given.box);
+        return frame_of(object.kind, box);
+    }
+    const Transform& world = scene.world(scene.node_of(object.instance));
+    if (entry.nowhere || has_nothing(world.linear)) return std::nullopt;
+    if (entry.scaled) return RigidTransform{entry.map.rotation, world.translation};
+    return RigidTransform{world.linear, world.translation};
+}
+
+bool ObjectBodies::fits(std::uint32_t object, const Bound& bound) const {
+    const convex::Body& of = body(object);
+    if (!of.is_bounded()) return true;
+    if (bound.kind == BoundKind::ball) return of.reach() + of.radius() <= bound.radius * kSlack;
+    if (!is_rigid(glm::dmat3(bound.box.axes))) return false;
+    const glm::dvec3 needed = glm::max(glm::abs(of.bounds().min), glm::abs(of.bounds().max));
+    for (int k = 0; k < 3; ++k)
+        if (!(needed[k] <= static_cast<double>(bound.box.half_extents[k]) * kSlack)) return false;
+    return true;
+}
+
+Result<void> ObjectBodies::scale(std::uint32_t object, const glm::dmat3& linear) {
+    Entry& entry = entries_[object];
+    entry.nowhere = false;
+    if (is_rigid(linear) || has_nothing(linear)) {
+        entry.scaled.reset();
+        return {};
+    }
+    SplitMap map = split(linear);
+    const auto same = [&] {
+        double most = 0.0, size = 0.0;
+        for (int k = 0; k < 3; ++k)
+            for (int i = 0; i < 3; ++i) {
+                most = std::max(most, std::abs(map.rest[k][i] - entry.map.rest[k][i]));
+                size = std::max(size, std::abs(map.rest[k][i]));
+            }
+        return most <= 1e-12 * size;
+    };
+    if (entry.scaled && same()) {
+        entry.map.rotation = map.rotation;
+        return {};
+    }
+    auto scaled = ScaledBody::make(*entry.own, map, object);
+    entry.scaled.reset();
+    entry.nowhere = !scaled;
+    if (!scaled) return tl::unexpected(scaled.error());
+    entry.map = map;
+    entry.scaled = std::move(*scaled);
+    return {};
+}
+
+Result<void> ObjectBodies::check(const convex::Body& body, const glm::dmat3& linear, std::uint64_t item) {
+    if (is_rigid(linear) || has_nothing(linear)) return {};
+    const auto scaled = ScaledBody::make(body, split(linear), item);
+    if (!scaled) return tl::unexpected(scaled.error());
+    return {};
+}
+
+Bound ObjectBodies::cover(std::uint32_t object, const Bound& bound) {
+    Entry& entry = entries_[object];
+    entry.given = {};
+    if (!entry.own || fits(object, bound) || !body(object).is_bounded()) return bound;
+    const Obb box = box_around(bound.box, body(object), frame_of(bound.kind, bound.box), 0.0);
+    // A ball stands for itself in pairs: what is in its cube alone would be missed.
+    if (bound.kind != BoundKind::ball && have_same_bits(box, bound.box)) return bound;
+    entry.given = bound;
+    return Bound(box);
+}
+
+Obb ObjectBodies::cover(std::uint32_t object, const Obb& box, const Transform& world) const {
+    const Entry& entry = entries_[object];
+    if (entry.nowhere || has_nothing(world.linear) || !body(object).is_bounded()) return box;
+    const RigidTransform pose{entry.scaled ? entry.map.rotation : world.linear, world.translation};
+    return box_around(box, body(object), pose, 0.0);
+}
+
+Obb ObjectBodies::collider_box(std::uint32_t id, const Object& object, const Obb& box, const scene::Scene& scene,
+                               double margin) const {
+    if (margin == 0.0 || !has(id)) return box;
+    const auto pose = pose_of(id, object, box, scene);
+    return pose && body(id).is_bounded() ? box_around(box, body(id), *pose, margin) : box;
+}
+
+}  // namespace crofton::world

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+// Bodies of objects: where they stand, and the boxes that cover them.
+#pragma once
+#include <crofton/convex/query.hpp>
+#include <crofton/scene/scene.hpp>
+#include <memory>
+#include <optional>
+
+#include "object_table.hpp"
+#include "scaled_body.hpp"
+#include "spatial_index.hpp"
+
+namespace crofton::world {
+
+class ObjectBodies {
+  public:
+    void set(std::uint32_t object, const convex::Body* body);  // nullptr: none
+    void forget(std::uint32_t object);                         // it is gone, or another
+
+    [[nodiscard]] bool has(std::uint32_t object) const { return object < entries_.size() && entries_[object].own; }
+    // As its object's transform scales it.
+    [[nodiscard]] const convex::Body& body(std::uint32_t object) const {
+        const Entry& entry = entries_[object];
+        return entry.scaled ? entry.scaled->body() : *entry.own;
+    }
+    // As it was set.
+    [[nodiscard]] const convex::Body& own_body(std::uint32_t object) const { return *entries_[object].own; }
+    // Where it stands as of the last update. `box` is the object's.
+    [[nodiscard]] std::optional<RigidTransform> pose_of(std::uint32_t id, const Object& object, const Obb& box,
+                                                        const scene::Scene& scene) const;
+    [[nodiscard]] std::size_t count() const { return count_; }
+    // Objects whose bodies have no bounds: they are in no box, and every query asks them.
+    [[nodiscard]] std::span<const std::uint32_t> unbounded() const { return unbounded_; }
+    [[nodiscard]] bool is_unbounded(std::uint32_t object) const { return has(object) && !body(object).is_bounded(); }
+
+    // Whether the object's box is larger than the bound that it was given.
+    [[nodiscard]] bool is_grown(std::uint32_t object) const {
+        return object < entries_.size() && entries_[object].given.kind != BoundKind::none;
+    }
+    [[nodiscard]] const Bound& given(std::uint32_t object) const { return entries_[object].given; }
+    // Whether an object with this bound covers its body with it. Quick; false where that is not sure.
+    [[nodiscard]] bool fits(std::uint32_t object, const Bound& bound) const;
+
+    // Objects whose bodies were set, or taken away, since the last update.
+    [[nodiscard]] std::span<const std::uint32_t> fresh() const { return fresh_; }
+    void forget_fresh() { fresh_.clear(); }
+
+    // Scales the body as the object's transform does now. Error: it does not; then the body stands nowhere.
+    Result<void> scale(std::uint32_t object, const glm::dmat3& linear);
+    // Whether an object may have the transform.
+    [[nodiscard]] static Result<void> check(const convex::Body& body, const glm::dmat3& linear, std::uint64_t item);
+
+    // The bound, or the box that covers it and the body; what was given is kept while that is larger.
+    [[nodiscard]] Bound cover(std::uint32_t object, const Bound& bound);
+    [[nodiscard]] Obb cover(std::uint32_t object, const Obb& box, const Transform& world) const;
+    // The object's box, or a larger one that covers what is within `margin` of the body.
+    [[nodiscard]] Obb collider_box(std::uint32_t id, const Object& object, const Obb& box, const scene::Scene& scene,
+                                   double margin) const;
+
+  private:
+    struct Entry {
+        std::optional<convex::Body> own;
+        std::unique_ptr<ScaledBody> scaled;  // none: the transform is rigid
+        SplitMap map;                        // of the scaled body
+        bool nowhere = false;                // the transform does not scale the body
+        Bound given;                         // where it is not the object's box
+    };
+    void list_unbounded(std::uint32_t object);
+
+    Vector<Entry> entries_;  // by object
+    std::size_t count_ = 0;  // bodies
+    Vector<std::uint32_t> unbounded_, fresh_;
+};
+
+// A bound's frame, as a rotation.
+[[nodiscard]] RigidTransform frame_of(BoundKind kind, const Obb& box);
+// Around the box, and what is within `margin` of the body's bounds.
+[[nodiscard]] Obb box_around(const Obb& box, const convex::Body& body, const RigidTransform& pose, double margin);
+
+}  // namespace crofton::world
