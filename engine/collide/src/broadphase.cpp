@@ -144,7 +144,8 @@ bool Broadphase::State::collect(Executor& executor) {
     return !too_many && total <= options.max_pairs;
 }
 
-void Broadphase::State::sort_pairs(std::size_t item_count, std::span<const CollisionFilter> filters) {
+void Broadphase::State::sort_pairs(std::size_t item_count, std::span<const CollisionFilter> filters,
+                                   Vector<IdPair>& sorted) {
     const auto slots_of = [](BroadphaseWorker& worker, Vector<std::uint32_t>& slots) {
         return std::span<std::uint32_t>(slots).first(worker.pairs.count);
     };
@@ -153,10 +154,10 @@ void Broadphase::State::sort_pairs(std::size_t item_count, std::span<const Colli
     list.begin(item_count);
     for (BroadphaseWorker& worker : workers)
         list.count(slots_of(worker, worker.first), slots_of(worker, worker.second), items, filters);
-    list.place(pairs);
+    list.place(sorted);
     for (BroadphaseWorker& worker : workers)
-        list.add(slots_of(worker, worker.first), slots_of(worker, worker.second), pairs);
-    list.finish(pairs);
+        list.add(slots_of(worker, worker.first), slots_of(worker, worker.second), sorted);
+    list.finish(sorted);
 }
 
 // Into `hits`, which of the candidates meet.
@@ -179,13 +180,15 @@ void Broadphase::State::test_pairs(std::span<const Obb> boxes, std::span<const I
     for (const BroadphaseWorker& worker : workers) statistics.boxes += worker.boxes;
 }
 
-// `previous` are those of the update before; none are now.
+// All pairs of the update before have ended.
 Result<void> Broadphase::State::drop_pairs() {
     statistics.rejected = static_cast<std::uint32_t>(tree.item_count() - tree.size());
-    pairs.clear();
-    count = 0;
+    ended = pairs.get();
+    began.clear();
+    pairs.values().clear();
+    stayed.forget();
     table_is_current = false;
-    compare_pairs(previous, pairs, began, stayed, ended);
+    all_are_tested = true;
     return fail(ErrorCode::budget_exceeded, kNoItem,
                 {"broadphase: the bounds of more than ", options.max_pairs, " pairs meet"});
 }
@@ -200,29 +203,28 @@ Result<void> Broadphase::State::check(std::span<const Obb> boxes, std::span<cons
 
 Result<void> Broadphase::State::update_all(std::span<const Obb> boxes, std::span<const CollisionFilter> filters,
                                            Executor& executor, const PairTest* test) {
-    update_lists(pairs_are_old, &State::list_pairs);
     statistics = {};
-    std::swap(pairs, previous);
-    pairs.clear();
     table_is_current = false;
-    rejected_is_old = true;
-    stayed_is_old = false;
+    all_are_tested = true;
+    rejected.forget();
+    stayed.forget();
     workers.resize(std::max<std::size_t>(workers.size(), executor.concurrency()));
     place_all(boxes, executor);
     if (!collect(executor)) return drop_pairs();
-    sort_pairs(boxes.size(), filters);
-    statistics.bound_pairs = pairs.size();
-    test_pairs(boxes, pairs, executor, test);
+    std::swap(pairs.values(), previous);
+    Vector<IdPair>& now_there = pairs.values();
+    sort_pairs(boxes.size(), filters, now_there);
+    statistics.bound_pairs = now_there.size();
+    test_pairs(boxes, now_there, executor, test);
     std::size_t kept = 0;
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-        pairs[kept] = pairs[i];
+    for (std::size_t i = 0; i < now_there.size(); ++i) {
+        now_there[kept] = now_there[i];
         kept += hits[i];
     }
-    pairs.resize(kept);
-    count = static_cast<std::uint32_t>(kept);
+    now_there.resize(kept);
     statistics.box_pairs = kept;
     statistics.rejected = static_cast<std::uint32_t>(tree.item_count() - tree.size());
-    compare_pairs(previous, pairs, began, stayed, ended);
+    compare_pairs(previous, now_there, began, ended);
     current = true;
     return {};
 }

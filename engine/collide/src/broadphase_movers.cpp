@@ -83,7 +83,7 @@ void Broadphase::State::place_movers(std::span<const Obb> boxes) {
     tree.settle(queries);
     for (const std::uint32_t item : left) tree.remove(item);
     for (const std::uint32_t query : came) tree.insert(queries[query], query_bounds[query]);
-    if (!came.empty() || tree.size() != size_before || tree.item_count() != count_before) rejected_is_old = true;
+    if (!came.empty() || tree.size() != size_before || tree.item_count() != count_before) rejected.forget();
 }
 
 // All pairs of a query whose bounds meet and whose filters pass, by query; false when there are too many. A pair of two
@@ -162,11 +162,16 @@ Result<void> Broadphase::State::update_few(std::span<const Obb> boxes, std::span
     statistics = {};
     workers.resize(std::max<std::size_t>(workers.size(), executor.concurrency()));
     gather_movers(boxes.size(), moved);
+    found.clear();
+    tested.forget();
+    stayed.forget();
+    all_are_tested = false;
     if (movers.empty()) {
         began.clear();
         ended.clear();
     } else {
-        use_table(tree.item_count());
+        if (!table_is_current) table.assign(tree.item_count(), pairs.get());
+        table_is_current = true;
         table.resize(std::max(tree.item_count(), boxes.size()));
         gather_partners();
         place_movers(boxes);
@@ -175,23 +180,18 @@ Result<void> Broadphase::State::update_few(std::span<const Obb> boxes, std::span
             statistics.bound_pairs = found.size();
             test_pairs(boxes, found, executor, test);
             compare_partners();
-            enough_room = count - ended.size() + began.size() <= options.max_pairs;
+            enough_room = table.size() - ended.size() + began.size() <= options.max_pairs;
         }
         for (const std::uint32_t item : movers) is_moved[item] = 0;
-        if (!enough_room) {
-            update_lists(pairs_are_old, &State::list_pairs);
-            std::swap(pairs, previous);
-            return drop_pairs();
-        }
+        if (!enough_room) return drop_pairs();
         for (const std::uint32_t entry : ended_entries) table.remove(entry);
         for (const IdPair& pair : began) table.add(pair);
         table.resize(boxes.size());
-        count = static_cast<std::uint32_t>(table.size());
         std::sort(began.begin(), began.end());
         std::sort(ended.begin(), ended.end());
+        pairs.note(began, ended);
     }
-    note_edits();
-    statistics.box_pairs = count;
+    statistics.box_pairs = table_is_current ? table.size() : pairs.get().size();
     statistics.rejected = static_cast<std::uint32_t>(tree.item_count() - tree.size());
     current = true;
     return {};

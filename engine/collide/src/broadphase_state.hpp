@@ -2,14 +2,13 @@
 // What a broadphase keeps between updates. broadphase.cpp looks at all boxes, broadphase_movers.cpp at those that
 // moved, broadphase_pairs.cpp lists pairs for who asks.
 #pragma once
-#include <atomic>
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/core/sorted_edits.hpp>
 #include <limits>
-#include <mutex>
 
 #include "bound_blocks.hpp"
 #include "item_tree.hpp"
+#include "lazy_list.hpp"
 #include "pair_list.hpp"
 #include "pair_table.hpp"
 #include "space_order.hpp"
@@ -43,24 +42,17 @@ struct Broadphase::State {
     Vector<std::uint8_t> hits;
     bool current = false;  // the pairs are those of the last boxes
 
-    // Which pairs there are: in the table, if it is current, else in `pairs`. Both are made when they are needed.
-    PairTable table;
-    bool table_is_current = false;
-    Vector<IdPair> began, ended;
-    std::uint32_t count = 0;  // pairs
-    // Lists for who asks, and whether they are out of date. Any thread may ask.
-    struct PairEdit {
-        IdPair pair;
-        bool is_added;
+    struct IsBefore {
+        bool operator()(const IdPair& a, const IdPair& b) const { return a < b; }
     };
-    std::mutex mutex;
-    std::atomic<bool> pairs_are_old = false, stayed_is_old = false, rejected_is_old = false;
-    Vector<IdPair> pairs, previous, stayed;
-    Vector<std::uint32_t> rejected;
-    Vector<PairEdit> edits;          // of `pairs`
-    bool edits_are_complete = true;  // else `pairs` are the table's
-    Vector<IdPair> added, removed;
-    SortedEdits sorted_edits;
+    LazySortedList<IdPair, IsBefore> pairs;
+    Vector<IdPair> began, ended;
+    bool all_are_tested = true;
+    LazyList<IdPair> stayed, tested;
+    LazyList<std::uint32_t> rejected;
+    PairTable table;  // of the pairs, where update_moved() follows update_moved()
+    bool table_is_current = false;
+    Vector<IdPair> previous;
 
     // Of update_moved. Items that moved, came or went, and whether an item did.
     struct Partner {
@@ -79,14 +71,6 @@ struct Broadphase::State {
     Vector<std::uint32_t> found_begin;
     Vector<std::uint32_t> now, came, left, ended_entries;
 
-    // broadphase_pairs.cpp
-    void update_lists(std::atomic<bool>& is_old, void (State::*make)());
-    void list_pairs();
-    void list_stayed();
-    void list_rejected();
-    void note_edits();
-    void use_table(std::size_t item_count);
-
     // broadphase.cpp
     [[nodiscard]] Result<void> update(std::span<const Obb> boxes, std::span<const CollisionFilter> filters,
                                       Executor& executor, const PairTest* test);
@@ -104,7 +88,7 @@ struct Broadphase::State {
     void refit(std::span<const Obb> boxes, Executor& executor);
     void bound_leaf(std::span<const Obb> boxes, std::size_t leaf, BroadphaseWorker& worker);
     [[nodiscard]] bool collect(Executor& executor);
-    void sort_pairs(std::size_t item_count, std::span<const CollisionFilter> filters);
+    void sort_pairs(std::size_t item_count, std::span<const CollisionFilter> filters, Vector<IdPair>& sorted);
     void test_pairs(std::span<const Obb> boxes, std::span<const IdPair> candidates, Executor& executor,
                     const PairTest* test);
 

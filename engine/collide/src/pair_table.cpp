@@ -40,16 +40,9 @@ void PairTable::remove(std::uint32_t entry) {
         if (next != kNone) entries_[next / 2].previous[next % 2] = previous;
         (previous != kNone ? entries_[previous / 2].next[previous % 2] : first_[removed.item[side]]) = next;
     }
-    removed.item[0] = kNone;
     removed.next[0] = free_;
     free_ = entry;
     --size_;
-}
-
-void PairTable::list(Vector<IdPair>& pairs) const {
-    pairs.clear();
-    for (const Entry& entry : entries_)
-        if (entry.item[0] != kNone) pairs.push_back({entry.item[0], entry.item[1]});
 }
 
 }  // namespace crofton::collide

@@ -26,12 +26,10 @@ class PairTable {
         for (std::uint32_t link = first_[item]; link != kNone; link = entries_[link / 2].next[link % 2])
             visit(entries_[link / 2].item[1 - link % 2], link / 2);
     }
-    // Replaces `pairs` by all, in no order.
-    void list(Vector<IdPair>& pairs) const;
 
   private:
     static constexpr std::uint32_t kNone = ~std::uint32_t{0};
-    // A link is twice an entry, and 1 for its second item. Free entries have no first item.
+    // A link is twice an entry, and 1 more for its second item.
     struct Entry {
         std::uint32_t item[2], next[2], previous[2];
     };

@@ -200,7 +200,7 @@ Result<void> World::set_body(ObjectHandle object, const convex::Body* body) {
         return fail(ErrorCode::unsupported, object.index,
                     "world: a half-space has no box; give the object a large box instead");
     state_->body_contacts.set(object.index, body);
-    state_->pairs_changed = true;
+    state_->pair_changes.objects.push_back(object.index);
     return {};
 }
 
@@ -223,14 +223,15 @@ Result<void> World::set_layers(ObjectHandle object, std::uint32_t layers) {
 Result<void> World::set_collides_with(ObjectHandle object, std::uint32_t layers) {
     if (auto known = state_->check(object, object.index); !known) return known;
     state_->table.objects[object.index].collides_with = layers;
-    state_->pairs_changed = true;
+    state_->pair_changes.objects.push_back(object.index);
     return {};
 }
 
 Result<void> World::set_user(ObjectHandle object, std::uint64_t user) {
     if (auto known = state_->check(object, object.index); !known) return known;
     state_->table.names.users[object.index] = user;
-    state_->pairs_changed = true;
+    state_->pair_changes.objects.push_back(object.index);
+    state_->pair_changes.renamed = true;
     return {};
 }
 

@@ -72,7 +72,6 @@ void World::State::apply_changes() {
         body_contacts.set(object, nullptr);
         occluders.note(object);
     }
-    pairs_changed |= !removed.empty();
     removed.clear();
     for (const StagedChange& change : staged) {
         world::Object& object = table.objects[change.object];
@@ -81,7 +80,7 @@ void World::State::apply_changes() {
         if (object.instance != kNoIndex) {
             object.mesh = scene.mesh_of(object.instance);
             show(change.object);
-            pairs_changed = true;
+            pair_changes.objects.push_back(change.object);
             body_contacts.note(change.object);
             continue;
         }
@@ -89,7 +88,7 @@ void World::State::apply_changes() {
         index.set_shown(change.object, object.shown);
         if (!change.has_bound) continue;
         if (object.kind != change.bound.kind || object.radius != change.bound.radius) {
-            pairs_changed = true;
+            pair_changes.objects.push_back(change.object);
             body_contacts.note(change.object);
         }
         object.kind = change.bound.kind;
@@ -135,7 +134,7 @@ void World::State::apply_scene(Executor& executor) {
         index.set_box_of_moved(object_of_instance[instance], scene.world_boxes()[instance]);
         occluders.note(object_of_instance[instance]);
     }
-    pairs_changed |= bodies.update(scene, executor);
+    pair_changes.all_contacts |= bodies.update(scene, executor);
 }
 
 Result<void> World::update(Executor& executor) {
@@ -158,23 +157,24 @@ Result<void> World::update(Executor& executor) {
         s.update_occluders();
     }
     Result<void> found;
-    const bool changed = changes.boxes > 0 || s.pairs_changed, moved_only = !s.pairs_changed && !changes.members;
-    s.pairs_changed = false;
+    const bool changed = changes.boxes > 0 || s.pair_changes.any();
     const auto start = std::chrono::steady_clock::now();
     if (s.options.pairs && changed) {
         const world::TraceZone part(trace, "update: pairs and contacts");
-        found = s.finder.update(s.table, s.index, s.scene, s.bodies, s.body_contacts, moved_only, executor);
+        found = s.finder.update(s.table, s.index, s.scene, s.bodies, s.body_contacts, s.pair_changes, executor);
         if (s.options.contacts)
-            s.body_contacts.update(s.finder.pairs(), s.table, s.index, s.scene, s.options.contact_margin, executor);
+            s.body_contacts.update(s.body_contacts.has_work() ? s.finder.pairs() : std::span<const ObjectPair>(),
+                                   s.table, s.index, s.scene, s.options.contact_margin, executor);
     }
     if (!s.options.pairs || !s.options.contacts) s.body_contacts.forget_changes();
     if (!changed) s.finder.stay();
     if (!changed) s.body_contacts.stay();
     s.statistics.contacts_us =
         std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
-    if (!found) s.pairs_changed = true;
+    s.pair_changes.clear();
+    s.pair_changes.after_error = !found;
     world::trace_count(trace, "boxes changed", changes.boxes);
-    world::trace_count(trace, "pairs", s.finder.pairs().size());
+    world::trace_count(trace, "pairs", s.finder.pair_count());
     s.statistics.objects = s.table.count;
     s.statistics.resting = s.index.tree().item_count();
     s.statistics.moving = s.index.moving().size();
@@ -183,7 +183,7 @@ Result<void> World::update(Executor& executor) {
     s.statistics.box_pairs_tested = changed ? s.finder.broadphase().bound_pairs : 0;
     if (changed) s.statistics.box_tests = s.finder.broadphase().boxes;
     s.statistics.body_pairs_computed = s.options.pairs && s.options.contacts ? s.body_contacts.computed() : 0;
-    s.statistics.contact_pairs_tested = changed ? s.finder.pairs().size() : 0;
+    s.statistics.contact_pairs_tested = changed ? s.finder.tested_count() : 0;
     return found;
 }
 

@@ -85,6 +85,9 @@ class Broadphase {
     [[nodiscard]] std::span<const IdPair> began() const;  // in pairs() now, not after the update before
     [[nodiscard]] std::span<const IdPair> stayed() const;
     [[nodiscard]] std::span<const IdPair> ended() const;
+    // Of pairs(), those that the last update has tested: all, or where update_moved() has looked at what moved alone,
+    // those of which an item is new or was named.
+    [[nodiscard]] std::span<const IdPair> tested() const;
     [[nodiscard]] std::span<const std::uint32_t> rejected() const;  // ascending
     [[nodiscard]] const BroadphaseStatistics& statistics() const;
 
