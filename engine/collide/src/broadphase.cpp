@@ -47,14 +47,24 @@ void Broadphase::State::bound_leaf(std::span<const Obb> boxes, std::size_t leaf,
         put_shape(box, lane, block);
     }
     BoundBlock& bounds = tree.leaf(leaf);
-    std::uint32_t suspect = bound_boxes(block, bounds) & ((1u << items.size()) - 1u);
-    for (; suspect != 0; suspect &= suspect - 1) {
+    const std::uint32_t used = (1u << items.size()) - 1u;
+    std::uint32_t absent = 0;
+    for (std::uint32_t suspect = bound_boxes(block, bounds) & used; suspect != 0; suspect &= suspect - 1) {
         const auto lane = static_cast<std::size_t>(std::countr_zero(suspect));
         if (validate(boxes[items[lane]]).has_value()) continue;
         worker.absent.push_back(items[lane]);
-        clear_lane(bounds, lane);
+        absent |= 1u << lane;
     }
-    for (std::size_t lane = items.size(); lane < kBoxBlock; ++lane) clear_lane(bounds, lane);
+    // Until absent items are taken out, they are where another item of the leaf is.
+    const auto present = static_cast<std::size_t>(std::countr_zero(used & ~absent));
+    for (std::size_t lane = 0; lane < kBoxBlock; ++lane) {
+        if (lane >= items.size()) clear_lane(bounds, lane);
+        if ((absent >> lane & 1u) == 0) continue;
+        for (int i = 0; i < 3; ++i) {
+            bounds.low[i][lane] = present < kBoxBlock ? bounds.low[i][present] : 0.0f;
+            bounds.high[i][lane] = present < kBoxBlock ? bounds.high[i][present] : 0.0f;
+        }
+    }
 }
 
 LaneBounds Broadphase::State::bounds_of(const Obb& box) const {

@@ -11,7 +11,7 @@ namespace {
 // A block with fewer lanes in use is given up, where it has siblings. A split leaves no less than the second.
 constexpr std::size_t kFewestLanes = 5, kFewestAfterSplit = 6;
 // A block is loose once its bounds have grown by this factor.
-constexpr float kLooseGrowth = 1.5f;
+constexpr float kLooseGrowth = 1.1f;
 // Leaves are worn once the sum of their extents has grown by the first, or there are so many times more than needed.
 constexpr double kWornGrowth = 1.2, kWornCount = 1.5;
 
@@ -244,7 +244,7 @@ void ItemTree::grow(std::size_t level, std::uint32_t block, const LaneBounds& bo
         include(bounds, now);
         if (are_equal(now, before)) return;
         put_lane(now, place % kBoxBlock, above);
-        levels_[k].extents[block] = std::max(levels_[k].extents[block], extent_of(now));
+        levels_[k].extents[block] += extent_of(now) - extent_of(before);
         block = place / kBoxBlock;
     }
 }
@@ -319,6 +319,7 @@ void ItemTree::shrink(std::size_t level, std::uint32_t block) {
         BoundBlock& above = levels_[k + 1].bounds[place / kBoxBlock];
         if (are_equal(now, lane_of(above, place % kBoxBlock))) return;
         put_lane(now, place % kBoxBlock, above);
+        levels_[k].extents[block] = std::min(levels_[k].extents[block], extent_of(now));
         block = place / kBoxBlock;
     }
 }
@@ -340,11 +341,17 @@ void ItemTree::take(std::size_t level, std::uint32_t place) {
     const std::uint32_t above = from.parents[block];
     const bool has_siblings = levels_[level + 1].counts[above / kBoxBlock] > 1;
     if (last > 0 && (last >= kFewestLanes || !has_siblings)) return shrink(level, block);
-    for (std::size_t lane = 0; lane < last; ++lane)
+    give_up(level, block);
+}
+
+// The block's children become orphans.
+void ItemTree::give_up(std::size_t level, std::uint32_t block) {
+    Level& from = levels_[level];
+    for (std::size_t lane = 0; lane < from.counts[block]; ++lane)
         orphans_.push_back({level, from.children[block * kBoxBlock + lane], lane_of(from.bounds[block], lane)});
     fill(level, block, {});
     from.free.push_back(block);
-    take(level + 1, above);
+    take(level + 1, from.parents[block]);
 }
 
 void ItemTree::put_orphans() {
@@ -393,7 +400,7 @@ void ItemTree::move(std::uint32_t item, const LaneBounds& bounds) {
 void ItemTree::bound_marked() {
     LaneBounds unions[kBoxBlock];
     for (std::size_t k = 0; k + 1 < level_count_; ++k) {
-        const Level& level = levels_[k];
+        Level& level = levels_[k];
         for (std::size_t begin = 0; begin < level.marked.size(); begin += kBoxBlock) {
             const std::size_t count = std::min(kBoxBlock, level.marked.size() - begin);
             bound_blocks(level.bounds.data(), level.marked.data() + begin, count, unions);
@@ -402,17 +409,20 @@ void ItemTree::bound_marked() {
                 BoundBlock& above = levels_[k + 1].bounds[place / kBoxBlock];
                 if (are_equal(unions[n], lane_of(above, place % kBoxBlock))) continue;
                 put_lane(unions[n], place % kBoxBlock, above);
+                float& extent = level.extents[level.marked[begin + n]];
+                extent = std::min(extent, extent_of(unions[n]));
                 mark(k + 1, place / kBoxBlock);
             }
         }
     }
 }
 
-// Of the children that moved, those in loose blocks of a level.
+// Of the children that moved, those in loose blocks of a level; then all that is in blocks that are loose still.
 void ItemTree::put_again(std::size_t level, std::span<const std::uint32_t> moved) {
     escaped_.clear();
     loose_.clear();
     for (const std::uint32_t child : moved) {
+        if (level > 0 && levels_[level - 1].counts[child] == 0) continue;  // has been given up
         const std::uint32_t place = place_of(level, child);
         if (place == kNowhere || !is_loose(level, place / kBoxBlock)) continue;
         escaped_.push_back({level, child, lane_of(levels_[level].bounds[place / kBoxBlock], place % kBoxBlock)});
@@ -424,17 +434,19 @@ void ItemTree::put_again(std::size_t level, std::span<const std::uint32_t> moved
         orphans_.push_back(entry);
         put_orphans();
     }
-    if (level + 1 >= level_count_) return;
-    for (const std::uint32_t block : loose_)
-        if (levels_[level].counts[block] != 0) levels_[level].extents[block] = extent_of(bounds_of(level, block));
+    for (const std::uint32_t block : loose_) {
+        if (level + 1 >= level_count_) return;
+        if (levels_[level].counts[block] == 0 || !is_loose(level, block)) continue;
+        if (levels_[level + 1].counts[levels_[level].parents[block] / kBoxBlock] > 1) give_up(level, block);
+        put_orphans();
+    }
 }
 
-// From the top: what is put again on one level moves no block of those below.
+// From below: items that have gone far make the blocks above them loose only until they are put again.
 void ItemTree::settle(std::span<const std::uint32_t> moved) {
     bound_marked();
-    for (std::size_t k = level_count_ - 2; k > 0; --k)
-        if (k + 1 < level_count_) put_again(k, levels_[k - 1].marked);
     put_again(0, moved);
+    for (std::size_t k = 1; k + 1 < level_count_; ++k) put_again(k, levels_[k - 1].marked);
     for (Level& level : levels_) {
         for (const std::uint32_t block : level.marked) level.is_marked[block] = 0;
         level.marked.clear();

@@ -52,7 +52,7 @@ class ItemTree {
         Vector<BoundBlock> bounds;
         Vector<std::uint32_t> children, parents;  // as in BoundTree
         Vector<std::uint8_t> counts, is_marked;
-        Vector<float> extents;  // that a block's bounds had when it was made, or what was best put into it has given it
+        Vector<float> extents;               // of a block's bounds, but for what moves have added since it was made
         Vector<std::uint32_t> free, marked;  // the second: bounds have changed
         void clear();
     };
@@ -76,6 +76,7 @@ class ItemTree {
     void grow(std::size_t level, std::uint32_t block, const LaneBounds& bounds);
     void shrink(std::size_t level, std::uint32_t block);
     void take(std::size_t level, std::uint32_t place);
+    void give_up(std::size_t level, std::uint32_t block);
     void put_orphans();
     void mark(std::size_t level, std::uint32_t block);
     void bound_marked();
