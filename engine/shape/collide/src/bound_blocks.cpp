@@ -4,6 +4,7 @@
 #define HWY_TARGET_INCLUDE "bound_blocks.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h:
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 #include <crofton/simd/compress-inl.hpp>
 
@@ -51,18 +52,20 @@ std::uint32_t BoundBoxes(const BoxBlock& boxes, BoundBlock& bounds) {
     return suspect;
 }
 
-void BoundBlocks(const BoundBlock* blocks, std::size_t begin, std::size_t end, BoundBlock* above) {
+void BoundBlocks(const BoundBlock* blocks, const std::uint32_t* ids, std::size_t count, LaneBounds* unions) {
     const D d;
-    for (std::size_t b = begin; b < end; ++b)
+    for (std::size_t n = 0; n < count; ++n) {
+        const BoundBlock& block = blocks[ids ? ids[n] : n];
         for (int i = 0; i < 3; ++i) {
-            V low = hn::Load(d, blocks[b].low[i]), high = hn::Load(d, blocks[b].high[i]);
+            V low = hn::Load(d, block.low[i]), high = hn::Load(d, block.high[i]);
             for (std::size_t l = hn::Lanes(d); l < kBoxBlock; l += hn::Lanes(d)) {
-                low = hn::Min(low, hn::Load(d, blocks[b].low[i] + l));
-                high = hn::Max(high, hn::Load(d, blocks[b].high[i] + l));
+                low = hn::Min(low, hn::Load(d, block.low[i] + l));
+                high = hn::Max(high, hn::Load(d, block.high[i] + l));
             }
-            above[b / kBoxBlock].low[i][b % kBoxBlock] = hn::GetLane(hn::MinOfLanes(d, low));
-            above[b / kBoxBlock].high[i][b % kBoxBlock] = hn::GetLane(hn::MaxOfLanes(d, high));
+            unions[n].low[i] = hn::GetLane(hn::MinOfLanes(d, low));
+            unions[n].high[i] = hn::GetLane(hn::MaxOfLanes(d, high));
         }
+    }
 }
 
 constexpr std::size_t kVectors = kBoxBlock / hn::MaxLanes(D());
@@ -157,20 +160,21 @@ HWY_INLINE bool compare_own(const BoundBlock& block, Leaf& leaf, SlotPairs& pair
     return true;
 }
 
-// Leaf `index` against the leaves from it on below blocks `near` of levels[1].
-bool compare_leaf(const BoundTree& tree, std::size_t index, const std::uint32_t* near, std::size_t near_count,
-                  SlotPairs& pairs, GrowPairs grow) {
-    const BoundBlock& own = tree.levels[1][index / kBoxBlock];
-    const std::size_t lane = index % kBoxBlock;
+// Lane `lane` of block `block` of levels[1], a leaf, against the leaves below blocks `near` of that level. None of them
+// is before `block`.
+bool compare_leaf(const BoundTree& tree, std::size_t block, std::size_t lane, const std::uint32_t* near,
+                  std::size_t near_count, SlotPairs& pairs, GrowPairs grow) {
+    const BoundBlock& own = tree.levels[1][block];
+    const std::uint32_t index = tree.children[1][block * kBoxBlock + lane];
     Leaf leaf;
     load(tree.levels[0][index], leaf.bounds);
     leaf.base = static_cast<std::uint32_t>(index * kBoxBlock);
     for (std::size_t n = 0; n < near_count; ++n) {
-        const std::size_t first = near[n] * kBoxBlock;
+        const std::uint32_t* const children = tree.children[1] + near[n] * kBoxBlock;
         std::uint32_t leaves = lanes_that_meet(tree.levels[1][near[n]], own, lane);
-        if (first <= index) leaves &= ~std::uint32_t{0} << (index - first);
+        if (near[n] == block) leaves &= ~std::uint32_t{0} << lane;
         for (; leaves != 0; leaves &= leaves - 1) {
-            const std::size_t other = first + lowest(leaves);
+            const std::uint32_t other = children[lowest(leaves)];
             ++pairs.leaf_pairs;
             if (other == index) {
                 if (!compare_own(tree.levels[0][index], leaf, pairs, grow)) return false;
@@ -196,9 +200,8 @@ struct NearBlocks {
 
 // All leaves of a block against those of the blocks near it.
 bool compare_block(const BoundTree& tree, std::size_t block, NearBlocks& near, SlotPairs& pairs, GrowPairs grow) {
-    const std::size_t begin = block * kBoxBlock, end = HWY_MIN(begin + kBoxBlock, tree.sizes[0]);
-    for (std::size_t leaf = begin; leaf < end; ++leaf)
-        if (!compare_leaf(tree, leaf, near.block, near.count, pairs, grow)) return false;
+    for (std::size_t lane = 0; lane < tree.counts[1][block]; ++lane)
+        if (!compare_leaf(tree, block, lane, near.block, near.count, pairs, grow)) return false;
     near.count = 0;
     return true;
 }
@@ -206,69 +209,142 @@ bool compare_block(const BoundTree& tree, std::size_t block, NearBlocks& near, S
 // Descends to the blocks of levels[1], from `block` on, whose bounds meet its own.
 bool visit_block(const BoundTree& tree, std::size_t block, SlotPairs& pairs, GrowPairs grow) {
     struct Step {
-        std::size_t level, block;
+        std::size_t level;
+        std::uint32_t block;
     };
     Step stack[kMaxLevels * kBoxBlock];
     std::size_t height = 0;
     NearBlocks near;
-    stack[height++] = {tree.level_count - 1, 0};
+    const std::uint32_t above = tree.level_count > 2 ? tree.parents[1][block] : 0;
+    stack[height++] = {tree.level_count - 1, tree.root};
     while (height > 0) {
         const Step step = stack[--height];
         if (step.level == 1) {
-            near.block[near.count++] = static_cast<std::uint32_t>(step.block);
+            if (step.block < block) continue;  // has met this one already
+            near.block[near.count++] = step.block;
             if (near.count == NearBlocks::kCapacity && !compare_block(tree, block, near, pairs, grow)) return false;
             continue;
         }
         std::uint32_t lanes =
-            lanes_that_meet(tree.levels[step.level][step.block], tree.levels[2][block / kBoxBlock], block % kBoxBlock);
-        // Blocks before this one have met it already: leave out subtrees that end before it.
-        std::size_t blocks_per_lane = 1;
-        for (std::size_t k = 2; k < step.level; ++k) blocks_per_lane *= kBoxBlock;
-        const std::size_t first = step.block * kBoxBlock, own = block / blocks_per_lane;
-        if (own > first) lanes &= own - first < kBoxBlock ? ~std::uint32_t{0} << (own - first) : 0;
-        for (; lanes != 0; lanes &= lanes - 1) stack[height++] = {step.level - 1, first + lowest(lanes)};
+            lanes_that_meet(tree.levels[step.level][step.block], tree.levels[2][above / kBoxBlock], above % kBoxBlock);
+        const std::uint32_t* const children = tree.children[step.level] + step.block * kBoxBlock;
+        for (; lanes != 0; lanes &= lanes - 1) stack[height++] = {step.level - 1, children[lowest(lanes)]};
     }
     return compare_block(tree, block, near, pairs, grow);
 }
 
 void FindPairs(const BoundTree& tree, std::size_t begin, std::size_t end, SlotPairs& pairs, GrowPairs grow) {
     for (std::size_t block = begin; block < end; ++block)
-        if (!visit_block(tree, block, pairs, grow)) return;
+        if (tree.counts[1][block] != 0 && !visit_block(tree, block, pairs, grow)) return;
 }
 
-bool visit_partners(const BoundTree& tree, std::uint32_t slot, SlotPairs& pairs, GrowPairs grow) {
-    struct Step {
-        std::size_t level, block;
-    };
-    Step stack[kMaxLevels * kBoxBlock];
-    std::size_t height = 0;
-    const BoundBlock& own = tree.levels[0][slot / kBoxBlock];
-    const std::size_t own_lane = slot % kBoxBlock;
-    stack[height++] = {tree.level_count - 1, 0};
-    while (height > 0) {
-        const Step step = stack[--height];
-        std::uint32_t lanes = lanes_that_meet(tree.levels[step.level][step.block], own, own_lane);
-        const std::size_t first = step.block * kBoxBlock;
-        if (step.level > 0) {
-            for (; lanes != 0; lanes &= lanes - 1) stack[height++] = {step.level - 1, first + lowest(lanes)};
-            continue;
-        }
+HWY_INLINE std::uint32_t lanes_that_meet(const BoundBlock& block, const LaneBounds& other) {
+    const D d;
+    Bounds bounds;
+    load(block, bounds);
+    std::uint32_t bits = 0;
+    for (std::size_t v = 0; v < kVectors; ++v) {
+        M all = hn::And(hn::Le(bounds.low[0][v], hn::Set(d, other.high[0])),
+                        hn::Ge(bounds.high[0][v], hn::Set(d, other.low[0])));
+        for (int i = 1; i < 3; ++i)
+            all = hn::And(all, hn::And(hn::Le(bounds.low[i][v], hn::Set(d, other.high[i])),
+                                       hn::Ge(bounds.high[i][v], hn::Set(d, other.low[i]))));
+        bits |= bits_of(d, all, v * hn::Lanes(d));
+    }
+    return bits;
+}
+
+// A block that an item's bounds are to be compared with.
+struct Visit {
+    std::uint32_t item, level, block;  // the item by its place among those asked for
+};
+
+// The visits that wait, in a ring: blocks are fetched from memory while those before them are looked at.
+struct Waiting {
+    static constexpr std::size_t kCapacity = 256;
+    Visit visits[kCapacity];
+    std::size_t begin = 0, end = 0;
+
+    [[nodiscard]] std::size_t size() const { return end - begin; }
+    [[nodiscard]] Visit pop() { return visits[begin++ % kCapacity]; }
+    void push(const Visit& visit) { visits[end++ % kCapacity] = visit; }
+};
+
+struct Partners {
+    const BoundTree& tree;
+    const std::uint32_t* items;
+    const LaneBounds* bounds;
+    SlotPairs& pairs;
+    GrowPairs grow;
+
+    HWY_INLINE std::uint32_t lanes_of(const Visit& visit) const {
+        return lanes_that_meet(tree.levels[visit.level][visit.block], bounds[visit.item]);
+    }
+    HWY_INLINE const std::uint32_t* children_of(const Visit& visit) const {
+        return tree.children[visit.level] + visit.block * kBoxBlock;
+    }
+    // The items in a leaf.
+    bool put(const Visit& visit, std::uint32_t lanes) const {
         ++pairs.leaf_pairs;
         if (pairs.capacity - pairs.count < kPairRoom && !grow(pairs)) return false;
-        for (; lanes != 0; lanes &= lanes - 1) {
-            const auto other = static_cast<std::uint32_t>(first + lowest(lanes));
-            pairs.first[pairs.count] = slot;
+        for (const std::uint32_t* const children = children_of(visit); lanes != 0; lanes &= lanes - 1) {
+            const std::uint32_t other = children[lowest(lanes)];
+            pairs.first[pairs.count] = visit.item;
             pairs.second[pairs.count] = other;
-            pairs.count += other != slot;
+            pairs.count += other != items[visit.item];
+        }
+        return true;
+    }
+    // All that is below a block, at once.
+    bool visit_below(const Visit& first) const {
+        Visit stack[kMaxLevels * kBoxBlock];
+        std::size_t height = 0;
+        stack[height++] = first;
+        while (height > 0) {
+            const Visit visit = stack[--height];
+            std::uint32_t lanes = lanes_of(visit);
+            if (visit.level == 0) {
+                if (!put(visit, lanes)) return false;
+                continue;
+            }
+            for (const std::uint32_t* const children = children_of(visit); lanes != 0; lanes &= lanes - 1)
+                stack[height++] = {visit.item, visit.level - 1, children[lowest(lanes)]};
+        }
+        return true;
+    }
+    void fetch(std::size_t level, std::uint32_t block) const {
+        const char* const bytes = reinterpret_cast<const char*>(tree.levels[level] + block);
+        for (std::size_t byte = 0; byte < sizeof(BoundBlock); byte += 64) hwy::Prefetch(bytes + byte);
+        hwy::Prefetch(tree.children[level] + block * kBoxBlock);
+    }
+};
+
+void FindPartners(const BoundTree& tree, const std::uint32_t* items, const LaneBounds* bounds, std::size_t count,
+                  SlotPairs& pairs, GrowPairs grow) {
+    constexpr std::size_t kAtOnce = 24;
+    const Partners partners{tree, items, bounds, pairs, grow};
+    Waiting waiting;
+    std::uint32_t next = 0;
+    while (true) {
+        for (; waiting.size() < kAtOnce && next < count; ++next)
+            waiting.push({next, static_cast<std::uint32_t>(tree.level_count - 1), tree.root});
+        if (waiting.size() == 0) return;
+        const Visit visit = waiting.pop();
+        if (visit.level > 0 && Waiting::kCapacity - waiting.size() < kBoxBlock) {
+            if (!partners.visit_below(visit)) return;
+            continue;
+        }
+        std::uint32_t lanes = partners.lanes_of(visit);
+        if (visit.level == 0) {
+            if (lanes != 0 && !partners.put(visit, lanes)) return;
+            continue;
+        }
+        for (const std::uint32_t* const children = partners.children_of(visit); lanes != 0; lanes &= lanes - 1) {
+            const std::uint32_t below = children[lowest(lanes)];
+            partners.fetch(visit.level - 1, below);
+            waiting.push({visit.item, visit.level - 1, below});
         }
     }
-    return true;
-}
-
-void FindPartners(const BoundTree& tree, const std::uint32_t* slots, std::size_t count, SlotPairs& pairs,
-                  GrowPairs grow) {
-    for (std::size_t i = 0; i < count; ++i)
-        if (!visit_partners(tree, slots[i], pairs, grow)) return;
 }
 
 }  // namespace crofton::collide::HWY_NAMESPACE
@@ -286,15 +362,15 @@ std::uint32_t bound_boxes(BoxBlock& boxes, BoundBlock& bounds) {
     measure_deviation(boxes);
     return HWY_DYNAMIC_DISPATCH(BoundBoxes)(boxes, bounds);
 }
-void bound_blocks(const BoundBlock* blocks, std::size_t begin, std::size_t end, BoundBlock* above) {
-    HWY_DYNAMIC_DISPATCH(BoundBlocks)(blocks, begin, end, above);
+void bound_blocks(const BoundBlock* blocks, const std::uint32_t* ids, std::size_t count, LaneBounds* unions) {
+    HWY_DYNAMIC_DISPATCH(BoundBlocks)(blocks, ids, count, unions);
 }
 void find_pairs(const BoundTree& tree, std::size_t begin, std::size_t end, SlotPairs& pairs, GrowPairs grow) {
     HWY_DYNAMIC_DISPATCH(FindPairs)(tree, begin, end, pairs, grow);
 }
-void find_partners(const BoundTree& tree, const std::uint32_t* slots, std::size_t count, SlotPairs& pairs,
-                   GrowPairs grow) {
-    HWY_DYNAMIC_DISPATCH(FindPartners)(tree, slots, count, pairs, grow);
+void find_partners(const BoundTree& tree, const std::uint32_t* items, const LaneBounds* bounds, std::size_t count,
+                   SlotPairs& pairs, GrowPairs grow) {
+    HWY_DYNAMIC_DISPATCH(FindPartners)(tree, items, bounds, count, pairs, grow);
 }
 
 }  // namespace crofton::collide

@@ -14,21 +14,30 @@ struct alignas(64) BoundBlock {
     float high[3][kBoxBlock];
 };
 
-inline constexpr std::size_t kMaxLevels = 9;  // 16^9 > 2^32
+inline constexpr std::size_t kMaxLevels = 16;  // blocks have six children or more, but where they have no siblings
 
-// levels[0] holds the items' bounds; lane l of block b of levels[k + 1] bounds block 16 b + l of levels[k].
+// The bounds of one lane.
+struct LaneBounds {
+    float low[3], high[3];
+};
+
+// A tree over blocks. levels[0] holds the items' bounds. A lane of levels[k + 1] bounds a block of levels[k].
 struct BoundTree {
     const BoundBlock* levels[kMaxLevels];
-    std::size_t sizes[kMaxLevels];  // blocks
-    std::size_t level_count;
+    const std::uint32_t* children[kMaxLevels];  // [16 b + l]: the item or the block below that lane l of block b bounds
+    const std::uint32_t* parents[kMaxLevels];   // [b]: 16 times the block above, and the lane there
+    const std::uint8_t* counts[kMaxLevels];     // [b]: lanes in use, which are the first; 0: the block is free
+    std::size_t sizes[kMaxLevels];              // blocks, free ones too
+    std::size_t level_count;                    // at least 2
+    std::uint32_t root;                         // the one block of the highest level
 };
 
 // Bounds of sixteen boxes, rounded outward. Returns the lanes that need a closer look: not finite, not orthonormal to
 // 0.9e-4, negative or beyond 1e30.
 std::uint32_t bound_boxes(BoxBlock& boxes, BoundBlock& bounds);
 
-// Bounds of blocks [begin, end) of one level, into the lanes of the level above.
-void bound_blocks(const BoundBlock* blocks, std::size_t begin, std::size_t end, BoundBlock* above);
+// What bounds all lanes of each block; of blocks[0], blocks[1], … where `ids` is nullptr.
+void bound_blocks(const BoundBlock* blocks, const std::uint32_t* ids, std::size_t count, LaneBounds* unions);
 
 // Found pairs of slots as two lists. `grow` is called when fewer than kPairRoom are left, returns false to stop.
 struct SlotPairs {
@@ -40,12 +49,13 @@ using GrowPairs = FunctionRef<bool(SlotPairs&)>;
 inline constexpr std::size_t kCandidates = 512;  // boxes near a leaf that are compared with it at once
 inline constexpr std::size_t kPairRoom = (kCandidates + 1) * kBoxBlock;
 
-// All pairs of slots whose bounds meet and the earlier of whose leaves lies below blocks [begin, end) of levels[1],
-// each once.
+// All pairs of slots whose bounds meet, each once: those of leaves below blocks [begin, end) of levels[1] with those
+// below the same block or a later one.
 void find_pairs(const BoundTree& tree, std::size_t begin, std::size_t end, SlotPairs& pairs, GrowPairs grow);
 
-// For each of `slots`, all other slots whose bounds meet its own: {slot, other}. A pair of two of `slots` comes twice.
-void find_partners(const BoundTree& tree, const std::uint32_t* slots, std::size_t count, SlotPairs& pairs,
-                   GrowPairs grow);
+// For each of the items, whose bounds are given: all other items whose bounds meet them, as {i, other item}. In no
+// order. A pair of two of the items comes twice.
+void find_partners(const BoundTree& tree, const std::uint32_t* items, const LaneBounds* bounds, std::size_t count,
+                   SlotPairs& pairs, GrowPairs grow);
 
 }  // namespace crofton::collide

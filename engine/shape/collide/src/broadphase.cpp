@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
+#include <crofton/geometry/finite.hpp>
 #include <string>
 #include <utility>
 
@@ -29,78 +30,93 @@ Broadphase::~Broadphase() = default;
 Broadphase::Broadphase(Broadphase&&) noexcept = default;
 Broadphase& Broadphase::operator=(Broadphase&&) noexcept = default;
 
-std::span<const IdPair> Broadphase::pairs() const {
-    return state_->pairs;
-}
-std::span<const IdPair> Broadphase::began() const {
-    return state_->began;
-}
-std::span<const IdPair> Broadphase::stayed() const {
-    return state_->stayed;
-}
-std::span<const IdPair> Broadphase::ended() const {
-    return state_->ended;
-}
-std::span<const std::uint32_t> Broadphase::rejected() const {
-    return state_->rejected;
-}
-const BroadphaseStatistics& Broadphase::statistics() const {
-    return state_->statistics;
-}
-
 void Broadphase::State::bound_leaf(std::span<const Obb> boxes, std::size_t leaf, BroadphaseWorker& worker) {
+    const std::span<const std::uint32_t> items = tree.items_of(leaf);
+    if (items.empty()) return;
+    const std::span<const std::uint32_t> later = tree.items_of(std::min(leaf + 2, tree.leaf_count() - 1));
     BoxBlock block;
-    const std::span<const std::uint32_t> items = order.items();
-    const std::size_t begin = leaf * kBoxBlock, count = std::min(kBoxBlock, items.size() - begin);
     for (std::size_t lane = 0; lane < kBoxBlock; ++lane) {
-        const Obb& box = boxes[items[begin + std::min(lane, count - 1)]];
+        const Obb& box = boxes[items[std::min(lane, items.size() - 1)]];
         // Neighbours in space lie anywhere in memory: ask for the leaf after next.
-        const char* ahead =
-            reinterpret_cast<const char*>(&boxes[items[std::min(begin + lane + 2 * kBoxBlock, items.size() - 1)]]);
-        hwy::Prefetch(ahead);
-        hwy::Prefetch(ahead + sizeof(Obb) - 1);
+        if (lane < later.size()) {
+            const char* const ahead = reinterpret_cast<const char*>(&boxes[later[lane]]);
+            hwy::Prefetch(ahead);
+            hwy::Prefetch(ahead + sizeof(Obb) - 1);
+        }
         put_center(box.center - origin, lane, block);
         put_shape(box, lane, block);
     }
-    BoundBlock& bounds = levels[0][leaf];
-    std::uint32_t suspect = bound_boxes(block, bounds) & ((1u << count) - 1u);
-    for (; suspect != 0; suspect &= suspect - 1) {
+    BoundBlock& bounds = tree.leaf(leaf);
+    const std::uint32_t used = (1u << items.size()) - 1u;
+    std::uint32_t absent = 0;
+    for (std::uint32_t suspect = bound_boxes(block, bounds) & used; suspect != 0; suspect &= suspect - 1) {
         const auto lane = static_cast<std::size_t>(std::countr_zero(suspect));
-        const std::uint32_t item = items[begin + lane];
-        if (validate(boxes[item]).has_value()) continue;
-        worker.rejected.push_back(item);
-        clear_lane(bounds, lane);
+        if (validate(boxes[items[lane]]).has_value()) continue;
+        worker.absent.push_back(items[lane]);
+        absent |= 1u << lane;
     }
-    for (std::size_t lane = count; lane < kBoxBlock; ++lane) clear_lane(bounds, lane);
+    // Until absent items are taken out, they are where another item of the leaf is.
+    const auto present = static_cast<std::size_t>(std::countr_zero(used & ~absent));
+    for (std::size_t lane = 0; lane < kBoxBlock; ++lane) {
+        if (lane >= items.size()) clear_lane(bounds, lane);
+        if ((absent >> lane & 1u) == 0) continue;
+        for (int i = 0; i < 3; ++i) {
+            bounds.low[i][lane] = present < kBoxBlock ? bounds.low[i][present] : 0.0f;
+            bounds.high[i][lane] = present < kBoxBlock ? bounds.high[i][present] : 0.0f;
+        }
+    }
 }
 
-void Broadphase::State::build_levels() {
-    std::size_t k = 0;
-    tree.level_count = 1;
-    for (; k == 0 || levels[k].size() > 1; ++k) {
-        const std::size_t size = levels[k].size(), above = (size + kBoxBlock - 1) / kBoxBlock;
-        levels[k + 1].resize(above);
-        bound_blocks(levels[k].data(), 0, size, levels[k + 1].data());
-        for (std::size_t lane = size; lane < above * kBoxBlock; ++lane)
-            clear_lane(levels[k + 1][lane / kBoxBlock], lane % kBoxBlock);
-        ++tree.level_count;
+LaneBounds Broadphase::State::bounds_of(const Obb& box) const {
+    BoxBlock block;
+    BoundBlock bounds;
+    for (std::size_t lane = 0; lane < kBoxBlock; ++lane) {
+        put_center(box.center - origin, lane, block);
+        put_shape(box, lane, block);
     }
-    for (std::size_t level = 0; level < tree.level_count; ++level) {
-        tree.levels[level] = levels[level].data();
-        tree.sizes[level] = levels[level].size();
-    }
-    leaf_extent = 0.0;
-    for (const BoundBlock& block : levels[1])
-        for (std::size_t lane = 0; lane < kBoxBlock; ++lane) leaf_extent += extent_of_lane(block, lane);
+    bound_boxes(block, bounds);
+    return {{bounds.low[0][0], bounds.low[1][0], bounds.low[2][0]},
+            {bounds.high[0][0], bounds.high[1][0], bounds.high[2][0]}};
 }
 
 void Broadphase::State::refit(std::span<const Obb> boxes, Executor& executor) {
-    levels[0].resize((boxes.size() + kBoxBlock - 1) / kBoxBlock);
-    for (BroadphaseWorker& worker : workers) worker.rejected.clear();
-    executor.parallel_for(levels[0].size(), kLeafGrain, [&](std::size_t begin, std::size_t end, unsigned worker) {
+    for (BroadphaseWorker& worker : workers) worker.absent.clear();
+    executor.parallel_for(tree.leaf_count(), kLeafGrain, [&](std::size_t begin, std::size_t end, unsigned worker) {
         for (std::size_t leaf = begin; leaf < end; ++leaf) bound_leaf(boxes, leaf, workers[worker]);
     });
-    build_levels();
+    tree.bound_all();
+    now.clear();
+    for (const BroadphaseWorker& worker : workers) now.insert(now.end(), worker.absent.begin(), worker.absent.end());
+    std::sort(now.begin(), now.end());
+    for (const std::uint32_t item : now) tree.remove(item);
+}
+
+void Broadphase::State::sort(std::span<const Obb> boxes, Executor& executor) {
+    tree.clear();
+    tree.resize(boxes.size());
+    order.sort(boxes);
+    tree.arrange(order.items());
+    refit(boxes, executor);
+    tree.remember_extents();
+    statistics.rebuilt = true;
+}
+
+// All valid boxes into the tree: where they are, few that are new one by one, or all in a new order.
+void Broadphase::State::place_all(std::span<const Obb> boxes, Executor& executor) {
+    origin = middle_of(boxes);
+    const std::size_t items_before = tree.item_count(), most = boxes.size() / kFewMovers;
+    const bool many_went = items_before > boxes.size() && items_before - boxes.size() > most;
+    if (many_went || tree.size() == 0) return sort(boxes, executor);
+    for (std::size_t item = boxes.size(); item < items_before; ++item)
+        if (tree.contains(static_cast<std::uint32_t>(item))) tree.remove(static_cast<std::uint32_t>(item));
+    tree.resize(boxes.size());
+    came.clear();
+    for (std::uint32_t item = 0; item < boxes.size(); ++item)
+        if (!tree.contains(item) && is_in_range(boxes[item].center) && validate(boxes[item])) came.push_back(item);
+    if (came.size() > most) return sort(boxes, executor);
+    refit(boxes, executor);
+    for (const std::uint32_t item : came) tree.insert(item, bounds_of(boxes[item]));
+    if (tree.is_worn()) sort(boxes, executor);
 }
 
 // Makes room for more pairs; false when there are too many.
@@ -120,10 +136,11 @@ bool Broadphase::State::collect(Executor& executor) {
     std::atomic<bool> too_many = false;
     for (BroadphaseWorker& worker : workers)
         worker.pairs = {worker.first.data(), worker.second.data(), 0, worker.first.size(), 0};
-    executor.parallel_for(tree.sizes[1], kBlockGrain, [&](std::size_t begin, std::size_t end, unsigned index) {
+    const BoundTree view = tree.view();
+    executor.parallel_for(view.sizes[1], kBlockGrain, [&](std::size_t begin, std::size_t end, unsigned index) {
         BroadphaseWorker& worker = workers[index];
         if (too_many) return;
-        find_pairs(tree, begin, end, worker.pairs, [&](SlotPairs& slots) {
+        find_pairs(view, begin, end, worker.pairs, [&](SlotPairs& slots) {
             const bool grown = grow(slots, worker);
             if (!grown) too_many = true;
             return grown;
@@ -137,46 +154,51 @@ bool Broadphase::State::collect(Executor& executor) {
     return !too_many && total <= options.max_pairs;
 }
 
-void Broadphase::State::sort_pairs(std::size_t item_count, std::span<const CollisionFilter> filters) {
+void Broadphase::State::sort_pairs(std::size_t item_count, std::span<const CollisionFilter> filters,
+                                   Vector<IdPair>& sorted) {
     const auto slots_of = [](BroadphaseWorker& worker, Vector<std::uint32_t>& slots) {
         return std::span<std::uint32_t>(slots).first(worker.pairs.count);
     };
+    const BoundTree view = tree.view();
+    const std::span<const std::uint32_t> items(view.children[0], view.sizes[0] * kBoxBlock);
     list.begin(item_count);
     for (BroadphaseWorker& worker : workers)
-        list.count(slots_of(worker, worker.first), slots_of(worker, worker.second), order.items(), filters);
-    list.place(pairs);
+        list.count(slots_of(worker, worker.first), slots_of(worker, worker.second), items, filters);
+    list.place(sorted);
     for (BroadphaseWorker& worker : workers)
-        list.add(slots_of(worker, worker.first), slots_of(worker, worker.second), pairs);
-    list.finish(pairs);
+        list.add(slots_of(worker, worker.first), slots_of(worker, worker.second), sorted);
+    list.finish(sorted);
 }
 
-void Broadphase::State::keep_pairs_that_meet(std::span<const Obb> boxes, Vector<IdPair>& candidates,
-                                             Executor& executor) {
+// Into `hits`, which of the candidates meet.
+void Broadphase::State::test_pairs(std::span<const Obb> boxes, std::span<const IdPair> candidates, Executor& executor,
+                                   const PairTest* test) {
     hits.resize(candidates.size());
     for (BroadphaseWorker& worker : workers) worker.boxes = {};
     executor.parallel_for(candidates.size(), kPairGrain, [&](std::size_t begin, std::size_t end, unsigned worker) {
-        const auto some = std::span<const IdPair>(candidates).subspan(begin, end - begin);
+        const auto some = candidates.subspan(begin, end - begin);
         const auto verdicts = std::span<std::uint8_t>(hits).subspan(begin, end - begin);
-        if (options.exact_boxes) {
+        if (options.exact_boxes)
             workers[worker].boxes += intersects(boxes, some, verdicts);
-            return;
-        }
+        else
+            for (std::size_t i = 0; i < some.size(); ++i)
+                verdicts[i] = bounds_meet(boxes[some[i].first], boxes[some[i].second]);
+        if (test == nullptr) return;
         for (std::size_t i = 0; i < some.size(); ++i)
-            verdicts[i] = bounds_meet(boxes[some[i].first], boxes[some[i].second]);
+            if (verdicts[i] != 0) verdicts[i] = (*test)(some[i].first, some[i].second);
     });
-    std::size_t kept_count = 0;
-    for (std::size_t i = 0; i < candidates.size(); ++i) {
-        candidates[kept_count] = candidates[i];
-        kept_count += hits[i];
-    }
-    candidates.resize(kept_count);
     for (const BroadphaseWorker& worker : workers) statistics.boxes += worker.boxes;
 }
 
-// `previous` are those of the update before; none are now.
+// All pairs of the update before have ended.
 Result<void> Broadphase::State::drop_pairs() {
-    statistics.rejected = static_cast<std::uint32_t>(rejected.size());
-    compare_pairs(previous, pairs, began, stayed, ended);
+    statistics.rejected = static_cast<std::uint32_t>(tree.item_count() - tree.size());
+    ended = pairs.get();
+    began.clear();
+    pairs.values().clear();
+    stayed.forget();
+    table_is_current = false;
+    all_are_tested = true;
     return fail(ErrorCode::budget_exceeded, kNoItem,
                 {"broadphase: the bounds of more than ", options.max_pairs, " pairs meet"});
 }
@@ -190,58 +212,70 @@ Result<void> Broadphase::State::check(std::span<const Obb> boxes, std::span<cons
 }
 
 Result<void> Broadphase::State::update_all(std::span<const Obb> boxes, std::span<const CollisionFilter> filters,
-                                           Executor& executor) {
+                                           Executor& executor, const PairTest* test) {
     statistics = {};
-    rejected.clear();
-    std::swap(pairs, previous);
-    pairs.clear();
+    table_is_current = false;
+    all_are_tested = true;
+    rejected.forget();
+    stayed.forget();
     workers.resize(std::max<std::size_t>(workers.size(), executor.concurrency()));
-    if (!boxes.empty()) {
-        origin = middle_of(boxes);
-        statistics.rebuilt = order.items().size() != boxes.size();
-        if (!statistics.rebuilt) {
-            refit(boxes, executor);
-            statistics.rebuilt = leaf_extent > kWornOut * leaf_extent_when_sorted;
-        }
-        if (statistics.rebuilt) {
-            order.sort(boxes);
-            refit(boxes, executor);
-            leaf_extent_when_sorted = leaf_extent;
-        }
-        for (const BroadphaseWorker& worker : workers)
-            rejected.insert(rejected.end(), worker.rejected.begin(), worker.rejected.end());
-        std::sort(rejected.begin(), rejected.end());
-        if (!collect(executor)) return drop_pairs();
-        sort_pairs(boxes.size(), filters);
-        statistics.bound_pairs = pairs.size();
-        keep_pairs_that_meet(boxes, pairs, executor);
+    place_all(boxes, executor);
+    if (!collect(executor)) return drop_pairs();
+    std::swap(pairs.values(), previous);
+    Vector<IdPair>& now_there = pairs.values();
+    sort_pairs(boxes.size(), filters, now_there);
+    statistics.bound_pairs = now_there.size();
+    test_pairs(boxes, now_there, executor, test);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < now_there.size(); ++i) {
+        now_there[kept] = now_there[i];
+        kept += hits[i];
     }
-    statistics.box_pairs = pairs.size();
-    statistics.rejected = static_cast<std::uint32_t>(rejected.size());
-    compare_pairs(previous, pairs, began, stayed, ended);
-    current = order.items().size() == boxes.size();
+    now_there.resize(kept);
+    statistics.box_pairs = kept;
+    statistics.rejected = static_cast<std::uint32_t>(tree.item_count() - tree.size());
+    compare_pairs(previous, now_there, began, ended);
+    current = true;
     return {};
+}
+
+Result<void> Broadphase::State::update(std::span<const Obb> boxes, std::span<const CollisionFilter> filters,
+                                       Executor& executor, const PairTest* test) {
+    current = false;
+    if (auto checked = check(boxes, filters); !checked) return checked;
+    return update_all(boxes, filters, executor, test);
+}
+
+Result<void> Broadphase::State::update_moved(std::span<const Obb> boxes, std::span<const std::uint32_t> moved,
+                                             std::span<const CollisionFilter> filters, Executor& executor,
+                                             const PairTest* test) {
+    // After an error the pairs are no longer those of the last boxes: what moved in them is not known.
+    const bool was_current = std::exchange(current, false);
+    if (auto checked = check(boxes, filters); !checked) return checked;
+    if (const auto last = std::max_element(moved.begin(), moved.end()); last != moved.end() && *last >= boxes.size())
+        return fail(ErrorCode::out_of_range, *last, "broadphase: an item in `moved` is no index of a box");
+    const std::size_t before = tree.item_count(),
+                      came_or_went = std::max(before, boxes.size()) - std::min(before, boxes.size());
+    const bool few = moved.size() + came_or_went <= boxes.size() / kFewMovers;
+    if (!was_current || !few) return update_all(boxes, filters, executor, test);
+    return update_few(boxes, moved, filters, executor, test);
 }
 
 Result<void> Broadphase::update(std::span<const Obb> boxes, std::span<const CollisionFilter> filters,
                                 Executor& executor) {
-    state_->current = false;
-    if (auto checked = state_->check(boxes, filters); !checked) return checked;
-    return state_->update_all(boxes, filters, executor);
+    return state_->update(boxes, filters, executor, nullptr);
 }
-
+Result<void> Broadphase::update(std::span<const Obb> boxes, PairTest test, std::span<const CollisionFilter> filters,
+                                Executor& executor) {
+    return state_->update(boxes, filters, executor, &test);
+}
 Result<void> Broadphase::update_moved(std::span<const Obb> boxes, std::span<const std::uint32_t> moved,
                                       std::span<const CollisionFilter> filters, Executor& executor) {
-    State& s = *state_;
-    // After an error the pairs are no longer those of the last boxes: what moved in them is not known.
-    const bool was_current = std::exchange(s.current, false);
-    if (auto checked = s.check(boxes, filters); !checked) return checked;
-    if (const auto last = std::max_element(moved.begin(), moved.end()); last != moved.end() && *last >= boxes.size())
-        return fail(ErrorCode::out_of_range, *last, "broadphase: an item in `moved` is no index of a box");
-    const bool few = moved.size() <= boxes.size() / kFewMovers && s.leaf_extent <= kWornOut * s.leaf_extent_when_sorted;
-    if (!was_current || s.order.items().size() != boxes.size() || !few) return s.update_all(boxes, filters, executor);
-    s.gather_movers(boxes.size(), moved);
-    return s.update_few(boxes, filters, executor);
+    return state_->update_moved(boxes, moved, filters, executor, nullptr);
+}
+Result<void> Broadphase::update_moved(std::span<const Obb> boxes, std::span<const std::uint32_t> moved, PairTest test,
+                                      std::span<const CollisionFilter> filters, Executor& executor) {
+    return state_->update_moved(boxes, moved, filters, executor, &test);
 }
 
 }  // namespace crofton::collide

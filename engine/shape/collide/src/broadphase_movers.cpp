@@ -7,113 +7,192 @@
 
 namespace crofton::collide {
 
-// Of `moved`, each item once.
+// Of `moved`, each item once, then what is new at the end, then what is dropped from it.
 void Broadphase::State::gather_movers(std::size_t item_count, std::span<const std::uint32_t> moved) {
+    const std::size_t before = tree.item_count();
     movers.clear();
-    mover_slots.clear();
-    is_moved.resize(item_count, 0);
-    for (const std::uint32_t item : moved) {
-        if (is_moved[item] != 0) continue;
+    is_moved.resize(std::max(before, item_count), 0);
+    const auto add = [&](std::uint32_t item) {
+        if (is_moved[item] != 0) return;
         is_moved[item] = 1;
         movers.push_back(item);
-        mover_slots.push_back(order.slots()[item]);
-    }
+    };
+    for (const std::uint32_t item : moved) add(item);
+    for (std::size_t item = before; item < item_count; ++item) add(static_cast<std::uint32_t>(item));
+    gone = movers.size();
+    for (std::size_t item = item_count; item < before; ++item) add(static_cast<std::uint32_t>(item));
+    gone = movers.size() - gone;
 }
 
-// Sixteen boxes at a time, then the bounds above each.
-void Broadphase::State::move_bounds(std::span<const Obb> boxes) {
-    std::erase_if(rejected, [&](std::uint32_t item) { return is_moved[item] != 0; });
-    for (std::size_t begin = 0; begin < movers.size(); begin += kBoxBlock) {
-        const std::size_t count = std::min(kBoxBlock, movers.size() - begin);
+// The pairs that movers had. A pair of two movers is that of the lesser item.
+void Broadphase::State::gather_partners() {
+    partners.clear();
+    partners_begin.clear();
+    for (const std::uint32_t item : movers) {
+        partners_begin.push_back(static_cast<std::uint32_t>(partners.size()));
+        table.visit(item, [&](std::uint32_t partner, std::uint32_t entry) {
+            if (is_moved[partner] == 0 || item < partner) partners.push_back({partner, entry});
+        });
+    }
+    partners_begin.push_back(static_cast<std::uint32_t>(partners.size()));
+}
+
+// Where movers are in the tree now. Those with valid boxes become queries.
+void Broadphase::State::place_movers(std::span<const Obb> boxes) {
+    constexpr std::size_t kAhead = 2 * kBoxBlock;
+    const std::size_t size_before = tree.size(), count_before = tree.item_count(), staying = movers.size() - gone;
+    for (const std::uint32_t item : std::span(movers).subspan(staying))
+        if (tree.contains(item)) tree.remove(item);
+    tree.resize(boxes.size());
+    came.clear();
+    left.clear();
+    queries.clear();
+    query_movers.clear();
+    query_bounds.clear();
+    for (std::size_t begin = 0; begin < staying; begin += kBoxBlock) {
+        const std::size_t size = std::min(kBoxBlock, staying - begin);
         BoxBlock block;
         BoundBlock bounds;
         for (std::size_t lane = 0; lane < kBoxBlock; ++lane) {
-            const Obb& box = boxes[movers[begin + std::min(lane, count - 1)]];
+            const Obb& box = boxes[movers[begin + std::min(lane, size - 1)]];
             put_center(box.center - origin, lane, block);
             put_shape(box, lane, block);
+            if (begin + lane + kAhead < staying) tree.fetch_leaf(movers[begin + lane + kAhead]);
         }
         const std::uint32_t suspect = bound_boxes(block, bounds);
-        for (std::size_t lane = 0; lane < count; ++lane) {
-            const std::uint32_t item = movers[begin + lane], slot = mover_slots[begin + lane];
-            BoundBlock& leaf = levels[0][slot / kBoxBlock];
-            for (int i = 0; i < 3; ++i) {
-                leaf.low[i][slot % kBoxBlock] = bounds.low[i][lane];
-                leaf.high[i][slot % kBoxBlock] = bounds.high[i][lane];
+        for (std::size_t lane = 0; lane < size; ++lane) {
+            const std::uint32_t item = movers[begin + lane];
+            if ((suspect >> lane & 1u) != 0 && (!is_in_range(boxes[item].center) || !validate(boxes[item]))) {
+                if (tree.contains(item)) left.push_back(item);
+                continue;
             }
-            if ((suspect >> lane & 1u) == 0 || validate(boxes[item]).has_value()) continue;
-            rejected.push_back(item);
-            clear_lane(leaf, slot % kBoxBlock);
+            LaneBounds at;
+            for (int i = 0; i < 3; ++i) {
+                at.low[i] = bounds.low[i][lane];
+                at.high[i] = bounds.high[i][lane];
+            }
+            if (tree.contains(item))
+                tree.move(item, at);
+            else
+                came.push_back(static_cast<std::uint32_t>(queries.size()));
+            queries.push_back(item);
+            query_movers.push_back(static_cast<std::uint32_t>(begin + lane));
+            query_bounds.push_back(at);
         }
     }
-    std::sort(rejected.begin(), rejected.end());
-    for (const std::uint32_t slot : mover_slots) {
-        std::size_t block = slot / kBoxBlock;
-        leaf_extent -= extent_of_lane(levels[1][block / kBoxBlock], block % kBoxBlock);
-        for (std::size_t k = 0; k + 1 < tree.level_count; ++k, block /= kBoxBlock) {
-            bound_blocks(levels[k].data(), block, block + 1, levels[k + 1].data());
-            if (k == 0) leaf_extent += extent_of_lane(levels[1][block / kBoxBlock], block % kBoxBlock);
-        }
-    }
+    tree.settle(queries);
+    for (const std::uint32_t item : left) tree.remove(item);
+    for (const std::uint32_t query : came) tree.insert(queries[query], query_bounds[query]);
+    if (!came.empty() || tree.size() != size_before || tree.item_count() != count_before) rejected.forget();
 }
 
-// All pairs of an item that moved whose bounds meet and whose filters pass, sorted; false when there are too many.
+// All pairs of a query whose bounds meet and whose filters pass, by query; false when there are too many. A pair of two
+// movers is that of the lesser item.
 bool Broadphase::State::find_candidates(std::span<const CollisionFilter> filters) {
     BroadphaseWorker& worker = workers.front();
-    worker.pairs = {worker.first.data(), worker.second.data(), 0, worker.first.size(), 0};
+    SlotPairs& slots = worker.pairs;
+    slots = {worker.first.data(), worker.second.data(), 0, worker.first.size(), 0};
     bool too_many = false;
-    find_partners(tree, mover_slots.data(), mover_slots.size(), worker.pairs, [&](SlotPairs& slots) {
-        too_many = !grow(slots, worker);
+    find_partners(tree.view(), queries.data(), query_bounds.data(), queries.size(), slots, [&](SlotPairs& full) {
+        too_many = !grow(full, worker);
         return !too_many;
     });
-    statistics.nodes_tested = worker.pairs.leaf_pairs;
-    if (too_many || worker.pairs.count > options.max_pairs) return false;
-    found.clear();
-    for (std::size_t i = 0; i < worker.pairs.count; ++i) {
-        const std::uint32_t item = order.items()[worker.first[i]], other = order.items()[worker.second[i]];
-        if (is_moved[other] != 0 && other < item) continue;  // its turn lists the pair
+    statistics.nodes_tested = slots.leaf_pairs;
+    if (too_many || slots.count > options.max_pairs) return false;
+    found_begin.assign(queries.size() + 1, 0);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < slots.count; ++i) {
+        const std::uint32_t query = slots.first[i], item = queries[query], other = slots.second[i];
+        if (is_moved[other] != 0 && other < item) continue;
         if (!filters.empty() && !passes(filters[item], filters[other])) continue;
-        found.push_back({std::min(item, other), std::max(item, other)});
+        slots.first[kept] = query;
+        slots.second[kept] = other;
+        ++kept;
+        ++found_begin[query];
     }
-    std::sort(found.begin(), found.end());
+    std::uint32_t total = 0;
+    for (std::uint32_t& begin : found_begin) total += std::exchange(begin, total);
+    found.resize(kept);
+    for (std::size_t i = 0; i < kept; ++i) {
+        const std::uint32_t item = queries[slots.first[i]], other = slots.second[i];
+        found[found_begin[slots.first[i]]++] = {std::min(item, other), std::max(item, other)};
+    }
+    for (std::size_t query = queries.size(); query > 0; --query) found_begin[query] = found_begin[query - 1];
+    found_begin[0] = 0;
     return true;
 }
 
-// The movers' pairs give way to those found; false when there are too many then.
-bool Broadphase::State::replace_pairs() {
-    kept.clear();
-    lost.clear();
-    for (const IdPair& pair : pairs) (is_moved[pair.first] | is_moved[pair.second] ? lost : kept).push_back(pair);
-    if (kept.size() + found.size() > options.max_pairs) return false;
-    compare_pairs(lost, found, began, still, ended);
-    pairs.resize(kept.size() + found.size());
-    std::merge(kept.begin(), kept.end(), found.begin(), found.end(), pairs.begin());
-    stayed.resize(kept.size() + still.size());
-    std::merge(kept.begin(), kept.end(), still.begin(), still.end(), stayed.begin());
-    return true;
+// What movers have gained and lost.
+void Broadphase::State::compare_partners() {
+    began.clear();
+    ended.clear();
+    ended_entries.clear();
+    std::size_t query = 0;
+    for (std::size_t m = 0; m < movers.size(); ++m) {
+        const std::uint32_t item = movers[m];
+        now.clear();
+        if (query < queries.size() && query_movers[query] == m) {
+            for (std::size_t i = found_begin[query]; i < found_begin[query + 1]; ++i)
+                if (hits[i] != 0) now.push_back(found[i].first == item ? found[i].second : found[i].first);
+            ++query;
+        }
+        const auto before = std::span(partners).subspan(partners_begin[m], partners_begin[m + 1] - partners_begin[m]);
+        std::sort(now.begin(), now.end());
+        std::sort(before.begin(), before.end(), [](const Partner& a, const Partner& b) { return a.item < b.item; });
+        auto old = before.begin();
+        const auto end = [&] {
+            ended.push_back({std::min(item, old->item), std::max(item, old->item)});
+            ended_entries.push_back(old->entry);
+            ++old;
+        };
+        for (const std::uint32_t partner : now) {
+            while (old != before.end() && old->item < partner) end();
+            if (old != before.end() && old->item == partner)
+                ++old;
+            else
+                began.push_back({std::min(item, partner), std::max(item, partner)});
+        }
+        while (old != before.end()) end();
+    }
 }
 
-Result<void> Broadphase::State::update_few(std::span<const Obb> boxes, std::span<const CollisionFilter> filters,
-                                           Executor& executor) {
-    const bool nothing_to_do = movers.empty() && began.empty() && ended.empty();
+Result<void> Broadphase::State::update_few(std::span<const Obb> boxes, std::span<const std::uint32_t> moved,
+                                           std::span<const CollisionFilter> filters, Executor& executor,
+                                           const PairTest* test) {
     statistics = {};
     workers.resize(std::max<std::size_t>(workers.size(), executor.concurrency()));
-    if (!nothing_to_do) {
-        move_bounds(boxes);
+    gather_movers(boxes.size(), moved);
+    found.clear();
+    tested.forget();
+    stayed.forget();
+    all_are_tested = false;
+    if (movers.empty()) {
+        began.clear();
+        ended.clear();
+    } else {
+        if (!table_is_current) table.assign(tree.item_count(), pairs.get());
+        table_is_current = true;
+        table.resize(std::max(tree.item_count(), boxes.size()));
+        gather_partners();
+        place_movers(boxes);
         bool enough_room = find_candidates(filters);
-        statistics.bound_pairs = found.size();
         if (enough_room) {
-            keep_pairs_that_meet(boxes, found, executor);
-            enough_room = replace_pairs();
+            statistics.bound_pairs = found.size();
+            test_pairs(boxes, found, executor, test);
+            compare_partners();
+            enough_room = table.size() - ended.size() + began.size() <= options.max_pairs;
         }
         for (const std::uint32_t item : movers) is_moved[item] = 0;
-        if (!enough_room) {
-            std::swap(pairs, previous);
-            pairs.clear();
-            return drop_pairs();
-        }
+        if (!enough_room) return drop_pairs();
+        for (const std::uint32_t entry : ended_entries) table.remove(entry);
+        for (const IdPair& pair : began) table.add(pair);
+        table.resize(boxes.size());
+        std::sort(began.begin(), began.end());
+        std::sort(ended.begin(), ended.end());
+        pairs.note(began, ended);
     }
-    statistics.box_pairs = pairs.size();
-    statistics.rejected = static_cast<std::uint32_t>(rejected.size());
+    statistics.box_pairs = table_is_current ? table.size() : pairs.get().size();
+    statistics.rejected = static_cast<std::uint32_t>(tree.item_count() - tree.size());
     current = true;
     return {};
 }

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: MIT
 // What a broadphase keeps between updates. broadphase.cpp looks at all boxes, broadphase_movers.cpp at those that
-// moved.
+// moved, broadphase_pairs.cpp lists pairs for who asks.
 #pragma once
 #include <crofton/collide/broadphase.hpp>
+#include <crofton/core/sorted_edits.hpp>
 #include <limits>
 
 #include "bound_blocks.hpp"
+#include "item_tree.hpp"
+#include "lazy_list.hpp"
 #include "pair_list.hpp"
+#include "pair_table.hpp"
 #include "space_order.hpp"
 
 namespace crofton::collide {
-
-// The order is made anew once the leaves' bounds have grown by this factor; a sort costs about as much as one update.
-inline constexpr double kWornOut = 1.2;
 
 inline void clear_lane(BoundBlock& block, std::size_t lane) {
     constexpr float kLargest = std::numeric_limits<float>::max();
@@ -22,20 +23,11 @@ inline void clear_lane(BoundBlock& block, std::size_t lane) {
     }
 }
 
-// The sum of the bounds' extents; 0 for an empty lane.
-[[nodiscard]] inline double extent_of_lane(const BoundBlock& block, std::size_t lane) {
-    double extent = 0.0;
-    for (int i = 0; i < 3; ++i)
-        if (block.low[i][lane] <= block.high[i][lane])
-            extent += static_cast<double>(block.high[i][lane]) - static_cast<double>(block.low[i][lane]);
-    return extent;
-}
-
 // What one thread finds.
 struct BroadphaseWorker {
     Vector<std::uint32_t> first, second;
     SlotPairs pairs;
-    Vector<std::uint32_t> rejected;
+    Vector<std::uint32_t> absent;  // items in the tree whose box is invalid
     BatchStatistics boxes;
 };
 
@@ -44,38 +36,71 @@ struct Broadphase::State {
     BroadphaseStatistics statistics;
     SpaceOrder order;
     glm::dvec3 origin{0.0};
-    Vector<BoundBlock> levels[kMaxLevels];
-    BoundTree tree{};
-    double leaf_extent = 0.0, leaf_extent_when_sorted = 0.0;
+    ItemTree tree;  // of all items with valid boxes
     Vector<BroadphaseWorker> workers;
     PairList list;
     Vector<std::uint8_t> hits;
-    Vector<IdPair> pairs, previous, began, stayed, ended;
-    Vector<std::uint32_t> rejected;
-    bool current = false;  // the pairs are those of the last boxes, and the order holds all their items
+    bool current = false;  // the pairs are those of the last boxes
 
-    // Of update_moved: by item, whether it moved; the items that did, their slots, and the pairs they had and have.
+    struct IsBefore {
+        bool operator()(const IdPair& a, const IdPair& b) const { return a < b; }
+    };
+    LazySortedList<IdPair, IsBefore> pairs;
+    Vector<IdPair> began, ended;
+    bool all_are_tested = true;
+    LazyList<IdPair> stayed, tested;
+    LazyList<std::uint32_t> rejected;
+    PairTable table;  // of the pairs, where update_moved() follows update_moved()
+    bool table_is_current = false;
+    Vector<IdPair> previous;
+
+    // Of update_moved. Items that moved, came or went, and whether an item did.
+    struct Partner {
+        std::uint32_t item, entry;  // of the table
+    };
     Vector<std::uint8_t> is_moved;
-    Vector<std::uint32_t> movers, mover_slots;
-    Vector<IdPair> kept, lost, found, still;
+    Vector<std::uint32_t> movers;
+    std::size_t gone = 0;  // of the movers, the last: items of the update before that are dropped
+    // Pairs that the movers had, each once: movers[m] has those from partners_begin[m] on.
+    Vector<Partner> partners;
+    Vector<std::uint32_t> partners_begin;
+    // Movers in the tree, with their places among `movers`, and the pairs that they have: those from found_begin[q] on.
+    Vector<std::uint32_t> queries, query_movers;
+    Vector<LaneBounds> query_bounds;
+    Vector<IdPair> found;
+    Vector<std::uint32_t> found_begin;
+    Vector<std::uint32_t> now, came, left, ended_entries;
 
+    // broadphase.cpp
+    [[nodiscard]] Result<void> update(std::span<const Obb> boxes, std::span<const CollisionFilter> filters,
+                                      Executor& executor, const PairTest* test);
+    [[nodiscard]] Result<void> update_moved(std::span<const Obb> boxes, std::span<const std::uint32_t> moved,
+                                            std::span<const CollisionFilter> filters, Executor& executor,
+                                            const PairTest* test);
     [[nodiscard]] Result<void> drop_pairs();
     [[nodiscard]] static Result<void> check(std::span<const Obb> boxes, std::span<const CollisionFilter> filters);
     [[nodiscard]] Result<void> update_all(std::span<const Obb> boxes, std::span<const CollisionFilter> filters,
-                                          Executor& executor);
-    [[nodiscard]] Result<void> update_few(std::span<const Obb> boxes, std::span<const CollisionFilter> filters,
-                                          Executor& executor);
-    void gather_movers(std::size_t item_count, std::span<const std::uint32_t> moved);
-    void move_bounds(std::span<const Obb> boxes);
-    [[nodiscard]] bool find_candidates(std::span<const CollisionFilter> filters);
-    [[nodiscard]] bool replace_pairs();
+                                          Executor& executor, const PairTest* test);
+    void place_all(std::span<const Obb> boxes, Executor& executor);
+    void sort(std::span<const Obb> boxes, Executor& executor);
+    [[nodiscard]] LaneBounds bounds_of(const Obb& box) const;
     [[nodiscard]] bool grow(SlotPairs& slots, BroadphaseWorker& worker) const;
     void refit(std::span<const Obb> boxes, Executor& executor);
     void bound_leaf(std::span<const Obb> boxes, std::size_t leaf, BroadphaseWorker& worker);
-    void build_levels();
     [[nodiscard]] bool collect(Executor& executor);
-    void sort_pairs(std::size_t item_count, std::span<const CollisionFilter> filters);
-    void keep_pairs_that_meet(std::span<const Obb> boxes, Vector<IdPair>& candidates, Executor& executor);
+    void sort_pairs(std::size_t item_count, std::span<const CollisionFilter> filters, Vector<IdPair>& sorted);
+    void test_pairs(std::span<const Obb> boxes, std::span<const IdPair> candidates, Executor& executor,
+                    const PairTest* test);
+
+    // broadphase_movers.cpp
+    [[nodiscard]] Result<void> update_few(std::span<const Obb> boxes, std::span<const std::uint32_t> moved,
+                                          std::span<const CollisionFilter> filters, Executor& executor,
+                                          const PairTest* test);
+    void gather_movers(std::size_t item_count, std::span<const std::uint32_t> moved);
+    void gather_partners();
+    void place_movers(std::span<const Obb> boxes);
+    [[nodiscard]] bool find_candidates(std::span<const CollisionFilter> filters);
+    void compare_partners();
 };
 
 }  // namespace crofton::collide

@@ -59,14 +59,13 @@ void PairList::finish(Vector<IdPair>& sorted) const {
 }
 
 void compare_pairs(std::span<const IdPair> before, std::span<const IdPair> now, Vector<IdPair>& began,
-                   Vector<IdPair>& stayed, Vector<IdPair>& ended) {
+                   Vector<IdPair>& ended) {
     began.clear();
-    stayed.clear();
     ended.clear();
     std::size_t i = 0, j = 0;
     while (i < now.size() && j < before.size()) {
         if (now[i] == before[j]) {
-            stayed.push_back(now[i++]);
+            ++i;
             ++j;
         } else if (now[i] < before[j]) {
             began.push_back(now[i++]);

@@ -23,8 +23,8 @@ class PairList {
     Vector<std::uint32_t> place_;  // by item: how many, then where the next goes
 };
 
-// Merges two sorted lists: what is only in `now`, in both, and only in `before`.
+// Merges two sorted lists: what is only in `now`, and only in `before`.
 void compare_pairs(std::span<const IdPair> before, std::span<const IdPair> now, Vector<IdPair>& began,
-                   Vector<IdPair>& stayed, Vector<IdPair>& ended);
+                   Vector<IdPair>& ended);
 
 }  // namespace crofton::collide

@@ -93,25 +93,23 @@ void SpaceOrder::sort(std::span<const Obb> boxes) {
     sorted_sample(boxes, values, size_of);
     const double median = values.count > 0 ? values.values[values.count / 2] : 1.0;
 
-    keyed_.resize(boxes.size());
-    other_.resize(boxes.size());
+    keyed_.clear();
+    keyed_.reserve(boxes.size());
     for (std::size_t n = 0; n < boxes.size(); ++n) {
         const Obb& box = boxes[n];
-        std::uint32_t key = 0;
-        if (is_ordered(box)) {
-            std::uint32_t cell[3];
-            for (int i = 0; i < 3; ++i)
-                cell[i] =
-                    static_cast<std::uint32_t>(std::clamp((box.center[i] - low[i]) * scale[i], 0.0, kCells - 1.0));
-            double limit = 4.0 * median;
-            std::uint32_t size_class = 0;
-            for (const double size = size_of(box); size >= limit && size_class + 1 < (1u << kClassBits); limit *= 4.0)
-                ++size_class;
-            key = size_class << (3 * kMortonBits) | spread_bits(cell[2]) << 2 | spread_bits(cell[1]) << 1 |
-                  spread_bits(cell[0]);
-        }
-        keyed_[n] = {key, static_cast<std::uint32_t>(n)};
+        if (!is_ordered(box)) continue;
+        std::uint32_t cell[3];
+        for (int i = 0; i < 3; ++i)
+            cell[i] = static_cast<std::uint32_t>(std::clamp((box.center[i] - low[i]) * scale[i], 0.0, kCells - 1.0));
+        double limit = 4.0 * median;
+        std::uint32_t size_class = 0;
+        for (const double size = size_of(box); size >= limit && size_class + 1 < (1u << kClassBits); limit *= 4.0)
+            ++size_class;
+        const std::uint32_t key = size_class << (3 * kMortonBits) | spread_bits(cell[2]) << 2 |
+                                  spread_bits(cell[1]) << 1 | spread_bits(cell[0]);
+        keyed_.push_back({key, static_cast<std::uint32_t>(n)});
     }
+    other_.resize(keyed_.size());
     constexpr int kDigit = 10;  // three passes make the 30 bits
     for (int shift = 0; shift < 30; shift += kDigit) {
         std::array<std::uint32_t, 1u << kDigit> place{};
@@ -122,13 +120,11 @@ void SpaceOrder::sort(std::span<const Obb> boxes) {
         for (const Keyed& k : keyed_) other_[place[digit(k)]++] = k;
         std::swap(keyed_, other_);
     }
-    items_.resize(boxes.size());
-    for (std::size_t begin = 0; begin < boxes.size(); begin += kChunk) {
-        const std::size_t count = std::min(kChunk, boxes.size() - begin);
+    items_.resize(keyed_.size());
+    for (std::size_t begin = 0; begin < keyed_.size(); begin += kChunk) {
+        const std::size_t count = std::min(kChunk, keyed_.size() - begin);
         arrange({keyed_.data() + begin, count}, boxes, low, {items_.data() + begin, count});
     }
-    slots_.resize(boxes.size());
-    for (std::uint32_t slot = 0; slot < items_.size(); ++slot) slots_[items_[slot]] = slot;
 }
 
 // Halves ranges along the axis in which their centres spread most, down to a leaf: squarer leaves than the curve's,
@@ -146,8 +142,7 @@ void SpaceOrder::arrange(std::span<const Keyed> chunk, std::span<const Obb> boxe
     for (std::size_t n = 0; n < chunk.size(); ++n) {
         const Obb& box = boxes[chunk[n].item];
         places[n].item = chunk[n].item;
-        for (int i = 0; i < 3; ++i)
-            places[n].center[i] = is_ordered(box) ? static_cast<float>(box.center[i] - origin[i]) : 0.0f;
+        for (int i = 0; i < 3; ++i) places[n].center[i] = static_cast<float>(box.center[i] - origin[i]);
     }
     std::array<Range, 32> stack;
     std::size_t height = 0;

@@ -15,10 +15,9 @@ class SpaceOrder {
   public:
     // Boxes by size class, then along a Morton curve, arranged anew within stretches of it. A box at least four times
     // as large as the median comes after those of lesser classes, so that it does not widen the bounds of its small
-    // neighbours. Invalid boxes come somewhere.
+    // neighbours. Boxes whose numbers are not finite or out of range are left out.
     void sort(std::span<const Obb> boxes);
-    [[nodiscard]] std::span<const std::uint32_t> items() const { return items_; }  // by slot
-    [[nodiscard]] std::span<const std::uint32_t> slots() const { return slots_; }  // by item
+    [[nodiscard]] std::span<const std::uint32_t> items() const { return items_; }
 
   private:
     struct Keyed {
@@ -27,7 +26,7 @@ class SpaceOrder {
     static void arrange(std::span<const Keyed> chunk, std::span<const Obb> boxes, const glm::dvec3& origin,
                         std::span<std::uint32_t> items);
 
-    Vector<std::uint32_t> items_, slots_;
+    Vector<std::uint32_t> items_;
     Vector<Keyed> keyed_, other_;
 };
 

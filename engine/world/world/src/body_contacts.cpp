@@ -32,7 +32,7 @@ void BodyContacts::note_moved(const SpatialIndex& index) {
 void BodyContacts::update(std::span<const ObjectPair> pairs, const ObjectBodies& bodies, const ObjectTable& table,
                           const SpatialIndex& index, const scene::Scene& scene, double margin, Executor& executor) {
     computed_ = 0;
-    if (bodies.count() == 0 && states_.empty()) {
+    if (!has_work(bodies)) {
         changed_.clear();
         return contacts_.clear();
     }

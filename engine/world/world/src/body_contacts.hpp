@@ -16,6 +16,8 @@ class BodyContacts {
     void note(std::uint32_t object) { changed_.push_back(object); }
     void forget_changes() { changed_.clear(); }  // where contacts are not asked for
 
+    // False: the pairs do not matter to an update.
+    [[nodiscard]] bool has_work(const ObjectBodies& bodies) const { return bodies.count() > 0 || !states_.empty(); }
     // Pairs are computed that are new, or of an object among the index's moved_items(), or with another body, or noted.
     void update(std::span<const ObjectPair> pairs, const ObjectBodies& bodies, const ObjectTable& table,
                 const SpatialIndex& index, const scene::Scene& scene, double margin, Executor& executor);

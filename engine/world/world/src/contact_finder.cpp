@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <limits>
 #include <utility>
 
 #include "pair_order.hpp"
@@ -33,12 +34,15 @@ collide::Manifold touch_of_bounds(const Object& a, const Obb& box_a, const Objec
     return manifold;
 }
 
-// Appends part of a list, for which there is room, and returns where it is.
-template <class T>
-std::span<const T> append(const Vector<T>& from, std::uint32_t first, std::uint32_t count, Vector<T>& to) {
-    const std::size_t begin = to.size();
-    to.insert(to.end(), from.begin() + first, from.begin() + first + count);
-    return {to.data() + begin, count};
+// The box of what is no collider: it is refused by validate(Obb).
+Obb no_box() {
+    Obb box;
+    box.center = glm::dvec3(std::numeric_limits<double>::quiet_NaN());
+    return box;
+}
+
+bool comes_before(const Contact& a, const IdPair& b) {
+    return IdPair{a.first.object.index, a.second.object.index} < b;
 }
 
 }  // namespace
@@ -46,58 +50,46 @@ std::span<const T> append(const Vector<T>& from, std::uint32_t first, std::uint3
 ContactFinder::ContactFinder(const WorldOptions& options)
     : options_(options), broadphase_({.exact_boxes = true, .max_pairs = options.max_pairs}) {}
 
-void ContactFinder::list_colliders(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene,
-                                   const ObjectBodies& bodies_of) {
-    colliders_.clear();
-    boxes_.clear();
-    filters_.clear();
-    collider_of_.assign(table.objects.size(), kNoIndex);
-    for (std::uint32_t i = 0; i < table.objects.size(); ++i) {
-        const Object& object = table.objects[i];
-        if (!object.alive || object.collides_with == 0 || !index.is_placed(i) || bodies_of.is_unbounded(i)) continue;
-        const std::uint32_t layers = index.layers(i);
-        if (layers == 0) continue;
-        collider_of_[i] = static_cast<std::uint32_t>(colliders_.size());
-        colliders_.push_back(i);
-        boxes_.push_back(bodies_of.collider_box(i, object, index.box(i), scene, options_.contact_margin / 2.0));
-        filters_.push_back({layers, object.collides_with});
-    }
-}
-
-void ContactFinder::move_colliders(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene,
-                                   const ObjectBodies& bodies_of) {
+void ContactFinder::note_colliders(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene,
+                                   const ObjectBodies& bodies_of, const PairChanges& changes) {
+    const std::size_t count = table.objects.size();
+    resize(boxes_, count, no_box());
+    resize(filters_, count);
     moved_.clear();
-    for (const ItemId item : index.moved_items()) {
-        const std::uint32_t collider = item < collider_of_.size() ? collider_of_[item] : kNoIndex;
-        if (collider == kNoIndex) continue;
-        boxes_[collider] =
-            bodies_of.collider_box(item, table.objects[item], index.box(item), scene, options_.contact_margin / 2.0);
-        moved_.push_back(collider);
+    for (const auto items : {index.moved_items(), index.member_items(), std::span<const ItemId>(changes.objects)})
+        moved_.insert(moved_.end(), items.begin(), items.end());
+    for (const ItemId item : moved_) {
+        const Object& object = table.objects[item];
+        filters_[item] = {index.layers(item), object.collides_with};
+        const bool collides = object.alive && object.collides_with != 0 && index.is_placed(item) &&
+                              !bodies_of.is_unbounded(item) && filters_[item].layers != 0;
+        boxes_[item] = collides
+                           ? bodies_of.collider_box(item, object, index.box(item), scene, options_.contact_margin / 2.0)
+                           : no_box();
     }
 }
 
-// Colliders ascend, so that pairs of objects are in the order of pairs of boxes.
-void ContactFinder::list_pairs(const ObjectTable& table, const SpatialIndex& index, const ObjectBodies& bodies_of) {
-    pairs_.clear();
-    for (const IdPair& pair : broadphase_.pairs()) {
-        const std::uint32_t first = colliders_[pair.first], second = colliders_[pair.second];
-        const Obb &box_a = index.box(first), &box_b = index.box(second);
-        if (options_.contact_margin > 0.0 && (bodies_of.has(first) || bodies_of.has(second))) {
-            // Two bodies are asked as far as the contact margin, beyond boxes and balls.
-            if (!(bodies_of.has(first) && bodies_of.has(second)) &&
-                (!collide::intersects(box_a, box_b) ||
-                 !bounds_meet(table.objects[first], box_a, table.objects[second], box_b)))
-                continue;
-        } else if (!bounds_meet(table.objects[first], box_a, table.objects[second], box_b)) {
-            continue;
-        }
-        pairs_.push_back({table.ref(first), table.ref(second)});
+void ContactFinder::note_pairs(const ObjectTable& table, const PairChanges& changes) {
+    const auto refs = [&](std::span<const IdPair> pairs, Vector<ObjectPair>& named) {
+        named.clear();
+        for (const IdPair& pair : pairs) named.push_back({table.ref(pair.first), table.ref(pair.second)});
+    };
+    refs(broadphase_.began(), began_pairs_);
+    refs(broadphase_.ended(), ended_pairs_);
+    pairs_.note(began_pairs_, ended_pairs_);
+    if (!changes.renamed) return;
+    refs(broadphase_.tested(), began_pairs_);
+    std::size_t place = 0;
+    Vector<ObjectPair>& pairs = pairs_.values();
+    for (const ObjectPair& pair : began_pairs_) {
+        place = find_from(place, pairs, pair, IsBefore());
+        pairs[place] = pair;
     }
 }
 
-void ContactFinder::touch_bounds(const ObjectTable& table, const SpatialIndex& index, const ObjectPair& pair,
+void ContactFinder::touch_bounds(const ObjectTable& table, const SpatialIndex& index, const IdPair& pair,
                                  Worker& worker, Touch& touch) const {
-    const std::uint32_t i = pair.first.object.index, j = pair.second.object.index;
+    const std::uint32_t i = pair.first, j = pair.second;
     const Object &a = table.objects[i], &b = table.objects[j];
     const Obb &box_a = index.box(i), &box_b = index.box(j);
     const collide::Manifold manifold = touch_of_bounds(a, box_a, b, box_b);
@@ -155,17 +147,14 @@ void ContactFinder::touch_ball(const PosedTree& mesh, const PosedTree& center, d
 
 void ContactFinder::find_contacts(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene,
                                   Bodies& bodies, const ObjectBodies& bodies_of, Executor& executor) {
-    const auto have_bodies = [&](const ObjectPair& pair) {
-        return bodies_of.has(pair.first.object.index) && bodies_of.has(pair.second.object.index);
+    const auto have_bodies = [&](const IdPair& pair) {
+        return bodies_of.has(pair.first) && bodies_of.has(pair.second);
     };
-    const auto is_mesh = [&](const ObjectRef& object) {
-        return bodies.mesh_tree_of(table.objects[object.object.index]) != nullptr;
-    };
+    const auto is_mesh = [&](std::uint32_t object) { return bodies.mesh_tree_of(table.objects[object]) != nullptr; };
     bodies.begin();
-    for (const ObjectPair& pair : pairs_) {
+    for (const IdPair& pair : touched_) {
         if ((!is_mesh(pair.first) && !is_mesh(pair.second)) || have_bodies(pair)) continue;
-        for (const ObjectRef& object : {pair.first, pair.second})
-            bodies.prepare(table, index, scene, object.object.index);
+        for (const std::uint32_t object : {pair.first, pair.second}) bodies.prepare(table, index, scene, object);
     }
     bodies.build(scene, executor);
     workers_.resize(std::max<std::size_t>(workers_.size(), executor.concurrency()));
@@ -173,11 +162,11 @@ void ContactFinder::find_contacts(const ObjectTable& table, const SpatialIndex& 
         worker.points.clear();
         worker.triangles.clear();
     }
-    touches_.resize(pairs_.size());
-    executor.parallel_for(pairs_.size(), kPairsATask, [&](std::size_t begin, std::size_t end, unsigned w) {
+    touches_.resize(touched_.size());
+    executor.parallel_for(touched_.size(), kPairsATask, [&](std::size_t begin, std::size_t end, unsigned w) {
         Worker& worker = workers_[w];
         for (std::size_t i = begin; i < end; ++i) {
-            const ObjectPair& pair = pairs_[i];
+            const IdPair& pair = touched_[i];
             Touch& touch = touches_[i];
             touch = {};
             touch.worker = w;
@@ -188,7 +177,7 @@ void ContactFinder::find_contacts(const ObjectTable& table, const SpatialIndex& 
                 touch_bounds(table, index, pair, worker, touch);
                 continue;
             }
-            const std::uint32_t first = pair.first.object.index, second = pair.second.object.index;
+            const std::uint32_t first = pair.first, second = pair.second;
             const PosedTree a = bodies.posed_tree(table, index, scene, first),
                             b = bodies.posed_tree(table, index, scene, second);
             if (!a.tree || !b.tree) continue;
@@ -204,76 +193,132 @@ void ContactFinder::find_contacts(const ObjectTable& table, const SpatialIndex& 
     });
 }
 
-void ContactFinder::add_contact(const ObjectPair& pair, const Touch& touch, ContactPhase phase) {
-    Contact& contact = contacts_.emplace_back();
-    contact.first = pair.first;
-    contact.second = pair.second;
+void ContactFinder::give_back(ContactMemory& memory) {
+    points_.give_back(memory.points);
+    triangles_.give_back(memory.triangles);
+    memory = {};
+}
+
+void ContactFinder::write_contact(const ObjectTable& table, const IdPair& pair, const Touch& touch, ContactPhase phase,
+                                  std::size_t place) {
+    const Worker& worker = workers_[touch.worker];
+    ContactMemory& memory = memory_[place];
+    give_back(memory);
+    memory = {points_.take(touch.point_count), triangles_.take(touch.triangle_count)};
+    std::copy_n(worker.points.begin() + touch.first_point, touch.point_count, memory.points.begin());
+    std::copy_n(worker.triangles.begin() + touch.first_triangle, touch.triangle_count, memory.triangles.begin());
+    Contact& contact = contacts_[place];
+    contact.first = table.ref(pair.first);
+    contact.second = table.ref(pair.second);
     contact.phase = phase;
-    if (phase == ContactPhase::ended) return;
     contact.inside = touch.inside;
     contact.normal = touch.normal;
     contact.depth = touch.depth;
-    const Worker& worker = workers_[touch.worker];
-    contact.points = append(worker.points, touch.first_point, touch.point_count, points_);
-    contact.triangles = append(worker.triangles, touch.first_triangle, touch.triangle_count, triangles_);
+    contact.points = memory.points.first(touch.point_count);
+    contact.triangles = memory.triangles.first(touch.triangle_count);
 }
 
-// In the order of the pairs, whoever tested them.
-void ContactFinder::gather() {
-    before_.clear();
-    for (const Contact& contact : contacts_)
-        if (contact.phase != ContactPhase::ended) before_.push_back({contact.first, contact.second});
-    contacts_.clear();
-    points_.clear();
-    triangles_.clear();
-    std::size_t point_count = 0, triangle_count = 0;
-    for (const Worker& worker : workers_) {
-        point_count += worker.points.size();
-        triangle_count += worker.triangles.size();
+void ContactFinder::end_contact(std::size_t place) {
+    Contact ended;
+    ended.first = contacts_[place].first;
+    ended.second = contacts_[place].second;
+    ended.phase = ContactPhase::ended;
+    contacts_[place] = ended;
+    give_back(memory_[place]);
+}
+
+// What began in the update before stays.
+void ContactFinder::age_contacts() {
+    std::size_t place = 0;
+    for (const IdPair& pair : began_) {
+        place = find_from(place, contacts_, pair, comes_before);
+        contacts_[place].phase = ContactPhase::stayed;
     }
-    if (point_count > points_.capacity()) points_.reserve(point_count + point_count / 2);
-    if (triangle_count > triangles_.capacity()) triangles_.reserve(triangle_count + triangle_count / 2);
-    std::size_t old = 0;
-    for (std::size_t i = 0; i < touches_.size(); ++i) {
-        if (!touches_[i].hit) continue;
-        for (; old < before_.size() && is_before(before_[old], pairs_[i]); ++old)
-            add_contact(before_[old], {}, ContactPhase::ended);
-        const bool met = old < before_.size() && !is_before(pairs_[i], before_[old]);
-        const bool stayed = met && are_same(before_[old], pairs_[i]);
-        if (met && !stayed) add_contact(before_[old], {}, ContactPhase::ended);
-        add_contact(pairs_[i], touches_[i], stayed ? ContactPhase::stayed : ContactPhase::began);
-        old += met;
+    began_.clear();
+    std::swap(ended_, ended_before_);
+    ended_.clear();
+}
+
+// Goes through the pairs that were looked at, those that are apart now, and the contacts that ended in the update
+// before; all are in order.
+void ContactFinder::replace_contacts(const ObjectTable& table, std::span<const IdPair> apart) {
+    age_contacts();
+    edits_.begin();
+    added_.clear();
+    std::size_t t = 0, a = 0, e = 0, place = 0;
+    while (t < touched_.size() || a < apart.size() || e < ended_before_.size()) {
+        IdPair pair{kNoIndex, kNoIndex};
+        if (t < touched_.size()) pair = touched_[t];
+        if (a < apart.size() && apart[a] < pair) pair = apart[a];
+        if (e < ended_before_.size() && ended_before_[e] < pair) pair = ended_before_[e];
+        place = find_from(place, contacts_, pair, comes_before);
+        const bool had_ended = e < ended_before_.size() && ended_before_[e] == pair,
+                   is_apart = a < apart.size() && apart[a] == pair,
+                   is_touched = t < touched_.size() && touched_[t] == pair;
+        const bool is_listed = place < contacts_.size() && contacts_[place].first.object.index == pair.first &&
+                               contacts_[place].second.object.index == pair.second;
+        const bool touched_before = is_listed && !had_ended;
+        if (is_touched && touches_[t].hit) {
+            if (!touched_before) began_.push_back(pair);
+            if (is_listed) {
+                write_contact(table, pair, touches_[t], touched_before ? ContactPhase::stayed : ContactPhase::began,
+                              place);
+            } else {
+                edits_.add(place);
+                added_.push_back(static_cast<std::uint32_t>(t));
+            }
+        } else if (touched_before && (is_touched || is_apart)) {
+            end_contact(place);
+            ended_.push_back(pair);
+        } else if (had_ended) {
+            edits_.remove(place);
+        }
+        t += is_touched;
+        a += is_apart;
+        e += had_ended;
     }
-    for (; old < before_.size(); ++old) add_contact(before_[old], {}, ContactPhase::ended);
+    edits_.apply(contacts_);
+    edits_.apply(memory_);
+    for (std::size_t n = 0; n < added_.size(); ++n) {
+        const std::size_t at = edits_.places()[n];
+        memory_[at] = {};
+        write_contact(table, touched_[added_[n]], touches_[added_[n]], ContactPhase::began, at);
+    }
 }
 
 Result<void> ContactFinder::update(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene,
-                                   Bodies& bodies, const ObjectBodies& bodies_of, bool moved_only, Executor& executor) {
-    Result<void> found;
-    if (moved_only) {
-        move_colliders(table, index, scene, bodies_of);
-        found = broadphase_.update_moved(boxes_, moved_, filters_, executor);
-    } else {
-        list_colliders(table, index, scene, bodies_of);
-        found = broadphase_.update(boxes_, filters_, executor);
-    }
-    list_pairs(table, index, bodies_of);
-    if (options_.contacts) {
-        find_contacts(table, index, scene, bodies, bodies_of, executor);
-        gather();
-    }
+                                   Bodies& bodies, const ObjectBodies& bodies_of, const PairChanges& changes,
+                                   Executor& executor) {
+    note_colliders(table, index, scene, bodies_of, changes);
+    const auto meet = [&](std::uint32_t a, std::uint32_t b) {
+        const bool body_a = bodies_of.has(a), body_b = bodies_of.has(b);
+        // Two bodies are asked as far as the contact margin, beyond boxes and balls.
+        if (options_.contact_margin > 0.0 && body_a && body_b) return true;
+        const Obb &box_a = index.box(a), &box_b = index.box(b);
+        if (options_.contact_margin > 0.0 && (body_a || body_b) && !collide::intersects(box_a, box_b)) return false;
+        return bounds_meet(table.objects[a], box_a, table.objects[b], box_b);
+    };
+    Result<void> found = broadphase_.update_moved(boxes_, moved_, meet, filters_, executor);
+    note_pairs(table, changes);
+    if (!options_.contacts) return found;
+    const auto touched = changes.all_contacts ? broadphase_.pairs() : broadphase_.tested();
+    touched_.assign(touched.begin(), touched.end());
+    find_contacts(table, index, scene, bodies, bodies_of, executor);
+    replace_contacts(table, broadphase_.ended());
     return found;
 }
 
 void ContactFinder::stay() {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < contacts_.size(); ++i) {
-        if (contacts_[i].phase == ContactPhase::ended) continue;
-        contacts_[kept] = contacts_[i];
-        contacts_[kept].phase = ContactPhase::stayed;
-        ++kept;
+    touched_.clear();
+    age_contacts();
+    edits_.begin();
+    std::size_t place = 0;
+    for (const IdPair& pair : ended_before_) {
+        place = find_from(place, contacts_, pair, comes_before);
+        edits_.remove(place);
     }
-    contacts_.resize(kept);
+    edits_.apply(contacts_);
+    edits_.apply(memory_);
 }
 
 }  // namespace crofton::world

@@ -2,11 +2,14 @@
 // Which objects meet, and where: all pairs of boxes, then each pair's own shapes.
 #pragma once
 #include <crofton/collide/broadphase.hpp>
+#include <crofton/core/sorted_edits.hpp>
 #include <crofton/world/world.hpp>
 
+#include "block_pool.hpp"
 #include "bodies.hpp"
 #include "object_bodies.hpp"
 #include "object_table.hpp"
+#include "pair_order.hpp"
 #include "spatial_index.hpp"
 
 namespace crofton::world {
@@ -22,18 +25,35 @@ struct Touch {
     std::uint32_t first_triangle = 0, triangle_count = 0;
 };
 
+// What may change pairs and contacts beside the items that the spatial index tells of. Since the update before.
+struct PairChanges {
+    Vector<std::uint32_t> objects;  // whose kind, radius, mesh, body, user data or layers to collide with have changed
+    bool renamed = false;           // some have other user data
+    bool all_contacts = false;      // triangles of meshes have changed
+    bool after_error = false;       // the update before found too many pairs
+
+    [[nodiscard]] bool any() const { return !objects.empty() || all_contacts || after_error; }
+    void clear() {
+        objects.clear();
+        renamed = all_contacts = after_error = false;
+    }
+};
+
 class ContactFinder {
   public:
     explicit ContactFinder(const WorldOptions& options);
 
-    // After the updates of these. `moved_only`: since the update before no more has changed than the boxes of the
-    // index's moved_items(). Pairs of two bodies are left to `bodies_of`. Error: as Broadphase::update.
+    // After the updates of these. Looks at the index's moved_items() and member_items() and at what `changes` tells of;
+    // other pairs and contacts stay as they are. Pairs of two bodies are left to `bodies_of`. Error: as
+    // Broadphase::update.
     Result<void> update(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene, Bodies& bodies,
-                        const ObjectBodies& bodies_of, bool moved_only, Executor& executor);
+                        const ObjectBodies& bodies_of, const PairChanges& changes, Executor& executor);
     // Nothing has changed since the update before.
     void stay();
 
-    [[nodiscard]] std::span<const ObjectPair> pairs() const { return pairs_; }
+    [[nodiscard]] std::span<const ObjectPair> pairs() const { return pairs_.get(); }  // any thread may ask
+    [[nodiscard]] std::size_t pair_count() const { return broadphase_.statistics().box_pairs; }
+    [[nodiscard]] std::size_t tested_count() const { return touches_.size(); }  // pairs whose shapes were looked at
     [[nodiscard]] std::span<const Contact> contacts() const { return contacts_; }
     [[nodiscard]] const collide::BroadphaseStatistics& broadphase() const { return broadphase_.statistics(); }
 
@@ -42,35 +62,49 @@ class ContactFinder {
         Vector<collide::ContactPoint> points;
         Vector<mesh::MeshContact> triangles, found;
     };
-    void list_colliders(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene,
-                        const ObjectBodies& bodies_of);
-    void move_colliders(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene,
-                        const ObjectBodies& bodies_of);
-    void list_pairs(const ObjectTable& table, const SpatialIndex& index, const ObjectBodies& bodies_of);
+    struct IsBefore {
+        bool operator()(const ObjectPair& a, const ObjectPair& b) const { return is_before(a, b); }
+    };
+    // What a contact's spans show.
+    struct ContactMemory {
+        std::span<collide::ContactPoint> points;
+        std::span<mesh::MeshContact> triangles;
+    };
+
+    void note_colliders(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene,
+                        const ObjectBodies& bodies_of, const PairChanges& changes);
+    void note_pairs(const ObjectTable& table, const PairChanges& changes);
     void find_contacts(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene, Bodies& bodies,
                        const ObjectBodies& bodies_of, Executor& executor);
-    void touch_bounds(const ObjectTable& table, const SpatialIndex& index, const ObjectPair& pair, Worker& worker,
+    void touch_bounds(const ObjectTable& table, const SpatialIndex& index, const IdPair& pair, Worker& worker,
                       Touch& touch) const;
     void touch_triangles(const PosedTree& a, const PosedTree& b, Worker& worker, Touch& touch) const;
     void touch_ball(const PosedTree& mesh, const PosedTree& center, double radius, Worker& worker, Touch& touch) const;
-    void gather();
-    void add_contact(const ObjectPair& pair, const Touch& touch, ContactPhase phase);
+    void age_contacts();
+    void replace_contacts(const ObjectTable& table, std::span<const IdPair> apart);
+    void write_contact(const ObjectTable& table, const IdPair& pair, const Touch& touch, ContactPhase phase,
+                       std::size_t place);
+    void end_contact(std::size_t place);
+    void give_back(ContactMemory& memory);
 
     WorldOptions options_;
-    collide::Broadphase broadphase_;
-    Vector<std::uint32_t> colliders_;    // ascending
-    Vector<std::uint32_t> collider_of_;  // by object; kNoIndex: it is none
-    Vector<std::uint32_t> moved_;        // colliders
-    Vector<Obb> boxes_;                  // of them
+    collide::Broadphase broadphase_;  // its items are the objects; those that are no colliders have no valid box
+    Vector<Obb> boxes_;
     Vector<collide::CollisionFilter> filters_;
-    Vector<ObjectPair> pairs_;
+    Vector<std::uint32_t> moved_;
+    LazySortedList<ObjectPair, IsBefore> pairs_;
+    Vector<ObjectPair> began_pairs_, ended_pairs_;
+    Vector<IdPair> touched_;  // pairs whose shapes are looked at in this update, in order
+    Vector<Touch> touches_;   // of these
     Vector<Worker> workers_;
-    Vector<Touch> touches_;      // by pair
-    Vector<ObjectPair> before_;  // that touched in the update before
-    Vector<Contact> contacts_;
-    // What the contacts' spans show.
-    Vector<collide::ContactPoint> points_;
-    Vector<mesh::MeshContact> triangles_;
+    Vector<Contact> contacts_;      // in order
+    Vector<ContactMemory> memory_;  // of each
+    Vector<IdPair> began_, ended_;  // contacts that have in the last update
+    Vector<IdPair> ended_before_;   // scratch
+    Vector<std::uint32_t> added_;   // scratch: contacts that are new, by their touches
+    ListEdits edits_;
+    BlockPool<collide::ContactPoint> points_;
+    BlockPool<mesh::MeshContact> triangles_;
 };
 
 }  // namespace crofton::world

@@ -207,7 +207,7 @@ Result<void> World::set_body(ObjectHandle object, const convex::Body* body) {
     s.object_bodies.set(id, body);
     s.body_contacts.note(id);
     s.movers.forget(id);  // until the update
-    s.pairs_changed = true;
+    s.pair_changes.objects.push_back(id);
     if (body != nullptr && instance != kNoIndex && s.index.has_box(id))
         (void)s.object_bodies.scale(id, s.scene.world(s.scene.node_of(instance)).linear);  // told by the next update
     return {};
@@ -232,14 +232,15 @@ Result<void> World::set_layers(ObjectHandle object, std::uint32_t layers) {
 Result<void> World::set_collides_with(ObjectHandle object, std::uint32_t layers) {
     if (auto known = state_->check(object, object.index); !known) return known;
     state_->table.objects[object.index].collides_with = layers;
-    state_->pairs_changed = true;
+    state_->pair_changes.objects.push_back(object.index);
     return {};
 }
 
 Result<void> World::set_user(ObjectHandle object, std::uint64_t user) {
     if (auto known = state_->check(object, object.index); !known) return known;
     state_->table.names.users[object.index] = user;
-    state_->pairs_changed = true;
+    state_->pair_changes.objects.push_back(object.index);
+    state_->pair_changes.renamed = true;
     return {};
 }
 

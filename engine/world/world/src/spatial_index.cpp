@@ -100,7 +100,7 @@ void SpatialIndex::remove(ItemId item) {
         detach(item);
     else if (removed.place != Place::nowhere)
         take(item);
-    if (is_placed(item)) ++members_changed_;
+    if (is_placed(item)) member_items_.push_back(item);
     removed = {};
     must(tree_.remove(item));
 }
@@ -131,7 +131,7 @@ void SpatialIndex::set_box_elsewhere(ItemId id, const Obb& box) {
     switch (item.place) {
         case Place::nowhere:
             put(id, item.shown ? Place::entering : Place::hidden, box);
-            members_changed_ += item.shown;
+            if (item.shown) member_items_.push_back(id);
             return;
         case Place::hidden:
         case Place::entering:
@@ -164,18 +164,18 @@ void SpatialIndex::set_shown(ItemId id, bool shown) {
     else
         take(id);
     put(id, shown ? Place::entering : Place::hidden, last);
-    ++members_changed_;
+    member_items_.push_back(id);
 }
 
 void SpatialIndex::set_layers(ItemId item, std::uint32_t layers) {
     if (tree_.layer_masks()[item] == layers) return;
     must(tree_.set_layer_mask(item, layers));
     wants_refit_ = true;
-    ++members_changed_;
+    member_items_.push_back(item);
 }
 
 SpatialIndex::Changes SpatialIndex::update(const Settings& settings, Executor& executor) {
-    Changes changes{static_cast<std::uint32_t>(moved_items_.size()) + members_changed_, false, members_changed_ > 0};
+    Changes changes{static_cast<std::uint32_t>(moved_items_.size() + member_items_.size()), false};
     if (!moved_.empty()) {
         must(tree_.move(moved_, moved_boxes_));
         tree_changes_ += moved_.size();
@@ -190,7 +190,6 @@ SpatialIndex::Changes SpatialIndex::update(const Settings& settings, Executor& e
     wants_refit_ = false;
     rebuild_step(settings.rebuild_budget);
     moving_.update(executor);
-    members_changed_ = 0;
     ++now_;
     return changes;
 }

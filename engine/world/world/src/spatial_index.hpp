@@ -21,7 +21,6 @@ class SpatialIndex {
     struct Changes {
         std::uint32_t boxes = 0;
         bool tree_built = false;
-        bool members = false;  // some have come or gone, or have other layers
     };
 
     explicit SpatialIndex(boxtree::Orientation orientation);
@@ -63,6 +62,7 @@ class SpatialIndex {
     // Takes over the staged boxes. Before any other change of an update.
     void commit() {
         moved_items_.clear();
+        member_items_.clear();
         relisted_.clear();
         moving_.commit(now_, moved_items_);
     }
@@ -70,6 +70,8 @@ class SpatialIndex {
     Changes update(const Settings& settings, Executor& executor);
     // That the last update() found in the tree or the list and moved. One may be named twice.
     [[nodiscard]] std::span<const ItemId> moved_items() const { return moved_items_; }
+    // That have come, gone, been hidden or shown, or got other layers since the last commit().
+    [[nodiscard]] std::span<const ItemId> member_items() const { return member_items_; }
     // That have come into the list, left it or got another entry since the last commit(). One may be named twice.
     [[nodiscard]] std::span<const ItemId> relisted_items() const { return relisted_; }
 
@@ -120,12 +122,11 @@ class SpatialIndex {
     Group groups_[3];  // by Place: nowhere (empty), hidden, entering
     boxtree::BoxTree tree_;
     MovingList moving_;
-    Vector<ItemId> moved_items_, relisted_;  // in this update
-    Vector<ItemId> moved_, rested_;          // the first: of those the tree's, with
+    Vector<ItemId> moved_items_, member_items_, relisted_;  // in this update
+    Vector<ItemId> moved_, rested_;                         // the first: of those the tree's, with
     Vector<Obb> moved_boxes_;
     Vector<std::uint64_t> changed_;
-    std::uint32_t now_ = 1;              // counts updates
-    std::uint32_t members_changed_ = 0;  // in this update
+    std::uint32_t now_ = 1;  // counts updates
     // Since the last rebuild began; of them those before the last update, and those when the one under way began.
     std::size_t tree_changes_ = 0, changes_before_ = 0, changes_at_start_ = 0;
     std::size_t came_or_went_ = 0, came_or_went_before_ = 0;  // in the tree, since it was last built; before the update

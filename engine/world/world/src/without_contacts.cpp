@@ -10,7 +10,7 @@ ContactFinder::ContactFinder(const WorldOptions& options)
     : options_(options), broadphase_({.exact_boxes = true, .max_pairs = options.max_pairs}) {}
 
 Result<void> ContactFinder::update(const ObjectTable&, const SpatialIndex&, const scene::Scene&, Bodies&,
-                                   const ObjectBodies&, bool, Executor&) {
+                                   const ObjectBodies&, const PairChanges&, Executor&) {
     return fail(ErrorCode::unsupported, kNoItem, "World::update: this build of the library finds no pairs");
 }
 void ContactFinder::stay() {}

@@ -69,11 +69,11 @@ void World::State::apply_changes() {
     for (const std::uint32_t object : removed) {
         index.remove(object);
         bodies.forget(object);
+        if (object_bodies.has(object)) pair_changes.objects.push_back(object);  // ground has no box among the others
         object_bodies.forget(object);
         body_contacts.note(object);
         occluders.note(object);
     }
-    pairs_changed |= !removed.empty();
     removed.clear();
     for (const StagedChange& change : staged) {
         world::Object& object = table.objects[change.object];
@@ -82,7 +82,7 @@ void World::State::apply_changes() {
         if (object.instance != kNoIndex) {
             object.mesh = scene.mesh_of(object.instance);
             show(change.object);
-            pairs_changed = true;
+            pair_changes.objects.push_back(change.object);
             body_contacts.note(change.object);
             continue;
         }
@@ -99,7 +99,7 @@ void World::State::update_bound(std::uint32_t id, const Bound& given) {
     const Bound bound = object_bodies.has(id) || object_bodies.is_grown(id) ? object_bodies.cover(id, given) : given;
     world::Object& object = table.objects[id];
     if (object.kind != bound.kind || object.radius != bound.radius) {
-        pairs_changed = true;
+        pair_changes.objects.push_back(id);
         body_contacts.note(id);
     }
     object.kind = bound.kind;
@@ -176,7 +176,7 @@ Result<void> World::State::apply_scene(Executor& executor) {
         if (layers != 0) index.set_layers(object, layers);
     }
     auto scaled = update_bodies();
-    pairs_changed |= bodies.update(scene, executor);
+    pair_changes.all_contacts |= bodies.update(scene, executor);
     return scaled;
 }
 
@@ -200,18 +200,18 @@ Result<void> World::update(Executor& executor) {
         s.update_occluders();
     }
     Result<void> found;
-    const bool changed = changes.boxes > 0 || s.pairs_changed, moved_only = !s.pairs_changed && !changes.members;
-    s.pairs_changed = false;
+    const bool changed = changes.boxes > 0 || s.pair_changes.any();
     const auto start = std::chrono::steady_clock::now();
     if (s.options.pairs && changed) {
         const world::TraceZone part(trace, "update: pairs and contacts");
-        found = s.finder.update(s.table, s.index, s.scene, s.bodies, s.object_bodies, moved_only, executor);
+        found = s.finder.update(s.table, s.index, s.scene, s.bodies, s.object_bodies, s.pair_changes, executor);
         s.ground.set_used(!s.object_bodies.unbounded().empty());
         if (s.ground.is_used()) s.update_ground();
         if (s.options.contacts) {
             if (s.ground.is_used()) s.update_ground_contacts();
-            s.body_contacts.update(pairs(), s.object_bodies, s.table, s.index, s.scene, s.options.contact_margin,
-                                   executor);
+            const bool has_work = s.body_contacts.has_work(s.object_bodies);
+            s.body_contacts.update(has_work ? pairs() : std::span<const ObjectPair>(), s.object_bodies, s.table,
+                                   s.index, s.scene, s.options.contact_margin, executor);
         }
     }
     if (!s.options.pairs || !s.options.contacts) s.body_contacts.forget_changes();
@@ -220,9 +220,11 @@ Result<void> World::update(Executor& executor) {
     if (!changed) s.body_contacts.stay();
     s.statistics.contacts_us =
         std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
-    if (!found) s.pairs_changed = true;
+    s.pair_changes.clear();
+    s.pair_changes.after_error = !found;
     world::trace_count(trace, "boxes changed", changes.boxes);
-    world::trace_count(trace, "pairs", pairs().size());
+    const std::size_t ground_pairs = s.ground.is_used() ? s.ground.own_pairs().size() : 0;
+    world::trace_count(trace, "pairs", s.finder.pair_count() + ground_pairs);
     s.statistics.objects = s.table.count;
     s.statistics.resting = s.index.tree().item_count();
     s.statistics.moving = s.index.moving().size();
@@ -231,7 +233,7 @@ Result<void> World::update(Executor& executor) {
     s.statistics.box_pairs_tested = changed ? s.finder.broadphase().bound_pairs : 0;
     if (changed) s.statistics.box_tests = s.finder.broadphase().boxes;
     s.statistics.body_pairs_computed = s.options.pairs && s.options.contacts ? s.body_contacts.computed() : 0;
-    s.statistics.contact_pairs_tested = changed ? pairs().size() : 0;
+    s.statistics.contact_pairs_tested = changed ? s.finder.tested_count() + ground_pairs : 0;
     return found ? scaled : found;
 }
 

@@ -81,7 +81,7 @@ struct World::State {
     Vector<StagedChange> staged;
     Vector<std::uint32_t> removed, rebound;  // the second: objects that have got a bound in this update
     std::size_t mesh_bodies = 0;             // objects with a mesh and a body, at least: removed ones may count
-    bool pairs_changed = false;              // something other than a box
+    world::PairChanges pair_changes;
 
     [[nodiscard]] Result<void> check(ObjectHandle object, std::uint64_t item) const;
     [[nodiscard]] Result<void> check(NodeHandle node, std::uint64_t item) const;

@@ -42,9 +42,13 @@ struct BroadphaseStatistics {
     bool rebuilt = false;            // the order of the items was made anew in this update
 };
 
+// Asked of two items whose boxes meet and whose filters pass; false leaves the pair out. first < second. Called on the
+// executor's threads. The answer may change only with what update_moved() is told of.
+using PairTest = FunctionRef<bool(std::uint32_t first, std::uint32_t second)>;
+
 // All pairs of boxes that meet, kept from frame to frame. Call update() when most boxes move, update_moved() when few
-// do: its cost follows those. Between updates it keeps an order of the items in which neighbours in space are
-// neighbours in memory. It is made anew only when motion has worn it out. Answers do not depend on that history.
+// do: its cost follows what moves, comes and goes, however many items and pairs there are. Between updates it keeps a
+// tree of the items, in which neighbours in space are neighbours in memory. Answers do not depend on that history.
 class Broadphase {
   public:
     explicit Broadphase(const BroadphaseOptions& options = {});
@@ -61,15 +65,29 @@ class Broadphase {
                         Executor& executor = serial_executor());
 
     // As update(), where only the boxes and filters of the items in `moved` differ from those of the update before. Any
-    // order; repeated items count once. With many items moved, another number of boxes, or after an error, it looks at
-    // all boxes, as update() does. Errors: those of update(); an item that is no index of `boxes`.
+    // order; repeated items count once. Boxes that are added at the end or dropped from it need not be named. So items
+    // come and go in two ways: at the end, or by a box that is invalid, such as one with a centre of NaN, while they
+    // are away. With many items moved, and after an error, it looks at all boxes, as update() does. Errors: those of
+    // update(); an item that is no index of `boxes`.
     Result<void> update_moved(std::span<const Obb> boxes, std::span<const std::uint32_t> moved,
                               std::span<const CollisionFilter> filters = {}, Executor& executor = serial_executor());
 
+    // The same with a test of pairs; update_moved() after an update() with the same test.
+    Result<void> update(std::span<const Obb> boxes, PairTest test, std::span<const CollisionFilter> filters = {},
+                        Executor& executor = serial_executor());
+    Result<void> update_moved(std::span<const Obb> boxes, std::span<const std::uint32_t> moved, PairTest test,
+                              std::span<const CollisionFilter> filters = {}, Executor& executor = serial_executor());
+
+    // Any thread may ask. began() and ended() are there after each update. The other lists, which are long, are brought
+    // up to date by the first call after an update that has changed them: it costs what the list's memory costs to
+    // move.
     [[nodiscard]] std::span<const IdPair> pairs() const;  // all, in order
     [[nodiscard]] std::span<const IdPair> began() const;  // in pairs() now, not after the update before
     [[nodiscard]] std::span<const IdPair> stayed() const;
     [[nodiscard]] std::span<const IdPair> ended() const;
+    // Of pairs(), those that the last update has tested: all, or where update_moved() has looked at what moved alone,
+    // those of which an item is new or was named.
+    [[nodiscard]] std::span<const IdPair> tested() const;
     [[nodiscard]] std::span<const std::uint32_t> rejected() const;  // ascending
     [[nodiscard]] const BroadphaseStatistics& statistics() const;
 

@@ -1,0 +1,456 @@
+// SPDX-License-Identifier: MIT
+#include "item_tree.hpp"
+
+#include <hwy/cache_control.h>
+#include <algorithm>
+#include <limits>
+
+namespace crofton::collide {
+namespace {
+
+// A block with fewer lanes in use is given up, where it has siblings. A split leaves no less than the second.
+constexpr std::size_t kFewestLanes = 5, kFewestAfterSplit = 6;
+// A block is loose once its bounds have grown by this factor.
+constexpr float kLooseGrowth = 1.1f;
+// Leaves are worn once the sum of their extents has grown by the first, or there are so many times more than needed.
+constexpr double kWornGrowth = 1.2, kWornCount = 1.5;
+
+float extent_of(const LaneBounds& bounds) {
+    return (bounds.high[0] - bounds.low[0]) + (bounds.high[1] - bounds.low[1]) + (bounds.high[2] - bounds.low[2]);
+}
+
+LaneBounds lane_of(const BoundBlock& block, std::size_t lane) {
+    LaneBounds bounds;
+    for (int i = 0; i < 3; ++i) {
+        bounds.low[i] = block.low[i][lane];
+        bounds.high[i] = block.high[i][lane];
+    }
+    return bounds;
+}
+
+void put_lane(const LaneBounds& bounds, std::size_t lane, BoundBlock& block) {
+    for (int i = 0; i < 3; ++i) {
+        block.low[i][lane] = bounds.low[i];
+        block.high[i][lane] = bounds.high[i];
+    }
+}
+
+constexpr LaneBounds kEmpty = [] {
+    constexpr float kLargest = std::numeric_limits<float>::max();
+    return LaneBounds{{kLargest, kLargest, kLargest}, {-kLargest, -kLargest, -kLargest}};
+}();
+
+void include(const LaneBounds& more, LaneBounds& bounds) {
+    for (int i = 0; i < 3; ++i) {
+        bounds.low[i] = std::min(bounds.low[i], more.low[i]);
+        bounds.high[i] = std::max(bounds.high[i], more.high[i]);
+    }
+}
+
+bool are_equal(const LaneBounds& a, const LaneBounds& b) {
+    return std::equal(a.low, a.low + 3, b.low) && std::equal(a.high, a.high + 3, b.high);
+}
+
+// The lane that grows least by taking the bounds in; of several the smallest. Empty lanes grow infinitely.
+std::size_t lane_for(const BoundBlock& block, const LaneBounds& bounds) {
+    float extent[kBoxBlock], growth[kBoxBlock];
+    for (std::size_t lane = 0; lane < kBoxBlock; ++lane) extent[lane] = growth[lane] = 0.0f;
+    for (int i = 0; i < 3; ++i)
+        for (std::size_t lane = 0; lane < kBoxBlock; ++lane) {
+            const float low = block.low[i][lane], high = block.high[i][lane];
+            const float grown_low = low < bounds.low[i] ? low : bounds.low[i],
+                        grown_high = high > bounds.high[i] ? high : bounds.high[i];
+            extent[lane] += high - low;
+            growth[lane] += (grown_high - high) + (low - grown_low);
+        }
+    std::size_t best = 0;
+    for (std::size_t lane = 1; lane < kBoxBlock; ++lane)
+        if (growth[lane] < growth[best] || (growth[lane] == growth[best] && extent[lane] < extent[best])) best = lane;
+    return best;
+}
+
+// Grows the room by an eighth: what is loaded and then changes a little does not double its memory.
+template <class T>
+void append(Vector<T>& values, std::size_t count, const T& value) {
+    if (values.size() + count > values.capacity()) values.reserve(values.size() + values.size() / 8 + 4 * kBoxBlock);
+    values.resize(values.size() + count, value);
+}
+
+}  // namespace
+
+void ItemTree::clear() {
+    arrange({});
+}
+
+void ItemTree::Level::clear() {
+    bounds.clear();
+    children.clear();
+    parents.clear();
+    counts.clear();
+    is_marked.clear();
+    extents.clear();
+    free.clear();
+    marked.clear();
+}
+
+BoundTree ItemTree::view() const {
+    BoundTree view{};
+    for (std::size_t k = 0; k < level_count_; ++k) {
+        const Level& level = levels_[k];
+        view.levels[k] = level.bounds.data();
+        view.children[k] = level.children.data();
+        view.parents[k] = level.parents.data();
+        view.counts[k] = level.counts.data();
+        view.sizes[k] = level.counts.size();
+    }
+    view.level_count = level_count_;
+    view.root = root_;
+    return view;
+}
+
+void ItemTree::arrange(std::span<const std::uint32_t> order) {
+    std::fill(places_.begin(), places_.end(), kNowhere);
+    size_ = order.size();
+    std::size_t below = order.size(), k = 0;
+    for (; k < 2 || below > 1; ++k) {
+        Level& level = levels_[k];
+        const std::size_t blocks = std::max<std::size_t>(k > 0 ? 1 : 0, (below + kBoxBlock - 1) / kBoxBlock);
+        level.bounds.resize(blocks);
+        level.children.assign(blocks * kBoxBlock, 0);
+        level.parents.resize(blocks);
+        level.counts.assign(blocks, kBoxBlock);
+        level.is_marked.assign(blocks, 0);
+        level.extents.assign(blocks, 0.0f);
+        level.free.clear();
+        level.marked.clear();
+        if (blocks > 0) level.counts[blocks - 1] = static_cast<std::uint8_t>(below - (blocks - 1) * kBoxBlock);
+        for (std::size_t n = 0; n < below; ++n) {
+            level.children[n] = k == 0 ? order[n] : static_cast<std::uint32_t>(n);
+            place_of(k, level.children[n]) = static_cast<std::uint32_t>(n);
+        }
+        for (std::size_t lane = below; lane < blocks * kBoxBlock; ++lane)
+            put_lane(kEmpty, lane % kBoxBlock, level.bounds[lane / kBoxBlock]);
+        below = blocks;
+    }
+    for (std::size_t above = k; above < kMaxLevels; ++above) levels_[above].clear();
+    level_count_ = k;
+    root_ = 0;
+}
+
+void ItemTree::bound_all() {
+    extent_ = remembered_ = 0.0;
+    constexpr std::size_t kAtOnce = 64;
+    LaneBounds unions[kAtOnce];
+    for (std::size_t k = 0; k + 1 < level_count_; ++k) {
+        const Level& level = levels_[k];
+        for (std::size_t begin = 0; begin < level.counts.size(); begin += kAtOnce) {
+            const std::size_t count = std::min(kAtOnce, level.counts.size() - begin);
+            bound_blocks(level.bounds.data() + begin, nullptr, count, unions);
+            for (std::size_t n = 0; n < count; ++n) {
+                if (level.counts[begin + n] == 0) continue;
+                const std::uint32_t place = level.parents[begin + n];
+                put_lane(unions[n], place % kBoxBlock, levels_[k + 1].bounds[place / kBoxBlock]);
+                if (k > 0 || unions[n].low[0] > unions[n].high[0]) continue;
+                extent_ += static_cast<double>(extent_of(unions[n]));
+                remembered_ += static_cast<double>(level.extents[begin + n]);
+            }
+        }
+    }
+}
+
+void ItemTree::remember_extents() {
+    for (std::size_t k = 0; k + 1 < level_count_; ++k)
+        for (std::uint32_t block = 0; block < levels_[k].counts.size(); ++block)
+            if (levels_[k].counts[block] != 0) levels_[k].extents[block] = extent_of(bounds_of(k, block));
+    remembered_ = extent_;
+}
+
+bool ItemTree::is_worn() const {
+    const auto leaves = static_cast<double>(levels_[0].counts.size() - levels_[0].free.size()),
+               fewest = static_cast<double>(size_ / kBoxBlock + 1);
+    return extent_ > kWornGrowth * remembered_ || leaves > kWornCount * fewest + 4.0;
+}
+
+LaneBounds ItemTree::bounds_of(std::size_t level, std::uint32_t block) const {
+    const std::uint32_t place = levels_[level].parents[block];
+    return lane_of(levels_[level + 1].bounds[place / kBoxBlock], place % kBoxBlock);
+}
+
+bool ItemTree::is_loose(std::size_t level, std::uint32_t block) const {
+    return extent_of(bounds_of(level, block)) > kLooseGrowth * levels_[level].extents[block];
+}
+
+std::uint32_t ItemTree::make_block(std::size_t level) {
+    Level& made = levels_[level];
+    if (!made.free.empty()) {
+        const std::uint32_t block = made.free.back();
+        made.free.pop_back();
+        return block;
+    }
+    append(made.bounds, 1, BoundBlock());
+    append(made.children, kBoxBlock, std::uint32_t{0});
+    append(made.parents, 1, std::uint32_t{0});
+    append(made.counts, 1, std::uint8_t{0});
+    append(made.is_marked, 1, std::uint8_t{0});
+    append(made.extents, 1, 0.0f);
+    return static_cast<std::uint32_t>(made.counts.size() - 1);
+}
+
+// The block's children are these alone.
+void ItemTree::fill(std::size_t level, std::uint32_t block, std::span<const Entry> entries) {
+    Level& filled = levels_[level];
+    filled.counts[block] = static_cast<std::uint8_t>(entries.size());
+    for (std::size_t lane = 0; lane < kBoxBlock; ++lane) {
+        const bool used = lane < entries.size();
+        put_lane(used ? entries[lane].bounds : kEmpty, lane, filled.bounds[block]);
+        filled.children[block * kBoxBlock + lane] = used ? entries[lane].child : 0;
+        if (used) place_of(level, entries[lane].child) = static_cast<std::uint32_t>(block * kBoxBlock + lane);
+    }
+}
+
+// Into the block of its level that grows least on the way down.
+void ItemTree::put(const Entry& entry) {
+    if (levels_[level_count_ - 1].counts[root_] == 0) {  // no items: then there are two levels
+        const std::uint32_t leaf = make_block(0);
+        fill(0, leaf, {&entry, 1});
+        levels_[0].extents[leaf] = extent_of(entry.bounds);
+        const Entry first{1, leaf, entry.bounds};
+        return fill(1, root_, {&first, 1});
+    }
+    std::uint32_t block = root_;
+    for (std::size_t k = level_count_ - 1; k > entry.level; --k)
+        block = levels_[k].children[block * kBoxBlock + lane_for(levels_[k].bounds[block], entry.bounds)];
+    add(entry.level, block, entry);
+}
+
+void ItemTree::add(std::size_t level, std::uint32_t block, const Entry& entry) {
+    Level& to = levels_[level];
+    const std::size_t lane = to.counts[block];
+    if (lane == kBoxBlock) return split(level, block, entry);
+    ++to.counts[block];
+    put_lane(entry.bounds, lane, to.bounds[block]);
+    to.children[block * kBoxBlock + lane] = entry.child;
+    place_of(level, entry.child) = static_cast<std::uint32_t>(block * kBoxBlock + lane);
+    grow(level, block, entry.bounds);
+}
+
+// The bounds above a block take these in.
+void ItemTree::grow(std::size_t level, std::uint32_t block, const LaneBounds& bounds) {
+    for (std::size_t k = level; k + 1 < level_count_; ++k) {
+        const std::uint32_t place = levels_[k].parents[block];
+        BoundBlock& above = levels_[k + 1].bounds[place / kBoxBlock];
+        const LaneBounds before = lane_of(above, place % kBoxBlock);
+        LaneBounds now = before;
+        include(bounds, now);
+        if (are_equal(now, before)) return;
+        put_lane(now, place % kBoxBlock, above);
+        levels_[k].extents[block] += extent_of(now) - extent_of(before);
+        block = place / kBoxBlock;
+    }
+}
+
+// Seventeen children in two blocks, cut along the axis, or by size, where the sum of both blocks' extents is least.
+void ItemTree::split(std::size_t level, std::uint32_t block, const Entry& entry) {
+    constexpr std::size_t kCount = kBoxBlock + 1;
+    Entry entries[kCount], sorted[kCount], best[kCount];
+    for (std::size_t lane = 0; lane < kBoxBlock; ++lane)
+        entries[lane] = {level, levels_[level].children[block * kBoxBlock + lane],
+                         lane_of(levels_[level].bounds[block], lane)};
+    entries[kBoxBlock] = entry;
+    float least = std::numeric_limits<float>::infinity();
+    std::size_t cut = kCount / 2;
+    std::copy_n(entries, kCount, best);
+    for (int axis = 0; axis < 4; ++axis) {
+        const auto key = [axis](const Entry& e) {
+            return axis < 3 ? e.bounds.low[axis] + e.bounds.high[axis] : extent_of(e.bounds);
+        };
+        for (std::size_t n = 0; n < kCount; ++n) {
+            std::size_t at = n;
+            for (; at > 0 && key(entries[n]) < key(sorted[at - 1]); --at) sorted[at] = sorted[at - 1];
+            sorted[at] = entries[n];
+        }
+        float extent_from[kCount + 1];
+        LaneBounds bounds = kEmpty;
+        for (std::size_t n = kCount; n-- > kFewestAfterSplit;) {
+            include(sorted[n].bounds, bounds);
+            extent_from[n] = extent_of(bounds);
+        }
+        bounds = kEmpty;
+        bool is_best = false;
+        for (std::size_t n = 1; n <= kCount - kFewestAfterSplit; ++n) {
+            include(sorted[n - 1].bounds, bounds);
+            if (n < kFewestAfterSplit) continue;
+            const float sum = extent_of(bounds) + extent_from[n];
+            if (!(sum < least)) continue;
+            least = sum;
+            cut = n;
+            is_best = true;
+        }
+        if (is_best) std::copy_n(sorted, kCount, best);
+    }
+    const std::uint32_t other = make_block(level);
+    fill(level, block, {best, cut});
+    fill(level, other, {best + cut, kCount - cut});
+    Entry halves[2] = {{level + 1, block, kEmpty}, {level + 1, other, kEmpty}};
+    for (std::size_t n = 0; n < kCount; ++n) include(best[n].bounds, halves[n < cut ? 0 : 1].bounds);
+    for (const Entry& half : halves) levels_[level].extents[half.child] = extent_of(half.bounds);
+    if (level + 1 == level_count_) {
+        ++level_count_;
+        root_ = make_block(level + 1);
+        return fill(level + 1, root_, halves);
+    }
+    const std::uint32_t place = levels_[level].parents[block];
+    put_lane(halves[0].bounds, place % kBoxBlock, levels_[level + 1].bounds[place / kBoxBlock]);
+    grow(level + 1, place / kBoxBlock, halves[0].bounds);
+    add(level + 1, place / kBoxBlock, halves[1]);
+}
+
+void ItemTree::insert(std::uint32_t item, const LaneBounds& bounds) {
+    put({0, item, bounds});
+    ++size_;
+}
+
+// The bounds above a block after it has lost something.
+void ItemTree::shrink(std::size_t level, std::uint32_t block) {
+    for (std::size_t k = level; k + 1 < level_count_; ++k) {
+        LaneBounds now;
+        bound_blocks(levels_[k].bounds.data(), &block, 1, &now);
+        const std::uint32_t place = levels_[k].parents[block];
+        BoundBlock& above = levels_[k + 1].bounds[place / kBoxBlock];
+        if (are_equal(now, lane_of(above, place % kBoxBlock))) return;
+        put_lane(now, place % kBoxBlock, above);
+        levels_[k].extents[block] = std::min(levels_[k].extents[block], extent_of(now));
+        block = place / kBoxBlock;
+    }
+}
+
+// A child out of its block, whose last child takes its lane. What is left of a block that is given up are orphans.
+void ItemTree::take(std::size_t level, std::uint32_t place) {
+    Level& from = levels_[level];
+    const std::uint32_t block = place / kBoxBlock;
+    const std::size_t last = --from.counts[block];
+    if (place % kBoxBlock != last) {
+        const std::uint32_t child = from.children[block * kBoxBlock + last];
+        put_lane(lane_of(from.bounds[block], last), place % kBoxBlock, from.bounds[block]);
+        from.children[place] = child;
+        place_of(level, child) = place;
+    }
+    put_lane(kEmpty, last, from.bounds[block]);
+    from.children[block * kBoxBlock + last] = 0;
+    if (level + 1 == level_count_) return;
+    const std::uint32_t above = from.parents[block];
+    const bool has_siblings = levels_[level + 1].counts[above / kBoxBlock] > 1;
+    if (last > 0 && (last >= kFewestLanes || !has_siblings)) return shrink(level, block);
+    give_up(level, block);
+}
+
+// The block's children become orphans.
+void ItemTree::give_up(std::size_t level, std::uint32_t block) {
+    Level& from = levels_[level];
+    for (std::size_t lane = 0; lane < from.counts[block]; ++lane)
+        orphans_.push_back({level, from.children[block * kBoxBlock + lane], lane_of(from.bounds[block], lane)});
+    fill(level, block, {});
+    from.free.push_back(block);
+    take(level + 1, from.parents[block]);
+}
+
+void ItemTree::put_orphans() {
+    while (!orphans_.empty()) {
+        const Entry entry = orphans_.back();
+        orphans_.pop_back();
+        put(entry);
+    }
+    for (; level_count_ > 2 && levels_[level_count_ - 1].counts[root_] == 1; --level_count_) {
+        const std::uint32_t child = levels_[level_count_ - 1].children[root_ * kBoxBlock];
+        levels_[level_count_ - 1].clear();
+        root_ = child;
+    }
+}
+
+void ItemTree::remove(std::uint32_t item) {
+    take(0, places_[item]);
+    places_[item] = kNowhere;
+    --size_;
+    put_orphans();
+}
+
+void ItemTree::mark(std::size_t level, std::uint32_t block) {
+    if (levels_[level].is_marked[block] != 0) return;
+    levels_[level].is_marked[block] = 1;
+    levels_[level].marked.push_back(block);
+}
+
+void ItemTree::fetch_place(std::uint32_t item) const {
+    hwy::Prefetch(&places_[item]);
+}
+
+void ItemTree::fetch_leaf(std::uint32_t item) const {
+    if (!contains(item)) return;
+    const char* const bytes = reinterpret_cast<const char*>(&levels_[0].bounds[places_[item] / kBoxBlock]);
+    for (std::size_t byte = 0; byte < sizeof(BoundBlock); byte += 64) hwy::Prefetch(bytes + byte);
+}
+
+void ItemTree::move(std::uint32_t item, const LaneBounds& bounds) {
+    const std::uint32_t place = places_[item];
+    put_lane(bounds, place % kBoxBlock, levels_[0].bounds[place / kBoxBlock]);
+    mark(0, place / kBoxBlock);
+}
+
+// The bounds above marked leaves; what they change is marked.
+void ItemTree::bound_marked() {
+    LaneBounds unions[kBoxBlock];
+    for (std::size_t k = 0; k + 1 < level_count_; ++k) {
+        Level& level = levels_[k];
+        for (std::size_t begin = 0; begin < level.marked.size(); begin += kBoxBlock) {
+            const std::size_t count = std::min(kBoxBlock, level.marked.size() - begin);
+            bound_blocks(level.bounds.data(), level.marked.data() + begin, count, unions);
+            for (std::size_t n = 0; n < count; ++n) {
+                const std::uint32_t place = level.parents[level.marked[begin + n]];
+                BoundBlock& above = levels_[k + 1].bounds[place / kBoxBlock];
+                if (are_equal(unions[n], lane_of(above, place % kBoxBlock))) continue;
+                put_lane(unions[n], place % kBoxBlock, above);
+                float& extent = level.extents[level.marked[begin + n]];
+                extent = std::min(extent, extent_of(unions[n]));
+                mark(k + 1, place / kBoxBlock);
+            }
+        }
+    }
+}
+
+// Of the children that moved, those in loose blocks of a level; then all that is in blocks that are loose still.
+void ItemTree::put_again(std::size_t level, std::span<const std::uint32_t> moved) {
+    escaped_.clear();
+    loose_.clear();
+    for (const std::uint32_t child : moved) {
+        if (level > 0 && levels_[level - 1].counts[child] == 0) continue;  // has been given up
+        const std::uint32_t place = place_of(level, child);
+        if (place == kNowhere || !is_loose(level, place / kBoxBlock)) continue;
+        escaped_.push_back({level, child, lane_of(levels_[level].bounds[place / kBoxBlock], place % kBoxBlock)});
+        loose_.push_back(place / kBoxBlock);
+    }
+    for (const Entry& entry : escaped_) {
+        if (level >= level_count_) break;  // the tree has become lower: the child is its root
+        take(level, place_of(level, entry.child));
+        orphans_.push_back(entry);
+        put_orphans();
+    }
+    for (const std::uint32_t block : loose_) {
+        if (level + 1 >= level_count_) return;
+        if (levels_[level].counts[block] == 0 || !is_loose(level, block)) continue;
+        if (levels_[level + 1].counts[levels_[level].parents[block] / kBoxBlock] > 1) give_up(level, block);
+        put_orphans();
+    }
+}
+
+// From below: items that have gone far make the blocks above them loose only until they are put again.
+void ItemTree::settle(std::span<const std::uint32_t> moved) {
+    bound_marked();
+    put_again(0, moved);
+    for (std::size_t k = 1; k + 1 < level_count_; ++k) put_again(k, levels_[k - 1].marked);
+    for (Level& level : levels_) {
+        for (const std::uint32_t block : level.marked) level.is_marked[block] = 0;
+        level.marked.clear();
+    }
+}
+
+}  // namespace crofton::collide

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#include "pair_table.hpp"
+
+namespace crofton::collide {
+
+void PairTable::assign(std::size_t item_count, std::span<const IdPair> pairs) {
+    entries_.clear();
+    entries_.reserve(pairs.size());
+    first_.assign(item_count, kNone);
+    free_ = kNone;
+    size_ = 0;
+    for (const IdPair& pair : pairs) add(pair);
+}
+
+void PairTable::add(const IdPair& pair) {
+    std::uint32_t entry = free_;
+    if (entry == kNone) {
+        entry = static_cast<std::uint32_t>(entries_.size());
+        entries_.emplace_back();
+    } else {
+        free_ = entries_[entry].next[0];
+    }
+    Entry& added = entries_[entry];
+    const std::uint32_t items[2] = {pair.first, pair.second};
+    for (std::uint32_t side = 0; side < 2; ++side) {
+        const std::uint32_t next = first_[items[side]];
+        added.item[side] = items[side];
+        added.next[side] = next;
+        added.previous[side] = kNone;
+        if (next != kNone) entries_[next / 2].previous[next % 2] = 2 * entry + side;
+        first_[items[side]] = 2 * entry + side;
+    }
+    ++size_;
+}
+
+void PairTable::remove(std::uint32_t entry) {
+    Entry& removed = entries_[entry];
+    for (std::uint32_t side = 0; side < 2; ++side) {
+        const std::uint32_t next = removed.next[side], previous = removed.previous[side];
+        if (next != kNone) entries_[next / 2].previous[next % 2] = previous;
+        (previous != kNone ? entries_[previous / 2].next[previous % 2] : first_[removed.item[side]]) = next;
+    }
+    removed.next[0] = free_;
+    free_ = entry;
+    --size_;
+}
+
+}  // namespace crofton::collide
