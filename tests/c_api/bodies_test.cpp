@@ -50,6 +50,34 @@ TEST_SUITE("capi/bodies") {
         CHECK(distance.distance == doctest::Approx(1.0));
     }
 
+    TEST_CASE("a ray at a body: its first point, from inside at once, a miss at infinity; bad rays are refused") {
+        const BodyHandle box = box_body(1, 2, 3);
+        const crofton_transform there = translation(10, 0, 0);
+        const crofton_placed placed{box.get(), &there};
+        auto hit = sized<crofton_body_ray_hit>();
+        crofton_ray ray{{0, 0.5, 0}, {2, 0, 0}, std::numeric_limits<double>::infinity()};
+        REQUIRE(crofton_body_raycast(&placed, &ray, &hit) == CROFTON_OK);
+        CHECK(hit.t == 4.5);
+        CHECK(hit.point[0] == 9.0);
+        CHECK(hit.normal[0] == -1.0);
+        CHECK(hit.started_inside == 0);
+        ray.origin[0] = 10.0;
+        REQUIRE(crofton_body_raycast(&placed, &ray, &hit) == CROFTON_OK);
+        CHECK(hit.t == 0.0);
+        CHECK(hit.normal[0] == 0.0);
+        CHECK(hit.started_inside == 1);
+        ray.origin[0] = 11.5;
+        REQUIRE(crofton_body_raycast(&placed, &ray, &hit) == CROFTON_OK);
+        CHECK(std::isinf(hit.t));
+        CHECK(hit.started_inside == 0);
+        hit.t = 42.0;
+        ray.direction[0] = 0.0;
+        CHECK(crofton_body_raycast(&placed, &ray, &hit) == CROFTON_DEGENERATE);
+        ray.direction[0] = std::numeric_limits<double>::quiet_NaN();
+        CHECK(crofton_body_raycast(&placed, &ray, &hit) == CROFTON_NON_FINITE);
+        CHECK(hit.t == 42.0);
+    }
+
     TEST_CASE("a hull's surface and mass: an octahedron") {
         const BodyHandle hull = hull_body();
         const float* vertices = nullptr;

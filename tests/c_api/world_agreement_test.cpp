@@ -21,7 +21,8 @@ bool same_vector(const double* a, const glm::dvec3& b) {
 }
 bool same_hit(const BothWorlds& both, const crofton_object_hit& a, const ObjectHit& b) {
     return same_ref(both, {a.object, a.user}, {b.object, b.user}) && a.t == b.t && same_vector(a.point, b.point) &&
-           a.triangle == b.triangle;
+           a.triangle == b.triangle && a.child == b.child && same_vector(a.normal, b.normal) &&
+           (a.started_inside == 1) == b.started_inside;
 }
 
 void compare_objects(const BothWorlds& both) {

@@ -137,7 +137,46 @@ TEST_SUITE("capi/world bodies") {
         CHECK(std::isinf(hit.time));
     }
 
-    TEST_CASE("half-spaces, stale objects, dead bodies and bad margins are refused") {
+    TEST_CASE("ground without end, bodies beyond their boxes, and rays at them") {
+        const WorldHandle world = make_world();
+        const crofton_plane plane{{0, 1, 0}, 0};
+        crofton_body *half = nullptr, *ball = nullptr;
+        REQUIRE(crofton_body_half_space(&plane, &half) == CROFTON_OK);
+        REQUIRE(crofton_body_ball(1.0f, &ball) == CROFTON_OK);
+        const BodyHandle level(half), large(ball);
+        const auto point = [&](double x, double y) {
+            crofton_bound bound{};
+            bound.kind = CROFTON_BOUND_BALL;
+            bound.center[0] = x;
+            bound.center[1] = y;
+            bound.radius = 0.125;
+            return add_bound(world, bound);
+        };
+        const crofton_object ground = point(0, 0), resting = point(1e6, -0.75);
+        REQUIRE(crofton_world_set_body(world.get(), ground, level.get()) == CROFTON_OK);
+        REQUIRE(crofton_world_set_body(world.get(), resting, large.get()) == CROFTON_OK);
+        update(world);
+        const crofton_body_contact* contacts = nullptr;
+        std::size_t count = 0;
+        REQUIRE(crofton_world_body_contacts(world.get(), &contacts, &count) == CROFTON_OK);
+        CHECK(count == 1);
+        const crofton_ray rays[3] = {{{5, -4, 0}, {0, 2, 0}, kNoLimit},
+                                     {{1e6, -4, 0}, {0, 2, 0}, kNoLimit},
+                                     {{1e6, -1, 0}, {0, 2, 0}, kNoLimit}};
+        crofton_object_hit hits[3] = {};
+        REQUIRE(crofton_world_raycast(world.get(), rays, 3, ~0u, hits) == CROFTON_OK);
+        const double expected[3] = {2.0, 1.125, 0.0};
+        for (int i = 0; i < 3; ++i) {
+            CHECK(hits[i].object.index == (i == 0 ? ground.index : resting.index));
+            CHECK(hits[i].t == expected[i]);
+            CHECK(hits[i].normal[1] == (i == 2 ? 0.0 : -1.0));
+            CHECK(hits[i].started_inside == (i == 2 ? 1 : 0));
+            CHECK(hits[i].child == 0);
+            CHECK(hits[i].triangle == CROFTON_NONE);
+        }
+    }
+
+    TEST_CASE("half-spaces to ask with, stale objects, dead bodies and bad margins are refused") {
         const Resting s;
         update(s.world);
         const crofton_plane plane{{0, 1, 0}, 0};
@@ -148,7 +187,6 @@ TEST_SUITE("capi/world bodies") {
         const crofton_placed placed{half.get(), &here};
         const Found found = make_found();
         auto hit = sized<crofton_body_hit>();
-        CHECK(crofton_world_set_body(s.world.get(), s.crate, made) == CROFTON_UNSUPPORTED);
         CHECK(crofton_world_overlap_body(s.world.get(), &placed, ~0u, found.get()) == CROFTON_UNSUPPORTED);
         CHECK(crofton_world_cast(s.world.get(), &placed, nullptr, nullptr, ~0u, &hit) == CROFTON_UNSUPPORTED);
         auto closest = sized<crofton_closest_object>();

@@ -182,6 +182,7 @@ const std::set<std::string> kWithoutHandle = {
     "body_mesh",
     "body_outline",
     "body_parts_near",
+    "body_raycast",
     "body_triangle",
     "box_raycast",
     "box_transform",

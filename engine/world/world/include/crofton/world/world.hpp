@@ -36,7 +36,7 @@ struct WorldOptions {
     bool pairs = true;            // false: neither pairs nor contacts are looked for
     bool contacts = true;         // false: pairs alone
     bool containment = true;      // a closed mesh around another object touches it
-    double contact_margin = 0.0;  // ≥ 0: gaps up to this between bodies are contacts, as far as the objects' boxes meet
+    double contact_margin = 0.0;  // ≥ 0: gaps up to this between bodies are contacts
     bool mesh_depth = false;      // a way out of contacts between meshes, which costs more than finding them
     std::size_t max_pairs = std::size_t{1} << 24;  // more are an error, not an exhausted memory
     // Items' worth of background work on the tree an update (BoxTree::rebuild_step), beside what changes make
@@ -89,11 +89,22 @@ class World {
     Result<void> set_user(ObjectHandle object, std::uint64_t user);  // at once, in pairs from the next update on
 
     // Gives an object a body, or with nullptr takes it away: for pairs from the next update on, for queries at once.
+    //
     // Pairs of objects that both have bodies are in body_contacts() instead of contacts(). What the body is a view of
     // stays the caller's, alive and unchanged; to change it, set the body again. It stands where the object's
-    // transform, or the frame of its box or ball, puts it. Under a transform that is not rigid it touches nothing. The
-    // object's box stands for it in pairs and queries: what reaches beyond is missed. Error: a half-space, which has no
-    // box.
+    // transform, or the frame of its box or ball, puts it; axes that are left-handed or off by more than 1e-6 are
+    // turned into the nearest rotation.
+    // Box: from the next update on, the object's box is the least in its own frame around the bound, or the mesh's box,
+    // and the body. It stands for the object in views, pairs and queries, so that nothing of the body is missed. A ball
+    // whose body does not fit into it counts as that box. A bound of size 0 is enough: it only says where the body is.
+    // No bounds: half-spaces, and compounds that hold some, are ground without end. They meet, and are met by,
+    // everything that shares layers with them, wherever their object's box is; views go by that box. Level ground costs
+    // an update what lies on it; tilted ground looks at each object.
+    // Scale: a transform that is not rigid scales the body. Uniform scales, within 1e-5, do so with any kind. Other
+    // maps, flat and mirroring ones too, are for what has vertices and no rounding, and for half-spaces. Cylinders,
+    // cones and height fields may be scaled along their axes. Sizes are rounded to float. Scaled hulls and meshes are
+    // built anew whenever the scale changes. Errors: a body that the object's transform, as it is set now, turns into
+    // another kind (unsupported), or puts out of range. Calls that set transforms or parents refuse them likewise.
     Result<void> set_body(ObjectHandle object, const convex::Body* body);
 
     // A mesh must have triangles and pass validate(TriangleMesh).
@@ -128,7 +139,8 @@ class World {
     [[nodiscard]] Result<Obb> box_of(ObjectHandle object) const;
     [[nodiscard]] Result<Transform> transform_of(ObjectHandle object) const;  // to the world; of a mesh
 
-    // Once a frame. Error: more than max_pairs pairs; then there are none, and all else is as it should be.
+    // Once a frame. Errors: more than max_pairs pairs; then there are none, and all else is as it should be. A body
+    // that its object's transform puts out of range: it is nowhere until that changes.
     Result<void> update(Executor& executor = serial_executor());
     [[nodiscard]] const WorldStatistics& statistics() const;
     // For overlays and measurements: the tree of what rests. Items are the objects' indices.
@@ -156,14 +168,16 @@ class World {
     Result<void> hidden_by(ObjectHandle object, const VisibleObjects& visible, Vector<OccluderRef>& occluders) const;
     Result<void> drawn_occluders(const VisibleObjects& visible, Vector<OccluderRef>& occluders) const;
 
-    // Triangles of meshes, balls and boxes, whichever an object has. Objects removed since the last update are in none
-    // of the answers.
+    // Bodies, as convex::raycast; of objects without one triangles of meshes, balls and boxes, whichever they have. A
+    // ray that begins inside a body, ball or box hits it at t = 0, without a normal. Directions may have any length
+    // but 0. A ray that is none hits nothing. Objects removed since the last update are in none of the answers.
     [[nodiscard]] std::optional<ObjectHit> raycast(const Ray& ray, std::uint32_t layers = ~0u) const;
     [[nodiscard]] bool raycast_any(const Ray& ray, std::uint32_t layers = ~0u) const;
     // Every object's nearest hit, by t, then by index.
     void raycast_all(const Ray& ray, Vector<ObjectHit>& hits, std::uint32_t layers = ~0u) const;
 
-    // Whose box or ball meets the shape; by index. Meshes by their boxes. Here and in closest() a box that is not
+    // Whose box or ball meets the shape; by index. Meshes by their boxes, ground without end by its half-spaces and the
+    // box around the rest of its body. Here and in closest() a box that is not
     // valid meets nothing and has nothing near. So do balls and capsules with NaN or numbers beyond kMaxCoordinate.
     void overlap(const Obb& shape, Vector<ObjectRef>& found, std::uint32_t layers = ~0u) const;
     void overlap(const Sphere& shape, Vector<ObjectRef>& found, std::uint32_t layers = ~0u) const;
@@ -191,7 +205,8 @@ class World {
                                                        double max_distance, std::uint32_t layers = ~0u) const;
 
     // Found by update(): objects whose boxes or balls meet, in order; and of them those that touch, with those that no
-    // longer do.
+    // longer do. Where the contact margin is not 0, pairs of two bodies are told as far as that; on ground without end
+    // within rounding.
     [[nodiscard]] std::span<const ObjectPair> pairs() const;
     [[nodiscard]] std::span<const Contact> contacts() const;
     // Of objects that both have bodies, in order. Pairs of which neither has moved are not computed again.
