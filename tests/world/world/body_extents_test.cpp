@@ -285,13 +285,13 @@ TEST_SUITE("world/body_extents") {
         // Views see what the body has.
         VisibleObjects seen;
         const Camera camera{.position = {2.1, 0, -5}, .forward = {0, 0, 1}, .up = {0, 1, 0}, .fov_y = 0.02};
-        REQUIRE(world.view(camera, seen).has_value());
+        REQUIRE(world.view({.camera = camera}, seen).has_value());
         CHECK(seen.size() == 1);
         REQUIRE(world.set_body(object, nullptr).has_value());
         REQUIRE(world.update().has_value());
         CHECK(world.box_of(object)->half_extents == given.half_extents);
         CHECK(world.box_of(object)->center == given.center);
-        REQUIRE(world.view(camera, seen).has_value());
+        REQUIRE(world.view({.camera = camera}, seen).has_value());
         CHECK(seen.size() == 0);
     }
 

@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: MIT
+// The life of a world for thousands of updates: pairs and contacts against all pairs of objects, one after the other.
+#include <doctest/doctest.h>
+#include <counting_memory.hpp>
+#include <crofton/convex/query.hpp>
+#include <map>
+#include <optional>
+#include <oracle/random_boxes.hpp>
+#include <vector>
+
+#include "../../ranges.hpp"
+#include "model.hpp"
+
+using namespace crofton;
+using oracle::Model;
+using oracle::NearMisses;
+using testing::CountingMemory;
+
+namespace {
+
+using Key = std::pair<std::uint32_t, std::uint32_t>;
+
+Bound random_bound(NearMisses& random) {
+    const Obb box = oracle::random_box(random, glm::dvec3(0.0), 2.5);
+    switch (random.index(3)) {
+        case 0:
+            return box;
+        case 1:
+            return aabb_of(box);
+        default:
+            return Sphere{box.center, static_cast<double>(box.half_extents.x)};
+    }
+}
+
+// The manifold of two bounds, from the one with the lower index.
+collide::Manifold touch(const Bound& a, const Bound& b) {
+    const bool ball_a = a.kind == BoundKind::ball, ball_b = b.kind == BoundKind::ball;
+    const Sphere of_a{a.box.center, a.radius}, of_b{b.box.center, b.radius};
+    if (ball_a && ball_b) return collide::contact_manifold(of_a, of_b);
+    if (ball_b) return collide::contact_manifold(a.box, of_b);
+    if (!ball_a) return collide::contact_manifold(a.box, b.box);
+    collide::Manifold manifold = collide::contact_manifold(b.box, of_a);
+    manifold.normal = -manifold.normal;
+    return manifold;
+}
+
+bool are_equal(const ObjectRef& a, const oracle::ModelObject& b) {
+    return a.object == b.handle && a.user == b.user;
+}
+
+bool are_equal(std::span<const collide::ContactPoint> a, std::span<const collide::ContactPoint> b) {
+    return test::ranges::equal(
+        a, b, [](const auto& p, const auto& q) { return p.position == q.position && p.depth == q.depth; });
+}
+
+// What a world told of contacts after the update before.
+struct Before {
+    std::map<Key, std::pair<ObjectHandle, ObjectHandle>> contacts, body_contacts;
+};
+
+// Whether a list of contacts tells what has begun, stayed and ended.
+template <class Contacts, class IsContact>
+bool check_phases(const Contacts& contacts, const Model& model, const std::vector<Key>& pairs, IsContact is_contact,
+                  std::map<Key, std::pair<ObjectHandle, ObjectHandle>>& before) {
+    bool good = true;
+    std::map<Key, std::pair<ObjectHandle, ObjectHandle>> now, told;
+    for (const Key& pair : pairs)
+        if (is_contact(pair)) now[pair] = {model.objects.at(pair.first).handle, model.objects.at(pair.second).handle};
+    std::optional<Key> last;
+    for (const auto& contact : contacts) {
+        const Key pair{contact.first.object.index, contact.second.object.index};
+        good &= !last || *last < pair;
+        last = pair;
+        const auto old = before.find(pair);
+        if (contact.phase == ContactPhase::ended) {
+            good &= !now.contains(pair) && old != before.end() &&
+                    old->second == std::pair(contact.first.object, contact.second.object);
+            if (old != before.end()) before.erase(old);
+            continue;
+        }
+        good &= now.contains(pair) && now[pair] == std::pair(contact.first.object, contact.second.object);
+        good &= (contact.phase == ContactPhase::stayed) == (old != before.end());
+        if (old != before.end()) before.erase(old);
+        told[pair];
+    }
+    good &= before.empty() && told.size() == now.size();  // all that there was is told of, and all that there is
+    before = now;
+    return good;
+}
+
+class Life {
+  public:
+    explicit Life(unsigned seed) : random_(seed) {}
+
+    void change(unsigned changes) {
+        for (; changes > 0; --changes) {
+            if (model.objects.empty() || (model.objects.size() < 100 && random_.index(6) == 0)) {
+                add();
+                continue;
+            }
+            auto known = model.objects.begin();
+            std::advance(known, random_.index(static_cast<unsigned>(model.objects.size())));
+            change(known);
+        }
+    }
+    void move(unsigned part) {
+        for (auto& [id, object] : model.objects) {
+            if (random_.index(part) != 0) continue;
+            object.bound.box.center += 0.3 * random_.direction();
+            for (World* world : worlds) REQUIRE(world->set_bound(object.handle, object.bound).has_value());
+        }
+    }
+
+    World serial, parallel, seldom_asked;
+    std::vector<World*> worlds{&serial, &parallel, &seldom_asked};
+    Model model;
+    std::map<std::uint32_t, convex::Body> bodies;
+
+  private:
+    void add() {
+        oracle::ModelObject object;
+        object.bound = random_bound(random_);
+        object.user = random_.index(1u << 30);
+        object.layers = random_.index(4) ? ~0u : random_.index(4);
+        object.collides_with = random_.index(4) ? ~0u : random_.index(4);
+        for (World* world : worlds)
+            object.handle = world
+                                ->add({.bound = object.bound,
+                                       .user = object.user,
+                                       .layers = object.layers,
+                                       .collides_with = object.collides_with})
+                                .value();
+        model.objects[object.handle.index] = object;
+    }
+    void change(std::map<std::uint32_t, oracle::ModelObject>::iterator known) {
+        oracle::ModelObject& object = known->second;
+        const unsigned kind = random_.index(9);
+        if (kind == 0) object.hidden = !object.hidden;
+        if (kind == 1) object.layers = random_.index(4) ? ~0u : random_.index(4);
+        if (kind == 2) object.collides_with = random_.index(4) ? ~0u : random_.index(4);
+        if (kind == 3) object.user = random_.index(1u << 30);
+        if (kind == 4) object.bound = random_bound(random_);
+        if (kind == 5) bodies.erase(known->first);
+        if (kind == 6)
+            bodies.insert_or_assign(known->first,
+                                    convex::Body::box(glm::vec3(object.bound.box.half_extents) * 0.9f).value());
+        for (World* world : worlds) {
+            Result<void> done;
+            if (kind == 0) done = world->set_hidden(object.handle, object.hidden);
+            if (kind == 1) done = world->set_layers(object.handle, object.layers);
+            if (kind == 2) done = world->set_collides_with(object.handle, object.collides_with);
+            if (kind == 3) done = world->set_user(object.handle, object.user);
+            if (kind == 4) done = world->set_bound(object.handle, object.bound);
+            if (kind == 5) done = world->set_body(object.handle, nullptr);
+            if (kind == 6) done = world->set_body(object.handle, &bodies.at(known->first));
+            if (kind == 7) done = world->remove(object.handle);
+            REQUIRE(done.has_value());
+        }
+        if (kind == 7) {
+            bodies.erase(known->first);
+            model.objects.erase(known);
+        }
+    }
+
+    NearMisses random_;
+};
+
+}  // namespace
+
+TEST_SUITE("world/pairs life") {
+    TEST_CASE("pairs and contacts are those of all objects, whatever comes, goes, moves, hides or changes") {
+        ThreadPool pool(3);
+        for (const unsigned seed : {51u, 52u, 55u}) {
+            Life life(seed);
+            NearMisses random(seed + 100);
+            Before before;
+            std::size_t contacts = 0, ended = 0, body_contacts = 0;
+            for (int frame = 0; frame < 1500; ++frame) {
+                CAPTURE(frame);
+                life.change(frame % 400 == 0 ? 120 : frame % 3 == 0 ? random.index(4) : 0);
+                if (frame % 5 != 4) life.move(frame % 7 == 0 ? 2 : 25);
+                REQUIRE(life.serial.update().has_value());
+                REQUIRE(life.parallel.update(pool).has_value());
+                REQUIRE(life.seldom_asked.update().has_value());
+                const Model& model = life.model;
+                const auto pairs = model.pairs();
+                const auto are_pairs = [&](std::span<const ObjectPair> told) {
+                    return test::ranges::equal(told, pairs, [&](const ObjectPair& a, const Key& b) {
+                        return are_equal(a.first, model.objects.at(b.first)) &&
+                               are_equal(a.second, model.objects.at(b.second));
+                    });
+                };
+                CHECK(are_pairs(life.serial.pairs()));
+                CHECK(are_pairs(life.parallel.pairs()));
+                if (frame % 29 == 0) CHECK(are_pairs(life.seldom_asked.pairs()));
+                const auto have_bodies = [&](const Key& pair) {
+                    return life.bodies.contains(pair.first) && life.bodies.contains(pair.second);
+                };
+                CHECK(check_phases(
+                    life.serial.contacts(), model, pairs, [&](const Key& pair) { return !have_bodies(pair); },
+                    before.contacts));
+                bool good = true;
+                for (const Contact& contact : life.serial.contacts()) {
+                    ++contacts;
+                    if (contact.phase == ContactPhase::ended) {
+                        ++ended;
+                        good &= contact.points.empty() && contact.depth == 0.0 && contact.normal == glm::dvec3(0.0);
+                        continue;
+                    }
+                    const auto &a = model.objects.at(contact.first.object.index),
+                               &b = model.objects.at(contact.second.object.index);
+                    const collide::Manifold expected = touch(a.bound, b.bound);
+                    good &= are_equal(contact.first, a) && are_equal(contact.second, b) &&
+                            contact.normal == expected.normal && contact.depth == expected.depth &&
+                            are_equal(contact.points, {expected.points, static_cast<std::size_t>(expected.count)}) &&
+                            contact.triangles.empty();
+                }
+                CHECK(good);
+                for (const World* other : {&life.parallel, &life.seldom_asked})
+                    CHECK(test::ranges::equal(
+                        life.serial.contacts(), other->contacts(), [](const Contact& a, const Contact& b) {
+                            return a.first.object == b.first.object && a.second.object == b.second.object &&
+                                   a.first.user == b.first.user && a.second.user == b.second.user &&
+                                   a.phase == b.phase && a.normal == b.normal && a.depth == b.depth &&
+                                   are_equal(a.points, b.points);
+                        }));
+                // Boxes as bodies.
+                std::map<Key, bool> bodies_meet;
+                for (const BodyContact& contact : life.serial.body_contacts())
+                    if (contact.phase != ContactPhase::ended)
+                        bodies_meet[{contact.first.object.index, contact.second.object.index}] = true;
+                CHECK(check_phases(
+                    life.serial.body_contacts(), model, pairs,
+                    [&](const Key& pair) { return have_bodies(pair) && bodies_meet[pair]; }, before.body_contacts));
+                const auto pose_of = [&](std::uint32_t id) {
+                    const Bound& bound = model.objects.at(id).bound;
+                    const bool ball = bound.kind == BoundKind::ball;
+                    return RigidTransform{ball ? glm::dmat3(1.0) : glm::dmat3(bound.box.axes), bound.box.center};
+                };
+                for (const Key& pair : pairs)
+                    if (have_bodies(pair)) {
+                        ++body_contacts;
+                        const RigidTransform pose_a = pose_of(pair.first), pose_b = pose_of(pair.second);
+                        CHECK(bodies_meet[pair] == convex::intersects({life.bodies.at(pair.first), pose_a},
+                                                                      {life.bodies.at(pair.second), pose_b}));
+                    }
+            }
+            CHECK(contacts > 5000);
+            CHECK(ended > 200);
+            CHECK(body_contacts > 200);
+        }
+    }
+
+    TEST_CASE("where one object changes in a world of thousands, only what is near it is looked at") {
+        World world;
+        NearMisses random(53);
+        std::vector<ObjectHandle> objects;
+        for (int i = 0; i < 4000; ++i)
+            objects.push_back(world.add({.bound = oracle::random_box(random, {}, 25.0)}).value());
+        for (int frame = 0; frame < 40; ++frame) REQUIRE(world.update().has_value());
+        const std::size_t all = world.contacts().size();
+        REQUIRE(all > 100);
+        std::size_t looked_at = 0;
+        for (int frame = 0; frame < 300; ++frame) {
+            ObjectHandle& object = objects[random.index(4000)];
+            const unsigned kind = static_cast<unsigned>(frame) % 6;
+            if (kind == 0) REQUIRE(world.set_layers(object, 1u << random.index(2)).has_value());
+            if (kind == 1) REQUIRE(world.set_user(object, random.index(1000)).has_value());
+            if (kind == 2) REQUIRE(world.set_hidden(object, random.index(2) == 0).has_value());
+            if (kind == 3) REQUIRE(world.set_collides_with(object, random.index(2) ? ~0u : 0u).has_value());
+            if (kind == 4) REQUIRE(world.remove(object).has_value());
+            if (kind == 4 || kind == 5) object = world.add({.bound = oracle::random_box(random, {}, 25.0)}).value();
+            REQUIRE(world.update().has_value());
+            looked_at += world.statistics().box_pairs_tested + world.statistics().contact_pairs_tested;
+        }
+        CHECK(looked_at < 300 * 12);
+        CHECK(world.contacts().size() > all / 2);
+    }
+
+    TEST_CASE("a warm world in which objects come and go allocates no more for pairs and contacts than it did") {
+        CountingMemory memory;
+        World world({.rebuild_budget = 0});
+        NearMisses random(54);
+        std::vector<ObjectHandle> objects;
+        for (int i = 0; i < 500; ++i)
+            objects.push_back(world.add({.bound = oracle::random_box(random, {}, 12.0)}).value());
+        std::size_t early = 0;
+        for (int frame = 0; frame < 6000; ++frame) {
+            ObjectHandle& object = objects[random.index(500)];
+            REQUIRE(world.remove(object).has_value());
+            object = world.add({.bound = oracle::random_box(random, {}, 12.0)}).value();
+            REQUIRE(world.update().has_value());
+            if (frame == 3000) early = memory.bytes_in_use();
+        }
+        CHECK(static_cast<double>(memory.bytes_in_use()) < 1.2 * static_cast<double>(early));
+    }
+}
