@@ -349,4 +349,67 @@ TEST_SUITE("fit/planar") {
             }
         }
     }
+
+    TEST_CASE("by perimeter, points that nearly lie on a line have a triangle of hardly more than twice their length") {
+        std::mt19937_64 random(231);
+        std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+        for (const double thickness :
+             {0.0, 1e-17, 1e-16, 1e-15, 1e-14, 1e-13, 1e-12, 1e-11, 1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3})
+            for (int trial = 0; trial < 250; ++trial) {
+                const double size = trial % 5 == 0 ? std::ldexp(1.0, trial / 3 - 40) : 1.0;
+                const double offset = trial % 3 == 0 ? 0.0 : trial % 3 == 1 ? size : 100.0 * size;
+                const double angle = 3.2 * uniform(random);
+                const glm::dvec2 along(std::cos(angle), std::sin(angle)), across(-along.y, along.x);
+                const glm::dvec2 origin = offset * glm::dvec2(1.0, uniform(random));
+                // Its first and last point are alone: a corner at one of them opens by no more than the others' slopes.
+                Points points;
+                for (int i = 0; i < 3 + trial % 9; ++i) {
+                    const double t = i < 2 ? i : 0.5 + 0.4 * uniform(random), d = i < 2 ? 0.0 : uniform(random);
+                    points.push_back(origin + size * (t * along + thickness * d * across));
+                }
+                std::shuffle(points.begin(), points.end(), random);
+                double length = 0.0;
+                for (const glm::dvec2& p : points)
+                    for (const glm::dvec2& q : points) length = std::max(length, glm::distance(p, q));
+                const auto best = fit::minimal_triangle(view(points), PlanarCriterion::perimeter);
+                REQUIRE(best.has_value());
+                for (const glm::dvec2& p : points)
+                    for (std::size_t k = 0; k < 3; ++k) CHECK(orientation((*best)[k], (*best)[(k + 1) % 3], p) >= 0);
+                const double told = measure_of(*best, PlanarCriterion::perimeter);
+                const double rounded = thickness * size + 0x1p-52 * (2.0 * offset + size);
+                CAPTURE(thickness);
+                CAPTURE(trial);
+                CHECK(told >= 2.0 * length * (1.0 - 1e-15));
+                CHECK(told <= 2.0 * length + 40.0 * rounded);
+            }
+    }
+
+    TEST_CASE("by perimeter, a thin rectangle has the triangle that calculus finds, up to its thickness") {
+        std::mt19937_64 random(232);
+        std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+        for (const double thickness : {1e-12, 1e-10, 1e-8, 1e-6, 1e-4})
+            for (int trial = 0; trial < 60; ++trial) {
+                const double angle = 3.2 * uniform(random), offset = trial % 2 ? 3.0 * uniform(random) : 0.0;
+                const glm::dvec2 along(std::cos(angle), std::sin(angle)), across(-along.y, along.x);
+                Points points;
+                for (int i = 0; i < 12; ++i) {
+                    const double t = i < 4 ? i / 2 : std::abs(uniform(random)),
+                                 d = i < 4 ? i % 2 : std::abs(uniform(random));
+                    points.push_back(offset + t * along + thickness * d * across);
+                }
+                const auto best = fit::minimal_triangle(view(points), PlanarCriterion::perimeter);
+                REQUIRE(best.has_value());
+                // Either one sharp corner, e beyond an end, and the side across as high as the rest asks, or two, each
+                // e beyond an end, on one long side: 2 (1 + e) + t (1 + e) / e, or 1 + 2 e + √((1 + 2 e)² + (t / e)²
+                // …).
+                const double e = std::sqrt(0.5 * thickness), f = std::cbrt(0.25 * thickness * thickness);
+                const double height = thickness / f * (0.5 + f);
+                const double least = std::min(2.0 * (1.0 + e) + thickness * (1.0 + e) / e,
+                                              1.0 + 2.0 * f + 2.0 * std::hypot(0.5 + f, height));
+                const double told = measure_of(*best, PlanarCriterion::perimeter);
+                CAPTURE(thickness);
+                CHECK(told <= least + thickness + 1e-9);
+                CHECK(told >= least - 4.0 * thickness - 1e-9);
+            }
+    }
 }

@@ -10,14 +10,15 @@
 #include <crofton/measure/measure.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
+#include <optional>
 
+#include "least_sliver.hpp"
 #include "planar_points.hpp"
 
 namespace crofton::fit {
 namespace {
 
 using std::numbers::pi;
-using Triangle2 = std::array<glm::dvec2, 3>;
 
 // A convex polygon with one side on the x axis from 0 to (length, 0) and the rest above. `corners` go on
 // counter-clockwise and end with 0 again; `top` is the first of the highest. The right chain is [1, top], the left one
@@ -48,6 +49,15 @@ struct Standing {
         nearly = 1e-12 * height();
     }
     [[nodiscard]] double height() const { return corners[top].y; }
+    [[nodiscard]] double width() const {
+        double low = 0.0, high = 0.0;
+        for (const glm::dvec2& c : corners) low = std::min(low, c.x), high = std::max(high, c.x);
+        return high - low;
+    }
+    [[nodiscard]] bool is_thin() const {
+        const double a = height(), b = width();
+        return std::min(a, b) < 0.1 * std::max(a, b);
+    }
 
     [[nodiscard]] Cut cut(double y) const {
         // The first right corner that is not below y, and the first left one that is not above it.
@@ -150,18 +160,47 @@ class LeastPerimeter {
     // from a circle, an interval: the perimeter has one minimum in B. The minimum over B is searched for in A likewise,
     // from the best of a few places.
     Found run() {
-        constexpr int kPlaces = 12;
-        int best = 1;
+        const Places& places = polygon_.is_thin() ? places_of_slivers() : even_places();
+        std::size_t best = 1;
         double least = kInfinity;
-        for (int i = 1; i < kPlaces; ++i)
-            if (const double value = best_right(pi * i / kPlaces); value < least) least = value, best = i;
+        for (std::size_t i = 1; i + 1 < places.count; ++i)
+            if (const double value = best_right(places.angles[i]); value < least) least = value, best = i;
         const double left =
-            minimise(pi * (best - 1) / kPlaces, pi * (best + 1) / kPlaces, [&](double a) { return best_right(a); });
+            minimise(places.angles[best - 1], places.angles[best + 1], [&](double a) { return best_right(a); });
         const double value = best_right(left);
         return {value, triangle(left, right_)};
     }
 
   private:
+    // Angles to begin from, between 0 and π.
+    struct Places {
+        std::array<double, 64> angles{};
+        std::size_t count = 0;
+        void add(double angle) { angles[count++] = angle; }
+    };
+    static const Places& even_places() {
+        static const Places places = [] {
+            Places result;
+            for (int i = 0; i <= 12; ++i) result.add(pi * i / 12);
+            return result;
+        }();
+        return places;
+    }
+    // The angles of slivers are near 0 and π as often as not: also π over powers of two.
+    static const Places& places_of_slivers() {
+        static const Places places = [] {
+            constexpr int kLeast = 26;
+            Places result;
+            result.add(0.0);
+            for (int k = kLeast; k >= 4; --k) result.add(std::ldexp(pi, -k));
+            for (int i = 1; i < 12; ++i) result.add(pi * i / 12);
+            for (int k = 4; k <= kLeast; ++k) result.add(pi - std::ldexp(pi, -k));
+            result.add(pi);
+            return result;
+        }();
+        return places;
+    }
+
     template <class Function>
     static double minimise(double low, double high, Function f) {
         constexpr double kGolden = 0.61803398874989485;
@@ -205,16 +244,8 @@ class LeastPerimeter {
     double right_ = 0.0;
 };
 
-bool holds(const Triangle2& triangle, std::span<const glm::dvec2> points) {
-    return std::all_of(points.begin(), points.end(), [&](const glm::dvec2& p) {
-        return orientation(triangle[0], triangle[1], p) >= 0 && orientation(triangle[1], triangle[2], p) >= 0 &&
-               orientation(triangle[2], triangle[0], p) >= 0;
-    });
-}
-
-// Around points that are about as thin as their coordinates are rounded. By perimeter: little longer than the points,
-// and many times as thick at one end. By area: twice as long and twice as thick.
-Triangle2 around_flat(std::span<const glm::dvec2> hull, PlanarCriterion criterion) {
+// Around points that are about as thin as their coordinates are rounded: twice as long and twice as thick.
+Triangle2 around_flat(std::span<const glm::dvec2> hull) {
     const glm::dvec2 origin = hull[0];
     glm::dvec2 far(0.0);
     double rounding = 0.0;
@@ -230,10 +261,9 @@ Triangle2 around_flat(std::span<const glm::dvec2> hull, PlanarCriterion criterio
         high = glm::max(high, d);
     }
     const double length = high.x - low.x, middle = 0.5 * (low.y + high.y);
-    const double longer = criterion == PlanarCriterion::area ? 1.0 : 0x1p-7;
     for (double margin = 4.0 * rounding;; margin *= 2.0) {
-        const double begin = low.x - margin, end = high.x + margin + longer * length;
-        const double half = (0.5 * (high.y - low.y) + margin) * (end - begin) / (longer * length);
+        const double begin = low.x - margin, end = high.x + margin + length;
+        const double half = (0.5 * (high.y - low.y) + margin) * (end - begin) / length;
         Triangle2 result{glm::dvec2(begin, middle - half), glm::dvec2(end, middle), glm::dvec2(begin, middle + half)};
         for (glm::dvec2& c : result) c = origin + c.x * along + c.y * across;
         if (holds(result, hull) || margin > length) return result;
@@ -249,23 +279,31 @@ Result<Triangle2> best_triangle(std::span<const glm::dvec2> points, PlanarCriter
     Standing polygon;
     Found best;
     std::size_t base = 0;
+    bool is_thin = false;
     for (std::size_t i = 0; i < hull.size(); ++i) {
         polygon.stand(hull, i);
+        is_thin = is_thin || polygon.is_thin();
         if (!(polygon.height() > 0.0)) continue;
         const Found found = criterion == PlanarCriterion::area ? least_area(polygon) : LeastPerimeter(polygon).run();
         if (found.value < best.value) best = found, base = i;
     }
     const glm::dvec2 x = glm::normalize(hull[(base + 1) % hull.size()] - hull[base]), y(-x.y, x.x);
     const glm::dvec2 middle = (best.corners[0] + best.corners[1] + best.corners[2]) / 3.0;
-    for (double grown = 1.0, step = 0x1p-52; best.value < kInfinity && grown <= 2.0; grown = 1.0 + step, step *= 2.0) {
+    std::optional<Triangle2> found;
+    for (double grown = 1.0, step = 0x1p-52; best.value < kInfinity && grown <= 2.0 && !found;
+         grown = 1.0 + step, step *= 2.0) {
         Triangle2 result;
         for (std::size_t k = 0; k < 3; ++k) {
             const glm::dvec2 c = middle + grown * (best.corners[k] - middle);
             result[k] = hull[base] + c.x * x + c.y * y;
         }
-        if (holds(result, hull)) return result;
+        if (holds(result, hull)) found = result;
     }
-    return around_flat(hull, criterion);
+    if (criterion == PlanarCriterion::perimeter && is_thin) {
+        const auto sliver = least_sliver(hull);
+        if (sliver && !(found && perimeter_of(*found) <= perimeter_of(*sliver))) found = sliver;
+    }
+    return found ? *found : around_flat(hull);
 }
 
 }  // namespace
