@@ -13,7 +13,7 @@
 #   third_party/install.sh --packages also what makes and checks packages (packaging/README.md)
 #   third_party/install.sh --slurm    also the job system of samples/slurm, whose test starts a cluster on this machine
 #   third_party/install.sh --platforms  also compilers and emulators of other targets (docs/testing.md, "Platforms")
-#   third_party/install.sh --engines  also the engines, decoders, job system and documentation tool that samples and tests use where installed
+#   third_party/install.sh --engines  also the engines, job system and documentation tool that samples and tests use where installed
 set -euo pipefail
 
 packages=(
@@ -25,13 +25,15 @@ packages=(
     libvulkan-dev libvulkan-volk-dev mesa-vulkan-drivers vulkan-validationlayers
     # samples
     libglfw3-dev libimgui-dev libstb-dev nlohmann-json3-dev libcli11-dev
+    # samples: decoders of compressed glTF
+    libdraco-dev libmeshoptimizer-dev
     # tests
     doctest-dev libgmp-dev xvfb xauth xdotool libx11-dev
 )
 test_packages=(chromium)
 check_packages=(clang libclang-rt-dev clang-format clang-tidy llvm gdb)
 matrix_packages=(clang llvm libclang-rt-dev clang-19 llvm-19 libclang-rt-19-dev)
-engine_packages=(libdraco-dev libmeshoptimizer-dev libogre-1.12-dev libopenscenegraph-dev libbullet-dev libtbb-dev doxygen)
+engine_packages=(libogre-1.12-dev libopenscenegraph-dev libbullet-dev libtbb-dev doxygen)
 python_packages=(python3-dev python3-numpy python3-pytest python3-setuptools python3-wheel python3-pip python3-venv pybind11-dev)
 rust_packages=(cargo)
 csharp_packages=(mono-mcs mono-runtime libmono-system-core4.0-cil)

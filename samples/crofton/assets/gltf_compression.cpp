@@ -17,7 +17,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::string_view kDraco = "KHR_draco_mesh_compression", kMeshopt = "EXT_meshopt_compression";
+constexpr std::string_view kDraco = "KHR_draco_mesh_compression", kMeshopt = "EXT_meshopt_compression",
+                           kNewMeshopt = "KHR_meshopt_compression";
 
 tl::unexpected<Error> bad(const char* why) {
     return fail(ErrorCode::parse, kNoItem, why);
@@ -30,15 +31,14 @@ Json* extension_of(Json& object, std::string_view name) {
     return &extensions[std::string(name)];
 }
 
-// The decoders' helpers; without a decoder they wait.
-[[maybe_unused]] void remove_extension(Json& object, std::string_view name) {
+void remove_extension(Json& object, std::string_view name) {
     Json& extensions = object["extensions"];
     extensions.erase(std::string(name));
     if (extensions.empty()) object.erase("extensions");
 }
 
 // {"buffer", "byteOffset", "byteLength"} of a view or of a compressed one.
-[[maybe_unused]] Result<std::string_view> bytes_at(const GltfDocument& document, const Json& place) {
+Result<std::string_view> bytes_at(const GltfDocument& document, const Json& place) {
     const auto buffer = whole_number(place, "buffer", kNoNumber), begin = whole_number(place, "byteOffset", 0),
                length = whole_number(place, "byteLength", 0);
     if (!buffer || !begin || !length || *buffer >= document.buffers.size()) return bad("its buffer does not exist");
@@ -50,6 +50,22 @@ Json* extension_of(Json& object, std::string_view name) {
 [[maybe_unused]] std::string text_of(const Json& object, const char* key) {
     const Json* value = member(object, key);
     return value && value->is_string() ? value->get<std::string>() : "";
+}
+
+// Whether a view that is compressed elsewhere, or a primitive, has its bytes in plain form as well.
+bool has_plain_view(const GltfDocument& document, const Json& view) {
+    const auto bytes = bytes_at(document, view);
+    return bytes && !bytes->empty();
+}
+bool has_plain_accessors(const GltfDocument& document, const Json& primitive) {
+    const auto in_view = [&](const Json& number) {
+        const auto index = as_whole_number(number);
+        const Json* accessor = index ? entry(document.root, "accessors", *index) : nullptr;
+        return accessor && member(*accessor, "bufferView");
+    };
+    const Json *attributes = member(primitive, "attributes"), *indices = member(primitive, "indices");
+    const Json* positions = attributes ? member(*attributes, "POSITION") : nullptr;
+    return positions && in_view(*positions) && (!indices || in_view(*indices));
 }
 
 #if defined(CROFTON_MESHOPT)
@@ -72,6 +88,8 @@ Result<std::string> decode_meshopt(const GltfDocument& document, const Json& vie
         failed = meshopt_decodeIndexBuffer(bytes.data(), *count, *stride, data, from->size());
     else if (mode == "INDICES" && index_size)
         failed = meshopt_decodeIndexSequence(bytes.data(), *count, *stride, data, from->size());
+    if (failed != 0 && mode == "ATTRIBUTES" && !from->empty() && data[0] == 0xA1)
+        return bad("is of version 1, which the installed libmeshoptimizer does not read");
     if (failed != 0) return bad("is damaged");
     if (filter.empty() || filter == "NONE") return bytes;
     if (filter == "OCTAHEDRAL" && (*stride == 4 || *stride == 8))
@@ -186,29 +204,34 @@ Result<void> decode_draco(GltfDocument& document, Json& primitive, const Json& c
 
 class Decompressor {
   public:
-    explicit Decompressor(GltfDocument& document) : document_(document) {}
+    Decompressor(GltfDocument& document, bool plain_copies) : document_(document), plain_copies_(plain_copies) {}
 
-    Result<void> views() {
+    Result<void> views(std::string_view extension) {
         for (std::size_t v = 0; v < entry_count(document_.root, "bufferViews"); ++v) {
-            const Json* compressed = extension_of(document_.root["bufferViews"][v], kMeshopt);
+            const Json* compressed = extension_of(document_.root["bufferViews"][v], extension);
             if (!compressed) continue;
+            const bool has_plain = plain_copies_ && has_plain_view(document_, document_.root["bufferViews"][v]);
+            bool decoded = false;
 #if defined(CROFTON_MESHOPT)
             const auto bytes = decode_meshopt(document_, *compressed);
-            if (auto done = note("buffer view " + std::to_string(v), kMeshopt, bytes); !done) return done;
-            if (!bytes) continue;
-            const std::size_t stride = *whole_number(*compressed, "byteStride", 0);
-            const std::size_t plain = append_view(document_, *bytes);
-            Json& view = document_.root["bufferViews"][v];
-            for (const char* key : {"buffer", "byteOffset", "byteLength"})
-                view[key] = document_.root["bufferViews"][plain][key];
-            document_.root["bufferViews"].erase(plain);
-            if (view.contains("byteStride")) view["byteStride"] = stride;
-            remove_extension(view, kMeshopt);
-#else
-            ++left_;
+            if (auto done = note("buffer view " + std::to_string(v), extension, bytes, has_plain); !done) return done;
+            decoded = bytes.has_value();
+            if (decoded) {
+                const std::size_t stride = *whole_number(*compressed, "byteStride", 0);
+                const std::size_t plain = append_view(document_, *bytes);
+                Json& view = document_.root["bufferViews"][v];
+                for (const char* key : {"buffer", "byteOffset", "byteLength"})
+                    view[key] = document_.root["bufferViews"][plain][key];
+                document_.root["bufferViews"].erase(plain);
+                if (view.contains("byteStride")) view["byteStride"] = stride;
+            }
 #endif
+            if (decoded || has_plain)
+                remove_extension(document_.root["bufferViews"][v], extension);
+            else
+                ++left_;
         }
-        return finish(kMeshopt);
+        return finish(extension);
     }
 
     Result<void> primitives() {
@@ -217,29 +240,34 @@ class Decompressor {
                 Json primitive = document_.root["meshes"][m]["primitives"][p];
                 const Json* compressed = extension_of(primitive, kDraco);
                 if (!compressed) continue;
+                const bool has_plain = plain_copies_ && has_plain_accessors(document_, primitive);
+                bool decoded = false;
 #if defined(CROFTON_DRACO)
-                const auto decoded = decode_draco(document_, primitive, Json(*compressed));
+                const auto done = decode_draco(document_, primitive, Json(*compressed));
                 const std::string name = "mesh " + std::to_string(m) + ": primitive " + std::to_string(p);
-                if (auto done = note(name, kDraco, decoded); !done) return done;
-                if (!decoded) continue;
-                remove_extension(primitive, kDraco);
-                document_.root["meshes"][m]["primitives"][p] = std::move(primitive);
-#else
-                ++left_;
+                if (auto noted = note(name, kDraco, done, has_plain); !noted) return noted;
+                decoded = done.has_value();
 #endif
+                if (decoded || has_plain) {
+                    remove_extension(primitive, kDraco);
+                    document_.root["meshes"][m]["primitives"][p] = std::move(primitive);
+                } else {
+                    ++left_;
+                }
             }
         return finish(kDraco);
     }
 
   private:
     template <class T>
-    Result<void> note(const std::string& what, std::string_view extension, const Result<T>& decoded) {
+    [[maybe_unused]] Result<void> note(const std::string& what, std::string_view extension, const Result<T>& decoded,
+                                       bool has_plain) {
         std::size_t bytes = 0;
         for (const std::string& buffer : document_.buffers) bytes += buffer.size();
         if (bytes > document_.limits.bytes) return over_limit("bytes", document_.limits.bytes);
         if (decoded) return {};
-        ++left_;
-        document_.warnings.push_back(what + ": " + std::string(extension) + ": " + decoded.error().message);
+        document_.warnings.push_back(what + ": " + std::string(extension) + ": " + decoded.error().message +
+                                     (has_plain ? "; its uncompressed copy is read" : ""));
         return {};
     }
 
@@ -260,6 +288,7 @@ class Decompressor {
     }
 
     GltfDocument& document_;
+    bool plain_copies_;
     std::size_t left_ = 0;
 };
 
@@ -270,15 +299,29 @@ bool decodes(std::string_view extension) {
     if (extension == kDraco) return true;
 #endif
 #if defined(CROFTON_MESHOPT)
-    if (extension == kMeshopt) return true;
+    if (extension == kMeshopt || extension == kNewMeshopt) return true;
 #endif
     static_cast<void>(extension);
     return false;
 }
 
-Result<void> decompress(GltfDocument& document) {
-    Decompressor run(document);
-    if (auto done = run.views(); !done) return done;
+const char* decoder_package(std::string_view extension) {
+    if (extension == kDraco) return "libdraco-dev";
+    return extension == kMeshopt || extension == kNewMeshopt ? "libmeshoptimizer-dev" : nullptr;
+}
+
+std::string why_compressed(std::string_view extension) {
+    const std::string name(extension);
+    if (decodes(extension)) return "compressed by " + name + ", and could not be decoded";
+    if (const char* package = decoder_package(extension))
+        return "this build has no decoder for " + name + ": install " + package + " and configure again";
+    return "compressed by " + name + ", which is not supported";
+}
+
+Result<void> decompress(GltfDocument& document, bool plain_copies) {
+    Decompressor run(document, plain_copies);
+    for (const std::string_view extension : {kMeshopt, kNewMeshopt})
+        if (auto done = run.views(extension); !done) return done;
     return run.primitives();
 }
 

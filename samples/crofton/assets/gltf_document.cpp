@@ -155,7 +155,7 @@ Result<GltfDocument> read_document(std::string_view file, const std::string& pat
     document.bytes_read = file.size();
     if (auto read = read_buffers(document, folder(path), container.binary, options.whole_buffers); !read)
         return tl::unexpected(read.error());
-    if (auto plain = decompress(document); !plain) return tl::unexpected(plain.error());
+    if (auto plain = decompress(document, options.plain_copies); !plain) return tl::unexpected(plain.error());
     if (auto counts = check_counts(document); !counts) return tl::unexpected(counts.error());
     if (options.images) take_in_images(document, folder(path));
     return document;

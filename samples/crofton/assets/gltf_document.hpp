@@ -29,6 +29,9 @@ struct DocumentOptions {
     bool images = true;
     // A buffer that is missing or too short is an error; without, a warning, and what there is of it is kept.
     bool whole_buffers = true;
+    // What is compressed and cannot be decoded is replaced by its uncompressed copy, where the file has one. Without,
+    // it stays as it is.
+    bool plain_copies = false;
 };
 
 // .glb or .gltf with its buffers; other URIs stay as they are. Bytes behind the length that a binary file's header

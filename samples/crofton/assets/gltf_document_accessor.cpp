@@ -2,6 +2,7 @@
 // Accessors of a document: from JSON that may say anything to elements that are there.
 #include <cstring>
 
+#include "assets/gltf_compression.hpp"
 #include "assets/gltf_document.hpp"
 
 namespace crofton::assets {
@@ -35,7 +36,7 @@ Result<void> locate(const GltfDocument& document, const Json& reference, Element
     if (const Json* extensions = member(*view, "extensions"); extensions && extensions->is_object())
         for (const auto& item : extensions->items())
             if (item.key().find("compression") != std::string::npos)
-                return bad(ErrorCode::unsupported, "compressed by " + item.key() + ", which is not supported");
+                return bad(ErrorCode::unsupported, why_compressed(item.key()));
     const auto buffer = whole_number(*view, "buffer", kNoNumber), begin = whole_number(*view, "byteOffset", 0),
                length = whole_number(*view, "byteLength", 0), stride = whole_number(*view, "byteStride", 0);
     for (const auto* value : {&buffer, &begin, &length, &stride})

@@ -75,6 +75,7 @@ class Converter {
              {std::pair("materials", &materials_), {"textures", &textures_}, {"images", &images_}})
             if (!list->empty()) root[key] = std::move(*list);
         document_.warnings = file_.warnings;
+        document_.warnings.insert(document_.warnings.end(), file_.odd_faces.begin(), file_.odd_faces.end());
         document_.limits = file_.limits;
         document_.bytes_read = file_.bytes_read;
         take_in_images(document_, folder);

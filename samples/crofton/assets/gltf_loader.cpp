@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: MIT
-// glTF 2.0, text and binary: the default scene's nodes, matrices and TRS, meshes shared by instances.
+// glTF 2.0, text and binary: the default scene's nodes that are visible, meshes shared by instances, morph targets and
+// skins as they are before anything is animated.
 #include <cmath>
-#include <glm/gtc/quaternion.hpp>
+#include <glm/common.hpp>
 #include <limits>
 #include <map>
-#include <optional>
+#include <tuple>
 
 #include "assets/file.hpp"
 #include "assets/gltf_color.hpp"
 #include "assets/gltf_compression.hpp"
 #include "assets/gltf_document.hpp"
+#include "assets/gltf_extensions.hpp"
+#include "assets/gltf_node.hpp"
+#include "assets/gltf_pose.hpp"
 #include "assets/gltf_primitive.hpp"
 #include "assets/scene_source.hpp"
 
@@ -17,39 +21,6 @@ namespace crofton::assets {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-// `count` numbers, or nothing where the member is not there. Errors: of another length, not numbers.
-Result<std::optional<std::vector<double>>> numbers(const Json& object, const char* key, std::size_t count) {
-    const Json* list = member(object, key);
-    if (!list) return std::nullopt;
-    std::vector<double> result;
-    for (std::size_t i = 0; list->is_array() && i < list->size() && list->at(i).is_number(); ++i)
-        result.push_back(list->at(i).get<double>());
-    if (result.size() == count && list->size() == count) return result;
-    return fail(ErrorCode::parse, kNoItem,
-                std::string("its ") + key + " has not " + std::to_string(count) + " numbers");
-}
-
-Result<Transform> transform_of(const Json& node) {
-    const auto matrix = numbers(node, "matrix", 16), translation = numbers(node, "translation", 3),
-               turn = numbers(node, "rotation", 4), scale = numbers(node, "scale", 3);
-    for (const auto* part : {&matrix, &translation, &turn, &scale})
-        if (!*part) return tl::unexpected(part->error());
-    if (*matrix) {
-        glm::dmat4 m;
-        for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = (**matrix)[static_cast<std::size_t>(i)];
-        return from_matrix(m);
-    }
-    const auto vector = [](const std::optional<std::vector<double>>& v, double otherwise) {
-        return v ? glm::dvec3((*v)[0], (*v)[1], (*v)[2]) : glm::dvec3(otherwise);
-    };
-    glm::dquat rotation(1.0, 0.0, 0.0, 0.0);
-    if (*turn) rotation = glm::dquat((**turn)[3], (**turn)[0], (**turn)[1], (**turn)[2]);
-    const double length = glm::length(rotation);
-    if (!(length > 1e-6) || !std::isfinite(length))
-        return fail(ErrorCode::degenerate, kNoItem, "its rotation is no quaternion of length one");
-    return from_trs(vector(*translation, 0.0), rotation / length, vector(*scale, 1.0));
-}
 
 // emissiveFactor · KHR_materials_emissive_strength; textures of it are not read.
 glm::vec3 emission_of(const Json& material) {
@@ -65,17 +36,49 @@ glm::vec3 emission_of(const Json& material) {
     return result;
 }
 
+// A mesh of the file as its vertices are on some node.
+struct Shape {
+    std::size_t mesh = 0, skin = kNoNumber;
+    std::vector<double> weights = {};  // of its morph targets; empty: none moves anything
+    friend bool operator<(const Shape& a, const Shape& b) {
+        return std::tie(a.mesh, a.skin, a.weights) < std::tie(b.mesh, b.skin, b.weights);
+    }
+};
+
+// Its primitives in the scene.
+struct ShapeMeshes {
+    std::vector<scene::MeshId> ids;
+    glm::dvec3 origin{0.0};  // of a skinned one: where it stands in the world
+};
+
+// Far from the origin floats are coarse, so that a skinned mesh gets an origin of its own there.
+glm::dvec3 origin_of(std::span<const glm::dvec3> positions) {
+    glm::dvec3 low = positions[0], high = low;
+    for (const glm::dvec3& p : positions) {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+    }
+    const glm::dvec3 middle = 0.5 * (low + high), size = high - low;
+    const double extent = std::max({size.x, size.y, size.z}),
+                 distance = std::max({std::abs(middle.x), std::abs(middle.y), std::abs(middle.z)});
+    return distance > 64.0 * extent && distance < 1e15 ? glm::round(middle) : glm::dvec3(0.0);
+}
+
 class GltfReader {
   public:
     GltfReader(const std::string& path, const GltfDocument& document, const LoadOptions& options)
         : document_(document),
           root_(document.root),
           colors_(document, folder(path)),
+          skins_(document),
           limits_(options.limits),
           deadline_(options.limits),
           source_{file_name(path), scene::Scene({options.criterion}), {}, {}, document.warnings, {}} {}
 
     Result<SceneSource> read() {
+        auto lacks = check_extensions(document_);
+        if (!lacks) return tl::unexpected(lacks.error());
+        for (std::string& warning : *lacks) source_.warnings.push_back(std::move(warning));
         if (auto walked = add_nodes(); !walked) return tl::unexpected(walked.error());
         if (source_.scene.instance_count() == 0)
             return fail(ErrorCode::empty, kNoItem,
@@ -89,6 +92,7 @@ class GltfReader {
         if (!source_.warnings.empty()) return source_.warnings.front();
         const Json* meshes = member(root_, "meshes");
         if (!meshes || !meshes->is_array() || meshes->empty()) return "it has no meshes";
+        if (hidden_) return "what has meshes is hidden by KHR_node_visibility";
         return "none of its " + std::to_string(meshes->size()) + " meshes has triangles and is on a node of the scene";
     }
 
@@ -150,6 +154,12 @@ class GltfReader {
                 continue;
             }
             seen[todo.node] = true;
+            const auto visible = is_visible(*node);
+            if (!visible) source_.warnings.push_back(name + ": " + visible.error().message + "; it is shown");
+            if (visible && !*visible) {
+                hidden_ = true;
+                continue;
+            }
             const auto local = transform_of(*node);
             if (!local) {
                 leave_out(name + " and all below it", local.error());
@@ -168,44 +178,101 @@ class GltfReader {
         const Json* own = member(node, "name");
         const auto id =
             source_.scene.add_node(parent, local, ~0u, own && own->is_string() ? own->get<std::string>() : "");
-        const Json* mesh = member(node, "mesh");
-        if (!id || !mesh) return id;
-        const auto number = as_whole_number(*mesh);
-        if (!number || !entry(root_, "meshes", *number)) {
-            leave_out(name + ": mesh " + mesh->dump().substr(0, 40),
-                      {ErrorCode::out_of_range, kNoItem, "does not exist"});
-            return id;
-        }
-        const auto meshes = meshes_of(*number);
-        if (!meshes) return tl::unexpected(meshes.error());
-        for (const scene::MeshId part : **meshes) {
-            if (source_.scene.instance_count() >= limits_.nodes) return over_limit("nodes", limits_.nodes);
-            if (auto added = source_.scene.add_instance(*id, part); !added) return tl::unexpected(added.error());
-        }
+        if (!id || !member(node, "mesh")) return id;
+        if (auto added = add_instances(name, node, *id); !added) return tl::unexpected(added.error());
         return id;
     }
 
+    // Of the node's mesh. What is wrong with them is left out.
+    Result<void> add_instances(const std::string& name, const Json& node, scene::NodeId id) {
+        const auto shape = shape_of(node);
+        if (!shape) {
+            leave_out(name + ": mesh " + member(node, "mesh")->dump().substr(0, 40), shape.error());
+            return {};
+        }
+        const auto made = meshes_of(*shape);
+        if (!made) return tl::unexpected(made.error());
+        const ShapeMeshes& meshes = **made;
+        const Json* instancing = instancing_of(node);
+        if (instancing && shape->skin != kNoNumber) {
+            source_.warnings.push_back(name + ": EXT_mesh_gpu_instancing of a skinned mesh: shown once");
+            instancing = nullptr;
+        }
+        if (instancing) return add_placements(name, *instancing, id, meshes);
+        if (shape->skin == kNoNumber) return add_meshes(id, meshes);
+        // A skinned mesh stands where its joints are; its node's own transform says nothing.
+        return add_placed({glm::dmat3(1.0), meshes.origin}, scene::kNone, id, meshes);
+    }
+
+    // Which mesh of the file a node shows, and how it is bent.
+    Result<Shape> shape_of(const Json& node) const {
+        const auto mesh = as_whole_number(*member(node, "mesh"));
+        if (!mesh || !entry(root_, "meshes", *mesh)) return fail(ErrorCode::out_of_range, kNoItem, "does not exist");
+        auto weights = morph_weights(node, *entry(root_, "meshes", *mesh));
+        if (!weights) return tl::unexpected(weights.error());
+        const auto skin = whole_number(node, "skin", kNoNumber);
+        if (!skin) return tl::unexpected(skin.error());
+        return Shape{*mesh, *skin, std::move(*weights)};
+    }
+
+    Result<void> add_meshes(scene::NodeId node, const ShapeMeshes& meshes) {
+        for (const scene::MeshId part : meshes.ids) {
+            if (source_.scene.instance_count() >= limits_.nodes) return over_limit("nodes", limits_.nodes);
+            if (auto added = source_.scene.add_instance(node, part); !added) return tl::unexpected(added.error());
+        }
+        return {};
+    }
+
+    // On a node of their own, which is called as `like` is.
+    Result<void> add_placed(const Transform& place, scene::NodeId parent, scene::NodeId like,
+                            const ShapeMeshes& meshes) {
+        if (meshes.ids.empty()) return {};
+        if (source_.scene.node_count() >= limits_.nodes) return over_limit("nodes", limits_.nodes);
+        const std::string name(source_.scene.node_name(like));
+        const auto node = source_.scene.add_node(parent, place, ~0u, name);
+        if (!node) return tl::unexpected(node.error());
+        return add_meshes(*node, meshes);
+    }
+
+    Result<void> add_placements(const std::string& name, const Json& instancing, scene::NodeId node,
+                                const ShapeMeshes& meshes) {
+        const auto places = placements(document_, instancing);
+        if (!places && places.error().code == ErrorCode::budget_exceeded) return tl::unexpected(places.error());
+        if (!places) {
+            leave_out(name + ": EXT_mesh_gpu_instancing", places.error());
+            return {};
+        }
+        if (places->left_out > 0)
+            source_.warnings.push_back(name + ": EXT_mesh_gpu_instancing: " + std::to_string(places->left_out) +
+                                       " instances left out: " + places->why);
+        for (const Transform& place : places->transforms)
+            if (auto added = add_placed(place, node, node, meshes); !added) return added;
+        return {};
+    }
+
     // One scene mesh per primitive, made when first used. Damaged primitives are left out.
-    Result<const std::vector<scene::MeshId>*> meshes_of(std::size_t index) {
-        const auto known = meshes_.find(index);
+    Result<const ShapeMeshes*> meshes_of(const Shape& shape) {
+        const auto known = meshes_.find(shape);
         if (known != meshes_.end()) return &known->second;
-        const Json& mesh = *entry(root_, "meshes", index);
+        const Json& mesh = *entry(root_, "meshes", shape.mesh);
         const Json* own = member(mesh, "name");
         const std::string mesh_name = own && own->is_string() ? own->get<std::string>() : "";
-        std::vector<scene::MeshId> ids;
+        ShapeMeshes made;
         for (std::size_t p = 0; const Json* primitive = entry(mesh, "primitives", p); ++p) {
             if (auto in_time = deadline_.check(); !in_time) return tl::unexpected(in_time.error());
-            const std::string name = label("mesh", index, mesh) + ": primitive " + std::to_string(p);
-            auto made = mesh_of(*primitive, mesh_name, name);
-            auto id = made ? source_.scene.add_mesh(std::move(*made), mesh_name) : tl::unexpected(made.error());
+            const std::string name = label("mesh", shape.mesh, mesh) + ": primitive " + std::to_string(p);
+            auto read = mesh_of(*primitive, shape, mesh_name, name, made);
+            if (triangles_ > limits_.triangles || vertices_ / 3 > limits_.triangles)
+                return over_limit("triangles", limits_.triangles);
+            auto id = read ? source_.scene.add_mesh(std::move(*read), mesh_name) : tl::unexpected(read.error());
             if (!id) {
                 leave_out(name, id.error());
                 continue;
             }
-            ids.push_back(*id);
-            note_material(*id, material_of(*primitive));
+            made.ids.push_back(*id);
+            note_looks(*id, *primitive);
         }
-        return &meshes_.emplace(index, std::move(ids)).first->second;
+        return &meshes_.emplace(shape, std::move(made)).first->second;
     }
 
     [[nodiscard]] const Json* material_of(const Json& primitive) const {
@@ -213,8 +280,13 @@ class GltfReader {
         return number ? entry(root_, "materials", *number) : nullptr;
     }
 
-    // Faces without a material are one-sided as well: it is glTF's default.
-    void note_material(scene::MeshId mesh, const Json* material) {
+    // Faces without a material are one-sided as well, and without normals flat: it is glTF's default.
+    void note_looks(scene::MeshId mesh, const Json& primitive) {
+        if (!member(primitive.at("attributes"), "NORMAL")) {
+            source_.flat.resize(mesh + std::size_t{1});
+            source_.flat[mesh] = 1;
+        }
+        const Json* material = material_of(primitive);
         source_.one_sided.resize(mesh + std::size_t{1});
         const Json* twice = material ? member(*material, "doubleSided") : nullptr;
         source_.one_sided[mesh] = !(twice && twice->is_boolean() && twice->get<bool>());
@@ -230,13 +302,18 @@ class GltfReader {
         source_.emission[mesh].assign(source_.scene.mesh(mesh).triangle_count(), emission);
     }
 
-    Result<TriangleMesh> mesh_of(const Json& primitive, const std::string& name, const std::string& where) {
+    Result<TriangleMesh> mesh_of(const Json& primitive, const Shape& shape, const std::string& name,
+                                 const std::string& where, ShapeMeshes& siblings) {
         if (const std::string reason = reason_to_draw_nothing(primitive); !reason.empty())
             return fail(ErrorCode::unsupported, kNoItem, reason);
         auto read = read_primitive(document_, primitive, {0.0, std::numeric_limits<double>::infinity()});
         if (!read) return tl::unexpected(read.error());
         if (read->mesh.indices.empty()) return fail(ErrorCode::empty, kNoItem, "has no triangles");
         TriangleMesh mesh = std::move(read->mesh);
+        // Each way in which a mesh is bent is a mesh of its own.
+        triangles_ += mesh.triangle_count();
+        vertices_ += mesh.positions.size();
+        if (auto bent = bend(primitive, shape, siblings, mesh); !bent) return tl::unexpected(bent.error());
         const auto values = [&](const char* attribute, int components) -> std::vector<float> {
             const Json* accessor = member(primitive.at("attributes"), attribute);
             if (!accessor) return {};
@@ -253,36 +330,42 @@ class GltfReader {
         return mesh;
     }
 
+    // Moves the vertices as morph targets and the skin say. The first primitive of a skinned mesh chooses its origin.
+    Result<void> bend(const Json& primitive, const Shape& shape, ShapeMeshes& siblings, TriangleMesh& mesh) {
+        const bool morphs = !shape.weights.empty() && entry_count(primitive, "targets") > 0;
+        if (!morphs && shape.skin == kNoNumber) return {};
+        std::vector<glm::dvec3> positions(mesh.positions.begin(), mesh.positions.end());
+        if (morphs)
+            if (auto done = apply_morph(document_, primitive, shape.weights, deadline_, positions); !done) return done;
+        if (shape.skin != kNoNumber) {
+            const auto joints = skins_.joints(shape.skin);
+            if (!joints) return tl::unexpected(joints.error());
+            if (auto done = apply_skin(document_, primitive, *joints, positions); !done) return done;
+            if (siblings.ids.empty()) siblings.origin = origin_of(positions);
+        }
+        for (std::size_t v = 0; v < positions.size(); ++v)
+            mesh.positions[v] = glm::vec3(positions[v] - siblings.origin);
+        return validate(mesh);
+    }
+
     const GltfDocument& document_;
     const Json& root_;
     MaterialColors colors_;
+    SkinPoses skins_;
     ReadLimits limits_;
     Deadline deadline_;
     SceneSource source_;
-    std::map<std::size_t, std::vector<scene::MeshId>> meshes_;
+    std::map<Shape, ShapeMeshes> meshes_;
+    std::uint64_t triangles_ = 0, vertices_ = 0;
+    bool hidden_ = false;
 };
-
-// The first extension that the file cannot be shown without; empty where there is none.
-std::string missing_extension(const Json& root) {
-    for (std::size_t i = 0; const Json* name = entry(root, "extensionsRequired", i); ++i) {
-        if (!name->is_string()) continue;
-        const auto& extension = name->get_ref<const std::string&>();
-        if (extension != "KHR_mesh_quantization" && extension.rfind("KHR_materials", 0) != 0 &&
-            extension != "KHR_texture_transform" && !decodes(extension))
-            return extension;
-    }
-    return {};
-}
 
 }  // namespace
 
 Result<SceneSource> load_gltf(const std::string& path, const LoadOptions& options) {
-    const auto document =
-        read_gltf_document(path, {.limits = options.limits, .images = false, .whole_buffers = options.strict});
+    const auto document = read_gltf_document(
+        path, {.limits = options.limits, .images = false, .whole_buffers = options.strict, .plain_copies = true});
     if (!document) return tl::unexpected(document.error());
-    if (const std::string missing = missing_extension(document->root); !missing.empty())
-        return fail(ErrorCode::unsupported, kNoItem,
-                    path + ": needs the extension " + missing + ", which is not supported");
     auto source = GltfReader(path, *document, options).read();
     if (!source) return in_file(path, "", source.error());
     return source;

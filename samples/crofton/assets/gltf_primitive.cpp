@@ -8,6 +8,8 @@
 #include <limits>
 #include <numeric>
 
+#include "assets/gltf_compression.hpp"
+
 namespace crofton::assets {
 namespace {
 
@@ -157,8 +159,7 @@ Result<PrimitiveGeometry> read_primitive(const GltfDocument& document, const Jso
     if (const Json* extensions = member(primitive, "extensions"); extensions && extensions->is_object())
         for (const auto& item : extensions->items())
             if (item.key().find("compression") != std::string::npos)
-                return fail(ErrorCode::unsupported, kNoItem,
-                            "compressed by " + item.key() + ", which is not supported");
+                return fail(ErrorCode::unsupported, kNoItem, why_compressed(item.key()));
     return PrimitiveReader(document, primitive, tolerances).read();
 }
 

@@ -7,31 +7,13 @@
 #include <map>
 #include <string_view>
 
+#include "assets/face_triangles.hpp"
 #include "assets/file.hpp"
+#include "assets/text_lines.hpp"
 #include "srgb.hpp"
 
 namespace crofton::assets {
 namespace {
-
-bool is_space(char c) {
-    return c == ' ' || c == '\t' || c == '\r';
-}
-
-std::string_view next_word(std::string_view& line) {
-    while (!line.empty() && is_space(line.front())) line.remove_prefix(1);
-    std::size_t end = 0;
-    while (end < line.size() && !is_space(line[end])) ++end;
-    const std::string_view word = line.substr(0, end);
-    line.remove_prefix(end);
-    return word;
-}
-
-std::string_view next_line(std::string_view& text) {
-    const std::size_t end = text.find('\n');
-    const std::string_view line = text.substr(0, end);
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-    return line;
-}
 
 // Finite numbers only.
 template <class Number>
@@ -47,6 +29,11 @@ struct Surface {
 };
 using Materials = std::map<std::string, Surface, std::less<>>;
 
+// What of a line of numbers is no comment.
+std::string_view without_comment(std::string_view line) {
+    return line.substr(0, line.find('#'));
+}
+
 // The last word of a line, behind options that begin with "-".
 std::string last_word(std::string_view line) {
     std::string_view last;
@@ -58,8 +45,8 @@ std::string last_word(std::string_view line) {
 // for.
 void read_materials(std::string_view text, Materials& materials) {
     std::string name;
-    while (!text.empty()) {
-        std::string_view line = next_line(text);
+    TextLines lines(text);
+    for (std::string_view line; lines.next(line);) {
         const std::string_view key = next_word(line);
         if (key == "newmtl") materials[name = std::string(next_word(line))];
         if (key == "map_Kd") materials[name].texture = last_word(line);
@@ -91,38 +78,41 @@ constexpr std::size_t kLinesPerLook = 1 << 14;  // at the clock
 class ObjReader {
   public:
     ObjReader(std::string path, std::string_view text, const ObjOptions& options)
-        : path_(std::move(path)), text_(text), options_(options), deadline_(options.limits) {}
+        : path_(std::move(path)), bytes_(text.size()), lines_(text), options_(options), deadline_(options.limits) {}
 
     Result<ObjFile> read() {
         file_.parts.emplace_back();
         file_.limits = options_.limits;
-        file_.bytes_read = text_.size();
-        while (!text_.empty()) {
-            if (++line_ % kLinesPerLook == 0)
+        file_.bytes_read = bytes_;
+        std::size_t lines_read = 0;
+        for (std::string_view line; lines_.next(line);) {
+            if (++lines_read % kLinesPerLook == 0)
                 if (auto in_time = deadline_.check(); !in_time) return in_file(path_, "", in_time.error());
-            std::string_view line = next_line(text_);
             const std::string_view key = next_word(line);
             Result<void> done;
             if (key == "v")
-                done = read_vertex(line);
+                done = read_vertex(without_comment(line));
             else if (key == "vt")
-                read_texcoord(line);
+                read_texcoord(without_comment(line));
             else if (key == "vn")
-                read_normal(line);
-            else if (key == "f")
-                done = read_face(line);
+                read_normal(without_comment(line));
+            else if (key == "f" || key == "fo")  // an old name of it
+                done = read_face(without_comment(line));
             else if (key == "o" || key == "g")
                 start_part(std::string(next_word(line)));
             else if (key == "usemtl")
                 use_material(next_word(line));
             else if (key == "mtllib")
-                done = load_library(next_word(line));
+                done = load_libraries(line);
             if (!done && (!options_.leave_out || done.error().code == ErrorCode::budget_exceeded))
                 return in_file(path_, "", done.error());
             if (!done) left_out(done.error());
         }
         if (!bad_vertices_.empty()) drop_bad_vertices();
         if (unnamed_ > 0) file_.warnings.push_back(std::to_string(unnamed_) + " more lines make no sense: left out");
+        if (unnamed_fans_ > 0)
+            file_.odd_faces.push_back(std::to_string(unnamed_fans_) +
+                                      " more faces cross themselves or have no area: cut as fans");
         if (dangling_ > 0)
             file_.warnings.push_back(std::to_string(dangling_) +
                                      " corners of faces name texture coordinates or normals that are not there");
@@ -135,8 +125,10 @@ class ObjReader {
     };
 
     Result<void> bad(ErrorCode code, const std::string& why) const {
-        return fail(code, line_, "line " + std::to_string(line_) + ": " + why);
+        return fail(code, lines_.number(), line_name() + ": " + why);
     }
+
+    [[nodiscard]] std::string line_name() const { return "line " + std::to_string(lines_.number()); }
 
     void left_out(const Error& why) {
         if (file_.warnings.size() < kMostWarnings)
@@ -240,11 +232,24 @@ class ObjReader {
             face_.push_back(*corner);
         }
         if (face_.size() < 3) return bad(ErrorCode::parse, "face: fewer than three vertices");
-        triangles_ += face_.size() - 2;
-        if (triangles_ > options_.limits.triangles) return over_limit("triangles", options_.limits.triangles);
-        for (std::size_t i = 2; i < face_.size(); ++i)
-            for (const Corner& c : {face_[0], face_[i - 1], face_[i]}) add_corner(file_.parts.back(), c);
+        if (face_.size() - 2 > options_.limits.triangles - triangles_)
+            return over_limit("triangles", options_.limits.triangles);
+        outline_.clear();
+        for (const Corner& corner : face_) outline_.push_back(file_.positions[corner.position]);
+        const FaceCut cut = triangulator_.cut(outline_);
+        triangles_ += triangulator_.triangles().size();
+        for (const auto& triangle : triangulator_.triangles())
+            for (const std::uint32_t corner : triangle) add_corner(file_.parts.back(), face_[corner]);
+        if (cut == FaceCut::no_polygon) note_fan();
         return {};
+    }
+
+    void note_fan() {
+        if (file_.odd_faces.size() < kMostWarnings)
+            file_.odd_faces.push_back(line_name() +
+                                      ": face: crosses itself or has no area: cut as a fan from its first corner");
+        else
+            ++unnamed_fans_;
     }
 
     // No face names them.
@@ -298,29 +303,48 @@ class ObjReader {
         part.material = std::string(name);
     }
 
-    Result<void> load_library(std::string_view name) {
+    // One file whose name may have blanks, or several.
+    Result<void> load_libraries(std::string_view line) {
+        std::string_view rest = line;
+        const std::string_view first = next_word(rest);
+        std::string_view whole = line.substr(static_cast<std::size_t>(first.data() - line.data()));
+        while (!whole.empty() && is_blank(whole.back())) whole.remove_suffix(1);
+        if (whole == first) return load_library(first, true);
+        const std::size_t libraries = libraries_;
+        if (auto done = load_library(whole, false); !done || libraries_ > libraries) return done;
+        for (std::string_view name = next_word(line); !name.empty(); name = next_word(line))
+            if (auto done = load_library(name, true); !done) return done;
+        return {};
+    }
+
+    // What cannot be read is skipped, with a warning where `warn`.
+    Result<void> load_library(std::string_view name, bool warn) {
         if (auto in_time = deadline_.check(); !in_time) return in_time;
         const std::uint64_t limit = options_.limits.bytes;
         const auto text = read_file_below(folder(path_), std::string(name), limit - std::min(limit, file_.bytes_read));
         if (text) {
+            ++libraries_;
             file_.bytes_read += text->size();
             read_materials(*text, materials_);
         } else if (text.error().code == ErrorCode::budget_exceeded) {
             return over_limit("bytes", limit);
-        } else if (file_.warnings.size() < kMostWarnings) {
-            file_.warnings.push_back("line " + std::to_string(line_) + ": " + text.error().message);
+        } else if (warn && file_.warnings.size() < kMostWarnings) {
+            file_.warnings.push_back(line_name() + ": " + text.error().message);
         }
         return {};
     }
 
     std::string path_;
-    std::string_view text_;
+    std::size_t bytes_;
+    TextLines lines_;
     ObjOptions options_;
     Deadline deadline_;
-    std::size_t line_ = 0, dangling_ = 0, unnamed_ = 0;
+    std::size_t dangling_ = 0, unnamed_ = 0, unnamed_fans_ = 0, libraries_ = 0;
     std::uint64_t triangles_ = 0;
     std::vector<std::uint32_t> bad_vertices_;  // ascending
     std::vector<Corner> face_;
+    std::vector<glm::dvec3> outline_;
+    FaceTriangulator triangulator_;
     Materials materials_;
     ObjFile file_;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Wavefront OBJ: v (with optional colours), vt, vn, f (any polygon, as a fan), o, g, usemtl with Kd, Ke and map_Kd of a
-// material library.
+// Wavefront OBJ: v (with optional colours or weight), vt, vn, f (any polygon, concave ones and keyholes too), o, g,
+// usemtl with Kd, Ke and map_Kd of a material library. Lines may end in LF, CR LF or CR, continue after "\" and end in
+// a comment. Curves, surfaces, lines and points are not read.
 #pragma once
 #include <crofton/core/error.hpp>
 #include <cstdint>
@@ -27,14 +28,15 @@ struct ObjFile {
         // As many as indices, into texcoords and normals; kNone where the corner has none, both empty where none has.
         std::vector<std::uint32_t> texcoord_indices, normal_indices;
     };
-    std::vector<glm::dvec3> positions;  // in the file's order, used by faces or not; finite
-    std::vector<glm::vec3> colors;      // one a position; negative red where the file gives none
-    std::vector<glm::vec2> texcoords;   // v upwards, as in the file
-    std::vector<glm::vec3> normals;     // of any length
-    std::vector<Part> parts;            // at least one; any may be without faces
-    std::vector<std::string> warnings;  // material libraries, texture coordinates and normals that are not there
-    ReadLimits limits;                  // that it was read with
-    std::uint64_t bytes_read = 0;       // with its libraries, within limits.bytes
+    std::vector<glm::dvec3> positions;   // in the file's order, used by faces or not; finite
+    std::vector<glm::vec3> colors;       // one a position; negative red where the file gives none
+    std::vector<glm::vec2> texcoords;    // v upwards, as in the file
+    std::vector<glm::vec3> normals;      // of any length
+    std::vector<Part> parts;             // at least one; any may be without faces
+    std::vector<std::string> warnings;   // material libraries, texture coordinates and normals that are not there
+    std::vector<std::string> odd_faces;  // faces that cross themselves or have no area, and so are fans
+    ReadLimits limits;                   // that it was read with
+    std::uint64_t bytes_read = 0;        // with its libraries, within limits.bytes
 };
 
 struct ObjOptions {

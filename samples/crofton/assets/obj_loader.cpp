@@ -35,6 +35,7 @@ Result<SceneSource> load_obj(const std::string& path, const LoadOptions& options
     auto read = read_obj(path, {.largest = kMaxCoordinate, .limits = options.limits, .leave_out = !options.strict});
     if (!read) return tl::unexpected(read.error());
     ObjFile& file = *read;
+    file.warnings.insert(file.warnings.end(), file.odd_faces.begin(), file.odd_faces.end());
     SceneSource source{file_name(path), scene::Scene({options.criterion}), {}, {}, std::move(file.warnings), {}};
     const auto root = source.scene.add_node(scene::kNone, {}, ~0u, source.name);
     if (!root) return in_file(path, "", root.error());

@@ -43,6 +43,9 @@ struct SceneSource {
     std::vector<std::uint8_t> unlit = {};
     // By mesh: 1 where faces are meant to be seen from their front only (glTF's doubleSided: false). Empty: none.
     std::vector<std::uint8_t> one_sided = {};
+    // By mesh: 1 where each face has its own normal (glTF without NORMAL); else faces that meet at a small angle share
+    // one. Empty: none.
+    std::vector<std::uint8_t> flat = {};
     // By mesh, one radiosity per triangle: what its faces give off; nothing where a mesh is beyond the end or empty.
     std::vector<std::vector<glm::vec3>> emission = {};
     std::vector<Room> rooms = {};  // of a level
@@ -57,7 +60,8 @@ struct SceneSource {
 // "town", "room" (an interior to light), or a file by its extension: .glb, .gltf, .obj, .wad. Errors name the file, the
 // item in it and the reason: missing or damaged file, unknown extension, unknown map, nothing to draw, beyond a limit.
 // What is bad in a file (a node with a NaN, a primitive, face or sector that makes no sense, an image that cannot be
-// read) is left out, with a warning each that names it; with `strict` the first one is an error.
+// read) is left out, with a warning each that names it; with `strict` the first one is an error. So is an extension of
+// glTF that is not read, if it may change what is where; where the file requires such a one, it is refused.
 [[nodiscard]] Result<SceneSource> load_scene(const std::string& source, const LoadOptions& options = {});
 
 [[nodiscard]] Result<SceneSource> make_town(const LoadOptions& options);

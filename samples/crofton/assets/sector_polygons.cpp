@@ -15,11 +15,17 @@ struct Edge {
     bool used = false;
 };
 
-// All exact: coordinates are 16-bit integers.
+// All exact: coordinates are integers below 2^30, so differences are below 2^31.
 using Wide = std::int64_t;
 
+Wide difference(int a, int b) {
+    return Wide{a} - b;
+}
 Wide cross(const Vertex& o, const Vertex& a, const Vertex& b) {
-    return Wide{a.x - o.x} * (b.y - o.y) - Wide{a.y - o.y} * (b.x - o.x);
+    return difference(a.x, o.x) * difference(b.y, o.y) - difference(a.y, o.y) * difference(b.x, o.x);
+}
+Wide dot(const Vertex& o, const Vertex& a, const Vertex& b) {
+    return difference(a.x, o.x) * difference(b.x, o.x) + difference(a.y, o.y) * difference(b.y, o.y);
 }
 
 class SectorTracer {
@@ -36,10 +42,17 @@ class SectorTracer {
             if (!walk(e, ring)) return {{}, "its lines do not close around vertex " + std::to_string(ring.back())};
             split(ring, rings);
         }
-        return assemble(rings);
+        return assemble(turned_outward(rings));
     }
 
   private:
+    // Lines that all face away from a sector would leave it the rest of the world: they are taken to bound it.
+    std::vector<Ring> turned_outward(std::vector<Ring> rings) const {
+        const auto is_outline = [&](const Ring& ring) { return doubled_area(ring) > 0.0; };
+        if (rings.size() == 1 && !is_outline(rings[0])) std::reverse(rings[0].begin(), rings[0].end());
+        return rings;
+    }
+
     const Vertex& at(std::uint32_t v) const { return level_.vertices[v]; }
 
     // Follows edges from `first` until back at its start; false at a dead end.
@@ -77,8 +90,7 @@ class SectorTracer {
         const auto half = [&](const Vertex& p) {  // 0: less than half a turn clockwise, 1: the rest, the way back last
             const Wide side = cross(o, back, p);
             if (side != 0) return side < 0 ? 0 : 2;
-            const Wide dot = Wide{back.x - o.x} * (p.x - o.x) + Wide{back.y - o.y} * (p.y - o.y);
-            return dot < 0 ? 1 : 3;
+            return dot(o, back, p) < 0 ? 1 : 3;
         };
         const int ha = half(a), hb = half(b);
         return ha != hb ? ha < hb : cross(o, a, b) < 0;
@@ -102,12 +114,11 @@ class SectorTracer {
         if (open.size() >= 3) rings.push_back(std::move(open));
     }
 
-    Wide doubled_area(const Ring& ring) const {
-        Wide area = 0;
-        for (std::size_t i = 0; i < ring.size(); ++i) {
-            const Vertex &a = at(ring[i]), &b = at(ring[(i + 1) % ring.size()]);
-            area += Wide{a.x} * b.y - Wide{a.y} * b.x;
-        }
+    // Exact for whole map units.
+    double doubled_area(const Ring& ring) const {
+        double area = 0.0;
+        for (std::size_t i = 2; i < ring.size(); ++i)
+            area += static_cast<double>(cross(at(ring[0]), at(ring[i - 1]), at(ring[i])));
         return area;
     }
 
@@ -134,15 +145,15 @@ class SectorTracer {
     SectorPolygons assemble(const std::vector<Ring>& rings) const {
         struct Outer {
             const Ring* ring;
-            Wide area;
+            double area;
             std::vector<const Ring*> holes;
         };
         std::vector<Outer> outers;
         SectorPolygons result;
         for (const Ring& ring : rings)
-            if (const Wide area = doubled_area(ring); area > 0) outers.push_back({&ring, area, {}});
+            if (const double area = doubled_area(ring); area > 0.0) outers.push_back({&ring, area, {}});
         for (const Ring& ring : rings) {
-            if (doubled_area(ring) >= 0) continue;
+            if (doubled_area(ring) >= 0.0) continue;
             Outer* home = nullptr;
             for (Outer& outer : outers)
                 if ((!home || outer.area < home->area) && encloses(*outer.ring, ring)) home = &outer;
@@ -155,7 +166,7 @@ class SectorTracer {
         for (const Outer& outer : outers) {
             Polygon polygon;
             const auto add = [&](const Ring& ring) {
-                for (const std::uint32_t v : ring) polygon.points.emplace_back(at(v).x, at(v).y);
+                for (const std::uint32_t v : ring) polygon.points.push_back(level_.position(v));
                 polygon.ring_ends.push_back(static_cast<std::uint32_t>(polygon.points.size()));
             };
             add(*outer.ring);
@@ -178,11 +189,11 @@ std::vector<SectorPolygons> sector_polygons(const WadLevel& level) {
     constexpr std::uint32_t kNoSector = ~std::uint32_t{0};
     const auto sector_of = [&](std::uint32_t side) { return side == kNoSide ? kNoSector : level.sides[side].sector; };
     // Two vertices at one place are one: editors leave such pairs.
-    std::unordered_map<std::uint32_t, std::uint32_t> first_at;
+    std::unordered_map<std::uint64_t, std::uint32_t> first_at;
     std::vector<std::uint32_t> merged(level.vertices.size());
     for (std::uint32_t v = 0; v < merged.size(); ++v) {
-        const std::uint32_t key = static_cast<std::uint16_t>(level.vertices[v].x) |
-                                  static_cast<std::uint32_t>(static_cast<std::uint16_t>(level.vertices[v].y)) << 16;
+        const std::uint64_t key = static_cast<std::uint32_t>(level.vertices[v].x) |
+                                  std::uint64_t{static_cast<std::uint32_t>(level.vertices[v].y)} << 32;
         merged[v] = first_at.try_emplace(key, v).first->second;
     }
     for (const WadLevel::Line& line : level.lines) {

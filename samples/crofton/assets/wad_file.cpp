@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "assets/udmf.hpp"
+
 namespace crofton::assets {
 namespace {
 
@@ -50,16 +52,46 @@ Result<std::vector<Lump>> read_directory(std::string_view wad) {
     return lumps;
 }
 
-constexpr std::array<std::string_view, 10> kLevelLumps = {"THINGS",   "LINEDEFS", "SIDEDEFS", "VERTEXES", "SEGS",
-                                                          "SSECTORS", "NODES",    "SECTORS",  "REJECT",   "BLOCKMAP"};
+constexpr std::array<std::string_view, 12> kLevelLumps = {"THINGS", "LINEDEFS", "SIDEDEFS", "VERTEXES",
+                                                          "SEGS",   "SSECTORS", "NODES",    "SECTORS",
+                                                          "REJECT", "BLOCKMAP", "BEHAVIOR", "SCRIPTS"};
 
 bool is_level_lump(const std::string& name) {
     return std::find(kLevelLumps.begin(), kLevelLumps.end(), name) != kLevelLumps.end();
 }
 
-// A level begins with a lump of its name, followed by its data.
-bool begins_level(const std::vector<Lump>& lumps, std::size_t i) {
-    return i + 1 < lumps.size() && !is_level_lump(lumps[i].name) && is_level_lump(lumps[i + 1].name);
+bool is_udmf(const std::vector<Lump>& lumps, std::size_t level) {
+    return level + 1 < lumps.size() && lumps[level + 1].name == "TEXTMAP";
+}
+
+// A level begins with a lump of its name, followed by its data. One of text ends at the lump ENDMAP; what lies between
+// may look like levels.
+std::vector<std::size_t> level_begins(const std::vector<Lump>& lumps) {
+    std::vector<std::size_t> result;
+    for (std::size_t i = 0; i + 1 < lumps.size(); ++i) {
+        if (is_udmf(lumps, i)) {
+            result.push_back(i);
+            const auto end = std::find_if(lumps.begin() + static_cast<std::ptrdiff_t>(i), lumps.end(),
+                                          [](const Lump& lump) { return lump.name == "ENDMAP"; });
+            i = end == lumps.end() ? i + 1 : static_cast<std::size_t>(end - lumps.begin());
+        } else if (!is_level_lump(lumps[i].name) && is_level_lump(lumps[i + 1].name)) {
+            result.push_back(i);
+        }
+    }
+    return result;
+}
+
+Result<std::string_view> contents(std::string_view wad, const std::vector<Lump>& lumps, std::size_t i) {
+    if (lumps[i].offset > wad.size() || lumps[i].size > wad.size() - lumps[i].offset)
+        return fail(ErrorCode::parse, i, lumps[i].name + ": ends beyond the file");
+    return wad.substr(lumps[i].offset, lumps[i].size);
+}
+
+// Hexen's levels have scripts, and lines of another layout.
+bool has_scripts(const std::vector<Lump>& lumps, std::size_t level) {
+    for (std::size_t i = level + 1; i < lumps.size() && is_level_lump(lumps[i].name); ++i)
+        if (lumps[i].name == "BEHAVIOR") return true;
+    return false;
 }
 
 // The level's lump of that name as records of `record` bytes.
@@ -71,12 +103,12 @@ Result<Records> find_lump(std::string_view wad, const std::vector<Lump>& lumps, 
                           std::string_view name, std::size_t record) {
     for (std::size_t i = level + 1; i < lumps.size() && is_level_lump(lumps[i].name); ++i) {
         if (lumps[i].name != name) continue;
-        if (lumps[i].offset > wad.size() || lumps[i].size > wad.size() - lumps[i].offset)
-            return fail(ErrorCode::parse, i, std::string(name) + ": ends beyond the file");
+        const auto bytes = contents(wad, lumps, i);
+        if (!bytes) return tl::unexpected(bytes.error());
         if (lumps[i].size % record != 0)
             return fail(ErrorCode::parse, i,
                         std::string(name) + ": its size is no multiple of " + std::to_string(record) + " bytes");
-        return Records{wad.substr(lumps[i].offset, lumps[i].size), lumps[i].size / record};
+        return Records{*bytes, lumps[i].size / record};
     }
     return fail(ErrorCode::parse, level, std::string(name) + ": missing");
 }
@@ -102,14 +134,49 @@ Result<void> check_level(const WadLevel& level) {
     return {};
 }
 
+Result<WadLevel> read_binary(std::string_view wad, const std::vector<Lump>& lumps, std::size_t begin) {
+    WadLevel level;
+    const auto side = [](std::uint32_t number) { return number == 0xFFFF ? kNoSide : number; };
+    const auto read = [&](std::string_view lump, std::size_t record, auto&& each) -> Result<void> {
+        const auto records = find_lump(wad, lumps, begin, lump, record);
+        if (!records) return tl::unexpected(records.error());
+        for (std::size_t i = 0; i < records->count; ++i) each(records->bytes.substr(i * record, record));
+        return {};
+    };
+    // Behind its vertices a line has what it does: a word or more of numbers for it.
+    const std::size_t line = has_scripts(lumps, begin) ? 16 : 14;
+    Result<void> done = read("VERTEXES", 4, [&](std::string_view b) {
+        level.vertices.push_back({i16(b, 0), i16(b, 2)});
+    });
+    if (done)
+        done = read("LINEDEFS", line, [&](std::string_view b) {
+            level.lines.push_back({u16(b, 0), u16(b, 2), side(u16(b, line - 4)), side(u16(b, line - 2))});
+        });
+    if (done)
+        done = read("SIDEDEFS", 30, [&](std::string_view b) {
+            level.sides.push_back({u16(b, 28), text(b, 4), text(b, 12), text(b, 20)});
+        });
+    if (done)
+        done = read("SECTORS", 26, [&](std::string_view b) {
+            level.sectors.push_back({i16(b, 0), i16(b, 2), std::clamp(i16(b, 20), 0, 255), text(b, 4), text(b, 12)});
+        });
+    if (!done) return tl::unexpected(done.error());
+    return level;
+}
+
+Result<WadLevel> read_text(std::string_view wad, const std::vector<Lump>& lumps, std::size_t begin) {
+    const auto text = contents(wad, lumps, begin + 1);
+    if (!text) return tl::unexpected(text.error());
+    return read_udmf(*text);
+}
+
 }  // namespace
 
 Result<std::vector<std::string>> list_levels(std::string_view wad) {
     const auto lumps = read_directory(wad);
     if (!lumps) return tl::unexpected(lumps.error());
     std::vector<std::string> names;
-    for (std::size_t i = 0; i < lumps->size(); ++i)
-        if (begins_level(*lumps, i)) names.push_back((*lumps)[i].name);
+    for (const std::size_t i : level_begins(*lumps)) names.push_back((*lumps)[i].name);
     if (names.empty()) return fail(ErrorCode::empty, kNoItem, "holds no level");
     return names;
 }
@@ -121,38 +188,18 @@ Result<WadLevel> read_level(std::string_view wad, const std::string& name) {
     std::string wanted = name.empty() ? names->front() : name;
     for (char& c : wanted)
         if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
-    std::size_t begin = 0;
-    while (begin < lumps->size() && !((*lumps)[begin].name == wanted && begins_level(*lumps, begin))) ++begin;
-    if (begin == lumps->size()) {
+    const auto begins = level_begins(*lumps);
+    const auto begin =
+        std::find_if(begins.begin(), begins.end(), [&](std::size_t i) { return (*lumps)[i].name == wanted; });
+    if (begin == begins.end()) {
         std::string known;
         for (const std::string& level : *names) known += " " + level;
         return fail(ErrorCode::invalid_argument, kNoItem, "no level '" + name + "'; there are:" + known);
     }
-    WadLevel level;
-    level.name = wanted;
-    const auto read = [&](std::string_view lump, std::size_t record, auto&& each) -> Result<void> {
-        const auto records = find_lump(wad, *lumps, begin, lump, record);
-        if (!records) return fail(records.error().code, records.error().item, wanted + ": " + records.error().message);
-        for (std::size_t i = 0; i < records->count; ++i) each(records->bytes.substr(i * record, record));
-        return {};
-    };
-    Result<void> done = read("VERTEXES", 4, [&](std::string_view b) {
-        level.vertices.push_back({i16(b, 0), i16(b, 2)});
-    });
-    if (done)
-        done = read("LINEDEFS", 14, [&](std::string_view b) {
-            level.lines.push_back({u16(b, 0), u16(b, 2), u16(b, 10), u16(b, 12)});
-        });
-    if (done)
-        done = read("SIDEDEFS", 30, [&](std::string_view b) {
-            level.sides.push_back({u16(b, 28), text(b, 4), text(b, 12), text(b, 20)});
-        });
-    if (done)
-        done = read("SECTORS", 26, [&](std::string_view b) {
-            level.sectors.push_back({i16(b, 0), i16(b, 2), std::clamp(i16(b, 20), 0, 255), text(b, 4), text(b, 12)});
-        });
-    if (done) done = check_level(level);
-    if (!done) return tl::unexpected(done.error());
+    auto level = is_udmf(*lumps, *begin) ? read_text(wad, *lumps, *begin) : read_binary(wad, *lumps, *begin);
+    if (!level) return fail(level.error().code, level.error().item, wanted + ": " + level.error().message);
+    level->name = wanted;
+    if (auto good = check_level(*level); !good) return tl::unexpected(good.error());
     return level;
 }
 

@@ -46,9 +46,9 @@ class LevelBuilder {
         if (!root) return tl::unexpected(root.error());
         root_ = *root;
         for (const WadLevel::Line& line : level_.lines) {
-            const WadLevel::Vertex &a = level_.vertices[line.from], &b = level_.vertices[line.to];
-            lines_[{a.x * 1.0, a.y * 1.0, b.x * 1.0, b.y * 1.0}] = line.right;
-            lines_[{b.x * 1.0, b.y * 1.0, a.x * 1.0, a.y * 1.0}] = line.left;
+            const glm::dvec2 a = level_.position(line.from), b = level_.position(line.to);
+            lines_[{a.x, a.y, b.x, b.y}] = line.right;
+            lines_[{b.x, b.y, a.x, a.y}] = line.left;
         }
         const auto sectors = sector_polygons(level_);
         for (std::size_t s = 0; s < sectors.size(); ++s) {
@@ -199,9 +199,9 @@ class LevelBuilder {
 
     void add_quad(std::size_t number, std::uint32_t from, std::uint32_t to, int bottom, int top,
                   const glm::vec3& color) {
-        const WadLevel::Vertex &a = level_.vertices[from], &b = level_.vertices[to];
-        if (top <= bottom || (a.x == b.x && a.y == b.y)) return;
-        const auto corner = [](const WadLevel::Vertex& v, int height) {
+        const glm::dvec2 a = level_.position(from), b = level_.position(to);
+        if (top <= bottom || a == b) return;
+        const auto corner = [](const glm::dvec2& v, int height) {
             return glm::vec3(static_cast<float>(v.x), static_cast<float>(height), static_cast<float>(-v.y)) *
                    static_cast<float>(kMetresPerUnit);
         };

@@ -177,7 +177,7 @@ class FramesRun {
         std::vector<std::uint8_t> is_mover(source_->scene.instance_count(), 0);
         for (const scene::InstanceId instance : pipeline_->movers()) is_mover[instance] = 1;
         list_.emplace(source_->scene, pipeline_->spatial_order(), is_mover,
-                      pipeline::DrawList::Looks{source_->unlit, source_->one_sided});
+                      pipeline::DrawList::Looks{source_->unlit, source_->one_sided, source_->flat});
         if (options_.no_draw) return {};
         // Half of the light is haze at three times the size of the place; none where the light is baked in.
         const double haze = source_->unlit.empty() ? 3.0 * glm::length(focus_.half_extents()) : 0.0;
@@ -318,7 +318,7 @@ void add_frames_command(CommandLine& line) {
     auto options = std::make_shared<FramesOptions>();
     Command command =
         line.command("frames", "Run a camera path through a scene: cull, collide, draw and count each frame");
-    command.footer(kFramesExamples);
+    command.footer(std::string(kFramesExamples) + "\n" + kSceneFormats);
     command.option("scene", options->scene, "town, room, or a .glb, .gltf, .obj or .wad file").show_default();
     command.option("--frames", options->frames, "How many frames; where absent 120, or all of a recorded path");
     command.option("--camera", options->camera, "orbit, street, random, or a JSON file of cameras").show_default();

@@ -152,13 +152,16 @@ void add_measure_command(CommandLine& line) {
     Command command =
         line.command("measure", "Crofton's formula on a mesh: its area, volume and curvature, exact and by lines");
     command.footer(
-        "Columns: what is measured; what is counted; the value that follows from the triangles; the estimate, its\n"
-        "standard error, and how many of these it is off (z). docs/theory.md derives the formulas. Lengths are in the\n"
-        "file's unit.\n\n"
-        "Examples:\n"
-        "  crofton measure bunny.obj\n"
-        "  crofton measure room --lines 1000000\n"
-        "  crofton measure level.wad --json -\n");
+        std::string(
+            "Columns: what is measured; what is counted; the value that follows from the triangles; the estimate, its\n"
+            "standard error, and how many of these it is off (z). docs/theory.md derives the formulas. Lengths are in "
+            "the\n"
+            "file's unit.\n\n"
+            "Examples:\n"
+            "  crofton measure bunny.obj\n"
+            "  crofton measure room --lines 1000000\n"
+            "  crofton measure level.wad --json -\n\n") +
+        kSceneFormats);
     command.option("file", options->file, "town, room, or a .glb, .gltf, .obj or .wad file; of a .wad the first level")
         .required();
     command.option("--lines", options->lines, "How many lines, rounded up to blocks of 1024")

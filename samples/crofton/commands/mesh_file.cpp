@@ -34,6 +34,9 @@ Result<TriangleMesh> with_triangles(TriangleMesh mesh, const std::string& path) 
 Result<TriangleMesh> load_obj_mesh(const std::string& path, const ReadOptions& options) {
     const auto file = assets::read_obj(path, {.limits = options.limits});
     if (!file) return tl::unexpected<Error>(file.error());
+    if (auto whole = refuse_if_strict(path, file->odd_faces, options); !whole)
+        return tl::unexpected<Error>(whole.error());
+    print_warnings(file->odd_faces);
     TriangleMesh mesh;
     mesh.positions.assign(file->positions.begin(), file->positions.end());
     for (const assets::ObjFile::Part& part : file->parts)

@@ -16,6 +16,14 @@ struct ReadOptions {
     bool strict = false;
 };
 
+// For the help of sub-commands that show scenes: what is read of files.
+inline constexpr const char* kSceneFormats =
+    "Files, as they are before anything is animated (more in docs/files.md):\n"
+    "  .glb, .gltf  meshes, EXT_mesh_gpu_instancing, KHR_node_visibility, morph weights, skins, quantized and\n"
+    "               compressed (Draco, meshopt) geometry; other extensions give a warning or a reason to refuse\n"
+    "  .obj         faces of any number of corners, concave ones and keyholes too; materials' colours\n"
+    "  .wad         levels of DOOM, of Hexen and in text (UDMF)\n";
+
 // --max-bytes, --max-triangles, --max-pixels, --max-nodes, --max-nesting, --max-seconds and --strict. `options` must
 // outlive the parsing.
 void add_read_options(Command& command, ReadOptions& options);

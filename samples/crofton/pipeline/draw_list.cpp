@@ -20,10 +20,21 @@ struct MeshVertices {
     Vector<std::uint32_t> indices;
 };
 
-std::vector<MeshVertices> vertices_of_meshes(const scene::Scene& scene) {
+std::uint8_t flag(std::span<const std::uint8_t> flags, scene::MeshId mesh) {
+    return mesh < flags.size() ? flags[mesh] : std::uint8_t{0};
+}
+
+std::vector<MeshVertices> vertices_of_meshes(const scene::Scene& scene, std::span<const std::uint8_t> flat) {
+    // No angle is below it, so that no faces share a normal.
+    constexpr float kFlat = 0.0f;
     std::vector<MeshVertices> result(scene.mesh_count());
-    for (scene::MeshId mesh = 0; mesh < scene.mesh_count(); ++mesh)
-        render::append_mesh(scene.mesh(mesh), kPlainColor, result[mesh].vertices, result[mesh].indices);
+    for (scene::MeshId mesh = 0; mesh < scene.mesh_count(); ++mesh) {
+        auto& [vertices, indices] = result[mesh];
+        if (flag(flat, mesh) != 0)
+            render::append_mesh(scene.mesh(mesh), kPlainColor, vertices, indices, kFlat);
+        else
+            render::append_mesh(scene.mesh(mesh), kPlainColor, vertices, indices);
+    }
     return result;
 }
 
@@ -41,16 +52,12 @@ glm::dmat3 normal_matrix(const glm::dmat3& linear) {
     return glm::determinant(linear) < 0.0 ? -cofactor : cofactor;
 }
 
-std::uint8_t flag(std::span<const std::uint8_t> flags, scene::MeshId mesh) {
-    return mesh < flags.size() ? flags[mesh] : std::uint8_t{0};
-}
-
 }  // namespace
 
 DrawList::DrawList(const scene::Scene& scene, std::span<const scene::InstanceId> order,
                    std::span<const std::uint8_t> is_mover, const Looks& looks)
     : scene_(scene), baked_origin_(middle_of(scene)), instances_(order.begin(), order.end()) {
-    const std::vector<MeshVertices> meshes = vertices_of_meshes(scene);
+    const std::vector<MeshVertices> meshes = vertices_of_meshes(scene, looks.flat);
     std::size_t baked_vertices = 0;
     for (const scene::InstanceId i : order)
         if (!is_mover[i]) baked_vertices += meshes[scene.mesh_of(i)].vertices.size();

@@ -19,6 +19,7 @@ class DrawList {
     struct Looks {
         std::span<const std::uint8_t> unlit{};      // shows its colours as they are
         std::span<const std::uint8_t> one_sided{};  // does not show its back faces
+        std::span<const std::uint8_t> flat{};       // each face has its own normal
     };
     // `order` lists the instances as they should lie in the buffer, a tree's leaf order; `is_mover` is by instance.
     DrawList(const scene::Scene& scene, std::span<const scene::InstanceId> order,

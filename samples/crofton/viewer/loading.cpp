@@ -139,7 +139,7 @@ Result<void> Session::load(const SceneRequest& request) {
     for (const scene::InstanceId mover : loaded_->source().movers) is_mover[mover] = 1;
     list_ = std::make_unique<pipeline::DrawList>(
         loaded_->scene(), loaded_->pipeline().spatial_order(), is_mover,
-        pipeline::DrawList::Looks{loaded_->source().unlit, loaded_->source().one_sided});
+        pipeline::DrawList::Looks{loaded_->source().unlit, loaded_->source().one_sided, loaded_->source().flat});
     return upload_geometry();
 }
 

@@ -33,8 +33,12 @@ struct Asset {
         constexpr int kComponent = std::is_same_v<T, float>           ? 5126
                                    : std::is_same_v<T, std::uint32_t> ? 5125
                                    : std::is_same_v<T, std::uint16_t> ? 5123
+                                   : std::is_same_v<T, std::int16_t>  ? 5122
+                                   : std::is_same_v<T, std::int8_t>   ? 5120
                                                                       : 5121;
-        const std::size_t components = type == "SCALAR" ? 1 : static_cast<std::size_t>(type.back() - '0');
+        const std::size_t components = type == "SCALAR" ? 1
+                                       : type == "MAT4" ? 16
+                                                        : static_cast<std::size_t>(type.back() - '0');
         std::string bytes(values.size() * sizeof(T), '\0');
         std::memcpy(bytes.data(), values.data(), bytes.size());
         root["accessors"].push_back({{"bufferView", view(bytes)},

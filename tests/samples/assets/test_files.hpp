@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace test_files {
 
@@ -72,6 +74,16 @@ inline std::string name8(const std::string& name) {
     return (name + std::string(8, '\0')).substr(0, 8);
 }
 
+inline std::string wad_file(const std::vector<std::pair<std::string, std::string>>& lumps) {
+    std::string body, directory;
+    const auto u32 = [](std::size_t v) { return bytes_of(static_cast<std::uint32_t>(v)); };
+    for (const auto& [name, data] : lumps) {
+        directory += u32(12 + body.size()) + u32(data.size()) + name8(name);
+        body += data;
+    }
+    return "PWAD" + u32(lumps.size()) + u32(12 + body.size()) + body + directory;
+}
+
 // A room of 256 × 256 with a column of 64 × 64 whose inside is no sector: 8 lines, 8 sides, 1 sector.
 struct Wad {
     std::string vertices, lines, sides, sectors;
@@ -95,18 +107,8 @@ struct Wad {
                  bytes_of(static_cast<std::uint16_t>(sector));
     }
     [[nodiscard]] std::string file() const {
-        std::string body, directory;
-        const auto u32 = [](std::size_t v) { return bytes_of(static_cast<std::uint32_t>(v)); };
-        const auto lump = [&](const std::string& name, const std::string& data) {
-            directory += u32(12 + body.size()) + u32(data.size()) + name8(name);
-            body += data;
-        };
-        lump("E1M1", "");
-        lump("LINEDEFS", lines);
-        lump("SIDEDEFS", sides);
-        lump("VERTEXES", vertices);
-        lump("SECTORS", sectors);
-        return "PWAD" + u32(5) + u32(12 + body.size()) + body + directory;
+        return wad_file(
+            {{"E1M1", ""}, {"LINEDEFS", lines}, {"SIDEDEFS", sides}, {"VERTEXES", vertices}, {"SECTORS", sectors}});
     }
 };
 

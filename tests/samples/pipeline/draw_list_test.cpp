@@ -60,4 +60,28 @@ TEST_SUITE("pipeline/draw_list") {
             CHECK(list.instance_of(2) == all[2]);
         }
     }
+
+    TEST_CASE("each face of a flat mesh has its own normal; of others those that meet at a small angle share one") {
+        // Two faces that meet along the y axis at 0.2 rad, well below the angle of a crease.
+        TriangleMesh roof;
+        const auto sine = 0.19866933f, cosine = 0.98006658f;
+        roof.positions = {{0, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {cosine, 0, -sine}};
+        roof.indices = {0, 1, 2, 0, 3, 1};
+        scene::Scene scene;
+        const auto smooth = scene.add_mesh(roof), flat = scene.add_mesh(roof);
+        const std::vector<scene::InstanceId> all{*scene.add_instance(*scene.add_node(scene::kNone, {}), *smooth),
+                                                 *scene.add_instance(*scene.add_node(scene::kNone, {}), *flat)};
+        scene.update();
+        const std::vector<std::uint8_t> is_mover(2, 0), which{0, 1};
+        const DrawList list(scene, all, is_mover, {.flat = which});
+        REQUIRE(list.indices().size() == 12);
+        const auto normal = [&](std::size_t corner) { return list.vertices()[list.indices()[corner]].normal; };
+        for (const std::size_t shared : {0u, 1u}) {
+            const std::size_t other = shared == 0 ? 3 : 5;
+            CHECK(normal(shared) == normal(other));
+            CHECK(normal(6 + shared).z == 1.0f);
+            CHECK(normal(6 + other).z == doctest::Approx(cosine));
+            CHECK(normal(6 + other).x == doctest::Approx(sine));
+        }
+    }
 }

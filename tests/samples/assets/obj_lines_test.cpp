@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+// OBJ files by all the programs that end, continue and decorate lines in their own way.
+#include <doctest/doctest.h>
+#include <assets/obj_file.hpp>
+#include <assets/text_lines.hpp>
+#include <random>
+
+#include "test_files.hpp"
+
+using namespace crofton;
+using test_files::TemporaryFile;
+
+namespace {
+
+assets::ObjFile read_lines(const std::string& text) {
+    const TemporaryFile file("lines.obj", text);
+    auto obj = assets::read_obj(file.path());
+    REQUIRE_MESSAGE(obj.has_value(), obj.error().message);
+    return std::move(*obj);
+}
+
+void check_same(const assets::ObjFile& a, const assets::ObjFile& b) {
+    CHECK(a.positions == b.positions);
+    CHECK(a.colors == b.colors);
+    CHECK(a.texcoords == b.texcoords);
+    CHECK(a.normals == b.normals);
+    CHECK(a.warnings == b.warnings);
+    REQUIRE(a.parts.size() == b.parts.size());
+    for (std::size_t p = 0; p < a.parts.size(); ++p) {
+        CHECK(a.parts[p].name == b.parts[p].name);
+        CHECK(a.parts[p].material == b.parts[p].material);
+        CHECK(a.parts[p].indices == b.parts[p].indices);
+        CHECK(a.parts[p].texcoord_indices == b.parts[p].texcoord_indices);
+        CHECK(a.parts[p].normal_indices == b.parts[p].normal_indices);
+    }
+}
+
+const std::vector<std::string> kPlain = {"# C:\\models\\",
+                                         "v 0 0 0",
+                                         "v 2 0 0 0.25 0.5 0.75",
+                                         "v 2 2 0 1.0",
+                                         "v 0 2 0",
+                                         "vt 0 0",
+                                         "vt 1 0.5",
+                                         "vn 0 0 1",
+                                         "o first",
+                                         "usemtl red",
+                                         "f 1/1/1 2/2/1 3//1 4",
+                                         "g second",
+                                         "f -4 -3 -2",
+                                         "",
+                                         "f 1/2 3/1 4/2"};
+
+}  // namespace
+
+TEST_SUITE("assets/obj_lines") {
+    TEST_CASE("line ends, continuations, blanks and comments of every kind mean the same") {
+        std::string plain;
+        for (const std::string& line : kPlain) plain += line + "\n";
+        const assets::ObjFile expected = read_lines(plain);
+        REQUIRE(expected.positions.size() == 4);
+        REQUIRE(expected.parts.size() == 2);
+        CHECK(expected.colors[1] == glm::vec3(0.25f, 0.5f, 0.75f));
+        std::mt19937 random(4610);
+        const char* const ends[] = {"\n", "\r\n", "\r"};
+        const char* const blanks[] = {
+            " ", "\t", "  \t ", "\v", " \\\n", "\\\r\n ", "\t\\\r\t", " \\ \n", " \\\n\\\r\n \\\r "};
+        const char* const comments[] = {"", "", " ", "\t ", " # a comment", " # ends in \\", "\t#", " \\\n"};
+        for (int trial = 0; trial < 2000; ++trial) {
+            std::string text = trial % 7 == 0 ? "\xEF\xBB\xBF" : "";
+            for (const std::string& line : kPlain) {
+                const bool is_comment = line.empty() || line[0] == '#';
+                for (const char c : line)
+                    if (c == ' ' && !is_comment)
+                        text += blanks[random() % std::size(blanks)];
+                    else
+                        text += c;
+                // What continues must be followed by a line that is empty.
+                const std::string comment = is_comment ? "" : comments[random() % std::size(comments)];
+                text += comment + ends[trial % 4 == 3 ? random() % 3 : static_cast<std::size_t>(trial % 4)];
+            }
+            CAPTURE(text);
+            check_same(read_lines(text), expected);
+        }
+    }
+
+    TEST_CASE("a line of a million characters and one of a hundred thousand parts are lines") {
+        std::string points, face = "f", parts = "f";
+        for (int i = 0; i < 3; ++i) points += "v " + std::to_string(i) + " " + std::to_string(i * i) + " 0\n";
+        for (int i = 1; i <= 3; ++i) {
+            face += std::string(300'000, ' ') + std::to_string(i);
+            for (int k = 0; k < 30'000; ++k) parts += "\\\n";
+            parts += std::to_string(i);
+        }
+        check_same(read_lines(points + face + "\n"), read_lines(points + "f 1 2 3\n"));
+        check_same(read_lines(points + parts), read_lines(points + "f 1 2 3\n"));
+    }
+
+    TEST_CASE("messages count lines as an editor does, whatever they end in") {
+        const auto message = [](const std::string& text) {
+            const TemporaryFile file("bad.obj", text);
+            const auto obj = assets::read_obj(file.path());
+            return obj ? "read" : obj.error().message.substr(file.path().size());
+        };
+        for (const std::string end : {"\n", "\r\n", "\r"}) {
+            const std::string text =
+                "v 0 0 0" + end + "v 1 \\" + end + "0 0" + end + end + "v 0 \\" + end + "x 0" + end;
+            CHECK(message(text) == ": line 5: vertex 3: 'x' is not a finite number");
+        }
+        CHECK(message("v 0 0 0\rf 1 2 3\r") == ": line 2: face: vertex 2 of 1");
+    }
+
+    TEST_CASE("lines: a text without an end, ends that meet, continuations at the end") {
+        const auto lines_of = [](std::string_view text) {
+            std::vector<std::string> result;
+            assets::TextLines lines(text);
+            for (std::string_view line; lines.next(line);) result.emplace_back(line);
+            return result;
+        };
+        CHECK(lines_of("").empty());
+        CHECK(lines_of("a") == std::vector<std::string>{"a"});
+        CHECK(lines_of("a\r\rb\n\nc\r\n\r\nd") == std::vector<std::string>{"a", "", "b", "", "c", "", "d"});
+        CHECK(lines_of("a\\") == std::vector<std::string>{"a "});
+        CHECK(lines_of("a\\\nb\\\r\nc\\\rd\ne") == std::vector<std::string>{"a b c d", "e"});
+        CHECK(lines_of("#a\\\nb #c\\\nd#\\\ne") == std::vector<std::string>{"#a\\", "b #c\\", "d# e"});
+    }
+}
