@@ -17,7 +17,7 @@ bool is_sharp(const Patch& segment) {
     return body.radius() == 0.0 && (body.has_polytope_core() || body.half_extents().x == 0.0);
 }
 
-// Round sides still touch beside each other. A segment without width touches what is opposite to it alone.
+// A segment without width touches only what is opposite to it.
 bool are_opposite(const Clipped& clipped, const glm::dvec3& normal, double length) {
     for (int i = 0; i < clipped.count; ++i) {
         const glm::dvec3 way = clipped.point[i].on_incident - clipped.point[i].on_reference;
@@ -26,12 +26,12 @@ bool are_opposite(const Clipped& clipped, const glm::dvec3& normal, double lengt
     return true;
 }
 
+// Of two sharp edges; round ones are gather_parallel_edges'.
 void gather_segments(const Patch& a, const Patch& b, const glm::dvec3& normal, Clipped& clipped, Gatherer& gatherer) {
-    if (!nearly_parallel(a, b)) return;
+    if (!is_sharp(a) || !is_sharp(b) || !nearly_parallel(a, b)) return;
     clip_segments(a, b, clipped);
     const double length = glm::length(a.point[1] - a.point[0]) + glm::length(b.point[1] - b.point[0]);
-    if ((is_sharp(a) || is_sharp(b)) && !are_opposite(clipped, normal, length)) return;
-    gatherer.add(clipped, true);
+    if (are_opposite(clipped, normal, length)) gatherer.add(clipped, true);
 }
 
 }  // namespace
