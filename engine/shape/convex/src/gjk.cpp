@@ -32,7 +32,7 @@ Simplex first_simplex(const Pair& pair, const PairCache* cache) {
 
 }  // namespace
 
-Nearest nearest_points(const Pair& pair, const PairCache* cache, double near, double far) {
+Nearest nearest_points(const Pair& pair, const PairCache* cache, double near, double far, double share) {
     Nearest result;
     Simplex s = first_simplex(pair, cache);
     const bool polytopes = pair.has_polytope_cores();
@@ -72,6 +72,7 @@ Nearest nearest_points(const Pair& pair, const PairCache* cache, double near, do
             result.normal = -s.nearest / length;
         }
         if (result.lower > far || result.upper - result.lower <= 4.0 * pair.error) break;
+        if (result.upper - result.lower <= share * (result.lower - near)) break;
         if (has(s, next, polytopes)) break;
         s.add(next);
         reduce(s, false);

@@ -14,9 +14,10 @@ struct Nearest {
     glm::dvec3 normal{0.0};              // unit, from a to b: the plane across it proves `lower`
 };
 
-// Gilbert, Johnson, Keerthi 1988. Stops as soon as the distance is known to be above `far`, or not above `near`; else
-// when nothing better is found.
-[[nodiscard]] Nearest nearest_points(const Pair& pair, const PairCache* cache, double near, double far);
+// Gilbert, Johnson, Keerthi 1988. Stops as soon as the distance is known to be above `far`, or not above `near`, or to
+// be above `near` within that share of what is beyond; else when nothing better is found.
+[[nodiscard]] Nearest nearest_points(const Pair& pair, const PairCache* cache, double near, double far,
+                                     double share = 0.0);
 
 void remember(const Nearest& nearest, PairCache* cache);
 

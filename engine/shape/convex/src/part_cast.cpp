@@ -26,7 +26,7 @@ class PartCaster {
     PartCaster(const Placed& a, const Motion& motion_a, const Placed& b, const Motion& motion_b,
                const CastOptions& options)
         : a_(a), b_(b), motion_a_(motion_a), motion_b_(motion_b), options_(options) {
-        best_.time = options.duration;
+        best_.time = std::min(options.early_out, options.duration);
         const Aabb& bounds = b.body.bounds();
         around_ = glm::length(bounds.half_extents()) + glm::length(bounds.center() - motion_b.pivot);
         b_turns_ = motion_b.spin != glm::dvec3(0.0);
@@ -46,15 +46,22 @@ class PartCaster {
             search(from, middle, halvings + 1);
             return search(middle, to, halvings + 1);
         }
-        visit(box, [&](const Part& part) {
-            cast_part(part, from);
-            return best_.time <= from && best_.result != CastResult::miss;
-        });
+        const auto cast_all = [&](const QueryBox& within, bool stops) {
+            visit(within, [&](const Part& part) {
+                cast_part(part, from);
+                return stops && hits_at(from);
+            });
+        };
+        cast_all(box, true);
+        // Of parts that are in contact from the start, the deepest.
+        if (hits_at(from)) cast_all(swept_box(pose, from, from), false);
     }
 
     [[nodiscard]] const Impact& best() const { return best_; }
 
   private:
+    [[nodiscard]] bool hits_at(double time) const { return best_.time <= time && best_.result != CastResult::miss; }
+
     // How far b's pivot may come from where it is half way between two times, seen from a: its own way, and what a
     // turns under it. And how long that way is about.
     [[nodiscard]] double way(double from, double to) const {
@@ -131,13 +138,15 @@ class PartCaster {
             motion.pivot =
                 glm::inverse(start.rotation) * (arm_of(a_.pose, motion_a_) + (a_.pose.translation - start.translation));
         CastOptions options = options_;
-        options.duration = best_.time;
+        // A part that is met at the same time is of use only if it is deeper, at the start.
+        const bool later = best_.result != CastResult::miss && best_.time > from;
+        options.early_out = later ? std::nextafter(best_.time, 0.0) : best_.time;
         const Placed placed{part.body, start};
         if (comes_later(placed)) return;
         Impact impact = b_.body.is_convex() ? advance(placed, motion, b_, motion_b_, options, from, nullptr)
                                             : reversed(cast_parts(b_, motion_b_, placed, motion, options, from));
         if (impact.result == CastResult::miss || impact.time > best_.time) return;
-        if (impact.time == best_.time && best_.result != CastResult::miss) return;
+        if (impact.time == best_.time && best_.result != CastResult::miss && impact.distance >= best_.distance) return;
         if (part.sides == Sides::front && comes_from_behind(part, start, motion, impact)) return;
         best_ = impact;
         best_.part_a = part.id;
@@ -166,7 +175,7 @@ class PartCaster {
         const RigidTransform then = moved(start, motion, impact.time), b_then = moved(b_.pose, motion_b_, impact.time);
         const Triangle corners{part.body.vertex(0), part.body.vertex(1), part.body.vertex(2)};
         const PlacedTriangle there = placed_triangle(corners, then, then.translation);
-        if (impact.normal == glm::dvec3(0.0))
+        if (impact.distance <= 0.0)
             return !is_in_front(there, b_.body, middle_of({b_.body, b_then}, then.translation));
         return glm::dot(impact.normal, there.normal) <= 0.0;
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Questions asked of two bodies: meet, distance, depth, contacts, casts.
 #pragma once
+#include <cmath>
 #include <compare>
 #include <crofton/convex/body.hpp>
 #include <crofton/core/executor.hpp>
@@ -225,6 +226,8 @@ struct CastOptions {
     double duration = 1.0;    // ≥ 0, finite
     double tolerance = 1e-6;  // > 0, in lengths: bodies this close have hit
     int max_steps = 500;      // ≥ 1
+    bool ignore_initial_overlaps = false;
+    double early_out = HUGE_VAL;
 };
 
 enum class CastResult : std::uint8_t {

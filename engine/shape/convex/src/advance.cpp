@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: MIT
+// Conservative advancement of two convex bodies.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "closing.hpp"
+#include "exact_gjk.hpp"
+#include "part_cast.hpp"
+
+namespace crofton::convex {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// How often a pair within the tolerance is asked whether it goes on to touch, before that counts as a hit.
+constexpr int kMaxProofs = 32;
+
+// Where two bodies are nearest, or deepest in each other, seen from a's origin.
+struct Contact {
+    double distance = 0.0;  // negative: how deep they overlap
+    double lower = 0.0;     // proven
+    glm::dvec3 normal{0.0}, on_a{0.0}, on_b{0.0};
+};
+Contact contact_of(const Distance& d) {
+    return {d.distance, d.lower, d.normal, d.on_a, d.on_b};
+}
+
+// How close the bounds of a distance are that is only stepped by, where the search for it takes long.
+constexpr double kShare = 0.03;
+
+class Advancement {
+  public:
+    Advancement(const Placed& a, const Motion& motion_a, const Placed& b, const Motion& motion_b,
+                const CastOptions& options, double start, PairCache& cache)
+        : flight_(a, motion_a, b, motion_b), options_(options), cache_(cache), start_(start) {
+        early_ = std::min(options.early_out, options.duration);
+    }
+
+    Impact run();
+
+  private:
+    [[nodiscard]] bool begins_in_contact();
+    [[nodiscard]] Contact nearest(double near, bool& reached);
+    [[nodiscard]] Contact contact();
+    [[nodiscard]] double proven(const Contact& now) const {
+        return (now.lower - flight_.path_error()) * (1.0 - 0x1p-40);
+    }
+    [[nodiscard]] Impact impact(CastResult result, const Contact& now, int steps) const;
+    [[nodiscard]] Impact miss(int steps) const;
+
+    Flight flight_;
+    const CastOptions& options_;
+    PairCache& cache_;
+    const double start_;
+    double early_ = 0.0;
+    glm::dvec3 parted_{0.0};  // the direction that parted the bodies last
+};
+
+Impact Advancement::impact(CastResult result, const Contact& now, int steps) const {
+    Impact impact;
+    impact.result = result;
+    impact.time = flight_.time();
+    impact.normal = now.normal;
+    impact.on_a = flight_.in_world(now.on_a);
+    impact.on_b = flight_.in_world(now.on_b);
+    impact.distance = now.distance;
+    impact.steps = steps;
+    return impact;
+}
+
+Impact Advancement::miss(int steps) const {
+    Impact impact;
+    impact.time = early_;
+    impact.steps = steps;
+    return impact;
+}
+
+// As `distance`, where the bounds need not be close: a tenth of the distance. `reached`: it is not above `near`, and no
+// more is known.
+Contact Advancement::nearest(double near, bool& reached) {
+    const Placed a = flight_.a(), b = flight_.b();
+    if (is_half_space(a) || is_half_space(b)) {
+        const Distance d = distance(a, b);
+        reached = d.distance <= near;
+        return contact_of(d);
+    }
+    const Pair pair(a, b);
+    const double rounding = a.body.radius() + b.body.radius();
+    Nearest core = nearest_points(pair, &cache_, rounding + near, HUGE_VAL, pair.has_polytope_cores() ? 0.0 : kShare);
+    reached = core.upper <= rounding + near;
+    if (reached) return {};
+    if (!(core.upper - core.lower <= 0.1 * (core.lower - rounding)))
+        core = core_distance(pair, &cache_, 0.0, HUGE_VAL);
+    remember(core, &cache_);
+    return contact_of(distance_of(pair, core));
+}
+
+// As `distance` and `penetration` tell.
+Contact Advancement::contact() {
+    const Placed a = flight_.a(), b = flight_.b();
+    const Distance d = distance(a, b, &cache_);
+    if (d.distance > 0.0) return contact_of(d);
+    const Penetration p = penetration(a, b);
+    if (p.overlapping && p.normal != glm::dvec3(0.0)) return {-p.depth, 0.0, p.normal, p.on_a, p.on_b};
+    return {0.0, 0.0, parted_, d.on_a, d.on_b};
+}
+
+// At time 0, where the search begins later.
+bool Advancement::begins_in_contact() {
+    flight_.move_to(0.0);
+    bool reached = false;
+    const Contact now = nearest(options_.tolerance, reached);
+    return reached || now.distance < options_.tolerance;
+}
+
+Impact Advancement::run() {
+    const double tolerance = options_.tolerance;
+    if (options_.ignore_initial_overlaps && start_ > 0.0 && begins_in_contact()) return miss(1);
+    Impact first;  // where they came within the tolerance
+    bool within = false, lifting = false;
+    double near = 0.99 * tolerance;
+    int proofs = 0;
+    flight_.move_to(start_);
+    for (int steps = 1;; ++steps) {
+        bool reached = false;
+        Contact now = nearest(near, reached);
+        if (reached && within) return first;
+        const bool nearer = within && now.distance < first.distance;
+        if (reached || !(proven(now) > 0.0) || (now.distance < tolerance && !nearer)) now = contact();
+        const double gap = proven(now);
+        const bool touching = !(gap > 0.0), starts = flight_.time() == start_;
+        if (!touching && now.distance >= tolerance) {
+            within = false;
+        } else {
+            // A later time is as good while they come no nearer.
+            if (!within) proofs = 0;
+            if (!within || now.distance >= first.distance) first = impact(CastResult::hit, now, steps);
+            within = true;
+            if (starts && options_.ignore_initial_overlaps) return miss(steps);
+            if (touching && (!starts || now.distance <= -tolerance)) return first;
+            if (now.normal == glm::dvec3(0.0) || flight_.rests() || options_.duration == 0.0 || proofs++ == kMaxProofs) return first;
+        }
+        if (lifting && touching) return first;
+        if (steps > options_.max_steps) return within ? first : impact(CastResult::unresolved, contact(), steps);
+        parted_ = now.normal;
+
+        const double left = options_.duration - flight_.time();
+        const Closing closing = flight_.closing(now.normal);
+        // Along, within rounding.
+        const double slack = starts && within ? 0x1p-40 * (flight_.size() + flight_.way(left)) : 0.0;
+        if (closing(left) < std::max(gap, slack)) return miss(steps);
+        if (!within && early_ < options_.duration && closing(early_ - flight_.time()) < gap - tolerance)
+            return miss(steps);
+        if (touching && !flight_.turns()) return first;
+        lifting = touching;
+        const double kept = within ? std::max(0x1p-12 * gap, 64.0 * flight_.path_error()) : 0.5 * tolerance;
+        near = within ? 2.0 * kept : 0.99 * tolerance;
+        const double step = closing.safe_step(touching ? slack : std::max(gap - kept, 0.5 * gap), left);
+        const double next = flight_.time() + step;
+        if (next == flight_.time()) return within ? first : impact(CastResult::hit, contact(), steps);
+        if (!within && next > early_) return miss(steps);
+        flight_.move_to(next);
+    }
+}
+
+}  // namespace
+
+Impact advance(const Placed& a, const Motion& motion_a, const Placed& b, const Motion& motion_b,
+               const CastOptions& options, double start, PairCache* cache) {
+    PairCache own;
+    return Advancement(a, motion_a, b, motion_b, options, start, cache != nullptr ? *cache : own).run();
+}
+
+}  // namespace crofton::convex
