@@ -12,19 +12,19 @@
 namespace crofton::fit {
 namespace {
 
-constexpr double kGolden = 0.61803398874989485;
+constexpr double kGoldenShare = 0.61803398874989485;
 
 template <class Function>
 double minimise(double low, double high, int steps, Function f) {
-    double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
+    double a = high - kGoldenShare * (high - low), b = low + kGoldenShare * (high - low);
     double at_a = f(a), at_b = f(b);
     for (int i = 0; i < steps; ++i)
         if (at_a < at_b) {
             high = b, b = a, at_b = at_a;
-            a = high - kGolden * (high - low), at_a = f(a);
+            a = high - kGoldenShare * (high - low), at_a = f(a);
         } else {
             low = a, a = b, at_a = at_b;
-            b = low + kGolden * (high - low), at_b = f(b);
+            b = low + kGoldenShare * (high - low), at_b = f(b);
         }
     return at_a < at_b ? a : b;
 }
