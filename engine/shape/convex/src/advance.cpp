@@ -89,17 +89,33 @@ Contact Advancement::nearest(double near, bool& reached) {
     Nearest core = nearest_points(pair, &cache_, rounding + near, HUGE_VAL, pair.has_polytope_cores() ? 0.0 : kShare);
     reached = core.upper <= rounding + near;
     if (reached) return {};
-    if (!(core.upper - core.lower <= 0.1 * (core.lower - rounding)))
-        core = core_distance(pair, &cache_, 0.0, HUGE_VAL);
+    if (!(core.upper - core.lower <= 0.1 * (core.lower - rounding))) core = core_distance(pair, &cache_, 0.0, HUGE_VAL);
     remember(core, &cache_);
     return contact_of(distance_of(pair, core));
+}
+
+// The direction that proves the bound of round cores' distance, and the one between their nearest points, differ by the
+// root of what the search has left. Here that between the points, so that they are apart along the normal.
+void align(const Placed& a, const Placed& b, Contact& contact) {
+    const double ra = a.body.radius(), rb = b.body.radius();
+    const glm::dvec3 on_a = contact.on_a - ra * contact.normal, on_b = contact.on_b + rb * contact.normal;
+    const double length = glm::distance(on_a, on_b);
+    if (!(length > 1e-3 * (a.body.reach() + b.body.reach()))) return;  // what the points are off across would turn it
+    contact.normal = (on_b - on_a) / length;
+    contact.on_a = on_a + ra * contact.normal;
+    contact.on_b = on_b - rb * contact.normal;
 }
 
 // As `distance` and `penetration` tell.
 Contact Advancement::contact() {
     const Placed a = flight_.a(), b = flight_.b();
     const Distance d = distance(a, b, &cache_);
-    if (d.distance > 0.0) return contact_of(d);
+    if (d.distance > 0.0) {
+        Contact apart = contact_of(d);
+        if (!a.body.has_polytope_core() || !b.body.has_polytope_core())
+            if (!is_half_space(a) && !is_half_space(b)) align(a, b, apart);
+        return apart;
+    }
     const Penetration p = penetration(a, b);
     if (p.overlapping && p.normal != glm::dvec3(0.0)) return {-p.depth, 0.0, p.normal, p.on_a, p.on_b};
     return {0.0, 0.0, parted_, d.on_a, d.on_b};
@@ -138,7 +154,8 @@ Impact Advancement::run() {
             within = true;
             if (starts && options_.ignore_initial_overlaps) return miss(steps);
             if (touching && (!starts || now.distance <= -tolerance)) return first;
-            if (now.normal == glm::dvec3(0.0) || flight_.rests() || options_.duration == 0.0 || proofs++ == kMaxProofs) return first;
+            if (now.normal == glm::dvec3(0.0) || flight_.rests() || options_.duration == 0.0 || proofs++ == kMaxProofs)
+                return first;
         }
         if (lifting && touching) return first;
         if (steps > options_.max_steps) return within ? first : impact(CastResult::unresolved, contact(), steps);

@@ -175,8 +175,7 @@ class PartCaster {
         const RigidTransform then = moved(start, motion, impact.time), b_then = moved(b_.pose, motion_b_, impact.time);
         const Triangle corners{part.body.vertex(0), part.body.vertex(1), part.body.vertex(2)};
         const PlacedTriangle there = placed_triangle(corners, then, then.translation);
-        if (impact.distance <= 0.0)
-            return !is_in_front(there, b_.body, middle_of({b_.body, b_then}, then.translation));
+        if (impact.distance <= 0.0) return !is_in_front(there, b_.body, middle_of({b_.body, b_then}, then.translation));
         return glm::dot(impact.normal, there.normal) <= 0.0;
     }
 

@@ -1,0 +1,404 @@
+// SPDX-License-Identifier: MIT
+// What a cast tells beside the time: the points, the normal, the distance, the parts; and casts that begin in contact.
+#include <doctest/doctest.h>
+#include <crofton/convex/query.hpp>
+#include <memory>
+#include <oracle/impacts.hpp>
+#include <string>
+#include <vector>
+
+#include "random_bodies.hpp"
+#include "surfaces.hpp"
+
+using namespace crofton;
+using namespace crofton::convex;
+using namespace crofton::testing;
+
+namespace {
+
+struct NamedBody {
+    std::string name;
+    Body body;
+};
+
+// One of each convex kind, round ones and those with a rounding.
+std::vector<NamedBody> convex_kinds(RandomBodies& random) {
+    const float r = static_cast<float>(random.number(0.2, 0.9)), h = static_cast<float>(random.number(0.2, 0.9));
+    const Body box = random.box(), hull = random.hull(20), cylinder = Body::cylinder(h, r).value(),
+               cone = Body::cone(h, r).value(), triangle = random.polytope(4);
+    const glm::vec3 p[3] = {glm::vec3(random.direction()), glm::vec3(random.direction()),
+                            glm::vec3(random.direction())};
+    const Body flat = Body::triangle(p[0], p[1], p[2]).value();
+    return {{"ball", Body::ball(r).value()},
+            {"capsule", Body::capsule(h, r).value()},
+            {"box", box},
+            {"hull", hull},
+            {"triangle", flat},
+            {"polytope", triangle},
+            {"cylinder", cylinder},
+            {"cone", cone},
+            {"rounded box", Body::rounded(box, 0.2).value()},
+            {"rounded hull", Body::rounded(hull, 0.1).value()},
+            {"rounded triangle", Body::rounded(flat, 0.1).value()},
+            {"rounded cylinder", Body::rounded(cylinder, 0.15).value()},
+            {"rounded cone", Body::rounded(cone, 0.15).value()}};
+}
+
+double degrees_between(const glm::dvec3& u, const glm::dvec3& v) {
+    return std::atan2(glm::length(glm::cross(u, v)), glm::dot(u, v)) * 57.29577951308232;
+}
+
+double size_of(const Placed& a, const Placed& b) {
+    const auto reach = [](const Body& body) {
+        return body.kind() == Kind::half_space ? 0.0 : body.reach() + body.radius();
+    };
+    return reach(a.body) + reach(b.body) + glm::distance(a.pose.translation, b.pose.translation);
+}
+
+bool is_hard(const Body& body) {
+    return body.kind() == Kind::cylinder || body.kind() == Kind::cone;
+}
+
+// All fields of a hit between two convex bodies.
+void check_hit(const Placed& a, const Motion& ma, const Placed& b, const Motion& mb, const Impact& i,
+               const CastOptions& options) {
+    const RigidTransform now_a = moved(a.pose, ma, i.time), now_b = moved(b.pose, mb, i.time);
+    const Placed then_a{a.body, now_a}, then_b{b.body, now_b};
+    const double size = size_of(then_a, then_b);
+    const double slack =
+        (is_hard(a.body) || is_hard(b.body) ? 4e-9 : 1e-12) * size + 1e-15 * glm::length(now_a.translation);
+    CHECK(oracle::fault_of_contact(then_a, then_b, i, slack) == "");
+    CHECK(i.distance >= 0.0);
+    CHECK(i.distance < options.tolerance);
+    // A ball's normal, by formula.
+    if (b.body.kind() == Kind::ball)
+        if (const glm::dvec3 n = oracle::direction_to_point(then_a, now_b.translation); n != glm::dvec3(0.0))
+            CHECK(degrees_between(n, i.normal) < 0.01);
+    // What `distance` says there.
+    const Distance d = distance(then_a, then_b);
+    if (d.distance > 0.0) CHECK(degrees_between(d.normal, i.normal) < 0.1);
+}
+
+}  // namespace
+
+TEST_SUITE("convex/cast_contact") {
+    TEST_CASE("of every kind against every kind, the points of touch lie on both bodies and the normal parts them") {
+        RandomBodies random(71);
+        int hits = 0, misses = 0;
+        for (int round = 0; round < 200; ++round) {
+            const std::vector<NamedBody> kinds = convex_kinds(random);
+            const double offset = round % 4 == 3 ? 1e4 : 0.0;
+            for (const NamedBody& first : kinds)
+                for (const NamedBody& second : kinds) {
+                    CAPTURE(first.name);
+                    CAPTURE(second.name);
+                    const glm::dvec3 place = offset * random.direction();
+                    const RigidTransform pose_a{random.rotation(), place},
+                        pose_b{random.rotation(), place + 5.0 * random.direction()};
+                    const Placed a{first.body, pose_a}, b{second.body, pose_b};
+                    Motion ma{random.number(0, 3) * random.direction(), {}, {}}, mb{};
+                    mb.velocity = ma.velocity + 1.6 * (place - pose_b.translation) + 1.2 * random.direction();
+                    const bool turns = round % 2 == 1;
+                    if (turns) {
+                        ma.spin = random.number(0, 4) * random.direction();
+                        mb.spin = random.number(0, 4) * random.direction();
+                        mb.pivot = 0.3 * random.direction();
+                    }
+                    const CastOptions options;
+                    const Impact i = cast(a, ma, b, mb, options).value();
+                    REQUIRE(i.result != CastResult::unresolved);
+                    const auto gap_at = [&](double t) {
+                        const RigidTransform now_a = moved(pose_a, ma, t), now_b = moved(pose_b, mb, t);
+                        return distance({first.body, now_a}, {second.body, now_b}).distance;
+                    };
+                    if (i.result == CastResult::miss) {
+                        ++misses;
+                        CHECK(i.time == 1.0);
+                        CHECK(i.normal == glm::dvec3(0.0));
+                        CHECK(i.on_a == glm::dvec3(0.0));
+                        CHECK(i.on_b == glm::dvec3(0.0));
+                        CHECK(i.distance == 0.0);
+                        double t = 0.0;
+                        for (int k = 0; k <= 8; ++k)
+                            if (gap_at(k / 8.0) < gap_at(t)) t = k / 8.0;
+                        CHECK(gap_at(t) > 0.0);
+                        continue;
+                    }
+                    ++hits;
+                    check_hit(a, ma, b, mb, i, options);
+                    // No touch before, and one soon after: the gap at the time closes at some speed.
+                    for (int k = 0; k < 4; ++k) CHECK(gap_at(i.time * k / 4.0) > 0.0);
+                    // The other order tells the same.
+                    const Impact back = cast(b, mb, a, ma, options).value();
+                    REQUIRE(back.result == CastResult::hit);
+                    check_hit(b, mb, a, ma, back, options);
+                }
+        }
+        CHECK(hits > 20000);
+        CHECK(misses > 2000);
+    }
+
+    TEST_CASE("casts at half-spaces tell the point on the ground under the body, in either order") {
+        RandomBodies random(72);
+        const Plane plane{{0.2, 1.0, -0.3}, 0.4};
+        const Body half = Body::half_space(plane).value();
+        for (int round = 0; round < 40; ++round)
+            for (const NamedBody& kind : convex_kinds(random)) {
+                CAPTURE(kind.name);
+                const RigidTransform pose{random.rotation(), {0, -5, 0}}, rest;
+                Motion motion{{0, 20, 0}, {}, {}};
+                if (round % 2 == 1) motion.spin = 5.0 * random.direction();
+                const Impact i = cast({half, rest}, {}, {kind.body, pose}, motion).value();
+                REQUIRE(i.result == CastResult::hit);
+                check_hit({half, rest}, {}, {kind.body, pose}, motion, i, {});
+                const Impact back = cast({kind.body, pose}, motion, {half, rest}, {}).value();
+                REQUIRE(back.result == CastResult::hit);
+                check_hit({kind.body, pose}, motion, {half, rest}, {}, back, {});
+            }
+    }
+
+    TEST_CASE("casts at bodies of parts tell the points, the normal and the part that is met first") {
+        RandomBodies random(73);
+        int hits = 0;
+        for (int round = 0; round < 60; ++round) {
+            const Surface s = soup(random, 30, 1.5, 0.6);
+            std::vector<float> heights;
+            for (int k = 0; k < 36; ++k) heights.push_back(static_cast<float>(random.number(-0.4, 0.4)));
+            const HeightField field =
+                HeightField::build({.columns = 6, .rows = 6, .heights = heights, .spacing = {0.7, 0.6}}).value();
+            std::vector<CompoundChild> children;
+            for (const NamedBody& kind : convex_kinds(random))
+                children.push_back({kind.body, {random.rotation(), 1.5 * random.direction()}});
+            children.push_back({s.body(), {random.rotation(), glm::dvec3(0.0)}});
+            const Compound compound = Compound::build(children).value();
+            const Body bodies[] = {s.body(), Body::height_field(field, Sides::both), Body::compound(compound)};
+            for (const Body& body : bodies)
+                for (const NamedBody& kind : convex_kinds(random)) {
+                    CAPTURE(kind.name);
+                    const RigidTransform pose{random.rotation(), random.direction()},
+                        from{random.rotation(), pose.translation + 7.0 * random.direction()};
+                    const Motion motion{
+                        1.7 * (pose.translation - from.translation), 0.5 * (round % 3) * random.direction(), {}};
+                    const Placed placed{body, pose}, mover{kind.body, from};
+                    const Impact i = cast(placed, {}, mover, motion).value();
+                    if (i.result != CastResult::hit || i.time == 0.0) continue;
+                    ++hits;
+                    const RigidTransform then = moved(from, motion, i.time);
+                    Vector<Part> near;
+                    parts_near(placed, {kind.body, then}, 0.01, near);
+                    bool found = false;
+                    for (const Part& part : near) {
+                        if (part.id != i.part_a) continue;
+                        found = true;
+                        check_hit({part.body, part.pose}, {}, mover, motion, i, {});
+                    }
+                    CHECK(found);
+                    const Impact back = cast(mover, motion, placed, {}).value();
+                    REQUIRE(back.result == CastResult::hit);
+                    CHECK(std::abs(back.time - i.time) * glm::length(motion.velocity) < 1e-4);
+                    if (back.part_b == i.part_a) CHECK(degrees_between(back.normal, -i.normal) < 0.1);
+                }
+        }
+        CHECK(hits > 1000);
+    }
+
+    TEST_CASE(
+        "after a hit: away and along is a miss, and into the wall a hit at once with its normal and the true gap") {
+        RandomBodies random(74);
+        int casts = 0;
+        for (int round = 0; round < 60; ++round)
+            for (const NamedBody& wall : convex_kinds(random))
+                for (const NamedBody& kind : convex_kinds(random)) {
+                    CAPTURE(wall.name);
+                    CAPTURE(kind.name);
+                    const RigidTransform here{random.rotation(), 2.0 * random.direction()},
+                        from{random.rotation(), here.translation + 5.0 * random.direction()};
+                    const Motion fly{1.3 * (here.translation - from.translation), {}, {}};
+                    const Placed placed{wall.body, here};
+                    const Impact first = cast(placed, {}, {kind.body, from}, fly).value();
+                    if (first.result != CastResult::hit) continue;
+                    ++casts;
+                    const RigidTransform there = moved(from, fly, first.time);
+                    const Placed mover{kind.body, there};
+                    const auto go = [&](const glm::dvec3& way, const CastOptions& options = {}) {
+                        const Impact i = cast(placed, {}, mover, {way, {}, {}}, options).value();
+                        const Impact back = cast(mover, {way, {}, {}}, placed, {}, options).value();
+                        CHECK(back.result == i.result);
+                        return i;
+                    };
+                    const glm::dvec3 n = first.normal, side = glm::normalize(glm::cross(n, random.direction()));
+                    CHECK(go(3.0 * n).result == CastResult::miss);
+                    CHECK(go(2.0 * side + n).result == CastResult::miss);
+                    CHECK(go(2.0 * side).result == CastResult::miss);
+                    // Round bodies that are pressed on slide off.
+                    const Impact in = go(-3.0 * n);
+                    REQUIRE(in.result == CastResult::hit);
+                    CHECK(in.time == 0.0);
+                    check_hit(placed, {}, mover, {-3.0 * n, {}, {}}, in, {});
+                    CHECK(std::abs(in.distance - first.distance) < 1e-8);
+                    CHECK(go(-3.0 * n, {.ignore_initial_overlaps = true}).result == CastResult::miss);
+                }
+        CHECK(casts > 5000);
+    }
+
+    TEST_CASE("what stands on the ground may spin about the normal, roll along and lift off, and falls in at once") {
+        const Body slab = Body::box({50, 1, 50}).value(), half = Body::half_space({{0, -1, 0}, 0}).value();
+        const RigidTransform low = at({0, -1, 0}), zero;
+        const glm::dmat3 lying(glm::dvec3(0, 1, 0), glm::dvec3(1, 0, 0), glm::dvec3(0, 0, -1));
+        struct Stand {
+            Body body;
+            glm::dmat3 rotation;
+            double height;
+            glm::dvec3 spin;
+        };
+        const Body hull_free = Body::box({0.3f, 0.4f, 0.5f}).value();
+        const Stand stands[] = {
+            {Body::box({0.5f, 0.25f, 0.5f}).value(), glm::dmat3(1.0), 0.25, {0, 7, 0}},
+            {hull_free, glm::dmat3(1.0), static_cast<double>(0.4f), {0, -20, 0}},
+            {Body::ball(0.5).value(), glm::dmat3(1.0), 0.5, {4, 2, 1}},
+            {Body::capsule(0.5f, 0.25f).value(), glm::dmat3(1.0), 0.75, {0, 3, 0}},
+            {Body::capsule(0.5f, 0.25f).value(), lying, 0.25, {6, 0, 0}},
+            {Body::cylinder(0.5f, 0.25f).value(), glm::dmat3(1.0), 0.5, {0, 9, 0}},
+            {Body::cylinder(0.5f, 0.25f).value(), lying, 0.25, {8, 0, 0}},
+            {Body::cone(0.5f, 0.25f).value(), glm::dmat3(1.0), 0.5, {0, 5, 0}},
+        };
+        for (const double gap : {5e-7, 1e-9, 0.0})
+            for (const Stand& stand : stands)
+                for (const bool is_half : {false, true}) {
+                    CAPTURE(gap);
+                    CAPTURE(stand.height);
+                    CAPTURE(is_half);
+                    const Placed floor{is_half ? half : slab, is_half ? zero : low};
+                    const RigidTransform pose{stand.rotation, {0, stand.height + gap, 0}};
+                    const auto go = [&](const glm::dvec3& velocity, const glm::dvec3& spin) {
+                        return cast({stand.body, pose}, {velocity, spin, {}}, floor, {}).value();
+                    };
+                    CHECK(go({3, 0, 1}, {}).result == CastResult::miss);
+                    CHECK(go({3, 0, 1}, stand.spin).result == CastResult::miss);
+                    CHECK(go({1, 2, 1}, {}).result == CastResult::miss);
+                    CHECK(go({0, 1, 0}, stand.spin).result == CastResult::miss);
+                    for (const Impact& i : {go({1, -2, 0}, {}), go({0, -1, 0}, stand.spin)}) {
+                        REQUIRE(i.result == CastResult::hit);
+                        CHECK(i.time == 0.0);
+                        CHECK(i.normal.y == doctest::Approx(-1.0).epsilon(1e-9));
+                        CHECK(std::abs(i.distance - gap) < 1e-12);
+                    }
+                }
+    }
+
+    TEST_CASE("along a floor of many parts nothing is hit: triangles, cells, boxes side by side") {
+        RandomBodies random(75);
+        const Surface flat = ground(random, 20, 0.5, [](double, double) { return 0.0; });
+        const std::vector<float> zeros(21 * 21, 0.0f);
+        const HeightField field =
+            HeightField::build({.columns = 21, .rows = 21, .heights = zeros, .spacing = {0.5, 0.5}}).value();
+        std::vector<CompoundChild> boxes;
+        const Body tile = Body::box({0.5f, 0.5f, 0.5f}).value();
+        for (int x = -5; x <= 5; ++x)
+            for (int z = -5; z <= 5; ++z) boxes.push_back({tile, at({x, -0.5, z})});
+        const Compound tiles = Compound::build(boxes).value();
+        struct Floor {
+            Body body;
+            RigidTransform pose;
+        };
+        const Floor floors[] = {{flat.body(), at({})},
+                                {flat.body(Sides::front), at({})},
+                                {Body::height_field(field), at({-5, 0, -5})},
+                                {Body::compound(tiles), at({})}};
+        for (const Floor& floor : floors)
+            for (int i = 0; i < 60; ++i)
+                for (const NamedBody& kind : convex_kinds(random)) {
+                    CAPTURE(kind.name);
+                    // As far above as a cast stops, turned at random or upright.
+                    RigidTransform pose{i % 2 == 0 ? random.rotation() : glm::dmat3(1.0),
+                                        {random.number(-2, 2), 3.0, random.number(-2, 2)}};
+                    const Impact fall =
+                        cast({kind.body, pose}, {{0, -4, 0}, {}, {}}, {floor.body, floor.pose}, {}).value();
+                    REQUIRE(fall.result == CastResult::hit);
+                    CHECK(fall.normal.y < -0.9999);
+                    pose.translation.y -= 4.0 * fall.time;
+                    const glm::dvec3 way(random.number(-2, 2), 0, random.number(-2, 2));
+                    const auto go = [&](const glm::dvec3& velocity) {
+                        return cast({kind.body, pose}, {velocity, {}, {}}, {floor.body, floor.pose}, {}).value();
+                    };
+                    CHECK(go(way).result == CastResult::miss);
+                    CHECK(go(way + glm::dvec3(0, 0.1, 0)).result == CastResult::miss);
+                    const Impact in = go(way - glm::dvec3(0, 2, 0));
+                    REQUIRE(in.result == CastResult::hit);
+                    CHECK(in.time == 0.0);
+                    CHECK(in.normal.y < -0.9999);
+                }
+    }
+
+    TEST_CASE("bodies that begin overlapping are a hit at once, with the shortest way out; or they are left out") {
+        RandomBodies random(76);
+        int overlaps = 0;
+        for (int round = 0; round < 30; ++round)
+            for (const NamedBody& first : convex_kinds(random))
+                for (const NamedBody& second : convex_kinds(random)) {
+                    const RigidTransform pose_a{random.rotation(), random.direction()},
+                        pose_b{random.rotation(), pose_a.translation + random.number(0, 1.2) * random.direction()};
+                    const Placed a{first.body, pose_a}, b{second.body, pose_b};
+                    const Penetration p = penetration(a, b);
+                    if (!p.overlapping || p.depth < 1e-4) continue;
+                    ++overlaps;
+                    const Motion motion{2.0 * random.direction(), double(round % 2) * random.direction(), {}};
+                    const Impact i = cast(a, motion, b, {}).value();
+                    CHECK(i.result == CastResult::hit);
+                    CHECK(i.time == 0.0);
+                    CHECK(degrees_between(i.normal, p.normal) < 0.1);
+                    CHECK(i.distance == doctest::Approx(-p.depth).epsilon(1e-9));
+                    CHECK(glm::distance(i.on_b - i.on_a, i.distance * i.normal) < 1e-9);
+                    const Impact left = cast(a, motion, b, {}, {.ignore_initial_overlaps = true}).value();
+                    CHECK(left.result == CastResult::miss);
+                    CHECK(left.time == 1.0);
+                }
+        CHECK(overlaps > 1000);
+    }
+
+    TEST_CASE("of parts that overlap from the start the deepest is told; with the option the others are still met") {
+        const Body tile = Body::box({0.5f, 0.5f, 0.5f}).value(), ball = Body::ball(0.5).value();
+        const Compound row =
+            Compound::build(
+                std::vector<CompoundChild>{{tile, at({0, 0, 0})}, {tile, at({0.3, 0.2, 0})}, {tile, at({5, 0, 0})}})
+                .value();
+        const Body body = Body::compound(row);
+        const RigidTransform zero, pose = at({0.3, 0.45, 0});
+        const Motion right{{10, 0, 0}, {}, {}};
+        const Impact i = cast({ball, pose}, right, {body, zero}, {}).value();
+        CHECK(i.result == CastResult::hit);
+        CHECK(i.time == 0.0);
+        CHECK(i.part_b.child == 1);
+        CHECK(i.distance == doctest::Approx(-0.75));
+        CHECK(i.normal.y == doctest::Approx(-1.0));
+        const Impact next = cast({ball, pose}, right, {body, zero}, {}, {.ignore_initial_overlaps = true}).value();
+        REQUIRE(next.result == CastResult::hit);
+        CHECK(next.part_b.child == 2);
+        CHECK(next.on_b.x == doctest::Approx(4.5));
+        CHECK(next.normal.x == doctest::Approx(1.0));
+    }
+
+    TEST_CASE("early_out changes no hit up to it, and tells later ones as misses; bad ones are errors") {
+        RandomBodies random(77);
+        const Body box = random.box(), ball = Body::ball(0.4).value();
+        const RigidTransform zero;
+        for (int round = 0; round < 2000; ++round) {
+            const RigidTransform from{random.rotation(), 4.0 * random.direction()};
+            const Motion fly{-1.5 * from.translation + random.direction(), (round % 2) * 3.0 * random.direction(), {}};
+            const Impact whole = cast({box, zero}, {}, {ball, from}, fly).value();
+            const double until = random.number(0, 1);
+            const Impact early = cast({box, zero}, {}, {ball, from}, fly, {.early_out = until}).value();
+            if (whole.result == CastResult::hit && whole.time <= until) {
+                CHECK(early.result == CastResult::hit);
+                CHECK(early.time == whole.time);
+                CHECK(early.on_a == whole.on_a);
+                CHECK(early.normal == whole.normal);
+            } else {
+                CHECK(early.result == CastResult::miss);
+                CHECK(early.time == until);
+            }
+        }
+        CHECK_FALSE(cast({box, zero}, {}, {ball, zero}, {}, {.early_out = -1.0}).has_value());
+        CHECK_FALSE(cast({box, zero}, {}, {ball, zero}, {}, {.early_out = NAN}).has_value());
+    }
+}
