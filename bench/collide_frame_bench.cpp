@@ -68,10 +68,9 @@ void pair_distance(benchmark::State& state) {
     ask_pairs(state, pairs, [](const Obb& a, const Obb& b) { return collide::distance(a, b).distance; });
 }
 
-// range(0) boxes of which range(1) per mille move.
-void few_movers(benchmark::State& state) {
+// range(0) boxes of which so many move.
+void move_some(benchmark::State& state, std::size_t movers) {
     std::vector<Obb> boxes = crowd(static_cast<std::size_t>(state.range(0)));
-    const std::size_t movers = boxes.size() * static_cast<std::size_t>(state.range(1)) / 1000;
     collide::Broadphase broadphase;
     (void)broadphase.update(boxes);
     std::mt19937_64 random(3);
@@ -93,6 +92,12 @@ void few_movers(benchmark::State& state) {
                                                         : broadphase.update_moved(boxes, moved).has_value());
     }
     state.counters["pairs"] = static_cast<double>(broadphase.pairs().size());
+}
+void few_movers(benchmark::State& state) {  // range(1) per mille
+    move_some(state, static_cast<std::size_t>(state.range(0) * state.range(1) / 1000));
+}
+void one_mover(benchmark::State& state) {
+    move_some(state, 1);
 }
 
 void mesh_refit(benchmark::State& state) {
@@ -134,7 +139,13 @@ BENCHMARK(stacked_manifold)->Name("pair/manifold, stacked/crofton")->Unit(benchm
 BENCHMARK(pair_distance)->Name("pair/distance, near touching/crofton")->Unit(benchmark::kMicrosecond);
 BENCHMARK(few_movers)
     ->Name("broadphase/movers per mille/crofton")
-    ->ArgsProduct({{10000, 100000}, {0, 10, 100, 1000}})
+    ->ArgsProduct({{10000, 100000, 1000000}, {0, 10, 100, 1000}})
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK(one_mover)
+    ->Name("broadphase/one mover/crofton")
+    ->Arg(10000)
+    ->Arg(100000)
+    ->Arg(1000000)
     ->Unit(benchmark::kMicrosecond);
 BENCHMARK(mesh_refit)->Name("mesh/bunny refit/crofton")->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(mesh_contacts, contacts, false)->Name("mesh/bunny contacts/crofton")->Unit(benchmark::kMillisecond);

@@ -4,6 +4,8 @@
 //   bench_world               the table
 //   bench_world --churn       what ten million spawns and despawns leave behind, as CSV; --churn=N: N of them
 //     --live=N, --part=N      among so many objects, of which an Nth changes in an update; 20,000 and 100
+//   bench_world --changes     what an update costs in which one object comes, goes, moves or changes, and queries
+//                             among what moves
 //   --frames=N                instead of 200
 //   --target=AVX2             with this instruction set
 //   --benchmark_filter=REGEX, --benchmark_repetitions=N, --benchmark_out=FILE: as Google Benchmark's, for results.py
@@ -41,7 +43,7 @@ constexpr Row kRows[] = {
 
 struct Options {
     int frames = 200, repetitions = 1;
-    bool churn = false;
+    bool churn = false, changes = false;
     std::size_t spawns = 10'000'000, live = 20'000, part = 100;
     std::string out;
     std::regex filter{""};
@@ -57,6 +59,8 @@ bool parse(int argc, char** argv, Options& options) {
             options.frames = std::stoi(value);
         else if (key == "--churn")
             options.churn = true, options.spawns = value.empty() ? options.spawns : std::stoul(value);
+        else if (key == "--changes")
+            options.changes = true;
         else if (key == "--live")
             options.live = std::stoul(value);
         else if (key == "--part")
@@ -107,6 +111,11 @@ int main(int argc, char** argv) {
         std::printf("# command: bench_world --churn=%zu --live=%zu --part=%zu --target=%s\n", options.spawns,
                     options.live, options.part, target);
         crofton::bench::churn(options.live, options.part, options.spawns);
+        return 0;
+    }
+    if (options.changes) {
+        std::printf("instruction set: %s\n", target);
+        crofton::bench::changes(options.frames);
         return 0;
     }
     std::printf("instruction set: %s\n%-48s %10s %10s %8s\n", target, "microseconds a frame", "by hand", "World",

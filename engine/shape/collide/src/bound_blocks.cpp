@@ -7,6 +7,7 @@
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 #include <crofton/simd/compress-inl.hpp>
+#include <crofton/simd/mask_bits-inl.hpp>
 
 #include "block_filter.hpp"
 #include "bound_blocks.hpp"
@@ -347,6 +348,69 @@ void FindPartners(const BoundTree& tree, const std::uint32_t* items, const LaneB
     }
 }
 
+// The lanes' bounds are widened by more than all roundings: of the ray's origin, of differences, of products with t.
+HWY_INLINE std::uint32_t lanes_that_meet(const BoundBlock& block, const LaneRay& ray) {
+    const hn::CappedTag<double, kBoxBlock> d;
+    const hn::Rebind<float, decltype(d)> df;
+    std::uint32_t bits = 0;
+    for (std::size_t l = 0; l < kBoxBlock; l += hn::Lanes(d)) {
+        auto enter = hn::Zero(d), leave = hn::Set(d, ray.max_t);
+        auto meets = hn::Le(hn::PromoteTo(d, hn::Load(df, block.low[0] + l)),
+                            hn::PromoteTo(d, hn::Load(df, block.high[0] + l)));  // the lane is in use
+        for (int i = 0; i < 3; ++i) {
+            const auto origin = hn::Set(d, ray.origin[i]);
+            auto low = hn::PromoteTo(d, hn::Load(df, block.low[i] + l)),
+                 high = hn::PromoteTo(d, hn::Load(df, block.high[i] + l));
+            const auto slack =
+                hn::Mul(hn::Set(d, 1e-11), hn::Add(hn::Abs(origin), hn::Add(hn::Abs(low), hn::Abs(high))));
+            low = hn::Sub(hn::Sub(low, slack), origin);
+            high = hn::Sub(hn::Add(high, slack), origin);
+            if (ray.is_flat[i]) {
+                meets = hn::And(meets, hn::And(hn::Le(low, hn::Zero(d)), hn::Ge(high, hn::Zero(d))));
+                continue;
+            }
+            const auto a = hn::Mul(low, hn::Set(d, ray.inverse[i])), b = hn::Mul(high, hn::Set(d, ray.inverse[i]));
+            enter = hn::Max(enter, hn::Min(a, b));
+            leave = hn::Min(leave, hn::Max(a, b));
+        }
+        bits |= simd::mask_bits(d, hn::And(meets, hn::Le(enter, leave))) << l;
+    }
+    return bits;
+}
+
+template <class Query>
+std::size_t find_all(const BoundTree& tree, const Query& query, std::uint32_t* items, std::size_t room) {
+    struct Step {
+        std::size_t level;
+        std::uint32_t block;
+    };
+    Step stack[kMaxLevels * kBoxBlock];
+    std::size_t height = 0, count = 0;
+    stack[height++] = {tree.level_count - 1, tree.root};
+    while (height > 0) {
+        const Step step = stack[--height];
+        std::uint32_t lanes = lanes_that_meet(tree.levels[step.level][step.block], query);
+        const std::uint32_t* const children = tree.children[step.level] + step.block * kBoxBlock;
+        for (; lanes != 0; lanes &= lanes - 1) {
+            const std::uint32_t child = children[lowest(lanes)];
+            if (step.level > 0) {
+                stack[height++] = {step.level - 1, child};
+                continue;
+            }
+            if (count == room) return room + 1;
+            items[count++] = child;
+        }
+    }
+    return count;
+}
+
+std::size_t FindAlong(const BoundTree& tree, const LaneRay& ray, std::uint32_t* items, std::size_t room) {
+    return find_all(tree, ray, items, room);
+}
+std::size_t FindNear(const BoundTree& tree, const LaneBounds& bounds, std::uint32_t* items, std::size_t room) {
+    return find_all(tree, bounds, items, room);
+}
+
 }  // namespace crofton::collide::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -357,6 +421,8 @@ HWY_EXPORT(BoundBoxes);
 HWY_EXPORT(BoundBlocks);
 HWY_EXPORT(FindPairs);
 HWY_EXPORT(FindPartners);
+HWY_EXPORT(FindAlong);
+HWY_EXPORT(FindNear);
 
 std::uint32_t bound_boxes(BoxBlock& boxes, BoundBlock& bounds) {
     measure_deviation(boxes);
@@ -371,6 +437,12 @@ void find_pairs(const BoundTree& tree, std::size_t begin, std::size_t end, SlotP
 void find_partners(const BoundTree& tree, const std::uint32_t* items, const LaneBounds* bounds, std::size_t count,
                    SlotPairs& pairs, GrowPairs grow) {
     HWY_DYNAMIC_DISPATCH(FindPartners)(tree, items, bounds, count, pairs, grow);
+}
+std::size_t find_along(const BoundTree& tree, const LaneRay& ray, std::uint32_t* items, std::size_t room) {
+    return HWY_DYNAMIC_DISPATCH(FindAlong)(tree, ray, items, room);
+}
+std::size_t find_near(const BoundTree& tree, const LaneBounds& bounds, std::uint32_t* items, std::size_t room) {
+    return HWY_DYNAMIC_DISPATCH(FindNear)(tree, bounds, items, room);
 }
 
 }  // namespace crofton::collide

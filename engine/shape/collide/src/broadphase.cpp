@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <hwy/cache_control.h>
 #include <algorithm>
 #include <atomic>
 #include <bit>
@@ -8,8 +7,8 @@
 #include <utility>
 
 #include "bounds_meet.hpp"
-#include "box_lanes.hpp"
 #include "broadphase_state.hpp"
+#include "leaf_bounds.hpp"
 
 namespace crofton::collide {
 namespace {
@@ -33,50 +32,28 @@ Broadphase& Broadphase::operator=(Broadphase&&) noexcept = default;
 void Broadphase::State::bound_leaf(std::span<const Obb> boxes, std::size_t leaf, BroadphaseWorker& worker) {
     const std::span<const std::uint32_t> items = tree.items_of(leaf);
     if (items.empty()) return;
+    // Neighbours in space lie anywhere in memory: ask for the leaf after next.
     const std::span<const std::uint32_t> later = tree.items_of(std::min(leaf + 2, tree.leaf_count() - 1));
-    BoxBlock block;
-    for (std::size_t lane = 0; lane < kBoxBlock; ++lane) {
-        const Obb& box = boxes[items[std::min(lane, items.size() - 1)]];
-        // Neighbours in space lie anywhere in memory: ask for the leaf after next.
-        if (lane < later.size()) {
-            const char* const ahead = reinterpret_cast<const char*>(&boxes[later[lane]]);
-            hwy::Prefetch(ahead);
-            hwy::Prefetch(ahead + sizeof(Obb) - 1);
-        }
-        put_center(box.center - origin, lane, block);
-        put_shape(box, lane, block);
-    }
     BoundBlock& bounds = tree.leaf(leaf);
     const std::uint32_t used = (1u << items.size()) - 1u;
     std::uint32_t absent = 0;
-    for (std::uint32_t suspect = bound_boxes(block, bounds) & used; suspect != 0; suspect &= suspect - 1) {
+    for (std::uint32_t suspect = bound_items(boxes, items, later, origin, bounds); suspect != 0;
+         suspect &= suspect - 1) {
         const auto lane = static_cast<std::size_t>(std::countr_zero(suspect));
         if (validate(boxes[items[lane]]).has_value()) continue;
         worker.absent.push_back(items[lane]);
         absent |= 1u << lane;
     }
+    tree.clear_unused(leaf);
     // Until absent items are taken out, they are where another item of the leaf is.
     const auto present = static_cast<std::size_t>(std::countr_zero(used & ~absent));
-    for (std::size_t lane = 0; lane < kBoxBlock; ++lane) {
-        if (lane >= items.size()) clear_lane(bounds, lane);
-        if ((absent >> lane & 1u) == 0) continue;
+    for (; absent != 0; absent &= absent - 1) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(absent));
         for (int i = 0; i < 3; ++i) {
             bounds.low[i][lane] = present < kBoxBlock ? bounds.low[i][present] : 0.0f;
             bounds.high[i][lane] = present < kBoxBlock ? bounds.high[i][present] : 0.0f;
         }
     }
-}
-
-LaneBounds Broadphase::State::bounds_of(const Obb& box) const {
-    BoxBlock block;
-    BoundBlock bounds;
-    for (std::size_t lane = 0; lane < kBoxBlock; ++lane) {
-        put_center(box.center - origin, lane, block);
-        put_shape(box, lane, block);
-    }
-    bound_boxes(block, bounds);
-    return {{bounds.low[0][0], bounds.low[1][0], bounds.low[2][0]},
-            {bounds.high[0][0], bounds.high[1][0], bounds.high[2][0]}};
 }
 
 void Broadphase::State::refit(std::span<const Obb> boxes, Executor& executor) {
@@ -115,7 +92,11 @@ void Broadphase::State::place_all(std::span<const Obb> boxes, Executor& executor
         if (!tree.contains(item) && is_in_range(boxes[item].center) && validate(boxes[item])) came.push_back(item);
     if (came.size() > most) return sort(boxes, executor);
     refit(boxes, executor);
-    for (const std::uint32_t item : came) tree.insert(item, bounds_of(boxes[item]));
+    for (const std::uint32_t item : came) {
+        BoundBlock bounds;
+        bound_items(boxes, {&item, 1}, {}, origin, bounds);
+        tree.insert(item, lane_of(bounds, 0));
+    }
     if (tree.is_worn()) sort(boxes, executor);
 }
 

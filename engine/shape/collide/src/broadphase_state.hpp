@@ -4,7 +4,6 @@
 #pragma once
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/core/sorted_edits.hpp>
-#include <limits>
 
 #include "bound_blocks.hpp"
 #include "item_tree.hpp"
@@ -14,14 +13,6 @@
 #include "space_order.hpp"
 
 namespace crofton::collide {
-
-inline void clear_lane(BoundBlock& block, std::size_t lane) {
-    constexpr float kLargest = std::numeric_limits<float>::max();
-    for (int i = 0; i < 3; ++i) {
-        block.low[i][lane] = kLargest;
-        block.high[i][lane] = -kLargest;
-    }
-}
 
 // What one thread finds.
 struct BroadphaseWorker {
@@ -83,7 +74,6 @@ struct Broadphase::State {
                                           Executor& executor, const PairTest* test);
     void place_all(std::span<const Obb> boxes, Executor& executor);
     void sort(std::span<const Obb> boxes, Executor& executor);
-    [[nodiscard]] LaneBounds bounds_of(const Obb& box) const;
     [[nodiscard]] bool grow(SlotPairs& slots, BroadphaseWorker& worker) const;
     void refit(std::span<const Obb> boxes, Executor& executor);
     void bound_leaf(std::span<const Obb> boxes, std::size_t leaf, BroadphaseWorker& worker);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "leaf_bounds.hpp"
+
 namespace crofton::collide {
 namespace {
 
@@ -17,15 +19,6 @@ constexpr double kWornGrowth = 1.2, kWornCount = 1.5;
 
 float extent_of(const LaneBounds& bounds) {
     return (bounds.high[0] - bounds.low[0]) + (bounds.high[1] - bounds.low[1]) + (bounds.high[2] - bounds.low[2]);
-}
-
-LaneBounds lane_of(const BoundBlock& block, std::size_t lane) {
-    LaneBounds bounds;
-    for (int i = 0; i < 3; ++i) {
-        bounds.low[i] = block.low[i][lane];
-        bounds.high[i] = block.high[i][lane];
-    }
-    return bounds;
 }
 
 void put_lane(const LaneBounds& bounds, std::size_t lane, BoundBlock& block) {
@@ -135,6 +128,11 @@ void ItemTree::arrange(std::span<const std::uint32_t> order) {
     for (std::size_t above = k; above < kMaxLevels; ++above) levels_[above].clear();
     level_count_ = k;
     root_ = 0;
+}
+
+void ItemTree::clear_unused(std::size_t leaf) {
+    for (std::size_t lane = levels_[0].counts[leaf]; lane < kBoxBlock; ++lane)
+        put_lane(kEmpty, lane, levels_[0].bounds[leaf]);
 }
 
 void ItemTree::bound_all() {

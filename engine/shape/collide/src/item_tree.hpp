@@ -31,6 +31,8 @@ class ItemTree {
         return {levels_[0].children.data() + leaf * kBoxBlock, levels_[0].counts[leaf]};
     }
     [[nodiscard]] BoundBlock& leaf(std::size_t leaf) { return levels_[0].bounds[leaf]; }
+    // Empties the bounds of the leaf's lanes without items.
+    void clear_unused(std::size_t leaf);
     // Bounds of all blocks anew, from the leaves'.
     void bound_all();
     void remember_extents();

@@ -126,10 +126,12 @@ void World::State::visit_along(const Ray& ray, std::uint32_t layers, collide::Ra
     if (!(rest.max_t >= 0.0)) return;
     collide::visit_along(rest, index.tree(), visit_living, layers);
     const cull::MovingBoxes& moving = index.moving();
-    for (std::size_t i = 0; i < moving.size() && rest.max_t >= 0.0; ++i) {
-        if ((index.layers(moving.items()[i]) & layers) == 0) continue;
+    index.visit_movers_along(rest, [&](std::size_t i) {
+        if (rest.max_t < 0.0) return false;
+        if ((index.layers(moving.items()[i]) & layers) == 0) return true;
         if (const auto t = mesh::raycast(rest, moving.boxes()[i])) visit_living(moving.items()[i], *t);
-    }
+        return true;
+    });
 }
 
 std::optional<ObjectHit> World::State::body_hit(const Ray& ray, std::uint32_t id) const {
@@ -229,9 +231,11 @@ void World::State::visit_bounded_near(const Aabb& bounds, double distance, std::
     };
     collide::visit_near(bounds, distance, index.tree(), visit_living, layers);
     const cull::MovingBoxes& moving = index.moving();
-    for (std::size_t i = 0; i < moving.size(); ++i)
+    index.visit_movers_near(bounds, distance, [&](std::size_t i) {
         if ((index.layers(moving.items()[i]) & layers) != 0 && gap_between(bounds, moving.boxes()[i]) <= distance)
             visit_living(moving.items()[i]);
+        return true;
+    });
 }
 
 template <class Shape>

@@ -190,8 +190,19 @@ SpatialIndex::Changes SpatialIndex::update(const Settings& settings, Executor& e
     wants_refit_ = false;
     rebuild_step(settings.rebuild_budget);
     moving_.update(executor);
+    if (!moved_items_.empty() || !relisted_.empty()) mover_tree_is_old_ = true;
     ++now_;
     return changes;
+}
+
+// The first who asks after an update makes the tree: that costs less than looking at all boxes once.
+const collide::MovingTree& SpatialIndex::mover_tree() const {
+    if (mover_tree_is_old_.load(std::memory_order_acquire)) {
+        const std::lock_guard lock(mover_tree_mutex_);
+        if (mover_tree_is_old_.load(std::memory_order_relaxed)) mover_tree_.update(moving().boxes());
+        mover_tree_is_old_.store(false, std::memory_order_release);
+    }
+    return mover_tree_;
 }
 
 bool SpatialIndex::is_built_at_once() const {

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: MIT
 // The boxes of a World's objects: a tree of those that rest, a list of those that move. It finds out which is which.
 #pragma once
+#include <algorithm>
+#include <atomic>
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/boxtree/structure.hpp>
+#include <crofton/collide/moving_tree.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/same_bits.hpp>
 #include <crofton/world/world.hpp>
+#include <mutex>
 
 #include "moving_list.hpp"
 
@@ -88,6 +92,17 @@ class SpatialIndex {
     [[nodiscard]] const boxtree::BoxTree& tree() const { return tree_; }
     [[nodiscard]] const cull::MovingBoxes& moving() const { return moving_.boxes(); }
 
+    // Calls visit(entry) for entries of moving(), in order, while it answers true: all whose boxes the ray may meet, or
+    // that may be within a distance of `bounds`, and maybe others. Any thread may ask.
+    template <class Visit>
+    void visit_movers_along(const Ray& ray, Visit visit) const {
+        visit_movers([&](std::span<std::uint32_t> found) { return mover_tree().along(ray, found); }, visit);
+    }
+    template <class Visit>
+    void visit_movers_near(const Aabb& bounds, double distance, Visit visit) const {
+        visit_movers([&](std::span<std::uint32_t> found) { return mover_tree().near(bounds, distance, found); }, visit);
+    }
+
   private:
     enum class Place : std::uint8_t { nowhere, hidden, entering, resting, moving };
     struct Item {
@@ -118,6 +133,19 @@ class SpatialIndex {
     void bring_to_rest(const Settings& settings, Changes& changes, Executor& executor);
     void build_tree(std::span<const ItemId> entering, Executor& executor);
 
+    // Few are looked at one by one, and where many are found, all are.
+    template <class Find, class Visit>
+    void visit_movers(Find find, Visit visit) const {
+        constexpr std::size_t kFew = 64, kMostFound = 512;
+        std::uint32_t found[kMostFound];
+        const std::size_t size = moving().size(), count = size > kFew ? find(std::span(found)) : size;
+        const bool all = size <= kFew || count > kMostFound;
+        if (!all) std::sort(found, found + count);
+        for (std::size_t n = 0; n < (all ? size : count); ++n)
+            if (!visit(all ? n : found[n])) return;
+    }
+    [[nodiscard]] const collide::MovingTree& mover_tree() const;
+
     Vector<Item> items_;
     Group groups_[3];  // by Place: nowhere (empty), hidden, entering
     boxtree::BoxTree tree_;
@@ -132,6 +160,10 @@ class SpatialIndex {
     std::size_t came_or_went_ = 0, came_or_went_before_ = 0;  // in the tree, since it was last built; before the update
     std::size_t recent_ = 0;  // items that came, or went from the tree, in about the last eight updates
     bool rebuilding_ = false, wants_refit_ = false;
+    // Over the list's boxes; made when someone asks.
+    mutable std::mutex mover_tree_mutex_;
+    mutable std::atomic<bool> mover_tree_is_old_ = true;
+    mutable collide::MovingTree mover_tree_;
 };
 
 }  // namespace crofton::world

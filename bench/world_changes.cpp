@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+// What an update costs where little changes, however many objects there are; and queries while some move.
+#include <algorithm>
+#include <cmath>
+#include <crofton/crofton.hpp>
+#include <random>
+#include <vector>
+
+#include "world_frames.hpp"
+
+namespace crofton::bench {
+namespace {
+
+enum class Change { nothing, move, add, replace, layers, user, hide, collides_with, add_many, remove_many };
+
+struct ChangeRow {
+    const char* name;
+    Change change;
+};
+constexpr ChangeRow kChanges[] = {{"nothing changes", Change::nothing},
+                                  {"one moves far", Change::move},
+                                  {"one comes", Change::add},
+                                  {"one comes, one goes", Change::replace},
+                                  {"one gets other layers", Change::layers},
+                                  {"one gets other user data", Change::user},
+                                  {"one is hidden or shown", Change::hide},
+                                  {"one collides with others", Change::collides_with},
+                                  {"1000 come", Change::add_many},
+                                  {"1000 go", Change::remove_many}};
+
+// Balls of radius 1, one in a cube of side 20: few touch.
+class Balls {
+  public:
+    Balls(std::size_t count, const WorldOptions& options) : world(options), side_(20.0 * std::cbrt(double(count))) {
+        for (std::size_t i = 0; i < count; ++i) add();
+        for (int update = 0; update < 30; ++update) must(world.update().has_value(), "loading");
+    }
+    void add() { objects.push_back(world.add({.bound = ball()}).value()); }
+    void remove(std::size_t which) {
+        must(world.remove(objects[which]).has_value(), "removing");
+        objects[which] = objects.back();
+        objects.pop_back();
+    }
+    [[nodiscard]] Sphere ball() {
+        return {side_ * glm::dvec3(number_(random_), number_(random_), number_(random_)), 1.0};
+    }
+    [[nodiscard]] std::size_t any() { return random_() % objects.size(); }
+
+    World world;
+    std::vector<ObjectHandle> objects;
+
+  private:
+    double side_;
+    std::mt19937_64 random_{1};
+    std::uniform_real_distribution<double> number_{0.0, 1.0};
+};
+
+void change(Balls& balls, Change kind, int frame) {
+    World& world = balls.world;
+    const ObjectHandle one = balls.objects[static_cast<std::size_t>(frame / 2) % balls.objects.size()];
+    const bool odd = frame % 2 != 0;
+    bool done = true;
+    switch (kind) {
+        case Change::nothing:
+            break;
+        case Change::move:
+            done = world.set_bound(balls.objects[0], balls.ball()).has_value();
+            break;
+        case Change::replace:
+            balls.remove(balls.any());
+            [[fallthrough]];
+        case Change::add:
+            balls.add();
+            break;
+        case Change::layers:
+            done = world.set_layers(one, odd ? ~0u : 1u).has_value();
+            break;
+        case Change::user:
+            done = world.set_user(one, static_cast<std::uint64_t>(frame)).has_value();
+            break;
+        case Change::hide:
+            done = world.set_hidden(one, !odd).has_value();
+            break;
+        case Change::collides_with:
+            done = world.set_collides_with(one, odd ? ~0u : 0u).has_value();
+            break;
+        case Change::add_many:
+            for (int n = 0; n < 1000; ++n) balls.add();
+            break;
+        case Change::remove_many:
+            for (int n = 0; n < 1000; ++n) balls.remove(balls.any());
+            break;
+    }
+    must(done, "a change");
+}
+
+void print_row(std::size_t count, const char* name, std::vector<double>& times) {
+    std::sort(times.begin(), times.end());
+    const std::size_t n = times.size();
+    std::printf("%8zu  %-28s %10.2f %10.2f %10.2f %10.2f\n", count, name, times[0], times[n / 2], times[n * 95 / 100],
+                times[n - 1]);
+    std::fflush(stdout);
+}
+
+// Of `count` boxes the first so many move in each update.
+void queries(std::size_t count, std::size_t moving, bool pairs) {
+    std::mt19937_64 random(1);
+    std::uniform_real_distribution<double> number(-200.0, 200.0);
+    const auto place = [&] { return glm::dvec3(number(random), number(random), number(random)); };
+    World world({.pairs = pairs, .contacts = false});
+    std::vector<ObjectHandle> objects;
+    std::vector<glm::dvec3> places;
+    for (std::size_t i = 0; i < count; ++i) {
+        places.push_back(place());
+        objects.push_back(world.add({.bound = Sphere{places[i], 1.0}}).value());
+    }
+    const auto move = [&] {
+        for (std::size_t i = 0; i < moving; ++i) {
+            places[i].x += 0.01;
+            must(world.set_bound(objects[i], Sphere{places[i], 1.0}).has_value(), "a move");
+        }
+        return microseconds([&] { must(world.update().has_value(), "an update"); });
+    };
+    double update = 1e30;
+    for (int frame = 0; frame < 30; ++frame) update = std::min(update, move());
+    constexpr int kQueries = 1000;
+    std::size_t found = 0;
+    Vector<ObjectRef> near;
+    const double first = microseconds([&] { found += world.raycast({place(), place()}).has_value(); });
+    const double ray = microseconds([&] {
+        for (int n = 0; n < kQueries; ++n) found += world.raycast({place(), place()}).has_value();
+    });
+    const double overlap = microseconds([&] {
+        for (int n = 0; n < kQueries; ++n) world.overlap(Sphere{place(), 2.0}, near), found += near.size();
+    });
+    const double closest = microseconds([&] {
+        for (int n = 0; n < kQueries; ++n) found += world.closest(Sphere{place(), 2.0}, 20.0).has_value();
+    });
+    std::printf("%8zu  %8zu %10.2f %10.2f %10.2f %10.2f %10.2f   (%zu found)\n", count, moving, update, first,
+                ray / kQueries, overlap / kQueries, closest / kQueries, found);
+    std::fflush(stdout);
+}
+
+}  // namespace
+
+void changes(int frames) {
+    for (const bool pairs : {true, false}) {
+        for (const bool contacts : {false, true}) {
+            if (contacts && !pairs) continue;
+            std::printf("%s\n%8s  %-28s %10s %10s %10s %10s\n",
+                        contacts ? "pairs and contacts"
+                        : pairs  ? "pairs"
+                                 : "neither pairs nor contacts",
+                        "objects", "µs of an update", "least", "median", "95 %", "worst");
+            for (const std::size_t count : {std::size_t{5000}, std::size_t{20000}, std::size_t{100000}})
+                for (const ChangeRow& row : kChanges) {
+                    Balls balls(count, {.pairs = pairs, .contacts = contacts});
+                    const bool many = row.change == Change::add_many || row.change == Change::remove_many;
+                    std::vector<double> times;
+                    for (int frame = 0; frame < (many ? 4 : frames); ++frame) {
+                        change(balls, row.change, frame);
+                        times.push_back(microseconds([&] { must(balls.world.update().has_value(), "an update"); }));
+                    }
+                    print_row(count, row.name, times);
+                }
+        }
+    }
+    std::printf("queries among balls of which some move, µs\n%8s  %8s %10s %10s %10s %10s %10s\n", "objects", "moving",
+                "update", "first ray", "ray", "overlap", "closest");
+    for (const std::size_t moving : {0, 100, 1000, 5000, 10000}) queries(10000, moving, false);
+}
+
+}  // namespace crofton::bench
