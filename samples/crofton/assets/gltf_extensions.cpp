@@ -20,7 +20,7 @@ constexpr std::array<std::string_view, 5> kRead = {"KHR_mesh_quantization", "EXT
 constexpr std::array<std::string_view, 34> kAppearance = {
     // textures, materials, lights
     "KHR_texture_", "EXT_texture_", "KHR_materials_", "EXT_materials_", "ADOBE_materials_", "NV_materials_",
-    "KHR_techniques_webgl", "KHR_lights_", "EXT_lights_", "KHR_environment_map", "MOZ_lightmap",
+    "KHR_technique", "KHR_lights_", "EXT_lights_", "KHR_environment_map", "MOZ_lightmap",
     // what vertices, faces and instances mean, and which edges are drawn as lines
     "EXT_mesh_features", "EXT_instance_features", "EXT_feature_metadata", "EXT_structural_metadata",
     "EXT_mesh_manifold", "EXT_mesh_primitive_edge_visibility", "CESIUM_primitive_outline", "FB_",

@@ -76,14 +76,14 @@ class GltfReader {
           source_{file_name(path), scene::Scene({options.criterion}), {}, {}, document.warnings, {}} {}
 
     Result<SceneSource> read() {
-        auto lacks = check_extensions(document_);
+        auto lacks = check_extensions(document_);  // told last: it is no reason to show nothing
         if (!lacks) return tl::unexpected(lacks.error());
-        for (std::string& warning : *lacks) source_.warnings.push_back(std::move(warning));
         if (auto walked = add_nodes(); !walked) return tl::unexpected(walked.error());
         if (source_.scene.instance_count() == 0)
             return fail(ErrorCode::empty, kNoItem,
                         "its scene shows no triangles, so there is nothing to draw: " + why_empty());
-        for (std::string& warning : colors_.warnings) source_.warnings.push_back(std::move(warning));
+        for (auto* warnings : {&*lacks, &colors_.warnings})
+            for (std::string& warning : *warnings) source_.warnings.push_back(std::move(warning));
         return std::move(source_);
     }
 

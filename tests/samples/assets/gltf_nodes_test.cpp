@@ -522,6 +522,63 @@ TEST_SUITE("assets/gltf_nodes") {
         CHECK(says(test_files::message(load_asset(asset, options)), "--max-triangles"));
     }
 
+    TEST_CASE("a document of which any value is another one is refused by name, or loads what makes sense") {
+        // Some of everything that a node can say.
+        Asset asset = instanced([](Asset& to) {
+            return Json{{"TRANSLATION", to.accessor(std::vector<float>(9, 1.0f), "VEC3")},
+                        {"ROTATION", to.accessor(std::vector<float>(12, 0.5f), "VEC4")}};
+        });
+        asset.mesh(0, 1);
+        Json& primitive = asset.root["meshes"][1]["primitives"][0];
+        primitive["attributes"]["JOINTS_0"] = asset.accessor(std::vector<std::uint8_t>(4 * kCorners, 1), "VEC4");
+        primitive["attributes"]["WEIGHTS_0"] = asset.accessor(std::vector<float>(4 * kCorners, 0.25f), "VEC4");
+        primitive["targets"] = {{{"POSITION", asset.accessor(std::vector<float>(3 * kCorners, 1.0f), "VEC3")}}};
+        asset.root["skins"] = {{{"joints", {2, 3}}}};
+        asset.root["nodes"].push_back({{"mesh", 1}, {"skin", 0}, {"weights", {0.5}}});
+        asset.root["nodes"].push_back({{"children", {3}},
+                                       {"translation", {1, 2, 3}},
+                                       {"extensions", {{"KHR_node_visibility", {{"visible", true}}}}}});
+        asset.root["nodes"].push_back({{"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}});
+        asset.root["scenes"][0]["nodes"] = {0, 1, 2};
+        REQUIRE(load_asset(asset, {.strict = true})->scene.instance_count() == 4);
+        const Json flat = asset.root.flatten();
+        const Json others[] = {nullptr,
+                               -1,
+                               0,
+                               1,
+                               2,
+                               3,
+                               5126,
+                               0.5,
+                               1e300,
+                               4294967295u,
+                               18446744073709551615u,
+                               "x",
+                               true,
+                               false,
+                               Json::array(),
+                               Json::object(),
+                               {0},
+                               {{"x", 0}}};
+        std::size_t loaded = 0, refused = 0;
+        for (const auto& item : flat.items())
+            for (const Json& other : others) {
+                Asset changed = asset;
+                changed.root[Json::json_pointer(item.key())] = other;
+                CAPTURE(item.key());
+                CAPTURE(other.dump());
+                const auto source = load_asset(changed);
+                loaded += source.has_value();
+                refused += !source;
+                if (!source) CHECK(says(source.error().message, "nodes.glb: "));
+                for (scene::InstanceId i = 0; source && i < source->scene.instance_count(); ++i)
+                    if (source->scene.layer_masks()[i] != 0)
+                        CHECK(validate(source->scene.world_boxes()[i]).has_value());
+            }
+        CHECK(loaded > 1000);
+        CHECK(refused > 100);
+    }
+
     TEST_CASE("faces of primitives without normals are flat, of those with them they are not") {
         Asset asset = solid();
         const auto positions = asset.root["meshes"][0]["primitives"][0]["attributes"]["POSITION"];
