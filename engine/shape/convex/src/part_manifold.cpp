@@ -3,7 +3,9 @@
 
 #include <algorithm>
 
+#include "core_query.hpp"
 #include "surface_manifold.hpp"
+#include "union_normals.hpp"
 
 namespace crofton::convex {
 
@@ -23,6 +25,8 @@ struct Manifolds::Scratch {
     EdgeRule rule;
     ManifoldList list;
     SurfaceContacts::Contact contact;
+    UnionNormals flush;
+    Vector<std::pair<std::uint32_t, std::uint32_t>> numbers;  // of second parts: child, number in `flush`
 };
 
 Manifolds::Manifolds() = default;
@@ -47,16 +51,105 @@ class ManifoldFinder {
             find(a, b, {}, false);
         } else if (a.body.is_convex()) {
             find(b, a, {}, true);
-        } else {
+        } else if (has_surfaces(a.body) || has_surfaces(b.body)) {
             find_parts(a, b);
+        } else {
+            find_convex_parts(a, b);
         }
         scratch_.list.finish(std::clamp(options_.max_points, 1, 8), found_.all_);
     }
 
+    // Bodies without surfaces.
+    void run_beside(const Placed& a, const Placed& b, const Beside& beside, PairCache* cache) {
+        found_.all_.clear();
+        scratch_.list.clear();
+        UnionNormals& flush = scratch_.flush;
+        flush.start(options_.margin);
+        Count own, all;
+        add_parts(0, a, b, own.parts[0]);
+        add_parts(1, b, a, own.parts[1]);
+        for (std::uint32_t i = 0; i < own.parts[0]; ++i)
+            for (std::uint32_t j = 0; j < own.parts[1]; ++j)
+                add_flush_contact(i, j, a.body.is_convex() && b.body.is_convex() ? cache : nullptr);
+        const std::size_t wanted = flush.contacts().size();
+        if (wanted == 0) return;
+        all = own;
+        for (const Placed& other : beside.a) add_parts(0, other, b, all.parts[0]);
+        for (const Placed& other : beside.b) add_parts(1, other, a, all.parts[1]);
+        for (std::uint32_t i = own.parts[0]; i < all.parts[0]; ++i)
+            for (std::uint32_t j = 0; j < own.parts[1]; ++j) add_flush_contact(i, j, nullptr);
+        for (std::uint32_t i = 0; i < own.parts[0]; ++i)
+            for (std::uint32_t j = own.parts[1]; j < all.parts[1]; ++j) add_flush_contact(i, j, nullptr);
+        flush.apply();
+        add_flush(wanted, false);
+        scratch_.list.finish(std::clamp(options_.max_points, 1, 8), found_.all_);
+    }
+
   private:
+    struct Count {
+        std::uint32_t parts[2] = {0, 0};  // of the lists of `flush`
+    };
+    void add_parts(int list, const Placed& body, const Placed& near, std::uint32_t& count) {
+        if (has_surfaces(body.body) || is_half_space(body)) return;
+        visit_parts_near(body, near, near_margin(near), [&](const Part& part) {
+            count = scratch_.flush.add_part(list, part) + 1;
+            return false;
+        });
+    }
+    void add_flush_contact(std::uint32_t first, std::uint32_t second, PairCache* cache) {
+        const Part &a = scratch_.flush.part(0, first), &b = scratch_.flush.part(1, second);
+        scratch_.flush.add_contact(first, second, manifold_of({a.body, a.pose}, {b.body, b.pose}, cache));
+    }
+
     static Manifolds::Scratch& scratch_of(Manifolds& found) {
         if (!found.scratch_) found.scratch_ = std::make_unique<Manifolds::Scratch>();
         return *found.scratch_;
+    }
+
+    // Both have convex parts alone.
+    void find_convex_parts(const Placed& a, const Placed& b) {
+        UnionNormals& flush = scratch_.flush;
+        flush.start(options_.margin);
+        scratch_.numbers.clear();
+        visit_parts_near(b, a, near_margin(a), [&](const Part& part) {
+            scratch_.numbers.emplace_back(part.id.child, flush.add_part(1, part));
+            return false;
+        });
+        std::sort(scratch_.numbers.begin(), scratch_.numbers.end());
+        visit_parts_near(a, b, near_margin(b), [&](const Part& first) {
+            const std::uint32_t number = flush.add_part(0, first);
+            const Placed placed{first.body, first.pose};
+            visit_parts_near(b, placed, options_.margin, [&](const Part& second) {
+                const auto at = std::lower_bound(scratch_.numbers.begin(), scratch_.numbers.end(),
+                                                 std::pair(second.id.child, std::uint32_t{0}));
+                if (at == scratch_.numbers.end() || at->first != second.id.child) return false;
+                flush.add_contact(number, at->second, manifold_of(placed, {second.body, second.pose}));
+                return false;
+            });
+            return false;
+        });
+        flush.apply();
+        add_flush(flush.contacts().size(), false);
+    }
+
+    [[nodiscard]] Manifold manifold_of(const Placed& a, const Placed& b, PairCache* cache = nullptr) const {
+        ManifoldOptions all_points = options_;
+        all_points.max_points = cache != nullptr ? options_.max_points : 8;
+        return contact_manifold(a, b, all_points, cache);
+    }
+    // Parts that lie flush with those within the margin of a body are wanted as well.
+    [[nodiscard]] double near_margin(const Placed& body) const {
+        return options_.margin + (is_half_space(body) ? 0.0 : 1e-5 * (body.body.reach() + body.body.radius()));
+    }
+    // The first contacts.
+    void add_flush(std::size_t count, bool flip) {
+        UnionNormals& flush = scratch_.flush;
+        for (const UnionNormals::Contact& contact : flush.contacts().first(count)) {
+            scratch_.contact.normal = contact.normal;
+            scratch_.contact.points.count = contact.count;
+            std::copy_n(contact.points, contact.count, scratch_.contact.points.point);
+            add(scratch_.contact, flush.part(0, contact.part[0]).id, flush.part(1, contact.part[1]).id, flip);
+        }
     }
 
     // Both have parts. A surface's rules hold where it is asked as a whole: a's for b's convex parts, if a has any
@@ -119,18 +212,12 @@ class ManifoldFinder {
         Vector<NearSurface>& surfaces = scratch_.surfaces;
         surfaces.clear();
         scratch_.triangles.clear();
+        UnionNormals& flush = scratch_.flush;
+        flush.start(options_.margin);
+        const std::uint32_t whole = flush.add_part(1, {b.body, b.pose, of_b});
         const auto convex = [&](const Part& part) {
             if (only_surfaces_) return false;
-            ManifoldOptions all_points = options_;
-            all_points.max_points = 8;
-            const Manifold m = contact_manifold({part.body, part.pose}, b, all_points);
-            scratch_.contact.normal = m.normal;
-            scratch_.contact.points.count = m.count;
-            for (int k = 0; k < m.count; ++k) {
-                const ContactPoint& p = m.points[k];
-                scratch_.contact.points.point[k] = {p.position, p.depth, p.on_a, p.on_b, {}, {}};
-            }
-            add(scratch_.contact, part.id, of_b, flip);
+            flush.add_contact(flush.add_part(0, part), whole, manifold_of({part.body, part.pose}, b));
             return false;
         };
         const auto triangle = [&](const PartSearch& of, const Triangle& corners, std::uint32_t index) {
@@ -138,7 +225,9 @@ class ManifoldFinder {
                 surfaces.push_back({of.pose, of.sides, of.child, of.reach});
             scratch_.triangles.push_back({corners, index, static_cast<std::uint32_t>(surfaces.size() - 1)});
         };
-        visit_parts_near(a, b, options_.margin, convex, triangle);
+        visit_parts_near(a, b, near_margin(b), convex, triangle);
+        flush.apply();
+        add_flush(flush.contacts().size(), flip);
     }
 
     void add(SurfaceContacts::Contact& contact, const PartId& of_a, const PartId& of_b, bool flip) {
@@ -163,6 +252,14 @@ class ManifoldFinder {
 void contact_manifolds(const Placed& a, const Placed& b, const ManifoldOptions& options, Manifolds& found,
                        PairCache* cache) {
     ManifoldFinder(options, found).run(a, b, cache);
+}
+
+void contact_manifolds(const Placed& a, const Placed& b, const Beside& beside, const ManifoldOptions& options,
+                       Manifolds& found, PairCache* cache) {
+    const bool alone = beside.a.empty() && beside.b.empty();
+    if (alone || has_surfaces(a.body) || has_surfaces(b.body) || is_half_space(a) || is_half_space(b))
+        return contact_manifolds(a, b, options, found, cache);
+    ManifoldFinder(options, found).run_beside(a, b, beside, cache);
 }
 
 Manifold deepest_manifold(const Placed& a, const Placed& b, const ManifoldOptions& options) {

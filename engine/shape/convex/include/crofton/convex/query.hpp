@@ -180,10 +180,24 @@ class Manifolds {
 // triangle pushes along its face's normal. So what slides over a floor of many triangles meets the floor alone. Where
 // the rule would leave a body that meets the surface without any point, it does not hold. Between triangles of two
 // surfaces it is the second's rule. Neighbours are triangles of the same body that share vertices of equal position.
-// Surfaces with Sides::front push to the front, and only bodies whose center is there (of mass for hulls; else the
-// middle of the bounds). The cache serves two convex bodies. No allocation once `found` has seen as many parts.
+// Convex children of compounds that lie flush, within 2^-22 of their size, or overlap, touch as their union does: a
+// contact that its neighbours cover gives way to one that parts the pair as well, or to the least deep face that is
+// free. So what slides over a floor of flush boxes meets one plane; walls, steps and gaps wider than that push
+// sideways. Deep within the parts, or where no other is found, the contact stays. Surfaces with Sides::front push to
+// the front, and only bodies whose center is there (of mass for hulls; else the middle of the bounds). The cache serves
+// two convex bodies. No allocation once `found` has seen as many parts.
 void contact_manifolds(const Placed& a, const Placed& b, const ManifoldOptions& options, Manifolds& found,
                        PairCache* cache = nullptr);
+
+// Bodies that lie flush with a and touch b, and the other way round, as tiles of a floor do.
+struct Beside {
+    std::span<const Placed> a, b;
+};
+// As above, where a and those beside it touch as their union does, like children of a compound; so do b and those
+// beside it. Replaces `found` by the contacts of a and b, which may be none where those of a neighbour stand for them.
+// Ask each pair with the others beside it. Meshes and height fields take no part in it.
+void contact_manifolds(const Placed& a, const Placed& b, const Beside& beside, const ManifoldOptions& options,
+                       Manifolds& found, PairCache* cache = nullptr);
 
 // Replaces `parts` by the parts of a body that may be within `margin` ≥ 0 of another: all that are, and some more.
 void parts_near(const Placed& body, const Placed& other, double margin, Vector<Part>& parts);

@@ -1,0 +1,395 @@
+// SPDX-License-Identifier: MIT
+#include "union_normals.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/matrix.hpp>
+
+#include "body_maker.hpp"
+#include "core_query.hpp"
+#include "edge_rule.hpp"
+#include "part_manifold.hpp"
+
+namespace crofton::convex {
+namespace {
+
+// Faces count as flush that are so within rounding of the sizes to float.
+constexpr double kFlush = 0x1p-22;
+// Flush faces of hulls may be tilted against each other, as their corners are floats.
+constexpr double kFlatSlope = 2e-5;
+constexpr double kShallow = 0.25;
+
+double reach_of(const Body& body) {
+    return body.reach() + body.radius();
+}
+
+double flush_tolerance(const Placed& a, const Placed& b) {
+    const glm::dvec3 place = glm::abs(a.pose.translation);
+    const double size = reach_of(a.body) + reach_of(b.body) + glm::distance(a.pose.translation, b.pose.translation);
+    return kFlush * size + 0x1p-50 * (place.x + place.y + place.z);
+}
+
+bool holds(const Placed& body, const glm::dvec3& point, double tolerance) {
+    const glm::dvec3 offset = point - body.pose.translation;
+    if (body.body.kind() == Kind::box && body.body.radius() == 0.0) {
+        const glm::dvec3 p = glm::abs(glm::inverse(body.pose.rotation) * offset), &half = body.body.half_extents();
+        return p.x <= half.x + tolerance && p.y <= half.y + tolerance && p.z <= half.z + tolerance;
+    }
+    static const Body kPoint = *Body::ball(0.0);
+    const RigidTransform at{glm::dmat3(1.0), point};
+    const double within = body.body.radius() + tolerance;
+    return !(nearest_points(Pair({kPoint, at}, body), nullptr, 0.5 * within, within).lower > within);
+}
+
+bool rises_above(const Placed& body, const glm::dvec3& point, const glm::dvec3& direction, double tolerance) {
+    const Support s = core_support(body.body, Pair::local(body.pose.rotation, direction));
+    const glm::dvec3 way =
+        body.pose.rotation * s.point + (body.pose.translation - point) + body.body.radius() * direction;
+    return glm::dot(way, direction) > kFlatSine * glm::length(way) + tolerance;
+}
+
+int face_count(const Body& body) {
+    switch (body.kind()) {
+        case Kind::box:
+            return 6;
+        case Kind::hull:
+            return body.hull()->face_count();
+        case Kind::triangle:
+        case Kind::cylinder:
+            return 2;
+        default:
+            return body.kind() == Kind::cone ? 1 : 0;
+    }
+}
+
+// Outward; 0 of a triangle without area.
+glm::dvec3 face_normal(const Placed& placed, int face) {
+    const Body& body = placed.body;
+    const glm::dmat3& rotation = placed.pose.rotation;
+    glm::dvec3 local(0.0);
+    if (body.kind() == Kind::box)
+        local[face / 2] = (face & 1) != 0 ? 1.0 : -1.0;
+    else if (body.kind() == Kind::hull)
+        local = body.hull()->face_normal(face);
+    else if (body.kind() == Kind::triangle)
+        return (face == 0 ? 1.0 : -1.0) * triangle_normal(rotation, {body.vertex(0), body.vertex(1), body.vertex(2)});
+    else
+        local.y = face == 0 ? -1.0 : 1.0;
+    return local == glm::dvec3(0.0) ? local : turned_normal(rotation, local);
+}
+
+// A last point takes the place of one with the same id.
+void keep_ids_apart(GatheredPoints& points, int before) {
+    if (points.count == before) return;
+    for (int i = 0; i < before; ++i)
+        if (has_same_id(points.point[i], points.point[before])) {
+            points.point[i] = points.point[before];
+            points.count = before;
+            return;
+        }
+}
+
+// The deepest point of one core above the other's face, if it is over it.
+void add_support(const Patch& face, const glm::dvec3& out, const glm::dvec3& deepest, int vertex, bool face_is_a,
+                 Gatherer& gatherer) {
+    const double steepness = face.count > 2 ? glm::dot(face.normal, out) : 0.0;
+    if (!(steepness > 0.05)) return;
+    Prism sides;
+    find_sides(face, out, sides);
+    for (int k = 0; k < sides.count; ++k)
+        if (glm::dot(sides.outward[k], deepest) > sides.level[k]) return;
+    const glm::dvec3 shadow = deepest - glm::dot(face.normal, deepest - face.point[0]) / steepness * out;
+    const Feature corner{FeatureKind::vertex, static_cast<std::uint16_t>(vertex)};
+    const int before = gatherer.points.count;
+    if (face_is_a)
+        gatherer.add(shadow, deepest, face.self, corner);
+    else
+        gatherer.add(deepest, shadow, corner, face.self);
+    keep_ids_apart(gatherer.points, before);
+}
+
+double depth_of(const UnionNormals::Contact& contact) {
+    double depth = -HUGE_VAL;
+    for (int i = 0; i < contact.count; ++i) depth = std::max(depth, contact.points[i].depth);
+    return depth;
+}
+
+}  // namespace
+
+// Where a contact is on one of its parts, as far as that part is farthest along the normal there: points, those between
+// them, and their middle.
+struct UnionNormals::Samples {
+    glm::dvec3 point[25], middle{0.0};
+    int corners = 0, count;
+    double radius = 0.0;
+
+    Samples(const Contact& contact, int list) {
+        const double side = list == 0 ? 1.0 : -1.0;
+        glm::dvec3 place[8];
+        double along[8], most = -HUGE_VAL;
+        for (int i = 0; i < contact.count; ++i) {
+            const ContactPoint& p = contact.points[i];
+            place[i] = p.position + side * 0.5 * p.depth * contact.normal;
+            along[i] = side * glm::dot(contact.normal, place[i] - place[0]);
+            most = std::max(most, along[i]);
+        }
+        for (int i = 0; i < contact.count; ++i)
+            if (along[i] >= most - kFlatSine * (glm::distance(place[i], place[0]) + std::abs(most)))
+                point[corners++] = place[i];
+        for (int i = 0; i < corners; ++i) middle += point[i] / static_cast<double>(corners);
+        count = corners;
+        for (int i = 0; i < corners; ++i) {
+            radius = std::max(radius, glm::distance(point[i], middle));
+            if (corners == 1) continue;
+            point[count++] = 0.5 * (point[i] + point[(i + 1) % corners]);
+            point[count++] = 0.5 * (point[i] + middle);
+        }
+        if (corners > 1) point[count++] = middle;
+    }
+};
+
+void UnionNormals::start(double margin) {
+    margin_ = margin;
+    for (Vector<Part>& parts : parts_) parts.clear();
+    contacts_.clear();
+}
+
+std::uint32_t UnionNormals::add_part(int list, const Part& part) {
+    parts_[list].push_back(part);
+    return static_cast<std::uint32_t>(parts_[list].size() - 1);
+}
+
+void UnionNormals::add_contact(std::uint32_t first, std::uint32_t second, const Manifold& manifold) {
+    if (manifold.count == 0) return;
+    Contact& contact = contacts_.emplace_back();
+    contact.part[0] = first;
+    contact.part[1] = second;
+    contact.normal = manifold.normal;
+    contact.depth = manifold.depth;
+    contact.count = manifold.count;
+    std::copy_n(manifold.points, manifold.count, contact.points);
+}
+
+bool UnionNormals::is_neighbor(int list, std::uint32_t own, std::uint32_t other, const Samples& samples) const {
+    if (other == own) return false;
+    const Placed body = placed(list, other);
+    const double within = reach_of(body.body) + samples.radius + flush_tolerance(placed(list, own), body);
+    return glm::distance(samples.middle, body.pose.translation) <= within;
+}
+
+bool UnionNormals::is_covered(int list, std::uint32_t own, const glm::dvec3& point, const glm::dvec3& direction) const {
+    for (std::uint32_t other = 0; other < parts_[list].size(); ++other) {
+        if (other == own) continue;
+        const Placed body = placed(list, other);
+        const double tolerance = flush_tolerance(placed(list, own), body);
+        if (glm::distance(point, body.pose.translation) > reach_of(body.body) + tolerance) continue;
+        if (rises_above(body, point, direction, tolerance) && holds(body, point, tolerance)) return true;
+    }
+    return false;
+}
+
+// Whether a neighbour that rises above the contact's polygon comes to any point of it.
+bool UnionNormals::meets_polygon(int list, std::uint32_t own, std::uint32_t other, const Samples& samples,
+                                 const glm::dvec3& direction) const {
+    const Placed body = placed(list, other);
+    const double tolerance = flush_tolerance(placed(list, own), body), within = body.body.radius() + tolerance;
+    const RigidTransform at{glm::dmat3(1.0), samples.middle};
+    for (int i = 1; i + 1 < std::max(samples.corners, 3); ++i) {
+        const auto corner = [&](int k) { return samples.point[std::min(k, samples.corners - 1)] - samples.middle; };
+        const Body triangle = BodyMaker::triangle({corner(0), corner(i), corner(i + 1)});
+        const Nearest found = nearest_points(Pair({triangle, at}, body), nullptr, 0.5 * within, within);
+        if (found.lower > within || found.simplex.count == 0) continue;
+        glm::dvec3 on_polygon = samples.middle;
+        for (int k = 0; k < found.simplex.count; ++k)
+            on_polygon += found.simplex.weight[k] * found.simplex.corner[k].on_a;
+        if (rises_above(body, on_polygon, direction, tolerance)) return true;
+    }
+    return false;
+}
+
+UnionNormals::State UnionNormals::state_on(int list, const Contact& contact) const {
+    if (parts_[list].size() < 2) return State::free;
+    const Samples samples(contact, list);
+    const glm::dvec3 direction = list == 0 ? contact.normal : -contact.normal;
+    const std::uint32_t own = contact.part[list];
+    bool alone = true;
+    for (std::uint32_t other = 0; other < parts_[list].size() && alone; ++other)
+        alone = !is_neighbor(list, own, other, samples);
+    if (alone) return State::free;
+    int covered = 0;
+    for (int i = 0; i < samples.count; ++i)
+        if (is_covered(list, own, samples.point[i], direction))
+            ++covered;
+        else if (covered > 0)
+            return State::partly_covered;
+    if (covered == samples.count) return State::covered;
+    if (covered > 0) return State::partly_covered;
+    for (std::uint32_t other = 0; samples.corners > 1 && other < parts_[list].size(); ++other)
+        if (is_neighbor(list, own, other, samples) && meets_polygon(list, own, other, samples, direction))
+            return State::partly_covered;
+    return State::free;
+}
+
+UnionNormals::State UnionNormals::state_of(const Contact& contact) const {
+    const State first = state_on(0, contact);
+    return first == State::covered ? first : std::max(first, state_on(1, contact));
+}
+
+// Whether the motion that ends one contact ends the other.
+bool UnionNormals::parts_pair(const Contact& by, const Contact& contact) const {
+    const Placed a = placed(0, contact.part[0]), b = placed(1, contact.part[1]);
+    const Pair pair(a, b);
+    double extent = 0.0;
+    const Corner farthest = pair.support(by.normal, extent);
+    extent += a.body.radius() + b.body.radius();
+    const glm::dvec3 near = contact.points[0].position - a.pose.translation;
+    const double away = glm::distance(farthest.on_a, near) + glm::distance(farthest.on_b, near);
+    return extent <= by.depth + flush_tolerance(a, b) + kFlatSlope * away;
+}
+
+// The points of a pair of parts along a normal, but those that neighbours cover. Returns how deep the deepest one is
+// with these.
+double UnionNormals::gather_along(const glm::dvec3& normal, Contact& contact) const {
+    const Placed a = placed(0, contact.part[0]), b = placed(1, contact.part[1]);
+    const Pair pair(a, b);
+    Touch touch;
+    touch.normal = normal;
+    touch.depth = HUGE_VAL;
+    Patch on_a, on_b;
+    patch_along(a, normal, a.pose.translation, on_a);
+    patch_along(b, -normal, a.pose.translation, on_b);
+    GatheredPoints points;
+    Gatherer gatherer({a.pose.translation, a.body.radius(), b.body.radius(), margin_}, touch, points);
+    Clipped clipped;
+    (void)gather_patches(on_a, on_b, normal, clipped, gatherer);
+    double extent = 0.0;
+    const Corner deepest = pair.support(normal, extent);
+    touch.depth = extent + a.body.radius() + b.body.radius();
+    if (gatherer.lacks_deepest(1e-9 * pair.size)) {
+        add_support(on_a, normal, deepest.on_b, deepest.b, true, gatherer);
+        add_support(on_b, -normal, deepest.on_a, deepest.a, false, gatherer);
+    }
+    int kept = 0;
+    double most = -HUGE_VAL;
+    for (int i = 0; i < points.count; ++i) {
+        const ContactPoint& p = points.point[i];
+        most = std::max(most, p.depth);
+        const glm::dvec3 half = 0.5 * p.depth * normal;
+        if (is_covered(0, contact.part[0], p.position + half, normal)) continue;
+        if (is_covered(1, contact.part[1], p.position - half, -normal)) continue;
+        points.point[kept++] = p;
+    }
+    Manifold manifold;
+    manifold.normal = normal;
+    if (kept > 0) thin_out(manifold, points.point, kept, 8);
+    contact.normal = normal;
+    contact.count = manifold.count;
+    std::copy_n(manifold.points, manifold.count, contact.points);
+    contact.depth = depth_of(contact);
+    return most;
+}
+
+// The least deep of the free contacts that part the pair as well.
+const UnionNormals::Contact* UnionNormals::find_free(const Contact& contact) const {
+    const Contact* best = nullptr;
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+        const Contact& by = contacts_[i];
+        if (states_[i] != State::free) continue;
+        if ((best == nullptr || by.depth < best->depth) && parts_pair(by, contact)) best = &by;
+    }
+    return best;
+}
+
+void UnionNormals::replace_by_free() {
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+        if (states_[i] != State::partly_covered && states_[i] != State::covered) continue;
+        const Contact* const by = find_free(contacts_[i]);
+        if (by == nullptr) continue;
+        (void)gather_along(by->normal, contacts_[i]);
+        states_[i] = State::replaced;
+    }
+}
+
+// Along the free face of either part that is least deep, if that is not deep within them: there no way out is plain.
+bool UnionNormals::find_own_face(const Contact& contact, Contact& found) const {
+    found.count = 0;
+    const Placed placed_parts[2] = {placed(0, contact.part[0]), placed(1, contact.part[1])};
+    const Pair pair(placed_parts[0], placed_parts[1]);
+    const double rounding = pair.a.radius() + pair.b.radius();
+    double least = kShallow * std::min(reach_of(pair.a), reach_of(pair.b));
+    Contact tried;
+    tried.part[0] = contact.part[0];
+    tried.part[1] = contact.part[1];
+    for (int list = 0; list < 2; ++list)
+        for (int face = 0; face < face_count(placed_parts[list].body); ++face) {
+            const glm::dvec3 outward = face_normal(placed_parts[list], face);
+            if (outward == glm::dvec3(0.0)) continue;
+            const glm::dvec3 normal = list == 0 ? outward : -outward;
+            const double extent = pair.extent(normal) + rounding;
+            if (!(extent < least) || extent < -margin_) continue;
+            const double most = gather_along(normal, tried);
+            if (tried.count == 0 || tried.depth < most - 1e-9 * pair.size) continue;
+            least = extent;
+            found = tried;
+        }
+    return found.count > 0;
+}
+
+// Of the contacts still covered that whose own free face is least deep pushes along it. False: none has one.
+bool UnionNormals::push_least_deep() {
+    Contact best, found;
+    best.count = 0;
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+        if (states_[i] != State::covered || !find_own_face(contacts_[i], found)) continue;
+        if (best.count > 0 && !(found.depth < best.depth)) continue;
+        best = found;
+        at = i;
+    }
+    if (best.count == 0) return false;
+    contacts_[at] = best;
+    states_[at] = State::free;
+    return true;
+}
+
+// Whether a contact's points are where the body has sunk in through the part of another, below a thin one or beside a
+// sheet: they are out once that contact has pushed.
+bool UnionNormals::is_behind(const Contact& contact, const Contact& other) const {
+    if (!(other.depth > 0.0) || !parts_pair(other, contact) || parts_pair(contact, other)) return false;
+    for (int list = 0; list < 2; ++list) {
+        const std::uint32_t own = contact.part[list], neighbor = other.part[list];
+        if (own == neighbor || contact.part[1 - list] != other.part[1 - list]) continue;
+        const Samples samples(contact, list);
+        const Placed body = placed(list, neighbor);
+        const double within = body.body.radius() + flush_tolerance(placed(list, own), body);
+        const glm::dvec3 way = (list == 0 ? other.depth : -other.depth) * other.normal;
+        const RigidTransform at{glm::dmat3(1.0), samples.middle};
+        const Body swept = BodyMaker::triangle({glm::dvec3(0.0), way, way});
+        if (nearest_points(Pair({swept, at}, body), nullptr, 0.5 * within, within).lower <= within) return true;
+    }
+    return false;
+}
+
+void UnionNormals::replace_behind() {
+    for (std::size_t i = 0; i < contacts_.size(); ++i)
+        for (std::size_t j = 0; j < contacts_.size() && states_[i] == State::free; ++j) {
+            if (i == j || states_[j] != State::free || !is_behind(contacts_[i], contacts_[j])) continue;
+            (void)gather_along(contacts_[j].normal, contacts_[i]);
+            states_[i] = State::replaced;
+        }
+}
+
+void UnionNormals::apply() {
+    if (contacts_.empty() || parts_[0].size() + parts_[1].size() < 3) return;
+    if (is_half_space(placed(1, 0))) return;  // its normal is one already
+    states_.clear();
+    for (const Contact& contact : contacts_) states_.push_back(state_of(contact));
+    replace_behind();
+    replace_by_free();
+    std::replace(states_.begin(), states_.end(), State::partly_covered, State::free);
+    do {
+        replace_by_free();
+    } while (push_least_deep());
+}
+
+}  // namespace crofton::convex

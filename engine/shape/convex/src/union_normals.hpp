@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+// Contacts of bodies of convex parts that lie flush or overlap: with the normals of the union.
+#pragma once
+#include <crofton/convex/query.hpp>
+
+#include "gather.hpp"
+
+namespace crofton::convex {
+
+// Two lists of convex parts, and where parts of the first touch parts of the second. The least deep way out of one part
+// may lead into its neighbour. So a contact whose points the neighbours cover is none of the union's: its pair of parts
+// pushes along the normal of another contact that parts them as well, else along the face that is least deep and free.
+// A neighbour covers a point that it holds, up to rounding to float, if it rises above it along the normal. A contact
+// that is covered in part, as that of a wall with its foot on the floor, stays unless another contact parts the pair.
+// Where none is found it stays, too.
+class UnionNormals {
+  public:
+    struct Contact {
+        std::uint32_t part[2];  // of either list
+        glm::dvec3 normal;      // from the first list's to the second's
+        double depth;
+        int count;
+        ContactPoint points[8];
+    };
+
+    void start(double margin);
+    // Returns its number in its list. Parts that touch nothing count as neighbours.
+    std::uint32_t add_part(int list, const Part& part);
+    void add_contact(std::uint32_t first, std::uint32_t second, const Manifold& manifold);
+    void apply();
+    [[nodiscard]] std::span<const Contact> contacts() const { return contacts_; }
+    [[nodiscard]] const Part& part(int list, std::uint32_t number) const { return parts_[list][number]; }
+
+  private:
+    enum class State : std::uint8_t { free, partly_covered, covered, replaced };
+    struct Samples;
+    [[nodiscard]] Placed placed(int list, std::uint32_t number) const {
+        return {parts_[list][number].body, parts_[list][number].pose};
+    }
+    [[nodiscard]] State state_of(const Contact& contact) const;
+    [[nodiscard]] State state_on(int list, const Contact& contact) const;
+    [[nodiscard]] bool is_neighbor(int list, std::uint32_t own, std::uint32_t other, const Samples& samples) const;
+    [[nodiscard]] bool is_covered(int list, std::uint32_t own, const glm::dvec3& point,
+                                  const glm::dvec3& direction) const;
+    [[nodiscard]] bool meets_polygon(int list, std::uint32_t own, std::uint32_t other, const Samples& samples,
+                                     const glm::dvec3& direction) const;
+    [[nodiscard]] bool parts_pair(const Contact& by, const Contact& contact) const;
+    [[nodiscard]] const Contact* find_free(const Contact& contact) const;
+    void replace_by_free();
+    [[nodiscard]] bool is_behind(const Contact& contact, const Contact& other) const;
+    void replace_behind();
+    bool push_least_deep();
+    double gather_along(const glm::dvec3& normal, Contact& contact) const;
+    [[nodiscard]] bool find_own_face(const Contact& contact, Contact& found) const;
+
+    double margin_ = 0.0;
+    Vector<Part> parts_[2];
+    Vector<Contact> contacts_;
+    Vector<State> states_;  // by contact
+};
+
+}  // namespace crofton::convex

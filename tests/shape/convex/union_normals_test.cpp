@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: MIT
+// Bodies that touch parts which lie flush: the contacts are those of the union.
+#include <doctest/doctest.h>
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <tuple>
+
+#include "flat_floors.hpp"
+
+using namespace crofton;
+using namespace crofton::convex;
+using namespace crofton::testing;
+
+namespace {
+
+// A body that is `depth` deep in the floor's plane at its lowest point, in the floor's frame.
+RigidTransform sunk(RandomBodies& random, const Body& body, const Floor& floor, double depth, bool upright) {
+    glm::dmat3 rotation = around_y(random.number(0, 6.2));
+    if (!upright) rotation = random.rotation();
+    const double edge = 0.7;
+    return {rotation,
+            {random.number(floor.least + edge, floor.most - edge), below(body, rotation) - depth,
+             random.number(floor.least + edge, floor.most - edge)}};
+}
+
+struct Asked {
+    const Compound& floor;
+    RigidTransform frame;  // of the floor
+    const Body& body;
+    RigidTransform pose;  // in the frame
+    double depth;         // of the lowest point
+    bool swapped;
+};
+
+// Every field of every point: on the plane and on the body, along its normal, of a part that is there.
+void check_against_plane(const Asked& asked, std::span<const Manifold> found, double tolerance) {
+    const glm::dvec3 up = asked.frame.rotation[1];
+    const RigidTransform pose = product(asked.frame, asked.pose);
+    CHECK(found.size() == 1);
+    if (found.size() != 1) return;
+    const Manifold& m = found[0];
+    const glm::dvec3 normal = asked.swapped ? -m.normal : m.normal;
+    CHECK(glm::distance(normal, up) <= 2e-3);
+    CHECK(std::abs(glm::length(normal) - 1.0) <= 1e-12);
+    CHECK(m.depth == doctest::Approx(asked.depth).epsilon(1e-9).scale(tolerance / 1e-9));
+    REQUIRE(m.count >= 1);
+    CHECK(m.count <= 4);
+    double deepest = -HUGE_VAL;
+    std::set<std::tuple<PartId, PartId, Feature, Feature>> ids;
+    for (int i = 0; i < m.count; ++i) {
+        const ContactPoint& p = m.points[i];
+        const glm::dvec3 half = 0.5 * p.depth * normal, on_floor = p.position + half, on_body = p.position - half;
+        CHECK(std::abs(glm::dot(on_floor - asked.frame.translation, up)) <= tolerance + 2e-3 * std::abs(p.depth));
+        CHECK(closest_point({asked.body, pose}, on_body).distance <= tolerance + 2e-3 * std::abs(p.depth));
+        const PartId id = asked.swapped ? p.part_b : p.part_a;
+        REQUIRE(id.child < asked.floor.part_count());
+        const CompoundChild& part = asked.floor.part(id.child);
+        const RigidTransform there = product(asked.frame, part.pose);
+        CHECK(closest_point({part.body, there}, on_floor).distance <= tolerance + 2e-3 * std::abs(p.depth));
+        CHECK((asked.swapped ? p.part_a : p.part_b) == PartId{});
+        ids.insert({p.part_a, p.part_b, p.on_a, p.on_b});
+        deepest = std::max(deepest, p.depth);
+    }
+    CHECK(ids.size() == static_cast<std::size_t>(m.count));
+    CHECK(deepest == m.depth);
+}
+
+int check_floor(RandomBodies& random, const Floor& floor, const Sliders& sliders, int rounds) {
+    const Compound compound = Compound::build(floor.parts).value();
+    Manifolds found;
+    int checked = 0;
+    for (int i = 0; i < rounds; ++i) {
+        const std::size_t which = static_cast<std::size_t>(i) % sliders.bodies.size();
+        CAPTURE(which);
+        CAPTURE(i);
+        const Body& body = sliders.bodies[which];
+        const bool upright = i % 3 != 0;
+        const double depth = i % 4 == 0 ? -random.number(1e-4, 0.01) : std::pow(10.0, -random.number(1.7, 6.0));
+        RigidTransform frame = at({});
+        if (i % 5 != 0) frame.rotation = random.rotation();
+        if (i % 5 > 2) frame.translation = std::pow(10.0, random.number(0.0, 4.0)) * random.direction();
+        const Asked asked{compound, frame, body, sunk(random, body, floor, depth, upright), depth, i % 7 == 0};
+        const RigidTransform pose = product(frame, asked.pose);
+        const ManifoldOptions options{.margin = depth < 0.0 ? 0.02 : 0.0};
+        if (asked.swapped)
+            contact_manifolds({body, pose}, {Body::compound(compound), frame}, options, found);
+        else
+            contact_manifolds({Body::compound(compound), frame}, {body, pose}, options, found);
+        // Depths of cylinders and cones are known to 1e-5.
+        check_against_plane(asked, found.all(), 3e-5);
+        ++checked;
+    }
+    return checked;
+}
+
+}  // namespace
+
+TEST_SUITE("convex/union_normals") {
+    TEST_CASE("over strips of boxes that lie flush, also with T-junctions, every contact is that of one plane") {
+        RandomBodies random(61);
+        const Sliders sliders(random);
+        for (int round = 0; round < 24; ++round) {
+            CAPTURE(round);
+            const Tiles tiles = round % 2 == 0 ? Tiles::boxes : Tiles::turned_boxes;
+            check_floor(random, strips(random, tiles, round % 3 != 0, 1.0f), sliders, 400);
+        }
+    }
+
+    TEST_CASE("over hulls, prisms, triangles and any of them that lie flush, every contact is that of one plane") {
+        RandomBodies random(62);
+        const Sliders sliders(random);
+        for (const Tiles tiles : {Tiles::hulls, Tiles::prisms, Tiles::triangles, Tiles::mixed})
+            for (int round = 0; round < 4; ++round) {
+                CAPTURE(static_cast<int>(tiles));
+                CAPTURE(round);
+                check_floor(random, strips(random, tiles, round % 2 == 0, 0.5f), sliders, 300);
+            }
+        for (const bool flat : {true, false}) {
+            CAPTURE(flat);
+            check_floor(random, triangulated(random, 0.5f, flat), sliders, 600);
+        }
+    }
+}
+
+namespace {
+
+// The manifold along a direction, if there is one.
+const Manifold* along(std::span<const Manifold> found, const glm::dvec3& direction) {
+    for (const Manifold& m : found)
+        if (glm::distance(m.normal, direction) <= 1e-6) return &m;
+    return nullptr;
+}
+
+Body box_of(const glm::dvec3& size) {
+    return Body::box(glm::vec3(0.5 * size)).value();
+}
+
+// The box from `low` to `high`.
+CompoundChild block(const glm::dvec3& low, const glm::dvec3& high) {
+    return {box_of(high - low), at(0.5 * (low + high))};
+}
+
+}  // namespace
+
+TEST_SUITE("convex/union_normals_of_edges") {
+    TEST_CASE("a wall on the floor pushes sideways, beside the floor that pushes up, whatever their frame") {
+        RandomBodies random(63);
+        Manifolds found;
+        for (int i = 0; i < 2000; ++i) {
+            CAPTURE(i);
+            // The wall stands on the floor, goes down beside it, or is cut into blocks.
+            std::vector<CompoundChild> parts{block({-4, -1, -4}, {0, 0, 0.25}), block({-4, -1, 0.25}, {0, 0, 4})};
+            if (i % 3 == 0) parts.push_back(block({-1, 0, -4}, {0, 2, 4}));
+            if (i % 3 == 1) parts.push_back(block({0, -1, -4}, {1, 2, 4}));
+            if (i % 3 == 2)
+                for (double z = -4.0; z < 4.0; z += 0.5) parts.push_back(block({0, 0, z}, {1, 2, z + 0.5}));
+            const double face = i % 3 == 0 ? -1.0 : 0.0;
+            const Compound compound = Compound::build(parts).value();
+            const double down = random.number(1e-5, 0.02), in = random.number(1e-5, 0.02);
+            const RigidTransform frame{i % 4 == 0 ? glm::dmat3(1.0) : random.rotation(),
+                                       (i % 2 == 0 ? 0.0 : 100.0) * random.direction()};
+            const Body body = i % 5 == 0 ? Body::ball(0.25).value() : Body::box({0.25f, 0.25f, 0.25f}).value();
+            const RigidTransform pose = product(frame, at({face - 0.25 + in, 0.25 - down, random.number(-3.0, 3.0)}));
+            contact_manifolds({Body::compound(compound), frame}, {body, pose}, {}, found);
+            CHECK(found.all().size() == 2);
+            const Manifold *up = along(found.all(), frame.rotation[1]), *back = along(found.all(), -frame.rotation[0]);
+            REQUIRE(up != nullptr);
+            REQUIRE(back != nullptr);
+            CHECK(up->depth == doctest::Approx(down).epsilon(1e-5));
+            CHECK(back->depth == doctest::Approx(in).epsilon(1e-5));
+        }
+    }
+
+    TEST_CASE("a step of a centimetre and a gap wider than rounding push sideways, a step within rounding does not") {
+        RandomBodies random(64);
+        Manifolds found;
+        for (int i = 0; i < 1000; ++i) {
+            CAPTURE(i);
+            const double down = random.number(1e-4, 0.009), in = random.number(1e-5, 0.9) * down;
+            const RigidTransform frame{random.rotation(), 10.0 * random.direction()};
+            const RigidTransform pose = product(frame, at({-0.25 + in, 0.25 - down, random.number(-3.0, 3.0)}));
+            const Body body = Body::box({0.25f, 0.25f, 0.25f}).value();
+            const auto ask = [&](double step, double gap) {
+                const CompoundChild parts[] = {block({-4, -1, -4}, {-gap, 0, 4}), block({0, -1, -4}, {4, step, 4})};
+                const Compound compound = Compound::build(parts).value();
+                contact_manifolds({Body::compound(compound), frame}, {body, pose}, {}, found);
+                const Manifold *up = along(found.all(), frame.rotation[1]),
+                               *back = along(found.all(), -frame.rotation[0]);
+                REQUIRE(up != nullptr);
+                CHECK(up->depth == doctest::Approx(down).epsilon(1e-3));
+                if (back != nullptr) CHECK(back->depth == doctest::Approx(in).epsilon(1e-3));
+                return back != nullptr;
+            };
+            CHECK(ask(0.01, 0.0));
+            CHECK(ask(1e-3, 0.0));
+            CHECK(ask(0.0, 1e-3));
+            CHECK_FALSE(ask(0.0, 0.0));
+            CHECK_FALSE(ask(0.0, 1e-7));
+            CHECK_FALSE(ask(1e-7, 0.0));
+        }
+    }
+
+    TEST_CASE("in a corner of two walls, between floor and ceiling, and over a narrow beam: normals of the union") {
+        Manifolds found;
+        const Body body = Body::box({0.25f, 0.25f, 0.25f}).value();
+        const double s = 0.004, t = 0.007;
+        const CompoundChild corner[] = {block({0, -1, -4}, {1, 1, 4}), block({-4, -1, 0}, {0, 1, 1})};
+        const Compound walls = Compound::build(corner).value();
+        contact_manifolds({Body::compound(walls), at({})}, {body, at({-0.25 + s, 0, -0.25 + t})}, {}, found);
+        CHECK(found.all().size() == 2);
+        REQUIRE(along(found.all(), {-1, 0, 0}) != nullptr);
+        REQUIRE(along(found.all(), {0, 0, -1}) != nullptr);
+        CHECK(along(found.all(), {-1, 0, 0})->depth == doctest::Approx(s).epsilon(1e-6));
+        CHECK(along(found.all(), {0, 0, -1})->depth == doctest::Approx(t).epsilon(1e-6));
+        // The wall between floor and ceiling is covered at both ends of the contact.
+        const CompoundChild room[] = {block({-4, -1, -4}, {0, 0, 4}), block({-4, 0.49, -4}, {0, 1, 4}),
+                                      block({0, -1, -4}, {1, 1, 4})};
+        const Compound passage = Compound::build(room).value();
+        contact_manifolds({Body::compound(passage), at({})}, {body, at({-0.25 + s, 0.245, 0})}, {}, found);
+        CHECK(found.all().size() == 3);
+        REQUIRE(along(found.all(), {-1, 0, 0}) != nullptr);
+        CHECK(along(found.all(), {-1, 0, 0})->depth == doctest::Approx(s).epsilon(1e-6));
+        // A beam that is narrower than the body leads to a platform.
+        const CompoundChild beam[] = {block({-4, -1, -0.1}, {0, 0, 0.1}), block({0, -1, -4}, {4, 0, 4})};
+        const Compound bridge = Compound::build(beam).value();
+        contact_manifolds({Body::compound(bridge), at({})}, {body, at({-0.25 + s, 0.25 - t, 0})}, {}, found);
+        CHECK(found.all().size() == 1);
+        CHECK(found.all()[0].depth == doctest::Approx(t).epsilon(1e-6));
+        CHECK(found.all()[0].normal.y == doctest::Approx(1.0));
+        // A hole that is narrower than the body.
+        const CompoundChild holed[] = {block({-4, -1, -4}, {0, 0, -0.1}), block({-4, -1, 0.1}, {0, 0, 4}),
+                                       block({0, -1, -4}, {4, 0, 4})};
+        const Compound floor = Compound::build(holed).value();
+        contact_manifolds({Body::compound(floor), at({})}, {body, at({-0.25 + s, 0.25 - t, 0})}, {}, found);
+        CHECK(found.all().size() == 1);
+        CHECK(found.all()[0].normal.y == doctest::Approx(1.0));
+        // Plates thinner than the body has sunk in.
+        const CompoundChild plates[] = {block({-4, -0.002, -4}, {0, 0, 4}), block({0, -1, -4}, {4, 0, 4})};
+        const Compound thin = Compound::build(plates).value();
+        contact_manifolds({Body::compound(thin), at({})}, {body, at({-0.25 + s, 0.25 - t, 0})}, {}, found);
+        for (const Manifold& m : found.all()) CHECK(std::abs(m.normal.y) == doctest::Approx(1.0));
+    }
+
+    TEST_CASE("two compounds of flush boxes slide over each other as two boxes do, whichever comes first") {
+        RandomBodies random(65);
+        Manifolds found;
+        for (int i = 0; i < 1000; ++i) {
+            CAPTURE(i);
+            const Floor floor = strips(random, i % 2 == 0 ? Tiles::boxes : Tiles::hulls, true, 0.5f);
+            const CompoundChild pieces[] = {block({-0.3, -0.2, -0.3}, {0.05, 0.2, 0.1}),
+                                            block({0.05, -0.2, -0.3}, {0.3, 0.2, 0.1}),
+                                            block({-0.3, -0.2, 0.1}, {0.3, 0.2, 0.3})};
+            const Compound below = Compound::build(floor.parts).value(), above = Compound::build(pieces).value();
+            const RigidTransform frame{random.rotation(), 10.0 * random.direction()};
+            const double depth = random.number(1e-5, 0.02);
+            const RigidTransform pose = product(
+                frame, {around_y(random.number(0, 6.2)), {random.number(-2, 2), 0.2 - depth, random.number(-2, 2)}});
+            if (i % 3 == 0)
+                contact_manifolds({Body::compound(above), pose}, {Body::compound(below), frame}, {}, found);
+            else
+                contact_manifolds({Body::compound(below), frame}, {Body::compound(above), pose}, {}, found);
+            REQUIRE(found.all().size() == 1);
+            const Manifold& m = found.all()[0];
+            CHECK(glm::distance(i % 3 == 0 ? -m.normal : m.normal, frame.rotation[1]) <= 1e-6);
+            CHECK(m.depth == doctest::Approx(depth).epsilon(1e-4));
+            CHECK(m.count == 4);
+        }
+    }
+}
