@@ -27,7 +27,7 @@ int main() {
     crofton::VisibleObjects visible;  // keeps its memory: no allocation once warm
     std::size_t seen = 0, touched = 0;
     for (int frame = 0; frame < 60; ++frame) {
-        // What moves is found out, not declared. Changes take effect in update().
+        // World detects motion automatically. Changes take effect in update().
         const double x = -3.0 + 0.55 * frame;
         if (auto moved = world.set_bound(ball, crofton::Sphere{{x, 1.0, -8.0}, 1.0}); !moved) return 1;
         if (frame == 30) world.remove(crates[25]);  // its handle is stale from now on

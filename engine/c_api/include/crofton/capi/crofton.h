@@ -213,7 +213,7 @@ typedef enum crofton_contact_phase {
     CROFTON_CONTACT_ENDED = 2
 } crofton_contact_phase;
 
-/* Two objects that touch, or that did in the update before. What ended has no more than its objects, whose handles are
+/* Two objects that touch, or that did in the update before. Ended contacts carry only the two object handles, which are
  * stale where they have been removed. */
 typedef struct crofton_object_contact {
     size_t size;

@@ -15,7 +15,7 @@
 
 namespace crofton::bake {
 
-// A file as memory, without reading it first where the caller can trust whoever may write to it.
+// ---- Mapped files ----
 
 // `map`: pages come from the file when they are used. Nobody may shorten or change the file meanwhile: reading what was
 // cut off ends the program (SIGBUS on POSIX). Replacing it, as write_file does, is safe.
@@ -45,7 +45,7 @@ class MappedFile {
     bool mapped_ = false;
 };
 
-// A scene made ready at build time: boxes, tree, triangulations and meshes, in one file that is used where it lies.
+// ---- Baked scenes ----
 
 // What the sections hold; `first` and `count` are ranges of the sections positions, colors, indices, names, points
 // (of polygons) and rings.
@@ -142,7 +142,7 @@ class BakedScene {
     std::optional<boxtree::BoxTree> tree_;
 };
 
-// Writes a whole file or leaves the old one: what a baked scene must be stored with, as others may have it open.
+// ---- Write files atomically ----
 
 // Writes `bytes` to PATH.partial, flushes them to the disk, and renames that file to PATH. Then it flushes the folder,
 // where the system can: the new file outlives a power cut. A full disk, a crash or a killed process leaves the old file

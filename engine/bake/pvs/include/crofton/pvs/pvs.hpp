@@ -71,7 +71,7 @@ class Cells {
     Vector<std::uint32_t> plane_ends_;
 };
 
-// What is looked at.
+// ---- Geometry to bake ----
 
 // Triangles of objects, relative to `origin`: choose it near them, so that floats are fine enough.
 struct Subject {
@@ -164,7 +164,7 @@ class Bake {
 // Lines that a state lacks, as shards of `count`: those that must run again. Ascending. Errors: damaged; a count of 0.
 [[nodiscard]] Result<Vector<std::uint32_t>> missing_shards(std::span<const std::byte> state, std::uint32_t count);
 
-// What is proved hidden.
+// ---- Proofs that objects are hidden ----
 
 // An occluder of a mesh that stands under a transform. Boxes and convex bodies prove; patches are left out.
 struct PlacedOccluder {

@@ -93,9 +93,7 @@ template <std::same_as<std::string> String>
     return tl::unexpected<Error>(Error{code, item, std::move(message)});
 }
 
-// What the engine tells its host: messages for a person, and a caller's mistakes.
-
-// Messages for a person, to the host's own log.
+// ---- Log ----
 
 enum class LogLevel : std::uint8_t { debug, info, warning, error };
 

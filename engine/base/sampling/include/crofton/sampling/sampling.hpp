@@ -17,8 +17,6 @@
 
 namespace crofton::sampling {
 
-// Random numbers, and uniform directions, rotations, motions and cameras from them.
-
 // Random numbers that are the same bits on every machine, for any number of threads.
 
 // The counter-based generator Philox4x32-10 (Salmon, Moraes, Dror, Shaw, "Parallel random numbers: as easy as 1, 2, 3",

@@ -12,8 +12,6 @@
 
 namespace crofton::measure {
 
-// Intrinsic volumes of convex bodies and figures: how often uniformly random queries meet them.
-
 // Intrinsic volumes: the three numbers that say how often uniformly random queries meet a convex body.
 
 // Volume V, surface area F, and the integral of mean curvature M = 2π · mean width, in the third, second and first

@@ -15,7 +15,7 @@
 
 namespace crofton::collide {
 
-// Which of many moving boxes meet?
+// ---- Broadphase: all overlapping pairs ----
 
 // Two items are tested iff each one's layers meet what the other collides with.
 struct CollisionFilter {
@@ -96,7 +96,7 @@ class Broadphase {
     Owner<State> state_;
 };
 
-// Which of many boxes does a body or a ray meet? Asked of the tree that culling uses.
+// ---- Queries of a tree: overlaps, rays, nearest ----
 
 // All queries leave out items whose layers share no bit with `layers`, and want a tree whose moves have been refitted.
 // const, thread-safe; no allocation beyond the growth of the caller's vector.

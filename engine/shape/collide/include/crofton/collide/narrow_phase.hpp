@@ -10,9 +10,7 @@
 
 namespace crofton::collide {
 
-// Do two oriented boxes meet? Exactly: one pair, or many at once.
-
-// Do two oriented boxes meet? Exactly.
+// ---- Overlap of oriented boxes ----
 
 // True iff the two exact parallelepipeds share a point; touching counts. Filtered separating-axis test (Gottschalk,
 // Lin, Manocha 1996) with a proven error bound, then exact arithmetic. Exact for every pair of boxes that validate(Obb)
@@ -85,7 +83,7 @@ struct MeshContact;
 
 namespace crofton::collide {
 
-// Simple bodies that boxes meet: spheres, capsules, triangles, half-spaces.
+// ---- Spheres, capsules, triangles, half-spaces against boxes ----
 
 // All points within `radius` of the segment.
 struct Capsule {

@@ -20,7 +20,7 @@ class MeshTree;
 
 namespace crofton::convex {
 
-// Volume, center of mass and inertia of a body of density 1.
+// ---- Mass ----
 
 // In the body's frame. Times the density: mass and inertia tensor.
 struct MassProperties {

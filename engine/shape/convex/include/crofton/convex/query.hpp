@@ -13,7 +13,7 @@
 
 namespace crofton::convex {
 
-// Do two bodies meet, how far apart are they, how deep do they overlap?
+// ---- Overlap, distance, depth ----
 
 // A body where it stands: the image of its stored points under the stored pose, all taken as reals. Poses are valid
 // and without reflection, as validate_pose tells. Alive for the call only.
@@ -100,7 +100,7 @@ struct RayHit {
 // whose max_t is NaN or negative, nor at a pose that is not valid: validate(Ray) and validate_pose tell why.
 [[nodiscard]] std::optional<RayHit> raycast(const Placed& body, const Ray& ray);
 
-// Where two bodies touch: points a physics step can hold on to from frame to frame.
+// ---- Contacts ----
 
 // A vertex, edge or face of a body. Of hulls the indices are the hull's. Of boxes: a vertex is a corner number; edge 4k
 // + j runs along axis k; face 2k + s is across axis k, on the + side for s = 1. Of a triangle: edge k leads from corner
@@ -222,7 +222,7 @@ void outline(const Placed& body, LineVisitor line);
 // At each point its normal from surface to surface, with a cross of size `size` across it.
 void outline(std::span<const TrackedPoint> points, double size, LineVisitor line);
 
-// When will two moving bodies first touch?
+// ---- Casts ----
 
 // What a body does from its pose on. Its `pivot` (in the body's frame: the center of mass) moves by velocity · t. The
 // body turns about it by |spin| · t radians around `spin` (world axes). Zero: it rests. Any number of turns.

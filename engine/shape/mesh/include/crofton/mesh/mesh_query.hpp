@@ -14,7 +14,7 @@ namespace crofton::mesh {
 
 class MeshTree;
 
-// Do two triangles meet? Exactly, whatever their shape.
+// ---- Overlap of two triangles ----
 
 // True iff the closed convex hulls of the three points of each share a point. Coplanar triangles and those that are
 // segments or points are answered like all others. Signs come from a double filter with a proven bound, then from exact
@@ -28,7 +28,7 @@ struct SegmentOfContact {
 // ends of a longest diagonal of their common polygon, at most. Rounded: within 1e-9 of the triangles' size of both.
 [[nodiscard]] SegmentOfContact contact_segment(const Triangle& a, const Triangle& b);
 
-// Meshes against meshes, through their trees: do they meet, where, and how far apart are they?
+// ---- Meshes against meshes: overlap, contacts, distance ----
 
 // All queries take the pose of b in a's frame; it has passed validate(RigidTransform). Triangles are a's own and those
 // of b with each vertex put through transform(RigidTransform); for these the answers are exact. Boxes are only ever
@@ -103,7 +103,7 @@ struct MeshDistance {
 [[nodiscard]] bool closer_than(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& b_to_a,
                                double tolerance, MeshStatistics* statistics = nullptr);
 
-// Rays and segments against boxes, triangles and meshes.
+// ---- Rays and segments ----
 
 // Where a ray enters a box, or 0 where it starts inside. Rounded: a grazing hit within 1e-14 of the coordinates' size
 // may be told either way.

@@ -111,7 +111,7 @@ Result<void> find_visible(const BoundSet<Bound>& set, std::type_identity_t<std::
 // many.
 std::size_t list_bits(std::span<const std::uint64_t> bits, std::span<ItemId> ids);
 
-// What moves in every frame: a list over the caller's own boxes, asked together with a tree of what rests.
+// ---- Moving boxes: a list beside the tree ----
 
 // The ids are the tree's. An item is taken out of the tree when it begins to move (BoxTree::detach). It is put back
 // when it comes to rest. The layers are the tree's too. 80 bytes an item beside the caller's boxes.

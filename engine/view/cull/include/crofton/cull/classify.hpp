@@ -20,9 +20,7 @@ class Hull;
 
 namespace crofton::cull {
 
-// One bound, or many, against a view: outside, straddling, inside, exactly.
-
-// The one question a renderer asks of a bound: is this worth drawing?
+// ---- Verdicts ----
 
 enum class Verdict : std::uint8_t { outside, straddling, inside };
 
@@ -54,9 +52,7 @@ enum class CullMode : std::uint8_t {
 void classify(const Frustum& frustum, std::span<const Obb> boxes, std::span<Verdict> verdicts,
               CullMode mode = CullMode::exact);
 
-// What a query of a list answers.
-
-// What a query cost, and what of it was in vain.
+// ---- Statistics ----
 
 #if defined(CROFTON_NO_STATISTICS)
 inline constexpr bool kCountStatistics = false;  // every number below stays 0, and counting costs nothing
@@ -99,7 +95,7 @@ struct VerdictBits {
     Vector<Statistics> by_chunk;  // for the query's own use
 };
 
-// What is not worth drawing: too small in the picture, or too far away.
+// ---- Draw limits: leave out what is too small or too far ----
 
 // An item's radius r is half its box's diagonal, √(h₀² + h₁² + h₂²) of its half extents; its distance d is that of its
 // box's centre from `eye`. The item is dropped if d > radii · r, if d > item_distances[id], if r < least_radius, or if

@@ -143,7 +143,7 @@ class ManyVisible {
 Result<void> find_visible(const boxtree::BoxTree& tree, std::span<const View> views, ManyVisible& visible,
                           CullMode mode = CullMode::exact, const DrawLimits* limits = nullptr);
 
-// Visible items as a bit set, or as runs that one draw call takes.
+// ---- Bit sets and draw ranges ----
 
 // Items [first, first + count).
 struct ItemRange {
@@ -160,7 +160,7 @@ void to_bits(std::span<const boxtree::ItemId> ids, std::size_t items, Vector<std
 // BoxTree::slot_items().
 void merge_ranges(std::span<const std::uint64_t> bits, std::uint32_t max_gap, Vector<ItemRange>& ranges);
 
-// Who may throw a shadow into a view? The view volume, drawn out towards the light.
+// ---- Shadow volumes ----
 
 // All points from which going away from a far light one may come into `view`: { x + s · toward_light : x in view, s ≥ 0
 // }. The planes, at most 12 for a camera's 6, come from eliminating s (Fourier, Motzkin). Those that look along the

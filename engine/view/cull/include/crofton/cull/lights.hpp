@@ -111,7 +111,7 @@ class FroxelLights {
                                        std::span<const SpotLight> spots, FroxelLights& result,
                                        Executor& executor = serial_executor());
 
-// Which objects throw a shadow onto something that the view sees? And cascades for the sun.
+// ---- Shadow casters and cascades ----
 
 // What of the view's receivers a light could reach, as seen from the light. Each tile of a picture from there keeps the
 // nearest and the farthest point of any receiver within the view. A caster is wanted if in some tile it reaches nearer

@@ -21,7 +21,7 @@
 
 namespace crofton::occlude {
 
-// A view whose rays can be told apart: where they start, and the pixel that each belongs to.
+// ---- Views for occlusion ----
 
 // Maps x to (column, row, w, z) = rows · (x − origin, 1). The ray through x is the point (column / w, row / w) of the
 // window [−1, 1]². z / w falls along each ray. In a perspective view `origin` is the eye, exactly; the first three rows
@@ -46,7 +46,7 @@ struct OcclusionView {
 [[nodiscard]] Result<OcclusionView> occlusion_view_of(const glm::dmat4& to_clip, DepthRange depth,
                                                       const glm::dvec3& origin = glm::dvec3(0.0));
 
-// Which of many occluders to draw for a view: those that cover most of it.
+// ---- Choose occluders for a view ----
 
 // From where an occluder must not be used: what it lies in, and the sides of it that are open.
 struct EyeLimits {
@@ -211,7 +211,7 @@ class OcclusionBuffer {
     Owner<Data> data_;
 };
 
-// Which items does a view see, occluders considered? Of a tree, of a list, of what moves.
+// ---- Find what occluders do not hide ----
 
 // cull's verdicts, and `occluded`: neither outside nor seen.
 enum class Verdict : std::uint8_t { outside, straddling, inside, occluded };

@@ -17,7 +17,7 @@
 
 namespace crofton::scene {
 
-// A polygon with holes, standing in space.
+// ---- Polygons in space ----
 
 // The polygon's (x, y) lies at origin + x·u + y·v; it is seen from the side of cross(u, v).
 struct PlanarPolygon {

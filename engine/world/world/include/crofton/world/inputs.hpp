@@ -44,7 +44,7 @@ using ObjectHandle = Handle<struct ObjectTag>;
 using NodeHandle = Handle<struct NodeTag>;
 using MeshHandle = Handle<struct MeshTag>;
 
-// What a World is told: views of the caller's memory, and what an object is.
+// ---- Views of the caller's memory ----
 
 // `size` values of type T in the caller's memory, `stride` bytes apart: a span, or a member of an array of structs.
 template <class T>
