@@ -136,6 +136,18 @@ TEST_SUITE("capi/bodies") {
             const auto first = convex::cast({a, still}, {}, {b, pose}, {{-x, -y, -z}, {0, 3, 0}, {}});
             CHECK(impact.time == first->time);
             CHECK(impact.result == static_cast<std::uint32_t>(first->result));
+            CHECK(impact.distance == first->distance);
+            for (int k = 0; k < 3; ++k) {
+                CHECK(impact.normal[k] == first->normal[k]);
+                CHECK(impact.on_a[k] == first->on_a[k]);
+                CHECK(impact.on_b[k] == first->on_b[k]);
+            }
+            auto options = sized<crofton_cast_options>();
+            options.duration = 1.0;
+            options.ignore_initial_overlaps = 1;
+            REQUIRE(crofton_bodies_cast(&placed_a, nullptr, &placed_b, &motion, &options, &impact) == CROFTON_OK);
+            if (meet == 1) CHECK(impact.result == CROFTON_CAST_MISS);
+            if (meet == 0) CHECK(impact.time == first->time);
         }
         CHECK(met > 20);
         CHECK(met < 180);

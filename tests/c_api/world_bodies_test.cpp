@@ -131,6 +131,9 @@ TEST_SUITE("capi/world bodies") {
         CHECK(hit.result == CROFTON_CAST_HIT);
         CHECK(hit.time == doctest::Approx((5.0 - 0.25 - 1.99) / 10.0).epsilon(1e-5));
         CHECK(hit.normal[1] == doctest::Approx(-1.0));
+        CHECK(hit.point[1] == doctest::Approx(1.99));
+        CHECK(hit.distance >= 0.0);
+        CHECK(hit.distance < 1e-6);
         const crofton_motion rise{{0, 10, 0}, {0, 0, 0}, {0, 0, 0}};
         REQUIRE(crofton_world_cast(s.world.get(), &high, &rise, nullptr, ~0u, &hit) == CROFTON_OK);
         CHECK(hit.object.index == CROFTON_NONE);

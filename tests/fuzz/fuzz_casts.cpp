@@ -4,6 +4,7 @@
 #include <crofton/convex/query.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
+#include <oracle/impacts.hpp>
 
 #include "bodies.hpp"
 
@@ -44,6 +45,9 @@ void check_cast(fuzz::Shapes& in) {
     if (impact->result != convex::CastResult::hit || impact->time > 0.0)
         for (int i = 0; i < 8; ++i)
             demand(at(impact->time * i / 8.0) <= 1e-7 * size, "bodies touch before the time of a cast");
+    if (impact->result == convex::CastResult::miss)
+        demand(impact->normal == glm::dvec3(0.0) && impact->distance == 0.0 && impact->time == options.duration,
+               "the fields of a miss");
     if (impact->result != convex::CastResult::hit) return;
     const RigidTransform now_a = convex::moved(pose_a, motion_a, impact->time),
                          now_b = convex::moved(pose_b, motion_b, impact->time);
@@ -53,6 +57,19 @@ void check_cast(fuzz::Shapes& in) {
     const double rounding = is_hard(a) || is_hard(b) ? 1e-7 : 1e-9;
     demand(convex::distance({a, now_a}, {b, now_b}).lower <= options.tolerance + rounding * size,
            "bodies that have hit");
+    demand(impact->distance < options.tolerance + rounding * size, "the distance of a hit");
+    // Of what overlaps the depth is within 1e-5 of the size, and the deepest points with it.
+    if (impact->distance > 0.0)
+        demand(oracle::fault_of_contact({a, now_a}, {b, now_b}, *impact, rounding * size).empty(),
+               "the points and the normal of a hit");
+    else
+        demand(impact->time > 0.0 ||
+                   convex::penetration({a, now_a}, {b, now_b}).upper >= -impact->distance - rounding * size,
+               "the depth of an overlap");
+    options.ignore_initial_overlaps = true;
+    const auto later = convex::cast({a, pose_a}, motion_a, {b, pose_b}, motion_b, options);
+    demand(later.has_value() && (later->result == convex::CastResult::miss || later->time > 0.0),
+           "a cast that leaves out what overlaps from the start");
 }
 
 Triangle triangle_of(const TriangleMesh& mesh, std::uint32_t t) {

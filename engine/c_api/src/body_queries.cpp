@@ -104,6 +104,7 @@ crofton_status capi::to_cast_options(const crofton_cast_options* options, const 
     if (given.tolerance != 0.0) result.tolerance = given.tolerance;
     if (given.max_steps > INT32_MAX) return report(CROFTON_OUT_OF_RANGE, function, "max_steps is more than 2^31 - 1");
     if (given.max_steps != 0) result.max_steps = static_cast<int>(given.max_steps);
+    result.ignore_initial_overlaps = given.ignore_initial_overlaps != 0;
     return CROFTON_OK;
 }
 

@@ -78,6 +78,7 @@ crofton_status crofton_world_cast(const crofton_world* world, const crofton_plac
         std::memcpy(result.normal, &first.normal, sizeof result.normal);
         std::memcpy(result.point, &first.point, sizeof result.point);
         result.triangle = first.triangle;
+        result.distance = first.distance;
         result.result = first.resolved ? CROFTON_CAST_HIT : CROFTON_CAST_UNRESOLVED;
     }
     write_growing(result, hit);

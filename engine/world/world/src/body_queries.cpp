@@ -130,8 +130,9 @@ Result<std::optional<BodyHit>> World::cast(const convex::Body& shape, const Rigi
                         impact->normal,
                         impact->on_b,
                         impact->part_b.triangle,
-                        impact->result == convex::CastResult::hit};
-        rest.duration = impact->time;
+                        impact->result == convex::CastResult::hit,
+                        impact->distance};
+        rest.early_out = impact->time;
         return 0.0;
     });
     return first;

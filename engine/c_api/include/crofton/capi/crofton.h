@@ -243,10 +243,11 @@ typedef struct crofton_body_hit {
     crofton_object object; /* index CROFTON_NONE: nothing, and time is infinite */
     uint64_t user;
     double time;
-    double normal[3];  /* unit, from the body to the object; 0 where they overlap from the start */
-    double point[3];   /* on the object */
+    double normal[3];  /* unit, from the body to the object */
+    double point[3];   /* on the object's surface */
     uint32_t triangle; /* of a surface */
     uint32_t result;   /* a crofton_cast_result; unresolved: up to `time` nothing is met, later is not known */
+    double distance;   /* gap at that time; negative: how deep they overlap, from the start */
 } crofton_body_hit;
 
 CROFTON_API crofton_status crofton_world_object_count(const crofton_world* world, size_t* count);

@@ -392,21 +392,22 @@ typedef struct crofton_motion {
 
 typedef struct crofton_cast_options {
     size_t size;
-    double duration;    /* >= 0 */
-    double tolerance;   /* bodies this close have hit; 0: 1e-6 */
-    uint32_t max_steps; /* 0: 500 */
+    double duration;                  /* >= 0 */
+    double tolerance;                 /* how far apart bodies may still be at the time of a hit; 0: 1e-6 */
+    uint32_t max_steps;               /* 0: 500 */
+    uint32_t ignore_initial_overlaps; /* 1: leaves out what overlaps or is within the tolerance at time 0 */
 } crofton_cast_options;
 
 typedef enum crofton_cast_result {
     CROFTON_CAST_MISS = 0,      /* proven: the bodies do not touch in that time */
-    CROFTON_CAST_HIT = 1,       /* at `time` they are within the tolerance, and at no time before do they touch */
+    CROFTON_CAST_HIT = 1,       /* at `time` they are within the tolerance, before they do not touch, then they do */
     CROFTON_CAST_UNRESOLVED = 2 /* before `time` they do not touch; later is not known */
 } crofton_cast_result;
 
 typedef struct crofton_impact {
     size_t size;
-    double time, distance;
-    double on_a[3], on_b[3], normal[3]; /* unit, from a to b; 0 where they overlap from the start */
+    double time, distance;              /* gap at that time; negative: how deep they overlap, from the start */
+    double on_a[3], on_b[3], normal[3]; /* on the surfaces; unit, from a to b; all 0 for a miss */
     crofton_part part_a, part_b;
     uint32_t result; /* a crofton_cast_result */
     uint32_t steps;
@@ -469,7 +470,9 @@ CROFTON_API crofton_status crofton_body_closest_point(const crofton_placed* body
 CROFTON_API crofton_status crofton_bodies_manifold(const crofton_placed* a, const crofton_placed* b,
                                                    const crofton_manifold_options* options, crofton_pair_cache* cache,
                                                    crofton_body_manifold* manifold);
-/* When will they first touch? `options` or NULL: within a time of 1. A motion or NULL: that body rests. */
+/* When will they first touch? `options` or NULL: within a time of 1. A motion or NULL: that body rests. Bodies that
+ * begin within the tolerance hit if they move into each other, not if they part or slide along each other. Bodies that
+ * begin overlapping hit at time 0, with the shortest way out. */
 CROFTON_API crofton_status crofton_bodies_cast(const crofton_placed* a, const crofton_motion* motion_a,
                                                const crofton_placed* b, const crofton_motion* motion_b,
                                                const crofton_cast_options* options, crofton_impact* impact);

@@ -238,25 +238,31 @@ struct Motion {
 
 struct CastOptions {
     double duration = 1.0;    // ≥ 0, finite
-    double tolerance = 1e-6;  // > 0, in lengths: bodies this close have hit
+    double tolerance = 1e-6;  // > 0, in lengths: how far apart the bodies may still be at the time of a hit
     int max_steps = 500;      // ≥ 1
+    // Leaves out bodies, or parts of bodies, that overlap at time 0 or are within the tolerance then. They are left out
+    // of the whole cast, also if they part and meet again.
     bool ignore_initial_overlaps = false;
+    // Hits after this time are not sought, and are told as a miss. Whoever asks many bodies for the first hit passes
+    // the time of the first hit so far. It changes no hit up to it. ≥ 0.
     double early_out = HUGE_VAL;
 };
 
 enum class CastResult : std::uint8_t {
-    miss,        // proven: the bodies do not touch in [0, duration]
-    hit,         // at `time` they are within the tolerance or rounding, and at no time before do they touch
+    miss,        // proven: the bodies do not touch in [0, duration]; for bodies that begin in contact see `cast`
+    hit,         // at `time` they are within the tolerance, at no time before do they touch, and they go on to touch
     unresolved,  // max_steps were not enough: before `time` they do not touch; later is not known
 };
 struct Impact {
     CastResult result = CastResult::miss;
-    double time = 0.0;       // of a miss: the duration
-    glm::dvec3 normal{0.0};  // unit, from a to b, at that time; 0 where they overlap from the start
-    glm::dvec3 on_a{0.0}, on_b{0.0};
-    double distance = 0.0;
-    int steps = 0;              // of bodies of parts: of the pair of parts that hit
-    PartId part_a{}, part_b{};  // that hit
+    double time = 0.0;  // of a miss: the duration, or early_out if that is less
+    // Where the bodies are at that time; all 0 for a miss. The normal is the direction that parts them, as `distance`
+    // or, for overlapping bodies, `penetration` tells.
+    glm::dvec3 normal{0.0};           // unit, from a to b
+    glm::dvec3 on_a{0.0}, on_b{0.0};  // nearest points, on the surfaces: on_b − on_a = distance · normal
+    double distance = 0.0;            // gap at that time; negative: how deep they overlap, from the start
+    int steps = 0;                    // of bodies of parts: of the pair of parts that hit
+    PartId part_a{}, part_b{};        // that hit
 };
 
 // Conservative advancement (Mirtich 1996) by a bound of second order. Each step ends before any vertex can have crossed
@@ -265,6 +271,17 @@ struct Impact {
 // of the bodies as they move in real arithmetic from their stored poses, wherever they are; `moved` rounds. Rounding
 // grows with the bodies, their gap, and their ways and turns as seen from a: below 1e-13 of (size + |pivot|) · (1 +
 // angle) + way. A gap that small may be told as a hit, never a touch as a miss.
+//
+// A hit is told up to the tolerance before the touch, with half the tolerance between the bodies where they can be
+// stopped there. So a body that stops at a hit can go on from there:
+// - Bodies that begin within the tolerance, touching or overlapping by less than it, hit at time 0 if they move into
+//   each other, with the normal and the true gap. If they part or move along each other, within rounding, they do not
+//   hit: a box slides, a wheel rolls, a top spins on the floor.
+// - Bodies that begin overlapping by the tolerance or more hit at time 0, wherever they move. The normal and `distance`
+//   are the shortest way out; of bodies with parts, that of the deepest parts.
+// - Bodies that rest, and casts of duration 0, tell whether the bodies are within the tolerance.
+// - Bodies that turn and stay within the tolerance hit where 32 steps do not prove that they pass.
+//
 // Bodies of parts: the first time at which parts touch. A one-sided triangle that is first touched from behind is
 // passed through. Errors: NaN or infinite motions, a turn beyond 1e5 radians, options out of range, half-spaces turned.
 [[nodiscard]] Result<Impact> cast(const Placed& a, const Motion& motion_a, const Placed& b, const Motion& motion_b,

@@ -177,10 +177,11 @@ struct BodyHit {
     ObjectHandle object;
     std::uint64_t user = 0;
     double time = 0.0;
-    glm::dvec3 normal{0.0};      // unit, from the body to the object; 0 where they overlap from the start
-    glm::dvec3 point{0.0};       // on the object
+    glm::dvec3 normal{0.0};      // unit, from the body to the object
+    glm::dvec3 point{0.0};       // on the object's surface
     std::uint32_t triangle = 0;  // of a surface
     bool resolved = true;        // false: up to `time` nothing is met; what comes later is not known
+    double distance = 0.0;       // gap at that time; negative: how deep they overlap, from the start
 };
 
 }  // namespace crofton

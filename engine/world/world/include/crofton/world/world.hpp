@@ -187,8 +187,10 @@ class World {
     // nearest orthonormal ones. A pose that is not valid meets nothing.
     void overlap(const convex::Body& shape, const RigidTransform& pose, Vector<ObjectRef>& found,
                  std::uint32_t layers = ~0u) const;
-    // The first object that a moving body meets: as convex::cast against each one's body, ball or box at rest. Errors:
-    // of convex::cast; a half-space; a pose that is not valid.
+    // The first object that a moving body meets: as convex::cast against each one's body, ball or box at rest. So a
+    // body that stands on an object or stops at one can slide along it and part from it. What it overlaps from the
+    // start is met at time 0, or left out by CastOptions::ignore_initial_overlaps. Errors: of convex::cast; a
+    // half-space; a pose that is not valid.
     [[nodiscard]] Result<std::optional<BodyHit>> cast(const convex::Body& shape, const RigidTransform& pose,
                                                       const convex::Motion& motion, const convex::CastOptions& options,
                                                       std::uint32_t layers = ~0u) const;
