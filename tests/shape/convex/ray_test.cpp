@@ -309,6 +309,31 @@ TEST_SUITE("convex/ray") {
         CHECK(before->normal == glm::dvec3(-1, 0, 0));
         CHECK(before->t <= 1e-15);
     }
+    TEST_CASE("a ray that begins on a surface enters at once, or has left, whatever rounding says") {
+        RandomBodies random(4108);
+        int entered = 0, left = 0;
+        for (int i = 0; i < 11000; ++i) {
+            const Body body = body_of_kind(random, i % kKinds, 1.0);
+            const RigidTransform pose{random.rotation(), 20.0 * random.direction()};
+            const glm::dvec3 from = pose.translation + 5.0 * random.direction();
+            const auto first = raycast({body, pose}, {from, pose.translation + 0.3 * random.direction() - from});
+            if (!first) continue;
+            const double slip = 1e-14 * random.number(-1.0, 1.0);
+            const Ray out{first->point + slip * first->normal, first->normal + 0.5 * random.direction()},
+                in{out.origin, -first->normal + 0.5 * random.direction()};
+            CAPTURE(i);
+            // Into the solid: at once. Out of it: only a start inside is a hit.
+            const auto comes = raycast({body, pose}, in), goes = raycast({body, pose}, out);
+            REQUIRE(comes.has_value());
+            REQUIRE(comes->t <= 1e-12);
+            REQUIRE((comes->started_inside || glm::dot(comes->normal, in.direction) < 0.0));
+            if (goes) REQUIRE(goes->started_inside);
+            entered += !comes->started_inside;
+            left += !goes.has_value();
+        }
+        CHECK(entered > 2000);
+        CHECK(left > 2000);
+    }
     TEST_CASE("a ray at a half-space meets its plane, from however far away") {
         RandomBodies random(4104);
         for (int i = 0; i < 2000; ++i) {

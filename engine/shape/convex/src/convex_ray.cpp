@@ -38,6 +38,14 @@ std::optional<double> first_of(double enter, double leave, double max_t) {
     return std::max(enter, 0.0);
 }
 
+// The ray begins outside: where rounding puts its origin inside, it comes in if it goes against the normal, and has
+// left else.
+std::optional<NearHit> entering(const NearRay& ray, double t, const glm::dvec3& normal) {
+    if (normal == glm::dvec3(0.0)) return NearHit{t, -ray.direction};
+    if (t == 0.0 && !(glm::dot(normal, ray.direction) < 0.0)) return std::nullopt;
+    return NearHit{t, normal};
+}
+
 std::optional<NearHit> meet_ball(const NearRay& ray, const glm::dvec3& center, double radius) {
     const glm::dvec3 to = ray.origin - center;
     const double squared = glm::dot(ray.direction, ray.direction), nearest = -glm::dot(to, ray.direction) / squared;
@@ -47,8 +55,7 @@ std::optional<NearHit> meet_ball(const NearRay& ray, const glm::dvec3& center, d
     const double half = std::sqrt(half_chord / squared);
     const auto t = first_of(nearest - half, nearest + half, ray.max_t);
     if (!t) return std::nullopt;
-    const glm::dvec3 normal = to + *t * ray.direction;
-    return NearHit{*t, normal != glm::dvec3(0.0) ? normal : -ray.direction};
+    return entering(ray, *t, to + *t * ray.direction);
 }
 
 // All points within `radius` of the segment. The cylinder around its line comes first; what enters that beyond an end
@@ -74,8 +81,7 @@ std::optional<NearHit> meet_capsule(const NearRay& ray, const glm::dvec3& a, con
         const double along = glm::dot(at, axis) / squared;
         if (along >= 0.0 && along <= 1.0) {
             if (*t > ray.max_t) return std::nullopt;
-            const glm::dvec3 normal = at - along * axis;
-            return NearHit{*t, normal != glm::dvec3(0.0) ? normal : -ray.direction};
+            return entering(ray, *t, at - along * axis);
         }
         return meet_ball(ray, along < 0.0 ? a : b, radius);
     }
@@ -102,7 +108,9 @@ std::optional<NearHit> meet_box(const NearRay& ray, const glm::dvec3& half) {
         leave = std::min(leave, t1);
     }
     const auto t = first_of(enter, leave, ray.max_t);
-    return t ? std::optional<NearHit>({*t, normal}) : std::nullopt;
+    // Farther inside than rounding puts it, the origin lies at the side where the ray leaves.
+    if (!t || (enter < 0.0 && enter * glm::dot(normal, ray.direction) > ray.error)) return std::nullopt;
+    return NearHit{*t, normal};
 }
 
 // The distance from a cylinder's or cone's core, negative within, and its gradient.
@@ -152,8 +160,8 @@ std::optional<NearHit> meet_round(const Body& body, const NearRay& ray) {
     for (int i = 0; i < 300; ++i) {
         const RoundGap at = round_gap(body, ray.origin + t * ray.direction);
         const double gap = at.gap - body.radius(), speed = -glm::dot(at.gradient, ray.direction);
-        if (gap <= enough) return NearHit{t, at.gradient};
         if (!(speed > 0.0)) return std::nullopt;
+        if (gap <= enough) return NearHit{t, at.gradient};
         const double next = t + gap / speed;
         if (!(next <= ray.max_t)) return std::nullopt;
         if (next == t) return NearHit{t, at.gradient};
@@ -168,8 +176,8 @@ std::optional<NearHit> meet_moved_face(const NearRay& ray, const Triangle& core,
     const double length = glm::length(normal), speed = -glm::dot(normal, ray.direction);
     if (!(speed > 0.0)) return std::nullopt;
     const glm::dvec3 out = (radius / length) * normal;
-    const double t = glm::dot(normal, ray.origin - core[0] - out) / speed;
-    if (!(t >= 0.0 && t <= ray.max_t)) return std::nullopt;
+    const double height = glm::dot(normal, ray.origin - core[0] - out), t = std::max(height / speed, 0.0);
+    if (!(height >= -ray.error * length && t <= ray.max_t)) return std::nullopt;
     const glm::dvec3 p = ray.origin + t * ray.direction - out;
     for (std::size_t k = 0; k < 3; ++k) {
         const glm::dvec3 &from = core[k], &to = core[(k + 1) % 3];

@@ -48,7 +48,7 @@ typedef struct crofton_world_options {
     uint64_t rebuild_budget;      /* items' worth of work on the tree an update; 0: a 128th of the objects and 512 */
     uint32_t without_rebuild;     /* 1: no such work, and no allocation for it */
     uint32_t updates_to_rest;     /* without moving, until an object counts as resting again; 0: 16 */
-    double contact_margin;        /* gaps up to this between bodies are contacts, as far as the objects' boxes meet */
+    double contact_margin;        /* gaps up to this between bodies are contacts */
 } crofton_world_options;
 
 /* As of the last update. */
