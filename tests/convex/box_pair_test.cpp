@@ -137,9 +137,9 @@ TEST_SUITE("convex/box_pair") {
             const BoxCase c = random_case(random);
             CAPTURE(i);
             const Placed a{c.a, c.pose_a}, b{c.b, c.pose_b};
-            const bool meet = intersects(a, b), rounded = c.a.radius() + c.b.radius() > 0.0;
+            const bool meet = intersects(a, b);
             const Manifold tight = contact_manifold(a, b);
-            if (!rounded) CHECK((tight.count > 0) == meet);
+            CHECK((tight.count > 0) == meet);
             meeting += meet;
             const double margin = 2.0 * std::abs(c.gap) + 1e-9;
             PairCache cache;
@@ -157,7 +157,13 @@ TEST_SUITE("convex/box_pair") {
             const double tolerance = 1e-9 * c.size + 1e-15 * glm::length(c.pose_a.translation);
             for (int k = 0; k < cold.count; ++k) {
                 CHECK(cold.points[k].depth <= cold.depth);
-                CHECK(wrong_place(c, cold.points[k]) <= tolerance + 1e-6 * c.size);
+                const Feature &on_a = cold.points[k].on_a, &on_b = cold.points[k].on_b;
+                // Rounded edges within 2 degrees of parallel have points at their ends, midway between them.
+                const bool at_ends = on_a.kind != FeatureKind::face && on_b.kind != FeatureKind::face &&
+                                     (on_a.kind == FeatureKind::vertex || on_b.kind == FeatureKind::vertex) &&
+                                     c.a.radius() > 0.0 && c.b.radius() > 0.0;
+                CHECK(wrong_place(c, cold.points[k]) <=
+                      tolerance + 1e-6 * c.size + (at_ends ? 0.036 * std::min(c.a.reach(), c.b.reach()) : 0.0));
                 edges += cold.points[k].on_a.kind == FeatureKind::edge && cold.points[k].on_b.kind == FeatureKind::edge;
             }
         }

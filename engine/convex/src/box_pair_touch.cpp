@@ -10,6 +10,9 @@ namespace {
 // As deep as the least axis, for a face that nothing speaks for but its depth: of the size.
 constexpr double kSameFace = 0.25e-9;
 
+// Of two degrees, and what a pose's edges are off by.
+constexpr double kParallelSine2 = 1.2181e-3;
+
 class BoxToucher {
   public:
     BoxToucher(const Placed& a, const Placed& b, const Pair& pair, double margin, Touch& touch, GatheredPoints& points)
@@ -100,6 +103,8 @@ bool BoxToucher::at_edges() {
                      from_b = end_b - ((corner_b >> j & 1) != 0 ? half_b : -half_b) * v;
     const glm::dvec3 across = glm::cross(u, v), between = from_b - from_a;
     const double squared = glm::dot(across, across);
+    // Rounded edges that are nearly parallel touch along a stretch, not where they cross.
+    if (rounding_ > 0.0 && squared <= kParallelSine2) return false;
     const double s = glm::dot(glm::cross(between, v), across) / squared,
                  t = glm::dot(glm::cross(between, u), across) / squared;
     if (least_.extent < 0.0 && !(std::abs(s) <= half_a && std::abs(t) <= half_b)) return false;

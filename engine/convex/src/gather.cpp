@@ -5,15 +5,6 @@
 #include <cmath>
 
 namespace crofton::convex {
-namespace {
-
-bool nearly_parallel(const Patch& a, const Patch& b) {
-    const glm::dvec3 u = a.point[1] - a.point[0], v = b.point[1] - b.point[0], n = glm::cross(u, v);
-    return glm::dot(n, n) <= 1e-3 * glm::dot(u, u) * glm::dot(v, v);
-}
-
-}  // namespace
-
 void Gatherer::add(const glm::dvec3& core_a, const glm::dvec3& core_b, const Feature& on_a, const Feature& on_b) {
     const glm::dvec3 p = core_a + of_.radius_a * touch_.normal, q = core_b - of_.radius_b * touch_.normal;
     // A face that is not quite flat would seem deeper than the bodies overlap.
@@ -52,11 +43,7 @@ void Gatherer::add_deepest() {
 }
 
 int gather_patches(const Patch& a, const Patch& b, const glm::dvec3& normal, Clipped& clipped, Gatherer& gatherer) {
-    if (a.count < 2 || b.count < 2) return 0;
-    if (a.count == 2 && b.count == 2) {
-        if (nearly_parallel(a, b)) clip_segments(a, b, clipped), gatherer.add(clipped, true);
-        return 0;
-    }
+    if (a.count < 2 || b.count < 2 || (a.count == 2 && b.count == 2)) return 0;
     const double along_a = a.count > 2 ? glm::dot(a.normal, normal) : -1.0;
     const double along_b = b.count > 2 ? -glm::dot(b.normal, normal) : -1.0;
     const bool reference_is_a = along_a >= along_b - 1e-3 && a.count > 2;

@@ -35,8 +35,8 @@ class Gatherer {
     const Touch& touch_;
 };
 
-// The reference is the face that looks along the normal more; of faces alike a's, so that it stays. Returns whose it
-// is: 1 a's, 2 b's, 0 where no face is clipped.
+// Of patches one of which is a face at least. The reference is the face that looks along the normal more; of faces
+// alike a's, so that it stays. Returns whose it is: 1 a's, 2 b's, 0 where no face is clipped.
 int gather_patches(const Patch& a, const Patch& b, const glm::dvec3& normal, Clipped& clipped, Gatherer& gatherer);
 
 // Sets the features of a touch that are not known: what the vertices of its simplex span, else the patches.

@@ -7,6 +7,7 @@
 #include "box_pair.hpp"
 #include "core_query.hpp"
 #include "gather.hpp"
+#include "parallel_edges.hpp"
 #include "part_manifold.hpp"
 
 namespace crofton::convex {
@@ -145,7 +146,10 @@ Manifold contact_manifold(const Placed& a, const Placed& b, const ManifoldOption
     patch_along(b, -touch.normal, a.pose.translation, patch_b);
     GatheredPoints points;
     Gatherer gatherer(gathering_of(a, b, options.margin), touch, points);
-    const int reference = gather_patches(patch_a, patch_b, touch.normal, clipped, gatherer);
+    const bool round = pair.rounding() > 0.0 || !pair.has_polytope_cores();
+    const bool at_edges = round && gather_parallel_edges({&a, patch_a}, {&b, patch_b}, touch.normal, a.pose.translation,
+                                                         pair.size, clipped, gatherer);
+    const int reference = at_edges ? 0 : gather_patches(patch_a, patch_b, touch.normal, clipped, gatherer);
     if (cache != nullptr) {
         const Patch& patch = reference == 2 ? patch_b : patch_a;
         const bool across = std::abs(glm::dot(patch.normal, touch.normal)) > 1.0 - 1e-8;

@@ -6,6 +6,7 @@
 
 #include "body_maker.hpp"
 #include "core_query.hpp"
+#include "parallel_edges.hpp"
 #include "part_manifold.hpp"
 
 namespace crofton::convex {
@@ -120,13 +121,17 @@ void SurfaceContacts::gather_patches_along(const PlacedTriangle& t, Gatherer& ga
     on_body.self = {FeatureKind::vertex, 0};
     if (body_.body.vertex_count() == 1) return;  // a ball has no patch
     Clipped clipped;
+    const bool round = body_.body.radius() > 0.0 || !body_.body.has_polytope_core();
+    if (!box_ || round) patch_along(body_, -normal, gathering_.origin, on_body);
+    if (round && gather_parallel_edges({nullptr, on_triangle}, {&body_, on_body}, normal, gathering_.origin, size_,
+                                       clipped, gatherer))
+        return;
     if (box_) {
         const int face = face_along(body_.body, Pair::local(body_.pose.rotation, -normal));
         BoxFace(body_, face, box_->to_local(), gathering_.origin).clip(on_triangle, -normal, clipped);
         gatherer.add(clipped, false);
         on_body.self = {FeatureKind::face, static_cast<std::uint16_t>(face)};
     } else {
-        patch_along(body_, -normal, gathering_.origin, on_body);
         (void)gather_patches(on_triangle, on_body, normal, clipped, gatherer);
     }
 }
