@@ -105,6 +105,21 @@ double inner_radius_of(const CornerHull& body, const glm::dvec3& center, double 
 
 }  // namespace
 
+// Edges are differences of floats, off by 2^-53 of themselves; their product by 2^-50 of both lengths.
+void Hull::find_planes() {
+    const std::size_t count = triangles_.size() / 3;
+    planes_.resize(4 * count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto corner = [&](std::size_t k) { return glm::dvec3(vertices_[triangles_[3 * i + k]]); };
+        const glm::dvec3 e = corner(1) - corner(0), f = corner(2) - corner(0), n = glm::cross(e, f);
+        const double length = glm::length(n);
+        plane_error_ =
+            length > 0.0 ? std::max(plane_error_, 0x1p-50 * glm::length(e) * glm::length(f) / length) : HUGE_VAL;
+        for (std::size_t k = 0; k < 3; ++k) planes_[k * count + i] = n[static_cast<int>(k)] / length;
+        planes_[3 * count + i] = glm::dot(n, corner(0)) / length;
+    }
+}
+
 Result<Hull> Hull::build(std::span<const glm::vec3> points, const HullOptions& options) {
     if (Result<void> good = check(points, options); !good) return tl::unexpected(good.error());
     return detail::recover([&]() -> Result<Hull> {
@@ -125,6 +140,7 @@ Result<Hull> Hull::build(std::span<const glm::vec3> points, const HullOptions& o
         hull.columns_ = side_by_side(result->corners);
         hull.find_faces(static_cast<double>(options.face_tolerance));
         hull.index_edges();
+        hull.find_planes();
         hull.mass_ = mass_of_triangles(result->corners, result->hull.triangles);
         hull.normal_columns_ = side_by_side(hull.normals_);
         hull.inner_radius_ = inner_radius_of(*result, hull.mass_.center, hull.radius_);

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core_query.hpp"
+#include "deep_core.hpp"
 #include "exact_gjk.hpp"
 #include "part_query.hpp"
 
@@ -148,12 +149,17 @@ Penetration penetration(const Placed& a, const Placed& b, PairCache* cache) {
     Penetration p;
     if (!finite_pair(pair)) return p;
     const double ra = a.body.radius(), rb = b.body.radius(), rounding = ra + rb;
-    Nearest core = core_distance(pair, cache, 0.0, rounding + 1.5 * pair.doubt());
-    remember(core, cache);
-    if (core.simplex.count == 0 || !settle(pair, core)) return p;
+    Depth depth;
+    Nearest core;
+    const bool deep = deep_in_closed_form(pair, depth);
+    if (!deep) {
+        core = core_distance(pair, cache, 0.0, rounding + 1.5 * pair.doubt());
+        remember(core, cache);
+        if (core.simplex.count == 0 || !settle(pair, core)) return p;
+    }
     CorePoints points;
     const double error_bound = 0x1p-52 * rounding;
-    if (core.meeting == Meeting::apart) {
+    if (!deep && core.meeting == Meeting::apart) {
         points = core_points(core.simplex);
         const double between = glm::length(points.on_a - points.on_b);
         p.depth = std::max(0.0, rounding - between);
@@ -161,7 +167,7 @@ Penetration penetration(const Placed& a, const Placed& b, PairCache* cache) {
         p.upper = std::max(p.depth, rounding - core.lower + error_bound);
         p.normal = core.normal;
     } else {
-        const Depth depth = core_depth(pair, core.simplex);
+        if (!deep) depth = core_depth(pair, core.simplex);
         points = core_points(depth.face);
         p.depth = std::max(0.0, depth.upper - pair.error) + rounding;
         p.lower = depth.lower + rounding - error_bound;

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core_query.hpp"
+#include "deep_core.hpp"
 
 namespace crofton::convex {
 namespace {
@@ -21,6 +22,13 @@ void set_points(const Simplex& s, Touch& touch) {
         touch.vertices_a[touch.vertex_count] = s.corner[i].a;
         touch.vertices_b[touch.vertex_count++] = s.corner[i].b;
     }
+}
+
+void set_depth(const Pair& pair, const Depth& depth, PairCache* cache, Touch& touch) {
+    set_points(depth.face, touch);
+    touch.depth = std::max(0.0, depth.upper - pair.error) + pair.rounding();
+    touch.normal = depth.normal;
+    if (cache != nullptr) cache->axis = touch.normal;
 }
 
 // A ball within the core, around a point given from its origin.
@@ -102,6 +110,11 @@ double unevenness(const Patch& face, const glm::dvec3& direction) {
 bool find_touch(const Pair& pair, double margin, PairCache* cache, Touch& touch) {
     if (!(pair.size < std::numeric_limits<double>::infinity())) return false;
     const double rounding = pair.rounding();
+    Depth depth;
+    if (deep_in_closed_form(pair, depth)) {
+        set_depth(pair, depth, cache, touch);
+        return true;
+    }
     Nearest core = core_distance(pair, cache, 0.0, rounding + margin + 1.5 * pair.doubt());
     remember(core, cache);
     if (core.simplex.count == 0) return false;
@@ -114,11 +127,8 @@ bool find_touch(const Pair& pair, double margin, PairCache* cache, Touch& touch)
         touch.normal = core.normal;
         return touch.depth >= -margin;
     }
-    const Depth depth = core_depth(pair, core.simplex);
-    set_points(depth.face, touch);
-    touch.depth = std::max(0.0, depth.upper - pair.error) + rounding;
-    touch.normal = depth.normal;
-    if (cache != nullptr) cache->axis = touch.normal;
+    depth = core_depth(pair, core.simplex);
+    set_depth(pair, depth, cache, touch);
     return true;
 }
 

@@ -83,6 +83,12 @@ class Hull {
     [[nodiscard]] int padded_count() const { return static_cast<int>(columns_.size() / 3); }
     [[nodiscard]] const double* normal_column(int k) const { return column_of(normal_columns_, k); }
     [[nodiscard]] int padded_face_count() const { return static_cast<int>(normal_columns_.size() / 3); }
+    // Of the planes through triangles(): the unit normals' coordinates, and for k = 3 their levels dot(normal, corner).
+    // Normals are off by plane_error() at most.
+    [[nodiscard]] const double* plane_column(int k) const {
+        return planes_.data() + planes_.size() / 4 * static_cast<std::size_t>(k);
+    }
+    [[nodiscard]] double plane_error() const { return plane_error_; }
 
   private:
     [[nodiscard]] std::span<const std::uint16_t> loop(const Vector<std::uint16_t>& entries, int face) const {
@@ -95,14 +101,15 @@ class Hull {
     }
     void find_faces(double tolerance);
     void index_edges();
+    void find_planes();
 
     Vector<glm::vec3> vertices_;
     Vector<std::uint16_t> triangles_, face_first_, face_vertices_, face_edges_;
     Vector<glm::dvec3> normals_;
     Vector<HullEdge> edges_;
-    Vector<double> columns_, normal_columns_;
+    Vector<double> columns_, normal_columns_, planes_;
     MassProperties mass_;
-    double excess_ = 0.0, radius_ = 0.0, inner_radius_ = 0.0;
+    double excess_ = 0.0, radius_ = 0.0, inner_radius_ = 0.0, plane_error_ = 0.0;
 };
 
 // A body, whichever kind: what every query of this module takes.
