@@ -81,7 +81,8 @@ TEST_SUITE("convex/features") {
                 // Round sides and edges within 2 degrees of parallel have points at their ends, midway between them.
                 const bool at_ends = point.on_a.kind != FeatureKind::face && point.on_b.kind != FeatureKind::face &&
                                      (point.on_a.kind == FeatureKind::vertex || point.on_b.kind == FeatureKind::vertex);
-                if (at_ends && a.radius() > 0.0 && b.radius() > 0.0) tolerance += 0.036 * std::min(a.reach(), b.reach());
+                if (at_ends && a.radius() > 0.0 && b.radius() > 0.0)
+                    tolerance += 0.036 * std::min(a.reach(), b.reach());
                 CAPTURE(i);
                 CHECK(distance_to_feature(pa, point.on_a, point.position + half - a.radius() * m.normal) <= tolerance);
                 CHECK(distance_to_feature(pb, point.on_b, point.position - half + b.radius() * m.normal) <= tolerance);

@@ -113,7 +113,10 @@ TEST_SUITE("convex/parallel_sides") {
                     for (int i = 0; i < 12; ++i) {
                         // b's line above a's, turned about x by an angle below two degrees, one of a degree and a half
                         // and more in most, with a shift along it, overlapping by a little where they are nearest.
-                        const double degrees = i == 0 || !both ? 0.0 : i == 1 ? 1.99 : i == 2 ? 1.85 : random.number(0.0, 1.99);
+                        const double degrees = i == 0 || !both ? 0.0
+                                               : i == 1        ? 1.99
+                                               : i == 2        ? 1.85
+                                                               : random.number(0.0, 1.99);
                         const double turn = glm::radians(degrees) * (i % 2 == 0 ? 1.0 : -1.0);
                         const glm::dmat3 about_x = glm::mat3_cast(glm::angleAxis(turn, glm::dvec3(1, 0, 0)));
                         const glm::dmat3 half_turn(-1, 0, 0, 0, 1, 0, 0, 0, -1);

@@ -73,7 +73,8 @@ Manifold contact_manifold(const Obb& box, const Sphere& ball) {
     const Distance center = distance(near_box, Capsule{near_ball.center, near_ball.center, 0.0});
     const glm::dvec3 way = center.on_b - center.on_a;
     const double length = glm::length(way);
-    if (length > 1e-13 * glm::length(near_ball.center))
+    // Nearer than this the direction is rounding: the face across which it lies farthest out parts them as well.
+    if (length > 1e-11 * glm::length(near_ball.center))
         return touch_of_ball(ball, way / length, std::max(0.0, ball.radius - length));
     const Penetration out = penetration(near_box, Obb{near_ball.center, glm::mat3(1.0f), glm::vec3(0.0f)});
     return touch_of_ball(ball, out.axis, std::max(0.0, out.depth) + ball.radius);

@@ -299,8 +299,8 @@ bool is_beyond_a_face(const Pair& pair, bool solid_is_a) {
     const double slack = 1e-5 * pair.size - solid.radius();
     glm::dvec3 end[2];
     for (int i = 0; i < 2; ++i)
-        end[i] = Pair::local(pose.rotation,
-                             thin_pose.rotation * thin.vertex(std::min(i, thin.vertex_count() - 1)) + offset);
+        end[i] =
+            Pair::local(pose.rotation, thin_pose.rotation * thin.vertex(std::min(i, thin.vertex_count() - 1)) + offset);
     for (int k = 0; k < 3; ++k)
         if (std::min(end[0][k], end[1][k]) > high[k] + slack || std::max(end[0][k], end[1][k]) < low[k] - slack)
             return true;

@@ -160,7 +160,8 @@ class ManifoldFinder {
                 find(a, {part.body, part.pose}, part.id, false);
                 return false;
             };
-            visit_parts_near(b, a, options_.margin, convex, [](const PartSearch&, const Triangle&, std::uint32_t) {});
+            const auto leave_out = [](const PartSearch&, const Triangle&, std::uint32_t) { return false; };
+            (void)visit_parts_near(b, a, options_.margin, convex, leave_out);
             if (!has_surfaces(b.body)) return;
             only_surfaces_ = true;
         }
@@ -224,8 +225,9 @@ class ManifoldFinder {
             if (surfaces.empty() || surfaces.back().child != of.child)
                 surfaces.push_back({of.pose, of.sides, of.child, of.reach});
             scratch_.triangles.push_back({corners, index, static_cast<std::uint32_t>(surfaces.size() - 1)});
+            return false;
         };
-        visit_parts_near(a, b, near_margin(b), convex, triangle);
+        (void)visit_parts_near(a, b, near_margin(b), convex, triangle);
         flush.apply();
         add_flush(flush.contacts().size(), flip);
     }

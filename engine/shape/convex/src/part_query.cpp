@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <limits>
 
+#include "body_maker.hpp"
 #include "core_query.hpp"
 #include "pair.hpp"
+#include "triangle_touch.hpp"
 
 namespace crofton::convex {
 namespace {
@@ -61,13 +63,22 @@ bool visit_parts_near(const Placed& a, const Placed& b, double margin, PartVisit
     return visit_parts(a, box_around(b, a.pose), margin + doubt_of_parts(a, b), visit);
 }
 
-void visit_parts_near(const Placed& a, const Placed& b, double margin, PartVisitor convex, TriangleVisitor triangle) {
+bool visit_parts_near(const Placed& a, const Placed& b, double margin, PartVisitor convex, TriangleVisitor triangle) {
     if (is_unbounded(b)) return visit_parts(a, {}, kEverything, convex, triangle);
-    visit_parts(a, box_around(b, a.pose), margin + doubt_of_parts(a, b), convex, triangle);
+    return visit_parts(a, box_around(b, a.pose), margin + doubt_of_parts(a, b), convex, triangle);
 }
 
+// Most triangles near a ball or a capsule are told in closed form.
 bool parts_meet(const Placed& a, const Placed& b) {
-    return visit_parts_near(a, b, 0.0, [&](const Part& part) { return intersects({part.body, part.pose}, b); });
+    const auto visit = [&](const Part& part) { return intersects({part.body, part.pose}, b); };
+    if (b.body.kind() != Kind::ball && b.body.kind() != Kind::capsule) return visit_parts_near(a, b, 0.0, visit);
+    return visit_parts_near(a, b, 0.0, visit, [&](const PartSearch& of, const Triangle& corners, std::uint32_t) {
+        const glm::dvec3& origin = of.pose.translation;
+        Touch touch;
+        const Warm warm = SegmentTouch(b, origin, of.reach, 0.0).ask(placed_triangle(corners, of.pose, origin), touch);
+        if (warm != Warm::unknown) return warm == Warm::touching;
+        return intersects({BodyMaker::triangle(corners), of.pose}, b);
+    });
 }
 
 Distance distance_of_parts(const Placed& a, const Placed& b) {

@@ -15,7 +15,7 @@ namespace crofton::convex {
 // Calls visit for the parts of a that may be within `margin` of b.
 bool visit_parts_near(const Placed& a, const Placed& b, double margin, PartVisitor visit);
 // The same, with the triangles of surfaces by themselves.
-void visit_parts_near(const Placed& a, const Placed& b, double margin, PartVisitor convex, TriangleVisitor triangle);
+bool visit_parts_near(const Placed& a, const Placed& b, double margin, PartVisitor convex, TriangleVisitor triangle);
 
 [[nodiscard]] inline Distance flipped(Distance d) {
     std::swap(d.on_a, d.on_b);

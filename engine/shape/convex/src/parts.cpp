@@ -73,8 +73,7 @@ double distance_between(const Aabb& a, const Aabb& b) {
 
 bool PartSearch::offer(const Triangle& corners, std::uint32_t triangle) const {
     if (on_triangle == nullptr) return visit({BodyMaker::triangle(corners), pose, {child, triangle}, sides});
-    (*on_triangle)(*this, corners, triangle);
-    return false;
+    return (*on_triangle)(*this, corners, triangle);
 }
 
 bool search_mesh(const mesh::MeshTree& mesh, const QueryBox& box, const PartSearch& search) {
@@ -113,10 +112,10 @@ bool visit_parts(const Placed& placed, const QueryBox& box, double margin, PartV
     return search_parts(placed, box, {placed.pose, placed.body.sides(), 0, false, margin, visit, placed.body.reach()});
 }
 
-void visit_parts(const Placed& placed, const QueryBox& box, double margin, PartVisitor visit,
+bool visit_parts(const Placed& placed, const QueryBox& box, double margin, PartVisitor visit,
                  TriangleVisitor triangles) {
     const Body& body = placed.body;
-    (void)search_parts(placed, box, {placed.pose, body.sides(), 0, false, margin, visit, body.reach(), &triangles});
+    return search_parts(placed, box, {placed.pose, body.sides(), 0, false, margin, visit, body.reach(), &triangles});
 }
 
 bool visit_nearest_parts(const Placed& placed, const QueryBox& box, const double& limit, PartVisitor visit) {

@@ -9,8 +9,8 @@ namespace crofton::convex {
 // True ends the search.
 using PartVisitor = FunctionRef<bool(const Part& part)>;
 struct PartSearch;
-// Triangles of surfaces that need not be bodies; with the search that came upon them.
-using TriangleVisitor = FunctionRef<void(const PartSearch& of, const Triangle& corners, std::uint32_t triangle)>;
+// Triangles of surfaces that need not be bodies; with the search that came upon them. True ends the search.
+using TriangleVisitor = FunctionRef<bool(const PartSearch& of, const Triangle& corners, std::uint32_t triangle)>;
 
 // A box in some frame: center ± half[k] · axes[k], where the axes are those of a pose seen from another.
 struct QueryBox {
@@ -31,7 +31,7 @@ struct QueryBox {
 inline constexpr double kEverything = 1e300;
 bool visit_parts(const Placed& body, const QueryBox& box, double margin, PartVisitor visit);
 // The same, with the triangles of surfaces by themselves.
-void visit_parts(const Placed& body, const QueryBox& box, double margin, PartVisitor visit, TriangleVisitor triangles);
+bool visit_parts(const Placed& body, const QueryBox& box, double margin, PartVisitor visit, TriangleVisitor triangles);
 
 // Calls `visit` for parts that may be nearer to the box than `limit`, the visitor's to lessen; about the nearest first.
 bool visit_nearest_parts(const Placed& body, const QueryBox& box, const double& limit, PartVisitor visit);

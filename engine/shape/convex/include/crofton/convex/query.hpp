@@ -38,10 +38,11 @@ struct PairCache {
 };
 
 // Touching counts. Exact for two polytopes and for a polytope and a half-space. Where a body is round, a gap or overlap
-// below 1e-11 of the size, with cylinders and cones 1e-7, may be told either way. The size of a pair is the sum of the
-// bodies' reaches and of the offset between their origins. Two half-spaces: exact where the normals' rounded cross
-// product is not 0, as they meet then. A body of parts meets what one of its parts meets: as exact as these. A pose
-// with NaN meets nothing.
+// below 1e-11 of the size, with cylinders and cones 1e-7, may be told either way. It is told the same way by
+// `intersects`, `distance`, `penetration` and manifolds, with a cache or without, and in either order of the bodies.
+// The size of a pair is the sum of the bodies' reaches and of the offset between their origins. Two half-spaces: exact
+// where the normals' rounded cross product is not 0, as they meet then. A body of parts meets what one of its parts
+// meets: as exact as these. A pose with NaN meets nothing.
 [[nodiscard]] bool intersects(const Placed& a, const Placed& b, PairCache* cache = nullptr);
 
 struct Distance {
@@ -67,7 +68,8 @@ struct Penetration {
 };
 // upper − lower ≤ 1e-9 of the size for polytopes, also rounded ones. 1e-5 for cylinders and cones, but 1e-3 where all
 // ways out around an axis are as long. Expanding polytope (van den Bergen 2001), checked afterwards from both sides;
-// where that fails, all separating axes. Two half-spaces overlap without end: depth, lower and upper are infinite. Of
+// where that fails, all separating axes. A ball whose center lies in a box, hull, cylinder or cone, and a capsule whose
+// segment meets a box: in closed form. Two half-spaces overlap without end: depth, lower and upper are infinite. Of
 // bodies of parts: of the two deepest. `lower` holds for the bodies; `upper` is infinite: parts may be pushed into
 // others.
 [[nodiscard]] Penetration penetration(const Placed& a, const Placed& b, PairCache* cache = nullptr);
@@ -143,8 +145,9 @@ struct ManifoldOptions {
 // before stay. One of them must be as deep within 1e-4 of the size, and they must span nine tenths of the area. Points
 // are off by 1e-9 of the pair's size, by 1e-5 where a hull's face is not quite flat (HullOptions). With cylinders and
 // cones they are off by as much as the depth may be. Round sides that are parallel within 2 degrees have a point at
-// each end of their common stretch. It is midway between them, also where they pass each other. Of bodies of parts: the
-// deepest of the manifolds below; this allocates.
+// each end of their common stretch. It is midway between them, also where they pass each other. Round sides are those
+// of capsules, cylinders and cones, and the edges of rounded bodies. Beside a sharp edge this holds where the two lie
+// on each other. Of bodies of parts: the deepest of the manifolds below; this allocates.
 [[nodiscard]] Manifold contact_manifold(const Placed& a, const Placed& b, const ManifoldOptions& options = {},
                                         PairCache* cache = nullptr);
 
