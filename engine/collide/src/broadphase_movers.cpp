@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <hwy/cache_control.h>
 #include <algorithm>
+#include <crofton/geometry/finite.hpp>
 #include <cstddef>
 
 #include "box_lanes.hpp"
