@@ -135,20 +135,60 @@ bool Broadphase::State::collect(Executor& executor) {
     return !too_many && total <= options.max_pairs;
 }
 
-void Broadphase::State::sort_pairs(std::size_t item_count, std::span<const CollisionFilter> filters,
-                                   Vector<IdPair>& sorted) {
-    const auto slots_of = [](BroadphaseWorker& worker, Vector<std::uint32_t>& slots) {
-        return std::span<std::uint32_t>(slots).first(worker.pairs.count);
-    };
+// Of the pairs of slots that a worker has found, the pairs of items that meet. In the order in which they were found,
+// where neighbours come together.
+void Broadphase::State::keep_pairs_that_meet(std::span<const Obb> boxes, std::span<const CollisionFilter> filters,
+                                             const PairTest* test, BroadphaseWorker& worker) const {
     const BoundTree view = tree.view();
-    const std::span<const std::uint32_t> items(view.children[0], view.sizes[0] * kBoxBlock);
+    const std::uint32_t* const items = view.children[0];
+    std::uint32_t *const first = worker.first.data(), *const second = worker.second.data();
+    std::size_t kept = 0;
+    worker.bound_pairs = 0;
+    worker.boxes = {};
+    worker.candidates.resize(kPairGrain);
+    worker.hits.resize(kPairGrain);
+    for (std::size_t begin = 0; begin < worker.pairs.count; begin += kPairGrain) {
+        const std::size_t end = std::min(begin + kPairGrain, worker.pairs.count);
+        std::size_t count = 0;
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::uint32_t a = items[first[i]], b = items[second[i]];
+            if (!filters.empty() && !passes(filters[a], filters[b])) continue;
+            worker.candidates[count++] = {std::min(a, b), std::max(a, b)};
+        }
+        const auto some = std::span<const IdPair>(worker.candidates).first(count);
+        test_some(boxes, some, test, std::span(worker.hits).first(count), worker.boxes);
+        worker.bound_pairs += count;
+        for (std::size_t i = 0; i < count; ++i) {
+            first[kept] = some[i].first;
+            second[kept] = some[i].second;
+            kept += worker.hits[i];
+        }
+    }
+    worker.pairs.count = kept;
+}
+
+void Broadphase::State::sort_pairs(std::size_t item_count, Vector<IdPair>& sorted) {
+    const auto listed = [](const BroadphaseWorker& worker, const Vector<std::uint32_t>& items) {
+        return std::span<const std::uint32_t>(items).first(worker.pairs.count);
+    };
     list.begin(item_count);
-    for (BroadphaseWorker& worker : workers)
-        list.count(slots_of(worker, worker.first), slots_of(worker, worker.second), items, filters);
+    for (const BroadphaseWorker& worker : workers) list.count(listed(worker, worker.first));
     list.place(sorted);
-    for (BroadphaseWorker& worker : workers)
-        list.add(slots_of(worker, worker.first), slots_of(worker, worker.second), sorted);
+    for (const BroadphaseWorker& worker : workers)
+        list.add(listed(worker, worker.first), listed(worker, worker.second), sorted);
     list.finish(sorted);
+}
+
+void Broadphase::State::test_some(std::span<const Obb> boxes, std::span<const IdPair> candidates, const PairTest* test,
+                                  std::span<std::uint8_t> verdicts, BatchStatistics& counted) const {
+    if (options.exact_boxes)
+        counted += intersects(boxes, candidates, verdicts);
+    else
+        for (std::size_t i = 0; i < candidates.size(); ++i)
+            verdicts[i] = bounds_meet(boxes[candidates[i].first], boxes[candidates[i].second]);
+    if (test == nullptr) return;
+    for (std::size_t i = 0; i < candidates.size(); ++i)
+        if (verdicts[i] != 0) verdicts[i] = (*test)(candidates[i].first, candidates[i].second);
 }
 
 // Into `hits`, which of the candidates meet.
@@ -157,16 +197,8 @@ void Broadphase::State::test_pairs(std::span<const Obb> boxes, std::span<const I
     hits.resize(candidates.size());
     for (BroadphaseWorker& worker : workers) worker.boxes = {};
     executor.parallel_for(candidates.size(), kPairGrain, [&](std::size_t begin, std::size_t end, unsigned worker) {
-        const auto some = candidates.subspan(begin, end - begin);
-        const auto verdicts = std::span<std::uint8_t>(hits).subspan(begin, end - begin);
-        if (options.exact_boxes)
-            workers[worker].boxes += intersects(boxes, some, verdicts);
-        else
-            for (std::size_t i = 0; i < some.size(); ++i)
-                verdicts[i] = bounds_meet(boxes[some[i].first], boxes[some[i].second]);
-        if (test == nullptr) return;
-        for (std::size_t i = 0; i < some.size(); ++i)
-            if (verdicts[i] != 0) verdicts[i] = (*test)(some[i].first, some[i].second);
+        test_some(boxes, candidates.subspan(begin, end - begin), test,
+                  std::span<std::uint8_t>(hits).subspan(begin, end - begin), workers[worker].boxes);
     });
     for (const BroadphaseWorker& worker : workers) statistics.boxes += worker.boxes;
 }
@@ -202,18 +234,17 @@ Result<void> Broadphase::State::update_all(std::span<const Obb> boxes, std::span
     workers.resize(std::max<std::size_t>(workers.size(), executor.concurrency()));
     place_all(boxes, executor);
     if (!collect(executor)) return drop_pairs();
+    executor.parallel_for(workers.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
+        for (std::size_t w = begin; w < end; ++w) keep_pairs_that_meet(boxes, filters, test, workers[w]);
+    });
+    for (const BroadphaseWorker& worker : workers) {
+        statistics.bound_pairs += worker.bound_pairs;
+        statistics.boxes += worker.boxes;
+    }
     std::swap(pairs.values(), previous);
     Vector<IdPair>& now_there = pairs.values();
-    sort_pairs(boxes.size(), filters, now_there);
-    statistics.bound_pairs = now_there.size();
-    test_pairs(boxes, now_there, executor, test);
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < now_there.size(); ++i) {
-        now_there[kept] = now_there[i];
-        kept += hits[i];
-    }
-    now_there.resize(kept);
-    statistics.box_pairs = kept;
+    sort_pairs(boxes.size(), now_there);
+    statistics.box_pairs = now_there.size();
     statistics.rejected = static_cast<std::uint32_t>(tree.item_count() - tree.size());
     compare_pairs(previous, now_there, began, ended);
     current = true;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
+#include <hwy/cache_control.h>
 #include <algorithm>
+#include <crofton/geometry/finite.hpp>
 #include <cstddef>
 
 #include "box_lanes.hpp"
@@ -28,7 +30,11 @@ void Broadphase::State::gather_movers(std::size_t item_count, std::span<const st
 void Broadphase::State::gather_partners() {
     partners.clear();
     partners_begin.clear();
-    for (const std::uint32_t item : movers) {
+    constexpr std::size_t kAhead = 16;
+    for (std::size_t m = 0; m < movers.size(); ++m) {
+        if (m + 2 * kAhead < movers.size()) table.fetch_first(movers[m + 2 * kAhead]);
+        if (m + kAhead < movers.size()) table.fetch_entry(movers[m + kAhead]);
+        const std::uint32_t item = movers[m];
         partners_begin.push_back(static_cast<std::uint32_t>(partners.size()));
         table.visit(item, [&](std::uint32_t partner, std::uint32_t entry) {
             if (is_moved[partner] == 0 || item < partner) partners.push_back({partner, entry});
@@ -57,7 +63,13 @@ void Broadphase::State::place_movers(std::span<const Obb> boxes) {
             const Obb& box = boxes[movers[begin + std::min(lane, size - 1)]];
             put_center(box.center - origin, lane, block);
             put_shape(box, lane, block);
-            if (begin + lane + kAhead < staying) tree.fetch_leaf(movers[begin + lane + kAhead]);
+            if (begin + lane + 2 * kAhead < staying) tree.fetch_place(movers[begin + lane + 2 * kAhead]);
+            if (begin + lane + kAhead < staying) {
+                const std::uint32_t later = movers[begin + lane + kAhead];
+                tree.fetch_leaf(later);
+                hwy::Prefetch(&boxes[later]);
+                hwy::Prefetch(reinterpret_cast<const char*>(&boxes[later] + 1) - 1);
+            }
         }
         const std::uint32_t suspect = bound_boxes(block, bounds);
         for (std::size_t lane = 0; lane < size; ++lane) {

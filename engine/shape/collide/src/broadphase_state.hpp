@@ -19,6 +19,9 @@ struct BroadphaseWorker {
     Vector<std::uint32_t> first, second;
     SlotPairs pairs;
     Vector<std::uint32_t> absent;  // items in the tree whose box is invalid
+    Vector<IdPair> candidates;
+    Vector<std::uint8_t> hits;
+    std::uint64_t bound_pairs = 0;
     BatchStatistics boxes;
 };
 
@@ -78,7 +81,11 @@ struct Broadphase::State {
     void refit(std::span<const Obb> boxes, Executor& executor);
     void bound_leaf(std::span<const Obb> boxes, std::size_t leaf, BroadphaseWorker& worker);
     [[nodiscard]] bool collect(Executor& executor);
-    void sort_pairs(std::size_t item_count, std::span<const CollisionFilter> filters, Vector<IdPair>& sorted);
+    void keep_pairs_that_meet(std::span<const Obb> boxes, std::span<const CollisionFilter> filters,
+                              const PairTest* test, BroadphaseWorker& worker) const;
+    void sort_pairs(std::size_t item_count, Vector<IdPair>& sorted);
+    void test_some(std::span<const Obb> boxes, std::span<const IdPair> candidates, const PairTest* test,
+                   std::span<std::uint8_t> verdicts, BatchStatistics& counted) const;
     void test_pairs(std::span<const Obb> boxes, std::span<const IdPair> candidates, Executor& executor,
                     const PairTest* test);
 

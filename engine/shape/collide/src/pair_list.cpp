@@ -10,15 +10,8 @@ void PairList::begin(std::size_t item_count) {
     place_.assign(item_count + 1, 0);
 }
 
-void PairList::count(std::span<std::uint32_t> first, std::span<std::uint32_t> second,
-                     std::span<const std::uint32_t> items, std::span<const CollisionFilter> filters) {
-    for (std::size_t i = 0; i < first.size(); ++i) {
-        const std::uint32_t a = items[first[i]], b = items[second[i]];
-        const bool refused = !filters.empty() && !passes(filters[a], filters[b]);
-        first[i] = refused ? 0 : std::min(a, b);
-        second[i] = refused ? 0 : std::max(a, b);
-        place_[first[i]] += !refused;
-    }
+void PairList::count(std::span<const std::uint32_t> first) {
+    for (const std::uint32_t item : first) ++place_[item];
 }
 
 void PairList::place(Vector<IdPair>& sorted) {
@@ -29,8 +22,7 @@ void PairList::place(Vector<IdPair>& sorted) {
 
 void PairList::add(std::span<const std::uint32_t> first, std::span<const std::uint32_t> second,
                    Vector<IdPair>& sorted) {
-    for (std::size_t i = 0; i < first.size(); ++i)
-        if (first[i] != second[i]) sorted[place_[first[i]]++] = {first[i], second[i]};
+    for (std::size_t i = 0; i < first.size(); ++i) sorted[place_[first[i]]++] = {first[i], second[i]};
 }
 
 // Partners of one item stand together but in any order: most have none or few, and insertion mends those in one pass.

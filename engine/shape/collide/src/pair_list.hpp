@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Found pairs of slots, turned into a sorted list of pairs of items.
+// Found pairs of items, turned into a sorted list.
 #pragma once
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/core/memory.hpp>
@@ -12,9 +12,8 @@ namespace crofton::collide {
 class PairList {
   public:
     void begin(std::size_t item_count);
-    // Rewrites pairs of slots as pairs of items in order; a pair that the filters refuse becomes {0, 0}.
-    void count(std::span<std::uint32_t> first, std::span<std::uint32_t> second, std::span<const std::uint32_t> items,
-               std::span<const CollisionFilter> filters);
+    // Requires first[i] < second[i].
+    void count(std::span<const std::uint32_t> first);
     void place(Vector<IdPair>& sorted);
     void add(std::span<const std::uint32_t> first, std::span<const std::uint32_t> second, Vector<IdPair>& sorted);
     void finish(Vector<IdPair>& sorted) const;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Pairs of items, by item: what an item that moves has to do with.
 #pragma once
+#include <hwy/cache_control.h>
 #include <crofton/collide/narrow_phase.hpp>
 #include <crofton/core/memory.hpp>
 #include <cstdint>
@@ -25,6 +26,11 @@ class PairTable {
     void visit(std::uint32_t item, Visit visit) const {
         for (std::uint32_t link = first_[item]; link != kNone; link = entries_[link / 2].next[link % 2])
             visit(entries_[link / 2].item[1 - link % 2], link / 2);
+    }
+    // Asks the memory for what visit() of the item needs.
+    void fetch_first(std::uint32_t item) const { hwy::Prefetch(&first_[item]); }
+    void fetch_entry(std::uint32_t item) const {
+        if (first_[item] != kNone) hwy::Prefetch(&entries_[first_[item] / 2]);
     }
 
   private:
