@@ -236,12 +236,16 @@ class GltfReader {
 
     Result<void> add_placements(const std::string& name, const Json& instancing, scene::NodeId node,
                                 const ShapeMeshes& meshes) {
+        if (meshes.ids.empty()) return {};
         const auto places = placements(document_, instancing);
         if (!places && places.error().code == ErrorCode::budget_exceeded) return tl::unexpected(places.error());
         if (!places) {
             leave_out(name + ": EXT_mesh_gpu_instancing", places.error());
             return {};
         }
+        // Those that are left out count as well, so that many nodes cannot ask for many each.
+        instances_asked_ += places->transforms.size() + places->left_out;
+        if (instances_asked_ > limits_.nodes) return over_limit("nodes", limits_.nodes);
         if (places->left_out > 0)
             source_.warnings.push_back(name + ": EXT_mesh_gpu_instancing: " + std::to_string(places->left_out) +
                                        " instances left out: " + places->why);
@@ -356,7 +360,7 @@ class GltfReader {
     Deadline deadline_;
     SceneSource source_;
     std::map<Shape, ShapeMeshes> meshes_;
-    std::uint64_t triangles_ = 0, vertices_ = 0;
+    std::uint64_t triangles_ = 0, vertices_ = 0, instances_asked_ = 0;
     bool hidden_ = false;
 };
 

@@ -74,6 +74,7 @@ Result<void> check_encoding(std::string_view& text) {
 
 constexpr std::size_t kMostWarnings = 20;
 constexpr std::size_t kLinesPerLook = 1 << 14;  // at the clock
+constexpr std::size_t kLongFace = 32;           // whose corners may take milliseconds
 
 class ObjReader {
   public:
@@ -234,6 +235,8 @@ class ObjReader {
         if (face_.size() < 3) return bad(ErrorCode::parse, "face: fewer than three vertices");
         if (face_.size() - 2 > options_.limits.triangles - triangles_)
             return over_limit("triangles", options_.limits.triangles);
+        if (face_.size() > kLongFace)
+            if (auto in_time = deadline_.check(); !in_time) return in_time;
         outline_.clear();
         for (const Corner& corner : face_) outline_.push_back(file_.positions[corner.position]);
         const FaceCut cut = triangulator_.cut(outline_);

@@ -197,6 +197,14 @@ TEST_SUITE("assets/gltf_nodes") {
         CHECK(
             says(test_files::message(load_asset(add(20, 20, 1.0f), options)), "--max-nodes"));  // with the node itself
         CHECK(load_asset(add(19, 19, 1.0f), options).has_value());
+        // Instances that are left out count, too.
+        Asset bad = instanced([](Asset& to) {
+            return Json{{"ROTATION", to.accessor(std::vector<float>(4 * 11, 0.0f), "VEC4")}};
+        });
+        CHECK(says(test_files::message(load_asset(bad, options)), "11 instances left out"));
+        bad.root["nodes"].push_back(bad.root["nodes"][0]);
+        bad.root["scenes"][0]["nodes"] = {0, 1};
+        CHECK(says(test_files::message(load_asset(bad, options)), "--max-nodes"));
     }
 
     TEST_CASE("a node that is not visible hides all below it, and nothing beside it") {

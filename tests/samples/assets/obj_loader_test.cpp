@@ -50,7 +50,7 @@ TEST_SUITE("assets/obj_loader") {
         CHECK(says(message(assets::load_scene("shape.obj", options)), "map"));
     }
 
-    TEST_CASE("polygons become fans, negative indices count from the end, parts have their own vertices") {
+    TEST_CASE("convex polygons become fans, negative indices count from the end, parts have their own vertices") {
         const auto source = load_obj(
             "o quad\nv 0 0 0\nv 2 0 0 \r\nv 2 1 0\nv 0 1 0\nf 1/1/1 2//2 3 4\n"
             "o tri\nv 5 5 5 0.25 0.5 0.75\nv 6 5 5\nv 5 6 5\nf -3 -2 -1\n");

@@ -56,6 +56,16 @@ TEST_SUITE("cli/scene_files") {
         }
     }
 
+    TEST_CASE("what installs by default has the decoders of compressed glTF") {
+        // Where apt-get is not found, it says what it would install.
+        const auto script = std::filesystem::path(__FILE__).parent_path() / "../../third_party/install.sh";
+        if (!std::filesystem::exists(script)) return;
+        const std::string said = scratch().file("install.txt");
+        REQUIRE(std::system(("PATH=/nonexistent /bin/bash '" + script.string() + "' 2>'" + said + "'").c_str()) == 0);
+        CHECK(contents_of(said).find("libdraco-dev") != std::string::npos);
+        CHECK(contents_of(said).find("libmeshoptimizer-dev") != std::string::npos);
+    }
+
     TEST_CASE("help names what is read of each format") {
         const CliRun run = run_cli("frames --help");
         CHECK(run.out.find("EXT_mesh_gpu_instancing") != std::string::npos);
