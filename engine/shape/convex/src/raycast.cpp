@@ -239,14 +239,15 @@ std::optional<NearHit> meet_mesh(const Body& body, const NearRay& ray) {
         box.half = {0.5 * (to - from) * length, 0.0, 0.0};
         box.rounding = ray.error;
         const auto triangles = [&](const PartSearch& of, const Triangle& corners, std::uint32_t triangle) {
-            if (only_first && triangle != first->triangle) return;
+            if (only_first && triangle != first->triangle) return false;
             auto hit = meet_triangle(corners, of.sides, ray);
-            if (!hit) return;
+            if (!hit) return false;
             hit->triangle = triangle;
             if (!best || hit->t < best->t || (hit->t == best->t && triangle < best->triangle)) best = hit;
+            return false;
         };
         const RigidTransform here;
-        visit_parts(
+        (void)visit_parts(
             {body, here}, box, ray.error, [](const Part&) { return false; }, triangles);
     };
     search(first->t, first->t, true);
