@@ -401,4 +401,26 @@ TEST_SUITE("convex/cast_contact") {
         CHECK_FALSE(cast({box, zero}, {}, {ball, zero}, {}, {.early_out = -1.0}).has_value());
         CHECK_FALSE(cast({box, zero}, {}, {ball, zero}, {}, {.early_out = NAN}).has_value());
     }
+
+    TEST_CASE(
+        "cones and cylinders are hit no farther away than the tolerance, and their distance there is known to 1e-10") {
+        RandomBodies random(78);
+        const Body bodies[] = {Body::cone(0.8f, 0.6f).value(), Body::cylinder(0.5f, 0.8f).value(),
+                               Body::box({0.5f, 0.7f, 0.9f}).value(),
+                               Body::triangle({-1, 0, -1}, {1, 0, -1}, {0, 0, 1}).value()};
+        int hits = 0;
+        for (int i = 0; i < 100000; ++i) {
+            const Body &first = bodies[i % 2], &second = bodies[i / 2 % 4];
+            const RigidTransform pose_a{random.rotation(), {}}, pose_b{random.rotation(), 5.0 * random.direction()};
+            const Motion fly{0.8 * random.direction() - pose_b.translation, {}, {}};
+            const Impact impact = cast({first, pose_a}, {}, {second, pose_b}, fly).value();
+            if (impact.result != CastResult::hit) continue;
+            ++hits;
+            const RigidTransform then = moved(pose_b, fly, impact.time);
+            const Distance d = distance({first, pose_a}, {second, then});
+            CHECK(d.upper < 1e-6 + 1e-9);
+            CHECK(d.upper - d.lower < 3e-10);
+        }
+        CHECK(hits > 80000);
+    }
 }

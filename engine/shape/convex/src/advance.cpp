@@ -2,16 +2,13 @@
 // Conservative advancement of two convex bodies.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "closing.hpp"
-#include "exact_gjk.hpp"
 #include "part_cast.hpp"
 
 namespace crofton::convex {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // How often a pair within the tolerance is asked whether it goes on to touch, before that counts as a hit.
 constexpr int kMaxProofs = 32;
 
