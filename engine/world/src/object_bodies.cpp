@@ -12,7 +12,14 @@ namespace {
 
 constexpr double kSlack = 1.0 + 0x1p-40;  // outweighs what bounds of bodies are rounded by
 
+// As validate_pose tells; what is clearly a rotation is told without its words.
 bool is_rigid(const glm::dmat3& linear) {
+    constexpr double kSurely = 2e-7;
+    const glm::dvec3 &x = linear[0], &y = linear[1], &z = linear[2];
+    const double most =
+        std::max({std::abs(glm::dot(x, x) - 1.0), std::abs(glm::dot(y, y) - 1.0), std::abs(glm::dot(z, z) - 1.0),
+                  std::abs(glm::dot(x, y)), std::abs(glm::dot(y, z)), std::abs(glm::dot(z, x))});
+    if (most <= kSurely && glm::dot(glm::cross(x, y), z) > 0.0) return true;
     return convex::validate_pose({linear, glm::dvec3(0.0)}).has_value();
 }
 
