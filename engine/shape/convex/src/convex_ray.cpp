@@ -196,24 +196,31 @@ class Silhouette {
                                  : m.y <= m.z             ? glm::dvec3(0, 1, 0)
                                                           : glm::dvec3(0, 0, 1);
         const glm::dvec3 right = glm::normalize(glm::cross(d, least)), up = glm::cross(d, right);
-        double size = 0.0;
+        double size = std::numeric_limits<double>::min();
         for (int i = 0; i < body.vertex_count(); ++i) {
             const glm::dvec3 to = body.vertex(i) - ray.origin;
             x_[i] = glm::dot(to, right);
             y_[i] = glm::dot(to, up);
             size = std::max(size, std::abs(to.x) + std::abs(to.y) + std::abs(to.z));
         }
+        size_ = size;
         error_ = 0x1p-45 * size * size;
     }
     [[nodiscard]] bool may_enter(int a, int b, int c) const {
         return side(a, b) <= error_ && side(b, c) <= error_ && side(c, a) <= error_;
+    }
+    // Whether the ray's line may come within `radius` of the segment: not if both ends are farther away on one side.
+    [[nodiscard]] bool may_pass(int a, int b, double radius) const {
+        const double limit = radius * (1.0 + 0x1p-40) + error_ / size_;
+        return !(std::min(x_[a], x_[b]) > limit || std::max(x_[a], x_[b]) < -limit || std::min(y_[a], y_[b]) > limit ||
+                 std::max(y_[a], y_[b]) < -limit);
     }
 
   private:
     [[nodiscard]] double side(int a, int b) const { return x_[a] * y_[b] - y_[a] * x_[b]; }
 
     double x_[kMaxHullVertices], y_[kMaxHullVertices];
-    double error_ = 0.0;
+    double error_ = 0.0, size_ = 0.0;
 };
 
 // The ray begins a rounding earlier: where its origin has been rounded into the hull it would meet no way in.
@@ -238,12 +245,14 @@ std::optional<NearHit> meet_hull(const Body& body, const NearRay& ray) {
 
 std::optional<NearHit> meet_rounded_hull(const Body& body, const NearRay& ray) {
     std::optional<NearHit> best;
+    const Silhouette silhouette(body, ray);
     const std::span<const std::uint16_t> indices = body.hull()->triangles();
     for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
         const Triangle corners{body.vertex(indices[i]), body.vertex(indices[i + 1]), body.vertex(indices[i + 2])};
         keep_nearest(best, meet_moved_face(ray, corners, normal_of(corners), body.radius()));
         for (std::size_t k = 0; k < 3; ++k)  // each edge has two triangles, which name it in both directions
-            if (indices[i + k] < indices[i + (k + 1) % 3])
+            if (indices[i + k] < indices[i + (k + 1) % 3] &&
+                silhouette.may_pass(indices[i + k], indices[i + (k + 1) % 3], body.radius()))
                 keep_nearest(best, meet_capsule(ray, corners[k], corners[(k + 1) % 3], body.radius()));
     }
     return best;

@@ -12,7 +12,14 @@ namespace {
 
 constexpr double kSlack = 1.0 + 0x1p-40;  // outweighs what bounds of bodies are rounded by
 
+// As validate_pose tells; what is clearly a rotation is told without its words.
 bool is_rigid(const glm::dmat3& linear) {
+    constexpr double kSurely = 2e-7;
+    const glm::dvec3 &x = linear[0], &y = linear[1], &z = linear[2];
+    const double most =
+        std::max({std::abs(glm::dot(x, x) - 1.0), std::abs(glm::dot(y, y) - 1.0), std::abs(glm::dot(z, z) - 1.0),
+                  std::abs(glm::dot(x, y)), std::abs(glm::dot(y, z)), std::abs(glm::dot(z, x))});
+    if (most <= kSurely && glm::dot(glm::cross(x, y), z) > 0.0) return true;
     return convex::validate_pose({linear, glm::dvec3(0.0)}).has_value();
 }
 
@@ -39,15 +46,31 @@ RigidTransform frame_of(BoundKind kind, const Obb& box) {
 
 Obb box_around(const Obb& box, const convex::Body& body, const RigidTransform& pose, double margin) {
     const glm::dmat3 axes(box.axes), to_box = glm::inverse(axes), turn = to_box * pose.rotation;
+    const glm::dvec3 origin = to_box * (pose.translation - box.center), given(box.half_extents);
+    const double grown_by = margin * (1.0 + 1e-3);  // axes are unit vectors within 1e-4
+    glm::dvec3 low(0.0), high(0.0);
+    const auto covers = [&] {
+        for (int k = 0; k < 3; ++k)
+            if (!(-low[k] <= given[k] * kSlack && high[k] <= given[k] * kSlack)) return false;
+        return true;
+    };
     const Aabb& bounds = body.bounds();
-    const glm::dvec3 middle = to_box * (pose.translation - box.center) + turn * bounds.center();
-    const glm::dvec3 half = bounds.half_extents(), given(box.half_extents);
-    glm::dvec3 needed(margin * (1.0 + 1e-3));  // axes are unit vectors within 1e-4
+    const glm::dvec3 middle = origin + turn * bounds.center(), half = bounds.half_extents();
+    glm::dvec3 needed(grown_by);
     for (int k = 0; k < 3; ++k) needed += half[k] * glm::abs(turn[k]);
-    const glm::dvec3 low = middle - needed, high = middle + needed;
-    bool covers = true;
-    for (int k = 0; k < 3; ++k) covers = covers && -low[k] <= given[k] * kSlack && high[k] <= given[k] * kSlack;
-    if (covers) return box;
+    low = middle - needed;
+    high = middle + needed;
+    if (covers()) return box;
+    if (body.is_convex()) {
+        // As far as the body itself reaches along each of the box's coordinates.
+        for (int k = 0; k < 3; ++k) {
+            const glm::dvec3 along(turn[0][k], turn[1][k], turn[2][k]);
+            const double rounding = 0x1p-48 * glm::length(along) * (body.reach() + body.radius());
+            high[k] = origin[k] + glm::dot(along, convex::support_point(body, along)) + rounding + grown_by;
+            low[k] = origin[k] + glm::dot(along, convex::support_point(body, -along)) - rounding - grown_by;
+        }
+        if (covers()) return box;
+    }
     const glm::dvec3 from = glm::min(-given, low), to = glm::max(given, high), center = 0.5 * (from + to);
     Obb grown = box;
     grown.center = box.center + axes * center;
@@ -78,6 +101,7 @@ void ObjectBodies::set(std::uint32_t object, const convex::Body* body) {
     if (body != nullptr) entry.own = *body;
     entry.scaled.reset();
     entry.nowhere = false;
+    entry.mesh_revision = 0;
     fresh_.push_back(object);
     list_unbounded(object);
 }
@@ -161,11 +185,23 @@ Bound ObjectBodies::cover(std::uint32_t object, const Bound& bound) {
     return Bound(box);
 }
 
-Obb ObjectBodies::cover(std::uint32_t object, const Obb& box, const Transform& world) const {
-    const Entry& entry = entries_[object];
+// The scene's box holds the image of all that the mesh's box holds. So a rigid transform needs a look at the body only
+// where the body or the mesh is another.
+Obb ObjectBodies::cover(std::uint32_t object, scene::InstanceId instance, const scene::Scene& scene) {
+    Entry& entry = entries_[object];
+    const Obb& box = scene.world_boxes()[instance];
+    const Transform& world = scene.world(scene.node_of(instance));
     if (entry.nowhere || has_nothing(world.linear) || !body(object).is_bounded()) return box;
-    const RigidTransform pose{entry.scaled ? entry.map.rotation : world.linear, world.translation};
-    return box_around(box, body(object), pose, 0.0);
+    if (entry.scaled) return box_around(box, body(object), {entry.map.rotation, world.translation}, 0.0);
+    const scene::MeshId mesh = scene.mesh_of(instance);
+    if (entry.mesh_revision != scene.mesh_revision(mesh)) {
+        entry.mesh_revision = scene.mesh_revision(mesh);
+        entry.around_mesh = box_around(scene.mesh_box(mesh), *entry.own, {}, 0.0);
+        entry.exceeds_mesh = !have_same_bits(entry.around_mesh, scene.mesh_box(mesh));
+    }
+    if (!entry.exceeds_mesh) return box;
+    const auto around = scene::transformed_box(world, entry.around_mesh, measure::minimal_perimeter());
+    return around ? *around : box_around(box, *entry.own, {world.linear, world.translation}, 0.0);
 }
 
 Obb ObjectBodies::collider_box(std::uint32_t id, const Object& object, const Obb& box, const scene::Scene& scene,

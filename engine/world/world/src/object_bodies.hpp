@@ -52,7 +52,8 @@ class ObjectBodies {
 
     // The bound, or the box that covers it and the body; what was given is kept while that is larger.
     [[nodiscard]] Bound cover(std::uint32_t object, const Bound& bound);
-    [[nodiscard]] Obb cover(std::uint32_t object, const Obb& box, const Transform& world) const;
+    // Of an object with a mesh: its box in the scene, or one that covers the body as well.
+    [[nodiscard]] Obb cover(std::uint32_t object, scene::InstanceId instance, const scene::Scene& scene);
     // The object's box, or a larger one that covers what is within `margin` of the body.
     [[nodiscard]] Obb collider_box(std::uint32_t id, const Object& object, const Obb& box, const scene::Scene& scene,
                                    double margin) const;
@@ -64,6 +65,10 @@ class ObjectBodies {
         SplitMap map;                        // of the scaled body
         bool nowhere = false;                // the transform does not scale the body
         Bound given;                         // where it is not the object's box
+        // Of a mesh: the box in its frame around it and the body, made for this revision; is it more than the mesh's?
+        Obb around_mesh;
+        std::uint64_t mesh_revision = 0;
+        bool exceeds_mesh = false;
     };
     void list_unbounded(std::uint32_t object);
 

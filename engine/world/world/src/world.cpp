@@ -122,12 +122,9 @@ Result<void> World::State::update_bodies() {
     const auto update_mesh = [&](std::uint32_t id) {
         const scene::InstanceId instance = table.objects[id].instance;
         const Transform& world = scene.world(scene.node_of(instance));
-        Obb box = scene.world_boxes()[instance];
-        if (object_bodies.has(id)) {
-            if (auto scaled = object_bodies.scale(id, world.linear); !scaled && first) first = std::move(scaled);
-            box = object_bodies.cover(id, box, world);
-        }
-        index.set_box_of_moved(id, box);
+        if (!object_bodies.has(id)) return index.set_box_of_moved(id, scene.world_boxes()[instance]);
+        if (auto scaled = object_bodies.scale(id, world.linear); !scaled && first) first = std::move(scaled);
+        index.set_box_of_moved(id, object_bodies.cover(id, instance, scene));
     };
     for (const std::uint32_t id : object_bodies.fresh()) {
         if (!table.objects[id].alive || !index.has_box(id)) continue;
