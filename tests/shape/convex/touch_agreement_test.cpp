@@ -42,6 +42,11 @@ void check_agreement(const Placed& a, const Placed& b, int& meeting) {
         CHECK((distance(a, b, &cache).distance == 0.0) == meet);
         CHECK(penetration(a, b, &cache).overlapping == meet);
     }
+    // Warm from a little deeper in.
+    PairCache warm;
+    const RigidTransform deeper{b.pose.rotation, b.pose.translation - 1e-3 * (meet ? p.normal : d.normal)};
+    (void)contact_manifold(a, {b.body, deeper}, {}, &warm);
+    for (int i = 0; i < 2; ++i) CHECK((contact_manifold(a, b, {}, &warm).count > 0) == meet);
 }
 
 struct Kinds {

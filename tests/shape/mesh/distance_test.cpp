@@ -191,7 +191,7 @@ TEST_SUITE("mesh/distance") {
     TEST_CASE("the nearest point of a mesh to a point is the least of all its triangles") {
         std::mt19937_64 random(17);
         for (int trial = 0; trial < 60; ++trial) {
-            TriangleMesh mesh = wavy_torus(1.0, 0.3, 0.2, 5 + trial % 8, 4 + trial % 5);
+            TriangleMesh mesh = wavy_torus(1.0, 0.3, 0.2, 5 + std::uint32_t(trial) % 8, 4 + std::uint32_t(trial) % 5);
             if (trial % 5 == 0) mesh = box_mesh({-0.7f, -0.7f, -1.9f}, {1.3f, 0.3f, 2.1f});
             if (trial % 3 == 0)
                 for (glm::vec3& p : mesh.positions) p.y *= 1e-6f;  // slivers

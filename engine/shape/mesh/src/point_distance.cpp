@@ -17,13 +17,38 @@ constexpr double kLeastSquaredToPoint = 1e-300;
 // Coordinates beyond this are out of the range of the tree's search in float.
 constexpr double kMostForTree = 1e14;
 
-// Whether the triangle's plane is surely farther from the point than the root of `squared`. The normal is off by
-// 2^-50 |e| |f|: where that matters by more than a ten-thousandth, the plane tells nothing.
-bool is_beyond(const glm::dvec3& point, const Triangle& t, double squared) {
-    const glm::dvec3 e = t[1] - t[0], f = t[2] - t[0], way = point - t[0], normal = glm::cross(e, f);
-    const double along = glm::dot(normal, way), along2 = along * along;
-    return along2 * 0.999 > squared * glm::dot(normal, normal) &&
-           along2 > 1e-20 * (glm::dot(e, e) * glm::dot(f, f) * glm::dot(way, way));
+// A triangle seen from a point. The normal is off by 2^-50 |e| |f|.
+struct Seen {
+    Seen(const glm::dvec3& point, const Triangle& t)
+        : e(t[1] - t[0]), f(t[2] - t[0]), way(point - t[0]), normal(glm::cross(e, f)) {
+        along = glm::dot(normal, way);
+        squared_normal = glm::dot(normal, normal);
+        squared_edges = glm::dot(e, e) * glm::dot(f, f);
+    }
+    // Whether its plane is surely farther from the point than the root of `squared`. Where the normal's error matters
+    // by more than a ten-thousandth, the plane tells nothing.
+    [[nodiscard]] bool is_beyond(double squared) const {
+        const double along2 = along * along;
+        return along2 * 0.999 > squared * squared_normal && along2 > 1e-20 * (squared_edges * glm::dot(way, way));
+    }
+
+    glm::dvec3 e, f, way, normal;
+    double along, squared_normal, squared_edges;
+};
+
+// As closest_on_triangle. Of a triangle that is no sliver the nearest point lies on an edge beyond which the point is,
+// else it is the foot of the perpendicular.
+glm::dvec3 nearest_on(const glm::dvec3& point, const Triangle& t, const Seen& seen) {
+    if (!(seen.squared_normal > 1e-6 * seen.squared_edges)) return closest_on_triangle(point, t);
+    ClosestPoints best;
+    bool inside = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const glm::dvec3 &p = t[k], &q = t[k == 2 ? 0 : k + 1];
+        if (glm::dot(glm::cross(seen.normal, q - p), point - p) >= 0.0) continue;
+        inside = false;
+        best.offer(point, closest_on_segment(point, p, q));
+    }
+    return inside ? point - seen.along / seen.squared_normal * seen.normal : best.on_b;
 }
 
 }  // namespace
@@ -44,8 +69,9 @@ MeshDistance distance_to_point(const MeshTree& mesh, const glm::dvec3& point) {
     double best = squared;
     const auto visit = [&](const MeshLeaf& leaf, std::uint32_t lane) {
         const Triangle triangle = triangle_of(leaf, lane);
-        if (is_beyond(point, triangle, squared)) return false;
-        const glm::dvec3 nearest = closest_on_triangle(point, triangle), way = point - nearest;
+        const Seen seen(point, triangle);
+        if (seen.is_beyond(squared)) return false;
+        const glm::dvec3 nearest = nearest_on(point, triangle, seen), way = point - nearest;
         const double distance = std::max(glm::dot(way, way), kLeastSquaredToPoint);
         const TrianglePair indices{leaf.triangle[lane], 0};
         if (distance <= least && segment_meets_triangle(point, point, triangle)) {
