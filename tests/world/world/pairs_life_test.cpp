@@ -140,18 +140,20 @@ class Life {
         if (kind == 2) object.collides_with = random_.index(4) ? ~0u : random_.index(4);
         if (kind == 3) object.user = random_.index(1u << 30);
         if (kind == 4) object.bound = random_bound(random_);
-        if (kind == 5) bodies.erase(known->first);
+        if (kind == 4 || kind == 5) bodies.erase(known->first);  // a body lies within the bound
         if (kind == 6)
             bodies.insert_or_assign(known->first,
-                                    convex::Body::box(glm::vec3(object.bound.box.half_extents) * 0.9f).value());
+                                    convex::Body::box(glm::vec3(object.bound.box.half_extents) *
+                                                      (object.bound.kind == BoundKind::ball ? 0.57f : 0.99f))
+                                        .value());
         for (World* world : worlds) {
             Result<void> done;
             if (kind == 0) done = world->set_hidden(object.handle, object.hidden);
             if (kind == 1) done = world->set_layers(object.handle, object.layers);
             if (kind == 2) done = world->set_collides_with(object.handle, object.collides_with);
             if (kind == 3) done = world->set_user(object.handle, object.user);
-            if (kind == 4) done = world->set_bound(object.handle, object.bound);
-            if (kind == 5) done = world->set_body(object.handle, nullptr);
+            if (kind == 4) REQUIRE(world->set_bound(object.handle, object.bound).has_value());
+            if (kind == 4 || kind == 5) done = world->set_body(object.handle, nullptr);
             if (kind == 6) done = world->set_body(object.handle, &bodies.at(known->first));
             if (kind == 7) done = world->remove(object.handle);
             REQUIRE(done.has_value());

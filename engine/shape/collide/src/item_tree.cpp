@@ -250,42 +250,47 @@ void ItemTree::grow(std::size_t level, std::uint32_t block, const LaneBounds& bo
 // Seventeen children in two blocks, cut along the axis, or by size, where the sum of both blocks' extents is least.
 void ItemTree::split(std::size_t level, std::uint32_t block, const Entry& entry) {
     constexpr std::size_t kCount = kBoxBlock + 1;
-    Entry entries[kCount], sorted[kCount], best[kCount];
+    Entry entries[kCount], best[kCount];
     for (std::size_t lane = 0; lane < kBoxBlock; ++lane)
         entries[lane] = {level, levels_[level].children[block * kBoxBlock + lane],
                          lane_of(levels_[level].bounds[block], lane)};
     entries[kBoxBlock] = entry;
     float least = std::numeric_limits<float>::infinity();
     std::size_t cut = kCount / 2;
-    std::copy_n(entries, kCount, best);
+    std::size_t order[kCount], best_order[kCount];
+    for (std::size_t n = 0; n < kCount; ++n) best_order[n] = n;
     for (int axis = 0; axis < 4; ++axis) {
-        const auto key = [axis](const Entry& e) {
-            return axis < 3 ? e.bounds.low[axis] + e.bounds.high[axis] : extent_of(e.bounds);
-        };
+        float keys[kCount];
         for (std::size_t n = 0; n < kCount; ++n) {
-            std::size_t at = n;
-            for (; at > 0 && key(entries[n]) < key(sorted[at - 1]); --at) sorted[at] = sorted[at - 1];
-            sorted[at] = entries[n];
+            const LaneBounds& bounds = entries[n].bounds;
+            keys[n] = axis < 3 ? bounds.low[axis] + bounds.high[axis] : extent_of(bounds);
+        }
+        // Each one's place is how many come before it: no branch to guess.
+        for (std::size_t n = 0; n < kCount; ++n) {
+            std::size_t place = 0;
+            for (std::size_t m = 0; m < kCount; ++m)
+                place += static_cast<std::size_t>(keys[m] < keys[n]) +
+                         static_cast<std::size_t>((keys[m] == keys[n]) & (m < n));
+            order[place] = n;
         }
         float extent_from[kCount + 1];
         LaneBounds bounds = kEmpty;
         for (std::size_t n = kCount; n-- > kFewestAfterSplit;) {
-            include(sorted[n].bounds, bounds);
+            include(entries[order[n]].bounds, bounds);
             extent_from[n] = extent_of(bounds);
         }
         bounds = kEmpty;
-        bool is_best = false;
         for (std::size_t n = 1; n <= kCount - kFewestAfterSplit; ++n) {
-            include(sorted[n - 1].bounds, bounds);
+            include(entries[order[n - 1]].bounds, bounds);
             if (n < kFewestAfterSplit) continue;
             const float sum = extent_of(bounds) + extent_from[n];
             if (!(sum < least)) continue;
             least = sum;
             cut = n;
-            is_best = true;
+            std::copy_n(order, kCount, best_order);
         }
-        if (is_best) std::copy_n(sorted, kCount, best);
     }
+    for (std::size_t n = 0; n < kCount; ++n) best[n] = entries[best_order[n]];
     const std::uint32_t other = make_block(level);
     fill(level, block, {best, cut});
     fill(level, other, {best + cut, kCount - cut});

@@ -15,7 +15,7 @@ namespace {
 constexpr std::uint8_t kUpdatesToMove = 2;    // in a row, until an item leaves the tree
 constexpr std::uint32_t kUpdatesToEnter = 1;  // without moving, until a new item does not wait in the list any more
 // Into the tree one at a time, at about a microsecond each; a part of the list where many wait.
-constexpr std::size_t kAttachedPerUpdate = 256, kAttachedPart = 16;
+constexpr std::size_t kAttachedPerUpdate = 64, kAttachedPart = 16;
 // A tree that is small, or whose items come and go fast, is built anew in one go once such a part of them has come or
 // gone, or waits to enter. In the background they would change faster than they are built, and insertions wear it.
 constexpr std::size_t kSmallTree = 32768, kChangesToBuild = 32, kWaitingToBuild = 64, kAttachedBetweenBuilds = 16;
