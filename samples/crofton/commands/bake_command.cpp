@@ -96,9 +96,10 @@ class BakeRun {
     // Loads the file as an engine would and says how long that took.
     int check() {
         if (assets::extension(options_.scene) != "crofton" && (is_scene() || !std::filesystem::exists(options_.scene)))
-            return report_error(options_.scene,
-                                {ErrorCode::invalid_argument, kNoItem,
-                                 "is no .crofton file to check; -o is missing: to bake a scene, say where to: -o FILE"});
+            return report_error(
+                options_.scene,
+                {ErrorCode::invalid_argument, kNoItem,
+                 "is no .crofton file to check; -o is missing: to bake a scene, say where to: -o FILE"});
         const Stopwatch watch;
         const auto baked = bake::BakedScene::open(options_.scene, executor(), {.largest = options_.read.limits.bytes});
         const Times times{watch.milliseconds(), watch.cpu_milliseconds()};

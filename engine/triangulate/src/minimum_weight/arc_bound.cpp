@@ -165,8 +165,8 @@ void ArcBound::fill_cells() {
     for (const glm::dvec2& p : points_) ++first_of_cell_[cell_of(p) + 1];
     for (std::size_t c = 1; c < first_of_cell_.size(); ++c) first_of_cell_[c] += first_of_cell_[c - 1];
     in_cell_.resize(points_.size());
-    Vector<Index> at(first_of_cell_.begin(), first_of_cell_.end() - 1);
-    for (Index v = 0; v < points_.size(); ++v) in_cell_[at[cell_of(points_[v])]++] = v;
+    next_in_cell_.assign(first_of_cell_.begin(), first_of_cell_.end() - 1);
+    for (Index v = 0; v < points_.size(); ++v) in_cell_[next_in_cell_[cell_of(points_[v])]++] = v;
 }
 
 // enclosed_: of an interval that a side or a diagonal closes, with that. bare_: the same, where nothing encloses it in

@@ -45,7 +45,7 @@ class ArcBound {
     glm::dvec2 corner_{0.0};
     double cell_ = 0.0;
     glm::ivec2 cells_{0};
-    Vector<Index> first_of_cell_, in_cell_;
+    Vector<Index> first_of_cell_, next_in_cell_, in_cell_;
 };
 
 }  // namespace crofton::triangulate
