@@ -7,6 +7,8 @@
 #include <limits>
 #include <mutex>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace crofton::python {
@@ -109,6 +111,25 @@ py::array_t<T, py::array::c_style> integers_of_list(const py::handle& given, con
     return array_of<T>(values);
 }
 
+void replace_all(std::string& text, std::string_view what, std::string_view by) {
+    for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += by.size())
+        text.replace(at, what.size(), by);
+}
+
+// The library's messages name C++ functions and options: in Python these have other names, or none.
+std::string in_python(std::string_view message) {
+    std::string text(message);
+    constexpr std::pair<std::string_view, std::string_view> kNames[] = {
+        {"the object is a bound: set_bound moves it", "the object is a box: set_boxes moves it"},
+        {"the time budget is negative", "seconds is negative"},
+        {" (FileOptions::largest)", ""},
+        {" (ReadLimits::pairs)", ""},
+        {"World::", "World."},
+        {"::", "."}};
+    for (const auto& [what, by] : kNames) replace_all(text, what, by);
+    return text;
+}
+
 }  // namespace
 
 void raise(const Error& error) {
@@ -117,9 +138,10 @@ void raise(const Error& error) {
         throw py::error_already_set();
     }
     const py::object type = py::module_::import("crofton._crofton").attr("Error");
+    const std::string text = in_python(error.message);
     // A path in it may be no UTF-8.
     const auto message = py::reinterpret_steal<py::object>(
-        PyUnicode_DecodeUTF8(error.message.data(), static_cast<py::ssize_t>(error.message.size()), "backslashreplace"));
+        PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "backslashreplace"));
     if (!message) throw py::error_already_set();
     py::object instance = type(message);
     std::string code = to_string(error.code);

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <crofton/bake/baked_scene.hpp>
 #include <cstdio>
@@ -15,6 +16,8 @@
 
 namespace crofton::assets {
 namespace {
+
+std::atomic<std::size_t> written_count{0};
 
 struct Close {
     void operator()(std::FILE* file) const { std::fclose(file); }
@@ -105,7 +108,21 @@ Result<void> write_file(const std::string& path, std::string_view contents) {
         if (!written || std::fflush(stdout) != 0) return system_error("standard output", "cannot write");
         return {};
     }
-    return bake::write_file(path, std::as_bytes(std::span(contents)));
+    // A pipe may keep its writer waiting for ever, and nothing is half written there.
+    std::unique_lock<std::mutex> lock(writing(), std::defer_lock);
+    if (!is_special(path)) lock.lock();
+    auto written = bake::write_file(path, std::as_bytes(std::span(contents)));
+    if (written) ++written_count;
+    return written;
+}
+
+std::mutex& writing() {
+    static std::mutex mutex;
+    return mutex;
+}
+
+std::size_t files_written() {
+    return written_count;
 }
 
 Result<void> check_writable(const std::string& path) {

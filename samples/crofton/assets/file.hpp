@@ -2,6 +2,8 @@
 // Whole files, read and written, and errors that say which file.
 #pragma once
 #include <crofton/core/error.hpp>
+#include <cstddef>
+#include <mutex>
 #include <string>
 #include <string_view>
 
@@ -20,6 +22,10 @@ namespace crofton::assets {
 
 // bake::write_file, the old file or all of the new one; "-" writes to stdout.
 [[nodiscard]] Result<void> write_file(const std::string& path, std::string_view contents);
+
+// Held while write_file writes a file: who ends the program takes it first. And how many files were written.
+[[nodiscard]] std::mutex& writing();
+[[nodiscard]] std::size_t files_written();
 
 // Whether write_file can be expected to work there, asked before long work: the folder exists and may be written to.
 // Creates nothing.

@@ -19,6 +19,8 @@ Result<SceneSource> load_scene(const std::string& source, const LoadOptions& opt
     const std::string kind = extension(source);
     if (kind != "wad" && !options.map.empty())
         return fail(ErrorCode::invalid_argument, kNoItem, source + ": a map can be chosen in a .wad file only");
+    if (options.instances != 0 && source != "town")
+        return fail(ErrorCode::invalid_argument, kNoItem, source + ": a number of instances goes with the town only");
     if (source == "town") return make_town(options);
     if (source == "room") return make_room(options);
     std::error_code ignored;
@@ -26,14 +28,17 @@ Result<SceneSource> load_scene(const std::string& source, const LoadOptions& opt
         return fail(ErrorCode::io, kNoItem, source + ": is a folder; name a file in it");
     if (std::filesystem::is_regular_file(source, ignored) && std::filesystem::is_empty(source, ignored))
         return fail(ErrorCode::empty, kNoItem, source + ": the file is empty");
-    if (kind == "crofton")
-        return fail(ErrorCode::unsupported, kNoItem,
-                    source + ": is what 'crofton bake' writes for engines to load; name the scene that it was made of");
+    if (kind == "crofton") return load_baked(source, options);
     if (kind == "glb" || kind == "gltf") return checked(load_gltf(source, options), source, options);
-    if (kind == "obj") return checked(load_obj(source, options), source, options);
+    if (kind == "obj") {
+        auto loaded = checked(load_obj(source, options), source, options);
+        if (loaded) loaded->in_metres = false;
+        return loaded;
+    }
     if (kind == "wad") return checked(load_wad(source, options), source, options);
-    return fail(ErrorCode::unsupported, kNoItem,
-                source + ": unknown kind of scene; known are town, room and files .glb, .gltf, .obj and .wad");
+    return fail(
+        ErrorCode::unsupported, kNoItem,
+        source + ": unknown kind of scene; known are town, room and files .glb, .gltf, .obj, .wad and .crofton");
 }
 
 }  // namespace crofton::assets

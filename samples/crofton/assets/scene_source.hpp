@@ -49,6 +49,7 @@ struct SceneSource {
     // By mesh, one radiosity per triangle: what its faces give off; nothing where a mesh is beyond the end or empty.
     std::vector<std::vector<glm::vec3>> emission = {};
     std::vector<Room> rooms = {};  // of a level
+    bool in_metres = true;         // false: the file's format does not say what its lengths are
 
     // Sets the transforms of frame `frame`, at 60 frames a second; the same for the same frame. update() is the
     // caller's.
@@ -57,7 +58,8 @@ struct SceneSource {
     }
 };
 
-// "town", "room" (an interior to light), or a file by its extension: .glb, .gltf, .obj, .wad. Errors name the file, the
+// "town", "room" (an interior to light), or a file by its extension: .glb, .gltf, .obj, .wad, and .crofton by
+// `crofton bake`. Errors name the file, the
 // item in it and the reason: missing or damaged file, unknown extension, unknown map, nothing to draw, beyond a limit.
 // What is bad in a file (a node with a NaN, a primitive, face or sector that makes no sense, an image that cannot be
 // read) is left out, with a warning each that names it; with `strict` the first one is an error. So is an extension of
@@ -69,5 +71,6 @@ struct SceneSource {
 [[nodiscard]] Result<SceneSource> load_gltf(const std::string& path, const LoadOptions& options);
 [[nodiscard]] Result<SceneSource> load_obj(const std::string& path, const LoadOptions& options);
 [[nodiscard]] Result<SceneSource> load_wad(const std::string& path, const LoadOptions& options);
+[[nodiscard]] Result<SceneSource> load_baked(const std::string& path, const LoadOptions& options);
 
 }  // namespace crofton::assets

@@ -95,15 +95,22 @@ class BakeRun {
   private:
     // Loads the file as an engine would and says how long that took.
     int check() {
-        if (assets::extension(options_.scene) != "crofton" && !std::filesystem::exists(options_.scene))
-            return report_error(options_.scene,
-                                {ErrorCode::invalid_argument, kNoItem,
-                                 "is no .crofton file to check; to bake a scene, say where to: -o FILE"});
+        if (assets::extension(options_.scene) != "crofton" && (is_scene() || !std::filesystem::exists(options_.scene)))
+            return report_error(
+                options_.scene,
+                {ErrorCode::invalid_argument, kNoItem,
+                 "is no .crofton file to check; -o is missing: to bake a scene, say where to: -o FILE"});
         const Stopwatch watch;
         const auto baked = bake::BakedScene::open(options_.scene, executor(), {.largest = options_.read.limits.bytes});
         const Times times{watch.milliseconds(), watch.cpu_milliseconds()};
         if (!baked) return report_error("", baked.error());
         return show(options_, "loaded", times, options_.scene, *baked, std::filesystem::file_size(options_.scene));
+    }
+
+    [[nodiscard]] bool is_scene() const {
+        const std::string kind = assets::extension(options_.scene);
+        return options_.scene == "town" || options_.scene == "room" || kind == "obj" || kind == "glb" ||
+               kind == "gltf" || kind == "wad";
     }
 
     int write() {
@@ -147,21 +154,29 @@ void add_bake_command(CommandLine& line) {
         .option("scene", options->scene,
                 "town, room, or a .glb, .gltf, .obj or .wad file to bake with -o; without -o a .crofton file to check")
         .required();
-    command.option("-o,--output", options->output, "The file to write").writable_file();
-    command.option("--map", options->map, "Which level of a WAD");
-    command.option("--instances", options->instances, "Size of the town, roughly");
-    command.option("--seed", options->seed, "Of the town").show_default();
-    command.option("--tree", options->tree, "The tree's inner bounds: aligned, oriented or automatic").show_default();
-    command.flag("--no-occluders", options->no_occluders,
-                 "Do not look for what hides other things; a second or more for each mesh of 100,000 triangles");
+    const Option output = command.option("-o,--output", options->output, "The file to write").writable_file();
+    command.option("--map", options->map, "Which level of a WAD").needs(output);
+    command.option("--instances", options->instances, "Size of the town, roughly").needs(output);
+    command.option("--seed", options->seed, "Of the town").show_default().needs(output);
+    command.option("--tree", options->tree, "The tree's inner bounds: aligned, oriented or automatic")
+        .show_default()
+        .needs(output);
+    command
+        .flag("--no-occluders", options->no_occluders,
+              "Do not look for what hides other things; a second or more for each mesh of 100,000 triangles")
+        .needs(output);
     command.option("--threads", options->threads, "0: one per core").whole_between(0, 256).show_default();
     command.option("--json", options->json, "Write the figures as JSON to this file; - for standard output")
         .writable_file_or_stdout();
     command.footer(
-        "Exit status: 0 done, 2 bad usage, a scene that cannot be read or a .crofton file that is damaged.\n\n"
+        "A .crofton file holds the whole scene: every sub-command that reads scenes reads it too.\n"
+        "Exit status: 0 done, 2 bad usage, a scene that cannot be read or a .crofton file that is damaged, 130 "
+        "interrupted\n"
+        "(nothing is written then).\n\n"
         "Examples:\n"
         "  crofton bake level.wad --map MAP01 -o map01.crofton\n"
         "  crofton bake map01.crofton\n"
+        "  crofton frames map01.crofton --camera street --occlude\n"
         "  crofton frames level.wad --map MAP01 --occlude --baked map01.crofton\n"
         "  crofton bake town --instances 1000000 -o town.crofton && crofton bake town.crofton --threads 0");
     add_read_options(command, options->read);

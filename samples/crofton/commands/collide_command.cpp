@@ -258,7 +258,7 @@ void add_collide_command(CommandLine& line) {
     const Option spin = command.option("--spin", request->spin,
                                        "Of a cast: x,y,z, the axis times the radians that B turns by in a time of 1");
     const Option duration =
-        command.option("--duration", request->duration, "Of a cast: how long B moves").show_default();
+        command.option("--duration", request->duration, "Of a cast: how long B moves").positive().show_default();
     command.option("--json", request->json_path, "Write the answer as JSON to this file; - for standard output")
         .writable_file_or_stdout();
     command.footer(
@@ -281,6 +281,10 @@ void add_collide_command(CommandLine& line) {
     command.action([=] {
         if (request->mode != "cast" && (velocity.given() || spin.given() || duration.given())) {
             std::fputs("crofton: --velocity, --spin and --duration go with --mode cast\n", stderr);
+            return static_cast<int>(kBadInput);
+        }
+        if (request->mode == "cast" && !velocity.given() && !spin.given()) {
+            std::fputs("crofton: --mode cast needs --velocity, or --spin: how B moves\n", stderr);
             return static_cast<int>(kBadInput);
         }
         return run_collide(*request);

@@ -12,6 +12,7 @@
 #include <system_error>
 
 #include "assets/file.hpp"
+#include "interrupt.hpp"
 
 namespace crofton::cli {
 namespace {
@@ -323,6 +324,13 @@ void Command::footer(const std::string& text) {
 }
 
 void Command::action(std::function<int()> action) {
+    action_with_window([action = std::move(action), app = app_] {
+        const Attendant attendant(app->get_name().c_str());
+        return action();
+    });
+}
+
+void Command::action_with_window(std::function<int()> action) {
     app_->callback([action = std::move(action), app = app_, status = status_] {
         if (const std::string shared = shared_output(*app); !shared.empty()) throw CLI::ValidationError(shared);
         if (const std::string replaced = replaced_input(*app); !replaced.empty()) throw CLI::ValidationError(replaced);

@@ -61,6 +61,7 @@ class Command {
 
     void footer(const std::string& text);      // below the list of options in the help
     void action(std::function<int()> action);  // what it does once its options are read; returns the exit status
+    void action_with_window(std::function<int()> action);  // the same, without an Attendant: it shows what it does
 
   private:
     friend class CommandLine;

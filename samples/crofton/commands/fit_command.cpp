@@ -12,8 +12,10 @@
 #include "fit_output.hpp"
 #include "fit_planar.hpp"
 #include "fit_views.hpp"
+#include "interrupt.hpp"
 #include "json/json.hpp"
 #include "mesh_file.hpp"
+#include "progress_bar.hpp"
 #include "report.hpp"
 #include "stopwatch.hpp"
 
@@ -55,6 +57,9 @@ Result<FittedBox> fit_box(std::span<const glm::dvec3> points, const measure::Cri
         fit::ExactOptions options;
         options.criterion = criterion;
         if (request.budget_seconds > 0.0) options.time_budget_seconds = request.budget_seconds;
+        const auto tell = [](const fit::Progress&) { return !interrupted(); };
+        const FunctionRef<bool(const fit::Progress&)> asked(tell);
+        options.progress = &asked;
         const auto exact = fit::fit_exact(points, options);
         if (!exact) return tl::unexpected(exact.error());
         fitted.box = exact->box;
@@ -135,12 +140,22 @@ int run_fit(const FitRequest& request) {
                             request.region, request.triangle_cost, *directions, request.read});
         return status ? *status : report_error("", status.error());
     }
+    catch_interrupts();
     std::vector<FittedMesh> meshes;
-    for (const std::string& file : request.files) {
-        auto mesh = fit_mesh(file, *criterion, request);
-        if (!mesh) return report_error("", mesh.error());
-        meshes.push_back(std::move(*mesh));
+    {
+        ProgressBar bar("fit", request.files.size());
+        for (const std::string& file : request.files) {
+            auto mesh = fit_mesh(file, *criterion, request);
+            if (!mesh) return report_error("", mesh.error());
+            // Of several files, that in which the search was interrupted has but some of its boxes.
+            if (interrupted() && request.files.size() > 1) break;
+            meshes.push_back(std::move(*mesh));
+            bar.set(meshes.size());
+        }
     }
+    finish_what_there_is();
+    if (meshes.empty())
+        return report_error("", {ErrorCode::cancelled, kNoItem, "interrupted before the first file was done"});
     if (request.json_path != "-" && request.svg_path != "-") std::fputs(fit_text(meshes).c_str(), stdout);
     if (!request.json_path.empty())
         if (const auto written = write_json(request.json_path, fit_json(meshes, request.quality)); !written)
@@ -148,7 +163,13 @@ int run_fit(const FitRequest& request) {
     if (!request.svg_path.empty())
         if (const auto written = write_file(request.svg_path, fit_svg(meshes)); !written)
             return report_error("", written.error());
-    return kSuccess;
+    if (!interrupted()) return kSuccess;
+    if (request.files.size() > 1)
+        std::fprintf(stderr, "crofton: interrupted after %zu of %zu files, which are written\n", meshes.size(),
+                     request.files.size());
+    else
+        std::fputs("crofton: interrupted: the box is the best one so far, and its gap says how good it is\n", stderr);
+    return kInterrupted;
 }
 
 }  // namespace
@@ -167,10 +188,10 @@ void add_fit_command(CommandLine& line) {
                 "fast: a few passes over the points; tight: a local optimum; exact: the optimum, proved")
         .one_of({"fast", "tight", "exact"})
         .show_default();
-    command
-        .option("--budget", request->budget_seconds,
-                "Seconds per box after which exact returns the best so far, with its gap")
-        .not_negative();
+    const Option budget = command
+                              .option("--budget", request->budget_seconds,
+                                      "Seconds per box after which exact returns the best so far, with its gap")
+                              .not_negative();
     command
         .option("--json", request->json_path,
                 "Write the boxes as JSON to this file; - for standard output, instead of the text")
@@ -195,19 +216,23 @@ void add_fit_command(CommandLine& line) {
         .option("--directions", request->directions,
                 "--bounds: a k-DOP of these too, as x,y,z;x,y,z;...: one of each pair of opposite faces")
         .needs(bounds);
-    const Option views = command.option(
-        "--views", request->views,
-        "Boxes for the directions of a recorded camera path (the JSON of `crofton frames`), beside those for "
-        "uniform ones, and the improper tests of both");
+    const Option views =
+        command
+            .option("--views", request->views,
+                    "Boxes for the directions of a recorded camera path (the JSON of `crofton frames`), beside those "
+                    "for uniform ones, and the improper tests of both")
+            .excludes(bounds);
     command
         .flag("--trees", request->trees,
               "--views: the files are scenes; the nodes that the path visits in trees for its directions and in "
               "plain ones")
         .needs(views);
-    command.flag(
-        "--planar", request->planar,
-        "Polygons (.poly, .json, .geojson, .wad): the best rectangles, disc and triangles, by perimeter and by "
-        "area");
+    command
+        .flag("--planar", request->planar,
+              "Polygons (.poly, .json, .geojson, .wad): the best rectangles, disc and triangles, by perimeter and by "
+              "area")
+        .excludes(bounds)
+        .excludes(views);
     command.footer(
         "The criterion is alpha V + beta F + gamma M of volume, surface area and integral of mean curvature (pi times "
         "the edge sum).\n"
@@ -220,7 +245,11 @@ void add_fit_command(CommandLine& line) {
         "  crofton fit bunny.obj --bounds all --directions '1,0,0;0,1,0;0,0,1;1,1,0;1,-1,0'\n"
         "  crofton fit --planar counties.poly --svg bounds.svg");
     add_read_options(command, request->read);
-    command.action([request] { return run_fit(*request); });
+    command.action([request, budget] {
+        if (budget.given() && request->quality != "exact")
+            return report_error("", {ErrorCode::invalid_argument, kNoItem, "--budget needs --quality exact"});
+        return run_fit(*request);
+    });
 }
 
 }  // namespace crofton::cli

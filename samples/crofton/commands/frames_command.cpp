@@ -20,8 +20,8 @@
 #include "pipeline/baked_parts.hpp"
 #include "pipeline/camera_path.hpp"
 #include "pipeline/draw_list.hpp"
-#include "pipeline/free_space.hpp"
 #include "pipeline/pipeline.hpp"
+#include "pipeline/street.hpp"
 #include "pipeline/verify.hpp"
 #include "progress_bar.hpp"
 #include "read_options.hpp"
@@ -91,6 +91,7 @@ class FramesRun {
                 bar.set(index + 1);
             }
         }
+        finish_what_there_is();
         if (frames.empty()) return fail(ErrorCode::cancelled, kNoItem, "interrupted before the first frame");
         if (auto written = write_results(options_.output, facts, frames, verification); !written)
             return tl::unexpected(written.error());
@@ -137,11 +138,13 @@ class FramesRun {
         if (!source) return tl::unexpected(source.error());
         source_.emplace(std::move(*source));
         focus_ = pipeline::focus_of(source_->scene);
-        if (source_->walk.empty() && options_.camera == "street")
-            if (const auto space = pipeline::FreeSpace::find(source_->scene, focus_)) source_->walk = space->walk();
-        auto path = pipeline::make_camera_path(
-            {options_.camera, options_.frames.value_or(0), options_.seed, aspect, options_.read.limits}, focus_,
-            source_->walk);
+        pipeline::Street street;
+        if (options_.camera == "street") street = pipeline::street_of(*source_, focus_);
+        if (!street.remark.empty()) std::fprintf(stderr, "crofton: %s\n", street.remark.c_str());
+        pipeline::PathOptions path_options{options_.camera, options_.frames.value_or(0), options_.seed, aspect,
+                                           options_.read.limits};
+        street.set(path_options);
+        auto path = pipeline::make_camera_path(path_options, focus_, street.walk);
         if (!path) return tl::unexpected(path.error());
         path_ = std::move(*path);
         pipeline_options_ = {*bounds, *mode, true};
@@ -164,8 +167,11 @@ class FramesRun {
 
     Result<std::shared_ptr<const pipeline::SceneOccluders>> baked_occluders() {
         std::shared_ptr<const pipeline::SceneOccluders> none;
-        if (options_.baked.empty()) return none;
-        const auto parts = pipeline::load_baked_parts(options_.baked, source_->scene, options_.read.limits);
+        const bool is_own = options_.baked.empty() && assets::extension(options_.scene) == "crofton";
+        if (!options_.occlude || (options_.baked.empty() && !is_own)) return none;
+        const auto parts =
+            pipeline::load_baked_parts(is_own ? options_.scene : options_.baked, source_->scene, options_.read.limits);
+        if (is_own && (!parts || !parts->occluders)) return none;  // baked without: they are found
         if (!parts) return tl::unexpected(parts.error());
         if (!parts->occluders && !parts->left_out.empty()) return tl::unexpected(parts->left_out.front());
         if (!parts->occluders)
@@ -319,7 +325,7 @@ void add_frames_command(CommandLine& line) {
     Command command =
         line.command("frames", "Run a camera path through a scene: cull, collide, draw and count each frame");
     command.footer(std::string(kFramesExamples) + "\n" + kSceneFormats);
-    command.option("scene", options->scene, "town, room, or a .glb, .gltf, .obj or .wad file").show_default();
+    command.option("scene", options->scene, "town, room, or a .glb, .gltf, .obj, .wad or .crofton file").show_default();
     command.option("--frames", options->frames, "How many frames; where absent 120, or all of a recorded path");
     command.option("--camera", options->camera, "orbit, street, random, or a JSON file of cameras").show_default();
     command.option("--seed", options->seed, "Seed of the town and of random cameras").show_default();
@@ -334,7 +340,10 @@ void add_frames_command(CommandLine& line) {
         .whole_between(0, 1000000)
         .show_default()
         .needs(occlude);
-    command.option("--baked", options->baked, "Take the occluders from this .crofton file, by 'crofton bake'")
+    command
+        .option("--baked", options->baked,
+                "Take the occluders from this .crofton file, by 'crofton bake'; of a scene that is such a file its own "
+                "are taken")
         .needs(occlude);
     command
         .option("--occlusion-size", options->occlusion_size, "Pixels of the occlusion buffer, WIDTHxHEIGHT, 8 to 4096")
@@ -350,8 +359,9 @@ void add_frames_command(CommandLine& line) {
     const Option no_draw =
         command.flag("--no-draw", options->no_draw, "Do not draw; counts are the CPU's alone").excludes(draw);
     command.flag("--verify", options->verify, "Check every frame by brute force; exit 1 on any mismatch");
-    command.flag("--ids", options->output.ids, "List visible and colliding ids in the JSON");
-    command.option("--json", options->output.json, "Write everything as JSON; - for stdout").writable_file_or_stdout();
+    const Option json = command.option("--json", options->output.json, "Write everything as JSON; - for stdout")
+                            .writable_file_or_stdout();
+    command.flag("--ids", options->output.ids, "List visible and colliding ids in the JSON").needs(json);
     command.option("--csv", options->output.csv, "Write a line per frame as CSV; - for stdout")
         .writable_file_or_stdout();
     command.option("--png", options->output.png, "Write a picture per frame into this folder").excludes(no_draw);

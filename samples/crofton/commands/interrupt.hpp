@@ -1,14 +1,33 @@
 // SPDX-License-Identifier: MIT
-// Ctrl-C during long work: what there is by then is written, and the exit status is kInterrupted.
+// Ctrl-C (SIGINT) and SIGTERM during long work: it ends within two seconds, and the exit status is kInterrupted.
 #pragma once
+#include <thread>
 
 namespace crofton::cli {
 
-// From now on the first SIGINT or SIGTERM is remembered. The second one ends the program at once.
+// Watches over a sub-command while it lives, by a thread of its own: shows how far long work is (progress_bar.hpp), and
+// ends the program where the user wants that. Files that are being written are finished first.
+class Attendant {
+  public:
+    explicit Attendant(const char* command);
+    ~Attendant();
+    Attendant(const Attendant&) = delete;
+    Attendant& operator=(const Attendant&) = delete;
+
+  private:
+    std::thread thread_;
+};
+
+// From now on the first SIGINT or SIGTERM is remembered, so that the command can end by itself and write what there is.
+// It has less than two seconds to call finish_what_there_is(), or it is ended with nothing more written. Before this is
+// called the first signal ends the program at once. A second one always does.
 void catch_interrupts();
 [[nodiscard]] bool interrupted();
 
-// For triangulate's and fit's progress callbacks: false ends their search.
+// To be called when the long work is over, before its results are put together and written: that may take its time.
+void finish_what_there_is();
+
+// For progress callbacks of the engine: false ends the work.
 [[nodiscard]] bool go_on(void* user, double fraction);
 
 }  // namespace crofton::cli

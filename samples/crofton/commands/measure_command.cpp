@@ -162,7 +162,7 @@ void add_measure_command(CommandLine& line) {
             "  crofton measure room --lines 1000000\n"
             "  crofton measure level.wad --json -\n\n") +
         kSceneFormats);
-    command.option("file", options->file, "town, room, or a .glb, .gltf, .obj or .wad file; of a .wad the first level")
+    command.option("file", options->file, "town, room, or a .glb, .gltf, .obj, .wad or .crofton file; of a .wad the first level")
         .required();
     command.option("--lines", options->lines, "How many lines, rounded up to blocks of 1024")
         .whole_between(1000, std::uint64_t{1} << 40)

@@ -3,29 +3,106 @@
 
 #include <unistd.h>
 #include <algorithm>
+#include <atomic>
 #include <cstdio>
+#include <mutex>
 
 namespace crofton::cli {
 namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
 constexpr std::size_t kBarWidth = 40;
+constexpr milliseconds kFirst{2000}, kNextLine{10'000}, kNextBar{200};
+
+struct Shown {
+    std::mutex mutex;
+    std::string command, label;  // the label is empty where only the command is known
+    std::size_t total = 0;
+    std::atomic<std::size_t> done{0};
+    Clock::time_point begin = Clock::now(), next = begin + kFirst;
+    const bool terminal = isatty(STDERR_FILENO) != 0;
+    bool is_visible = false;  // on a terminal
+};
+
+Shown& shown() {
+    static Shown state;
+    return state;
 }
 
-ProgressBar::ProgressBar(std::string label, std::size_t total)
-    : label_(std::move(label)), total_(std::max<std::size_t>(1, total)), terminal_(isatty(STDERR_FILENO) != 0) {
-    set(0);
+void hide(Shown& s) {
+    if (s.is_visible) std::fputs("\r\033[K", stderr);
+    s.is_visible = false;
+}
+
+void print(const Shown& s) {
+    const auto seconds =
+        static_cast<long long>(std::chrono::duration_cast<std::chrono::seconds>(Clock::now() - s.begin).count());
+    const std::size_t done = std::min(s.done.load(), s.total);
+    const std::string what = s.label.empty() ? s.command : s.label;
+    if (!s.terminal && s.total > 0)
+        std::fprintf(stderr, "crofton: %s: %zu %% after %lld s\n", what.c_str(), 100 * done / s.total, seconds);
+    else if (!s.terminal)
+        std::fprintf(stderr, "crofton: %s: %lld s\n", what.c_str(), seconds);
+    else if (s.total > 0)
+        std::fprintf(stderr, "\r%s [%s%s] %zu %%, %lld s\033[K\r", what.c_str(),
+                     std::string(kBarWidth * done / s.total, '#').c_str(),
+                     std::string(kBarWidth - kBarWidth * done / s.total, '.').c_str(), 100 * done / s.total, seconds);
+    else
+        std::fprintf(stderr, "\r%s: %lld s\033[K\r", what.c_str(), seconds);
+    std::fflush(stderr);
+}
+
+void say(std::string label, std::size_t total) {
+    Shown& s = shown();
+    const std::lock_guard<std::mutex> lock(s.mutex);
+    hide(s);
+    s.label = std::move(label);
+    s.total = total;
+    s.done = 0;
+}
+
+}  // namespace
+
+ProgressBar::ProgressBar(std::string label, std::size_t total) : total_(total) {
+    say(std::move(label), total);
 }
 
 ProgressBar::~ProgressBar() {
-    if (terminal_) std::fputs("\r\033[K", stderr);
+    say({}, 0);
 }
 
 void ProgressBar::set(std::size_t done) {
-    const std::size_t width = std::min(kBarWidth, kBarWidth * done / total_);
-    if (!terminal_ || width == shown_) return;
-    shown_ = width;
-    std::fprintf(stderr, "\r%s [%s%s] %zu/%zu", label_.c_str(), std::string(width, '#').c_str(),
-                 std::string(kBarWidth - width, '.').c_str(), std::min(done, total_), total_);
-    std::fflush(stderr);
+    shown().done = done;
+}
+
+void begin_progress(const char* command) {
+    Shown& s = shown();
+    s.command = command;
+    s.begin = Clock::now();
+    s.next = s.begin + kFirst;
+}
+
+milliseconds until_progress() {
+    Shown& s = shown();
+    const std::lock_guard<std::mutex> lock(s.mutex);
+    return std::max(milliseconds(0), std::chrono::ceil<milliseconds>(s.next - Clock::now()));
+}
+
+void show_progress() {
+    Shown& s = shown();
+    const std::lock_guard<std::mutex> lock(s.mutex);
+    if (Clock::now() < s.next) return;
+    s.next = Clock::now() + (s.terminal ? kNextBar : kNextLine);
+    print(s);
+    s.is_visible = s.terminal;
+}
+
+void hide_progress() {
+    Shown& s = shown();
+    const std::lock_guard<std::mutex> lock(s.mutex);
+    hide(s);
 }
 
 }  // namespace crofton::cli

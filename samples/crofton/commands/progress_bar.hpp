@@ -1,25 +1,30 @@
 // SPDX-License-Identifier: MIT
-// A progress bar on stderr, where that is a terminal; silent otherwise.
+// How far long work is, on stderr: a bar where that is a terminal, else a line after two seconds and every ten.
 #pragma once
+#include <chrono>
 #include <cstddef>
 #include <string>
 
 namespace crofton::cli {
 
+// What is being done while it lives, in place of what was shown before. Any thread may set it.
 class ProgressBar {
   public:
-    ProgressBar(std::string label, std::size_t total);
-    ~ProgressBar();  // clears the line
+    explicit ProgressBar(std::string label, std::size_t total = 0);  // 0: nobody knows how much there is to do
+    ~ProgressBar();                                                  // hides it
     ProgressBar(const ProgressBar&) = delete;
     ProgressBar& operator=(const ProgressBar&) = delete;
 
     void set(std::size_t done);
 
   private:
-    std::string label_;
-    std::size_t total_;
-    std::size_t shown_ = ~std::size_t{0};  // width last drawn
-    bool terminal_;
+    std::size_t total_ = 0;
 };
+
+// For the attendant of a command (interrupt.hpp), which does the showing.
+void begin_progress(const char* command);
+[[nodiscard]] std::chrono::milliseconds until_progress();  // to the next call that would show something
+void show_progress();
+void hide_progress();
 
 }  // namespace crofton::cli

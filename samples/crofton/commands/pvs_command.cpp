@@ -86,10 +86,12 @@ std::uint32_t surface_steps_of(const Job& job) {
     return is_level ? kStepsInLevels : 0;
 }
 
-struct BakeProgress {
-    ProgressBar bar{"pvs", 1000};
+// A part of the work, with its name and its share that is done.
+struct PartProgress {
+    ProgressBar bar;
+    explicit PartProgress(const char* name) : bar(name, 1000) {}
     static bool go_on(void* user, double share) {
-        static_cast<BakeProgress*>(user)->bar.set(static_cast<std::size_t>(1000.0 * share));
+        static_cast<PartProgress*>(user)->bar.set(static_cast<std::size_t>(1000.0 * share));
         return !interrupted();
     }
 };
@@ -114,14 +116,14 @@ Result<void> load_state(const std::string& path, pvs::Bake& bake, const PvsReque
 // Traces until the shard, the time or the user's patience ends; what there is has been saved then.
 Result<void> trace(Job& job, pvs::Bake& bake, Executor& executor) {
     if (auto loaded = load_state(job.options.state, bake, job.options); !loaded) return loaded;
-    BakeProgress progress;
+    PartProgress progress("pvs: lines");
     const auto start = Clock::now();
     for (bool done = false; !done;) {
         const std::uint64_t before = bake.lines_done();
         double seconds = kSaveEvery;
         if (job.options.seconds > 0.0) seconds = std::min(seconds, job.options.seconds - seconds_since(start));
         const auto ran = bake.run(
-            {.seconds = seconds, .shard = job.shard, .go_on = BakeProgress::go_on, .user = &progress}, executor);
+            {.seconds = seconds, .shard = job.shard, .go_on = PartProgress::go_on, .user = &progress}, executor);
         if (!ran) return ran;
         done = interrupted() || bake.lines_done() == before ||
                (job.options.seconds > 0.0 && seconds_since(start) >= job.options.seconds);
@@ -271,6 +273,40 @@ void print_figures(const Job& job, const pvs::Bake& bake, const pvs::Pvs& sets, 
                     8.0 * static_cast<double>(file_bytes) / pairs);
 }
 
+// What the lines have seen, and what is proved of the rest. Once interrupted nothing more is proved.
+Result<pvs::Pvs> finish_sets(Job& job, const pvs::Bake& bake, Executor& executor) {
+    PartProgress progress("pvs: proofs");
+    const auto start = Clock::now();
+    auto sets =
+        pvs::Pvs::finish(bake, job.options.shard.empty() ? job.scene.occluders : std::vector<pvs::PlacedOccluder>{},
+                         {.near_radius = job.options.near_radius,
+                          .halvings = job.options.halvings,
+                          .surface_steps = surface_steps_of(job),
+                          .go_on = PartProgress::go_on,
+                          .user = &progress},
+                         executor);
+    job.proof_seconds = seconds_since(start);
+    return sets;
+}
+
+// Looks from random places, as many as there is time for.
+Result<Views> look_from_places(const Job& job, const pvs::Pvs& sets, Executor& executor) {
+    if (job.options.views == 0 || interrupted()) return Views{};
+    PartProgress progress("pvs: views");
+    const auto looked = pipeline::look_at_views(job.source.scene, job.scene.subject, sets,
+                                                {.views = job.options.views,
+                                                 .seed = job.options.seed,
+                                                 .near_radius = job.options.near_radius,
+                                                 .occluders = job.scene.found,
+                                                 .in_metres = job.source.in_metres,
+                                                 .go_on = PartProgress::go_on,
+                                                 .user = &progress},
+                                                executor);
+    if (!looked && looked.error().code == ErrorCode::cancelled) return Views{};
+    if (!looked) return tl::unexpected(looked.error());
+    return Views{*looked};
+}
+
 Result<int> run_pvs(const PvsRequest& options) {
     catch_interrupts();
     ThreadPool pool(options.threads);
@@ -289,32 +325,24 @@ Result<int> run_pvs(const PvsRequest& options) {
                      static_cast<unsigned long long>(bake->lines_planned()),
                      options.state.empty() ? "; with --state the next run would go on from here"
                                            : ": the next run goes on from here");
-    const auto start = Clock::now();
-    const auto sets = pvs::Pvs::finish(
-        *bake, options.shard.empty() ? job->scene.occluders : std::vector<pvs::PlacedOccluder>{},
-        {.near_radius = options.near_radius, .halvings = options.halvings, .surface_steps = surface_steps_of(*job)},
-        pool);
+    const bool all_lines = !interrupted();
+    const auto sets = finish_sets(*job, *bake, pool);
     if (!sets) return tl::unexpected(sets.error());
-    job->proof_seconds = seconds_since(start);
+    if (all_lines && interrupted())
+        std::fputs("crofton: interrupted: pairs whose proof was not reached count as unseen, so that they are drawn\n",
+                   stderr);
+    finish_what_there_is();
     std::size_t file_bytes = 0;
     if (auto written = write_outputs(*job, *sets, pool, file_bytes); !written) return tl::unexpected(written.error());
-    Views views;
-    if (options.views > 0) {
-        const auto looked = pipeline::look_at_views(job->source.scene, job->scene.subject, *sets,
-                                                    {.views = options.views,
-                                                     .seed = options.seed,
-                                                     .near_radius = options.near_radius,
-                                                     .occluders = job->scene.found},
-                                                    pool);
-        if (!looked) return tl::unexpected(looked.error());
-        views = *looked;
-    }
+    const auto views = look_from_places(*job, *sets, pool);
+    if (!views) return tl::unexpected(views.error());
+    if (options.views > 0 && !*views) std::fputs("crofton: interrupted: there are no figures of --views\n", stderr);
     if (options.json != "-") {
         print_figures(*job, *bake, *sets, file_bytes);
-        if (views) print(*views);
+        if (*views) print(**views);
     }
     if (!options.json.empty())
-        if (auto written = write_json(options.json, figures(*job, *bake, *sets, file_bytes, views)); !written)
+        if (auto written = write_json(options.json, figures(*job, *bake, *sets, file_bytes, *views)); !written)
             return tl::unexpected(written.error());
     return interrupted() ? kInterrupted : kSuccess;
 }
@@ -334,19 +362,21 @@ void add_pvs_command(CommandLine& line) {
         "  crofton pvs town --shard 0/2 --state part0       half of the lines; the others: 1/2, part1\n"
         "  crofton merge part0 part1 --out town.state          then both together\n"
         "  crofton pvs town --state town.state --out town_pvs.crofton --views 1000");
-    command.option("scene", options->scene, "town, room, or a .glb, .gltf, .obj or .wad file").required();
+    command.option("scene", options->scene, "town, room, or a .glb, .gltf, .obj, .wad or .crofton file").required();
     command
         .option("--cells", options->cells,
                 "NXxNYxNZ, rooms (sectors of a WAD in convex pieces), or a file of boxes and convex cells")
         .show_default();
-    command.option("--cell-size", options->cell_size, "Of rooms: cut until no cell is longer in x or z").positive();
-    command.option("--eyes", options->eyes,
-                   "x,y,z,x,y,z: the box that the grid fills; without, where the scene is dense");
+    const Option cell_size =
+        command.option("--cell-size", options->cell_size, "Of rooms: cut until no cell is longer in x or z").positive();
+    const Option eyes = command.option("--eyes", options->eyes,
+                                       "x,y,z,x,y,z: the box that the grid fills; without, where the scene is dense");
     command
         .option("--height", options->height,
                 "Of the grid over the lowest point there, without --eyes; it begins at a twentieth of it")
         .positive()
-        .show_default();
+        .show_default()
+        .excludes(eyes);
     command.option("--epsilon", options->epsilon, "Of the lines through a cell: pairs above it are not missed")
         .show_default();
     command.option("--confidence", options->confidence, "That none of them is").show_default();
@@ -387,7 +417,9 @@ void add_pvs_command(CommandLine& line) {
         .show_default();
     command.option("--json", options->json, "Write the figures as JSON; - for stdout").writable_file_or_stdout();
     add_read_options(command, options->read);
-    command.action([options] {
+    command.action([options, cell_size] {
+        if (cell_size.given() && options->cells != "rooms")
+            return report_error("", {ErrorCode::invalid_argument, kNoItem, "--cell-size needs --cells rooms"});
         const auto done = run_pvs(*options);
         return done ? *done : report_error("", done.error());
     });

@@ -99,8 +99,7 @@ Result<void> solve(const RadiosityOptions& options, radiosity::Solver& solver, E
                solver.share_within(kDeviations * options.error) >= kPatchesWithin;
     };
     ProgressBar bar("radiosity", 1000);
-    while (!done() && !interrupted()) {
-        solver.run(executor);
+    while (!done() && solver.run([](void*) { return !interrupted(); }, nullptr, executor)) {
         const double share = options.error > 0.0
                                  ? std::pow(options.error / solver.relative_error(), 2.0)
                                  : static_cast<double>(solver.lines_traced()) / static_cast<double>(options.lines);
@@ -165,7 +164,7 @@ Result<Light> find_light(const RadiosityOptions& options, const radiosity::Patch
         if (auto solved = solve(options, *light.alone, executor); !solved) return tl::unexpected(solved.error());
     }
     if (light.solver().runs() == 0 && interrupted())
-        return fail(ErrorCode::cancelled, kNoItem, "interrupted before the first run");
+        return fail(ErrorCode::cancelled, kNoItem, "interrupted in the first run: there is no light yet to write");
     return light;
 }
 
@@ -190,6 +189,7 @@ Result<int> run_radiosity(const RadiosityOptions& options) {
     if (!found) return tl::unexpected(found.error());
     const radiosity::Solver* const solver = &found->solver();
     const bool cut_short = interrupted();
+    finish_what_there_is();
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     const TriangleMesh light = lit_mesh(*lit, *solver);
     const float exposure =
@@ -208,7 +208,7 @@ Result<int> run_radiosity(const RadiosityOptions& options) {
     const auto tracer = lines::LineTracer::build(lit->patches.mesh);
     if (!tracer) return tl::unexpected(tracer.error());
     std::optional<LightFieldReport> field;
-    if (!options.light_field.empty()) {
+    if (!options.light_field.empty() && !cut_short) {
         const auto camera = camera_for(*source, options.seed);
         if (!camera) return tl::unexpected(camera.error());
         auto drawn = draw_light_field({light, *tracer, parameters->outside.sky, *camera, exposure, options.stored_lines,
@@ -218,13 +218,14 @@ Result<int> run_radiosity(const RadiosityOptions& options) {
         field = *drawn;
     }
     std::optional<ReferenceReport> reference;
-    if (options.reference > 0) {
+    if (options.reference > 0 && !cut_short) {
         const auto compared = compare_to_reference(lit->patches, *parameters, options.reference, *solver, pool);
         if (!compared) return tl::unexpected(compared.error());
         reference = *compared;
     }
     const auto seen = lines::visibility_complexity(
-        *tracer, lines::LineSource(tracer->bounds(), lines::LineMethod::walls, options.seed), 50);
+        *tracer, lines::LineSource(tracer->bounds(), lines::LineMethod::walls, options.seed),
+        cut_short ? 1 : 50);
     glm::dvec3 mean(0.0);
     double area = 0.0;
     for (std::size_t i = 0; i < lit->patches.count(); ++i) {
@@ -253,8 +254,11 @@ Result<int> run_radiosity(const RadiosityOptions& options) {
         {"visibility",
          {{"mean_crossings", seen.mean_crossings}, {"deviation", seen.deviation}, {"wasted", seen.wasted}}}};
     if (cut_short)
-        std::fprintf(stderr, "crofton: interrupted: what %llu runs found is written%s\n",
+        std::fprintf(stderr, "crofton: interrupted: what %llu runs found is written%s%s\n",
                      static_cast<unsigned long long>(solver->runs()),
+                     options.light_field.empty() && options.reference == 0
+                         ? ""
+                         : ", but no light field and no comparison with a reference",
                      options.checkpoint.empty() ? "; with --checkpoint the next run would go on from here" : "");
     const int status = cut_short ? kInterrupted : kSuccess;
     if (!options.json.empty()) {
@@ -296,7 +300,7 @@ void add_radiosity_command(CommandLine& line) {
         "  crofton radiosity room --runs 64 --state whole.state --out room.glb\n"
         "  crofton radiosity room --light-field lines.png --stored-lines 16000000\n"
         "  crofton radiosity level.wad --map MAP01 --method local --json -\n");
-    command.option("scene", options->scene, "town, room, or a .glb, .gltf, .obj or .wad file").required();
+    command.option("scene", options->scene, "town, room, or a .glb, .gltf, .obj, .wad or .crofton file").required();
     const Option lines =
         command
             .option("--lines", options->lines,

@@ -12,7 +12,7 @@ int report_error(std::string_view subject, const Error& error) {
                  subject.empty() ? "" : ": ", error.message.c_str());
     if (error.item != kNoItem) std::fprintf(stderr, " (item %llu)", static_cast<unsigned long long>(error.item));
     std::fputc('\n', stderr);
-    return kBadInput;
+    return error.code == ErrorCode::cancelled ? kInterrupted : kBadInput;
 }
 
 namespace {

@@ -10,7 +10,7 @@
 
 namespace crofton::cli {
 
-// "crofton: FILE: message (item N)" to stderr; returns kBadInput.
+// "crofton: FILE: message (item N)" to stderr; returns kBadInput, or kInterrupted for what was cancelled.
 int report_error(std::string_view subject, const Error& error);
 
 using assets::read_file;

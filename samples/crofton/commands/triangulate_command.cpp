@@ -28,9 +28,11 @@ using Clock = std::chrono::steady_clock;
 
 struct TriangulateOptions {
     std::string file, method = "minimum-weight", map, json, svg, out;
-    double seconds = std::numeric_limits<double>::infinity(), work = 1000.0;  // work in millions of steps
+    double seconds = std::numeric_limits<double>::infinity();
+    double work = 0.0;  // in millions of steps, where it is given
     double tolerance = -1.0, attribute_tolerance = 1e-4;
-    bool no_indices = false, compare = false, has_tolerance = false;
+    bool no_indices = false, compare = false, has_tolerance = false, is_mesh_option_given = false,
+         is_work_given = false;
     std::uint64_t frusta = 100'000;
     std::size_t least_vertices = 5;
     ReadOptions read;
@@ -47,7 +49,8 @@ Result<Method> method_from(const std::string& name) {
 triangulate::TriangulateOptions limits_of(const TriangulateOptions& options, Method method) {
     triangulate::TriangulateOptions limits{.method = method, .seconds = options.seconds, .progress = go_on};
     constexpr double kMost = 1e12;
-    limits.work = options.work < kMost ? static_cast<std::uint64_t>(1e6 * options.work) : limits.kUnlimitedWork;
+    if (options.is_work_given)
+        limits.work = options.work < kMost ? static_cast<std::uint64_t>(1e6 * options.work) : limits.kUnlimitedWork;
     return limits;
 }
 
@@ -128,6 +131,7 @@ Result<int> run_polygons(const TriangulateOptions& options, Method method) {
             bar.set(i + 1);
         }
     }
+    finish_what_there_is();
     if (!options.svg.empty()) {
         if (auto written = write_file(options.svg, draw_svg(polygons, results, file->one_plane)); !written)
             return tl::unexpected(written.error());
@@ -157,12 +161,10 @@ Result<int> run_polygons(const TriangulateOptions& options, Method method) {
 }
 
 Result<int> run_triangulate(const TriangulateOptions& options) {
-    catch_interrupts();
     const auto method = method_from(options.method);
     if (!method) return tl::unexpected(method.error());
     if (!(options.seconds >= 0.0))
         return fail(ErrorCode::invalid_argument, kNoItem, "--time-limit must not be negative");
-    if (!(options.work >= 0.0)) return fail(ErrorCode::invalid_argument, kNoItem, "--work-limit must not be negative");
     if (!(options.attribute_tolerance >= 0.0))
         return fail(ErrorCode::invalid_argument, kNoItem, "--attribute-tolerance must not be negative");
     if (options.has_tolerance && !(options.tolerance >= 0.0))
@@ -182,9 +184,13 @@ Result<int> run_triangulate(const TriangulateOptions& options) {
         return run_compare({options.file, options.map, options.json, limits_of(options, *method), options.tolerance,
                             options.frusta, options.read, options.least_vertices});
     }
+    catch_interrupts();
     if (is_polygon_file(options.file)) {
         if (!options.out.empty())
             return fail(ErrorCode::invalid_argument, kNoItem, "--out is for meshes: .obj, .glb, .gltf");
+        if (options.is_mesh_option_given)
+            return fail(ErrorCode::invalid_argument, kNoItem,
+                        "--tolerance and --attribute-tolerance are for meshes: .obj, .glb, .gltf");
         return run_polygons(options, *method);
     }
     if (!options.svg.empty())
@@ -220,11 +226,14 @@ void add_triangulate_command(CommandLine& line) {
     command.option("file", options->file, "What to triangulate").required();
     command.option("--method", options->method, "ear, delaunay or minimum-weight").show_default();
     command.option("--map", options->map, "Only this level of a .wad");
-    command
-        .option("--work-limit", options->work,
-                "Millions of steps (some 10 ms each) allowed per polygon; then the best so far, with its proven gap: "
-                "the same on every machine")
-        .show_default();
+    const Option work =
+        command
+            .option(
+                "--work-limit", options->work,
+                "Millions of steps (some 10 ms each) allowed per polygon; then the best so far, with its proven "
+                "gap: the same on every machine. Without, 1000 or 0.05 for each point, no more than 10000; no limit "
+                "where --time-limit is given")
+            .not_negative();
     command
         .option("--time-limit,--seconds", options->seconds,
                 "Seconds allowed per polygon; the answer then depends on the machine")
@@ -232,24 +241,33 @@ void add_triangulate_command(CommandLine& line) {
     const Option tolerance =
         command.option("--tolerance", options->tolerance,
                        "Distance from a plane that still counts as in it; a millionth of the mesh's size where absent");
-    command
-        .option("--attribute-tolerance", options->attribute_tolerance,
-                "How far texture coordinates, normals, colours, ... may leave one linear function of the position "
-                "within a patch; inf: as far as they like")
-        .show_default();
-    command.flag("--compare", options->compare,
-                 "All methods: weights; triangles passed and pixel quads, predicted and measured; draw time");
-    command.option("--frusta", options->frusta, "How many random frusta --compare measures with").show_default();
-    command.option("--least-vertices", options->least_vertices, "--compare leaves smaller polygons out").show_default();
-    command.flag("--no-indices", options->no_indices, "Leave the triangles out of the JSON");
-    command.option("--json", options->json, "Write results as JSON; - for stdout").writable_file_or_stdout();
+    const Option attribute_tolerance =
+        command
+            .option("--attribute-tolerance", options->attribute_tolerance,
+                    "How far texture coordinates, normals, colours, ... may leave one linear function of the position "
+                    "within a patch; inf: as far as they like")
+            .show_default();
+    const Option compare =
+        command.flag("--compare", options->compare,
+                     "All methods: weights; triangles passed and pixel quads, predicted and measured; draw time");
+    command.option("--frusta", options->frusta, "How many random frusta --compare measures with")
+        .show_default()
+        .needs(compare);
+    command.option("--least-vertices", options->least_vertices, "--compare leaves smaller polygons out")
+        .show_default()
+        .needs(compare);
+    const Option json =
+        command.option("--json", options->json, "Write results as JSON; - for stdout").writable_file_or_stdout();
+    command.flag("--no-indices", options->no_indices, "Leave the triangles out of the JSON").needs(json);
     command.option("--svg", options->svg, "Draw the polygons, at most 400 of them; - for stdout")
         .writable_file_or_stdout();
     command.option("--out", options->out, "Write the asset with its patches triangulated anew, as .glb; - for stdout")
         .writable_file_or_stdout();
     add_read_options(command, options->read);
-    command.action([options, tolerance] {
+    command.action([=] {
         options->has_tolerance = tolerance.given();
+        options->is_mesh_option_given = tolerance.given() || attribute_tolerance.given();
+        options->is_work_given = work.given();
         const auto status = run_triangulate(*options);
         return status ? *status : report_error("", status.error());
     });

@@ -209,6 +209,7 @@ Result<int> run_meshes(const MeshRun& run) {
         if (!done) return assets::in_file(run.file, "", done.error());
         outcomes = std::move(*done);
     }
+    finish_what_there_is();
     if (outcomes.empty()) return fail(ErrorCode::empty, kNoItem, run.file + ": holds no meshes");
     if (!run.out.empty()) {
         const auto glb = assets::write_glb(*document);

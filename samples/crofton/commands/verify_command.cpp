@@ -48,8 +48,8 @@ int run_verify(const VerifyRequest& request) {
     for (const Topic& topic : kTopics)
         if (request.scenes.empty() && (request.topic.empty() ? !topic.part : request.topic == topic.name))
             for (VerifyRow& row : topic.rows(request.options)) rows.push_back(std::move(row));
-    const assets::LoadOptions which{.map = request.map, .instances = request.instances};
     for (const std::string& scene : request.scenes) {
+        const assets::LoadOptions which{.map = request.map, .instances = scene == "town" ? request.instances : 0};
         auto found = request.topic == "collide" ? verify_collided_scene(scene, which, request.options)
                                                 : verify_occluded_scene(scene, which, request.options);
         if (!found) return report_error(scene, found.error());
@@ -80,12 +80,14 @@ void add_verify_command(CommandLine& line) {
     command.option("--trials", request->options.trials, "Random queries per row; more make every check sharper")
         .whole_between(1000, std::uint64_t{1} << 40)
         .show_default();
-    command.option(
+    const Option scene = command.option(
         "--scene", request->scenes,
         "Instead, of these scenes (files, or \"town\"): with the topic occlude what is hidden, by witness rays; "
         "with collide hulls, meshes and maps of polygons as bodies");
-    command.option("--map", request->map, "Which level of a WAD given to --scene");
-    command.option("--instances", request->instances, "Of the town with --scene: roughly so many").show_default();
+    command.option("--map", request->map, "Which level of a WAD given to --scene").needs(scene);
+    command.option("--instances", request->instances, "Of the town with --scene: roughly so many")
+        .show_default()
+        .needs(scene);
     command.option("--seed", request->options.seed, "The same seed gives the same table, bit by bit").show_default();
     command
         .option("--json", request->json_path,

@@ -70,7 +70,8 @@ void add_view_command(CommandLine& line) {
     viewer::ViewerOptions& options = arguments->options;
     Command command = line.command("view", "Fly through a scene and see what is culled, why, and what it costs");
     command.footer(viewer::key_help() + "\n" + kScriptHelp + "\n" + kViewExamples);
-    command.option("SCENE", options.scene.source, "town, room, or a .glb, .gltf, .obj or .wad file").show_default();
+    command.option("SCENE", options.scene.source, "town, room, or a .glb, .gltf, .obj, .wad or .crofton file")
+        .show_default();
     command.option("--map", options.scene.map, "which level of a WAD");
     command.option("--seed", options.scene.seed, "of the town").show_default();
     command.option("--instances", options.scene.instances, "of the town, roughly");
@@ -97,7 +98,7 @@ void add_view_command(CommandLine& line) {
     command.flag("--validation", options.validation, "check every Vulkan call (needs the validation layer)");
     command.flag("--no-window", arguments->no_window, "draw without any display");
     add_read_options(command, arguments->read);
-    command.action([arguments] {
+    command.action_with_window([arguments] {
         const auto done = run(*arguments);
         return done ? kSuccess : report_error("", done.error());
     });

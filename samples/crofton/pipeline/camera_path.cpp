@@ -18,6 +18,8 @@ namespace {
 
 using std::numbers::pi;
 
+constexpr double kNearOfEyeHeight = 0.05;
+
 struct Frame {
     glm::dvec3 center;
     double radius;  // of the ground plan
@@ -53,7 +55,12 @@ Camera orbit(Camera camera, const Frame& frame, double t) {
 }
 
 // At eye level along the walk, looking where it leads, now and then aside.
-Camera street(Camera camera, std::span<const glm::dvec3> walk, double t) {
+Camera street(Camera camera, const PathOptions& options, std::span<const glm::dvec3> walk, double t) {
+    if (walk.size() == 1) {
+        camera.position = walk[0];
+        camera.forward = {std::sin(2.0 * pi * t), 0.0, -std::cos(2.0 * pi * t)};
+        return camera;
+    }
     std::vector<double> along(walk.size(), 0.0);
     for (std::size_t i = 1; i < walk.size(); ++i) along[i] = along[i - 1] + glm::distance(walk[i - 1], walk[i]);
     const auto at = [&](double distance) {
@@ -71,6 +78,7 @@ Camera street(Camera camera, std::span<const glm::dvec3> walk, double t) {
     const double turn = 0.35 * std::sin(10.0 * pi * t);
     camera.forward = glm::normalize(glm::dvec3(ahead.x * std::cos(turn) - ahead.z * std::sin(turn), 0.0,
                                                ahead.x * std::sin(turn) + ahead.z * std::cos(turn)));
+    if (options.over_floor) camera.position = options.over_floor(camera.position);
     return camera;
 }
 
@@ -167,8 +175,11 @@ Result<CameraPath> make_camera_path(const PathOptions& options, const Aabb& boun
         return fail(ErrorCode::empty, kNoItem, "camera: the scene is empty, there is nothing to look at");
     const Frame frame = frame_of(bounds);
     const Camera base = base_camera(options, frame);
+    Camera close_up = base;
+    if (options.eye_height > 0.0)
+        close_up.near_distance = std::min(base.near_distance, kNearOfEyeHeight * options.eye_height);
     std::vector<glm::dvec3> path(walk.begin(), walk.end());
-    if (path.size() < 2) {
+    if (path.empty()) {
         const bool along_x = bounds.max.x - bounds.min.x >= bounds.max.z - bounds.min.z;
         const double eye = bounds.min.y + std::min(0.25 * frame.height, 0.02 * frame.radius);
         path = {bounds.min, bounds.max};
@@ -186,7 +197,7 @@ Result<CameraPath> make_camera_path(const PathOptions& options, const Aabb& boun
         if (options.kind == "orbit")
             result.cameras.push_back(orbit(base, frame, t));
         else if (options.kind == "street")
-            result.cameras.push_back(street(base, path, t));
+            result.cameras.push_back(street(close_up, options, path, t));
         else
             result.cameras.push_back(random_camera(base, bounds, random));
     }

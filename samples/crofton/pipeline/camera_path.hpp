@@ -6,6 +6,7 @@
 #include <crofton/geometry/camera.hpp>
 #include <crofton/scene/scene.hpp>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,6 +27,9 @@ struct PathOptions {
     std::uint64_t seed = 1;
     double aspect = 16.0 / 9.0;
     assets::ReadLimits limits = {};  // of the file
+    // For `street`: moves an eye to its height above the floor that is below it (FreeSpace::over_floor); may be empty.
+    std::function<glm::dvec3(const glm::dvec3&)> over_floor = {};
+    double eye_height = 0.0;  // for `street`: the near plane is nearer than that. 0: unknown
 };
 inline constexpr std::uint32_t kBuiltInFrames = 120;
 
@@ -36,8 +40,9 @@ struct CameraPath {
 };
 
 // `bounds` frames the scene (y up); `walk` is where a pedestrian may go, for `street`, and may be empty: then the path
-// leads along the longer side of the bounds, low above the ground. A recording shorter than `frames` starts over, and
-// the scene with it. Errors: an unknown kind, an unreadable or invalid file, empty bounds.
+// leads along the longer side of the bounds, low above the ground. At a walk of one place the camera turns around. A
+// recording shorter than `frames` starts over, and the scene with it. Errors: an unknown kind, an unreadable or invalid
+// file, empty bounds.
 [[nodiscard]] Result<CameraPath> make_camera_path(const PathOptions& options, const Aabb& bounds,
                                                   std::span<const glm::dvec3> walk);
 

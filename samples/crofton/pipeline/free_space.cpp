@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
 #include <numbers>
 
 #include "largest_region.hpp"
@@ -13,9 +14,22 @@ namespace crofton::pipeline {
 namespace {
 
 constexpr std::uint32_t kNotReached = ~0u;
-// Shares of the eye's height: the highest step, room above the floor, half the width of who walks, the lower line.
 constexpr std::uint64_t kMostTriangles = 8u << 20;  // of larger scenes nothing is found: lines would take gigabytes
-constexpr double kStep = 0.7, kRoom = 1.3, kHalfWidth = 0.25, kKnee = 0.5;
+// Shares of the eye's height: the highest step, room above the floor, half the width of who walks, the lower line.
+constexpr double kStep = 0.7, kRoom = 1.02, kHalfWidth = 0.15, kKnee = 0.5;
+// Longer ways than this, in eye heights, follow the floor in pieces; no more than so many, and none steeper.
+constexpr double kLongWay = 2.0, kPiece = 1.5, kSteepest = 0.8;
+constexpr int kMostPieces = 12;
+// Where a person walks columns are this far apart if there are not too many.
+constexpr double kPersonSpacing = 0.5;
+// What a place is worth: under a roof, under the sky, within a closed thing, on a closed thing with nothing around.
+constexpr float kUnderRoof = 4.0f, kUnderSky = 1.0f, kWithin = 0.05f, kOnBareRoof = 0.001f;
+// A roof is bare where fewer level lines meet something; within a thing most do.
+constexpr double kBare = 0.35, kClosed = 0.75;
+constexpr int kLevelLines = 12;
+// A person needs a plan this long to walk on in the open, in eye heights. Where lengths may be no metres, half of the
+// rooms are lower than this, in metres, and the plan is not longer.
+constexpr double kLeastPlan = 2.4, kHighestRoom = 60.0, kLongestPlan = 50'000.0;
 // A straight way that leaves out places stays this near to them in height.
 constexpr double kHeightTolerance = 0.25;
 constexpr std::size_t kLongestStraight = 24;
@@ -47,11 +61,10 @@ FreeSpace::FreeSpace(pvs::Subject subject, lines::LineTracer tracer, const Aabb&
     : subject_(std::move(subject)), tracer_(std::move(tracer)) {
     const glm::dvec3 size = focus.max - focus.min;
     size_ = std::hypot(size.x, size.z);
-    eye_height_ = std::min(0.2 * std::max(size.y, 1e-3 * size.x), 0.01 * size_);
-    spacing_ = std::max(size.x, size.z) / kColumns;
 }
 
-std::optional<FreeSpace> FreeSpace::find(const scene::Scene& scene, const Aabb& focus) {
+std::optional<FreeSpace> FreeSpace::find(const scene::Scene& scene, const Aabb& focus,
+                                         const FreeSpaceOptions& options) {
     if (focus.is_empty()) return std::nullopt;
     std::uint64_t triangles = 0;
     for (scene::InstanceId i = 0; i < scene.instance_count(); ++i)
@@ -62,16 +75,31 @@ std::optional<FreeSpace> FreeSpace::find(const scene::Scene& scene, const Aabb& 
     auto tracer = lines::LineTracer::build(subject->mesh);
     if (!tracer) return std::nullopt;
     FreeSpace space(std::move(*subject), std::move(*tracer), focus);
-    if (!(space.eye_height_ > 0.0)) return std::nullopt;
-    space.find_places(focus);
-    if (space.places_.empty()) return std::nullopt;
-    space.keep_largest_region();
+    const glm::dvec3 size = focus.max - focus.min;
+    const double share = std::min(0.2 * std::max(size.y, 1e-3 * size.x), 0.01 * space.size_);
+    if (space.find_places(focus, options, kPersonEye) && space.fits_a_person(focus, options.in_metres)) return space;
+    if (!(share > 0.0) || !space.find_places(focus, options, share)) return std::nullopt;
     return space;
 }
 
-void FreeSpace::find_places(const Aabb& focus) {
+// What a vertical line meets, from above.
+struct FreeSpace::Column {
+    std::uint32_t number;
+    glm::dvec3 top;  // where the line begins
+    std::span<const lines::Hit> hits;
+
+    [[nodiscard]] double depth(std::size_t i) const { return static_cast<double>(hits[i].t); }
+};
+
+bool FreeSpace::find_places(const Aabb& focus, const FreeSpaceOptions& options, double eye_height) {
+    eye_height_ = eye_height;
+    const double longer = std::max(focus.max.x - focus.min.x, focus.max.z - focus.min.z);
+    const bool by_metres = eye_height == kPersonEye;
+    const double wanted = by_metres ? std::ceil(longer / kPersonSpacing) : 0.0;
+    const auto most = static_cast<std::uint32_t>(std::clamp(wanted, double{kColumns}, double{kMostColumns}));
+    spacing_ = longer / most;
     const auto along = [&](double length) {
-        return std::clamp(static_cast<std::uint32_t>(length / spacing_), 1u, kColumns);
+        return spacing_ > 0.0 ? std::clamp(static_cast<std::uint32_t>(length / spacing_), 1u, most) : 1u;
     };
     columns_ = {along(focus.max.x - focus.min.x), along(focus.max.z - focus.min.z)};
     const double top = tracer_.bounds().max.y + 1.0;
@@ -84,32 +112,126 @@ void FreeSpace::find_places(const Aabb& focus) {
         }
     lines::LineHits found;
     tracer_.all_hits(lines, found);
+    places_.clear();
+    worth_.clear();
+    room_.clear();
+    column_of_.clear();
+    first_of_column_.clear();
     std::uint32_t begin = 0;
-    for (std::uint32_t column = 0; column < lines.size(); ++column) {
+    for (std::uint32_t number = 0; number < lines.size(); ++number) {
         first_of_column_.push_back(static_cast<std::uint32_t>(places_.size()));
-        const auto hits = std::span(found.hits).subspan(begin, found.ends[column] - begin);
-        for (std::size_t i = 0; i < hits.size(); ++i) {
-            const double t = static_cast<double>(hits[i].t);
-            const double room = i == 0 ? kRoom * eye_height_ : t - static_cast<double>(hits[i - 1].t);
-            if (!hits[i].front || room < kRoom * eye_height_) continue;
-            const glm::dvec3 eye = lines[column].point + glm::dvec3(0.0, eye_height_ - t, 0.0) + subject_.origin;
-            if (eye.y < focus.min.y || eye.y > focus.max.y + 2.0 * eye_height_) continue;
-            places_.push_back(eye);
-            column_of_.push_back(column);
-        }
-        begin = found.ends[column];
+        add_places({number, lines[number].point, std::span(found.hits).subspan(begin, found.ends[number] - begin)},
+                   focus, options);
+        begin = found.ends[number];
     }
     first_of_column_.push_back(static_cast<std::uint32_t>(places_.size()));
-    ways_.resize(places_.size());
+    if (places_.empty()) return false;
+    connect_places();
+    find_edges_of_roofs();
+    keep_best_region();
+    return true;
+}
+
+void FreeSpace::add_places(const Column& column, const Aabb& focus, const FreeSpaceOptions& options) {
+    const double least = kRoom * eye_height_;
+    double widest_below = 0.0;
+    for (std::size_t i = 1; i < column.hits.size(); ++i)
+        if (!column.hits[i - 1].front || !column.hits[i].front)  // else two sheets, one over the other
+            widest_below = std::max(widest_below, column.depth(i) - column.depth(i - 1));
+    for (std::size_t i = 0; i < column.hits.size(); ++i) {
+        const bool covered = i > 0, back = !column.hits[i].front;
+        // Below what faces up, or above what faces down, is the inside of something closed.
+        const bool is_within = covered && (back || column.hits[i - 1].front);
+        const double room = covered ? column.depth(i) - column.depth(i - 1) : HUGE_VAL;
+        if (room < least || (back && !covered)) continue;
+        const glm::dvec3 eye = column.top + glm::dvec3(0.0, eye_height_ - column.depth(i), 0.0) + subject_.origin;
+        if (eye.y < focus.min.y || eye.y > focus.max.y + 2.0 * eye_height_) continue;
+        if (!options.within.is_empty() &&
+            (glm::any(glm::lessThan(eye, options.within.min)) || glm::any(glm::greaterThan(eye, options.within.max))))
+            continue;
+        float worth = covered ? kUnderRoof : kUnderSky;
+        if (is_within) {
+            const bool is_closed = surrounded_share(eye) >= kClosed;
+            if (back && !is_closed) continue;
+            worth = is_closed ? kWithin : kUnderSky;
+        } else if (!covered && widest_below >= least && surrounded_share(eye) < kBare) {
+            worth = kOnBareRoof;
+        }
+        places_.push_back(eye);
+        worth_.push_back(worth);
+        room_.push_back(static_cast<float>(room));
+        column_of_.push_back(column.number);
+    }
+}
+
+void FreeSpace::connect_places() {
+    ways_.assign(places_.size(), {});
+    std::vector<glm::dvec3> between;
     for (std::uint32_t place = 0; place < places_.size(); ++place)
         for (const std::uint32_t other : neighbours_of(place))
-            if (other > place && is_free(places_[place], places_[other])) {
+            if (other > place && follow_floor(places_[place], places_[other], between)) {
                 ways_[place].push_back(other);
                 ways_[other].push_back(place);
             }
 }
 
-// In the eight columns around, no more than a step higher or lower.
+// Where most places that hang together are on a bare roof, those under the sky are so too: there the closed thing is
+// too thin to be told by its inside.
+void FreeSpace::find_edges_of_roofs() {
+    std::vector<std::uint8_t> seen(places_.size(), 0);
+    std::vector<std::uint32_t> region;
+    for (std::uint32_t first = 0; first < places_.size(); ++first) {
+        if (seen[first] != 0) continue;
+        region.assign(1, first);
+        seen[first] = 1;
+        std::size_t bare = 0;
+        for (std::size_t next = 0; next < region.size(); ++next) {
+            bare += worth_[region[next]] == kOnBareRoof;
+            for (const std::uint32_t other : ways_[region[next]])
+                if (seen[other] == 0) {
+                    seen[other] = 1;
+                    region.push_back(other);
+                }
+        }
+        if (2 * bare < region.size()) continue;
+        for (const std::uint32_t place : region)
+            if (worth_[place] == kUnderSky) worth_[place] = kOnBareRoof;
+    }
+}
+
+double FreeSpace::surrounded_share(const glm::dvec3& eye) const {
+    std::array<lines::FirstHitQuery, kLevelLines> queries;
+    std::array<lines::Hit, kLevelLines> hits;
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+        const double angle = 2.0 * std::numbers::pi * (static_cast<double>(i) + 0.37) / kLevelLines;
+        queries[i].line = {eye - subject_.origin, {std::sin(angle), 0.0, std::cos(angle)}};
+    }
+    tracer_.first_hits(queries, hits);
+    const auto met = std::count_if(hits.begin(), hits.end(),
+                                   [](const lines::Hit& hit) { return hit.triangle != lines::Hit::kNothing; });
+    return static_cast<double>(met) / kLevelLines;
+}
+
+// Whether a person would walk there: not on the roof of something closed, nor on a thing that is smaller than a person.
+bool FreeSpace::fits_a_person(const Aabb& focus, bool in_metres) const {
+    std::vector<float> rooms;
+    float worth = 0.0f;
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+        worth = std::max(worth, worth_[i]);
+        if (std::isfinite(room_[i])) rooms.push_back(room_[i]);
+    }
+    if (worth <= kOnBareRoof) return false;
+    const double longer = std::max(focus.max.x - focus.min.x, focus.max.z - focus.min.z);
+    const bool is_indoors = 2 * rooms.size() > places_.size();
+    if (!is_indoors && longer < kLeastPlan * eye_height_) return false;
+    if (in_metres) return true;
+    if (longer > kLongestPlan) return false;
+    if (rooms.empty()) return true;
+    std::nth_element(rooms.begin(), rooms.begin() + static_cast<std::ptrdiff_t>(rooms.size() / 2), rooms.end());
+    return static_cast<double>(rooms[rooms.size() / 2]) <= kHighestRoom;
+}
+
+// In the eight columns around, no more than a step higher or lower; on long ways the floor may climb.
 std::vector<std::uint32_t> FreeSpace::neighbours_of(std::uint32_t place) const {
     std::vector<std::uint32_t> result;
     const auto x = static_cast<int>(column_of_[place] % columns_.x),
@@ -121,8 +243,12 @@ std::vector<std::uint32_t> FreeSpace::neighbours_of(std::uint32_t place) const {
                 nz >= static_cast<int>(columns_.y))
                 continue;
             const auto column = static_cast<std::uint32_t>(nz) * columns_.x + static_cast<std::uint32_t>(nx);
-            for (std::uint32_t other = first_of_column_[column]; other < first_of_column_[column + 1]; ++other)
-                if (std::abs(places_[other].y - places_[place].y) <= kStep * eye_height_) result.push_back(other);
+            for (std::uint32_t other = first_of_column_[column]; other < first_of_column_[column + 1]; ++other) {
+                const glm::dvec3 way = places_[other] - places_[place];
+                const double length = std::hypot(way.x, way.z);
+                const double climb = length > kLongWay * eye_height_ ? kSteepest * length : 0.0;
+                if (std::abs(way.y) <= std::max(kStep * eye_height_, climb)) result.push_back(other);
+            }
         }
     return result;
 }
@@ -144,6 +270,44 @@ bool FreeSpace::is_free(const glm::dvec3& from, const glm::dvec3& to) const {
     });
 }
 
+double FreeSpace::distance_to_thing(const glm::dvec3& eye, const glm::dvec3& direction) const {
+    lines::FirstHitQuery query;
+    query.line = {eye - subject_.origin, direction};
+    lines::Hit hit;
+    tracer_.first_hits({&query, 1}, {&hit, 1});
+    return hit.triangle == lines::Hit::kNothing ? HUGE_VAL : static_cast<double>(hit.t);
+}
+
+glm::dvec3 FreeSpace::over_floor(const glm::dvec3& eye) const {
+    const double floor = distance_to_thing(eye, {0.0, -1.0, 0.0});
+    if (!std::isfinite(floor)) return eye;
+    const double up = eye_height_ - floor;
+    const double most = up > 0.0 ? distance_to_thing(eye, {0.0, 1.0, 0.0}) : HUGE_VAL;
+    return eye + glm::dvec3(0.0, up < most ? up : 0.5 * most, 0.0);
+}
+
+bool FreeSpace::follow_floor(const glm::dvec3& from, const glm::dvec3& to, std::vector<glm::dvec3>& between) const {
+    between.clear();
+    const double length = std::hypot(to.x - from.x, to.z - from.z);
+    if (length <= kLongWay * eye_height_) return is_free(from, to);
+    const int pieces = std::min(kMostPieces, static_cast<int>(std::ceil(length / (kPiece * eye_height_))));
+    const double climb = std::max(kStep * eye_height_, kSteepest * length / pieces);
+    glm::dvec3 last = from;
+    for (int k = 1; k <= pieces; ++k) {
+        glm::dvec3 next = glm::mix(from, to, static_cast<double>(k) / pieces);
+        next.y = last.y;
+        const double above = distance_to_thing(next, {0.0, 1.0, 0.0});
+        next.y += std::min(climb, 0.5 * above);
+        const double floor = distance_to_thing(next, {0.0, -1.0, 0.0});
+        next.y += eye_height_ - floor;
+        if (!(std::abs(next.y - last.y) <= climb) || !is_free(last, next)) return false;
+        if (k == pieces) return std::abs(next.y - to.y) <= kHeightTolerance * eye_height_;
+        between.push_back(next);
+        last = next;
+    }
+    return true;
+}
+
 std::vector<std::uint32_t> FreeSpace::steps_from(std::uint32_t place, std::vector<std::uint32_t>& order) const {
     std::vector<std::uint32_t> steps(places_.size(), kNotReached);
     order.assign(1, place);
@@ -157,18 +321,23 @@ std::vector<std::uint32_t> FreeSpace::steps_from(std::uint32_t place, std::vecto
     return steps;
 }
 
-void FreeSpace::keep_largest_region() {
-    const std::vector<std::uint32_t> best = largest_region(places_, ways_);
+void FreeSpace::keep_best_region() {
+    const std::vector<std::uint32_t> best = largest_region(places_, ways_, worth_);
     std::vector<std::uint32_t> now(places_.size(), kNotReached);
     for (std::size_t i = 0; i < best.size(); ++i) now[best[i]] = static_cast<std::uint32_t>(i);
     std::vector<glm::dvec3> places;
     std::vector<std::vector<std::uint32_t>> ways;
+    std::vector<float> worth, room;
     for (const std::uint32_t old : best) {
         places.push_back(places_[old]);
+        worth.push_back(worth_[old]);
+        room.push_back(room_[old]);
         ways.emplace_back();
         for (const std::uint32_t other : ways_[old]) ways.back().push_back(now[other]);
     }
     places_.swap(places);
+    worth_.swap(worth);
+    room_.swap(room);
     ways_.swap(ways);
     column_of_.clear();
     first_of_column_.clear();
@@ -186,7 +355,7 @@ bool FreeSpace::is_straight(std::span<const std::uint32_t> way) const {
 }
 
 std::vector<glm::dvec3> FreeSpace::walk() const {
-    if (places_.size() < 2) return {};
+    if (places_.size() < 2) return places_;
     std::vector<std::uint32_t> order;
     steps_from(0, order);
     const std::uint32_t start = order.back();
@@ -199,6 +368,15 @@ std::vector<glm::dvec3> FreeSpace::walk() const {
     for (std::size_t i = 0; i + 1 < way.size();) {
         std::size_t next = std::min(i + kLongestStraight, way.size() - 1);
         while (next > i + 1 && !is_straight(std::span(way).subspan(i, next - i + 1))) --next;
+        // The way was tried from the lower number to the higher one.
+        std::vector<glm::dvec3> between;
+        if (next == i + 1 && way[i] < way[next]) {
+            follow_floor(places_[way[i]], places_[way[next]], between);
+        } else if (next == i + 1) {
+            follow_floor(places_[way[next]], places_[way[i]], between);
+            std::reverse(between.begin(), between.end());
+        }
+        walk.insert(walk.end(), between.begin(), between.end());
         walk.push_back(places_[way[next]]);
         i = next;
     }

@@ -17,32 +17,61 @@ struct Stand {
     std::uint32_t objects = 0;  // that lines from the eye meet, in any direction
 };
 
-// Places of an eye over floors, with ways between neighbours. A floor faces up, with room above to stand. A way is free
-// where lines at eye height, at each side and at half the height meet nothing. Of places that ways connect the most are
-// kept, of two such regions the lower one. y is up. Lines are single precision: see lines::LineTracer.
+struct FreeSpaceOptions {
+    // Lengths are metres for sure. Where they may be something else, the scene's rooms must be as high as a person's.
+    bool in_metres = false;
+    Aabb within = {};  // where eyes may be; empty: anywhere
+};
+
+// Places of an eye over floors, with ways between neighbours. Eyes are kPersonEye metres above the floor, or a share of
+// the scene's size where no person fits in or lengths are no metres. A floor is what a vertical line meets with room
+// above it to stand. A way follows the floor, and is free where lines at eye height, at each side and at half the
+// height meet nothing. y is up. Lines are single precision: see lines::LineTracer.
+//
+// Of places that ways connect, those that are worth the most are kept. Places under a roof are worth the most, then
+// those under the sky. Closed things whose faces look outward only have an inside as well, which is worth less, and
+// their bare roofs are worth the least.
 class FreeSpace {
   public:
-    // Vertical lines over `focus`, kColumns along its longer side. Nothing where no line meets a floor, and of
-    // more than 2^23 triangles. The scene has been updated; all its instances are solid.
-    [[nodiscard]] static std::optional<FreeSpace> find(const scene::Scene& scene, const Aabb& focus);
-    static constexpr std::uint32_t kColumns = 128;
+    static constexpr double kPersonEye = 1.7;
+
+    // Vertical lines over `focus`, kColumns to kMostColumns along its longer side. Nothing where no line meets a floor,
+    // and of more than 2^23 triangles. The scene has been updated; all its instances are solid.
+    [[nodiscard]] static std::optional<FreeSpace> find(const scene::Scene& scene, const Aabb& focus,
+                                                       const FreeSpaceOptions& options = {});
+    static constexpr std::uint32_t kColumns = 128, kMostColumns = 256;
 
     [[nodiscard]] std::span<const glm::dvec3> places() const { return places_; }
     [[nodiscard]] double eye_height() const { return eye_height_; }  // of a place over its floor
-    // A long way through them, as a polyline along free ways; empty for a single place.
+    [[nodiscard]] double spacing() const { return spacing_; }        // of neighbouring places
+    [[nodiscard]] bool is_for_a_person() const { return eye_height_ == kPersonEye; }
+    // A long way through them, as a polyline along free ways; the place alone where there is but one.
     [[nodiscard]] std::vector<glm::dvec3> walk() const;
+    // The eye moved up or down to eye height above what is below it, but not through what is above.
+    [[nodiscard]] glm::dvec3 over_floor(const glm::dvec3& eye) const;
     // The place from which the most objects are seen, looking to where most are. Nothing where the scene does not
     // surround most places, or its floors are not level: it is a thing, better looked at from outside.
     [[nodiscard]] std::optional<Stand> best_stand() const;
 
   private:
     FreeSpace(pvs::Subject subject, lines::LineTracer tracer, const Aabb& focus);
-    void find_places(const Aabb& focus);
-    void keep_largest_region();
+    // Places for this height; false where there are none, or they are of no use.
+    bool find_places(const Aabb& focus, const FreeSpaceOptions& options, double eye_height);
+    struct Column;
+    void add_places(const Column& column, const Aabb& focus, const FreeSpaceOptions& options);
+    void connect_places();
+    void find_edges_of_roofs();
+    void keep_best_region();
+    [[nodiscard]] bool fits_a_person(const Aabb& focus, bool in_metres) const;
+    [[nodiscard]] double surrounded_share(const glm::dvec3& eye) const;  // of a few level lines
     [[nodiscard]] std::vector<std::uint32_t> neighbours_of(std::uint32_t place) const;
     // Steps from a place to each; the last of the list is a farthest one. ~0u: not reached.
     std::vector<std::uint32_t> steps_from(std::uint32_t place, std::vector<std::uint32_t>& order) const;
     [[nodiscard]] bool is_free(const glm::dvec3& from, const glm::dvec3& to) const;
+    // Whether one gets from a place to its neighbour; appends what lies between them, over the floor.
+    bool follow_floor(const glm::dvec3& from, const glm::dvec3& to, std::vector<glm::dvec3>& between) const;
+    // Along a direction, to the first thing; infinite where there is none.
+    [[nodiscard]] double distance_to_thing(const glm::dvec3& eye, const glm::dvec3& direction) const;
     // Whether places of a way may be left out: the straight way is free and as high.
     [[nodiscard]] bool is_straight(std::span<const std::uint32_t> way) const;
     // What lines in all directions meet.
@@ -60,6 +89,8 @@ class FreeSpace {
     double eye_height_ = 0.0, spacing_ = 0.0, size_ = 0.0;
     glm::uvec2 columns_{0};
     std::vector<glm::dvec3> places_;              // ascending by column, then by height
+    std::vector<float> worth_;                    // by place
+    std::vector<float> room_;                     // by place, above its floor; infinite under the sky
     std::vector<std::uint32_t> column_of_;        // by place
     std::vector<std::uint32_t> first_of_column_;  // and the end
     std::vector<std::vector<std::uint32_t>> ways_;

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <crofton/convex/query.hpp>
+#include <crofton/core/stop_signal.hpp>
 #include <crofton/cull/classify.hpp>
 #include <crofton/geometry/camera.hpp>
 #include <crofton/mesh/mesh_query.hpp>
@@ -34,6 +36,8 @@ struct Looked {
     Vector<std::uint32_t> triangles_of;  // by object
     double near = 0.0;
     double reach = 0.0;  // of the near plane: its farthest point in a picture
+    Vector<glm::dvec3> places;
+    double spacing = 0.0;  // of them, along x and z
 };
 
 // Ways to choose what is drawn: the sets' modes, occlusion at run time, both.
@@ -54,14 +58,13 @@ bool has_room(const Looked& all, const glm::dvec3& eye) {
 
 // A place, moved sideways by up to half the distance of two, if nothing lies between. Cells and places are both
 // regular, so places alone would always be at the same spots of cells.
-std::optional<Camera> random_view(const Looked& all, std::span<const glm::dvec3> places, double spacing,
-                                  std::uint32_t number) {
+std::optional<Camera> random_view(const Looked& all, std::uint32_t number, crofton::detail::StopSignal& stop) {
     sampling::Random random(all.options.seed, number);
-    for (std::uint32_t i = 0; i < kTries; ++i) {
-        const glm::dvec3 place = places[random.bits() % places.size()];
+    for (std::uint32_t i = 0; i < kTries && !stop.is_raised(0.0); ++i) {
+        const glm::dvec3 place = all.places[random.bits() % all.places.size()];
         // One after the other: in which order arguments are computed is left to the compiler.
         const double z = random.uniform(-0.5, 0.5), x = random.uniform(-0.5, 0.5);
-        const glm::dvec3 move = spacing * glm::dvec3(x, 0.0, z);
+        const glm::dvec3 move = all.spacing * glm::dvec3(x, 0.0, z);
         const glm::dvec2 ahead = sampling::circle_point(random.uniform());
         const glm::dvec3 eye = place + move;
         const Aabb& cells = all.sets.cells().bounds();
@@ -75,6 +78,18 @@ std::optional<Camera> random_view(const Looked& all, std::span<const glm::dvec3>
         return camera;
     }
     return std::nullopt;
+}
+
+// Where one could stand; else the middles of the cells that eyes may be in.
+void find_places(const std::optional<FreeSpace>& space, Looked& all) {
+    if (space) {
+        all.places.assign(space->places().begin(), space->places().end());
+        all.spacing = space->spacing();
+        return;
+    }
+    for (std::uint32_t c = 0; c < all.sets.cells().size(); ++c)
+        if (all.sets.kind(c) == pvs::CellKind::inner || all.sets.kind(c) == pvs::CellKind::open)
+            all.places.push_back(all.sets.cells().box(c).center());
 }
 
 // How many pixels each object owns.
@@ -176,15 +191,20 @@ Result<PvsViewFigures> look_at_views(const scene::Scene& scene, const pvs::Subje
                                      const PvsViewOptions& options, Executor& executor) {
     if (options.views == 0 || options.width == 0 || options.height == 0)
         return fail(ErrorCode::invalid_argument, kNoItem, "views: their number and their sizes must be positive");
-    const Aabb focus = focus_of(scene);
-    const auto space = FreeSpace::find(scene, focus);
-    const auto no_place = [] {
-        return fail(ErrorCode::empty, kNoItem, "views: no place to stand was found within the cells");
-    };
-    if (!space || space->places().empty()) return no_place();
+    crofton::detail::StopSignal stop(options.go_on, options.user);
+    const auto stopped = [] { return fail(ErrorCode::cancelled, kNoItem, "views: stopped"); };
+    const auto space =
+        FreeSpace::find(scene, focus_of(scene), {.in_metres = options.in_metres, .within = sets.cells().bounds()});
+    if (stop.is_raised(0.0)) return stopped();
     auto tree = mesh::MeshTree::build(subject.mesh, {.boxes = mesh::MeshBoxes::principal_axes, .rays = true});
     if (!tree) return tl::unexpected(tree.error());
-    Looked all{subject, sets, options, std::move(*tree), {}, {}};
+    Looked all{subject, sets, options, std::move(*tree), {}, {}, 0.0, 0.0, {}, 0.0};
+    find_places(space, all);
+    const auto no_place = [] {
+        return fail(ErrorCode::empty, kNoItem,
+                    "views: no place for an eye was found within the cells that are not solid");
+    };
+    if (all.places.empty()) return no_place();
     if (options.occluders) {
         auto occluding = Pipeline::create(scene, {}, {.collide = false, .occlusion = OcclusionOptions{}},
                                           serial_executor(), options.occluders);
@@ -195,22 +215,27 @@ Result<PvsViewFigures> look_at_views(const scene::Scene& scene, const pvs::Subje
     for (const std::uint32_t object : subject.object_of) ++all.triangles_of[object];
     const double half = std::tan(0.5 * Camera{}.fov_y), aspect = static_cast<double>(options.width) / options.height;
     const double farthest = std::hypot(1.0, half, half * aspect);
-    all.near = std::min({kFarthestNear, options.near_radius / farthest, 0.5 * space->eye_height() / farthest});
+    all.near = std::min(kFarthestNear, options.near_radius / farthest);
+    if (space) all.near = std::min(all.near, 0.5 * space->eye_height() / farthest);
     all.reach = all.near * farthest;
-    const double spacing = std::max(focus.max.x - focus.min.x, focus.max.z - focus.min.z) / FreeSpace::kColumns;
 
     Vector<Camera> cameras;
     for (std::uint32_t i = 0; i < options.views; ++i) {
-        const auto camera = random_view(all, space->places(), spacing, i);
+        const auto camera = random_view(all, i, stop);
+        if (stop.was_raised()) return stopped();
         if (!camera) return no_place();
         cameras.push_back(*camera);
     }
     Vector<Counts> counts(cameras.size());
     Vector<VisibleObjects> visible(executor.concurrency());
+    std::atomic<std::size_t> done{0};
     executor.parallel_for(cameras.size(), 1, [&](std::size_t begin, std::size_t end, unsigned worker) {
+        const double share = static_cast<double>(done += end - begin) / static_cast<double>(cameras.size());
+        if (stop.is_raised(share)) return;
         for (std::size_t i = begin; i < end; ++i)
             counts[i] = look(all, cameras[i], sets.find_cell(cameras[i].position), visible[worker]);
     });
+    if (stop.was_raised()) return stopped();
     return figures_of(all, cameras, counts);
 }
 

@@ -16,6 +16,10 @@ struct PvsViewOptions {
     double near_radius = 0.5;  // no point of a view's near plane is farther from the eye: what the proofs were told
     // Where they are given, the views are also looked at with occlusion at run time, by World::view and its defaults.
     std::shared_ptr<const SceneOccluders> occluders = nullptr;
+    bool in_metres = true;  // as FreeSpaceOptions
+    // Asked some hundred times a second, from any of the executor's threads and never from two at once; false ends it.
+    bool (*go_on)(void* user, double share_done) = nullptr;
+    void* user = nullptr;
 };
 
 // Of one way to draw. A pixel is wrong if its owner, the nearest triangle's object, is not drawn. It is then not in the
@@ -35,10 +39,11 @@ struct PvsViewFigures {
 };
 
 // Level views in random directions, 60 degrees high, from random places where one could stand and walk (FreeSpace) and
-// the cells reach. No near plane cuts anything. Owners are found by exact rays through the middles of pixels, from the
-// near plane on. Objects that are not baked are drawn in any mode: they are left out. The scene has been updated. The
-// same figures for any executor. Errors: sizes of 0; no place to stand within the cells (empty); an occluder that a
-// World refuses.
+// the cells reach. Where there are none, they are looked at from within the cells that are not solid. No near plane
+// cuts anything. Owners are found by exact rays through the middles of pixels, from the near plane on. Objects that are
+// not baked are drawn in any mode: they are left out. The scene has been updated. The same figures for any executor.
+// Errors: sizes of 0; no place for an eye within the cells (empty); the callback (cancelled); an occluder that a World
+// refuses.
 [[nodiscard]] Result<PvsViewFigures> look_at_views(const scene::Scene& scene, const pvs::Subject& subject,
                                                    const pvs::Pvs& sets, const PvsViewOptions& options = {},
                                                    Executor& executor = serial_executor());

@@ -9,6 +9,7 @@
 
 #include "pipeline/camera_path.hpp"
 #include "pipeline/free_space.hpp"
+#include "pipeline/street.hpp"
 #include "session.hpp"
 #include "shape_colors.hpp"
 
@@ -145,7 +146,8 @@ Result<void> Session::load(const SceneRequest& request) {
 
 // A level is looked at from where much of it is seen; what has no inside stays framed as a whole.
 void Session::stand_inside() {
-    const auto space = pipeline::FreeSpace::find(loaded_->scene(), loaded_->focus());
+    const auto space =
+        pipeline::FreeSpace::find(loaded_->scene(), loaded_->focus(), {.in_metres = loaded_->source().in_metres});
     const auto stand = space ? space->best_stand() : std::nullopt;
     if (stand) controller_.stand(stand->eye, stand->eye + stand->forward);
 }
@@ -198,10 +200,11 @@ Result<void> Session::load_replay() {
     path.frames = options_.frames > 0 ? options_.frames : built_in ? 600 : 0;
     path.aspect = static_cast<double>(options_.width) / options_.height;
     path.limits = options_.scene.limits;
-    std::vector<glm::dvec3> walk = loaded_->source().walk;
-    if (walk.empty() && path.kind == "street")
-        if (const auto space = pipeline::FreeSpace::find(loaded_->scene(), loaded_->focus())) walk = space->walk();
-    auto made = pipeline::make_camera_path(path, loaded_->focus(), walk);
+    pipeline::Street street;
+    if (path.kind == "street") street = pipeline::street_of(loaded_->source(), loaded_->focus());
+    if (!street.remark.empty()) report({ErrorCode::unsupported, kNoItem, street.remark});
+    street.set(path);
+    auto made = pipeline::make_camera_path(path, loaded_->focus(), street.walk);
     if (!made) return tl::unexpected(std::move(made.error()));
     path_ = std::move(*made);
     replaying_ = true;

@@ -108,6 +108,41 @@ glm::dvec3 point_in(const Obb& box, sampling::Random& random) {
 }  // namespace
 
 TEST_SUITE("pvs/hidden") {
+    TEST_CASE("proofs that are stopped keep what was proved by then, and all else stays unseen") {
+        const Walls walls = random_walls(9, 14, 60, glm::dvec3(0.0));
+        const Cells cells = Cells::grid({{-12, 0, -12}, {12, 3, 12}}, {12, 2, 12}).value();
+        ProofOptions options{.near_radius = 0.1, .halvings = 8, .surface_steps = 400};
+        const Pvs all = finished(walls, cells, options);
+        struct Patience {
+            int left;
+            double last_share = 0.0;
+            bool is_sane = true;
+        };
+        std::uint64_t partly = 0;
+        for (const int patience : {0, 1, 2, 5, 20, 1'000'000}) {
+            CAPTURE(patience);
+            Patience user{patience};
+            options.user = &user;
+            options.go_on = [](void* who, double share) {
+                Patience& it = *static_cast<Patience*>(who);
+                it.is_sane = it.is_sane && share >= it.last_share && share <= 1.0;
+                it.last_share = share;
+                return it.left-- > 0;
+            };
+            const Pvs some = finished(walls, cells, options);
+            CHECK(user.is_sane);
+            for (std::size_t c = 0; c < cells.size(); ++c)
+                for (std::uint32_t o = 0; o < some.object_count(); ++o) {
+                    const PairState state = some.state(c, o), whole = all.state(c, o);
+                    CHECK((state == whole || (state == PairState::unseen && whole == PairState::hidden)));
+                }
+            if (patience == 0) CHECK(some.counts().hidden == 0);
+            if (patience == 1'000'000) CHECK(some.counts().hidden == all.counts().hidden);
+            partly += some.counts().hidden > 0 && some.counts().hidden < all.counts().hidden;
+        }
+        MESSAGE("stopped on the way: " << partly);
+    }
+
     TEST_CASE("every segment of a hidden pair meets a body, and what one body hides is proved, at any offset") {
         std::uint64_t hidden = 0, by_one = 0, by_halves = 0;
         for (const double offset : {0.0, 1e4, 1e7})

@@ -32,7 +32,9 @@ TEST_SUITE("triangulate/local_improvement") {
                 REQUIRE(improvement.start_from_triangles(domain, start->triangles));
                 ++taken;
                 CHECK(improvement.weight() * domain.scale() == doctest::Approx(start->weight).epsilon(1e-12));
-                improvement.run();
+                const TriangulateOptions unlimited;
+                Watch watch(unlimited);
+                improvement.run(watch);
                 CHECK(improvement.weight() * domain.scale() <= start->weight * (1.0 + 1e-12));
                 lighter += improvement.weight() * domain.scale() < 0.999 * start->weight;
                 Vector<std::array<std::uint32_t, 3>> triangles;

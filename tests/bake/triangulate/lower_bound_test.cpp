@@ -26,6 +26,27 @@ Polygon strip(int count) {
     return p;
 }
 
+// A finely divided wavy ring with wavy holes around `count` places within.
+Polygon wavy(std::mt19937_64& random, int points, int count) {
+    Polygon p;
+    const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
+    const auto add = [&](glm::dvec2 center, double radius, int n) {
+        const double phase = 6.0 * unit(), waves = 2.0 + std::floor(4.0 * unit()), depth = 0.1 + 0.2 * unit();
+        for (int i = 0; i < n; ++i) {
+            const double a = 2.0 * 3.141592653589793 * i / n;
+            const double r = radius * (1.0 + depth * std::sin(waves * a + phase)) * (1.0 + 1e-3 * unit());
+            p.points.push_back(center + r * glm::dvec2(std::cos(a), std::sin(a)));
+        }
+        p.ring_ends.push_back(static_cast<std::uint32_t>(p.points.size()));
+    };
+    add({0, 0}, 10.0, points);
+    for (int k = 0; k < count; ++k) {
+        const double a = 2.0 * 3.141592653589793 * k / count;
+        add(4.5 * glm::dvec2(std::cos(a), std::sin(a)), 0.6 + 0.5 * unit(), points / 8);
+    }
+    return p;
+}
+
 }  // namespace
 
 TEST_SUITE("triangulate/lower bound") {
@@ -72,6 +93,48 @@ TEST_SUITE("triangulate/lower bound") {
         }
         CHECK(compared > 2000);
         CHECK(tight > 100);
+    }
+
+    TEST_CASE("on wavy rings with holes no work, time or memory gives a bound above the minimum") {
+        std::mt19937_64 random(71);
+        for (int trial = 0; trial < 10; ++trial) {
+            CAPTURE(trial);
+            const Polygon p = wavy(random, 40 + 16 * trial, trial % 4);
+            const auto minimum = triangulate::triangulate(p, {.work = TriangulateOptions::kUnlimitedWork});
+            REQUIRE(minimum.has_value());
+            REQUIRE(minimum->optimal);
+            const auto check = [&](const TriangulateOptions& options) {
+                const auto result = triangulate::triangulate(p, options);
+                REQUIRE(result.has_value());
+                CHECK(lower_bound_of(*result) <= minimum->weight * (1.0 + 1e-14));
+            };
+            check({.seconds = 0.0});
+            check({.bytes = 100});
+            for (double work = 1.0; work < 3e6; work *= 2.3) check({.work = static_cast<std::uint64_t>(work)});
+        }
+    }
+
+    TEST_CASE("where the boundary is finely divided, the bound is far above what the shortest diagonals give") {
+        // A comb: slots 1 wide and 12 long, whose sides are divided finely.
+        Polygon p;
+        constexpr int kSlots = 12, kSteps = 120;
+        for (int slot = 0; slot < kSlots; ++slot) {
+            for (int i = 0; i < kSteps; ++i) p.points.emplace_back(2.0 * slot, 12.0 * i / kSteps);
+            for (int i = kSteps; i > 0; --i) p.points.emplace_back(2.0 * slot + 1.0, 12.0 * i / kSteps);
+        }
+        p.points.emplace_back(2.0 * kSlots - 1.0, -1.0);
+        p.points.emplace_back(0.0, -1.0);
+        p.ring_ends = {static_cast<std::uint32_t>(p.points.size())};
+        const auto minimum = triangulate::triangulate(p, {});
+        REQUIRE(minimum.has_value());
+        REQUIRE(minimum->optimal);
+        for (const std::uint64_t work : {std::uint64_t{0}, std::uint64_t{100'000}}) {
+            const auto result = triangulate::triangulate(p, {.work = work});
+            REQUIRE(result.has_value());
+            MESSAGE("gap " << result->gap << " with work " << work);
+            CHECK(lower_bound_of(*result) <= minimum->weight * (1.0 + 1e-14));
+            CHECK(result->gap < 0.6);
+        }
     }
 
     TEST_CASE("rectangles in a row, each with two diagonals of one length, are promised one of them") {

@@ -51,6 +51,36 @@ TEST_SUITE("cli/bake") {
         refused("not a file of ours at all, but long enough to have a header of its own", "not a .crofton file");
     }
 
+    TEST_CASE("what was baked can be shown and measured as the scene that it was made of") {
+        const std::string baked = scratch().file("shown.crofton"), again = scratch().file("again.crofton");
+        REQUIRE(run_cli("bake room -o " + baked).status == 0);
+        const std::string frames = " --frames 4 --camera orbit --no-draw --verify --ids --json - ";
+        const CliRun own = run_cli("frames room" + frames), shown = run_cli("frames " + baked + frames);
+        REQUIRE(own.status == 0);
+        REQUIRE_MESSAGE(shown.status == 0, shown.err);
+        for (std::size_t i = 0; i < 4; ++i) {
+            const auto a = own.json()["frames"][i], b = shown.json()["frames"][i];
+            CHECK(a["visible_ids"] == b["visible_ids"]);
+            CHECK(a["camera"] == b["camera"]);
+        }
+        const CliRun area = run_cli("measure room --lines 1000 --json -"),
+                     same = run_cli("measure " + baked + " --lines 1000 --json -");
+        REQUIRE_MESSAGE(same.status == 0, same.err);
+        CHECK(area.json()["rows"] == same.json()["rows"]);
+        const CliRun street = run_cli("frames " + baked + " --frames 4 --camera street --no-draw --occlude --json -");
+        CHECK_MESSAGE(street.status == 0, street.err);
+        // The file, baked once more, holds the same.
+        REQUIRE(run_cli("bake " + baked + " -o " + again).status == 0);
+        CHECK(run_cli("bake " + again + " --json -").json()["triangles"] ==
+              run_cli("bake " + baked + " --json -").json()["triangles"]);
+        // Sets without a scene are none.
+        const std::string sets = scratch().file("sets_alone.crofton");
+        REQUIRE(run_cli("pvs room --cells 2x1x2 --epsilon 1e-2 --out " + sets).status == 0);
+        const CliRun none = run_cli("frames --no-draw " + sets);
+        CHECK(none.status == 2);
+        CHECK_MESSAGE(none.err.find("--with-scene") != std::string::npos, none.err);
+    }
+
     TEST_CASE("the same scene is baked to the same bytes, with any number of threads") {
         const std::string one = scratch().file("one.crofton"), two = scratch().file("two.crofton");
         REQUIRE(run_cli("bake town --instances 400 -o " + one).status == 0);

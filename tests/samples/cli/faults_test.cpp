@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "../../kill_writer.hpp"
+#include "child.hpp"
 #include "run_cli.hpp"
 
 using namespace crofton::test;
@@ -35,34 +36,6 @@ std::vector<std::string> names_in(const std::string& folder) {
     std::sort(names.begin(), names.end());
     return names;
 }
-
-// The command line as a child process, its standard output into a file.
-class Child {
-  public:
-    Child(const std::vector<std::string>& arguments, const std::string& out) {
-        pid_ = fork();
-        if (pid_ != 0) return;
-        const int file = ::open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), nothing = ::open("/dev/null", O_RDWR);
-        dup2(nothing, STDIN_FILENO);
-        dup2(file, STDOUT_FILENO);
-        dup2(nothing, STDERR_FILENO);
-        std::vector<char*> list{const_cast<char*>(CROFTON_CLI)};
-        for (const std::string& argument : arguments) list.push_back(const_cast<char*>(argument.c_str()));
-        list.push_back(nullptr);
-        execv(CROFTON_CLI, list.data());
-        _exit(127);
-    }
-    void signal(int number) const { ::kill(pid_, number); }
-    // The exit status; −1 where a signal ended it.
-    [[nodiscard]] int wait() const {
-        int status = 0;
-        ::waitpid(pid_, &status, 0);
-        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    }
-
-  private:
-    pid_t pid_;
-};
 
 // Until the file has so many lines; false after half a minute.
 bool wait_for_lines(const std::string& path, std::ptrdiff_t lines) {

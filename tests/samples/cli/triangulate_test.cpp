@@ -153,6 +153,24 @@ TEST_SUITE("cli/triangulate") {
         }
     }
 
+    TEST_CASE("a limit of time is the only one: work that was not asked to be limited is not") {
+        // A smooth ring that needs more than the work that is granted without limits.
+        std::string points;
+        constexpr int kPoints = 2400;
+        for (int i = 0; i < kPoints; ++i) {
+            const double a = 2.0 * 3.141592653589793 * i / kPoints, r = 1.0 + 0.1 * std::sin(3.0 * a);
+            points += " " + std::to_string(r * std::cos(a)) + " " + std::to_string(r * std::sin(a));
+        }
+        write_contents(scratch().file("smooth.poly"), "P smooth 1\n" + std::to_string(kPoints) + points + "\n");
+        const std::string file = "triangulate '" + scratch().file("smooth.poly") + "' --no-indices --json - ";
+        const CliRun cut = run_cli(file + "--work-limit 1");
+        CHECK(cut.json()["polygons"][0]["optimal"] == false);
+        const CliRun both = run_cli(file + "--work-limit 1 --time-limit 100");
+        CHECK(both.json()["polygons"][0]["optimal"] == false);
+        CHECK(both.json()["polygons"][0]["weight"] == cut.json()["polygons"][0]["weight"]);
+        CHECK(both.json()["polygons"][0]["gap"].get<double>() < 0.6);
+    }
+
     TEST_CASE("SVG goes to a file or stdout") {
         write_contents(scratch().file("hole.json"), "[[[0,0],[4,0],[4,4],[0,4]],[[1,1],[2,1],[2,2]]]");
         const CliRun run = run_cli("triangulate '" + scratch().file("hole.json") + "' --svg -");

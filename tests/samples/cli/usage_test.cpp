@@ -37,6 +37,56 @@ TEST_SUITE("cli/usage") {
         CHECK(run_cli("frames town street").err.find("'street' is one argument too many") != std::string::npos);
     }
 
+    TEST_CASE("what needs another option says which one, and the exit status is 2") {
+        write_contents(scratch().file("square.poly"), "P square 1\n4 0 0 2 0 2 2 0 2\n");
+        write_contents(scratch().file("tetra.obj"),
+                       "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+        const std::string poly = "'" + scratch().file("square.poly") + "'",
+                          obj = "'" + scratch().file("tetra.obj") + "'";
+        const std::pair<std::string, const char*> cases[] = {
+            {"bake " + obj, "-o is missing"},
+            {"bake town", "-o is missing"},
+            {"bake no_such.glb", "-o is missing"},
+            {"bake x.crofton --map MAP01", "--output"},
+            {"bake x.crofton --tree oriented", "--output"},
+            {"bake x.crofton --no-occluders", "--output"},
+            {"collide " + obj + " " + obj + " --mode cast", "--velocity"},
+            {"collide " + obj + " " + obj + " --hulls --mode cast --duration 3", "--velocity"},
+            {"collide " + obj + " " + obj + " --velocity 1,0,0", "--mode cast"},
+            {"collide " + obj + " " + obj + " --max-vertices 8", "--hulls"},
+            {"triangulate " + poly + " --frusta 10", "--compare"},
+            {"triangulate " + poly + " --least-vertices 10", "--compare"},
+            {"triangulate " + poly + " --no-indices", "--json"},
+            {"triangulate " + poly + " --tolerance 0.1", "for meshes"},
+            {"triangulate " + poly + " --attribute-tolerance 0.1", "for meshes"},
+            {"fit " + obj + " --budget 1 --quality fast", "--quality exact"},
+            {"fit " + obj + " --region 9", "--bounds"},
+            {"fit " + obj + " --trees", "--views"},
+            {"fit " + poly + " --planar --bounds all", "--bounds"},
+            {"frames room --no-draw --ids", "--json"},
+            {"frames room --no-draw --occluders 3", "--occlude"},
+            {"frames room --no-draw --instances 30", "town only"},
+            {"frames " + obj + " --no-draw --map MAP01", ".wad"},
+            {"pvs room --cell-size 1", "--cells rooms"},
+            {"pvs room --height 3 --eyes 0,0,0,1,1,1", "--eyes"},
+            {"pvs room --eye 0,0,0", "--svg"},
+            {"pvs room --with-scene", "--out"},
+            {"pvs room --shard 0/2", "--state"},
+            {"radiosity room --shard 0/2", "--runs"},
+            {"radiosity room --stored-lines 9", "--light-field"},
+            {"verify cull --map MAP01", "--scene"},
+            {"verify cull --instances 40", "--scene"},
+            {"lines room --patches 9", "--factors"}};
+        for (const auto& [arguments, reason] : cases) {
+            CAPTURE(arguments);
+            const CliRun run = run_cli(arguments);
+            CHECK(run.status == 2);
+            CHECK(run.out == "");
+            CHECK_MESSAGE(run.err.find(reason) != std::string::npos, run.err);
+        }
+        CHECK(run_cli("collide " + obj + " " + obj + " --mode cast --spin 0,1,0").status == 0);
+    }
+
     TEST_CASE("help is asked for in either way") {
         CHECK(run_cli("help").out == run_cli("--help").out);
         CHECK(run_cli("help fit").out == run_cli("fit --help").out);
@@ -225,7 +275,7 @@ TEST_SUITE("cli/usage") {
         CHECK(WEXITSTATUS(std::system("'" CROFTON_CLI "' frames --no-draw --frames 1 >/dev/full 2>/dev/null")) == 2);
     }
 
-    TEST_CASE("a scene that is a folder, an empty file, or a .crofton file is refused for that reason") {
+    TEST_CASE("a scene that is a folder, an empty file, or no .crofton file is refused for that reason") {
         const std::string folder = scratch().file("scenes.glb"), empty = scratch().file("empty.obj");
         std::filesystem::create_directories(folder);
         write_contents(empty, "");

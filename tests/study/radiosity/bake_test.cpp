@@ -96,13 +96,11 @@ TEST_SUITE("radiosity/bake") {
         Bake parallel = job.start();
         REQUIRE(parallel.run({}, pool).has_value());
         CHECK(plain(parallel.state().value()) == expected);
-        // Stopped before run 20, amid the third chain: two chains are kept.
-        struct Stop {
-            int runs = 0;
-            static bool go_on(void* user, double) { return ++static_cast<Stop*>(user)->runs < 20; }
-        } stop;
+        // Stopped in run 20, amid the third chain: two chains are kept.
+        double planned = static_cast<double>(job.runs);
+        const auto go_on = [](void* user, double share) { return share * *static_cast<double*>(user) < 18.5; };
         Bake stopped = job.start();
-        REQUIRE(stopped.run({.go_on = Stop::go_on, .user = &stop}).has_value());
+        REQUIRE(stopped.run({.go_on = go_on, .user = &planned}).has_value());
         CHECK(stopped.runs_done() == 16);
         Bake again = job.start();
         REQUIRE(again.add_state(stopped.state().value()).has_value());

@@ -47,6 +47,41 @@ TEST_SUITE("radiosity/checkpoint") {
         }
     }
 
+    TEST_CASE("a run that is stopped, whenever that is, leaves no trace: the next one is as if it had not begun") {
+        const Box box = lit_box(3);
+        const Patches patches = patches_of(box.shape, box.materials);
+        ThreadPool pool(2);
+        for (const bool local : {false, true}) {
+            SolverOptions options = quick();
+            options.lines = 1 << 18;
+            options.transport = local ? Transport::local : Transport::global;
+            auto undisturbed = Solver::create(patches, options), stopped = Solver::create(patches, options);
+            undisturbed->run();
+            stopped->run();
+            const auto before = stopped->checkpoint();
+            int asked = 0, allowed = 0, dropped = 0;
+            for (bool done = false; !done; ++allowed) {
+                asked = 0;
+                struct Asked {
+                    int *times, allowed;
+                } state{&asked, allowed};
+                const auto go_on = [](void* user) {
+                    Asked& it = *static_cast<Asked*>(user);
+                    return (*it.times)++ < it.allowed;
+                };
+                done = stopped->run(go_on, &state, allowed % 2 ? static_cast<Executor&>(pool) : serial_executor());
+                if (done) break;
+                ++dropped;
+                CHECK(stopped->checkpoint() == before);
+                CHECK(stopped->runs() == 1);
+            }
+            CHECK(dropped >= 1);
+            undisturbed->run();
+            CHECK(same(undisturbed->radiosity(), stopped->radiosity()));
+            CHECK(undisturbed->checkpoint() == stopped->checkpoint());
+        }
+    }
+
     TEST_CASE("damaged checkpoints, and those of other options, are refused") {
         const Box box = lit_box(2);
         const Patches patches = patches_of(box.shape, box.materials);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cmath>
 #include <crofton/core/error.hpp>
 #include <crofton/lines/lines.hpp>
@@ -7,6 +8,8 @@
 
 namespace crofton::lines {
 namespace {
+
+constexpr std::uint64_t kMostGroups = 1 << 16;
 
 Sphere ball_around(const Aabb& box) {
     return {box.center(), glm::length(box.half_extents())};
@@ -61,23 +64,29 @@ VisibilityComplexity visibility_complexity(const LineTracer& tracer, const LineS
     struct Counts {
         std::uint64_t lines = 0, crossings = 0, squares = 0, wasted = 0;
     };
-    Vector<Counts> counts(static_cast<std::size_t>(blocks));
-    executor.parallel_for(counts.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
+    // Whole numbers: their sums are the same in any order, so that groups of blocks may share one place.
+    const std::uint64_t groups = std::min(blocks, kMostGroups);
+    const auto begin_of = [&](std::uint64_t group) {
+        return blocks / groups * group + std::min(group, blocks % groups);
+    };
+    Vector<Counts> counts(static_cast<std::size_t>(groups));
+    executor.parallel_for(counts.size(), 1, [&](std::size_t first, std::size_t end, unsigned) {
         Vector<Line> lines;
         LineHits hits;
-        for (std::size_t b = begin; b < end; ++b) {
-            source.draw(b, lines);
-            tracer.all_hits(lines, hits);
-            std::uint32_t last = 0;
-            for (const std::uint32_t end_of_line : hits.ends) {
-                const std::uint64_t n = end_of_line - last;
-                last = end_of_line;
-                ++counts[b].lines;
-                counts[b].crossings += n;
-                counts[b].squares += n * n;
-                counts[b].wasted += n == 0 ? 1u : 0u;
+        for (std::size_t g = first; g < end; ++g)
+            for (std::uint64_t b = begin_of(g); b < begin_of(g + 1); ++b) {
+                source.draw(b, lines);
+                tracer.all_hits(lines, hits);
+                std::uint32_t last = 0;
+                for (const std::uint32_t end_of_line : hits.ends) {
+                    const std::uint64_t n = end_of_line - last;
+                    last = end_of_line;
+                    ++counts[g].lines;
+                    counts[g].crossings += n;
+                    counts[g].squares += n * n;
+                    counts[g].wasted += n == 0 ? 1u : 0u;
+                }
             }
-        }
     });
     Counts all;
     for (const Counts& c : counts) {

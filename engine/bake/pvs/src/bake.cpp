@@ -17,6 +17,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr auto kShortWave = std::chrono::milliseconds(50);
 constexpr std::uint64_t kMaxPairs = std::uint64_t{1} << 34;
 
 template <class T>
@@ -296,9 +297,12 @@ Result<void> Bake::run(const RunLimits& limits, Executor& executor) {
         const auto start = Clock::now();
         Vector<Scratch> scratch(executor.concurrency());
         std::uint64_t lines = 0;
-        // Blocks between two looks at the limits.
-        const std::uint64_t wave = 32 * executor.concurrency();
+        // Blocks between two looks at the limits. Where somebody waits for these, as few as take a moment.
+        const std::uint64_t most = 32 * std::uint64_t{executor.concurrency()};
+        const bool is_awaited = limits.go_on != nullptr || std::isfinite(limits.seconds);
+        std::uint64_t wave = is_awaited && limits.lines == RunLimits{}.lines ? executor.concurrency() : most;
         for (;;) {
+            const auto wave_start = Clock::now();
             const BlockRange todo = found.done.first_gap(shard, wave);
             const auto done = static_cast<double>(found.done.count_within(shard));
             if (todo.begin >= todo.end || lines >= limits.lines ||
@@ -313,6 +317,7 @@ Result<void> Bake::run(const RunLimits& limits, Executor& executor) {
                                              });
             found.done.add(std::span(&todo, 1));
             lines += (todo.end - todo.begin) * LinePlan::kBlock;
+            if (Clock::now() - wave_start < kShortWave) wave = (std::min)(2 * wave, most);
         }
     });
 }

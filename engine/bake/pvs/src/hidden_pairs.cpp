@@ -2,7 +2,9 @@
 #include "hidden_pairs.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <crofton/core/recovery.hpp>
+#include <crofton/core/stop_signal.hpp>
 #include <glm/geometric.hpp>
 #include <optional>
 
@@ -82,6 +84,9 @@ struct Question {
     const Surface* surface;                                  // nullptr: bodies alone
     CutOptions cut;
     double margin;
+    crofton::detail::StopSignal& stop;
+    std::atomic<std::uint64_t>& answered;  // pairs
+    double pairs;
 };
 
 // One thread's work on some of the cells.
@@ -97,19 +102,20 @@ class Prover {
         const auto& from = q_.cells[cells];
         const auto& group = q_.objects[objects];
         const bool single = group.count == 1;
-        if (from.count == 1 && single && is_seen(from, group)) return;
+        if (is_stopped()) return;
+        if (from.count == 1 && single && is_seen(from, group)) return count(from, group);
         const Corners corners = single ? q_.parts[q_.objects.items(group)[0]].corners() : corners_of(group.box);
         const Eyes eyes = from.count == 1 ? eyes_of(q_.cells.items(from)[0], from.box) : Eyes(from.box);
         const bool is_small = from.count <= kFewCells && group.count <= kFewObjects;
-        const Answer answer =
+        const Answer found =
             eyes.is_box && intersects(eyes.box, group.box) ? Answer::open : ask(eyes, corners, is_small);
-        if (answer == Answer::blocked) return hide(from, group);
+        if (found == Answer::blocked) return hide(from, group);
         if (from.count == 1 && single) {
             const std::uint32_t object = q_.objects.items(group)[0];
-            if ((answer == Answer::partly && prove_halves(eyes, q_.parts[object], q_.options.halvings)) ||
+            if ((found == Answer::partly && prove_halves(eyes, q_.parts[object], q_.options.halvings)) ||
                 prove_triangles(eyes, object))
-                hide(from, group);
-            return;
+                return hide(from, group);
+            return count(from, group);
         }
         const bool halve_cells = !single ? from.count > 1 && size_of(from.box) >= size_of(group.box) : true;
         for (std::uint32_t half = 0; half < 2; ++half)
@@ -132,8 +138,17 @@ class Prover {
         return found.seen[q_.cells.items(cell)[0] * found.words() + o / 64] >> (o % 64) & 1;
     }
 
+    [[nodiscard]] bool is_stopped() {
+        const auto answered = static_cast<double>(q_.answered.load(std::memory_order_relaxed));
+        return q_.stop.is_raised((std::min)(1.0, answered / q_.pairs));
+    }
+    void count(const BoxGroups::Group& cells, const BoxGroups::Group& objects) {
+        q_.answered.fetch_add(std::uint64_t{cells.count} * objects.count, std::memory_order_relaxed);
+    }
+
     // As hidden: those that no line has seen.
     void hide(const BoxGroups::Group& cells, const BoxGroups::Group& objects) {
+        count(cells, objects);
         const Found& found = q_.bake.found;
         for (const std::uint32_t c : q_.cells.items(cells))
             for (const std::uint32_t o : q_.objects.items(objects)) {
@@ -150,6 +165,7 @@ class Prover {
 
     // Bodies are asked first: they cost less.
     [[nodiscard]] Answer ask(const Eyes& eyes, const Corners& object, bool with_surface = true) {
+        if (is_stopped()) return Answer::open;
         const Answer answer = ask_bodies(eyes, object);
         if (answer == Answer::blocked || !cut_ || !with_surface) return answer;
         const SurfaceCut::Answer cut = cut_->ask(eyes.corners, object);
@@ -246,6 +262,9 @@ class Prover {
 void prove_hidden(const Bake::State& bake, std::span<const Blocker> bodies, const ProofOptions& options,
                   Executor& executor, Vector<std::uint64_t>& open) {
     if (bodies.empty() && options.surface_steps == 0) return;
+    crofton::detail::StopSignal stop(options.go_on, options.user);
+    if (stop.is_raised(0.0)) return;
+    std::atomic<std::uint64_t> answered{0};
     const double margin = kMargin * bake.extent + 1e-13 * glm::length(bake.origin);
     Vector<Aabb> cells, objects, bounds;
     Vector<Part> parts;
@@ -283,7 +302,10 @@ void prove_hidden(const Bake::State& bake, std::span<const Blocker> bodies, cons
         triangles,
         options.surface_steps > 0 ? &surface : nullptr,
         {bake.options.sides, options.near_radius, margin + kGap * bake.extent, options.surface_steps},
-        margin};
+        margin,
+        stop,
+        answered,
+        (std::max)(1.0, static_cast<double>(bake.cells.size()) * static_cast<double>(bake.boxes.size()))};
     // Groups of few cells are tasks: each writes its cells' bits alone.
     Vector<std::uint32_t> tasks, stack{BoxGroups::kRoot};
     while (!stack.empty()) {

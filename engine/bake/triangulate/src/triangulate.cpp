@@ -24,7 +24,8 @@ struct Triangulator::Workspace {
 
     // Ear clipping of one short ring that touches itself nowhere; false where it is something else.
     [[nodiscard]] Result<bool> clip_simple_ring(const Polygon& polygon, Triangulation& result);
-    void complete(Triangulation& result);
+    // False where the caller has cancelled.
+    [[nodiscard]] bool complete(Watch& watch, Triangulation& result);
 };
 
 Triangulator::Triangulator() : workspace_(new (Allocator<Workspace>().allocate(1)) Workspace) {}
@@ -73,7 +74,7 @@ Result<void> Triangulator::triangulate(const Polygon& polygon, const Triangulate
         result.weight = 0.0;
         result.optimal = false;
         result.gap = std::numeric_limits<double>::infinity();
-        Watch watch(options);
+        Watch watch(options, polygon.points.size());
         if (options.method == Method::ear) {
             const auto clipped = workspace_->clip_simple_ring(polygon, result);
             if (!clipped) return tl::unexpected<Error>(clipped.error());
@@ -83,7 +84,10 @@ Result<void> Triangulator::triangulate(const Polygon& polygon, const Triangulate
         if (options.method == Method::minimum_weight) {
             const auto solved = workspace_->minimum_weight.solve(workspace_->domain, options, watch, result);
             if (!solved) return tl::unexpected<Error>(solved.error());
-            if (!result.optimal) workspace_->complete(result);
+            if (!result.optimal && !workspace_->complete(watch, result)) {
+                result.triangles.clear();
+                return fail(ErrorCode::cancelled, kNoItem, "cancelled by the progress callback");
+            }
             return {};
         }
         if (options.method == Method::ear) {
@@ -122,10 +126,10 @@ Result<bool> Triangulator::Workspace::clip_simple_ring(const Polygon& polygon, T
 
 // The lightest of what is known, where the search has not come to its end. That is its best triangulation, if it has
 // one, ear clipping, Delaunay, and Delaunay with all that is proven; all improved.
-void Triangulator::Workspace::complete(Triangulation& result) {
+bool Triangulator::Workspace::complete(Watch& watch, Triangulation& result) {
     double least = std::numeric_limits<double>::infinity();
     const auto improve = [&] {
-        improvement.run();
+        improvement.run(watch);
         const double weight = improvement.weight();
         if (!(weight < least)) return;
         least = weight;
@@ -142,9 +146,11 @@ void Triangulator::Workspace::complete(Triangulation& result) {
         improvement.start_from_mesh(domain);
         improve();
     }
+    if (watch.cancelled_by_now()) return false;
     result.triangles.swap(lightest);
     result.weight = least * domain.scale();
     result.gap = minimum_weight.gap_of(result.weight);
+    return true;
 }
 
 Result<Triangulation> triangulate(const Polygon& polygon, const TriangulateOptions& options) {

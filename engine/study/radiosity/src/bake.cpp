@@ -12,6 +12,17 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+// The caller's go_on, with the share that is done before a run.
+struct Asked {
+    const BakeLimits& limits;
+    double share;
+
+    static bool go_on(void* who) {
+        const Asked& it = *static_cast<const Asked*>(who);
+        return it.limits.go_on == nullptr || it.limits.go_on(it.limits.user, it.share);
+    }
+};
+
 }  // namespace
 
 Bake::Bake(Solver solver, std::uint64_t runs) : solver_(std::move(solver)) {
@@ -47,9 +58,8 @@ Result<void> Bake::run(const BakeLimits& limits, Executor& executor) {
                 solver_.forget();
                 solver_.first_run_ = chain * kRunsOfChain;
                 while (solver_.runs() < runs) {
-                    if (limits.go_on && !limits.go_on(limits.user, (found + static_cast<double>(solver_.runs())) / all))
-                        return {};
-                    solver_.run(executor);
+                    Asked asked{limits, (found + static_cast<double>(solver_.runs())) / all};
+                    if (!solver_.run(Asked::go_on, &asked, executor)) return {};
                 }
                 add({chain, chain + 1, solver_.lines_traced_, solver_.unseen_, solver_.seen_, solver_.sum_,
                      solver_.squares_, solver_.drawn_, solver_.buried_},

@@ -61,12 +61,14 @@ void Solver::gather_bundles(const Gathering& what, Light& arrived, Executor& exe
         const std::size_t now = static_cast<std::size_t>(std::min<std::uint64_t>(wave, bundles - first));
         executor.parallel_for(now, 1, [&](std::size_t begin, std::size_t end, unsigned worker) {
             for (std::size_t b = begin; b < end; ++b) {
+                if (is_raised(stop_)) return;
                 const std::uint64_t number = (first_run_ + runs_) * bundles + first + b;
                 drawn[b] = lines::make_bundle(bundles_.bounds(), cell_area, points.at<2>(number),
                                        mixed(mixed(options_.seed, what.stream), number));
                 bundles_.all_hits(drawn[b], scratch[worker], hits[b]);
             }
         });
+        if (is_raised(stop_)) return;
         for (std::size_t b = 0; b < now; ++b) {
             lines_traced_ += static_cast<std::uint64_t>(drawn[b].lines);
             std::uint32_t begin = 0;
@@ -87,10 +89,12 @@ void Solver::gather_lines(const Gathering& what, Light& arrived, Executor& execu
         executor.parallel_for(now, 1, [&](std::size_t begin, std::size_t end, unsigned) {
             Vector<Line> lines;
             for (std::size_t b = begin; b < end; ++b) {
+                if (is_raised(stop_)) return;
                 source.draw((first_run_ + runs_) * blocks + first + b, lines);
                 tracer_.all_hits(lines, hits[b]);
             }
         });
+        if (is_raised(stop_)) return;
         for (std::size_t b = 0; b < now; ++b) {
             lines_traced_ += hits[b].ends.size();
             std::uint32_t begin = 0;
@@ -113,7 +117,7 @@ void Solver::cast_local(const Gathering& what, std::span<const std::uint32_t> pa
     };
     const sampling::UnitPoints points(mixed(mixed(options_.seed, stream), first_run_ + runs_));
     trace_in_order(
-        tracer_, count, executor,
+        tracer_, count, executor, stop_,
         [&](std::uint64_t ray) {
             const auto u = points.at<5>(ray);
             return local_ray(*patches_, triangle_of(patch_of(ray), u[4]), u[0], u[1], std::sqrt(u[2]), u[3]);

@@ -67,7 +67,7 @@ void Solver::shoot_lamps(Light& arrived, Executor& executor) {
     const double each = sum / static_cast<double>(options_.first_shot);
     lines_traced_ += options_.first_shot;
     trace_in_order(
-        tracer_, options_.first_shot, executor,
+        tracer_, options_.first_shot, executor, stop_,
         [&](std::uint64_t i) {
             const auto u = points.at<5>(first + i);
             return local_ray(p, lamp(u[4]), u[0], u[1], std::sqrt(u[2]), u[3]);
@@ -112,7 +112,7 @@ void Solver::look_for_sun(Light& arrived, Executor& executor) {
     Vector<double> lit(p.count(), 0.0);
     lines_traced_ += looks.size();
     trace_in_order(
-        tracer_, looks.size(), executor,
+        tracer_, looks.size(), executor, stop_,
         [&](std::uint64_t i) {
             const Look& look = looks[static_cast<std::size_t>(i)];
             lines::FirstHitQuery ray =

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
 #include <crofton/core/recovery.hpp>
+#include <crofton/core/stop_signal.hpp>
 #include <crofton/radiosity/solver.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -113,6 +114,36 @@ Result<Solver> Solver::create(const Patches& patches, const SolverOptions& optio
 }
 
 void Solver::run(Executor& executor) {
+    add_run(arriving_in_a_run(executor));
+}
+
+bool Solver::run(bool (*go_on)(void* user), void* user, Executor& executor) {
+    struct Asked {
+        bool (*go_on)(void* user);
+        void* user;
+    } asked{go_on, user};
+    const auto ask = [](void* who, double) {
+        const Asked& it = *static_cast<const Asked*>(who);
+        return it.go_on(it.user);
+    };
+    crofton::detail::StopSignal stop(go_on != nullptr ? +ask : nullptr, &asked);
+    const Vector<std::uint64_t> drawn = drawn_, buried = buried_;
+    const std::uint64_t lines = lines_traced_, unseen = unseen_, seen = seen_;
+    const std::uint32_t bounces = bounces_;
+    stop_ = &stop;
+    const Light arrived = arriving_in_a_run(executor);
+    stop_ = nullptr;
+    if (!stop.was_raised()) {
+        add_run(arrived);
+        return true;
+    }
+    drawn_ = drawn, buried_ = buried;
+    lines_traced_ = lines, unseen_ = unseen, seen_ = seen, bounces_ = bounces;
+    return false;
+}
+
+// What arrives on the patches in one more run; anything where it is stopped.
+Solver::Light Solver::arriving_in_a_run(Executor& executor) {
     const Patches& p = *patches_;
     const std::size_t count = p.count();
     const double known_runs = static_cast<double>(std::max<std::uint64_t>(1, runs_));
@@ -133,7 +164,8 @@ void Solver::run(Executor& executor) {
     const std::uint64_t lines = std::max<std::uint64_t>(1, options_.lines / share);
     const std::uint64_t streams = kGatherStream + 1 + (runs_ == 0 ? 0 : kLaterRuns);
     const double cutoff = runs_ == 0 ? options_.cutoff : kEarlierEnd * options_.cutoff;
-    for (bounces_ = 0; bounces_ < options_.most_bounces && travelling > cutoff * light; ++bounces_) {
+    for (bounces_ = 0; bounces_ < options_.most_bounces && travelling > cutoff * light && !is_raised(stop_);
+         ++bounces_) {
         arrived.assign(count, glm::dvec3(0.0));
         gather({&leaving, glm::dvec3(0.0), lines, streams + bounces_}, arrived, executor);
         travelling = 0.0;
@@ -144,7 +176,7 @@ void Solver::run(Executor& executor) {
             travelling += p.areas[i] * absolute(leaving[i]);
         }
     }
-    add_run(all);
+    return all;
 }
 
 }  // namespace crofton::radiosity

@@ -105,13 +105,13 @@ void LocalImprovement::write(Vector<std::array<std::uint32_t, 3>>& triangles) co
         triangles.push_back({input_[4 * t], input_[4 * t + 1], input_[4 * t + 2]});
 }
 
-void LocalImprovement::run() {
-    flip_all();
-    improve_windows();
+void LocalImprovement::run(Watch& watch) {
+    flip_all(watch);
+    improve_windows(watch);
 }
 
 // Every flip makes the triangulation lighter, or as light with an edge of smaller rank: it ends.
-void LocalImprovement::flip_all() {
+void LocalImprovement::flip_all(Watch& watch) {
     stack_.clear();
     waiting_.assign(origin_.size(), 0);
     const auto ask = [&](Index e) {
@@ -123,7 +123,7 @@ void LocalImprovement::flip_all() {
     };
     for (Index e = static_cast<Index>(origin_.size()); e-- > 0;)
         if ((e & 3u) != 3u && is_diagonal(e) && e < twin_[e]) ask(e);
-    while (!stack_.empty()) {
+    while (!stack_.empty() && !watch.cancelled_by_now()) {
         const Index e = stack_.back();
         stack_.pop_back();
         waiting_[e] = 0;
@@ -164,7 +164,7 @@ void LocalImprovement::flip(Index e) {
 }
 
 // In the first sweep every triangle is in a window's first half; later ones look again at where something changed.
-void LocalImprovement::improve_windows() {
+void LocalImprovement::improve_windows(Watch& watch) {
     if (triangle_count() < 3) return;
     done_.assign(triangle_count(), 0);
     vertex_stamp_.assign(points_.size(), 0);
@@ -174,6 +174,7 @@ void LocalImprovement::improve_windows() {
         bool changed = false;
         for (Index t = 0; t < triangle_count(); ++t) {
             if (done_[t] != 0) continue;
+            if (watch.cancelled_by_now()) return;
             const bool lighter = improve_window(t);
             changed |= lighter;
             const std::size_t half = (window_.size() + 1) / 2;

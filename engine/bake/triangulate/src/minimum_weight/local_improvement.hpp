@@ -5,6 +5,7 @@
 
 #include "domain/domain.hpp"
 #include "numbers/pair_table.hpp"
+#include "watch.hpp"
 
 namespace crofton::triangulate {
 
@@ -18,7 +19,8 @@ class LocalImprovement {
     // One of the caller's indices; false if it is none of this domain.
     [[nodiscard]] bool start_from_triangles(const Domain& domain,
                                             std::span<const std::array<std::uint32_t, 3>> triangles);
-    void run();
+    // Ends early where the watch is cancelled; the triangulation is one all the same.
+    void run(Watch& watch);
     // The total length of the diagonals, in the units of the domain's mesh.
     [[nodiscard]] double weight() const;
     void write(Vector<std::array<std::uint32_t, 3>>& triangles) const;
@@ -41,9 +43,9 @@ class LocalImprovement {
     [[nodiscard]] bool is_diagonal(Index e) const { return twin_[e] != kNone && fixed_[e] == 0; }
     void clear(const Domain& domain, Index triangles);
     void link(Index e, Index f);
-    void flip_all();
+    void flip_all(Watch& watch);
     void flip(Index e);
-    void improve_windows();
+    void improve_windows(Watch& watch);
     [[nodiscard]] bool improve_window(Index seed);
     void collect_window(Index seed);
     void collect_boundary();

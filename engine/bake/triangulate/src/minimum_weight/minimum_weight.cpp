@@ -217,6 +217,13 @@ void MinimumWeight::bound_whole(const Domain& domain, bool candidates) {
         bound = std::max(bound, slits + sum_of_shortest(lengths_, diagonals));
     }
     lower_bound_ = bound * (1.0 - kRounding * static_cast<double>(mesh.points.size() + 16)) * domain.scale();
+    bound_by_arcs(domain, candidates);
+}
+
+void MinimumWeight::bound_by_arcs(const Domain& domain, bool candidates) {
+    const double bound = arc_bound_.weight(domain, candidates ? &graph_ : nullptr);
+    const double kept = 1.0 - kRounding * static_cast<double>(domain.mesh().points.size() + 16);
+    lower_bound_ = std::max(lower_bound_, bound * kept * domain.scale());
 }
 
 // A face with m sides in p pieces has t = m − 2 + 2(p − 1) triangles and (3t − m)/2 diagonals, all different
@@ -271,6 +278,7 @@ void MinimumWeight::finish(const Domain& domain, bool complete, Triangulation& r
     // Rounding of all sums below; what is proven keeps this distance.
     const double kept = 1.0 - kRounding * (static_cast<double>(diagonals_.size() + lengths_.size()) + 64.0);
     lower_bound_ = (lower_bound_ + weight) * kept * domain.scale();
+    if (!proven_) bound_by_arcs(domain, true);
     if (!complete) return;
     const auto input = [&](Index h) {
         return graph_.input.empty() ? domain.input_of(graph_.destination[graph_.twin[h]]) : graph_.input[h];

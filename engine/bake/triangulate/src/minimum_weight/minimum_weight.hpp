@@ -3,6 +3,7 @@
 #pragma once
 #include <crofton/triangulate/triangulate.hpp>
 
+#include "minimum_weight/arc_bound.hpp"
 #include "minimum_weight/face_search.hpp"
 #include "minimum_weight/faces.hpp"
 #include "minimum_weight/interval_program.hpp"
@@ -35,6 +36,7 @@ class MinimumWeight {
                                                  double fraction);
     void bound_whole(const Domain& domain, bool candidates);
     void bound_unsolved(std::span<const glm::dvec2> points);
+    void bound_by_arcs(const Domain& domain, bool candidates);
     void finish(const Domain& domain, bool complete, Triangulation& result);
 
     CandidateGraph graph_;
@@ -50,6 +52,7 @@ class MinimumWeight {
     Vector<Index> ring_;
     Vector<Index> unsolved_;  // names of faces
     DelaunayBound delaunay_bound_;
+    ArcBound arc_bound_;
     Vector<double> lengths_;
     double lower_bound_ = 0.0;
     bool proven_ = true, infeasible_ = false, gave_up_ = false;

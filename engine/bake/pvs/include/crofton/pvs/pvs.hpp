@@ -182,6 +182,10 @@ struct ProofOptions {
     // many sides of triangles a question may visit: more prove more. 400 is a good number for levels. Each unseen
     // pair is asked, so it is slow where there are millions. Edges must have equal corners, or meet along an axis.
     std::uint32_t surface_steps = 0;
+    // Asked some hundred times a second, from any of the executor's threads and never from two at once. Where it
+    // returns false the proofs end: what is proved stays, and the other pairs stay unseen, which draws them.
+    bool (*go_on)(void* user, double share_done) = nullptr;
+    void* user = nullptr;
 };
 
 enum class PairState : std::uint8_t {

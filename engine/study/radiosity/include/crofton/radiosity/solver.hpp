@@ -10,6 +10,10 @@
 #include <optional>
 #include <span>
 
+namespace crofton::detail {
+class StopSignal;
+}
+
 namespace crofton::radiosity {
 
 // Light from outside the scene.
@@ -57,6 +61,9 @@ class Solver {
 
     // One more run. The same bits for any executor.
     void run(Executor& executor = serial_executor());
+    // The same, but asks `go_on` some hundred times a second, from any of the executor's threads and never from two at
+    // once. Where it returns false, the run is dropped as if it had not begun, and the result is false.
+    bool run(bool (*go_on)(void* user), void* user, Executor& executor = serial_executor());
 
     [[nodiscard]] std::uint64_t runs() const { return runs_; }
     [[nodiscard]] std::span<const glm::vec3> radiosity() const { return mean_; }  // by patch; the mean over runs
@@ -99,6 +106,7 @@ class Solver {
     void list_triangles();
     [[nodiscard]] double lines_of_bundle() const;
     [[nodiscard]] std::uint32_t triangle_of(std::size_t patch, double u) const;
+    [[nodiscard]] Light arriving_in_a_run(Executor& executor);
     void shoot_lamps(Light& arrived, Executor& executor);
     void look_for_sun(Light& arrived, Executor& executor);
     void gather(const Gathering& what, Light& arrived, Executor& executor);
@@ -129,7 +137,8 @@ class Solver {
     Light sum_, squares_;                   // of what arrived, over runs
     Vector<std::uint64_t> drawn_, buried_;  // rays that started on each patch, and those that met a back first
     Vector<glm::vec3> mean_;
-    Vector<std::uint32_t> rays_;  // scratch of a gathering
+    Vector<std::uint32_t> rays_;                   // scratch of a gathering
+    crofton::detail::StopSignal* stop_ = nullptr;  // of the run that is being made, if it may be stopped
 };
 
 // A bake in parts: as many runs as one likes, on any machines, to the same bytes.
@@ -145,7 +154,8 @@ struct Shard {
 struct BakeLimits {
     double seconds = std::numeric_limits<double>::infinity();  // no further chain is begun then; one always is
     Shard shard = {};
-    // Asked before each run; false stops the bake. Complete chains are kept.
+    // Asked before each run and some hundred times a second within it, from any of the executor's threads and never
+    // from two at once; false stops the bake. Complete chains are kept.
     bool (*go_on)(void* user, double share_done) = nullptr;
     void* user = nullptr;
 };

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// A caller's wish to stop, asked for by whichever worker has the time.
+#pragma once
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+
+namespace crofton::detail {
+
+// Asks the caller's callback from any of the threads that work, never from two at once, and some hundred times a second
+// at most. Once the callback has said no it is not asked again.
+class StopSignal {
+  public:
+    using GoOn = bool (*)(void* user, double share_done);
+
+    StopSignal(GoOn go_on, void* user) : go_on_(go_on), user_(user) {}
+    StopSignal(const StopSignal&) = delete;
+    StopSignal& operator=(const StopSignal&) = delete;
+
+    // Whether the caller wants to stop. May ask it.
+    [[nodiscard]] bool is_raised(double share_done) {
+        if (go_on_ == nullptr) return false;
+        if (raised_.load(std::memory_order_relaxed)) return true;
+        const std::int64_t now = Clock::now().time_since_epoch().count();
+        if (now < next_.load(std::memory_order_relaxed) || asking_.test_and_set(std::memory_order_acquire))
+            return false;
+        next_.store(now + kBetween.count(), std::memory_order_relaxed);
+        if (!go_on_(user_, share_done)) raised_.store(true, std::memory_order_relaxed);
+        asking_.clear(std::memory_order_release);
+        return raised_.load(std::memory_order_relaxed);
+    }
+    // Whether it has said so. Asks nothing.
+    [[nodiscard]] bool was_raised() const { return raised_.load(std::memory_order_relaxed); }
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    static constexpr Clock::duration kBetween =
+        std::chrono::duration_cast<Clock::duration>(std::chrono::milliseconds(5));
+
+    GoOn go_on_;
+    void* user_;
+    std::atomic<bool> raised_{false};
+    std::atomic<std::int64_t> next_{0};
+    std::atomic_flag asking_ = ATOMIC_FLAG_INIT;
+};
+
+}  // namespace crofton::detail
