@@ -263,7 +263,7 @@ void SceneManager::find_visible(const Ogre::Camera& camera, bool only_shadow_cas
     for (;;) {
         const OccludingView occluding{*view, _getCombinedVisibilityMask()};
         if (!world_.view(occluding, {}, visible_)) return world_.view(plain, visible_);
-        world_.drawn_occluders(visible_, drawn_occluders_);
+        (void)world_.drawn_occluders(visible_, drawn_occluders_);
         bool right = true;
         for (const OccluderRef& occluder : drawn_occluders_)
             right = hides_as_drawn(*reinterpret_cast<SceneNode*>(occluder.user)) && right;
