@@ -55,7 +55,7 @@ void flat_views(benchmark::State& state, bool one_pass) {
     std::vector<cull::VerdictBits> verdicts(views.size());
     const auto ask = [&] {
         if (one_pass)
-            cull::find_visible(set, boxes, {}, views, masks);
+            (void)cull::find_visible(set, boxes, {}, views, masks);
         else
             for (std::size_t v = 0; v < views.size(); ++v) cull::find_visible(set, boxes, views[v], verdicts[v]);
         benchmark::DoNotOptimize(masks.data());
@@ -99,7 +99,7 @@ void tree_views(benchmark::State& state, Way way) {
     std::vector<cull::VisibleSet> single(views.size());
     Merge merge(tree.boxes().size() + 1);
     const auto ask = [&] {
-        if (way == Way::one_pass) return cull::find_visible(tree, views, many);
+        if (way == Way::one_pass) return (void)cull::find_visible(tree, views, many);
         for (std::size_t v = 0; v < views.size(); ++v)
             cull::find_visible(tree, views[v], single[v], {cull::CullMode::exact, cull::ResultOrder::tree});
         if (way == Way::merged) benchmark::DoNotOptimize(merge(single));

@@ -30,11 +30,11 @@ int main() {
         // World detects motion automatically. Changes take effect in update().
         const double x = -3.0 + 0.55 * frame;
         if (auto moved = world.set_bound(ball, crofton::Sphere{{x, 1.0, -8.0}, 1.0}); !moved) return 1;
-        if (frame == 30) world.remove(crates[25]);  // its handle is stale from now on
-        world.update();                             // once a frame; takes the host's job system
+        if (frame == 30) world.remove(crates[25]).value();  // its handle is stale from now on
+        world.update().value();                             // once a frame; takes the host's job system
 
         // Const from here on, from any thread.
-        world.view({.camera = camera}, visible);
+        world.view({.camera = camera}, visible).value();
         seen = visible.size();
         for (std::size_t i = 0; i < visible.size(); ++i) {
             // draw(models[visible[i].user]);

@@ -6,15 +6,15 @@
 int main() {
     crofton::World world;
     for (int i = 0; i < 100; ++i)
-        (void)world.add({.bound = crofton::Sphere{{4.0 * (i % 10) - 18.0, 0.0, -4.0 * (i / 10) - 6.0}, 1.0}}).value();
+        world.add({.bound = crofton::Sphere{{4.0 * (i % 10) - 18.0, 0.0, -4.0 * (i / 10) - 6.0}, 1.0}}).value();
     const auto ball = world.add({.bound = crofton::Sphere{{-30.0, 0.0, -10.0}, 1.0}}).value();
 
     crofton::Camera camera;           // at the origin, looks along -z
     crofton::VisibleObjects visible;  // keeps its memory from frame to frame
     for (int frame = 0; frame < 60; ++frame) {
-        (void)world.set_bound(ball, crofton::Sphere{{frame - 30.0, 0.0, -10.0}, 1.0});
-        world.update();                           // once a frame; the queries below are const
-        world.view({.camera = camera}, visible);  // visible[i].object is what to draw
+        world.set_bound(ball, crofton::Sphere{{frame - 30.0, 0.0, -10.0}, 1.0}).value();
+        world.update();                                   // once a frame; the queries below are const
+        world.view({.camera = camera}, visible).value();  // visible[i].object is what to draw
         for (const crofton::Contact& contact : world.contacts())
             if (contact.phase == crofton::ContactPhase::began)
                 std::printf("frame %d: the ball touches crate %u\n", frame, contact.first.object.index);

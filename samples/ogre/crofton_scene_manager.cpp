@@ -264,7 +264,7 @@ void SceneManager::find_visible(const Ogre::Camera& camera, bool only_shadow_cas
                                 .occlusion = OcclusionOptions{}};
     for (;;) {
         if (is_plain || !world_.view(occluding, visible_)) return (void)world_.view(plain, visible_);
-        world_.drawn_occluders(visible_, drawn_occluders_);
+        (void)world_.drawn_occluders(visible_, drawn_occluders_);
         bool right = true;
         for (const OccluderRef& occluder : drawn_occluders_)
             right = hides_as_drawn(*reinterpret_cast<SceneNode*>(occluder.user)) && right;

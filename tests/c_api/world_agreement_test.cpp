@@ -310,8 +310,7 @@ TEST_SUITE("capi/world agreement") {
                 CHECK((crofton_world_set_bound(c, both.objects[o], &bound) == CROFTON_OK) == !both.has_mesh[o]);
                 CHECK(both.world.set_bound(both.object(o), expected).has_value() == !both.has_mesh[o]);
                 CHECK((crofton_world_set_mesh(c, both.objects[o], mesh) == CROFTON_OK) == both.has_mesh[o]);
-                CHECK(both.world.set_mesh(both.object(o), same_bytes<MeshHandle>(mesh)).has_value() ==
-                      both.has_mesh[o]);
+                CHECK(both.world.set_mesh(both.object(o), both.twin<MeshHandle>(mesh)).has_value() == both.has_mesh[o]);
             }
             std::vector<float> positions;
             for (int k = 0; k < 12; ++k) positions.push_back(static_cast<float>(random.number(-2, 2)));
@@ -320,14 +319,14 @@ TEST_SUITE("capi/world agreement") {
             data.position_count = 4;
             const PointsView points(positions.data(), 4);
             REQUIRE(crofton_world_set_vertices(c, meshes[0], &data) == CROFTON_OK);
-            REQUIRE(both.world.set_vertices(same_bytes<MeshHandle>(meshes[0]), points).has_value());
+            REQUIRE(both.world.set_vertices(both.twin<MeshHandle>(meshes[0]), points).has_value());
             const std::vector<std::uint32_t> indices{0, 1, 2, 0, 2, 3};
             data.indices = indices.data();
             data.index_count = indices.size();
             data.without_triangles = static_cast<std::uint32_t>(frame % 2);
             REQUIRE(crofton_world_replace_mesh(c, meshes[1], &data) == CROFTON_OK);
             REQUIRE(both.world
-                        .replace_mesh(same_bytes<MeshHandle>(meshes[1]),
+                        .replace_mesh(both.twin<MeshHandle>(meshes[1]),
                                       {.positions = points, .indices = indices, .triangles = frame % 2 == 0})
                         .has_value());
             REQUIRE(crofton_world_update(c, nullptr) == CROFTON_OK);

@@ -211,6 +211,24 @@ TEST_SUITE("capi/world") {
         CHECK(contains == 0);
     }
 
+    TEST_CASE("a handle of another world is stale, and the message says so") {
+        const WorldHandle first = make_world(), second = make_world();
+        const crofton_world_mesh mesh = add_tetrahedron(first);
+        (void)add_tetrahedron(second);
+        const crofton_object object = add_bound(first, box_bound(box_at(0, 0, 0)));
+        const crofton_object own = add_bound(second, box_bound(box_at(0, 0, 0)));
+        REQUIRE(object.index == own.index);
+        CHECK(crofton_world_remove(second.get(), object) == CROFTON_STALE_HANDLE);
+        CHECK(mentions(crofton_last_error(), "another World"));
+        CHECK(crofton_world_set_hidden(second.get(), object, 1) == CROFTON_STALE_HANDLE);
+        CHECK(crofton_world_remove_mesh(second.get(), mesh) == CROFTON_STALE_HANDLE);
+        int contains = 7;
+        CHECK(crofton_world_contains(second.get(), object, &contains) == CROFTON_OK);
+        CHECK(contains == 0);
+        CHECK(crofton_world_remove(second.get(), own) == CROFTON_OK);
+        CHECK(crofton_world_remove(first.get(), object) == CROFTON_OK);
+    }
+
     TEST_CASE("numbers that are none are refused, and spoil nothing") {
         const SmallWorld s;
         crofton_world* const world = s.world.get();

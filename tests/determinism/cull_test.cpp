@@ -50,7 +50,7 @@ std::uint64_t verdicts(const Scene& scene, Executor& executor) {
         digest.add(bits.visible).add(bits.inside);
     }
     std::vector<std::uint32_t> masks(scene.boxes.size());
-    cull::find_visible(set, scene.boxes, {}, views, masks, cull::CullMode::exact, executor);
+    (void)cull::find_visible(set, scene.boxes, {}, views, masks, cull::CullMode::exact, executor);
     return digest.add(masks).value();
 }
 

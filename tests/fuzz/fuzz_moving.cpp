@@ -53,7 +53,7 @@ void check_views(fuzz::Shapes& in, const fuzz::LivingTree& living, const cull::M
         }
     }
     cull::ManyVisible many;
-    cull::find_visible(living.tree(), moving, views, many, mode);
+    (void)cull::find_visible(living.tree(), moving, views, many, mode);
     for (std::uint32_t v = 0; v < views.size(); ++v) {
         Ids seen;
         for (std::size_t i = 0; i < many.size(); ++i)

@@ -131,7 +131,7 @@ TEST_SUITE("memory/ending") {
         sweep_ending("many views", [&] {
             const cull::View views[2] = {kView, kView};
             cull::ManyVisible visible;
-            find_visible(tree, views, visible);
+            (void)find_visible(tree, views, visible);
         });
         sweep_ending("ranges", [&] {
             const boxtree::ItemId ids[] = {1, 2, 70};

@@ -51,7 +51,7 @@ void run_batch(Straddlers& straddlers, std::size_t count, CullCounts& counts) {
     cull::find_visible(set, bounds, view, conservative, cull::CullMode::conservative);
     std::vector<std::uint32_t> masks(count);
     const std::array<cull::View, 2> views{cull::View{*frustum_of(straddlers.camera())}, view};
-    cull::find_visible(set, bounds, {}, views, masks);
+    (void)cull::find_visible(set, bounds, {}, views, masks);
     const std::vector<cull::Verdict> of_tree = tree_verdicts(bounds, view);
     for (std::size_t i = 0; i < count; ++i) {
         const cull::Verdict verdict = cull::classify(*frustum, bounds[i]);

@@ -47,7 +47,7 @@ void Occlusion::apply(const scene::Scene& scene, const pipeline::Pipeline& pipel
 
 std::vector<scene::NodeId> hiding_nodes(const pipeline::Pipeline& pipeline) {
     Vector<OccluderRef> occluders;
-    pipeline.world().drawn_occluders(pipeline.not_hidden(), occluders);
+    (void)pipeline.world().drawn_occluders(pipeline.not_hidden(), occluders);
     return nodes_of(occluders);
 }
 

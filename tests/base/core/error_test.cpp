@@ -2,8 +2,12 @@
 #include <doctest/doctest.h>
 #include <crofton/core/error.hpp>
 #include <cstdio>
+#include <memory>
+#include <optional>
 #include <set>
 #include <string>
+#include <type_traits>
+#include <utility>
 
 #if defined(__unix__)
 #include <unistd.h>
@@ -37,6 +41,55 @@ TEST_SUITE("core/error") {
         const Error& same = second;
         second = same;
         CHECK((second.code == ErrorCode::io && second.item == 3 && second.message == first.message));
+    }
+
+    TEST_CASE("value() of a result gives the value, nothing for void, and throws what says the message") {
+        const auto with = [](bool good) -> Result<int> {
+            if (!good) return fail(ErrorCode::empty, 3, "nothing is here");
+            return 7;
+        };
+        const auto without = [&](bool good) -> Result<void> {
+            if (auto done = with(good); !done) return tl::unexpected(done.error());
+            return {};
+        };
+        CHECK(with(true).value() == 7);
+        without(true).value();
+        static_assert(std::is_void_v<decltype(without(true).value())>);
+        Result<int> kept = with(true);
+        kept.value() = 8;
+        CHECK(std::as_const(kept).value() == 8);
+        CHECK(Result<std::unique_ptr<int>>(std::make_unique<int>(5)).value() != nullptr);
+        for (const bool is_void : {false, true}) {
+            try {
+                is_void ? without(false).value() : (void)with(false).value();
+                FAIL("there is no value");
+            } catch (const tl::bad_expected_access<Error>& bad) {
+                CHECK(std::string(bad.what()) == "nothing is here");
+                CHECK(bad.error().code == ErrorCode::empty);
+                CHECK(bad.error().item == 3);
+            }
+        }
+        try {
+            Result<void>(fail(ErrorCode::io, 0, "")).value();
+            FAIL("there is no value");
+        } catch (const BadResult& bad) {
+            CHECK(std::string(bad.what()) == "input/output");
+        }
+    }
+
+    TEST_CASE("a result is made of values, errors and other results as tl::expected is") {
+        Result<bool> yes = true;
+        Result<bool> copy = yes;  // not a conversion to bool
+        yes = Result<bool>(false);
+        CHECK(copy.value());
+        CHECK_FALSE(yes.value());
+        CHECK_FALSE(std::is_constructible_v<Result<int>, std::string>);
+        CHECK(std::is_convertible_v<int, Result<double>>);
+        const Result<std::optional<int>> none = std::nullopt;
+        REQUIRE(none.has_value());
+        CHECK_FALSE(none->has_value());
+        const Result<int> mapped = copy.map([](bool value) { return value ? 4 : 5; });
+        CHECK(mapped.value() == 4);
     }
 
 #if defined(__unix__) && !defined(__EMSCRIPTEN__)  // whose stderr stays the host's

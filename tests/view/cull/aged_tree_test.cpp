@@ -50,7 +50,7 @@ void check_view(const AgedTree& aged, const cull::View& view, CullMode mode, Exe
     REQUIRE(visible.inside_count() == static_cast<std::size_t>(inside));
     const std::vector<cull::View> views{view, {view.frustum, ~view.layer_mask}};
     cull::ManyVisible many;
-    cull::find_visible(aged.tree, views, many, mode);
+    (void)cull::find_visible(aged.tree, views, many, mode);
     sorted.clear();
     for (std::size_t i = 0; i < many.size(); ++i)
         if (many.view_mask(i) & 1u) sorted.push_back(many.ids()[i]);

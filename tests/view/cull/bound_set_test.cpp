@@ -319,7 +319,8 @@ TEST_SUITE("cull/bound_set") {
                 for (const std::size_t used : {0u, 5u, 32u}) {
                     const auto layers =
                         layered ? std::span<const std::uint32_t>(crowd.layers) : std::span<const std::uint32_t>();
-                    cull::find_visible(set, crowd.boxes, layers, std::span<const cull::View>(views).first(used), masks);
+                    (void)cull::find_visible(set, crowd.boxes, layers, std::span<const cull::View>(views).first(used),
+                                             masks);
                     std::vector<std::uint32_t> expected(count, 0u);
                     for (std::size_t v = 0; v < used; ++v) {
                         cull::find_visible(set, crowd.boxes, views[v], bits);
@@ -361,12 +362,71 @@ TEST_SUITE("cull/bound_set") {
         std::vector<std::uint32_t> masks(crowd.boxes.size());
         std::vector<cull::Statistics> statistics(2);
         ThreadPool two(2);
-        cull::find_visible(set, crowd.boxes, {}, views, masks, cull::CullMode::exact, two, statistics);
+        (void)cull::find_visible(set, crowd.boxes, {}, views, masks, cull::CullMode::exact, two, statistics);
         for (std::size_t v = 0; v < 2; ++v) {
             cull::find_visible(set, crowd.boxes, views[v], bits);
             CHECK(statistics[v].improper == bits.statistics.improper);
             CHECK(statistics[v].straddling == bits.statistics.straddling);
             CHECK(statistics[v].boxes_tested == bits.statistics.boxes_tested);
         }
+    }
+
+    TEST_CASE("lists of balls and boxes have classify's verdicts at every size from 1e-30 to 1e29") {
+        oracle::NearMisses random(41, 0.0);
+        cull::VerdictBits bits;
+        std::size_t outside = 0, inside = 0, straddling = 0;
+        const auto check = [&]<class Bound>(const std::vector<Bound>& bounds, const cull::View& view) {
+            cull::BoundSet<Bound> set;
+            set.assign(bounds);
+            std::vector<std::uint32_t> masks(bounds.size());
+            const std::vector<cull::View> views(2, view);
+            for (const cull::CullMode mode : {cull::CullMode::exact, cull::CullMode::conservative}) {
+                cull::find_visible(set, bounds, view, bits, mode);
+                REQUIRE(cull::find_visible(set, bounds, {}, views, masks, mode).has_value());
+                for (std::size_t i = 0; i < bounds.size(); ++i) {
+                    const cull::Verdict verdict = cull::classify(view.frustum, bounds[i], mode);
+                    CHECK(bits.verdict(i) == verdict);
+                    CHECK(masks[i] == (verdict == cull::Verdict::outside ? 0u : 3u));
+                    (verdict == cull::Verdict::outside  ? outside
+                     : verdict == cull::Verdict::inside ? inside
+                                                        : straddling) += 1;
+                }
+            }
+        };
+        for (int exponent = -30; exponent < 30; ++exponent)
+            for (const Projection projection : {Projection::orthographic, Projection::perspective}) {
+                const double s = std::pow(10.0, exponent);
+                CAPTURE(exponent);
+                Camera camera;
+                camera.projection = projection;
+                camera.position = {0.0, 0.0, 10.0 * s};
+                camera.height = 2.0 * s;
+                camera.fov_y = 0.2;
+                camera.aspect = 1.0;
+                camera.near_distance = 5.0 * s;
+                camera.far_distance = 20.0 * s;
+                const auto frustum = frustum_of(camera);
+                REQUIRE(frustum.has_value());
+                std::vector<Sphere> balls;
+                std::vector<Aabb> aligned;
+                std::vector<Obb> boxes;
+                for (int i = 0; i < 120; ++i) {
+                    // Around an edge of the view: touched, nearly touched, clear of it, also far out.
+                    const double x = random.number(0.5, 2.5), y = i % 3 ? x : random.number(-1.0, 1.0);
+                    const glm::dvec3 center(x * s, y * s, (i % 5 ? random.number(-2.0, 2.0) : 0.0) * s);
+                    balls.push_back({center, s * (i % 2 ? std::fabs(x - 1.0) * random.number(0.9, 1.5) : 0.3)});
+                    aligned.push_back({center - 0.4 * s, center + 0.4 * s});
+                    Obb box;
+                    box.center = center;
+                    box.half_extents = glm::vec3(static_cast<float>(0.4 * s));
+                    if (exponent <= 17) boxes.push_back(box);
+                }
+                check(balls, {*frustum});
+                check(aligned, {*frustum});
+                check(boxes, {*frustum});
+            }
+        CHECK(outside > 5000);
+        CHECK(straddling > 5000);
+        CHECK(inside > 100);
     }
 }

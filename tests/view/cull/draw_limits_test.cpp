@@ -157,8 +157,8 @@ TEST_SUITE("cull/draw_limits") {
             views[2].frustum.plane_count = 4;  // without near and far
             cull::VisibleSet one;
             cull::ManyVisible many[2];
-            cull::find_visible(tree, views, many[0], cull::CullMode::exact, &of.limits);
-            cull::find_visible(rest, list, views, many[1], cull::CullMode::exact, &of.limits);
+            (void)cull::find_visible(tree, views, many[0], cull::CullMode::exact, &of.limits);
+            (void)cull::find_visible(rest, list, views, many[1], cull::CullMode::exact, &of.limits);
             for (std::size_t v = 0; v < views.size(); ++v) {
                 cull::find_visible(tree, views[v], one, {.limits = &of.limits});
                 some += one.size();

@@ -72,12 +72,12 @@ TEST_SUITE("cull/frame") {
             const std::size_t at = f % views.size();
             cull::find_visible(tree, views[at], visible,
                                {cull::CullMode::exact, f % 2 ? cull::ResultOrder::ascending : cull::ResultOrder::tree});
-            cull::find_visible(tree, std::span(views).subspan(at / 2, 4), many);
+            (void)cull::find_visible(tree, std::span(views).subspan(at / 2, 4), many);
             set.update(items, crowd.boxes);
             cull::find_visible(set, crowd.boxes, views[at], bits);
             cull::find_visible(others.aabb_set, others.aabbs, views[at], bits);
             cull::find_visible(others.sphere_set, others.spheres, views[at], bits);
-            cull::find_visible(set, crowd.boxes, crowd.layers, std::span(views).subspan(at / 2, 4), masks);
+            (void)cull::find_visible(set, crowd.boxes, crowd.layers, std::span(views).subspan(at / 2, 4), masks);
             if (f == views.size()) warm = counting.allocations();
         }
         CHECK(warm > 0);
@@ -149,7 +149,7 @@ TEST_SUITE("cull/frame") {
                     keep();
                     cull::find_visible(others.sphere_set, others.spheres, view, bits, mode);
                     keep();
-                    cull::find_visible(set, crowd.boxes, crowd.layers, views, one.masks, mode);
+                    (void)cull::find_visible(set, crowd.boxes, crowd.layers, views, one.masks, mode);
                     answers.push_back(one);
                 }
             return answers;

@@ -39,7 +39,7 @@ TEST_SUITE("cull/many_views") {
         CHECK(visible.size() == 0);
         std::vector<cull::View> views(3, cull::View{*frustum_of(Camera{}), 3u});
         views[1].frustum.planes[0].offset = std::nan("");
-        cull::find_visible(*tree, views, visible);
+        (void)cull::find_visible(*tree, views, visible);
         const auto expected = one_by_one(*tree, views, cull::CullMode::exact);
         CHECK(visible.size() == expected.size());
         for (std::size_t i = 0; i < visible.size(); ++i) CHECK(expected.at(visible.ids()[i]) == visible.view_mask(i));
@@ -56,7 +56,7 @@ TEST_SUITE("cull/many_views") {
         for (cull::ItemId removed = 5; removed < 4096; removed += 97) {
             auto tree = boxtree::BoxTree::build(crowd.boxes);
             REQUIRE(tree->remove(removed).has_value());
-            cull::find_visible(*tree, views, visible);
+            (void)cull::find_visible(*tree, views, visible);
             std::vector<cull::ItemId> ids(visible.ids().begin(), visible.ids().end());
             std::sort(ids.begin(), ids.end());
             CAPTURE(removed);
@@ -77,7 +77,8 @@ TEST_SUITE("cull/many_views") {
         views[2].frustum.plane_count = 0;  // vectors do not take it
         std::vector<std::uint32_t> masks(crowd.boxes.size());
         std::vector<cull::Statistics> statistics(views.size());
-        cull::find_visible(set, crowd.boxes, {}, views, masks, cull::CullMode::exact, serial_executor(), statistics);
+        (void)cull::find_visible(set, crowd.boxes, {}, views, masks, cull::CullMode::exact, serial_executor(),
+                                 statistics);
         cull::VisibleSet visible;
         cull::find_visible(crowd.boxes, {}, views[0], visible);
         CHECK(visible.size() > 0);

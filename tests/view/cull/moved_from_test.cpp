@@ -32,7 +32,7 @@ TEST_SUITE("cull/moved_from") {
         cull::VisibleSet visible;
         cull::find_visible(tree, views[0], visible, {.order = cull::ResultOrder::tree});
         cull::ManyVisible many;
-        cull::find_visible(tree, views, many);
+        (void)cull::find_visible(tree, views, many);
         const std::size_t seen = visible.size();
         REQUIRE(visible.inside_count() > 0);
         REQUIRE(many.size() == seen);

@@ -90,7 +90,7 @@ void check_answers(const Crowd& crowd, std::span<const cull::View> views, Execut
                     CHECK(visible.statistics().straddling == visible.size() - visible.inside_count());
             }
         }
-        cull::find_visible(crowd.tree, crowd.moving, views, many, mode);
+        (void)cull::find_visible(crowd.tree, crowd.moving, views, many, mode);
         REQUIRE(many.size() == masks.size());
         for (std::size_t i = 0; i < many.size(); ++i) REQUIRE(masks.at(many.ids()[i]) == many.view_mask(i));
     }
@@ -358,7 +358,7 @@ TEST_SUITE("cull/moving_boxes") {
                 expected += (boxes.layers[i] & views[0].layer_mask) != 0 &&
                             cull::classify(views[0].frustum, some[i]) != Verdict::outside;
             CHECK(visible.size() == expected);
-            cull::find_visible(tree, moving, views, many);
+            (void)cull::find_visible(tree, moving, views, many);
             if (frame == 5) warm = counting.allocations();
         }
         CHECK(warm > 0);

@@ -70,7 +70,7 @@ TEST_SUITE("cull/oriented trees") {
                     REQUIRE(test::ranges::equal(visible.verdicts(), expected.verdicts));
                     const std::vector<cull::View> views{view, view_near(random, middle, spread, trial)};
                     cull::ManyVisible many;
-                    cull::find_visible(tree, views, many, mode);
+                    (void)cull::find_visible(tree, views, many, mode);
                     std::vector<cull::ItemId> first;
                     for (std::size_t i = 0; i < many.size(); ++i)
                         if (many.view_mask(i) & 1u) first.push_back(many.ids()[i]);

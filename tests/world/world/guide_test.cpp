@@ -59,15 +59,17 @@ TEST_SUITE("world/guide") {
         crofton::VisibleObjects visible;
 
         // Each frame: what the game has changed,
-        world.set_bounds({&enemies[0].object, enemies.size(), sizeof(Enemy)},
-                         {&enemies[0].box, enemies.size(), sizeof(Enemy)});
-        world.set_transform(ship, {glm::dmat3(1.0), {0.0, 1.0, -20.0}});
+        world
+            .set_bounds({&enemies[0].object, enemies.size(), sizeof(Enemy)},
+                        {&enemies[0].box, enemies.size(), sizeof(Enemy)})
+            .value();
+        world.set_transform(ship, {glm::dmat3(1.0), {0.0, 1.0, -20.0}}).value();
         for (Enemy& enemy : enemies)
-            if (enemy.dead) world.remove(enemy.object);
+            if (enemy.dead) world.remove(enemy.object).value();
         // once
-        world.update(jobs);
+        world.update(jobs).value();
         // and then whatever it wants to know.
-        world.view({.camera = camera}, visible);
+        world.view({.camera = camera}, visible).value();
         for (std::size_t i = 0; i < visible.size(); ++i) draw(visible[i].user);
         for (const crofton::Contact& contact : world.contacts()) {
             if (contact.phase == crofton::ContactPhase::began) start_sound(contact.first.user, contact.second.user);
@@ -88,10 +90,10 @@ TEST_SUITE("world/guide") {
                                                   2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6};
         const auto house = world.add_mesh({.positions = corners, .indices = faces, .occluders = true});
         if (!house) return fail_loading(house.error().message);
-        world.add({.mesh = *house, .transform = crofton::Transform{glm::dmat3(1.0), {0.0, 0.0, -10.0}}});
-        world.update(jobs);
-        world.view({.camera = camera, .occlusion = crofton::OcclusionOptions{}},
-                   visible);  // without what the house hides
+        world.add({.mesh = *house, .transform = crofton::Transform{glm::dmat3(1.0), {0.0, 0.0, -10.0}}}).value();
+        world.update(jobs).value();
+        // Without what the house hides:
+        world.view({.camera = camera, .occlusion = crofton::OcclusionOptions{}}, visible).value();
 
         CHECK(visible.size() == 1);
 
@@ -109,7 +111,7 @@ TEST_SUITE("world/guide") {
         crofton::ThreadPool jobs(2);
         const auto slab = crofton::convex::Body::box({5.0f, 0.2f, 5.0f}).value();
         const auto floor = world.add({.bound = crofton::Obb{{}, glm::mat3(1.0f), {5.0f, 0.2f, 5.0f}}}).value();
-        world.set_body(floor, &slab);
+        world.set_body(floor, &slab).value();
         std::size_t pushed = 0;
         const auto push = [&](const crofton::BodyContact& contact, const glm::dvec3& position, const glm::dvec3& normal,
                               double depth, float* memory) {
@@ -124,8 +126,8 @@ TEST_SUITE("world/guide") {
         const auto capsule = crofton::convex::Body::capsule(0.6f, 0.3f).value();  // a character, upright
         const crofton::Obb around{{0.0, 1.0, 0.0}, glm::mat3(1.0f), {0.4f, 1.0f, 0.4f}};
         const auto hero = world.add({.bound = around, .user = 7}).value();
-        world.set_body(hero, &capsule);
-        world.update(jobs);
+        world.set_body(hero, &capsule).value();
+        world.update(jobs).value();
         for (const crofton::BodyContact& contact : world.body_contacts())
             for (std::uint32_t i = 0; i < contact.point_count; ++i) {
                 crofton::convex::TrackedPoint& point = contact.points[i];

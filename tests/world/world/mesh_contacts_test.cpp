@@ -369,4 +369,33 @@ TEST_SUITE("world/mesh_contacts") {
             CHECK(!world.raycast({5.0 * outer[2] + 4.0 * outer[0], -outer[2]}));
         }
     }
+
+    TEST_CASE("normals of contacts with meshes are of unit length, however floats have rounded the boxes' axes") {
+        oracle::NearMisses random(23);
+        World world({.mesh_depth = true});
+        const MeshHandle mesh = world.add_mesh(described(cube_mesh())).value();
+        const auto turned = [&] {
+            return glm::mat3_cast(
+                glm::dquat(glm::dvec3(random.number(0, 6), random.number(0, 6), random.number(0, 6))));
+        };
+        for (int i = 0; i < 60; ++i) {
+            const glm::dvec3 place = 3.0 * random.direction();
+            if (i % 3 == 0) {
+                REQUIRE(world.add({.mesh = mesh, .transform = at(place, turned())}).has_value());
+            } else if (i % 3 == 1) {
+                REQUIRE(world.add({.bound = Sphere{place, 0.6}}).has_value());
+            } else {
+                REQUIRE(world.add({.bound = Obb{place, glm::mat3(turned()), {0.5f, 0.7f, 0.3f}}}).has_value());
+            }
+        }
+        REQUIRE(world.update().has_value());
+        std::size_t normals = 0;
+        for (const Contact& contact : world.contacts()) {
+            if (contact.normal != glm::dvec3(0.0)) CHECK(std::abs(glm::length(contact.normal) - 1.0) < 1e-15);
+            for (const mesh::MeshContact& touch : contact.triangles)
+                if (touch.normal != glm::dvec3(0.0)) CHECK(std::abs(glm::length(touch.normal) - 1.0) < 1e-14);
+            normals += 1 + contact.triangles.size();
+        }
+        CHECK(normals > 100);
+    }
 }

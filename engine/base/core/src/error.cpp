@@ -1,10 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include <crofton/core/error.hpp>
 
+#include <cstdio>
+#include <cstdlib>
 #include <new>
 #include <utility>
 
 namespace crofton {
+
+void detail::end_without_value(const Error& error) {
+    std::fprintf(stderr, "crofton: %s: %s\n", to_string(error.code), error.message.c_str());
+    std::abort();
+}
 
 const char* to_string(ErrorCode code) {
     switch (code) {

@@ -29,6 +29,12 @@ constexpr double kAxisTolerance = 1e-5;
 
 // A box whose thinnest edge is below this part of its longest is searched again in double: float is too coarse for it.
 constexpr double kThin = 1e-3;
+// Of a box's value, by storing its axes as floats.
+constexpr double kRoundingThatCounts = 1e-6;
+// What ordinary sets' proofs leave out for the rounding of widths, relative to the value.
+constexpr double kProofRounding = 1e-12;
+// A share of the value from which on the value is nothing but rounding.
+constexpr double kAllRounding = 0.999;
 
 constexpr SmallSetEffort kFastSmallSet{1, 6, 2}, kTightSmallSet{2, 9, 4}, kTightSmallSetByVolume{3, 9, 4};
 constexpr Effort kFast{kFastSmallSet, 4, 2, 5}, kTight{{4, 9, 4}, 5, 40, 40};
@@ -161,17 +167,21 @@ Obb Fitter::fit_small_set_fast(const Weights& weights) {
 Obb Fitter::fit_small_set_tight(const Weights& weights, const measure::Criterion& criterion) {
     cloud_.sorted(subset_);
     Pair found = search_pair(weights, weights.product > 0.0 ? kTightSmallSetByVolume : kTightSmallSet);
+    const SmallSetSearch::Found fast_by_volume = found.fast;
     Weights by = weights;
     const bool flat = is_volume_alone(weights) && std::min(found.fast.value, found.tight.value) <= kFlat;
     if (flat) {
         by = kArea;
         found = search_pair(by, kTightSmallSet);
     }
-    const auto box = [&](const SmallSetSearch::Found& of) {
-        return enclose_small_set(cloud_, rounded(of.axes, of.extent, by, kAxisTolerance));
+    const auto box = [&](const SmallSetSearch::Found& of, const Weights& searched_by) {
+        return enclose_small_set(cloud_, rounded(of.axes, of.extent, searched_by, kAxisTolerance));
     };
-    const Obb tight = box(found.tight);
-    return found.tight.axes == found.fast.axes ? tight : better_of(tight, box(found.fast), criterion, flat);
+    Obb best = box(found.tight, by);
+    if (found.tight.axes != found.fast.axes) best = better_of(best, box(found.fast, by), criterion, flat);
+    // What a fast fit does not find to be flat, it fits by volume.
+    if (flat && fast_by_volume.value > kFlat) best = better_of(best, box(fast_by_volume, weights), criterion, false);
+    return best;
 }
 
 Obb Fitter::fit_large_set(const Weights& asked, const FitOptions& options) {
@@ -240,11 +250,21 @@ Result<ExactFit> Fitter::exact(std::span<const Point> points, const ExactOptions
     ExactFit fit;
     fit.box = box_of(found.best.axes, weights, 3e-7);
     fit.value = options.criterion(measure::intrinsic_volumes_of_box(fit.box));
+    const double unrounded = found.best.value * scale;
+    // Where the axes' rounding to float counts, or the search has not ended, another frame may be better.
+    if (!found.complete || fit.value - unrounded > kRoundingThatCounts * fit.value) {
+        const auto tight = Fitter().fit(points, {options.criterion, Quality::tight});
+        if (!tight) return tl::unexpected(tight.error());
+        fit.box = better_of(fit.box, *tight, options.criterion, flat);
+        fit.value = options.criterion(measure::intrinsic_volumes_of_box(fit.box));
+    }
     fit.lower_bound = std::min(found.lower_bound * scale, fit.value);
     fit.gap = fit.value > 0.0 ? (fit.value - fit.lower_bound) / fit.value : 0.0;
-    const double unrounded = found.best.value * scale;
     fit.rounding = fit.value > 0.0 ? std::clamp((fit.value - unrounded) / fit.value, 0.0, fit.gap) : 0.0;
-    fit.complete = found.complete;
+    // Rounding of widths in double, which the proof leaves out, may be more than the gap: but for sets whose best value
+    // is 0 but for rounding.
+    const bool is_proved = !(fit.gap - fit.rounding > options.gap + kProofRounding) || fit.rounding > kAllRounding;
+    fit.complete = found.complete && is_proved;
     fit.cells = found.cells;
     fit.subset = found.subset;
     return fit;

@@ -12,11 +12,10 @@
 namespace crofton::fit {
 namespace {
 
-constexpr double kGoldenShare = 0.61803398874989485;
-
 template <class Function>
-double minimise(double low, double high, int steps, Function f) {
-    double a = high - kGoldenShare * (high - low), b = low + kGoldenShare * (high - low);
+double least_of(double low, double high, int steps, Function f) {
+    constexpr double kGolden = 0.61803398874989485;
+    double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
     double at_a = f(a), at_b = f(b);
     for (int i = 0; i < steps; ++i)
         if (at_a < at_b) {
@@ -63,7 +62,7 @@ class SharpEnd {
         double best_beyond = length_, least = kInfinity;
         for (double beyond = length_; beyond >= std::max(rounding_, 0x1p-60 * length_); beyond *= 0.5)
             if (const double value = perimeter(beyond); value < least) least = value, best_beyond = beyond;
-        best_beyond = minimise(0.5 * best_beyond, 2.0 * best_beyond, 40, perimeter);
+        best_beyond = least_of(0.5 * best_beyond, 2.0 * best_beyond, 40, perimeter);
         for (int k = 0; k < 5; ++k, best_beyond *= 2.0)
             try_corner(end_ - best_beyond * along_ + middle(best_beyond) * glm::dvec2(-along_.y, along_.x), best);
     }
@@ -82,7 +81,7 @@ class SharpEnd {
     // Where the corner opens least: the opening is convex.
     [[nodiscard]] double middle(double beyond) const {
         const double thickness = high_ - low_;
-        return minimise(low_ - thickness, high_ + thickness, 40, [&](double y) { return opening(beyond, y); });
+        return least_of(low_ - thickness, high_ + thickness, 40, [&](double y) { return opening(beyond, y); });
     }
 
     void try_corner(const glm::dvec2& corner, std::optional<Triangle2>& best) const {

@@ -34,6 +34,16 @@ collide::Manifold touch_of_bounds(const Object& a, const Obb& box_a, const Objec
     return manifold;
 }
 
+glm::dvec3 unit_or_zero(const glm::dvec3& v) {
+    const double length = glm::length(v);
+    return length > 0.0 ? v / length : v;
+}
+
+// Axes of boxes, and so poses, are orthonormal as far as floats are: a direction they turn needs its length again.
+glm::dvec3 turned(const RigidTransform& pose, const glm::dvec3& direction) {
+    return unit_or_zero(pose.rotation * direction);
+}
+
 // The box of what is no collider: it is refused by validate(Obb).
 Obb no_box() {
     Obb box;
@@ -114,7 +124,7 @@ void ContactFinder::touch_triangles(const PosedTree& a, const PosedTree& b, Work
     for (mesh::MeshContact contact : worker.found) {
         contact.segment = {transform(a.pose, contact.segment.begin), transform(a.pose, contact.segment.end)};
         if (mirrors) std::swap(contact.segment.begin, contact.segment.end);  // to go round as MeshContact says
-        contact.normal = a.pose.rotation * contact.normal;
+        contact.normal = turned(a.pose, contact.normal);
         worker.triangles.push_back(contact);
     }
     const collide::Manifold manifold = collide::contact_manifold(*a.tree, *b.tree, b_to_a, worker.found);
@@ -122,11 +132,11 @@ void ContactFinder::touch_triangles(const PosedTree& a, const PosedTree& b, Work
     for (int i = 0; i < manifold.count; ++i)
         worker.points.push_back({transform(a.pose, manifold.points[i].position), manifold.points[i].depth});
     touch.depth = manifold.depth;
-    touch.normal = a.pose.rotation * manifold.normal;
+    touch.normal = turned(a.pose, manifold.normal);
     if (!options_.mesh_depth) return;
     const mesh::MeshDepth way_out = mesh::penetration(*a.tree, *b.tree, b_to_a, worker.found);
     touch.depth = way_out.depth;
-    touch.normal = a.pose.rotation * way_out.direction;
+    touch.normal = turned(a.pose, way_out.direction);
 }
 
 // The normal points from the mesh to the ball.
@@ -139,7 +149,7 @@ void ContactFinder::touch_ball(const PosedTree& mesh, const PosedTree& center, d
     if (!touch.hit) return;
     const double signed_distance = inside ? -gap.distance : gap.distance;
     const glm::dvec3 on_mesh = transform(mesh.pose, gap.on_a);
-    if (gap.distance > 0.0) touch.normal = (center.pose.translation - on_mesh) / signed_distance;
+    if (gap.distance > 0.0) touch.normal = unit_or_zero((center.pose.translation - on_mesh) / signed_distance);
     touch.depth = radius - signed_distance;
     touch.point_count = 1;
     worker.points.push_back({on_mesh, touch.depth});

@@ -71,11 +71,14 @@ class Search {
 
     void set_best(const glm::dmat3& axes, double value, const glm::dvec3& w) {
         result_.best = {axes, value};
-        // Widths below 1e-13 of the size are rounding of the coordinates: the proof leaves out what they may change.
+        // Widths below 1e-13 of the size are rounding of the coordinates: no cell's bound comes nearer to the value
+        // than what they may change. The proof leaves that out, but for what half the gap has room for.
         const double slopes = weights_.product * (w.x * w.y + w.y * w.z + w.z * w.x) +
                               2.0 * weights_.pairs * (w.x + w.y + w.z) + 3.0 * weights_.sum;
+        double left_out = 1e-13 * slopes;
+        if (left_out > 1e-12 * value) left_out = std::max(0.0, left_out - 0.5 * limits_.gap * value);
         // It never rises, since cells were left out for what it was.
-        target_ = std::min(target_, std::max(0.0, value * (1.0 - limits_.gap) - 1e-13 * slopes));
+        target_ = std::min(target_, std::max(0.0, value * (1.0 - limits_.gap) - left_out));
     }
 
     // Asks the host now and then. `bound` is that of the cell which is about to be split.

@@ -24,7 +24,8 @@ extern "C" {
 typedef struct crofton_world crofton_world;
 
 /* An index that is used again and a generation that tells its users apart; index CROFTON_NONE: none. A call that takes
- * the handle of what has been removed returns CROFTON_STALE_HANDLE. Generations begin at 1: so it does for {0, 0}. */
+ * the handle of what has been removed, or one of another world, returns CROFTON_STALE_HANDLE. Generations begin
+ * elsewhere in each world of the process and are never 0: so it does for {0, 0}. */
 typedef struct crofton_object {
     uint32_t index, generation;
 } crofton_object;

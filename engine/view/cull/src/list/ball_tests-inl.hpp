@@ -33,9 +33,11 @@ struct BallRow {
 
 // Those of the wanted lanes that certainly have a point inside all planes. The search steps from the centre onto the
 // plane that is missed by most, a little beyond it, again and again. 2^-16 covers the roundings of |v|² and of the
-// radius.
+// radius. Radii whose squares might overflow, or underflow to where floats lose digits, are left to exact arithmetic.
 HWY_INLINE MF has_witness(const SphereLanes& balls, const BallRow* rows, unsigned count, MF wanted) {
     const DF d;
+    wanted =
+        hn::And(wanted, hn::And(hn::Ge(balls.radius, hn::Set(d, 1e-15f)), hn::Le(balls.radius, hn::Set(d, 1e18f))));
     VF v[3] = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
     const VF most = hn::Mul(hn::Mul(balls.radius, balls.radius), hn::Set(d, 1.0f - 0x1p-16f));
     MF found = hn::FirstN(d, 0);

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
+#include <type_traits>
 #include <utility>
 
 namespace crofton {
@@ -53,8 +54,60 @@ struct Error {
     ~Error() = default;
 };
 
+// What Result::value() throws where there is none: uncaught, it says the error's message.
+class BadResult : public tl::bad_expected_access<Error> {
+  public:
+    using tl::bad_expected_access<Error>::bad_expected_access;
+    [[nodiscard]] const char* what() const noexcept override {
+        return error().message.empty() ? to_string(error().code) : error().message.c_str();
+    }
+};
+
+namespace detail {
+[[noreturn]] void end_without_value(const Error& error);  // prints the message and aborts
+}
+
+// A value, or the Error for which there is none. The compiler warns where one is ignored: look at it, or write
+// (void)world.update() where an error cannot be.
 template <class T>
-using Result = tl::expected<T, Error>;
+class [[nodiscard]] Result : public tl::expected<T, Error> {
+    using Base = tl::expected<T, Error>;
+
+  public:
+    Result() = default;
+    Result(Base result) : Base(std::move(result)) {}
+    Result(tl::unexpected<Error> error) : Base(std::move(error)) {}
+    template <class U = T>
+    requires(std::is_constructible_v<T, U&&> && !std::derived_from<std::remove_cvref_t<U>, Base> &&
+             !std::same_as<std::remove_cvref_t<U>, tl::unexpected<Error>>) explicit(!std::is_convertible_v<U&&, T>)
+        Result(U&& value)
+        : Base(std::forward<U>(value)) {}
+
+    // The value; nothing, of a Result<void>. Without one it throws BadResult, or ends the program with the message
+    // where exceptions are off: for programs to which an error is the end, and for tests.
+    std::add_lvalue_reference_t<const T> value() const& {
+        demand();
+        if constexpr (!std::is_void_v<T>) return **this;
+    }
+    std::add_lvalue_reference_t<T> value() & {
+        demand();
+        if constexpr (!std::is_void_v<T>) return **this;
+    }
+    std::add_rvalue_reference_t<T> value() && {
+        demand();
+        if constexpr (!std::is_void_v<T>) return std::move(**this);
+    }
+
+  private:
+    void demand() const {
+        if (this->has_value()) return;
+#if defined(__cpp_exceptions) || defined(_CPPUNWIND)
+        throw BadResult(this->error());
+#else
+        detail::end_without_value(this->error());
+#endif
+    }
+};
 
 // A text or a number within a message. Views what it is made of.
 class MessagePart {

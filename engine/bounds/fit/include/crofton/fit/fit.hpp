@@ -18,7 +18,7 @@ namespace crofton::fit {
 enum class Quality : std::uint8_t {
     fast,   // a local search with little effort: within 0.3 % of the optimum on average (docs/notes/fit.md)
     tight,  // a local search from many frames: within 0.03 % on average, never worse than `fast` (by area where flat)
-    exact,  // the global optimum, proved; fit_exact also returns the proof's bound
+    exact,  // the global optimum, proved, and never worse than `tight` in the same sense; fit_exact tells the bound
 };
 
 struct FitOptions {
@@ -86,7 +86,10 @@ struct ExactFit {
     // volume, gap and rounding of a tilted flat set are 1: its best box has volume 0, its best box of floats has not.
     // gap − rounding is what the search left unproved.
     double rounding = 0.0;
-    bool complete = false;  // the search ended by itself
+    // The search ended by itself and proved ExactOptions::gap: gap − rounding is no more, but for 1e-12, or the value is
+    // rounding to a thousandth, as a line's area is. False of what cannot be proved in double: thin sets by volume, and
+    // flat ones by volume and edges together at sizes at which the volume counts 10^6 times as much as the rest.
+    bool complete = false;
     std::uint64_t cells = 0;
     std::size_t subset = 0;  // number of points that the proof used
 };
@@ -124,9 +127,9 @@ enum class PlanarCriterion : std::uint8_t {
 // Laskowski 1985; DePano 1987). The other sides touch the hull, by area in their middles, by perimeter where the
 // excircles touch them. Contains every point, decided exactly, and is larger than the best by rounding only (1e-9 of
 // it for slivers). Points that are as thin as the rounding of their coordinates have, by area, a triangle twice as long
-// and twice as thick as they are. One point is a triangle of three equal corners, points of a line have one with two. By area
-// O(n log n + h²) for n points and h edges of their hull: 0.1 s for 4,000 edges. By perimeter besides some 0.2 ms an
-// edge. Errors as above.
+// and twice as thick as they are. One point is a triangle of three equal corners, points of a line have one with two.
+// By area O(n log n + h²) for n points and h edges of their hull: 0.1 s for 4,000 edges. By perimeter besides some 0.2
+// ms an edge. Errors as above.
 [[nodiscard]] Result<std::array<glm::dvec2, 3>> minimal_triangle(std::span<const glm::dvec2> points,
                                                                  PlanarCriterion criterion);
 

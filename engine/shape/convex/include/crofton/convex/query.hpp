@@ -16,7 +16,8 @@ namespace crofton::convex {
 // ---- Overlap, distance, depth ----
 
 // A body where it stands: the image of its stored points under the stored pose, all taken as reals. Poses are valid
-// and without reflection, as validate_pose tells. Alive for the call only.
+// and without reflection, as validate_pose tells. A rotation that is orthonormal to 1e-6 alone skews the stored points
+// as it says; a body's rounding keeps its radius. Alive for the call only.
 struct Placed {
     const Body& body;
     const RigidTransform& pose;
@@ -46,8 +47,10 @@ struct PairCache {
 [[nodiscard]] bool intersects(const Placed& a, const Placed& b, PairCache* cache = nullptr);
 
 struct Distance {
-    double distance = 0.0;            // between on_a and on_b; 0 iff the bodies meet
-    double lower = 0.0, upper = 0.0;  // proven: the true distance lies between
+    double distance = 0.0;  // between on_a and on_b; 0 iff the bodies meet
+    // Proven: the true distance lies between. Of round bodies that are told to meet (see intersects) both are 0, though
+    // they may be 1e-11 of the size apart, cylinders and cones 1e-7.
+    double lower = 0.0, upper = 0.0;
     glm::dvec3 on_a{0.0}, on_b{0.0};  // nearest points; of bodies that meet, a common point up to 1e-9 of the size
     glm::dvec3 normal{0.0};           // unit, from a to b; 0 of bodies that meet
     PartId part_a{}, part_b{};        // the nearest parts of bodies of parts

@@ -32,14 +32,16 @@ enum class CullMode : std::uint8_t {
 
 // Exact for the boxes' and planes' stored numbers: `outside` as the mode says, `inside` iff the frustum contains the
 // box; touching from outside is straddling. A box or a frustum that is not finite, or beyond 1e30 (a plane's
-// offset: 1e50), is `straddling`: never lost. Planes decide most boxes in double with a proven error bound. The rest go
-// through the separating-axis test (Gottschalk, Lin, Manocha 1996). Where rounding could still matter, exact arithmetic
-// decides.
+// offset: 1e50), is `straddling`: never lost. So is every bound where a plane's normal, which need not be of unit
+// length, has a component above 2 in magnitude: divide normal and offset by its length. Planes decide most boxes in
+// double with a proven error bound. The rest go through the separating-axis test (Gottschalk, Lin, Manocha 1996). Where
+// rounding could still matter, exact arithmetic decides.
 [[nodiscard]] Verdict classify(const Frustum& frustum, const Obb& box, CullMode mode = CullMode::exact);
 
 // The same for axis-aligned boxes and for balls. An empty Aabb and a negative radius are `straddling`, as is what is
-// not finite. `inside` and `outside` are exact for a ball too, with one exception. Numbers of the ball or the view that
-// are not 0 but below 1e-60 in magnitude may leave it `straddling` though an edge rejects it.
+// not finite. `inside` and `outside` are exact for a ball too, with two exceptions. Numbers of the ball or the view
+// that are not 0 but below 1e-60 in magnitude may leave it `straddling` though an edge rejects it. So may a view whose
+// half-spaces have no point in common while each three of them do: a camera's always have.
 [[nodiscard]] Verdict classify(const Frustum& frustum, const Aabb& box, CullMode mode = CullMode::exact);
 [[nodiscard]] Verdict classify(const Frustum& frustum, const Sphere& sphere, CullMode mode = CullMode::exact);
 
