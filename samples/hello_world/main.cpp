@@ -13,7 +13,7 @@ int main() {
     crofton::VisibleObjects visible;  // keeps its memory from frame to frame
     for (int frame = 0; frame < 60; ++frame) {
         world.set_bound(ball, crofton::Sphere{{frame - 30.0, 0.0, -10.0}, 1.0}).value();
-        world.update();                                   // once a frame; the queries below are const
+        world.update().value();                           // once a frame; the queries below are const
         world.view({.camera = camera}, visible).value();  // visible[i].object is what to draw
         for (const crofton::Contact& contact : world.contacts())
             if (contact.phase == crofton::ContactPhase::began)
