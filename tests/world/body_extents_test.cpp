@@ -284,8 +284,7 @@ TEST_SUITE("world/body_extents") {
         CHECK(world.box_of(fits)->half_extents == before.half_extents);
         // Views see what the body has.
         VisibleObjects seen;
-        const Camera camera{
-            .position = {2.1, 0, -5}, .forward = {0, 0, 1}, .up = {0, 1, 0}, .fov_y = 0.02};
+        const Camera camera{.position = {2.1, 0, -5}, .forward = {0, 0, 1}, .up = {0, 1, 0}, .fov_y = 0.02};
         REQUIRE(world.view(camera, seen).has_value());
         CHECK(seen.size() == 1);
         REQUIRE(world.set_body(object, nullptr).has_value());
@@ -369,7 +368,8 @@ TEST_SUITE("world/body_extents") {
         }
     }
 
-    TEST_CASE("an uneven scale or a shear moves every vertex of what has vertices; a mirror turns triangles round") {
+    TEST_CASE(
+        "an uneven scale or a shear moves every vertex of what has vertices, and a mirror turns triangles round") {
         RandomBodies random(5600);
         for (int i = 0; i < 120; ++i) {
             const bool shears = i % 2 == 1;
