@@ -50,7 +50,7 @@ TEST_SUITE("capi/bodies") {
         CHECK(distance.distance == doctest::Approx(1.0));
     }
 
-    TEST_CASE("a ray at a body: its first point, from inside at once, a miss at infinity; bad rays are refused") {
+    TEST_CASE("a ray at a body: its first point, from inside at once, a miss at infinity, and bad rays are refused") {
         const BodyHandle box = box_body(1, 2, 3);
         const crofton_transform there = translation(10, 0, 0);
         const crofton_placed placed{box.get(), &there};

@@ -368,7 +368,8 @@ TEST_SUITE("world/body_extents") {
         }
     }
 
-    TEST_CASE("an uneven scale or a shear moves every vertex of what has vertices; a mirror turns triangles round") {
+    TEST_CASE(
+        "an uneven scale or a shear moves every vertex of what has vertices, and a mirror turns triangles round") {
         RandomBodies random(5600);
         for (int i = 0; i < 120; ++i) {
             const bool shears = i % 2 == 1;
