@@ -8,7 +8,7 @@
 
 namespace crofton::testing {
 
-[[nodiscard]] inline RigidTransform product(const RigidTransform& outer, const RigidTransform& inner) {
+[[nodiscard]] inline RigidTransform placed_in(const RigidTransform& outer, const RigidTransform& inner) {
     return {outer.rotation * inner.rotation, outer.rotation * inner.translation + outer.translation};
 }
 
@@ -30,12 +30,12 @@ struct Floor {
         hulls.push_back(std::make_unique<convex::Hull>(convex::Hull::build(points).value()));
         add(convex::Body::hull(*hulls.back()), pose);
     }
-    // A polygon of the plane, `thick` down.
+    // A polygon of the plane, `thick` down; around its first corner, and so flush but for rounding to float.
     void add_prism(const std::vector<glm::vec2>& corners, float thick) {
         std::vector<glm::vec3> points;
         for (const glm::vec2& p : corners)
-            for (const float y : {0.0f, -thick}) points.emplace_back(p.x, y, p.y);
-        add_hull(points, at({}));
+            for (const float y : {0.0f, -thick}) points.emplace_back(p.x - corners[0].x, y, p.y - corners[0].y);
+        add_hull(points, at({corners[0].x, 0, corners[0].y}));
     }
     void add_rectangle(RandomBodies& random, Tiles tiles, const glm::vec2& low, const glm::vec2& high, float thick) {
         if (tiles == Tiles::mixed) tiles = static_cast<Tiles>(random.index(5));

@@ -2,6 +2,7 @@
 // Contact points and deepest points are on both bodies, whatever the bodies' forms.
 #include <doctest/doctest.h>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <crofton/convex/query.hpp>
 #include <optional>

@@ -36,7 +36,7 @@ struct Asked {
 // Every field of every point: on the plane and on the body, along its normal, of a part that is there.
 void check_against_plane(const Asked& asked, std::span<const Manifold> found, double tolerance) {
     const glm::dvec3 up = asked.frame.rotation[1];
-    const RigidTransform pose = product(asked.frame, asked.pose);
+    const RigidTransform pose = placed_in(asked.frame, asked.pose);
     CHECK(found.size() == 1);
     if (found.size() != 1) return;
     const Manifold& m = found[0];
@@ -56,7 +56,7 @@ void check_against_plane(const Asked& asked, std::span<const Manifold> found, do
         const PartId id = asked.swapped ? p.part_b : p.part_a;
         REQUIRE(id.child < asked.floor.part_count());
         const CompoundChild& part = asked.floor.part(id.child);
-        const RigidTransform there = product(asked.frame, part.pose);
+        const RigidTransform there = placed_in(asked.frame, part.pose);
         CHECK(closest_point({part.body, there}, on_floor).distance <= tolerance + 2e-3 * std::abs(p.depth));
         CHECK((asked.swapped ? p.part_a : p.part_b) == PartId{});
         ids.insert({p.part_a, p.part_b, p.on_a, p.on_b});
@@ -81,7 +81,7 @@ int check_floor(RandomBodies& random, const Floor& floor, const Sliders& sliders
         if (i % 5 != 0) frame.rotation = random.rotation();
         if (i % 5 > 2) frame.translation = std::pow(10.0, random.number(0.0, 4.0)) * random.direction();
         const Asked asked{compound, frame, body, sunk(random, body, floor, depth, upright), depth, i % 7 == 0};
-        const RigidTransform pose = product(frame, asked.pose);
+        const RigidTransform pose = placed_in(frame, asked.pose);
         const ManifoldOptions options{.margin = depth < 0.0 ? 0.02 : 0.0};
         if (asked.swapped)
             contact_manifolds({body, pose}, {Body::compound(compound), frame}, options, found);
@@ -161,7 +161,7 @@ TEST_SUITE("convex/union_normals_of_edges") {
             const RigidTransform frame{i % 4 == 0 ? glm::dmat3(1.0) : random.rotation(),
                                        (i % 2 == 0 ? 0.0 : 100.0) * random.direction()};
             const Body body = i % 5 == 0 ? Body::ball(0.25).value() : Body::box({0.25f, 0.25f, 0.25f}).value();
-            const RigidTransform pose = product(frame, at({face - 0.25 + in, 0.25 - down, random.number(-3.0, 3.0)}));
+            const RigidTransform pose = placed_in(frame, at({face - 0.25 + in, 0.25 - down, random.number(-3.0, 3.0)}));
             contact_manifolds({Body::compound(compound), frame}, {body, pose}, {}, found);
             CHECK(found.all().size() == 2);
             const Manifold *up = along(found.all(), frame.rotation[1]), *back = along(found.all(), -frame.rotation[0]);
@@ -179,7 +179,7 @@ TEST_SUITE("convex/union_normals_of_edges") {
             CAPTURE(i);
             const double down = random.number(1e-4, 0.009), in = random.number(1e-5, 0.9) * down;
             const RigidTransform frame{random.rotation(), 10.0 * random.direction()};
-            const RigidTransform pose = product(frame, at({-0.25 + in, 0.25 - down, random.number(-3.0, 3.0)}));
+            const RigidTransform pose = placed_in(frame, at({-0.25 + in, 0.25 - down, random.number(-3.0, 3.0)}));
             const Body body = Body::box({0.25f, 0.25f, 0.25f}).value();
             const auto ask = [&](double step, double gap) {
                 const CompoundChild parts[] = {block({-4, -1, -4}, {-gap, 0, 4}), block({0, -1, -4}, {4, step, 4})};
@@ -254,7 +254,7 @@ TEST_SUITE("convex/union_normals_of_edges") {
             const Compound below = Compound::build(floor.parts).value(), above = Compound::build(pieces).value();
             const RigidTransform frame{random.rotation(), 10.0 * random.direction()};
             const double depth = random.number(1e-5, 0.02);
-            const RigidTransform pose = product(
+            const RigidTransform pose = placed_in(
                 frame, {around_y(random.number(0, 6.2)), {random.number(-2, 2), 0.2 - depth, random.number(-2, 2)}});
             if (i % 3 == 0)
                 contact_manifolds({Body::compound(above), pose}, {Body::compound(below), frame}, {}, found);

@@ -20,10 +20,10 @@ double least_of(double low, double high, int steps, Function f) {
     for (int i = 0; i < steps; ++i)
         if (at_a < at_b) {
             high = b, b = a, at_b = at_a;
-            a = high - kGoldenShare * (high - low), at_a = f(a);
+            a = high - kGolden * (high - low), at_a = f(a);
         } else {
             low = a, a = b, at_a = at_b;
-            b = low + kGoldenShare * (high - low), at_b = f(b);
+            b = low + kGolden * (high - low), at_b = f(b);
         }
     return at_a < at_b ? a : b;
 }

@@ -73,14 +73,27 @@ class ManifoldFinder {
                 add_flush_contact(i, j, a.body.is_convex() && b.body.is_convex() ? cache : nullptr);
         const std::size_t wanted = flush.contacts().size();
         if (wanted == 0) return;
+        const bool deep = std::any_of(flush.contacts().begin(), flush.contacts().end(), [&](const auto& contact) {
+            return std::abs(contact.depth) > flush_tolerance(a, b);  // what rests flush itself has no way to go
+        });
         all = own;
         for (const Placed& other : beside.a) add_parts(0, other, b, all.parts[0]);
         for (const Placed& other : beside.b) add_parts(1, other, a, all.parts[1]);
-        for (std::uint32_t i = own.parts[0]; i < all.parts[0]; ++i)
-            for (std::uint32_t j = 0; j < own.parts[1]; ++j) add_flush_contact(i, j, nullptr);
-        for (std::uint32_t i = 0; i < own.parts[0]; ++i)
-            for (std::uint32_t j = own.parts[1]; j < all.parts[1]; ++j) add_flush_contact(i, j, nullptr);
-        flush.apply();
+        if (deep && flush.is_any_covered()) {
+            // Of those beside only what lies flush: bodies that are deep in each other are no floor.
+            flush.keep_parts(0, own.parts[0]);
+            flush.keep_parts(1, own.parts[1]);
+            all = own;
+            for (const Placed& other : beside.a)
+                if (are_flush(a, other)) add_parts(0, other, b, all.parts[0]);
+            for (const Placed& other : beside.b)
+                if (are_flush(b, other)) add_parts(1, other, a, all.parts[1]);
+            for (std::uint32_t i = own.parts[0]; i < all.parts[0]; ++i)
+                for (std::uint32_t j = 0; j < own.parts[1]; ++j) add_flush_contact(i, j, nullptr);
+            for (std::uint32_t i = 0; i < own.parts[0]; ++i)
+                for (std::uint32_t j = own.parts[1]; j < all.parts[1]; ++j) add_flush_contact(i, j, nullptr);
+            flush.apply(wanted);
+        }
         add_flush(wanted, false);
         scratch_.list.finish(std::clamp(options_.max_points, 1, 8), found_.all_);
     }
@@ -89,6 +102,9 @@ class ManifoldFinder {
     struct Count {
         std::uint32_t parts[2] = {0, 0};  // of the lists of `flush`
     };
+    [[nodiscard]] static bool are_flush(const Placed& a, const Placed& b) {
+        return !has_surfaces(b.body) && !is_half_space(b) && !(penetration(a, b).depth > flush_tolerance(a, b));
+    }
     void add_parts(int list, const Placed& body, const Placed& near, std::uint32_t& count) {
         if (has_surfaces(body.body) || is_half_space(body)) return;
         visit_parts_near(body, near, near_margin(near), [&](const Part& part) {

@@ -23,12 +23,6 @@ double reach_of(const Body& body) {
     return body.reach() + body.radius();
 }
 
-double flush_tolerance(const Placed& a, const Placed& b) {
-    const glm::dvec3 place = glm::abs(a.pose.translation);
-    const double size = reach_of(a.body) + reach_of(b.body) + glm::distance(a.pose.translation, b.pose.translation);
-    return kFlush * size + 0x1p-50 * (place.x + place.y + place.z);
-}
-
 bool holds(const Placed& body, const glm::dvec3& point, double tolerance) {
     const glm::dvec3 offset = point - body.pose.translation;
     if (body.body.kind() == Kind::box && body.body.radius() == 0.0) {
@@ -115,6 +109,12 @@ double depth_of(const UnionNormals::Contact& contact) {
 }
 
 }  // namespace
+
+double flush_tolerance(const Placed& a, const Placed& b) {
+    const glm::dvec3 place = glm::abs(a.pose.translation);
+    const double size = reach_of(a.body) + reach_of(b.body) + glm::distance(a.pose.translation, b.pose.translation);
+    return kFlush * size + 0x1p-50 * (place.x + place.y + place.z);
+}
 
 // Where a contact is on one of its parts, as far as that part is farthest along the normal there: points, those between
 // them, and their middle.
@@ -379,9 +379,36 @@ void UnionNormals::replace_behind() {
         }
 }
 
-void UnionNormals::apply() {
+// A contact's deepest point seen along another normal, up at the face of the first part across it. Beside a round body
+// the overlap there is as deep as its surface is flat.
+void UnionNormals::keep_deepest(const Contact& from, Contact& contact) const {
+    const Placed a = placed(0, contact.part[0]), b = placed(1, contact.part[1]);
+    const Pair pair(a, b);
+    const glm::dvec3 normal = contact.normal;
+    const ContactPoint* deepest = from.points;
+    for (int i = 1; i < from.count; ++i)
+        if (from.points[i].depth > deepest->depth) deepest = from.points + i;
+    const glm::dvec3 on_a = deepest->position + 0.5 * deepest->depth * from.normal;
+    const double turn = glm::dot(from.normal, normal), extent = pair.extent(normal) + pair.a.radius() + pair.b.radius();
+    const double top = core_support(a.body, Pair::local(a.pose.rotation, normal)).along + a.body.radius();
+    const double lift = std::max(0.0, top - glm::dot(on_a - a.pose.translation, normal));
+    ContactPoint& point = contact.points[0];
+    point = *deepest;
+    point.depth = turn > 0.5 ? std::min(extent, deepest->depth / turn) : extent;
+    point.position = on_a + (lift - 0.5 * point.depth) * normal;
+    contact.count = 1;
+    contact.depth = point.depth;
+}
+
+bool UnionNormals::is_any_covered() const {
+    return std::any_of(contacts_.begin(), contacts_.end(),
+                       [&](const Contact& contact) { return state_of(contact) != State::free; });
+}
+
+void UnionNormals::apply(std::size_t told) {
     if (contacts_.empty() || parts_[0].size() + parts_[1].size() < 3) return;
     if (is_half_space(placed(1, 0))) return;  // its normal is one already
+    raw_.assign(contacts_.begin(), contacts_.begin() + static_cast<std::ptrdiff_t>(told));
     states_.clear();
     for (const Contact& contact : contacts_) states_.push_back(state_of(contact));
     replace_behind();
@@ -390,6 +417,8 @@ void UnionNormals::apply() {
     do {
         replace_by_free();
     } while (push_least_deep());
+    for (std::size_t i = 0; i < told; ++i)
+        if (contacts_[i].count == 0) keep_deepest(raw_[i], contacts_[i]);
 }
 
 }  // namespace crofton::convex

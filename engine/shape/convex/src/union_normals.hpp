@@ -7,6 +7,9 @@
 
 namespace crofton::convex {
 
+// Faces of two bodies count as flush that are within this of each other: rounding of their sizes to float.
+[[nodiscard]] double flush_tolerance(const Placed& a, const Placed& b);
+
 // Two lists of convex parts, and where parts of the first touch parts of the second. The least deep way out of one part
 // may lead into its neighbour. So a contact whose points the neighbours cover is none of the union's: its pair of parts
 // pushes along the normal of another contact that parts them as well, else along the face that is least deep and free.
@@ -27,7 +30,13 @@ class UnionNormals {
     // Returns its number in its list. Parts that touch nothing count as neighbours.
     std::uint32_t add_part(int list, const Part& part);
     void add_contact(std::uint32_t first, std::uint32_t second, const Manifold& manifold);
-    void apply();
+    // Whether a neighbour covers any contact, in part at least.
+    [[nodiscard]] bool is_any_covered() const;
+    // Each of the first `told` contacts keeps a point, as a pair that meets has one.
+    void apply(std::size_t told = 0);
+    void keep_parts(int list, std::uint32_t count) {
+        parts_[list].erase(parts_[list].begin() + count, parts_[list].end());
+    }
     [[nodiscard]] std::span<const Contact> contacts() const { return contacts_; }
     [[nodiscard]] const Part& part(int list, std::uint32_t number) const { return parts_[list][number]; }
 
@@ -49,13 +58,14 @@ class UnionNormals {
     void replace_by_free();
     [[nodiscard]] bool is_behind(const Contact& contact, const Contact& other) const;
     void replace_behind();
+    void keep_deepest(const Contact& from, Contact& contact) const;
     bool push_least_deep();
     double gather_along(const glm::dvec3& normal, Contact& contact) const;
     [[nodiscard]] bool find_own_face(const Contact& contact, Contact& found) const;
 
     double margin_ = 0.0;
     Vector<Part> parts_[2];
-    Vector<Contact> contacts_;
+    Vector<Contact> contacts_, raw_;
     Vector<State> states_;  // by contact
 };
 

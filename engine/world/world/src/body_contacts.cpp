@@ -21,6 +21,32 @@ void BodyContacts::list(std::span<const ObjectPair> pairs, const ObjectBodies& b
     }
 }
 
+void BodyContacts::list_neighbors(std::span<const ObjectPair> pairs, const SpatialIndex& index, double margin) {
+    neighbors_.clear();
+    for (const Touch& touch : touches_)
+        neighbors_.add({pairs[touch.pair].first.object.index, pairs[touch.pair].second.object.index});
+    neighbors_.list(moved_.size(), index, margin);
+}
+
+bool BodyContacts::have_moved(const Neighbors& neighbors) const {
+    for (const Vector<std::uint32_t>& objects : neighbors.objects)
+        for (const std::uint32_t object : objects)
+            if (moved_[object] != 0) return true;
+    return false;
+}
+
+void BodyContacts::place_neighbors(const ObjectBodies& bodies, const ObjectTable& table, const SpatialIndex& index,
+                                   const scene::Scene& scene, Worker& worker) const {
+    worker.poses.clear();
+    worker.poses.reserve(worker.neighbors.objects[0].size() + worker.neighbors.objects[1].size());
+    for (int side = 0; side < 2; ++side) {
+        worker.placed[side].clear();
+        for (const std::uint32_t object : worker.neighbors.objects[side])
+            if (const auto pose = bodies.pose_of(object, table.objects[object], index.box(object), scene))
+                worker.placed[side].push_back({bodies.body(object), worker.poses.emplace_back(*pose)});
+    }
+}
+
 void BodyContacts::note_moved(const SpatialIndex& index) {
     moved_.assign(index.size(), 0);
     for (const auto items : {index.moved_items(), std::span<const std::uint32_t>(changed_)})
@@ -38,6 +64,7 @@ void BodyContacts::update(std::span<const ObjectPair> pairs, const ObjectBodies&
     }
     note_moved(index);
     list(pairs, bodies);
+    list_neighbors(pairs, index, margin);
     workers_.resize(std::max<std::size_t>(workers_.size(), executor.concurrency()));
     for (Worker& worker : workers_) worker.points.clear();
     executor.parallel_for(touches_.size(), kPairsATask, [&](std::size_t begin, std::size_t end, unsigned w) {
@@ -54,15 +81,20 @@ void BodyContacts::update(std::span<const ObjectPair> pairs, const ObjectBodies&
                 const auto first = points_.begin() + before->first_point;
                 worker.pair_points.assign(first, first + before->point_count);
             }
-            if (before != nullptr && moved_[a] == 0 && moved_[b] == 0) {
+            neighbors_.find({a, b}, worker.neighbors);
+            touch.neighbors = worker.neighbors.name;
+            const bool same = before != nullptr && before->neighbors == touch.neighbors;
+            if (same && moved_[a] == 0 && moved_[b] == 0 && !have_moved(worker.neighbors)) {
                 for (convex::TrackedPoint& point : worker.pair_points) point.began = false;
             } else {
                 touch.computed = true;
                 const auto pose_a = bodies.pose_of(a, table.objects[a], index.box(a), scene),
                            pose_b = bodies.pose_of(b, table.objects[b], index.box(b), scene);
                 if (!pose_a || !pose_b) continue;
-                convex::contact_manifolds({bodies.body(a), *pose_a}, {bodies.body(b), *pose_b}, {.margin = margin},
-                                          worker.found, &touch.cache);
+                place_neighbors(bodies, table, index, scene, worker);
+                convex::contact_manifolds({bodies.body(a), *pose_a}, {bodies.body(b), *pose_b},
+                                          {worker.placed[0], worker.placed[1]}, {.margin = margin}, worker.found,
+                                          &touch.cache);
                 convex::track(worker.found.all(), worker.pair_points);
             }
             touch.point_count = static_cast<std::uint32_t>(worker.pair_points.size());
@@ -98,7 +130,7 @@ void BodyContacts::gather(std::span<const ObjectPair> pairs) {
         const auto first = static_cast<std::uint32_t>(next_points_.size());
         const auto from = workers_[touch.worker].points.begin() + touch.first_point;
         next_points_.insert(next_points_.end(), from, from + touch.point_count);
-        next_states_.push_back({pair, touch.cache, first, touch.point_count});
+        next_states_.push_back({pair, touch.cache, touch.neighbors, first, touch.point_count});
         const bool touched = touch.before != kNoIndex && states_[touch.before].point_count > 0;
         if (touch.point_count > 0)
             add(pair, touched ? ContactPhase::stayed : ContactPhase::began, first, touch.point_count);

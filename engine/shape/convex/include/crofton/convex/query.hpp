@@ -200,8 +200,9 @@ struct Beside {
     std::span<const Placed> a, b;
 };
 // As above, where a and those beside it touch as their union does, like children of a compound; so do b and those
-// beside it. Replaces `found` by the contacts of a and b, which may be none where those of a neighbour stand for them.
-// Ask each pair with the others beside it. Meshes and height fields take no part in it.
+// beside it. Replaces `found` by the contacts of a and b, at least one where they meet. Ask each pair with the others
+// beside it. Meshes, height fields, half-spaces and bodies that overlap by more than rounding to float take no part in
+// it.
 void contact_manifolds(const Placed& a, const Placed& b, const Beside& beside, const ManifoldOptions& options,
                        Manifolds& found, PairCache* cache = nullptr);
 
