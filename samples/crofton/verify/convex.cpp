@@ -163,6 +163,54 @@ VerifyRow casts_bisected(const VerifyOptions& options) {
                     "bisection in exact numbers", compared, wrong);
 }
 
+// How far the body reaches along a direction of the world.
+double reach_along(const Placed& body, const glm::dvec3& direction) {
+    const glm::dvec3 farthest = convex::support_point(body.body, glm::transpose(body.pose.rotation) * direction);
+    return glm::dot(direction, body.pose.rotation * farthest + body.pose.translation);
+}
+
+// Of every pair of kinds: at the impact each point is in its body, and as far out along the normal as the body goes;
+// and the normal parts the bodies.
+VerifyRow casts_points(const VerifyOptions& options) {
+    const convex::Body box = convex::Body::box({0.4f, 0.7f, 0.3f}).value();
+    const std::array bodies{box,
+                            convex::Body::ball(0.5).value(),
+                            convex::Body::capsule(0.6f, 0.3f).value(),
+                            convex::Body::rounded(box, 0.2).value(),
+                            convex::Body::cylinder(0.5f, 0.4f).value(),
+                            convex::Body::cone(0.5f, 0.4f).value(),
+                            convex::Body::triangle({0.0f, 0.0f, 0.0f}, {1.0f, 0.2f, 0.0f}, {0.3f, 0.9f, 0.1f}).value()};
+    constexpr double kTolerance = 1e-5;
+    const std::uint64_t casts = std::max<std::uint64_t>(2, options.trials / 2000) * bodies.size() * bodies.size();
+    ConvexPairs random(options.seed + 80);
+    std::uint64_t wrong = 0, hits = 0;
+    for (std::uint64_t i = 0; i < casts; ++i) {
+        const convex::Body &first = bodies[i % bodies.size()], &second = bodies[i / bodies.size() % bodies.size()];
+        const ConvexPairs::Pair pair = random.touching(first, second, random.number(0.2, 2.0), 0.0);
+        const convex::Motion a{0.2 * random.direction(), random.number(0.0, 1.0) * random.direction(), glm::dvec3(0.0)};
+        const convex::Motion b{-4.0 * pair.normal, random.number(0.0, 1.0) * random.direction(), glm::dvec3(0.0)};
+        const auto impact = convex::cast(pair.placed_a(), a, pair.placed_b(), b);
+        wrong += !impact;
+        if (!impact || impact->result != convex::CastResult::hit) continue;
+        ++hits;
+        const RigidTransform at_a = convex::moved(pair.pose_a, a, impact->time),
+                             at_b = convex::moved(pair.pose_b, b, impact->time);
+        const Placed hit_a{pair.a, at_a}, hit_b{pair.b, at_b};
+        const glm::dvec3& n = impact->normal;
+        const double end_a = reach_along(hit_a, n), end_b = -reach_along(hit_b, -n);
+        const bool is_right = std::fabs(glm::length(n) - 1.0) < 1e-9 && end_b - end_a > -kTolerance &&
+                              std::fabs(glm::dot(n, impact->on_a) - end_a) < kTolerance &&
+                              std::fabs(glm::dot(n, impact->on_b) - end_b) < kTolerance &&
+                              convex::closest_point(hit_a, impact->on_a).distance < kTolerance &&
+                              convex::closest_point(hit_b, impact->on_b).distance < kTolerance &&
+                              std::fabs(glm::distance(impact->on_a, impact->on_b) - impact->distance) < kTolerance;
+        wrong += !is_right;
+    }
+    return none_row("casts of seven kinds of bodies, " + std::to_string(hits) +
+                        " hits: points on both surfaces, and a normal that parts them",
+                    "support points", hits, wrong);
+}
+
 }  // namespace
 
 std::vector<VerifyRow> verify_convex(const VerifyOptions& options) {
@@ -173,6 +221,7 @@ std::vector<VerifyRow> verify_convex(const VerifyOptions& options) {
     rows.push_back(depths(options));
     rows.push_back(casts_sampled(options));
     rows.push_back(casts_bisected(options));
+    rows.push_back(casts_points(options));
     return rows;
 }
 

@@ -22,6 +22,8 @@ namespace crofton::cli {
 [[nodiscard]] std::vector<VerifyRow> bound_rows(const VerifyOptions& options);
 [[nodiscard]] std::vector<VerifyRow> triangulation_rows(const VerifyOptions& options);
 [[nodiscard]] std::vector<VerifyRow> tree_rows(const VerifyOptions& options);
+// What no theorem's row calls, mostly without chance.
+[[nodiscard]] std::vector<VerifyRow> formula_rows(const VerifyOptions& options);
 
 // Part of verify_lines.
 [[nodiscard]] std::vector<VerifyRow> factor_rows(const VerifyOptions& options);
