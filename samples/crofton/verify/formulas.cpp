@@ -5,7 +5,7 @@
 #include <cmath>
 #include <crofton/cull/cull.hpp>
 #include <crofton/measure/measure.hpp>
-#include <crofton/radiosity/lines.hpp>
+#include <crofton/lines/lines.hpp>
 #include <crofton/sampling/sampling.hpp>
 #include <crofton/study/binary_tree.hpp>
 #include <crofton/study/k_dop.hpp>
@@ -253,7 +253,7 @@ void light_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
                           {0u, 2u, 3u, 1u},
                           {4u, 5u, 7u, 6u}})
         for (const std::uint32_t k : {f[0], f[2], f[1], f[0], f[3], f[2]}) room.indices.push_back(k);
-    const auto tracer = radiosity::LineTracer::build(room);
+    const auto tracer = lines::LineTracer::build(room);
     const auto normal = [&](std::uint32_t t) {
         const auto at = [&](std::size_t k) { return room.positions[room.indices[3 * std::size_t{t} + k]]; };
         return glm::normalize(glm::cross(at(1) - at(0), at(2) - at(0)));
