@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/geometry/same_bits.hpp>
+#include <crofton/scene/transformed_box.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
