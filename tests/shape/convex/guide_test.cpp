@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The example of docs/convex.md and docs/convex_parts.md, compiled and run.
+// The example of docs/convex.md, compiled and run.
 #include <doctest/doctest.h>
 
 #include <crofton/convex/query.hpp>
