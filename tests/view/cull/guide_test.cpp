@@ -66,7 +66,7 @@ int draw_row(std::vector<crofton::Obb> house_boxes, const crofton::Camera& camer
 
     // Two eyes in one pass: bit v of a mask says that views[v] sees the item.
     const cull::View eyes[] = {view, right_eye};
-    cull::find_visible(*houses, eyes, seen_by);
+    cull::find_visible(*houses, eyes, seen_by).value();
     for (std::size_t i = 0; i < seen_by.size(); ++i) draw_stereo(seen_by.ids()[i], seen_by.view_mask(i));
     // clang-format on
     std::sort(drawn.left.begin(), drawn.left.end());
