@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The vector helpers against loops over lanes, on every instruction set that this processor has.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "simd/compress_test.cpp"
+#define HWY_TARGET_INCLUDE "base/simd/compress_test.cpp"
 // clang-format off
 #include <hwy/foreach_target.h>
 // clang-format on

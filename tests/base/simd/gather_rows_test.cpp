@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Gathered rows and deposited bits against loops, on every instruction set that this processor has.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "simd/gather_rows_test.cpp"
+#define HWY_TARGET_INCLUDE "base/simd/gather_rows_test.cpp"
 // clang-format off
 #include <hwy/foreach_target.h>
 // clang-format on
