@@ -150,8 +150,7 @@ void EmbreeScene::all_hits(std::span<const Line> lines, lines::LineHits& result)
         rtcIntersect16(valid, data_->scene, &recorder.context, &packet);
         for (std::size_t i = 0; i < count; ++i) {
             auto& hits = recorder.hits[i];
-            std::sort(hits.begin(), hits.end(),
-                      [](const lines::Hit& a, const lines::Hit& b) { return a.t < b.t; });
+            std::sort(hits.begin(), hits.end(), [](const lines::Hit& a, const lines::Hit& b) { return a.t < b.t; });
             result.hits.insert(result.hits.end(), hits.begin(), hits.end());
             result.ends.push_back(static_cast<std::uint32_t>(result.hits.size()));
         }

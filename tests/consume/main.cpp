@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A program outside the project that links the package: it must compile, link and answer, from every room of crofton::crofton.
+// A program outside the project that links the package: it must compile, link and answer, from every room of
+// crofton::crofton.
 #include <crofton/collide/narrow_phase.hpp>
 #include <crofton/core/version.hpp>
 #include <crofton/cull/bound_set.hpp>

@@ -39,8 +39,7 @@ radiosity::SolverOptions options(std::uint64_t lines, std::optional<lines::LineM
 std::uint64_t light(Executor& executor) {
     Digest digest;
     const radiosity::Patches scene = patches();
-    for (const auto method :
-         {lines::LineMethod::bundles, lines::LineMethod::walls, lines::LineMethod::disc}) {
+    for (const auto method : {lines::LineMethod::bundles, lines::LineMethod::walls, lines::LineMethod::disc}) {
         auto solver = *radiosity::Solver::create(scene, options(4000, method, radiosity::Transport::global));
         for (int run = 0; run < 2; ++run) solver.run(executor);
         digest.add(solver.radiosity()).add(solver.relative_error());

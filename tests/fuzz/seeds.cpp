@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // fuzz_seeds FOLDER: writes what each fuzzer begins with into FOLDER/<fuzzer>/.
-#include <samples/assets/test_files.hpp>
 #include <crofton/bake/baked_scene.hpp>
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/scene/scene.hpp>
+#include <samples/assets/test_files.hpp>
 
 #include "fuzz/small_bakes.hpp"
 

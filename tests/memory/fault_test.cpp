@@ -9,10 +9,10 @@
 #include <crofton/core/executor.hpp>
 #include <crofton/fit/fit.hpp>
 #include <crofton/geometry/mesh.hpp>
+#include <crofton/lines/lines.hpp>
 #include <crofton/measure/measure.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <crofton/pvs/pvs.hpp>
-#include <crofton/lines/lines.hpp>
 #include <crofton/radiosity/patches.hpp>
 #include <crofton/radiosity/solver.hpp>
 #include <crofton/sampling/sampling.hpp>

@@ -8,8 +8,8 @@
 #include <crofton/core/executor.hpp>
 #include <crofton/geometry/box.hpp>
 #include <crofton/geometry/camera.hpp>
-#include <crofton/measure/measure.hpp>
 #include <crofton/geometry/transform.hpp>
+#include <crofton/measure/measure.hpp>
 #include <crofton/world/inputs.hpp>
 #include <cstdint>
 #include <glm/vec2.hpp>

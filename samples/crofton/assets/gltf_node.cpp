@@ -22,8 +22,7 @@ Result<std::optional<std::vector<double>>> numbers(const Json& object, const cha
                 std::string("its ") + key + " has not " + std::to_string(count) + " numbers");
 }
 
-Result<Transform> from_parts(const glm::dvec3& translation, const glm::dquat& rotation,
-                                    const glm::dvec3& scale) {
+Result<Transform> from_parts(const glm::dvec3& translation, const glm::dquat& rotation, const glm::dvec3& scale) {
     const double length = glm::length(rotation);
     if (!(length > 1e-6) || !std::isfinite(length))
         return fail(ErrorCode::degenerate, kNoItem, "its rotation is no quaternion of length one");

@@ -39,7 +39,7 @@ class SkinPoses {
     [[nodiscard]] Result<std::vector<Transform>> compute(std::size_t skin);
 
     const GltfDocument& document_;
-    std::vector<std::size_t> parents_;                             // by node; kNoNumber: a root
+    std::vector<std::size_t> parents_;                      // by node; kNoNumber: a root
     std::vector<std::optional<Result<Transform>>> worlds_;  // by node, of those asked for
     std::map<std::size_t, Result<std::vector<Transform>>> joints_;
 };

@@ -159,8 +159,8 @@ Result<SceneSource> make_town(const LoadOptions& options) {
         }
         for (const Crane& crane : cranes)
             (void)scene.set_local(
-                crane.node, crane.start * *from_trs({}, glm::angleAxis(0.12 * seconds, glm::dvec3(0, 1, 0)),
-                                                           glm::dvec3(1.0)));
+                crane.node,
+                crane.start * *from_trs({}, glm::angleAxis(0.12 * seconds, glm::dvec3(0, 1, 0)), glm::dvec3(1.0)));
     };
     source.one_sided.assign(source.scene.mesh_count(), 1);  // where both sides show, both are built
     return source;

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/geometry/mesh.hpp>
-#include <crofton/measure/measure.hpp>
 #include <crofton/lines/lines.hpp>
+#include <crofton/measure/measure.hpp>
 #include <crofton/sampling/sampling.hpp>
 #include <crofton/study/convex_body.hpp>
 #include <cstdio>
@@ -123,8 +123,7 @@ Result<void> run_measure(const MeasureOptions& options) {
         return fail(ErrorCode::empty, kNoItem, options.file + ": all vertices lie on one line, which no line hits");
 
     const lines::LineSource source(tracer->bounds(), lines::LineMethod::disc, options.seed);
-    const auto seen =
-        lines::visibility_complexity(*tracer, source, options.lines / lines::LineSource::kBlock + 1);
+    const auto seen = lines::visibility_complexity(*tracer, source, options.lines / lines::LineSource::kBlock + 1);
     std::vector<VerifyRow> rows;
     const double error = seen.deviation / std::sqrt(static_cast<double>(seen.lines));
     rows.push_back(measured_row("the triangles' area S", "crossings a line · F0 / 2", area_of(*mesh),
@@ -162,7 +161,9 @@ void add_measure_command(CommandLine& line) {
             "  crofton measure room --lines 1000000\n"
             "  crofton measure level.wad --json -\n\n") +
         kSceneFormats);
-    command.option("file", options->file, "town, room, or a .glb, .gltf, .obj, .wad or .crofton file; of a .wad the first level")
+    command
+        .option("file", options->file,
+                "town, room, or a .glb, .gltf, .obj, .wad or .crofton file; of a .wad the first level")
         .required();
     command.option("--lines", options->lines, "How many lines, rounded up to blocks of 1024")
         .whole_between(1000, std::uint64_t{1} << 40)

@@ -224,8 +224,7 @@ Result<int> run_radiosity(const RadiosityOptions& options) {
         reference = *compared;
     }
     const auto seen = lines::visibility_complexity(
-        *tracer, lines::LineSource(tracer->bounds(), lines::LineMethod::walls, options.seed),
-        cut_short ? 1 : 50);
+        *tracer, lines::LineSource(tracer->bounds(), lines::LineMethod::walls, options.seed), cut_short ? 1 : 50);
     glm::dvec3 mean(0.0);
     double area = 0.0;
     for (std::size_t i = 0; i < lit->patches.count(); ++i) {

@@ -2,8 +2,8 @@
 // Where one could stand and walk in a scene that does not say so itself, found by lines.
 #pragma once
 #include <crofton/geometry/box.hpp>
-#include <crofton/pvs/pvs.hpp>
 #include <crofton/lines/lines.hpp>
+#include <crofton/pvs/pvs.hpp>
 #include <crofton/scene/scene.hpp>
 #include <optional>
 #include <span>
@@ -76,7 +76,7 @@ class FreeSpace {
     [[nodiscard]] bool is_straight(std::span<const std::uint32_t> way) const;
     // What lines in all directions meet.
     struct Sight {
-        std::vector<lines::Hit> hits;      // by direction
+        std::vector<lines::Hit> hits;          // by direction
         double surrounded = 0.0, backs = 0.0;  // shares: of level lines that meet something, of lines that meet a back
         std::uint32_t objects = 0;
     };

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/cull/cull.hpp>
-#include <crofton/measure/measure.hpp>
 #include <crofton/lines/lines.hpp>
+#include <crofton/measure/measure.hpp>
 #include <crofton/sampling/sampling.hpp>
 #include <crofton/study/binary_tree.hpp>
 #include <crofton/study/k_dop.hpp>

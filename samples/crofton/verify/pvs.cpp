@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <crofton/lines/lines.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <crofton/pvs/pvs.hpp>
-#include <crofton/lines/lines.hpp>
 #include <crofton/sampling/sampling.hpp>
 #include <cstdio>
 

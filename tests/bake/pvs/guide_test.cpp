@@ -32,7 +32,8 @@ int show(const crofton::Aabb& eyes, const crofton::scene::Scene& scene,
     if (!sets) return report(sets.error());
 
     // Each frame: what the view sees among the set of the eye's cell. What moves is never left out.
-    world.view({.camera = camera, .among = sets->visible_from(camera.position, pvs::Mode::statistical)}, visible).value();
+    world.view({.camera = camera, .among = sets->visible_from(camera.position, pvs::Mode::statistical)}, visible)
+        .value();
     for (const std::uint32_t id : visible.ids()) draw_object(id);
     return 0;
 }

@@ -142,8 +142,7 @@ TEST_SUITE("engines/integrate") {
         std::vector<scene::NodeId> nodes;
         for (int i = 0; i < 400; ++i) {
             const auto place =
-                from_trs({2.0 * (i % 20), 0.0, -2.0 * (i / 20)}, glm::dquat(1, 0, 0, 0), glm::dvec3(1.0))
-                    .value();
+                from_trs({2.0 * (i % 20), 0.0, -2.0 * (i / 20)}, glm::dquat(1, 0, 0, 0), glm::dvec3(1.0)).value();
             nodes.push_back(scene.add_node(scene::kNone, place).value());
             scene.add_instance(nodes.back(), crate).value();
         }
@@ -157,8 +156,7 @@ TEST_SUITE("engines/integrate") {
         camera.position = {19.0, 1.5, 10.0};
         for (int frame = 0; frame < 3; ++frame) {
             // 1. What moved: the scene says which boxes changed, the tree follows them, all at once.
-            const auto place =
-                from_trs({0.6 * frame, 0.0, 0.0}, glm::dquat(1, 0, 0, 0), glm::dvec3(1.0)).value();
+            const auto place = from_trs({0.6 * frame, 0.0, 0.0}, glm::dquat(1, 0, 0, 0), glm::dvec3(1.0)).value();
             if (!scene.set_local(nodes[0], place)) std::abort();
             scene.update();
             moved_boxes.clear();
@@ -228,8 +226,7 @@ TEST_SUITE("engines/integrate") {
     TEST_CASE("a baked scene is culled like the one it was baked from") {
         using namespace crofton;
         scene::Scene scene;
-        const auto node =
-            scene.add_node(scene::kNone, *from_trs({0, 0, -5}, glm::dquat(1, 0, 0, 0), glm::dvec3(1.0)));
+        const auto node = scene.add_node(scene::kNone, *from_trs({0, 0, -5}, glm::dquat(1, 0, 0, 0), glm::dvec3(1.0)));
         REQUIRE(scene.add_instance(*node, scene.add_mesh(cube()).value()));
         scene.update();
         const auto file = bake::bake(scene);

@@ -5,8 +5,8 @@
 #include <crofton/mesh/mesh_query.hpp>
 #include <optional>
 
-#include "shape/mesh/meshes.hpp"
 #include "oracle/exact_boxes.hpp"
+#include "shape/mesh/meshes.hpp"
 
 namespace crofton::testing {
 

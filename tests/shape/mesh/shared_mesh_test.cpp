@@ -10,8 +10,8 @@
 #include <glm/geometric.hpp>
 #include <string>
 
-#include "shape/mesh/meshes.hpp"
 #include "oracle/exact_triangles.hpp"
+#include "shape/mesh/meshes.hpp"
 
 using namespace crofton;
 using namespace crofton::mesh;

@@ -5,8 +5,8 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "shape/collide/random_boxes.hpp"
 #include "oracle/exact_triangles.hpp"
+#include "shape/collide/random_boxes.hpp"
 
 using namespace crofton;
 using namespace crofton::mesh;

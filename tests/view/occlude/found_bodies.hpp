@@ -12,8 +12,8 @@
 #include <random>
 #include <vector>
 
-#include "shape/mesh/meshes.hpp"
 #include "oracle/inscribed_bodies.hpp"
+#include "shape/mesh/meshes.hpp"
 
 namespace crofton::testing {
 

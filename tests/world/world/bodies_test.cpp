@@ -36,7 +36,8 @@ struct Thing {
 }  // namespace
 
 TEST_SUITE("world/bodies") {
-    TEST_CASE("stale handles and half-spaces to ask with are refused, and a world without bodies has no contacts of bodies") {
+    TEST_CASE(
+        "stale handles and half-spaces to ask with are refused, and a world without bodies has no contacts of bodies") {
         World world;
         const convex::Body box = convex::Body::box({1, 1, 1}).value();
         const convex::Body half = convex::Body::half_space({{0, 1, 0}, 0}).value();

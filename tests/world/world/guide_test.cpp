@@ -100,7 +100,8 @@ TEST_SUITE("world/guide") {
         // A left-handed engine with y up, depth from 0 to 1 and its own matrices:
         const glm::dmat4 view = glm::lookAtLH(glm::dvec3(0.0), glm::dvec3(0.0, 0.0, -1.0), glm::dvec3(0.0, 1.0, 0.0));
         const glm::dmat4 to_clip = glm::perspectiveLH_ZO(1.0, 16.0 / 9.0, 0.1, 1000.0) * view;
-        world.view({.matrix = crofton::ViewMatrix{to_clip, crofton::DepthRange::zero_to_one}, .layers = 1}, visible).value();
+        world.view({.matrix = crofton::ViewMatrix{to_clip, crofton::DepthRange::zero_to_one}, .layers = 1}, visible)
+            .value();
 
         CHECK(visible.size() == 9);  // the trigger is in layer 2 alone
     }

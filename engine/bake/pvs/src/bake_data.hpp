@@ -2,9 +2,9 @@
 // What a bake knows, and how parts of it are added up.
 #pragma once
 #include <crofton/core/memory.hpp>
+#include <crofton/lines/lines.hpp>
 #include <crofton/pvs/line_plan.hpp>
 #include <crofton/pvs/pvs.hpp>
-#include <crofton/lines/lines.hpp>
 #include <cstdint>
 #include <optional>
 #include <span>

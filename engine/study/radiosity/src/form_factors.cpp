@@ -31,8 +31,9 @@ struct Triangles {
 
 }  // namespace
 
-FactorRow factors_by_local_lines(const lines::LineTracer& tracer, const Patches& patches, std::uint32_t i, std::uint64_t lines,
-                                 LocalDensity density, std::uint64_t seed, sampling::Sequence sequence) {
+FactorRow factors_by_local_lines(const lines::LineTracer& tracer, const Patches& patches, std::uint32_t i,
+                                 std::uint64_t lines, LocalDensity density, std::uint64_t seed,
+                                 sampling::Sequence sequence) {
     CROFTON_ASSERT(i < patches.count() && lines >= 1, "no such patch, or no lines");
     constexpr std::size_t kBatch = 1024;
     const Triangles triangles(patches, i);
@@ -85,8 +86,9 @@ double FactorMatrix::standard_error(std::size_t i, std::size_t j) const {
     return std::sqrt(f * (1.0 - f) / static_cast<double>(rays[i]));
 }
 
-Result<FactorMatrix> factors_by_global_lines(const lines::LineTracer& tracer, const Patches& patches, const lines::LineSource& source,
-                                             std::uint64_t blocks, Executor& executor) {
+Result<FactorMatrix> factors_by_global_lines(const lines::LineTracer& tracer, const Patches& patches,
+                                             const lines::LineSource& source, std::uint64_t blocks,
+                                             Executor& executor) {
     if (patches.count() > kMostPatches)
         return fail(ErrorCode::out_of_range, patches.count(),
                     "form factors: the full matrix is for 16384 patches at most");

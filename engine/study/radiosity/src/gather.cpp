@@ -64,7 +64,7 @@ void Solver::gather_bundles(const Gathering& what, Light& arrived, Executor& exe
                 if (is_raised(stop_)) return;
                 const std::uint64_t number = (first_run_ + runs_) * bundles + first + b;
                 drawn[b] = lines::make_bundle(bundles_.bounds(), cell_area, points.at<2>(number),
-                                       mixed(mixed(options_.seed, what.stream), number));
+                                              mixed(mixed(options_.seed, what.stream), number));
                 bundles_.all_hits(drawn[b], scratch[worker], hits[b]);
             }
         });
@@ -73,7 +73,8 @@ void Solver::gather_bundles(const Gathering& what, Light& arrived, Executor& exe
             lines_traced_ += static_cast<std::uint64_t>(drawn[b].lines);
             std::uint32_t begin = 0;
             for (const std::uint32_t end : hits[b].ends) {
-                if (end > begin) take(std::span<const lines::Hit>(hits[b].hits).subspan(begin, end - begin), what, arrived);
+                if (end > begin)
+                    take(std::span<const lines::Hit>(hits[b].hits).subspan(begin, end - begin), what, arrived);
                 begin = end;
             }
         }
@@ -130,8 +131,9 @@ void Solver::cast_local(const Gathering& what, std::span<const std::uint32_t> pa
                 return;
             }
             ++rays_[i];
-            arrived[i] +=
-                hit.triangle == lines::Hit::kNothing ? what.sky : (*what.leaving)[patches_->patch_of_triangle[hit.triangle]];
+            arrived[i] += hit.triangle == lines::Hit::kNothing
+                              ? what.sky
+                              : (*what.leaving)[patches_->patch_of_triangle[hit.triangle]];
         });
 }
 

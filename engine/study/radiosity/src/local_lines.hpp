@@ -28,7 +28,7 @@ inline Corners corners_of(const Patches& patches, std::uint32_t triangle) {
 
 // A uniform point of a triangle, and a direction over its front whose cosine against the normal is `cosine`.
 inline lines::FirstHitQuery local_ray(const Patches& patches, std::uint32_t triangle, double u, double v, double cosine,
-                               double turn) {
+                                      double turn) {
     const Corners t = corners_of(patches, triangle);
     const double root = std::sqrt(u);
     const glm::dvec3 point = t.a + root * (1.0 - v) * (t.b - t.a) + root * v * (t.c - t.a);

@@ -68,7 +68,8 @@ class SunRays {
             tracer_.first_hits(rays, hits);
             for (std::size_t i = 0; i < facing.size(); ++i) {
                 std::size_t seen = 0;
-                for (std::size_t k = 0; k < points; ++k) seen += hits[points * i + k].triangle == lines::Hit::kNothing ? 1 : 0;
+                for (std::size_t k = 0; k < points; ++k)
+                    seen += hits[points * i + k].triangle == lines::Hit::kNothing ? 1 : 0;
                 visit(facing[i], seen);
             }
         }
@@ -116,8 +117,8 @@ class Edges {
 
 }  // namespace
 
-Result<RefinedMesh> refine_at_shadows(const lines::LineTracer& scene, const TriangleMesh& mesh, const glm::dvec3& to_sun,
-                                      std::uint32_t halvings, std::size_t most_triangles) {
+Result<RefinedMesh> refine_at_shadows(const lines::LineTracer& scene, const TriangleMesh& mesh,
+                                      const glm::dvec3& to_sun, std::uint32_t halvings, std::size_t most_triangles) {
     return crofton::detail::recover([&]() -> Result<RefinedMesh> {
         const auto rays = SunRays::create(scene, mesh, to_sun);
         if (!rays) return tl::unexpected(rays.error());

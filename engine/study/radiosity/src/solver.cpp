@@ -48,7 +48,8 @@ Result<void> check(const SolverOptions& options) {
 
 }  // namespace
 
-Solver::Solver(const Patches& patches, const SolverOptions& options, lines::LineTracer tracer, lines::BundleTracer bundles)
+Solver::Solver(const Patches& patches, const SolverOptions& options, lines::LineTracer tracer,
+               lines::BundleTracer bundles)
     : patches_(&patches),
       options_(options),
       tracer_(std::move(tracer)),

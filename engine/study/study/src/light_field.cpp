@@ -84,8 +84,8 @@ class Buckets {
 
 }  // namespace
 
-Result<LightField> LightField::record(const lines::LineTracer& scene, LightAt light,
-                                      const LightFieldOptions& options, Executor& executor) {
+Result<LightField> LightField::record(const lines::LineTracer& scene, LightAt light, const LightFieldOptions& options,
+                                      Executor& executor) {
     if (options.lines < 1 || options.lines > std::uint64_t{1} << 28)
         return fail(ErrorCode::out_of_range, kNoItem, "light field: `lines` must lie in [1, 2^28]");
     const glm::dvec3 extents = 2.0 * scene.bounds().half_extents();
@@ -105,7 +105,7 @@ Result<LightField> LightField::record(const lines::LineTracer& scene, LightAt li
         for (std::size_t b = begin; b < end; ++b) {
             Bundle& bundle = field.bundles_[b];
             bundle.lines = lines::make_bundle(scene.bounds(), cell_area, points.at<2>(b),
-                                                  sampling::seed_of_repetition(options.seed, b, count));
+                                              sampling::seed_of_repetition(options.seed, b, count));
             lines.clear();
             for (std::size_t c = 0; c < bundle.lines.cells(); ++c) lines.push_back(bundle.lines.line(c));
             scene.all_hits(lines, hits);

@@ -45,8 +45,8 @@ void PairNeighbors::find_beside(std::uint32_t own, std::uint32_t other, Vector<s
     objects.clear();
     const auto meeting = partners_of(other), own_meeting = partners_of(own);
     // Of what meets a much larger object, as a ground, only what is near takes part.
-    const bool far_reaching = glm::distance(bounds_[other].min, bounds_[other].max) >
-                              4.0 * glm::distance(bounds_[own].min, bounds_[own].max);
+    const bool far_reaching =
+        glm::distance(bounds_[other].min, bounds_[other].max) > 4.0 * glm::distance(bounds_[own].min, bounds_[own].max);
     const bool crowd = meeting.size() > kCrowd && own_meeting.size() < meeting.size();
     for (const std::uint32_t object : crowd ? own_meeting : meeting) {
         if (object == own || object == other) continue;

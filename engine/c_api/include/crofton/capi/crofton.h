@@ -161,10 +161,10 @@ CROFTON_API crofton_status crofton_world_set_collides_with(crofton_world* world,
                                                            uint32_t layers);
 CROFTON_API crofton_status crofton_world_set_user(crofton_world* world, crofton_object object, uint64_t user);
 /* Gives an object a body, or with NULL takes it away: for pairs from the next update on, for queries at once. Pairs of
- * objects that both have bodies are in crofton_world_body_contacts instead of crofton_world_contact. From the next update
- * on the object's box also covers the body. Half-spaces, and compounds that hold some, are ground without end. The
- * object's transform scales the body. CROFTON_UNSUPPORTED: a transform that turns it into another kind of body, as an
- * uneven scale does with a ball; calls that move objects and nodes refuse such transforms too. */
+ * objects that both have bodies are in crofton_world_body_contacts instead of crofton_world_contact. From the next
+ * update on the object's box also covers the body. Half-spaces, and compounds that hold some, are ground without end.
+ * The object's transform scales the body. CROFTON_UNSUPPORTED: a transform that turns it into another kind of body, as
+ * an uneven scale does with a ball; calls that move objects and nodes refuse such transforms too. */
 CROFTON_API crofton_status crofton_world_set_body(crofton_world* world, crofton_object object,
                                                   const crofton_body* body);
 

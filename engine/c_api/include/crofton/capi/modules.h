@@ -519,8 +519,8 @@ CROFTON_API crofton_status crofton_box_raycast(const crofton_box* box, const cro
  * triangle does not hit that triangle. */
 CROFTON_API crofton_status crofton_collider_raycast(const crofton_collider* collider, const crofton_ray* rays,
                                                     size_t count, crofton_ray_hit* hits);
-/* Fills a struct whose `size` is set. A solid body that the ray begins in is hit at 0, without a normal; triangles, meshes
- * and height fields have no inside. */
+/* Fills a struct whose `size` is set. A solid body that the ray begins in is hit at 0, without a normal; triangles,
+ * meshes and height fields have no inside. */
 CROFTON_API crofton_status crofton_body_raycast(const crofton_placed* body, const crofton_ray* ray,
                                                 crofton_body_ray_hit* hit);
 /* *hit is 1 where the ray hits any triangle, else 0: quicker than which. */

@@ -8,9 +8,9 @@
 #include <crofton/geometry/box.hpp>
 #include <crofton/geometry/mesh.hpp>
 #include <crofton/geometry/shapes.hpp>
+#include <crofton/geometry/transform.hpp>
 #include <crofton/occlude/occluder.hpp>
 #include <crofton/scene/scene.hpp>
-#include <crofton/geometry/transform.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>

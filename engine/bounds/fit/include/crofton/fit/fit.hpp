@@ -86,9 +86,9 @@ struct ExactFit {
     // volume, gap and rounding of a tilted flat set are 1: its best box has volume 0, its best box of floats has not.
     // gap − rounding is what the search left unproved.
     double rounding = 0.0;
-    // The search ended by itself and proved ExactOptions::gap: gap − rounding is no more, but for 1e-12, or the value is
-    // rounding to a thousandth, as a line's area is. False of what cannot be proved in double: thin sets by volume, and
-    // flat ones by volume and edges together at sizes at which the volume counts 10^6 times as much as the rest.
+    // The search ended by itself and proved ExactOptions::gap: gap − rounding is no more, but for 1e-12, or the value
+    // is rounding to a thousandth, as a line's area is. False of what cannot be proved in double: thin sets by volume,
+    // and flat ones by volume and edges together at sizes at which the volume counts 10^6 times as much as the rest.
     bool complete = false;
     std::uint64_t cells = 0;
     std::size_t subset = 0;  // number of points that the proof used

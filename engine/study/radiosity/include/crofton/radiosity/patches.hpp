@@ -64,8 +64,8 @@ using EdgeLength = FunctionRef<double(const glm::vec3& middle)>;
 // then. The neighbours' sides are cut alike, so no T-junctions come about. Seven points of each triangle that faces the
 // sun are looked from: near its corners, near the middles of its sides, and its center. A shadow ends there if some see
 // the sun and others do not. What fits between these points is not found: refine() first. `to_sun`: of any length. What
-// blocks the sun is `mesh` itself, from either side. Errors: as refine() and lines::LineTracer::build; to_sun zero, too long
-// to square or not finite.
+// blocks the sun is `mesh` itself, from either side. Errors: as refine() and lines::LineTracer::build; to_sun zero, too
+// long to square or not finite.
 [[nodiscard]] Result<RefinedMesh> refine_at_shadows(const TriangleMesh& mesh, const glm::dvec3& to_sun,
                                                     std::uint32_t halvings,
                                                     std::size_t most_triangles = std::size_t{1} << 24);

@@ -29,8 +29,8 @@ enum class Transport : std::uint8_t {
 };
 
 struct SolverOptions {
-    std::uint64_t lines = 0;             // global lines of a run's first gathering; 0: 64 bundles
-    std::uint64_t first_shot = 0;        // rays from the lamps per run; 0: a quarter of the lines, within [2^12, 2^18]
+    std::uint64_t lines = 0;       // global lines of a run's first gathering; 0: 64 bundles
+    std::uint64_t first_shot = 0;  // rays from the lamps per run; 0: a quarter of the lines, within [2^12, 2^18]
     std::optional<lines::LineMethod> method{};  // absent: bundles
     Transport transport = Transport::global;
     sampling::Sequence sequence = sampling::Sequence::quasi_random;

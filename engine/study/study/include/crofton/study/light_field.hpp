@@ -96,9 +96,9 @@ class LightField {
 };
 
 // The picture from the scene itself: one ray through each pixel's middle, no light from backs.
-[[nodiscard]] Result<LightPicture> direct_picture(const lines::LineTracer& scene, LightAt light,
-                                                  const glm::vec3& sky, const Camera& camera, std::uint32_t width,
-                                                  std::uint32_t height, Executor& executor = serial_executor());
+[[nodiscard]] Result<LightPicture> direct_picture(const lines::LineTracer& scene, LightAt light, const glm::vec3& sky,
+                                                  const Camera& camera, std::uint32_t width, std::uint32_t height,
+                                                  Executor& executor = serial_executor());
 
 // The mean absolute difference of all pixels and channels over the mean of `truth`; 0 for equal pictures. Requires
 // equal sizes.

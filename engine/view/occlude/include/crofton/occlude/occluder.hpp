@@ -5,8 +5,8 @@
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/box.hpp>
 #include <crofton/geometry/mesh.hpp>
-#include <crofton/measure/measure.hpp>
 #include <crofton/geometry/transform.hpp>
+#include <crofton/measure/measure.hpp>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <limits>
