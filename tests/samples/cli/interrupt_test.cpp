@@ -144,7 +144,7 @@ TEST_SUITE("cli/interrupt") {
         CHECK(files_in(folder) == 1);
     }
 
-    TEST_CASE("fit gives the best box so far, with a gap; of several files those that are done") {
+    TEST_CASE("fit gives the best box so far, with a gap, of several files those that are done") {
         const std::string sphere = sphere_file();
         const Ended one =
             end_after({"fit", sphere, "--criterion", "volume", "--json", "-"}, milliseconds(1500), SIGINT);

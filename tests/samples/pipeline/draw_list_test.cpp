@@ -61,7 +61,7 @@ TEST_SUITE("pipeline/draw_list") {
         }
     }
 
-    TEST_CASE("each face of a flat mesh has its own normal; of others those that meet at a small angle share one") {
+    TEST_CASE("each face of a flat mesh has its own normal, of others those that meet at a small angle share one") {
         // Two faces that meet along the y axis at 0.2 rad, well below the angle of a crease.
         TriangleMesh roof;
         const auto sine = 0.19866933f, cosine = 0.98006658f;

@@ -329,7 +329,7 @@ TEST_SUITE("convex/cast_contact") {
                 }
     }
 
-    TEST_CASE("bodies that begin overlapping are a hit at once, with the shortest way out; or they are left out") {
+    TEST_CASE("bodies that begin overlapping are a hit at once, with the shortest way out, or they are left out") {
         RandomBodies random(76);
         int overlaps = 0;
         for (int round = 0; round < 30; ++round)
@@ -355,7 +355,7 @@ TEST_SUITE("convex/cast_contact") {
         CHECK(overlaps > 1000);
     }
 
-    TEST_CASE("of parts that overlap from the start the deepest is told; with the option the others are still met") {
+    TEST_CASE("of parts that overlap from the start the deepest is told, with the option the others are still met") {
         const Body tile = Body::box({0.5f, 0.5f, 0.5f}).value(), ball = Body::ball(0.5).value();
         const Compound row =
             Compound::build(
@@ -377,7 +377,7 @@ TEST_SUITE("convex/cast_contact") {
         CHECK(next.normal.x == doctest::Approx(1.0));
     }
 
-    TEST_CASE("early_out changes no hit up to it, and tells later ones as misses; bad ones are errors") {
+    TEST_CASE("early_out changes no hit up to it, and tells later ones as misses, bad ones are errors") {
         RandomBodies random(77);
         const Body box = random.box(), ball = Body::ball(0.4).value();
         const RigidTransform zero;

@@ -40,7 +40,7 @@ struct Own {  // what a part gives alone
 }  // namespace
 
 TEST_SUITE("convex/merged_manifolds") {
-    TEST_CASE("two faces 4 degrees apart share a manifold; 6, 9 and 18 degrees apart each has its own") {
+    TEST_CASE("two faces 4 degrees apart share a manifold, 6, 9 and 18 degrees apart each has its own") {
         for (const double degrees : {4.0, 6.0, 9.0, 18.0})
             for (const double deeper : {-1e-4, 1e-4}) {  // whichever of the two is deeper
                 CAPTURE(degrees);

@@ -101,7 +101,7 @@ TEST_SUITE("world/flush_bodies") {
         CHECK(several > 200);
     }
 
-    TEST_CASE("a wall on tiles pushes sideways, and the tiles up; the contact changes when a tile comes or goes") {
+    TEST_CASE("a wall on tiles pushes sideways, and the tiles up, the contact changes when a tile comes or goes") {
         World world;
         const convex::Body tile = convex::Body::box({1, 0.5f, 4}).value(),
                            wall = convex::Body::box({0.5f, 1, 4}).value(),
