@@ -254,9 +254,11 @@ TEST_SUITE("threads/const_queries") {
             auto visible = std::make_shared<VisibleObjects>();
             return [&, visible](int q) {
                 Answer answer;
-                answer.add(shared.view(camera_of(q), *visible).has_value());
+                answer.add(shared.view({.camera = camera_of(q)}, *visible).has_value());
                 answer.add_all(visible->ids());
-                answer.add(shared.view(camera_of(q), {.size = {96, 54}}, *visible).has_value());
+                answer.add(
+                    shared.view({.camera = camera_of(q), .occlusion = OcclusionOptions{.size = {96, 54}}}, *visible)
+                        .has_value());
                 answer.add_all(visible->ids());
                 if (const auto hit = shared.raycast(ray_of(q))) answer.add(hit->t).add(hit->user);
                 Vector<ObjectRef> found;

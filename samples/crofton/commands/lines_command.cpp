@@ -114,14 +114,14 @@ Result<void> run_lines(const LinesOptions& options) {
     Json rows = Json::array();
     for (const sampling::Sequence sequence : {sampling::Sequence::pseudo_random, sampling::Sequence::quasi_random}) {
         for (const LineMethod method : {LineMethod::sphere_points, LineMethod::disc, LineMethod::walls})
-            rows.push_back(compare(radiosity::to_string(method), sequence, surface, options, [&](std::uint64_t seed) {
+            rows.push_back(compare(lines::to_string(method), sequence, surface, options, [&](std::uint64_t seed) {
                 return by_lines(*tracer, lines::LineSource(tracer->bounds(), method, seed, sequence), options);
             }));
         rows.push_back(compare("bundles", sequence, surface, options, [&](std::uint64_t seed) {
             return by_bundles(*bundles, cell_area, box_area, seed, sequence, options);
         }));
     }
-    const char* best = radiosity::to_string(lines::choose_method(*tracer, options.seed));
+    const char* best = lines::to_string(lines::choose_method(*tracer, options.seed));
     if (!options.json.empty())
         return write_json(options.json, {{"scene", source->name},
                                          {"triangles", mesh.triangle_count()},

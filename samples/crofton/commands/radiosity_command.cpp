@@ -238,7 +238,7 @@ Result<int> run_radiosity(const RadiosityOptions& options) {
         {"triangles", lit->patches.mesh.triangle_count()},
         {"solver_bytes", solver->bytes()},
         {"method", options.method},
-        {"lines_from", radiosity::to_string(solver->method())},
+        {"lines_from", lines::to_string(solver->method())},
         {"runs", solver->runs()},
         {"runs_planned", found->bake ? Json(found->bake->runs_planned()) : Json(nullptr)},
         {"lines", solver->lines_traced()},

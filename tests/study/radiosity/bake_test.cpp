@@ -12,6 +12,7 @@
 #include "shapes.hpp"
 
 using namespace crofton;
+using namespace crofton::lines;
 using namespace crofton::radiosity;
 
 namespace {

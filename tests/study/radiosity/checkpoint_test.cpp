@@ -13,6 +13,7 @@
 #include "lit_box.hpp"
 
 using namespace crofton;
+using namespace crofton::lines;
 using namespace crofton::radiosity;
 using namespace shapes;
 

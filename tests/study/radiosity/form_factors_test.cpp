@@ -8,6 +8,7 @@
 #include "shapes.hpp"
 
 using namespace crofton;
+using namespace crofton::lines;
 using namespace crofton::radiosity;
 using shapes::Shape;
 

@@ -9,10 +9,10 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "shapes.hpp"
+#include "../../study/radiosity/shapes.hpp"
 
 using namespace crofton;
-using namespace crofton::radiosity;
+using namespace crofton::lines;
 
 namespace {
 
@@ -31,7 +31,7 @@ double crossing(const TriangleMesh& mesh, std::size_t t, const Line& line) {
 
 }  // namespace
 
-TEST_SUITE("radiosity/line_tracer") {
+TEST_SUITE("lines/line_tracer") {
     TEST_CASE("invalid and empty meshes are refused") {
         CHECK(error_of(LineTracer::build({})).code == ErrorCode::empty);
         TriangleMesh mesh = shapes::soup(3, 1.0f, 1);

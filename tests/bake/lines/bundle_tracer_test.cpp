@@ -8,10 +8,10 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "shapes.hpp"
+#include "../../study/radiosity/shapes.hpp"
 
 using namespace crofton;
-using namespace crofton::radiosity;
+using namespace crofton::lines;
 
 namespace {
 
@@ -53,7 +53,7 @@ Difference compare(const TriangleMesh& mesh, double cell_area, const std::array<
 
 }  // namespace
 
-TEST_SUITE("radiosity/bundle_tracer") {
+TEST_SUITE("lines/bundle_tracer") {
     TEST_CASE("invalid and empty meshes are refused") {
         CHECK(error_of(BundleTracer::build({})).code == ErrorCode::empty);
         TriangleMesh mesh = shapes::soup(3, 1.0f, 1);

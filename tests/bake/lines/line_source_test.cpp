@@ -3,10 +3,10 @@
 #include <cmath>
 #include <crofton/lines/lines.hpp>
 
-#include "shapes.hpp"
+#include "../../study/radiosity/shapes.hpp"
 
 using namespace crofton;
-using namespace crofton::radiosity;
+using namespace crofton::lines;
 
 namespace {
 
@@ -21,7 +21,7 @@ shapes::Shape flat_scene() {
 
 }  // namespace
 
-TEST_SUITE("radiosity/line_source") {
+TEST_SUITE("lines/line_source") {
     TEST_CASE("every method crosses a surface 2·N·S/F times on average") {
         const shapes::Shape shape = flat_scene();
         const auto tracer = LineTracer::build(shape.mesh);

@@ -7,9 +7,9 @@
 #include <draw_kernels.hpp>
 #include <vector>
 
-using namespace crofton::radiosity;
+using namespace crofton::lines;
 
-TEST_SUITE("radiosity/draw kernels") {
+TEST_SUITE("lines/draw kernels") {
     TEST_CASE("a line's place in its cell is in the middle of one of 65,536 strips each way, all as likely") {
         constexpr std::uint32_t kColumns = 8, kRows = 1u << 17, kStrips = 1u << 16, kGroup = kStrips / 16;
         std::vector<std::uint32_t> times[2] = {std::vector<std::uint32_t>(kStrips),
