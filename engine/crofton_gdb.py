@@ -103,7 +103,7 @@ class Handle:
 
 
 class Result:
-    """tl::expected with an Error."""
+    """A value, or the Error for which there is none."""
 
     def __init__(self, value):
         self.value = value
@@ -138,7 +138,7 @@ def printers():
         collection.add_printer(printer.__name__, f"^crofton::{printer.__name__}$", printer)
     collection.add_printer("VisibleSet", "^crofton::cull::VisibleSet$", VisibleSet)
     collection.add_printer("Handle", "^crofton::Handle<.*>$", Handle)
-    collection.add_printer("Result", "^tl::expected<.*crofton::Error>$", Result)
+    collection.add_printer("Result", "^crofton::Result<.*>$", Result)
     return collection
 
 

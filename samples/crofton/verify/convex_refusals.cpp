@@ -227,9 +227,6 @@ void try_changes(Random& random, BodyTrial& trial) {
     read_after(world.set_body(*box, &ball), 4);
     trial.must(read.points[0].contact.depth == world.body_contacts()[0].points[0].contact.depth);
     read_after(world.update(), 1);
-    const convex::Body half_space = *convex::Body::half_space({{0.0, 1.0, 0.0}, 0.0});
-    trial.must_refuse(world.set_body(*box, &half_space), ErrorCode::unsupported);
-    read_after(world.update(), 1);
     if (random.bits() % 2 == 0) {
         read_after(world.remove(*box), 1);
         trial.must_refuse(world.set_body(*box, &crate), ErrorCode::stale_handle);

@@ -3,7 +3,7 @@
 # What bash completes: packaging/crofton.bash is sourced and its function called as bash would.
 #   tests/samples/cli/completion_test.sh FOLDER    of the program `crofton`
 set -uo pipefail
-cd "$(dirname "$0")/../.."
+cd "$(dirname "$0")/../../.."
 if ((BASH_VERSINFO[0] < 4)); then
     echo "skipped: bash is older than 4"
     exit 0

@@ -116,7 +116,7 @@ TEST_SUITE("cli/verify") {
         run = run_cli("verify convex --trials 1000 --json -");
         CHECK(run.status == 0);
         const auto part = run.json();
-        REQUIRE(part.size() == 75);
+        REQUIRE(part.size() == 76);
         for (std::size_t i = 0; i < part.size(); ++i) CHECK(part[i] == all[all.size() - bad - part.size() + i]);
         const std::string mesh = scratch().file("tetrahedra.obj"), map = scratch().file("squares.poly"),
                           tests = "--trials 8000 --json -";

@@ -27,7 +27,10 @@ inline ViewRun view(const json& events, const std::string& arguments = {}, bool 
     std::filesystem::remove(out);
     write_contents(script, json{{"events", events}}.dump());
     const std::string size = arguments.find("--size") == std::string::npos ? "--size 480x270" : "";
-    const std::string instances = arguments.find("--instances") == std::string::npos ? "--instances 400 " : "";
+    // The town: any other scene says itself what is in it.
+    const bool is_town = arguments.find_first_not_of(" ") == std::string::npos || arguments.find("--") == 0;
+    const std::string instances =
+        is_town && arguments.find("--instances") == std::string::npos ? "--instances 400 " : "";
     const std::string all = "view " + instances + size + " --validation --device cpu --output '" + scratch().file("") +
                             "' --script '" + script + "' --json '" + out + "' " + (window ? "" : "--no-window ") +
                             arguments;

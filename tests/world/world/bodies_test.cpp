@@ -197,11 +197,12 @@ TEST_SUITE("world/bodies") {
         REQUIRE(world.set_bound(more, above).has_value());
         REQUIRE(world.set_body(more, &crate).has_value());
         REQUIRE(world.update().has_value());
-        CHECK(world.statistics().body_pairs_computed == 1);
+        // With the pair below it, whose bodies have a neighbour now: normals at a seam ask for it.
+        CHECK(world.statistics().body_pairs_computed == 2);
         CHECK(world.body_contacts().size() == 1001);
         REQUIRE(world.remove(more).has_value());
         REQUIRE(world.update().has_value());
-        CHECK(world.statistics().body_pairs_computed == 0);
+        CHECK(world.statistics().body_pairs_computed == 1);
         CHECK(world.body_contacts().size() == 1001);  // one has ended
         const convex::Body small = convex::Body::box({0.25f, 0.25f, 0.25f}).value();
         REQUIRE(world.set_body(objects[0], &small).has_value());

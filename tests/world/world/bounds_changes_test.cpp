@@ -244,12 +244,13 @@ TEST_SUITE("world/bounds changes") {
             Vector<ObjectHit> hits;
             Vector<ObjectRef> found;
             std::array<cull::View, 2> views{random_view(random), random_view(random)};
+            const auto requests = requests_of(views);
             const auto frame = [&](double shift) {
                 for (std::size_t i = 0; i < boxes.size(); i += 3) boxes[i].center.x += shift;
                 REQUIRE(world.set_bounds(objects, boxes).has_value());
                 REQUIRE(world.update().has_value());
                 REQUIRE(world.view(request_of(views[0]), visible).has_value());
-                REQUIRE(world.view(requests_of(views), in_views).has_value());
+                REQUIRE(world.view(requests, in_views).has_value());
                 const Ray ray{{-90.0, 0.0, 0.0}, {1.0, 0.0, 0.0}};
                 world.raycast_all(ray, hits);
                 CHECK(world.raycast(ray).has_value());
