@@ -129,6 +129,22 @@ TEST_SUITE("fit/exact") {
                 }
     }
 
+    TEST_CASE("a needle is not flat: its volume is proved, though its extreme points may be three or four in a plane") {
+        std::mt19937 random(10);
+        std::uniform_real_distribution<double> unit(0.0, 1.0);
+        for (const double thin : {1e-2, 1e-3, 1e-4})
+            for (int run = 0; run < 40; ++run) {
+                const glm::dvec3 along = glm::normalize(random_point(random));
+                Points points;
+                const int count = 5 + static_cast<int>(60.0 * unit(random));
+                for (int i = 0; i < count; ++i) points.push_back(along * unit(random) + thin * random_point(random));
+                const auto fitted = fit::fit_exact(view(points), {.criterion = measure::minimal_volume()}).value();
+                const auto tight = fit::fit_obb(view(points), {measure::minimal_volume(), fit::Quality::tight}).value();
+                CHECK(fitted.lower_bound > 0.5 * fitted.value);
+                CHECK(fitted.value <= (1.0 + 1e-6) * measure::intrinsic_volumes_of_box(tight).volume);
+            }
+    }
+
     TEST_CASE("a box, turned, is its own best box") {
         std::mt19937 random(2);
         for (int run = 0; run < 60; ++run) {

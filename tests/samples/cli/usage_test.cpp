@@ -77,9 +77,10 @@ TEST_SUITE("cli/usage") {
             {"verify cull --map MAP01", "--scene"},
             {"verify cull --instances 40", "--scene"},
             {"lines room --patches 9", "--factors"}};
-        for (const auto& [arguments, reason] : cases) {
-            CAPTURE(arguments);
-            const CliRun run = run_cli(arguments);
+        for (const auto& refused : cases) {
+            const std::string& reason = refused.second;
+            CAPTURE(refused.first);
+            const CliRun run = run_cli(refused.first);
             CHECK(run.status == 2);
             CHECK(run.out == "");
             CHECK_MESSAGE(run.err.find(reason) != std::string::npos, run.err);

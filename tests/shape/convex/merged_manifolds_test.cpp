@@ -115,9 +115,9 @@ TEST_SUITE("convex/merged_manifolds") {
                     if (&n != &m) CHECK(glm::dot(m.normal, n.normal) < kFiveDegrees + 1e-9);
             }
             // Each part's normal is near some manifold's.
-            for (const auto& [t, alone] : own)
+            for (const auto& part : own)
                 CHECK(std::any_of(found.all().begin(), found.all().end(), [&](const Manifold& m) {
-                    return side * glm::dot(m.normal, alone.manifold.normal) >= kFiveDegrees - 1e-9;
+                    return side * glm::dot(m.normal, part.second.manifold.normal) >= kFiveDegrees - 1e-9;
                 }));
             shared += parts > found.all().size() ? 1 : 0;
             several += found.all().size() > 1 ? 1 : 0;

@@ -107,7 +107,18 @@ Candidate Fitter::best_tetrahedral_frame(const Weights& weights) {
 Weights Fitter::search_weights(const Weights& weights) {
     if (!is_volume_alone(weights)) return weights;
     gather_extremes(5);
-    return best_tetrahedral_frame(weights).value <= kFlat ? kArea : weights;
+    // A thin set that is not flat can have extreme points that are, three of a needle for example: points that stand
+    // out of the frame they span join them, until the frame is flat for all points or for none.
+    for (std::size_t before = 0; before < subset_.size();) {
+        const Candidate frame = best_tetrahedral_frame(weights);
+        if (frame.value > kFlat) break;
+        const Supports extremes = supports(frame.axes);
+        if (value_of(weights, extremes, frame.axes) <= kFlat) return kArea;
+        before = subset_.size();
+        subset_.insert(subset_.end(), extremes.begin(), extremes.end());
+        make_canonical(subset_);
+    }
+    return weights;
 }
 
 SmallSetSearch::Found Fitter::finished(const Weights& weights, const SmallSetSearch::Found& found) {
