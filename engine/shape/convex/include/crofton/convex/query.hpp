@@ -97,12 +97,13 @@ struct RayHit {
 // passed from behind.
 //
 // The point is the ray's first in a body that is larger or smaller by at most 1e-13 of its size, where the size is
-// reach() and radius() together (of half-spaces: the distance from the ray's origin to the frame's). So a ray that
-// passes the surface nearer than that may hit or miss, and t · |direction| is off by at most that by the cosine between
-// the ray and the normal, and 2^-51 of itself. This holds however far away the ray begins, and for directions of any
-// length. Rays within a surface meet its triangles exactly, so that nothing slips through between two that share an
-// edge. No allocation. Nothing is hit by a ray whose origin or direction is NaN or infinite, whose direction is 0, or
-// whose max_t is NaN or negative, nor at a pose that is not valid: validate(Ray) and validate_pose tell why.
+// reach() and radius() together (of half-spaces: the distances from the frame's origin to the ray's, and from there to
+// the point). So a ray that passes the surface nearer than that may hit or miss, and t · |direction| is off by at most
+// that by the cosine between the ray and the normal, and 2^-51 of itself. This holds however far away the ray begins,
+// and for directions of any length. Rays within a surface meet its triangles exactly, so that nothing slips through
+// between two that share an edge. No allocation. Nothing is hit by a ray whose origin or direction is NaN or infinite,
+// whose direction is 0, or whose max_t is NaN or negative, nor at a pose that is not valid: validate(Ray) and
+// validate_pose tell why.
 [[nodiscard]] std::optional<RayHit> raycast(const Placed& body, const Ray& ray);
 
 // ---- Contacts ----
