@@ -14,7 +14,7 @@
 namespace {
 
 using namespace crofton;
-using namespace crofton::radiosity;
+using namespace crofton::lines;
 
 struct Job {
     const char* name;

@@ -19,6 +19,7 @@
 namespace {
 
 using namespace crofton;
+using namespace crofton::lines;
 using namespace crofton::radiosity;
 using Clock = std::chrono::steady_clock;
 

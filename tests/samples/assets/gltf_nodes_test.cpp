@@ -347,7 +347,7 @@ TEST_SUITE("assets/gltf_nodes") {
             Json skin = {{"joints", Json::array()}};
             for (std::size_t j = 0; j < joints; ++j) skin["joints"].push_back(j + 2);
             if (binds) skin["inverseBindMatrices"] = asset.accessor(matrices, "MAT4");
-            asset.root["skins"] = {skin};
+            asset.root["skins"] = Json::array({skin});
             std::vector<std::vector<float>> weights;
             std::vector<std::vector<std::uint16_t>> numbers;
             for (std::size_t s = 0; s < sets; ++s) {
