@@ -25,10 +25,16 @@ struct Ended {
     std::string out, err;
 };
 
-Ended end_after(const std::vector<std::string>& arguments, milliseconds wait, int signal) {
+// Signals after this time, or before it once the command's standard error has these words.
+Ended end_after(const std::vector<std::string>& arguments, milliseconds wait, int signal,
+                const std::string& told = {}) {
     const std::string out = scratch().file("ended.out"), err = scratch().file("ended.err");
     const Child child(arguments, out, err);
-    std::this_thread::sleep_for(wait);
+    if (told.empty()) std::this_thread::sleep_for(wait);
+    for (const auto end = Clock::now() + wait; !told.empty() && Clock::now() < end;) {
+        if (contents_of(err).find(told) != std::string::npos) break;
+        std::this_thread::sleep_for(milliseconds(50));
+    }
     const auto start = Clock::now();
     child.signal(signal);
     Ended ended;
@@ -120,7 +126,7 @@ TEST_SUITE("cli/interrupt") {
                                        "--confidence", "0.1",  "--surface-steps", "1000000", "--halvings", "16",
                                        "--near",       "0.05", "--out",           file,      "--json",     json,
                                        "--threads",    "2"},
-                                      milliseconds(9000), SIGTERM);
+                                      milliseconds(60'000), SIGTERM, "pvs: proofs: ");
         check_ended(ended);
         CHECK(ended.err.find("crofton: pvs: ") != std::string::npos);  // progress
         CHECK(ended.err.find("count as unseen") != std::string::npos);
