@@ -9,24 +9,10 @@
 #include <crofton/geometry/predicates.hpp>
 #include <glm/geometric.hpp>
 
+#include "golden_section.hpp"
+
 namespace crofton::fit {
 namespace {
-
-template <class Function>
-double least_of(double low, double high, int steps, Function f) {
-    constexpr double kGolden = 0.61803398874989485;
-    double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
-    double at_a = f(a), at_b = f(b);
-    for (int i = 0; i < steps; ++i)
-        if (at_a < at_b) {
-            high = b, b = a, at_b = at_a;
-            a = high - kGolden * (high - low), at_a = f(a);
-        } else {
-            low = a, a = b, at_a = at_b;
-            b = low + kGolden * (high - low), at_b = f(b);
-        }
-    return at_a < at_b ? a : b;
-}
 
 // How far `p` is from `origin` across the unit vector `along`, to 2^-50 of itself: the differences and products are
 // taken with their roundings.
@@ -62,7 +48,7 @@ class SharpEnd {
         double best_beyond = length_, least = kInfinity;
         for (double beyond = length_; beyond >= std::max(rounding_, 0x1p-60 * length_); beyond *= 0.5)
             if (const double value = perimeter(beyond); value < least) least = value, best_beyond = beyond;
-        best_beyond = least_of(0.5 * best_beyond, 2.0 * best_beyond, 40, perimeter);
+        best_beyond = minimise(0.5 * best_beyond, 2.0 * best_beyond, 40, perimeter);
         for (int k = 0; k < 5; ++k, best_beyond *= 2.0)
             try_corner(end_ - best_beyond * along_ + middle(best_beyond) * glm::dvec2(-along_.y, along_.x), best);
     }
@@ -81,7 +67,7 @@ class SharpEnd {
     // Where the corner opens least: the opening is convex.
     [[nodiscard]] double middle(double beyond) const {
         const double thickness = high_ - low_;
-        return least_of(low_ - thickness, high_ + thickness, 40, [&](double y) { return opening(beyond, y); });
+        return minimise(low_ - thickness, high_ + thickness, 40, [&](double y) { return opening(beyond, y); });
     }
 
     void try_corner(const glm::dvec2& corner, std::optional<Triangle2>& best) const {

@@ -12,6 +12,7 @@
 #include <numbers>
 #include <optional>
 
+#include "golden_section.hpp"
 #include "least_sliver.hpp"
 #include "planar_points.hpp"
 
@@ -152,6 +153,9 @@ struct Angle {
     }
 };
 
+// Narrows a range of angles to rounding.
+constexpr int kSections = 72;
+
 class LeastPerimeter {
   public:
     explicit LeastPerimeter(const Standing& polygon) : polygon_(polygon) {}
@@ -165,8 +169,8 @@ class LeastPerimeter {
         double least = kInfinity;
         for (std::size_t i = 1; i + 1 < places.count; ++i)
             if (const double value = best_right(places.angles[i]); value < least) least = value, best = i;
-        const double left =
-            minimise(places.angles[best - 1], places.angles[best + 1], [&](double a) { return best_right(a); });
+        const double left = minimise(places.angles[best - 1], places.angles[best + 1], kSections,
+                                     [&](double a) { return best_right(a); });
         const double value = best_right(left);
         return {value, triangle(left, right_)};
     }
@@ -201,23 +205,6 @@ class LeastPerimeter {
         return places;
     }
 
-    template <class Function>
-    static double minimise(double low, double high, Function f) {
-        constexpr double kGolden = 0.61803398874989485;
-        double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
-        double at_a = f(a), at_b = f(b);
-        for (int i = 0; i < 72; ++i) {
-            if (at_a < at_b) {
-                high = b, b = a, at_b = at_a;
-                a = high - kGolden * (high - low), at_a = f(a);
-            } else {
-                low = a, a = b, at_a = at_b;
-                b = low + kGolden * (high - low), at_b = f(b);
-            }
-        }
-        return at_a < at_b ? a : b;
-    }
-
     double best_right(double left) {
         const Angle a(left);
         const double support = polygon_.left_support({-a.sine, a.cosine});
@@ -228,7 +215,7 @@ class LeastPerimeter {
             const double divisor = 2.0 * a.half_sine * b.half_sine * c.half_sine;
             return divisor > 0.0 ? h / divisor : kInfinity;
         };
-        right_ = minimise(0.0, pi - left, perimeter);
+        right_ = minimise(0.0, pi - left, kSections, perimeter);
         return perimeter(right_);
     }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <crofton/geometry/orthonormal_frame.hpp>
 #include <glm/matrix.hpp>
 
 #include "core_query.hpp"
@@ -106,11 +107,7 @@ class PartCaster {
     // b does not turn: its box, swept along a unit vector.
     [[nodiscard]] QueryBox along_way(const glm::dmat3& back, const glm::dvec3& pivot, const glm::dvec3& unit,
                                      double half_way) const {
-        const glm::dvec3 m = glm::abs(unit);
-        const glm::dvec3 least = m.x <= m.y && m.x <= m.z ? glm::dvec3(1, 0, 0)
-                                 : m.y <= m.z             ? glm::dvec3(0, 1, 0)
-                                                          : glm::dvec3(0, 0, 1);
-        const glm::dvec3 across = glm::normalize(glm::cross(unit, least));
+        const glm::dvec3 across = unit_across(unit);
         const glm::dmat3 axes(unit, across, glm::cross(unit, across));
         const Aabb& bounds = b_.body.bounds();
         const glm::dmat3 sides = glm::transpose(axes) * b_.pose.rotation;

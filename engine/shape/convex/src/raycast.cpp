@@ -10,6 +10,7 @@
 #include <cmath>
 #include <crofton/geometry/expansion.hpp>
 #include <crofton/geometry/finite.hpp>
+#include <crofton/geometry/orthonormal_frame.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <glm/matrix.hpp>
@@ -226,11 +227,8 @@ std::optional<NearHit> meet_mesh(const Body& body, const NearRay& ray) {
     if (!first) return std::nullopt;
     // Other triangles near the ray are asked where a one-sided one is met from behind, and for the vertices.
     std::optional<NearHit> best;
-    const glm::dvec3 d = glm::normalize(ray.direction), m = glm::abs(d);
-    const glm::dvec3 least = m.x <= m.y && m.x <= m.z ? glm::dvec3(1, 0, 0)
-                             : m.y <= m.z             ? glm::dvec3(0, 1, 0)
-                                                      : glm::dvec3(0, 0, 1);
-    const glm::dvec3 across = glm::normalize(glm::cross(d, least));
+    const glm::dvec3 d = glm::normalize(ray.direction);
+    const glm::dvec3 across = unit_across(d);
     const double length = glm::length(ray.direction);
     const auto search = [&](double from, double to, bool only_first) {
         QueryBox box;

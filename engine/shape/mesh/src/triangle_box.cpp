@@ -7,19 +7,11 @@
 #include <glm/mat3x3.hpp>
 
 #include <crofton/geometry/closest_points.hpp>
+#include <crofton/geometry/orthonormal_frame.hpp>
 #include "posed_mesh.hpp"
 
 namespace crofton::mesh {
 namespace {
-
-// Some unit vector across `u`.
-glm::dvec3 across(const glm::dvec3& u) {
-    const glm::dvec3 size = glm::abs(u);
-    const int least = size.x <= size.y && size.x <= size.z ? 0 : (size.y <= size.z ? 1 : 2);
-    glm::dvec3 axis(0.0);
-    axis[least] = 1.0;
-    return glm::normalize(glm::cross(u, axis));
-}
 
 // Along the longest edge, across the triangle, and both.
 glm::dmat3 frame_of(const Triangle& t) {
@@ -34,7 +26,7 @@ glm::dmat3 frame_of(const Triangle& t) {
     const double normal2 = glm::dot(normal, normal);
     // Of slivers the cross product is mostly rounding.
     const bool is_sliver = !(normal2 > 1e-16 * length2 * length2);
-    const glm::dvec3 n = is_sliver ? across(u) : normal / std::sqrt(normal2);
+    const glm::dvec3 n = is_sliver ? unit_across(u) : normal / std::sqrt(normal2);
     return {u, n, glm::cross(u, n)};
 }
 

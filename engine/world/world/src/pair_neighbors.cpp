@@ -11,12 +11,6 @@ namespace {
 constexpr std::size_t kCrowd = 64;
 constexpr double kFlush = 1e-6;  // of the size
 
-bool overlap(const Aabb& a, const Aabb& b) {
-    for (int k = 0; k < 3; ++k)
-        if (a.min[k] > b.max[k] || b.min[k] > a.max[k]) return false;
-    return true;
-}
-
 }  // namespace
 
 void PairNeighbors::list(std::size_t count, const SpatialIndex& index, double margin) {
@@ -51,7 +45,7 @@ void PairNeighbors::find_beside(std::uint32_t own, std::uint32_t other, Vector<s
     for (const std::uint32_t object : crowd ? own_meeting : meeting) {
         if (object == own || object == other) continue;
         if (crowd && !std::binary_search(meeting.begin(), meeting.end(), object)) continue;
-        if (!far_reaching || overlap(bounds_[object], bounds_[own])) objects.push_back(object);
+        if (!far_reaching || intersects(bounds_[object], bounds_[own])) objects.push_back(object);
     }
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/convex/query.hpp>
+#include <crofton/geometry/orthonormal_frame.hpp>
 #include <crofton/mesh/mesh_parts.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -13,15 +14,6 @@ namespace crofton::world {
 namespace {
 
 constexpr double kOrthogonal = 1e-6, kUniform = 1e-5;
-
-// Some unit vector across a unit vector.
-glm::dvec3 across(const glm::dvec3& n) {
-    const glm::dvec3 m = glm::abs(n);
-    const glm::dvec3 least = m.x <= m.y && m.x <= m.z ? glm::dvec3(1, 0, 0)
-                             : m.y <= m.z             ? glm::dvec3(0, 1, 0)
-                                                      : glm::dvec3(0, 0, 1);
-    return glm::normalize(glm::cross(n, least));
-}
 
 // Orthonormal and without reflection, near three orthogonal vectors of which some may be 0.
 glm::dmat3 frame_of(const glm::dmat3& axes, const glm::dvec3& lengths) {
@@ -38,7 +30,7 @@ glm::dmat3 frame_of(const glm::dmat3& axes, const glm::dvec3& lengths) {
     else if (lengths[last] > 0.0)
         second = glm::cross(axes[last] / lengths[last], frame[longest]);
     else
-        second = across(frame[longest]);
+        second = unit_across(frame[longest]);
     frame[next] = glm::normalize(second - glm::dot(second, frame[longest]) * frame[longest]);
     frame[last] = glm::cross(frame[longest], frame[next]);
     return frame;

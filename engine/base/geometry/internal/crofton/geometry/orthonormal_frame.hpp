@@ -3,6 +3,8 @@
 #pragma once
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
 namespace crofton {
@@ -15,6 +17,15 @@ namespace crofton {
     const double b = axis.x * axis.y * a;
     return {glm::dvec3(1.0 + sign * axis.x * axis.x * a, sign * b, -sign * axis.x),
             glm::dvec3(b, sign + axis.y * axis.y * a, -axis.y)};
+}
+
+// Returns a unit vector across u, which is neither 0 nor so small or large that its products leave the numbers.
+[[nodiscard]] inline glm::dvec3 unit_across(const glm::dvec3& u) {
+    const glm::dvec3 size = glm::abs(u);
+    const int least = size.x <= size.y && size.x <= size.z ? 0 : (size.y <= size.z ? 1 : 2);
+    glm::dvec3 axis(0.0);
+    axis[least] = 1.0;
+    return glm::normalize(glm::cross(u, axis));
 }
 
 }  // namespace crofton
