@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+// The nearness of a picture in tiles of 8 × 8 pixels: asked for rectangles. Compiled once per instruction set
+// (Highway).
+#include <hwy/highway.h>
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+
+#include "culler_data.hpp"
+
+#if defined(CROFTON_DEPTH_TILES_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef CROFTON_DEPTH_TILES_INL
+#undef CROFTON_DEPTH_TILES_INL
+#else
+#define CROFTON_DEPTH_TILES_INL
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace crofton::depth::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Eight lanes at most, so that a vector never holds more than a row of a tile.
+using DF = hn::CappedTag<float, kTile>;
+using VF = hn::Vec<DF>;
+
+HWY_INLINE void begin_tile(const Tiles& tiles, std::uint32_t tx, std::uint32_t ty, std::size_t t) {
+    const DF d;
+    float* const pixels = tiles.pixels + t * kTilePixels;
+    for (std::size_t i = 0; i < kTilePixels; i += hn::Lanes(d)) hn::Store(hn::Set(d, kNothing), d, pixels + i);
+    tiles.states[t] = TileState::current;
+    const std::uint32_t columns = std::min(kTile, tiles.width - tx * kTile);
+    const std::uint32_t rows = std::min(kTile, tiles.height - ty * kTile);
+    if (columns == kTile && rows == kTile) return;
+    for (std::uint32_t i = 0; i < kTilePixels; ++i)
+        if (i % kTile >= columns || i / kTile >= rows) pixels[i] = std::numeric_limits<float>::infinity();
+}
+
+// At most the nearness of every pixel of the tile, as good as is known.
+HWY_INLINE float least_of(const Tiles& tiles, std::size_t t) {
+    if (tiles.states[t] != TileState::changed) return tiles.least[t];
+    const DF d;
+    const float* const pixels = tiles.pixels + t * kTilePixels;
+    VF least = hn::Load(d, pixels);
+    for (std::size_t i = hn::Lanes(d); i < kTilePixels; i += hn::Lanes(d))
+        least = hn::Min(least, hn::Load(d, pixels + i));
+    tiles.states[t] = TileState::current;
+    return tiles.least[t] = std::max(hn::GetLane(hn::MinOfLanes(d, least)), tiles.floors[t]);
+}
+
+HWY_INLINE void raise_floor(const Tiles& tiles, std::size_t t, float nearness) {
+    tiles.floors[t] = std::max(tiles.floors[t], nearness);
+    tiles.least[t] = std::max(tiles.least[t], nearness);
+}
+
+// A pixel of the rectangle is not nearer than `nearness`. The rectangle meets the tile.
+HWY_INLINE bool shows_in_tile(const Tiles& tiles, const Projection& p, std::int32_t tx, std::int32_t ty,
+                              std::size_t t) {
+    const DF d;
+    const std::int32_t left = tx * 8, bottom = ty * 8;
+    const VF nearest = hn::Set(d, p.nearest);
+    const VF first = hn::Set(d, static_cast<float>(p.x0 - left)), last = hn::Set(d, static_cast<float>(p.x1 - left));
+    const std::int32_t end = std::min(p.y1 - bottom, 7);
+    for (std::int32_t y = std::max(p.y0 - bottom, 0); y <= end; ++y)
+        for (std::size_t x = 0; x < kTile; x += hn::Lanes(d)) {
+            const VF column = hn::Iota(d, static_cast<float>(x));
+            const auto within = hn::And(hn::Ge(column, first), hn::Le(column, last));
+            const VF pixels = hn::Load(d, tiles.pixels + t * kTilePixels + static_cast<std::size_t>(y) * kTile + x);
+            if (!hn::AllFalse(d, hn::And(within, hn::Le(pixels, nearest)))) return true;
+        }
+    return false;
+}
+
+HWY_INLINE bool hides(const Tiles& tiles, const Projection& p) {
+    for (std::int32_t ty = p.y0 / 8; ty <= p.y1 / 8; ++ty)
+        for (std::int32_t tx = p.x0 / 8; tx <= p.x1 / 8; ++tx) {
+            const std::size_t t = static_cast<std::size_t>(ty) * tiles.columns + static_cast<std::size_t>(tx);
+            if (tiles.least[t] > p.nearest) continue;
+            if (least_of(tiles, t) > p.nearest) continue;
+            if (tiles.states[t] == TileState::unused) return false;
+            if (p.x0 <= 8 * tx && p.y0 <= 8 * ty && p.x1 >= 8 * tx + 7 && p.y1 >= 8 * ty + 7) return false;
+            if (shows_in_tile(tiles, p, tx, ty, t)) return false;
+        }
+    return true;
+}
+
+}  // namespace crofton::depth::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#include <crofton/depth/clustered_mesh.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "depth_scenes.hpp"
+
+namespace crofton::testing {
+namespace {
+
+using depth::Cluster;
+using depth::ClusteredMesh;
+
+TEST_CASE("each triangle is in one cluster, whose box contains it") {
+    oracle::NearMisses random(7);
+    for (const std::uint32_t most : {1u, 2u, 7u, 16u, 64u}) {
+        const TriangleMesh mesh = hills(30, 50.0f, 5.0f, random);
+        const ClusteredMesh cut = ClusteredMesh::cut(mesh.positions, mesh.indices, {.max_triangles = most}).value();
+        std::vector<int> seen(mesh.triangle_count(), 0);
+        std::uint32_t next = 0;
+        for (const Cluster& c : cut.clusters()) {
+            CHECK(c.first_triangle == next);
+            CHECK(c.triangle_count >= 1);
+            CHECK(c.triangle_count <= most);
+            next += c.triangle_count;
+            glm::dmat3 edges(glm::dvec3(c.half_edges[0]), glm::dvec3(c.half_edges[1]), glm::dvec3(c.half_edges[2]));
+            for (std::uint32_t k = c.first_triangle; k < next; ++k) {
+                ++seen[cut.triangle_order()[k]];
+                for (int i = 0; i < 3; ++i) {
+                    const glm::dvec3 p(mesh.positions[mesh.indices[3 * cut.triangle_order()[k] + std::uint32_t(i)]]);
+                    const glm::dvec3 t = glm::inverse(edges) * (p - glm::dvec3(c.center));
+                    CHECK(std::max({std::abs(t.x), std::abs(t.y), std::abs(t.z)}) <= 1.0);
+                }
+            }
+        }
+        CHECK(next == mesh.triangle_count());
+        CHECK(std::count(seen.begin(), seen.end(), 1) == std::ptrdiff_t(seen.size()));
+    }
+}
+
+TEST_CASE("bad meshes are refused by name") {
+    TriangleMesh mesh = cube_mesh();
+    CHECK(ClusteredMesh::cut(mesh.positions, mesh.indices, {.max_triangles = 65}).error().code == ErrorCode::invalid_argument);
+    CHECK(ClusteredMesh::cut(mesh.positions, {}).error().code == ErrorCode::empty);
+    mesh.indices.push_back(0);
+    CHECK(ClusteredMesh::cut(mesh.positions, mesh.indices).error().code == ErrorCode::invalid_argument);
+    mesh.indices.pop_back();
+    mesh.indices[17] = 8;
+    const auto out = ClusteredMesh::cut(mesh.positions, mesh.indices);
+    CHECK(out.error().code == ErrorCode::out_of_range);
+    CHECK(out.error().item == 17);
+    mesh.indices[17] = 0;
+    mesh.positions[3].y = std::numeric_limits<float>::quiet_NaN();
+    const auto nan = ClusteredMesh::cut(mesh.positions, mesh.indices);
+    CHECK(nan.error().code == ErrorCode::non_finite);
+    CHECK(nan.error().item == 3);
+}
+
+TEST_CASE("many equal, repeated and flat triangles are cut as others are") {
+    TriangleMesh mesh;
+    for (std::uint32_t i = 0; i < 3000; ++i) {
+        mesh.positions.push_back(glm::vec3(float(i % 3), float(i % 2), 0.0f));
+        mesh.indices.push_back(i % 7 == 0 ? 0 : i);
+    }
+    const ClusteredMesh cut = ClusteredMesh::cut(mesh.positions, mesh.indices).value();
+    std::uint32_t sum = 0;
+    for (const Cluster& c : cut.clusters()) sum += c.triangle_count;
+    CHECK(sum == 1000);
+}
+
+}  // namespace
+}  // namespace crofton::testing

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+#include <crofton/depth/depth_culler.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <crofton/sampling/sampling.hpp>
+
+#include "depth_scenes.hpp"
+
+namespace crofton::testing {
+namespace {
+
+using depth::DepthCuller;
+using depth::DepthObject;
+using depth::VisibleCluster;
+
+struct Scene {
+    std::deque<CutMesh> meshes;
+    std::vector<PlacedMesh> objects;
+};
+
+struct Checked {
+    std::uint64_t lost = 0;      // samples whose owner is not listed
+    std::uint64_t owners = 0;    // triangles that own a sample
+    std::uint64_t listed = 0;
+    std::uint64_t total = 0;
+    std::uint64_t too_near = 0;  // samples where the culler says that the picture is nearer than it is
+};
+
+// What a renderer would draw, each of several ways to round, is listed.
+Checked check(const Scene& scene, const Camera& camera, std::uint32_t width, std::uint32_t height, std::uint64_t seed,
+              DepthCuller& culler) {
+    const glm::dmat4 to_clip = world_to_clip(camera);
+    std::vector<DepthObject> objects;
+    for (const PlacedMesh& o : scene.objects)
+        objects.push_back({&o.mesh->clusters, glm::mat4(to_clip * o.world), o.one_sided, o.hides, 0.0f});
+    const auto found = culler.find_visible(objects, {width, height});
+    REQUIRE(found);
+    std::vector<std::vector<char>> listed;
+    Checked result;
+    for (const PlacedMesh& o : scene.objects) {
+        listed.emplace_back(o.mesh->mesh.indices.size() / 3, 0);
+        result.total += o.mesh->mesh.indices.size() / 3;
+    }
+    for (const VisibleCluster& c : *found)
+        for (std::uint32_t k = 0; k < 64; ++k)
+            if (c.triangles >> k & 1)
+                listed[c.object][scene.objects[c.object].mesh->clusters.clusters()[c.cluster].first_triangle + k] = 1;
+    for (const auto& l : listed) result.listed += static_cast<std::uint64_t>(std::count(l.begin(), l.end(), 1));
+    for (const double wobble : {0.0, 0.0006}) {
+        oracle::OwnerPicture picture(width, height), hiding(width, height);
+        oracle::OwnerRenderer renderer(picture, wobble, seed), hiding_renderer(hiding, wobble, seed);
+        for (std::uint32_t i = 0; i < objects.size(); ++i) {
+            const PlacedMesh& o = scene.objects[i];
+            const oracle::DrawnMesh drawn{o.mesh->mesh.positions, o.mesh->mesh.indices, objects[i].to_clip, o.one_sided};
+            renderer.draw(drawn, i);
+            if (o.hides) hiding_renderer.draw(drawn, i);
+        }
+        std::vector<std::uint64_t> owners;
+        for (std::uint32_t y = 0; y < height; ++y)
+            for (std::uint32_t x = 0; x < width; ++x) {
+                const std::size_t at = std::size_t{y} * width + x;
+                if (culler.nearness(x, y) > hiding.depths[at]) ++result.too_near;
+                const std::uint64_t owner = picture.owners[at];
+                if (owner == oracle::OwnerPicture::kNobody) continue;
+                owners.push_back(owner);
+                if (listed[owner >> 32][owner & 0xffffffff] == 0) ++result.lost;
+            }
+        std::sort(owners.begin(), owners.end());
+        result.owners = static_cast<std::uint64_t>(std::unique(owners.begin(), owners.end()) - owners.begin());
+    }
+    return result;
+}
+
+Scene random_scene(oracle::NearMisses& random) {
+    Scene scene;
+    scene.meshes.emplace_back(cube_mesh());
+    scene.meshes.emplace_back(ball(8 + static_cast<std::uint32_t>(random.index(20)), random),
+                              static_cast<std::uint32_t>(1 + random.index(64)));
+    scene.meshes.emplace_back(hills(10 + static_cast<std::uint32_t>(random.index(40)), 40.0f, float(random.number(0.5, 5.0)), random),
+                              static_cast<std::uint32_t>(4 + random.index(61)));
+    if (random.index(3) != 0) scene.objects.push_back({&scene.meshes[2], placed({0, -3, 0}, glm::dvec3(1), {0, 1, 0}, random.number(0, 6)), random.index(2) == 0});
+    const std::size_t count = 5 + random.index(80);
+    for (std::size_t i = 0; i < count; ++i) {
+        const bool box = random.index(3) != 0;
+        glm::dvec3 scale(std::exp(random.number(-2.0, 1.0)), std::exp(random.number(-2.0, 1.5)), std::exp(random.number(-2.0, 1.0)));
+        if (box && random.index(3) == 0) scale = {random.number(2.0, 10.0), random.number(1.0, 6.0), 0.1};  // walls
+        glm::dvec3 axis = random.direction();
+        if (random.index(2) == 0) axis = {0, 1, 0};
+        scene.objects.push_back({&scene.meshes[box ? 0 : 1],
+                                 placed(glm::dvec3(random.number(-25, 25), random.number(-2, 4), random.number(-25, 25)), scale, axis,
+                                        random.index(3) == 0 ? 0.0 : random.number(0, 6.2)),
+                                 random.index(2) == 0, random.index(8) != 0});
+    }
+    return scene;
+}
+
+Camera random_camera(oracle::NearMisses& random) {
+    Camera camera;
+    camera.position = {random.number(-25, 25), random.number(-1, 3), random.number(-25, 25)};
+    camera.forward = glm::dvec3(random.number(-1, 1), random.number(-0.3, 0.2), random.number(-1, 1));
+    if (random.index(4) == 0) camera.forward = {0, 0, -1};
+    camera.near_distance = random.index(3) == 0 ? 1.0 : 0.1;
+    camera.far_distance = random.index(2) == 0 ? std::numeric_limits<double>::infinity() : 200.0;
+    if (random.index(6) == 0) {
+        camera.projection = Projection::orthographic;
+        camera.height = random.number(3.0, 40.0);
+        camera.far_distance = 100.0;
+    }
+    return camera;
+}
+
+TEST_CASE("no triangle that owns a sample is left out, however the renderer rounds") {
+    Checked sum;
+    DepthCuller culler;
+    for (std::uint64_t seed = 1; seed <= 400; ++seed) {
+        CAPTURE(seed);
+        oracle::NearMisses random(seed);
+        const Scene scene = random_scene(random);
+        for (int view = 0; view < 3; ++view) {
+            Camera camera = random_camera(random);
+            const auto width = static_cast<std::uint32_t>(64 + random.index(200));
+            const auto height = static_cast<std::uint32_t>(40 + random.index(120));
+            camera.aspect = double(width) / height;
+            const Checked c = check(scene, camera, width, height, seed, culler);
+            CHECK(c.lost == 0);
+            CHECK(c.too_near == 0);
+            sum.owners += c.owners, sum.listed += c.listed, sum.total += c.total, sum.lost += c.lost, sum.too_near += c.too_near;
+        }
+    }
+    MESSAGE("listed ", sum.listed, ", owners ", sum.owners, ", all ", sum.total, "; lost ", sum.lost, ", too near ", sum.too_near);
+    CHECK(sum.listed < 4 * sum.owners);
+}
+
+}  // namespace
+}  // namespace crofton::testing

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+// Meshes, crowds and cameras for the tests of culling by depth.
+#pragma once
+#include <array>
+#include <cmath>
+#include <crofton/depth/depth_culler.hpp>
+#include <crofton/geometry/camera.hpp>
+#include <crofton/geometry/mesh.hpp>
+#include <deque>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <oracle/near_misses.hpp>
+#include <oracle/owner_picture.hpp>
+#include <vector>
+
+#include "../../box_mesh.hpp"
+
+namespace crofton::testing {
+
+// A mesh and what the culler makes of it.
+struct CutMesh {
+    TriangleMesh mesh;  // in the order of the clusters
+    depth::ClusteredMesh clusters;
+
+    explicit CutMesh(TriangleMesh source, std::uint32_t most = 0) : mesh(std::move(source)) {
+        clusters = depth::ClusteredMesh::cut(mesh.positions, mesh.indices, {.max_triangles = most}).value();
+        const Vector<std::uint32_t> given = mesh.indices;
+        clusters.permute(given, mesh.indices);
+    }
+};
+
+// A grid of hills, n × n squares over [−size, size]².
+inline TriangleMesh hills(std::uint32_t n, float size, float height, oracle::NearMisses& random) {
+    TriangleMesh mesh;
+    const double a = random.number(0.5, 2.0), b = random.number(0.5, 2.0), c = random.number(0.0, 6.0);
+    for (std::uint32_t j = 0; j <= n; ++j)
+        for (std::uint32_t i = 0; i <= n; ++i) {
+            const float x = size * (2.0f * float(i) / float(n) - 1.0f), z = size * (2.0f * float(j) / float(n) - 1.0f);
+            const float y = height * float(std::sin(a * x / size * 4 + c) * std::cos(b * z / size * 4) +
+                                           random.number(-0.05, 0.05));
+            mesh.positions.push_back({x, y, z});
+        }
+    for (std::uint32_t j = 0; j < n; ++j)
+        for (std::uint32_t i = 0; i < n; ++i) {
+            const std::uint32_t p = j * (n + 1) + i, q = p + n + 1;
+            for (const std::uint32_t v : {p, q, q + 1, p, q + 1, p + 1}) mesh.indices.push_back(v);
+        }
+    return mesh;
+}
+
+// A closed ball of n bands, slightly dented.
+inline TriangleMesh ball(std::uint32_t n, oracle::NearMisses& random) {
+    TriangleMesh mesh;
+    const std::uint32_t columns = 2 * n;
+    for (std::uint32_t j = 0; j <= n; ++j)
+        for (std::uint32_t i = 0; i < columns; ++i) {
+            const double v = 3.14159265358979 * j / n, u = 2 * 3.14159265358979 * i / columns;
+            const double r = j == 0 || j == n ? 1.0 : random.number(0.9, 1.1);
+            mesh.positions.push_back(glm::vec3(r * std::sin(v) * std::cos(u), r * std::cos(v), r * std::sin(v) * std::sin(u)));
+        }
+    for (std::uint32_t j = 0; j < n; ++j)
+        for (std::uint32_t i = 0; i < columns; ++i) {
+            const std::uint32_t p = j * columns + i, p1 = j * columns + (i + 1) % columns;
+            const std::uint32_t q = p + columns, q1 = p1 + columns;
+            for (const std::uint32_t w : {p, p1, q1, p, q1, q}) mesh.indices.push_back(w);
+        }
+    return mesh;
+}
+
+struct PlacedMesh {
+    const CutMesh* mesh;
+    glm::dmat4 world;
+    bool one_sided = false, hides = true;
+};
+
+inline glm::dmat4 placed(const glm::dvec3& at, const glm::dvec3& scale, const glm::dvec3& axis, double angle) {
+    return glm::scale(glm::rotate(glm::translate(glm::dmat4(1.0), at), angle, axis), scale);
+}
+
+}  // namespace crofton::testing
