@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Which triangle owns each sample of a picture, by a renderer that does what Vulkan allows: vertices snapped to 1/256 of
-// a pixel, each to a neighbour of its place; samples covered by exact integers, each edge by one of its triangles; depth
-// by the triangle's plane.
+// Which triangle owns each sample of a picture, by a renderer that does what Vulkan allows: vertices snapped to 1/256
+// of a pixel, each to a neighbour of its place; samples covered by exact integers, each edge by one of its triangles;
+// depth by the triangle's plane.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -32,8 +32,8 @@ struct OwnerPicture {
         : width(w), height(h), owners(std::size_t{w} * h, kNobody), depths(owners.size(), -HUGE_VAL) {}
 };
 
-// Reversed-Z matrices. `wobble`: by how many pixels, at most, a vertex is moved before it is snapped, differently at each
-// place; what renderers round by.
+// Reversed-Z matrices. `wobble`: by how many pixels, at most, a vertex is moved before it is snapped, differently at
+// each place; what renderers round by.
 class OwnerRenderer {
   public:
     OwnerRenderer(OwnerPicture& picture, double wobble, std::uint64_t seed)
@@ -46,7 +46,8 @@ class OwnerRenderer {
                 clip[k] = glm::dmat4(mesh.to_clip) * glm::dvec4(mesh.positions[mesh.indices[3 * t + k]], 1.0);
             std::vector<glm::dvec4> polygon = before_near(clip);
             for (std::size_t k = 2; k < polygon.size(); ++k)
-                draw_triangle({polygon[0], polygon[k - 1], polygon[k]}, mesh.one_sided, std::uint64_t{number} << 32 | t);
+                draw_triangle({polygon[0], polygon[k - 1], polygon[k]}, mesh.one_sided,
+                              std::uint64_t{number} << 32 | t);
         }
     }
 
@@ -110,8 +111,7 @@ class OwnerRenderer {
                     weights[k] = double(e) / double(area);
                 }
                 if (!inside) continue;
-                const double z =
-                    std::min(weights[0] * p[0].z + weights[1] * p[1].z + weights[2] * p[2].z, nearest);
+                const double z = std::min(weights[0] * p[0].z + weights[1] * p[1].z + weights[2] * p[2].z, nearest);
                 const std::size_t at = std::size_t(y) * picture_.width + std::size_t(x);
                 if (z < 0.0 || z <= picture_.depths[at]) continue;
                 picture_.depths[at] = z;

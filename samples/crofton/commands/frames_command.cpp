@@ -43,7 +43,7 @@ struct FramesOptions {
     unsigned threads = 1;
     bool draw = false, no_draw = false, verify = false;
     bool occlude = false;
-    std::string occlusion_size = "400x225";
+    std::string occlusion = "depth", occlusion_size = "400x225";
     std::uint32_t occluders = 128;
     std::string baked;  // a file with the scene's occluders; empty: they are found
     FramesOutput output;
@@ -148,7 +148,10 @@ class FramesRun {
         if (!path) return tl::unexpected(path.error());
         path_ = std::move(*path);
         pipeline_options_ = {*bounds, *mode, true};
-        if (options_.occlude) {
+        pipeline_options_.one_sided = source_->one_sided;
+        if (options_.occlude && options_.occlusion == "depth") {
+            pipeline_options_.picture = {size->width, size->height};
+        } else if (options_.occlude) {
             const auto buffer = image_size_from(options_.occlusion_size, "--occlusion-size", 8, 4096);
             if (!buffer) return tl::unexpected(buffer.error());
             pipeline_options_.occlusion =
@@ -180,10 +183,8 @@ class FramesRun {
     }
 
     Result<void> prepare_drawing(const ImageSize& size) {
-        std::vector<std::uint8_t> is_mover(source_->scene.instance_count(), 0);
-        for (const scene::InstanceId instance : pipeline_->movers()) is_mover[instance] = 1;
-        list_.emplace(source_->scene, pipeline_->spatial_order(), is_mover,
-                      pipeline::DrawList::Looks{source_->unlit, source_->one_sided, source_->flat});
+        list_.emplace(source_->scene, pipeline::DrawList::Looks{source_->unlit, source_->one_sided, source_->flat},
+                      pipeline_->clusters());
         if (options_.no_draw) return {};
         // Half of the light is haze at three times the size of the place; none where the light is baked in.
         const double haze = source_->unlit.empty() ? 3.0 * glm::length(focus_.half_extents()) : 0.0;
@@ -224,7 +225,10 @@ class FramesRun {
         list_->select(frame.visible_ids, frame.camera);
         frame.triangles_clipped = list_->predict_clipped();
         if (!frame.occlusion) return;
-        list_->select(frame.occlusion->visible_ids, frame.camera);
+        if (frame.occlusion->by_depth)
+            list_->select(frame.occlusion->clusters, frame.camera);
+        else
+            list_->select(frame.occlusion->visible_ids, frame.camera);
         frame.occlusion->triangles_clipped = list_->predict_clipped();
     }
 
@@ -243,7 +247,7 @@ class FramesRun {
     static void forget_ids(FrameStatistics& frame) {
         frame.visible_ids.clear();
         frame.colliding_ids.clear();
-        if (frame.occlusion) frame.occlusion->visible_ids.clear();
+        if (frame.occlusion) frame.occlusion->visible_ids.clear(), frame.occlusion->clusters.clear();
     }
 
     Result<void> save_picture(std::uint32_t index) {
@@ -336,6 +340,7 @@ void add_frames_command(CommandLine& line) {
     command.option("--cull", options->cull, "none, flat or tree").show_default();
     const Option occlude = command.flag("--occlude", options->occlude,
                                         "Draw each frame also without what other objects hide, and show both");
+    command.option("--occlusion", options->occlusion, "depth or occluders").show_default().needs(occlude);
     command.option("--occluders", options->occluders, "How many occluders to draw, at most")
         .whole_between(0, 1000000)
         .show_default()

@@ -34,7 +34,14 @@ Result<std::unique_ptr<FramesDrawing>> FramesDrawing::create(pipeline::DrawList&
 template <class Columns>
 Result<void> FramesDrawing::draw(Columns& columns, const Camera& camera, std::uint32_t picture) {
     const auto start = Clock::now();
-    list_.select(columns.visible_ids, camera);
+    if constexpr (std::is_same_v<Columns, pipeline::OccludedFrame>) {
+        if (columns.by_depth)
+            list_.select(columns.clusters, camera);
+        else
+            list_.select(columns.visible_ids, camera);
+    } else {
+        list_.select(columns.visible_ids, camera);
+    }
     render::Frame frame;
     frame.camera = camera;
     frame.transforms = list_.transforms();

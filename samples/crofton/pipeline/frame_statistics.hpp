@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What one frame cost and found; the rows of `crofton frames` and of the viewer's panel.
 #pragma once
+#include <crofton/depth/depth_culler.hpp>
 #include <crofton/geometry/camera.hpp>
 #include <crofton/render/rasterizer.hpp>
 #include <cstdint>
@@ -29,6 +30,8 @@ struct OccludedFrame {
     // Choosing and drawing the occluders, and asking; in place of cull_us. draw_us: as the frame's.
     double occlude_us = 0.0, draw_us = 0.0;
     std::vector<std::uint32_t> visible_ids;
+    bool by_depth = false;                        // found by the depth of what is drawn; else by occluders
+    std::vector<depth::VisibleCluster> clusters;  // by depth: the triangles to draw, of instances
 };
 
 // All but `occlusion` is without occlusion.

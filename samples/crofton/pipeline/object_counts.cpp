@@ -2,6 +2,8 @@
 #include "object_counts.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
 
@@ -47,6 +49,26 @@ ObjectCounts ObjectCounter::count(const scene::Scene& scene, const Frustum& frus
         if (passed == 0 || all_inside) ++counts.improper;
     }
     return counts;
+}
+
+std::uint64_t ObjectCounter::count(const scene::Scene& scene, const Frustum& frustum, const SceneClusters& clusters,
+                                   std::span<const depth::VisibleCluster> visible) {
+    std::uint64_t passed = 0;
+    for (const depth::VisibleCluster& c : visible) {
+        const scene::MeshId mesh_id = scene.mesh_of(c.object);
+        const TriangleMesh& mesh = scene.mesh(mesh_id);
+        const Transform& world = scene.world(scene.node_of(c.object));
+        const depth::ClusteredMesh& cut = clusters.meshes[mesh_id];
+        const std::uint32_t first = cut.clusters()[c.cluster].first_triangle;
+        for (std::uint64_t left = c.triangles; left != 0; left &= left - 1) {
+            const std::size_t t = cut.triangle_order()[first + static_cast<std::uint32_t>(std::countr_zero(left))];
+            std::array<glm::dvec3, 3> p;
+            for (std::size_t k = 0; k < 3; ++k)
+                p[k] = world.linear * glm::dvec3(mesh.positions[mesh.indices[3 * t + k]]) + world.translation;
+            passed += intersects(frustum, p[0], p[1], p[2]);
+        }
+    }
+    return passed;
 }
 
 }  // namespace crofton::pipeline

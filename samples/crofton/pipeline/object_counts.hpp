@@ -2,11 +2,14 @@
 // What the bounds cannot say: how much of the objects themselves the frustum meets.
 #pragma once
 #include <crofton/cull/classify.hpp>
+#include <crofton/depth/depth_culler.hpp>
 #include <crofton/geometry/camera.hpp>
 #include <crofton/scene/scene.hpp>
 #include <cstdint>
 #include <span>
 #include <vector>
+
+#include "scene_clusters.hpp"
 
 namespace crofton::pipeline {
 
@@ -23,6 +26,10 @@ class ObjectCounter {
     [[nodiscard]] ObjectCounts count(const scene::Scene& scene, const Frustum& frustum,
                                      std::span<const scene::InstanceId> visible,
                                      std::span<const cull::Verdict> verdicts);
+
+    // How many of these triangles meet the frustum, exactly; objects are instances.
+    [[nodiscard]] std::uint64_t count(const scene::Scene& scene, const Frustum& frustum, const SceneClusters& clusters,
+                                      std::span<const depth::VisibleCluster> visible);
 
   private:
     std::vector<glm::dvec3> points_;

@@ -5,6 +5,8 @@
 #include <array>
 #include <chrono>
 #include <crofton/cull/cull.hpp>
+#include <crofton/render/clip_space.hpp>
+#include <glm/matrix.hpp>
 #include <utility>
 
 #include "object_counts.hpp"
@@ -71,6 +73,9 @@ struct Pipeline::State {
     std::vector<cull::Verdict> verdicts;
     std::vector<scene::InstanceId> visible_ids;
     ObjectCounter counter;
+    std::shared_ptr<const SceneClusters> clusters;
+    depth::DepthCuller depth_culler;
+    std::vector<depth::DepthObject> depth_objects;
 
     State(const scene::Scene& the_scene, std::vector<scene::InstanceId> the_movers, const PipelineOptions& the_options,
           Executor& the_executor, std::shared_ptr<const SceneOccluders> the_occluders)
@@ -152,6 +157,14 @@ struct Pipeline::State {
             if (!added) return tl::unexpected(added.error());
             occluding[object.node] = *added;
         }
+        return {};
+    }
+
+    Result<void> add_clusters() {
+        if (!options.picture || clusters) return {};
+        auto cut = cut_scene(scene, executor);
+        if (!cut) return tl::unexpected(cut.error());
+        clusters = std::make_shared<const SceneClusters>(std::move(*cut));
         return {};
     }
 
@@ -249,6 +262,36 @@ struct Pipeline::State {
         return {};
     }
 
+    // By the depth of what is drawn.
+    Result<void> find_triangles(const Camera& camera, const Frustum& frustum, OccludedFrame& frame) {
+        const auto start = Clock::now();
+        const render::ModelToClip to_clip(camera);
+        depth_objects.clear();
+        for (const scene::InstanceId i : visible_ids) {
+            const scene::MeshId mesh = scene.mesh_of(i);
+            const Transform& place = scene.world(scene.node_of(i));
+            const bool one_sided =
+                mesh < options.one_sided.size() && options.one_sided[mesh] != 0 && glm::determinant(place.linear) > 0.0;
+            depth_objects.push_back({.mesh = &clusters->meshes[mesh],
+                                     .to_clip = to_clip(place.linear, place.translation),
+                                     .one_sided = one_sided});
+        }
+        const auto found = depth_culler.find_visible(depth_objects, *options.picture);
+        if (!found) return tl::unexpected(found.error());
+        frame.by_depth = true;
+        frame.clusters.assign(found->begin(), found->end());
+        for (depth::VisibleCluster& cluster : frame.clusters) {
+            cluster.object = visible_ids[cluster.object];
+            if (frame.visible_ids.empty() || frame.visible_ids.back() != cluster.object)
+                frame.visible_ids.push_back(cluster.object);
+        }
+        frame.occlude_us = microseconds_since(start);
+        frame.visible = frame.visible_ids.size();
+        frame.triangles_submitted = depth_culler.statistics().triangles_listed;
+        if (options.count_triangles) frame.triangles_passed = counter.count(scene, frustum, *clusters, frame.clusters);
+        return {};
+    }
+
     [[nodiscard]] std::uint64_t nodes_tested() const {
         return options.cull == CullMode::tree ? visible.statistics().nodes_tested : 0;
     }
@@ -280,7 +323,8 @@ Result<Pipeline> Pipeline::create(const scene::Scene& scene, std::vector<scene::
         if (mover >= scene.instance_count())
             return fail(ErrorCode::out_of_range, mover, "pipeline: a mover is not an instance");
     auto state = std::make_unique<State>(scene, std::move(movers), options, executor, std::move(occluders));
-    for (const auto step : {&State::add_objects, &State::add_colliders, &State::add_occluders, &State::update_world})
+    for (const auto step : {&State::add_objects, &State::add_colliders, &State::add_occluders, &State::add_clusters,
+                            &State::update_world})
         if (auto done = (*state.*step)(); !done) return tl::unexpected(done.error());
     return Pipeline(std::move(state));
 }
@@ -291,12 +335,16 @@ Result<void> Pipeline::set_options(const PipelineOptions& options) {
     s.options = options;
     s.options.bounds = old.bounds, s.options.tree = old.tree, s.options.trace = old.trace;
     auto done = s.add_occluders();
+    if (done) done = s.add_clusters();
     if (done && options.collide != old.collide) done = s.set_collide();
     return done ? s.update_world() : done;
 }
 
 std::shared_ptr<const SceneOccluders> Pipeline::occluders() const {
     return state_->occluders;
+}
+std::shared_ptr<const SceneClusters> Pipeline::clusters() const {
+    return state_->clusters;
 }
 
 Result<FrameStatistics> Pipeline::run(const Camera& camera) {
@@ -327,7 +375,10 @@ Result<FrameStatistics> Pipeline::run(const Camera& camera) {
         frame.triangles_passed = counts.triangles_passed;
         frame.improper = counts.improper;
     }
-    if (s.options.occlusion)
+    if (s.options.picture) {
+        if (auto found = s.find_triangles(camera, *frustum, frame.occlusion.emplace()); !found)
+            return tl::unexpected(found.error());
+    } else if (s.options.occlusion)
         if (auto found = s.find_not_hidden(camera, *frustum, frame.occlusion.emplace()); !found)
             return tl::unexpected(found.error());
     return frame;

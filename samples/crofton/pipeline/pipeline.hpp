@@ -12,6 +12,7 @@
 
 #include "bounds.hpp"
 #include "frame_statistics.hpp"
+#include "scene_clusters.hpp"
 #include "scene_occluders.hpp"
 
 namespace crofton::pipeline {
@@ -32,6 +33,10 @@ struct PipelineOptions {
     // Also asks what is not hidden: FrameStatistics::occlusion. Occluders are found in the scene's meshes when this is
     // first set, and kept.
     std::optional<OcclusionOptions> occlusion = {};
+    // In place of `occlusion`: asks which triangles this picture needs, by the depth of those found before. Meshes are
+    // cut into clusters when this is first set, and kept.
+    std::optional<depth::PictureView> picture = {};
+    std::span<const std::uint8_t> one_sided = {};  // by mesh, as DrawList::Looks; must live as long
     boxtree::Orientation tree = boxtree::Orientation::aligned;
     TraceHooks trace = {};
 };
@@ -58,6 +63,8 @@ class Pipeline {
     [[nodiscard]] Result<void> set_options(const PipelineOptions& options);
     // That it has, for another pipeline of the same scene; nullptr before occlusion is first asked for.
     [[nodiscard]] std::shared_ptr<const SceneOccluders> occluders() const;
+    // For DrawList; nullptr before PipelineOptions::picture is first set.
+    [[nodiscard]] std::shared_ptr<const SceneClusters> clusters() const;
 
     // Follows scene.moved_instances(), then answers for the camera. Fills all of FrameStatistics but index, update_us
     // of the scene itself, triangles_clipped, gpu and draw_us. Errors: an invalid camera.

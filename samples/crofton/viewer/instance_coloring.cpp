@@ -141,22 +141,12 @@ void InstanceColoring::paint(const pipeline::DrawList& list, bool wireframe) {
     const auto transforms = list.transforms();
     ranges_.assign(ranges.begin(), ranges.end());
     transforms_.assign(transforms.begin(), transforms.end());
-    // Baked instances share transforms; each tint needs one of its own. Tints are lit, to show shapes.
-    const auto first_tinted = static_cast<std::uint32_t>(transforms_.size());
-    for (const Count& tint : counts_) {
-        render::DrawTransform tinted = transforms[0];
-        render::set_tint(tinted, tint.color);
-        transforms_.push_back(tinted);
-    }
+    // Tints are lit, to show shapes.
     for (std::size_t r = 0; r < ranges_.size(); ++r) {
         const std::uint8_t tint = tint_of_[list.instance_of(r)];
         if (tint == kPlain) continue;
-        if (ranges_[r].transform < pipeline::DrawList::kSharedTransforms) {
-            ranges_[r].transform = first_tinted + tint;
-        } else {
-            render::set_tint(transforms_[ranges_[r].transform], counts_[tint].color);
-            transforms_[ranges_[r].transform].unlit = 0.0f;
-        }
+        render::set_tint(transforms_[ranges_[r].transform], counts_[tint].color);
+        transforms_[ranges_[r].transform].unlit = 0.0f;
     }
     wires_.clear();
     if (!wireframe) return;

@@ -136,11 +136,8 @@ Result<void> Session::load(const SceneRequest& request) {
         culling_camera_ = controller_.camera;
         if (window_) window_->set_title("Crofton: " + loaded_->source().name + " (F1: help)");
     }
-    std::vector<std::uint8_t> is_mover(loaded_->scene().instance_count(), 0);
-    for (const scene::InstanceId mover : loaded_->source().movers) is_mover[mover] = 1;
     list_ = std::make_unique<pipeline::DrawList>(
-        loaded_->scene(), loaded_->pipeline().spatial_order(), is_mover,
-        pipeline::DrawList::Looks{loaded_->source().unlit, loaded_->source().one_sided, loaded_->source().flat});
+        loaded_->scene(), pipeline::DrawList::Looks{loaded_->source().unlit, loaded_->source().one_sided, loaded_->source().flat});
     return upload_geometry();
 }
 

@@ -259,8 +259,7 @@ TEST_SUITE("pipeline/occlusion") {
             MESSAGE("skipped: " << device.error().message);
             return;
         }
-        const std::vector<std::uint8_t> is_mover(yard.all.size(), 0);
-        DrawList list(yard.scene, yard.all, is_mover, {});
+        DrawList list(yard.scene, {});
         auto rasterizer = render::Rasterizer::create(*device, {.width = 320, .height = 180});
         REQUIRE(rasterizer.has_value());
         REQUIRE(rasterizer->set_geometry(list.vertices(), list.indices()).has_value());

@@ -39,9 +39,7 @@ TEST_SUITE("viewer/back_faces") {
         REQUIRE(town->one_sided.size() == town->scene.mesh_count());
         auto pipeline = Pipeline::create(town->scene, town->movers, {}, serial_executor());
         REQUIRE(pipeline);
-        std::vector<std::uint8_t> is_mover(town->scene.instance_count(), 0);
-        for (const scene::InstanceId i : town->movers) is_mover[i] = 1;
-        DrawList list(town->scene, pipeline->spatial_order(), is_mover, {.one_sided = town->one_sided});
+        DrawList list(town->scene, {.one_sided = town->one_sided});
 
         render::DeviceOptions software;
         software.kind = render::DeviceKind::cpu;

@@ -43,7 +43,8 @@ TEST_CASE("each triangle is in one cluster, whose box contains it") {
 
 TEST_CASE("bad meshes are refused by name") {
     TriangleMesh mesh = cube_mesh();
-    CHECK(ClusteredMesh::cut(mesh.positions, mesh.indices, {.max_triangles = 65}).error().code == ErrorCode::invalid_argument);
+    CHECK(ClusteredMesh::cut(mesh.positions, mesh.indices, {.max_triangles = 65}).error().code ==
+          ErrorCode::invalid_argument);
     CHECK(ClusteredMesh::cut(mesh.positions, {}).error().code == ErrorCode::empty);
     mesh.indices.push_back(0);
     CHECK(ClusteredMesh::cut(mesh.positions, mesh.indices).error().code == ErrorCode::invalid_argument);

@@ -21,8 +21,8 @@ struct Scene {
 };
 
 struct Checked {
-    std::uint64_t lost = 0;      // samples whose owner is not listed
-    std::uint64_t owners = 0;    // triangles that own a sample
+    std::uint64_t lost = 0;    // samples whose owner is not listed
+    std::uint64_t owners = 0;  // triangles that own a sample
     std::uint64_t listed = 0;
     std::uint64_t total = 0;
     std::uint64_t too_near = 0;  // samples where the culler says that the picture is nearer than it is
@@ -53,7 +53,8 @@ Checked check(const Scene& scene, const Camera& camera, std::uint32_t width, std
         oracle::OwnerRenderer renderer(picture, wobble, seed), hiding_renderer(hiding, wobble, seed);
         for (std::uint32_t i = 0; i < objects.size(); ++i) {
             const PlacedMesh& o = scene.objects[i];
-            const oracle::DrawnMesh drawn{o.mesh->mesh.positions, o.mesh->mesh.indices, objects[i].to_clip, o.one_sided};
+            const oracle::DrawnMesh drawn{o.mesh->mesh.positions, o.mesh->mesh.indices, objects[i].to_clip,
+                                          o.one_sided};
             renderer.draw(drawn, i);
             if (o.hides) hiding_renderer.draw(drawn, i);
         }
@@ -78,20 +79,25 @@ Scene random_scene(oracle::NearMisses& random) {
     scene.meshes.emplace_back(cube_mesh());
     scene.meshes.emplace_back(ball(8 + static_cast<std::uint32_t>(random.index(20)), random),
                               static_cast<std::uint32_t>(1 + random.index(64)));
-    scene.meshes.emplace_back(hills(10 + static_cast<std::uint32_t>(random.index(40)), 40.0f, float(random.number(0.5, 5.0)), random),
-                              static_cast<std::uint32_t>(4 + random.index(61)));
-    if (random.index(3) != 0) scene.objects.push_back({&scene.meshes[2], placed({0, -3, 0}, glm::dvec3(1), {0, 1, 0}, random.number(0, 6)), random.index(2) == 0});
+    scene.meshes.emplace_back(
+        hills(10 + static_cast<std::uint32_t>(random.index(40)), 40.0f, float(random.number(0.5, 5.0)), random),
+        static_cast<std::uint32_t>(4 + random.index(61)));
+    if (random.index(3) != 0)
+        scene.objects.push_back({&scene.meshes[2], placed({0, -3, 0}, glm::dvec3(1), {0, 1, 0}, random.number(0, 6)),
+                                 random.index(2) == 0});
     const std::size_t count = 5 + random.index(80);
     for (std::size_t i = 0; i < count; ++i) {
         const bool box = random.index(3) != 0;
-        glm::dvec3 scale(std::exp(random.number(-2.0, 1.0)), std::exp(random.number(-2.0, 1.5)), std::exp(random.number(-2.0, 1.0)));
+        glm::dvec3 scale(std::exp(random.number(-2.0, 1.0)), std::exp(random.number(-2.0, 1.5)),
+                         std::exp(random.number(-2.0, 1.0)));
         if (box && random.index(3) == 0) scale = {random.number(2.0, 10.0), random.number(1.0, 6.0), 0.1};  // walls
         glm::dvec3 axis = random.direction();
         if (random.index(2) == 0) axis = {0, 1, 0};
-        scene.objects.push_back({&scene.meshes[box ? 0 : 1],
-                                 placed(glm::dvec3(random.number(-25, 25), random.number(-2, 4), random.number(-25, 25)), scale, axis,
-                                        random.index(3) == 0 ? 0.0 : random.number(0, 6.2)),
-                                 random.index(2) == 0, random.index(8) != 0});
+        scene.objects.push_back(
+            {&scene.meshes[box ? 0 : 1],
+             placed(glm::dvec3(random.number(-25, 25), random.number(-2, 4), random.number(-25, 25)), scale, axis,
+                    random.index(3) == 0 ? 0.0 : random.number(0, 6.2)),
+             random.index(2) == 0, random.index(8) != 0});
     }
     return scene;
 }
@@ -126,10 +132,12 @@ TEST_CASE("no triangle that owns a sample is left out, however the renderer roun
             const Checked c = check(scene, camera, width, height, seed, culler);
             CHECK(c.lost == 0);
             CHECK(c.too_near == 0);
-            sum.owners += c.owners, sum.listed += c.listed, sum.total += c.total, sum.lost += c.lost, sum.too_near += c.too_near;
+            sum.owners += c.owners, sum.listed += c.listed, sum.total += c.total, sum.lost += c.lost,
+                sum.too_near += c.too_near;
         }
     }
-    MESSAGE("listed ", sum.listed, ", owners ", sum.owners, ", all ", sum.total, "; lost ", sum.lost, ", too near ", sum.too_near);
+    MESSAGE("listed ", sum.listed, ", owners ", sum.owners, ", all ", sum.total, "; lost ", sum.lost, ", too near ",
+            sum.too_near);
     CHECK(sum.listed < 4 * sum.owners);
 }
 

@@ -56,7 +56,8 @@ inline TriangleMesh ball(std::uint32_t n, oracle::NearMisses& random) {
         for (std::uint32_t i = 0; i < columns; ++i) {
             const double v = 3.14159265358979 * j / n, u = 2 * 3.14159265358979 * i / columns;
             const double r = j == 0 || j == n ? 1.0 : random.number(0.9, 1.1);
-            mesh.positions.push_back(glm::vec3(r * std::sin(v) * std::cos(u), r * std::cos(v), r * std::sin(v) * std::sin(u)));
+            mesh.positions.push_back(
+                glm::vec3(r * std::sin(v) * std::cos(u), r * std::cos(v), r * std::sin(v) * std::sin(u)));
         }
     for (std::uint32_t j = 0; j < n; ++j)
         for (std::uint32_t i = 0; i < columns; ++i) {
