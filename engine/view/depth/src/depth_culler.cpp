@@ -94,8 +94,8 @@ struct DepthCuller::State {
         tiles.width = view.width, tiles.height = view.height;
         const std::size_t count = std::size_t{tiles.columns} * tiles.rows;
         if (pixels.size() < count * kTilePixels) pixels.resize(count * kTilePixels);
-        least.assign(count, kNothing);
-        floors.assign(count, kNothing);
+        least.assign(count + kTile, kNothing);  // kernels read and write a vector beyond the end
+        floors.assign(count + kTile, kNothing);
         tile_states.assign(count, TileState::unused);
         tiles.pixels = pixels.data(), tiles.least = least.data(), tiles.floors = floors.data();
         tiles.states = tile_states.data();

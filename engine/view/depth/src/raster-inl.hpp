@@ -56,94 +56,223 @@ class Rasterizer {
           asks_(raster.asks) {}
 
     // True if a sample may be the triangle's.
-    HWY_INLINE bool run() {
-        const bool large = r_.x1 - r_.x0 >= 16 || r_.y1 - r_.y0 >= 16;
-        for (std::int32_t ty = r_.y0 / 8; ty <= r_.y1 / 8; ++ty)
-            for (std::int32_t tx = r_.x0 / 8; tx <= r_.x1 / 8; ++tx) {
-                const std::size_t t = static_cast<std::size_t>(ty) * tiles_.columns + static_cast<std::size_t>(tx);
-                if (tiles_.least[t] > r_.nearest) continue;
-                if (least_of(tiles_, t) > r_.nearest) continue;
-                if (large && draw_whole(tx, ty, t)) continue;
-                draw_part(tx, ty, t);
-                if (!asks_ && !r_.draws) return visible_;
-            }
+    HWY_NOINLINE bool run() {
+        const std::int32_t last_row = r_.y1 / 8;
+        for (std::int32_t ty = r_.y0 / 8; ty <= last_row; ++ty) {
+            draw_tile_row(ty);
+            if (is_done()) break;
+        }
         return visible_;
     }
 
   private:
-    // Where the tile is wholly outside, or wholly inside and the triangle is not steep there.
-    HWY_INLINE bool draw_whole(std::int32_t tx, std::int32_t ty, std::size_t t) {
-        const float left = static_cast<float>(8 * tx) + 0.5f, bottom = static_cast<float>(8 * ty) + 0.5f;
-        bool inside = true;
-        for (std::size_t k = 0; k < r_.edge_count; ++k) {
-            const Edge& e = r_.edges[k];
-            const float corner = (e.across * (left - e.at_x) + e.constant) + e.up * (bottom - e.at_y);
-            const float l1 = std::abs(e.across) + std::abs(e.up);
-            const float least = corner + 7.0f * (std::min(e.across, 0.0f) + std::min(e.up, 0.0f));
-            const float most = corner + 7.0f * (std::max(e.across, 0.0f) + std::max(e.up, 0.0f));
-            if (most < e.outer - l1 * 0x1p-8f) return true;
-            inside = inside && least > e.inner + l1 * 0x1p-8f;
+    struct Interval {
+        std::int32_t first, last;  // empty where first > last
+    };
+
+    // Nothing is left to find out or to draw.
+    [[nodiscard]] HWY_INLINE bool is_done() const { return !r_.draws && (visible_ || !asks_); }
+
+    HWY_INLINE void draw_tile_row(std::int32_t ty) {
+        Interval touched{r_.x0 / 8, r_.x1 / 8}, whole{1, 0};
+        if (touched.first != touched.last) {
+            find_intervals(ty, touched, whole);
+        } else {
+            active_count_ = r_.edge_count;
+            for (std::uint32_t k = 0; k < active_count_; ++k) active_[k] = k;
         }
-        if (!inside || excluded_count_ != 0) return false;
-        const float middle = (r_.base + r_.across * (left + 3.5f - r_.at_x)) + r_.up * (bottom + 3.5f - r_.at_y);
-        const float spread = 3.5f * (std::abs(r_.across) + std::abs(r_.up));
-        if (!(spread < 0.03125f * std::abs(middle - far_))) return false;
-        if (asks_ && !visible_) {
-            if (std::min(middle + spread + r_.above, r_.nearest) >= tiles_.least[t]) {
-                draw_rows(tx, ty, t, false);
+        for (std::int32_t tx = touched.first; tx <= touched.last; ++tx) {
+            if (tx == whole.first && whole.last >= whole.first) {
+                draw_whole(whole, ty);
+                tx = whole.last;
+            } else {
+                draw_part(tx, ty);
             }
+            if (is_done()) return;
         }
-        if (r_.draws) raise_floor(tiles_, t, std::max(middle - spread - r_.below, r_.farthest));
-        return true;
     }
 
-    HWY_INLINE void draw_part(std::int32_t tx, std::int32_t ty, std::size_t t) { draw_rows(tx, ty, t, r_.draws); }
+    // The tiles of a row that the triangle may touch, and those within that it surely covers.
+    HWY_NOINLINE void find_intervals(std::int32_t ty, Interval& touched, Interval& whole) {
+        const float bottom = static_cast<float>(8 * ty) + 0.5f;
+        // Samples' columns, relative to the first at 0.5: floats of this size are exact to far less than the margins.
+        auto low = static_cast<float>(r_.x0), high = static_cast<float>(r_.x1);
+        float inner_low = low, inner_high = high;
+        bool inside = r_.y0 <= 8 * ty && r_.y1 >= 8 * ty + 7;
+        active_count_ = 0;
+        for (std::uint32_t k = 0; k < r_.edge_count; ++k) {
+            const Edge& e = r_.edges[k];
+            const float y0 = e.up * (bottom - e.at_y), y1 = e.up * (bottom + 7.0f - e.at_y);
+            const float l1 = std::abs(e.across) + std::abs(e.up);
+            const float most = e.constant + std::max(y0, y1) - e.outer + l1 * 0x1p-6f;
+            const float least = e.constant + std::min(y0, y1) - e.inner - l1 * 0x1p-6f;
+            const float origin = e.at_x - 0.5f;
+            // All samples of the row's tiles are inside: none needs to ask.
+            const float x0 = e.across * (static_cast<float>(r_.x0 / 8 * 8) - origin);
+            const float x1 = e.across * (static_cast<float>(r_.x1 / 8 * 8 + 7) - origin);
+            if (least + std::min(x0, x1) > 0.0f) continue;
+            active_[active_count_++] = k;
+            if (std::abs(e.across) < l1 * 0x1p-12f) {
+                // Along the row: no column tells apart, but for what a picture's width makes of it.
+                const float change = std::abs(e.across) * (static_cast<float>(tiles_.width) + std::abs(origin));
+                if (most + change < 0.0f) touched.last = touched.first - 1;
+                inside = inside && least - change > 0.0f;
+                continue;
+            }
+            const float inverse = 1.0f / e.across;
+            const float outer_end = origin - most * inverse, inner_end = origin - least * inverse;
+            if (e.across > 0.0f) {
+                low = std::max(low, outer_end), inner_low = std::max(inner_low, inner_end);
+            } else {
+                high = std::min(high, outer_end), inner_high = std::min(inner_high, inner_end);
+            }
+        }
+        // A sample on either side for the rounding of these ends.
+        touched.first = std::max(touched.first, static_cast<std::int32_t>(low - 1.0f) / 8);
+        touched.last =
+            high < low - 2.0f ? touched.first - 1 : std::min(touched.last, static_cast<std::int32_t>(high + 1.0f) / 8);
+        if (!inside || inner_high < inner_low || has_excluded(ty)) return;
+        whole.first = std::max(touched.first, (static_cast<std::int32_t>(inner_low) + 1 + 7) / 8);
+        whole.last = std::min(touched.last, static_cast<std::int32_t>(inner_high) / 8 - 1);
+    }
+
+    [[nodiscard]] HWY_INLINE bool has_excluded(std::int32_t ty) const {
+        for (std::uint32_t i = 0; i < excluded_count_; ++i)
+            if (static_cast<std::int32_t>(excluded_[i] >> 16) / 8 == ty) return true;
+        return false;
+    }
+
+    // Tiles that the triangle covers: where it is not steep, a floor is enough.
+    HWY_NOINLINE void draw_whole(const Interval& whole, std::int32_t ty) {
+        const DF d;
+        const float up = r_.base + r_.up * (static_cast<float>(8 * ty) + 4.0f - r_.at_y);
+        const float spread = 3.5f * (std::abs(r_.across) + std::abs(r_.up));
+        const std::size_t row = static_cast<std::size_t>(ty) * tiles_.columns;
+        for (std::int32_t tx = whole.first; tx <= whole.last; ++tx) {
+            if (!asks_ || visible_) break;
+            const std::size_t t = row + static_cast<std::size_t>(tx);
+            const float middle = up + r_.across * (static_cast<float>(8 * tx) + 4.0f - r_.at_x);
+            if (std::min(middle + spread + r_.above, r_.nearest) >= least_of(tiles_, t)) draw_rows(tx, ty, t, false);
+        }
+        if (!r_.draws) return;
+        for (std::int32_t tx = whole.first; tx <= whole.last; tx += static_cast<std::int32_t>(hn::Lanes(d))) {
+            const auto count = std::min<std::size_t>(hn::Lanes(d), static_cast<std::size_t>(whole.last - tx) + 1);
+            const std::size_t t = row + static_cast<std::size_t>(tx);
+            const VF x = hn::Iota(d, static_cast<float>(tx));
+            const VF from = hn::Sub(hn::Add(hn::Mul(x, hn::Set(d, 8.0f)), hn::Set(d, 4.0f)), hn::Set(d, r_.at_x));
+            const VF middle = hn::Add(hn::Set(d, up), hn::Mul(hn::Set(d, r_.across), from));
+            const VF lower =
+                hn::Max(hn::Sub(hn::Sub(middle, hn::Set(d, spread)), hn::Set(d, r_.below)), hn::Set(d, r_.farthest));
+            const VF far = hn::Abs(hn::Sub(middle, hn::Set(d, far_)));
+            const auto within = hn::FirstN(d, count);
+            const auto flat = hn::And(within, hn::Lt(hn::Set(d, spread), hn::Mul(far, hn::Set(d, 0.03125f))));
+            // The lists are padded by a vector.
+            const VF floors = hn::LoadU(d, tiles_.floors + t), least = hn::LoadU(d, tiles_.least + t);
+            hn::StoreU(hn::IfThenElse(flat, hn::Max(floors, lower), floors), d, tiles_.floors + t);
+            hn::StoreU(hn::IfThenElse(flat, hn::Max(least, lower), least), d, tiles_.least + t);
+            if (hn::CountTrue(d, flat) == count) continue;
+            alignas(32) float steep[kTile];
+            hn::Store(hn::IfThenElse(flat, hn::Zero(d), hn::Set(d, 1.0f)), d, steep);
+            for (std::size_t i = 0; i < count; ++i)
+                if (steep[i] != 0.0f) draw_part(tx + static_cast<std::int32_t>(i), ty);
+        }
+    }
+
+    HWY_INLINE void draw_part(std::int32_t tx, std::int32_t ty) {
+        const std::size_t t = static_cast<std::size_t>(ty) * tiles_.columns + static_cast<std::size_t>(tx);
+        if (tiles_.least[t] > r_.nearest || least_of(tiles_, t) > r_.nearest) return;
+        draw_rows(tx, ty, t, r_.draws);
+    }
 
     HWY_INLINE void draw_rows(std::int32_t tx, std::int32_t ty, std::size_t t, bool draws) {
+        std::int32_t first = std::max(r_.y0, 8 * ty), last = std::min(r_.y1, 8 * ty + 7);
+        if (r_.y1 - r_.y0 >= 4) cut_rows(tx, first, last);
+        if (first > last) return;
+        switch (active_count_) {
+            case 0:
+                return draw_rows_of<0>(tx, ty, t, first, last, draws);
+            case 1:
+                return draw_rows_of<1>(tx, ty, t, first, last, draws);
+            case 2:
+                return draw_rows_of<2>(tx, ty, t, first, last, draws);
+            case 3:
+                return draw_rows_of<3>(tx, ty, t, first, last, draws);
+            default:
+                return draw_rows_of<Raster::kMaxEdges>(tx, ty, t, first, last, draws);
+        }
+    }
+
+    // To the rows of the tile that the triangle may touch.
+    HWY_INLINE void cut_rows(std::int32_t tx, std::int32_t& first, std::int32_t& last) const {
+        const float left = static_cast<float>(8 * tx) + 0.5f;
+        auto low = static_cast<float>(first), high = static_cast<float>(last);
+        for (std::uint32_t i = 0; i < active_count_; ++i) {
+            const Edge& e = r_.edges[active_[i]];
+            const float l1 = std::abs(e.across) + std::abs(e.up);
+            if (std::abs(e.up) < l1 * 0x1p-6f) continue;
+            const float from = e.across * (left - e.at_x), rise = 7.0f * std::max(e.across, 0.0f);
+            const float most = e.constant + from + rise - e.outer + l1 * 0x1p-6f;
+            const float end = e.at_y - 0.5f - most / e.up;
+            if (e.up > 0.0f)
+                low = std::max(low, end);
+            else
+                high = std::min(high, end);
+        }
+        // A row on either side for the rounding of these ends.
+        first = std::max(first, static_cast<std::int32_t>(std::max(low - 1.0f, 0.0f)));
+        last = high < low - 2.0f ? first - 1 : std::min(last, static_cast<std::int32_t>(high + 1.0f));
+    }
+
+    // kEdges: at least how many are active.
+    template <std::size_t kEdges>
+    HWY_INLINE void draw_rows_of(std::int32_t tx, std::int32_t ty, std::size_t t, std::int32_t first, std::int32_t last,
+                                 bool draws) {
         const DF d;
+        const std::size_t edge_count = kEdges == Raster::kMaxEdges ? active_count_ : kEdges;
         if (tiles_.states[t] == TileState::unused)
             begin_tile(tiles_, static_cast<std::uint32_t>(tx), static_cast<std::uint32_t>(ty), t);
         float* const pixels = tiles_.pixels + t * kTilePixels;
         const VF floor = hn::Set(d, tiles_.floors[t]);
-        const std::int32_t first = std::max(r_.y0, 8 * ty), last = std::min(r_.y1, 8 * ty + 7);
-        bool wrote = false;
+        const VF above = hn::Set(d, r_.above), nearest = hn::Set(d, r_.nearest);
+        const VF below = hn::Set(d, r_.below), farthest = hn::Set(d, r_.farthest);
+        bool asks = asks_ && !visible_, wrote = false;
         for (std::size_t i = 0; i < kTile; i += hn::Lanes(d)) {
             const VF x = hn::Iota(d, static_cast<float>(8 * tx) + 0.5f + static_cast<float>(i));
-            VF at_x[Raster::kMaxEdges];
-            for (std::size_t k = 0; k < r_.edge_count; ++k) {
-                const Edge& e = r_.edges[k];
+            VF at_x[kEdges + 1], inner_at[kEdges + 1], outer_at[kEdges + 1];
+            for (std::size_t k = 0; k < edge_count; ++k) {
+                const Edge& e = r_.edges[active_[k]];
                 at_x[k] =
                     hn::Add(hn::Mul(hn::Set(d, e.across), hn::Sub(x, hn::Set(d, e.at_x))), hn::Set(d, e.constant));
+                inner_at[k] = hn::Set(d, e.inner), outer_at[k] = hn::Set(d, e.outer);
             }
             const VF depth_at_x =
                 hn::Add(hn::Set(d, r_.base), hn::Mul(hn::Set(d, r_.across), hn::Sub(x, hn::Set(d, r_.at_x))));
             for (std::int32_t row = first; row <= last; ++row) {
                 const float y = static_cast<float>(row) + 0.5f;
-                auto inner = hn::MaskFromVec(hn::Zero(d)), outer = inner;
-                for (std::size_t k = 0; k < r_.edge_count; ++k) {
-                    const Edge& e = r_.edges[k];
+                auto inner = hn::FirstN(d, kTile), outer = inner;
+                for (std::size_t k = 0; k < edge_count; ++k) {
+                    const Edge& e = r_.edges[active_[k]];
                     const VF value = hn::Add(at_x[k], hn::Set(d, e.up * (y - e.at_y)));
-                    const auto in = hn::Ge(value, hn::Set(d, e.inner)), out = hn::Ge(value, hn::Set(d, e.outer));
+                    const auto in = hn::Ge(value, inner_at[k]), out = hn::Ge(value, outer_at[k]);
                     inner = k == 0 ? in : hn::And(inner, in);
                     outer = k == 0 ? out : hn::And(outer, out);
                 }
-                if (hn::AllFalse(d, outer)) continue;
                 const VF depth = hn::Add(depth_at_x, hn::Set(d, r_.up * (y - r_.at_y)));
                 float* const at = pixels + static_cast<std::size_t>(row - 8 * ty) * kTile + i;
-                const VF before = hn::Max(hn::Load(d, at), floor);
-                if (asks_ && !visible_) {
-                    const VF upper = hn::Min(hn::Add(depth, hn::Set(d, r_.above)), hn::Set(d, r_.nearest));
-                    visible_ = !hn::AllFalse(d, hn::And(outer, hn::Ge(upper, before)));
+                const VF pixel = hn::Load(d, at), before = hn::Max(pixel, floor);
+                if (asks) {
+                    const VF upper = hn::Min(hn::Add(depth, above), nearest);
+                    if (!hn::AllFalse(d, hn::And(outer, hn::Ge(upper, before)))) {
+                        visible_ = true, asks = false;
+                        if (!draws) return;
+                    }
                 }
-                if (!draws) {
-                    if (visible_) return;
-                    continue;
-                }
+                if (!draws) continue;
                 if (excluded_count_ != 0) inner = without_excluded(inner, x, y);
-                const VF lower = hn::Max(hn::Sub(depth, hn::Set(d, r_.below)), hn::Set(d, r_.farthest));
+                const VF lower = hn::Max(hn::Sub(depth, below), farthest);
                 const auto writes = hn::And(inner, hn::Gt(lower, before));
                 if (hn::AllFalse(d, writes)) continue;
-                hn::Store(hn::IfThenElse(writes, lower, hn::Load(d, at)), d, at);
+                hn::Store(hn::IfThenElse(writes, lower, pixel), d, at);
                 wrote = true;
             }
         }
@@ -166,6 +295,8 @@ class Rasterizer {
     std::uint32_t excluded_count_;
     bool asks_;
     bool visible_ = false;
+    std::uint32_t active_[Raster::kMaxEdges];  // edges that tell the samples of the tile row apart
+    std::uint32_t active_count_ = 0;
 };
 
 }  // namespace crofton::depth::HWY_NAMESPACE
