@@ -70,7 +70,9 @@ class PatchDrawer {
             if (own && face.drawn && always_[t]) visible |= std::uint64_t{1} << t;
             if (!raster.asks && !raster.draws) continue;
             if (raster.x0 > raster.x1 || raster.y0 > raster.y1) continue;
-            if (!own) keep_to_seam(t);
+            if (!own && !keep_to_seam(t)) continue;
+            if (!raster.asks)
+                for (std::uint32_t k = 0; k < raster.edge_count; ++k) raster.edges[k].outer = raster.edges[k].inner;
             if (Rasterizer(picture_, raster, excluded_, excluded_count_).run() && own) visible |= std::uint64_t{1} << t;
         }
         return visible;
@@ -452,23 +454,20 @@ class PatchDrawer {
                     for (std::uint32_t t = 0; t < patch_.all_triangles; ++t) faces_[t].solid = false;
     }
 
-    // A triangle around the cluster has been drawn before, but for the seam between them.
-    void keep_to_seam(std::uint32_t t) {
-        if (patch_.unclear) return;
+    // A triangle around the cluster has been drawn before, but for the seam between them: only that is left.
+    [[nodiscard]] bool keep_to_seam(std::uint32_t t) {
         Raster& r = faces_[t].raster;
-        std::int32_t x0 = r.x1 + 1, y0 = r.y1 + 1, x1 = -1, y1 = -1;
-        const auto width = static_cast<float>(picture_.tiles.width), height = static_cast<float>(picture_.tiles.height);
-        const std::uint16_t* const c = patch_.corners + 3 * t;
+        const Edge* seam = nullptr;
         for (std::uint32_t k = 0; k < 3; ++k) {
             if (!faces_[t].closed[k]) continue;
-            const std::uint16_t a = c[k], b = c[k == 2 ? 0 : k + 1];
-            x0 = std::min(x0, first_sample(std::min(xs_[a], xs_[b]) - 0.0625f, width));
-            x1 = std::max(x1, last_sample(std::max(xs_[a], xs_[b]) + 0.0625f, width));
-            y0 = std::min(y0, first_sample(std::min(ys_[a], ys_[b]) - 0.0625f, height));
-            y1 = std::max(y1, last_sample(std::max(ys_[a], ys_[b]) + 0.0625f, height));
+            if (seam != nullptr) return true;
+            seam = &r.edges[k];
         }
-        r.x0 = std::max(r.x0, x0), r.x1 = std::min(r.x1, x1);
-        r.y0 = std::max(r.y0, y0), r.y1 = std::min(r.y1, y1);
+        if (seam == nullptr) return false;
+        const float length = std::abs(seam->across) + std::abs(seam->up);
+        r.edges[r.edge_count++] = {
+            -seam->across, -seam->up, -seam->constant + 8.0f * move_ * length, seam->at_x, seam->at_y, 0.0f, 0.0f};
+        return true;
     }
 
     static constexpr std::uint32_t kMaxExcluded = 32;

@@ -30,7 +30,7 @@ struct Edge {
 };
 
 struct Raster {
-    static constexpr std::size_t kMaxEdges = 5;
+    static constexpr std::size_t kMaxEdges = 6;
 
     Edge edges[kMaxEdges];
     std::uint32_t edge_count;
@@ -180,7 +180,11 @@ class Rasterizer {
 
     HWY_INLINE void draw_part(std::int32_t tx, std::int32_t ty) {
         const std::size_t t = static_cast<std::size_t>(ty) * tiles_.columns + static_cast<std::size_t>(tx);
-        if (tiles_.least[t] > r_.nearest || least_of(tiles_, t) > r_.nearest) return;
+        const float middle = (r_.base + r_.across * (static_cast<float>(8 * tx) + 4.0f - r_.at_x)) +
+                             r_.up * (static_cast<float>(8 * ty) + 4.0f - r_.at_y);
+        const float spread = 3.5f * (std::abs(r_.across) + std::abs(r_.up));
+        const float upper = std::min(r_.nearest, middle + spread + r_.above + r_.below);
+        if (tiles_.least[t] > upper || least_of(tiles_, t) > upper) return;
         draw_rows(tx, ty, t, r_.draws);
     }
 
