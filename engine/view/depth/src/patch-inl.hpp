@@ -84,7 +84,7 @@ class PatchDrawer {
     }
     [[nodiscard]] bool is_drawn(std::uint32_t t) const { return state_of(t) == ClusterState::drawn; }
 
-    HWY_NOINLINE void transform() {
+    HWY_INLINE void transform() {
         const DF d;
         const std::size_t padded = (patch_.vertex_count + 7) / 8 * 8;
         const float* const xs = patch_.coordinates;
@@ -132,7 +132,7 @@ class PatchDrawer {
         return true;
     }
 
-    HWY_NOINLINE void prepare(std::uint32_t t) {
+    HWY_INLINE void prepare(std::uint32_t t) {
         Face& face = faces_[t];
         Raster& r = face.raster;
         const std::uint16_t* const c = patch_.corners + 3 * t;

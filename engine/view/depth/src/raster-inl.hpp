@@ -56,7 +56,8 @@ class Rasterizer {
           asks_(raster.asks) {}
 
     // True if a sample may be the triangle's.
-    HWY_NOINLINE bool run() {
+    HWY_INLINE bool run() {
+        if (r_.x0 / 8 != r_.x1 / 8 || r_.y1 - r_.y0 >= 4) set_slopes();
         const std::int32_t last_row = r_.y1 / 8;
         for (std::int32_t ty = r_.y0 / 8; ty <= last_row; ++ty) {
             draw_tile_row(ty);
@@ -69,6 +70,19 @@ class Rasterizer {
     struct Interval {
         std::int32_t first, last;  // empty where first > last
     };
+
+    // Of an edge: columns per row and rows per column, 0 where it lies along them; a share of a pixel, in its unit.
+    struct Slopes {
+        float per_across, per_up, slack;
+    };
+    HWY_INLINE void set_slopes() {
+        for (std::size_t k = 0; k < r_.edge_count; ++k) {
+            const Edge& e = r_.edges[k];
+            const float l1 = std::abs(e.across) + std::abs(e.up);
+            slopes_[k] = {std::abs(e.across) < l1 * 0x1p-12f ? 0.0f : 1.0f / e.across,
+                          std::abs(e.up) < l1 * 0x1p-6f ? 0.0f : 1.0f / e.up, l1 * 0x1p-6f};
+        }
+    }
 
     // Nothing is left to find out or to draw.
     [[nodiscard]] HWY_INLINE bool is_done() const { return !r_.draws && (visible_ || !asks_); }
@@ -93,7 +107,7 @@ class Rasterizer {
     }
 
     // The tiles of a row that the triangle may touch, and those within that it surely covers.
-    HWY_NOINLINE void find_intervals(std::int32_t ty, Interval& touched, Interval& whole) {
+    HWY_INLINE void find_intervals(std::int32_t ty, Interval& touched, Interval& whole) {
         const float bottom = static_cast<float>(8 * ty) + 0.5f;
         // Samples' columns, relative to the first at 0.5: floats of this size are exact to far less than the margins.
         auto low = static_cast<float>(r_.x0), high = static_cast<float>(r_.x1);
@@ -103,23 +117,23 @@ class Rasterizer {
         for (std::uint32_t k = 0; k < r_.edge_count; ++k) {
             const Edge& e = r_.edges[k];
             const float y0 = e.up * (bottom - e.at_y), y1 = e.up * (bottom + 7.0f - e.at_y);
-            const float l1 = std::abs(e.across) + std::abs(e.up);
-            const float most = e.constant + std::max(y0, y1) - e.outer + l1 * 0x1p-6f;
-            const float least = e.constant + std::min(y0, y1) - e.inner - l1 * 0x1p-6f;
+            const float slack = slopes_[k].slack;
+            const float most = e.constant + std::max(y0, y1) - e.outer + slack;
+            const float least = e.constant + std::min(y0, y1) - e.inner - slack;
             const float origin = e.at_x - 0.5f;
             // All samples of the row's tiles are inside: none needs to ask.
             const float x0 = e.across * (static_cast<float>(r_.x0 / 8 * 8) - origin);
             const float x1 = e.across * (static_cast<float>(r_.x1 / 8 * 8 + 7) - origin);
             if (least + std::min(x0, x1) > 0.0f) continue;
             active_[active_count_++] = k;
-            if (std::abs(e.across) < l1 * 0x1p-12f) {
+            const float inverse = slopes_[k].per_across;
+            if (inverse == 0.0f) {
                 // Along the row: no column tells apart, but for what a picture's width makes of it.
                 const float change = std::abs(e.across) * (static_cast<float>(tiles_.width) + std::abs(origin));
                 if (most + change < 0.0f) touched.last = touched.first - 1;
                 inside = inside && least - change > 0.0f;
                 continue;
             }
-            const float inverse = 1.0f / e.across;
             const float outer_end = origin - most * inverse, inner_end = origin - least * inverse;
             if (e.across > 0.0f) {
                 low = std::max(low, outer_end), inner_low = std::max(inner_low, inner_end);
@@ -143,7 +157,7 @@ class Rasterizer {
     }
 
     // Tiles that the triangle covers: where it is not steep, a floor is enough.
-    HWY_NOINLINE void draw_whole(const Interval& whole, std::int32_t ty) {
+    HWY_INLINE void draw_whole(const Interval& whole, std::int32_t ty) {
         const DF d;
         const float up = r_.base + r_.up * (static_cast<float>(8 * ty) + 4.0f - r_.at_y);
         const float spread = 3.5f * (std::abs(r_.across) + std::abs(r_.up));
@@ -212,11 +226,11 @@ class Rasterizer {
         auto low = static_cast<float>(first), high = static_cast<float>(last);
         for (std::uint32_t i = 0; i < active_count_; ++i) {
             const Edge& e = r_.edges[active_[i]];
-            const float l1 = std::abs(e.across) + std::abs(e.up);
-            if (std::abs(e.up) < l1 * 0x1p-6f) continue;
+            const Slopes& slopes = slopes_[active_[i]];
+            if (slopes.per_up == 0.0f) continue;
             const float from = e.across * (left - e.at_x), rise = 7.0f * std::max(e.across, 0.0f);
-            const float most = e.constant + from + rise - e.outer + l1 * 0x1p-6f;
-            const float end = e.at_y - 0.5f - most / e.up;
+            const float most = e.constant + from + rise - e.outer + slopes.slack;
+            const float end = e.at_y - 0.5f - most * slopes.per_up;
             if (e.up > 0.0f)
                 low = std::max(low, end);
             else
@@ -299,6 +313,7 @@ class Rasterizer {
     std::uint32_t excluded_count_;
     bool asks_;
     bool visible_ = false;
+    Slopes slopes_[Raster::kMaxEdges];
     std::uint32_t active_[Raster::kMaxEdges];  // edges that tell the samples of the tile row apart
     std::uint32_t active_count_ = 0;
 };

@@ -24,7 +24,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using DF = hn::CappedTag<float, kTile>;
 using VF = hn::Vec<DF>;
 
-HWY_NOINLINE void begin_tile(const Tiles& tiles, std::uint32_t tx, std::uint32_t ty, std::size_t t) {
+HWY_INLINE void begin_tile(const Tiles& tiles, std::uint32_t tx, std::uint32_t ty, std::size_t t) {
     const DF d;
     float* const pixels = tiles.pixels + t * kTilePixels;
     for (std::size_t i = 0; i < kTilePixels; i += hn::Lanes(d)) hn::Store(hn::Set(d, kNothing), d, pixels + i);
@@ -37,7 +37,7 @@ HWY_NOINLINE void begin_tile(const Tiles& tiles, std::uint32_t tx, std::uint32_t
 }
 
 // At most the nearness of every pixel of the tile, as good as is known.
-HWY_NOINLINE float least_of(const Tiles& tiles, std::size_t t) {
+HWY_INLINE float least_of(const Tiles& tiles, std::size_t t) {
     if (tiles.states[t] != TileState::changed) return tiles.least[t];
     const DF d;
     const float* const pixels = tiles.pixels + t * kTilePixels;
