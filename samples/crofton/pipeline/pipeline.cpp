@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <time.h>
-#include <cstdio>
 #include <crofton/cull/cull.hpp>
 #include <crofton/render/clip_space.hpp>
 #include <glm/matrix.hpp>
@@ -267,7 +265,6 @@ struct Pipeline::State {
     // By the depth of what is drawn.
     Result<void> find_triangles(const Camera& camera, const Frustum& frustum, OccludedFrame& frame) {
         const auto start = Clock::now();
-        timespec cpu0; clock_gettime(CLOCK_THREAD_CPUTIME_ID,&cpu0);
         const render::ModelToClip to_clip(camera);
         depth_objects.clear();
         for (const scene::InstanceId i : visible_ids) {
@@ -281,7 +278,6 @@ struct Pipeline::State {
         }
         const auto found = depth_culler.find_visible(depth_objects, *options.picture);
         if (!found) return tl::unexpected(found.error());
-        { const auto& st = depth_culler.statistics(); std::fprintf(stderr, "objects %zu asked %zu clusters asked %zu drawn %zu triangles drawn %zu listed %zu us %.0f\n", depth_objects.size(), (size_t)st.objects_asked, (size_t)st.clusters_asked, (size_t)st.clusters_drawn, (size_t)st.triangles_drawn, (size_t)st.triangles_listed, ([&]{timespec t2; clock_gettime(CLOCK_THREAD_CPUTIME_ID,&t2); return double((t2.tv_sec-cpu0.tv_sec)*1000000000+(t2.tv_nsec-cpu0.tv_nsec))*1e-3;})()); }
         frame.by_depth = true;
         frame.clusters.assign(found->begin(), found->end());
         for (depth::VisibleCluster& cluster : frame.clusters) {
