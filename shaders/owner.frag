@@ -8,6 +8,7 @@ layout(location = 0) flat in uint first_number;
 layout(location = 0) out vec4 pixel;
 
 void main() {
+    if (isnan(gl_FragCoord.z)) discard;
     if (faces == 1 && !gl_FrontFacing) discard;
     pixel = unpackUnorm4x8(first_number + uint(gl_PrimitiveID));
 }

@@ -2,6 +2,7 @@
 #include "pipelines.hpp"
 
 #include <array>
+#include <crofton/render/clip_space.hpp>
 #include <crofton/render/graphics_pipeline.hpp>
 #include <crofton/render/rasterizer.hpp>
 #include <cstddef>
@@ -88,6 +89,7 @@ Result<void> Pipelines::create() {
     const PipelineDescription scene{shaders::scene_vert, shaders::scene_frag, kVertexAttributes, kVertexBindings};
     const auto make_by_faces = [&](PipelineDescription description,
                                    std::array<VkPipeline, kAllFaces.size()>& by_faces) -> Result<void> {
+        description.depth_bias.slope = kDepthSlopeBias;
         for (const Faces faces : kAllFaces) {
             description.variant = static_cast<std::uint32_t>(faces);
             description.cull = faces == Faces::front_by_culling ? VK_CULL_MODE_BACK_BIT : VK_CULL_MODE_NONE;
@@ -104,7 +106,7 @@ Result<void> Pipelines::create() {
         PipelineDescription wire = scene;
         wire.mode = VK_POLYGON_MODE_LINE;
         wire.depth_compare = VK_COMPARE_OP_GREATER_OR_EQUAL;
-        wire.depth_bias = true;
+        wire.depth_bias = {.constant = 16.0f, .slope = 1.0f};
         if (auto made = make(wire, wires); !made) return made;
     }
     PipelineDescription line{shaders::line_vert, shaders::line_frag, kLineAttributes, kLineBindings};
