@@ -117,12 +117,11 @@ TEST_SUITE("render/depth") {
             }
         CHECK(device->validation_messages().empty());
     }
-    TEST_CASE(
-        "the bias moves a surface back by less than a hundredth of its slope: a nearer one of that slope is seen") {
+    TEST_CASE("two sheets of nearly the same depth and slope keep their order") {
         CROFTON_REQUIRE_DEVICE(device);
         auto rasterizer = Rasterizer::create(*device, {kWidth, kHeight});
         REQUIRE(rasterizer);
-        // Two sheets that fall away from the eye, the second a hundredth of a pixel's slope nearer.
+        // They fall away from the eye; the second is nearer by a hundredth of what depth changes from pixel to pixel.
         Camera camera;
         camera.aspect = static_cast<double>(kWidth) / kHeight;
         const ModelToClip to_clip(camera);
@@ -130,7 +129,6 @@ TEST_SUITE("render/depth") {
             {{-50, -1, -2}, {0, 1, 0}, {}}, {{50, -1, -2}, {0, 1, 0}, {}}, {{0, -1, -400}, {0, 1, 0}, {}}};
         const std::uint32_t indices[] = {0, 1, 2};
         REQUIRE(rasterizer->set_geometry(vertices, indices));
-        // Depth at height h below the eye and row r is proportional to (r − 180)/h.
         const double nearer = 1.0 - 0.01 / 180.0;
         const DrawTransform transforms[] = {draw_transform(to_clip(glm::dmat3(1.0), {}), glm::dmat3(1.0)),
                                             draw_transform(to_clip(glm::dmat3(nearer), {}), glm::dmat3(1.0))};
