@@ -262,6 +262,27 @@ TEST_SUITE("render/owners") {
         }
         CHECK(device->validation_messages().empty());
     }
+    TEST_CASE("of triangles at the same place the first one given owns the pixels, whatever faces are shown") {
+        CROFTON_REQUIRE_DEVICE(device);
+        auto rasterizer = Rasterizer::create(*device, {kSide, kSide});
+        REQUIRE(rasterizer);
+        const Vertex vertices[] = {
+            {{-1, -1, -5}, {0, 0, 1}, {1, 1, 1}}, {{1, -1, -5}, {0, 0, 1}, {1, 1, 1}}, {{0, 1, -5}, {0, 0, 1}, {}}};
+        const std::uint32_t indices[] = {0, 1, 2};
+        REQUIRE(rasterizer->set_geometry(vertices, indices));
+        Camera camera;
+        camera.aspect = 1.0;
+        const DrawTransform transform = draw_transform(ModelToClip(camera)(glm::dmat3(1.0), {}), glm::dmat3(1.0));
+        std::vector<DrawRange> ranges{{0, 3, 0, false, true}, {0, 3, 0, true, false}, {0, 3, 0, true, true}};
+        for (std::size_t turn = 0; turn < 6; ++turn) {
+            Vector<std::uint32_t> owners;
+            REQUIRE(rasterizer->draw_owners({camera, {&transform, 1}, ranges}, owners));
+            CHECK(std::count(owners.begin(), owners.end(), 0u) > 50);
+            CHECK(std::count(owners.begin(), owners.end(), 1u) == 0);
+            CHECK(std::count(owners.begin(), owners.end(), 2u) == 0);
+            std::swap(ranges[turn % 2], ranges[turn % 2 + 1]);
+        }
+    }
     TEST_CASE("bad ranges are refused by name, and so is a picture of fewer pixels") {
         CROFTON_REQUIRE_DEVICE(device);
         auto rasterizer = Rasterizer::create(*device, {kSide, kSide});

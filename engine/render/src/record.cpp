@@ -92,7 +92,7 @@ void Rasterizer::State::record_draws(std::size_t begin, std::size_t end) {
     }
 }
 
-// The counted draws, which lie by faces.
+// The counted draws, in runs of the same faces.
 void Rasterizer::State::record_counted_draws(const std::array<VkPipeline, kAllFaces.size()>& by_faces) {
     for (std::size_t begin = 0; begin < counted_draws;) {
         const Faces faces = draws[begin].faces;
