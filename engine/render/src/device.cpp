@@ -27,6 +27,7 @@ Result<void> create_logical_device(VulkanContext& context, const DeviceOptions& 
     features.features.pipelineStatisticsQuery = context.pipeline_statistics;
     features.features.occlusionQueryPrecise = context.precise_occlusion;
     features.features.fillModeNonSolid = context.wireframe;
+    features.features.geometryShader = context.primitive_numbers;
 
     VkDeviceCreateInfo info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO};
     info.pNext = &features;

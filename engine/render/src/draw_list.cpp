@@ -22,19 +22,19 @@ Result<void> merge_ranges(std::span<const DrawRange> ranges, std::size_t index_c
         if (range.transform >= transform_count)
             return fail(ErrorCode::out_of_range, i, "a draw range refers to a transform that is not there");
     }
-    for (const Faces faces : kAllFaces) {
-        const std::size_t first_draw = draws.size();
-        for (const DrawRange& range : ranges) {
-            if (faces_of(range) != faces || range.index_count == 0) continue;
-            if (draws.size() > first_draw) {
-                MergedDraw& last = draws.back();
-                if (last.transform == range.transform && last.first_index + last.index_count == range.first_index) {
-                    last.index_count += range.index_count;
-                    continue;
-                }
+    const std::size_t first_draw = draws.size();
+    for (const DrawRange& range : ranges) {
+        if (range.index_count == 0) continue;
+        const Faces faces = faces_of(range);
+        if (draws.size() > first_draw) {
+            MergedDraw& last = draws.back();
+            if (last.faces == faces && last.transform == range.transform &&
+                last.first_index + last.index_count == range.first_index) {
+                last.index_count += range.index_count;
+                continue;
             }
-            draws.push_back({range.first_index, range.index_count, range.transform, faces});
         }
+        draws.push_back({range.first_index, range.index_count, range.transform, faces});
     }
     return {};
 }

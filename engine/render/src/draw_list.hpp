@@ -17,9 +17,9 @@ struct MergedDraw {
     Faces faces;
 };
 
-// Appends to `draws`, by faces in the order of kAllFaces, joining a range to the one before where it continues it with
-// the same transform. Errors: item = the first range that is not whole triangles, or refers beyond indices or
-// transforms.
+// Appends to `draws` in the order given, which decides between surfaces of equal depth, joining a range to the one
+// before where it continues it with the same transform and faces. Errors: item = the first range that is not whole
+// triangles, or refers beyond indices or transforms.
 [[nodiscard]] Result<void> merge_ranges(std::span<const DrawRange> ranges, std::size_t index_count,
                                         std::size_t transform_count, Vector<MergedDraw>& draws);
 

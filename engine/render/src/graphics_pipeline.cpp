@@ -61,9 +61,10 @@ VkResult assemble(const VulkanContext& context, const PipelineDescription& descr
     raster.polygonMode = description.mode;
     raster.cullMode = description.cull;
     raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
-    raster.depthBiasEnable = description.depth_bias;
-    raster.depthBiasConstantFactor = 16.0f;
-    raster.depthBiasSlopeFactor = 1.0f;
+    const PipelineDescription::DepthBias& bias = description.depth_bias;
+    raster.depthBiasEnable = bias.constant != 0.0f || bias.slope != 0.0f;
+    raster.depthBiasConstantFactor = bias.constant;
+    raster.depthBiasSlopeFactor = bias.slope;
     raster.lineWidth = 1.0f;
     VkPipelineMultisampleStateCreateInfo samples{VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO};
     samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;

@@ -90,6 +90,7 @@ Result<void> examine(VulkanContext& context, const DeviceOptions& options) {
     context.pipeline_statistics = features.features.pipelineStatisticsQuery == VK_TRUE;
     context.precise_occlusion = features.features.occlusionQueryPrecise == VK_TRUE;
     context.wireframe = features.features.fillModeNonSolid == VK_TRUE;
+    context.primitive_numbers = features.features.geometryShader == VK_TRUE;
     return {};
 }
 

@@ -2,6 +2,7 @@
 #include "pipelines.hpp"
 
 #include <array>
+#include <crofton/render/clip_space.hpp>
 #include <crofton/render/graphics_pipeline.hpp>
 #include <crofton/render/rasterizer.hpp>
 #include <cstddef>
@@ -9,6 +10,8 @@
 #include "packed_vertex.hpp"
 #include "shaders/line.frag.h"
 #include "shaders/line.vert.h"
+#include "shaders/owner.frag.h"
+#include "shaders/owner.vert.h"
 #include "shaders/scene.frag.h"
 #include "shaders/scene.vert.h"
 #include "shaders/sky.frag.h"
@@ -49,6 +52,10 @@ constexpr std::array<VkVertexInputAttributeDescription, 11> kVertexAttributes{{
     {9, 1, kFloat4, offsetof(DrawTransform, normal) + 32},
     {10, 1, kFloat4, offsetof(DrawTransform, tint_share)},
 }};
+// Those that decide where a triangle lies and what number it has.
+constexpr std::array<VkVertexInputAttributeDescription, 6> kOwnerAttributes{
+    kVertexAttributes[0], kVertexAttributes[3], kVertexAttributes[4],
+    kVertexAttributes[5], kVertexAttributes[6], kVertexAttributes[10]};
 constexpr std::array<VkVertexInputBindingDescription, 1> kLineBindings{
     {{0, sizeof(LineVertex), VK_VERTEX_INPUT_RATE_VERTEX}}};
 constexpr std::array<VkVertexInputAttributeDescription, 2> kLineAttributes{{
@@ -61,6 +68,7 @@ constexpr std::array<VkVertexInputAttributeDescription, 2> kLineAttributes{{
 Pipelines::~Pipelines() {
     const auto& vk = context.vk;
     for (VkPipeline pipeline : triangles) vk.vkDestroyPipeline(context.device, pipeline, nullptr);
+    for (VkPipeline pipeline : owners) vk.vkDestroyPipeline(context.device, pipeline, nullptr);
     for (VkPipeline pipeline : {wires, lines, sky}) vk.vkDestroyPipeline(context.device, pipeline, nullptr);
     vk.vkDestroyPipelineLayout(context.device, layout, nullptr);
     vk.vkDestroyRenderPass(context.device, render_pass, nullptr);
@@ -79,17 +87,26 @@ Result<void> Pipelines::create() {
         return {};
     };
     const PipelineDescription scene{shaders::scene_vert, shaders::scene_frag, kVertexAttributes, kVertexBindings};
-    for (const Faces faces : kAllFaces) {
-        PipelineDescription of_faces = scene;
-        of_faces.variant = static_cast<std::uint32_t>(faces);
-        if (faces == Faces::front_by_culling) of_faces.cull = VK_CULL_MODE_BACK_BIT;
-        if (auto made = make(of_faces, triangles[static_cast<std::size_t>(faces)]); !made) return made;
+    const auto make_by_faces = [&](PipelineDescription description,
+                                   std::array<VkPipeline, kAllFaces.size()>& by_faces) -> Result<void> {
+        description.depth_bias.slope = kDepthSlopeBias;
+        for (const Faces faces : kAllFaces) {
+            description.variant = static_cast<std::uint32_t>(faces);
+            description.cull = faces == Faces::front_by_culling ? VK_CULL_MODE_BACK_BIT : VK_CULL_MODE_NONE;
+            if (auto made = make(description, by_faces[static_cast<std::size_t>(faces)]); !made) return made;
+        }
+        return {};
+    };
+    if (auto made = make_by_faces(scene, triangles); !made) return made;
+    if (context.primitive_numbers) {
+        const PipelineDescription numbers{shaders::owner_vert, shaders::owner_frag, kOwnerAttributes, kVertexBindings};
+        if (auto made = make_by_faces(numbers, owners); !made) return made;
     }
     if (context.wireframe) {
         PipelineDescription wire = scene;
         wire.mode = VK_POLYGON_MODE_LINE;
         wire.depth_compare = VK_COMPARE_OP_GREATER_OR_EQUAL;
-        wire.depth_bias = true;
+        wire.depth_bias = {.constant = 16.0f, .slope = 1.0f};
         if (auto made = make(wire, wires); !made) return made;
     }
     PipelineDescription line{shaders::line_vert, shaders::line_frag, kLineAttributes, kLineBindings};
@@ -116,6 +133,7 @@ void Pipelines::name() const {
     name_pipeline(triangles[static_cast<std::size_t>(Faces::both)], "triangles, both faces");
     name_pipeline(triangles[static_cast<std::size_t>(Faces::front_by_shader)], "triangles, front faces by the shader");
     name_pipeline(triangles[static_cast<std::size_t>(Faces::front_by_culling)], "triangles, front faces by culling");
+    for (const VkPipeline pipeline : owners) name_pipeline(pipeline, "triangles, in numbers");
     name_pipeline(wires, "wires");
     name_pipeline(lines, "lines");
     name_pipeline(sky, "sky");

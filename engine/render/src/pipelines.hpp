@@ -26,6 +26,7 @@ struct Pipelines {
     VkRenderPass render_pass = VK_NULL_HANDLE;
     VkPipelineLayout layout = VK_NULL_HANDLE;
     std::array<VkPipeline, kAllFaces.size()> triangles{};  // by Faces
+    std::array<VkPipeline, kAllFaces.size()> owners{};     // the same, in numbers; null where the device cannot
     VkPipeline wires = VK_NULL_HANDLE;                     // null where the device cannot
     VkPipeline lines = VK_NULL_HANDLE;
     VkPipeline sky = VK_NULL_HANDLE;

@@ -29,6 +29,9 @@ struct Rasterizer::State {
     Vector<MergedDraw> draws;       // the counted ones, then the wires
     std::size_t counted_draws = 0;  // of `draws`
     Vector<VkMultiDrawIndexedInfoEXT> multi_draws;
+    // What draw_owners() draws: each range with a transform of its own, which carries its number.
+    Vector<DrawRange> numbered_ranges;
+    Vector<DrawTransform> numbered_transforms;
 
     VkQueryPool statistics = VK_NULL_HANDLE;  // null where the device has none
     VkQueryPool occlusion = VK_NULL_HANDLE;
@@ -47,9 +50,15 @@ struct Rasterizer::State {
     void name_what_grows() const;  // each frame
     // Fills draws, transforms, indirect and lines.
     [[nodiscard]] Result<void> prepare(const Frame& frame);
+    [[nodiscard]] Result<void> number_triangles(const Frame& frame);
     void record(const Frame& frame, const Target& target);
+    // Without what is not counted; each triangle in its number (owners.cpp).
+    void record_numbers(const Target& target);
+    void begin_pass(const Target& target, const VkClearColorValue& background);
+    void bind_geometry();
     void record_draws(std::size_t begin, std::size_t end);
-    void record_counted_draws();
+    // `by_faces`: the pipelines.
+    void record_counted_draws(const std::array<VkPipeline, kAllFaces.size()>& by_faces);
     [[nodiscard]] Result<GpuCounters> read_counters() const;
 };
 

@@ -92,31 +92,24 @@ void Rasterizer::State::record_draws(std::size_t begin, std::size_t end) {
     }
 }
 
-// The counted draws, which lie by faces.
-void Rasterizer::State::record_counted_draws() {
+// The counted draws, in runs of the same faces.
+void Rasterizer::State::record_counted_draws(const std::array<VkPipeline, kAllFaces.size()>& by_faces) {
     for (std::size_t begin = 0; begin < counted_draws;) {
         const Faces faces = draws[begin].faces;
         std::size_t end = begin + 1;
         while (end < counted_draws && draws[end].faces == faces) ++end;
         context.vk.vkCmdBindPipeline(commands.handle, VK_PIPELINE_BIND_POINT_GRAPHICS,
-                                     pipelines.triangles[static_cast<std::size_t>(faces)]);
+                                     by_faces[static_cast<std::size_t>(faces)]);
         record_draws(begin, end);
         begin = end;
     }
 }
 
-void Rasterizer::State::record(const Frame& frame, const Target& target) {
+void Rasterizer::State::begin_pass(const Target& target, const VkClearColorValue& background) {
     const auto& vk = context.vk;
     const VkCommandBuffer cmd = commands.handle;
-    if (statistics != VK_NULL_HANDLE) vk.vkCmdResetQueryPool(cmd, statistics, 0, 1);
-    vk.vkCmdResetQueryPool(cmd, occlusion, 0, 1);
-    if (stamps != VK_NULL_HANDLE) vk.vkCmdResetQueryPool(cmd, stamps, 0, stamp_count);
-    next_stamp = 0;
-
-    const LabelledCommands whole(context.labels, cmd, "picture");
-    const glm::vec3 background = glm::sqrt(frame.environment.horizon);
     std::array<VkClearValue, 2> clear{};
-    clear[0].color = {{background.r, background.g, background.b, 1.0f}};
+    clear[0].color = background;
     clear[1].depthStencil = {0.0f, 0};
     VkRenderPassBeginInfo pass{VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO};
     pass.renderPass = pipelines.render_pass;
@@ -132,15 +125,32 @@ void Rasterizer::State::record(const Frame& frame, const Target& target) {
     const VkRect2D scissor{{0, 0}, target.drawn_extent};
     vk.vkCmdSetViewport(cmd, 0, 1, &viewport);
     vk.vkCmdSetScissor(cmd, 0, 1, &scissor);
+}
+
+void Rasterizer::State::bind_geometry() {
+    const std::array buffers{vertices.handle, transforms.handle};
+    const std::array<VkDeviceSize, 2> offsets{};
+    context.vk.vkCmdBindVertexBuffers(commands.handle, 0, 2, buffers.data(), offsets.data());
+    context.vk.vkCmdBindIndexBuffer(commands.handle, indices.handle, 0, VK_INDEX_TYPE_UINT32);
+}
+
+void Rasterizer::State::record(const Frame& frame, const Target& target) {
+    const auto& vk = context.vk;
+    const VkCommandBuffer cmd = commands.handle;
+    if (statistics != VK_NULL_HANDLE) vk.vkCmdResetQueryPool(cmd, statistics, 0, 1);
+    vk.vkCmdResetQueryPool(cmd, occlusion, 0, 1);
+    if (stamps != VK_NULL_HANDLE) vk.vkCmdResetQueryPool(cmd, stamps, 0, stamp_count);
+    next_stamp = 0;
+
+    const LabelledCommands whole(context.labels, cmd, "picture");
+    const glm::vec3 background = glm::sqrt(frame.environment.horizon);
+    begin_pass(target, {{background.r, background.g, background.b, 1.0f}});
     const VkPipelineLayout layout = pipelines.layout;
     constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
 
     const SceneConstants scene = scene_constants(frame);
     if (!draws.empty()) {
-        const std::array buffers{vertices.handle, transforms.handle};
-        const std::array<VkDeviceSize, 2> offsets{};
-        vk.vkCmdBindVertexBuffers(cmd, 0, 2, buffers.data(), offsets.data());
-        vk.vkCmdBindIndexBuffer(cmd, indices.handle, 0, VK_INDEX_TYPE_UINT32);
+        bind_geometry();
         vk.vkCmdPushConstants(cmd, layout, kStages, 0, sizeof scene, &scene);
     }
     // Before the queries begin: lavapipe takes over what is bound then, and does not survive that nothing is.
@@ -150,7 +160,7 @@ void Rasterizer::State::record(const Frame& frame, const Target& target) {
                        context.precise_occlusion ? VkQueryControlFlags{VK_QUERY_CONTROL_PRECISE_BIT} : 0u);
     {
         const LabelledCommands label(context.labels, cmd, "counted triangles");
-        record_counted_draws();
+        record_counted_draws(pipelines.triangles);
     }
     vk.vkCmdEndQuery(cmd, occlusion, 0);
     if (statistics != VK_NULL_HANDLE) vk.vkCmdEndQuery(cmd, statistics, 0);

@@ -41,7 +41,7 @@ struct FramesOptions {
     std::uint32_t instances = 0;
     std::uint64_t seed = 1;
     unsigned threads = 1;
-    bool draw = false, no_draw = false, verify = false;
+    bool draw = false, no_draw = false, no_seen = false, verify = false;
     bool occlude = false;
     std::string occlusion = "depth", occlusion_size = "400x225";
     std::uint32_t occluders = 128;
@@ -215,6 +215,8 @@ class FramesRun {
         const FileZone part(trace_.get(), "draw and count triangles");
         if (drawing_) {
             if (auto drawn = drawing_->draw(*frame); !drawn) return tl::unexpected(drawn.error());
+            if (!options_.no_seen || options_.verify)
+                if (auto seen = drawing_->find_seen(*frame); !seen) return tl::unexpected(seen.error());
         } else {
             predict(*frame);
         }
@@ -232,7 +234,7 @@ class FramesRun {
         frame.occlusion->triangles_clipped = list_->predict_clipped();
     }
 
-    Result<void> verify(FrameStatistics& frame, pipeline::Verification& verification) {
+    Result<void> verify(const FrameStatistics& frame, pipeline::Verification& verification) {
         const bool exactly = drawing_ && drawing_->device().counts_exactly();
         pipeline::verify_frame(source_->scene, *pipeline_, pipeline_options_, frame, exactly, verification);
         if (!frame.occlusion || !drawing_) return {};
@@ -303,10 +305,11 @@ constexpr const char* kFramesExamples =
     "The table, a line per frame: instances whose bound meets the view (visible), meets its surface\n"
     "(straddle), or does so while the object's triangles lie inside or outside as a whole (improper); tree\n"
     "nodes tested; triangles of what is visible (submitted), those that meet the frustum (passed), those that\n"
-    "clipping leaves (clipped); pairs of instances whose boxes meet; microseconds to update, cull, collide\n"
-    "(hits) and draw.\n\n"
+    "own a pixel (seen), and how many pass for each that is seen (ratio); those that clipping leaves (clipped);\n"
+    "pairs of instances whose boxes meet; microseconds to update, cull, collide (hits) and draw.\n\n"
     "With --occlude: two columns each, of what is in the view and of what nothing hides as well. Instances;\n"
-    "triangles submitted; milliseconds to find what to draw and to draw it, and what occlusion takes of that.\n"
+    "triangles submitted; those that meet the frustum, with what is seen, and how many pass for each that is;\n"
+    "milliseconds to find what to draw and to draw it, and what occlusion takes of that.\n"
     "Occluders are found in the scene's meshes, or come from --baked. --verify then also draws who owns which pixel: "
     "nothing that\n"
     "does may be hidden, and both pictures must be the same.\n\n"
@@ -361,6 +364,8 @@ void add_frames_command(CommandLine& line) {
         .show_default();
     const Option draw =
         command.flag("--draw", options->draw, "Fail where nothing can be drawn, instead of going on without");
+    command.flag("--no-seen", options->no_seen,
+                 "Do not count the triangles that own a pixel: each frame is drawn once more for that");
     const Option no_draw =
         command.flag("--no-draw", options->no_draw, "Do not draw; counts are the CPU's alone").excludes(draw);
     command.flag("--verify", options->verify, "Check every frame by brute force; exit 1 on any mismatch");

@@ -10,8 +10,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// The rasterizer's pictures: what is shown; with occlusion also all that is visible, and the owners of its pixels.
-constexpr std::uint32_t kShown = 0, kAll = 1, kOwners = 2;
+// The rasterizer's pictures: what is shown, the owners of pixels, and with occlusion all that is visible.
+constexpr std::uint32_t kShown = 0, kOwners = 1, kAll = 2;
 
 }  // namespace
 
@@ -23,10 +23,11 @@ Result<std::unique_ptr<FramesDrawing>> FramesDrawing::create(pipeline::DrawList&
     auto rasterizer = render::Rasterizer::create(drawing->device_, {.width = size.width, .height = size.height});
     if (!rasterizer) return tl::unexpected(rasterizer.error());
     if (auto set = rasterizer->set_geometry(list.vertices(), list.indices()); !set) return tl::unexpected(set.error());
-    if (occlusion)
-        for (const std::uint32_t picture : {kAll, kOwners})
-            if (auto made = rasterizer->resize(size.width, size.height, picture); !made)
-                return tl::unexpected(made.error());
+    for (const std::uint32_t picture : {kOwners, kAll}) {
+        if (picture == kAll && !occlusion) continue;
+        if (auto made = rasterizer->resize(size.width, size.height, picture); !made)
+            return tl::unexpected(made.error());
+    }
     drawing->rasterizer_.emplace(std::move(*rasterizer));
     return drawing;
 }
@@ -71,11 +72,19 @@ Result<const render::Image*> FramesDrawing::picture() {
     return &image_;
 }
 
-Result<std::span<const scene::InstanceId>> FramesDrawing::find_owners(const pipeline::FrameStatistics& frame) {
+Result<void> FramesDrawing::find_seen(pipeline::FrameStatistics& frame) {
+    list_.select(frame.occlusion ? frame.occlusion->visible_ids : frame.visible_ids, frame.camera);
+    if (auto drawn = owners_of_shown_.draw(*rasterizer_, kOwners, list_, frame.camera); !drawn)
+        return drawn.error().code == ErrorCode::unsupported ? Result<void>{} : drawn;
+    frame.seen = pipeline::Seen{owners_of_shown_.instances().size(), owners_of_shown_.triangles().size()};
+    return {};
+}
+
+Result<pipeline::BothOwners> FramesDrawing::find_owners(const pipeline::FrameStatistics& frame) {
     list_.select(frame.visible_ids, frame.camera);
-    if (auto drawn = owner_picture_.draw(*rasterizer_, kOwners, list_, frame.camera); !drawn)
+    if (auto drawn = owners_of_all_.draw(*rasterizer_, kOwners, list_, frame.camera); !drawn)
         return tl::unexpected(drawn.error());
-    return owner_picture_.owners();
+    return pipeline::BothOwners{owners_of_all_.triangles(), owners_of_shown_.triangles()};
 }
 
 Result<std::uint64_t> FramesDrawing::count_changed_pixels() {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What `crofton frames` draws: each frame, the same without what is hidden, and who is seen in each pixel.
+// What `crofton frames` draws: each frame, the same without what is hidden, and what is seen in each pixel.
 #pragma once
 #include <crofton/core/error.hpp>
 #include <crofton/render/device.hpp>
@@ -10,6 +10,7 @@
 #include "pipeline/draw_list.hpp"
 #include "pipeline/frame_statistics.hpp"
 #include "pipeline/owner_picture.hpp"
+#include "pipeline/verify.hpp"
 
 namespace crofton::cli {
 
@@ -25,9 +26,12 @@ class FramesDrawing {
     // The picture of the last frame, without what is hidden.
     [[nodiscard]] Result<const render::Image*> picture();
 
-    // Of the last frame, which has occlusion: who owns a pixel of all that is visible, ascending; and how many pixels
+    // Of the last frame: fills `seen`, by what is shown, where the device can. Takes as long as draw() and is no part
+    // of its time.
+    [[nodiscard]] Result<void> find_seen(pipeline::FrameStatistics& frame);
+    // Of the last frame, which has occlusion and has been through find_seen(): who owns a pixel; and how many pixels
     // differ between the two pictures.
-    [[nodiscard]] Result<std::span<const scene::InstanceId>> find_owners(const pipeline::FrameStatistics& frame);
+    [[nodiscard]] Result<pipeline::BothOwners> find_owners(const pipeline::FrameStatistics& frame);
     [[nodiscard]] Result<std::uint64_t> count_changed_pixels();
 
     [[nodiscard]] const render::Device& device() const { return device_; }
@@ -44,7 +48,7 @@ class FramesDrawing {
     std::optional<render::Rasterizer> rasterizer_;
     double haze_;
     render::Image image_, other_image_;
-    pipeline::OwnerPicture owner_picture_;
+    pipeline::OwnerPicture owners_of_shown_, owners_of_all_;
 };
 
 }  // namespace crofton::cli

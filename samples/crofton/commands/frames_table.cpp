@@ -21,13 +21,18 @@ double ratio(double a, double b) {
     return b > 0.0 ? a / b : 0.0;
 }
 
+Whole triangles_seen(const FrameStatistics& f) {
+    return f.seen ? Whole{f.seen->triangles} : Whole{0};
+}
+
 std::string row_with_occlusion(const FrameStatistics& f) {
     const pipeline::OccludedFrame& o = *f.occlusion;
-    const double all = static_cast<double>(f.triangles_submitted), rest = static_cast<double>(o.triangles_submitted);
-    return format("%6u   %7llu %7llu   %9llu %9llu %6.1f   %9llu %9llu   %8.2f %8.2f %6.1f %10.2f\n", f.index,
-                  Whole{f.visible}, Whole{o.visible}, Whole{f.triangles_submitted}, Whole{o.triangles_submitted},
-                  ratio(all, rest), Whole{f.triangles_passed}, Whole{o.triangles_passed}, frame_ms(f),
-                  frame_ms_with_occlusion(f), ratio(frame_ms(f), frame_ms_with_occlusion(f)), 1e-3 * o.occlude_us);
+    return format("%6u   %7llu %7llu   %9llu %9llu   %9llu %9llu %8llu %7.1f %7.1f   %8.2f %8.2f %6.1f %10.2f\n",
+                  f.index, Whole{f.visible}, Whole{o.visible}, Whole{f.triangles_submitted},
+                  Whole{o.triangles_submitted}, Whole{f.triangles_passed}, Whole{o.triangles_passed}, triangles_seen(f),
+                  pipeline::passed_per_seen(f.triangles_passed, f.seen),
+                  pipeline::passed_per_seen(o.triangles_passed, f.seen), frame_ms(f), frame_ms_with_occlusion(f),
+                  ratio(frame_ms(f), frame_ms_with_occlusion(f)), 1e-3 * o.occlude_us);
 }
 
 // No ratio where it is not less.
@@ -42,7 +47,7 @@ std::string means_with_occlusion(std::span<const FrameStatistics> frames) {
         return mean_of(frames, [&](const FrameStatistics& f) { return value(*f.occlusion); });
     };
     const double submitted = rest([](const auto& f) { return f.triangles_submitted; });
-    std::string text = format("\nmean of %4zu frames                    without      with    ratio\n", frames.size());
+    std::string text = format("mean of %4zu frames                    without      with    ratio\n", frames.size());
     text += mean_row("instances drawn", " %9.1f", mean([](const auto& f) { return f.visible; }),
                      rest([](const auto& f) { return f.visible; }));
     text +=
@@ -58,15 +63,24 @@ std::string means_with_occlusion(std::span<const FrameStatistics> frames) {
         text += mean_row("ms to draw it, median", " %9.2f", median([](const auto& f) { return 1e-3 * f.draw_us; }),
                          median([](const auto& f) { return 1e-3 * f.occlusion->draw_us; }));
     text += mean_row("ms of the frame, median", " %9.2f", median(frame_ms), median(frame_ms_with_occlusion));
-    if (const auto owners = pipeline::mean_owners(frames))
-        text += format("seen, that own a pixel: %.1f instances of %.0f triangles; %.2f times as many are submitted\n",
-                       owners->instances, owners->triangles, ratio(submitted, owners->triangles));
     return text;
+}
+
+// How close the frame comes to drawing only what is seen.
+std::string headline(std::span<const FrameStatistics> frames) {
+    const auto seen = pipeline::mean_seen(frames);
+    if (!seen) return {};
+    std::string text = format("passed / seen: %.1f", seen->passed_per_seen());
+    if (frames.front().occlusion)
+        text += format(" without occlusion, %.1f with it", seen->passed_per_seen_with_occlusion());
+    text += format("; %.0f triangles of %.1f instances own a pixel, %.0f meet the frustum", seen->triangles,
+                   seen->instances, seen->passed);
+    return text + (frames.front().occlusion ? format(" (%.0f with occlusion)\n", seen->passed_with_occlusion) : "\n");
 }
 
 std::string means_of_culling(const SceneFacts& scene, std::span<const FrameStatistics> frames) {
     const auto mean = [&](auto value) { return mean_of(frames, value); };
-    return format("\nmean of %zu frames: %.1f of %llu instances visible, %.1f straddling (%.1f improperly)\n",
+    return format("mean of %zu frames: %.1f of %llu instances visible, %.1f straddling (%.1f improperly)\n",
                   frames.size(), mean([](const auto& f) { return f.visible; }), Whole{scene.instances},
                   mean([](const auto& f) { return f.straddling; }), mean([](const auto& f) { return f.improper; })) +
            format("triangles: %.0f submitted, %.0f meet the frustum; colliding pairs: %.2f\n",
@@ -90,20 +104,23 @@ std::string table_header(const SceneFacts& scene, bool occlusion) {
                                      Whole{scene.nodes}, Whole{scene.instances}, Whole{scene.triangles});
     if (!occlusion)
         return title +
-               " frame   visible straddle   improper     nodes  submitted     passed    clipped  pairs update us  cull "
-               "us  hits us   draw us\n";
+               " frame   visible straddle   improper     nodes  submitted     passed     seen   ratio    clipped  "
+               "pairs "
+               "update us  cull us  hits us   draw us\n";
     return title +
-           "         instances drawn        triangles submitted    that meet the frustum     milliseconds of the "
-           "frame\n"
-           " frame   without    with     without      with  ratio     without      with    without     with  ratio  "
-           "occlusion\n";
+           "         instances drawn   triangles submitted   that meet the frustum     seen  met for each seen     "
+           "milliseconds of the frame\n"
+           " frame   without    with     without      with     without      with           without    with    without  "
+           "   "
+           "with  ratio  occlusion\n";
 }
 
 std::string table_row(const FrameStatistics& f) {
     if (f.occlusion) return row_with_occlusion(f);
-    return format("%6u %9llu %8llu %10llu %9llu %10llu %10llu %10llu %6llu %9.0f %8.0f %8.0f %9.0f\n", f.index,
-                  Whole{f.visible}, Whole{f.straddling}, Whole{f.improper}, Whole{f.nodes_tested},
-                  Whole{f.triangles_submitted}, Whole{f.triangles_passed},
+    return format("%6u %9llu %8llu %10llu %9llu %10llu %10llu %8llu %7.1f %10llu %6llu %9.0f %8.0f %8.0f %9.0f\n",
+                  f.index, Whole{f.visible}, Whole{f.straddling}, Whole{f.improper}, Whole{f.nodes_tested},
+                  Whole{f.triangles_submitted}, Whole{f.triangles_passed}, triangles_seen(f),
+                  pipeline::passed_per_seen(f.triangles_passed, f.seen),
                   Whole{f.gpu ? f.gpu->clipping_primitives : f.triangles_clipped}, Whole{f.colliding_pairs},
                   f.update_us, f.cull_us, f.collide_us, f.draw_us);
 }
@@ -111,7 +128,8 @@ std::string table_row(const FrameStatistics& f) {
 std::string table_means(const SceneFacts& scene, std::span<const FrameStatistics> frames,
                         const std::optional<pipeline::Verification>& verification) {
     const auto mean = [&](auto value) { return mean_of(frames, value); };
-    std::string text = frames.front().occlusion ? means_with_occlusion(frames) : means_of_culling(scene, frames);
+    std::string text = "\n" + headline(frames);
+    text += frames.front().occlusion ? means_with_occlusion(frames) : means_of_culling(scene, frames);
     text += format(
         "collisions: %.1f pairs of boxes tested; early outs: %.1f by faces of the first, %.1f of the second, %.1f by "
         "edges; %.1f refined, %.1f contact points\n",
@@ -128,7 +146,7 @@ std::string table_means(const SceneFacts& scene, std::span<const FrameStatistics
         format("verified by brute force: %llu mismatches in %llu frames (%llu answers too close for double to check)\n",
                Whole{verification->mismatches()}, Whole{verification->frames}, Whole{verification->unclear});
     if (frames.front().occlusion && frames.front().gpu)
-        text += format("verified by drawing: %llu instances hidden that own a pixel, %llu pictures changed\n",
+        text += format("verified by drawing: %llu triangles hidden that own a pixel, %llu pictures changed\n",
                        Whole{verification->hidden_but_seen}, Whole{verification->changed_pictures});
     return text;
 }

@@ -63,6 +63,12 @@ Series series_of(const char* name, std::span<const FrameStatistics> frames, Valu
     return series;
 }
 
+std::string one_digit(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.1f", value);
+    return text;
+}
+
 std::string tile(const char* name, const std::string& value) {
     return std::string("<div><b>") + value + "</b><span class=\"quiet\">" + name + "</span></div>";
 }
@@ -105,13 +111,6 @@ std::string both_columns(const ReportContents& c) {
                             median([](const auto& f) { return 1e-3 * f.occlusion->draw_us; }), "%.1f");
     html += row_of_both("ms of the frame, median", median(frame_ms), median(frame_ms_with_occlusion), "%.1f");
     html += "</table></div>\n";
-    if (const auto owners = pipeline::mean_owners(c.frames)) {
-        char times[32];
-        std::snprintf(times, sizeof times, "%.2f", with(submitted) / std::max(owners->triangles, 1.0));
-        html += "<p class=\"quiet\">" + readable(std::round(owners->instances)) + " instances of " +
-                readable(owners->triangles) + " triangles own a pixel; with occlusion " + times +
-                " times as many are submitted.</p>\n";
-    }
     return html;
 }
 
@@ -123,6 +122,12 @@ std::string summary(const ReportContents& c) {
     html += tile("visible instances, mean", mean([](const auto& f) { return f.visible; }));
     html += tile("triangles submitted, mean", mean([](const auto& f) { return f.triangles_submitted; }));
     html += tile("triangles that meet the frustum, mean", mean([](const auto& f) { return f.triangles_passed; }));
+    if (const auto seen = pipeline::mean_seen(c.frames)) {
+        html += tile("triangles that own a pixel, mean", readable(seen->triangles));
+        html += tile("passed / seen", one_digit(seen->passed_per_seen()));
+        if (c.frames.front().occlusion)
+            html += tile("passed / seen with occlusion", one_digit(seen->passed_per_seen_with_occlusion()));
+    }
     html += tile("improper tests, mean", mean([](const auto& f) { return f.improper; }));
     html += tile("colliding pairs, mean", mean([](const auto& f) { return f.colliding_pairs; }));
     html += tile("&micro;s to cull, mean", mean([](const auto& f) { return f.cull_us; }));
@@ -141,16 +146,31 @@ std::string summary(const ReportContents& c) {
     return html;
 }
 
+// Triangles that meet the frustum, those of them that own a pixel, and the ratio.
+std::string seen_charts(std::span<const FrameStatistics> frames) {
+    if (!pipeline::mean_seen(frames)) return {};
+    std::vector<Series> triangles{
+        series_of("meet the frustum", frames, [](const auto& f) { return f.triangles_passed; })};
+    std::vector<Series> ratios{series_of("without occlusion", frames, [](const auto& f) {
+        return pipeline::passed_per_seen(f.triangles_passed, f.seen);
+    })};
+    if (frames.front().occlusion) {
+        triangles.push_back(
+            series_of("with occlusion", frames, [](const auto& f) { return f.occlusion->triangles_passed; }));
+        ratios.push_back(series_of("with", frames, [](const auto& f) {
+            return pipeline::passed_per_seen(f.occlusion->triangles_passed, f.seen);
+        }));
+    }
+    triangles.push_back(series_of("own a pixel", frames, [](const auto& f) { return f.seen ? f.seen->triangles : 0; }));
+    return svg_chart("chart-seen", "Triangles passed and seen", "per frame", triangles) +
+           svg_chart("chart-passed-per-seen", "Passed for each that is seen", "per frame", ratios);
+}
+
 std::string occlusion_charts(std::span<const FrameStatistics> frames) {
     if (!frames.front().occlusion) return {};
-    std::vector<Series> triangles{
-        series_of("without occlusion", frames, [](const auto& f) { return f.triangles_submitted; }),
-        series_of("with", frames, [](const auto& f) { return f.occlusion->triangles_submitted; })};
-    if (pipeline::mean_owners(frames))
-        triangles.push_back(series_of("of what owns a pixel", frames, [](const auto& f) {
-            return f.occlusion->owners ? f.occlusion->owners->triangles : 0;
-        }));
-    return svg_chart("chart-occlusion-triangles", "Triangles submitted", "per frame", triangles) +
+    return svg_chart("chart-occlusion-triangles", "Triangles submitted", "per frame",
+                     {series_of("without occlusion", frames, [](const auto& f) { return f.triangles_submitted; }),
+                      series_of("with", frames, [](const auto& f) { return f.occlusion->triangles_submitted; })}) +
            svg_chart(
                "chart-occlusion-frame", "The frame", "milliseconds",
                {series_of("without occlusion", frames, frame_ms), series_of("with", frames, frame_ms_with_occlusion),
@@ -162,7 +182,7 @@ std::string occlusion_charts(std::span<const FrameStatistics> frames) {
 }
 
 std::string charts(std::span<const FrameStatistics> frames) {
-    std::string html = "<div class=\"charts\">\n" + occlusion_charts(frames);
+    std::string html = "<div class=\"charts\">\n" + seen_charts(frames) + occlusion_charts(frames);
     html += svg_chart("chart-instances", "Instances", "per frame",
                       {series_of("visible", frames, [](const auto& f) { return f.visible; }),
                        series_of("inside", frames, [](const auto& f) { return f.inside; }),
@@ -196,13 +216,8 @@ std::string numbers(std::span<const FrameStatistics> frames) {
     std::string html =
         "<h2>All numbers</h2><div class=\"scroll\"><table id=\"numbers\">\n<tr><th>per frame</th><th>least</th>"
         "<th>median</th><th>mean</th><th>most</th></tr>\n";
-    std::vector<pipeline::StatisticsColumn> columns(pipeline::statistics_columns().begin(),
-                                                    pipeline::statistics_columns().end());
-    if (frames.front().occlusion)
-        columns.insert(columns.end(), pipeline::occlusion_columns().begin(), pipeline::occlusion_columns().end());
-    for (const pipeline::StatisticsColumn& column : columns) {
+    for (const pipeline::StatisticsColumn& column : pipeline::columns_of(frames)) {
         const std::string name = column.name;
-        if (name.find("gpu_") != name.npos && !frames.front().gpu) continue;
         std::vector<double> values;
         for (const FrameStatistics& frame : frames) values.push_back(column.value(frame));
         std::sort(values.begin(), values.end());

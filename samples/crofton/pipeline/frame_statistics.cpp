@@ -12,13 +12,32 @@ namespace {
 
 using Column = StatisticsColumn;
 
-#define CROFTON_COLUMN(field)                                                         \
-    Column {                                                                          \
-#field, [](const FrameStatistics& f) { return static_cast<double>(f.field); } \
+bool always(const FrameStatistics&) {
+    return true;
+}
+bool is_drawn(const FrameStatistics& f) {
+    return f.gpu.has_value();
+}
+bool says_what_is_seen(const FrameStatistics& f) {
+    return f.seen.has_value();
+}
+bool has_occlusion(const FrameStatistics& f) {
+    return f.occlusion.has_value();
+}
+
+#define CROFTON_COLUMN(field)                                                                 \
+    Column {                                                                                  \
+#field, [](const FrameStatistics& f) { return static_cast<double>(f.field); }, always \
     }
-#define CROFTON_GPU_COLUMN(field)                                                                               \
-    Column {                                                                                                    \
-        "gpu_" #field, [](const FrameStatistics& f) { return f.gpu ? static_cast<double>(f.gpu->field) : 0.0; } \
+#define CROFTON_GPU_COLUMN(field)                                                                                \
+    Column {                                                                                                     \
+        "gpu_" #field, [](const FrameStatistics& f) { return f.gpu ? static_cast<double>(f.gpu->field) : 0.0; }, \
+            is_drawn                                                                                             \
+    }
+#define CROFTON_SEEN_COLUMN(name, field)                                                                  \
+    Column {                                                                                              \
+        name, [](const FrameStatistics& f) { return f.seen ? static_cast<double>(f.seen->field) : 0.0; }, \
+            says_what_is_seen                                                                             \
     }
 
 constexpr std::array kColumns = {
@@ -30,6 +49,10 @@ constexpr std::array kColumns = {
     CROFTON_COLUMN(nodes_tested),
     CROFTON_COLUMN(triangles_submitted),
     CROFTON_COLUMN(triangles_passed),
+    CROFTON_SEEN_COLUMN("triangles_seen", triangles),
+    Column{"passed_per_seen", [](const FrameStatistics& f) { return passed_per_seen(f.triangles_passed, f.seen); },
+           says_what_is_seen},
+    CROFTON_SEEN_COLUMN("instances_seen", instances),
     CROFTON_COLUMN(triangles_clipped),
     CROFTON_GPU_COLUMN(input_assembly_primitives),
     CROFTON_GPU_COLUMN(clipping_invocations),
@@ -48,16 +71,19 @@ constexpr std::array kColumns = {
     CROFTON_COLUMN(draw_us),
 };
 
-#define CROFTON_OCCLUSION_COLUMN(field)                                                                          \
-    Column {                                                                                                     \
-        "occlusion_" #field,                                                                                     \
-            [](const FrameStatistics& f) { return f.occlusion ? static_cast<double>(f.occlusion->field) : 0.0; } \
+#define CROFTON_OCCLUSION_COLUMN(field)                                                                           \
+    Column {                                                                                                      \
+        "occlusion_" #field,                                                                                      \
+            [](const FrameStatistics& f) { return f.occlusion ? static_cast<double>(f.occlusion->field) : 0.0; }, \
+            has_occlusion                                                                                         \
     }
-#define CROFTON_OCCLUSION_GPU_COLUMN(field)                                                              \
-    Column {                                                                                             \
-        "occlusion_gpu_" #field, [](const FrameStatistics& f) {                                          \
-            return f.occlusion && f.occlusion->gpu ? static_cast<double>(f.occlusion->gpu->field) : 0.0; \
-        }                                                                                                \
+#define CROFTON_OCCLUSION_GPU_COLUMN(field)                                                                  \
+    Column {                                                                                                 \
+        "occlusion_gpu_" #field,                                                                             \
+            [](const FrameStatistics& f) {                                                                   \
+                return f.occlusion && f.occlusion->gpu ? static_cast<double>(f.occlusion->gpu->field) : 0.0; \
+            },                                                                                               \
+            [](const FrameStatistics& f) { return f.occlusion && f.occlusion->gpu; }                         \
     }
 
 constexpr std::array kOcclusionColumns = {
@@ -65,6 +91,11 @@ constexpr std::array kOcclusionColumns = {
     CROFTON_OCCLUSION_COLUMN(occluders),
     CROFTON_OCCLUSION_COLUMN(triangles_submitted),
     CROFTON_OCCLUSION_COLUMN(triangles_passed),
+    Column{"occlusion_passed_per_seen",
+           [](const FrameStatistics& f) {
+               return f.occlusion ? passed_per_seen(f.occlusion->triangles_passed, f.seen) : 0.0;
+           },
+           [](const FrameStatistics& f) { return f.occlusion && f.seen; }},
     CROFTON_OCCLUSION_COLUMN(triangles_clipped),
     CROFTON_OCCLUSION_GPU_COLUMN(clipping_primitives),
     CROFTON_OCCLUSION_GPU_COLUMN(samples_passed),
@@ -76,22 +107,15 @@ constexpr std::array kOcclusionColumns = {
 #undef CROFTON_OCCLUSION_GPU_COLUMN
 #undef CROFTON_COLUMN
 #undef CROFTON_GPU_COLUMN
+#undef CROFTON_SEEN_COLUMN
 
 bool drawn(std::span<const FrameStatistics> frames) {
     return std::any_of(frames.begin(), frames.end(), [](const FrameStatistics& f) { return f.gpu.has_value(); });
 }
 
-bool needs_gpu(const Column& column) {
-    return std::string_view(column.name).find("gpu_") != std::string_view::npos;
-}
-
-// What these frames have values for.
-std::vector<Column> columns_of(std::span<const FrameStatistics> frames) {
-    std::vector<Column> columns(kColumns.begin(), kColumns.end());
-    if (std::any_of(frames.begin(), frames.end(), [](const FrameStatistics& f) { return f.occlusion.has_value(); }))
-        columns.insert(columns.end(), kOcclusionColumns.begin(), kOcclusionColumns.end());
-    if (!drawn(frames)) std::erase_if(columns, needs_gpu);
-    return columns;
+Json seen_json(const std::optional<Seen>& seen) {
+    if (!seen) return nullptr;
+    return {{"instances", seen->instances}, {"triangles", seen->triangles}};
 }
 
 Json gpu_json(const std::optional<render::GpuCounters>& gpu) {
@@ -110,10 +134,8 @@ Json occlusion_json(const std::optional<OccludedFrame>& f, bool with_ids) {
                   {"triangles_passed", f->triangles_passed},
                   {"triangles_clipped", f->triangles_clipped},
                   {"gpu", gpu_json(f->gpu)},
-                  {"owners", nullptr},
                   {"occlude_us", f->occlude_us},
                   {"draw_us", f->draw_us}};
-    if (f->owners) entry["owners"] = {{"instances", f->owners->instances}, {"triangles", f->owners->triangles}};
     if (with_ids) entry["visible_ids"] = f->visible_ids;
     return entry;
 }
@@ -134,6 +156,14 @@ std::span<const StatisticsColumn> occlusion_columns() {
     return kOcclusionColumns;
 }
 
+std::vector<StatisticsColumn> columns_of(std::span<const FrameStatistics> frames) {
+    std::vector<Column> columns(kColumns.begin(), kColumns.end());
+    columns.insert(columns.end(), kOcclusionColumns.begin(), kOcclusionColumns.end());
+    std::erase_if(columns,
+                  [&](const Column& column) { return std::none_of(frames.begin(), frames.end(), column.has_value); });
+    return columns;
+}
+
 Json to_json(const FrameStatistics& f, bool with_ids) {
     Json entry = {{"index", f.index},
                   {"camera", to_json(f.camera)},
@@ -146,6 +176,7 @@ Json to_json(const FrameStatistics& f, bool with_ids) {
                   {"triangles_submitted", f.triangles_submitted},
                   {"triangles_passed", f.triangles_passed},
                   {"triangles_clipped", f.triangles_clipped},
+                  {"seen", seen_json(f.seen)},
                   {"gpu", gpu_json(f.gpu)},
                   {"colliding_pairs", f.colliding_pairs},
                   {"pairs_tested", f.pairs_tested},
@@ -175,9 +206,10 @@ Json summary_json(std::span<const FrameStatistics> frames, const std::optional<V
         summary["mean_" + std::string(column.name)] = sum / count;
     }
     summary["drawn"] = drawn(frames);
-    if (const auto owners = mean_owners(frames)) {
-        summary["mean_owners"] = owners->instances;
-        summary["mean_owner_triangles"] = owners->triangles;
+    // Of the means, not the mean of the frames' ratios.
+    if (const auto seen = mean_seen(frames)) {
+        summary["passed_per_seen"] = seen->passed_per_seen();
+        if (frames.front().occlusion) summary["occlusion_passed_per_seen"] = seen->passed_per_seen_with_occlusion();
     }
     summary["verified"] = verification.has_value();
     summary["mismatches"] = verification ? verification->mismatches() : 0;
@@ -194,17 +226,24 @@ Json summary_json(std::span<const FrameStatistics> frames, const std::optional<V
     return summary;
 }
 
-std::optional<MeanOwners> mean_owners(std::span<const FrameStatistics> frames) {
-    MeanOwners sum;
-    std::size_t count = 0;
+double passed_per_seen(std::uint64_t passed, const std::optional<Seen>& seen) {
+    return seen && seen->triangles > 0 ? static_cast<double>(passed) / static_cast<double>(seen->triangles) : 0.0;
+}
+
+std::optional<MeanSeen> mean_seen(std::span<const FrameStatistics> frames) {
+    MeanSeen mean;
+    double count = 0.0;
     for (const FrameStatistics& f : frames) {
-        if (!f.occlusion || !f.occlusion->owners) continue;
-        sum.instances += static_cast<double>(f.occlusion->owners->instances);
-        sum.triangles += static_cast<double>(f.occlusion->owners->triangles);
+        if (!f.seen) continue;
+        mean.instances += static_cast<double>(f.seen->instances);
+        mean.triangles += static_cast<double>(f.seen->triangles);
+        mean.passed += static_cast<double>(f.triangles_passed);
+        if (f.occlusion) mean.passed_with_occlusion += static_cast<double>(f.occlusion->triangles_passed);
         ++count;
     }
-    if (count == 0) return std::nullopt;
-    return MeanOwners{sum.instances / static_cast<double>(count), sum.triangles / static_cast<double>(count)};
+    if (count == 0.0) return std::nullopt;
+    for (double* sum : {&mean.instances, &mean.triangles, &mean.passed, &mean.passed_with_occlusion}) *sum /= count;
+    return mean;
 }
 
 std::string to_csv(std::span<const FrameStatistics> frames) {

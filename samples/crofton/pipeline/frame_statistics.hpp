@@ -15,8 +15,8 @@
 
 namespace crofton::pipeline {
 
-// What owns a pixel in the picture of all that is visible.
-struct PixelOwners {
+// What owns a pixel of the picture: the least that could be drawn. Occlusion does not change it.
+struct Seen {
     std::uint64_t instances = 0, triangles = 0;
 };
 
@@ -26,7 +26,6 @@ struct OccludedFrame {
     std::uint64_t occluders = 0;  // drawn into the occlusion buffer
     std::uint64_t triangles_submitted = 0, triangles_passed = 0, triangles_clipped = 0;
     std::optional<render::GpuCounters> gpu;
-    std::optional<PixelOwners> owners;  // where --verify has drawn them
     // Choosing and drawing the occluders, and asking; in place of cull_us. draw_us: as the frame's.
     double occlude_us = 0.0, draw_us = 0.0;
     std::vector<std::uint32_t> visible_ids;
@@ -47,6 +46,7 @@ struct FrameStatistics {
     std::uint64_t triangles_submitted = 0;  // of the visible instances
     std::uint64_t triangles_passed = 0;     // that meet the frustum
     std::uint64_t triangles_clipped = 0;    // predicted Σ (vertices of the clipped polygon − 2)
+    std::optional<Seen> seen;               // absent without drawing, and where it was not asked for
     std::optional<render::GpuCounters>
         gpu;  // absent without drawing; docs/notes/render.md: what each counts on lavapipe
     std::uint64_t colliding_pairs = 0;
@@ -70,7 +70,7 @@ struct Verification {
     std::uint64_t wrong_verdicts = 0;
     std::uint64_t wrong_pairs = 0;
     std::uint64_t wrong_counts = 0;
-    std::uint64_t hidden_but_seen = 0;   // instances that own a pixel and were culled as hidden
+    std::uint64_t hidden_but_seen = 0;   // triangles that own a pixel and were culled as hidden
     std::uint64_t changed_pictures = 0;  // pictures that occlusion changes
     std::uint64_t unclear = 0;           // answers that double arithmetic cannot check
     std::vector<std::string> messages;
@@ -85,16 +85,27 @@ struct Verification {
 struct StatisticsColumn {
     const char* name;
     double (*value)(const FrameStatistics&);
+    bool (*has_value)(const FrameStatistics&);
 };
 [[nodiscard]] std::span<const StatisticsColumn> statistics_columns();
 // Those of FrameStatistics::occlusion; their names begin with "occlusion_", those of the GPU with "occlusion_gpu_".
 [[nodiscard]] std::span<const StatisticsColumn> occlusion_columns();
+// Those of both that at least one of the frames has a value for.
+[[nodiscard]] std::vector<StatisticsColumn> columns_of(std::span<const FrameStatistics> frames);
 
-// Over the frames that have owners; nothing where none has.
-struct MeanOwners {
-    double instances = 0.0, triangles = 0.0;
+// How many triangles meet the frustum for each that is seen; 0 where that was not counted, or nothing is seen.
+[[nodiscard]] double passed_per_seen(std::uint64_t passed, const std::optional<Seen>& seen);
+
+// Over the frames that say what is seen; nothing where none does. `passed`: triangles that meet the frustum, without
+// and with occlusion.
+struct MeanSeen {
+    double instances = 0.0, triangles = 0.0, passed = 0.0, passed_with_occlusion = 0.0;
+    [[nodiscard]] double passed_per_seen() const { return triangles > 0.0 ? passed / triangles : 0.0; }
+    [[nodiscard]] double passed_per_seen_with_occlusion() const {
+        return triangles > 0.0 ? passed_with_occlusion / triangles : 0.0;
+    }
 };
-[[nodiscard]] std::optional<MeanOwners> mean_owners(std::span<const FrameStatistics> frames);
+[[nodiscard]] std::optional<MeanSeen> mean_seen(std::span<const FrameStatistics> frames);
 
 [[nodiscard]] Json to_json(const FrameStatistics& frame, bool with_ids);
 [[nodiscard]] Json summary_json(std::span<const FrameStatistics> frames,

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Which instances are seen in a picture: drawn with their numbers as colours.
+// What is seen in a picture: the triangles and instances that own a pixel of it.
 #pragma once
 #include <crofton/core/error.hpp>
 #include <crofton/render/rasterizer.hpp>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -10,23 +11,28 @@
 
 namespace crofton::pipeline {
 
+// A triangle of an instance; `triangle` is its place in the list's indices, which does not depend on what is selected.
+struct OwnerTriangle {
+    scene::InstanceId instance = 0;
+    std::uint32_t triangle = 0;
+    auto operator<=>(const OwnerTriangle&) const = default;
+};
+
 class OwnerPicture {
   public:
-    // Instances beyond this cannot be told apart: colours have 24 bits, and one is the background's.
-    static constexpr std::size_t kMaxInstances = (std::size_t{1} << 24) - 1;
-
     // Draws what `list` has selected for this camera into picture `picture` of the rasterizer, which has the list's
-    // geometry. Errors: the rasterizer's; more instances than can be told apart.
+    // geometry. Errors: the rasterizer's.
     [[nodiscard]] Result<void> draw(render::Rasterizer& rasterizer, std::uint32_t picture, const DrawList& list,
                                     const Camera& camera);
-    // That own a pixel, ascending.
-    [[nodiscard]] std::span<const scene::InstanceId> owners() const { return owners_; }
+    // What owns a pixel, ascending.
+    [[nodiscard]] std::span<const scene::InstanceId> instances() const { return instances_; }
+    [[nodiscard]] std::span<const OwnerTriangle> triangles() const { return triangles_; }
 
   private:
-    std::vector<render::DrawRange> ranges_;
-    std::vector<render::DrawTransform> transforms_;
-    std::vector<scene::InstanceId> owners_;
-    render::Image image_;
+    Vector<std::uint32_t> owners_;    // by pixel
+    std::vector<std::uint8_t> seen_;  // by triangle, as the ranges count them
+    std::vector<scene::InstanceId> instances_;
+    std::vector<OwnerTriangle> triangles_;
 };
 
 }  // namespace crofton::pipeline

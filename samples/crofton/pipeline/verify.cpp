@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <glm/geometric.hpp>
+#include <iterator>
 
 #include "brute_force.hpp"
 
@@ -163,20 +164,22 @@ void verify_frame(const scene::Scene& scene, const Pipeline& pipeline, const Pip
     ++verification.frames;
 }
 
-void verify_occlusion(const scene::Scene& scene, std::span<const scene::InstanceId> owners,
-                      std::uint64_t changed_pixels, bool gpu_counts_exactly, FrameStatistics& frame,
-                      Verification& verification) {
-    OccludedFrame& result = *frame.occlusion;
+void verify_occlusion(const scene::Scene& scene, const BothOwners& owners, std::uint64_t changed_pixels,
+                      bool gpu_counts_exactly, const FrameStatistics& frame, Verification& verification) {
+    const OccludedFrame& result = *frame.occlusion;
     FrameReport report(frame, verification);
     const auto triangles_of = [&](std::span<const scene::InstanceId> instances) {
         std::uint64_t sum = 0;
         for (const scene::InstanceId i : instances) sum += scene.mesh(scene.mesh_of(i)).triangle_count();
         return sum;
     };
-    for (const scene::InstanceId owner : owners)
-        if (!std::binary_search(result.visible_ids.begin(), result.visible_ids.end(), owner))
-            report.report(verification.hidden_but_seen,
-                          "instance " + std::to_string(owner) + " owns a pixel but was culled as hidden");
+    std::vector<OwnerTriangle> differing;
+    std::set_symmetric_difference(owners.of_all.begin(), owners.of_all.end(), owners.of_shown.begin(),
+                                  owners.of_shown.end(), std::back_inserter(differing));
+    for (const OwnerTriangle& owner : differing)
+        report.report(verification.hidden_but_seen, "triangle " + std::to_string(owner.triangle) + " of instance " +
+                                                        std::to_string(owner.instance) +
+                                                        " owns a pixel with or without occlusion only");
     if (changed_pixels > 0)
         report.report(verification.changed_pictures, std::to_string(changed_pixels) + " pixels differ with occlusion");
     if (!std::includes(frame.visible_ids.begin(), frame.visible_ids.end(), result.visible_ids.begin(),
@@ -189,7 +192,6 @@ void verify_occlusion(const scene::Scene& scene, std::span<const scene::Instance
     report.expect("occlusion.triangles_submitted", submitted, result.triangles_submitted);
     report.check_gpu("occlusion.gpu", result.gpu, result.triangles_submitted, result.triangles_clipped,
                      gpu_counts_exactly);
-    result.owners = PixelOwners{owners.size(), triangles_of(owners)};
 }
 
 }  // namespace crofton::pipeline

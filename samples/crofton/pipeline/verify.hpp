@@ -6,6 +6,7 @@
 
 #include "bounds.hpp"
 #include "frame_statistics.hpp"
+#include "owner_picture.hpp"
 #include "pipeline.hpp"
 
 namespace crofton::pipeline {
@@ -17,10 +18,13 @@ namespace crofton::pipeline {
 void verify_frame(const scene::Scene& scene, const Pipeline& pipeline, const PipelineOptions& options,
                   const FrameStatistics& frame, bool gpu_counts_exactly, Verification& verification);
 
-// Adds what is wrong with `frame.occlusion`: an instance of `owners`, which own a pixel in the picture of all that is
-// visible, that counts as hidden; pixels that occlusion changes; counts. Sets frame.occlusion->owners.
-void verify_occlusion(const scene::Scene& scene, std::span<const scene::InstanceId> owners,
-                      std::uint64_t changed_pixels, bool gpu_counts_exactly, FrameStatistics& frame,
-                      Verification& verification);
+// What owns a pixel, ascending: in the picture of all that is visible, and in that without what is hidden.
+struct BothOwners {
+    std::span<const OwnerTriangle> of_all, of_shown;
+};
+// Adds what is wrong with `frame.occlusion`: triangles that own a pixel in one picture and not in the other; pixels
+// that occlusion changes; counts.
+void verify_occlusion(const scene::Scene& scene, const BothOwners& owners, std::uint64_t changed_pixels,
+                      bool gpu_counts_exactly, const FrameStatistics& frame, Verification& verification);
 
 }  // namespace crofton::pipeline

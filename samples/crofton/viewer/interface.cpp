@@ -64,6 +64,7 @@ Result<void> Session::build_interface() {
                          nodes_,
                          frame_,
                          drawn,
+                         seen_frame_ ? &*seen_frame_ : nullptr,
                          other_ ? &other_frame_ : nullptr,
                          frame_history_,
                          instance_coloring_,

@@ -115,6 +115,7 @@ Result<void> Session::load(const SceneRequest& request) {
     sight_.reset();
     hiders_.clear();
     drawn_ids_.clear();
+    seen_frame_.reset();
     pick_.reset();
     if (!same_scene) {
         other_.reset();

@@ -49,6 +49,7 @@ struct PanelInput {
     const NodeTree& nodes;
     const pipeline::FrameStatistics& frame;
     const pipeline::FrameStatistics* drawn;  // the last frame that the device has counted, or null
+    const pipeline::FrameStatistics* seen;   // the last frame that says what is seen, or null
     const pipeline::FrameStatistics* other;  // of the comparison's B, or null
     const FrameHistory& frame_history;
     const InstanceColoring& instance_coloring;

@@ -17,6 +17,10 @@ namespace crofton::viewer {
 namespace {
 
 constexpr double kInsetAspect = 16.0 / 9.0;
+// The rasterizer's pictures beside that of the window, which is 0.
+constexpr std::uint32_t kInset = 1, kOwners = 2;
+// So many frames between two counts of what is seen.
+constexpr std::uint32_t kSeenEvery = 30;
 // A driver that loses its device again and again is given up on.
 constexpr int kMaxRecoveries = 5;
 // How long a message stays.
@@ -255,10 +259,10 @@ Result<void> Session::start_drawing() {
                                                                                font_pixels(scale_))));
         const auto columns = static_cast<std::uint32_t>(std::max(width, 16.0));
         const auto rows = static_cast<std::uint32_t>(std::max(width / kInsetAspect, 9.0));
-        if (auto sized = rasterizer_->resize(columns, rows, 1); !sized) return sized;
+        if (auto sized = rasterizer_->resize(columns, rows, kInset); !sized) return sized;
         // What most triangles are in; the far landscape would make it a speck.
         const double range = glm::length(loaded_->focus().half_extents());
-        if (auto begun = submit_view(from_outside(culling_camera_, range), 1, true); !begun) return begun;
+        if (auto begun = submit_view(from_outside(culling_camera_, range), kInset, true); !begun) return begun;
         if (auto done = rasterizer_->finish(); !done) return tl::unexpected(std::move(done.error()));
     }
     if (other_)
@@ -272,12 +276,32 @@ Result<void> Session::finish_drawing() {
     if (!counters) return tl::unexpected(std::move(counters.error()));
     frame_.draw_us = microseconds_since(draw_start_);
     frame_.gpu = *counters;
+    if (options_.frames > 0 && frame_index_ + 1 == options_.frames && !options_.screenshot.empty())
+        screenshots_.push_back(options_.screenshot);
+    const bool wanted = frame_index_ % kSeenEvery == 0 || !screenshots_.empty();
+    return settings_.seen && wanted ? count_seen() : Result<void>{};
+}
+
+// From the eye that culls, with as many pixels as are drawn.
+Result<void> Session::count_seen() {
+    const auto drawn_side = [&](std::uint32_t side) {
+        return std::max(1u, static_cast<std::uint32_t>(std::lround(side * drawn_resolution_)));
+    };
+    // Pictures are made one after another.
+    if (rasterizer_->native_image(kInset) == nullptr)
+        if (auto made = rasterizer_->resize(16, 9, kInset); !made) return made;
+    if (auto sized = rasterizer_->resize(drawn_side(rasterizer_->width()), drawn_side(rasterizer_->height()), kOwners);
+        !sized)
+        return sized;
+    list_->select(frame_.visible_ids, culling_camera_);
+    auto counted = owner_picture_.draw(*rasterizer_, kOwners, *list_, culling_camera_);
+    if (!counted) return counted.error().code == ErrorCode::unsupported ? Result<void>{} : counted;
+    frame_.seen = pipeline::Seen{owner_picture_.instances().size(), owner_picture_.triangles().size()};
+    seen_frame_ = frame_;
     return {};
 }
 
 Result<void> Session::save_screenshots() {
-    if (options_.frames > 0 && frame_index_ + 1 == options_.frames && !options_.screenshot.empty())
-        screenshots_.push_back(options_.screenshot);
     if (screenshots_.empty()) return {};
     if (auto read = rasterizer_->read_pixels(image_); !read) return read;
     for (const std::string& file : screenshots_) {

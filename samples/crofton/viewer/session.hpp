@@ -14,6 +14,7 @@
 #include "overlay.hpp"
 #include "panels.hpp"
 #include "pipeline/camera_path.hpp"
+#include "pipeline/owner_picture.hpp"
 #include "script.hpp"
 #include "ui_renderer.hpp"
 #include "viewer.hpp"
@@ -80,6 +81,7 @@ class Session {
     [[nodiscard]] Result<void> draw_other();
     [[nodiscard]] Result<void> start_drawing();
     [[nodiscard]] Result<void> finish_drawing();
+    [[nodiscard]] Result<void> count_seen();
     [[nodiscard]] Result<void> submit_view(const Camera& camera, std::uint32_t picture, bool show_frustum);
     [[nodiscard]] Result<void> submit(const Camera& camera, std::uint32_t picture);
     [[nodiscard]] Result<ImTextureID> show_depth();
@@ -108,6 +110,8 @@ class Session {
     CameraController controller_;
     Camera culling_camera_;
     pipeline::FrameStatistics frame_, other_frame_;
+    std::optional<pipeline::FrameStatistics> seen_frame_;  // the last that says what is seen
+    pipeline::OwnerPicture owner_picture_;
     std::vector<scene::InstanceId> drawn_ids_;  // in this frame: what is visible, and what is hidden where it is shown
     std::vector<scene::NodeId> hiders_;         // that hide the selected instance
     DepthPicture depth_picture_;

@@ -9,7 +9,7 @@
 namespace crofton::viewer {
 namespace {
 
-constexpr std::array<std::pair<const char*, bool Settings::*>, 15> kFlags{{{"compare", &Settings::compare},
+constexpr std::array<std::pair<const char*, bool Settings::*>, 16> kFlags{{{"compare", &Settings::compare},
                                                                            {"exact", &Settings::exact},
                                                                            {"collisions", &Settings::collisions},
                                                                            {"freeze", &Settings::freeze},
@@ -19,6 +19,7 @@ constexpr std::array<std::pair<const char*, bool Settings::*>, 15> kFlags{{{"com
                                                                            {"hulls", &Settings::hulls},
                                                                            {"depth_buffer", &Settings::depth_buffer},
                                                                            {"wireframe", &Settings::wireframe},
+                                                                           {"seen", &Settings::seen},
                                                                            {"panels", &Settings::panels},
                                                                            {"help", &Settings::help},
                                                                            {"more", &Settings::more},

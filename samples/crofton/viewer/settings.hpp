@@ -53,6 +53,7 @@ struct Settings {
     bool depth_buffer = false;  // of the occluders, as a picture
     int tree_level = -1;        // bounds of the tree's nodes at this depth; −1: none
     bool wireframe = false;
+    bool seen = true;  // twice a second count the triangles that own a pixel, by drawing once more
     int cascades = 1;  // views: the camera's depth range split into so many
     bool panels = true;
     bool help = false;                   // the list of keys

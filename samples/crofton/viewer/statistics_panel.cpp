@@ -27,6 +27,9 @@ constexpr StatisticsRow kMainRows[] = {
     {"nodes tested", "nodes_tested", "of the tree, against the view"},
     {"triangles submitted", "triangles_submitted", "of the visible instances"},
     {"triangles in view", "triangles_passed", "that meet the view"},
+    {"triangles seen", "triangles_seen",
+     "that own a pixel: the least that could be drawn; counted every thirtieth frame"},
+    {"  in view for each", "passed_per_seen", "triangles in view for each that is seen"},
     {"colliding pairs", "colliding_pairs", "of instances whose boxes meet, where one of them moves"},
     {"update \u00b5s", "update_us", "to move what moves, and to follow it in the tree"},
     {"cull \u00b5s", "cull_us", "to find what is visible"},
@@ -34,6 +37,7 @@ constexpr StatisticsRow kMainRows[] = {
     {"draw \u00b5s", "draw_us", "of the last frame: from submitting until the device is done"},
 };
 constexpr StatisticsRow kMoreRows[] = {
+    {"instances seen", "instances_seen", "that own a pixel"},
     {"triangles clipped", "triangles_clipped", "predicted: what is left of the submitted ones after clipping"},
     {"GPU assembled", "gpu_input_assembly_primitives", "triangles that the device has read"},
     {"GPU clip invocations", "gpu_clipping_invocations", "triangles that the device has clipped"},
@@ -66,6 +70,19 @@ void right_aligned(const std::string& text) {
 
 void number(double value) {
     right_aligned(with_thousands(static_cast<std::uint64_t>(std::llround(value))));
+}
+
+// Of the last frame for which it was counted; nothing before.
+void seen_number(const Frame* frame, const pipeline::StatisticsColumn& column) {
+    if (frame == nullptr) return;
+    if (std::string_view(column.name) != "passed_per_seen") return number(column.value(*frame));
+    char text[32];
+    std::snprintf(text, sizeof text, "%.1f", column.value(*frame));
+    right_aligned(text);
+}
+
+bool is_of_what_is_seen(std::string_view column) {
+    return column.ends_with("seen");
 }
 
 // The device's numbers are those of the last frame that it has drawn.
@@ -121,13 +138,18 @@ void table(const char* id, const PanelInput& input, std::span<const StatisticsRo
     ImGui::TableNextColumn();
     right_aligned(compare ? "B" : "mean of 60");
     for (const StatisticsRow& row : rows) {
-        const Value value = column_named(row.column).value;
+        const pipeline::StatisticsColumn& column = column_named(row.column);
+        const Value value = column.value;
         const bool later = is_counted_later(row.column);
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
         ImGui::TextUnformatted(row.label);
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", row.hint);
         ImGui::TableNextColumn();
+        if (is_of_what_is_seen(row.column)) {
+            seen_number(input.seen, column);
+            continue;
+        }
         if (!later)
             number(value(input.frame));
         else if (input.drawn != nullptr)

@@ -77,6 +77,10 @@ void flags(Settings& s) {
     flag("compare (G)", s.compare, "G", 1);
     flag("hulls (U)", s.hulls, "U", 2);
     flag("help (F1)", s.help, "F1", 0);
+    ImGui::SameLine();
+    ImGui::Checkbox("count what is seen", &s.seen);
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("triangles that own a pixel: every thirtieth frame is drawn once more for that");
 }
 
 void sliders(const PanelInput& input) {

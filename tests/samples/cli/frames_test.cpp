@@ -99,6 +99,7 @@ TEST_SUITE("cli/frames") {
                                       "triangles_submitted",
                                       "triangles_passed",
                                       "triangles_clipped",
+                                      "seen",
                                       "gpu",
                                       "colliding_pairs",
                                       "update_us",
@@ -193,7 +194,7 @@ TEST_SUITE("cli/frames") {
                 const json& with = frame["occlusion"];
                 REQUIRE(with.is_object());
                 for (const char* field : {"visible", "occluders", "triangles_submitted", "triangles_passed",
-                                          "triangles_clipped", "gpu", "owners", "occlude_us", "draw_us"})
+                                          "triangles_clipped", "gpu", "occlude_us", "draw_us"})
                     CHECK_MESSAGE(with.contains(field), field);
                 CHECK(with["visible_ids"].size() == with["visible"].get<std::size_t>());
                 CHECK(with["triangles_passed"].get<int>() <= frame["triangles_passed"].get<int>());
@@ -201,12 +202,44 @@ TEST_SUITE("cli/frames") {
                 if (!with["gpu"].is_object()) continue;
                 CHECK(with["gpu"]["input_assembly_primitives"] == with["triangles_submitted"]);
                 CHECK(with["gpu"]["clipping_primitives"] == with["triangles_clipped"]);
-                CHECK(with["owners"]["triangles"].get<int>() <= with["triangles_submitted"].get<int>());
-                CHECK(with["owners"]["instances"].get<int>() > 0);
+                CHECK(frame["seen"]["triangles"].get<int>() <= with["triangles_passed"].get<int>());
+                CHECK(frame["seen"]["instances"].get<int>() > 0);
+                CHECK(frame["seen"]["instances"].get<int>() <= with["visible"].get<int>());
             }
             CHECK((hidden > 0) == hides);
         }
         CHECK(run_cli(kSmallTown + "--frames 1 --no-draw --json -").json()["frames"][0]["occlusion"].is_null());
+    }
+
+    TEST_CASE("what is seen is counted in every frame that is drawn, and is the same with and without occlusion") {
+        const std::string path = kSmallTown + "--frames 4 --camera street ";
+        const json plain = run_cli(path + "--json -").json(), occluded = run_cli(path + "--occlude --json -").json();
+        if (plain["summary"]["drawn"] == false) {
+            MESSAGE("skipped: nothing can be drawn here");
+            return;
+        }
+        double passed = 0.0, seen = 0.0;
+        for (std::size_t i = 0; i < 4; ++i) {
+            const json &without = plain["frames"][i], &with = occluded["frames"][i];
+            CHECK(static_cast<bool>(without["seen"] == with["seen"]));
+            CHECK(without["seen"]["triangles"].get<int>() > 0);
+            CHECK(without["seen"]["triangles"].get<int>() <= with["occlusion"]["triangles_passed"].get<int>());
+            CHECK(without["seen"]["instances"].get<int>() <= with["occlusion"]["visible"].get<int>());
+            passed += without["triangles_passed"].get<double>();
+            seen += without["seen"]["triangles"].get<double>();
+        }
+        CHECK(plain["summary"]["passed_per_seen"].get<double>() == doctest::Approx(passed / seen));
+        CHECK(occluded["summary"]["passed_per_seen"] == plain["summary"]["passed_per_seen"]);
+        CHECK(occluded["summary"]["occlusion_passed_per_seen"].get<double>() < passed / seen);
+        const CliRun table = run_cli(path + "--occlude");
+        CHECK(says(table.out, "passed / seen: "));
+        CHECK(says(run_cli(path + "--csv -").out, "triangles_seen,passed_per_seen,instances_seen"));
+        // Not counted where it is not wanted, nor where nothing is drawn.
+        const json none = run_cli(path + "--no-seen --json -").json();
+        CHECK(none["frames"][0]["seen"].is_null());
+        CHECK_FALSE(none["summary"].contains("passed_per_seen"));
+        CHECK(run_cli(path + "--no-draw --json -").json()["frames"][0]["seen"].is_null());
+        CHECK_FALSE(says(run_cli(path + "--no-seen --csv -").out, "seen"));
     }
 
     TEST_CASE("the table and the CSV hold both columns") {

@@ -227,17 +227,18 @@ TEST_SUITE("pipeline/occlusion") {
         REQUIRE(pipeline.has_value());
         const auto frame = pipeline->run(Camera{});
         REQUIRE(frame.has_value());
-        const std::vector<scene::InstanceId> owners{yard.wall, yard.beside};
-        const auto check = [&](FrameStatistics tampered, std::span<const scene::InstanceId> seen,
+        const std::vector<OwnerTriangle> owners{{yard.wall, 3}, {yard.wall, 4}, {yard.beside, 30}};
+        std::vector<OwnerTriangle> more_owners = owners;
+        more_owners.push_back({yard.behind[0], 40});
+        const auto check = [&](const FrameStatistics& tampered, std::span<const OwnerTriangle> of_all,
                                std::uint64_t changed) {
             Verification verification;
-            verify_occlusion(yard.scene, seen, changed, true, tampered, verification);
-            REQUIRE(tampered.occlusion->owners.has_value());
-            CHECK(tampered.occlusion->owners->instances == seen.size());
+            verify_occlusion(yard.scene, {of_all, owners}, changed, true, tampered, verification);
             return verification;
         };
         CHECK(check(*frame, owners, 0).mismatches() == 0);
-        CHECK(check(*frame, yard.all, 0).hidden_but_seen == yard.behind.size());
+        CHECK(check(*frame, more_owners, 0).hidden_but_seen == 1);
+        CHECK(check(*frame, std::span(owners).first(1), 0).hidden_but_seen == 2);
         CHECK(check(*frame, owners, 7).changed_pictures == 1);
         FrameStatistics miscounted = *frame;
         ++miscounted.occlusion->triangles_submitted;
@@ -266,13 +267,22 @@ TEST_SUITE("pipeline/occlusion") {
         OwnerPicture picture;
         list.select(yard.all, Camera{});
         REQUIRE(picture.draw(*rasterizer, 0, list, Camera{}).has_value());
-        CHECK(std::vector(picture.owners().begin(), picture.owners().end()) ==
+        CHECK(std::vector(picture.instances().begin(), picture.instances().end()) ==
               std::vector<scene::InstanceId>{yard.wall, yard.beside});
+        const std::vector<OwnerTriangle> with_wall(picture.triangles().begin(), picture.triangles().end());
+        // A box shows an eye at most three faces of two triangles.
+        CHECK(with_wall.size() >= 4);
+        CHECK(with_wall.size() <= 12);
+        // What the wall hides can be left out: the same triangles own pixels, under the same numbers.
+        const std::vector<scene::InstanceId> shown{yard.wall, yard.beside};
+        list.select(shown, Camera{});
+        REQUIRE(picture.draw(*rasterizer, 0, list, Camera{}).has_value());
+        CHECK(std::vector(picture.triangles().begin(), picture.triangles().end()) == with_wall);
         // Without the wall the others own pixels.
         std::vector<scene::InstanceId> rest = yard.all;
         rest.erase(std::find(rest.begin(), rest.end(), yard.wall));
         list.select(rest, Camera{});
         REQUIRE(picture.draw(*rasterizer, 0, list, Camera{}).has_value());
-        CHECK(std::vector(picture.owners().begin(), picture.owners().end()) == rest);
+        CHECK(std::vector(picture.instances().begin(), picture.instances().end()) == rest);
     }
 }

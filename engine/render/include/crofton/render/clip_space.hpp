@@ -27,6 +27,12 @@ class ModelToClip {
     glm::dmat4 from_camera_relative_;
 };
 
+// The rasterizer moves each triangle back by this share of its steepest slope of depth, from one pixel to the next. A
+// device sets up a triangle's depth from its vertices as they are, and its pixels from vertices snapped to a grid of
+// 1/256 pixel. A pixel may so lie up to 1/512 pixel along each axis beyond the triangle. Without the bias a triangle
+// seen edge-on would be drawn far nearer than any of its vertices.
+inline constexpr float kDepthSlopeBias = -1.0f / 256.0f;
+
 // True only where the float pipeline finds no point of `bounds` beyond a clip plane of |x| ≤ w, |y| ≤ w, 0 ≤ z ≤ w. A
 // mesh within is drawn without any clipping. Boxes within rounding of a plane are answered false.
 [[nodiscard]] bool inside_clip_planes(const Aabb& bounds, const glm::mat4& model_to_clip);

@@ -30,8 +30,11 @@ struct PipelineDescription {
     std::uint32_t variant = 0;                          // what the shaders read as constant_id 0
     VkCompareOp depth_compare = VK_COMPARE_OP_GREATER;  // reversed-Z; of no effect in a pass without depth
     bool depth_write = true;
-    bool depth_bias = false;
-    bool blend = false;  // by the source's alpha
+    struct DepthBias {
+        float constant = 0.0f;  // in the least steps of the depth's format
+        float slope = 0.0f;     // of the triangle's steepest slope, from one pixel to the next
+    } depth_bias{};             // positive: nearer, as depth is reversed
+    bool blend = false;         // by the source's alpha
 };
 [[nodiscard]] Result<VkPipeline> create_pipeline(const VulkanContext& context, const PipelineDescription& description,
                                                  VkPipelineLayout layout, VkRenderPass pass);

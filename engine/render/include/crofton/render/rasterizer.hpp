@@ -34,7 +34,7 @@ struct DrawTransform {
     std::array<glm::vec4, 3> normal;  // columns of the cofactor matrix of the linear part; .w holds the tint's r, g, b
     float tint_share = 0.0f;          // 0: the vertices' colours, 1: the tint
     float unlit = 0.0f;               // 1: colours as given, without light
-    float padding[2]{};
+    float number[2]{};                // written by draw_owners()
 };
 static_assert(sizeof(DrawTransform) == 128, "the layout that the vertex shader's attributes are read by");
 
@@ -86,6 +86,9 @@ struct Image {
     Vector<std::uint8_t> rgba;
 };
 
+// In draw_owners()'s answer: a pixel that no triangle owns.
+inline constexpr std::uint32_t kNoTriangle = 0xffffffffu;
+
 class ImageResource;  // native handles: see resources.hpp
 
 struct RasterizerOptions {
@@ -126,6 +129,16 @@ class Rasterizer {
 
     // The picture's pixels as they are now. Errors: nothing drawn since its last change of size; Vulkan's.
     [[nodiscard]] Result<void> read_pixels(Image& image, std::uint32_t picture = 0);
+
+    // Writes which triangle owns each pixel, top row first: `owners` gets k for the k-th triangle of frame.ranges,
+    // counted through the ranges as they are given, or kNoTriangle. The owner is the triangle whose colour draw()
+    // leaves there.
+    //
+    // Draws the ranges into the picture, each triangle in its number; lines, wires and sky are left out. Draws and
+    // waits. Errors: `unsupported` where fragment shaders cannot read gl_PrimitiveID; a picture whose resolution is
+    // below 1; more than 2^32 - 2 triangles; as draw().
+    [[nodiscard]] Result<void> draw_owners(const Frame& frame, Vector<std::uint32_t>& owners,
+                                           std::uint32_t picture = 0);
 
     // How many draws the last frame needed after merging.
     [[nodiscard]] std::uint32_t draw_count() const;

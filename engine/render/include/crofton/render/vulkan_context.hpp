@@ -29,6 +29,7 @@ struct VulkanContext {
     bool pipeline_statistics = false;
     bool precise_occlusion = false;
     bool wireframe = false;
+    bool primitive_numbers = false;  // fragment shaders may read gl_PrimitiveID
     std::string name;
     std::vector<std::string> messages;
 
