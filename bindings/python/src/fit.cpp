@@ -131,7 +131,7 @@ void bind_fit(py::module_& module) {
     module.def("minimal_triangle", &minimal_triangle, py::arg("points"), py::arg("criterion") = "area",
                "The best triangle around points of the plane, shape (3, 2), counter-clockwise.");
     module.def("minimal_disc", &minimal_disc, py::arg("points"), "The smallest disc: (center, radius).");
-    module.def("minimal_sphere", &minimal_sphere, py::arg("points"), "The smallest ball: (center, radius).");
+    module.def("minimal_sphere", &minimal_sphere, py::arg("points"), "The smallest sphere: (center, radius).");
 }
 
 }  // namespace crofton::python

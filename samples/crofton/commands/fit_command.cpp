@@ -204,7 +204,7 @@ void add_fit_command(CommandLine& line) {
                                       "it: all of them, or the "
                                       "best for each mesh")
                               .one_of({"all", "best"});
-    command.option("--region", request->region, "--bounds: queries hit a ball of so many times the mesh's radius")
+    command.option("--region", request->region, "--bounds: queries hit a sphere of so many times the mesh's radius")
         .between(1.0, 1e9)
         .show_default()
         .needs(bounds);

@@ -171,7 +171,7 @@ Result<void> write_outputs(const Job& job, const pvs::Pvs& sets, Executor& execu
         cell = sets.cells().find({x[0], x[1], x[2]});
     }
     if (cell == pvs::kNoCell) return fail(ErrorCode::out_of_range, kNoItem, "--eye: no cell holds it");
-    return write_file(options.svg, pvs_svg(sets, job.scene.subject, cell));
+    return write_file(options.svg, pvs_svg(sets, job.scene.geometry, cell));
 }
 
 using Views = std::optional<pipeline::PvsViewFigures>;
@@ -227,7 +227,7 @@ Json figures(const Job& job, const pvs::Bake& bake, const pvs::Pvs& sets, std::s
             {"cells_open", kinds[3]},
             {"eyes", {bounds.min.x, bounds.min.y, bounds.min.z, bounds.max.x, bounds.max.y, bounds.max.z}},
             {"objects", sets.object_count()},
-            {"triangles", job.scene.subject.object_of.size()},
+            {"triangles", job.scene.geometry.object_of.size()},
             {"occluders", job.scene.occluders.size()},
             {"pairs", counts.all()},
             {"seen", share(counts.seen)},
@@ -293,7 +293,7 @@ Result<pvs::Pvs> finish_sets(Job& job, const pvs::Bake& bake, Executor& executor
 Result<Views> look_from_places(const Job& job, const pvs::Pvs& sets, Executor& executor) {
     if (job.options.views == 0 || interrupted()) return Views{};
     PartProgress progress("pvs: views");
-    const auto looked = pipeline::look_at_views(job.source.scene, job.scene.subject, sets,
+    const auto looked = pipeline::look_at_views(job.source.scene, job.scene.geometry, sets,
                                                 {.views = job.options.views,
                                                  .seed = job.options.seed,
                                                  .near_radius = job.options.near_radius,
@@ -312,7 +312,7 @@ Result<int> run_pvs(const PvsRequest& options) {
     ThreadPool pool(options.threads);
     auto job = make_job(options, pool);
     if (!job) return tl::unexpected(job.error());
-    auto bake = pvs::Bake::create(job->scene.subject, job->cells,
+    auto bake = pvs::Bake::create(job->scene.geometry, job->cells,
                                   {.epsilon = options.epsilon,
                                    .confidence = options.confidence,
                                    .seed = options.seed,

@@ -44,7 +44,7 @@ struct PvsViewFigures {
 // not baked are drawn in any mode: they are left out. The scene has been updated. The same figures for any executor.
 // Errors: sizes of 0; no place for an eye within the cells (empty); the callback (cancelled); an occluder that a World
 // refuses.
-[[nodiscard]] Result<PvsViewFigures> look_at_views(const scene::Scene& scene, const pvs::Subject& subject,
+[[nodiscard]] Result<PvsViewFigures> look_at_views(const scene::Scene& scene, const pvs::BakeGeometry& geometry,
                                                    const pvs::Pvs& sets, const PvsViewOptions& options = {},
                                                    Executor& executor = serial_executor());
 

@@ -21,7 +21,7 @@ std::vector<std::byte> plain(const Vector<std::byte>& bytes) {
     return {bytes.begin(), bytes.end()};
 }
 
-// A box of which one side glows, with a ball that is half sunk into the floor.
+// A box of which one side glows, with a sphere that is half sunk into the floor.
 struct Job {
     Patches patches;
     SolverOptions options;

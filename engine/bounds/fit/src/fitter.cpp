@@ -76,7 +76,7 @@ Result<void> Fitter::assign(std::span<const Point> points) {
 }
 
 Supports Fitter::supports(const glm::dmat3& directions) {
-    for (const Known& known : known_)
+    for (const CachedSupports& known : known_)
         if (known.directions == directions) return known.supports;
     known_.push_back({directions, cloud_.supports(directions)});
     return known_.back().supports;

@@ -9,14 +9,13 @@
 
 #include "exact/cell_kernels.hpp"
 #include "search/polish.hpp"
+#include "search/root_cell.hpp"
 
 namespace crofton::fit {
 namespace {
 
 using kernels::kBatch;
 
-// tan(π/8). By the 24 symmetries of a box, Rodrigues vectors c with |c_i| ≤ tan(π/8) and Σ|c_i| ≤ 1 cover all frames.
-constexpr double kRootHalf = 0.41421356237309515;
 // The host is asked after so many points of cells: some 0.1 ms.
 constexpr std::size_t kWorkBetween = 8192;
 
@@ -46,7 +45,7 @@ class Search {
     SearchResult run() {
         result_.best.value = std::numeric_limits<double>::infinity();
         search_from(root_);
-        Cell root{glm::dvec3(0.0), glm::dvec3(kRootHalf), glm::dvec3(1.0), 0.0, 0, {}, 0};
+        Cell root{glm::dvec3(0.0), glm::dvec3(kRootCellHalfSize), glm::dvec3(1.0), 0.0, 0, {}, 0};
         cells_.push_back(root);
         while (!cells_.empty()) {
             const Cell cell = cells_.back();
