@@ -25,13 +25,13 @@ fit::ExactFit fit_exact(const py::handle& given, const py::handle& criterion, do
                         const py::object& progress) {
     const Points<3> points(given, "points");
     Watch watch(progress);
-    const auto tell = [&](const fit::Progress& state) { return watch.go_on(state.value, state.lower_bound); };
+    const auto tell = [&](const fit::Progress& state) { return watch.should_stop(state.value, state.lower_bound); };
     const FunctionRef<bool(const fit::Progress&)> reference(tell);
     fit::ExactOptions options;
     options.criterion = criterion_of(criterion);
     options.gap = gap;
     if (!seconds.is_none()) options.time_budget_seconds = number_of<double>(seconds, "seconds");
-    options.progress = &reference;
+    options.should_stop = &reference;
     auto result = points.visit([&](auto span) { return unlocked([&] { return fit::fit_exact(span, options); }); });
     watch.raise_if_stopped();
     return value_of(std::move(result));

@@ -143,7 +143,9 @@ Pvs bake(const py::handle& positions, const py::handle& indices, const py::objec
     if (!seconds.is_none()) wanted.limits.seconds = number_of<double>(seconds, "seconds");
     Watch watch(progress);
     wanted.limits.user = &watch;
-    wanted.limits.go_on = [](void* user, double share) { return static_cast<Watch*>(user)->go_on(share, 1.0); };
+    wanted.limits.should_stop = [](void* user, double share) {
+        return static_cast<Watch*>(user)->should_stop(share, 1.0);
+    };
     Aabb around;
     const pvs::BakeGeometry geometry = geometry_of(positions, indices, object_of, around);
     if (!bounds.is_none()) {

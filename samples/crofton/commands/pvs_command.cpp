@@ -90,9 +90,9 @@ std::uint32_t surface_steps_of(const Job& job) {
 struct PartProgress {
     ProgressBar bar;
     explicit PartProgress(const char* name) : bar(name, 1000) {}
-    static bool go_on(void* user, double share) {
+    static bool should_stop(void* user, double share) {
         static_cast<PartProgress*>(user)->bar.set(static_cast<std::size_t>(1000.0 * share));
-        return !interrupted();
+        return interrupted();
     }
 };
 
@@ -123,7 +123,8 @@ Result<void> trace(Job& job, pvs::Bake& bake, Executor& executor) {
         double seconds = kSaveEvery;
         if (job.options.seconds > 0.0) seconds = std::min(seconds, job.options.seconds - seconds_since(start));
         const auto ran = bake.run(
-            {.seconds = seconds, .shard = job.shard, .go_on = PartProgress::go_on, .user = &progress}, executor);
+            {.seconds = seconds, .shard = job.shard, .should_stop = PartProgress::should_stop, .user = &progress},
+            executor);
         if (!ran) return ran;
         done = interrupted() || bake.lines_done() == before ||
                (job.options.seconds > 0.0 && seconds_since(start) >= job.options.seconds);
@@ -282,7 +283,7 @@ Result<pvs::Pvs> finish_sets(Job& job, const pvs::Bake& bake, Executor& executor
                          {.near_radius = job.options.near_radius,
                           .halvings = job.options.halvings,
                           .surface_steps = surface_steps_of(job),
-                          .go_on = PartProgress::go_on,
+                          .should_stop = PartProgress::should_stop,
                           .user = &progress},
                          executor);
     job.proof_seconds = seconds_since(start);
@@ -299,7 +300,7 @@ Result<Views> look_from_places(const Job& job, const pvs::Pvs& sets, Executor& e
                                                  .near_radius = job.options.near_radius,
                                                  .occluders = job.scene.found,
                                                  .in_metres = job.source.in_metres,
-                                                 .go_on = PartProgress::go_on,
+                                                 .should_stop = PartProgress::should_stop,
                                                  .user = &progress},
                                                 executor);
     if (!looked && looked.error().code == ErrorCode::cancelled) return Views{};

@@ -191,7 +191,7 @@ Result<PvsViewFigures> look_at_views(const scene::Scene& scene, const pvs::BakeG
                                      const PvsViewOptions& options, Executor& executor) {
     if (options.views == 0 || options.width == 0 || options.height == 0)
         return fail(ErrorCode::invalid_argument, kNoItem, "views: their number and their sizes must be positive");
-    crofton::detail::StopSignal stop(options.go_on, options.user);
+    crofton::detail::StopSignal stop(options.should_stop, options.user);
     const auto stopped = [] { return fail(ErrorCode::cancelled, kNoItem, "views: stopped"); };
     const auto space =
         FreeSpace::find(scene, focus_of(scene), {.in_metres = options.in_metres, .within = sets.cells().bounds()});

@@ -17,8 +17,7 @@ struct PvsViewOptions {
     // Where they are given, the views are also looked at with occlusion at run time, by World::view and its defaults.
     std::shared_ptr<const SceneOccluders> occluders = nullptr;
     bool in_metres = true;  // as FreeSpaceOptions
-    // Asked some hundred times a second, from any of the executor's threads and never from two at once; false ends it.
-    bool (*go_on)(void* user, double share_done) = nullptr;
+    StopCallback should_stop = nullptr;
     void* user = nullptr;
 };
 

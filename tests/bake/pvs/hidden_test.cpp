@@ -123,11 +123,11 @@ TEST_SUITE("pvs/hidden") {
             CAPTURE(patience);
             Patience user{patience};
             options.user = &user;
-            options.go_on = [](void* who, double share) {
+            options.should_stop = [](void* who, double share) {
                 Patience& it = *static_cast<Patience*>(who);
                 it.is_sane = it.is_sane && share >= it.last_share && share <= 1.0;
                 it.last_share = share;
-                return it.left-- > 0;
+                return it.left-- <= 0;
             };
             const Pvs some = finished(walls, cells, options);
             CHECK(user.is_sane);

@@ -89,8 +89,8 @@ TEST_SUITE("pvs/parts") {
             Bake bake = job.start();
             REQUIRE(bake.add_state(kept).has_value());
             int left = 1 + stops % 2;
-            const auto go_on = [](void* user, double) { return --*static_cast<int*>(user) >= 0; };
-            REQUIRE(bake.run({.go_on = go_on, .user = &left}).has_value());
+            const auto should_stop = [](void* user, double) { return --*static_cast<int*>(user) < 0; };
+            REQUIRE(bake.run({.should_stop = should_stop, .user = &left}).has_value());
             kept = bake.state().value();
             complete = bake.is_complete();
         }

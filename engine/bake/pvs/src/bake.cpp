@@ -299,7 +299,7 @@ Result<void> Bake::run(const RunLimits& limits, Executor& executor) {
         std::uint64_t lines = 0;
         // Blocks between two looks at the limits. Where somebody waits for these, as few as take a moment.
         const std::uint64_t most = 32 * std::uint64_t{executor.concurrency()};
-        const bool is_awaited = limits.go_on != nullptr || std::isfinite(limits.seconds);
+        const bool is_awaited = limits.should_stop != nullptr || std::isfinite(limits.seconds);
         std::uint64_t wave = is_awaited && limits.lines == RunLimits{}.lines ? executor.concurrency() : most;
         for (;;) {
             const auto wave_start = Clock::now();
@@ -307,7 +307,8 @@ Result<void> Bake::run(const RunLimits& limits, Executor& executor) {
             const auto done = static_cast<double>(found.done.count_within(shard));
             if (todo.begin >= todo.end || lines >= limits.lines ||
                 std::chrono::duration<double>(Clock::now() - start).count() >= limits.seconds ||
-                (limits.go_on && !limits.go_on(limits.user, done / static_cast<double>(shard.end - shard.begin))))
+                (limits.should_stop &&
+                 limits.should_stop(limits.user, done / static_cast<double>(shard.end - shard.begin))))
                 return {};
             crofton::detail::recoverable_for(executor, todo.end - todo.begin, 1,
                                              [&](std::size_t begin, std::size_t end, unsigned worker) {

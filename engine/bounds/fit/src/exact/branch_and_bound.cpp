@@ -52,7 +52,7 @@ class Search {
             cells_.pop_back();
             load_lists(cell);
             if (cell.bound >= target()) continue;
-            if (result_.cells >= limits_.cells || !keep_going(cell.bound)) {
+            if (result_.cells >= limits_.cells || is_stopped(cell.bound)) {
                 cells_.push_back(cell);
                 break;
             }
@@ -81,15 +81,15 @@ class Search {
     }
 
     // Asks the host now and then. `bound` is that of the cell which is about to be split.
-    bool keep_going(double bound) {
-        if (limits_.keep_going == nullptr) return true;
+    bool is_stopped(double bound) {
+        if (limits_.should_stop == nullptr) return false;
         work_ += 64;
         for (const std::size_t count : count_) work_ += count;
-        if (work_ < kWorkBetween) return true;
+        if (work_ < kWorkBetween) return false;
         work_ = 0;
         bound = std::min(bound, target());
         for (const Cell& cell : cells_) bound = std::min(bound, cell.bound);
-        return (*limits_.keep_going)(result_.best.value, bound, result_.cells);
+        return (*limits_.should_stop)(result_.best.value, bound, result_.cells);
     }
 
     // Adds a point to the subset and, in the root frame's coordinates, to the current lists.

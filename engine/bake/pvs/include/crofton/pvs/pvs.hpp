@@ -5,6 +5,7 @@
 #include <crofton/core/error.hpp>
 #include <crofton/core/executor.hpp>
 #include <crofton/core/memory.hpp>
+#include <crofton/core/stop.hpp>
 #include <crofton/geometry/box.hpp>
 #include <crofton/geometry/mesh.hpp>
 #include <crofton/geometry/shapes.hpp>
@@ -106,7 +107,7 @@ struct RunLimits {
     double seconds = std::numeric_limits<double>::infinity();
     std::uint64_t lines = ~std::uint64_t{0};  // at least so many more, unless the shard ends
     Shard shard = {};
-    bool (*go_on)(void* user, double share_done) = nullptr;  // false stops the run; what it found is kept
+    StopCallback should_stop = nullptr;  // what was found by then is kept
     void* user = nullptr;
 };
 
@@ -183,9 +184,8 @@ struct ProofOptions {
     // many sides of triangles a question may visit: more prove more. 400 is a good number for levels. Each unseen
     // pair is asked, so it is slow where there are millions. Edges must have equal corners, or meet along an axis.
     std::uint32_t surface_steps = 0;
-    // Asked some hundred times a second, from any of the executor's threads and never from two at once. Where it
-    // returns false the proofs end: what is proved stays, and the other pairs stay unseen, which draws them.
-    bool (*go_on)(void* user, double share_done) = nullptr;
+    // Once it returns true, the pairs that are not proved yet stay unseen, which draws them.
+    StopCallback should_stop = nullptr;
     void* user = nullptr;
 };
 
