@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rays and balls against the boxes of a tree, and of Bullet's dynamic tree where it is installed; the exact test of a
+// Rays and spheres against the boxes of a tree, and of Bullet's dynamic tree where it is installed; the exact test of a
 // box is the same for both.
 #include <benchmark/benchmark.h>
 
@@ -51,7 +51,7 @@ void tree_rays(benchmark::State& state) {
     report(state, hits);
 }
 
-void tree_balls(benchmark::State& state) {
+void tree_spheres(benchmark::State& state) {
     const auto count = static_cast<std::size_t>(state.range(0));
     const auto tree = boxtree::BoxTree::build(crowd(count));
     const auto rays = rays_through(count);
@@ -120,15 +120,15 @@ void bullet_rays(benchmark::State& state) {
 
 struct BallOfBullet : btDbvt::ICollide {
     const std::vector<Obb>* boxes = nullptr;
-    Sphere ball;
+    Sphere sphere;
     std::vector<std::uint32_t> items;
     void Process(const btDbvtNode* leaf) {
-        if (collide::intersects((*boxes)[static_cast<std::size_t>(leaf->dataAsInt)], ball))
+        if (collide::intersects((*boxes)[static_cast<std::size_t>(leaf->dataAsInt)], sphere))
             items.push_back(static_cast<std::uint32_t>(leaf->dataAsInt));
     }
 };
 
-void bullet_balls(benchmark::State& state) {
+void bullet_spheres(benchmark::State& state) {
     const auto count = static_cast<std::size_t>(state.range(0));
     BulletTree bullet(count);
     const auto rays = rays_through(count);
@@ -139,7 +139,7 @@ void bullet_balls(benchmark::State& state) {
         found = 0;
         for (const Ray& ray : rays) {
             query.items.clear();
-            query.ball = {ray.origin, 1.5};
+            query.sphere = {ray.origin, 1.5};
             const btDbvtVolume volume = btDbvtVolume::FromCR(vector(ray.origin), btScalar(1.5));
             bullet.tree.collideTV(bullet.tree.m_root, volume, query);
             found += query.items.size();
@@ -153,8 +153,8 @@ BENCHMARK(bullet_rays)
     ->RangeMultiplier(10)
     ->Range(1000, 1000000)
     ->Unit(benchmark::kMillisecond);
-BENCHMARK(bullet_balls)
-    ->Name("tree/balls/bullet")
+BENCHMARK(bullet_spheres)
+    ->Name("tree/spheres/bullet")
     ->RangeMultiplier(10)
     ->Range(1000, 1000000)
     ->Unit(benchmark::kMillisecond);
@@ -165,8 +165,8 @@ BENCHMARK(tree_rays)
     ->RangeMultiplier(10)
     ->Range(1000, 1000000)
     ->Unit(benchmark::kMillisecond);
-BENCHMARK(tree_balls)
-    ->Name("tree/balls/crofton")
+BENCHMARK(tree_spheres)
+    ->Name("tree/spheres/crofton")
     ->RangeMultiplier(10)
     ->Range(1000, 1000000)
     ->Unit(benchmark::kMillisecond);

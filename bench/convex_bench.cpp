@@ -118,7 +118,7 @@ void frames(benchmark::State& state, const Scene& scene, Run run, Answer answer)
 
 enum class Ask { meet, distance, penetration, manifold, cast };
 
-double crofton_ask(Ask ask, const Placed& a, const Placed& b, PairCache* cache) {
+double crofton_ask(Ask ask, const BodyAtPose& a, const BodyAtPose& b, PairCache* cache) {
     switch (ask) {
         case Ask::meet:
             return intersects(a, b, cache);
@@ -134,7 +134,7 @@ double crofton_ask(Ask ask, const Placed& a, const Placed& b, PairCache* cache) 
 void crofton_pairs(benchmark::State& state, Ask ask, double gap, bool boxes, bool warm) {
     const Scene scene = make_scene(gap, boxes);
     std::vector<PairCache> cache(kPairs);
-    const auto place = [&](int f, int i) { return Placed{scene.bodies[i], scene.poses[f][i]}; };
+    const auto place = [&](int f, int i) { return BodyAtPose{scene.bodies[i], scene.poses[f][i]}; };
     frames(
         state, scene,
         [&](int f, int i) {

@@ -23,7 +23,7 @@ std::vector<b3Vec3> box3d_points(const convex::Body& body) {
 
 }  // namespace
 
-bool box3d_meets(const convex::Placed& a, const convex::Placed& b) {
+bool box3d_meets(const convex::BodyAtPose& a, const convex::BodyAtPose& b) {
     const std::vector<b3Vec3> points_a = box3d_points(a.body), points_b = box3d_points(b.body);
     const glm::dmat3 to_a = glm::transpose(a.pose.rotation);
     const glm::vec3 p(to_a * (b.pose.translation - a.pose.translation));

@@ -34,7 +34,7 @@ coal::Transform3s coal_pose(const RigidTransform& pose) {
 
 }  // namespace
 
-bool coal_meets(const convex::Placed& a, const convex::Placed& b) {
+bool coal_meets(const convex::BodyAtPose& a, const convex::BodyAtPose& b) {
     const auto shape_a = coal_shape(a.body), shape_b = coal_shape(b.body);
     coal::CollisionRequest request;
     request.gjk_tolerance = request.epa_tolerance = 1e-14;  // its own are 1e-6

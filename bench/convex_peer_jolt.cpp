@@ -57,7 +57,7 @@ void start_jolt() {
 
 }  // namespace
 
-bool jolt_meets(const convex::Placed& a, const convex::Placed& b) {
+bool jolt_meets(const convex::BodyAtPose& a, const convex::BodyAtPose& b) {
     start_jolt();
     const JPH::RefConst<JPH::Shape> shape_a = jolt_shape(a.body), shape_b = jolt_shape(b.body);
     const glm::dvec3 origin = a.pose.translation;

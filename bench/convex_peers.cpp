@@ -22,7 +22,7 @@
 namespace crofton::bench {
 
 using convex::Body;
-using convex::Placed;
+using convex::BodyAtPose;
 
 #if defined(CROFTON_HAVE_FCL)
 namespace {
@@ -50,7 +50,7 @@ fcl::Transform3d fcl_pose(const RigidTransform& pose) {
 }
 }  // namespace
 
-bool fcl_meets(const Placed& a, const Placed& b) {
+bool fcl_meets(const BodyAtPose& a, const BodyAtPose& b) {
     fcl::CollisionRequestd request(1, false);
     request.gjk_solver_type = fcl::GST_LIBCCD;
     fcl::CollisionResultd result;
@@ -85,7 +85,7 @@ btTransform bullet_pose(const RigidTransform& pose) {
 }
 }  // namespace
 
-bool bullet_meets(const Placed& a, const Placed& b) {
+bool bullet_meets(const BodyAtPose& a, const BodyAtPose& b) {
     const auto shape_a = bullet_shape(a.body), shape_b = bullet_shape(b.body);
     btVoronoiSimplexSolver solver;
     btGjkEpaPenetrationDepthSolver epa;
@@ -104,7 +104,7 @@ namespace {
 
 class OdeGeom {
   public:
-    explicit OdeGeom(const Placed& placed) {
+    explicit OdeGeom(const BodyAtPose& placed) {
         glm::dvec3 middle(0.0);
         if (placed.body.kind() == convex::Kind::box) {
             const glm::dvec3 h = placed.body.half_extents();
@@ -146,7 +146,7 @@ class OdeGeom {
 };
 }  // namespace
 
-bool ode_meets(const Placed& a, const Placed& b) {
+bool ode_meets(const BodyAtPose& a, const BodyAtPose& b) {
     const OdeGeom geom_a(a), geom_b(b);
     dContactGeom contact[8];
     return dCollide(geom_a.id(), geom_b.id(), 8, contact, sizeof(dContactGeom)) > 0;

@@ -36,7 +36,7 @@ constexpr std::uint32_t kSide = 1025;
 struct SurfaceScene {
     TriangleMesh mesh;  // empty: the field
     std::vector<float> heights;
-    Body body = Body::ball(1).value();
+    Body body = Body::sphere(1).value();
     float size = 0.0f;
     bool capsule = false;
     std::vector<RigidTransform> poses[kFrames];

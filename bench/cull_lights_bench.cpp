@@ -59,7 +59,7 @@ BENCHMARK_CAPTURE(froxel_lights, 10k_points_5m, 10000, 0, 5.0)->Unit(benchmark::
 BENCHMARK_CAPTURE(froxel_lights, 5k_points_5k_spots_2m, 5000, 5000, 2.0)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(froxel_lights, 10k_spots_2m, 0, 10000, 2.0)->Unit(benchmark::kMillisecond);
 
-// What others test: a froxel's axis-aligned box in view space against the ball; its bounding sphere against the cone.
+// What others test: a froxel's axis-aligned box in view space against the sphere; its bounding sphere against the cone.
 struct Cell {
     glm::dvec3 low, high, center;
     double radius;
@@ -82,7 +82,7 @@ std::vector<Cell> cells_of(const cull::FroxelGrid& grid) {
 }
 
 // Wronski's test, as in Frostbite and others.
-bool ball_meets_cone(const Cell& cell, const cull::SpotLight& spot, const glm::dvec3& axis) {
+bool sphere_meets_cone(const Cell& cell, const cull::SpotLight& spot, const glm::dvec3& axis) {
     const glm::dvec3 v = cell.center - spot.apex;
     const double square = glm::dot(v, v), along = glm::dot(v, axis), cosine = static_cast<double>(spot.cos_half_angle);
     const double off =
@@ -106,7 +106,7 @@ void usual_tests(benchmark::State& state, std::size_t points, std::size_t spots,
             }
         for (const cull::SpotLight& spot : scene.spots) {
             const glm::dvec3 axis = glm::normalize(glm::dvec3(spot.axis));
-            for (const Cell& cell : cells) pairs += ball_meets_cone(cell, spot, axis);
+            for (const Cell& cell : cells) pairs += sphere_meets_cone(cell, spot, axis);
         }
     }
     state.counters["pairs"] = static_cast<double>(pairs);

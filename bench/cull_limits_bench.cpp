@@ -27,7 +27,8 @@ struct LimitedQuery {
         limits.eye = view.frustum.origin;
         distances.assign(32, which == Limits::never ? 1e6f : 0.25f * side);
         if (which == Limits::never || which == Limits::layers) limits.layer_distances = distances;
-        if (which == Limits::size) limits.radii = cull::limits_of(Camera{}, 1080.0, 24.0).value().radii;
+        if (which == Limits::size)
+            limits.max_distance_in_radii = cull::limits_of(Camera{}, 1080.0, 24.0).value().max_distance_in_radii;
     }
 };
 

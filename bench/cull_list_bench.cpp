@@ -136,7 +136,7 @@ BENCHMARK(flat_cull_cold)
 BENCHMARK(few_boxes_list)->Arg(20)->Arg(100)->Arg(1000);
 BENCHMARK(few_boxes_tree)->Arg(20)->Arg(100)->Arg(1000);
 
-// The same for axis-aligned boxes and for balls around the boxes.
+// The same for axis-aligned boxes and for spheres around the boxes.
 void flat_cull_aabbs(benchmark::State& state) {
     std::vector<Aabb> bounds;
     for (const Obb& box : boxes_of(state.range(0))) bounds.push_back(aabb_of(box));

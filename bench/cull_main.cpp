@@ -19,7 +19,7 @@ constexpr Pair kPairs[] = {
     {"plain AABB loop / list of boxes, exact", "aabb_loop/10000", "flat_cull/exact/10000"},
     {"plain AABB loop / list of boxes, exact", "aabb_loop/1000000", "flat_cull/exact/1000000"},
     {"plain AABB loop / list of AABBs", "aabb_loop/1000000", "flat_cull_aabbs/1000000"},
-    {"plain AABB loop / list of balls", "aabb_loop/1000000", "flat_cull_spheres/1000000"},
+    {"plain AABB loop / list of spheres", "aabb_loop/1000000", "flat_cull_spheres/1000000"},
     {"Bullet / tree, 20 % visible", "bullet_cull/20_percent/10000", "tree_cull/exact/10000"},
     {"Bullet / tree, 20 % visible", "bullet_cull/20_percent/1000000", "tree_cull/exact/1000000"},
     {"Bullet / tree, 1 % visible", "bullet_cull/1_percent/1000000", "tree_cull/exact_1_percent/1000000"},

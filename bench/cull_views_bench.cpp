@@ -95,7 +95,7 @@ class Merge {
 void tree_views(benchmark::State& state, Way way) {
     const boxtree::BoxTree& tree = tree_of(state.range(0));
     const std::vector<cull::View> views = views_of(state.range(0), state.range(1));
-    cull::ManyVisible many;
+    cull::MaskedVisibleSet many;
     std::vector<cull::VisibleSet> single(views.size());
     Merge merge(tree.boxes().size() + 1);
     const auto ask = [&] {

@@ -102,8 +102,8 @@ BENCHMARK(lines_hitting_three_boxes)->RangeMultiplier(8)->Range(64, 1 << 15)->Un
 template <Line (*kSample)(const Sphere&, const std::array<double, 4>&)>
 void line_sampler(benchmark::State& state) {
     Random random(5);
-    const Sphere ball{glm::dvec3(0.0), 1.0};
-    for (auto _ : state) benchmark::DoNotOptimize(kSample(ball, random.point<4>()));
+    const Sphere sphere{glm::dvec3(0.0), 1.0};
+    for (auto _ : state) benchmark::DoNotOptimize(kSample(sphere, random.point<4>()));
 }
 BENCHMARK(line_sampler<line_through_two_sphere_points>);
 BENCHMARK(line_sampler<line_through_disc>);

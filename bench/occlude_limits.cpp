@@ -90,7 +90,7 @@ void ask_surface(const occlude::OccluderSet& surface, const std::vector<Thing>& 
 
 void look(const World& world, const occlude::OccluderSet& surface, const std::vector<Thing>& things,
           const Camera& camera, Totals& totals) {
-    VisibleObjects in_frustum;
+    ViewResult in_frustum;
     if (!world.view({.camera = camera}, in_frustum)) return;
     std::vector<std::uint32_t> unseen(in_frustum.ids().begin(), in_frustum.ids().end());
     ask_surface(surface, things, camera, unseen, totals);

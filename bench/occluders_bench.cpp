@@ -49,7 +49,7 @@ void find_in_town() {
 }
 
 // 10,000 boxes around the eye; with least_cover 0 all in view are sorted.
-void choose_among(std::size_t count, bool all) {
+void choose_candidates(std::size_t count, bool all) {
     std::mt19937_64 random(1);
     std::uniform_real_distribution<double> unit(-1.0, 1.0);
     OccluderCandidates candidates;
@@ -88,7 +88,7 @@ int main(int argc, char** argv) {
     if (!take_target_option(argc, argv)) return 1;
     std::printf("Instruction set: %s\n", target_in_use());
     find_in_town();
-    choose_among(10'000, false);
-    choose_among(10'000, true);
+    choose_candidates(10'000, false);
+    choose_candidates(10'000, true);
     return 0;
 }

@@ -16,7 +16,7 @@ namespace {
 using namespace crofton;
 
 struct Town {
-    pvs::Subject subject;
+    pvs::BakeGeometry geometry;
     Aabb eyes;
     boxtree::BoxTree tree;
     pvs::Pvs sets;
@@ -35,18 +35,18 @@ pvs::Cells cells_over(const Aabb& eyes) {
 Town make_town() {
     auto source = assets::load_scene("town").value();
     source.scene.update();
-    auto subject = pvs::subject_of(source.scene, source.movers).value();
+    auto geometry = pvs::geometry_of(source.scene, source.movers).value();
     const Aabb eyes = pipeline::eyes_of(source.scene, 10.0);
-    auto bake = pvs::Bake::create(subject, cells_over(eyes), {.epsilon = 6.6e-3}).value();
+    auto bake = pvs::Bake::create(geometry, cells_over(eyes), {.epsilon = 6.6e-3}).value();
     (void)bake.run();
-    auto tree = boxtree::BoxTree::build(subject.boxes).value();
-    Town town{std::move(subject), eyes, std::move(tree), pvs::Pvs::finish(bake).value(), {}, {}, {}};
+    auto tree = boxtree::BoxTree::build(geometry.boxes).value();
+    Town town{std::move(geometry), eyes, std::move(tree), pvs::Pvs::finish(bake).value(), {}, {}, {}};
     sampling::Random random(11);
     Camera prototype;
     prototype.aspect = 16.0 / 9.0;
     for (int i = 0; i < 256; ++i) {
         town.places.push_back(sampling::box_point(eyes, random.point<3>()));
-        auto& half = town.halves.emplace_back((town.subject.boxes.size() + 63) / 64);
+        auto& half = town.halves.emplace_back((town.geometry.boxes.size() + 63) / 64);
         for (std::uint64_t& word : half) word = random.bits();
     }
     for (int i = 0; i < 256 * kLongStay; ++i) {
@@ -67,11 +67,11 @@ const Town& town() {
 // From the first line on: the first rounds are small, so that their lines are farther apart than those of a long bake.
 void lines(benchmark::State& state) {
     const Town& t = town();
-    const auto planned = pvs::Bake::create(t.subject, cells_over(t.eyes), {.epsilon = 1e-4});
+    const auto planned = pvs::Bake::create(t.geometry, cells_over(t.eyes), {.epsilon = 1e-4});
     double count = 0.0;
     for (auto _ : state) {
         state.PauseTiming();
-        auto bake = pvs::Bake::create(t.subject, cells_over(t.eyes), {.epsilon = 1e-4}).value();
+        auto bake = pvs::Bake::create(t.geometry, cells_over(t.eyes), {.epsilon = 1e-4}).value();
         state.ResumeTiming();
         // A part of the last round.
         (void)bake.run({.lines = 1, .shard = {900, 1000}});
@@ -112,20 +112,20 @@ BENCHMARK(view_frustum)->Apply(orders_and_stays);
 
 void view_conservative(benchmark::State& state) {
     views(state, [](const Town& t, std::size_t i) {
-        return cull::CullOptions{.among = t.sets.visible_from(t.places[i], pvs::Mode::conservative)};
+        return cull::CullOptions{.candidate_mask = t.sets.visible_from(t.places[i], pvs::Mode::conservative)};
     });
 }
 BENCHMARK(view_conservative)->Apply(orders_and_stays);
 
 // As many objects as proofs leave; without occluders the conservative sets hold all.
 void view_half(benchmark::State& state) {
-    views(state, [](const Town& t, std::size_t i) { return cull::CullOptions{.among = t.halves[i]}; });
+    views(state, [](const Town& t, std::size_t i) { return cull::CullOptions{.candidate_mask = t.halves[i]}; });
 }
 BENCHMARK(view_half)->Apply(orders_and_stays);
 
 void view_statistical(benchmark::State& state) {
     views(state, [](const Town& t, std::size_t i) {
-        return cull::CullOptions{.among = t.sets.visible_from(t.places[i], pvs::Mode::statistical)};
+        return cull::CullOptions{.candidate_mask = t.sets.visible_from(t.places[i], pvs::Mode::statistical)};
     });
 }
 BENCHMARK(view_statistical)->Apply(orders_and_stays);

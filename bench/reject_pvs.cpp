@@ -148,13 +148,13 @@ bool compare(const std::string& path, const std::string& wad, const std::string&
     auto source = assets::load_scene(path, {.map = map});
     if (!level || !source) return false;
     source->scene.update();
-    const auto subject = pvs::subject_of(source->scene);
+    const auto geometry = pvs::geometry_of(source->scene);
     const std::string reject = reject_lump(wad, map);
-    if (!subject || reject.size() * 8 < level->sectors.size() * level->sectors.size()) return false;
-    const auto tracer = lines::LineTracer::build(subject->mesh);
+    if (!geometry || reject.size() * 8 < level->sectors.size() * level->sectors.size()) return false;
+    const auto tracer = lines::LineTracer::build(geometry->mesh);
     if (!tracer) return false;
     Comparison comparison(*level, reject);
-    comparison.trace(*tracer, {tracer->bounds(), lines::LineMethod::walls, 1}, subject->origin, blocks);
+    comparison.trace(*tracer, {tracer->bounds(), lines::LineMethod::walls, 1}, geometry->origin, blocks);
     comparison.print(blocks * lines::LineSource::kBlock);
     return true;
 }

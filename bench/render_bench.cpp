@@ -15,8 +15,8 @@ using namespace crofton::render;
 
 namespace {
 
-// A ball of 2·rings·sectors triangles.
-TriangleMesh ball(int rings, int sectors, float radius) {
+// A sphere of 2·rings·sectors triangles.
+TriangleMesh sphere(int rings, int sectors, float radius) {
     TriangleMesh mesh;
     for (int i = 0; i <= rings; ++i) {
         for (int j = 0; j < sectors; ++j) {
@@ -43,19 +43,19 @@ Camera camera() {
     return result;
 }
 
-// 3,000 balls of 100 triangles before the camera, each with its own copy in the buffer, like a town baked in tree
+// 3,000 spheres of 100 triangles before the camera, each with its own copy in the buffer, like a town baked in tree
 // order.
-struct Balls {
+struct Spheres {
     static constexpr std::uint32_t kCount = 3000, kTriangles = 100;
     Vector<Vertex> vertices;
     Vector<std::uint32_t> indices;
     Vector<IndexRange> parts;
 
-    Balls() {
+    Spheres() {
         std::mt19937_64 random(1);
         std::uniform_real_distribution<float> x(-150.0f, 150.0f), y(0.0f, 25.0f), z(-400.0f, -20.0f);
         for (std::uint32_t i = 0; i < kCount; ++i) {
-            TriangleMesh mesh = ball(5, 10, 2.0f);
+            TriangleMesh mesh = sphere(5, 10, 2.0f);
             const glm::vec3 offset(x(random), y(random), z(random));
             for (glm::vec3& p : mesh.positions) p += offset;
             parts.push_back(append_mesh(mesh, {0.6f, 0.5f, 0.4f}, vertices, indices));
@@ -64,14 +64,14 @@ struct Balls {
 };
 
 struct Scene {
-    Balls balls;
+    Spheres spheres;
     Result<Device> device;
     std::optional<Rasterizer> rasterizer;
 
     Scene() : device(make_device()) {
         if (!device) return;
         auto made = Rasterizer::create(*device, {1280, 720});
-        if (!made || !made->set_geometry(balls.vertices, balls.indices)) return;
+        if (!made || !made->set_geometry(spheres.vertices, spheres.indices)) return;
         rasterizer.emplace(std::move(*made));
     }
     static Result<Device> make_device() {
@@ -86,7 +86,7 @@ Scene& scene() {
     return instance;
 }
 
-// How the visible balls (every other block of `block` of them) reach the device.
+// How the visible spheres (every other block of `block` of them) reach the device.
 void draw_frame(benchmark::State& state, bool own_transforms, bool one_draw, std::uint32_t block) {
     Scene& s = scene();
     if (!s.rasterizer) return state.SkipWithError("no software Vulkan device");
@@ -95,22 +95,23 @@ void draw_frame(benchmark::State& state, bool own_transforms, bool one_draw, std
     std::vector<DrawTransform> transforms;
     std::vector<DrawRange> ranges;
     std::vector<std::uint32_t> visible;
-    for (std::uint32_t i = 0; i < Balls::kCount; ++i)
+    for (std::uint32_t i = 0; i < Spheres::kCount; ++i)
         if (i / block % 2 == 0) visible.push_back(i);
     if (one_draw) {
         // The same triangles side by side in a buffer of their own.
         Vector<std::uint32_t> packed;
         for (const std::uint32_t i : visible) {
-            const IndexRange& part = s.balls.parts[i];
-            packed.insert(packed.end(), s.balls.indices.begin() + part.first_index,
-                          s.balls.indices.begin() + part.first_index + part.index_count);
+            const IndexRange& part = s.spheres.parts[i];
+            packed.insert(packed.end(), s.spheres.indices.begin() + part.first_index,
+                          s.spheres.indices.begin() + part.first_index + part.index_count);
         }
-        if (!s.rasterizer->set_geometry(s.balls.vertices, packed)) return state.SkipWithError("upload failed");
+        if (!s.rasterizer->set_geometry(s.spheres.vertices, packed)) return state.SkipWithError("upload failed");
         ranges.push_back({0, static_cast<std::uint32_t>(packed.size()), 0});
     } else {
-        if (!s.rasterizer->set_geometry(s.balls.vertices, s.balls.indices)) return state.SkipWithError("upload failed");
+        if (!s.rasterizer->set_geometry(s.spheres.vertices, s.spheres.indices))
+            return state.SkipWithError("upload failed");
         for (const std::uint32_t i : visible)
-            ranges.push_back({s.balls.parts[i].first_index, s.balls.parts[i].index_count,
+            ranges.push_back({s.spheres.parts[i].first_index, s.spheres.parts[i].index_count,
                               own_transforms ? static_cast<std::uint32_t>(ranges.size()) : 0});
     }
     transforms.assign(own_transforms ? ranges.size() : 1, transform);
@@ -146,7 +147,7 @@ BENCHMARK(draw_visible_one_by_one_own_transforms)
     ->UseRealTime();
 
 void predict(benchmark::State& state, float distance) {
-    const TriangleMesh mesh = ball(50, 100, 10.0f);
+    const TriangleMesh mesh = sphere(50, 100, 10.0f);
     Camera view;
     view.far_distance = 100.0;
     const glm::mat4 matrix = ModelToClip(view)(glm::dmat3(1.0), {0.0, 0.0, -static_cast<double>(distance)});

@@ -65,7 +65,7 @@ class Parts {
     Parts(const std::vector<Obb>& all, std::size_t moving_count) {
         for (boxtree::ItemId i = 0; i < moving_count; ++i) items_.push_back(i);
         auto built = boxtree::BoxTree::build(all, {.detached = items_});
-        must(built.has_value(), "the tree");
+        require_ok(built.has_value(), "the tree");
         tree_ = std::move(*built);
     }
     void update(const Crowd& crowd) { update(std::span(crowd.boxes).first(crowd.movers)); }
@@ -82,7 +82,7 @@ class Parts {
   private:
     void update(std::span<const Obb> moved) {
         if (keeping == Keeping::with_changes) moved = keep(moved);
-        must(moving_.update(tree_, items_, moved).has_value(), "by hand");
+        require_ok(moving_.update(tree_, items_, moved).has_value(), "by hand");
     }
     // Two sets of copies in turn: the last update's are compared with, and are what the list reads until it has new
     // ones.
@@ -109,11 +109,11 @@ class Parts {
 struct Objects {
     Objects(const std::vector<Obb>& boxes, const WorldOptions& options) : world(options) {
         for (const Obb& box : boxes) all.push_back(world.add({.bound = box}).value());
-        must(world.update().has_value(), "loading");
+        require_ok(world.update().has_value(), "loading");
     }
     void update(Strided<Obb> moved) {
         const std::span movers = std::span(all).first(moved.size());
-        must(world.set_bounds(movers, moved).has_value() && world.update().has_value(), "in a world");
+        require_ok(world.set_bounds(movers, moved).has_value() && world.update().has_value(), "in a world");
     }
     // Moves on until the World has found out what moves. An even number of frames.
     template <class Boxes>
@@ -122,12 +122,12 @@ struct Objects {
             boxes.move(frame);
             update(boxes.moved());
         }
-        must(world.statistics().moving == boxes.moved().size(), "what moves was not found out");
+        require_ok(world.statistics().moving == boxes.moved().size(), "what moves was not found out");
     }
 
     World world;
     std::vector<ObjectHandle> all;
-    VisibleObjects seen;
+    ViewResult seen;
 };
 
 constexpr WorldOptions kViewsOnly{.pairs = false, .rebuild_budget = 0};
@@ -152,7 +152,7 @@ FrameTimes views(std::size_t count, std::size_t moving_count, int frames, cull::
             worlds.move(frame);
             objects.update(worlds.moved());
             (void)objects.world.view({.volume = view.frustum, .layers = view.layer_mask, .order = order}, objects.seen);
-            must(objects.seen.size() == parts.seen(), "the views differ");
+            require_ok(objects.seen.size() == parts.seen(), "the views differ");
         });
 }
 
@@ -184,7 +184,7 @@ FrameTimes contacts(std::size_t count, std::size_t moving, int frames) {
         frames,
         [&](int frame) {
             ours.move(frame);
-            must(broadphase.update(ours.boxes).has_value(), "by hand");
+            require_ok(broadphase.update(ours.boxes).has_value(), "by hand");
             manifolds.clear();
             for (const auto& pair : broadphase.pairs())
                 manifolds.push_back(collide::contact_manifold(ours.boxes[pair.first], ours.boxes[pair.second]));
@@ -192,7 +192,7 @@ FrameTimes contacts(std::size_t count, std::size_t moving, int frames) {
         [&](int frame) {
             worlds.move(frame);
             objects.update(worlds.moved());
-            must(objects.world.pairs().size() == manifolds.size(), "the pairs differ");
+            require_ok(objects.world.pairs().size() == manifolds.size(), "the pairs differ");
         });
 }
 
@@ -200,7 +200,7 @@ FrameTimes contacts(std::size_t count, std::size_t moving, int frames) {
 FrameTimes rays(std::size_t count, std::size_t, int frames) {
     const std::vector<Obb> all = crowd(count);
     const auto tree = boxtree::BoxTree::build(all);
-    must(tree.has_value(), "the tree");
+    require_ok(tree.has_value(), "the tree");
     const Objects objects(all, kViewsOnly);
     std::mt19937_64 random(7);
     std::normal_distribution<double> normal;
@@ -221,7 +221,7 @@ FrameTimes rays(std::size_t count, std::size_t, int frames) {
         [&](int) {
             world_hits = 0;
             for (const Ray& ray : asked) world_hits += objects.world.raycast(ray).has_value();
-            must(hits == world_hits, "the rays differ");
+            require_ok(hits == world_hits, "the rays differ");
         });
 }
 

@@ -28,20 +28,20 @@ constexpr ChangeRow kChanges[] = {{"nothing changes", Change::nothing},
                                   {"1000 come", Change::add_many},
                                   {"1000 go", Change::remove_many}};
 
-// Balls of radius 1, one in a cube of side 20: few touch.
-class Balls {
+// Spheres of radius 1, one in a cube of side 20: few touch.
+class Spheres {
   public:
-    Balls(std::size_t count, const WorldOptions& options) : world(options), side_(20.0 * std::cbrt(double(count))) {
+    Spheres(std::size_t count, const WorldOptions& options) : world(options), side_(20.0 * std::cbrt(double(count))) {
         for (std::size_t i = 0; i < count; ++i) add();
-        for (int update = 0; update < 30; ++update) must(world.update().has_value(), "loading");
+        for (int update = 0; update < 30; ++update) require_ok(world.update().has_value(), "loading");
     }
-    void add() { objects.push_back(world.add({.bound = ball()}).value()); }
+    void add() { objects.push_back(world.add({.bound = sphere()}).value()); }
     void remove(std::size_t which) {
-        must(world.remove(objects[which]).has_value(), "removing");
+        require_ok(world.remove(objects[which]).has_value(), "removing");
         objects[which] = objects.back();
         objects.pop_back();
     }
-    [[nodiscard]] Sphere ball() {
+    [[nodiscard]] Sphere sphere() {
         return {side_ * glm::dvec3(number_(random_), number_(random_), number_(random_)), 1.0};
     }
     [[nodiscard]] std::size_t any() { return random_() % objects.size(); }
@@ -55,22 +55,22 @@ class Balls {
     std::uniform_real_distribution<double> number_{0.0, 1.0};
 };
 
-void change(Balls& balls, Change kind, int frame) {
-    World& world = balls.world;
-    const ObjectHandle one = balls.objects[static_cast<std::size_t>(frame / 2) % balls.objects.size()];
+void change(Spheres& spheres, Change kind, int frame) {
+    World& world = spheres.world;
+    const ObjectHandle one = spheres.objects[static_cast<std::size_t>(frame / 2) % spheres.objects.size()];
     const bool odd = frame % 2 != 0;
     bool done = true;
     switch (kind) {
         case Change::nothing:
             break;
         case Change::move:
-            done = world.set_bound(balls.objects[0], balls.ball()).has_value();
+            done = world.set_bound(spheres.objects[0], spheres.sphere()).has_value();
             break;
         case Change::replace:
-            balls.remove(balls.any());
+            spheres.remove(spheres.any());
             [[fallthrough]];
         case Change::add:
-            balls.add();
+            spheres.add();
             break;
         case Change::layers:
             done = world.set_layers(one, odd ? ~0u : 1u).has_value();
@@ -85,13 +85,13 @@ void change(Balls& balls, Change kind, int frame) {
             done = world.set_collides_with(one, odd ? ~0u : 0u).has_value();
             break;
         case Change::add_many:
-            for (int n = 0; n < 1000; ++n) balls.add();
+            for (int n = 0; n < 1000; ++n) spheres.add();
             break;
         case Change::remove_many:
-            for (int n = 0; n < 1000; ++n) balls.remove(balls.any());
+            for (int n = 0; n < 1000; ++n) spheres.remove(spheres.any());
             break;
     }
-    must(done, "a change");
+    require_ok(done, "a change");
 }
 
 void print_row(std::size_t count, const char* name, std::vector<double>& times) {
@@ -117,9 +117,9 @@ void queries(std::size_t count, std::size_t moving, bool pairs) {
     const auto move = [&] {
         for (std::size_t i = 0; i < moving; ++i) {
             places[i].x += 0.01;
-            must(world.set_bound(objects[i], Sphere{places[i], 1.0}).has_value(), "a move");
+            require_ok(world.set_bound(objects[i], Sphere{places[i], 1.0}).has_value(), "a move");
         }
-        return microseconds([&] { must(world.update().has_value(), "an update"); });
+        return microseconds([&] { require_ok(world.update().has_value(), "an update"); });
     };
     double update = 1e30;
     for (int frame = 0; frame < 30; ++frame) update = std::min(update, move());
@@ -154,19 +154,20 @@ void changes(int frames) {
                         "objects", "µs of an update", "least", "median", "95 %", "worst");
             for (const std::size_t count : {std::size_t{5000}, std::size_t{20000}, std::size_t{100000}})
                 for (const ChangeRow& row : kChanges) {
-                    Balls balls(count, {.pairs = pairs, .contacts = contacts});
+                    Spheres spheres(count, {.pairs = pairs, .contacts = contacts});
                     const bool many = row.change == Change::add_many || row.change == Change::remove_many;
                     std::vector<double> times;
                     for (int frame = 0; frame < (many ? 4 : frames); ++frame) {
-                        change(balls, row.change, frame);
-                        times.push_back(microseconds([&] { must(balls.world.update().has_value(), "an update"); }));
+                        change(spheres, row.change, frame);
+                        times.push_back(
+                            microseconds([&] { require_ok(spheres.world.update().has_value(), "an update"); }));
                     }
                     print_row(count, row.name, times);
                 }
         }
     }
-    std::printf("queries among balls of which some move, µs\n%8s  %8s %10s %10s %10s %10s %10s\n", "objects", "moving",
-                "update", "first ray", "ray", "overlap", "closest");
+    std::printf("queries among spheres of which some move, µs\n%8s  %8s %10s %10s %10s %10s %10s\n", "objects",
+                "moving", "update", "first ray", "ray", "overlap", "closest");
     for (const std::size_t moving : {0, 100, 1000, 5000, 10000}) queries(10000, moving, false);
 }
 

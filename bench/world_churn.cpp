@@ -32,20 +32,20 @@ class Churn {
     Churn(std::size_t live_count, std::size_t part)
         : boxes(crowd(live_count)), a_frame_(std::max(live_count / part, std::size_t{1})) {
         for (const Obb& box : boxes) live.push_back(world.add({.bound = box}).value());
-        must(world.update().has_value(), "loading");
+        require_ok(world.update().has_value(), "loading");
     }
     void update() {
         for (std::size_t i = 0; i < a_frame_; ++i) {
             ObjectHandle& object = live[random_() % live.size()];
             const Obb box = boxes[random_() % live.size()];
-            must(world.remove(object).has_value(), "removing");
+            require_ok(world.remove(object).has_value(), "removing");
             object = world.add({.bound = box}).value();
         }
         rest();
     }
     void rest() {
         most_bytes_in_use = bytes_in_use;
-        update_microseconds += microseconds([&] { must(world.update().has_value(), "an update"); });
+        update_microseconds += microseconds([&] { require_ok(world.update().has_value(), "an update"); });
         most_bytes = std::max(most_bytes, bytes_in_use);
         most_within_bytes = std::max(most_within_bytes, most_bytes_in_use);
         sum_of_bytes += static_cast<double>(bytes_in_use);
@@ -74,15 +74,15 @@ AgainstFresh against_fresh(const Churn& churn, const cull::View& view) {
     const std::size_t before = most_bytes_in_use = bytes_in_use;
     World fresh({.pairs = false});
     for (const ObjectHandle object : churn.live)
-        must(fresh.add({.bound = churn.world.box_of(object).value()}).has_value(), "a copy");
-    must(fresh.update().has_value(), "loading");
+        require_ok(fresh.add({.bound = churn.world.box_of(object).value()}).has_value(), "a copy");
+    require_ok(fresh.update().has_value(), "loading");
     const auto fresh_bytes = static_cast<double>(bytes_in_use - before),
                fresh_within_bytes = static_cast<double>(most_bytes_in_use - before);
-    VisibleObjects seen, seen_fresh;
+    ViewResult seen, seen_fresh;
     const FrameTimes times = compare(
         50, [&](int) { (void)fresh.view({.volume = view.frustum, .order = cull::ResultOrder::tree}, seen_fresh); },
         [&](int) { (void)churn.world.view({.volume = view.frustum, .order = cull::ResultOrder::tree}, seen); });
-    must(seen.size() == seen_fresh.size(), "the views differ");
+    require_ok(seen.size() == seen_fresh.size(), "the views differ");
     return {times.world, times.by_hand, fresh_bytes, fresh_within_bytes};
 }
 

@@ -35,7 +35,7 @@ FrameTimes compare(int frames, ByHand by_hand, InWorld in_world) {
 }
 
 // Ends the program where the two sides differ: then the times say nothing.
-inline void must(bool good, const char* what) {
+inline void require_ok(bool good, const char* what) {
     if (good) return;
     std::fprintf(stderr, "bench_world: %s\n", what);
     std::exit(1);

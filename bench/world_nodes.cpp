@@ -42,12 +42,12 @@ struct Graph {
         const auto id = scene.add_mesh(cube()).value();
         for (const Transform& place : places.all) {
             nodes.push_back(scene.add_node(scene::kNone, place).value());
-            must(scene.add_instance(nodes.back(), id).has_value(), "an instance");
+            require_ok(scene.add_instance(nodes.back(), id).has_value(), "an instance");
         }
         scene.update();
     }
     void update(const Places& places) {
-        must(scene.set_local(std::span(nodes).first(places.movers), places.moved()).has_value(), "the scene");
+        require_ok(scene.set_local(std::span(nodes).first(places.movers), places.moved()).has_value(), "the scene");
         scene.update();
     }
 
@@ -61,12 +61,13 @@ class Parts {
     explicit Parts(const Places& places) : graph_(places) {
         for (std::size_t i = 0; i < places.movers; ++i) items_.push_back(static_cast<boxtree::ItemId>(i));
         auto built = boxtree::BoxTree::build(graph_.scene.world_boxes(), {.detached = items_});
-        must(built.has_value(), "the tree");
+        require_ok(built.has_value(), "the tree");
         tree_ = std::move(*built);
     }
     void update(const Places& places) {
         graph_.update(places);
-        must(moving_.update(tree_, items_, graph_.scene.world_boxes().first(places.movers)).has_value(), "by hand");
+        require_ok(moving_.update(tree_, items_, graph_.scene.world_boxes().first(places.movers)).has_value(),
+                   "by hand");
     }
     void view(const cull::View& view) {
         cull::find_visible(tree_, moving_, view, seen_, {.order = cull::ResultOrder::tree});
@@ -90,14 +91,14 @@ struct Meshes {
         const auto handle = world.add_mesh({.positions = mesh.positions, .indices = mesh.indices}).value();
         for (const Transform& place : places.all) {
             nodes.push_back(world.add_node({.transform = place}).value());
-            must(world.add({.mesh = handle, .node = nodes.back()}).has_value(), "an object");
+            require_ok(world.add({.mesh = handle, .node = nodes.back()}).has_value(), "an object");
         }
-        must(world.update().has_value(), "loading");
+        require_ok(world.update().has_value(), "loading");
     }
     void update(const Places& places) {
-        must(world.set_transforms(std::span(nodes).first(places.movers), places.moved()).has_value() &&
-                 world.update().has_value(),
-             "in a world");
+        require_ok(world.set_transforms(std::span(nodes).first(places.movers), places.moved()).has_value() &&
+                       world.update().has_value(),
+                   "in a world");
     }
 
     World world;
@@ -108,14 +109,15 @@ struct Meshes {
 struct Bounds {
     explicit Bounds(const Places& places) : graph(places), world(kViewsOnly) {
         for (const Obb& box : graph.scene.world_boxes()) objects.push_back(world.add({.bound = box}).value());
-        must(world.update().has_value(), "loading");
+        require_ok(world.update().has_value(), "loading");
     }
     void update(const Places& places) {
         graph.update(places);
-        must(world.set_bounds(std::span(objects).first(places.movers), graph.scene.world_boxes().first(places.movers))
-                     .has_value() &&
-                 world.update().has_value(),
-             "in a world");
+        require_ok(
+            world.set_bounds(std::span(objects).first(places.movers), graph.scene.world_boxes().first(places.movers))
+                    .has_value() &&
+                world.update().has_value(),
+            "in a world");
     }
 
     Graph graph;
@@ -134,8 +136,8 @@ FrameTimes views(std::size_t count, std::size_t moving_count, int frames) {
         worlds.move(frame);
         objects.update(worlds);
     }
-    must(objects.world.statistics().moving == moving_count, "what moves was not found out");
-    VisibleObjects seen;
+    require_ok(objects.world.statistics().moving == moving_count, "what moves was not found out");
+    ViewResult seen;
     return compare(
         frames,
         [&](int frame) {
@@ -147,7 +149,7 @@ FrameTimes views(std::size_t count, std::size_t moving_count, int frames) {
             worlds.move(frame);
             objects.update(worlds);
             (void)objects.world.view({.volume = view.frustum, .order = cull::ResultOrder::tree}, seen);
-            must(seen.size() == parts.seen(), "the views differ");
+            require_ok(seen.size() == parts.seen(), "the views differ");
         });
 }
 

@@ -57,7 +57,7 @@ export interface VisibleSet extends Owned {
     readonly length: number;
     readonly ids: Uint32Array;
     readonly verdicts: Uint8Array;
-    readonly statistics: Record<'nodesTested' | 'boxesTested' | 'acceptedWhole' | 'straddling' | 'exactTests' | 'improper', number>;
+    readonly statistics: Record<'nodesTested' | 'boxesTested' | 'acceptedWhole' | 'straddling' | 'exactTests' | 'falsePositives', number>;
 }
 export interface Tree extends Owned {
     cull(frustum: Frustum, visible: VisibleSet, how?: CullOptions): VisibleSet;
@@ -69,7 +69,7 @@ export interface Triangulator extends Owned {
     triangulate(points: Float64Array, ringEnds?: number[], method?: 'ear' | 'delaunay' | 'minimumWeight'): Triangulation;
 }
 /** Views: valid until the next view or any growth of memory. */
-export interface VisibleObjects extends Owned {
+export interface ViewResult extends Owned {
     readonly length: number;
     readonly ids: Uint32Array;
     readonly verdicts: Uint8Array;
@@ -81,7 +81,7 @@ export interface World extends Owned {
     findOccluders(mesh: MeshHandle): void;
     setConvexOccluder(mesh: MeshHandle, positions: Float32Array): void;
     /** `transform`: sixteen numbers by columns, the last row 0, 0, 0, 1. */
-    add(object: { box?: BoxLike; ball?: { center: Vector; radius: number }; mesh?: MeshHandle; transform?: Vector;
+    add(object: { box?: BoxLike; sphere?: { center: Vector; radius: number }; mesh?: MeshHandle; transform?: Vector;
         user?: number; hiddenLayers?: number; transparent?: boolean }): ObjectHandle;
     remove(object: ObjectHandle): void;
     setHidden(object: ObjectHandle, hidden: boolean): void;
@@ -89,9 +89,9 @@ export interface World extends Owned {
     setTransform(object: ObjectHandle, transform: Vector): void;
     contains(object: ObjectHandle): boolean;
     update(): void;
-    view(frustum: Frustum, visible: VisibleObjects): VisibleObjects;
-    viewOccluding(camera: Camera, visible: VisibleObjects,
-        options?: { listOccluded?: boolean; occlusion?: boolean; width?: number; height?: number }): VisibleObjects;
+    view(frustum: Frustum, visible: ViewResult): ViewResult;
+    viewOccluding(camera: Camera, visible: ViewResult,
+        options?: { listOccluded?: boolean; occlusion?: boolean; width?: number; height?: number }): ViewResult;
     raycast(origin: Vector, direction: Vector, maxT?: number, layers?: number): Hit | null;
 }
 export interface Crofton {
@@ -104,7 +104,7 @@ export interface Crofton {
     readonly VisibleSet: new () => VisibleSet;
     readonly Triangulator: new () => Triangulator;
     readonly World: new () => World;
-    readonly VisibleObjects: new () => VisibleObjects;
+    readonly ViewResult: new () => ViewResult;
     cullBoxes(boxes: Boxes, frustum: Frustum, visible: VisibleSet, how?: CullOptions): VisibleSet;
     /** A verdict a box: 0 outside, 1 straddling, 2 inside. */
     classify(boxes: Boxes, frustum: Frustum): Uint8Array;

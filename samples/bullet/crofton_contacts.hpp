@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Bullet's contacts of boxes, hulls and balls, found by Crofton: exact, and with ids that stay.
+// Bullet's contacts of boxes, hulls and spheres, found by Crofton: exact, and with ids that stay.
 #pragma once
 #include <btBulletDynamicsCommon.h>
 

@@ -41,7 +41,7 @@ void make(const btCollisionShape& shape, const std::vector<float>& numbers, Shap
         case BOX_SHAPE_PROXYTYPE:
             return take(convex::Body::box({numbers[0], numbers[1], numbers[2]}));
         case SPHERE_SHAPE_PROXYTYPE:
-            return take(convex::Body::ball(numbers[0]));
+            return take(convex::Body::sphere(numbers[0]));
         default: {
             std::vector<glm::vec3> points;
             for (std::size_t i = 0; i + 3 < numbers.size(); i += 3)

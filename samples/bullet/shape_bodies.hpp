@@ -17,7 +17,7 @@ struct ShapeBody {
     std::size_t fingerprint = 0;  // of the shape's numbers when it was made
 };
 
-// Whether `get` has a body for shapes of this type: boxes, hulls, balls.
+// Whether `get` has a body for shapes of this type: boxes, hulls, spheres.
 [[nodiscard]] bool has_body(int shape_type);
 
 // Bodies are made once a shape, and again where its numbers have changed.

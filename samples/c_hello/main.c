@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Crofton from plain C: a World of a hundred tetrahedra and a ball; what a camera sees, what touches, what a ray hits.
+/* Crofton from plain C: a World of a hundred tetrahedra and a sphere; what a camera sees, what touches, what a ray
+ * hits.
  */
 #include <crofton/capi/crofton.h>
 #include <stdio.h>
@@ -30,8 +31,8 @@ static void add_tetrahedra(crofton_world* world) {
 }
 
 /* An object may be a bound alone. */
-static crofton_object add_ball(crofton_world* world, double x) {
-    const crofton_bound bound = {.kind = CROFTON_BOUND_BALL, .center = {x, 0.2, -3.0}, .radius = 0.5};
+static crofton_object add_sphere(crofton_world* world, double x) {
+    const crofton_bound bound = {.kind = CROFTON_BOUND_SPHERE, .center = {x, 0.2, -3.0}, .radius = 0.5};
     const crofton_object_description description = {.size = sizeof description, .user = 100, .bound = &bound};
     crofton_object object;
     check(crofton_world_add(world, &description, &object));
@@ -52,11 +53,11 @@ int main(void) {
     check(crofton_world_create(NULL, &world));
     check(crofton_visible_objects_create(&visible));
     add_tetrahedra(world);
-    const crofton_object ball = add_ball(world, -6.0);
+    const crofton_object sphere = add_sphere(world, -6.0);
     for (int frame = 0; frame < 10; ++frame) {
         const crofton_bound moved = {
-            .kind = CROFTON_BOUND_BALL, .center = {0.5 * frame - 6.0, 0.2, -3.0}, .radius = 0.5};
-        check(crofton_world_set_bound(world, ball, &moved));
+            .kind = CROFTON_BOUND_SPHERE, .center = {0.5 * frame - 6.0, 0.2, -3.0}, .radius = 0.5};
+        check(crofton_world_set_bound(world, sphere, &moved));
         check(crofton_world_update(world, NULL)); /* once a frame; then ask */
         check(crofton_world_view_camera(world, &camera, NULL, NULL, visible));
         check(crofton_visible_objects_ids(visible, &ids, &seen, NULL, NULL));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A yard of crates, a ball that rolls through it, and a camera: what is seen, what touches, what a ray hits.
+// A yard of crates, a sphere that rolls through it, and a camera: what is seen, what touches, what a ray hits.
 #include <crofton/crofton.hpp>
 #include <cstdint>
 #include <cstdio>
@@ -19,17 +19,17 @@ int main() {
         const crofton::Transform place{glm::dmat3(1.0), {4.0 * (i % 10), 0.0, -4.0 * (i / 10)}};
         crates.push_back(world.add({.mesh = *mesh, .transform = place, .user = std::uint64_t(i)}).value());
     }
-    // An object may be a bound alone: a box, an aligned box or a ball.
-    const auto ball = world.add({.bound = crofton::Sphere{{-3.0, 1.0, -8.0}, 1.0}, .user = 100}).value();
+    // An object may be a bound alone: a box, an aligned box or a sphere.
+    const auto sphere = world.add({.bound = crofton::Sphere{{-3.0, 1.0, -8.0}, 1.0}, .user = 100}).value();
 
     crofton::Camera camera;  // right-handed, reversed-Z; docs/conventions.md
     camera.position = {18.0, 1.8, 12.0};
-    crofton::VisibleObjects visible;  // keeps its memory: no allocation once warm
+    crofton::ViewResult visible;  // keeps its memory: no allocation once warm
     std::size_t seen = 0, touched = 0;
     for (int frame = 0; frame < 60; ++frame) {
         // World detects motion automatically. Changes take effect in update().
         const double x = -3.0 + 0.55 * frame;
-        if (auto moved = world.set_bound(ball, crofton::Sphere{{x, 1.0, -8.0}, 1.0}); !moved) return 1;
+        if (auto moved = world.set_bound(sphere, crofton::Sphere{{x, 1.0, -8.0}, 1.0}); !moved) return 1;
         if (frame == 30) world.remove(crates[25]).value();  // its handle is stale from now on
         world.update().value();                             // once a frame; takes the host's job system
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A city of boxes and balls under a moving camera and a shadow-casting sun: thousands of entities, some of them moving.
+// A city of boxes and spheres under a moving camera and a shadow-casting sun: thousands of entities, some of them
+// moving.
 #pragma once
 #include <OgreCamera.h>
 #include <OgreEntity.h>

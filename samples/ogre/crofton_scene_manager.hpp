@@ -79,7 +79,7 @@ class SceneManager final : public Ogre::SceneManager {
                        bool only_shadow_casters);
 
     World world_{{.pairs = false}};
-    VisibleObjects visible_;
+    ViewResult visible_;
     bool world_changed_ = true;  // since its last update
     unsigned long updated_frame_ = 0;
     std::vector<SceneNode*> unbounded_;  // hold skies and the like

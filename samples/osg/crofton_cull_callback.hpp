@@ -24,7 +24,7 @@ class CullCallback final : public osg::NodeCallback {
     void update_world(unsigned frame);
 
     World world_{{.pairs = false}};
-    VisibleObjects visible_;
+    ViewResult visible_;
     std::vector<ObjectHandle> objects_;  // by child
     bool world_changed_ = true;          // since its last update
     unsigned updated_frame_ = 0;

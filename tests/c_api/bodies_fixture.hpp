@@ -31,7 +31,7 @@ inline std::vector<BodyHandle> all_kinds() {
         bodies.emplace_back(body);
     };
     crofton_body* made = nullptr;
-    crofton_status status = crofton_body_ball(0.5f, &made);
+    crofton_status status = crofton_body_sphere(0.5f, &made);
     keep(status, made);
     status = crofton_body_capsule(0.5f, 0.25f, &made);
     keep(status, made);

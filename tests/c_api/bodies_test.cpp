@@ -20,10 +20,10 @@ const float kNaN = std::numeric_limits<float>::quiet_NaN();
 TEST_SUITE("capi/bodies") {
     TEST_CASE("a body of each kind says what it is, and outlives nothing that it is made of") {
         std::vector<BodyHandle> bodies = all_kinds();
-        const std::uint32_t kinds[] = {CROFTON_BODY_BALL, CROFTON_BODY_CAPSULE,      CROFTON_BODY_CYLINDER,
-                                       CROFTON_BODY_CONE, CROFTON_BODY_BOX,          CROFTON_BODY_TRIANGLE,
-                                       CROFTON_BODY_HULL, CROFTON_BODY_HALF_SPACE,   CROFTON_BODY_BOX,
-                                       CROFTON_BODY_MESH, CROFTON_BODY_HEIGHT_FIELD, CROFTON_BODY_COMPOUND};
+        const std::uint32_t kinds[] = {CROFTON_BODY_SPHERE, CROFTON_BODY_CAPSULE,      CROFTON_BODY_CYLINDER,
+                                       CROFTON_BODY_CONE,   CROFTON_BODY_BOX,          CROFTON_BODY_TRIANGLE,
+                                       CROFTON_BODY_HULL,   CROFTON_BODY_HALF_SPACE,   CROFTON_BODY_BOX,
+                                       CROFTON_BODY_MESH,   CROFTON_BODY_HEIGHT_FIELD, CROFTON_BODY_COMPOUND};
         for (std::size_t i = 0; i < bodies.size(); ++i) {
             auto info = sized<crofton_body_info>();
             REQUIRE(crofton_body_get_info(bodies[i].get(), &info) == CROFTON_OK);
@@ -188,8 +188,8 @@ TEST_SUITE("capi/bodies") {
 
     TEST_CASE("bad bodies are refused by name, and leave the result alone") {
         crofton_body* none = nullptr;
-        CHECK(crofton_body_ball(-1, &none) == CROFTON_INVALID_ARGUMENT);
-        CHECK(crofton_body_ball(1, nullptr) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_body_sphere(-1, &none) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_body_sphere(1, nullptr) == CROFTON_INVALID_ARGUMENT);
         CHECK(crofton_body_capsule(kNaN, 1, &none) == CROFTON_NON_FINITE);
         const float inside_out[3] = {1, -1, 1};
         CHECK(crofton_body_box(inside_out, &none) == CROFTON_INVALID_ARGUMENT);

@@ -43,11 +43,11 @@ TEST_SUITE("capi/body_pairs") {
                 }
         }
         Lines lines;
-        const crofton_placed ball{bodies[0].get(), &here};
-        REQUIRE(crofton_body_outline(&ball, keep_line, &lines) == CROFTON_OK);
+        const crofton_placed sphere{bodies[0].get(), &here};
+        REQUIRE(crofton_body_outline(&sphere, keep_line, &lines) == CROFTON_OK);
         const RigidTransform pose{glm::dmat3(1.0), {3, 4, 5}};
         std::size_t line = 0;
-        convex::outline({convex::Body::ball(0.5f).value(), pose}, [&](const glm::dvec3& from, const glm::dvec3& to) {
+        convex::outline({convex::Body::sphere(0.5f).value(), pose}, [&](const glm::dvec3& from, const glm::dvec3& to) {
             REQUIRE(line < lines.size());
             CHECK(lines[line++] == std::array<double, 6>{from.x, from.y, from.z, to.x, to.y, to.z});
         });
@@ -81,7 +81,7 @@ TEST_SUITE("capi/body_pairs") {
             convex::HeightField::build({.columns = 3, .rows = 2, .heights = heights}).value();
         const convex::Body box = convex::Body::box({0.5f, 0.25f, 1.0f}).value();
         const std::pair<std::size_t, convex::Body> bodies[] = {
-            {0, convex::Body::ball(0.5f).value()},
+            {0, convex::Body::sphere(0.5f).value()},
             {3, convex::Body::cone(0.5f, 0.5f).value()},
             {4, box},
             {8, convex::Body::rounded(box, 0.125f).value()},

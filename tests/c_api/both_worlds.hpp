@@ -115,16 +115,16 @@ inline void add_nodes(BothWorlds& both, oracle::NearMisses& random, std::size_t 
 inline void random_bound(oracle::NearMisses& random, crofton_bound& c, Bound& bound) {
     const Obb box = oracle::random_box(random, {}, 10.0);
     const Aabb aligned = aabb_of(box);
-    const Sphere ball{box.center, static_cast<double>(box.half_extents.x)};
+    const Sphere sphere{box.center, static_cast<double>(box.half_extents.x)};
     const unsigned kind = random.index(3);
-    c = ball_bound(ball.center.x, ball.center.y, ball.center.z, ball.radius);
+    c = sphere_bound(sphere.center.x, sphere.center.y, sphere.center.z, sphere.radius);
     c.kind = kind + CROFTON_BOUND_BOX;
     c.box = same_bytes<crofton_box>(box);
     for (int k = 0; k < 3; ++k) {
         c.min[k] = aligned.min[k];
         c.max[k] = aligned.max[k];
     }
-    bound = kind == 0 ? Bound(box) : kind == 1 ? Bound(aligned) : Bound(ball);
+    bound = kind == 0 ? Bound(box) : kind == 1 ? Bound(aligned) : Bound(sphere);
 }
 
 inline void add_object(BothWorlds& both, oracle::NearMisses& random, const std::array<crofton_world_mesh, 2>& meshes) {

@@ -116,7 +116,7 @@ TEST_SUITE("capi/cull") {
         const crofton_camera camera = default_camera();
         auto limits = sized<crofton_draw_limits>();
         REQUIRE(crofton_draw_limits_of_camera(&camera, 1080.0, 16.0, &limits) == CROFTON_OK);
-        CHECK(limits.radii > 0.0);
+        CHECK(limits.max_distance_in_radii > 0.0);
         std::vector<float> item_distances(boxes.size(), 60.0f), layer_distances(32, 50.0f);
         const std::vector<std::uint64_t> drawn_before(boxes.size() / 64, 0x5555555555555555u);
         limits.item_distances = item_distances.data();
@@ -124,12 +124,12 @@ TEST_SUITE("capi/cull") {
         limits.layer_distances = layer_distances.data();
         limits.drawn_before = drawn_before.data();
         limits.drawn_word_count = drawn_before.size();
-        limits.longer = 1.25;
+        limits.hysteresis = 1.25;
         crofton::cull::DrawLimits same = *crofton::cull::limits_of(crofton::Camera{}, 1080.0, 16.0);
         same.item_distances = item_distances;
         same.layer_distances = layer_distances;
         same.drawn_before = drawn_before;
-        same.longer = 1.25;
+        same.hysteresis = 1.25;
 
         const crofton_view view = default_view();
         std::vector<uint8_t> verdicts(boxes.size());
@@ -165,7 +165,7 @@ TEST_SUITE("capi/cull") {
         for (const bool use_tree : {false, true}) {
             CAPTURE(use_tree);
             options.size = sizeof options;
-            limits.longer = 1.25;
+            limits.hysteresis = 1.25;
             REQUIRE(ask(use_tree) == CROFTON_OK);
             CHECK(found() == expected);
             // A caller's older struct lacks the limits.
@@ -173,11 +173,11 @@ TEST_SUITE("capi/cull") {
             REQUIRE(ask(use_tree) == CROFTON_OK);
             CHECK(found().size() == in_view);
             options.size = sizeof options;
-            limits.longer = 0.5;
+            limits.hysteresis = 0.5;
             CHECK(ask(use_tree) == CROFTON_OUT_OF_RANGE);
         }
         // A World's objects are items of the limits by their index.
-        limits.longer = 1.25;
+        limits.hysteresis = 1.25;
         const WorldHandle world = make_world();
         for (const crofton_box& box : boxes) {
             auto description = sized<crofton_object_description>();
@@ -187,7 +187,7 @@ TEST_SUITE("capi/cull") {
             REQUIRE(crofton_world_add(world.get(), &description, &object) == CROFTON_OK);
         }
         REQUIRE(crofton_world_update(world.get(), nullptr) == CROFTON_OK);
-        const VisibleObjectsHandle objects = make_visible_objects();
+        const ViewResultHandle objects = make_visible_objects();
         REQUIRE(crofton_world_view(world.get(), &view, &options, nullptr, objects.get()) == CROFTON_OK);
         const uint32_t* ids = nullptr;
         std::size_t count = 0;
@@ -204,7 +204,7 @@ TEST_SUITE("capi/cull") {
         camera.projection = CROFTON_ORTHOGRAPHIC;
         camera.height = 10.0;
         REQUIRE(crofton_draw_limits_of_camera(&camera, 1000.0, 2.0, &limits) == CROFTON_OK);
-        CHECK(limits.radii == 0.0);
+        CHECK(limits.max_distance_in_radii == 0.0);
         CHECK(limits.least_radius == doctest::Approx(0.01));
         limits.size = sizeof limits + 8;
         CHECK(crofton_draw_limits_of_camera(&camera, 1000.0, 2.0, &limits) == CROFTON_WRONG_SIZE);

@@ -24,7 +24,7 @@ using Broadphase = Owned<crofton_broadphase, crofton_broadphase_destroy>;
 using Collider = Owned<crofton_collider, crofton_collider_destroy>;
 using Triangulator = Owned<crofton_triangulator, crofton_triangulator_destroy>;
 using WorldHandle = Owned<crofton_world, crofton_world_destroy>;
-using VisibleObjectsHandle = Owned<crofton_visible_objects, crofton_visible_objects_destroy>;
+using ViewResultHandle = Owned<crofton_visible_objects, crofton_visible_objects_destroy>;
 using VisibleInViewsHandle = Owned<crofton_visible_in_views, crofton_visible_in_views_destroy>;
 using BodyHandle = Owned<crofton_body, crofton_body_destroy>;
 using BodyContactsHandle = Owned<crofton_body_contacts, crofton_body_contacts_destroy>;
@@ -53,8 +53,8 @@ inline WorldHandle make_world(const crofton_world_options* options = nullptr) {
     REQUIRE(crofton_world_create(options, &world) == CROFTON_OK);
     return WorldHandle(world);
 }
-inline VisibleObjectsHandle make_visible_objects() {
-    return make<VisibleObjectsHandle>(crofton_visible_objects_create);
+inline ViewResultHandle make_visible_objects() {
+    return make<ViewResultHandle>(crofton_visible_objects_create);
 }
 inline VisibleInViewsHandle make_visible_in_views() {
     return make<VisibleInViewsHandle>(crofton_visible_in_views_create);
@@ -113,9 +113,9 @@ inline crofton_bound box_bound(const crofton_box& box) {
     bound.box = box;
     return bound;
 }
-inline crofton_bound ball_bound(double x, double y, double z, double radius) {
+inline crofton_bound sphere_bound(double x, double y, double z, double radius) {
     crofton_bound bound{};
-    bound.kind = CROFTON_BOUND_BALL;
+    bound.kind = CROFTON_BOUND_SPHERE;
     bound.center[0] = x;
     bound.center[1] = y;
     bound.center[2] = z;

@@ -125,7 +125,7 @@ TEST_SUITE("capi/hooks") {
                 REQUIRE(crofton_world_add(world.get(), &description, &object) == CROFTON_OK);
             }
             REQUIRE(crofton_world_update(world.get(), nullptr) == CROFTON_OK);
-            const VisibleObjectsHandle visible = make_visible_objects();
+            const ViewResultHandle visible = make_visible_objects();
             const VisibleInViewsHandle in_views = make_visible_in_views();
             const Found found = make_found();
             const crofton_view view = default_view();
@@ -140,8 +140,8 @@ TEST_SUITE("capi/hooks") {
                 REQUIRE(crofton_world_views(world.get(), &view, 1, nullptr, in_views.get()) == CROFTON_OK);
                 REQUIRE(crofton_world_raycast(world.get(), &ray, 1, ~0u, &hit) == CROFTON_OK);
                 REQUIRE(crofton_world_raycast_all(world.get(), &ray, ~0u, found.get()) == CROFTON_OK);
-                REQUIRE(crofton_world_overlap_ball(world.get(), center, 9, ~0u, found.get()) == CROFTON_OK);
-                REQUIRE(crofton_world_closest_to_ball(world.get(), center, 9, 1e3, ~0u, &closest) == CROFTON_OK);
+                REQUIRE(crofton_world_overlap_sphere(world.get(), center, 9, ~0u, found.get()) == CROFTON_OK);
+                REQUIRE(crofton_world_closest_to_sphere(world.get(), center, 9, 1e3, ~0u, &closest) == CROFTON_OK);
             }
             CHECK(before > 0);
             CHECK(counter.allocations == before);
@@ -243,7 +243,7 @@ TEST_SUITE("capi/hooks") {
             crofton_object object{};
             REQUIRE(crofton_world_add(world.get(), &description, &object) == CROFTON_OK);
         }
-        const VisibleObjectsHandle visible = make_visible_objects();
+        const ViewResultHandle visible = make_visible_objects();
         struct Attempt {
             crofton_world* world;
             crofton_visible_objects* visible;

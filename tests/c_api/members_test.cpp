@@ -19,14 +19,14 @@ BodyHandle body_of(Make make) {
     REQUIRE(make(&body) == CROFTON_OK);
     return BodyHandle(body);
 }
-BodyHandle ball(float radius) {
-    return body_of([&](crofton_body** body) { return crofton_body_ball(radius, body); });
+BodyHandle sphere(float radius) {
+    return body_of([&](crofton_body** body) { return crofton_body_sphere(radius, body); });
 }
 
-// A ball of radius 0.25 moves from `from` by `velocity` in a time of 1.
+// A sphere of radius 0.25 moves from `from` by `velocity` in a time of 1.
 crofton_impact cast_at(const BodyHandle& target, std::array<double, 3> from, std::array<double, 3> velocity,
                        const crofton_cast_options* options = nullptr) {
-    const BodyHandle moving = ball(0.25f);
+    const BodyHandle moving = sphere(0.25f);
     const crofton_transform start = translation(from[0], from[1], from[2]), origin = translation(0, 0, 0);
     const crofton_placed a{moving.get(), &start}, b{target.get(), &origin};
     crofton_motion motion{};

@@ -75,12 +75,12 @@ TEST_SUITE("capi/misuse") {
         std::size_t found = 0;
         const double center[3] = {}, nan = std::nan(""), nowhere[3] = {0, 0, nan};
         const auto near = [&](const double* at, double radius) {
-            return crofton_tree_within_ball(tree.get(), at, radius, ~0u, &id, 1, &found);
+            return crofton_tree_within_sphere(tree.get(), at, radius, ~0u, &id, 1, &found);
         };
         CHECK(near(center, nan) == CROFTON_NON_FINITE);
-        CHECK(mentions(crofton_last_error(), "crofton_tree_within_ball: radius is NaN or infinite"));
+        CHECK(mentions(crofton_last_error(), "crofton_tree_within_sphere: radius is NaN or infinite"));
         CHECK(near(center, -1) == CROFTON_INVALID_ARGUMENT);
-        CHECK(mentions(crofton_last_error(), "crofton_tree_within_ball: radius is negative"));
+        CHECK(mentions(crofton_last_error(), "crofton_tree_within_sphere: radius is negative"));
         CHECK(near(nowhere, 1) == CROFTON_NON_FINITE);
         CHECK(mentions(crofton_last_error(), "center is NaN or infinite"));
         auto options = sized<crofton_world_options>();
@@ -98,7 +98,7 @@ TEST_SUITE("capi/misuse") {
         std::uint32_t id = 0;
         std::size_t found = 77;
         const double far[3] = {1.5e308, 1.5e308, 0};
-        CHECK(crofton_tree_within_ball(tree.get(), far, 1, ~0u, &id, 1, &found) == CROFTON_OK);
+        CHECK(crofton_tree_within_sphere(tree.get(), far, 1, ~0u, &id, 1, &found) == CROFTON_OK);
         CHECK(found == 0);
     }
 

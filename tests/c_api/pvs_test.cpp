@@ -23,19 +23,19 @@ const crofton::Aabb kPvsBoxes[] = {{{-60.0, -40.0, -10.5}, {60.0, 40.0, -9.5}},
 
 std::string file_of_sets() {
     using namespace crofton;
-    pvs::Subject subject;
+    pvs::BakeGeometry geometry;
     for (std::uint32_t o = 0; o < 4; ++o) {
-        subject.boxes.push_back(obb_of(kPvsBoxes[o]));
+        geometry.boxes.push_back(obb_of(kPvsBoxes[o]));
         if (o == 3) continue;
-        const auto first = static_cast<std::uint32_t>(subject.mesh.positions.size());
-        for (const glm::dvec3& p : corners(subject.boxes[o])) subject.mesh.positions.push_back(glm::vec3(p));
+        const auto first = static_cast<std::uint32_t>(geometry.mesh.positions.size());
+        for (const glm::dvec3& p : corners(geometry.boxes[o])) geometry.mesh.positions.push_back(glm::vec3(p));
         for (const std::uint32_t i : {0u, 4u, 6u, 0u, 6u, 2u, 1u, 3u, 7u, 1u, 7u, 5u, 0u, 1u, 5u, 0u, 5u, 4u,
                                       2u, 6u, 7u, 2u, 7u, 3u, 0u, 2u, 3u, 0u, 3u, 1u, 4u, 5u, 7u, 4u, 7u, 6u})
-            subject.mesh.indices.push_back(first + i);
-        subject.object_of.insert(subject.object_of.end(), 12, o);
+            geometry.mesh.indices.push_back(first + i);
+        geometry.object_of.insert(geometry.object_of.end(), 12, o);
     }
     const auto cells = pvs::Cells::grid({{-2.0, 0.0, -2.0}, {2.0, 2.0, 2.0}}, {1, 1, 1}).value();
-    auto bake = pvs::Bake::create(subject, cells, {.epsilon = 1e-2}).value();
+    auto bake = pvs::Bake::create(geometry, cells, {.epsilon = 1e-2}).value();
     REQUIRE(bake.run().has_value());
     const auto bytes = pvs::Pvs::finish(bake).value().to_file().value();
     const std::string path = (std::filesystem::temp_directory_path() / "crofton_capi_pvs.crofton").string();
@@ -78,7 +78,7 @@ TEST_SUITE("capi/pvs") {
             add_bound(world, bound);
         }
         for (int i = 0; i < 40; ++i) update(world);  // what is new counts as moving at first
-        const VisibleObjectsHandle visible = make_visible_objects();
+        const ViewResultHandle visible = make_visible_objects();
         crofton_camera camera;
         camera.size = sizeof camera;
         REQUIRE(crofton_camera_default(&camera) == CROFTON_OK);
@@ -87,20 +87,20 @@ TEST_SUITE("capi/pvs") {
         options.size = sizeof options;
         REQUIRE(crofton_world_view_camera(world.get(), &camera, &options, nullptr, visible.get()) == CROFTON_OK);
         CHECK(ids_in_view(visible.get()) == std::vector<std::uint32_t>{0, 1, 2, 3});
-        REQUIRE(crofton_pvs_visible(sets.get(), inside, CROFTON_PVS_STATISTICAL, &options.among,
-                                    &options.among_words) == CROFTON_OK);
+        REQUIRE(crofton_pvs_visible(sets.get(), inside, CROFTON_PVS_STATISTICAL, &options.candidate_mask,
+                                    &options.candidate_words) == CROFTON_OK);
         REQUIRE(crofton_world_view_camera(world.get(), &camera, &options, nullptr, visible.get()) == CROFTON_OK);
         CHECK(ids_in_view(visible.get()) == std::vector<std::uint32_t>{0, 1, 3});
         // A caller compiled before there were sets.
-        options.size = offsetof(crofton_cull_options, among);
+        options.size = offsetof(crofton_cull_options, candidate_mask);
         REQUIRE(crofton_world_view_camera(world.get(), &camera, &options, nullptr, visible.get()) == CROFTON_OK);
         CHECK(ids_in_view(visible.get()).size() == 4);
         // Without a cell everything is drawn.
         options.size = sizeof options;
-        REQUIRE(crofton_pvs_visible(sets.get(), outside, CROFTON_PVS_CONSERVATIVE, &options.among,
-                                    &options.among_words) == CROFTON_OK);
-        CHECK(options.among == nullptr);
-        CHECK(options.among_words == 0);
+        REQUIRE(crofton_pvs_visible(sets.get(), outside, CROFTON_PVS_CONSERVATIVE, &options.candidate_mask,
+                                    &options.candidate_words) == CROFTON_OK);
+        CHECK(options.candidate_mask == nullptr);
+        CHECK(options.candidate_words == 0);
         REQUIRE(crofton_world_view_camera(world.get(), &camera, &options, nullptr, visible.get()) == CROFTON_OK);
         CHECK(ids_in_view(visible.get()).size() == 4);
     }
@@ -124,14 +124,14 @@ TEST_SUITE("capi/pvs") {
         CHECK(crofton_pvs_visible(sets.get(), eye, 2, &words, &count) == CROFTON_INVALID_ARGUMENT);
         CHECK(crofton_pvs_visible(sets.get(), eye, 0, nullptr, &count) == CROFTON_INVALID_ARGUMENT);
         CHECK(crofton_pvs_counts(nullptr, nullptr, nullptr) != CROFTON_OK);
-        const VisibleObjectsHandle visible = make_visible_objects();
+        const ViewResultHandle visible = make_visible_objects();
         const WorldHandle world = make_world();
         crofton_camera camera;
         camera.size = sizeof camera;
         REQUIRE(crofton_camera_default(&camera) == CROFTON_OK);
         crofton_cull_options options{};
         options.size = sizeof options;
-        options.among_words = 3;
+        options.candidate_words = 3;
         CHECK(crofton_world_view_camera(world.get(), &camera, &options, nullptr, visible.get()) ==
               CROFTON_INVALID_ARGUMENT);
     }

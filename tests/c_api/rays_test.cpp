@@ -90,10 +90,10 @@ TEST_SUITE("capi/rays") {
         std::uint32_t items[2] = {77, 77};
         std::size_t found = 77;
         const double nan = std::nan(""), center[] = {3, 0, 0}, nowhere[] = {0, nan, 0};
-        CHECK(crofton_tree_within_ball(tree.get(), nowhere, 1.0, ~0u, items, 2, &found) == CROFTON_NON_FINITE);
-        CHECK(crofton_tree_within_ball(tree.get(), center, -1.0, ~0u, items, 2, &found) == CROFTON_INVALID_ARGUMENT);
-        CHECK(crofton_tree_within_ball(tree.get(), nullptr, 1.0, ~0u, items, 2, &found) == CROFTON_INVALID_ARGUMENT);
-        CHECK(crofton_tree_within_ball(tree.get(), center, 1.0, ~0u, nullptr, 2, &found) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_tree_within_sphere(tree.get(), nowhere, 1.0, ~0u, items, 2, &found) == CROFTON_NON_FINITE);
+        CHECK(crofton_tree_within_sphere(tree.get(), center, -1.0, ~0u, items, 2, &found) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_tree_within_sphere(tree.get(), nullptr, 1.0, ~0u, items, 2, &found) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_tree_within_sphere(tree.get(), center, 1.0, ~0u, nullptr, 2, &found) == CROFTON_INVALID_ARGUMENT);
         CHECK(crofton_tree_within_box(nullptr, boxes.data(), ~0u, items, 2, &found) == CROFTON_BAD_HANDLE);
         crofton_box bad = boxes[0];
         bad.half_extents[0] = -1.0f;
@@ -105,11 +105,11 @@ TEST_SUITE("capi/rays") {
         CHECK(items[0] == 77);
         CHECK(found == 77);
 
-        REQUIRE(crofton_tree_within_ball(tree.get(), center, 2.5, ~0u, items, 2, &found) == CROFTON_OK);
+        REQUIRE(crofton_tree_within_sphere(tree.get(), center, 2.5, ~0u, items, 2, &found) == CROFTON_OK);
         CHECK(found == 3);  // two of them only touch
         CHECK(items[0] == 0);
         CHECK(items[1] == 1);
-        REQUIRE(crofton_tree_within_ball(tree.get(), center, 2.499999, ~0u, nullptr, 0, &found) == CROFTON_OK);
+        REQUIRE(crofton_tree_within_sphere(tree.get(), center, 2.499999, ~0u, nullptr, 0, &found) == CROFTON_OK);
         CHECK(found == 1);
         const crofton_box large = box_at(3, 0, 0, 2.5f);
         REQUIRE(crofton_tree_within_box(tree.get(), &large, 1u, items, 2, &found) == CROFTON_OK);

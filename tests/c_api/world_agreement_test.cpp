@@ -84,7 +84,7 @@ std::size_t compare_contacts(const BothWorlds& both) {
     return count;
 }
 
-void compare_visible(const BothWorlds& both, const crofton_visible_objects* c, const VisibleObjects& expected) {
+void compare_visible(const BothWorlds& both, const crofton_visible_objects* c, const ViewResult& expected) {
     const std::uint32_t* ids = nullptr;
     const std::uint8_t* verdicts = nullptr;
     std::size_t count = 0, inside = 0;
@@ -108,8 +108,8 @@ void compare_visible(const BothWorlds& both, const crofton_visible_objects* c, c
 }
 
 std::size_t compare_views(const BothWorlds& both, NearMisses& random) {
-    const VisibleObjectsHandle seen = make_visible_objects();
-    VisibleObjects visible;
+    const ViewResultHandle seen = make_visible_objects();
+    ViewResult visible;
     std::array<cull::View, 3> views{};
     std::array<crofton_view, 3> c_views{};
     std::size_t total = 0;
@@ -142,7 +142,7 @@ std::size_t compare_views(const BothWorlds& both, NearMisses& random) {
         compare_visible(both, seen.get(), visible);
     }
     const VisibleInViewsHandle in_views = make_visible_in_views();
-    VisibleInViews expected;
+    MultiViewResult expected;
     REQUIRE(crofton_world_views(both.c.get(), c_views.data(), 3, nullptr, in_views.get()) == CROFTON_OK);
     REQUIRE(both.world.view(requests_of(views), expected).has_value());
     const std::uint32_t* ids = nullptr;
@@ -222,7 +222,7 @@ void compare_shapes(const BothWorlds& both, NearMisses& random) {
     crofton_world* const c = both.c.get();
     const Obb box = oracle::random_box(random, {}, 20.0);
     const auto c_box = same_bytes<crofton_box>(box);
-    const Sphere ball{box.center, random.number(0.0, 6.0)};
+    const Sphere sphere{box.center, random.number(0.0, 6.0)};
     const collide::Capsule capsule{box.center, 10.0 * random.direction(), random.number(0.0, 3.0)};
     const std::uint32_t layers = random.index(15) + 1;
     const double limit = random.index(2) ? 1.0 : std::numeric_limits<double>::infinity();
@@ -230,8 +230,8 @@ void compare_shapes(const BothWorlds& both, NearMisses& random) {
     REQUIRE(crofton_world_overlap_box(c, &c_box, layers, found.get()) == CROFTON_OK);
     both.world.overlap(box, expected, layers);
     compare_found(both, found, expected);
-    REQUIRE(crofton_world_overlap_ball(c, &ball.center.x, ball.radius, layers, found.get()) == CROFTON_OK);
-    both.world.overlap(ball, expected, layers);
+    REQUIRE(crofton_world_overlap_sphere(c, &sphere.center.x, sphere.radius, layers, found.get()) == CROFTON_OK);
+    both.world.overlap(sphere, expected, layers);
     compare_found(both, found, expected);
     REQUIRE(crofton_world_overlap_capsule(c, &capsule.begin.x, &capsule.end.x, capsule.radius, layers, found.get()) ==
             CROFTON_OK);
@@ -239,8 +239,8 @@ void compare_shapes(const BothWorlds& both, NearMisses& random) {
     compare_found(both, found, expected);
     REQUIRE(crofton_world_closest_to_box(c, &c_box, limit, layers, &closest) == CROFTON_OK);
     compare_closest(both, closest, both.world.closest(box, limit, layers));
-    REQUIRE(crofton_world_closest_to_ball(c, &ball.center.x, ball.radius, limit, layers, &closest) == CROFTON_OK);
-    compare_closest(both, closest, both.world.closest(ball, limit, layers));
+    REQUIRE(crofton_world_closest_to_sphere(c, &sphere.center.x, sphere.radius, limit, layers, &closest) == CROFTON_OK);
+    compare_closest(both, closest, both.world.closest(sphere, limit, layers));
     REQUIRE(crofton_world_closest_to_capsule(c, &capsule.begin.x, &capsule.end.x, capsule.radius, limit, layers,
                                              &closest) == CROFTON_OK);
     compare_closest(both, closest, both.world.closest(capsule, limit, layers));

@@ -143,13 +143,13 @@ TEST_SUITE("capi/world bodies") {
     TEST_CASE("ground without end, bodies beyond their boxes, and rays at them") {
         const WorldHandle world = make_world();
         const crofton_plane plane{{0, 1, 0}, 0};
-        crofton_body *half = nullptr, *ball = nullptr;
+        crofton_body *half = nullptr, *sphere = nullptr;
         REQUIRE(crofton_body_half_space(&plane, &half) == CROFTON_OK);
-        REQUIRE(crofton_body_ball(1.0f, &ball) == CROFTON_OK);
-        const BodyHandle level(half), large(ball);
+        REQUIRE(crofton_body_sphere(1.0f, &sphere) == CROFTON_OK);
+        const BodyHandle level(half), large(sphere);
         const auto point = [&](double x, double y) {
             crofton_bound bound{};
-            bound.kind = CROFTON_BOUND_BALL;
+            bound.kind = CROFTON_BOUND_SPHERE;
             bound.center[0] = x;
             bound.center[1] = y;
             bound.radius = 0.125;

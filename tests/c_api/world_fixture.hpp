@@ -49,7 +49,7 @@ inline crofton_world_mesh add_tetrahedron(const WorldHandle& world) {
 // One object, and results to ask it with.
 struct SmallWorld {
     WorldHandle world = make_world();
-    VisibleObjectsHandle visible = make_visible_objects();
+    ViewResultHandle visible = make_visible_objects();
     VisibleInViewsHandle in_views = make_visible_in_views();
     Found found = make_found();
     crofton_object box = add_bound(world, box_bound(box_at(0, 0, -5)), 7);

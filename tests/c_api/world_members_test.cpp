@@ -14,11 +14,11 @@ TEST_SUITE("capi/world members") {
             options.without_rebuild = without;
             const WorldHandle world = make_world(&options);
             std::vector<crofton_object> objects;
-            for (int i = 0; i < 200; ++i) objects.push_back(add_bound(world, ball_bound(0, 0, -3.0 * i, 1.0)));
+            for (int i = 0; i < 200; ++i) objects.push_back(add_bound(world, sphere_bound(0, 0, -3.0 * i, 1.0)));
             update(world);
             for (int step = 1; step < 5; ++step) {
                 for (int i = step; i < 200; i += 3) {
-                    const crofton_bound bound = ball_bound(0, 0, 3.0 * i, 1.0);
+                    const crofton_bound bound = sphere_bound(0, 0, 3.0 * i, 1.0);
                     const auto at = static_cast<std::size_t>(i);
                     REQUIRE(crofton_world_set_bound(world.get(), objects[at], &bound) == CROFTON_OK);
                 }
@@ -26,7 +26,7 @@ TEST_SUITE("capi/world members") {
             }
             const Found found = make_found();
             const double center[3] = {0, 0, 150};
-            REQUIRE(crofton_world_overlap_ball(world.get(), center, 10.0, ~0u, found.get()) == CROFTON_OK);
+            REQUIRE(crofton_world_overlap_sphere(world.get(), center, 10.0, ~0u, found.get()) == CROFTON_OK);
             const crofton_object_ref* met = nullptr;
             std::size_t count = 0;
             REQUIRE(crofton_found_objects(found.get(), &met, &count) == CROFTON_OK);
@@ -42,16 +42,16 @@ TEST_SUITE("capi/world members") {
         CHECK((crofton_world_contains_mesh(world.get(), mesh, &contains) == CROFTON_OK && contains == 0));
     }
 
-    TEST_CASE("arrays that are not aligned are refused, and balls that are no number") {
+    TEST_CASE("arrays that are not aligned are refused, and spheres that are no number") {
         const SmallWorld small;
         alignas(8) unsigned char bytes[sizeof(crofton_transform) + 8] = {};
         const auto* shifted = reinterpret_cast<const crofton_box*>(bytes + 4);
         CHECK(crofton_world_set_boxes(small.world.get(), &small.box, 0, shifted, 0, 1) == CROFTON_INVALID_ARGUMENT);
         CHECK(mentions(crofton_last_error(), "not aligned"));
         const double center[3] = {0, 0, -5};
-        CHECK(crofton_world_overlap_ball(small.world.get(), center, kNotANumber, ~0u, small.found.get()) ==
+        CHECK(crofton_world_overlap_sphere(small.world.get(), center, kNotANumber, ~0u, small.found.get()) ==
               CROFTON_NON_FINITE);
-        CHECK(crofton_world_overlap_ball(small.world.get(), center, -1.0, ~0u, small.found.get()) ==
+        CHECK(crofton_world_overlap_sphere(small.world.get(), center, -1.0, ~0u, small.found.get()) ==
               CROFTON_INVALID_ARGUMENT);
         crofton_box stored{};
         REQUIRE(crofton_world_get_box(small.world.get(), small.box, &stored) == CROFTON_OK);
@@ -110,7 +110,7 @@ TEST_SUITE("capi/world members") {
         description.mesh = mesh;
         REQUIRE(crofton_world_add(world.get(), &description, &object) == CROFTON_OK);
         update(world);
-        const VisibleObjectsHandle visible = make_visible_objects();
+        const ViewResultHandle visible = make_visible_objects();
         auto camera = sized<crofton_camera>();
         REQUIRE(crofton_camera_default(&camera) == CROFTON_OK);
         auto view = sized<crofton_occluding_view>();

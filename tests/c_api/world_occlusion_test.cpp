@@ -28,7 +28,7 @@ struct Walled {
     WorldHandle world = make_world();
     crofton_world_mesh mesh{};
     crofton_object wall{}, behind{}, beside{};
-    VisibleObjectsHandle visible = make_visible_objects();
+    ViewResultHandle visible = make_visible_objects();
     crofton_camera camera = sized<crofton_camera>();
     crofton_occluding_view view = sized<crofton_occluding_view>();
 
@@ -326,7 +326,7 @@ TEST_SUITE("capi/world occlusion") {
         CHECK(view(s.view, nullptr) == CROFTON_OUT_OF_RANGE);
         s.camera.fov_y = 1.0;
         auto limits = sized<crofton_draw_limits>();
-        limits.longer = 0.5;
+        limits.hysteresis = 0.5;
         s.view.limits = &limits;
         CHECK(view(s.view, nullptr) == CROFTON_OUT_OF_RANGE);
         const WorldHandle other = make_world();

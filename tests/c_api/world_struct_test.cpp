@@ -29,7 +29,7 @@ TEST_SUITE("capi/world structs") {
             CHECK(crofton_world_get_statistics(s.world.get(), &statistics) == CROFTON_WRONG_SIZE);
             CHECK(crofton_world_add(s.world.get(), &description, &object) == CROFTON_WRONG_SIZE);
             CHECK(crofton_world_add_mesh(s.world.get(), &data, &mesh) == CROFTON_WRONG_SIZE);
-            CHECK(crofton_world_closest_to_ball(s.world.get(), center, 1, 1, ~0u, &closest) == CROFTON_WRONG_SIZE);
+            CHECK(crofton_world_closest_to_sphere(s.world.get(), center, 1, 1, ~0u, &closest) == CROFTON_WRONG_SIZE);
             CHECK(crofton_world_contact(s.world.get(), 0, &contact) == CROFTON_WRONG_SIZE);
         }
     }

@@ -11,7 +11,7 @@ TEST_SUITE("capi/world") {
     TEST_CASE("NULL is refused wherever it is not documented") {
         const SmallWorld s;
         crofton_world* const world = s.world.get();
-        const crofton_bound bound = ball_bound(0, 0, 0, 1);
+        const crofton_bound bound = sphere_bound(0, 0, 0, 1);
         const crofton_view view = default_view();
         const crofton_transform place = translation(0, 0, 0);
         const crofton_box box = box_at(0, 0, 0);
@@ -47,7 +47,7 @@ TEST_SUITE("capi/world") {
         CHECK(crofton_world_raycast_any(world, &ray, ~0u, nullptr) == bad);
         CHECK(crofton_world_raycast_all(world, nullptr, ~0u, s.found.get()) == bad);
         CHECK(crofton_world_overlap_box(world, nullptr, ~0u, s.found.get()) == bad);
-        CHECK(crofton_world_overlap_ball(world, nullptr, 1.0, ~0u, s.found.get()) == bad);
+        CHECK(crofton_world_overlap_sphere(world, nullptr, 1.0, ~0u, s.found.get()) == bad);
         CHECK(crofton_world_overlap_capsule(world, center, nullptr, 1.0, ~0u, s.found.get()) == bad);
         CHECK(crofton_world_closest_to_box(world, &box, 1.0, ~0u, nullptr) == bad);
         CHECK(crofton_world_pairs(world, nullptr, &count) == bad);
@@ -238,7 +238,7 @@ TEST_SUITE("capi/world") {
             crofton_transform place = translation(0, 0, number);
             crofton_node node{};
             CHECK(try_add(s.world, box_bound(box), object) == CROFTON_NON_FINITE);
-            CHECK(try_add(s.world, ball_bound(0, 0, 0, number), object) == CROFTON_NON_FINITE);
+            CHECK(try_add(s.world, sphere_bound(0, 0, 0, number), object) == CROFTON_NON_FINITE);
             CHECK(crofton_world_set_boxes(world, &s.box, 0, &box, 0, 1) == CROFTON_NON_FINITE);
             CHECK(crofton_world_add_node(world, nullptr, &place, ~0u, &node) == CROFTON_NON_FINITE);
             crofton_bound aligned{};
@@ -251,7 +251,7 @@ TEST_SUITE("capi/world") {
             CHECK(crofton_last_error_item() == 1);
             CHECK(crofton_world_raycast_all(world, &rays[1], ~0u, s.found.get()) == CROFTON_NON_FINITE);
             CHECK(crofton_world_overlap_box(world, &box, ~0u, s.found.get()) == CROFTON_NON_FINITE);
-            CHECK(crofton_world_overlap_ball(world, box.center, 1, ~0u, s.found.get()) == CROFTON_NON_FINITE);
+            CHECK(crofton_world_overlap_sphere(world, box.center, 1, ~0u, s.found.get()) == CROFTON_NON_FINITE);
             CHECK(crofton_world_overlap_capsule(world, place.linear, box.center, 1, ~0u, s.found.get()) ==
                   CROFTON_NON_FINITE);
             auto camera = sized<crofton_camera>();
@@ -261,10 +261,10 @@ TEST_SUITE("capi/world") {
         }
         const double center[3] = {};
         auto closest = sized<crofton_closest_object>();
-        CHECK(crofton_world_closest_to_ball(world, center, 1, kNotANumber, ~0u, &closest) == CROFTON_NON_FINITE);
-        CHECK(crofton_world_closest_to_ball(world, center, 1, -1, ~0u, &closest) == CROFTON_INVALID_ARGUMENT);
-        CHECK(crofton_world_closest_to_ball(world, center, -1, 1, ~0u, &closest) == CROFTON_INVALID_ARGUMENT);
-        CHECK(crofton_world_closest_to_ball(world, center, 1, kNoLimit, ~0u, &closest) == CROFTON_OK);
+        CHECK(crofton_world_closest_to_sphere(world, center, 1, kNotANumber, ~0u, &closest) == CROFTON_NON_FINITE);
+        CHECK(crofton_world_closest_to_sphere(world, center, 1, -1, ~0u, &closest) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_world_closest_to_sphere(world, center, -1, 1, ~0u, &closest) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_world_closest_to_sphere(world, center, 1, kNoLimit, ~0u, &closest) == CROFTON_OK);
         CHECK(closest.distance == doctest::Approx(3.5));  // the box's face is at z = −4.5
         CHECK(object.index == 77);
         std::size_t count = 0;

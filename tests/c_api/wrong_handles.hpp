@@ -47,7 +47,7 @@ struct Sound {
     VisibleSet visible_set = make_visible_set();
     BodyHandle body = [] {
         crofton_body* made = nullptr;
-        REQUIRE(crofton_body_ball(1.0f, &made) == CROFTON_OK);
+        REQUIRE(crofton_body_sphere(1.0f, &made) == CROFTON_OK);
         return BodyHandle(made);
     }();
     crofton_box box = box_at(0, 0, -5);

@@ -52,10 +52,10 @@ void refuse_world_queries(Table& table) {
     CROFTON_REFUSE(crofton_world_raycast_any);
     CROFTON_REFUSE(crofton_world_raycast_all);
     CROFTON_REFUSE(crofton_world_overlap_box);
-    CROFTON_REFUSE(crofton_world_overlap_ball);
+    CROFTON_REFUSE(crofton_world_overlap_sphere);
     CROFTON_REFUSE(crofton_world_overlap_capsule);
     CROFTON_REFUSE(crofton_world_closest_to_box);
-    CROFTON_REFUSE(crofton_world_closest_to_ball);
+    CROFTON_REFUSE(crofton_world_closest_to_sphere);
     CROFTON_REFUSE(crofton_world_closest_to_capsule);
     CROFTON_REFUSE(crofton_world_pairs);
     CROFTON_REFUSE(crofton_world_contact_count);
@@ -143,7 +143,7 @@ void refuse_modules_queries(Table& table) {
     CROFTON_REFUSE(crofton_collider_hits_any);
     CROFTON_REFUSE(crofton_tree_raycast);
     CROFTON_REFUSE(crofton_tree_within_box);
-    CROFTON_REFUSE(crofton_tree_within_ball);
+    CROFTON_REFUSE(crofton_tree_within_sphere);
     CROFTON_REFUSE(crofton_triangulator_destroy);
     CROFTON_REFUSE(crofton_triangulate);
     CROFTON_REFUSE(crofton_scene_bake);
@@ -168,7 +168,7 @@ const std::set<std::string> kWithoutHandle = {
     "bodies_manifold",
     "bodies_meet",
     "bodies_penetration",
-    "body_ball",
+    "body_sphere",
     "body_box",
     "body_capsule",
     "body_closest_point",

@@ -52,7 +52,7 @@ std::uint64_t convex_pairs() {
         digest.add(hull.mass().volume).add(hull.mass().center);
     }
     for (std::size_t i = 1; i < scene.bodies.size(); ++i) {
-        const convex::Placed a{scene.bodies[i - 1], scene.poses[i - 1]}, b{scene.bodies[i], scene.poses[i]};
+        const convex::BodyAtPose a{scene.bodies[i - 1], scene.poses[i - 1]}, b{scene.bodies[i], scene.poses[i]};
         convex::PairCache cache;
         const auto apart = convex::distance(a, b, &cache);
         const auto depth = convex::penetration(a, b, &cache);
@@ -77,7 +77,7 @@ TEST_SUITE("determinism/convex") {
     TEST_CASE("what was published is what exact integers find") {
         const ConvexScene scene = convex_scene(51);
         for (std::size_t i = 2; i < 14; i += 2) {
-            const convex::Placed a{scene.bodies[i - 2], scene.poses[i - 2]}, b{scene.bodies[i], scene.poses[i]};
+            const convex::BodyAtPose a{scene.bodies[i - 2], scene.poses[i - 2]}, b{scene.bodies[i], scene.poses[i]};
             const auto exact_a = oracle::exact_polytope(a), exact_b = oracle::exact_polytope(b);
             CHECK(convex::intersects(a, b) == oracle::meet_by_axes(exact_a, exact_b));
         }

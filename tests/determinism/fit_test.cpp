@@ -13,7 +13,7 @@ using namespace crofton::test;
 
 namespace {
 
-// Points on a ball, in a stretched one, on a grid, and those of a turned box.
+// Points on a sphere, in a stretched one, on a grid, and those of a turned box.
 std::vector<std::vector<glm::vec3>> clouds() {
     Random random(31);
     std::vector<std::vector<glm::vec3>> clouds(4);

@@ -30,7 +30,7 @@ std::uint64_t in_space() {
         const auto hull = *measure::intrinsic_volumes_of_hull(points);
         digest.add(hull.volume).add(hull.area).add(hull.mean_curvature);
     }
-    const std::vector<study::ConvexBody> bodies{study::ConvexBody::ball(glm::dvec3(0.0), 1.0),
+    const std::vector<study::ConvexBody> bodies{study::ConvexBody::sphere(glm::dvec3(0.0), 1.0),
                                                 study::ConvexBody::box(random_box(random, glm::dvec3(0.25), 0.0, 4.0))};
     const auto planes = *study::measure_of_planes_hitting_all(bodies),
                lines = *study::measure_of_lines_hitting_all(bodies);

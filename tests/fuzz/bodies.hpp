@@ -53,7 +53,7 @@ class Bodies {
         const float radius = in_.extent(), height = in_.extent();
         switch (in_.below(5)) {
             case 0:
-                return *Body::ball(radius);
+                return *Body::sphere(radius);
             case 1:
                 return *Body::capsule(height, radius);
             case 2:

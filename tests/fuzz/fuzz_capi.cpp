@@ -200,7 +200,7 @@ void ask_tree(World& world, Input& in) {
     std::size_t found = 0;
     crofton_tree_raycast(world.tree, &ray, 1, in.word(), &hit);
     crofton_tree_within_box(world.tree, &box, in.word(), items, in.below(9), &found);
-    crofton_tree_within_ball(world.tree, ray.origin, in.number(), in.word(), items, in.below(9), &found);
+    crofton_tree_within_sphere(world.tree, ray.origin, in.number(), in.word(), items, in.below(9), &found);
 }
 
 void pairs(World& world, Input& in) {

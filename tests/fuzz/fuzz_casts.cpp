@@ -35,7 +35,7 @@ void check_cast(fuzz::Shapes& in) {
     const auto impact = convex::cast({a, pose_a}, motion_a, {b, pose_b}, motion_b, options);
     demand(impact.has_value(), "a cast");
     demand(impact->time >= 0.0 && impact->time <= options.duration, "the time of an impact");
-    const double size = a.reach() + b.reach() + a.radius() + b.radius() + glm::length(pose_a.translation) +
+    const double size = a.core_radius() + b.core_radius() + a.radius() + b.radius() + glm::length(pose_a.translation) +
                         glm::length(pose_b.translation) + 100.0;
     const auto at = [&](double time) {
         const RigidTransform now_a = convex::moved(pose_a, motion_a, time),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Boxes, aligned boxes and balls against a view: alone, as a span, as packed lists, as a query; against rational
+// Boxes, aligned boxes and spheres against a view: alone, as a span, as packed lists, as a query; against rational
 // arithmetic.
 #include <crofton/cull/bound_set.hpp>
 #include <oracle/quick_frustum.hpp>
@@ -12,13 +12,14 @@ using namespace crofton;
 using cull::Verdict;
 using fuzz::demand;
 
-// By the planes alone, for a ball: their normals are of any length.
-Verdict conservative_of_ball(const Frustum& frustum, const Sphere& ball) {
+// By the planes alone, for a sphere: their normals are of any length.
+Verdict conservative_of_sphere(const Frustum& frustum, const Sphere& sphere) {
     bool inside = true;
     for (const Plane& plane : frustum.view()) {
         const Verdict verdict = oracle::decide([&]<class Number>() {
             const auto normal = oracle::vector_of<Number>(plane.normal);
-            const Number value = oracle::quick::plane_value<Number>(frustum, plane, ball.center), radius(ball.radius);
+            const Number value = oracle::quick::plane_value<Number>(frustum, plane, sphere.center),
+                         radius(sphere.radius);
             const int beyond = sgn(Number(value * value - oracle::dot(normal, normal) * radius * radius));
             const int side = sgn(value);
             if (side < 0 && beyond > 0) return Verdict::outside;
@@ -91,18 +92,19 @@ void check_aligned(fuzz::Shapes& in, const cull::View& view) {
     check_list(in, view, boxes, later);
 }
 
-void check_balls(fuzz::Shapes& in, const cull::View& view) {
-    std::vector<Sphere> balls(1 + in.below(3)), later(balls.size());
-    for (std::vector<Sphere>* list : {&balls, &later})
-        for (Sphere& ball : *list) {
-            ball = {in.flag() ? in.point_of(view.frustum) + in.nudge() : in.point(), std::fabs(in.coordinate())};
-            const Verdict by_planes = conservative_of_ball(view.frustum, ball);
-            demand(cull::classify(view.frustum, ball, cull::CullMode::conservative) == by_planes, "a ball by planes");
-            const Verdict exact = cull::classify(view.frustum, ball);
-            demand(by_planes != Verdict::outside || exact == Verdict::outside, "a ball outside a plane");
-            demand((exact == Verdict::inside) == (by_planes == Verdict::inside), "a ball inside all planes");
+void check_spheres(fuzz::Shapes& in, const cull::View& view) {
+    std::vector<Sphere> spheres(1 + in.below(3)), later(spheres.size());
+    for (std::vector<Sphere>* list : {&spheres, &later})
+        for (Sphere& sphere : *list) {
+            sphere = {in.flag() ? in.point_of(view.frustum) + in.nudge() : in.point(), std::fabs(in.coordinate())};
+            const Verdict by_planes = conservative_of_sphere(view.frustum, sphere);
+            demand(cull::classify(view.frustum, sphere, cull::CullMode::conservative) == by_planes,
+                   "a sphere by planes");
+            const Verdict exact = cull::classify(view.frustum, sphere);
+            demand(by_planes != Verdict::outside || exact == Verdict::outside, "a sphere outside a plane");
+            demand((exact == Verdict::inside) == (by_planes == Verdict::inside), "a sphere inside all planes");
         }
-    check_list(in, view, balls, later);
+    check_list(in, view, spheres, later);
 }
 
 }  // namespace
@@ -112,5 +114,5 @@ CROFTON_FUZZ(in) {
     const cull::View view{in.frustum(), in.layers()};
     if (kind == 0) check_boxes(in, view);
     if (kind == 1) check_aligned(in, view);
-    if (kind == 2) check_balls(in, view);
+    if (kind == 2) check_spheres(in, view);
 }

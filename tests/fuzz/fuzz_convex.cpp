@@ -12,12 +12,12 @@ using namespace crofton;
 using namespace crofton::convex;
 using fuzz::demand;
 
-// What the oracle knows. Balls and capsules without a radius are polytopes, too, of one and two corners.
+// What the oracle knows. Spheres and capsules without a radius are polytopes, too, of one and two corners.
 bool has_triangles(const Body& body) {
     return body.is_polytope() && (body.kind() == Kind::box || body.kind() == Kind::triangle || body.hull() != nullptr);
 }
 
-void check_meeting(const Placed& a, const Placed& b, double size, PairCache& cache) {
+void check_meeting(const BodyAtPose& a, const BodyAtPose& b, double size, PairCache& cache) {
     const bool meet = intersects(a, b);
     const Distance d = distance(a, b);
     const Penetration p = penetration(a, b);
@@ -56,8 +56,8 @@ CROFTON_FUZZ(in) {
     RigidTransform pose_b = bodies.touching(a, pose_a, b);
     PairCache cache;
     for (int frame = 0; frame < 3 && (frame == 0 || in.more()); ++frame) {
-        const double extent =
-            a.reach() + b.reach() + a.radius() + b.radius() + glm::length(pose_b.translation - pose_a.translation);
+        const double extent = a.core_radius() + b.core_radius() + a.radius() + b.radius() +
+                              glm::length(pose_b.translation - pose_a.translation);
         check_meeting({a, pose_a}, {b, pose_b}, extent, cache);
         pose_b.translation += in.nudge();
     }

@@ -52,7 +52,7 @@ void check_views(fuzz::Shapes& in, const fuzz::LivingTree& living, const cull::M
             demand(seen == expected_of(living, view, mode), "what rests and what moves");
         }
     }
-    cull::ManyVisible many;
+    cull::MaskedVisibleSet many;
     (void)cull::find_visible(living.tree(), moving, views, many, mode);
     for (std::uint32_t v = 0; v < views.size(); ++v) {
         Ids seen;

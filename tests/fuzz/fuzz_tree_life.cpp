@@ -43,7 +43,7 @@ void check_views(fuzz::Shapes& in, const fuzz::LivingTree& living) {
         cull::find_visible(living.tree(), view, visible, {mode, cull::ResultOrder::tree});
         demand(sorted(visible.ids()) == expected, "what a view sees in tree order");
     }
-    cull::ManyVisible many;
+    cull::MaskedVisibleSet many;
     (void)cull::find_visible(living.tree(), views, many, mode);
     for (std::uint32_t v = 0; v < views.size(); ++v) {
         Ids seen;
@@ -66,8 +66,8 @@ void check_bodies(fuzz::Shapes& in, const fuzz::LivingTree& living) {
                what);
     };
     check(body, "boxes that meet a box");
-    const Sphere ball{in.point(), std::fabs(in.coordinate())};
-    check(ball, "boxes that meet a ball");
+    const Sphere sphere{in.point(), std::fabs(in.coordinate())};
+    check(sphere, "boxes that meet a sphere");
     const collide::Capsule capsule{in.point(), in.point(), std::fabs(in.grid())};
     check(capsule, "boxes that meet a capsule");
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A World of boxes and balls, changed in any order: views, rays, overlaps and pairs against a plain list.
+// A World of boxes and spheres, changed in any order: views, rays, overlaps and pairs against a plain list.
 #include <algorithm>
 #include <crofton/crofton.hpp>
 #include <world/world/model.hpp>
@@ -13,7 +13,7 @@ using namespace crofton;
 using fuzz::demand;
 using Ids = std::vector<std::uint32_t>;
 
-// Balls touch within rounding, so they stand on coarse grids of their own, where sums and squares are exact.
+// Spheres touch within rounding, so they stand on coarse grids of their own, where sums and squares are exact.
 Bound bound(fuzz::Shapes& in, const oracle::Model& model) {
     if (in.below(4) == 0) {
         return Sphere{in.grid_point(), std::fabs(in.grid())};
@@ -30,18 +30,18 @@ Ids ids_of(const Vector<ObjectRef>& found) {
 
 void check_views(fuzz::Shapes& in, const World& world, const oracle::Model& model) {
     std::vector<cull::View> views(1 + in.below(3));
-    VisibleObjects visible;
+    ViewResult visible;
     for (cull::View& view : views) {
         view = {in.frustum(), in.layers()};
         demand(world.view(request_of(view), visible).has_value(), "a view is answered");
-        // A ball is seen by the box around it.
+        // A sphere is seen by the box around it.
         demand(Ids(visible.ids().begin(), visible.ids().end()) == model.visible(view), "what a world's view sees");
         for (std::size_t i = 0; i < visible.size(); ++i) {
             const oracle::ModelObject& object = model.objects.at(visible.ids()[i]);
             demand(visible[i].object == object.handle && visible[i].user == object.user, "whom a view sees");
         }
     }
-    VisibleInViews in_views;
+    MultiViewResult in_views;
     demand(world.view(requests_of(views), in_views).has_value(), "three views fit one pass");
     for (std::size_t v = 0; v < views.size(); ++v) {
         Ids seen;
@@ -52,10 +52,10 @@ void check_views(fuzz::Shapes& in, const World& world, const oracle::Model& mode
     }
 }
 
-// Of what lies within rounding of a ball's surface nothing is asked.
+// Of what lies within rounding of a sphere's surface nothing is asked.
 bool is_plain(const oracle::Model& model) {
     return std::none_of(model.objects.begin(), model.objects.end(),
-                        [](const auto& entry) { return entry.second.bound.kind == BoundKind::ball; });
+                        [](const auto& entry) { return entry.second.bound.kind == BoundKind::sphere; });
 }
 
 void check_queries(fuzz::Shapes& in, const World& world, const oracle::Model& model) {

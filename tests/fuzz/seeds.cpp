@@ -99,7 +99,7 @@ void write_states(Folder out) {
     for (std::size_t i = 0; i < 8; ++i) cell.corners[i] = {i & 1 ? 4.0 : -4.0, i & 2 ? 2.0 : 0.0, i & 4 ? 2.0 : 0.0};
     const Aabb boxes[] = {{{-4.0, 0.0, 0.0}, {1.0, 2.0, 2.0}}, {{-1.0, 0.0, 0.0}, {4.0, 2.0, 2.0}}};
     for (const auto& cells : {*pvs::Cells::convex(std::array{cell, cell}), *pvs::Cells::boxes(boxes)}) {
-        auto other = *pvs::Bake::create(fuzz::small_subject(), cells, {.epsilon = 0.1, .confidence = 0.5});
+        auto other = *pvs::Bake::create(fuzz::small_geometry(), cells, {.epsilon = 0.1, .confidence = 0.5});
         (void)other.run();
         add('\0', *pvs::Pvs::finish(other)->to_file());
     }

@@ -177,12 +177,12 @@ TEST_SUITE("memory/capi") {
             crofton_tree_refit(tree);
             for (int i = 0; i < 20; ++i) crofton_tree_rebuild_step(tree, 5000);
         });
-        sweep_ending("tree: balls and boxes", [&] {
+        sweep_ending("tree: spheres and boxes", [&] {
             std::uint32_t items[8];
             std::size_t found = 0;
             crofton_tree_within_box(tree, &boxes[0], ~0u, items, 8, &found);
             const double center[3] = {0, 0, -4};
-            crofton_tree_within_ball(tree, center, 2.0, ~0u, items, 8, &found);
+            crofton_tree_within_sphere(tree, center, 2.0, ~0u, items, 8, &found);
         });
         sweep_ending("list of boxes", [&] {
             crofton_cull_boxes(boxes.data(), nullptr, boxes.size(), &view, nullptr, nullptr, visible);

@@ -130,7 +130,7 @@ TEST_SUITE("memory/ending") {
         }
         sweep_ending("many views", [&] {
             const cull::View views[2] = {kView, kView};
-            cull::ManyVisible visible;
+            cull::MaskedVisibleSet visible;
             (void)find_visible(tree, views, visible);
         });
         sweep_ending("ranges", [&] {
@@ -243,7 +243,7 @@ TEST_SUITE("memory/ending") {
             (void)world.update();
         });
         sweep_ending("views", [&] {
-            VisibleObjects visible;
+            ViewResult visible;
             (void)world.view({.camera = Camera{}}, visible);
             (void)world.view(
                 {.camera = Camera{}, .occlusion = OcclusionOptions{.size = {32, 32}, .list_occluded = true}}, visible);

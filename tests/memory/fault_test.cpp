@@ -21,7 +21,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include <bake/pvs/subjects.hpp>
+#include <bake/pvs/bake_geometry.hpp>
 
 #include "failing_memory.hpp"
 #include "shapes.hpp"
@@ -155,7 +155,7 @@ TEST_SUITE("memory/fault") {
         const Vector<float> heights(36, 1.0f);
         sweep("HeightField::build",
               [&] { return outcome_of(convex::HeightField::build({.columns = 6, .rows = 6, .heights = heights})); });
-        const Vector<convex::CompoundChild> children(9, {convex::Body::ball(1.0f).value(), {}});
+        const Vector<convex::CompoundChild> children(9, {convex::Body::sphere(1.0f).value(), {}});
         sweep("Compound::build", [&] { return outcome_of(convex::Compound::build(children)); });
     }
 
@@ -259,14 +259,14 @@ TEST_SUITE("memory/fault") {
 
     TEST_CASE("what may be seen from where: lines, proofs, files") {
         const testing::FailingMemory memory;
-        const pvs::Subject subject = testing::random_subject(1, 6);
+        const pvs::BakeGeometry geometry = testing::random_geometry(1, 6);
         const auto cells = pvs::Cells::grid({{-5.0, 0.0, -5.0}, {5.0, 2.0, 5.0}}, {2, 1, 2}).value();
-        sweep("Bake::create", [&] { return outcome_of(pvs::Bake::create(subject, cells, {.epsilon = 0.05})); });
-        auto bake = pvs::Bake::create(subject, cells, {.epsilon = 0.05}).value();
+        sweep("Bake::create", [&] { return outcome_of(pvs::Bake::create(geometry, cells, {.epsilon = 0.05})); });
+        auto bake = pvs::Bake::create(geometry, cells, {.epsilon = 0.05}).value();
         sweep("Bake::run", [&] {
             auto fresh = [&] {
                 const std::int64_t left = testing::allocations_left.exchange(testing::kNever);
-                auto made = pvs::Bake::create(subject, cells, {.epsilon = 0.05});
+                auto made = pvs::Bake::create(geometry, cells, {.epsilon = 0.05});
                 testing::allocations_left = left;
                 return made;
             }();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Oracles for axis-aligned boxes and balls against a frustum, in exact rational arithmetic (GMP), and cases that nearly
-// touch.
+// Oracles for axis-aligned boxes and spheres against a frustum, in exact rational arithmetic (GMP), and cases that
+// nearly touch.
 #pragma once
 #include <crofton/geometry/box.hpp>
 #include <crofton/geometry/shapes.hpp>
@@ -71,7 +71,7 @@ inline mpq_class dot(const Point& a, const Point& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-// Plane i as normal · x + offset for x relative to the ball's centre.
+// Plane i as normal · x + offset for x relative to the sphere's centre.
 struct RationalPlane {
     Point normal;
     mpq_class offset;

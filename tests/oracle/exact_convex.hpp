@@ -51,7 +51,7 @@ inline std::vector<std::array<std::size_t, 3>> triangles_of(const convex::Body& 
 
 // Relative to `origin`.
 template <class Number>
-Polytope<Number> polytope(const convex::Placed& placed, const glm::dvec3& origin) {
+Polytope<Number> polytope(const convex::BodyAtPose& placed, const glm::dvec3& origin) {
     const RigidTransform& pose = placed.pose;
     Polytope<Number> result;
     const Vec3<Number> columns[3] = {vector_of<Number>(pose.rotation[0]), vector_of<Number>(pose.rotation[1]),
@@ -68,7 +68,7 @@ Polytope<Number> polytope(const convex::Placed& placed, const glm::dvec3& origin
     return result;
 }
 
-inline ExactPolytope exact_polytope(const convex::Placed& placed) {
+inline ExactPolytope exact_polytope(const convex::BodyAtPose& placed) {
     ExactPolytope result;
     const Vec3z columns[3] = {scaled(placed.pose.rotation[0], kBits), scaled(placed.pose.rotation[1], kBits),
                               scaled(placed.pose.rotation[2], kBits)};
@@ -218,8 +218,8 @@ inline bool meet(const ExactPolytope& a, const ExactPolytope& b, const std::vect
 }
 
 // meet() in the first kind of number that can tell. Everything is relative to a's place.
-inline bool meet_quickly(const convex::Placed& a, const convex::Placed& b, const std::vector<glm::dvec3>& normals,
-                         const std::vector<glm::dvec3>& points) {
+inline bool meet_quickly(const convex::BodyAtPose& a, const convex::BodyAtPose& b,
+                         const std::vector<glm::dvec3>& normals, const std::vector<glm::dvec3>& points) {
     const auto ask = [&]<class Number>() -> bool {
         const auto of_a = polytope<Number>(a, a.pose.translation), of_b = polytope<Number>(b, a.pose.translation);
         for (const glm::dvec3& n : normals)

@@ -84,8 +84,8 @@ class SpotOracle {
         return result;
     }
 
-    // The light's part of a segment ends at the segment's ends, on the ball or on the cone: one of these points is lit
-    // if any is.
+    // The light's part of a segment ends at the segment's ends, on the sphere or on the cone: one of these points is
+    // lit if any is.
     bool is_crossed(const Vector& from, const Vector& to) const {
         const Vector step{to[0] - from[0], to[1] - from[1], to[2] - from[2]};
         std::vector<mpf_class> places{number(0), number(1)};

@@ -35,7 +35,7 @@ inline double extent_along(const convex::Body& body, const glm::dvec3& d) {
     }
 }
 
-inline double extent_along(const convex::Placed& placed, const glm::dvec3& d) {
+inline double extent_along(const convex::BodyAtPose& placed, const glm::dvec3& d) {
     const glm::dvec3 local = glm::transpose(placed.pose.rotation) * d;
     const double length = glm::length(local);
     return length * extent_along(placed.body, local / length) + glm::dot(placed.pose.translation, d);
@@ -63,7 +63,7 @@ inline double outside_core(const convex::Body& body, const glm::dvec3& p) {
     const glm::dvec3& h = body.half_extents();
     const double across = std::hypot(p.x, p.z);
     switch (body.kind()) {
-        case Kind::ball:
+        case Kind::sphere:
             return glm::length(p);
         case Kind::capsule:
             return distance_to_segment(p, body.vertex(0), body.vertex(1));
@@ -93,7 +93,7 @@ inline double outside_core(const convex::Body& body, const glm::dvec3& p) {
     }
 }
 
-inline double outside(const convex::Placed& placed, const glm::dvec3& point) {
+inline double outside(const convex::BodyAtPose& placed, const glm::dvec3& point) {
     const glm::dvec3 local = glm::inverse(placed.pose.rotation) * (point - placed.pose.translation);
     return std::max(0.0, outside_core(placed.body, local) - placed.body.radius());
 }
@@ -101,8 +101,8 @@ inline double outside(const convex::Placed& placed, const glm::dvec3& point) {
 // What is wrong with the points, the normal and the distance of an impact of convex bodies, where they stand at its
 // time; empty: nothing. `slack` is a length. Points that are on their bodies, farthest along the normal, and apart
 // along it by the distance, prove that they are the nearest points, or that they are deepest along that direction.
-inline std::string fault_of_contact(const convex::Placed& a, const convex::Placed& b, const convex::Impact& impact,
-                                    double slack) {
+inline std::string fault_of_contact(const convex::BodyAtPose& a, const convex::BodyAtPose& b,
+                                    const convex::Impact& impact, double slack) {
     const glm::dvec3& n = impact.normal;
     const auto tell = [](const char* what, double by) {
         return std::string(what) + ", by " + std::to_string(1e9 * by) + "e-9";
@@ -119,8 +119,9 @@ inline std::string fault_of_contact(const convex::Placed& a, const convex::Place
     return {};
 }
 
-// The nearest or deepest direction from a body to a ball's center outside its core, by formula; 0 of kinds without one.
-inline glm::dvec3 direction_to_point(const convex::Placed& placed, const glm::dvec3& point) {
+// The nearest or deepest direction from a body to a sphere's center outside its core, by formula; 0 of kinds without
+// one.
+inline glm::dvec3 direction_to_point(const convex::BodyAtPose& placed, const glm::dvec3& point) {
     using convex::Kind;
     const glm::dvec3 p = glm::inverse(placed.pose.rotation) * (point - placed.pose.translation);
     const glm::dvec3& h = placed.body.half_extents();
@@ -128,7 +129,7 @@ inline glm::dvec3 direction_to_point(const convex::Placed& placed, const glm::dv
     const double across = std::hypot(p.x, p.z);
     const glm::dvec3 out = across > 0.0 ? glm::dvec3(p.x / across, 0.0, p.z / across) : glm::dvec3(1, 0, 0);
     switch (placed.body.kind()) {
-        case Kind::ball:
+        case Kind::sphere:
             nearest = glm::dvec3(0.0);
             break;
         case Kind::capsule:

@@ -21,20 +21,20 @@ struct PlainCrossing {
 };
 
 // By the signs of three volumes, in double.
-inline std::vector<PlainCrossing> crossings(const pvs::Subject& subject, const Line& line) {
+inline std::vector<PlainCrossing> crossings(const pvs::BakeGeometry& geometry, const Line& line) {
     std::vector<PlainCrossing> found;
     const auto volume = [&](const glm::dvec3& p, const glm::dvec3& q) {
         return glm::dot(line.direction, glm::cross(p - line.point, q - line.point));
     };
-    for (std::size_t t = 0; t < subject.object_of.size(); ++t) {
+    for (std::size_t t = 0; t < geometry.object_of.size(); ++t) {
         const auto corner = [&](std::size_t k) {
-            return glm::dvec3(subject.mesh.positions[subject.mesh.indices[3 * t + k]]);
+            return glm::dvec3(geometry.mesh.positions[geometry.mesh.indices[3 * t + k]]);
         };
         const glm::dvec3 a = corner(0), b = corner(1), c = corner(2), normal = glm::cross(b - a, c - a);
         const double x = volume(a, b), y = volume(b, c), z = volume(c, a);
         if (!((x > 0.0 && y > 0.0 && z > 0.0) || (x < 0.0 && y < 0.0 && z < 0.0))) continue;
         const double slope = glm::dot(normal, line.direction);
-        found.push_back({glm::dot(normal, a - line.point) / slope, subject.object_of[t], slope < 0.0});
+        found.push_back({glm::dot(normal, a - line.point) / slope, geometry.object_of[t], slope < 0.0});
     }
     std::sort(found.begin(), found.end(), [](const auto& p, const auto& q) { return p.t < q.t; });
     return found;
@@ -78,15 +78,15 @@ inline bool span_in(const pvs::ConvexCell& cell, const glm::dvec3& origin, const
 using Pairs = std::set<std::pair<std::size_t, std::uint32_t>>;  // cell, object
 
 // The lines are relative to the subject's origin.
-inline void add_witnessed(const pvs::Subject& subject, const pvs::Cells& cells, occlude::Sides sides, const Line& line,
-                          Pairs& pairs) {
-    const auto hits = crossings(subject, line);
+inline void add_witnessed(const pvs::BakeGeometry& geometry, const pvs::Cells& cells, occlude::Sides sides,
+                          const Line& line, Pairs& pairs) {
+    const auto hits = crossings(geometry, line);
     for (std::size_t c = 0; c < cells.size(); ++c) {
         const Aabb box = cells.box(c);
         double begin, end;
         const bool meets = cells.is_convex()
-                               ? span_in(cells.corners(c), subject.origin, line, begin, end)
-                               : span_in({box.min - subject.origin, box.max - subject.origin}, line, begin, end);
+                               ? span_in(cells.corners(c), geometry.origin, line, begin, end)
+                               : span_in({box.min - geometry.origin, box.max - geometry.origin}, line, begin, end);
         if (!meets) continue;
         for (std::size_t gap = 0; gap <= hits.size(); ++gap) {
             const double from = gap == 0 ? -HUGE_VAL : hits[gap - 1].t,
@@ -107,13 +107,13 @@ inline void add_witnessed(const pvs::Subject& subject, const pvs::Cells& cells, 
 }
 
 // All lines of a bake.
-inline Pairs witnessed(const pvs::Subject& subject, const pvs::Cells& cells, const pvs::BakeOptions& options) {
+inline Pairs witnessed(const pvs::BakeGeometry& geometry, const pvs::Cells& cells, const pvs::BakeOptions& options) {
     Pairs pairs;
-    const auto plan = pvs::plan_lines(cells, cells.size() * subject.boxes.size(), options);
+    const auto plan = pvs::plan_lines(cells, cells.size() * geometry.boxes.size(), options);
     Vector<Line> lines;
     for (std::uint64_t block = 0; plan && block < plan->blocks; ++block) {
-        plan->draw(block, cells, subject.origin, lines);
-        for (const Line& line : lines) add_witnessed(subject, cells, options.sides, line, pairs);
+        plan->draw(block, cells, geometry.origin, lines);
+        for (const Line& line : lines) add_witnessed(geometry, cells, options.sides, line, pairs);
     }
     return pairs;
 }

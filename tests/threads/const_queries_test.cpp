@@ -119,7 +119,7 @@ TEST_SUITE("threads/const_queries") {
         const boxtree::BoxTree& shared = tree;
         check([&]() -> Questions {
             auto visible = std::make_shared<cull::VisibleSet>();
-            auto many = std::make_shared<cull::ManyVisible>();
+            auto many = std::make_shared<cull::MaskedVisibleSet>();
             return [&, visible, many](int q) {
                 Answer answer;
                 const cull::View view{*frustum_of(camera_of(q)), ~0u};
@@ -251,7 +251,7 @@ TEST_SUITE("threads/const_queries") {
         }
         const World& shared = world;
         check([&]() -> Questions {
-            auto visible = std::make_shared<VisibleObjects>();
+            auto visible = std::make_shared<ViewResult>();
             return [&, visible](int q) {
                 Answer answer;
                 answer.add(shared.view({.camera = camera_of(q)}, *visible).has_value());

@@ -204,9 +204,9 @@ namespace Crofton {
         [DllImport(Library)] internal static extern int crofton_world_raycast_any(WorldHandle world, ref Ray ray, uint layers, out int hit);
         [DllImport(Library)] internal static extern int crofton_world_raycast_all(WorldHandle world, ref Ray ray, uint layers, FoundHandle found);
         [DllImport(Library)] internal static extern int crofton_world_overlap_box(WorldHandle world, ref Obb box, uint layers, FoundHandle found);
-        [DllImport(Library)] internal static extern int crofton_world_overlap_ball(WorldHandle world, ref Vector3 center, double radius, uint layers, FoundHandle found);
+        [DllImport(Library)] internal static extern int crofton_world_overlap_sphere(WorldHandle world, ref Vector3 center, double radius, uint layers, FoundHandle found);
         [DllImport(Library)] internal static extern int crofton_world_overlap_capsule(WorldHandle world, ref Vector3 begin, ref Vector3 end, double radius, uint layers, FoundHandle found);
-        [DllImport(Library)] internal static extern int crofton_world_closest_to_ball(WorldHandle world, ref Vector3 center, double radius, double maxDistance, uint layers, ref ClosestData closest);
+        [DllImport(Library)] internal static extern int crofton_world_closest_to_sphere(WorldHandle world, ref Vector3 center, double radius, double maxDistance, uint layers, ref ClosestData closest);
         [DllImport(Library)] internal static extern int crofton_world_pairs(WorldHandle world, out IntPtr pairs, out UIntPtr count);
         [DllImport(Library)] internal static extern int crofton_world_contact_count(WorldHandle world, out UIntPtr count);
         [DllImport(Library)] internal static extern int crofton_world_contact(WorldHandle world, UIntPtr contact, ref ContactData result);

@@ -4,11 +4,11 @@ using System.Runtime.InteropServices;
 
 namespace Crofton {
     /// <summary>Memory for the answer to a view; keep it from frame to frame.</summary>
-    public sealed class VisibleObjects : IDisposable {
+    public sealed class ViewResult : IDisposable {
         internal readonly VisibleHandle Handle;
         ObjectRef[] objects = new ObjectRef[0];
 
-        public VisibleObjects() {
+        public ViewResult() {
             Library.Load();
             Library.Check(Native.crofton_visible_objects_create(out Handle));
         }
@@ -44,7 +44,7 @@ namespace Crofton {
         /// <summary>Of unit length, of the surface, to the side that the ray comes from; 0 if it began inside.</summary>
         public Vector3 Normal;
         byte startedInside;
-        /// <summary>Whether the ray began in the body, box or ball: T is 0.</summary>
+        /// <summary>Whether the ray began in the body, box or sphere: T is 0.</summary>
         public bool StartedInside { get { return startedInside != 0; } }
         /// <summary>Whether the ray meets anything; the other members count only then.</summary>
         public bool IsHit { get { return Object.Index != uint.MaxValue; } }
@@ -60,7 +60,7 @@ namespace Crofton {
         public Vector3 OnShape, OnObject;
     }
 
-    /// <summary>Two objects whose boxes or balls meet; First has the lower index.</summary>
+    /// <summary>Two objects whose boxes or spheres meet; First has the lower index.</summary>
     [StructLayout(LayoutKind.Sequential)]
     public struct ObjectPair { public ObjectRef First, Second; }
 
@@ -95,7 +95,7 @@ namespace Crofton {
 
     public sealed partial class World {
         /// <summary>What a view sees, by the objects' boxes, exactly: no visible box is left out.</summary>
-        public void View(Frustum frustum, VisibleObjects visible, uint layers = AllLayers) {
+        public void View(Frustum frustum, ViewResult visible, uint layers = AllLayers) {
             Library.NotNull(frustum, "frustum");
             Library.NotNull(visible, "visible");
             var view = new Native.ViewData { Size = Native.SizeOf<Native.ViewData>(), LayerMask = layers, Frustum = frustum.Data };
@@ -106,7 +106,7 @@ namespace Crofton {
         }
 
         /// <summary>What a camera sees, without what is hidden behind occluders; nothing visible is left out.</summary>
-        public void ViewOccluding(Camera camera, VisibleObjects visible) {
+        public void ViewOccluding(Camera camera, ViewResult visible) {
             Library.NotNull(camera, "camera");
             Library.NotNull(visible, "visible");
             var view = new Native.OccludingViewData { Size = Native.SizeOf<Native.OccludingViewData>() };
@@ -123,7 +123,7 @@ namespace Crofton {
             }
         }
 
-        /// <summary>The nearest hit of a ray: triangles of meshes, boxes and balls.</summary>
+        /// <summary>The nearest hit of a ray: triangles of meshes, boxes and spheres.</summary>
         public Hit Raycast(Ray ray, uint layers = AllLayers) { return Raycast(new[] { ray }, layers)[0]; }
         /// <summary>The nearest hit of each ray.</summary>
         public Hit[] Raycast(Ray[] rays, uint layers = AllLayers) {
@@ -149,29 +149,29 @@ namespace Crofton {
             }
         }
 
-        /// <summary>Whose box or ball meets a box, by index. A mesh's box stands for it.</summary>
+        /// <summary>Whose box or sphere meets a box, by index. A mesh's box stands for it.</summary>
         public ObjectRef[] Overlap(Obb box, uint layers = AllLayers) {
             return Overlap(found => Native.crofton_world_overlap_box(Handle, ref box, layers, found));
         }
-        /// <summary>Whose box or ball meets a ball.</summary>
-        public ObjectRef[] OverlapBall(Vector3 center, double radius, uint layers = AllLayers) {
-            return Overlap(found => Native.crofton_world_overlap_ball(Handle, ref center, radius, layers, found));
+        /// <summary>Whose box or sphere meets a sphere.</summary>
+        public ObjectRef[] OverlapSphere(Vector3 center, double radius, uint layers = AllLayers) {
+            return Overlap(found => Native.crofton_world_overlap_sphere(Handle, ref center, radius, layers, found));
         }
-        /// <summary>Whose box or ball meets the points no farther than the radius from a segment.</summary>
+        /// <summary>Whose box or sphere meets the points no farther than the radius from a segment.</summary>
         public ObjectRef[] OverlapCapsule(Vector3 begin, Vector3 end, double radius, uint layers = AllLayers) {
             return Overlap(found => Native.crofton_world_overlap_capsule(Handle, ref begin, ref end, radius, layers, found));
         }
-        /// <summary>The box or ball nearest to a ball, no farther than a distance; null where there is none.</summary>
-        public Closest? ClosestToBall(Vector3 center, double radius, double maxDistance = double.PositiveInfinity, uint layers = AllLayers) {
+        /// <summary>The box or sphere nearest to a sphere, no farther than a distance; null where there is none.</summary>
+        public Closest? ClosestToSphere(Vector3 center, double radius, double maxDistance = double.PositiveInfinity, uint layers = AllLayers) {
             var data = new Native.ClosestData { Size = Native.SizeOf<Native.ClosestData>() };
-            Library.Check(Native.crofton_world_closest_to_ball(Handle, ref center, radius, maxDistance, layers, ref data));
+            Library.Check(Native.crofton_world_closest_to_sphere(Handle, ref center, radius, maxDistance, layers, ref data));
             if (data.Object.Index == uint.MaxValue) return null;
             return new Closest {
                 Object = data.Object, User = data.User, Distance = data.Distance, OnShape = data.OnShape, OnObject = data.OnObject
             };
         }
 
-        /// <summary>Objects whose boxes or balls meet, in order.</summary>
+        /// <summary>Objects whose boxes or spheres meet, in order.</summary>
         public ObjectPair[] Pairs() {
             return Read(() => {
                 IntPtr pairs;

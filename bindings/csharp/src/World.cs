@@ -36,8 +36,8 @@ namespace Crofton {
         public static Bound Aligned(Vector3 min, Vector3 max) {
             return new Bound { Data = new Native.BoundData { Kind = 2, Min = min, Max = max } };
         }
-        /// <summary>A ball.</summary>
-        public static Bound Ball(Vector3 center, double radius) {
+        /// <summary>A sphere.</summary>
+        public static Bound Sphere(Vector3 center, double radius) {
             return new Bound { Data = new Native.BoundData { Kind = 3, Center = center, Radius = radius } };
         }
     }

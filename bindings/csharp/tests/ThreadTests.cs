@@ -42,8 +42,8 @@ static class ThreadTests {
     // What a view has found is looked up in the world by a second call of the library.
     [Test] static void AViewIsOfOneUpdateWhileAnotherThreadUpdates() {
         using (var world = new World(new WorldOptions { WithoutContacts = true }))
-        using (var visible = new VisibleObjects()) {
-            for (int i = 0; i < 50; ++i) world.Add(Bound.Ball(new Vector3(0, 0, -5), 1), (ulong)i);
+        using (var visible = new ViewResult()) {
+            for (int i = 0; i < 50; ++i) world.Add(Bound.Sphere(new Vector3(0, 0, -5), 1), (ulong)i);
             world.Update();
             var frustum = new Camera().Frustum();
             var stop = false;

@@ -10,16 +10,16 @@ static class WorldTests {
     static readonly uint[] Faces = { 0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3 };
     static readonly Vector3 Forth = new Vector3(0, 0, -1);
 
-    static Bound Ball(double x, double y, double z, double radius) { return Bound.Ball(new Vector3(x, y, z), radius); }
+    static Bound Sphere(double x, double y, double z, double radius) { return Bound.Sphere(new Vector3(x, y, z), radius); }
 
-    // Balls of radius 0.25 along x at 0, 1, 2, …, five units before the default camera.
+    // Spheres of radius 0.25 along x at 0, 1, 2, …, five units before the default camera.
     static World Row(int count, out ObjectHandle[] objects) {
         var world = new World();
-        objects = Enumerable.Range(0, count).Select(i => world.Add(Ball(i, 0, -5, 0.25), (ulong)i)).ToArray();
+        objects = Enumerable.Range(0, count).Select(i => world.Add(Sphere(i, 0, -5, 0.25), (ulong)i)).ToArray();
         world.Update();
         return world;
     }
-    static ulong[] Users(VisibleObjects visible) { return visible.Objects.Take(visible.Count).Select(o => o.User).ToArray(); }
+    static ulong[] Users(ViewResult visible) { return visible.Objects.Take(visible.Count).Select(o => o.User).ToArray(); }
 
     [Test] static void AnObjectIsThereFromAddToRemove() {
         ObjectHandle[] o;
@@ -35,7 +35,7 @@ static class WorldTests {
         using (var world = Row(1, out o)) {
             world.Remove(o[0]);
             world.Update();
-            var next = world.Add(Ball(0, 0, 0, 1), 9);
+            var next = world.Add(Sphere(0, 0, 0, 1), 9);
             Expect.Equal(o[0].Index, next.Index);
             Expect.Fails(Status.StaleHandle, () => world.SetUser(o[0], 1));
             Expect.Equal(9ul, world.User(next));
@@ -60,7 +60,7 @@ static class WorldTests {
     }
     [Test] static void ABoxIsKnownAfterTheFirstUpdateOnly() {
         using (var world = new World()) {
-            var o = world.Add(Ball(1, 2, 3, 0.5));
+            var o = world.Add(Sphere(1, 2, 3, 0.5));
             Expect.Fails(Status.Empty, () => world.Box(o));
             world.Update();
             Expect.Equal(new Vector3(1, 2, 3), world.Box(o).Center);
@@ -69,8 +69,8 @@ static class WorldTests {
     [Test] static void ANaNIsRefusedAndChangesNothing() {
         ObjectHandle[] o;
         using (var world = Row(1, out o)) {
-            Expect.Fails(Status.NonFinite, () => world.SetBound(o[0], Ball(double.NaN, 0, 0, 1)));
-            Expect.Throws<CroftonException>(() => world.Add(Ball(double.NaN, 0, 0, 1)));
+            Expect.Fails(Status.NonFinite, () => world.SetBound(o[0], Sphere(double.NaN, 0, 0, 1)));
+            Expect.Throws<CroftonException>(() => world.Add(Sphere(double.NaN, 0, 0, 1)));
             world.Update();
             Expect.Equal(1, world.Count);
             Expect.Equal(new Vector3(0, 0, -5), world.Box(o[0]).Center);
@@ -157,8 +157,8 @@ static class WorldTests {
     [Test] static void AViewListsWhatIsBeforeIt() {
         ObjectHandle[] o;
         using (var world = Row(3, out o))
-        using (var visible = new VisibleObjects()) {
-            world.Add(Ball(0, 0, 5, 0.25), 99);
+        using (var visible = new ViewResult()) {
+            world.Add(Sphere(0, 0, 5, 0.25), 99);
             world.Update();
             world.View(new Camera().Frustum(), visible);
             Expect.Sequence(new ulong[] { 0, 1, 2 }, Users(visible));
@@ -167,7 +167,7 @@ static class WorldTests {
     [Test] static void LayersChoose() {
         ObjectHandle[] o;
         using (var world = Row(3, out o))
-        using (var visible = new VisibleObjects()) {
+        using (var visible = new ViewResult()) {
             world.SetLayers(o[1], 2);
             world.Update();
             world.View(new Camera().Frustum(), visible, 1);
@@ -177,7 +177,7 @@ static class WorldTests {
     [Test] static void HiddenObjectsAreNotSeen() {
         ObjectHandle[] o;
         using (var world = Row(2, out o))
-        using (var visible = new VisibleObjects()) {
+        using (var visible = new ViewResult()) {
             world.SetHidden(o[0], true);
             world.Update();
             world.View(new Camera().Frustum(), visible);
@@ -186,7 +186,7 @@ static class WorldTests {
     }
     [Test] static void WhatAWallHidesIsNotSeen() {
         using (var world = new World())
-        using (var visible = new VisibleObjects()) {
+        using (var visible = new ViewResult()) {
             var corners = Enumerable.Range(0, 24).Select(i => (i / 3 >> i % 3 & 1) == 1 ? 1f : -1f).ToArray();
             var faces = new uint[] { 0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5 };
             var mesh = world.AddMesh(corners, faces);
@@ -195,8 +195,8 @@ static class WorldTests {
             var wide = Transform.At(0, 0, -5);
             wide.C0.X = wide.C1.Y = 4;
             var wall = world.Add(mesh, wide, 1);
-            world.Add(Ball(0, 0, -20, 0.5), 2);
-            world.Add(Ball(0, 0, -3, 0.2), 3);
+            world.Add(Sphere(0, 0, -20, 0.5), 2);
+            world.Add(Sphere(0, 0, -3, 0.2), 3);
             world.Update();
             world.ViewOccluding(new Camera(), visible);
             Expect.Sequence(new ulong[] { 1, 3 }, Users(visible));
@@ -247,23 +247,23 @@ static class WorldTests {
             var middle = new Vector3(1.5, 0, -5);
             var expected = new[] { o[1], o[2] };
             Expect.Sequence(expected, world.Overlap(Obb.Aligned(middle, new Float3(0.3f, 0.3f, 0.3f))).Select(r => r.Object).ToArray());
-            Expect.Sequence(expected, world.OverlapBall(middle, 0.26).Select(r => r.Object).ToArray());
+            Expect.Sequence(expected, world.OverlapSphere(middle, 0.26).Select(r => r.Object).ToArray());
             Expect.Sequence(expected, world.OverlapCapsule(new Vector3(1.1, 0.5, -5), new Vector3(1.9, 0.5, -5), 0.3).Select(r => r.Object).ToArray());
         }
     }
     [Test] static void TheClosestIsFoundWithinADistance() {
         ObjectHandle[] o;
         using (var world = Row(3, out o)) {
-            var closest = world.ClosestToBall(new Vector3(2, 4, -5), 0.5).Value;
+            var closest = world.ClosestToSphere(new Vector3(2, 4, -5), 0.5).Value;
             Expect.Equal(o[2], closest.Object);
             Expect.Near(3.25, closest.Distance);
-            Expect.True(world.ClosestToBall(new Vector3(2, 4, -5), 0.5, 3) == null);
+            Expect.True(world.ClosestToSphere(new Vector3(2, 4, -5), 0.5, 3) == null);
         }
     }
     [Test] static void ContactsBeginStayAndEnd() {
         using (var world = new World()) {
-            world.Add(Ball(0, 0, 0, 1), 1);
-            var b = world.Add(Ball(1.5, 0, 0, 1), 2);
+            world.Add(Sphere(0, 0, 0, 1), 1);
+            var b = world.Add(Sphere(1.5, 0, 0, 1), 2);
             world.Update();
             Expect.Equal(1, world.Pairs().Length);
             var contact = world.Contacts().Single();
@@ -273,7 +273,7 @@ static class WorldTests {
             Expect.True(contact.Points.Length > 0);
             world.Update();
             Expect.Equal(Phase.Stayed, world.Contacts().Single().Phase);
-            world.SetBound(b, Ball(5, 0, 0, 1));
+            world.SetBound(b, Sphere(5, 0, 0, 1));
             world.Update();
             Expect.Equal(Phase.Ended, world.Contacts().Single().Phase);
             world.Update();
@@ -295,7 +295,7 @@ static class WorldTests {
     }
     [Test] static void ALimitOfPairsIsKept() {
         using (var world = new World(new WorldOptions { MaxPairs = 1 })) {
-            for (int i = 0; i < 3; ++i) world.Add(Ball(0, 0, 0, 1));
+            for (int i = 0; i < 3; ++i) world.Add(Sphere(0, 0, 0, 1));
             Expect.Fails(Status.BudgetExceeded, world.Update);
             Expect.Equal(0, world.Pairs().Length);
         }
@@ -305,8 +305,8 @@ static class WorldTests {
         world.Dispose();
         world.Dispose();
         Expect.Throws<ObjectDisposedException>(world.Update);
-        Expect.Throws<ObjectDisposedException>(() => world.Add(Ball(0, 0, 0, 1)));
-        var visible = new VisibleObjects();
+        Expect.Throws<ObjectDisposedException>(() => world.Add(Sphere(0, 0, 0, 1)));
+        var visible = new ViewResult();
         visible.Dispose();
         using (var other = new World()) Expect.Throws<ObjectDisposedException>(() => other.View(new Camera().Frustum(), visible));
     }
@@ -319,7 +319,7 @@ static class WorldTests {
                 var world = new World(); // dropped, not disposed
                 var o = world.Add(world.AddMesh(Tetrahedron.ToArray(), Faces.ToArray()), Transform.At(0, 0, -5), 7);
                 world.Update();
-                var visible = new VisibleObjects();
+                var visible = new ViewResult();
                 world.View(new Camera().Frustum(), visible);
                 Expect.Sequence(new ulong[] { 7 }, Users(visible));
                 Expect.True(world.Contains(o));
@@ -336,7 +336,7 @@ static class WorldTests {
             var threads = Enumerable.Range(0, 6).Select(t => new Thread(() => {
                 try {
                     var frustum = new Camera().Frustum();
-                    using (var visible = new VisibleObjects())
+                    using (var visible = new ViewResult())
                         for (int i = 0; i < 100; ++i) {
                             world.View(frustum, visible);
                             Expect.True(visible.Count > 3);
@@ -358,7 +358,7 @@ static class WorldTests {
             var threads = Enumerable.Range(0, 4).Select(t => new Thread(() => {
                 for (int i = 0; i < 2000; ++i) {
                     try {
-                        world.SetBound(o[0], Ball(i % 7, 0, -5, 0.25));
+                        world.SetBound(o[0], Sphere(i % 7, 0, -5, 0.25));
                         world.Update();
                     } catch (CroftonException e) {
                         if (e.Status != Status.Busy) throw;

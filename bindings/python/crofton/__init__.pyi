@@ -17,7 +17,7 @@ Objects = Union["ObjectHandle", Sequence["ObjectHandle"], Array]  # an array of 
 Nodes = Union["NodeHandle", Sequence["NodeHandle"], Array]
 Progress = Optional[Callable[[float, float], Optional[bool]]]
 AnyPath = Union[str, bytes, "os.PathLike[str]"]
-Ball = Tuple[Vector, float]
+Sphere = Tuple[Vector, float]
 Capsule = Tuple[Vector, Vector, float]
 
 __version__: str
@@ -215,7 +215,7 @@ class World:
     def add_node(self, parent: Optional[NodeHandle] = None, transform: Optional[Matrix] = None,
                  layers: int = ...) -> NodeHandle: ...
     def add(self, *, mesh: Optional[MeshHandle] = None, node: Optional[NodeHandle] = None,
-            transform: Optional[Matrix] = None, box: Optional[Box] = None, ball: Optional[Ball] = None,
+            transform: Optional[Matrix] = None, box: Optional[Box] = None, sphere: Optional[Sphere] = None,
             aligned: Optional[Tuple[Vector, Vector]] = None, user: int = 0, layers: int = ...,
             collides_with: int = ..., occludes: bool = True) -> ObjectHandle: ...
     def add_boxes(self, boxes: AnyBoxes, *, users: Optional[npt.ArrayLike] = None, layers: int = ...,
@@ -236,9 +236,9 @@ class World:
     def raycast(self, origin: Vector, direction: Vector, max_t: float = ..., layers: int = ...) -> Optional[Hit]: ...
     def raycast_many(self, origins: Points, directions: Points, max_t: float = ..., layers: int = ...) -> Array: ...
     def raycast_all(self, origin: Vector, direction: Vector, max_t: float = ..., layers: int = ...) -> list[Hit]: ...
-    def overlap(self, *, box: Optional[Box] = None, ball: Optional[Ball] = None, capsule: Optional[Capsule] = None,
+    def overlap(self, *, box: Optional[Box] = None, sphere: Optional[Sphere] = None, capsule: Optional[Capsule] = None,
                 layers: int = ...) -> Array: ...
-    def closest(self, max_distance: float, *, box: Optional[Box] = None, ball: Optional[Ball] = None,
+    def closest(self, max_distance: float, *, box: Optional[Box] = None, sphere: Optional[Sphere] = None,
                 capsule: Optional[Capsule] = None, layers: int = ...) -> Optional[Closest]: ...
     pairs: Array
     contacts: list[Contact]

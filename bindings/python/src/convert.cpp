@@ -304,24 +304,24 @@ measure::Criterion criterion_of(const py::handle& given) {
                                           {"volume", measure::minimal_volume()}});
 }
 
-bool Watch::go_on(double first, double second) {
+bool Watch::should_stop(double first, double second) {
     const auto now = std::chrono::steady_clock::now().time_since_epoch();
     const std::int64_t milliseconds = std::chrono::duration_cast<std::chrono::milliseconds>(now).count();
-    if (milliseconds < next_) return true;
+    if (milliseconds < next_) return false;
     next_ = milliseconds + 50;
     const py::gil_scoped_acquire lock;
     try {
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-        if (progress_.is_none()) return true;
+        if (progress_.is_none()) return false;
         const py::object answer = progress_(first, second);
-        return answer.is_none() || answer.cast<bool>();
+        return !answer.is_none() && !answer.cast<bool>();
     } catch (py::error_already_set& raised) {
         raised_ = std::make_unique<py::error_already_set>(std::move(raised));
     } catch (const py::cast_error&) {
         PyErr_SetString(PyExc_TypeError, "progress: None or a bool is expected as its answer");
         raised_ = std::make_unique<py::error_already_set>();
     }
-    return false;
+    return true;
 }
 
 void Watch::raise_if_stopped() {

@@ -169,7 +169,7 @@ class Watch {
   public:
     explicit Watch(py::object progress) : progress_(std::move(progress)) {}
     // False: stop. Costs next to nothing but every 50 ms.
-    bool go_on(double first, double second = 0.0);
+    bool should_stop(double first, double second = 0.0);
     // Ctrl-C, or an exception of the callable.
     [[nodiscard]] bool is_raised() const { return raised_ != nullptr; }
     // After the call, with the lock: raises what stopped it.

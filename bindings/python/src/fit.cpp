@@ -25,13 +25,13 @@ fit::ExactFit fit_exact(const py::handle& given, const py::handle& criterion, do
                         const py::object& progress) {
     const Points<3> points(given, "points");
     Watch watch(progress);
-    const auto tell = [&](const fit::Progress& state) { return watch.go_on(state.value, state.lower_bound); };
+    const auto tell = [&](const fit::Progress& state) { return watch.should_stop(state.value, state.lower_bound); };
     const FunctionRef<bool(const fit::Progress&)> reference(tell);
     fit::ExactOptions options;
     options.criterion = criterion_of(criterion);
     options.gap = gap;
     if (!seconds.is_none()) options.time_budget_seconds = number_of<double>(seconds, "seconds");
-    options.progress = &reference;
+    options.should_stop = &reference;
     auto result = points.visit([&](auto span) { return unlocked([&] { return fit::fit_exact(span, options); }); });
     watch.raise_if_stopped();
     return value_of(std::move(result));
@@ -131,7 +131,7 @@ void bind_fit(py::module_& module) {
     module.def("minimal_triangle", &minimal_triangle, py::arg("points"), py::arg("criterion") = "area",
                "The best triangle around points of the plane, shape (3, 2), counter-clockwise.");
     module.def("minimal_disc", &minimal_disc, py::arg("points"), "The smallest disc: (center, radius).");
-    module.def("minimal_sphere", &minimal_sphere, py::arg("points"), "The smallest ball: (center, radius).");
+    module.def("minimal_sphere", &minimal_sphere, py::arg("points"), "The smallest sphere: (center, radius).");
 }
 
 }  // namespace crofton::python

@@ -57,14 +57,14 @@ Cells cells_of(const py::handle& given, const Aabb& bounds) {
 }
 
 // Doubles are stored as floats around the middle of them all, floats as they are.
-void take_positions(const Points<3>& points, pvs::Subject& subject, Aabb& bounds) {
+void take_positions(const Points<3>& points, pvs::BakeGeometry& geometry, Aabb& bounds) {
     points.visit([&](auto span) {
         for (const auto& p : span) {
             bounds.min = glm::min(bounds.min, glm::dvec3(p));
             bounds.max = glm::max(bounds.max, glm::dvec3(p));
         }
-        if (!points.is_float() && !bounds.is_empty()) subject.origin = 0.5 * (bounds.min + bounds.max);
-        for (const auto& p : span) subject.mesh.positions.push_back(glm::vec3(glm::dvec3(p) - subject.origin));
+        if (!points.is_float() && !bounds.is_empty()) geometry.origin = 0.5 * (bounds.min + bounds.max);
+        for (const auto& p : span) geometry.mesh.positions.push_back(glm::vec3(glm::dvec3(p) - geometry.origin));
     });
 }
 
@@ -77,51 +77,52 @@ double margin_of(const Aabb& bounds) {
 }
 
 // A box along the axes around each object's triangles, `margin` wider.
-void box_objects(pvs::Subject& subject, std::size_t objects, double margin) {
+void box_objects(pvs::BakeGeometry& geometry, std::size_t objects, double margin) {
     Vector<Aabb> around(objects);
-    for (std::size_t t = 0; t < subject.object_of.size(); ++t) {
-        Aabb& box = around[subject.object_of[t]];
+    for (std::size_t t = 0; t < geometry.object_of.size(); ++t) {
+        Aabb& box = around[geometry.object_of[t]];
         for (std::size_t k = 0; k < 3; ++k) {
-            const glm::dvec3 p = glm::dvec3(subject.mesh.positions[subject.mesh.indices[3 * t + k]]) + subject.origin;
+            const glm::dvec3 p =
+                glm::dvec3(geometry.mesh.positions[geometry.mesh.indices[3 * t + k]]) + geometry.origin;
             box.min = glm::min(box.min, p);
             box.max = glm::max(box.max, p);
         }
     }
     for (const Aabb& box : around) {
         if (box.is_empty()) {
-            subject.boxes.push_back({});
+            geometry.boxes.push_back({});
             continue;
         }
         const glm::dvec3 half = 0.5 * (box.max - box.min) + margin;
-        subject.boxes.push_back({0.5 * (box.min + box.max), glm::mat3(1.0f), glm::vec3(half)});
+        geometry.boxes.push_back({0.5 * (box.min + box.max), glm::mat3(1.0f), glm::vec3(half)});
     }
 }
 
-pvs::Subject subject_of(const py::handle& positions, const py::handle& indices, const py::object& object_of,
-                        Aabb& bounds) {
+pvs::BakeGeometry geometry_of(const py::handle& positions, const py::handle& indices, const py::object& object_of,
+                              Aabb& bounds) {
     const Points<3> points(positions, "positions");
     const auto corners = integers<std::uint32_t>(indices, "indices");
-    pvs::Subject subject;
-    take_positions(points, subject, bounds);
-    subject.mesh.indices.assign(span_of(corners).begin(), span_of(corners).end());
-    value_of(validate(subject.mesh));
-    const std::size_t triangles = subject.mesh.indices.size() / 3;
+    pvs::BakeGeometry geometry;
+    take_positions(points, geometry, bounds);
+    geometry.mesh.indices.assign(span_of(corners).begin(), span_of(corners).end());
+    value_of(validate(geometry.mesh));
+    const std::size_t triangles = geometry.mesh.indices.size() / 3;
     if (object_of.is_none()) {
-        subject.object_of.assign(triangles, 0);
+        geometry.object_of.assign(triangles, 0);
     } else {
         const auto objects = integers<std::uint32_t>(object_of, "object_of");
         if (static_cast<std::size_t>(objects.size()) != triangles)
             raise_type("object_of: an object for each triangle is expected");
-        subject.object_of.assign(span_of(objects).begin(), span_of(objects).end());
+        geometry.object_of.assign(span_of(objects).begin(), span_of(objects).end());
     }
     std::size_t count = 0;
     for (std::size_t t = 0; t < triangles; ++t) {
-        if (subject.object_of[t] >= (1u << 24))
+        if (geometry.object_of[t] >= (1u << 24))
             raise({ErrorCode::out_of_range, t, "object_of: objects are numbered from 0, below 2^24"});
-        count = std::max(count, std::size_t{subject.object_of[t]} + 1);
+        count = std::max(count, std::size_t{geometry.object_of[t]} + 1);
     }
-    box_objects(subject, count, margin_of(bounds));
-    return subject;
+    box_objects(geometry, count, margin_of(bounds));
+    return geometry;
 }
 
 struct Wanted {
@@ -142,9 +143,11 @@ Pvs bake(const py::handle& positions, const py::handle& indices, const py::objec
     if (!seconds.is_none()) wanted.limits.seconds = number_of<double>(seconds, "seconds");
     Watch watch(progress);
     wanted.limits.user = &watch;
-    wanted.limits.go_on = [](void* user, double share) { return static_cast<Watch*>(user)->go_on(share, 1.0); };
+    wanted.limits.should_stop = [](void* user, double share) {
+        return static_cast<Watch*>(user)->should_stop(share, 1.0);
+    };
     Aabb around;
-    const pvs::Subject subject = subject_of(positions, indices, object_of, around);
+    const pvs::BakeGeometry geometry = geometry_of(positions, indices, object_of, around);
     if (!bounds.is_none()) {
         const Points<3> corners(bounds, "bounds");
         if (corners.size() != 2) raise_type("bounds: two corners are expected, the lower one first");
@@ -153,7 +156,7 @@ Pvs bake(const py::handle& positions, const py::handle& indices, const py::objec
     const Cells where = cells_of(cells, around);
     const auto threads = executor();
     auto made = unlocked([&]() -> Result<Pvs> {
-        auto lines = pvs::Bake::create(subject, where, wanted.bake);
+        auto lines = pvs::Bake::create(geometry, where, wanted.bake);
         if (!lines) return tl::unexpected(std::move(lines.error()));
         if (auto ran = lines->run(wanted.limits, *threads); !ran) return tl::unexpected(std::move(ran.error()));
         if (watch.is_raised()) return fail(ErrorCode::cancelled, kNoItem, "pvs: stopped");  // without the proofs

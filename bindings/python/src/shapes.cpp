@@ -19,9 +19,9 @@ Obb box_of(const py::object& given) {
     return given.cast<const Obb&>();
 }
 
-Sphere ball_of(const py::object& given) {
-    const py::sequence parts = parts_of(given, 2, "ball: (center, radius)");
-    return {vector_of(py::object(parts[0]), "ball"), number_of<double>(py::object(parts[1]), "ball")};
+Sphere sphere_of(const py::object& given) {
+    const py::sequence parts = parts_of(given, 2, "sphere: (center, radius)");
+    return {vector_of(py::object(parts[0]), "sphere"), number_of<double>(py::object(parts[1]), "sphere")};
 }
 
 collide::Capsule capsule_of(const py::object& given) {
@@ -53,21 +53,21 @@ void check_radius(double radius, const char* name) {
 
 }  // namespace
 
-Bound bound_of(const py::object& box, const py::object& ball, const py::object& aligned) {
-    if (given_of(box, ball, aligned) > 1) raise_type("one of box=, ball= and aligned= is expected, not more");
+Bound bound_of(const py::object& box, const py::object& sphere, const py::object& aligned) {
+    if (given_of(box, sphere, aligned) > 1) raise_type("one of box=, sphere= and aligned= is expected, not more");
     if (!box.is_none()) return Bound(box_of(box));
-    if (!ball.is_none()) return Bound(ball_of(ball));
+    if (!sphere.is_none()) return Bound(sphere_of(sphere));
     if (!aligned.is_none()) return Bound(aligned_of(aligned));
     return {};
 }
 
-Shape shape_of(const py::object& box, const py::object& ball, const py::object& capsule) {
-    if (given_of(box, ball, capsule) != 1) raise_type("one of box=, ball= and capsule= is expected");
+Shape shape_of(const py::object& box, const py::object& sphere, const py::object& capsule) {
+    if (given_of(box, sphere, capsule) != 1) raise_type("one of box=, sphere= and capsule= is expected");
     if (!box.is_none()) return box_of(box);
-    if (!ball.is_none()) {
-        const Sphere shape = ball_of(ball);
-        check_place(shape.center, "ball");
-        check_radius(shape.radius, "ball");
+    if (!sphere.is_none()) {
+        const Sphere shape = sphere_of(sphere);
+        check_place(shape.center, "sphere");
+        check_radius(shape.radius, "sphere");
         return shape;
     }
     const collide::Capsule shape = capsule_of(capsule);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The keywords box=, ball=, aligned= and capsule=, of which a call takes one.
+// The keywords box=, sphere=, aligned= and capsule=, of which a call takes one.
 #pragma once
 #include <crofton/collide/narrow_phase.hpp>
 #include <variant>
@@ -8,13 +8,13 @@
 
 namespace crofton::python {
 
-// Of a Box, a ball (center, radius) or an aligned box (low, high); of none: no bound. Raises TypeError for more than
+// Of a Box, a sphere (center, radius) or an aligned box (low, high); of none: no bound. Raises TypeError for more than
 // one. World::add checks the numbers.
-[[nodiscard]] Bound bound_of(const py::object& box, const py::object& ball, const py::object& aligned);
+[[nodiscard]] Bound bound_of(const py::object& box, const py::object& sphere, const py::object& aligned);
 
 // A shape to ask with, its numbers checked: queries find nothing for bad ones, and say nothing.
 using Shape = std::variant<Obb, Sphere, collide::Capsule>;
-[[nodiscard]] Shape shape_of(const py::object& box, const py::object& ball, const py::object& capsule);
+[[nodiscard]] Shape shape_of(const py::object& box, const py::object& sphere, const py::object& capsule);
 
 // Raises Error for a limit that is NaN or negative; it may be infinite.
 void check_limit(double value, const char* name);

@@ -58,7 +58,7 @@ PolygonTriangles run(const py::handle& given, const std::string& method, const p
     if (!seconds.is_none()) options.seconds = number_of<double>(seconds, "seconds");
     if (!work.is_none()) options.work = number_of<std::uint64_t>(work, "work");
     options.user = &watch;
-    options.progress = [](void* user, double share) { return static_cast<Watch*>(user)->go_on(share, 1.0); };
+    options.should_stop = [](void* user, double share) { return static_cast<Watch*>(user)->should_stop(share, 1.0); };
     auto found = unlocked([&] { return triangulate::triangulate(result.polygon, options); });
     watch.raise_if_stopped();
     result.found = value_of(std::move(found));
@@ -78,8 +78,8 @@ py::tuple retriangulate(const py::handle& positions, const py::handle& indices, 
     triangulate::PatchOptions options;
     options.tolerance = tolerance;
     options.triangulation.user = &watch;
-    options.triangulation.progress = [](void* user, double share) {
-        return static_cast<Watch*>(user)->go_on(share, 1.0);
+    options.triangulation.should_stop = [](void* user, double share) {
+        return static_cast<Watch*>(user)->should_stop(share, 1.0);
     };
     auto report = unlocked([&] { return triangulate::retriangulate_planar_patches(mesh, options); });
     watch.raise_if_stopped();

@@ -73,13 +73,13 @@ py::array add_all(PyWorld& to, std::size_t count, const py::object& users, F&& d
 }
 
 ObjectHandle add(PyWorld& to, const py::object& mesh, const py::object& node, const py::object& transform,
-                 const py::object& box, const py::object& ball, const py::object& aligned, std::uint64_t user,
+                 const py::object& box, const py::object& sphere, const py::object& aligned, std::uint64_t user,
                  std::uint32_t layers, std::uint32_t collides_with, bool occludes) {
     ObjectDescription description;
     description.mesh = handle_or_null<MeshHandle>(mesh, "mesh");
     description.node = handle_or_null<NodeHandle>(node, "node");
     if (!transform.is_none()) description.transform = transform_of(transform, "transform");
-    description.bound = bound_of(box, ball, aligned);
+    description.bound = bound_of(box, sphere, aligned);
     description.user = user;
     description.layers = layers;
     description.collides_with = collides_with;
@@ -174,10 +174,10 @@ void bind_world_changes(py::class_<PyWorld>& type) {
             },
             py::arg("parent") = py::none(), py::arg("transform") = py::none(), py::arg("layers") = ~0u)
         .def("add", &add, py::kw_only(), py::arg("mesh") = py::none(), py::arg("node") = py::none(),
-             py::arg("transform") = py::none(), py::arg("box") = py::none(), py::arg("ball") = py::none(),
+             py::arg("transform") = py::none(), py::arg("box") = py::none(), py::arg("sphere") = py::none(),
              py::arg("aligned") = py::none(), py::arg("user") = 0, py::arg("layers") = ~0u,
              py::arg("collides_with") = ~0u, py::arg("occludes") = true,
-             "An object: a mesh, placed by `transform` under `node` or in the world; or a bound: a Box, a ball "
+             "An object: a mesh, placed by `transform` under `node` or in the world; or a bound: a Box, a sphere "
              "(center, radius) or an aligned box (low, high).")
         .def("add_boxes", &add_boxes, py::arg("boxes"), py::kw_only(), py::arg("users") = py::none(),
              py::arg("layers") = ~0u, py::arg("collides_with") = ~0u,

@@ -65,7 +65,7 @@ void bind_world_contacts(py::module_& module, py::class_<PyWorld>& type) {
                 for (int k = 0; k < 3; ++k) points.mutable_at(i, k) = c.points[i].position[k];
             return points;
         });
-    type.def_property_readonly("pairs", &pairs_of, "indices of objects whose boxes or balls meet, shape (n, 2)")
+    type.def_property_readonly("pairs", &pairs_of, "indices of objects whose boxes or spheres meet, shape (n, 2)")
         .def_property_readonly("contacts", &contacts_of, "the Contacts of the last update");
 }
 

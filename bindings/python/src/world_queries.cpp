@@ -75,7 +75,7 @@ void bind_world_queries(py::module_& module, py::class_<PyWorld>& type) {
         .def_property_readonly(
             "normal", [](const ObjectHit& h) { return tuple_of(h.normal); },
             "unit, of the surface, to the side that the ray comes from; 0 if it began inside")
-        .def_readonly("started_inside", &ObjectHit::started_inside, "the ray began in the box or ball: t is 0")
+        .def_readonly("started_inside", &ObjectHit::started_inside, "the ray began in the box or sphere: t is 0")
         .def("__repr__",
              [](const ObjectHit& h) {
                  return format("Hit(user=%llu, t=%g, point=(%g, %g, %g))", static_cast<unsigned long long>(h.user), h.t,
@@ -121,9 +121,9 @@ void bind_world_queries(py::module_& module, py::class_<PyWorld>& type) {
             "Every object's nearest Hit, in the order in which the ray meets them.")
         .def(
             "overlap",
-            [](const PyWorld& world, const py::object& box, const py::object& ball, const py::object& capsule,
+            [](const PyWorld& world, const py::object& box, const py::object& sphere, const py::object& capsule,
                std::uint32_t layers) {
-                const Shape shape = shape_of(box, ball, capsule);
+                const Shape shape = shape_of(box, sphere, capsule);
                 Vector<ObjectRef> found;
                 world.ask([&](const World& w) {
                     std::visit([&](const auto& one) { w.overlap(one, found, layers); }, shape);
@@ -132,20 +132,20 @@ void bind_world_queries(py::module_& module, py::class_<PyWorld>& type) {
                 for (const ObjectRef& ref : found) handles.push_back(ref.object);
                 return handles_of(handles);
             },
-            py::kw_only(), py::arg("box") = py::none(), py::arg("ball") = py::none(), py::arg("capsule") = py::none(),
-            py::arg("layers") = ~0u, "The handles of the objects whose box or ball meets the shape.")
+            py::kw_only(), py::arg("box") = py::none(), py::arg("sphere") = py::none(), py::arg("capsule") = py::none(),
+            py::arg("layers") = ~0u, "The handles of the objects whose box or sphere meets the shape.")
         .def(
             "closest",
-            [](const PyWorld& world, double max_distance, const py::object& box, const py::object& ball,
+            [](const PyWorld& world, double max_distance, const py::object& box, const py::object& sphere,
                const py::object& capsule, std::uint32_t layers) {
-                const Shape shape = shape_of(box, ball, capsule);
+                const Shape shape = shape_of(box, sphere, capsule);
                 check_limit(max_distance, "max_distance");
                 return world.ask([&](const World& w) {
                     return std::visit([&](const auto& one) { return w.closest(one, max_distance, layers); }, shape);
                 });
             },
-            py::arg("max_distance"), py::kw_only(), py::arg("box") = py::none(), py::arg("ball") = py::none(),
-            py::arg("capsule") = py::none(), py::arg("layers") = ~0u, "The nearest box or ball, or None.")
+            py::arg("max_distance"), py::kw_only(), py::arg("box") = py::none(), py::arg("sphere") = py::none(),
+            py::arg("capsule") = py::none(), py::arg("layers") = ~0u, "The nearest box or sphere, or None.")
         .def(
             "box_of",
             [](const PyWorld& world, ObjectHandle object) {

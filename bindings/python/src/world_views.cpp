@@ -30,7 +30,7 @@ Seen view(const PyWorld& python_world, const py::handle& given, std::uint32_t la
     } else {
         request.volume = view_of(given, layers).frustum;
     }
-    VisibleObjects visible;
+    ViewResult visible;
     std::vector<ObjectHandle> handles;
     std::vector<std::uint64_t> users;
     std::vector<float> nearness;

@@ -16,7 +16,7 @@ def world():
     [((np.nan, 0, 0), (0, 0, -1), np.inf), ((0, 0, 0), (0, 0, 0), np.inf), ((0, 0, 0), (0, np.inf, -1), np.inf)],
 )
 def test_a_bad_ray_among_many_is_named(world, origin, direction, max_t):
-    world.add(ball=((0, 0, -5), 1.0))
+    world.add(sphere=((0, 0, -5), 1.0))
     world.update()
     with pytest.raises(crofton.Error) as raised:
         world.raycast_many([(0.0, 0, 0), origin], [(0.0, 0, -1), direction], max_t)
@@ -30,14 +30,14 @@ def test_a_bad_length_of_rays_is_an_error(world, max_t):
 
 
 bad_shapes = [
-    {"ball": ((np.nan, 0, 0), 1.0)}, {"ball": ((0, 0, 0), -10.0)}, {"ball": ((0, 0, 0), np.inf)},
+    {"sphere": ((np.nan, 0, 0), 1.0)}, {"sphere": ((0, 0, 0), -10.0)}, {"sphere": ((0, 0, 0), np.inf)},
     {"capsule": ((0, 0, 0), (0, np.inf, 0), 1.0)}, {"capsule": ((0, 0, 0), (0, 0, -9), -1.0)},
 ]
 
 
 @pytest.mark.parametrize("shape", bad_shapes, ids=str)
 def test_a_bad_shape_is_an_error_and_not_an_empty_answer(world, shape):
-    world.add(ball=((0, 0, -5), 1.0))
+    world.add(sphere=((0, 0, -5), 1.0))
     world.update()
     with pytest.raises(crofton.Error):
         world.overlap(**shape)
@@ -48,11 +48,11 @@ def test_a_bad_shape_is_an_error_and_not_an_empty_answer(world, shape):
 @pytest.mark.parametrize("limit", [np.nan, -1.0])
 def test_a_bad_limit_of_distance_is_an_error(world, limit):
     with pytest.raises(crofton.Error):
-        world.closest(limit, ball=((0, 0, 0), 1.0))
+        world.closest(limit, sphere=((0, 0, 0), 1.0))
 
 
 @pytest.mark.parametrize("call", [
-    lambda w: w.add(ball=5), lambda w: w.add(ball=((0, 0, 0),)), lambda w: w.add(ball=((0, 0, 0), "far")),
+    lambda w: w.add(sphere=5), lambda w: w.add(sphere=((0, 0, 0),)), lambda w: w.add(sphere=((0, 0, 0), "far")),
     lambda w: w.add(aligned=3), lambda w: w.add(aligned="no"), lambda w: w.overlap(capsule=((0, 0, 0), 1.0)),
     lambda w: crofton.Camera(height="high"), lambda w: crofton.fit_exact(np.eye(3), seconds="many"),
     lambda w: crofton.triangulate([[0, 0], [1, 0], [0, 1]], work=-1),
@@ -64,10 +64,10 @@ def test_what_is_no_number_and_no_shape_is_a_type_error(world, call):
 
 
 def test_of_two_shapes_none_is_dropped_silently(world):
-    box, ball = crofton.Box((0, 0, 0), (1, 1, 1)), ((9, 0, 0), 1.0)
+    box, sphere = crofton.Box((0, 0, 0), (1, 1, 1)), ((9, 0, 0), 1.0)
     for call in (world.add, world.overlap, lambda **shapes: world.closest(1.0, **shapes)):
         with pytest.raises(TypeError, match="one of"):
-            call(box=box, ball=ball)
+            call(box=box, sphere=sphere)
     assert len(world) == 0
 
 

@@ -168,7 +168,7 @@ def test_the_best_triangle_is_the_triangle_itself():
         assert sorted(map(tuple, found.round(9))) == sorted(map(tuple, corners))
 
 
-def test_the_smallest_disc_and_ball():
+def test_the_smallest_disc_and_sphere():
     center, radius = crofton.minimal_disc([[1, 0], [-1, 0], [0, 1], [0, 0.2]])
     assert center == pytest.approx((0, 0), abs=1e-12) and radius == pytest.approx(1)
     center, radius = crofton.minimal_sphere(np.vstack([np.eye(3), -np.eye(3)]))
@@ -186,7 +186,7 @@ def test_measures_of_known_bodies():
     assert (cube.volume, cube.area, cube.mean_curvature) == pytest.approx((8, 24, 6 * np.pi))
 
 
-def test_two_balls_meet_by_the_kinematic_formula():
+def test_two_spheres_meet_by_the_kinematic_formula():
     a, b = crofton.IntrinsicVolumes.of_sphere(1), crofton.IntrinsicVolumes.of_sphere(2)
     assert crofton.kinematic_measure(a, b) == pytest.approx(4 / 3 * np.pi * 27)
 

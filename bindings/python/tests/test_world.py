@@ -80,7 +80,7 @@ def test_an_index_out_of_range_is_an_error(world, cube, index):
 
 def test_bounds_of_three_kinds(world):
     world.add(box=crofton.Box((0, 0, -5), (1, 1, 1)), user=1)
-    world.add(ball=((0, 0, -10), 1.0), user=2)
+    world.add(sphere=((0, 0, -10), 1.0), user=2)
     world.add(aligned=((-1, -1, -16), (1, 1, -14)), user=3)
     world.update()
     hits = world.raycast_all((0, 0, 0), (0, 0, -1))
@@ -89,7 +89,7 @@ def test_bounds_of_three_kinds(world):
     assert hits[1].triangle is None
 
 
-@pytest.mark.parametrize("bound", [{"ball": ((0, 0, 0), -1.0)}, {"aligned": ((1, 0, 0), (0, 1, 1))}, {}], ids=str)
+@pytest.mark.parametrize("bound", [{"sphere": ((0, 0, 0), -1.0)}, {"aligned": ((1, 0, 0), (0, 1, 1))}, {}], ids=str)
 def test_bounds_that_are_none_are_an_error(world, bound):
     with pytest.raises(crofton.Error):
         world.add(**bound)
@@ -236,14 +236,14 @@ def test_a_ray_that_is_none_is_an_error(world, ray):
 def test_overlap_and_closest(world):
     handle = world.add(box=crofton.Box((5, 0, 0), (1, 1, 1)))
     world.update()
-    for shape in ({"box": crofton.Box((3.5, 0, 0), (1, 1, 1))}, {"ball": ((3, 0, 0), 1.0)},
+    for shape in ({"box": crofton.Box((3.5, 0, 0), (1, 1, 1))}, {"sphere": ((3, 0, 0), 1.0)},
                   {"capsule": ((0, 0, 0), (3.5, 0, 0), 0.6)}):
         assert world.overlap(**shape)["index"].tolist() == [handle.index]
-    assert len(world.overlap(ball=((0, 0, 0), 1.0))) == 0
-    nearest = world.closest(100.0, ball=((0, 0, 0), 1.0))
+    assert len(world.overlap(sphere=((0, 0, 0), 1.0))) == 0
+    nearest = world.closest(100.0, sphere=((0, 0, 0), 1.0))
     assert nearest.object == handle and nearest.distance == pytest.approx(3)
     assert nearest.on_object == pytest.approx((4, 0, 0))
-    assert world.closest(2.0, ball=((0, 0, 0), 1.0)) is None
+    assert world.closest(2.0, sphere=((0, 0, 0), 1.0)) is None
     with pytest.raises(TypeError):
         world.overlap()
 

@@ -99,8 +99,8 @@ pub enum Bound {
         /// Its greatest corner.
         max: [f64; 3],
     },
-    /// A ball.
-    Ball {
+    /// A sphere.
+    Sphere {
         /// Its middle.
         center: [f64; 3],
         /// At least 0.
@@ -121,7 +121,7 @@ impl Bound {
         match *self {
             Bound::Box(b) => (bound.kind, bound.bounding_box) = (1, b),
             Bound::Aligned { min, max } => (bound.kind, bound.min, bound.max) = (2, min, max),
-            Bound::Ball { center, radius } => (bound.kind, bound.center, bound.radius) = (3, center, radius),
+            Bound::Sphere { center, radius } => (bound.kind, bound.center, bound.radius) = (3, center, radius),
         }
         bound
     }

@@ -2,7 +2,7 @@
 //! Views that leave out what is hidden behind other objects.
 use crate::error::{check, slice};
 use crate::jobs::with_jobs;
-use crate::{sys, Camera, Executor, Mesh, Object, Result, Seen, VisibleObjects, World};
+use crate::{sys, Camera, Executor, Mesh, Object, Result, Seen, ViewResult, World};
 use std::{mem::size_of, ptr};
 
 /// How occluders are looked for in a mesh; 0 stands for the library's default.
@@ -63,7 +63,7 @@ impl World {
     /// What a camera sees, without what is hidden; nothing visible is left out.
     pub fn view_occluding<'a>(
         &'a self, camera: &Camera, options: &OcclusionOptions, executor: Option<&dyn Executor>,
-        visible: &'a mut VisibleObjects,
+        visible: &'a mut ViewResult,
     ) -> Result<Seen<'a>> {
         let camera = camera.raw();
         let view = sys::OccludingView {

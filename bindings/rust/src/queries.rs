@@ -27,7 +27,7 @@ pub struct ObjectHit {
 }
 
 impl ObjectHit {
-    /// Whether the ray began in the body, box or ball: `t` is 0.
+    /// Whether the ray began in the body, box or sphere: `t` is 0.
     pub fn started_inside(&self) -> bool {
         self.started_inside != 0
     }
@@ -42,8 +42,8 @@ impl ObjectHit {
 pub enum Shape {
     /// An oriented box.
     Box(Obb),
-    /// A ball.
-    Ball {
+    /// A sphere.
+    Sphere {
         /// Its middle.
         center: [f64; 3],
         /// At least 0.
@@ -71,11 +71,11 @@ pub struct Closest {
     pub distance: f64,
     /// A nearest point of the shape.
     pub on_shape: [f64; 3],
-    /// A nearest point of the object's box or ball.
+    /// A nearest point of the object's box or sphere.
     pub on_object: [f64; 3],
 }
 
-/// Two objects whose boxes or balls meet; `first` has the lower index.
+/// Two objects whose boxes or spheres meet; `first` has the lower index.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ObjectPair {
@@ -171,7 +171,7 @@ impl Drop for Found {
 }
 
 impl World {
-    /// The nearest hit among objects in any of `layers`: triangles of meshes, boxes and balls.
+    /// The nearest hit among objects in any of `layers`: triangles of meshes, boxes and spheres.
     pub fn raycast(&self, ray: &Ray, layers: u32) -> Result<Option<ObjectHit>> {
         Ok(self.raycasts(std::slice::from_ref(ray), layers)?.pop().flatten())
     }
@@ -198,13 +198,13 @@ impl World {
         Ok(unsafe { slice(hits, count) })
     }
 
-    /// Whose box or ball meets the shape, by index. A mesh's box stands for it.
+    /// Whose box or sphere meets the shape, by index. A mesh's box stands for it.
     pub fn overlap<'a>(&self, shape: &Shape, layers: u32, found: &'a mut Found) -> Result<&'a [ObjectRef]> {
         check(unsafe {
             match shape {
                 Shape::Box(b) => sys::crofton_world_overlap_box(self.raw, b, layers, found.raw),
-                Shape::Ball { center, radius } => {
-                    sys::crofton_world_overlap_ball(self.raw, center.as_ptr(), *radius, layers, found.raw)
+                Shape::Sphere { center, radius } => {
+                    sys::crofton_world_overlap_sphere(self.raw, center.as_ptr(), *radius, layers, found.raw)
                 }
                 Shape::Capsule { begin, end, radius } => {
                     let (b, e) = (begin.as_ptr(), end.as_ptr());
@@ -217,15 +217,15 @@ impl World {
         Ok(unsafe { slice(objects, count) })
     }
 
-    /// The box or ball nearest to the shape, no farther than `max_distance`, which may be infinite.
+    /// The box or sphere nearest to the shape, no farther than `max_distance`, which may be infinite.
     pub fn closest(&self, shape: &Shape, max_distance: f64, layers: u32) -> Result<Option<Closest>> {
         let mut c: sys::ClosestObject = unsafe { std::mem::zeroed() };
         c.size = size_of::<sys::ClosestObject>();
         check(unsafe {
             match shape {
                 Shape::Box(b) => sys::crofton_world_closest_to_box(self.raw, b, max_distance, layers, &mut c),
-                Shape::Ball { center, radius } => {
-                    sys::crofton_world_closest_to_ball(self.raw, center.as_ptr(), *radius, max_distance, layers, &mut c)
+                Shape::Sphere { center, radius } => {
+                    sys::crofton_world_closest_to_sphere(self.raw, center.as_ptr(), *radius, max_distance, layers, &mut c)
                 }
                 Shape::Capsule { begin, end, radius } => {
                     let (b, e) = (begin.as_ptr(), end.as_ptr());
@@ -238,7 +238,7 @@ impl World {
         Ok((object.index != NONE).then_some(closest))
     }
 
-    /// Objects whose boxes or balls meet, in order.
+    /// Objects whose boxes or spheres meet, in order.
     ///
     /// ```compile_fail
     /// # let mut world = crofton::World::new().unwrap();

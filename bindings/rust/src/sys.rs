@@ -16,7 +16,7 @@ macro_rules! opaque {
         }
     )*};
 }
-opaque!(World, VisibleObjects, VisibleInViews, Found, Collider, Triangulator);
+opaque!(World, ViewResult, MultiViewResult, Found, Collider, Triangulator);
 
 #[repr(C)]
 pub struct Jobs {
@@ -195,14 +195,14 @@ pub struct FindOptions {
 pub struct DrawLimits {
     pub size: usize,
     pub eye: [f64; 3],
-    pub radii: f64,
+    pub max_distance_in_radii: f64,
     pub least_radius: f64,
     pub layer_distances: *const f32,
     pub item_distances: *const f32,
     pub item_count: usize,
     pub drawn_before: *const u64,
     pub drawn_word_count: usize,
-    pub longer: f64,
+    pub hysteresis: f64,
 }
 
 #[repr(C)]
@@ -382,31 +382,31 @@ extern "C" {
         world: *const World, object: crate::Object, transform: *mut crate::Transform,
     ) -> Status;
 
-    pub fn crofton_visible_objects_create(visible: *mut *mut VisibleObjects) -> Status;
-    pub fn crofton_visible_objects_destroy(visible: *mut VisibleObjects) -> Status;
+    pub fn crofton_visible_objects_create(visible: *mut *mut ViewResult) -> Status;
+    pub fn crofton_visible_objects_destroy(visible: *mut ViewResult) -> Status;
     pub fn crofton_world_view(
         world: *const World, view: *const View, options: *const CullOptions, jobs: *const Jobs,
-        visible: *mut VisibleObjects,
+        visible: *mut ViewResult,
     ) -> Status;
     pub fn crofton_visible_objects_ids(
-        visible: *const VisibleObjects, ids: *mut *const u32, count: *mut usize, verdicts: *mut *const u8,
+        visible: *const ViewResult, ids: *mut *const u32, count: *mut usize, verdicts: *mut *const u8,
         inside_count: *mut usize,
     ) -> Status;
     pub fn crofton_visible_objects_list(
-        visible: *const VisibleObjects, world: *const World, first: usize, objects: *mut crate::ObjectRef,
+        visible: *const ViewResult, world: *const World, first: usize, objects: *mut crate::ObjectRef,
         capacity: usize,
     ) -> Status;
-    pub fn crofton_visible_in_views_create(visible: *mut *mut VisibleInViews) -> Status;
-    pub fn crofton_visible_in_views_destroy(visible: *mut VisibleInViews) -> Status;
+    pub fn crofton_visible_in_views_create(visible: *mut *mut MultiViewResult) -> Status;
+    pub fn crofton_visible_in_views_destroy(visible: *mut MultiViewResult) -> Status;
     pub fn crofton_world_views(
         world: *const World, views: *const View, count: usize, options: *const CullOptions,
-        visible: *mut VisibleInViews,
+        visible: *mut MultiViewResult,
     ) -> Status;
     pub fn crofton_visible_in_views_ids(
-        visible: *const VisibleInViews, ids: *mut *const u32, count: *mut usize,
+        visible: *const MultiViewResult, ids: *mut *const u32, count: *mut usize,
     ) -> Status;
     pub fn crofton_visible_in_views_list(
-        visible: *const VisibleInViews, world: *const World, first: usize, objects: *mut crate::ObjectRef,
+        visible: *const MultiViewResult, world: *const World, first: usize, objects: *mut crate::ObjectRef,
         view_masks: *mut u32, capacity: usize,
     ) -> Status;
 
@@ -428,7 +428,7 @@ extern "C" {
     pub fn crofton_world_overlap_box(
         world: *const World, b: *const crate::Obb, layer_mask: u32, found: *mut Found,
     ) -> Status;
-    pub fn crofton_world_overlap_ball(
+    pub fn crofton_world_overlap_sphere(
         world: *const World, center: *const f64, radius: f64, layer_mask: u32, found: *mut Found,
     ) -> Status;
     pub fn crofton_world_overlap_capsule(
@@ -437,7 +437,7 @@ extern "C" {
     pub fn crofton_world_closest_to_box(
         world: *const World, b: *const crate::Obb, max_distance: f64, layer_mask: u32, closest: *mut ClosestObject,
     ) -> Status;
-    pub fn crofton_world_closest_to_ball(
+    pub fn crofton_world_closest_to_sphere(
         world: *const World, center: *const f64, radius: f64, max_distance: f64, layer_mask: u32,
         closest: *mut ClosestObject,
     ) -> Status;
@@ -454,12 +454,12 @@ extern "C" {
     pub fn crofton_world_set_occludes(world: *mut World, object: crate::Object, occludes: c_int) -> Status;
     pub fn crofton_world_view_occluding(
         world: *const World, view: *const OccludingView, occlusion: *const OcclusionOptions,
-        options: *const CullOptions, jobs: *const Jobs, visible: *mut VisibleObjects,
+        options: *const CullOptions, jobs: *const Jobs, visible: *mut ViewResult,
     ) -> Status;
     pub fn crofton_visible_objects_occluded_ids(
-        visible: *const VisibleObjects, ids: *mut *const u32, count: *mut usize,
+        visible: *const ViewResult, ids: *mut *const u32, count: *mut usize,
     ) -> Status;
     pub fn crofton_visible_objects_get_occlusion_statistics(
-        visible: *const VisibleObjects, statistics: *mut OcclusionStatistics,
+        visible: *const ViewResult, statistics: *mut OcclusionStatistics,
     ) -> Status;
 }

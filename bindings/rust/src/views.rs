@@ -7,23 +7,23 @@ use crate::{sys, Executor, Frustum, Object, ObjectRef, Result, Verdict, World};
 use std::{mem::size_of, ptr};
 
 /// Memory for the answer to a view; keep it from frame to frame, and nothing is allocated once it is large enough.
-pub struct VisibleObjects {
-    pub(crate) raw: *mut sys::VisibleObjects,
+pub struct ViewResult {
+    pub(crate) raw: *mut sys::ViewResult,
 }
 
-unsafe impl Send for VisibleObjects {}
-unsafe impl Sync for VisibleObjects {}
+unsafe impl Send for ViewResult {}
+unsafe impl Sync for ViewResult {}
 
-impl VisibleObjects {
+impl ViewResult {
     /// Room for nothing yet.
-    pub fn new() -> Result<VisibleObjects> {
+    pub fn new() -> Result<ViewResult> {
         let mut raw = ptr::null_mut();
         check(unsafe { sys::crofton_visible_objects_create(&mut raw) })?;
-        Ok(VisibleObjects { raw })
+        Ok(ViewResult { raw })
     }
 }
 
-impl Drop for VisibleObjects {
+impl Drop for ViewResult {
     fn drop(&mut self) {
         unsafe { sys::crofton_visible_objects_destroy(self.raw) };
     }
@@ -32,16 +32,16 @@ impl Drop for VisibleObjects {
 /// What one view sees. Borrows the world, which cannot change meanwhile, and the memory of the answer.
 ///
 /// ```compile_fail
-/// # use crofton::{Camera, VisibleObjects, World};
+/// # use crofton::{Camera, ViewResult, World};
 /// # let mut world = World::new().unwrap();
-/// # let mut visible = VisibleObjects::new().unwrap();
+/// # let mut visible = ViewResult::new().unwrap();
 /// let seen = world.view(&Camera::default().frustum().unwrap(), &mut visible).unwrap();
 /// world.update().unwrap(); // the world is borrowed
 /// seen.ids();
 /// ```
 pub struct Seen<'a> {
     pub(crate) world: &'a World,
-    pub(crate) visible: &'a VisibleObjects,
+    pub(crate) visible: &'a ViewResult,
 }
 
 impl<'a> Seen<'a> {
@@ -70,24 +70,24 @@ impl<'a> Seen<'a> {
     }
 }
 
-/// As [`VisibleObjects`], for up to 32 views at once.
-pub struct VisibleInViews {
-    raw: *mut sys::VisibleInViews,
+/// As [`ViewResult`], for up to 32 views at once.
+pub struct MultiViewResult {
+    raw: *mut sys::MultiViewResult,
 }
 
-unsafe impl Send for VisibleInViews {}
-unsafe impl Sync for VisibleInViews {}
+unsafe impl Send for MultiViewResult {}
+unsafe impl Sync for MultiViewResult {}
 
-impl VisibleInViews {
+impl MultiViewResult {
     /// Room for nothing yet.
-    pub fn new() -> Result<VisibleInViews> {
+    pub fn new() -> Result<MultiViewResult> {
         let mut raw = ptr::null_mut();
         check(unsafe { sys::crofton_visible_in_views_create(&mut raw) })?;
-        Ok(VisibleInViews { raw })
+        Ok(MultiViewResult { raw })
     }
 }
 
-impl Drop for VisibleInViews {
+impl Drop for MultiViewResult {
     fn drop(&mut self) {
         unsafe { sys::crofton_visible_in_views_destroy(self.raw) };
     }
@@ -96,7 +96,7 @@ impl Drop for VisibleInViews {
 /// What several views see, each object once.
 pub struct SeenInViews<'a> {
     world: &'a World,
-    visible: &'a VisibleInViews,
+    visible: &'a MultiViewResult,
 }
 
 impl SeenInViews<'_> {
@@ -116,13 +116,13 @@ impl SeenInViews<'_> {
 
 impl World {
     /// What a view sees, by the objects' boxes, exactly: no visible box is left out.
-    pub fn view<'a>(&'a self, frustum: &Frustum, visible: &'a mut VisibleObjects) -> Result<Seen<'a>> {
+    pub fn view<'a>(&'a self, frustum: &Frustum, visible: &'a mut ViewResult) -> Result<Seen<'a>> {
         self.view_layers(frustum, u32::MAX, None, visible)
     }
 
     /// The same for objects in any of `layers`, on several threads if told.
     pub fn view_layers<'a>(
-        &'a self, frustum: &Frustum, layers: u32, executor: Option<&dyn Executor>, visible: &'a mut VisibleObjects,
+        &'a self, frustum: &Frustum, layers: u32, executor: Option<&dyn Executor>, visible: &'a mut ViewResult,
     ) -> Result<Seen<'a>> {
         let view = to_view(frustum, layers);
         check(with_jobs(executor, |jobs| unsafe {
@@ -132,7 +132,7 @@ impl World {
     }
 
     /// What up to 32 views see: frusta and the layers that each sees.
-    pub fn views<'a>(&'a self, views: &[(Frustum, u32)], visible: &'a mut VisibleInViews) -> Result<SeenInViews<'a>> {
+    pub fn views<'a>(&'a self, views: &[(Frustum, u32)], visible: &'a mut MultiViewResult) -> Result<SeenInViews<'a>> {
         let views: Vec<sys::View> = views.iter().map(|(f, layers)| to_view(f, *layers)).collect();
         check(unsafe { sys::crofton_world_views(self.raw, views.as_ptr(), views.len(), ptr::null(), visible.raw) })?;
         Ok(SeenInViews { world: self, visible })

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 //! Rays, shapes, pairs and contacts.
 mod common;
-use common::{ball, row, tetrahedron};
+use common::{sphere, row, tetrahedron};
 use crofton::*;
 
 const DOWN: [f64; 3] = [0.0, 0.0, -1.0];
 
 #[test]
-fn a_ray_meets_the_nearest_ball() {
+fn a_ray_meets_the_nearest_sphere() {
     let (world, objects) = row(2);
     let hit = world.raycast(&Ray::new([1.0, 0.0, 0.0], DOWN), ALL_LAYERS).unwrap().unwrap();
     assert_eq!((hit.object, hit.user, hit.triangle()), (objects[1], 1, None));
@@ -59,7 +59,7 @@ fn shapes_find_what_they_meet() {
     let mut found = Found::new().unwrap();
     let shapes = [
         Shape::Box(Obb::aligned([1.5, 0.0, -5.0], [0.3; 3])),
-        Shape::Ball { center: [1.5, 0.0, -5.0], radius: 0.26 },
+        Shape::Sphere { center: [1.5, 0.0, -5.0], radius: 0.26 },
         Shape::Capsule { begin: [1.1, 0.5, -5.0], end: [1.9, 0.5, -5.0], radius: 0.3 },
     ];
     for shape in shapes {
@@ -71,7 +71,7 @@ fn shapes_find_what_they_meet() {
 #[test]
 fn the_closest_is_found_within_a_distance() {
     let (world, objects) = row(3);
-    let shape = Shape::Ball { center: [2.0, 4.0, -5.0], radius: 0.5 };
+    let shape = Shape::Sphere { center: [2.0, 4.0, -5.0], radius: 0.5 };
     let closest = world.closest(&shape, f64::INFINITY, ALL_LAYERS).unwrap().unwrap();
     assert_eq!(closest.object, objects[2]);
     assert!((closest.distance - 3.25).abs() < 1e-9);
@@ -83,8 +83,8 @@ fn the_closest_is_found_within_a_distance() {
 #[test]
 fn pairs_and_contacts_begin_stay_and_end() {
     let mut world = World::new().unwrap();
-    let a = ball(&mut world, [0.0; 3], 1.0, 1);
-    let b = ball(&mut world, [1.5, 0.0, 0.0], 1.0, 2);
+    let a = sphere(&mut world, [0.0; 3], 1.0, 1);
+    let b = sphere(&mut world, [1.5, 0.0, 0.0], 1.0, 2);
     world.update().unwrap();
     assert_eq!(world.pairs().unwrap().iter().map(|p| (p.first.user, p.second.user)).collect::<Vec<_>>(), [(1, 2)]);
     let contacts = world.contacts().unwrap();
@@ -96,7 +96,7 @@ fn pairs_and_contacts_begin_stay_and_end() {
     assert!(!contacts[0].points.is_empty());
     world.update().unwrap();
     assert_eq!(world.contacts().unwrap()[0].phase, Phase::Stayed);
-    world.set_bound(b, Bound::Ball { center: [5.0, 0.0, 0.0], radius: 1.0 }).unwrap();
+    world.set_bound(b, Bound::Sphere { center: [5.0, 0.0, 0.0], radius: 1.0 }).unwrap();
     world.update().unwrap();
     assert_eq!(world.contacts().unwrap()[0].phase, Phase::Ended);
     world.update().unwrap();
@@ -106,7 +106,7 @@ fn pairs_and_contacts_begin_stay_and_end() {
 #[test]
 fn what_does_not_collide_has_no_pair() {
     let mut world = World::new().unwrap();
-    let bound = Bound::Ball { center: [0.0; 3], radius: 1.0 };
+    let bound = Bound::Sphere { center: [0.0; 3], radius: 1.0 };
     world.add(&Description::bound(bound).layers(0b01)).unwrap();
     world.add(&Description::bound(bound).layers(0b01).collides_with(0b10)).unwrap();
     world.update().unwrap();
@@ -130,11 +130,11 @@ fn two_meshes_name_the_triangles_that_touch() {
 fn a_limit_of_pairs_is_kept() {
     let mut world = World::with(WorldOptions { max_pairs: 1, ..Default::default() }).unwrap();
     for i in 0..3 {
-        ball(&mut world, [0.0; 3], 1.0, i);
+        sphere(&mut world, [0.0; 3], 1.0, i);
     }
     assert_eq!(world.update().unwrap_err().status, Status::BudgetExceeded);
     assert!(world.pairs().unwrap().is_empty());
     let frustum = Camera { position: [0.0, 0.0, 5.0], ..Camera::default() }.frustum().unwrap();
-    let mut visible = VisibleObjects::new().unwrap();
+    let mut visible = ViewResult::new().unwrap();
     assert_eq!(world.view(&frustum, &mut visible).unwrap().ids().len(), 3);
 }

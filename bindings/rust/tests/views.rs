@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 //! What cameras see, with layers, in several views, and behind walls.
 mod common;
-use common::{ball, row};
+use common::{sphere, row};
 use crofton::*;
 
 #[test]
 fn a_view_lists_what_is_before_it() {
     let (mut world, objects) = row(3);
-    let behind = ball(&mut world, [0.0, 0.0, 5.0], 0.25, 99);
+    let behind = sphere(&mut world, [0.0, 0.0, 5.0], 0.25, 99);
     world.update().unwrap();
-    let mut visible = VisibleObjects::new().unwrap();
+    let mut visible = ViewResult::new().unwrap();
     let seen = world.view(&Camera::default().frustum().unwrap(), &mut visible).unwrap();
     assert_eq!(seen.ids(), [objects[0].index, objects[1].index, objects[2].index]);
     assert!(!seen.ids().contains(&behind.index));
@@ -24,7 +24,7 @@ fn layers_choose() {
     world.set_layers(objects[1], 0b10).unwrap();
     world.update().unwrap();
     let frustum = Camera::default().frustum().unwrap();
-    let mut visible = VisibleObjects::new().unwrap();
+    let mut visible = ViewResult::new().unwrap();
     let seen = world.view_layers(&frustum, 0b01, None, &mut visible).unwrap();
     assert_eq!(seen.ids(), [objects[0].index, objects[2].index]);
 }
@@ -35,7 +35,7 @@ fn hidden_objects_are_not_seen() {
     world.set_hidden(objects[0], true).unwrap();
     world.update().unwrap();
     let frustum = Camera::default().frustum().unwrap();
-    let mut visible = VisibleObjects::new().unwrap();
+    let mut visible = ViewResult::new().unwrap();
     assert_eq!(world.view(&frustum, &mut visible).unwrap().ids(), [objects[1].index]);
     world.set_hidden(objects[0], false).unwrap();
     world.update().unwrap();
@@ -45,11 +45,11 @@ fn hidden_objects_are_not_seen() {
 #[test]
 fn several_views_say_which_of_them_sees() {
     let (mut world, objects) = row(1);
-    let behind = ball(&mut world, [0.0, 0.0, 5.0], 0.25, 99);
+    let behind = sphere(&mut world, [0.0, 0.0, 5.0], 0.25, 99);
     world.update().unwrap();
     let forth = Camera::default().frustum().unwrap();
     let back = Camera { forward: [0.0, 0.0, 1.0], ..Camera::default() }.frustum().unwrap();
-    let mut visible = VisibleInViews::new().unwrap();
+    let mut visible = MultiViewResult::new().unwrap();
     let views = [(forth, ALL_LAYERS), (back, ALL_LAYERS), (forth, 0)];
     let seen = world.views(&views, &mut visible).unwrap();
     let mut masks: Vec<_> = seen.objects().unwrap().iter().map(|(o, m)| (o.object, *m)).collect();
@@ -104,8 +104,8 @@ fn walled() -> (World, Object) {
     let mut wide = Transform::at([0.0, 0.0, -5.0]);
     (wide.linear[0], wide.linear[4]) = (4.0, 4.0);
     let wall = world.add(&Description::mesh(mesh).at(wide).user(1)).unwrap();
-    ball(&mut world, [0.0, 0.0, -20.0], 0.5, 2);
-    ball(&mut world, [0.0, 0.0, -3.0], 0.2, 3);
+    sphere(&mut world, [0.0, 0.0, -20.0], 0.5, 2);
+    sphere(&mut world, [0.0, 0.0, -3.0], 0.2, 3);
     world.update().unwrap();
     (world, wall)
 }
@@ -113,7 +113,7 @@ fn walled() -> (World, Object) {
 #[test]
 fn what_a_wall_hides_is_not_seen() {
     let (world, _) = walled();
-    let mut visible = VisibleObjects::new().unwrap();
+    let mut visible = ViewResult::new().unwrap();
     let options = OcclusionOptions { list_occluded: true, ..Default::default() };
     let seen = world.view_occluding(&Camera::default(), &options, None, &mut visible).unwrap();
     let users: Vec<u64> = seen.objects().unwrap().iter().map(|o| o.user).collect();
@@ -127,7 +127,7 @@ fn glass_hides_nothing() {
     let (mut world, wall) = walled();
     world.set_occludes(wall, false).unwrap();
     world.update().unwrap();
-    let mut visible = VisibleObjects::new().unwrap();
+    let mut visible = ViewResult::new().unwrap();
     let seen = world.view_occluding(&Camera::default(), &OcclusionOptions::default(), None, &mut visible).unwrap();
     assert_eq!(seen.ids().len(), 3);
 }

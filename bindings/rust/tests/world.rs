@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //! Objects that come, move, hide and go; handles that go stale; input that is refused.
 mod common;
-use common::{ball, row, tetrahedron, FACES, TETRAHEDRON};
+use common::{sphere, row, tetrahedron, FACES, TETRAHEDRON};
 use crofton::*;
 
 #[test]
@@ -19,7 +19,7 @@ fn a_stale_handle_is_a_named_error_even_when_its_index_is_used_again() {
     let (mut world, objects) = row(1);
     world.remove(objects[0]).unwrap();
     world.update().unwrap(); // indices are used again after an update
-    let new = ball(&mut world, [0.0; 3], 1.0, 9);
+    let new = sphere(&mut world, [0.0; 3], 1.0, 9);
     assert_eq!(new.index, objects[0].index);
     assert_ne!(new.generation, objects[0].generation);
     let error = world.set_user(objects[0], 1).unwrap_err();
@@ -38,7 +38,7 @@ fn user_data_is_given_back() {
 #[test]
 fn a_box_is_known_after_the_first_update_only() {
     let mut world = World::new().unwrap();
-    let object = ball(&mut world, [1.0, 2.0, 3.0], 0.5, 0);
+    let object = sphere(&mut world, [1.0, 2.0, 3.0], 0.5, 0);
     assert_eq!(world.obb(object).unwrap_err().status, Status::Empty);
     world.update().unwrap();
     let obb = world.obb(object).unwrap();
@@ -49,7 +49,7 @@ fn a_box_is_known_after_the_first_update_only() {
 #[test]
 fn a_nan_is_refused_and_the_world_is_as_before() {
     let (mut world, objects) = row(1);
-    let bad = Bound::Ball { center: [f64::NAN, 0.0, 0.0], radius: 1.0 };
+    let bad = Bound::Sphere { center: [f64::NAN, 0.0, 0.0], radius: 1.0 };
     assert_eq!(world.set_bound(objects[0], bad).unwrap_err().status, Status::NonFinite);
     assert!(world.add(&Description::bound(bad)).is_err());
     world.update().unwrap();
@@ -181,13 +181,13 @@ fn what_a_view_sees_is_the_same_on_any_number_of_threads() {
     for world in &mut worlds {
         for i in 0..5000u64 {
             let x = (i % 100) as f64 - 50.0;
-            ball(world, [x, (i / 100) as f64 - 25.0, -40.0], 0.3, i);
+            sphere(world, [x, (i / 100) as f64 - 25.0, -40.0], 0.3, i);
         }
     }
     worlds[0].update().unwrap();
     worlds[1].update_on(&Threads(4)).unwrap();
     let frustum = Camera::default().frustum().unwrap();
-    let (mut a, mut b) = (VisibleObjects::new().unwrap(), VisibleObjects::new().unwrap());
+    let (mut a, mut b) = (ViewResult::new().unwrap(), ViewResult::new().unwrap());
     let one = worlds[0].view(&frustum, &mut a).unwrap();
     let four = worlds[1].view_layers(&frustum, ALL_LAYERS, Some(&Threads(4)), &mut b).unwrap();
     assert!(!one.ids().is_empty());
@@ -202,7 +202,7 @@ fn a_world_is_asked_from_many_threads_at_once() {
         for i in 0..8usize {
             let (world, frustum, object) = (&world, &frustum, objects[i]);
             scope.spawn(move || {
-                let mut visible = VisibleObjects::new().unwrap();
+                let mut visible = ViewResult::new().unwrap();
                 for _ in 0..200 {
                     assert!(!world.view(frustum, &mut visible).unwrap().ids().is_empty());
                     let ray = Ray::new([i as f64, 0.0, 0.0], [0.0, 0.0, -1.0]);

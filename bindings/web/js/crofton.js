@@ -7,7 +7,7 @@ import { Boxes, Frustum } from './geometry.js';
 import { Tree, VisibleSet, cullBoxes, classify } from './cull.js';
 import { fitBox } from './fit.js';
 import { Triangulator } from './triangulate.js';
-import { World, VisibleObjects } from './world.js';
+import { World, ViewResult } from './world.js';
 
 export { CroftonError };
 
@@ -23,7 +23,7 @@ export async function load(options = {}) {
         /** Bytes of the library's memory; it grows, and views of it are then detached. */
         get memoryBytes() { return memory.bytes.byteLength; },
         Boxes: bind(Boxes), Frustum: bind(Frustum), Tree: bind(Tree), VisibleSet: bind(VisibleSet),
-        Triangulator: bind(Triangulator), World: bind(World), VisibleObjects: bind(VisibleObjects),
+        Triangulator: bind(Triangulator), World: bind(World), ViewResult: bind(ViewResult),
         cullBoxes: (boxes, frustum, visible, how) => cullBoxes(memory, boxes, frustum, visible, how),
         classify: (boxes, frustum) => classify(memory, boxes, frustum),
         fitBox: (points, how) => fitBox(memory, points, how),

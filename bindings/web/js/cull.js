@@ -24,7 +24,7 @@ export class VisibleSet extends Owned {
         const at = this.memory.scratch(56);
         this.memory.words[at >> 2] = 56;
         this.memory.call('visible_set_statistics', this.handle, at);
-        const names = ['nodesTested', 'boxesTested', 'acceptedWhole', 'straddling', 'exactTests', 'improper'];
+        const names = ['nodesTested', 'boxesTested', 'acceptedWhole', 'straddling', 'exactTests', 'falsePositives'];
         return Object.fromEntries(names.map((name, i) => [name, this.memory.words[(at >> 2) + 2 + 2 * i]]));
     }
 }

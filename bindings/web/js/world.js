@@ -6,9 +6,9 @@ import { BOX, roundedUp, writeCamera } from './geometry.js';
 const ALL = 0xffffffff;
 
 /** What one view of a world sees, in memory that is kept; views of it are valid until its next view or growth of memory. */
-export class VisibleObjects extends Owned {
+export class ViewResult extends Owned {
     constructor(memory) {
-        super(memory, 'VisibleObjects', create(memory, 'visible_objects'), '_crofton_visible_objects_destroy');
+        super(memory, 'ViewResult', create(memory, 'visible_objects'), '_crofton_visible_objects_destroy');
     }
     #list() {
         const at = this.memory.scratch(16);
@@ -72,14 +72,14 @@ export class World extends Owned {
         });
     }
 
-    /** `{ box: { center, halfExtents, axes } }`, `{ ball: { center, radius } }` or `{ mesh, transform }`; `user`: a number. */
-    add({ box, ball, mesh, transform, user = 0, hiddenLayers = 0, transparent = false }) {
-        if ([box, ball, mesh].filter(Boolean).length !== 1) throw failure(1, 'an object has one of box, ball and mesh');
+    /** `{ box: { center, halfExtents, axes } }`, `{ sphere: { center, radius } }` or `{ mesh, transform }`; `user`: a number. */
+    add({ box, sphere, mesh, transform, user = 0, hiddenLayers = 0, transparent = false }) {
+        if ([box, sphere, mesh].filter(Boolean).length !== 1) throw failure(1, 'an object has one of box, sphere and mesh');
         if (!(Number.isInteger(user) && user >= 0 && user < 2 ** 53)) throw failure(1, 'user is a whole number below 2^53');
         const { memory } = this, at = memory.scratch(64 + 160 + 96 + 16), { words } = memory, first = at >> 2;
         words[first] = 64;
         words.set([user % 2 ** 32, Math.floor(user / 2 ** 32)], first + 2);
-        if (box || ball) this.#writeBound(at + 64, box, ball), words[first + 4] = at + 64;
+        if (box || sphere) this.#writeBound(at + 64, box, sphere), words[first + 4] = at + 64;
         if (transform) this.#writeTransform(at + 224, transform), words[first + 5] = at + 224;
         if (mesh) {
             words[first + 6] = 1;
@@ -159,10 +159,10 @@ export class World extends Owned {
         const column = (c) => [transform[4 * c], transform[4 * c + 1], transform[4 * c + 2]];
         this.memory.doubles.set([0, 1, 2, 3].flatMap(column), at >> 3);
     }
-    #writeBound(at, box, ball) {
+    #writeBound(at, box, sphere) {
         const { words, doubles, floats } = this.memory;
         words[at >> 2] = box ? 1 : 3;
-        if (ball) return doubles.set([...numbersOf(ball.center, 3, 'center'), ball.radius], at + 128 >> 3);
+        if (sphere) return doubles.set([...numbersOf(sphere.center, 3, 'center'), sphere.radius], at + 128 >> 3);
         doubles.set(numbersOf(box.center, 3, 'center'), at + 8 >> 3);
         floats.set(numbersOf(box.axes ?? [1, 0, 0, 0, 1, 0, 0, 0, 1], 9, 'axes'), at + 32 >> 2);
         floats.set(numbersOf(box.halfExtents, 3, 'halfExtents').map(roundedUp), at + 8 + BOX - 12 >> 2);

@@ -24,7 +24,7 @@ using namespace crofton::test;
 
 namespace {
 
-void must(crofton_status status) {
+void require_ok(crofton_status status) {
     if (status == CROFTON_OK) return;
     std::printf("%s\n", crofton_last_error());
     std::exit(1);
@@ -50,7 +50,7 @@ crofton_view view_of(const Camera& camera) {
     given.near_distance = camera.near_distance, given.far_distance = camera.far_distance;
     crofton_view view{};
     view.size = sizeof view, view.layer_mask = ~0u, view.frustum.size = sizeof view.frustum;
-    must(crofton_frustum_from_camera(&given, &view.frustum));
+    require_ok(crofton_frustum_from_camera(&given, &view.frustum));
     return view;
 }
 
@@ -60,8 +60,8 @@ std::uint64_t culled(double offset) {
     const std::vector<crofton_box> boxes = boxes_of(crowd(3000, offset, 12));
     crofton_tree* tree = nullptr;
     crofton_visible_set* visible = nullptr;
-    must(crofton_tree_create(boxes.data(), nullptr, boxes.size(), nullptr, &tree));
-    must(crofton_visible_set_create(&visible));
+    require_ok(crofton_tree_create(boxes.data(), nullptr, boxes.size(), nullptr, &tree));
+    require_ok(crofton_visible_set_create(&visible));
     std::size_t seen = 0;
     for (int k = 0; k < 50; ++k) {
         const crofton_view view = view_of(random_camera(random, offset));
@@ -69,21 +69,21 @@ std::uint64_t culled(double offset) {
         for (const crofton_plane& plane : view.frustum.planes)
             for (const double x : {plane.normal[0], plane.normal[1], plane.normal[2], plane.offset}) digest.add(x);
         std::vector<std::uint8_t> verdicts(boxes.size());
-        must(crofton_classify(&view.frustum, boxes.data(), boxes.size(), verdicts.data()));
+        require_ok(crofton_classify(&view.frustum, boxes.data(), boxes.size(), verdicts.data()));
         digest.add(verdicts);
         for (const std::uint32_t tree_order : {0u, 1u}) {
             crofton_cull_options options{};
             options.size = sizeof options, options.tree_order = tree_order;
-            must(crofton_cull_tree(tree, &view, &options, nullptr, visible));
+            require_ok(crofton_cull_tree(tree, &view, &options, nullptr, visible));
             const std::uint32_t* ids = nullptr;
             std::size_t count = 0;
-            must(crofton_visible_set_items(visible, &ids, nullptr, &count));
+            require_ok(crofton_visible_set_items(visible, &ids, nullptr, &count));
             for (std::size_t i = 0; i < count; ++i) digest.add(ids[i]);
             seen += count;
         }
     }
-    must(crofton_visible_set_destroy(visible));
-    must(crofton_tree_destroy(tree));
+    require_ok(crofton_visible_set_destroy(visible));
+    require_ok(crofton_tree_destroy(tree));
     if (seen < 1000) std::printf("too little is seen: %zu\n", seen), std::exit(1);
     return digest.value();
 }
@@ -99,9 +99,9 @@ std::uint64_t fitted() {
         }
         for (const std::uint32_t quality : {0u, 1u, 2u}) {
             crofton_fit_options options{sizeof options, quality, {0, 0, 0}};
-            must(crofton_criterion_minimal_perimeter(&options.criterion));
+            require_ok(crofton_criterion_minimal_perimeter(&options.criterion));
             crofton_box box;
-            must(crofton_fit_floats(points.data(), 300, &options, &box));
+            require_ok(crofton_fit_floats(points.data(), 300, &options, &box));
             for (const double x : box.center) digest.add(x);
             for (const float x : box.axes) digest.add(x);
             for (const float x : box.half_extents) digest.add(x);
@@ -130,19 +130,19 @@ std::vector<Polygon> polygons() {
 std::uint64_t triangulated() {
     Digest digest;
     crofton_triangulator* triangulator = nullptr;
-    must(crofton_triangulator_create(&triangulator));
+    require_ok(crofton_triangulator_create(&triangulator));
     for (const Polygon& polygon : polygons())
         for (const std::uint32_t method : {0u, 1u, 2u}) {
             const crofton_polygon given{sizeof given, &polygon.points[0].x, polygon.points.size(),
                                         polygon.ring_ends.data(), polygon.ring_ends.size()};
             crofton_triangulation result{};
             result.size = sizeof result;
-            must(crofton_triangulate(triangulator, &given, method, &result));
+            require_ok(crofton_triangulate(triangulator, &given, method, &result));
             std::vector<std::array<std::uint32_t, 3>> triangles(result.triangle_count);
             std::memcpy(triangles.data(), result.indices, 12 * result.triangle_count);
             digest.add(triangles).add(result.weight).add(result.gap);
         }
-    must(crofton_triangulator_destroy(triangulator));
+    require_ok(crofton_triangulator_destroy(triangulator));
     return digest.value();
 }
 
@@ -167,8 +167,8 @@ void bench(const char* path) {
     const std::vector<crofton_box> boxes = boxes_of(crowd(100000, 0.0, 12));
     crofton_tree* tree = nullptr;
     crofton_visible_set* visible = nullptr;
-    must(crofton_tree_create(boxes.data(), nullptr, boxes.size(), nullptr, &tree));
-    must(crofton_visible_set_create(&visible));
+    require_ok(crofton_tree_create(boxes.data(), nullptr, boxes.size(), nullptr, &tree));
+    require_ok(crofton_visible_set_create(&visible));
     Random random(5);
     std::vector<crofton_view> views;
     for (int k = 0; k < 20; ++k) views.push_back(view_of(random_camera(random, 0.0)));
@@ -180,12 +180,12 @@ void bench(const char* path) {
             seen = 0;
             const auto from = std::chrono::steady_clock::now();
             for (const crofton_view& view : views) {
-                must(kind == 0
-                         ? crofton_cull_tree(tree, &view, nullptr, nullptr, visible)
-                         : crofton_cull_boxes(boxes.data(), nullptr, boxes.size(), &view, nullptr, nullptr, visible));
+                require_ok(kind == 0 ? crofton_cull_tree(tree, &view, nullptr, nullptr, visible)
+                                     : crofton_cull_boxes(boxes.data(), nullptr, boxes.size(), &view, nullptr, nullptr,
+                                                          visible));
                 const std::uint32_t* ids = nullptr;
                 std::size_t count = 0;
-                must(crofton_visible_set_items(visible, &ids, nullptr, &count));
+                require_ok(crofton_visible_set_items(visible, &ids, nullptr, &count));
                 seen += count;
             }
             const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - from;

@@ -10,7 +10,7 @@
 
 namespace {
 
-void must(crofton_status status) {
+void require_ok(crofton_status status) {
     if (status == CROFTON_OK) return;
     std::printf("%s\n", crofton_last_error());
     std::exit(1);
@@ -39,13 +39,13 @@ crofton_world_mesh read_mesh(Reader& in, crofton_world* world) {
     data.positions = positions.data(), data.position_count = positions.size() / 3;
     data.indices = indices.data(), data.index_count = indices.size();
     crofton_world_mesh mesh{};
-    must(crofton_world_add_mesh(world, &data, &mesh));
+    require_ok(crofton_world_add_mesh(world, &data, &mesh));
     if (in.next() != 0.0) {
         crofton_occluder occluder{};
         occluder.size = sizeof occluder;
         occluder.kind = 2;
         occluder.positions = positions.data(), occluder.position_count = positions.size() / 3;
-        must(crofton_world_set_occluders(world, mesh, &occluder, 1));
+        require_ok(crofton_world_set_occluders(world, mesh, &occluder, 1));
     }
     return mesh;
 }
@@ -60,7 +60,7 @@ void add_object(Reader& in, crofton_world* world, const std::vector<crofton_worl
     description.size = sizeof description;
     description.transform = &transform, description.has_mesh = 1, description.mesh = meshes.at(mesh);
     crofton_object object{};
-    must(crofton_world_add(world, &description, &object));
+    require_ok(crofton_world_add(world, &description, &object));
 }
 
 crofton_box read_box(Reader& in) {
@@ -74,7 +74,7 @@ crofton_box read_box(Reader& in) {
 crofton_camera read_camera(Reader& in) {
     crofton_camera camera{};
     camera.size = sizeof camera;
-    must(crofton_camera_default(&camera));
+    require_ok(crofton_camera_default(&camera));
     for (double* vector : {camera.position, camera.forward, camera.up})
         for (int k = 0; k < 3; ++k) vector[k] = in.next();
     camera.fov_y = in.next(), camera.aspect = in.next();
@@ -90,40 +90,40 @@ int main(int, char** arguments) {
     double value = 0.0;
     while (file && std::fread(&value, sizeof value, 1, file) == 1) in.numbers.push_back(value);
     crofton_world* world = nullptr;
-    must(crofton_world_create(nullptr, &world));
+    require_ok(crofton_world_create(nullptr, &world));
     std::vector<crofton_world_mesh> meshes(in.count());
     for (crofton_world_mesh& mesh : meshes) mesh = read_mesh(in, world);
     const std::size_t objects = in.count();
     for (std::size_t i = 0; i < objects; ++i) add_object(in, world, meshes);
-    must(crofton_world_update(world, nullptr));
+    require_ok(crofton_world_update(world, nullptr));
     std::vector<crofton_box> boxes;
     for (std::size_t i = 0; i < objects; ++i) boxes.push_back(read_box(in));
     crofton_tree* tree = nullptr;
-    must(crofton_tree_create(boxes.data(), nullptr, objects, nullptr, &tree));
+    require_ok(crofton_tree_create(boxes.data(), nullptr, objects, nullptr, &tree));
     crofton_visible_set* set = nullptr;
-    must(crofton_visible_set_create(&set));
+    require_ok(crofton_visible_set_create(&set));
     crofton_visible_objects* seen = nullptr;
-    must(crofton_visible_objects_create(&seen));
+    require_ok(crofton_visible_objects_create(&seen));
     for (std::size_t cameras = in.count(); cameras > 0; --cameras) {
         const bool occlusion = in.next() != 0.0;
         const crofton_camera camera = read_camera(in);
         crofton_view view{};
         view.size = sizeof view, view.layer_mask = ~0u, view.frustum.size = sizeof view.frustum;
-        must(crofton_frustum_from_camera(&camera, &view.frustum));
-        must(crofton_cull_tree(tree, &view, nullptr, nullptr, set));
+        require_ok(crofton_frustum_from_camera(&camera, &view.frustum));
+        require_ok(crofton_cull_tree(tree, &view, nullptr, nullptr, set));
         const std::uint32_t* ids = nullptr;
         const std::uint8_t* found = nullptr;
         std::size_t count = 0;
-        must(crofton_visible_set_items(set, &ids, &found, &count));
+        require_ok(crofton_visible_set_items(set, &ids, &found, &count));
         std::vector<std::uint8_t> verdicts(objects);
         for (std::size_t i = 0; i < count; ++i) verdicts[ids[i]] = found[i];
         crofton_occluding_view eye{};
         eye.size = sizeof eye, eye.camera = &camera;
         crofton_occlusion_options options{};
         options.size = sizeof options, options.disabled = occlusion ? 0 : 1, options.list_occluded = 1;
-        must(crofton_world_view_occluding(world, &eye, &options, nullptr, nullptr, seen));
+        require_ok(crofton_world_view_occluding(world, &eye, &options, nullptr, nullptr, seen));
         if (occlusion) {
-            must(crofton_visible_objects_occluded_ids(seen, &ids, &count));
+            require_ok(crofton_visible_objects_occluded_ids(seen, &ids, &count));
             for (std::size_t i = 0; i < count; ++i)
                 if (verdicts[ids[i]] != 0) verdicts[ids[i]] = 3;
         }

@@ -28,7 +28,7 @@ export class Culling {
         this.#crofton = crofton;
         this.#objects = objects;
         this.#visible = new crofton.VisibleSet();
-        this.#seen = new crofton.VisibleObjects();
+        this.#seen = new crofton.ViewResult();
         this.#frustum = new crofton.Frustum();
         this.#world = new crofton.World();
         const meshes = MESHES.map(({ positions, indices, occludes }) => {

@@ -169,7 +169,7 @@ for (const build of BUILDS) {
 
     here('every freed handle is a clear error', () => {
         const owned = [new crofton.Boxes(1), new crofton.Frustum(), new crofton.VisibleSet(), new crofton.Triangulator(),
-            new crofton.World(), new crofton.VisibleObjects(), new crofton.Tree(one())];
+            new crofton.World(), new crofton.ViewResult(), new crofton.Tree(one())];
         for (const each of owned) each.free(), each.free();
         const [boxes, frustum, visible, triangulator, world, objects, tree] = owned;
         for (const use of [() => boxes.get(0), () => frustum.planes, () => visible.ids, () => triangulator.triangulate(new Float64Array(6)),
@@ -252,17 +252,17 @@ for (const build of BUILDS) {
         () => new crofton.Triangulator().triangulate(new Float64Array([0, 0, 1, 1, 1, 0, 0, 1])), CroftonError));
 
     here('a world sees what is in front, and gives user data back', () => {
-        const world = new crofton.World(), visible = new crofton.VisibleObjects();
-        const ball = world.add({ ball: { center: [0, 0, -5], radius: 1 }, user: 2 ** 40 + 7 });
+        const world = new crofton.World(), visible = new crofton.ViewResult();
+        const sphere = world.add({ sphere: { center: [0, 0, -5], radius: 1 }, user: 2 ** 40 + 7 });
         world.add({ box: { center: [0, 0, 5], halfExtents: [1, 1, 1] } });
         world.update();
-        assert.deepEqual([...world.view(new crofton.Frustum(), visible).ids], [ball.index]);
+        assert.deepEqual([...world.view(new crofton.Frustum(), visible).ids], [sphere.index]);
         const hit = world.raycast([0, 0, 0], [0, 0, -1]);
-        assert.deepEqual([hit.user, hit.t, hit.object], [2 ** 40 + 7, 4, ball]);
+        assert.deepEqual([hit.user, hit.t, hit.object], [2 ** 40 + 7, 4, sphere]);
         assert.equal(world.raycast([0, 0, 0], [0, 1, 0]), null);
     });
     here('objects move, hide and go', () => {
-        const world = new crofton.World(), visible = new crofton.VisibleObjects(), frustum = new crofton.Frustum();
+        const world = new crofton.World(), visible = new crofton.ViewResult(), frustum = new crofton.Frustum();
         const seen = () => { world.update(); return world.view(frustum, visible).length; };
         const box = world.add({ box: { center: [0, 0, 5], halfExtents: [1, 1, 1] } });
         assert.equal(seen(), 0);
@@ -277,7 +277,7 @@ for (const build of BUILDS) {
         assert.throws(() => world.remove(box), refused('stale handle'));
     });
     here('a wall hides what is behind it', () => {
-        const world = new crofton.World(), visible = new crofton.VisibleObjects();
+        const world = new crofton.World(), visible = new crofton.ViewResult();
         const cube = world.addMesh(CUBE.positions, CUBE.indices), scaled = [5, 0, 0, 0, 0, 5, 0, 0, 0, 0, 0.5, 0, 0, 0, -5, 1];
         world.setConvexOccluder(cube, CUBE.positions);
         const wall = world.add({ mesh: cube, transform: scaled });
@@ -291,7 +291,7 @@ for (const build of BUILDS) {
         assert.deepEqual([...world.viewOccluding({}, visible).ids], [behind.index]);
     });
     here('occluders are found in a closed mesh', () => {
-        const world = new crofton.World(), visible = new crofton.VisibleObjects(), cube = world.addMesh(CUBE.positions, CUBE.indices);
+        const world = new crofton.World(), visible = new crofton.ViewResult(), cube = world.addMesh(CUBE.positions, CUBE.indices);
         world.findOccluders(cube);
         world.add({ mesh: cube, transform: [5, 0, 0, 0, 0, 5, 0, 0, 0, 0, 0.5, 0, 0, 0, -5, 1] });
         world.add({ mesh: cube, transform: translation(0, 0, -12) });
@@ -302,7 +302,7 @@ for (const build of BUILDS) {
         const { memory } = new crofton.World(), slot = memory.allocate(8, 'a handle');
         memory.call('world_create', 0, slot);
         const world = memory.words[slot >> 2], at = memory.scratch(240), { words, doubles } = memory;
-        [words[at >> 2], words[at + 16 >> 2], words[at + 64 >> 2]] = [64, at + 64, 3];  // a description, its bound: a ball
+        [words[at >> 2], words[at + 16 >> 2], words[at + 64 >> 2]] = [64, at + 64, 3];  // a description, its bound: a sphere
         doubles.set([0, 0, -5, 1], at + 192 >> 3);
         memory.call('world_add', world, at, at + 224);
         assert.throws(() => memory.call('world_update', world, 0), refused('unsupported'));
@@ -313,13 +313,13 @@ for (const build of BUILDS) {
     here('a mesh with a missing corner is refused', () => assert.throws(
         () => new crofton.World().addMesh(new Float32Array(9), new Uint32Array([0, 1, 3])), CroftonError));
 
-    const ball = { center: [0, 0, -5], radius: 1 }, cube = { center: [0, 0, 0], halfExtents: [1, 1, 1] };
-    const oneBall = () => { const world = new crofton.World(), object = world.add({ ball }); world.update(); return { world, object }; };
+    const sphere = { center: [0, 0, -5], radius: 1 }, cube = { center: [0, 0, 0], halfExtents: [1, 1, 1] };
+    const oneSphere = () => { const world = new crofton.World(), object = world.add({ sphere }); world.update(); return { world, object }; };
     for (const [what, wrong] of Object.entries({
         'a ray of four numbers': (world) => world.raycast([0, 0, 0], [0, 0, -1, 0]),
         'an origin of two numbers': (world) => world.raycast([0, 0], [0, 0, -1]),
-        'a center of two numbers': (world) => world.add({ ball: { center: [3, 0], radius: 1 } }),
-        'a center of four numbers': (world) => world.add({ ball: { center: [3, 0, 0, 1], radius: 1 } }),
+        'a center of two numbers': (world) => world.add({ sphere: { center: [3, 0], radius: 1 } }),
+        'a center of four numbers': (world) => world.add({ sphere: { center: [3, 0, 0, 1], radius: 1 } }),
         'half extents of two numbers': (world) => world.add({ box: { ...cube, halfExtents: [1, 1] } }),
         'half extents that are one number': (world) => world.add({ box: { ...cube, halfExtents: 1 } }),
         'a center of a box of two numbers': (world) => world.add({ box: { ...cube, center: [0, 0] } }),
@@ -341,7 +341,7 @@ for (const build of BUILDS) {
         'a logger that is no function': () => crofton.setLogger('console'),
     })) {
         here(`${what}: an error, and the world is as it was`, () => {
-            const { world, object } = oneBall();
+            const { world, object } = oneSphere();
             assert.throws(() => wrong(world), CroftonError);
             assert.ok(world.contains(object) && world.count === 1);
         });
@@ -349,9 +349,9 @@ for (const build of BUILDS) {
     here('a bad item is named by its place', () => assert.throws(
         () => new crofton.Tree(new crofton.Boxes(3)).move([1, -1], new crofton.Boxes(2)), (error) => error.item === 1));
     here('vectors may be any array-like', () =>
-        assert.equal(oneBall().world.raycast({ length: 3, 0: 0, 1: 0, 2: 0 }, new Float32Array([0, 0, -1])).t, 4));
+        assert.equal(oneSphere().world.raycast({ length: 3, 0: 0, 1: 0, 2: 0 }, new Float32Array([0, 0, -1])).t, 4));
     here('a ray is answered where the memory grows during the call', () => {
-        const { world } = oneBall(), { memory } = world, { module } = memory, ask = module._crofton_world_raycast;
+        const { world } = oneSphere(), { memory } = world, { module } = memory, ask = module._crofton_world_raycast;
         try {
             module._crofton_world_raycast = (...given) => {
                 const before = memory.bytes.length, places = [];

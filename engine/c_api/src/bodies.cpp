@@ -60,8 +60,8 @@ void give_bounds(const Aabb& bounds, crofton_body_info& info) {
 
 }  // namespace
 
-crofton_status crofton_body_ball(float radius, crofton_body** body) {
-    return create_simple(body, __func__, [&] { return convex::Body::ball(radius); });
+crofton_status crofton_body_sphere(float radius, crofton_body** body) {
+    return create_simple(body, __func__, [&] { return convex::Body::sphere(radius); });
 }
 
 crofton_status crofton_body_capsule(float half_height, float radius, crofton_body** body) {
@@ -188,7 +188,7 @@ crofton_status crofton_body_get_info(const crofton_body* body, crofton_body_info
     if (const convex::Hull* hull = asked.hull()) {
         result.vertex_count = static_cast<std::uint32_t>(hull->vertices().size());
         result.face_count = static_cast<std::uint32_t>(hull->face_count());
-        result.excess = hull->excess();
+        result.max_overshoot = hull->max_overshoot();
     }
     write_growing(result, info);
     return CROFTON_OK;

@@ -60,7 +60,7 @@ class PlacedBody {
         status_ = use_.failed() ? use_.status() : set(*placed, function);
     }
     [[nodiscard]] crofton_status status() const { return status_; }
-    [[nodiscard]] convex::Placed placed() const { return {*body_, pose_}; }
+    [[nodiscard]] convex::BodyAtPose placed() const { return {*body_, pose_}; }
     [[nodiscard]] const convex::Body& body() const { return *body_; }
     [[nodiscard]] const RigidTransform& pose() const { return pose_; }
 
@@ -88,8 +88,8 @@ class PlacedPair {
     [[nodiscard]] crofton_status status() const {
         return first_.status() != CROFTON_OK ? first_.status() : second_.status();
     }
-    [[nodiscard]] convex::Placed first() const { return first_.placed(); }
-    [[nodiscard]] convex::Placed second() const { return second_.placed(); }
+    [[nodiscard]] convex::BodyAtPose first() const { return first_.placed(); }
+    [[nodiscard]] convex::BodyAtPose second() const { return second_.placed(); }
 
   private:
     PlacedBody first_, second_;

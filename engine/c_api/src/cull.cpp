@@ -136,7 +136,8 @@ crofton_status crofton_draw_limits_of_camera(const crofton_camera* camera, doubl
     if (!found) return report(found.error(), __func__);
     crofton_draw_limits result{};
     for (int k = 0; k < 3; ++k) result.eye[k] = found->eye[k];
-    if (found->radii != cull::DrawLimits::kNone) result.radii = found->radii;
+    if (found->max_distance_in_radii != cull::DrawLimits::kNone)
+        result.max_distance_in_radii = found->max_distance_in_radii;
     result.least_radius = found->least_radius;
     write_growing(result, limits);
     return CROFTON_OK;

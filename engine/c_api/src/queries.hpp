@@ -44,15 +44,16 @@ struct CullAsked {
     CROFTON_CHECK(read_growing(limits, function, given));
     CROFTON_CHECK(check_array(given.item_distances, given.item_count, function));
     CROFTON_CHECK(check_array(given.drawn_before, given.drawn_word_count, function));
-    if (given.longer != 0.0 && !(given.longer >= 1.0))
+    if (given.hysteresis != 0.0 && !(given.hysteresis >= 1.0))
         return report(CROFTON_OUT_OF_RANGE, function, "draw limits: `longer` is less than 1 or NaN");
     asked.limits = {.eye = to_vector(given.eye),
-                    .radii = given.radii != 0.0 ? given.radii : cull::DrawLimits::kNone,
+                    .max_distance_in_radii =
+                        given.max_distance_in_radii != 0.0 ? given.max_distance_in_radii : cull::DrawLimits::kNone,
                     .least_radius = given.least_radius,
                     .layer_distances = std::span(given.layer_distances, given.layer_distances ? 32 : 0),
                     .item_distances = std::span(given.item_distances, given.item_count),
                     .drawn_before = std::span(given.drawn_before, given.drawn_word_count),
-                    .longer = given.longer != 0.0 ? given.longer : 1.0};
+                    .hysteresis = given.hysteresis != 0.0 ? given.hysteresis : 1.0};
     asked.options.limits = &asked.limits;
     return CROFTON_OK;
 }
@@ -63,10 +64,11 @@ struct CullAsked {
     if (!options) return CROFTON_OK;
     crofton_cull_options given;
     CROFTON_CHECK(read_growing(options, function, given));
-    CROFTON_CHECK(check_array(given.among, given.among_words, function));
-    asked.options = {.mode = given.conservative ? cull::CullMode::conservative : cull::CullMode::exact,
-                     .order = given.tree_order ? cull::ResultOrder::tree : cull::ResultOrder::ascending,
-                     .among = std::span(given.among, given.among ? given.among_words : 0)};
+    CROFTON_CHECK(check_array(given.candidate_mask, given.candidate_words, function));
+    asked.options = {
+        .mode = given.conservative ? cull::CullMode::conservative : cull::CullMode::exact,
+        .order = given.tree_order ? cull::ResultOrder::tree : cull::ResultOrder::ascending,
+        .candidate_mask = std::span(given.candidate_mask, given.candidate_mask ? given.candidate_words : 0)};
     return read_limits(given.limits, function, asked);
 }
 
@@ -113,8 +115,8 @@ template <class Visible>
 [[nodiscard]] inline crofton_status give_statistics(const cull::Statistics& s, crofton_cull_statistics* statistics,
                                                     const char* function) {
     CROFTON_CHECK(check_struct(statistics, function));
-    *statistics = {sizeof *statistics, s.nodes_tested, s.boxes_tested, s.accepted_whole,
-                   s.straddling,       s.exact_tests,  s.improper};
+    *statistics = {sizeof *statistics, s.nodes_tested, s.boxes_tested,   s.accepted_whole,
+                   s.straddling,       s.exact_tests,  s.false_positives};
     return CROFTON_OK;
 }
 
@@ -124,7 +126,8 @@ template <class Visible>
     return status_of(validate(result, item), function);
 }
 
-[[nodiscard]] inline crofton_status to_ball(const double* center, double radius, const char* function, Sphere& result) {
+[[nodiscard]] inline crofton_status to_sphere(const double* center, double radius, const char* function,
+                                              Sphere& result) {
     CROFTON_CHECK(check_place(center, "center", function));
     CROFTON_CHECK(check_length(radius, "radius", function));
     result = {to_vector(center), radius};

@@ -94,11 +94,11 @@ crofton_status crofton_tree_within_box(const crofton_tree* tree, const crofton_b
     return items_within(*tree, to_box(box), layer_mask, items, capacity, found, __func__);
 }
 
-crofton_status crofton_tree_within_ball(const crofton_tree* tree, const double center[3], double radius,
-                                        uint32_t layer_mask, uint32_t* items, size_t capacity, size_t* found) {
+crofton_status crofton_tree_within_sphere(const crofton_tree* tree, const double center[3], double radius,
+                                          uint32_t layer_mask, uint32_t* items, size_t capacity, size_t* found) {
     const SharedUse use(tree, __func__);
     if (use.failed()) return use.status();
-    Sphere ball;
-    CROFTON_CHECK(to_ball(center, radius, __func__, ball));
-    return items_within(*tree, ball, layer_mask, items, capacity, found, __func__);
+    Sphere sphere;
+    CROFTON_CHECK(to_sphere(center, radius, __func__, sphere));
+    return items_within(*tree, sphere, layer_mask, items, capacity, found, __func__);
 }

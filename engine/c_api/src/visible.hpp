@@ -11,13 +11,13 @@
 struct crofton_visible_objects {
     static constexpr std::uint32_t kKind = 0x43724f09;
     crofton::capi::Header header;
-    crofton::VisibleObjects visible{};
+    crofton::ViewResult visible{};
     std::uint64_t serial = 0;
 };
 struct crofton_visible_in_views {
     static constexpr std::uint32_t kKind = 0x43724f0b;
     crofton::capi::Header header;
-    crofton::VisibleInViews visible{};
+    crofton::MultiViewResult visible{};
     std::uint64_t serial = 0;
 };
 

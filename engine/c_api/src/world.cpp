@@ -131,7 +131,7 @@ crofton_status to_bound(const crofton_bound& given, const char* function, Bound&
         case CROFTON_BOUND_ALIGNED_BOX:
             bound = Bound(Aabb{to_vector(given.min), to_vector(given.max)});
             return CROFTON_OK;
-        case CROFTON_BOUND_BALL:
+        case CROFTON_BOUND_SPHERE:
             bound = Bound(Sphere{to_vector(given.center), given.radius});
             return CROFTON_OK;
         default:

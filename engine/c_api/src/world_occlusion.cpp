@@ -62,7 +62,7 @@ crofton_status to_asked(const crofton_draw_limits* limits, const crofton_occlusi
 void add_options(const Asked& asked, ViewRequest& request) {
     request.occlusion = asked.occlusion;
     request.limits = asked.cull.options.limits;
-    request.among = asked.cull.options.among;
+    request.candidate_mask = asked.cull.options.candidate_mask;
     request.order = asked.cull.options.order;
     request.mode = asked.cull.options.mode;
 }

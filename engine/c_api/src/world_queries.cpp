@@ -66,8 +66,8 @@ crofton_status ask(const crofton_world* world, Value* value, const char* functio
 crofton_status to_capsule(const double* begin, const double* end, double radius, const char* function,
                           collide::Capsule& capsule) {
     Sphere at_begin, at_end;
-    CROFTON_CHECK(to_ball(begin, radius, function, at_begin));
-    CROFTON_CHECK(to_ball(end, radius, function, at_end));
+    CROFTON_CHECK(to_sphere(begin, radius, function, at_begin));
+    CROFTON_CHECK(to_sphere(end, radius, function, at_end));
     capsule = {at_begin.center, at_end.center, radius};
     return CROFTON_OK;
 }
@@ -236,10 +236,10 @@ crofton_status crofton_world_overlap_box(const crofton_world* world, const croft
     return overlap(world, shape, layer_mask, found, __func__);
 }
 
-crofton_status crofton_world_overlap_ball(const crofton_world* world, const double center[3], double radius,
-                                          uint32_t layer_mask, crofton_found* found) {
+crofton_status crofton_world_overlap_sphere(const crofton_world* world, const double center[3], double radius,
+                                            uint32_t layer_mask, crofton_found* found) {
     Sphere shape;
-    CROFTON_CHECK(to_ball(center, radius, __func__, shape));
+    CROFTON_CHECK(to_sphere(center, radius, __func__, shape));
     return overlap(world, shape, layer_mask, found, __func__);
 }
 
@@ -257,11 +257,11 @@ crofton_status crofton_world_closest_to_box(const crofton_world* world, const cr
     return find_closest(world, max_distance, layer_mask, closest, __func__, shape);
 }
 
-crofton_status crofton_world_closest_to_ball(const crofton_world* world, const double center[3], double radius,
-                                             double max_distance, uint32_t layer_mask,
-                                             crofton_closest_object* closest) {
+crofton_status crofton_world_closest_to_sphere(const crofton_world* world, const double center[3], double radius,
+                                               double max_distance, uint32_t layer_mask,
+                                               crofton_closest_object* closest) {
     Sphere shape;
-    CROFTON_CHECK(to_ball(center, radius, __func__, shape));
+    CROFTON_CHECK(to_sphere(center, radius, __func__, shape));
     return find_closest(world, max_distance, layer_mask, closest, __func__, shape);
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 ViewRequest to_request(const CullAsked& asked) {
     return {.limits = asked.options.limits,
-            .among = asked.options.among,
+            .candidate_mask = asked.options.candidate_mask,
             .order = asked.options.order,
             .mode = asked.options.mode};
 }

@@ -62,7 +62,7 @@ Result<glm::dvec3> vector_of(const std::string& option, const std::string& text)
     return value;
 }
 
-BodyAnswer ask_hulls(const std::string& mode, const convex::Placed& a, const convex::Placed& b) {
+BodyAnswer ask_hulls(const std::string& mode, const convex::BodyAtPose& a, const convex::BodyAtPose& b) {
     BodyAnswer answer;
     const bool hit = convex::intersects(a, b);
     answer.document["hit"] = hit;
@@ -93,7 +93,7 @@ BodyAnswer ask_hulls(const std::string& mode, const convex::Placed& a, const con
     return answer;
 }
 
-Result<BodyAnswer> ask_cast(const convex::Placed& a, const convex::Placed& b, const convex::Motion& motion,
+Result<BodyAnswer> ask_cast(const convex::BodyAtPose& a, const convex::BodyAtPose& b, const convex::Motion& motion,
                             double duration) {
     const auto impact = convex::cast(a, {}, b, motion, {.duration = duration});
     if (!impact) return tl::unexpected<Error>(impact.error());

@@ -30,9 +30,9 @@ struct BodyAnswer {
     Json document;
 };
 // `mode` is any, all or distance.
-[[nodiscard]] BodyAnswer ask_hulls(const std::string& mode, const convex::Placed& a, const convex::Placed& b);
+[[nodiscard]] BodyAnswer ask_hulls(const std::string& mode, const convex::BodyAtPose& a, const convex::BodyAtPose& b);
 // B moves. Errors: of convex::cast.
-[[nodiscard]] Result<BodyAnswer> ask_cast(const convex::Placed& a, const convex::Placed& b,
+[[nodiscard]] Result<BodyAnswer> ask_cast(const convex::BodyAtPose& a, const convex::BodyAtPose& b,
                                           const convex::Motion& motion, double duration);
 
 }  // namespace crofton::cli

@@ -191,7 +191,7 @@ int run_bodies(const CollideRequest& request, const RigidTransform& pose) {
         for (const FileBody* file : {&*a, &*b})
             answer.document["hulls"].push_back({{"vertices", file->hull->vertices().size()},
                                                 {"faces", file->hull->face_count()},
-                                                {"excess", file->hull->excess()},
+                                                {"max_overshoot", file->hull->max_overshoot()},
                                                 {"volume", file->hull->mass().volume}});
     }
     if (request.json_path != "-") std::printf("%s\n", answer.sentence.c_str());

@@ -16,7 +16,7 @@ struct BoundsRun {
     std::string criterion_name, json_path;
     measure::Criterion criterion;
     bool only_best = false;
-    double region = 20.0;                     // radius of the ball that queries hit, over that of the mesh's sphere
+    double region = 20.0;                     // radius of the sphere that queries hit, over that of the mesh's sphere
     double triangle_cost = 1.0;               // nanoseconds for a triangle that is passed on
     std::vector<glm::dvec3> directions = {};  // half of a k-DOP's, the user's own; empty: none
     ReadOptions read = {};

@@ -57,9 +57,9 @@ Result<FittedBox> fit_box(std::span<const glm::dvec3> points, const measure::Cri
         fit::ExactOptions options;
         options.criterion = criterion;
         if (request.budget_seconds > 0.0) options.time_budget_seconds = request.budget_seconds;
-        const auto tell = [](const fit::Progress&) { return !interrupted(); };
+        const auto tell = [](const fit::Progress&) { return interrupted(); };
         const FunctionRef<bool(const fit::Progress&)> asked(tell);
-        options.progress = &asked;
+        options.should_stop = &asked;
         const auto exact = fit::fit_exact(points, options);
         if (!exact) return tl::unexpected(exact.error());
         fitted.box = exact->box;
@@ -204,7 +204,7 @@ void add_fit_command(CommandLine& line) {
                                       "it: all of them, or the "
                                       "best for each mesh")
                               .one_of({"all", "best"});
-    command.option("--region", request->region, "--bounds: queries hit a ball of so many times the mesh's radius")
+    command.option("--region", request->region, "--bounds: queries hit a sphere of so many times the mesh's radius")
         .between(1.0, 1e9)
         .show_default()
         .needs(bounds);

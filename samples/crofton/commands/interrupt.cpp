@@ -137,8 +137,8 @@ void finish_what_there_is() {
     is_finishing = true;
 }
 
-bool go_on(void*, double) {
-    return !interrupted();
+bool should_stop(void*, double) {
+    return interrupted();
 }
 
 }  // namespace crofton::cli

@@ -27,7 +27,7 @@ void catch_interrupts();
 // To be called when the long work is over, before its results are put together and written: that may take its time.
 void finish_what_there_is();
 
-// For progress callbacks of the engine: false ends the work.
-[[nodiscard]] bool go_on(void* user, double fraction);
+// A crofton::StopCallback: stops the engine's work once the command is interrupted.
+[[nodiscard]] bool should_stop(void* user, double share_done);
 
 }  // namespace crofton::cli

@@ -82,7 +82,7 @@ VerifyRow row(const char* claim, const char* formula, double exact, double facto
 void hull_rows(std::span<const glm::dvec3> points, const ConvexHull& hull, const measure::IntrinsicVolumes& exact,
                const lines::LineSource& source, const MeasureOptions& options, std::vector<VerifyRow>& rows) {
     const std::uint64_t blocks = options.lines / lines::LineSource::kBlock + 1;
-    const double ball_area = source.surface_area();
+    const double sphere_area = source.surface_area();
     if (hull.rank == 3) {
         const HalfSpaces solid(points, hull);
         Mean hits, chords;
@@ -95,9 +95,9 @@ void hull_rows(std::span<const glm::dvec3> points, const ConvexHull& hull, const
                 chords.add(chord);
             }
         }
-        rows.push_back(row("its hull's surface area F", "share of lines that hit · F0", exact.area, ball_area, hits));
+        rows.push_back(row("its hull's surface area F", "share of lines that hit · F0", exact.area, sphere_area, hits));
         rows.push_back(
-            row("its hull's volume V", "mean chord, 0 for a miss · F0 / 4", exact.volume, 0.25 * ball_area, chords));
+            row("its hull's volume V", "mean chord, 0 for a miss · F0 / 4", exact.volume, 0.25 * sphere_area, chords));
     }
     study::ConvexBody body;
     for (const std::uint32_t v : hull.vertices) body.points.push_back(points[v]);
@@ -137,7 +137,7 @@ Result<void> run_measure(const MeasureOptions& options) {
                                          {"F0", source.surface_area()},
                                          {"mean_crossings", seen.mean_crossings},
                                          {"rows", json_of(rows)}});
-    std::printf("%s: %zu triangles; %llu uniform lines through a ball around it, whose surface area is F0 = %.6g\n\n",
+    std::printf("%s: %zu triangles; %llu uniform lines through a sphere around it, whose surface area is F0 = %.6g\n\n",
                 options.file.c_str(), mesh->triangle_count(), static_cast<unsigned long long>(seen.lines),
                 source.surface_area());
     std::fputs(table_of(rows).c_str(), stdout);

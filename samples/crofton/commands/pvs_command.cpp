@@ -90,9 +90,9 @@ std::uint32_t surface_steps_of(const Job& job) {
 struct PartProgress {
     ProgressBar bar;
     explicit PartProgress(const char* name) : bar(name, 1000) {}
-    static bool go_on(void* user, double share) {
+    static bool should_stop(void* user, double share) {
         static_cast<PartProgress*>(user)->bar.set(static_cast<std::size_t>(1000.0 * share));
-        return !interrupted();
+        return interrupted();
     }
 };
 
@@ -123,7 +123,8 @@ Result<void> trace(Job& job, pvs::Bake& bake, Executor& executor) {
         double seconds = kSaveEvery;
         if (job.options.seconds > 0.0) seconds = std::min(seconds, job.options.seconds - seconds_since(start));
         const auto ran = bake.run(
-            {.seconds = seconds, .shard = job.shard, .go_on = PartProgress::go_on, .user = &progress}, executor);
+            {.seconds = seconds, .shard = job.shard, .should_stop = PartProgress::should_stop, .user = &progress},
+            executor);
         if (!ran) return ran;
         done = interrupted() || bake.lines_done() == before ||
                (job.options.seconds > 0.0 && seconds_since(start) >= job.options.seconds);
@@ -171,7 +172,7 @@ Result<void> write_outputs(const Job& job, const pvs::Pvs& sets, Executor& execu
         cell = sets.cells().find({x[0], x[1], x[2]});
     }
     if (cell == pvs::kNoCell) return fail(ErrorCode::out_of_range, kNoItem, "--eye: no cell holds it");
-    return write_file(options.svg, pvs_svg(sets, job.scene.subject, cell));
+    return write_file(options.svg, pvs_svg(sets, job.scene.geometry, cell));
 }
 
 using Views = std::optional<pipeline::PvsViewFigures>;
@@ -227,7 +228,7 @@ Json figures(const Job& job, const pvs::Bake& bake, const pvs::Pvs& sets, std::s
             {"cells_open", kinds[3]},
             {"eyes", {bounds.min.x, bounds.min.y, bounds.min.z, bounds.max.x, bounds.max.y, bounds.max.z}},
             {"objects", sets.object_count()},
-            {"triangles", job.scene.subject.object_of.size()},
+            {"triangles", job.scene.geometry.object_of.size()},
             {"occluders", job.scene.occluders.size()},
             {"pairs", counts.all()},
             {"seen", share(counts.seen)},
@@ -282,7 +283,7 @@ Result<pvs::Pvs> finish_sets(Job& job, const pvs::Bake& bake, Executor& executor
                          {.near_radius = job.options.near_radius,
                           .halvings = job.options.halvings,
                           .surface_steps = surface_steps_of(job),
-                          .go_on = PartProgress::go_on,
+                          .should_stop = PartProgress::should_stop,
                           .user = &progress},
                          executor);
     job.proof_seconds = seconds_since(start);
@@ -293,13 +294,13 @@ Result<pvs::Pvs> finish_sets(Job& job, const pvs::Bake& bake, Executor& executor
 Result<Views> look_from_places(const Job& job, const pvs::Pvs& sets, Executor& executor) {
     if (job.options.views == 0 || interrupted()) return Views{};
     PartProgress progress("pvs: views");
-    const auto looked = pipeline::look_at_views(job.source.scene, job.scene.subject, sets,
+    const auto looked = pipeline::look_at_views(job.source.scene, job.scene.geometry, sets,
                                                 {.views = job.options.views,
                                                  .seed = job.options.seed,
                                                  .near_radius = job.options.near_radius,
                                                  .occluders = job.scene.found,
                                                  .in_metres = job.source.in_metres,
-                                                 .go_on = PartProgress::go_on,
+                                                 .should_stop = PartProgress::should_stop,
                                                  .user = &progress},
                                                 executor);
     if (!looked && looked.error().code == ErrorCode::cancelled) return Views{};
@@ -312,7 +313,7 @@ Result<int> run_pvs(const PvsRequest& options) {
     ThreadPool pool(options.threads);
     auto job = make_job(options, pool);
     if (!job) return tl::unexpected(job.error());
-    auto bake = pvs::Bake::create(job->scene.subject, job->cells,
+    auto bake = pvs::Bake::create(job->scene.geometry, job->cells,
                                   {.epsilon = options.epsilon,
                                    .confidence = options.confidence,
                                    .seed = options.seed,

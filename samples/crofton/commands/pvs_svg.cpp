@@ -15,8 +15,8 @@ constexpr double kMapWidth = 1200.0;
 
 class Map {
   public:
-    Map(const pvs::Pvs& pvs, const pvs::Subject& subject, std::uint32_t cell)
-        : pvs_(pvs), subject_(subject), cell_(cell), bounds_(pvs.cells().bounds()) {
+    Map(const pvs::Pvs& pvs, const pvs::BakeGeometry& geometry, std::uint32_t cell)
+        : pvs_(pvs), geometry_(geometry), cell_(cell), bounds_(pvs.cells().bounds()) {
         const glm::dvec3 room = 0.1 * (bounds_.max - bounds_.min);
         bounds_.min -= room, bounds_.max += room;
         scale_ = kMapWidth / (bounds_.max.x - bounds_.min.x);
@@ -60,14 +60,14 @@ class Map {
     // The largest first: the ground must not cover what stands on it.
     void objects() {
         std::vector<std::pair<double, std::uint32_t>> order;
-        for (std::uint32_t o = 0; o < subject_.boxes.size(); ++o) {
+        for (std::uint32_t o = 0; o < geometry_.boxes.size(); ++o) {
             if (!pvs_.is_baked(o)) continue;
-            const auto ring = ring_of(subject_.boxes[o]);
+            const auto ring = ring_of(geometry_.boxes[o]);
             order.emplace_back(-glm::length(glm::cross(ring[1] - ring[0], ring[3] - ring[0])), o);
         }
         std::sort(order.begin(), order.end());
         for (const auto& [size, o] : order) {
-            const auto ring = ring_of(subject_.boxes[o]);
+            const auto ring = ring_of(geometry_.boxes[o]);
             svg_ += "<path d='";
             for (std::size_t i = 0; i < 4; ++i) print(i ? "L%.1f %.1f" : "M%.1f %.1f", x(ring[i]), z(ring[i]));
             print("Z' fill='%s' stroke='#00000055' stroke-width='0.5'/>\n", color_of(pvs_.state(cell_, o)));
@@ -129,7 +129,7 @@ class Map {
     [[nodiscard]] double z(const glm::dvec3& p) const { return scale_ * (p.z - bounds_.min.z); }
 
     const pvs::Pvs& pvs_;
-    const pvs::Subject& subject_;
+    const pvs::BakeGeometry& geometry_;
     std::uint32_t cell_;
     Aabb bounds_;
     double scale_ = 1.0;
@@ -138,8 +138,8 @@ class Map {
 
 }  // namespace
 
-std::string pvs_svg(const pvs::Pvs& pvs, const pvs::Subject& subject, std::uint32_t cell) {
-    return Map(pvs, subject, cell).draw();
+std::string pvs_svg(const pvs::Pvs& pvs, const pvs::BakeGeometry& geometry, std::uint32_t cell) {
+    return Map(pvs, geometry, cell).draw();
 }
 
 }  // namespace crofton::cli

@@ -99,7 +99,7 @@ Result<void> solve(const RadiosityOptions& options, radiosity::Solver& solver, E
                solver.share_within(kDeviations * options.error) >= kPatchesWithin;
     };
     ProgressBar bar("radiosity", 1000);
-    while (!done() && solver.run([](void*) { return !interrupted(); }, nullptr, executor)) {
+    while (!done() && solver.run(should_stop, nullptr, executor)) {
         const double share = options.error > 0.0
                                  ? std::pow(options.error / solver.relative_error(), 2.0)
                                  : static_cast<double>(solver.lines_traced()) / static_cast<double>(options.lines);
@@ -112,9 +112,9 @@ Result<void> solve(const RadiosityOptions& options, radiosity::Solver& solver, E
 
 struct LightProgress {
     ProgressBar bar{"radiosity", 1000};
-    static bool go_on(void* user, double share) {
+    static bool should_stop(void* user, double share) {
         static_cast<LightProgress*>(user)->bar.set(static_cast<std::size_t>(1000.0 * share));
-        return !interrupted();
+        return interrupted();
     }
 };
 
@@ -128,7 +128,7 @@ Result<void> solve(const RadiosityOptions& options, const pvs::Shard& shard, rad
         const std::uint64_t before = bake.runs_done();
         const auto ran = bake.run({.seconds = kSaveLightEvery,
                                    .shard = {shard.index, shard.count},
-                                   .go_on = LightProgress::go_on,
+                                   .should_stop = LightProgress::should_stop,
                                    .user = &progress},
                                   executor);
         if (!ran) return ran;

@@ -7,9 +7,9 @@
 #include "json/json.hpp"
 
 namespace crofton::cli {
-int report_error(std::string_view subject, const Error& error) {
-    std::fprintf(stderr, "crofton: %.*s%s%s", static_cast<int>(subject.size()), subject.data(),
-                 subject.empty() ? "" : ": ", error.message.c_str());
+int report_error(std::string_view geometry, const Error& error) {
+    std::fprintf(stderr, "crofton: %.*s%s%s", static_cast<int>(geometry.size()), geometry.data(),
+                 geometry.empty() ? "" : ": ", error.message.c_str());
     if (error.item != kNoItem) std::fprintf(stderr, " (item %llu)", static_cast<unsigned long long>(error.item));
     std::fputc('\n', stderr);
     return error.code == ErrorCode::cancelled ? kInterrupted : kBadInput;

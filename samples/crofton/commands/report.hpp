@@ -11,7 +11,7 @@
 namespace crofton::cli {
 
 // "crofton: FILE: message (item N)" to stderr; returns kBadInput, or kInterrupted for what was cancelled.
-int report_error(std::string_view subject, const Error& error);
+int report_error(std::string_view geometry, const Error& error);
 
 using assets::read_file;
 using assets::write_file;

@@ -47,7 +47,7 @@ Result<Method> method_from(const std::string& name) {
 }
 
 triangulate::TriangulateOptions limits_of(const TriangulateOptions& options, Method method) {
-    triangulate::TriangulateOptions limits{.method = method, .seconds = options.seconds, .progress = go_on};
+    triangulate::TriangulateOptions limits{.method = method, .seconds = options.seconds, .should_stop = should_stop};
     constexpr double kMost = 1e12;
     if (options.is_work_given)
         limits.work = options.work < kMost ? static_cast<std::uint64_t>(1e6 * options.work) : limits.kUnlimitedWork;

@@ -76,8 +76,8 @@ bool is_baked_of(const pvs::Pvs& pvs, const scene::Scene& scene) {
     std::vector<scene::InstanceId> moving;
     for (scene::InstanceId i = 0; i < pvs.object_count(); ++i)
         if (!pvs.is_baked(i)) moving.push_back(i);
-    const auto subject = pvs::subject_of(scene, moving);
-    return subject && pvs::fingerprint_of(*subject) == pvs.subject_fingerprint();
+    const auto geometry = pvs::geometry_of(scene, moving);
+    return geometry && pvs::fingerprint_of(*geometry) == pvs.geometry_fingerprint();
 }
 
 Result<BakedParts> load_baked_parts(const std::string& path, const scene::Scene& scene,

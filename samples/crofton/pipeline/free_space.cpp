@@ -57,8 +57,8 @@ std::uint32_t count_distinct(std::vector<std::uint32_t>& objects) {
 
 }  // namespace
 
-FreeSpace::FreeSpace(pvs::Subject subject, lines::LineTracer tracer, const Aabb& focus)
-    : subject_(std::move(subject)), tracer_(std::move(tracer)) {
+FreeSpace::FreeSpace(pvs::BakeGeometry geometry, lines::LineTracer tracer, const Aabb& focus)
+    : geometry_(std::move(geometry)), tracer_(std::move(tracer)) {
     const glm::dvec3 size = focus.max - focus.min;
     size_ = std::hypot(size.x, size.z);
 }
@@ -70,11 +70,11 @@ std::optional<FreeSpace> FreeSpace::find(const scene::Scene& scene, const Aabb& 
     for (scene::InstanceId i = 0; i < scene.instance_count(); ++i)
         if (!scene.is_removed(i)) triangles += scene.mesh(scene.mesh_of(i)).triangle_count();
     if (triangles > kMostTriangles) return std::nullopt;
-    auto subject = pvs::subject_of(scene);
-    if (!subject) return std::nullopt;
-    auto tracer = lines::LineTracer::build(subject->mesh);
+    auto geometry = pvs::geometry_of(scene);
+    if (!geometry) return std::nullopt;
+    auto tracer = lines::LineTracer::build(geometry->mesh);
     if (!tracer) return std::nullopt;
-    FreeSpace space(std::move(*subject), std::move(*tracer), focus);
+    FreeSpace space(std::move(*geometry), std::move(*tracer), focus);
     const glm::dvec3 size = focus.max - focus.min;
     const double share = std::min(0.2 * std::max(size.y, 1e-3 * size.x), 0.01 * space.size_);
     if (space.find_places(focus, options, kPersonEye) && space.fits_a_person(focus, options.in_metres)) return space;
@@ -108,7 +108,7 @@ bool FreeSpace::find_places(const Aabb& focus, const FreeSpaceOptions& options, 
         for (std::uint32_t x = 0; x < columns_.x; ++x) {
             const glm::dvec3 at(focus.min.x + (x + 0.5) / columns_.x * (focus.max.x - focus.min.x), 0.0,
                                 focus.min.z + (z + 0.5) / columns_.y * (focus.max.z - focus.min.z));
-            lines.push_back({glm::dvec3(at.x - subject_.origin.x, top, at.z - subject_.origin.z), {0.0, -1.0, 0.0}});
+            lines.push_back({glm::dvec3(at.x - geometry_.origin.x, top, at.z - geometry_.origin.z), {0.0, -1.0, 0.0}});
         }
     lines::LineHits found;
     tracer_.all_hits(lines, found);
@@ -144,7 +144,7 @@ void FreeSpace::add_places(const Column& column, const Aabb& focus, const FreeSp
         const bool is_within = covered && (back || column.hits[i - 1].front);
         const double room = covered ? column.depth(i) - column.depth(i - 1) : HUGE_VAL;
         if (room < least || (back && !covered)) continue;
-        const glm::dvec3 eye = column.top + glm::dvec3(0.0, eye_height_ - column.depth(i), 0.0) + subject_.origin;
+        const glm::dvec3 eye = column.top + glm::dvec3(0.0, eye_height_ - column.depth(i), 0.0) + geometry_.origin;
         if (eye.y < focus.min.y || eye.y > focus.max.y + 2.0 * eye_height_) continue;
         if (!options.within.is_empty() &&
             (glm::any(glm::lessThan(eye, options.within.min)) || glm::any(glm::greaterThan(eye, options.within.max))))
@@ -204,7 +204,7 @@ double FreeSpace::surrounded_share(const glm::dvec3& eye) const {
     std::array<lines::Hit, kLevelLines> hits;
     for (std::size_t i = 0; i < queries.size(); ++i) {
         const double angle = 2.0 * std::numbers::pi * (static_cast<double>(i) + 0.37) / kLevelLines;
-        queries[i].line = {eye - subject_.origin, {std::sin(angle), 0.0, std::cos(angle)}};
+        queries[i].line = {eye - geometry_.origin, {std::sin(angle), 0.0, std::cos(angle)}};
     }
     tracer_.first_hits(queries, hits);
     const auto met = std::count_if(hits.begin(), hits.end(),
@@ -263,7 +263,7 @@ bool FreeSpace::is_free(const glm::dvec3& from, const glm::dvec3& to) const {
     std::array<lines::Hit, 4> hits;
     const std::array<glm::dvec3, 4> offsets{glm::dvec3(0.0), half * across, -half * across,
                                             glm::dvec3(0.0, -kKnee * eye_height_, 0.0)};
-    for (std::size_t i = 0; i < offsets.size(); ++i) queries[i].line = {from - subject_.origin + offsets[i], along};
+    for (std::size_t i = 0; i < offsets.size(); ++i) queries[i].line = {from - geometry_.origin + offsets[i], along};
     tracer_.first_hits(queries, hits);
     return std::all_of(hits.begin(), hits.end(), [&](const lines::Hit& hit) {
         return hit.triangle == lines::Hit::kNothing || static_cast<double>(hit.t) > 1.001 * length;
@@ -272,7 +272,7 @@ bool FreeSpace::is_free(const glm::dvec3& from, const glm::dvec3& to) const {
 
 double FreeSpace::distance_to_thing(const glm::dvec3& eye, const glm::dvec3& direction) const {
     lines::FirstHitQuery query;
-    query.line = {eye - subject_.origin, direction};
+    query.line = {eye - geometry_.origin, direction};
     lines::Hit hit;
     tracer_.first_hits({&query, 1}, {&hit, 1});
     return hit.triangle == lines::Hit::kNothing ? HUGE_VAL : static_cast<double>(hit.t);
@@ -387,7 +387,7 @@ FreeSpace::Sight FreeSpace::look_around(const glm::dvec3& eye) const {
     std::vector<lines::FirstHitQuery> queries(kDirections);
     Sight sight;
     sight.hits.resize(kDirections);
-    for (std::uint32_t i = 0; i < kDirections; ++i) queries[i].line = {eye - subject_.origin, direction_of(i)};
+    for (std::uint32_t i = 0; i < kDirections; ++i) queries[i].line = {eye - geometry_.origin, direction_of(i)};
     tracer_.first_hits(queries, sight.hits);
     std::vector<std::uint32_t> objects;
     double level = 0.0, level_hits = 0.0;
@@ -398,7 +398,7 @@ FreeSpace::Sight FreeSpace::look_around(const glm::dvec3& eye) const {
         level_hits += is_level && hit ? 1.0 : 0.0;
         if (!hit) continue;
         sight.backs += sight.hits[i].front ? 0.0 : 1.0 / kDirections;
-        objects.push_back(subject_.object_of[sight.hits[i].triangle]);
+        objects.push_back(geometry_.object_of[sight.hits[i].triangle]);
     }
     sight.surrounded = level_hits / level;
     sight.objects = count_distinct(objects);
@@ -418,7 +418,7 @@ glm::dvec3 FreeSpace::best_heading(const Sight& sight) const {
         for (std::uint32_t i = 0; i < kDirections; ++i) {
             const lines::Hit& hit = sight.hits[i];
             if (glm::dot(direction_of(i), forward) < 0.75 || hit.triangle == lines::Hit::kNothing) continue;
-            objects.push_back(subject_.object_of[hit.triangle]);
+            objects.push_back(geometry_.object_of[hit.triangle]);
             openness += std::min(static_cast<double>(hit.t) / size_, 1.0) / kDirections;
         }
         const double worth = count_distinct(objects) + 20.0 * openness;

@@ -54,7 +54,7 @@ class FreeSpace {
     [[nodiscard]] std::optional<Stand> best_stand() const;
 
   private:
-    FreeSpace(pvs::Subject subject, lines::LineTracer tracer, const Aabb& focus);
+    FreeSpace(pvs::BakeGeometry geometry, lines::LineTracer tracer, const Aabb& focus);
     // Places for this height; false where there are none, or they are of no use.
     bool find_places(const Aabb& focus, const FreeSpaceOptions& options, double eye_height);
     struct Column;
@@ -84,7 +84,7 @@ class FreeSpace {
     [[nodiscard]] glm::dvec3 best_heading(const Sight& sight) const;
     [[nodiscard]] double level_share() const;  // of ways that hardly rise or fall
 
-    pvs::Subject subject_;
+    pvs::BakeGeometry geometry_;
     lines::LineTracer tracer_;
     double eye_height_ = 0.0, spacing_ = 0.0, size_ = 0.0;
     glm::uvec2 columns_{0};

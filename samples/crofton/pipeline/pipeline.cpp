@@ -68,7 +68,7 @@ struct Pipeline::State {
     WorldStatistics tests;                // of the last update in which anything moved: its pairs are still those
     std::shared_ptr<const SceneOccluders> occluders;
     std::vector<ObjectHandle> occluding;  // by node; null: hides nothing. Empty until occlusion is first asked for
-    VisibleObjects visible, not_hidden;
+    ViewResult visible, not_hidden;
     cull::VisibleSet visible_in_list;  // CullMode::flat
     std::vector<cull::Verdict> verdicts;
     std::vector<scene::InstanceId> visible_ids;
@@ -396,7 +396,7 @@ std::span<const scene::InstanceId> Pipeline::movers() const {
 const World& Pipeline::world() const {
     return state_->world;
 }
-const VisibleObjects& Pipeline::not_hidden() const {
+const ViewResult& Pipeline::not_hidden() const {
     return state_->not_hidden;
 }
 

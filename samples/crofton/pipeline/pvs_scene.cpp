@@ -17,10 +17,10 @@ constexpr double kLowestEye = 0.05;
 
 Result<PvsScene> make_pvs_scene(const assets::SceneSource& source, bool with_occluders, Executor& executor) {
     const scene::Scene& scene = source.scene;
-    auto subject = pvs::subject_of(scene, source.movers);
-    if (!subject) return tl::unexpected(subject.error());
+    auto geometry = pvs::geometry_of(scene, source.movers);
+    if (!geometry) return tl::unexpected(geometry.error());
     PvsScene result;
-    result.subject = std::move(*subject);
+    result.geometry = std::move(*geometry);
     if (!with_occluders) return result;
     SceneOccluders found = find_scene_occluders(scene, executor);
     std::set<scene::NodeId> moving;

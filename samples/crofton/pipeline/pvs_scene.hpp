@@ -12,12 +12,12 @@
 namespace crofton::pipeline {
 
 struct PvsScene {
-    pvs::Subject subject;                         // objects are instances; the source's movers are left out
+    pvs::BakeGeometry geometry;                   // objects are instances; the source's movers are left out
     std::shared_ptr<const SceneOccluders> found;  // but those of movers; nullptr without
     std::vector<pvs::PlacedOccluder> occluders;   // in `found`
 };
 
-// The scene has been updated. Errors: as pvs::subject_of.
+// The scene has been updated. Errors: as pvs::geometry_of.
 [[nodiscard]] Result<PvsScene> make_pvs_scene(const assets::SceneSource& source, bool with_occluders,
                                               Executor& executor = serial_executor());
 

@@ -28,7 +28,7 @@ constexpr double kFarthestNear = 0.1, kNearestNear = 1e-4;
 
 // What all views share.
 struct Looked {
-    const pvs::Subject& subject;
+    const pvs::BakeGeometry& geometry;
     const pvs::Pvs& sets;
     const PvsViewOptions& options;
     mesh::MeshTree tree;
@@ -51,9 +51,9 @@ struct Counts {
 
 // Whether a camera at `eye` could turn all around, and its near plane would cut nothing.
 bool has_room(const Looked& all, const glm::dvec3& eye) {
-    const auto ball = convex::Body::ball(all.reach);
+    const auto ball = convex::Body::sphere(all.reach);
     const auto mesh = convex::Body::mesh(all.tree);
-    return ball && mesh && !convex::intersects({*mesh, {}}, {*ball, {glm::dmat3(1.0), eye - all.subject.origin}});
+    return ball && mesh && !convex::intersects({*mesh, {}}, {*ball, {glm::dmat3(1.0), eye - all.geometry.origin}});
 }
 
 // A place, moved sideways by up to half the distance of two, if nothing lies between. Cells and places are both
@@ -69,7 +69,7 @@ std::optional<Camera> random_view(const Looked& all, std::uint32_t number, croft
         const glm::dvec3 eye = place + move;
         const Aabb& cells = all.sets.cells().bounds();
         if (glm::any(glm::lessThan(eye, cells.min)) || glm::any(glm::greaterThan(eye, cells.max))) continue;
-        if (mesh::hits_any({place - all.subject.origin, move, 1.0}, all.tree) || !has_room(all, eye)) continue;
+        if (mesh::hits_any({place - all.geometry.origin, move, 1.0}, all.tree) || !has_room(all, eye)) continue;
         Camera camera;
         camera.position = eye;
         camera.forward = {ahead.x, 0.0, ahead.y};
@@ -97,8 +97,8 @@ Vector<std::uint32_t> owned_pixels(const Looked& all, const Camera& camera) {
     const auto [width, height] = std::pair(all.options.width, all.options.height);
     const glm::dvec3 right = glm::normalize(glm::cross(camera.forward, camera.up));
     const double half_height = std::tan(0.5 * camera.fov_y), half_width = half_height * camera.aspect;
-    const glm::dvec3 eye = camera.position - all.subject.origin;
-    Vector<std::uint32_t> pixels(all.subject.boxes.size(), 0);
+    const glm::dvec3 eye = camera.position - all.geometry.origin;
+    Vector<std::uint32_t> pixels(all.geometry.boxes.size(), 0);
     Vector<Ray> rays;
     Vector<std::optional<mesh::RayHit>> hits(std::size_t{kTile} * width);
     for (std::uint32_t y = 0; y < height; y += kTile) {
@@ -113,14 +113,14 @@ Vector<std::uint32_t> owned_pixels(const Looked& all, const Camera& camera) {
                 }
         mesh::raycast(rays, all.tree, hits);
         for (std::size_t i = 0; i < rays.size(); ++i)
-            if (hits[i]) ++pixels[all.subject.object_of[hits[i]->triangle]];
+            if (hits[i]) ++pixels[all.geometry.object_of[hits[i]->triangle]];
     }
     return pixels;
 }
 
 // By object: whether the view finds it, occlusion considered.
-Vector<bool> not_occluded(const Looked& all, const Camera& camera, VisibleObjects& visible) {
-    Vector<bool> found(all.subject.boxes.size(), !all.occluding);
+Vector<bool> not_occluded(const Looked& all, const Camera& camera, ViewResult& visible) {
+    Vector<bool> found(all.geometry.boxes.size(), !all.occluding);
     if (!all.occluding) return found;
     if (!all.occluding->world().view({.camera = camera, .layers = kSeenLayer, .occlusion = OcclusionOptions{}},
                                      visible)) {
@@ -132,7 +132,7 @@ Vector<bool> not_occluded(const Looked& all, const Camera& camera, VisibleObject
     return found;
 }
 
-Counts look(const Looked& all, const Camera& camera, std::uint32_t cell, VisibleObjects& visible) {
+Counts look(const Looked& all, const Camera& camera, std::uint32_t cell, ViewResult& visible) {
     const Vector<std::uint32_t> pixels = owned_pixels(all, camera);
     const Vector<bool> open = not_occluded(all, camera, visible);
     const auto frustum = frustum_of(camera);
@@ -145,7 +145,7 @@ Counts look(const Looked& all, const Camera& camera, std::uint32_t cell, Visible
                                             statistical && open[o]};
         counts.owners += pixels[o] > 0 ? all.triangles_of[o] : 0;
         for (std::size_t w = 0; w < kWays; ++w) counts.wrong[w] += drawn[w] ? 0 : pixels[o];
-        if (frustum && cull::classify(*frustum, all.subject.boxes[o]) == cull::Verdict::outside) continue;
+        if (frustum && cull::classify(*frustum, all.geometry.boxes[o]) == cull::Verdict::outside) continue;
         counts.frustum += all.triangles_of[o];
         for (std::size_t w = 0; w < kWays; ++w) counts.triangles[w] += drawn[w] ? all.triangles_of[o] : 0;
     }
@@ -187,18 +187,18 @@ PvsViewFigures figures_of(const Looked& all, std::span<const Camera> cameras, st
 
 }  // namespace
 
-Result<PvsViewFigures> look_at_views(const scene::Scene& scene, const pvs::Subject& subject, const pvs::Pvs& sets,
+Result<PvsViewFigures> look_at_views(const scene::Scene& scene, const pvs::BakeGeometry& geometry, const pvs::Pvs& sets,
                                      const PvsViewOptions& options, Executor& executor) {
     if (options.views == 0 || options.width == 0 || options.height == 0)
         return fail(ErrorCode::invalid_argument, kNoItem, "views: their number and their sizes must be positive");
-    crofton::detail::StopSignal stop(options.go_on, options.user);
+    crofton::detail::StopSignal stop(options.should_stop, options.user);
     const auto stopped = [] { return fail(ErrorCode::cancelled, kNoItem, "views: stopped"); };
     const auto space =
         FreeSpace::find(scene, focus_of(scene), {.in_metres = options.in_metres, .within = sets.cells().bounds()});
     if (stop.is_raised(0.0)) return stopped();
-    auto tree = mesh::MeshTree::build(subject.mesh, {.boxes = mesh::MeshBoxes::principal_axes, .rays = true});
+    auto tree = mesh::MeshTree::build(geometry.mesh, {.boxes = mesh::MeshBoxes::principal_axes, .rays = true});
     if (!tree) return tl::unexpected(tree.error());
-    Looked all{subject, sets, options, std::move(*tree), {}, {}, 0.0, 0.0, {}, 0.0};
+    Looked all{geometry, sets, options, std::move(*tree), {}, {}, 0.0, 0.0, {}, 0.0};
     find_places(space, all);
     const auto no_place = [] {
         return fail(ErrorCode::empty, kNoItem,
@@ -211,8 +211,8 @@ Result<PvsViewFigures> look_at_views(const scene::Scene& scene, const pvs::Subje
         if (!occluding) return tl::unexpected(occluding.error());
         all.occluding = std::move(*occluding);
     }
-    all.triangles_of.assign(subject.boxes.size(), 0);
-    for (const std::uint32_t object : subject.object_of) ++all.triangles_of[object];
+    all.triangles_of.assign(geometry.boxes.size(), 0);
+    for (const std::uint32_t object : geometry.object_of) ++all.triangles_of[object];
     const double half = std::tan(0.5 * Camera{}.fov_y), aspect = static_cast<double>(options.width) / options.height;
     const double farthest = std::hypot(1.0, half, half * aspect);
     all.near = std::min(kFarthestNear, options.near_radius / farthest);
@@ -227,7 +227,7 @@ Result<PvsViewFigures> look_at_views(const scene::Scene& scene, const pvs::Subje
         cameras.push_back(*camera);
     }
     Vector<Counts> counts(cameras.size());
-    Vector<VisibleObjects> visible(executor.concurrency());
+    Vector<ViewResult> visible(executor.concurrency());
     std::atomic<std::size_t> done{0};
     executor.parallel_for(cameras.size(), 1, [&](std::size_t begin, std::size_t end, unsigned worker) {
         const double share = static_cast<double>(done += end - begin) / static_cast<double>(cameras.size());

@@ -17,8 +17,7 @@ struct PvsViewOptions {
     // Where they are given, the views are also looked at with occlusion at run time, by World::view and its defaults.
     std::shared_ptr<const SceneOccluders> occluders = nullptr;
     bool in_metres = true;  // as FreeSpaceOptions
-    // Asked some hundred times a second, from any of the executor's threads and never from two at once; false ends it.
-    bool (*go_on)(void* user, double share_done) = nullptr;
+    StopCallback should_stop = nullptr;
     void* user = nullptr;
 };
 
@@ -44,7 +43,7 @@ struct PvsViewFigures {
 // not baked are drawn in any mode: they are left out. The scene has been updated. The same figures for any executor.
 // Errors: sizes of 0; no place for an eye within the cells (empty); the callback (cancelled); an occluder that a World
 // refuses.
-[[nodiscard]] Result<PvsViewFigures> look_at_views(const scene::Scene& scene, const pvs::Subject& subject,
+[[nodiscard]] Result<PvsViewFigures> look_at_views(const scene::Scene& scene, const pvs::BakeGeometry& geometry,
                                                    const pvs::Pvs& sets, const PvsViewOptions& options = {},
                                                    Executor& executor = serial_executor());
 

@@ -101,7 +101,7 @@ double area_of(const Body& body, std::size_t f) {
     return 0.5 * glm::length(sum);
 }
 
-// The area of all faces within the ball of radius r around the origin.
+// The area of all faces within the sphere of radius r around the origin.
 double area_inside(const Body& body, double r) {
     double sum = 0.0;
     for (std::size_t f = 0; f < body.faces.size(); ++f) {
@@ -131,7 +131,7 @@ Body box_body(const glm::dvec3& half) {
     return body;
 }
 
-Body ball_body(double radius) {
+Body sphere_body(double radius) {
     return {{glm::dvec3(0.0)}, {}, {}, {}, radius};
 }
 
@@ -258,14 +258,14 @@ Figure moved(const Figure& figure, const sampling::PlanarMotion& motion) {
 Anchored anchored(const Body& query, double radius, const std::array<double, 8>& u) {
     RigidTransform motion{sampling::rotation({u[0], u[1], u[2]}), glm::dvec3(0.0)};
     const glm::dvec3 target = radius * sampling::ball_point({u[3], u[4], u[5]});
-    const double ball = 4.0 / 3.0 * pi * radius * radius * radius;
+    const double sphere = 4.0 / 3.0 * pi * radius * radius * radius;
     Anchored result;
     if (query.faces.empty()) {  // a segment
         const glm::dvec3 &a = query.corners[0], &b = query.corners[1];
         motion.translation = target - motion.rotation * (a + u[6] * (b - a));
         result.body = moved(query, motion);
         result.weight =
-            ball * glm::length(b - a) / length_inside(result.body.corners[0], result.body.corners[1], radius);
+            sphere * glm::length(b - a) / length_inside(result.body.corners[0], result.body.corners[1], radius);
         return result;
     }
     double whole = 0.0;
@@ -283,7 +283,7 @@ Anchored anchored(const Body& query, double radius, const std::array<double, 8>&
     const glm::dvec3 point = a + r * ((1.0 - s) * ((in_first ? b : c) - a) + s * ((in_first ? c : d) - a));
     motion.translation = target - motion.rotation * point;
     result.body = moved(query, motion);
-    result.weight = ball * whole / area_inside(result.body, radius);
+    result.weight = sphere * whole / area_inside(result.body, radius);
     return result;
 }
 

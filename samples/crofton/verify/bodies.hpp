@@ -16,7 +16,7 @@
 namespace crofton::cli {
 
 // The hull of `corners`; `faces` are convex polygons of corner numbers, `normals` and `edges` the directions that can
-// separate (both may be empty for segments and flat bodies), `radius` grows it (for balls: one corner).
+// separate (both may be empty for segments and flat bodies), `radius` grows it (for spheres: one corner).
 struct Body {
     std::vector<glm::dvec3> corners;
     std::vector<std::vector<std::uint32_t>> faces;
@@ -26,7 +26,7 @@ struct Body {
 };
 
 [[nodiscard]] Body box_body(const glm::dvec3& half_extents);  // around the origin
-[[nodiscard]] Body ball_body(double radius);
+[[nodiscard]] Body sphere_body(double radius);
 [[nodiscard]] Body segment_body(double length);
 [[nodiscard]] Body flat_body(std::vector<glm::dvec3> corners);  // a convex polygon
 // Half-tangents and depths: eye at the origin, looking along −z. Orthographic: `tan_x`, `tan_y` are half extents.
@@ -34,11 +34,11 @@ struct Body {
 [[nodiscard]] measure::IntrinsicVolumes frustum_volumes(double tan_x, double tan_y, double near, double far,
                                                         bool perspective);  // of the same
 [[nodiscard]] Body moved(const Body& body, const RigidTransform& motion);
-[[nodiscard]] double radius_about_center(const Body& body);  // of a ball around center_of(body)
+[[nodiscard]] double radius_about_center(const Body& body);  // of a sphere around center_of(body)
 [[nodiscard]] glm::dvec3 center_of(const Body& body);
 
-// All motions of `moving` that can hit `fixed`: the middle of the fixed one's ball lies in the moving one's own box,
-// grown by that ball's radius. The measure of an event is its share of uniform trials × measure().
+// All motions of `moving` that can hit `fixed`: the middle of the fixed one's sphere lies in the moving one's own box,
+// grown by that sphere's radius. The measure of an event is its share of uniform trials × measure().
 class Placements {
   public:
     Placements(const Body& moving, const Body& fixed);
@@ -50,7 +50,7 @@ class Placements {
     glm::dvec3 middle_;
 };
 
-// By separating axes; a ball by its distance. At most one of them may be a ball.
+// By separating axes; a sphere by its distance. At most one of them may be a sphere.
 [[nodiscard]] bool meet(const Body& a, const Body& b);
 // True iff every corner of `inner` lies behind all faces of `outer`.
 [[nodiscard]] bool holds(const Body& outer, const Body& inner);
@@ -86,8 +86,8 @@ class Mean {
 
 // Uniform motions of a large query, only those whose boundary passes near the origin, each with the weight that makes
 // the mean of weight · [event] the measure of the event, for events that need the boundary within `radius` of the
-// origin: a uniform point of the boundary is put on a uniform point of that ball (disc), and the weight is ball ·
-// boundary / boundary inside the ball.
+// origin: a uniform point of the boundary is put on a uniform point of that sphere (disc), and the weight is sphere ·
+// boundary / boundary inside the sphere.
 struct Anchored {
     Body body;
     double weight = 0.0;

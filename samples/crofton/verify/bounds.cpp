@@ -6,10 +6,10 @@
 #include <crofton/fit/fit.hpp>
 #include <crofton/measure/measure.hpp>
 #include <crofton/sampling/sampling.hpp>
-#include <crofton/study/ball_given_ancestors.hpp>
 #include <crofton/study/bound_given_ancestors.hpp>
 #include <crofton/study/planar_bounds.hpp>
 #include <crofton/study/spatial_lines.hpp>
+#include <crofton/study/sphere_given_ancestors.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <numbers>
@@ -110,8 +110,8 @@ void box_optima(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     }
 }
 
-// In space, by an adaptive quadrature of (4): the measures of the best ball and box of the five points, given a turned
-// box around them.
+// In space, by an adaptive quadrature of (4): the measures of the best sphere and box of the five points, given a
+// turned box around them.
 void bounds_in_space_given_ancestor(std::vector<VerifyRow>& rows) {
     const std::span<const glm::dvec3> points(kPoints);
     const auto around = fit::fit_oriented(points, glm::mat3(sampling::rotation({0.3, 0.6, 0.1})));
@@ -123,10 +123,10 @@ void bounds_in_space_given_ancestor(std::vector<VerifyRow>& rows) {
         rows.push_back(measured ? computed_row(claim, "theory.md (4)", value, measured->value, 4e-3 * value)
                                 : untried_row(claim, "theory.md (4)"));
     };
-    const auto ball = study::ball_given_ancestors(points, {&ancestor, 1});
-    if (!ball) return rows.push_back(untried_row("the ball that fewest planes hit", "theory.md (4)"));
-    row("the ball that fewest planes hit together with an ancestor: its measure", ball->value,
-        study::ConvexBody::ball(ball->ball.center, ball->ball.radius));
+    const auto sphere = study::sphere_given_ancestors(points, {&ancestor, 1});
+    if (!sphere) return rows.push_back(untried_row("the sphere that fewest planes hit", "theory.md (4)"));
+    row("the sphere that fewest planes hit together with an ancestor: its measure", sphere->value,
+        study::ConvexBody::sphere(sphere->sphere.center, sphere->sphere.radius));
     const auto box = study::box_given_ancestors(points, {&ancestor, 1}, {.tolerance = 0.05, .max_cells = 5000});
     if (!box) return rows.push_back(untried_row("the box that fewest planes hit", "theory.md (4)"));
     row("the box that fewest planes hit together with an ancestor: its measure", box->value,

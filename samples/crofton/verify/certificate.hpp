@@ -17,6 +17,6 @@ enum class Proof : std::uint8_t { meets, disjoint, none };
 // touch to within rounding.
 [[nodiscard]] Proof prove(const Frustum& frustum, const Obb& box);
 [[nodiscard]] Proof prove(const Frustum& frustum, const Aabb& box);
-[[nodiscard]] Proof prove(const Frustum& frustum, const Sphere& ball);
+[[nodiscard]] Proof prove(const Frustum& frustum, const Sphere& sphere);
 
 }  // namespace crofton::cli

@@ -125,7 +125,7 @@ struct Solid {
         for (const glm::dvec3& p : corners) h = std::max(h, glm::dot(p, n));
         return h + radius;
     }
-    // A ball's is a polygon of its disc's area.
+    // A sphere's is a polygon of its disc's area.
     [[nodiscard]] Figure shadow(const glm::dvec3& x, const glm::dvec3& y) const {
         Figure points;
         for (const glm::dvec3& p : corners) points.emplace_back(glm::dot(p, x), glm::dot(p, y));
@@ -150,7 +150,7 @@ void spatial(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     b.center = glm::dvec3(0.5, 0.4, 0.3);
     b.axes = glm::mat3(sampling::rotation({0.3, 0.7, 0.2}));
     const std::vector<study::ConvexBody> bodies = {study::ConvexBody::box(a), study::ConvexBody::box(b),
-                                                   study::ConvexBody::ball(glm::dvec3(-0.3, 0.0, 0.4), 0.6)};
+                                                   study::ConvexBody::sphere(glm::dvec3(-0.3, 0.0, 0.4), 0.6)};
     std::vector<Solid> plain;
     for (const Obb& box : {a, b}) {
         const auto c = corners(box);
@@ -172,9 +172,9 @@ void spatial(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
         rows.push_back(
             measured_row(claim, source, predicted, 2.0 * pi * mean.value(), 2.0 * pi * mean.standard_error()));
     };
-    row("planes that hit two boxes and a ball, by quadrature", "theory.md (4)",
+    row("planes that hit two boxes and a sphere, by quadrature", "theory.md (4)",
         measure_of_planes_hitting_all(bodies)->value, planes);
-    row("lines that hit two boxes and a ball, by clipped shadows", "theory.md (5)",
+    row("lines that hit two boxes and a sphere, by clipped shadows", "theory.md (5)",
         measure_of_lines_hitting_all(bodies, {.tolerance = 1e-2, .max_cells = 40000})->value, lines);
 }
 

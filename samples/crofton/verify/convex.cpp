@@ -12,7 +12,7 @@
 namespace crofton::cli {
 namespace {
 
-using convex::Placed;
+using convex::BodyAtPose;
 
 constexpr double kOffsets[] = {0.0, 1e3, 1e7};
 
@@ -21,8 +21,8 @@ enum class Sizes { one, any };
 
 // Whether a and b meet, as each question tells that has a yes or no: alone, and with what a neighbouring pose has left.
 // Returns how many of these answers are not the truth.
-std::uint64_t wrong_answers(const Placed& a, const Placed& b, const RigidTransform& earlier, bool truth) {
-    const Placed before{b.body, earlier};
+std::uint64_t wrong_answers(const BodyAtPose& a, const BodyAtPose& b, const RigidTransform& earlier, bool truth) {
+    const BodyAtPose before{b.body, earlier};
     convex::PairCache cache, manifold_cache;
     (void)convex::intersects(a, before, &cache);
     (void)convex::contact_manifold(a, before, {}, &manifold_cache);
@@ -44,9 +44,9 @@ VerifyRow yes_or_no(Sizes sizes, int decade, double offset, const VerifyOptions&
         const double gap = std::pow(10.0, -decade) * random.number(0.1, 1.0) * (i % 2 == 0 ? 1.0 : -1.0);
         const ConvexPairs::Pair pair =
             sizes == Sizes::one ? random.next(12, gap, offset) : random.next_of_sizes(12, gap, offset);
-        const Placed a = pair.placed_a(), b = pair.placed_b();
+        const BodyAtPose a = pair.placed_a(), b = pair.placed_b();
         RigidTransform earlier = pair.pose_b;
-        earlier.translation += (sizes == Sizes::one ? 0.01 : 0.01 * pair.b.reach()) * random.direction();
+        earlier.translation += (sizes == Sizes::one ? 0.01 : 0.01 * pair.b.core_radius()) * random.direction();
         const bool truth = meet_exactly(a, b, pair.normal, by_axes);
         wrong += wrong_answers(a, b, earlier, truth);
         meeting += truth;
@@ -70,15 +70,15 @@ VerifyRow depths(const VerifyOptions& options) {
     for (std::uint64_t i = 0; i < pairs; ++i) {
         const double overlap = i % 3 == 0 ? 0.3 : std::pow(10.0, random.number(-12.0, -1.0));
         const ConvexPairs::Pair pair = random.next(6, -overlap, i % 5 == 0 ? 1e5 : 0.0);
-        const Placed a = pair.placed_a(), b = pair.placed_b();
+        const BodyAtPose a = pair.placed_a(), b = pair.placed_b();
         const convex::Penetration p = convex::penetration(a, b);
         if (!p.overlapping) {
             wrong += meet_exactly(a, b, pair.normal, by_axes);
             continue;
         }
         ++met;
-        const double size =
-            pair.a.reach() + pair.b.reach() + glm::length(pair.pose_b.translation - pair.pose_a.translation);
+        const double size = pair.a.core_radius() + pair.b.core_radius() +
+                            glm::length(pair.pose_b.translation - pair.pose_a.translation);
         wrong += !depth_lies_between(ExactBody(a), ExactBody(b), p.lower, p.upper) || p.upper - p.lower > 1e-9 * size;
     }
     return none_row("depths of overlaps of 0.3 and 1e-1 to 1e-12: " + std::to_string(met) +
@@ -164,7 +164,7 @@ VerifyRow casts_bisected(const VerifyOptions& options) {
 }
 
 // How far the body reaches along a direction of the world.
-double reach_along(const Placed& body, const glm::dvec3& direction) {
+double reach_along(const BodyAtPose& body, const glm::dvec3& direction) {
     const glm::dvec3 farthest = convex::support_point(body.body, glm::transpose(body.pose.rotation) * direction);
     return glm::dot(direction, body.pose.rotation * farthest + body.pose.translation);
 }
@@ -174,7 +174,7 @@ double reach_along(const Placed& body, const glm::dvec3& direction) {
 VerifyRow casts_points(const VerifyOptions& options) {
     const convex::Body box = convex::Body::box({0.4f, 0.7f, 0.3f}).value();
     const std::array bodies{box,
-                            convex::Body::ball(0.5).value(),
+                            convex::Body::sphere(0.5).value(),
                             convex::Body::capsule(0.6f, 0.3f).value(),
                             convex::Body::rounded(box, 0.2).value(),
                             convex::Body::cylinder(0.5f, 0.4f).value(),
@@ -195,7 +195,7 @@ VerifyRow casts_points(const VerifyOptions& options) {
         ++hits;
         const RigidTransform at_a = convex::moved(pair.pose_a, a, impact->time),
                              at_b = convex::moved(pair.pose_b, b, impact->time);
-        const Placed hit_a{pair.a, at_a}, hit_b{pair.b, at_b};
+        const BodyAtPose hit_a{pair.a, at_a}, hit_b{pair.b, at_b};
         const glm::dvec3& n = impact->normal;
         const double end_a = reach_along(hit_a, n), end_b = -reach_along(hit_b, -n);
         const bool is_right = std::fabs(glm::length(n) - 1.0) < 1e-9 && end_b - end_a > -kTolerance &&

@@ -7,7 +7,7 @@
 
 namespace crofton::cli {
 
-// Boxes, triangles and hulls of up to `corners` points: balls, boxes, plates and rods. Alive until the next.
+// Boxes, triangles and hulls of up to `corners` points: spheres, boxes, plates and rods. Alive until the next.
 class ConvexPairs {
   public:
     explicit ConvexPairs(std::uint64_t seed) : random_(seed) {}
@@ -16,8 +16,8 @@ class ConvexPairs {
         convex::Body a, b;
         RigidTransform pose_a, pose_b;
         glm::dvec3 normal;  // from a to b, about where they touch
-        [[nodiscard]] convex::Placed placed_a() const { return {a, pose_a}; }
-        [[nodiscard]] convex::Placed placed_b() const { return {b, pose_b}; }
+        [[nodiscard]] convex::BodyAtPose placed_a() const { return {a, pose_a}; }
+        [[nodiscard]] convex::BodyAtPose placed_b() const { return {b, pose_b}; }
     };
     // Along a direction, of which half are normals of faces, b is `gap` beyond a; both are about `offset` from the
     // origin. A third of the pairs is parallel.

@@ -26,7 +26,7 @@ struct BodyTrial {
         wrong += answer || answer.error().code != code || answer.error().message.empty() ||
                  (item != kNoItem && answer.error().item != item);
     }
-    void must(bool good) {
+    void require(bool good) {
         ++tried;
         wrong += !good;
     }
@@ -75,7 +75,7 @@ void try_coplanar(Random& random, BodyTrial& trial) {
     // The least step out of the plane makes a body.
     points[5][axis] = std::nextafter(points[5][axis], 2.0f);
     const auto thin = Hull::build(points);
-    trial.must(thin && holds_all(*thin, points));
+    trial.require(thin && holds_all(*thin, points));
     for (glm::vec3& p : points) p = p[0] * glm::vec3(1.0f, 0.5f, -0.25f);  // on a line
     trial.must_refuse(Hull::build(points), ErrorCode::degenerate);
 }
@@ -94,7 +94,7 @@ void try_duplicates(Random& random, BodyTrial& trial) {
         std::sort(corners.begin(), corners.end(), before);
         return corners;
     };
-    trial.must(once && twice && sorted(*once) == sorted(*twice));
+    trial.require(once && twice && sorted(*once) == sorted(*twice));
 }
 
 void try_not_numbers(Random& random, BodyTrial& trial) {
@@ -107,7 +107,7 @@ void try_not_numbers(Random& random, BodyTrial& trial) {
     glm::vec3 half(1.0f);
     half[axis] = value;
     trial.must_refuse(convex::Body::box(half), ErrorCode::non_finite, static_cast<std::uint64_t>(axis));
-    trial.must_refuse(convex::Body::ball(not_finite(random)), ErrorCode::non_finite);
+    trial.must_refuse(convex::Body::sphere(not_finite(random)), ErrorCode::non_finite);
     trial.must_refuse(convex::Body::capsule(value, 1.0f), ErrorCode::non_finite);
     trial.must_refuse(convex::Body::triangle(glm::vec3(1.0f), half, glm::vec3(0.0f)), ErrorCode::non_finite, 1);
     std::vector<float> heights(12, 1.0f);
@@ -118,7 +118,7 @@ void try_not_numbers(Random& random, BodyTrial& trial) {
     pose.translation[axis] = not_finite(random);
     trial.must_refuse(convex::validate_pose(pose), ErrorCode::non_finite);
     const convex::Body box = *convex::Body::box(glm::vec3(1.0f));
-    trial.must(!convex::intersects({box, {}}, {box, pose}));
+    trial.require(!convex::intersects({box, {}}, {box, pose}));
     convex::Motion motion;
     motion.velocity[axis] = not_finite(random);
     trial.must_refuse(convex::cast({box, {}}, {}, {box, {}}, motion), ErrorCode::non_finite);
@@ -129,12 +129,12 @@ void try_inside_out(Random& random, BodyTrial& trial) {
     const int axis = static_cast<int>(random.bits() % 3);
     half[axis] = -half[axis];
     trial.must_refuse(convex::Body::box(half), ErrorCode::invalid_argument, static_cast<std::uint64_t>(axis));
-    trial.must_refuse(convex::Body::ball(static_cast<double>(half[axis])), ErrorCode::invalid_argument);
+    trial.must_refuse(convex::Body::sphere(static_cast<double>(half[axis])), ErrorCode::invalid_argument);
     trial.must_refuse(convex::Body::cylinder(1.0f, half[axis]), ErrorCode::invalid_argument);
     RigidTransform mirrored{sampling::rotation(random.point<3>()), glm::dvec3(0.0)};
     mirrored.rotation[axis] = -mirrored.rotation[axis];
     trial.must_refuse(convex::validate_pose(mirrored), ErrorCode::invalid_argument);
-    const convex::CompoundChild child{*convex::Body::ball(1.0), mirrored};
+    const convex::CompoundChild child{*convex::Body::sphere(1.0), mirrored};
     trial.must_refuse(convex::Compound::build({&child, 1}), ErrorCode::invalid_argument, 0);
 }
 
@@ -143,8 +143,8 @@ void try_many_points(Random& random, BodyTrial& trial) {
     Points points = any_points(random, 100'000);
     for (glm::vec3& p : points) p = glm::length(p) > 0.1f ? p / glm::length(p) : glm::vec3(1.0f, 0.0f, 0.0f);
     const auto hull = Hull::build(points);
-    trial.must(hull && hull->vertices().size() <= std::size_t{convex::kMaxHullVertices} && holds_all(*hull, points));
-    trial.must(hull && hull->excess() > 0.0 && hull->excess() < 0.1);
+    trial.require(hull && hull->vertices().size() <= std::size_t{convex::kMaxHullVertices} && holds_all(*hull, points));
+    trial.require(hull && hull->max_overshoot() > 0.0 && hull->max_overshoot() < 0.1);
 }
 
 void try_casts(Random& random, BodyTrial& trial) {
@@ -156,16 +156,16 @@ void try_casts(Random& random, BodyTrial& trial) {
     for (const convex::Motion& motion : {forward, convex::Motion{}}) {
         const convex::CastOptions no_time{.duration = motion.velocity.x > 0.0 ? 0.0 : 1.0};
         const auto miss = convex::cast({box, {}}, motion, {box, near}, {}, no_time);
-        trial.must(miss && miss->result == convex::CastResult::miss);
+        trial.require(miss && miss->result == convex::CastResult::miss);
         const auto hit = convex::cast({box, {}}, motion, {box, within}, {}, no_time);
-        trial.must(hit && hit->result == convex::CastResult::hit && hit->time == 0.0);
+        trial.require(hit && hit->result == convex::CastResult::hit && hit->time == 0.0);
     }
-    // Of many turns: a box that turns about its own axis sweeps the ball around it.
+    // Of many turns: a box that turns about its own axis sweeps the sphere around it.
     const double turns = random.uniform(2.0, 1000.0);
     const convex::Motion spinning{{gap + 2.0, 0.0, 0.0}, {0.0, 0.0, turns * 6.283185307179586}, {}};
     const auto hit = convex::cast({box, {}}, spinning, {box, near}, {}, {.max_steps = 100'000});
     const double early = (gap + 0.5 - std::sqrt(0.5)) / (gap + 2.0) - 1e-6, late = gap / (gap + 2.0) + 1e-6;
-    trial.must(hit && hit->result == convex::CastResult::hit && hit->time >= early && hit->time <= late);
+    trial.require(hit && hit->result == convex::CastResult::hit && hit->time >= early && hit->time <= late);
     convex::Motion wild;
     wild.spin.y = 1.1e5;
     trial.must_refuse(convex::cast({box, {}}, wild, {box, near}, {}), ErrorCode::out_of_range);
@@ -184,14 +184,14 @@ void try_height_fields(Random& random, BodyTrial& trial) {
     const std::vector<std::uint8_t> holes(many - 1, convex::kHole);
     trial.must_refuse(HeightField::build({.columns = many, .rows = 2, .heights = two, .materials = holes}),
                       ErrorCode::empty);
-    trial.must(HeightField::build({.columns = many, .rows = 2, .heights = two}).has_value());
+    trial.require(HeightField::build({.columns = many, .rows = 2, .heights = two}).has_value());
 }
 
 // Compounds within compounds, 1,000 deep: the sixteenth is the last.
 void try_deep_compounds(Random& random, BodyTrial& trial) {
     std::vector<convex::Compound> chain;
     chain.reserve(1000);
-    convex::Body inner = *convex::Body::ball(random.uniform(0.1, 1.0));
+    convex::Body inner = *convex::Body::sphere(random.uniform(0.1, 1.0));
     for (int depth = 1; depth <= 1000; ++depth) {
         const convex::CompoundChild child{inner, {}};
         auto built = convex::Compound::build({&child, 1});
@@ -199,12 +199,12 @@ void try_deep_compounds(Random& random, BodyTrial& trial) {
             trial.must_refuse(built, ErrorCode::out_of_range, 0);
             continue;
         }
-        trial.must(built && built->depth() == depth);
+        trial.require(built && built->depth() == depth);
         if (!built) return;
         chain.push_back(std::move(*built));
         inner = convex::Body::compound(chain.back());
     }
-    trial.must(convex::intersects({inner, {}}, {*convex::Body::ball(0.0), {}}));
+    trial.require(convex::intersects({inner, {}}, {*convex::Body::sphere(0.0), {}}));
     trial.must_refuse(convex::Compound::build({}), ErrorCode::empty);
 }
 
@@ -212,20 +212,20 @@ void try_deep_compounds(Random& random, BodyTrial& trial) {
 void try_changes(Random& random, BodyTrial& trial) {
     World world({.contact_margin = 0.02});
     const convex::Body crate = *convex::Body::box(glm::vec3(0.5f)), slab = *convex::Body::box({9.0f, 1.0f, 9.0f}),
-                       ball = *convex::Body::ball(0.5);
+                       sphere = *convex::Body::sphere(0.5);
     const Obb bounds{{0.0, 1.45, 0.0}, glm::mat3(1.0f), glm::vec3(0.55f)};
     const auto floor = world.add({.bound = Obb{{}, glm::mat3(1.0f), {9.0f, 1.0f, 9.0f}}});
     const auto box = world.add({.bound = bounds});
-    trial.must(floor && box && world.set_body(*floor, &slab) && world.set_body(*box, &crate) && world.update());
+    trial.require(floor && box && world.set_body(*floor, &slab) && world.set_body(*box, &crate) && world.update());
     if (!floor || !box) return;
     const auto points = [&] { return world.body_contacts().empty() ? 0u : world.body_contacts()[0].point_count; };
     const auto read_after = [&](const Result<void>& done, std::uint32_t expected) {
-        trial.must(done && points() == expected);
+        trial.require(done && points() == expected);
     };
-    trial.must(points() == 4);
+    trial.require(points() == 4);
     const BodyContact read = world.body_contacts()[0];
-    read_after(world.set_body(*box, &ball), 4);
-    trial.must(read.points[0].contact.depth == world.body_contacts()[0].points[0].contact.depth);
+    read_after(world.set_body(*box, &sphere), 4);
+    trial.require(read.points[0].contact.depth == world.body_contacts()[0].points[0].contact.depth);
     read_after(world.update(), 1);
     if (random.bits() % 2 == 0) {
         read_after(world.remove(*box), 1);
@@ -233,9 +233,9 @@ void try_changes(Random& random, BodyTrial& trial) {
     } else {
         read_after(world.set_body(*box, nullptr), 1);
     }
-    trial.must(world.update().has_value());
-    trial.must(std::all_of(world.body_contacts().begin(), world.body_contacts().end(),
-                           [](const BodyContact& c) { return c.phase == ContactPhase::ended; }));
+    trial.require(world.update().has_value());
+    trial.require(std::all_of(world.body_contacts().begin(), world.body_contacts().end(),
+                              [](const BodyContact& c) { return c.phase == ContactPhase::ended; }));
 }
 
 struct BadKind {

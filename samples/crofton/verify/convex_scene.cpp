@@ -16,7 +16,7 @@
 namespace crofton::cli {
 namespace {
 
-using convex::Placed;
+using convex::BodyAtPose;
 
 constexpr double kSceneOffsets[] = {0.0, 1e3, 1e7};  // in sizes
 
@@ -40,7 +40,7 @@ VerifyRow hulls_hold_points(const BodyData& data) {
     std::size_t larger = 0;
     for (std::size_t h = 0; h < data.hulls.size(); ++h) {
         const convex::Hull& hull = data.hulls[h];
-        larger += hull.excess() > 0.0;
+        larger += hull.max_overshoot() > 0.0;
         const auto at = [&](std::size_t i) { return glm::dvec3(hull.vertices()[hull.triangles()[i]]); };
         for (std::size_t t = 0; t < hull.triangles().size(); t += 3)
             for (const glm::vec3& p : data.hull_points[h])
@@ -59,7 +59,7 @@ VerifyRow hulls_that_touch(const BodyData& data, double offset, const VerifyOpti
     for (; tally.cases < pairs; ++tally.cases) {
         const convex::Body a = convex::Body::hull(data.hulls[random.bits() % data.hulls.size()]);
         const convex::Body b = convex::Body::hull(data.hulls[random.bits() % data.hulls.size()]);
-        const double size = a.reach() + b.reach();
+        const double size = a.core_radius() + b.core_radius();
         const double gap = size * std::pow(10.0, random.number(-12.0, -1.0)) * (tally.cases % 2 == 0 ? 1.0 : -1.0);
         const ConvexPairs::Pair pair = random.touching(a, b, gap, offset * data.size);
         const bool truth = meet_exactly(pair.placed_a(), pair.placed_b(), pair.normal, tally.by_axes);
@@ -79,24 +79,24 @@ VerifyRow hulls_that_touch(const BodyData& data, double offset, const VerifyOpti
 // Triangles of a surface that may be within `far` of a body.
 class TriangleTruth {
   public:
-    TriangleTruth(const BodyData& data, const Placed& surface) : data_(data), surface_(surface) {}
+    TriangleTruth(const BodyData& data, const BodyAtPose& surface) : data_(data), surface_(surface) {}
 
     template <class Visit>
-    void visit_near(const Placed& body, double far, Visit visit) const {
+    void visit_near(const BodyAtPose& body, double far, Visit visit) const {
         const glm::dvec3 middle =
             glm::transpose(surface_.pose.rotation) * (body.pose.translation - surface_.pose.translation);
-        const double reach = (body.body.reach() + far) * (1.0 + 1e-5) + 1e-9 * (data_.size + glm::length(middle));
+        const double reach = (body.body.core_radius() + far) * (1.0 + 1e-5) + 1e-9 * (data_.size + glm::length(middle));
         for (const Triangle& t : data_.triangles) {
             const glm::dvec3 low = glm::min(glm::min(t[0], t[1]), t[2]), high = glm::max(glm::max(t[0], t[1]), t[2]);
             const glm::dvec3 gap = glm::max(glm::max(low - middle, middle - high), glm::dvec3(0.0));
             if (glm::dot(gap, gap) > reach * reach) continue;
             const convex::Body part = *convex::Body::triangle(glm::vec3(t[0]), glm::vec3(t[1]), glm::vec3(t[2]));
-            if (!visit(Placed{part, surface_.pose})) return;
+            if (!visit(BodyAtPose{part, surface_.pose})) return;
         }
     }
-    [[nodiscard]] bool meets(const Placed& body, std::uint64_t& by_axes) const {
+    [[nodiscard]] bool meets(const BodyAtPose& body, std::uint64_t& by_axes) const {
         bool met = false;
-        visit_near(body, 0.0, [&](const Placed& part) {
+        visit_near(body, 0.0, [&](const BodyAtPose& part) {
             const convex::Distance d = convex::distance(part, body);
             // Apart by a plane that exact numbers confirm, as nearly all are; else all that is known is tried.
             const std::array normals{d.normal};
@@ -108,9 +108,9 @@ class TriangleTruth {
         return met;
     }
     // Lower and upper bounds of the distance, by all triangles that may be nearest.
-    [[nodiscard]] std::array<double, 2> distance(const Placed& body, double far) const {
+    [[nodiscard]] std::array<double, 2> distance(const BodyAtPose& body, double far) const {
         std::array<double, 2> least{HUGE_VAL, HUGE_VAL};
-        visit_near(body, far, [&](const Placed& part) {
+        visit_near(body, far, [&](const BodyAtPose& part) {
             const convex::Distance d = convex::distance(part, body);
             least = {std::min(least[0], d.lower), std::min(least[1], d.upper)};
             return true;
@@ -120,14 +120,14 @@ class TriangleTruth {
 
   private:
     const BodyData& data_;
-    const Placed& surface_;
+    const BodyAtPose& surface_;
 };
 
 // A box of 0.1 to 6 % of the surface's size, or one of the hulls if they are small.
 convex::Body probe_of(const BodyData& data, ConvexPairs& random) {
     if (!data.hulls.empty() && random.bits() % 2 == 0) {
         const convex::Body hull = convex::Body::hull(data.hulls[random.bits() % data.hulls.size()]);
-        if (hull.reach() < 0.1 * data.size) return hull;
+        if (hull.core_radius() < 0.1 * data.size) return hull;
     }
     const double scale = 0.5 * data.size * std::pow(10.0, random.number(-2.0, -1.0));
     const double x = random.number(0.1, 0.6), y = random.number(0.1, 0.6), z = random.number(0.1, 0.6);
@@ -155,7 +155,7 @@ VerifyRow surface_touched(const BodyData& data, double offset, const VerifyOptio
         const double gap = 0.1 * data.size * std::pow(10.0, random.number(-12.0, -1.0));
         const ConvexPairs::Pair pair =
             place_probe(data, tally.cases % 2 == 0 ? gap : -gap, offset * data.size, tally.cases % 4 < 2, random);
-        const Placed surface{whole, pair.pose_a}, probe = pair.placed_b();
+        const BodyAtPose surface{whole, pair.pose_a}, probe = pair.placed_b();
         const TriangleTruth triangles(data, surface);
         const bool truth = triangles.meets(probe, tally.by_axes);
         const convex::Distance d = convex::distance(surface, probe);
@@ -185,7 +185,7 @@ VerifyRow surface_hit(const BodyData& data, const VerifyOptions& options) {
     std::uint64_t hits = 0;
     for (std::uint64_t i = 0; i < casts; ++i) {
         const ConvexPairs::Pair pair = place_probe(data, 0.1 * data.size, 0.0, i % 2 == 0, random);
-        const Placed surface{whole, pair.pose_a}, probe = pair.placed_b();
+        const BodyAtPose surface{whole, pair.pose_a}, probe = pair.placed_b();
         const double rate = random.number(0.0, 6.0);
         const convex::Motion motion{-0.3 * data.size * pair.normal, rate * random.direction(), {}};
         const double tolerance = 1e-6 * data.size;

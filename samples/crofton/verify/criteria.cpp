@@ -42,7 +42,7 @@ struct Ratios {
     Ratio outside, total;
 };
 
-// A ball of `radius` must hold both bounds well inside: the query's boundary is anchored in that ball.
+// A sphere of `radius` must hold both bounds well inside: the query's boundary is anchored in that sphere.
 Ratios compare(const Body& query, const Body& first, const Body& second, const Body& object, double radius,
                std::uint64_t trials, std::uint64_t seed) {
     const sampling::UnitPoints points(seed);
@@ -160,7 +160,7 @@ void common_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     b.center = glm::dvec3(0.5, 0.4, 0.3);
     b.axes = glm::mat3(sampling::rotation({0.3, 0.7, 0.2}));
     const std::vector<study::ConvexBody> bodies = {study::ConvexBody::box(a), study::ConvexBody::box(b),
-                                                   study::ConvexBody::ball(glm::dvec3(-0.3, 0.0, 0.4), 0.6)};
+                                                   study::ConvexBody::sphere(glm::dvec3(-0.3, 0.0, 0.4), 0.6)};
     const double radius = 2.5;
     const sampling::UnitPoints points(options.seed * 1000 + 260);
     std::uint64_t planes = 0, lines = 0;
@@ -184,8 +184,8 @@ void common_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
         });
         const Line line = sampling::line_through_disc({glm::dvec3(0.0), radius}, u);
         const glm::dvec3 d = bodies[2].points[0] - line.point;
-        const bool ball = glm::length(glm::cross(d, line.direction)) <= bodies[2].radius;
-        lines += ball && box_met(a, line) && box_met(b, line);
+        const bool sphere = glm::length(glm::cross(d, line.direction)) <= bodies[2].radius;
+        lines += sphere && box_met(a, line) && box_met(b, line);
     }
     const auto row = [&](const char* claim, const char* source, const study::Enclosure& exact, double all,
                          std::uint64_t hits) {
@@ -193,9 +193,9 @@ void common_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
         rows.push_back(measured_row(claim, source, exact.value, all * share.value,
                                     std::hypot(all * share.standard_error, exact.error / kMaxZ)));
     };
-    row("planes that hit two boxes and a ball", "theory.md (4)", *measure_of_planes_hitting_all(bodies),
+    row("planes that hit two boxes and a sphere", "theory.md (4)", *measure_of_planes_hitting_all(bodies),
         4.0 * pi * radius, planes);
-    row("lines that hit two boxes and a ball", "theory.md (5)",
+    row("lines that hit two boxes and a sphere", "theory.md (5)",
         *measure_of_lines_hitting_all(bodies, {.tolerance = 1e-2, .max_cells = 40000}),
         sampling::measure_of_lines(4.0 * pi * radius * radius), lines);
 }

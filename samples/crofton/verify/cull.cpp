@@ -104,7 +104,7 @@ std::vector<VerifyRow> verify_cull(const VerifyOptions& options) {
     for (const double offset : {0.0, 1e4, 1e5, 1e6, 1e7}) {
         add_rows<Obb>("boxes", offset, options, rows);
         add_rows<Aabb>("axis-aligned boxes", offset, options, rows);
-        add_rows<Sphere>("balls", offset, options, rows);
+        add_rows<Sphere>("spheres", offset, options, rows);
     }
     return rows;
 }

@@ -174,7 +174,7 @@ bool is_clearly_inside(const std::vector<glm::dvec3>& w, std::size_t i, const gl
 
 }  // namespace
 
-ExactBody::ExactBody(const convex::Placed& placed, const ExactWay& way) : triangles(triangles_of(placed.body)) {
+ExactBody::ExactBody(const convex::BodyAtPose& placed, const ExactWay& way) : triangles(triangles_of(placed.body)) {
     const ExactVector columns[3] = {exact(placed.pose.rotation[0]), exact(placed.pose.rotation[1]),
                                     exact(placed.pose.rotation[2])};
     ExactVector at = exact(placed.pose.translation);
@@ -202,8 +202,8 @@ bool meet_exactly(const ExactBody& a, const ExactBody& b, std::span<const glm::d
     return meet_by_axes(a, b);
 }
 
-bool meet_exactly(const convex::Placed& a, const convex::Placed& b, const glm::dvec3& normal, std::uint64_t& by_axes,
-                  const ExactWay& way_of_b) {
+bool meet_exactly(const convex::BodyAtPose& a, const convex::BodyAtPose& b, const glm::dvec3& normal,
+                  std::uint64_t& by_axes, const ExactWay& way_of_b) {
     // Guesses are made near a's origin, where coordinates are small.
     const RigidTransform near_a{a.pose.rotation, glm::dvec3(0.0)};
     const RigidTransform near_b{b.pose.rotation,

@@ -21,7 +21,7 @@ struct ExactWay {
 struct ExactBody {
     std::vector<ExactVector> points;
     std::vector<std::array<std::size_t, 3>> triangles;  // counter-clockwise seen from outside
-    explicit ExactBody(const convex::Placed& placed, const ExactWay& way = {});
+    explicit ExactBody(const convex::BodyAtPose& placed, const ExactWay& way = {});
 };
 
 // By a plane across one of the `normals` (from a to b), or a common point: `origin` plus one of the `points`. Where
@@ -31,7 +31,7 @@ struct ExactBody {
 
 // The same of bodies that stand anywhere, b at the end of a way. Planes and points are guessed by the engine, and
 // `normal` is tried too.
-[[nodiscard]] bool meet_exactly(const convex::Placed& a, const convex::Placed& b, const glm::dvec3& normal,
+[[nodiscard]] bool meet_exactly(const convex::BodyAtPose& a, const convex::BodyAtPose& b, const glm::dvec3& normal,
                                 std::uint64_t& by_axes, const ExactWay& way_of_b = {});
 
 // Whether the depth of two bodies that meet lies in [lower, upper]: by all faces of the difference body, found among

@@ -62,7 +62,7 @@ void opposite_faces(const VerifyOptions& options, std::vector<VerifyRow>& rows) 
 }
 
 void parallelograms(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
-    // A rectangle in the ball: crossed where the foot lies inside. Given the direction the mean is A·|cosine|/Δ: what
+    // A rectangle in the sphere: crossed where the foot lies inside. Given the direction the mean is A·|cosine|/Δ: what
     // is known of that is taken off, since the directions' density has rows of its own.
     const glm::dvec3 corner(-0.4, -0.3, 0.1), x(0.8, 0.0, 0.2), y(0.0, 0.7, 0.0);
     const glm::dvec3 normal = glm::cross(x, y);

@@ -44,7 +44,7 @@ std::vector<NamedBody> bodies() {
     return {{"a cube", box_body({0.5, 0.5, 0.5}), measure::intrinsic_volumes_of_box(1.0, 1.0, 1.0)},
             {"a needle", box_body({3.0, 0.05, 0.05}), measure::intrinsic_volumes_of_box(6.0, 0.1, 0.1)},
             {"a plate", box_body({1.2, 0.35, 0.025}), measure::intrinsic_volumes_of_box(2.4, 0.7, 0.05)},
-            {"a ball", ball_body(0.8), measure::intrinsic_volumes_of_sphere(0.8)},
+            {"a sphere", sphere_body(0.8), measure::intrinsic_volumes_of_sphere(0.8)},
             {"a triangle", flat_body(triangle), measure::intrinsic_volumes_of_flat_polygon(0.5 * 3.0 * 2.5, perimeter)},
             {"a segment", segment_body(2.0), measure::intrinsic_volumes_of_segment(2.0)}};
 }

@@ -56,7 +56,7 @@ bool may_block(const WitnessRay& ray, const Obb& box) {
     return !(enter > leave + 2.0 * error || enter > 1.0 + error || enter < ray.t_near - error);
 }
 
-// What may block rays: boxes, and a ball around each, a little larger, that most rays pass by.
+// What may block rays: boxes, and a sphere around each, a little larger, that most rays pass by.
 class Blockers {
   public:
     explicit Blockers(const std::vector<Obb>& boxes) : boxes_(&boxes) {

@@ -148,7 +148,7 @@ Ray random_ray(Random& random, const Camera& camera) {
     return {from + 1.0001 * camera.near_distance * ahead, ahead, camera.far_distance * 0.999};
 }
 
-void look(Random& random, const Stage& stage, VisibleObjects& visible, std::vector<bool>& seen, SceneCounts& counts) {
+void look(Random& random, const Stage& stage, ViewResult& visible, std::vector<bool>& seen, SceneCounts& counts) {
     const Camera camera = camera_in(random, stage);
     const OcclusionOptions occlusion{.size = kSceneSizes[random.bits() % 4], .list_occluded = true};
     if (!stage.world.view({.camera = camera, .occlusion = occlusion}, visible)) {
@@ -179,7 +179,7 @@ Result<std::vector<VerifyRow>> verify_occluded_scene(const std::string& name, co
     if (!stage) return tl::unexpected(stage.error());
     std::vector<VerifyRow> rows;
     const std::string level = which.map.empty() ? "" : " " + which.map;
-    VisibleObjects visible;
+    ViewResult visible;
     std::vector<bool> seen(stage->world.object_count(), false);
     for (const double offset : {0.0, 1e3, 1e5, 1e7}) {
         Random random(options.seed);

@@ -46,9 +46,9 @@ Result<Baked> bake_town(const VerifyOptions& options) {
         return 2.0 * (e.x * e.y + e.y * e.z + e.z * e.x);
     };
     const double lines = static_cast<double>(options.trials) * surface(cells->box(0)) / surface(cells->bounds());
-    const auto pairs = static_cast<double>(cells->size() * scene->subject.boxes.size());
+    const auto pairs = static_cast<double>(cells->size() * scene->geometry.boxes.size());
     const double epsilon = std::min(0.5, std::log(pairs / (1.0 - kConfidence)) / lines);
-    auto bake = pvs::Bake::create(scene->subject, *cells,
+    auto bake = pvs::Bake::create(scene->geometry, *cells,
                                   {.epsilon = epsilon, .confidence = kConfidence, .seed = options.seed});
     if (!bake) return tl::unexpected(bake.error());
     if (auto ran = bake->run(); !ran) return tl::unexpected(ran.error());
@@ -59,7 +59,7 @@ Result<Baked> bake_town(const VerifyOptions& options) {
 }
 
 // The objects at the ends of the gaps that the line has within the box, each once.
-void add_ends(std::span<const lines::Hit> hits, const pvs::Subject& subject, const Line& line, const Aabb& box,
+void add_ends(std::span<const lines::Hit> hits, const pvs::BakeGeometry& geometry, const Line& line, const Aabb& box,
               std::vector<std::uint32_t>& ends) {
     double begin = -HUGE_VAL, end = HUGE_VAL;
     for (int k = 0; k < 3; ++k) {
@@ -74,8 +74,8 @@ void add_ends(std::span<const lines::Hit> hits, const pvs::Subject& subject, con
         const double from = std::max(begin, gap == 0 ? -HUGE_VAL : static_cast<double>(hits[gap - 1].t));
         const double to = std::min(end, gap == hits.size() ? HUGE_VAL : static_cast<double>(hits[gap].t));
         if (to - from < some) continue;
-        if (gap > 0) ends.push_back(subject.object_of[hits[gap - 1].triangle]);
-        if (gap < hits.size()) ends.push_back(subject.object_of[hits[gap].triangle]);
+        if (gap > 0) ends.push_back(geometry.object_of[hits[gap - 1].triangle]);
+        if (gap < hits.size()) ends.push_back(geometry.object_of[hits[gap].triangle]);
     }
     std::sort(ends.begin(), ends.end());
     ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
@@ -92,15 +92,16 @@ VerifyRow missed_pairs(const Baked& baked, const lines::LineTracer& tracer, cons
         Random random(options.seed + 500, i);
         const std::size_t cell = random.bits() % baked.cells.size();
         const Aabb world = baked.cells.box(cell);
-        const Aabb box{world.min - baked.scene.subject.origin, world.max - baked.scene.subject.origin};
+        const Aabb box{world.min - baked.scene.geometry.origin, world.max - baked.scene.geometry.origin};
         Vector<Line> all;
         for (std::uint64_t n = 0; n < lines; ++n) all.push_back(sampling::line_from_box(box, random.point<5>()));
         lines::LineHits hits;
         tracer.all_hits(all, hits);
-        std::vector<std::uint64_t> counts(baked.scene.subject.boxes.size(), 0);
+        std::vector<std::uint64_t> counts(baked.scene.geometry.boxes.size(), 0);
         std::vector<std::uint32_t> ends;
         for (std::size_t n = 0, first = 0; n < all.size(); first = hits.ends[n], ++n) {
-            add_ends(std::span(hits.hits).subspan(first, hits.ends[n] - first), baked.scene.subject, all[n], box, ends);
+            add_ends(std::span(hits.hits).subspan(first, hits.ends[n] - first), baked.scene.geometry, all[n], box,
+                     ends);
             for (const std::uint32_t object : ends) ++counts[object];
         }
         for (std::uint32_t o = 0; o < counts.size(); ++o) {
@@ -123,19 +124,19 @@ VerifyRow missed_pairs(const Baked& baked, const lines::LineTracer& tracer, cons
 
 void wrong_rays(const Baked& baked, const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     const auto tree =
-        mesh::MeshTree::build(baked.scene.subject.mesh, {.boxes = mesh::MeshBoxes::principal_axes, .rays = true});
+        mesh::MeshTree::build(baked.scene.geometry.mesh, {.boxes = mesh::MeshBoxes::principal_axes, .rays = true});
     std::uint64_t rays = 0, hits = 0, drawn_less = 0, hidden = 0;
     Random random(options.seed + 501);
     while (tree && rays < options.trials) {
         const std::size_t cell = random.bits() % baked.cells.size();
         const glm::dvec3 eye = sampling::box_point(baked.cells.box(cell), random.point<3>());
         for (int n = 0; n < 64; ++n, ++rays) {
-            const Ray ray{eye - baked.scene.subject.origin, sampling::direction(random.point<2>())};
+            const Ray ray{eye - baked.scene.geometry.origin, sampling::direction(random.point<2>())};
             const std::uint32_t from = baked.sets.find_cell(eye);
             const auto hit = mesh::raycast(ray, *tree);
             if (!hit || from == pvs::kNoCell) continue;
             ++hits;
-            const pvs::PairState state = baked.sets.state(from, baked.scene.subject.object_of[hit->triangle]);
+            const pvs::PairState state = baked.sets.state(from, baked.scene.geometry.object_of[hit->triangle]);
             drawn_less += state != pvs::PairState::seen;
             hidden += state == pvs::PairState::hidden;
         }
@@ -154,7 +155,7 @@ void wrong_rays(const Baked& baked, const VerifyOptions& options, std::vector<Ve
 // Views from places that the bake knew nothing of.
 VerifyRow wrong_pixels(const Baked& baked, const VerifyOptions& options) {
     const auto views = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(options.trials / 200, 20, 1000));
-    const auto looked = pipeline::look_at_views(baked.source.scene, baked.scene.subject, baked.sets,
+    const auto looked = pipeline::look_at_views(baked.source.scene, baked.scene.geometry, baked.sets,
                                                 {.views = views, .seed = options.seed, .near_radius = 0.0});
     if (!looked) return computed_row("street views: " + looked.error().message, "docs/pvs.md", 1.0, 0.0, 0.0);
     char claim[300];
@@ -178,7 +179,7 @@ std::vector<VerifyRow> verify_pvs(const VerifyOptions& options) {
         rows.push_back(computed_row("the town is baked: " + baked.error().message, "docs/pvs.md", 1.0, 0.0, 0.0));
         return rows;
     }
-    const auto tracer = lines::LineTracer::build(baked->scene.subject.mesh);
+    const auto tracer = lines::LineTracer::build(baked->scene.geometry.mesh);
     rows.push_back(tracer ? missed_pairs(*baked, *tracer, options)
                           : untried_row("pairs that the bake missed", "theory.md (7)"));
     wrong_rays(*baked, options, rows);

@@ -37,11 +37,11 @@ void Straddlers::make(const Frustum& frustum, const Corners& corners, Aabb& box)
     box.max = placed.center + glm::dvec3(placed.half_extents);
 }
 
-void Straddlers::make(const Frustum& frustum, const Corners& corners, Sphere& ball) {
-    ball.radius = std::exp(number(-4.0, 2.0));
+void Straddlers::make(const Frustum& frustum, const Corners& corners, Sphere& sphere) {
+    sphere.radius = std::exp(number(-4.0, 2.0));
     const glm::dvec3 target = surface_point(corners);
     const glm::dvec3 away = number(0, 1) < 0.8 ? normal_at(frustum, target, corners) : outward(target, corners);
-    ball.center = frustum.origin + target + (ball.radius + depth()) * away;
+    sphere.center = frustum.origin + target + (sphere.radius + depth()) * away;
 }
 
 // Turns and extents of `box` are given or chosen; then a corner, or (one in two) a point of an edge, comes to lie near

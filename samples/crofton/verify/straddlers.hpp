@@ -21,7 +21,7 @@ class Straddlers {
     using Corners = std::array<glm::dvec3, 8>;
     void make(const Frustum& frustum, const Corners& corners, Obb& box);
     void make(const Frustum& frustum, const Corners& corners, Aabb& box);
-    void make(const Frustum& frustum, const Corners& corners, Sphere& ball);
+    void make(const Frustum& frustum, const Corners& corners, Sphere& sphere);
 
   private:
     [[nodiscard]] double number(double low, double high);

@@ -63,7 +63,7 @@ VerifyRow counted(const char* claim, Orientation orientation, const VerifyOption
         }
         radius = std::max(radius, glm::length(bound.center) + std::sqrt(diagonal));
     }
-    // A plane that meets a ball of radius R meets a box of edges a, b, c with probability (a + b + c)/(4 R).
+    // A plane that meets a sphere of radius R meets a box of edges a, b, c with probability (a + b + c)/(4 R).
     const sampling::UnitPoints points(options.seed * 1000 + 900);
     const std::uint64_t trials = 3 * options.trials;
     double mean = 0.0, squares = 0.0;

@@ -142,7 +142,7 @@ void densities(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
         hits += std::abs(radius * (2.0 * u[2] - 1.0)) <= glm::dot(glm::abs(n), half);
     }
     const Share share = share_of(hits, trials);
-    rows.push_back(measured_row("planes that hit a box, of those that hit its ball: M",
+    rows.push_back(measured_row("planes that hit a box, of those that hit its sphere: M",
                                 "theory.md section 1, density of planes",
                                 measure::intrinsic_volumes_of_box(1.2, 0.6, 0.4).mean_curvature,
                                 4.0 * pi * radius * share.value, 4.0 * pi * radius * share.standard_error));

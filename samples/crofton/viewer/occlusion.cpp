@@ -53,7 +53,7 @@ std::vector<scene::NodeId> hiding_nodes(const pipeline::Pipeline& pipeline) {
 
 std::vector<scene::NodeId> nodes_that_hide(const pipeline::Pipeline& pipeline, scene::InstanceId instance) {
     Vector<OccluderRef> occluders;
-    const VisibleObjects& seen = pipeline.not_hidden();
+    const ViewResult& seen = pipeline.not_hidden();
     if (!pipeline.world().hidden_by(seen.ref(instance).object, seen, occluders)) return {};
     return nodes_of(occluders);
 }

@@ -118,7 +118,7 @@ class Session {
     FoundContacts contacts_;          // of the scene as it stands
     std::optional<CellSight> sight_;  // of the camera that culls
     std::vector<Cascade> cascades_;
-    VisibleObjects cascade_visible_;
+    ViewResult cascade_visible_;
     InstanceColoring instance_coloring_;
     Overlay overlay_;
     LineList lines_;

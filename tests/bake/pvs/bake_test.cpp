@@ -9,7 +9,7 @@
 #include <numbers>
 #include <oracle/plain_pvs.hpp>
 
-#include "subjects.hpp"
+#include "bake_geometry.hpp"
 
 using namespace crofton;
 using namespace crofton::pvs;
@@ -34,34 +34,34 @@ double epsilon_for(double lines, std::size_t pairs, double confidence) {
 
 TEST_SUITE("pvs/bake") {
     TEST_CASE("options, objects and triangles that make no sense are named errors") {
-        Subject subject = random_subject(1, 5);
+        BakeGeometry geometry = random_geometry(1, 5);
         const Cells cells = Cells::grid({{-5.0, 0.0, -5.0}, {5.0, 2.0, 5.0}}, {4, 1, 4}).value();
         for (const double bad : {0.0, -1.0, 1.0, std::numeric_limits<double>::quiet_NaN()}) {
-            CHECK(error_of(Bake::create(subject, cells, {.epsilon = bad})).code == ErrorCode::invalid_argument);
-            CHECK(error_of(Bake::create(subject, cells, {.confidence = bad})).code == ErrorCode::invalid_argument);
+            CHECK(error_of(Bake::create(geometry, cells, {.epsilon = bad})).code == ErrorCode::invalid_argument);
+            CHECK(error_of(Bake::create(geometry, cells, {.confidence = bad})).code == ErrorCode::invalid_argument);
         }
-        CHECK(error_of(Bake::create(subject, cells, {.epsilon = 1e-14})).code == ErrorCode::out_of_range);
-        subject.object_of[7] = 5;
-        CHECK(error_of(Bake::create(subject, cells)).code == ErrorCode::out_of_range);
-        CHECK(error_of(Bake::create(subject, cells)).item == 7);
-        subject.object_of[7] = 0;
-        subject.mesh.positions[3].y = std::numeric_limits<float>::infinity();
-        CHECK(error_of(Bake::create(subject, cells)).item == 3);
-        subject.mesh.positions[3].y = 0.0f;
-        for (std::size_t i = 0; i < subject.boxes.size(); ++i) {
-            Subject bad = subject;
+        CHECK(error_of(Bake::create(geometry, cells, {.epsilon = 1e-14})).code == ErrorCode::out_of_range);
+        geometry.object_of[7] = 5;
+        CHECK(error_of(Bake::create(geometry, cells)).code == ErrorCode::out_of_range);
+        CHECK(error_of(Bake::create(geometry, cells)).item == 7);
+        geometry.object_of[7] = 0;
+        geometry.mesh.positions[3].y = std::numeric_limits<float>::infinity();
+        CHECK(error_of(Bake::create(geometry, cells)).item == 3);
+        geometry.mesh.positions[3].y = 0.0f;
+        for (std::size_t i = 0; i < geometry.boxes.size(); ++i) {
+            BakeGeometry bad = geometry;
             bad.boxes[i].half_extents.x = -1.0f;
             CHECK(error_of(Bake::create(bad, cells)).item == i);
         }
-        CHECK(error_of(Bake::create(Subject{}, cells)).code == ErrorCode::empty);
-        CHECK(error_of(Bake::create(random_subject(1, 5), Cells{})).code == ErrorCode::empty);
-        subject.object_of.pop_back();
-        CHECK(error_of(Bake::create(subject, cells)).code == ErrorCode::invalid_argument);
+        CHECK(error_of(Bake::create(BakeGeometry{}, cells)).code == ErrorCode::empty);
+        CHECK(error_of(Bake::create(random_geometry(1, 5), Cells{})).code == ErrorCode::empty);
+        geometry.object_of.pop_back();
+        CHECK(error_of(Bake::create(geometry, cells)).code == ErrorCode::invalid_argument);
     }
 
     TEST_CASE("witnesses what a plain walk along the same lines does, in grids and boxes, with either kind of sides") {
         for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-            const Subject subject = random_subject(seed, 12);
+            const BakeGeometry geometry = random_geometry(seed, 12);
             const bool boxes = seed % 2 == 0;
             std::vector<Aabb> few;
             sampling::Random random(seed + 100);
@@ -76,12 +76,12 @@ TEST_SUITE("pvs/bake") {
             BakeOptions options{.confidence = 0.9, .seed = seed};
             options.sides = seed % 3 == 0 ? occlude::Sides::front : occlude::Sides::both;
             options.epsilon = epsilon_for(300.0, cells.size() * 12, 0.9);
-            Bake bake = Bake::create(subject, cells, options).value();
+            Bake bake = Bake::create(geometry, cells, options).value();
             REQUIRE(bake.run().has_value());
             REQUIRE(bake.is_complete());
             CAPTURE(seed);
             CHECK(bake.lines_planned() < 60 * 4096);
-            const auto expected = oracle::witnessed(subject, cells, options);
+            const auto expected = oracle::witnessed(geometry, cells, options);
             const auto found = pairs_of(bake, cells.size(), 12);
             CHECK(found.size() > 100);
             CHECK(found.size() < cells.size() * 12);
@@ -91,28 +91,29 @@ TEST_SUITE("pvs/bake") {
 
     TEST_CASE("witnesses what a plain walk does in convex cells, near and far, together and each by itself") {
         for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-            const Subject subject = random_subject(seed, 12, (seed % 2 ? 1e5 : 0.0) * glm::dvec3(1.0, -0.7, 0.3));
+            const BakeGeometry geometry =
+                random_geometry(seed, 12, (seed % 2 ? 1e5 : 0.0) * glm::dvec3(1.0, -0.7, 0.3));
             const bool far_apart = seed % 3 == 0;
             std::vector<ConvexCell> convex;
             sampling::Random random(seed + 100);
             for (int i = 0; i < (far_apart ? 3 : 20); ++i) {
                 const double x = random.uniform(-8.0, 8.0), y = random.uniform(0.0, 3.0), z = random.uniform(-8.0, 8.0);
                 const glm::dvec3 at(x, y, z + (far_apart ? 400.0 * i : 0.0));
-                convex.push_back(random_cell(random, subject.origin + at, 2.0));
+                convex.push_back(random_cell(random, geometry.origin + at, 2.0));
             }
             const Cells cells = Cells::convex(convex).value();
             const BakeOptions options{.epsilon = epsilon_for(far_apart ? 4000.0 : 60.0, cells.size() * 12, 0.9),
                                       .confidence = 0.9,
                                       .seed = seed,
                                       .sides = seed % 4 == 0 ? occlude::Sides::front : occlude::Sides::both};
-            Bake bake = Bake::create(subject, cells, options).value();
+            Bake bake = Bake::create(geometry, cells, options).value();
             REQUIRE(bake.run().has_value());
             REQUIRE(bake.is_complete());
             CHECK(bake.epsilon_reached() <= options.epsilon);
             CAPTURE(seed);
             const auto found = pairs_of(bake, cells.size(), 12);
             CHECK(found.size() > (far_apart ? 10 : 100));
-            CHECK(found == oracle::witnessed(subject, cells, options));
+            CHECK(found == oracle::witnessed(geometry, cells, options));
         }
     }
 
@@ -135,25 +136,25 @@ TEST_SUITE("pvs/bake") {
     }
 
     TEST_CASE("cells that are few and far apart get lines of their own, and witness the same as the plain walk") {
-        const Subject subject = random_subject(8, 12);
+        const BakeGeometry geometry = random_geometry(8, 12);
         const std::vector<Aabb> far = {box_around({-400.0, 1.0, 0.0}, glm::dvec3(0.5)),
                                        box_around({0.0, 1.0, 0.0}, glm::dvec3(0.6)),
                                        box_around({3.0, 2.0, 500.0}, glm::dvec3(0.5))};
         const Cells cells = Cells::boxes(far).value();
         const BakeOptions options{.epsilon = epsilon_for(8000.0, 36, 0.9), .confidence = 0.9};
-        Bake bake = Bake::create(subject, cells, options).value();
+        Bake bake = Bake::create(geometry, cells, options).value();
         CHECK(bake.lines_planned() == 6 * 4096);
         REQUIRE(bake.run({.lines = 1}).has_value());
         REQUIRE(bake.is_complete());
         CHECK(bake.epsilon_reached() <= options.epsilon);
-        CHECK(pairs_of(bake, 3, 12) == oracle::witnessed(subject, cells, options));
+        CHECK(pairs_of(bake, 3, 12) == oracle::witnessed(geometry, cells, options));
     }
 
     TEST_CASE("the guarantee's number of lines is that of the theory") {
-        const Subject subject = random_subject(2, 10);
+        const BakeGeometry geometry = random_geometry(2, 10);
         // A cell of 1 × 1 × 1 in a box of 10 × 1 × 10 has 6/240 of its surface.
         const Cells cells = Cells::grid({{0.0, 0.0, 0.0}, {10.0, 1.0, 10.0}}, {10, 1, 10}).value();
-        Bake bake = Bake::create(subject, cells, {.epsilon = 5e-4, .confidence = 0.99}).value();
+        Bake bake = Bake::create(geometry, cells, {.epsilon = 5e-4, .confidence = 0.99}).value();
         const double expected = std::log(1000.0 / 0.01) / 5e-4 * 240.0 / 6.0;
         CHECK(static_cast<double>(bake.lines_planned()) >= expected);
         CHECK(static_cast<double>(bake.lines_planned()) <= expected + 12 * 4096.0 + 40.0);  // six faces, two rounds
@@ -172,8 +173,8 @@ TEST_SUITE("pvs/bake") {
         // A small plate opposite a small cell, far away: nearly all lines through both are lines from one to the other,
         // in a measure of A_plate · A_cell's shadow / distance². The share of the cell's lines is that over π/2 · F.
         const double side = 0.06, distance = 3.0, edge = 0.5;
-        Subject subject;
-        add_box(subject, box_around({0.0, 0.0, distance}, {side / 2, side / 2, 1e-4}));
+        BakeGeometry geometry;
+        add_box(geometry, box_around({0.0, 0.0, distance}, {side / 2, side / 2, 1e-4}));
         const Cells cells = Cells::boxes(std::vector<Aabb>{box_around({}, glm::dvec3(edge / 2))}).value();
         const double share =
             side * side * edge * edge / (distance * distance) / (std::numbers::pi / 2 * 6 * edge * edge);
@@ -181,7 +182,7 @@ TEST_SUITE("pvs/bake") {
         const int bakes = 200;
         double lines = 0.0;
         for (int i = 0; i < bakes; ++i) {
-            Bake bake = Bake::create(subject, cells,
+            Bake bake = Bake::create(geometry, cells,
                                      {.epsilon = epsilon_for(4000.0, 1, 0.5),
                                       .confidence = 0.5,
                                       .seed = 1000 + static_cast<std::uint64_t>(i)})
@@ -196,12 +197,12 @@ TEST_SUITE("pvs/bake") {
     }
 
     TEST_CASE("same bits on one thread and three, in one run and in many") {
-        const Subject subject = random_subject(3, 30);
+        const BakeGeometry geometry = random_geometry(3, 30);
         const Cells cells = Cells::grid({{-10.0, 0.0, -10.0}, {10.0, 3.0, 10.0}}, {9, 2, 9}).value();
         const BakeOptions options{.epsilon = 4e-4, .confidence = 0.9};
-        Bake one = Bake::create(subject, cells, options).value();
+        Bake one = Bake::create(geometry, cells, options).value();
         REQUIRE(one.run().has_value());
-        Bake many = Bake::create(subject, cells, options).value();
+        Bake many = Bake::create(geometry, cells, options).value();
         ThreadPool pool(3);
         int runs = 0;
         for (; !many.is_complete(); ++runs) REQUIRE(many.run({.lines = 1}, pool).has_value());
@@ -210,8 +211,8 @@ TEST_SUITE("pvs/bake") {
     }
 
     TEST_CASE("same bits on every instruction set, in grids and among cells of the caller's") {
-        const Subject subject = random_subject(9, 30, {1e7, -1e7, 0.5e7});
-        const glm::dvec3 o = subject.origin;
+        const BakeGeometry geometry = random_geometry(9, 30, {1e7, -1e7, 0.5e7});
+        const glm::dvec3 o = geometry.origin;
         std::vector<Aabb> few;
         sampling::Random random(10);
         for (int i = 0; i < 30; ++i) {
@@ -227,7 +228,7 @@ TEST_SUITE("pvs/bake") {
             for (std::int64_t rest = hwy::SupportedTargets(); rest != 0; rest &= rest - 1) {
                 hwy::SetSupportedTargetsForTest(rest & -rest);
                 CAPTURE(hwy::TargetName(rest & -rest));
-                Bake bake = Bake::create(subject, cells, {.epsilon = 1e-2, .confidence = 0.9}).value();
+                Bake bake = Bake::create(geometry, cells, {.epsilon = 1e-2, .confidence = 0.9}).value();
                 REQUIRE(bake.run().has_value());
                 const auto bytes = plain(bake.state().value());
                 if (first.empty()) first = bytes;
@@ -240,8 +241,8 @@ TEST_SUITE("pvs/bake") {
     TEST_CASE("a scene far from the origin has the pairs that it has near") {
         // 2^23 keeps all of these coordinates as they are.
         const glm::dvec3 far(8388608.0, -8388608.0, 16777216.0);
-        const Subject near_by = random_subject(4, 20), far_away = [&] {
-            Subject moved = random_subject(4, 20);
+        const BakeGeometry near_by = random_geometry(4, 20), far_away = [&] {
+            BakeGeometry moved = random_geometry(4, 20);
             moved.origin = far;
             for (Obb& box : moved.boxes) box.center += far;
             return moved;
@@ -258,13 +259,13 @@ TEST_SUITE("pvs/bake") {
     }
 
     TEST_CASE("cells in solids, in a closed room and in the open are told apart") {
-        Subject room;
+        BakeGeometry room;
         add_box(room, {{0.0, 0.0, 0.0}, {12.0, 4.0, 12.0}}, true);
         add_box(room, {{4.0, 0.0, 4.0}, {8.0, 4.0, 8.0}});  // a block as high as the room
         const Cells cells = Cells::grid({{0.0, 0.0, 0.0}, {12.0, 4.0, 12.0}}, {3, 1, 3}).value();
         const BakeOptions options{.epsilon = 1e-3, .confidence = 0.9};
-        const auto kinds_of = [&](const Subject& subject) {
-            Bake bake = Bake::create(subject, cells, options).value();
+        const auto kinds_of = [&](const BakeGeometry& geometry) {
+            Bake bake = Bake::create(geometry, cells, options).value();
             REQUIRE(bake.run().has_value());
             return Pvs::finish(bake).value();
         };
@@ -286,12 +287,12 @@ TEST_SUITE("pvs/bake") {
 
     TEST_CASE("what a wall parts is not seen, and a door lets lines through") {
         const auto rooms = [](bool door) {
-            Subject subject;
-            add_box(subject, {{-6.0, 0.0, -3.0}, {6.0, 3.0, 3.0}}, true);
-            add_box(subject, {{-0.2, 0.0, -3.0}, {0.2, 3.0, door ? -0.5 : 3.0}});
-            if (door) add_box(subject, {{-0.2, 0.0, 0.5}, {0.2, 3.0, 3.0}});
-            add_box(subject, box_around({4.0, 1.0, 2.0}, glm::dvec3(0.3)));
-            return subject;
+            BakeGeometry geometry;
+            add_box(geometry, {{-6.0, 0.0, -3.0}, {6.0, 3.0, 3.0}}, true);
+            add_box(geometry, {{-0.2, 0.0, -3.0}, {0.2, 3.0, door ? -0.5 : 3.0}});
+            if (door) add_box(geometry, {{-0.2, 0.0, 0.5}, {0.2, 3.0, 3.0}});
+            add_box(geometry, box_around({4.0, 1.0, 2.0}, glm::dvec3(0.3)));
+            return geometry;
         };
         const Cells cells = Cells::grid({{-6.0, 0.0, -3.0}, {6.0, 3.0, 3.0}}, {2, 1, 1}).value();
         for (const bool door : {false, true}) {
@@ -305,17 +306,17 @@ TEST_SUITE("pvs/bake") {
 
     TEST_CASE("sheets back to back at one place are seen from both of their sides") {
         // Two one-sided plates at z = 0 that face away from each other, each an object.
-        Subject subject;
-        subject.mesh.positions = {{-1.f, -1.f, 0.f}, {1.f, -1.f, 0.f}, {1.f, 1.f, 0.f}, {-1.f, 1.f, 0.f}};
-        subject.mesh.indices = {0, 1, 2, 0, 2, 3, 0, 2, 1, 0, 3, 2};
-        subject.object_of = {0, 0, 1, 1};  // 0 looks along +z
-        subject.boxes.assign(2, obb_of(Aabb{{-1.0, -1.0, 0.0}, {1.0, 1.0, 0.0}}));
+        BakeGeometry geometry;
+        geometry.mesh.positions = {{-1.f, -1.f, 0.f}, {1.f, -1.f, 0.f}, {1.f, 1.f, 0.f}, {-1.f, 1.f, 0.f}};
+        geometry.mesh.indices = {0, 1, 2, 0, 2, 3, 0, 2, 1, 0, 3, 2};
+        geometry.object_of = {0, 0, 1, 1};  // 0 looks along +z
+        geometry.boxes.assign(2, obb_of(Aabb{{-1.0, -1.0, 0.0}, {1.0, 1.0, 0.0}}));
         const std::vector<Aabb> sides = {box_around({0.0, 0.0, 3.0}, glm::dvec3(1.0)),
                                          box_around({0.0, 0.0, -3.0}, glm::dvec3(1.0))};
         for (const occlude::Sides which : {occlude::Sides::both, occlude::Sides::front}) {
-            Bake bake =
-                Bake::create(subject, Cells::boxes(sides).value(), {.epsilon = 1e-3, .confidence = 0.9, .sides = which})
-                    .value();
+            Bake bake = Bake::create(geometry, Cells::boxes(sides).value(),
+                                     {.epsilon = 1e-3, .confidence = 0.9, .sides = which})
+                            .value();
             REQUIRE(bake.run().has_value());
             CHECK(bake.is_seen(0, 0));
             CHECK(bake.is_seen(1, 1));
@@ -325,12 +326,12 @@ TEST_SUITE("pvs/bake") {
     }
 
     TEST_CASE("an object without triangles is in every set, and one that no cell sees in none") {
-        Subject subject;
-        add_box(subject, box_around({0.0, 0.0, 0.0}, glm::dvec3(3.0)));
-        add_box(subject, box_around({0.0, 0.0, 0.0}, glm::dvec3(1.0)));  // within the first
-        subject.boxes.push_back(subject.boxes[0]);                       // moves
+        BakeGeometry geometry;
+        add_box(geometry, box_around({0.0, 0.0, 0.0}, glm::dvec3(3.0)));
+        add_box(geometry, box_around({0.0, 0.0, 0.0}, glm::dvec3(1.0)));  // within the first
+        geometry.boxes.push_back(geometry.boxes[0]);                      // moves
         const Cells cells = Cells::grid({{5.0, -1.0, -1.0}, {7.0, 1.0, 1.0}}, {2, 2, 2}).value();
-        Bake bake = Bake::create(subject, cells, {.epsilon = 1e-3, .confidence = 0.9}).value();
+        Bake bake = Bake::create(geometry, cells, {.epsilon = 1e-3, .confidence = 0.9}).value();
         REQUIRE(bake.run().has_value());
         const Pvs pvs = Pvs::finish(bake).value();
         for (std::uint32_t c = 0; c < 8; ++c) CHECK(pvs.visible_from(c, Mode::statistical)[0] == 0b101);

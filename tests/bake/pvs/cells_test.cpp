@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "subjects.hpp"
+#include "bake_geometry.hpp"
 
 using namespace crofton;
 using namespace crofton::pvs;

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "subjects.hpp"
+#include "bake_geometry.hpp"
 
 namespace {
 
@@ -18,21 +18,23 @@ int report(const crofton::Error& error) {
 template <class Draw>
 int show(const crofton::Aabb& eyes, const crofton::scene::Scene& scene,
          const std::vector<crofton::scene::InstanceId>& movers, const crofton::World& world,
-         const crofton::Camera& camera, crofton::VisibleObjects& visible, const Draw& draw_object) {
+         const crofton::Camera& camera, crofton::ViewResult& visible, const Draw& draw_object) {
     using namespace crofton;
 
     const auto cells = pvs::Cells::grid(eyes, {16, 1, 16});
     if (!cells) return report(cells.error());
-    const auto subject = pvs::subject_of(scene, movers);
-    if (!subject) return report(subject.error());
-    auto bake = pvs::Bake::create(*subject, *cells, {.epsilon = 1e-2});
+    const auto geometry = pvs::geometry_of(scene, movers);
+    if (!geometry) return report(geometry.error());
+    auto bake = pvs::Bake::create(*geometry, *cells, {.epsilon = 1e-2});
     if (!bake) return report(bake.error());
     if (const auto ran = bake->run(); !ran) return report(ran.error());  // until the guarantee holds
     const auto sets = pvs::Pvs::finish(*bake);
     if (!sets) return report(sets.error());
 
     // Each frame: what the view sees among the set of the eye's cell. What moves is never left out.
-    world.view({.camera = camera, .among = sets->visible_from(camera.position, pvs::Mode::statistical)}, visible)
+    world
+        .view({.camera = camera, .candidate_mask = sets->visible_from(camera.position, pvs::Mode::statistical)},
+              visible)
         .value();
     for (const std::uint32_t id : visible.ids()) draw_object(id);
     return 0;
@@ -46,7 +48,7 @@ TEST_SUITE("pvs/guide") {
         scene::Scene scene;
         World world;
         const auto put = [&](const glm::dvec3& center, const glm::dvec3& half) {
-            pvs::Subject shape;
+            pvs::BakeGeometry shape;
             testing::add_box(shape, testing::box_around({}, half));
             const auto node = scene.add_node(scene::kNone, {glm::dmat3(1.0), center}).value();
             REQUIRE(scene.add_instance(node, scene.add_mesh(shape.mesh).value()).has_value());
@@ -60,7 +62,7 @@ TEST_SUITE("pvs/guide") {
         for (int i = 0; i < 40; ++i) REQUIRE(world.update().has_value());  // what is new counts as moving at first
         Camera camera;
         camera.position = {0.0, 1.0, 0.0};
-        VisibleObjects visible;
+        ViewResult visible;
         std::vector<std::uint32_t> drawn;
         const Aabb eyes{{-2.0, 0.0, -2.0}, {2.0, 2.0, 2.0}};
         CHECK(show(eyes, scene, {3}, world, camera, visible, [&](std::uint32_t id) { drawn.push_back(id); }) == 0);

@@ -10,7 +10,7 @@
 #include <oracle/plain_pvs.hpp>
 #include <vector>
 
-#include "subjects.hpp"
+#include "bake_geometry.hpp"
 
 using namespace crofton;
 using namespace crofton::pvs;
@@ -39,7 +39,7 @@ double depth_in(const Obb& box, const glm::dvec3& p, const glm::dvec3& q) {
 }
 
 struct Walls {
-    Subject subject;         // the objects, then the walls
+    BakeGeometry geometry;   // the objects, then the walls
     std::vector<Obb> boxes;  // of the walls
     std::vector<occlude::FoundOccluder> found;
     std::vector<PlacedOccluder> placed;
@@ -49,14 +49,14 @@ struct Walls {
 Walls random_walls(std::uint64_t seed, int walls, int objects, const glm::dvec3& origin) {
     sampling::Random random(seed);
     Walls result;
-    result.subject.origin = origin;
+    result.geometry.origin = origin;
     const auto place = [&] {
         const auto at = random.point<3>();
         return origin + glm::dvec3(24.0 * at[0] - 12.0, 4.0 * at[1], 24.0 * at[2] - 12.0);
     };
     for (int i = 0; i < objects; ++i) {
         const glm::dvec3 at = place();
-        add_box(result.subject, box_around(at, glm::dvec3(0.1 + random.uniform())));
+        add_box(result.geometry, box_around(at, glm::dvec3(0.1 + random.uniform())));
     }
     for (int i = 0; i < walls; ++i) {
         const auto size = random.point<3>();
@@ -69,7 +69,7 @@ Walls random_walls(std::uint64_t seed, int walls, int objects, const glm::dvec3&
         result.found.push_back(found);
         box.center = place();
         result.boxes.push_back(box);
-        add_box(result.subject, box);
+        add_box(result.geometry, box);
     }
     for (std::size_t i = 0; i < result.boxes.size(); ++i)
         result.placed.push_back({&result.found[i], {glm::dmat3(1.0), result.boxes[i].center}});
@@ -77,7 +77,7 @@ Walls random_walls(std::uint64_t seed, int walls, int objects, const glm::dvec3&
 }
 
 Pvs finished(const Walls& walls, const Cells& cells, const ProofOptions& options) {
-    Bake bake = Bake::create(walls.subject, cells, {.epsilon = 5e-3, .confidence = 0.9}).value();
+    Bake bake = Bake::create(walls.geometry, cells, {.epsilon = 5e-3, .confidence = 0.9}).value();
     REQUIRE(bake.run().has_value());
     return Pvs::finish(bake, walls.placed, options).value();
 }
@@ -123,11 +123,11 @@ TEST_SUITE("pvs/hidden") {
             CAPTURE(patience);
             Patience user{patience};
             options.user = &user;
-            options.go_on = [](void* who, double share) {
+            options.should_stop = [](void* who, double share) {
                 Patience& it = *static_cast<Patience*>(who);
                 it.is_sane = it.is_sane && share >= it.last_share && share <= 1.0;
                 it.last_share = share;
-                return it.left-- > 0;
+                return it.left-- <= 0;
             };
             const Pvs some = finished(walls, cells, options);
             CHECK(user.is_sane);
@@ -155,7 +155,7 @@ TEST_SUITE("pvs/hidden") {
                 sampling::Random random(seed);
                 for (std::size_t c = 0; c < cells.size(); ++c)
                     for (std::uint32_t i = 0; i < 40 && pvs.kind(c) == CellKind::open; ++i) {
-                        const Obb& object = walls.subject.boxes[i];
+                        const Obb& object = walls.geometry.boxes[i];
                         double depth = -1.0;
                         for (const Obb& body : walls.boxes)
                             if (!is_near(body, cells.box(c), 0.1001))
@@ -207,7 +207,7 @@ TEST_SUITE("pvs/hidden") {
                         ++hidden;
                         for (int n = 0; n < 40; ++n) {
                             const glm::dvec3 p = point_in(convex[c], random),
-                                             q = point_in(walls.subject.boxes[i], random);
+                                             q = point_in(walls.geometry.boxes[i], random);
                             bool met = false;
                             for (const Obb& body : walls.boxes)
                                 met = met || (!is_near(body, cells.box(c), 0.0999) && depth_in(body, p, q) >= 0.0);
@@ -221,14 +221,14 @@ TEST_SUITE("pvs/hidden") {
     }
 
     TEST_CASE("a body proves nothing for eyes near it, behind its open side, or where it is a patch or flat") {
-        Subject subject;
-        add_box(subject, box_around({0.0, 0.0, 10.0}, glm::dvec3(0.5)));
-        add_box(subject, {{-8.0, -8.0, 4.0}, {8.0, 8.0, 5.0}});
+        BakeGeometry geometry;
+        add_box(geometry, box_around({0.0, 0.0, 10.0}, glm::dvec3(0.5)));
+        add_box(geometry, {{-8.0, -8.0, 4.0}, {8.0, 8.0, 5.0}});
         const Cells cells = Cells::boxes(std::vector<Aabb>{box_around({}, glm::dvec3(1.0))}).value();
-        Bake bake = Bake::create(subject, cells, {.epsilon = 1e-3, .confidence = 0.9}).value();
+        Bake bake = Bake::create(geometry, cells, {.epsilon = 1e-3, .confidence = 0.9}).value();
         REQUIRE(bake.run().has_value());
         occlude::FoundOccluder wall;
-        wall.box = subject.boxes[1];
+        wall.box = geometry.boxes[1];
         wall.piece_bounds = aabb_of(wall.box);
         const auto state = [&](const occlude::FoundOccluder& found, const glm::dmat3& linear, double near_radius) {
             const std::vector<PlacedOccluder> placed = {{&found, {linear, glm::dvec3(0.0)}}};
@@ -269,7 +269,7 @@ TEST_SUITE("pvs/hidden") {
     TEST_CASE("proofs are the same bits on three threads") {
         const Walls walls = random_walls(9, 20, 60, glm::dvec3(0.0));
         const Cells cells = Cells::grid({{-12.0, 0.0, -12.0}, {12.0, 3.0, 12.0}}, {12, 2, 12}).value();
-        Bake bake = Bake::create(walls.subject, cells, {.epsilon = 1e-2, .confidence = 0.9}).value();
+        Bake bake = Bake::create(walls.geometry, cells, {.epsilon = 1e-2, .confidence = 0.9}).value();
         REQUIRE(bake.run().has_value());
         ThreadPool pool(3);
         CHECK(plain(Pvs::finish(bake, walls.placed, {}, pool).value().to_file().value()) ==
@@ -278,10 +278,10 @@ TEST_SUITE("pvs/hidden") {
 
     TEST_CASE("a body that its transform has flattened proves nothing, however it was turned") {
         // An object in front of the flattened body, and eyes on both sides of it: those in front see the object.
-        Subject subject;
-        add_box(subject, box_around({0.0, 0.0, 5.0}, glm::dvec3(1e-4)));
+        BakeGeometry geometry;
+        add_box(geometry, box_around({0.0, 0.0, 5.0}, glm::dvec3(1e-4)));
         const Cells cells = Cells::grid({{-1.0, -1.0, -2.0}, {1.0, 1.0, 1.0}}, {1, 1, 1}).value();
-        Bake bake = Bake::create(subject, cells, {.epsilon = 0.5}).value();
+        Bake bake = Bake::create(geometry, cells, {.epsilon = 0.5}).value();
         REQUIRE(bake.run({.lines = 1}).has_value());
         REQUIRE_FALSE(bake.is_seen(0, 0));
         occlude::FoundOccluder cube;

@@ -6,7 +6,7 @@
 #include <error_of.hpp>
 #include <vector>
 
-#include "subjects.hpp"
+#include "bake_geometry.hpp"
 
 using namespace crofton;
 using namespace crofton::pvs;
@@ -15,11 +15,11 @@ using namespace crofton::testing;
 namespace {
 
 struct Job {
-    Subject subject = random_subject(5, 25);
+    BakeGeometry geometry = random_geometry(5, 25);
     Cells cells = Cells::grid({{-10.0, 0.0, -10.0}, {10.0, 3.0, 10.0}}, {10, 2, 10}).value();
     BakeOptions options{.epsilon = 3e-4, .confidence = 0.9};
 
-    [[nodiscard]] Bake start() const { return Bake::create(subject, cells, options).value(); }
+    [[nodiscard]] Bake start() const { return Bake::create(geometry, cells, options).value(); }
     [[nodiscard]] Vector<std::byte> part(std::uint32_t i, std::uint32_t n) const {
         Bake bake = start();
         REQUIRE(bake.run({.shard = {i, n}}).has_value());
@@ -89,8 +89,8 @@ TEST_SUITE("pvs/parts") {
             Bake bake = job.start();
             REQUIRE(bake.add_state(kept).has_value());
             int left = 1 + stops % 2;
-            const auto go_on = [](void* user, double) { return --*static_cast<int*>(user) >= 0; };
-            REQUIRE(bake.run({.go_on = go_on, .user = &left}).has_value());
+            const auto should_stop = [](void* user, double) { return --*static_cast<int*>(user) < 0; };
+            REQUIRE(bake.run({.should_stop = should_stop, .user = &left}).has_value());
             kept = bake.state().value();
             complete = bake.is_complete();
         }
@@ -111,7 +111,7 @@ TEST_SUITE("pvs/parts") {
         Bake of_another = other.start();
         CHECK(error_of(of_another.add_state(state)).code == ErrorCode::invalid_argument);
         other = Job{};
-        other.subject.mesh.positions[0].x += 1.0f;
+        other.geometry.mesh.positions[0].x += 1.0f;
         CHECK(error_of(other.start().add_state(state)).code == ErrorCode::invalid_argument);
         const auto part = of_another.state().value();
         const auto sum = merged({state, part});

@@ -7,7 +7,7 @@
 #include <oracle/plain_pvs.hpp>
 #include <vector>
 
-#include "subjects.hpp"
+#include "bake_geometry.hpp"
 
 using namespace crofton;
 using namespace crofton::pvs;
@@ -21,13 +21,13 @@ constexpr std::uint64_t kAsking = 2200;
 constexpr std::uint32_t kObjects = 8;
 
 // Of lines through the cell those that each object is seen along.
-std::vector<std::uint64_t> hits_in(const Subject& subject, const Aabb& box, sampling::Random random) {
+std::vector<std::uint64_t> hits_in(const BakeGeometry& geometry, const Aabb& box, sampling::Random random) {
     const Cells cell = Cells::boxes(std::vector<Aabb>{box}).value();
     std::vector<std::uint64_t> hits(kObjects, 0);
     for (std::uint64_t n = 0; n < kAsking; ++n) {
         oracle::Pairs seen;
         const Line line = sampling::line_from_box(box, random.point<5>());
-        oracle::add_witnessed(subject, cell, occlude::Sides::both, line, seen);
+        oracle::add_witnessed(geometry, cell, occlude::Sides::both, line, seen);
         for (const auto& pair : seen) ++hits[pair.second];
     }
     return hits;
@@ -42,17 +42,17 @@ TEST_SUITE("pvs/promise") {
     // Of all pairs at most Σ e^(−pN) are missed in the mean. As e^(−x) is convex, Σ e^(−p'N) is not less in the mean.
     TEST_CASE(
         "20 times the lines find at most one missed pair above epsilon per 1,000 cells, below as the bound says") {
-        const Subject subject = random_subject(1, kObjects);
+        const BakeGeometry geometry = random_geometry(1, kObjects);
         const Cells cells = Cells::grid({{-10.0, 0.0, -10.0}, {10.0, 4.0, 10.0}}, {32, 1, 32}).value();
         const double pairs = static_cast<double>(cells.size() * kObjects);
         const double epsilon = std::log(pairs / 0.001) / kPromised;
-        Bake bake = Bake::create(subject, cells, {.epsilon = epsilon, .confidence = 0.999, .seed = 7}).value();
+        Bake bake = Bake::create(geometry, cells, {.epsilon = epsilon, .confidence = 0.999, .seed = 7}).value();
         REQUIRE(bake.run().has_value());
         REQUIRE(bake.epsilon_reached() <= epsilon);
         std::uint64_t above = 0, missed_above = 0, missed = 0;
         double most = 0.0, variance = 0.0;  // of the missed
         for (std::size_t c = 0; c < cells.size(); ++c) {
-            const auto hits = hits_in(subject, cells.box(c), sampling::Random(8, c));
+            const auto hits = hits_in(geometry, cells.box(c), sampling::Random(8, c));
             for (std::uint32_t o = 0; o < kObjects; ++o) {
                 if (hits[o] == 0) continue;
                 const double share = static_cast<double>(hits[o]) / static_cast<double>(kAsking);

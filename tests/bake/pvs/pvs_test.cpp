@@ -8,7 +8,7 @@
 #include <error_of.hpp>
 #include <vector>
 
-#include "subjects.hpp"
+#include "bake_geometry.hpp"
 
 using namespace crofton;
 using namespace crofton::pvs;
@@ -18,12 +18,12 @@ namespace {
 
 const Aabb kBounds{{-10.0, 0.0, -10.0}, {10.0, 3.0, 10.0}};
 
-Pvs baked(const Subject& subject, const Cells& cells) {
-    Bake bake = Bake::create(subject, cells, {.epsilon = 1e-2, .confidence = 0.9}).value();
+Pvs baked(const BakeGeometry& geometry, const Cells& cells) {
+    Bake bake = Bake::create(geometry, cells, {.epsilon = 1e-2, .confidence = 0.9}).value();
     REQUIRE(bake.run().has_value());
     std::vector<occlude::FoundOccluder> found;
     std::vector<PlacedOccluder> placed;
-    for (const Obb& box : subject.boxes) {
+    for (const Obb& box : geometry.boxes) {
         occlude::FoundOccluder occluder;
         occluder.box = box;
         occluder.piece_bounds = aabb_of(box);
@@ -38,7 +38,7 @@ void check_same(const Pvs& a, const Pvs& b) {
     REQUIRE(a.object_count() == b.object_count());
     CHECK(a.epsilon() == b.epsilon());
     CHECK(a.confidence() == b.confidence());
-    CHECK(a.subject_fingerprint() == b.subject_fingerprint());
+    CHECK(a.geometry_fingerprint() == b.geometry_fingerprint());
     for (std::size_t c = 0; c < a.cells().size(); ++c) {
         CHECK(a.cells().box(c).min == b.cells().box(c).min);
         CHECK(a.cells().box(c).max == b.cells().box(c).max);
@@ -57,8 +57,8 @@ void check_same(const Pvs& a, const Pvs& b) {
 TEST_SUITE("pvs/pvs") {
     TEST_CASE("a file holds what was put in, in grids, boxes and convex cells, alone and beside a scene") {
         for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-            Subject subject = random_subject(seed, 40 + static_cast<int>(seed) * 17);
-            subject.boxes.push_back(subject.boxes[0]);  // one that moves
+            BakeGeometry geometry = random_geometry(seed, 40 + static_cast<int>(seed) * 17);
+            geometry.boxes.push_back(geometry.boxes[0]);  // one that moves
             std::vector<Aabb> boxes;
             for (int i = 0; i < 9; ++i) boxes.push_back(box_around({2.0 * i - 9.0, 1.0, 3.0}, glm::dvec3(1.2)));
             sampling::Random random(seed);
@@ -67,7 +67,7 @@ TEST_SUITE("pvs/pvs") {
             const Cells cells = seed == 1   ? Cells::grid(kBounds, {7, 2, 5}).value()
                                 : seed == 2 ? Cells::boxes(boxes).value()
                                             : Cells::convex(convex).value();
-            const Pvs pvs = baked(subject, cells);
+            const Pvs pvs = baked(geometry, cells);
             const PairCounts counts = pvs.counts();
             CHECK(counts.hidden > 0);
             CHECK(counts.unseen > 0);
@@ -77,7 +77,7 @@ TEST_SUITE("pvs/pvs") {
             CHECK(plain(Pvs::from_memory(file).value().to_file().value()) == plain(file));
 
             scene::Scene scene;
-            const auto mesh = scene.add_mesh(subject.mesh).value();
+            const auto mesh = scene.add_mesh(geometry.mesh).value();
             const auto node = scene.add_node(scene::kNone, {}).value();
             REQUIRE(scene.add_instance(node, mesh).has_value());
             scene.update();
@@ -101,7 +101,7 @@ TEST_SUITE("pvs/pvs") {
         std::vector<ConvexCell> few;
         for (int i = 0; i < 2; ++i) few.push_back(random_cell(random, {2.0 * i - 8.0, 1.0, 3.0}, 1.5));
         const Cells cells = convex ? Cells::convex(few).value() : Cells::grid(kBounds, {4, 1, 4}).value();
-        const Pvs pvs = baked(random_subject(1, 30), cells);
+        const Pvs pvs = baked(random_geometry(1, 30), cells);
         const auto file = pvs.to_file().value();
         for (std::size_t at = 0; at < file.size(); at += 7) {
             Vector<std::byte> damaged = file;
@@ -132,7 +132,7 @@ TEST_SUITE("pvs/pvs") {
     }
 
     TEST_CASE("a small file that asks for very many pairs is refused before the memory is taken") {
-        const Pvs pvs = baked(random_subject(1, 30), Cells::grid(kBounds, {4, 1, 4}).value());
+        const Pvs pvs = baked(random_geometry(1, 30), Cells::grid(kBounds, {4, 1, 4}).value());
         const auto file = pvs.to_file().value();
         const std::uint64_t all = pvs.cells().size() * pvs.object_count();
         CHECK(Pvs::from_memory(file, {.pairs = all}).has_value());
@@ -160,30 +160,30 @@ TEST_SUITE("pvs/pvs") {
 
     TEST_CASE("states of neighbours that are alike take a small part of a bit") {
         // Two rooms: what cells of one see is the same but for the door.
-        Subject subject;
-        add_box(subject, {{-20.0, 0.0, -10.0}, {20.0, 4.0, 10.0}}, true);
-        add_box(subject, {{-0.5, 0.0, -10.0}, {0.5, 4.0, 10.0}});
+        BakeGeometry geometry;
+        add_box(geometry, {{-20.0, 0.0, -10.0}, {20.0, 4.0, 10.0}}, true);
+        add_box(geometry, {{-0.5, 0.0, -10.0}, {0.5, 4.0, 10.0}});
         for (int i = 0; i < 200; ++i)
-            add_box(subject,
+            add_box(geometry,
                     box_around({(i % 2 ? 1.0 : -1.0) * (2.0 + 0.17 * i / 2), 3.5, -9.0 + 0.09 * i}, glm::dvec3(0.05)));
         const Cells cells = Cells::grid({{-20.0, 0.0, -10.0}, {20.0, 3.0, 10.0}}, {40, 2, 20}).value();
-        const Pvs pvs = baked(subject, cells);
+        const Pvs pvs = baked(geometry, cells);
         const double bits = 8.0 * static_cast<double>(pvs.to_file().value().size());
         CHECK(bits / (1600.0 * 202.0) < 0.25);
     }
 
     TEST_CASE("a view keeps what its eye may see, what moves, and everything where no cell is") {
-        const Subject subject = random_subject(6, 50);
+        const BakeGeometry geometry = random_geometry(6, 50);
         const Cells cells = Cells::grid(kBounds, {6, 1, 6}).value();
-        const Pvs pvs = baked(subject, cells);
+        const Pvs pvs = baked(geometry, cells);
         World world;
-        for (const Obb& box : subject.boxes) REQUIRE(world.add({.bound = box}).has_value());
+        for (const Obb& box : geometry.boxes) REQUIRE(world.add({.bound = box}).has_value());
         Obb mover;
         mover.center = {0.0, 1.0, 0.0};
         mover.half_extents = glm::vec3(0.1f);
         REQUIRE(world.add({.bound = mover}).has_value());
         REQUIRE(world.update().has_value());
-        VisibleObjects visible;
+        ViewResult visible;
         Vector<std::uint32_t> kept;
         sampling::Random random(1);
         std::size_t culled = 0;
@@ -207,7 +207,7 @@ TEST_SUITE("pvs/pvs") {
 
     TEST_CASE("a scene's instances are its objects, the moving ones left out") {
         scene::Scene scene;
-        Subject shape;
+        BakeGeometry shape;
         add_box(shape, box_around({}, glm::dvec3(1.0)));
         const auto mesh = scene.add_mesh(shape.mesh).value();
         for (int i = 0; i < 4; ++i) {
@@ -217,35 +217,35 @@ TEST_SUITE("pvs/pvs") {
             REQUIRE(scene.add_instance(node, mesh).has_value());
         }
         REQUIRE(scene.remove_instance(3).has_value());
-        CHECK(error_of(subject_of(scene, std::vector<scene::InstanceId>{0, 1, 2})).code == ErrorCode::empty);
+        CHECK(error_of(geometry_of(scene, std::vector<scene::InstanceId>{0, 1, 2})).code == ErrorCode::empty);
         scene.update();
         const std::vector<scene::InstanceId> moving = {2};
-        const Subject subject = subject_of(scene, moving).value();
-        CHECK(subject.object_of.size() == 24);
-        CHECK(subject.boxes.size() == 4);
-        CHECK(subject.origin.x > 0.9e7);
+        const BakeGeometry geometry = geometry_of(scene, moving).value();
+        CHECK(geometry.object_of.size() == 24);
+        CHECK(geometry.boxes.size() == 4);
+        CHECK(geometry.origin.x > 0.9e7);
         for (std::size_t t = 0; t < 24; ++t) {
             glm::dvec3 corner[3];
             for (std::size_t k = 0; k < 3; ++k)
-                corner[k] = subject.origin + glm::dvec3(subject.mesh.positions[subject.mesh.indices[3 * t + k]]);
-            const glm::dvec3 center = scene.world_boxes()[subject.object_of[t]].center;
+                corner[k] = geometry.origin + glm::dvec3(geometry.mesh.positions[geometry.mesh.indices[3 * t + k]]);
+            const glm::dvec3 center = scene.world_boxes()[geometry.object_of[t]].center;
             CHECK(glm::dot(glm::cross(corner[1] - corner[0], corner[2] - corner[0]), corner[0] - center) > 0.0);
         }
-        CHECK(error_of(subject_of(scene, std::vector<scene::InstanceId>{0, 1, 2})).code == ErrorCode::empty);
+        CHECK(error_of(geometry_of(scene, std::vector<scene::InstanceId>{0, 1, 2})).code == ErrorCode::empty);
     }
 
     TEST_CASE("sets say of which triangles they are") {
-        const Subject subject = random_subject(3, 20);
-        const Pvs pvs = baked(subject, Cells::grid(kBounds, {2, 1, 2}).value());
-        CHECK(pvs.subject_fingerprint() == fingerprint_of(subject));
-        Subject moved = subject, other = subject, whose = subject, away = subject, boxes = subject;
+        const BakeGeometry geometry = random_geometry(3, 20);
+        const Pvs pvs = baked(geometry, Cells::grid(kBounds, {2, 1, 2}).value());
+        CHECK(pvs.geometry_fingerprint() == fingerprint_of(geometry));
+        BakeGeometry moved = geometry, other = geometry, whose = geometry, away = geometry, boxes = geometry;
         moved.mesh.positions[7].y += 1e-6f;
         std::swap(other.mesh.indices[3], other.mesh.indices[4]);
         std::swap(whose.object_of.front(), whose.object_of.back());
         away.origin.x += 1.0;
         boxes.boxes[0].half_extents.x += 1.0f;
-        for (const Subject* changed : {&moved, &other, &whose, &away})
-            CHECK(pvs.subject_fingerprint() != fingerprint_of(*changed));
-        CHECK(pvs.subject_fingerprint() == fingerprint_of(boxes));
+        for (const BakeGeometry* changed : {&moved, &other, &whose, &away})
+            CHECK(pvs.geometry_fingerprint() != fingerprint_of(*changed));
+        CHECK(pvs.geometry_fingerprint() == fingerprint_of(boxes));
     }
 }

@@ -40,7 +40,7 @@ double least_depth(const Blocker& body, const Corners& eyes, const Corners& obje
     return least;
 }
 
-// Planes that touch the unit ball; the body is outside of none.
+// Planes that touch the unit sphere; the body is outside of none.
 Blocker random_body(sampling::Random& random, std::size_t planes) {
     Blocker body;
     for (std::size_t k = 0; k < planes; ++k) body.planes.push_back({sampling::direction(random.point<2>()), 1.0});
@@ -76,7 +76,7 @@ TEST_SUITE("pvs/shaft") {
         const Corners eyes = pvs::corners_of({glm::dvec3(-0.1, -0.1, -3.1), glm::dvec3(0.1, 0.1, -2.9)}),
                       object = pvs::corners_of({glm::dvec3(-0.1, -0.1, 2.9), glm::dvec3(0.1, 0.1, 3.1)});
         for (int trial = 0; trial < 200; ++trial) {
-            // The ball, which all segments pass through the middle of, is inside of these.
+            // The sphere, which all segments pass through the middle of, is inside of these.
             Blocker body = random_body(random, 16 + static_cast<std::size_t>(trial) % 4);
             REQUIRE(pvs::blocks_all(body, eyes, object, kMargin));
             const glm::dvec3 normal = sampling::direction(random.point<2>());
@@ -84,7 +84,7 @@ TEST_SUITE("pvs/shaft") {
             CHECK(pvs::blocks_all(body, eyes, object, kMargin));
             body.planes.back().offset = -5.0;  // both are outside
             CHECK_FALSE(pvs::blocks_all(body, eyes, object, kMargin));
-            // Where segments enter or leave the ball: beyond it on one side, half of it on the other.
+            // Where segments enter or leave the sphere: beyond it on one side, half of it on the other.
             for (const double side : {-1.0, 1.0}) {
                 body.planes.back() = {glm::dvec3(0.0, 0.0, side), -1.5};
                 const bool reaches = least_depth(body, eyes, object) > kMargin;

@@ -9,7 +9,7 @@
 #include <oracle/plain_pvs.hpp>
 #include <vector>
 
-#include "subjects.hpp"
+#include "bake_geometry.hpp"
 
 using namespace crofton;
 using namespace crofton::pvs;
@@ -20,19 +20,19 @@ namespace {
 using Points = std::vector<glm::dvec3>;
 
 // Triangles 0, 1, 2, 0, 2, 3, … of a polygon, as one object; they face the side from which it is counter-clockwise.
-void add_fan(Subject& subject, const Points& polygon) {
-    const auto first = static_cast<std::uint32_t>(subject.mesh.positions.size());
-    const auto object = static_cast<std::uint32_t>(subject.boxes.size());
+void add_fan(BakeGeometry& geometry, const Points& polygon) {
+    const auto first = static_cast<std::uint32_t>(geometry.mesh.positions.size());
+    const auto object = static_cast<std::uint32_t>(geometry.boxes.size());
     Aabb box;
     for (const glm::dvec3& p : polygon) {
-        subject.mesh.positions.push_back(glm::vec3(p));
-        box.include(p + subject.origin);
+        geometry.mesh.positions.push_back(glm::vec3(p));
+        box.include(p + geometry.origin);
     }
     for (std::uint32_t i = 2; i < polygon.size(); ++i) {
-        for (const std::uint32_t v : {0u, i - 1, i}) subject.mesh.indices.push_back(first + v);
-        subject.object_of.push_back(object);
+        for (const std::uint32_t v : {0u, i - 1, i}) geometry.mesh.indices.push_back(first + v);
+        geometry.object_of.push_back(object);
     }
-    subject.boxes.push_back(obb_of(box));
+    geometry.boxes.push_back(obb_of(box));
 }
 
 Points turned_over(Points polygon) {
@@ -55,18 +55,18 @@ glm::dvec3 turned(const glm::dvec3& p, int way) {
 }
 
 PairState state_of(const Case& given) {
-    Subject subject;
-    subject.origin = given.origin;
-    add_box(subject, box_around(given.origin + turned({0.0, 0.0, 10.0}, given.way), glm::dvec3(0.5)));
+    BakeGeometry geometry;
+    geometry.origin = given.origin;
+    add_box(geometry, box_around(given.origin + turned({0.0, 0.0, 10.0}, given.way), glm::dvec3(0.5)));
     // Lines that meet this alone call the cell free.
-    add_box(subject, box_around(given.origin + turned({0.0, 0.0, -3.0}, given.way), glm::dvec3(1.0)));
+    add_box(geometry, box_around(given.origin + turned({0.0, 0.0, -3.0}, given.way), glm::dvec3(1.0)));
     for (Points wall : given.walls) {
         for (glm::dvec3& p : wall) p = turned(p, given.way);
-        add_fan(subject, wall);
+        add_fan(geometry, wall);
     }
     const Cells cells = Cells::boxes(std::vector<Aabb>{box_around(given.origin, glm::dvec3(0.5))}).value();
     // Few lines: the question is what is proved.
-    Bake bake = Bake::create(subject, cells, {.epsilon = 0.5, .confidence = 0.5, .sides = given.sides}).value();
+    Bake bake = Bake::create(geometry, cells, {.epsilon = 0.5, .confidence = 0.5, .sides = given.sides}).value();
     REQUIRE(bake.run().has_value());
     const Pvs pvs =
         Pvs::finish(bake, {}, {.near_radius = given.near_radius, .halvings = given.halvings, .surface_steps = 400})
@@ -176,19 +176,19 @@ TEST_SUITE("pvs/surface") {
             return wall;
         };
         const auto state = [&](std::size_t first, std::size_t walls, const ProofOptions& options) {
-            Subject subject;
-            add_fan(subject, {corner[first], corner[(first + 1) % 3], corner[(first + 2) % 3]});
-            add_box(subject, box_around({0.0, 0.0, -3.0}, glm::dvec3(1.0)));  // calls the cell free
+            BakeGeometry geometry;
+            add_fan(geometry, {corner[first], corner[(first + 1) % 3], corner[(first + 2) % 3]});
+            add_box(geometry, box_around({0.0, 0.0, -3.0}, glm::dvec3(1.0)));  // calls the cell free
             std::vector<occlude::FoundOccluder> found;
             for (std::size_t i = 0; i < walls; ++i) {
                 found.emplace_back().box = wall_under(i == 0 ? 1.0 : -1.0);
                 found.back().piece_bounds = aabb_of(found.back().box);
-                add_box(subject, found.back().box);
+                add_box(geometry, found.back().box);
             }
             std::vector<PlacedOccluder> placed;
             for (const auto& occluder : found) placed.push_back({&occluder, {}});
             const Aabb cell = box_around({}, glm::dvec3(0.05));
-            Bake bake = Bake::create(subject, Cells::boxes(std::vector<Aabb>{cell}).value(),
+            Bake bake = Bake::create(geometry, Cells::boxes(std::vector<Aabb>{cell}).value(),
                                      {.epsilon = 0.5, .confidence = 0.5})
                             .value();
             REQUIRE(bake.run().has_value());
@@ -202,7 +202,7 @@ TEST_SUITE("pvs/surface") {
                     double u = random.uniform(), v = random.uniform();
                     if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
                     const glm::dvec3 q = corner[0] + u * (corner[1] - corner[0]) + v * (corner[2] - corner[0]);
-                    const auto hits = oracle::crossings(subject, {p, q - p});
+                    const auto hits = oracle::crossings(geometry, {p, q - p});
                     const bool met = std::any_of(hits.begin(), hits.end(),
                                                  [](const auto& hit) { return hit.t > 0.0 && hit.t < 0.9; });
                     CHECK(met);
@@ -236,8 +236,8 @@ TEST_SUITE("pvs/surface") {
             for (const auto sides : {occlude::Sides::both, occlude::Sides::front})
                 for (std::uint64_t seed = 1; seed <= 3; ++seed) {
                     sampling::Random random(seed);
-                    Subject subject;
-                    subject.origin = far * glm::dvec3(1.0, -0.75, 0.25);
+                    BakeGeometry geometry;
+                    geometry.origin = far * glm::dvec3(1.0, -0.75, 0.25);
                     // Walls of a lattice with moved corners: some are left out, some have a window, some are turned.
                     constexpr int kSide = 5;
                     const auto corner = [&](int i, int j) {
@@ -252,9 +252,9 @@ TEST_SUITE("pvs/surface") {
                         Points points = {a, b, b + up, a + up};
                         if (kind < 0.3) points[3] = a + 0.3 * up;  // a gap above
                         if (sides == occlude::Sides::front && random.uniform() < 0.5) points = turned_over(points);
-                        add_fan(subject, points);
+                        add_fan(geometry, points);
                         if (sides == occlude::Sides::front && random.uniform() < 0.5)
-                            add_fan(subject, turned_over(points));
+                            add_fan(geometry, turned_over(points));
                     };
                     for (int i = 0; i <= kSide; ++i)
                         for (int j = 0; j <= kSide; ++j) {
@@ -265,39 +265,39 @@ TEST_SUITE("pvs/surface") {
                     for (int i = 0; i < kSide; ++i)
                         for (int j = 0; j < kSide; ++j) {
                             const glm::dvec3 middle(4.0 * i + 2.0, 1.5, 4.0 * j + 2.0);
-                            boxes.push_back(box_around(subject.origin + middle, {0.7, 0.6, 0.7}));
-                            add_box(subject,
-                                    box_around(subject.origin + middle - glm::dvec3(0.0, 0.8, 0.0), glm::dvec3(0.3)));
+                            boxes.push_back(box_around(geometry.origin + middle, {0.7, 0.6, 0.7}));
+                            add_box(geometry,
+                                    box_around(geometry.origin + middle - glm::dvec3(0.0, 0.8, 0.0), glm::dvec3(0.3)));
                         }
                     // Of every other maze the cells are convex.
                     std::vector<ConvexCell> convex;
                     for (const Aabb& box : boxes) convex.push_back(random_cell(random, box.center(), 0.9));
                     const Cells cells = seed % 2 ? Cells::boxes(boxes).value() : Cells::convex(convex).value();
                     Bake bake =
-                        Bake::create(subject, cells, {.epsilon = 2e-2, .confidence = 0.9, .sides = sides}).value();
+                        Bake::create(geometry, cells, {.epsilon = 2e-2, .confidence = 0.9, .sides = sides}).value();
                     REQUIRE(bake.run().has_value());
                     const Pvs pvs =
                         Pvs::finish(bake, {},
                                     {.near_radius = 0.05, .halvings = seed == 1 ? 0u : 3u, .surface_steps = 400})
                             .value();
                     for (std::size_t c = 0; c < cells.size(); ++c)
-                        for (std::size_t t = 0; t < subject.object_of.size(); ++t) {
-                            const std::uint32_t object = subject.object_of[t];
+                        for (std::size_t t = 0; t < geometry.object_of.size(); ++t) {
+                            const std::uint32_t object = geometry.object_of[t];
                             if (pvs.kind(c) == CellKind::solid || pvs.state(c, object) != PairState::hidden) continue;
                             ++hidden;
                             for (int n = 0; n < 6; ++n) {
                                 const glm::dvec3 p =
                                     (cells.is_convex() ? point_in(convex[c], random)
                                                        : sampling::box_point(cells.box(c), random.point<3>())) -
-                                    subject.origin;
+                                    geometry.origin;
                                 double u = random.uniform(), v = random.uniform();
                                 if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
                                 glm::dvec3 q[3];
                                 for (std::size_t k = 0; k < 3; ++k)
-                                    q[k] = glm::dvec3(subject.mesh.positions[subject.mesh.indices[3 * t + k]]);
+                                    q[k] = glm::dvec3(geometry.mesh.positions[geometry.mesh.indices[3 * t + k]]);
                                 const glm::dvec3 target = q[0] + u * (q[1] - q[0]) + v * (q[2] - q[0]);
                                 bool met = false;
-                                for (const auto& hit : oracle::crossings(subject, {p, target - p}))
+                                for (const auto& hit : oracle::crossings(geometry, {p, target - p}))
                                     met = met || (hit.t > 0.0 && hit.t < 1.0 - 1e-6 &&
                                                   (sides == occlude::Sides::both || hit.front));
                                 wrong += !met;

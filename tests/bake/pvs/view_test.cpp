@@ -6,7 +6,7 @@
 #include <set>
 #include <vector>
 
-#include "subjects.hpp"
+#include "bake_geometry.hpp"
 
 using namespace crofton;
 using namespace crofton::testing;
@@ -71,19 +71,19 @@ TEST_SUITE("pvs/view") {
         ThreadPool pool(3);
         for (std::uint64_t seed = 1; seed <= 6; ++seed) {
             const Town town(seed, 3000, seed % 3 == 0 ? 0.02 : 0.4);
-            VisibleObjects all, some;
+            ViewResult all, some;
             std::size_t left_out = 0;
             sampling::Random random(seed);
             for (int frame = 0; frame < 20; ++frame) {
                 Camera camera;
                 camera.fov_y = 0.9;
                 camera = sampling::random_camera(camera, {{-80.0, 1.0, -80.0}, {80.0, 3.0, 80.0}}, random.point<6>());
-                ViewRequest plain{.camera = camera}, among{.camera = camera};
-                plain.order = among.order = frame % 2 ? cull::ResultOrder::tree : cull::ResultOrder::ascending;
-                among.among = town.words;
+                ViewRequest plain{.camera = camera}, candidate_mask{.camera = camera};
+                plain.order = candidate_mask.order = frame % 2 ? cull::ResultOrder::tree : cull::ResultOrder::ascending;
+                candidate_mask.candidate_mask = town.words;
                 Executor& executor = frame % 3 ? serial_executor() : static_cast<Executor&>(pool);
                 REQUIRE(town.world.view(plain, all, executor).has_value());
-                REQUIRE(town.world.view(among, some, executor).has_value());
+                REQUIRE(town.world.view(candidate_mask, some, executor).has_value());
                 REQUIRE(sorted(some.ids()) == sorted(town.kept(all.ids())));
                 left_out += all.size() - some.size();
                 const auto inside = all.ids().first(all.inside_count());
@@ -98,40 +98,40 @@ TEST_SUITE("pvs/view") {
     TEST_CASE("what has moved since it came, however seldom, and what has another's index is not judged by the set") {
         World world({.pairs = false});
         std::vector<ObjectHandle> objects;
-        const auto ball = [](double x) { return Sphere{{x, 0.0, -20.0}, 0.25}; };
-        for (int i = 0; i < 200; ++i) objects.push_back(world.add({.bound = ball(0.05 * i - 5.0)}).value());
+        const auto sphere = [](double x) { return Sphere{{x, 0.0, -20.0}, 0.25}; };
+        for (int i = 0; i < 200; ++i) objects.push_back(world.add({.bound = sphere(0.05 * i - 5.0)}).value());
         for (int frame = 0; frame < 40; ++frame) REQUIRE(world.update().has_value());
         const std::vector<std::uint64_t> none(8, 0);  // room for those that come later
         const auto seen = [&](const ObjectHandle& object) {
-            VisibleObjects plain, hiding;
-            REQUIRE(world.view({.camera = Camera{}, .among = none}, plain).has_value());
-            REQUIRE(
-                world.view({.camera = Camera{}, .occlusion = OcclusionOptions{}, .among = none}, hiding).has_value());
+            ViewResult plain, hiding;
+            REQUIRE(world.view({.camera = Camera{}, .candidate_mask = none}, plain).has_value());
+            REQUIRE(world.view({.camera = Camera{}, .occlusion = OcclusionOptions{}, .candidate_mask = none}, hiding)
+                        .has_value());
             CHECK(sorted(plain.ids()) == sorted(hiding.ids()));
             return std::count(plain.ids().begin(), plain.ids().end(), object.index) == 1;
         };
         CHECK_FALSE(seen(objects[0]));
         // Every second update: it never leaves the tree.
         for (int frame = 0; frame < 20; ++frame) {
-            if (frame % 2 == 0) REQUIRE(world.set_bound(objects[3], ball(0.01 * frame)).has_value());
+            if (frame % 2 == 0) REQUIRE(world.set_bound(objects[3], sphere(0.01 * frame)).has_value());
             REQUIRE(world.update().has_value());
             CHECK(seen(objects[3]));
         }
         // Once, hidden, and back in the tree for long.
         REQUIRE(world.set_hidden(objects[4], true).has_value());
         REQUIRE(world.update().has_value());
-        REQUIRE(world.set_bound(objects[4], ball(1.0)).has_value());
+        REQUIRE(world.set_bound(objects[4], sphere(1.0)).has_value());
         REQUIRE(world.update().has_value());
         REQUIRE(world.set_hidden(objects[4], false).has_value());
         // New ones: one rests from the beginning, one moves a little first, one has the index of another.
-        const auto resting = world.add({.bound = ball(0.1)}).value(),
-                   restless = world.add({.bound = ball(0.2)}).value();
+        const auto resting = world.add({.bound = sphere(0.1)}).value(),
+                   restless = world.add({.bound = sphere(0.2)}).value();
         REQUIRE(world.remove(objects[5]).has_value());
         for (int frame = 0; frame < 5; ++frame) {
             REQUIRE(world.update().has_value());
-            REQUIRE(world.set_bound(restless, ball(0.2 + 0.1 * frame)).has_value());
+            REQUIRE(world.set_bound(restless, sphere(0.2 + 0.1 * frame)).has_value());
         }
-        const auto heir = world.add({.bound = ball(0.3)}).value();
+        const auto heir = world.add({.bound = sphere(0.3)}).value();
         REQUIRE(heir.index == objects[5].index);
         for (int frame = 0; frame < 60; ++frame) REQUIRE(world.update().has_value());
         CHECK_FALSE(seen(objects[0]));
@@ -145,10 +145,11 @@ TEST_SUITE("pvs/view") {
 
     TEST_CASE("what moved before it ever rested is not judged by the set, also when it was hidden meanwhile") {
         World world({.pairs = false});
-        const auto ball = [](double x) { return Sphere{{x, 0.0, -20.0}, 0.25}; };
-        const auto moved = world.add({.bound = ball(0.0)}).value(), rested = world.add({.bound = ball(1.0)}).value();
+        const auto sphere = [](double x) { return Sphere{{x, 0.0, -20.0}, 0.25}; };
+        const auto moved = world.add({.bound = sphere(0.0)}).value(),
+                   rested = world.add({.bound = sphere(1.0)}).value();
         REQUIRE(world.update().has_value());
-        REQUIRE(world.set_bound(moved, ball(0.5)).has_value());
+        REQUIRE(world.set_bound(moved, sphere(0.5)).has_value());
         REQUIRE(world.update().has_value());
         for (const bool hidden : {true, false}) {
             REQUIRE(world.set_hidden(moved, hidden).has_value());
@@ -158,8 +159,8 @@ TEST_SUITE("pvs/view") {
         for (int frame = 0; frame < 40; ++frame) REQUIRE(world.update().has_value());
         CHECK(world.statistics().resting == 2);
         const std::vector<std::uint64_t> none(1, 0);
-        VisibleObjects visible;
-        REQUIRE(world.view({.camera = Camera{}, .among = none}, visible).has_value());
+        ViewResult visible;
+        REQUIRE(world.view({.camera = Camera{}, .candidate_mask = none}, visible).has_value());
         CHECK(std::vector(visible.ids().begin(), visible.ids().end()) == std::vector{moved.index});
     }
 
@@ -168,7 +169,7 @@ TEST_SUITE("pvs/view") {
             Town town(seed, 2000, 0.5);
             // A wall that hides much.
             const auto cube = [] {
-                pvs::Subject shape;
+                pvs::BakeGeometry shape;
                 add_box(shape, box_around({}, glm::dvec3(1.0)));
                 return shape.mesh;
             }();
@@ -178,13 +179,14 @@ TEST_SUITE("pvs/view") {
             size[0][0] = 40.0, size[1][1] = 8.0;
             REQUIRE(town.world.add({.mesh = mesh, .transform = Transform{size, {0.0, 4.0, -20.0}}}).has_value());
             REQUIRE(town.world.update().has_value());
-            VisibleObjects all, some, plain;
+            ViewResult all, some, plain;
             Camera camera;
             camera.position = {0.0, 3.0, 0.0};
             REQUIRE(town.world.view({.camera = camera}, plain).has_value());
             REQUIRE(town.world.view({.camera = camera, .occlusion = OcclusionOptions{}}, all).has_value());
-            REQUIRE(town.world.view({.camera = camera, .occlusion = OcclusionOptions{}, .among = town.words}, some)
-                        .has_value());
+            REQUIRE(
+                town.world.view({.camera = camera, .occlusion = OcclusionOptions{}, .candidate_mask = town.words}, some)
+                    .has_value());
             CHECK(all.size() < plain.size());
             CHECK(some.size() < all.size());
             CHECK(sorted(some.ids()) == sorted(town.kept(all.ids())));
@@ -200,19 +202,19 @@ TEST_SUITE("pvs/view") {
         cull::VisibleSet all, some;
         for (const auto order : {cull::ResultOrder::tree, cull::ResultOrder::ascending}) {
             cull::find_visible(town.boxes, {}, view, all, {.order = order});
-            cull::find_visible(town.boxes, {}, view, some, {.order = order, .among = town.words});
+            cull::find_visible(town.boxes, {}, view, some, {.order = order, .candidate_mask = town.words});
             std::vector<std::uint32_t> expected;
             for (const std::uint32_t id : all.ids())
-                if (cull::is_among(town.words, id)) expected.push_back(id);
+                if (cull::is_candidate(town.words, id)) expected.push_back(id);
             CHECK(std::vector<std::uint32_t>(some.ids().begin(), some.ids().end()) == expected);
             CHECK(some.size() < all.size());
         }
     }
 
     TEST_CASE("the set of an eye is that of its cell, and of an eye without a cell everything") {
-        const pvs::Subject subject = random_subject(4, 90);
+        const pvs::BakeGeometry geometry = random_geometry(4, 90);
         const pvs::Cells cells = pvs::Cells::grid({{-10.0, 0.0, -10.0}, {10.0, 3.0, 10.0}}, {5, 1, 5}).value();
-        auto bake = pvs::Bake::create(subject, cells, {.epsilon = 1e-2, .confidence = 0.9}).value();
+        auto bake = pvs::Bake::create(geometry, cells, {.epsilon = 1e-2, .confidence = 0.9}).value();
         REQUIRE(bake.run().has_value());
         const pvs::Pvs sets = pvs::Pvs::finish(bake).value();
         sampling::Random random(5);

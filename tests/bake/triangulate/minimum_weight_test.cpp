@@ -346,7 +346,7 @@ TEST_SUITE("triangulate/minimum_weight") {
         }
     }
 
-    TEST_CASE("the progress callback sees growing shares and can cancel") {
+    TEST_CASE("the stop callback sees growing shares and can cancel") {
         std::mt19937_64 random(24);
         Polygon p;
         add_star(p, random, {0, 0}, 5.0, 10.0, 2000, 0.0);
@@ -356,12 +356,12 @@ TEST_SUITE("triangulate/minimum_weight") {
         } state;
         triangulate::TriangulateOptions options;
         options.user = &state;
-        options.progress = [](void* user, double fraction) {
+        options.should_stop = [](void* user, double fraction) {
             auto& s = *static_cast<State*>(user);
             CHECK(fraction >= s.last);
             CHECK(fraction <= 1.0);
             s.last = fraction;
-            return ++s.calls < s.allowed;
+            return ++s.calls >= s.allowed;
         };
         CHECK(triangulate::triangulate(p, options).has_value());
         CHECK(state.calls > 10);

@@ -252,10 +252,11 @@ TEST_SUITE("fit/exact") {
         int calls = 0;
         const auto stop = [&](const fit::Progress& progress) {
             CHECK(progress.lower_bound <= progress.value);
-            return ++calls < 3;
+            return ++calls >= 3;
         };
         const FunctionRef<bool(const fit::Progress&)> callback(stop);
-        CHECK(!fit::fit_exact(view(points), {.criterion = measure::minimal_area(), .progress = &callback})->complete);
+        CHECK(
+            !fit::fit_exact(view(points), {.criterion = measure::minimal_area(), .should_stop = &callback})->complete);
         CHECK(calls == 3);
         CHECK(!fit::fit_exact(view(points), {.criterion = measure::minimal_area(), .time_budget_seconds = 0.0})
                    ->complete);
@@ -273,11 +274,11 @@ TEST_SUITE("fit/exact") {
         const auto look = [&](const fit::Progress& progress) {
             CHECK(progress.value < 1e-6);
             CHECK(progress.lower_bound == 0.0);
-            return ++calls < 10;
+            return ++calls >= 10;
         };
         const FunctionRef<bool(const fit::Progress&)> callback(look);
-        CHECK(
-            fit::fit_exact(view(points), {.criterion = measure::minimal_volume(), .gap = 1e-9, .progress = &callback}));
+        CHECK(fit::fit_exact(view(points),
+                             {.criterion = measure::minimal_volume(), .gap = 1e-9, .should_stop = &callback}));
         CHECK(calls > 0);
     }
 
@@ -316,11 +317,11 @@ TEST_SUITE("fit/exact") {
             const auto keep = [&](const fit::Progress& progress) {
                 CHECK(progress.cells >= before + least_cells);
                 before = progress.cells;
-                return bounds.push_back(progress.lower_bound), true;
+                return bounds.push_back(progress.lower_bound), false;
             };
             const FunctionRef<bool(const fit::Progress&)> callback(keep);
             const auto found =
-                fit::fit_exact(view(points), {.criterion = measure::minimal_volume(), .progress = &callback});
+                fit::fit_exact(view(points), {.criterion = measure::minimal_volume(), .should_stop = &callback});
             REQUIRE(found);
             for (const double bound : bounds) CHECK(bound <= found->value);
             told += static_cast<int>(bounds.size());

@@ -75,7 +75,7 @@ bool in_some_tetrahedron(const Points& points, const glm::dvec3& p) {
     return false;
 }
 
-// Few points as extreme ones may be: of a box or a ball, thin, with many in one plane, line or place.
+// Few points as extreme ones may be: of a box or a sphere, thin, with many in one plane, line or place.
 Points few_points(Random& random, int kind) {
     Points points;
     const std::size_t count = 4 + static_cast<std::size_t>(kind % 15);
@@ -183,7 +183,7 @@ std::string boxes_of(const Points& from, bool exact) {
 }  // namespace
 
 TEST_SUITE("fit/interior") {
-    TEST_CASE("what is told to be inside is, with a ball around it") {
+    TEST_CASE("what is told to be inside is, with a sphere around it") {
         Random random(61);
         int inside = 0, wrong = 0;
         for (int kind = 0; kind < 420; ++kind) {

@@ -65,10 +65,11 @@ TEST_SUITE("measure/improper_tests") {
         CHECK(planar == doctest::Approx(pi));  // the exact value: of a disc's places in a disc
     }
 
-    TEST_CASE("of balls and discs the outer measure is the difference of two larger ones") {
-        const auto ball = intrinsic_volumes_of_sphere;
+    TEST_CASE("of spheres and discs the outer measure is the difference of two larger ones") {
+        const auto sphere = intrinsic_volumes_of_sphere;
         const auto disc = planar_measures_of_disc;
-        CHECK(improper_outside(ball(4.0), ball(2.0), ball(1.0)) == doctest::Approx(4.0 / 3.0 * pi * (216.0 - 125.0)));
+        CHECK(improper_outside(sphere(4.0), sphere(2.0), sphere(1.0)) ==
+              doctest::Approx(4.0 / 3.0 * pi * (216.0 - 125.0)));
         CHECK(improper_outside(disc(4.0), disc(2.0), disc(1.0)) == doctest::Approx(pi * (36.0 - 25.0)));
     }
 
@@ -90,8 +91,8 @@ TEST_SUITE("measure/improper_tests") {
               doctest::Approx(improper_outside(intrinsic_volumes_of_segment(8.0), bound, object)));
     }
 
-    TEST_CASE("a ball that contains concentric balls: the inner measure's first order is the exact one's") {
-        // Radius R contains radius r for translations in a ball of radius R - r.
+    TEST_CASE("a sphere that contains concentric spheres: the inner measure's first order is the exact one's") {
+        // Radius R contains radius r for translations in a sphere of radius R - r.
         const double big = 1e4, r = 2.0, r0 = 1.0;
         const double exact =
             4.0 / 3.0 * pi * ((big - r0) * (big - r0) * (big - r0) - (big - r) * (big - r) * (big - r));

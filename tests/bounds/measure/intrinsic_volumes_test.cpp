@@ -93,7 +93,7 @@ TEST_SUITE("measure/intrinsic_volumes") {
         CHECK(intrinsic_volumes_of_hull(plane)->volume == 0.0);
     }
 
-    TEST_CASE("the hull of a full grid is its box, and of points in a ball nearly the ball") {
+    TEST_CASE("the hull of a full grid is its box, and of points in a sphere nearly the sphere") {
         std::vector<glm::dvec3> grid;
         for (int i = 0; i < 5 * 4 * 3; ++i) grid.emplace_back(i % 5, (i / 5) % 4, i / 20);
         const IntrinsicVolumes box = intrinsic_volumes_of_box(4.0, 3.0, 2.0), hull = *intrinsic_volumes_of_hull(grid);
@@ -176,7 +176,7 @@ TEST_SUITE("measure/intrinsic_volumes") {
         CHECK(measures->area == doctest::Approx(face(10.0) + face(0.1) + slant_x + slant_y));
     }
 
-    TEST_CASE("the kinematic formula is symmetric and gives Steiner's formula for a ball") {
+    TEST_CASE("the kinematic formula is symmetric and gives Steiner's formula for a sphere") {
         const IntrinsicVolumes box = intrinsic_volumes_of_box(1.0, 2.0, 3.0);
         const double r = 0.5;
         const double steiner = box.volume + box.area * r + box.mean_curvature * r * r + 4.0 / 3.0 * pi * r * r * r;

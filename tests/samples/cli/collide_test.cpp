@@ -221,7 +221,7 @@ TEST_SUITE("cli/collide") {
         CHECK(deep["contacts"].size() == 4);
         CHECK(deep["hulls"][0]["vertices"] == 8);
         CHECK(deep["hulls"][1]["volume"].get<double>() == doctest::Approx(8.0));
-        CHECK(answer(pair + " --max-vertices 4 --pose 9,0,0,1,0,0,0")["hulls"][0]["excess"].get<double>() > 0.0);
+        CHECK(answer(pair + " --max-vertices 4 --pose 9,0,0,1,0,0,0")["hulls"][0]["max_overshoot"].get<double>() > 0.0);
         CHECK(run_cli("collide " + pair + " --mode contain").status == 2);
     }
 

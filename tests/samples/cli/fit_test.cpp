@@ -291,7 +291,7 @@ TEST_SUITE("cli/fit") {
         CHECK(run_cli("fit --bounds all --directions '1,0;2' " + box).status == 2);
         CHECK(run_cli("fit --bounds all --directions '1,0,0;0,1,0' " + box).err.find("plane") != std::string::npos);
         CHECK(run_cli("fit --bounds all --directions '1,0,0;0,1,0;0,0,nan' " + box).status == 2);
-        // 4 × 2 × 1: the box itself, and the ball around it.
+        // 4 × 2 × 1: the box itself, and the sphere around it.
         CHECK(number(mesh.at("bounds")[2], "value") == doctest::Approx(28.0).epsilon(1e-5));
         CHECK(number(mesh.at("bounds")[0], "value") == doctest::Approx(4.0 * 3.14159265 * 21.0 / 4.0).epsilon(1e-6));
         const CliRun costly =

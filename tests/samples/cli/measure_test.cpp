@@ -26,7 +26,7 @@ TEST_SUITE("cli/measure") {
             const CliRun run = run_cli("measure '" + file + "' --json - --seed " + seed);
             REQUIRE(run.status == 0);
             const auto document = run.json();
-            CHECK(document["F0"].get<double>() == doctest::Approx(pi * 14.0));  // the ball of diameter √14
+            CHECK(document["F0"].get<double>() == doctest::Approx(pi * 14.0));  // the sphere of diameter √14
             const auto& rows = document["rows"];
             REQUIRE(rows.size() == 4);
             const double expected[] = {22.0 + 3.0 * std::sqrt(5.0), 22.0, 6.0, 6.0 * pi};

@@ -50,7 +50,7 @@ TEST_SUITE("cli/verify") {
         }
     }
 
-    TEST_CASE("culling is right for boxes, axis-aligned boxes and balls at every offset, and says on how many") {
+    TEST_CASE("culling is right for boxes, axis-aligned boxes and spheres at every offset, and says on how many") {
         const CliRun run = run_cli("verify cull --trials 3000 --json -");
         CHECK(run.status == 0);
         std::map<std::string, std::uint64_t> proved;
@@ -61,8 +61,8 @@ TEST_SUITE("cli/verify") {
             if (claim.find(": of ") != std::string::npos && claim.find(" proved ") != std::string::npos)
                 proved[kind] += row["cases"].get<std::uint64_t>();
         }
-        CHECK(proved ==
-              std::map<std::string, std::uint64_t>{{"axis-aligned boxes", 15000}, {"balls", 15000}, {"boxes", 15000}});
+        CHECK(proved == std::map<std::string, std::uint64_t>{
+                            {"axis-aligned boxes", 15000}, {"spheres", 15000}, {"boxes", 15000}});
     }
 
     TEST_CASE("nothing seen is culled, in set-ups that break others and in a whole scene") {

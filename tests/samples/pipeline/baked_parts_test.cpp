@@ -58,7 +58,7 @@ TEST_SUITE("pipeline/baked_parts") {
         const assets::SceneSource source = row(0.0);
         const auto made = pipeline::make_pvs_scene(source, false).value();
         const auto cells = pvs::Cells::grid({{-4.0, -2.0, 2.0}, {16.0, 2.0, 6.0}}, {2, 1, 1}).value();
-        auto bake = pvs::Bake::create(made.subject, cells, {.epsilon = 1e-2, .confidence = 0.9}).value();
+        auto bake = pvs::Bake::create(made.geometry, cells, {.epsilon = 1e-2, .confidence = 0.9}).value();
         REQUIRE(bake.run().has_value());
         const pvs::Pvs sets = pvs::Pvs::finish(bake).value();
         CHECK(pipeline::is_baked_of(sets, source.scene));

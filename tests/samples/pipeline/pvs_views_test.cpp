@@ -45,13 +45,13 @@ struct Plain {
 
     // Sets of cells above the floor. Swapped: each object is taken for the other, so that nothing saw the floor.
     pvs::Pvs sets(bool swapped, bool with_sheet) const {
-        pvs::Subject subject = scene.subject;
+        pvs::BakeGeometry geometry = scene.geometry;
         if (swapped) {
-            for (std::uint32_t& object : subject.object_of) object = 1 - object;
-            std::swap(subject.boxes[0], subject.boxes[1]);
+            for (std::uint32_t& object : geometry.object_of) object = 1 - object;
+            std::swap(geometry.boxes[0], geometry.boxes[1]);
         }
         const auto cells = pvs::Cells::grid({{-100, 1, -100}, {100, 20, 100}}, {3, 1, 3}).value();
-        auto bake = pvs::Bake::create(subject, cells, {.epsilon = 1e-2}).value();
+        auto bake = pvs::Bake::create(geometry, cells, {.epsilon = 1e-2}).value();
         REQUIRE(bake.run().has_value());
         const pvs::PlacedOccluder placed{&sheet, {glm::dmat3(1.0), {0.0, 0.5, 0.0}}};
         return pvs::Pvs::finish(bake, std::span(&placed, with_sheet ? 1 : 0), {.near_radius = 0.0}).value();
@@ -59,7 +59,7 @@ struct Plain {
 
     Result<pipeline::PvsViewFigures> look(const pvs::Pvs& sets, const pipeline::PvsViewOptions& options = {.views = 50},
                                           Executor& executor = serial_executor()) const {
-        return pipeline::look_at_views(source.scene, scene.subject, sets, options, executor);
+        return pipeline::look_at_views(source.scene, scene.geometry, sets, options, executor);
     }
 };
 
@@ -120,7 +120,7 @@ TEST_SUITE("pipeline/pvs_views") {
     TEST_CASE("eyes in cells that no line has passed get everything") {
         const Plain plain;
         const auto cells = pvs::Cells::grid({{-100, 1, -100}, {100, 20, 100}}, {3, 1, 3}).value();
-        const auto bake = pvs::Bake::create(plain.scene.subject, cells, {.epsilon = 1e-2}).value();
+        const auto bake = pvs::Bake::create(plain.scene.geometry, cells, {.epsilon = 1e-2}).value();
         const auto looked = plain.look(pvs::Pvs::finish(bake).value());
         CHECK(looked->in_no_cell == 50);
         CHECK(looked->statistical.wrong_worst == 0.0);
@@ -143,7 +143,7 @@ TEST_SUITE("pipeline/pvs_views") {
         plain.scene = pipeline::make_pvs_scene(plain.source, true).value();
         REQUIRE(plain.scene.occluders.size() >= 2);
         const auto cells = pvs::Cells::grid({{-100, 1, -100}, {100, 20, 100}}, {3, 1, 3}).value();
-        auto bake = pvs::Bake::create(plain.scene.subject, cells, {.epsilon = 1e-3}).value();
+        auto bake = pvs::Bake::create(plain.scene.geometry, cells, {.epsilon = 1e-3}).value();
         REQUIRE(bake.run().has_value());
         const pvs::Pvs sets = pvs::Pvs::finish(bake).value();
         const auto without = plain.look(sets, {.views = 60}),
@@ -193,7 +193,7 @@ TEST_SUITE("pipeline/pvs_views") {
         CHECK(error_of(plain.look(sets, {.views = 0})).code == ErrorCode::invalid_argument);
         CHECK(error_of(plain.look(sets, {.views = 1, .width = 0})).code == ErrorCode::invalid_argument);
         const auto cells = pvs::Cells::grid({{-100, 50, -100}, {100, 60, 100}}, {1, 1, 1}).value();
-        const auto bake = pvs::Bake::create(plain.scene.subject, cells, {.epsilon = 1e-2}).value();
+        const auto bake = pvs::Bake::create(plain.scene.geometry, cells, {.epsilon = 1e-2}).value();
         CHECK(error_of(plain.look(pvs::Pvs::finish(bake).value())).code == ErrorCode::empty);
     }
 }

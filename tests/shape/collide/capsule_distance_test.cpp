@@ -111,35 +111,35 @@ TEST_SUITE("collide/capsules") {
             CHECK(d.distance == doctest::Approx(std::max(0.0, core.distance - radius)).epsilon(1e-12));
             CHECK(intersects(box, Capsule{begin, end, radius}) == (d.distance == 0.0));
             CHECK(glm::length(d.on_b - d.on_a) == doctest::Approx(d.distance).epsilon(1e-9));
-            const Sphere ball{random_vector(random), 0.3};
-            const Distance gap = distance(Capsule{begin, end, radius}, ball);
+            const Sphere sphere{random_vector(random), 0.3};
+            const Distance gap = distance(Capsule{begin, end, radius}, sphere);
             const double to_point =
-                distance(Obb{ball.center, glm::mat3(1.0f), glm::vec3(0.0f)}, {begin, end, 0.0}).distance;
+                distance(Obb{sphere.center, glm::mat3(1.0f), glm::vec3(0.0f)}, {begin, end, 0.0}).distance;
             CHECK(gap.distance == doctest::Approx(std::max(0.0, to_point - radius - 0.3)).epsilon(1e-9));
         }
     }
 
-    TEST_CASE("a ball's contact: moved along the normal by the depth it just touches the box") {
+    TEST_CASE("a sphere's contact: moved along the normal by the depth it just touches the box") {
         std::mt19937_64 random(53);
         int inside = 0, met = 0;
         for (int trial = 0; trial < 20000; ++trial) {
             const Obb box = any_box(random, trial);
-            Sphere ball{box.center + 2.0 * random_vector(random), std::abs(random_vector(random).x)};
-            if (trial % 6 == 0) ball.center = corners(box)[std::size_t(trial / 6 % 8)];
-            const Manifold m = contact_manifold(box, ball);
+            Sphere sphere{box.center + 2.0 * random_vector(random), std::abs(random_vector(random).x)};
+            if (trial % 6 == 0) sphere.center = corners(box)[std::size_t(trial / 6 % 8)];
+            const Manifold m = contact_manifold(box, sphere);
             CAPTURE(trial);
-            REQUIRE((m.count > 0) == intersects(box, ball));
+            REQUIRE((m.count > 0) == intersects(box, sphere));
             if (m.count == 0) continue;
             ++met;
-            inside += contains(box, ball.center);
+            inside += contains(box, sphere.center);
             CHECK(m.points[0].depth == m.depth);
             CHECK(glm::length(m.normal) == doctest::Approx(1.0));
             const double off = 1e-9 * (1.0 + glm::length(box.center));
-            CHECK_FALSE(intersects(box, Sphere{ball.center + (m.depth + off) * m.normal, ball.radius}));
+            CHECK_FALSE(intersects(box, Sphere{sphere.center + (m.depth + off) * m.normal, sphere.radius}));
             if (m.depth > 2.0 * off)
-                CHECK(intersects(box, Sphere{ball.center + (m.depth - off) * m.normal, ball.radius}));
+                CHECK(intersects(box, Sphere{sphere.center + (m.depth - off) * m.normal, sphere.radius}));
             // Midway between the surfaces.
-            const glm::dvec3 deepest = ball.center - ball.radius * m.normal;
+            const glm::dvec3 deepest = sphere.center - sphere.radius * m.normal;
             CHECK(glm::length(m.points[0].position - deepest - 0.5 * m.depth * m.normal) <= off);
         }
         CHECK(met > 4000);

@@ -32,11 +32,11 @@ Obb parted(Obb b, const glm::dvec3& motion) {
 
 TEST_SUITE("collide/convex_query") {
     TEST_CASE("points on top of each other, bodies without extent and coincident boxes have answers") {
-        const Sphere point{{1.0, 2.0, 3.0}, 0.0}, ball{{1.0, 2.0, 3.0}, 0.5};
+        const Sphere point{{1.0, 2.0, 3.0}, 0.0}, sphere{{1.0, 2.0, 3.0}, 0.5};
         CHECK(distance(Capsule{point.center, point.center, 0.0}, point).distance == 0.0);
         CHECK(contact_manifold(point, point).depth == 0.0);
-        CHECK(contact_manifold(ball, ball).depth == doctest::Approx(1.0));
-        CHECK(contact_manifold(ball, ball).count == 1);
+        CHECK(contact_manifold(sphere, sphere).depth == doctest::Approx(1.0));
+        CHECK(contact_manifold(sphere, sphere).count == 1);
         const Obb box = cube_box({});
         CHECK(penetration(box, box).depth == doctest::Approx(2.0));
         CHECK(distance(box, box).distance == 0.0);

@@ -68,7 +68,7 @@ TEST_SUITE("collide/shapes") {
         CHECK_FALSE(intersects(box, Triangle{glm::dvec3(0.0), glm::dvec3(1.0), glm::dvec3(0.0, kNan, 0.0)}));
     }
 
-    TEST_CASE("balls and capsules beyond the largest coordinate meet nothing") {
+    TEST_CASE("spheres and capsules beyond the largest coordinate meet nothing") {
         const Obb box{{}, glm::mat3(1.0f), {1, 1, 1}};
         for (const double far : {1.1e30, 1e154, 1e155, 1e200, 1e308}) {
             CAPTURE(far);
@@ -216,22 +216,22 @@ TEST_SUITE("collide/shapes") {
         CHECK(compared > 400);
     }
 
-    TEST_CASE("balls that nearly touch a box: as the distance between the bodies says") {
+    TEST_CASE("spheres that nearly touch a box: as the distance between the bodies says") {
         std::mt19937_64 random(12);
         std::uniform_real_distribution<double> unit(0.0, 1.0);
         for (int trial = 0; trial < 20000; ++trial) {
             Obb box = random_box(random, trial % 2 ? 1.0 : 1e6);
             if (trial % 3 == 0) box.half_extents[trial % 9 / 3] = 0.0f;
             if (trial % 5 == 0) box.axes[1] *= 1.0f + 3e-5f;  // nearly as far from orthonormal as validate lets pass
-            Sphere ball{box.center + 3.0 * random_vector(random), 0.0};
+            Sphere sphere{box.center + 3.0 * random_vector(random), 0.0};
             const double away =
-                contains(box, ball.center) ? 0.0 : distance(box, Capsule{ball.center, ball.center, 0.0}).distance;
+                contains(box, sphere.center) ? 0.0 : distance(box, Capsule{sphere.center, sphere.center, 0.0}).distance;
             const double gap = std::pow(10.0, -12.0 * unit(random)) * (1.0 + away);
             if (gap < 1e-9 * glm::length(box.center)) continue;
-            ball.radius = away + gap;
-            CHECK(intersects(box, ball));
-            ball.radius = away - gap;
-            if (ball.radius >= 0.0) CHECK_FALSE(intersects(box, ball));
+            sphere.radius = away + gap;
+            CHECK(intersects(box, sphere));
+            sphere.radius = away - gap;
+            if (sphere.radius >= 0.0) CHECK_FALSE(intersects(box, sphere));
         }
     }
 
@@ -248,7 +248,7 @@ TEST_SUITE("collide/shapes") {
         CHECK_FALSE(intersects(box, Capsule{{-5.0, 3.5, 0.0}, {0.0, 0.0, 9.0}, 0.5}));
     }
 
-    TEST_CASE("a ball whose center lies in a box leaves it by the depth along the normal, and by no shorter way") {
+    TEST_CASE("a sphere whose center lies in a box leaves it by the depth along the normal, and by no shorter way") {
         std::mt19937_64 random(31);
         std::uniform_real_distribution<double> unit(0.0, 1.0);
         for (int i = 0; i < 20000; ++i) {
@@ -263,21 +263,21 @@ TEST_SUITE("collide/shapes") {
                 if (random() % 40 == 0) share = 0.0;
                 center += share * double(box.half_extents[k]) * glm::dvec3(box.axes[k]);
             }
-            const Sphere ball{center, unit(random)};
-            const double size = glm::length(glm::dvec3(box.half_extents)) + ball.radius,
+            const Sphere sphere{center, unit(random)};
+            const double size = glm::length(glm::dvec3(box.half_extents)) + sphere.radius,
                          slack = 1e-12 * size + 4e-13 * glm::length(box.center);
             CAPTURE(i);
-            const Manifold m = contact_manifold(box, ball);
-            if (!intersects(box, ball)) {
+            const Manifold m = contact_manifold(box, sphere);
+            if (!intersects(box, sphere)) {
                 CHECK(m.count == 0);
                 continue;
             }
             REQUIRE(m.count == 1);
             CHECK(m.points[0].depth == m.depth);
             CHECK(glm::length(m.normal) == doctest::Approx(1.0).epsilon(1e-14));
-            CHECK(glm::distance(m.points[0].position, center - (ball.radius - 0.5 * m.depth) * m.normal) <= slack);
+            CHECK(glm::distance(m.points[0].position, center - (sphere.radius - 0.5 * m.depth) * m.normal) <= slack);
             const auto meets = [&](const glm::dvec3& way) {
-                return intersects(box, Sphere{center + way, ball.radius});
+                return intersects(box, Sphere{center + way, sphere.radius});
             };
             // On the surface, or within 1e-9 of it, the direction is rounded.
             bool on_surface = false;
@@ -287,7 +287,7 @@ TEST_SUITE("collide/shapes") {
                 on_surface = on_surface || double(box.half_extents[k]) - std::abs(glm::dot(n, center - box.center)) <
                                                1e-9 * size + slack;
             }
-            CHECK_FALSE(meets((m.depth + (on_surface ? 1e-3 * ball.radius + 1e-8 * size : 0.0) + slack) * m.normal));
+            CHECK_FALSE(meets((m.depth + (on_surface ? 1e-3 * sphere.radius + 1e-8 * size : 0.0) + slack) * m.normal));
             if (m.depth <= slack) continue;
             CHECK(meets((m.depth - slack) * m.normal));
             for (int k = 0; k < 3; ++k)
@@ -299,23 +299,23 @@ TEST_SUITE("collide/shapes") {
         }
     }
 
-    TEST_CASE("a ball above a box's face, edge or corner touches at the nearest point of the box") {
+    TEST_CASE("a sphere above a box's face, edge or corner touches at the nearest point of the box") {
         std::mt19937_64 random(32);
         std::uniform_real_distribution<double> unit(0.0, 1.0);
         int touching = 0;
         for (int i = 0; i < 20000; ++i) {
             const Obb box = random_box(random);
             const glm::dvec3 center = box.center + 1.7 * random_vector(random);
-            const Sphere ball{center, unit(random)};
+            const Sphere sphere{center, unit(random)};
             // The least of all points of the box's surface, by descent along each face.
             const Distance nearest = distance(box, Capsule{center, center, 0.0});
-            const Manifold m = contact_manifold(box, ball);
-            CHECK((m.count == 1) == intersects(box, ball));
+            const Manifold m = contact_manifold(box, sphere);
+            CHECK((m.count == 1) == intersects(box, sphere));
             if (m.count == 0 || !(nearest.distance > 1e-6)) continue;
             const glm::dvec3 n = (center - nearest.on_a) / nearest.distance;
             CHECK(glm::distance(m.normal, n) <= 1e-12 / nearest.distance);
-            CHECK(std::abs(m.depth - (ball.radius - nearest.distance)) <= 1e-12);
-            CHECK(glm::distance(m.points[0].position, center - (ball.radius - 0.5 * m.depth) * n) <=
+            CHECK(std::abs(m.depth - (sphere.radius - nearest.distance)) <= 1e-12);
+            CHECK(glm::distance(m.points[0].position, center - (sphere.radius - 0.5 * m.depth) * n) <=
                   1e-12 / nearest.distance);
             ++touching;
         }

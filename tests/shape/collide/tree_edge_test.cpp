@@ -196,9 +196,10 @@ TEST_SUITE("collide/tree edges") {
                 Vector<boxtree::ItemId> items;
                 overlapping(aged.tree, body, items, layers);
                 REQUIRE(test::ranges::equal(items, expect(layers, [&](const Obb& b) { return intersects(b, body); })));
-                const Sphere ball{body.center, random.number(0.0, 30.0)};
-                overlapping(aged.tree, ball, items, layers);
-                REQUIRE(test::ranges::equal(items, expect(layers, [&](const Obb& b) { return intersects(b, ball); })));
+                const Sphere sphere{body.center, random.number(0.0, 30.0)};
+                overlapping(aged.tree, sphere, items, layers);
+                REQUIRE(
+                    test::ranges::equal(items, expect(layers, [&](const Obb& b) { return intersects(b, sphere); })));
                 Ray ray{60.0 * random.direction(), random.direction()};
                 ray.direction -= random.number(0.5, 2.0) * ray.origin / 60.0;
                 Items found;

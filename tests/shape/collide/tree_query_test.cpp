@@ -96,7 +96,7 @@ TEST_SUITE("collide/tree_query") {
         CHECK(items.empty());
     }
 
-    TEST_CASE("boxes, balls and capsules meet what each box alone says, at any offset") {
+    TEST_CASE("boxes, spheres and capsules meet what each box alone says, at any offset") {
         for (const auto& [count, offset] : kCrowds) {
             const oracle::Crowd crowd = crowd_of(count, offset, 2);
             const boxtree::BoxTree tree = tree_of(crowd);
@@ -111,9 +111,10 @@ TEST_SUITE("collide/tree_query") {
                 overlapping(tree, box, items, layers);
                 CHECK(list(items) == by_brute_force(crowd, layers, [&](const Obb& b) { return intersects(b, box); }));
                 found += items.size();
-                const Sphere ball{box.center, random.number(0.0, 30.0)};
-                overlapping(tree, ball, items, layers);
-                CHECK(list(items) == by_brute_force(crowd, layers, [&](const Obb& b) { return intersects(b, ball); }));
+                const Sphere sphere{box.center, random.number(0.0, 30.0)};
+                overlapping(tree, sphere, items, layers);
+                CHECK(list(items) ==
+                      by_brute_force(crowd, layers, [&](const Obb& b) { return intersects(b, sphere); }));
                 const Capsule capsule{box.center, box.center + 20.0 * random.direction(), random.number(0.0, 5.0)};
                 overlapping(tree, capsule, items, layers);
                 CHECK(list(items) ==

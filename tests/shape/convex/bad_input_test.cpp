@@ -45,19 +45,19 @@ TEST_SUITE("convex/bad input") {
         const Hull hull = Hull::build(points).value();
         CHECK(hull.vertices().size() == 8);
         CHECK(hull.face_count() == 6);
-        CHECK(hull.excess() == 0.0);
+        CHECK(hull.max_overshoot() == 0.0);
         CHECK(hull.mass().volume == doctest::Approx(8.0));
     }
 
     TEST_CASE("lengths that are negative, NaN or infinite name themselves, whichever body") {
         for (const float bad : {-1.0f, kNaN, kNoEnd, 2e15f}) {
-            CHECK_FALSE(Body::ball(bad).has_value());
+            CHECK_FALSE(Body::sphere(bad).has_value());
             CHECK_FALSE(Body::capsule(bad, 1).has_value());
             CHECK_FALSE(Body::capsule(1, bad).has_value());
             CHECK_FALSE(Body::cylinder(bad, 1).has_value());
             CHECK_FALSE(Body::cone(1, bad).has_value());
             CHECK(error_of(Body::box({1, 1, bad})).item == 2);
-            CHECK_FALSE(Body::rounded(Body::ball(1).value(), bad).has_value());
+            CHECK_FALSE(Body::rounded(Body::sphere(1).value(), bad).has_value());
         }
         CHECK(error_of(Body::triangle({0, 0, 0}, {1, kNaN, 0}, {0, 1, 0})).item == 1);
         CHECK_FALSE(Body::half_space({{0, 0, 0}, 1}).has_value());
@@ -94,9 +94,9 @@ TEST_SUITE("convex/bad input") {
         CHECK(nested.size() == static_cast<std::size_t>(kMaxCompoundDepth));
         CHECK(refused.code == ErrorCode::out_of_range);
         CHECK(refused.item == 0);
-        const Body ball = Body::ball(0.5f).value();
-        CHECK(intersects({inner, at({})}, {ball, at({17.4, 0, 0})}));
-        CHECK_FALSE(intersects({inner, at({})}, {ball, at({17.6, 0, 0})}));
+        const Body sphere = Body::sphere(0.5f).value();
+        CHECK(intersects({inner, at({})}, {sphere, at({17.4, 0, 0})}));
+        CHECK_FALSE(intersects({inner, at({})}, {sphere, at({17.6, 0, 0})}));
         CHECK(mass_properties(inner).value().center.x == doctest::Approx(16.0));
     }
 
@@ -121,7 +121,7 @@ TEST_SUITE("convex/bad input") {
         const Body box = Body::box({1, 1, 1}).value(),
                    triangle = Body::triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}).value();
         for (const double x : {1.5, 0.5, -3.0}) {
-            const Placed a{box, at({})}, b{triangle, at({x, 0, 0})};
+            const BodyAtPose a{box, at({})}, b{triangle, at({x, 0, 0})};
             PairCache lost;
             lost.count = 4;
             std::fill_n(lost.on_a, 4, std::uint16_t{65535});
@@ -147,7 +147,7 @@ TEST_SUITE("convex/bad input") {
         const CompoundChild child{box, at({})};
         const Compound compound = Compound::build({&child, 1}).value();
         const Body bodies[] = {box,
-                               Body::ball(1).value(),
+                               Body::sphere(1).value(),
                                Body::capsule(1, 0.5f).value(),
                                Body::cylinder(1, 1).value(),
                                Body::triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}).value(),

@@ -54,7 +54,7 @@ BoxCase random_case(RandomBodies& random) {
     if (random.index(2) == 0) c.pose_b.rotation = nearly(random, c.pose_a.rotation);
     if (random.index(2) == 0) skew(random, c.pose_a.rotation);
     if (random.index(2) == 0) skew(random, c.pose_b.rotation);
-    c.size = c.a.reach() + c.b.reach() + c.a.radius() + c.b.radius() +
+    c.size = c.a.core_radius() + c.b.core_radius() + c.a.radius() + c.b.radius() +
              glm::length(c.pose_b.translation - c.pose_a.translation);
     return c;
 }
@@ -65,15 +65,15 @@ double off(double value, double low, double high) {
 
 // How far the manifold's depth is beyond what is proven of the pair, and its points outside of the bodies.
 double wrong_depth(const BoxCase& c, const Manifold& m) {
-    const Placed a{c.a, c.pose_a}, b{c.b, c.pose_b};
+    const BodyAtPose a{c.a, c.pose_a}, b{c.b, c.pose_b};
     if (const Penetration p = penetration(a, b); p.overlapping) return off(m.depth, p.lower, p.upper);
     const Distance d = distance(a, b);
     return off(-m.depth, d.lower, d.upper);
 }
 
 // Along a unit vector from a to b, with roundings.
-double overlap_along(const Placed& a, const Placed& b, const glm::dvec3& n) {
-    const auto radius = [&n](const Placed& p) {
+double overlap_along(const BodyAtPose& a, const BodyAtPose& b, const glm::dvec3& n) {
+    const auto radius = [&n](const BodyAtPose& p) {
         double sum = p.body.radius();
         for (int k = 0; k < 3; ++k) sum += p.body.half_extents()[k] * std::abs(glm::dot(p.pose.rotation[k], n));
         return sum;
@@ -105,7 +105,7 @@ TEST_SUITE("convex/box_pair") {
                                                0x1.bd5787192ae37p-2, 0x1.cc45ca81266a6p-1, -0x1.aa8fc6d08a00ap-5,
                                                0x1.ee1062f9b8ef8p-2, -0x1.78724f6dd761ap-3, 0x1.b67a24e0b488ap-1),
                                     {0x1.312e7195d9f4ap+23, -0x1.ab39c3a954d48p+22, 0x1.6e4433de8cc0fp+21}};
-        const Placed a{thin, at}, b{large, beside};
+        const BodyAtPose a{thin, at}, b{large, beside};
         REQUIRE(distance(a, b).lower > 6e-10);
         REQUIRE_FALSE(intersects(a, b));
         CHECK(contact_manifold(a, b).count == 0);
@@ -122,7 +122,7 @@ TEST_SUITE("convex/box_pair") {
         const RigidTransform low{glm::dmat3(1, 0, 0, 0, 0.8, 0.6, 0, -0.6, 0.8), {}};
         const RigidTransform top{glm::dmat3(1, 0, -angle, 0.8 * angle, 0.6, 0.8, 0.6 * angle, -0.8, 0.6),
                                  {-0x1.141b37c691c86p-2, 0x1.0cccccccccccdp+1, -0x1.999999999bb81p-4}};
-        const Placed a{cube, low}, b{slab, top};
+        const BodyAtPose a{cube, low}, b{slab, top};
         REQUIRE_FALSE(intersects(a, b));
         REQUIRE(distance(a, b).upper < 1e-13);
         CHECK(contact_manifold(a, b).count == 0);
@@ -136,7 +136,7 @@ TEST_SUITE("convex/box_pair") {
         for (int i = 0; i < 20000; ++i) {
             const BoxCase c = random_case(random);
             CAPTURE(i);
-            const Placed a{c.a, c.pose_a}, b{c.b, c.pose_b};
+            const BodyAtPose a{c.a, c.pose_a}, b{c.b, c.pose_b};
             const bool meet = intersects(a, b);
             const Manifold tight = contact_manifold(a, b);
             CHECK((tight.count > 0) == meet);
@@ -163,7 +163,8 @@ TEST_SUITE("convex/box_pair") {
                                      (on_a.kind == FeatureKind::vertex || on_b.kind == FeatureKind::vertex) &&
                                      c.a.radius() > 0.0 && c.b.radius() > 0.0;
                 CHECK(wrong_place(c, cold.points[k]) <=
-                      tolerance + 1e-6 * c.size + (at_ends ? 0.036 * std::min(c.a.reach(), c.b.reach()) : 0.0));
+                      tolerance + 1e-6 * c.size +
+                          (at_ends ? 0.036 * std::min(c.a.core_radius(), c.b.core_radius()) : 0.0));
                 edges += cold.points[k].on_a.kind == FeatureKind::edge && cold.points[k].on_b.kind == FeatureKind::edge;
             }
         }
@@ -209,11 +210,11 @@ TEST_SUITE("convex/box_pair") {
                 glm::dvec3 place = random.number(-1, 1) * ha + random.number(-1, 1) * hb * across;
                 place[k] = ha[k] + hb[k] + c.a.radius() + c.b.radius() + c.gap;
                 c.pose_b.translation = c.pose_a.translation + r * place;
-                c.size = c.a.reach() + c.b.reach() + c.a.radius() + c.b.radius() +
+                c.size = c.a.core_radius() + c.b.core_radius() + c.a.radius() + c.b.radius() +
                          glm::length(c.pose_b.translation - c.pose_a.translation);
             }
             CAPTURE(i);
-            const Placed a{c.a, c.pose_a}, b{c.b, c.pose_b};
+            const BodyAtPose a{c.a, c.pose_a}, b{c.b, c.pose_b};
             const ManifoldOptions options{.margin = 2.0 * std::abs(c.gap) + 1e-9, .max_points = 8};
             const Manifold cold = contact_manifold(a, b, options);
             meeting += cold.count > 0 && cold.depth > 0.0;

@@ -29,7 +29,7 @@ std::vector<NamedBody> convex_kinds(RandomBodies& random) {
     const glm::vec3 p[3] = {glm::vec3(random.direction()), glm::vec3(random.direction()),
                             glm::vec3(random.direction())};
     const Body flat = Body::triangle(p[0], p[1], p[2]).value();
-    return {{"ball", Body::ball(r).value()},
+    return {{"sphere", Body::sphere(r).value()},
             {"capsule", Body::capsule(h, r).value()},
             {"box", box},
             {"hull", hull},
@@ -48,9 +48,9 @@ double degrees_between(const glm::dvec3& u, const glm::dvec3& v) {
     return std::atan2(glm::length(glm::cross(u, v)), glm::dot(u, v)) * 57.29577951308232;
 }
 
-double size_of(const Placed& a, const Placed& b) {
+double size_of(const BodyAtPose& a, const BodyAtPose& b) {
     const auto reach = [](const Body& body) {
-        return body.kind() == Kind::half_space ? 0.0 : body.reach() + body.radius();
+        return body.kind() == Kind::half_space ? 0.0 : body.core_radius() + body.radius();
     };
     return reach(a.body) + reach(b.body) + glm::distance(a.pose.translation, b.pose.translation);
 }
@@ -60,18 +60,18 @@ bool is_hard(const Body& body) {
 }
 
 // All fields of a hit between two convex bodies.
-void check_hit(const Placed& a, const Motion& ma, const Placed& b, const Motion& mb, const Impact& i,
+void check_hit(const BodyAtPose& a, const Motion& ma, const BodyAtPose& b, const Motion& mb, const Impact& i,
                const CastOptions& options) {
     const RigidTransform now_a = moved(a.pose, ma, i.time), now_b = moved(b.pose, mb, i.time);
-    const Placed then_a{a.body, now_a}, then_b{b.body, now_b};
+    const BodyAtPose then_a{a.body, now_a}, then_b{b.body, now_b};
     const double size = size_of(then_a, then_b);
     const double slack =
         (is_hard(a.body) || is_hard(b.body) ? 4e-9 : 1e-12) * size + 1e-15 * glm::length(now_a.translation);
     CHECK(oracle::fault_of_contact(then_a, then_b, i, slack) == "");
     CHECK(i.distance >= 0.0);
     CHECK(i.distance < options.tolerance);
-    // A ball's normal, by formula.
-    if (b.body.kind() == Kind::ball)
+    // A sphere's normal, by formula.
+    if (b.body.kind() == Kind::sphere)
         if (const glm::dvec3 n = oracle::direction_to_point(then_a, now_b.translation); n != glm::dvec3(0.0))
             CHECK(degrees_between(n, i.normal) < 0.01);
     // What `distance` says there.
@@ -95,7 +95,7 @@ TEST_SUITE("convex/cast_contact") {
                     const glm::dvec3 place = offset * random.direction();
                     const RigidTransform pose_a{random.rotation(), place},
                         pose_b{random.rotation(), place + 5.0 * random.direction()};
-                    const Placed a{first.body, pose_a}, b{second.body, pose_b};
+                    const BodyAtPose a{first.body, pose_a}, b{second.body, pose_b};
                     Motion ma{random.number(0, 3) * random.direction(), {}, {}}, mb{};
                     mb.velocity = ma.velocity + 1.6 * (place - pose_b.translation) + 1.2 * random.direction();
                     const bool turns = round % 2 == 1;
@@ -179,7 +179,7 @@ TEST_SUITE("convex/cast_contact") {
                         from{random.rotation(), pose.translation + 7.0 * random.direction()};
                     const Motion motion{
                         1.7 * (pose.translation - from.translation), 0.5 * (round % 3) * random.direction(), {}};
-                    const Placed placed{body, pose}, mover{kind.body, from};
+                    const BodyAtPose placed{body, pose}, mover{kind.body, from};
                     const Impact i = cast(placed, {}, mover, motion).value();
                     if (i.result != CastResult::hit || i.time == 0.0) continue;
                     ++hits;
@@ -214,12 +214,12 @@ TEST_SUITE("convex/cast_contact") {
                     const RigidTransform here{random.rotation(), 2.0 * random.direction()},
                         from{random.rotation(), here.translation + 5.0 * random.direction()};
                     const Motion fly{1.3 * (here.translation - from.translation), {}, {}};
-                    const Placed placed{wall.body, here};
+                    const BodyAtPose placed{wall.body, here};
                     const Impact first = cast(placed, {}, {kind.body, from}, fly).value();
                     if (first.result != CastResult::hit) continue;
                     ++casts;
                     const RigidTransform there = moved(from, fly, first.time);
-                    const Placed mover{kind.body, there};
+                    const BodyAtPose mover{kind.body, there};
                     const auto go = [&](const glm::dvec3& way, const CastOptions& options = {}) {
                         const Impact i = cast(placed, {}, mover, {way, {}, {}}, options).value();
                         const Impact back = cast(mover, {way, {}, {}}, placed, {}, options).value();
@@ -254,7 +254,7 @@ TEST_SUITE("convex/cast_contact") {
         const Stand stands[] = {
             {Body::box({0.5f, 0.25f, 0.5f}).value(), glm::dmat3(1.0), 0.25, {0, 7, 0}},
             {hull_free, glm::dmat3(1.0), static_cast<double>(0.4f), {0, -20, 0}},
-            {Body::ball(0.5).value(), glm::dmat3(1.0), 0.5, {4, 2, 1}},
+            {Body::sphere(0.5).value(), glm::dmat3(1.0), 0.5, {4, 2, 1}},
             {Body::capsule(0.5f, 0.25f).value(), glm::dmat3(1.0), 0.75, {0, 3, 0}},
             {Body::capsule(0.5f, 0.25f).value(), lying, 0.25, {6, 0, 0}},
             {Body::cylinder(0.5f, 0.25f).value(), glm::dmat3(1.0), 0.5, {0, 9, 0}},
@@ -267,7 +267,7 @@ TEST_SUITE("convex/cast_contact") {
                     CAPTURE(gap);
                     CAPTURE(stand.height);
                     CAPTURE(is_half);
-                    const Placed floor{is_half ? half : slab, is_half ? zero : low};
+                    const BodyAtPose floor{is_half ? half : slab, is_half ? zero : low};
                     const RigidTransform pose{stand.rotation, {0, stand.height + gap, 0}};
                     const auto go = [&](const glm::dvec3& velocity, const glm::dvec3& spin) {
                         return cast({stand.body, pose}, {velocity, spin, {}}, floor, {}).value();
@@ -337,7 +337,7 @@ TEST_SUITE("convex/cast_contact") {
                 for (const NamedBody& second : convex_kinds(random)) {
                     const RigidTransform pose_a{random.rotation(), random.direction()},
                         pose_b{random.rotation(), pose_a.translation + random.number(0, 1.2) * random.direction()};
-                    const Placed a{first.body, pose_a}, b{second.body, pose_b};
+                    const BodyAtPose a{first.body, pose_a}, b{second.body, pose_b};
                     const Penetration p = penetration(a, b);
                     if (!p.overlapping || p.depth < 1e-4) continue;
                     ++overlaps;
@@ -356,7 +356,7 @@ TEST_SUITE("convex/cast_contact") {
     }
 
     TEST_CASE("of parts that overlap from the start the deepest is told, with the option the others are still met") {
-        const Body tile = Body::box({0.5f, 0.5f, 0.5f}).value(), ball = Body::ball(0.5).value();
+        const Body tile = Body::box({0.5f, 0.5f, 0.5f}).value(), sphere = Body::sphere(0.5).value();
         const Compound row =
             Compound::build(
                 std::vector<CompoundChild>{{tile, at({0, 0, 0})}, {tile, at({0.3, 0.2, 0})}, {tile, at({5, 0, 0})}})
@@ -364,13 +364,13 @@ TEST_SUITE("convex/cast_contact") {
         const Body body = Body::compound(row);
         const RigidTransform zero, pose = at({0.3, 0.45, 0});
         const Motion right{{10, 0, 0}, {}, {}};
-        const Impact i = cast({ball, pose}, right, {body, zero}, {}).value();
+        const Impact i = cast({sphere, pose}, right, {body, zero}, {}).value();
         CHECK(i.result == CastResult::hit);
         CHECK(i.time == 0.0);
         CHECK(i.part_b.child == 1);
         CHECK(i.distance == doctest::Approx(-0.75));
         CHECK(i.normal.y == doctest::Approx(-1.0));
-        const Impact next = cast({ball, pose}, right, {body, zero}, {}, {.ignore_initial_overlaps = true}).value();
+        const Impact next = cast({sphere, pose}, right, {body, zero}, {}, {.ignore_initial_overlaps = true}).value();
         REQUIRE(next.result == CastResult::hit);
         CHECK(next.part_b.child == 2);
         CHECK(next.on_b.x == doctest::Approx(4.5));
@@ -379,14 +379,14 @@ TEST_SUITE("convex/cast_contact") {
 
     TEST_CASE("early_out changes no hit up to it, and tells later ones as misses, bad ones are errors") {
         RandomBodies random(77);
-        const Body box = random.box(), ball = Body::ball(0.4).value();
+        const Body box = random.box(), sphere = Body::sphere(0.4).value();
         const RigidTransform zero;
         for (int round = 0; round < 2000; ++round) {
             const RigidTransform from{random.rotation(), 4.0 * random.direction()};
             const Motion fly{-1.5 * from.translation + random.direction(), (round % 2) * 3.0 * random.direction(), {}};
-            const Impact whole = cast({box, zero}, {}, {ball, from}, fly).value();
+            const Impact whole = cast({box, zero}, {}, {sphere, from}, fly).value();
             const double until = random.number(0, 1);
-            const Impact early = cast({box, zero}, {}, {ball, from}, fly, {.early_out = until}).value();
+            const Impact early = cast({box, zero}, {}, {sphere, from}, fly, {.early_out = until}).value();
             if (whole.result == CastResult::hit && whole.time <= until) {
                 CHECK(early.result == CastResult::hit);
                 CHECK(early.time == whole.time);
@@ -397,8 +397,8 @@ TEST_SUITE("convex/cast_contact") {
                 CHECK(early.time == until);
             }
         }
-        CHECK_FALSE(cast({box, zero}, {}, {ball, zero}, {}, {.early_out = -1.0}).has_value());
-        CHECK_FALSE(cast({box, zero}, {}, {ball, zero}, {}, {.early_out = NAN}).has_value());
+        CHECK_FALSE(cast({box, zero}, {}, {sphere, zero}, {}, {.early_out = -1.0}).has_value());
+        CHECK_FALSE(cast({box, zero}, {}, {sphere, zero}, {}, {.early_out = NAN}).has_value());
     }
 
     TEST_CASE(

@@ -46,14 +46,14 @@ TEST_SUITE("convex/cast") {
         CHECK(inside.time == 0.0);
     }
 
-    TEST_CASE("times known by hand: boxes, a ball on the floor, a bar that turns into a wall") {
-        const Body box = Body::box({1, 1, 1}).value(), ball = Body::ball(1).value();
+    TEST_CASE("times known by hand: boxes, a sphere on the floor, a bar that turns into a wall") {
+        const Body box = Body::box({1, 1, 1}).value(), sphere = Body::sphere(1).value();
         const Body floor = Body::half_space({{0, -1, 0}, 0}).value(), bar = Body::box({2, 0.01f, 0.01f}).value();
         const RigidTransform origin = at({}), ten = at({10, 0.5, 0}), high = at({0, 5, 0});
         CHECK(cast({box, origin}, flying({16, 0, 0}), {box, ten}, {}).value().time == doctest::Approx(0.5));
         CHECK(cast({box, origin}, {}, {box, ten}, flying({-16, 0, 0})).value().time == doctest::Approx(0.5));
-        CHECK(cast({ball, high}, flying({0, -8, 0}), {floor, origin}, {}).value().time == doctest::Approx(0.5));
-        CHECK(cast({floor, origin}, {}, {ball, high}, flying({0, -8, 0})).value().time == doctest::Approx(0.5));
+        CHECK(cast({sphere, high}, flying({0, -8, 0}), {floor, origin}, {}).value().time == doctest::Approx(0.5));
+        CHECK(cast({floor, origin}, {}, {sphere, high}, flying({0, -8, 0})).value().time == doctest::Approx(0.5));
         // The bar's end is 2 from the axis and reaches y = 1 at 30 degrees; its upper edge is 0.01 nearer.
         const RigidTransform wall = at({0, 1.5, 0});
         const Body slab = Body::box({9, 0.5f, 9}).value();
@@ -75,7 +75,7 @@ TEST_SUITE("convex/cast") {
 
     TEST_CASE("no wall is too thin and no bullet too fast or small") {
         const Body wall = Body::triangle({-9, -9, 0}, {9, -9, 0}, {0, 9, 0}).value();
-        const Body bullet = Body::box({1e-4f, 1e-4f, 1e-4f}).value(), point = Body::ball(0).value();
+        const Body bullet = Body::box({1e-4f, 1e-4f, 1e-4f}).value(), point = Body::sphere(0).value();
         RandomBodies random(1);
         for (int i = 0; i < 200; ++i) {
             const glm::dvec3 target(random.number(-2, 2), random.number(-2, 2), 0.0);
@@ -201,7 +201,7 @@ TEST_SUITE("convex/cast") {
                               {{-0x1.7f48e747c1ef8p+6, 0x1.588e55100d26cp+6, -0x1.83f796561d0c8p+1},
                                {0x1.69b088c51800ap-2, 0x1.7344f67705819p-2, -0x1.b9906dd59ee8ep-1},
                                0x1.060353ea1e055p+0}};
-        const Body point = Body::ball(0).value(), box = Body::box({1e-3f, 1e-3f, 1e-3f}).value();
+        const Body point = Body::sphere(0).value(), box = Body::box({1e-3f, 1e-3f, 1e-3f}).value();
         for (const Turn& turn : turns) {
             const Motion motion{(0.05 / 6.283185307) * turn.spin, turn.spin, -turn.arm};
             // arm · cos + spin × arm · sin + … in long double: where the point is at the end, and where it goes.

@@ -75,19 +75,19 @@ TEST_SUITE("convex/compound") {
             const RigidTransform pose{random.rotation(), 5.0 * random.direction()};
             const RigidTransform inner{pose.rotation * within.pose.rotation,
                                        pose.rotation * within.pose.translation + pose.translation};
-            const std::vector<CompoundChild> balls{{Body::ball(0.5).value(), at({0.3, 0, 0})},
-                                                   {random.box(), at({-0.6, 0, 0})}};
-            const Compound pair = Compound::build(balls).value();
+            const std::vector<CompoundChild> spheres{{Body::sphere(0.5).value(), at({0.3, 0, 0})},
+                                                     {random.box(), at({-0.6, 0, 0})}};
+            const Compound pair = Compound::build(spheres).value();
             const Body body = round % 3 == 0 ? Body::compound(pair) : random.polytope(12);
             const RigidTransform place{random.rotation(), pose.translation + 6.0 * random.direction()};
-            const Placed ground{Body::compound(outer), pose}, thing{body, place};
+            const BodyAtPose ground{Body::compound(outer), pose}, thing{body, place};
             bool meets = false;
             double nearest = HUGE_VAL, deepest = 0.0, first = HUGE_VAL;
             const Motion fall{.velocity = 8.0 * random.direction(), .spin = 2.0 * random.direction()};
             for (const CompoundChild& child : children) {
                 const RigidTransform at{inner.rotation * child.pose.rotation,
                                         inner.rotation * child.pose.translation + inner.translation};
-                const Placed part{child.body, at};
+                const BodyAtPose part{child.body, at};
                 meets = meets || intersects(part, thing);
                 nearest = std::min(nearest, distance(part, thing).distance);
                 deepest = std::max(deepest, penetration(part, thing).depth);
@@ -96,7 +96,7 @@ TEST_SUITE("convex/compound") {
             }
             CAPTURE(round);
             for (const bool swap : {false, true}) {
-                const Placed &a = swap ? thing : ground, &b = swap ? ground : thing;
+                const BodyAtPose &a = swap ? thing : ground, &b = swap ? ground : thing;
                 CHECK(intersects(a, b) == meets);
                 CHECK(distance(a, b).distance == doctest::Approx(nearest).epsilon(1e-8));
                 CHECK(penetration(a, b).depth == doctest::Approx(deepest).epsilon(1e-8));
@@ -121,7 +121,7 @@ TEST_SUITE("convex/compound") {
 
     TEST_CASE("compounds in compounds: sixteen deep work, the seventeenth is a named error, so a thousand never nest") {
         std::vector<std::unique_ptr<Compound>> chain;
-        Body body = Body::ball(0.5f).value();
+        Body body = Body::sphere(0.5f).value();
         int built = 0;
         for (; built < 1000; ++built) {
             const CompoundChild child{body, at({1, 0, 0})};
@@ -136,7 +136,7 @@ TEST_SUITE("convex/compound") {
         }
         CHECK(built == kMaxCompoundDepth);
         CHECK(chain.back()->depth() == kMaxCompoundDepth);
-        const Body point = Body::ball(0.0f).value();
+        const Body point = Body::sphere(0.0f).value();
         CHECK(intersects({body, at({})}, {point, at({16.4, 0, 0})}));
         CHECK_FALSE(intersects({body, at({})}, {point, at({16.6, 0, 0})}));
         CHECK(distance({body, at({})}, {point, at({20, 0, 0})}).distance == doctest::Approx(3.5));
@@ -170,7 +170,7 @@ TEST_SUITE("convex/compound") {
             std::uint32_t nearest = 0;
             for (std::size_t i = 0; i < tree.flat.size(); ++i) {
                 const RigidTransform place = product(pose, tree.flat[i].pose);
-                const Placed child{tree.flat[i].body, place};
+                const BodyAtPose child{tree.flat[i].body, place};
                 meets = meets || intersects(child, {b, pose_b});
                 const double d = distance(child, {b, pose_b}).distance;
                 if (d < least) least = d, nearest = static_cast<std::uint32_t>(i);
@@ -284,7 +284,7 @@ TEST_SUITE("convex/compound") {
             const int k = round % 5 == 0 ? 1 : 0;
             other.translation[k] += round % 7 == 0 ? -1.0 : 1.0;
             if (round % 3 == 1) other.translation[k] = std::nextafter(other.translation[k], 1e300);
-            const Placed a{whole, pose}, alone{cube, part}, b{cube, other};
+            const BodyAtPose a{whole, pose}, alone{cube, part}, b{cube, other};
             const bool meet = intersects(alone, b);
             touching += meet;
             CAPTURE(round);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Balls and capsules whose core lies deep in another body: every field of the answers, by formulas and exactly.
+// Spheres and capsules whose core lies deep in another body: every field of the answers, by formulas and exactly.
 #include <doctest/doctest.h>
 #include <cmath>
 #include <crofton/convex/query.hpp>
@@ -26,15 +26,16 @@ struct DeepCase {
     Body a, b;
     RigidTransform pose_a, pose_b;
     double tolerance = 1e-9;  // of the size
-    [[nodiscard]] Placed first() const { return {a, pose_a}; }
-    [[nodiscard]] Placed second() const { return {b, pose_b}; }
+    [[nodiscard]] BodyAtPose first() const { return {a, pose_a}; }
+    [[nodiscard]] BodyAtPose second() const { return {b, pose_b}; }
     [[nodiscard]] double size() const {
-        return a.reach() + b.reach() + a.radius() + b.radius() + glm::distance(pose_a.translation, pose_b.translation);
+        return a.core_radius() + b.core_radius() + a.radius() + b.radius() +
+               glm::distance(pose_a.translation, pose_b.translation);
     }
 };
 
 // How far the body reaches along a unit vector, in the world.
-double reach_along(const Placed& body, const glm::dvec3& n) {
+double reach_along(const BodyAtPose& body, const glm::dvec3& n) {
     const glm::dvec3 local = glm::transpose(body.pose.rotation) * n;
     // A rounding is of the world: the support of the core, and the radius.
     const double radius = body.body.radius();
@@ -123,16 +124,17 @@ DeepCase swapped(const DeepCase& c) {
 }  // namespace
 
 TEST_SUITE("convex/deep") {
-    TEST_CASE("a ball or capsule deep in a box or hull: every field is that of the shortest way out, in either order") {
+    TEST_CASE(
+        "a sphere or capsule deep in a box or hull: every field is that of the shortest way out, in either order") {
         RandomBodies random(41);
         int asked = 0;
         for (int i = 0; i < 6000; ++i) {
             const Body core = i % 2 == 0 ? random.box() : random.hull(4 + random.index(20));
             const Body solid = i % 5 == 0 ? Body::rounded(core, random.number(0, 0.3)).value() : core;
-            const Body thin = i % 3 == 0 ? Body::ball(random.number(0, 0.5)).value()
+            const Body thin = i % 3 == 0 ? Body::sphere(random.number(0, 0.5)).value()
                               : i % 3 == 1
                                   ? Body::capsule(float(random.number(0, 0.5)), float(random.number(0, 0.3))).value()
-                                  : Body::ball(0.2).value();
+                                  : Body::sphere(0.2).value();
             const DeepCase c = random_case(random, solid, thin);
             if (!intersects(c.first(), c.second())) continue;
             CAPTURE(i);
@@ -152,8 +154,8 @@ TEST_SUITE("convex/deep") {
         for (int i = 0; i < 300; ++i) {
             const bool box = i % 2 == 0;
             const Body solid = box ? random.box() : random.hull(4 + random.index(8));
-            const Body thin =
-                box && i % 4 == 0 ? Body::capsule(float(random.number(0, 0.5)), 0.0f).value() : Body::ball(0.0).value();
+            const Body thin = box && i % 4 == 0 ? Body::capsule(float(random.number(0, 0.5)), 0.0f).value()
+                                                : Body::sphere(0.0).value();
             const DeepCase c = random_case(random, solid, thin);
             if (!intersects(c.first(), c.second())) continue;
             const Penetration p = penetration(c.first(), c.second());
@@ -165,7 +167,7 @@ TEST_SUITE("convex/deep") {
         }
     }
 
-    TEST_CASE("a ball deep in a cylinder or cone leaves it across a disc or the side, as the formula says") {
+    TEST_CASE("a sphere deep in a cylinder or cone leaves it across a disc or the side, as the formula says") {
         RandomBodies random(43);
         for (int i = 0; i < 6000; ++i) {
             const bool cone = i % 2 == 0;
@@ -175,7 +177,7 @@ TEST_SUITE("convex/deep") {
                                    : Body::cylinder(float(half), float(radius)).value();
             const double h = double(float(half)), r = double(float(radius));
             const Body solid = i % 3 == 0 ? Body::rounded(core, rounding).value() : core;
-            DeepCase c = random_case(random, solid, Body::ball(0.3).value());
+            DeepCase c = random_case(random, solid, Body::sphere(0.3).value());
             const bool is_rigid =
                 glm::distance(glm::transpose(c.pose_a.rotation)[0] * c.pose_a.rotation, glm::dvec3(1, 0, 0)) < 1e-14;
             const glm::dvec3 local = glm::inverse(c.pose_a.rotation) * (c.pose_b.translation - c.pose_a.translation);
@@ -198,13 +200,13 @@ TEST_SUITE("convex/deep") {
                 glm::dvec3 out = cone ? (2.0 * h * radial + glm::dvec3(0, r, 0)) / slant : radial;
                 if (to_disc < to_side) out = {0.0, cone || local.y < 0.0 ? -1.0 : 1.0, 0.0};
                 out = c.pose_a.rotation * out;
-                CHECK(glm::distance(p.normal, ordered.a.kind() == Kind::ball ? -out : out) <= 1e-5);
+                CHECK(glm::distance(p.normal, ordered.a.kind() == Kind::sphere ? -out : out) <= 1e-5);
             }
         }
     }
 
     TEST_CASE(
-        "a ball or capsule deep in a child of a compound, or in a room of twelve triangles, leaves by the nearest "
+        "a sphere or capsule deep in a child of a compound, or in a room of twelve triangles, leaves by the nearest "
         "wall") {
         RandomBodies random(44);
         Surface room;
@@ -216,7 +218,7 @@ TEST_SUITE("convex/deep") {
         const Body box = Body::box({1, 1.2f, 1.4f}).value();
         int meeting = 0;
         for (int i = 0; i < 3000; ++i) {
-            const Body thin = i % 2 == 0 ? Body::ball(0.4).value() : Body::capsule(0.3f, 0.2f).value();
+            const Body thin = i % 2 == 0 ? Body::sphere(0.4).value() : Body::capsule(0.3f, 0.2f).value();
             const DeepCase alone = random_case(random, box, thin);
             const CompoundChild children[] = {{box, {random.rotation(), random.direction()}},
                                               {box, {glm::dmat3(1.0), {40, 0, 0}}}};

@@ -38,7 +38,7 @@ class AllKinds {
         const Body box = random.box(), hull = random.hull(16),
                    triangle = Body::triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}).value();
         const Body cylinder = Body::cylinder(0.5f, 0.4f).value();
-        add("ball", Body::ball(0.6f).value());
+        add("sphere", Body::sphere(0.6f).value());
         add("capsule", Body::capsule(0.5f, 0.3f).value());
         add("cylinder", cylinder, 1e-5);
         add("cone", Body::cone(0.5f, 0.4f).value(), 1e-5);
@@ -57,7 +57,7 @@ class AllKinds {
         inner_ = Compound::build(inner).value();
         outer_ = Compound::build(std::vector<CompoundChild>{{Body::compound(*inner_), at({0, 0.3, 0})},
                                                             {mesh_.body(), at({0, -0.5, 0.3})},
-                                                            {Body::ball(0.3f).value(), at({0, 0, -0.5})}})
+                                                            {Body::sphere(0.3f).value(), at({0, 0, -0.5})}})
                      .value();
         add("compound", Body::compound(*outer_), 1e-5);
     }
@@ -79,10 +79,10 @@ struct AskedPair {
     const Named &first, &second;
     RigidTransform pose_a, pose_b;
 
-    [[nodiscard]] Placed a() const { return {first.body, pose_a}; }
-    [[nodiscard]] Placed b() const { return {second.body, pose_b}; }
+    [[nodiscard]] BodyAtPose a() const { return {first.body, pose_a}; }
+    [[nodiscard]] BodyAtPose b() const { return {second.body, pose_b}; }
     [[nodiscard]] double size() const {
-        return std::min(first.body.reach(), 4.0) + std::min(second.body.reach(), 4.0) +
+        return std::min(first.body.core_radius(), 4.0) + std::min(second.body.core_radius(), 4.0) +
                glm::distance(pose_a.translation, pose_b.translation);
     }
     [[nodiscard]] double tolerance() const { return size() * std::max(first.tolerance, second.tolerance); }
@@ -116,7 +116,7 @@ RigidTransform shifted(RigidTransform pose, const glm::dvec3& way) {
 }
 
 // The part of that id, where it stands.
-Part part_of(const Placed& body, const Placed& other, const PartId& id) {
+Part part_of(const BodyAtPose& body, const BodyAtPose& other, const PartId& id) {
     Vector<Part> parts;
     parts_near(body, other, 0.1, parts);
     for (const Part& part : parts)
@@ -137,8 +137,8 @@ void check_distance(const AskedPair& pair, bool meet) {
     CHECK(closest_point(pair.a(), d.on_a).distance <= slack);
     CHECK(closest_point(pair.b(), d.on_b).distance <= slack);
     CHECK(std::abs(glm::distance(d.on_a, d.on_b) - d.distance) <= slack);
-    // A point is a ball without radius, and no farther from the body than from its nearest point.
-    const Body point = Body::ball(0.0).value();
+    // A point is a sphere without radius, and no farther from the body than from its nearest point.
+    const Body point = Body::sphere(0.0).value();
     const Distance from_point = closest_point(pair.a(), d.on_b);
     CHECK(std::abs(from_point.distance - distance(pair.a(), {point, at(d.on_b)}).distance) <= slack);
     CHECK(from_point.distance <= d.distance + slack);

@@ -14,7 +14,7 @@ using namespace crofton::testing;
 
 namespace {
 
-glm::dvec3 placed(const Placed& b, int vertex) {
+glm::dvec3 placed(const BodyAtPose& b, int vertex) {
     return b.pose.rotation * b.body.vertex(vertex) + b.pose.translation;
 }
 
@@ -30,8 +30,8 @@ double distance_to_plane(const glm::dvec3& p, const glm::dvec3& a, const glm::dv
     return std::abs(glm::dot(p - a, n)) / glm::length(n);
 }
 
-// From a point of the core of a hull, box, triangle, capsule or ball to the feature; to the plane of a face.
-double distance_to_feature(const Placed& b, const Feature& feature, const glm::dvec3& p) {
+// From a point of the core of a hull, box, triangle, capsule or sphere to the feature; to the plane of a face.
+double distance_to_feature(const BodyAtPose& b, const Feature& feature, const glm::dvec3& p) {
     const int i = feature.index;
     if (feature.kind == FeatureKind::vertex) return glm::length(p - placed(b, i));
     if (b.body.hull() != nullptr) {
@@ -71,18 +71,18 @@ TEST_SUITE("convex/features") {
         for (int i = 0; i < 1500; ++i) {
             const Body a = any_body(i), b = any_body(i / 5);
             const CasePair where = nearly_touching(random, a, b, -std::pow(10.0, random.number(-6, -1)), 0.0);
-            const Placed pa{a, where.pose_a}, pb{b, where.pose_b};
+            const BodyAtPose pa{a, where.pose_a}, pb{b, where.pose_b};
             const Manifold m = contact_manifold(pa, pb, {.max_points = 8});
             for (int k = 0; k < m.count; ++k) {
                 const ContactPoint& point = m.points[k];
                 const glm::dvec3 half = 0.5 * point.depth * m.normal;
                 // Hulls' faces are flat to 1e-5 alone.
-                double tolerance = 2e-5 * (a.reach() + b.reach() + glm::length(where.pose_b.translation));
+                double tolerance = 2e-5 * (a.core_radius() + b.core_radius() + glm::length(where.pose_b.translation));
                 // Round sides and edges within 2 degrees of parallel have points at their ends, midway between them.
                 const bool at_ends = point.on_a.kind != FeatureKind::face && point.on_b.kind != FeatureKind::face &&
                                      (point.on_a.kind == FeatureKind::vertex || point.on_b.kind == FeatureKind::vertex);
                 if (at_ends && a.radius() > 0.0 && b.radius() > 0.0)
-                    tolerance += 0.036 * std::min(a.reach(), b.reach());
+                    tolerance += 0.036 * std::min(a.core_radius(), b.core_radius());
                 CAPTURE(i);
                 CHECK(distance_to_feature(pa, point.on_a, point.position + half - a.radius() * m.normal) <= tolerance);
                 CHECK(distance_to_feature(pb, point.on_b, point.position - half + b.radius() * m.normal) <= tolerance);
@@ -94,7 +94,7 @@ TEST_SUITE("convex/features") {
         CHECK(named[2][0] > 200);
     }
 
-    TEST_CASE("so do those of balls and capsules on a surface's triangle") {
+    TEST_CASE("so do those of spheres and capsules on a surface's triangle") {
         RandomBodies random(9);
         int named[3] = {};
         for (int i = 0; i < 1500; ++i) {
@@ -104,10 +104,10 @@ TEST_SUITE("convex/features") {
             const auto tree = mesh::MeshTree::build(mesh).value();
             const Body surface = Body::mesh(tree).value(),
                        triangle = Body::triangle(mesh.positions[0], mesh.positions[1], mesh.positions[2]).value(),
-                       round = i % 2 == 0 ? Body::ball(0.3).value() : Body::capsule(0.7f, 0.2f).value();
+                       round = i % 2 == 0 ? Body::sphere(0.3).value() : Body::capsule(0.7f, 0.2f).value();
             const CasePair where =
                 nearly_touching(random, triangle, round, -std::pow(10.0, random.number(-6, -2)), 0.0);
-            const Placed part{triangle, where.pose_a}, other{round, where.pose_b};
+            const BodyAtPose part{triangle, where.pose_a}, other{round, where.pose_b};
             Manifolds found;
             contact_manifolds({surface, where.pose_a}, other, {.max_points = 8}, found);
             CAPTURE(i);

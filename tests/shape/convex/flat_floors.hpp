@@ -127,7 +127,7 @@ class Sliders {
         hulls_.push_back(std::make_unique<convex::Hull>(convex::Hull::build(round).value()));
         bodies = {Body::box({0.3f, 0.3f, 0.3f}).value(),
                   Body::box({0.3f, 0.2f, 0.05f}).value(),
-                  Body::ball(0.3).value(),
+                  Body::sphere(0.3).value(),
                   Body::capsule(0.3f, 0.25f).value(),
                   Body::cylinder(0.3f, 0.25f).value(),
                   Body::cone(0.3f, 0.25f).value(),

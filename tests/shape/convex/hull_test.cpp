@@ -76,7 +76,7 @@ TEST_SUITE("convex/hull") {
 
     TEST_CASE("bodies inside out, NaN or without bounds are named errors") {
         CHECK(error_of(Body::box({1, -1, 1})).item == 1);
-        CHECK(error_of(Body::ball(-1)).code == ErrorCode::invalid_argument);
+        CHECK(error_of(Body::sphere(-1)).code == ErrorCode::invalid_argument);
         CHECK(error_of(Body::capsule(std::numeric_limits<float>::infinity(), 1)).code == ErrorCode::non_finite);
         CHECK(error_of(Body::cone(1, 1e16f)).code == ErrorCode::out_of_range);
         CHECK(error_of(Body::half_space({{0, 0, 0}, 1})).code == ErrorCode::degenerate);
@@ -92,7 +92,7 @@ TEST_SUITE("convex/hull") {
         CHECK(cube.vertices().size() == 8);
         CHECK(cube.face_count() == 6);
         CHECK(cube.edges().size() == 12);
-        CHECK(cube.excess() == 0.0);
+        CHECK(cube.max_overshoot() == 0.0);
         CHECK(cube.mass().volume == doctest::Approx(729.0));
         CHECK(cube.mass().center.x == doctest::Approx(4.5));
         CHECK(cube.mass().inertia[0][0] == doctest::Approx(729.0 * 81.0 / 6.0));
@@ -128,7 +128,7 @@ TEST_SUITE("convex/hull") {
         }
     }
 
-    TEST_CASE("100,000 points on a ball become 256 vertices that hold them all, and little more") {
+    TEST_CASE("100,000 points on a sphere become 256 vertices that hold them all, and little more") {
         RandomBodies random(5);
         std::vector<glm::vec3> p;
         for (int i = 0; i < 100'000; ++i) p.emplace_back(random.direction());
@@ -136,9 +136,10 @@ TEST_SUITE("convex/hull") {
         CHECK(hull.vertices().size() <= 256);
         CHECK(hull.vertices().size() >= 200);
         check_hull(hull, std::span(p).first(5000));
-        CHECK(hull.excess() > 0.0);
-        CHECK(hull.excess() < 0.05);
-        for (const glm::vec3& v : hull.vertices()) CHECK(glm::length(glm::dvec3(v)) < 1.0 + hull.excess() + 1e-6);
+        CHECK(hull.max_overshoot() > 0.0);
+        CHECK(hull.max_overshoot() < 0.05);
+        for (const glm::vec3& v : hull.vertices())
+            CHECK(glm::length(glm::dvec3(v)) < 1.0 + hull.max_overshoot() + 1e-6);
         const Hull coarse = Hull::build(p, {.max_vertices = 16}).value();
         CHECK(coarse.vertices().size() <= 16);
         check_hull(coarse, std::span(p).first(5000));
@@ -168,21 +169,22 @@ TEST_SUITE("convex/hull") {
         near(mass_properties(Body::cylinder(1, 0.5f).value()).value(), Hull::build(cylinder).value().mass());
         near(mass_properties(Body::cone(1, 0.5f).value()).value(), Hull::build(cone).value().mass());
         near(mass_properties(Body::capsule(1, 0.5f).value()).value(), Hull::build(capsule).value().mass());
-        CHECK(mass_properties(Body::ball(2).value()).value().inertia[1][1] ==
+        CHECK(mass_properties(Body::sphere(2).value()).value().inertia[1][1] ==
               doctest::Approx(0.4 * 4.0 * 32.0 / 3.0 * std::numbers::pi));
     }
 
-    TEST_CASE("no corner of a hull that was replaced is farther out than `excess`, where a step of float is large") {
+    TEST_CASE(
+        "no corner of a hull that was replaced is farther out than `max_overshoot`, where a step of float is large") {
         RandomBodies random(6);
         for (int round = 0; round < 40; ++round) {
             const glm::dvec3 middle = (round % 2 != 0 ? 1e6 : 1e3) * random.direction();
             std::vector<glm::vec3> points;
             for (int i = 0; i < 100; ++i) points.emplace_back(middle + 2.0 * random.direction());
             const Hull all = Hull::build(points).value(), few = Hull::build(points, {.max_vertices = 20}).value();
-            CHECK(few.excess() > 0.0);
+            CHECK(few.max_overshoot() > 0.0);
             const Body body = Body::hull(all);
             for (const glm::vec3& v : few.vertices())
-                CHECK(closest_point({body, at({})}, glm::dvec3(v)).lower <= few.excess());
+                CHECK(closest_point({body, at({})}, glm::dvec3(v)).lower <= few.max_overshoot());
         }
     }
 }

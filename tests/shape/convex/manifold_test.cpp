@@ -88,7 +88,7 @@ TEST_SUITE("convex/manifold") {
         const RigidTransform ground = at({}), below = at({0, -1, 0});
         RigidTransform lying = at({0, 0.49, 0}), standing = at({0, 0.99, 0});
         lying.rotation = glm::mat3_cast(glm::angleAxis(1.57079632679489662, glm::dvec3(0, 0, 1)));
-        for (const Placed& bottom : {Placed{floor, ground}, Placed{slab, below}}) {
+        for (const BodyAtPose& bottom : {BodyAtPose{floor, ground}, BodyAtPose{slab, below}}) {
             Manifold m = contact_manifold(bottom, {capsule, lying});
             CHECK(m.count == 2);
             CHECK(m.depth == doctest::Approx(0.01));
@@ -114,7 +114,7 @@ TEST_SUITE("convex/manifold") {
                        b = i % 7 == 0 ? Body::cylinder(0.5f, 0.5f).value() : random.polytope(32);
             const CasePair where =
                 nearly_touching(random, a, b, -std::pow(10.0, random.number(-8, -0.5)) * (i % 3 - 0.5), 0.0);
-            const Placed pa{a, where.pose_a}, pb{b, where.pose_b};
+            const BodyAtPose pa{a, where.pose_a}, pb{b, where.pose_b};
             const Manifold m = contact_manifold(pa, pb, {.max_points = 8});
             CHECK((m.count > 0) == intersects(pa, pb));
             if (m.count == 0) continue;

@@ -70,8 +70,8 @@ TEST_SUITE("convex/mass") {
             // Four quarters of a cylinder along y and along z: the x of a quarter is u + s.
             const double quarter = kPi * r * r / 4 * u * u + 2 * u * r * r * r / 3 + kPi * r * r * r * r / 16;
             const double across = 4 * quarter * 2 * (v + w);
-            const double ball = 4.0 / 3.0 * kPi * r * r * r * (u * u + r * r / 5) + 8 * u * kPi * r * r * r * r / 8;
-            return box + caps + sides + along + across + ball;
+            const double sphere = 4.0 / 3.0 * kPi * r * r * r * (u * u + r * r / 5) + 8 * u * kPi * r * r * r * r / 8;
+            return box + caps + sides + along + across + sphere;
         };
         const double xx = squared(a, b, c), yy = squared(b, c, a), zz = squared(c, a, b);
         CHECK(mass.inertia[0][0] == doctest::Approx(yy + zz).epsilon(1e-13));
@@ -106,9 +106,9 @@ TEST_SUITE("convex/mass") {
         const auto rounded = [](const Body& core) {
             return mass_properties(Body::rounded(core, 0.5f).value()).value();
         };
-        const MassProperties ball = mass_properties(Body::ball(0.5f).value()).value();
-        check_near(rounded(Body::box({0, 0, 0}).value()), ball, 1e-14);
-        check_near(rounded(Body::triangle({0, 0, 0}, {0, 0, 0}, {0, 0, 0}).value()), ball, 1e-14);
+        const MassProperties sphere = mass_properties(Body::sphere(0.5f).value()).value();
+        check_near(rounded(Body::box({0, 0, 0}).value()), sphere, 1e-14);
+        check_near(rounded(Body::triangle({0, 0, 0}, {0, 0, 0}, {0, 0, 0}).value()), sphere, 1e-14);
         const MassProperties capsule = mass_properties(Body::capsule(2, 0.5f).value()).value();
         check_near(rounded(Body::box({0, 2, 0}).value()), capsule, 1e-14);
         check_near(rounded(Body::triangle({0, 2, 0}, {0, -2, 0}, {0, 1, 0}).value()), capsule, 1e-14);
@@ -147,7 +147,7 @@ TEST_SUITE("convex/mass") {
         check_near(rounded(Body::cylinder(2, 0).value()), mass_properties(Body::capsule(2, 0.5f).value()).value(),
                    1e-14);
         check_near(rounded(Body::cone(0, 1).value()), rounded(Body::cylinder(0, 1).value()), 1e-13);
-        // Steiner: the disc's two sides, half its rim, and a ball.
+        // Steiner: the disc's two sides, half its rim, and a sphere.
         CHECK(rounded(Body::cylinder(0, 1).value()).volume ==
               doctest::Approx(kPi + kPi * kPi * 0.25 + kPi / 6).epsilon(1e-14));
     }
@@ -159,9 +159,9 @@ TEST_SUITE("convex/mass") {
         const Compound pair =
             Compound::build(std::vector<CompoundChild>{{half, at({-0.5, 0, 0})}, {half, at({0.5, 0, 0})}}).value();
         check_near(mass_properties(Body::compound(pair)).value(), mass_properties(whole).value(), 1e-14);
-        const Compound outer =
-            Compound::build(std::vector<CompoundChild>{{Body::compound(pair), place}, {Body::ball(0).value(), at({})}})
-                .value();
+        const Compound outer = Compound::build(std::vector<CompoundChild>{{Body::compound(pair), place},
+                                                                          {Body::sphere(0).value(), at({})}})
+                                   .value();
         MassProperties expected = mass_properties(whole).value();
         expected.center = place.translation;
         expected.inertia = place.rotation * expected.inertia * glm::transpose(place.rotation);
@@ -176,7 +176,7 @@ TEST_SUITE("convex/mass") {
         const Body ground = Body::height_field(field);
         CHECK(error_of(mass_properties(ground)).code == ErrorCode::unsupported);
         const Compound both =
-            Compound::build(std::vector<CompoundChild>{{Body::ball(1).value(), at({})}, {ground, at({})}}).value();
+            Compound::build(std::vector<CompoundChild>{{Body::sphere(1).value(), at({})}, {ground, at({})}}).value();
         const Error error = error_of(mass_properties(Body::compound(both)));
         CHECK(error.code == ErrorCode::unsupported);
         CHECK(error.item == 1);

@@ -56,9 +56,9 @@ TEST_SUITE("convex/merged_manifolds") {
                     }
                 }
                 s.build();
-                const Body ball = Body::ball(1.0).value();
+                const Body sphere = Body::sphere(1.0).value();
                 Manifolds found;
-                contact_manifolds({s.body(), at({})}, {ball, at({0, 0.99, 0})}, {}, found);
+                contact_manifolds({s.body(), at({})}, {sphere, at({0, 0.99, 0})}, {}, found);
                 CHECK(found.all().size() == (degrees < 5.0 ? 1 : 2));
                 if (degrees < 5.0) continue;
                 const double between = glm::dot(found.all()[0].normal, found.all()[1].normal);
@@ -73,7 +73,7 @@ TEST_SUITE("convex/merged_manifolds") {
         for (int round = 0; round < 2000; ++round) {
             CAPTURE(round);
             const Surface s = tilted_triangles(random, 2 + random.index(8), round % 2 == 0 ? 12.0 : 30.0);
-            const Body surface = s.body(), body = round % 3 == 0   ? Body::ball(0.5).value()
+            const Body surface = s.body(), body = round % 3 == 0   ? Body::sphere(0.5).value()
                                                   : round % 3 == 1 ? Body::box({0.3f, 0.5f, 0.3f}).value()
                                                                    : Body::capsule(0.2f, 0.3f).value();
             const RigidTransform pose{random.rotation(), random.direction()};

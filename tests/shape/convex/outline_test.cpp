@@ -45,7 +45,7 @@ TEST_SUITE("convex/outline") {
     }
 
     TEST_CASE("ends of lines lie on the surface: within no body that is a little smaller, outside none") {
-        const std::vector<Body> bodies{Body::ball(1).value(),
+        const std::vector<Body> bodies{Body::sphere(1).value(),
                                        Body::capsule(1, 0.5f).value(),
                                        Body::cylinder(1, 0.5f).value(),
                                        Body::cone(1, 0.5f).value(),
@@ -54,7 +54,7 @@ TEST_SUITE("convex/outline") {
         RandomBodies random(2);
         for (const Body& body : bodies) {
             const RigidTransform pose{random.rotation(), 5.0 * random.direction()};
-            const Body point = Body::ball(0).value();
+            const Body point = Body::sphere(0).value();
             const std::vector<OutlineLine> lines = outline_lines(body, pose);
             CHECK(lines.size() >= 12);
             for (const OutlineLine& line : lines)

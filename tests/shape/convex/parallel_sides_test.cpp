@@ -135,7 +135,7 @@ TEST_SUITE("convex/parallel_sides") {
                             return SegmentInWorld{transform(pose, side.from), transform(pose, side.to)};
                         };
                         const SegmentInWorld line_a = placed(a, pose_a), line_b = placed(b, pose_b);
-                        const Placed pa{a.body, pose_a}, pb{b.body, pose_b};
+                        const BodyAtPose pa{a.body, pose_a}, pb{b.body, pose_b};
                         const Manifold m = contact_manifold(pa, pb, {.max_points = 8});
                         CAPTURE(i);
                         CAPTURE(degrees);

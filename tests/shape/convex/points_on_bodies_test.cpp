@@ -17,7 +17,7 @@ using namespace crofton::testing;
 namespace {
 
 // How far the ends of a contact point are from their bodies.
-double off_bodies(const Placed& a, const Placed& b, const Manifold& m, int i) {
+double off_bodies(const BodyAtPose& a, const BodyAtPose& b, const Manifold& m, int i) {
     const ContactPoint& p = m.points[i];
     const glm::dvec3 half = 0.5 * p.depth * m.normal;
     return std::max(closest_point(a, p.position + half).distance, closest_point(b, p.position - half).distance);
@@ -34,7 +34,7 @@ double off_feature(const Body& body, const RigidTransform& pose, const Feature& 
     return std::max(std::abs(std::abs(p[u]) - half[u]), std::abs(std::abs(p[v]) - half[v]));
 }
 
-void check_points(const Placed& a, const Placed& b, const Manifold& m, double tolerance) {
+void check_points(const BodyAtPose& a, const BodyAtPose& b, const Manifold& m, double tolerance) {
     CHECK(ids(m).size() == static_cast<std::size_t>(m.count));
     double deepest = -HUGE_VAL;
     for (int i = 0; i < m.count; ++i) {
@@ -78,7 +78,7 @@ Body round_or_flat(RandomBodies& random) {
     const float r = static_cast<float>(random.number(0.1, 0.7)), h = static_cast<float>(random.number(0.0, 1));
     switch (random.index(9)) {
         case 0:
-            return Body::ball(r).value();
+            return Body::sphere(r).value();
         case 1:
             return Body::capsule(h, r).value();
         case 2:
@@ -121,7 +121,7 @@ TEST_SUITE("convex/points_on_bodies") {
                                             : random.box();
                 const RigidTransform pose_a{random.rotation(), {}},
                     pose_b{random.rotation(), random.number(0.0, 1.8) * random.direction()};
-                const Placed pa{a, pose_a}, pb{b, pose_b};
+                const BodyAtPose pa{a, pose_a}, pb{b, pose_b};
                 const Manifold m = contact_manifold(pa, pb, {.max_points = 8}),
                                back = contact_manifold(pb, pa, {.margin = 0.1});
                 if (m.count > 0) check_points(pa, pb, m, tolerance);
@@ -160,7 +160,7 @@ TEST_SUITE("convex/points_on_bodies") {
             const Body a = thin_box(random, i % 4), b = round_or_flat(random);
             const RigidTransform pose_a{random.rotation(), {}},
                 pose_b{random.rotation(), random.number(0.0, 2.2) * random.direction()};
-            const Placed pa{a, pose_a}, pb{b, pose_b};
+            const BodyAtPose pa{a, pose_a}, pb{b, pose_b};
             const double margin = std::array{0.0, 0.1, 1.0}[static_cast<std::size_t>(i / 4 % 3)];
             const Manifold m = i % 2 == 0 ? contact_manifold(pa, pb, {.margin = margin, .max_points = 8})
                                           : contact_manifold(pb, pa, {.margin = margin});
@@ -178,7 +178,7 @@ TEST_SUITE("convex/points_on_bodies") {
         RigidTransform lying = at({0, 0, 0});
         lying.rotation = {{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}};
         const RigidTransform above = at({0.2, 0.24, 0});
-        for (const Placed& below : {Placed{slab, at({})}, Placed{capsule, lying}}) {
+        for (const BodyAtPose& below : {BodyAtPose{slab, at({})}, BodyAtPose{capsule, lying}}) {
             const Manifold m = contact_manifold(below, {needle, above});
             REQUIRE(m.count == 2);
             for (int i = 0; i < 2; ++i) {
@@ -202,14 +202,14 @@ TEST_SUITE("convex/points_on_bodies") {
                 i % 3 == 0 ? random.polytope(12, large) : Body::triangle(corners[0], corners[1], corners[2]).value();
             const Body small = i % 5 == 0 ? Body::rounded(random.box(0.1), 0.05f).value() : random.polytope(12, 0.2);
             const CasePair place = nearly_touching(random, big, small, -std::pow(10.0, random.number(-6, -1)), 0.0);
-            const Placed pa{big, place.pose_a}, pb{small, place.pose_b};
+            const BodyAtPose pa{big, place.pose_a}, pb{small, place.pose_b};
             for (const bool first : {true, false}) {
-                const Placed &a = first ? pa : pb, &b = first ? pb : pa;
+                const BodyAtPose &a = first ? pa : pb, &b = first ? pb : pa;
                 const Penetration p = penetration(a, b);
                 CHECK(p.overlapping == intersects(a, b));
                 if (!p.overlapping) continue;
-                const double size =
-                    a.body.reach() + b.body.reach() + glm::distance(a.pose.translation, b.pose.translation) + 0.1;
+                const double size = a.body.core_radius() + b.body.core_radius() +
+                                    glm::distance(a.pose.translation, b.pose.translation) + 0.1;
                 CHECK(closest_point(a, p.on_a).distance <= 1e-9 * size);
                 CHECK(closest_point(b, p.on_b).distance <= 1e-9 * size);
                 CHECK(glm::distance(p.on_a - p.on_b, p.depth * p.normal) <= 1e-12 * size);

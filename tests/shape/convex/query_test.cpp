@@ -34,7 +34,7 @@ Wrong count_wrong(std::uint64_t seed, int pairs, double gap, double offset) {
     for (int i = 0; i < pairs; ++i) {
         const Body a = random.polytope(20), b = random.polytope(20);
         const CasePair where = nearly_touching(random, a, b, gap * random.number(0.2, 1.0), offset);
-        const Placed pa{a, where.pose_a}, pb{b, where.pose_b};
+        const BodyAtPose pa{a, where.pose_a}, pb{b, where.pose_b};
         const bool answer = intersects(pa, pb);
         PairCache cache;
         RigidTransform earlier = where.pose_b;
@@ -62,12 +62,12 @@ Wrong count_wrong(std::uint64_t seed, int pairs, double gap, double offset) {
 }  // namespace
 
 TEST_SUITE("convex/query") {
-    TEST_CASE("the depth of two balls lies between its bounds, in rationals") {
+    TEST_CASE("the depth of two spheres lies between its bounds, in rationals") {
         RandomBodies random(31);
         int meeting = 0;
         for (int i = 0; i < 20'000; ++i) {
-            const Body a = Body::ball(random.number(0.0, 1.0)).value();
-            const Body b = Body::ball(std::exp2(random.number(-30.0, 0.0))).value();
+            const Body a = Body::sphere(random.number(0.0, 1.0)).value();
+            const Body b = Body::sphere(std::exp2(random.number(-30.0, 0.0))).value();
             const double between = (a.radius() + b.radius()) * (1.0 - std::exp2(random.number(-50.0, 0.0)));
             const Penetration p = penetration({a, at({0, 0, 0})}, {b, at({between, 0, 0})});
             if (p.depth <= 0.0) continue;
@@ -92,7 +92,7 @@ TEST_SUITE("convex/query") {
     }
 
     TEST_CASE("points, segments, discs and coincident bodies have answers") {
-        const Body point = Body::ball(0).value(), needle = Body::capsule(1, 0).value();
+        const Body point = Body::sphere(0).value(), needle = Body::capsule(1, 0).value();
         const Body disc = Body::cylinder(0, 1).value(), box = Body::box({1, 1, 1}).value();
         const Body flat = Body::box({1, 0, 1}).value(),
                    triangle = Body::triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}).value();
@@ -109,20 +109,20 @@ TEST_SUITE("convex/query") {
     }
 
     TEST_CASE("distances and depths known by hand, of every kind") {
-        const Body ball = Body::ball(0.5f).value(), capsule = Body::capsule(1, 0.25f).value();
+        const Body sphere = Body::sphere(0.5f).value(), capsule = Body::capsule(1, 0.25f).value();
         const Body cylinder = Body::cylinder(1, 2).value(), cone = Body::cone(1, 2).value();
         const Body box = Body::box({1, 2, 3}).value();
         const Body floor = Body::half_space({{0, -1, 0}, 0}).value();  // solid below y = 0
-        CHECK(distance({ball, at({})}, {ball, at({3, 0, 0})}).distance == doctest::Approx(2.0));
-        CHECK(distance({ball, at({0, 3, 0})}, {cylinder, at({})}).distance == doctest::Approx(1.5));
-        CHECK(distance({ball, at({0, -3, 0})}, {cone, at({})}).distance == doctest::Approx(1.5));
-        CHECK(distance({ball, at({0, 3, 0})}, {cone, at({})}).distance == doctest::Approx(1.5));
+        CHECK(distance({sphere, at({})}, {sphere, at({3, 0, 0})}).distance == doctest::Approx(2.0));
+        CHECK(distance({sphere, at({0, 3, 0})}, {cylinder, at({})}).distance == doctest::Approx(1.5));
+        CHECK(distance({sphere, at({0, -3, 0})}, {cone, at({})}).distance == doctest::Approx(1.5));
+        CHECK(distance({sphere, at({0, 3, 0})}, {cone, at({})}).distance == doctest::Approx(1.5));
         CHECK(distance({capsule, at({5, 0, 0})}, {box, at({})}).distance == doctest::Approx(3.75));
         CHECK(distance({box, at({0, 5, 0})}, {floor, at({})}).distance == doctest::Approx(3.0));
         CHECK(distance({floor, at({})}, {box, at({0, 5, 0})}).normal.y == doctest::Approx(1.0));
         CHECK(penetration({floor, at({})}, {box, at({0, 1.5, 0})}).depth == doctest::Approx(0.5));
         CHECK(penetration({floor, at({})}, {box, at({0, 1.5, 0})}).normal.y == doctest::Approx(1.0));
-        CHECK(penetration({ball, at({})}, {ball, at({0.75, 0, 0})}).depth == doctest::Approx(0.25));
+        CHECK(penetration({sphere, at({})}, {sphere, at({0.75, 0, 0})}).depth == doctest::Approx(0.25));
         CHECK(penetration({cylinder, at({})}, {cylinder, at({0, 1.75, 0})}).depth == doctest::Approx(0.25));
         CHECK(penetration({cylinder, at({})}, {cylinder, at({3.75, 0, 0})}).depth == doctest::Approx(0.25));
         const Body round = Body::rounded(box, 0.5f).value();
@@ -140,7 +140,7 @@ TEST_SUITE("convex/query") {
                                                   0x1.23b5b4a274a0ap-1, 0x1.11f41b2b7d1c8p-2, -0x1.8dda4a0336898p-1,
                                                   0x1.d2f60d05708a7p-2, 0x1.5e0d3f2958c0cp-1, 0x1.23b5b4a274a0ap-1),
                                        {0x1.8fc4ecdcda94p-6, 0x1.b971e4c614bp+3, 0x1.53bdd29f77cfcp+2}};
-        const Placed pa{a, pose_a}, pb{b, pose_b};
+        const BodyAtPose pa{a, pose_a}, pb{b, pose_b};
         const bool meet = intersects(pa, pb);
         CHECK(meet == oracle::meet_by_axes(oracle::exact_polytope(pa), oracle::exact_polytope(pb)));
         const Distance d = distance(pa, pb);
@@ -156,7 +156,7 @@ TEST_SUITE("convex/query") {
         for (int i = 0; i < 6000; ++i) {
             const Body box = random.box();
             const Body a = i % 2 == 0 ? Body::rounded(box, 0.3f).value() : box;
-            const Body b = i % 3 == 0 ? Body::ball(0.7f).value() : Body::capsule(0.5f, 0.2f).value();
+            const Body b = i % 3 == 0 ? Body::sphere(0.7f).value() : Body::capsule(0.5f, 0.2f).value();
             const double gap = std::pow(10.0, -random.number(12.0, 17.0)) * (i % 4 < 2 ? 1.0 : -1.0);
             const CasePair where = nearly_touching(random, a, b, gap, 0.0);
             const Penetration p = penetration({a, where.pose_a}, {b, where.pose_b});
@@ -245,7 +245,7 @@ TEST_SUITE("convex/query") {
             const Body a = random.polytope(12, size_a), b = random.polytope(12, size_b);
             const double gap = std::min(size_a, size_b) * std::pow(10.0, random.number(-9, -1)) * (i % 2 ? 1 : -1);
             const CasePair where = nearly_touching(random, a, b, gap, 0.0);
-            const Placed pa{a, where.pose_a}, pb{b, where.pose_b};
+            const BodyAtPose pa{a, where.pose_a}, pb{b, where.pose_b};
             const bool truth =
                 oracle::meet(oracle::exact_polytope(pa), oracle::exact_polytope(pb), {where.normal}, {}, {});
             CHECK(intersects(pa, pb) == truth);
@@ -257,10 +257,10 @@ TEST_SUITE("convex/query") {
         for (int i = 0; i < 400; ++i) {
             const Body a = random.polytope(32), b = random.polytope(32);
             const CasePair where = nearly_touching(random, a, b, std::pow(10.0, random.number(-11, 1)), 0.0);
-            const Placed pa{a, where.pose_a}, pb{b, where.pose_b};
+            const BodyAtPose pa{a, where.pose_a}, pb{b, where.pose_b};
             const Distance d = distance(pa, pb);
             const double size =
-                a.reach() + b.reach() + glm::length(where.pose_a.translation - where.pose_b.translation);
+                a.core_radius() + b.core_radius() + glm::length(where.pose_a.translation - where.pose_b.translation);
             if (d.distance == 0.0) continue;
             CHECK(d.upper - d.lower <= 1e-9 * size);
             CHECK(d.distance >= d.lower);
@@ -272,7 +272,7 @@ TEST_SUITE("convex/query") {
             const mpz_class gap = oracle::gap_along(ea, eb, n), lower = oracle::scaled(d.lower, 2 * oracle::kBits);
             CHECK(gap > 0);
             CHECK(gap * gap >= lower * lower * oracle::dot(n, n));
-            const Distance inside_a = distance({a, where.pose_a}, {Body::ball(0).value(), at(d.on_a)});
+            const Distance inside_a = distance({a, where.pose_a}, {Body::sphere(0).value(), at(d.on_a)});
             CHECK(inside_a.distance <= 1e-13 * size);
         }
     }
@@ -284,7 +284,7 @@ TEST_SUITE("convex/query") {
             const Body b = random.hull(4 + random.index(i % 4 == 0 ? 2 : 4));
             const double overlap = i % 3 == 0 ? 0.3 : std::pow(10.0, random.number(-8, -1));
             const CasePair where = nearly_touching(random, a, b, -overlap, i % 5 == 0 ? 1e5 : 0.0);
-            const Placed pa{a, where.pose_a}, pb{b, where.pose_b};
+            const BodyAtPose pa{a, where.pose_a}, pb{b, where.pose_b};
             const Penetration p = penetration(pa, pb);
             if (!p.overlapping) continue;
             const auto ea = oracle::exact_polytope(pa), eb = oracle::exact_polytope(pb);
@@ -292,7 +292,7 @@ TEST_SUITE("convex/query") {
             CHECK(mpq_class(p.lower) * mpq_class(p.lower) <= truth);
             CHECK(mpq_class(p.upper) * mpq_class(p.upper) >= truth);
             const double size =
-                a.reach() + b.reach() + glm::length(where.pose_a.translation - where.pose_b.translation);
+                a.core_radius() + b.core_radius() + glm::length(where.pose_a.translation - where.pose_b.translation);
             CHECK(p.upper - p.lower <= 1e-9 * size);
             CHECK(p.depth == doctest::Approx(std::sqrt(truth.get_d())).epsilon(1e-7));
         }
@@ -309,7 +309,7 @@ TEST_SUITE("convex/query") {
             if (!p.overlapping) continue;
             ++overlapping;
             const double size =
-                a.reach() + b.reach() + glm::length(where.pose_a.translation - where.pose_b.translation);
+                a.core_radius() + b.core_radius() + glm::length(where.pose_a.translation - where.pose_b.translation);
             CHECK(p.upper - p.lower <= 1e-9 * size);
             RigidTransform moved = where.pose_b;
             moved.translation += p.normal * (p.upper + 1e-14 * size);
@@ -327,8 +327,8 @@ TEST_SUITE("convex/query") {
             const Body b = i % 3 == 0 ? Body::cone(r, h).value() : i % 3 == 1 ? random.hull(20) : random.box();
             const CasePair where =
                 nearly_touching(random, a, b, std::pow(10.0, random.number(-6, -0.5)) * (i % 4 < 2 ? 1 : -1), 0.0);
-            const Placed pa{a, where.pose_a}, pb{b, where.pose_b};
-            const double size = a.reach() + b.reach() + glm::length(where.pose_b.translation);
+            const BodyAtPose pa{a, where.pose_a}, pb{b, where.pose_b};
+            const double size = a.core_radius() + b.core_radius() + glm::length(where.pose_b.translation);
             const Distance d = distance(pa, pb);
             widest_gap = std::max(widest_gap, (d.upper - d.lower) / size);
             const Penetration p = penetration(pa, pb);
@@ -387,7 +387,7 @@ TEST_SUITE("convex/query") {
                                  std::pow(10.0, random.number(-4, -1.3)) * random.direction()};
             const Penetration p = penetration({a, here}, {b, there});
             if (!p.overlapping) continue;
-            const double size = a.reach() + b.reach() + glm::length(there.translation);
+            const double size = a.core_radius() + b.core_radius() + glm::length(there.translation);
             there.translation += p.normal * (p.upper + 2e-7 * size);
             CHECK_FALSE(intersects({a, here}, {b, there}));
             ++asked;

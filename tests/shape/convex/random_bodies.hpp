@@ -29,7 +29,7 @@ class RandomBodies {
         const double angle = number(0.0, 6.2);
         return glm::mat3_cast(glm::dquat(std::cos(angle / 2), std::sin(angle / 2) * direction()));
     }
-    // Points of a ball, a box, a thin plate or a long rod, times `size`.
+    // Points of a sphere, a box, a thin plate or a long rod, times `size`.
     std::vector<glm::vec3> points(int count, double size = 1.0) {
         glm::dvec3 scale(size);
         const int form = index(4);

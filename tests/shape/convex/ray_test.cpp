@@ -69,7 +69,7 @@ Real distance_to_triangle(const Point& p, const Point& a, const Point& b, const 
 // is negative, and not always the distance there.
 Real core_gap(const Body& body, const Point& p) {
     const Point h = real(body.half_extents());
-    if (body.kind() == Kind::ball) return length(p);
+    if (body.kind() == Kind::sphere) return length(p);
     if (body.kind() == Kind::capsule) {
         const Real end = std::abs(body.vertex(0).y);
         return length(p - Point{0, std::clamp(p.y, -end, end), 0});
@@ -153,7 +153,7 @@ Body body_of_kind(RandomBodies& random, int kind, double size) {
     const double rounding = size * random.number(0.02, 0.5);
     switch (kind) {
         case 0:
-            return *Body::ball(size * random.number(0.1, 1.0));
+            return *Body::sphere(size * random.number(0.1, 1.0));
         case 1:
             return *Body::capsule(length(), length());
         case 2:
@@ -284,18 +284,18 @@ TEST_SUITE("convex/ray") {
         }
     }
     TEST_CASE("rays that are none hit nothing") {
-        const Body ball = *Body::ball(1.0);
+        const Body sphere = *Body::sphere(1.0);
         const double nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
         const glm::dvec3 x(1.0, 0.0, 0.0);
         for (const Ray& ray : {Ray{x, {0, 0, 0}}, Ray{x, {nan, 0, 0}}, Ray{{nan, 0, 0}, x}, Ray{{0, infinite, 0}, x},
                                Ray{x, {infinite, 0, 0}}, Ray{x, x, nan}, Ray{x, x, -1.0}})
-            CHECK(!raycast({ball, at({0, 0, 0})}, ray));
-        CHECK(!raycast({ball, at({nan, 0, 0})}, {{-5, 0, 0}, x}));
-        CHECK(!raycast({ball, {glm::dmat3(2.0), {0, 0, 0}}}, {{-5, 0, 0}, x}));
-        CHECK(raycast({ball, at({0, 0, 0})}, {{-5, 0, 0}, x}));
-        CHECK(raycast({ball, at({0, 0, 0})}, {{-5, 0, 0}, x, 4.0}));  // its end touches
-        CHECK(!raycast({ball, at({0, 0, 0})}, {{-5, 0, 0}, x, 3.999}));
-        CHECK(!raycast({ball, at({0, 0, 0})}, {{5, 0, 0}, x}));
+            CHECK(!raycast({sphere, at({0, 0, 0})}, ray));
+        CHECK(!raycast({sphere, at({nan, 0, 0})}, {{-5, 0, 0}, x}));
+        CHECK(!raycast({sphere, {glm::dmat3(2.0), {0, 0, 0}}}, {{-5, 0, 0}, x}));
+        CHECK(raycast({sphere, at({0, 0, 0})}, {{-5, 0, 0}, x}));
+        CHECK(raycast({sphere, at({0, 0, 0})}, {{-5, 0, 0}, x, 4.0}));  // its end touches
+        CHECK(!raycast({sphere, at({0, 0, 0})}, {{-5, 0, 0}, x, 3.999}));
+        CHECK(!raycast({sphere, at({0, 0, 0})}, {{5, 0, 0}, x}));
     }
     TEST_CASE("what lies on a box's surface has started inside, as intersects tells") {
         const Body box = *Body::box({1, 1, 1});

@@ -19,7 +19,7 @@ TEST_SUITE("convex/segment_manifold") {
                                  lying{glm::mat3_cast(glm::angleAxis(1.5707963267948966, glm::dvec3(0, 0, 1))),
                                        {shift, 1.4, 0.25}};
             for (const bool first : {true, false}) {
-                const Placed low{box, ground}, high{capsule, lying};
+                const BodyAtPose low{box, ground}, high{capsule, lying};
                 const Manifold m = first ? contact_manifold(low, high) : contact_manifold(high, low);
                 REQUIRE(m.count == 2);
                 CHECK(ids(m).size() == 2);
@@ -65,7 +65,7 @@ TEST_SUITE("convex/segment_manifold") {
             std::swap(corners[2], corners[random.index(3)]);
             const Body sliver = Body::triangle(corners[0], corners[1], corners[2]).value();
             const CasePair where = nearly_touching(random, box, sliver, -std::pow(10.0, random.number(-6, -1)), 0.0);
-            const Placed pa{box, where.pose_a}, pb{sliver, where.pose_b};
+            const BodyAtPose pa{box, where.pose_a}, pb{sliver, where.pose_b};
             const Manifold m = contact_manifold(pa, pb, {.max_points = 8});
             CAPTURE(i);
             for (int k = 0; k < m.count; ++k) {

@@ -11,7 +11,7 @@ using namespace crofton::testing;
 
 TEST_SUITE("convex/support_point") {
     TEST_CASE("support points do not depend on how long the direction is") {
-        const Body bodies[] = {Body::ball(0.5f).value(),
+        const Body bodies[] = {Body::sphere(0.5f).value(),
                                Body::capsule(1, 0.25f).value(),
                                Body::cylinder(1, 2).value(),
                                Body::cone(1, 2).value(),
@@ -31,7 +31,7 @@ TEST_SUITE("convex/support_point") {
     }
 
     TEST_CASE("a direction of length 0 gives a point of the body") {
-        CHECK(glm::length(support_point(Body::ball(0.5f).value(), {})) <= 0.5);
+        CHECK(glm::length(support_point(Body::sphere(0.5f).value(), {})) <= 0.5);
         CHECK(glm::distance(support_point(Body::capsule(1, 0.25f).value(), {}), {0, 1, 0}) <= 2.25);
     }
 }

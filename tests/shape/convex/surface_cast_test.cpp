@@ -69,11 +69,11 @@ TEST_SUITE("convex/surface_cast") {
     TEST_CASE("front sides alone: from behind a body passes, from the front it hits") {
         RandomBodies random(3);
         const Surface s = ground(random, 16, 0.5, [](double, double) { return 0.0; });
-        const Body front = s.body(Sides::front), ball = Body::ball(0.25f).value();
+        const Body front = s.body(Sides::front), sphere = Body::sphere(0.25f).value();
         const Motion up{{0, 4, 0}, {}, {}}, down{{0, -4, 0}, {}, {}};
-        CHECK(cast({ball, at({0.1, -2, 0})}, up, {front, at({})}, {}).value().result == CastResult::miss);
-        CHECK(cast({ball, at({0.1, -2, 0})}, up, {s.body(), at({})}, {}).value().result == CastResult::hit);
-        const Impact hit = cast({ball, at({0.1, 2, 0})}, down, {front, at({})}, {}).value();
+        CHECK(cast({sphere, at({0.1, -2, 0})}, up, {front, at({})}, {}).value().result == CastResult::miss);
+        CHECK(cast({sphere, at({0.1, -2, 0})}, up, {s.body(), at({})}, {}).value().result == CastResult::hit);
+        const Impact hit = cast({sphere, at({0.1, 2, 0})}, down, {front, at({})}, {}).value();
         CHECK(hit.result == CastResult::hit);
         CHECK(hit.time == doctest::Approx(1.75 / 4).epsilon(1e-5));
         CHECK(hit.normal.y == doctest::Approx(-1.0));
@@ -82,11 +82,11 @@ TEST_SUITE("convex/surface_cast") {
     TEST_CASE("bad motions are named errors also for surfaces") {
         RandomBodies random(4);
         const Surface s = soup(random, 3, 1.0, 1.0);
-        const Body body = s.body(), ball = Body::ball(1.0f).value();
-        const auto bad = cast({body, at({})}, {{NAN, 0, 0}, {}, {}}, {ball, at({})}, {});
+        const Body body = s.body(), sphere = Body::sphere(1.0f).value();
+        const auto bad = cast({body, at({})}, {{NAN, 0, 0}, {}, {}}, {sphere, at({})}, {});
         REQUIRE_FALSE(bad.has_value());
         CHECK(bad.error().code == ErrorCode::non_finite);
-        CHECK(cast({body, at({})}, {}, {ball, at({9, 0, 0})}, {}, {.duration = 0.0}).value().result ==
+        CHECK(cast({body, at({})}, {}, {sphere, at({9, 0, 0})}, {}, {.duration = 0.0}).value().result ==
               CastResult::miss);
     }
 }

@@ -83,7 +83,7 @@ TEST_SUITE("convex/surface_contact") {
         const Body bodies[] = {Body::box({0.5f, 0.5f, 0.5f}).value(),
                                Body::box({0.05f, 0.5f, 0.05f}).value(),
                                Body::box({3.0f, 0.5f, 2.0f}).value(),
-                               Body::ball(0.5f).value(),
+                               Body::sphere(0.5f).value(),
                                Body::capsule(0.2f, 0.3f).value(),
                                Body::cylinder(0.5f, 0.4f).value(),
                                Body::rounded(Body::box({0.3f, 0.4f, 0.3f}).value(), 0.1f).value()};
@@ -163,8 +163,8 @@ TEST_SUITE("convex/surface_contact") {
         const auto roof = ground(
             random, 16, 0.5, [](double x, double) { return x < 1e-3 ? x : -x; }, 0.0);
         Manifolds found;
-        const Body ball = Body::ball(0.25f).value(), box = Body::box({0.25f, 0.25f, 0.25f}).value();
-        contact_manifolds({roof.body(Sides::front), at({})}, {ball, at({0, 0.2, 0.1})}, {}, found);
+        const Body sphere = Body::sphere(0.25f).value(), box = Body::box({0.25f, 0.25f, 0.25f}).value();
+        contact_manifolds({roof.body(Sides::front), at({})}, {sphere, at({0, 0.2, 0.1})}, {}, found);
         REQUIRE(found.all().size() == 1);
         CHECK(found.all()[0].normal.y == doctest::Approx(1.0));  // between the two faces' normals
         CHECK(found.all()[0].depth == doctest::Approx(0.05));
@@ -172,7 +172,7 @@ TEST_SUITE("convex/surface_contact") {
         for (const Manifold& m : found.all()) CHECK(m.normal.y > 0.7);
         const auto valley = ground(
             random, 16, 0.5, [](double x, double) { return std::abs(x); }, 0.0);
-        contact_manifolds({valley.body(Sides::front), at({})}, {ball, at({0, 0.34, 0.1})}, {}, found);
+        contact_manifolds({valley.body(Sides::front), at({})}, {sphere, at({0, 0.34, 0.1})}, {}, found);
         REQUIRE(found.all().size() == 2);
         for (const Manifold& m : found.all()) {
             CHECK(m.normal.y == doctest::Approx(std::sqrt(0.5)));
@@ -183,9 +183,9 @@ TEST_SUITE("convex/surface_contact") {
     TEST_CASE("front sides alone: what has sunk in is pushed up, what is below is left alone, both sides push down") {
         RandomBodies random(5);
         const Surface s = ground(random, 16, 0.5, [](double, double) { return 0.0; });
-        const Body box = Body::box({0.5f, 0.5f, 0.5f}).value(), ball = Body::ball(0.5f).value();
+        const Body box = Body::box({0.5f, 0.5f, 0.5f}).value(), sphere = Body::sphere(0.5f).value();
         Manifolds found;
-        for (const Body& b : {box, ball}) {
+        for (const Body& b : {box, sphere}) {
             contact_manifolds({s.body(Sides::front), at({})}, {b, at({0.1, 0.1, 0.2})}, {}, found);
             REQUIRE_FALSE(found.all().empty());
             for (const Manifold& m : found.all()) CHECK(m.normal.y == doctest::Approx(1.0));

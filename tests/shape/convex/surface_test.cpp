@@ -11,7 +11,7 @@ using namespace crofton::testing;
 
 namespace {
 
-bool brute_meets(const Surface& s, const RigidTransform& pose, const Placed& b) {
+bool brute_meets(const Surface& s, const RigidTransform& pose, const BodyAtPose& b) {
     for (std::size_t i = 0; i < s.size(); ++i)
         if (intersects({s.triangle(i), pose}, b)) return true;
     return false;
@@ -92,7 +92,7 @@ TEST_SUITE("convex/surface") {
                     if (d.distance < least.distance) least = d;
                 }
                 const Distance d = distance({body, pose}, {b, pose_b});
-                const double size = 1e-9 * (body.reach() + b.reach() + 12.0);
+                const double size = 1e-9 * (body.core_radius() + b.core_radius() + 12.0);
                 CHECK(std::abs(d.distance - least.distance) <= 2.0 * size);
                 CHECK(d.lower <= least.upper);
                 CHECK(d.distance <= d.upper);

@@ -90,7 +90,7 @@ inline convex::Body any_body(RandomBodies& random, double size = 1.0) {
                 h = static_cast<float>(size * random.number(0.2, 1));
     switch (random.index(7)) {
         case 0:
-            return convex::Body::ball(r).value();
+            return convex::Body::sphere(r).value();
         case 1:
             return convex::Body::capsule(h, 0.5f * r).value();
         case 2:

@@ -16,7 +16,7 @@ using namespace crofton::testing;
 namespace {
 
 // Whether one body ends where the other begins, along the normal: told by all the queries alike.
-void check_agreement(const Placed& a, const Placed& b, int& meeting) {
+void check_agreement(const BodyAtPose& a, const BodyAtPose& b, int& meeting) {
     const bool meet = intersects(a, b);
     meeting += meet;
     CHECK(intersects(b, a) == meet);
@@ -57,8 +57,8 @@ struct Kinds {
         RandomBodies random(3);
         hull = std::make_unique<Hull>(Hull::build(random.points(14)).value());
         const Body of_points = Body::hull(*hull);
-        all = {Body::ball(.5).value(),
-               Body::ball(0.0).value(),
+        all = {Body::sphere(.5).value(),
+               Body::sphere(0.0).value(),
                Body::capsule(.6f, .3f).value(),
                Body::capsule(.6f, 0.0f).value(),
                box,
@@ -126,7 +126,7 @@ TEST_SUITE("convex/touch_agreement") {
                     const RigidTransform part{pose.rotation * children[0].pose.rotation,
                                               pose.rotation * children[0].pose.translation + pose.translation};
                     const RigidTransform there = touching_pose(random, kinds.all[i], part, kinds.all[j]);
-                    const Placed a{whole, pose}, b{kinds.all[j], there};
+                    const BodyAtPose a{whole, pose}, b{kinds.all[j], there};
                     const bool meet = intersects({kinds.all[i], part}, b);
                     CHECK(intersects(a, b) == meet);
                     CHECK(intersects(b, a) == meet);
@@ -152,13 +152,13 @@ TEST_SUITE("convex/touch_agreement") {
                     CAPTURE(i);
                     const RigidTransform pose{random.rotation(), 10.0 * random.direction()};
                     RigidTransform there{random.rotation(), pose.translation + 6.0 * random.direction()};
-                    const Placed a{mesh.body(), pose};
+                    const BodyAtPose a{mesh.body(), pose};
                     // Twice, as the nearest points move on a little.
                     for (int step = 0; step < 2; ++step) {
                         const Distance d = distance(a, {kinds.all[i], there});
                         there.translation -= d.distance * d.normal;
                     }
-                    const Placed b{kinds.all[i], there};
+                    const BodyAtPose b{kinds.all[i], there};
                     const bool meet = intersects(a, b);
                     CHECK(intersects(b, a) == meet);
                     CHECK((distance(a, b).distance == 0.0) == meet);

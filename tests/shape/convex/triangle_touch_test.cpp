@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Boxes, balls and capsules against one triangle of a surface, in closed form: against the certified bounds of
+// Boxes, spheres and capsules against one triangle of a surface, in closed form: against the certified bounds of
 // `penetration` and `distance`.
 #include <doctest/doctest.h>
 #include <optional>
@@ -40,7 +40,7 @@ Body round_or_box(RandomBodies& random) {
     const float r = static_cast<float>(random.number(0.05, 1)), h = static_cast<float>(random.number(0.0, 1));
     switch (random.index(5)) {
         case 0:
-            return Body::ball(r).value();
+            return Body::sphere(r).value();
         case 1:
             return Body::capsule(h, r).value();
         case 2:
@@ -51,7 +51,8 @@ Body round_or_box(RandomBodies& random) {
 }
 
 double size_of(const Body& a, const Body& b, const CasePair& place) {
-    return a.reach() + b.reach() + b.radius() + glm::length(place.pose_b.translation - place.pose_a.translation);
+    return a.core_radius() + b.core_radius() + b.radius() +
+           glm::length(place.pose_b.translation - place.pose_a.translation);
 }
 
 // Calls check(random, surface, triangle) for `count` random triangles: as a mesh's surface, and as a body. Returns how
@@ -75,7 +76,8 @@ int for_each_triangle(std::uint64_t seed, int count, const Check& check) {
 struct Brink {
     RigidTransform meet, apart;
 };
-std::optional<Brink> brink(const Placed& a, const Body& b, const RigidTransform& about, const glm::dvec3& direction) {
+std::optional<Brink> brink(const BodyAtPose& a, const Body& b, const RigidTransform& about,
+                           const glm::dvec3& direction) {
     const auto moved = [&](double t) { return RigidTransform{about.rotation, about.translation + t * direction}; };
     const auto meets = [&](double t) { return intersects(a, {b, moved(t)}); };
     if (!meets(-1e-9) || meets(1e-9)) return std::nullopt;

@@ -160,7 +160,7 @@ TEST_SUITE("convex/union_normals_of_edges") {
             const double down = random.number(1e-5, 0.02), in = random.number(1e-5, 0.02);
             const RigidTransform frame{i % 4 == 0 ? glm::dmat3(1.0) : random.rotation(),
                                        (i % 2 == 0 ? 0.0 : 100.0) * random.direction()};
-            const Body body = i % 5 == 0 ? Body::ball(0.25).value() : Body::box({0.25f, 0.25f, 0.25f}).value();
+            const Body body = i % 5 == 0 ? Body::sphere(0.25).value() : Body::box({0.25f, 0.25f, 0.25f}).value();
             const RigidTransform pose = placed_in(frame, at({face - 0.25 + in, 0.25 - down, random.number(-3.0, 3.0)}));
             contact_manifolds({Body::compound(compound), frame}, {body, pose}, {}, found);
             CHECK(found.all().size() == 2);

@@ -44,10 +44,10 @@ TEST_SUITE("convex/warm_manifold") {
                 pose.rotation = glm::mat3_cast(glm::angleAxis(1e-3 * std::sin(9 * t), glm::dvec3(0.6, 0, 0.8)));
                 const glm::dvec3 low = support_point(b, glm::transpose(pose.rotation) * glm::dvec3(0, -1, 0));
                 pose.translation.y = 0.5 - (pose.rotation * low).y - 1e-3 - 1e-4 * std::sin(20 * t);
-                const Placed pa{a, ground}, pb{b, pose};
+                const BodyAtPose pa{a, ground}, pb{b, pose};
                 const Manifold warm = contact_manifold(pa, pb, {.margin = 0.01}, &cache);
                 const Manifold cold = contact_manifold(pa, pb, {.margin = 0.01});
-                CHECK(std::abs(warm.depth - cold.depth) <= 1e-4 * (a.reach() + b.reach() + 1.0));
+                CHECK(std::abs(warm.depth - cold.depth) <= 1e-4 * (a.core_radius() + b.core_radius() + 1.0));
                 CHECK(glm::dot(warm.normal, cold.normal) == doctest::Approx(1.0).epsilon(1e-6));
                 if (frame > 0) ++frames, kept += ids(warm) == last;
                 last = ids(warm);
@@ -97,7 +97,7 @@ TEST_SUITE("convex/warm_manifold") {
                                               {-0x1.ff5718p-4f, -0x1.ff5718p-4f, 0x1.6aa8e8p+3f},
                                               {-0x1p-3f, -0x1p-3f, 0}};
         const Hull a = Hull::build(sliver).value(), b = Hull::build(wedge).value();
-        const Placed thin{Body::hull(a), at({0, -0x1.102a3ap-3, -0x1.ff5718p-4})};
+        const BodyAtPose thin{Body::hull(a), at({0, -0x1.102a3ap-3, -0x1.ff5718p-4})};
         const Body wide = Body::hull(b);
         const RigidTransform touching = at({-0x1.4cp+3, -0x1.0fd5c6p-3, 0}), past = at({-0x1.2cp+3, -0x1.0fd5c6p-3, 0});
         PairCache cache;
@@ -140,7 +140,8 @@ TEST_SUITE("convex/warm_manifold") {
             (void)contact_manifold({a, where.pose_a}, {b, where.pose_b}, {.margin = 0.02}, &kept);
             const Manifold warm = contact_manifold({a, where.pose_a}, {b, next}, {.margin = 0.02}, &kept);
             const Manifold cold = contact_manifold({a, where.pose_a}, {b, next}, {.margin = 0.02});
-            const double size = a.reach() + b.reach() + glm::length(next.translation - where.pose_a.translation);
+            const double size =
+                a.core_radius() + b.core_radius() + glm::length(next.translation - where.pose_a.translation);
             CHECK((warm.count > 0) == (cold.count > 0));
             CHECK(std::abs(warm.depth - cold.depth) <= 1.5e-4 * size);
         }
@@ -151,7 +152,7 @@ TEST_SUITE("convex/warm_manifold") {
         for (int i = 0; i < 50; ++i) {
             const Body a = random.hull(32), b = i % 2 == 0 ? random.box() : random.hull(32);
             const CasePair where = nearly_touching(random, a, b, 0.02 * (i % 3 - 1.5), 0.0);
-            const Placed pa{a, where.pose_a}, pb{b, where.pose_b};
+            const BodyAtPose pa{a, where.pose_a}, pb{b, where.pose_b};
             PairCache cache;
             (void)contact_manifold(pa, pb, {.margin = 0.1}, &cache);
             const CountingMemory memory;

@@ -21,7 +21,7 @@ std::vector<std::byte> plain(const Vector<std::byte>& bytes) {
     return {bytes.begin(), bytes.end()};
 }
 
-// A box of which one side glows, with a ball that is half sunk into the floor.
+// A box of which one side glows, with a sphere that is half sunk into the floor.
 struct Job {
     Patches patches;
     SolverOptions options;
@@ -99,9 +99,9 @@ TEST_SUITE("radiosity/bake") {
         CHECK(plain(parallel.state().value()) == expected);
         // Stopped in run 20, amid the third chain: two chains are kept.
         double planned = static_cast<double>(job.runs);
-        const auto go_on = [](void* user, double share) { return share * *static_cast<double*>(user) < 18.5; };
+        const auto should_stop = [](void* user, double share) { return share * *static_cast<double*>(user) >= 18.5; };
         Bake stopped = job.start();
-        REQUIRE(stopped.run({.go_on = go_on, .user = &planned}).has_value());
+        REQUIRE(stopped.run({.should_stop = should_stop, .user = &planned}).has_value());
         CHECK(stopped.runs_done() == 16);
         Bake again = job.start();
         REQUIRE(again.add_state(stopped.state().value()).has_value());

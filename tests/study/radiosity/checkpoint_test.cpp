@@ -66,11 +66,12 @@ TEST_SUITE("radiosity/checkpoint") {
                 struct Asked {
                     int *times, allowed;
                 } state{&asked, allowed};
-                const auto go_on = [](void* user) {
+                const auto should_stop = [](void* user, double) {
                     Asked& it = *static_cast<Asked*>(user);
-                    return (*it.times)++ < it.allowed;
+                    return (*it.times)++ >= it.allowed;
                 };
-                done = stopped->run(go_on, &state, allowed % 2 ? static_cast<Executor&>(pool) : serial_executor());
+                done =
+                    stopped->run(should_stop, &state, allowed % 2 ? static_cast<Executor&>(pool) : serial_executor());
                 if (done) break;
                 ++dropped;
                 CHECK(stopped->checkpoint() == before);

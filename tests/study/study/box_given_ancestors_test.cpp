@@ -49,8 +49,8 @@ double measure_of(const std::vector<study::ConvexBody>& ancestors, const Obb& bo
 TEST_SUITE("study/box_given_ancestors") {
     TEST_CASE("no points, a single one, bad options and objects that stick out are refused") {
         const auto points = random_points(1, 10, glm::dvec3(1.0));
-        const std::vector<study::ConvexBody> far = {study::ConvexBody::ball(glm::dvec3(0.0), 1.0)},
-                                             huge = {study::ConvexBody::ball(glm::dvec3(0.0), 100.0)};
+        const std::vector<study::ConvexBody> far = {study::ConvexBody::sphere(glm::dvec3(0.0), 1.0)},
+                                             huge = {study::ConvexBody::sphere(glm::dvec3(0.0), 100.0)};
         CHECK(study::box_given_ancestors({}, huge).error().code == ErrorCode::empty);
         CHECK(study::box_given_ancestors(points, {}).error().code == ErrorCode::empty);
         CHECK(study::box_given_ancestors(points, far).error().code == ErrorCode::invalid_argument);
@@ -65,7 +65,7 @@ TEST_SUITE("study/box_given_ancestors") {
     TEST_CASE("ancestors that say nothing leave the box of least edge sum, which another proof gives") {
         for (std::uint64_t seed = 0; seed < 3; ++seed) {
             const auto points = random_points(seed, 14, {1.0, 0.6, 0.3});
-            const std::vector<study::ConvexBody> huge = {study::ConvexBody::ball(glm::dvec3(0.0), 100.0)};
+            const std::vector<study::ConvexBody> huge = {study::ConvexBody::sphere(glm::dvec3(0.0), 100.0)};
             const auto found = study::box_given_ancestors(points, huge, {.tolerance = 2e-2, .max_cells = 20'000});
             REQUIRE(found.has_value());
             const auto exact =

@@ -66,12 +66,12 @@ TEST_SUITE("study/k_dop") {
     }
 
     TEST_CASE(
-        "around a ball of many points: box, truncated shapes, each in the next, V from the closed form of a 14-DOP") {
-        std::vector<glm::dvec3> ball;
+        "around a sphere of many points: box, truncated shapes, each in the next, V from the closed form of a 14-DOP") {
+        std::vector<glm::dvec3> sphere;
         for (int i = 0; i < 20000; ++i)
-            ball.push_back(sampling::direction({(i + 0.5) / 20000, std::fmod(i * 0.6180339887498949, 1.0)}));
+            sphere.push_back(sampling::direction({(i + 0.5) / 20000, std::fmod(i * 0.6180339887498949, 1.0)}));
         const auto volume = [&](std::uint32_t k) {
-            const auto dop = study::k_dop_around(ball, *study::k_dop_directions(k));
+            const auto dop = study::k_dop_around(sphere, *study::k_dop_directions(k));
             REQUIRE(dop.has_value());
             return measure::intrinsic_volumes_of_hull(dop->corners)->volume;
         };

@@ -57,7 +57,7 @@ TEST_SUITE("study/other_lines") {
     }
 
     TEST_CASE(
-        "bundles of parallelograms: one line in each cell, all in the ball, pi R squared over the cell's area of "
+        "bundles of parallelograms: one line in each cell, all in the sphere, pi R squared over the cell's area of "
         "them") {
         sampling::Random random(6);
         Vector<Line> lines;

@@ -36,14 +36,14 @@ void check(const Result<Enclosure>& measured, double expected) {
 TEST_SUITE("study/spatial_lines") {
     TEST_CASE("no body, a body without points, NaN and negative radii are named") {
         CHECK(error_of(measure_of_planes_hitting_all({})).code == ErrorCode::empty);
-        std::vector<ConvexBody> bodies = {ConvexBody::ball(glm::dvec3(0.0), 1.0), {}};
+        std::vector<ConvexBody> bodies = {ConvexBody::sphere(glm::dvec3(0.0), 1.0), {}};
         CHECK(error_of(measure_of_lines_hitting_all(bodies)).item == 1);
-        bodies[1] = ConvexBody::ball(glm::dvec3(0.0, std::nan(""), 0.0), 1.0);
+        bodies[1] = ConvexBody::sphere(glm::dvec3(0.0, std::nan(""), 0.0), 1.0);
         CHECK(error_of(measure_of_lines_hitting_all(bodies)).code == ErrorCode::non_finite);
-        bodies[1] = ConvexBody::ball(glm::dvec3(0.0), -1.0);
+        bodies[1] = ConvexBody::sphere(glm::dvec3(0.0), -1.0);
         CHECK(error_of(measure_of_planes_hitting_all(bodies)).item == 1);
         for (const double far : {1e31, 1e200, 1.7e308}) {
-            bodies[1] = ConvexBody::ball(glm::dvec3(0.0), far);
+            bodies[1] = ConvexBody::sphere(glm::dvec3(0.0), far);
             CHECK(error_of(measure_of_lines_hitting_all(bodies)).item == 1);
             bodies[1] = box(glm::dvec3(-far), glm::dvec3(far));
             CHECK(error_of(measure_of_lines_hitting_all(bodies)).code == ErrorCode::out_of_range);
@@ -68,7 +68,7 @@ TEST_SUITE("study/spatial_lines") {
     }
 
     TEST_CASE("points and parallel segments: nothing hits them but what hits all") {
-        const std::vector<ConvexBody> point = {ConvexBody::ball(glm::dvec3(1.0, 2.0, 3.0), 0.0)};
+        const std::vector<ConvexBody> point = {ConvexBody::sphere(glm::dvec3(1.0, 2.0, 3.0), 0.0)};
         CHECK(std::abs(measure_of_planes_hitting_all(point)->value) < 1e-12);
         CHECK(measure_of_lines_hitting_all(point)->value == 0.0);
         const std::vector<ConvexBody> segment = {{{glm::dvec3(0.0), glm::dvec3(0.0, 3.0, 4.0)}, 0.0}};
@@ -85,7 +85,7 @@ TEST_SUITE("study/spatial_lines") {
     }
 
     TEST_CASE("planes that hit one body have measure M, to the error promised") {
-        check(cauchy_mean_curvature(ConvexBody::ball(glm::dvec3(3.0, -1.0, 2.0), 1.5)),
+        check(cauchy_mean_curvature(ConvexBody::sphere(glm::dvec3(3.0, -1.0, 2.0), 1.5)),
               intrinsic_volumes_of_sphere(1.5).mean_curvature);
         const auto m = cauchy_mean_curvature(box(glm::dvec3(0.0), glm::dvec3(1.0, 2.0, 3.0)));
         check(m, 6.0 * pi);
@@ -103,7 +103,7 @@ TEST_SUITE("study/spatial_lines") {
               doctest::Approx(22.0).epsilon(2e-3));
         CHECK(cauchy_area(box(glm::dvec3(-0.5), glm::dvec3(0.5, 0.5, -0.5)))->value ==
               doctest::Approx(2.0).epsilon(5e-3));
-        check(cauchy_area(ConvexBody::ball(glm::dvec3(9.0), 2.0), {.tolerance = 3e-2}), 16.0 * pi);
+        check(cauchy_area(ConvexBody::sphere(glm::dvec3(9.0), 2.0), {.tolerance = 3e-2}), 16.0 * pi);
         Camera camera;
         camera.near_distance = 1.0, camera.far_distance = 5.0;
         const auto f = cauchy_area(*ConvexBody::frustum(camera));
@@ -117,7 +117,7 @@ TEST_SUITE("study/spatial_lines") {
                                              box(glm::dvec3(2.0, 0.0, 0.0), glm::dvec3(5.0, 1.0, 2.0))};
         check(measure_of_planes_hitting_all(two), pi * (6.0 + 6.0 - 8.0));
         const std::vector<ConvexBody> nested = {box(glm::dvec3(0.0), glm::dvec3(1.0)),
-                                                ConvexBody::ball(glm::dvec3(0.5), 3.0)};
+                                                ConvexBody::sphere(glm::dvec3(0.5), 3.0)};
         check(measure_of_planes_hitting_all(nested), 3.0 * pi);
     }
 
@@ -147,7 +147,7 @@ TEST_SUITE("study/spatial_lines") {
             turned.center = glm::dvec3(random.uniform(-1.0, 1.0), 0.3, 0.0);
             const IntrinsicVolumes k = intrinsic_volumes_of_box(turned);
             const std::vector<ConvexBody> bodies = {ConvexBody::box(turned),
-                                                    ConvexBody::ball(glm::dvec3(turned.center), 2.0)};
+                                                    ConvexBody::sphere(glm::dvec3(turned.center), 2.0)};
             for (const std::uint64_t cells : {4u, 16u, 100u, 1000u}) {
                 const QuadratureOptions options{.tolerance = 0.0, .max_cells = cells};
                 check(measure_of_planes_hitting_all(bodies, options), k.mean_curvature);

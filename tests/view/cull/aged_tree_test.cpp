@@ -49,7 +49,7 @@ void check_view(const AgedTree& aged, const cull::View& view, CullMode mode, Exe
     const auto inside = test::ranges::count(verdicts, Verdict::inside);
     REQUIRE(visible.inside_count() == static_cast<std::size_t>(inside));
     const std::vector<cull::View> views{view, {view.frustum, ~view.layer_mask}};
-    cull::ManyVisible many;
+    cull::MaskedVisibleSet many;
     (void)cull::find_visible(aged.tree, views, many, mode);
     sorted.clear();
     for (std::size_t i = 0; i < many.size(); ++i)
@@ -64,22 +64,22 @@ void check_statistics(const AgedTree& aged, const cull::View& view, CullMode mod
     cull::VisibleSet visible;
     cull::find_visible(aged.tree, view, visible, {mode});
     const cull::Statistics& counted = visible.statistics();
-    std::size_t in_tree = 0, inside = 0, improper = 0, straddling = 0;
+    std::size_t in_tree = 0, inside = 0, false_positives = 0, straddling = 0;
     for (std::size_t i = 0; i < aged.boxes.size(); ++i) {
         if (!aged.holds(i)) continue;
         ++in_tree;
         const Verdict verdict = cull::classify(view.frustum, aged.boxes[i], mode);
         inside += verdict == Verdict::inside;
         straddling += verdict == Verdict::straddling;
-        improper += verdict == Verdict::outside &&
-                    cull::classify(view.frustum, aged.boxes[i], CullMode::conservative) != Verdict::outside;
+        false_positives += verdict == Verdict::outside &&
+                           cull::classify(view.frustum, aged.boxes[i], CullMode::conservative) != Verdict::outside;
     }
     CHECK(counted.straddling == straddling);
-    CHECK(counted.improper == improper);
+    CHECK(counted.false_positives == false_positives);
     CHECK(counted.accepted_whole <= inside);
     // Every item is accepted as a whole, tested, or below a bound that was rejected.
     CHECK(counted.accepted_whole + counted.boxes_tested <= in_tree);
-    CHECK(counted.accepted_whole + counted.boxes_tested >= inside + straddling + improper);
+    CHECK(counted.accepted_whole + counted.boxes_tested >= inside + straddling + false_positives);
     CHECK(counted.exact_tests <= counted.boxes_tested);
     // Whoever tests a box has tested the bound of its leaf.
     CHECK(counted.nodes_tested * boxtree::kWidth >= counted.boxes_tested + counted.accepted_whole);

@@ -55,7 +55,7 @@ TEST_SUITE("cull/bound_set") {
                    std::abs(double(record.center[2]));
         };
         cull::AabbSet aligned;
-        cull::SphereSet balls;
+        cull::SphereSet round;
         for (int trial = 0; trial < 2000; ++trial) {
             std::vector<Aabb> boxes;
             std::vector<Sphere> spheres;
@@ -65,10 +65,10 @@ TEST_SUITE("cull/bound_set") {
                 spheres.push_back({center, 0.25});
             }
             aligned.assign(boxes);
-            balls.assign(spheres);
+            round.assign(spheres);
             for (std::size_t i = 0; i < 3; ++i) {
                 REQUIRE(reach_of(aligned.records()[i]) <= double(aligned.chunks()[0].l1_radius));
-                REQUIRE(reach_of(balls.records()[i]) <= double(balls.chunks()[0].l1_radius));
+                REQUIRE(reach_of(round.records()[i]) <= double(round.chunks()[0].l1_radius));
             }
         }
     }
@@ -108,7 +108,8 @@ TEST_SUITE("cull/bound_set") {
     }
 
     TEST_CASE(
-        "axis-aligned boxes and balls get classify's verdicts, at every offset and in every mode, after updates too") {
+        "axis-aligned boxes and spheres get classify's verdicts, at every offset and in every mode, after updates "
+        "too") {
         for (const double offset : {0.0, 1e5, 1e7})
             for (const std::size_t count : {1u, 65u, 5000u}) {
                 oracle::NearMisses random(6, offset);
@@ -341,7 +342,7 @@ TEST_SUITE("cull/bound_set") {
         set.assign(crowd.boxes);
         oracle::NearMisses random(15);
         cull::VerdictBits bits;
-        std::size_t improper = 0;
+        std::size_t false_positives = 0;
         for (int trial = 0; trial < 10; ++trial) {
             const cull::View view{*frustum_of(random.camera())};
             cull::find_visible(set, crowd.boxes, view, bits);
@@ -352,12 +353,12 @@ TEST_SUITE("cull/bound_set") {
                     cull::classify(view.frustum, crowd.boxes[i], cull::CullMode::conservative) != Verdict::outside;
                 straddling += bits.verdict(i) == Verdict::straddling;
             }
-            CHECK(bits.statistics.improper == expected);
+            CHECK(bits.statistics.false_positives == expected);
             CHECK(bits.statistics.straddling == straddling);
             CHECK(bits.statistics.boxes_tested == 20000);
-            improper += expected;
+            false_positives += expected;
         }
-        CHECK(improper > 10);
+        CHECK(false_positives > 10);
         const std::vector<cull::View> views{{*frustum_of(random.camera())}, {*frustum_of(random.camera())}};
         std::vector<std::uint32_t> masks(crowd.boxes.size());
         std::vector<cull::Statistics> statistics(2);
@@ -365,13 +366,13 @@ TEST_SUITE("cull/bound_set") {
         (void)cull::find_visible(set, crowd.boxes, {}, views, masks, cull::CullMode::exact, two, statistics);
         for (std::size_t v = 0; v < 2; ++v) {
             cull::find_visible(set, crowd.boxes, views[v], bits);
-            CHECK(statistics[v].improper == bits.statistics.improper);
+            CHECK(statistics[v].false_positives == bits.statistics.false_positives);
             CHECK(statistics[v].straddling == bits.statistics.straddling);
             CHECK(statistics[v].boxes_tested == bits.statistics.boxes_tested);
         }
     }
 
-    TEST_CASE("lists of balls and boxes have classify's verdicts at every size from 1e-30 to 1e29") {
+    TEST_CASE("lists of spheres and boxes have classify's verdicts at every size from 1e-30 to 1e29") {
         oracle::NearMisses random(41, 0.0);
         cull::VerdictBits bits;
         std::size_t outside = 0, inside = 0, straddling = 0;
@@ -407,21 +408,21 @@ TEST_SUITE("cull/bound_set") {
                 camera.far_distance = 20.0 * s;
                 const auto frustum = frustum_of(camera);
                 REQUIRE(frustum.has_value());
-                std::vector<Sphere> balls;
+                std::vector<Sphere> spheres;
                 std::vector<Aabb> aligned;
                 std::vector<Obb> boxes;
                 for (int i = 0; i < 120; ++i) {
                     // Around an edge of the view: touched, nearly touched, clear of it, also far out.
                     const double x = random.number(0.5, 2.5), y = i % 3 ? x : random.number(-1.0, 1.0);
                     const glm::dvec3 center(x * s, y * s, (i % 5 ? random.number(-2.0, 2.0) : 0.0) * s);
-                    balls.push_back({center, s * (i % 2 ? std::fabs(x - 1.0) * random.number(0.9, 1.5) : 0.3)});
+                    spheres.push_back({center, s * (i % 2 ? std::fabs(x - 1.0) * random.number(0.9, 1.5) : 0.3)});
                     aligned.push_back({center - 0.4 * s, center + 0.4 * s});
                     Obb box;
                     box.center = center;
                     box.half_extents = glm::vec3(static_cast<float>(0.4 * s));
                     if (exponent <= 17) boxes.push_back(box);
                 }
-                check(balls, {*frustum});
+                check(spheres, {*frustum});
                 check(aligned, {*frustum});
                 check(boxes, {*frustum});
             }

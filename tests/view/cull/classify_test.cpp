@@ -111,7 +111,7 @@ TEST_SUITE("cull/classify") {
     TEST_CASE("agrees with the exact oracle on boxes that nearly touch") {
         for (const double offset : {0.0, 1e4, 1e7}) {
             oracle::NearMisses cases(1, offset);
-            int outside = 0, improper = 0, inside = 0;
+            int outside = 0, false_positives = 0, inside = 0;
             for (int trial = 0; trial < 400; ++trial) {
                 const Frustum frustum = *frustum_of(cases.camera());
                 const Obb box = cases.box(frustum);
@@ -120,11 +120,11 @@ TEST_SUITE("cull/classify") {
                 const bool rejected = oracle::is_rejected_by_a_plane(frustum, box);
                 CHECK((cull::classify(frustum, box, CullMode::conservative) == Verdict::outside) == rejected);
                 outside += expected == Verdict::outside;
-                improper += expected == Verdict::outside && !rejected;
+                false_positives += expected == Verdict::outside && !rejected;
                 inside += expected == Verdict::inside;
             }
             CHECK(outside > 40);
-            CHECK(improper > 10);
+            CHECK(false_positives > 10);
             CHECK(inside + outside < 380);
         }
     }
@@ -160,7 +160,7 @@ TEST_SUITE("cull/classify") {
         }
     }
 
-    TEST_CASE("axis-aligned boxes and balls that are not valid are straddling, and cull nothing") {
+    TEST_CASE("axis-aligned boxes and spheres that are not valid are straddling, and cull nothing") {
         const Frustum frustum = unit_cube();
         for (const CullMode mode : {CullMode::conservative, CullMode::exact}) {
             CHECK(cull::classify(frustum, Aabb{}, mode) == Verdict::straddling);
@@ -178,7 +178,7 @@ TEST_SUITE("cull/classify") {
         CHECK(cull::classify(broken, Aabb{{50.0, 0.0, 0.0}, {51.0, 1.0, 1.0}}) == Verdict::straddling);
     }
 
-    TEST_CASE("balls that touch a plane, an edge or a corner are never culled, one step away they are") {
+    TEST_CASE("spheres that touch a plane, an edge or a corner are never culled, one step away they are") {
         const Frustum frustum = unit_cube();
         const double next = std::nextafter(2.0, 1.0);
         CHECK(cull::classify(frustum, Sphere{{3.0, 0.0, 0.0}, 2.0}) == Verdict::straddling);
@@ -198,10 +198,10 @@ TEST_SUITE("cull/classify") {
         CHECK(cull::classify(frustum, Sphere{{0.0, 0.0, 0.0}, 1e30}) == Verdict::straddling);
     }
 
-    TEST_CASE("agrees with the exact oracles on axis-aligned boxes and balls that nearly touch") {
+    TEST_CASE("agrees with the exact oracles on axis-aligned boxes and spheres that nearly touch") {
         for (const double offset : {0.0, 1e4, 1e7}) {
             oracle::NearMisses cases(5, offset);
-            int improper = 0, outside = 0;
+            int false_positives = 0, outside = 0;
             for (int trial = 0; trial < 250; ++trial) {
                 Frustum frustum = *frustum_of(cases.camera());
                 const Aabb box = oracle::near_aabb(cases, frustum);
@@ -213,13 +213,13 @@ TEST_SUITE("cull/classify") {
                     CHECK(cull::classify(frustum, bound) == expected);
                     CHECK((cull::classify(frustum, bound, CullMode::conservative) == Verdict::outside) == rejected);
                     outside += expected == Verdict::outside;
-                    improper += expected == Verdict::outside && !rejected;
+                    false_positives += expected == Verdict::outside && !rejected;
                 };
                 agrees(box);
                 agrees(sphere);
             }
             CHECK(outside > 50);
-            CHECK(improper > 10);
+            CHECK(false_positives > 10);
         }
     }
 }

@@ -20,20 +20,20 @@ using crofton::testing::LimitedCrowd;
 using crofton::testing::oracle_keeps;
 
 TEST_SUITE("cull/draw_limits") {
-    TEST_CASE("limits of a picture: a ball at the limit has a diameter of as many pixels") {
+    TEST_CASE("limits of a picture: a sphere at the limit has a diameter of as many pixels") {
         Camera camera;
         camera.position = {1.0, 2.0, 3.0};
         camera.fov_y = 1.0;
         const cull::DrawLimits limits = *cull::limits_of(camera, 1080.0, 4.0);
         CHECK(limits.eye == camera.position);
-        // The outline of a ball of radius 1 at distance d has half the angle asin(1 / d).
-        const double pixels = 1080.0 * std::tan(std::asin(1.0 / limits.radii)) / std::tan(0.5);
+        // The outline of a sphere of radius 1 at distance d has half the angle asin(1 / d).
+        const double pixels = 1080.0 * std::tan(std::asin(1.0 / limits.max_distance_in_radii)) / std::tan(0.5);
         CHECK(std::abs(pixels - 4.0) < 1e-9);
         camera.projection = Projection::orthographic;
         camera.height = 20.0;
         const cull::DrawLimits flat = *cull::limits_of(camera, 1000.0, 4.0);
         CHECK(flat.least_radius == doctest::Approx(0.04));  // 4 pixels of 0.02 are the diameter
-        CHECK(!(flat.radii < cull::DrawLimits::kNone));
+        CHECK(!(flat.max_distance_in_radii < cull::DrawLimits::kNone));
         CHECK(!cull::limits_of(camera, 0.0, 4.0).has_value());
         CHECK(!cull::limits_of(camera, 1000.0, std::nan("")).has_value());
         camera.aspect = -1.0;
@@ -45,35 +45,38 @@ TEST_SUITE("cull/draw_limits") {
         Obb unknown = box;
         unknown.center.y = std::nan("");
         const float distances[1] = {std::nanf("")};
-        CHECK(cull::is_worth_drawing({.radii = 0.0}, unknown, 0));
-        CHECK(cull::is_worth_drawing({.eye = {std::nan(""), 0.0, 0.0}, .radii = 0.0}, box, 0));
-        CHECK(cull::is_worth_drawing({.radii = std::nan("")}, box, 0));
+        CHECK(cull::is_worth_drawing({.max_distance_in_radii = 0.0}, unknown, 0));
+        CHECK(cull::is_worth_drawing({.eye = {std::nan(""), 0.0, 0.0}, .max_distance_in_radii = 0.0}, box, 0));
+        CHECK(cull::is_worth_drawing({.max_distance_in_radii = std::nan("")}, box, 0));
         CHECK(cull::is_worth_drawing({.least_radius = std::nan("")}, box, 0));
         CHECK(cull::is_worth_drawing({.item_distances = distances}, box, 0));
         constexpr double kInfinity = std::numeric_limits<double>::infinity();
         const float none[1] = {-std::numeric_limits<float>::infinity()};
-        CHECK(cull::is_worth_drawing({.radii = -kInfinity}, box, 0));
-        CHECK(cull::is_worth_drawing({.radii = -1e31}, box, 0));
+        CHECK(cull::is_worth_drawing({.max_distance_in_radii = -kInfinity}, box, 0));
+        CHECK(cull::is_worth_drawing({.max_distance_in_radii = -1e31}, box, 0));
         CHECK(cull::is_worth_drawing({.item_distances = none}, box, 0));
         CHECK(cull::is_worth_drawing({.layer_distances = std::vector<float>(32, none[0])}, box, 0));
         CHECK(cull::is_worth_drawing({.least_radius = 1.5}, box, 0));
         CHECK(!cull::is_worth_drawing({.least_radius = 1.75}, box, 0));
-        CHECK(!cull::is_worth_drawing({.radii = -1.0}, box, 0));
-        CHECK(cull::is_worth_drawing({.radii = 1e29}, box, 0));
-        CHECK(!cull::is_worth_drawing({.radii = 5.0, .longer = std::numeric_limits<double>::infinity()}, box, 0));
+        CHECK(!cull::is_worth_drawing({.max_distance_in_radii = -1.0}, box, 0));
+        CHECK(cull::is_worth_drawing({.max_distance_in_radii = 1e29}, box, 0));
+        CHECK(!cull::is_worth_drawing(
+            {.max_distance_in_radii = 5.0, .hysteresis = std::numeric_limits<double>::infinity()}, box, 0));
         const std::uint64_t drawn[1] = {1};
-        CHECK(cull::is_worth_drawing(
-            {.radii = 5.0, .drawn_before = drawn, .longer = std::numeric_limits<double>::infinity()}, box, 0));
+        CHECK(cull::is_worth_drawing({.max_distance_in_radii = 5.0,
+                                      .drawn_before = drawn,
+                                      .hysteresis = std::numeric_limits<double>::infinity()},
+                                     box, 0));
     }
 
     TEST_CASE("on its limit an item is kept, one step of a double beyond it is not") {
         Obb box{.center = {0.0, 0.0, 15.0}, .half_extents = {1.0f, 2.0f, 2.0f}};  // radius 3
-        CHECK(cull::is_worth_drawing({.radii = 5.0}, box, 0));
+        CHECK(cull::is_worth_drawing({.max_distance_in_radii = 5.0}, box, 0));
         CHECK(cull::is_worth_drawing({.least_radius = 3.0}, box, 0));
         CHECK(!cull::is_worth_drawing({.least_radius = std::nextafter(3.0, 4.0)}, box, 0));
-        CHECK(!cull::is_worth_drawing({.radii = std::nextafter(5.0, 4.0)}, box, 0));
+        CHECK(!cull::is_worth_drawing({.max_distance_in_radii = std::nextafter(5.0, 4.0)}, box, 0));
         box.center.z = std::nextafter(15.0, 16.0);
-        CHECK(!cull::is_worth_drawing({.radii = 5.0}, box, 0));
+        CHECK(!cull::is_worth_drawing({.max_distance_in_radii = 5.0}, box, 0));
     }
 
     TEST_CASE("agrees with the oracle on items at their limits") {
@@ -85,12 +88,12 @@ TEST_SUITE("cull/draw_limits") {
             const double radius = glm::length(glm::dvec3(box.half_extents));
             cull::DrawLimits limits;
             limits.eye = (trial % 2 ? 1e7 : 1.0) * random.direction();
-            limits.radii = random.number(0.0, 100.0);
+            limits.max_distance_in_radii = random.number(0.0, 100.0);
             const double off = random.index(2) ? 0.0 : std::exp(random.number(-40.0, -1.0));
-            box.center =
-                limits.eye + (limits.radii * radius * (1.0 + (random.index(2) ? off : -off))) * random.direction();
+            box.center = limits.eye + (limits.max_distance_in_radii * radius * (1.0 + (random.index(2) ? off : -off))) *
+                                          random.direction();
             const std::uint64_t drawn[1] = {random.index(2)};
-            if (random.index(4) == 0) limits.longer = 1.25;
+            if (random.index(4) == 0) limits.hysteresis = 1.25;
             limits.drawn_before = drawn;
             if (random.index(4) == 0) limits.least_radius = radius;
             const bool keeps = cull::is_worth_drawing(limits, box, 0);
@@ -156,13 +159,13 @@ TEST_SUITE("cull/draw_limits") {
             views[1].layer_mask = 5u;
             views[2].frustum.plane_count = 4;  // without near and far
             cull::VisibleSet one;
-            cull::ManyVisible many[2];
+            cull::MaskedVisibleSet many[2];
             (void)cull::find_visible(tree, views, many[0], cull::CullMode::exact, &of.limits);
             (void)cull::find_visible(rest, list, views, many[1], cull::CullMode::exact, &of.limits);
             for (std::size_t v = 0; v < views.size(); ++v) {
                 cull::find_visible(tree, views[v], one, {.limits = &of.limits});
                 some += one.size();
-                for (const cull::ManyVisible& all : many) {
+                for (const cull::MaskedVisibleSet& all : many) {
                     std::vector<cull::ItemId> ids;
                     for (std::size_t i = 0; i < all.size(); ++i) {
                         REQUIRE(all.view_mask(i) != 0);
@@ -176,21 +179,21 @@ TEST_SUITE("cull/draw_limits") {
         CHECK(some > 1000);
     }
 
-    TEST_CASE("prepared lists keep what the definition keeps: boxes, aligned boxes and balls, with any executor") {
+    TEST_CASE("prepared lists keep what the definition keeps: boxes, aligned boxes and spheres, with any executor") {
         std::size_t kept = 0, dropped = 0;
         ThreadPool three(3);
         for (std::uint64_t seed = 0; seed < 12; ++seed) {
             const LimitedCrowd of(seed, seed % 2 ? 300 : 9000, seed % 4 == 3 ? 1e6 : 0.0);
             std::vector<Aabb> aligned;
-            std::vector<Sphere> balls;
-            std::vector<Obb> of_aligned, of_balls;  // of the same centre and size
+            std::vector<Sphere> spheres;
+            std::vector<Obb> of_aligned, of_spheres;  // of the same centre and size
             for (const Obb& box : of.crowd.boxes) {
                 const glm::dvec3 corner = glm::round(box.center * 64.0) / 64.0;
                 const glm::vec3 half = glm::ceil(box.half_extents * 64.0f) / 64.0f;
                 aligned.push_back({corner - glm::dvec3(half), corner + glm::dvec3(half)});
-                balls.push_back({box.center, double(box.half_extents.x)});
+                spheres.push_back({box.center, double(box.half_extents.x)});
                 of_aligned.push_back({.center = corner, .half_extents = half});
-                of_balls.push_back({.center = box.center, .half_extents = {box.half_extents.x, 0.0f, 0.0f}});
+                of_spheres.push_back({.center = box.center, .half_extents = {box.half_extents.x, 0.0f, 0.0f}});
             }
             const auto check = [&](const auto& bounds, const std::vector<Obb>& alike) {
                 using Bound = typename std::decay_t<decltype(bounds)>::value_type;
@@ -211,7 +214,7 @@ TEST_SUITE("cull/draw_limits") {
             };
             check(of.crowd.boxes, of.crowd.boxes);
             check(aligned, of_aligned);
-            check(balls, of_balls);
+            check(spheres, of_spheres);
         }
         CHECK(kept > 1000);
         CHECK(dropped > 1000);
@@ -253,10 +256,10 @@ TEST_SUITE("cull/draw_limits") {
         if (!cull::kCountStatistics) return;
         CHECK(tested({.least_radius = 0.1}) == all.statistics().boxes_tested);
         CHECK(visible.size() == all.size());
-        CHECK(tested({.radii = 1e6}) == all.statistics().boxes_tested);
+        CHECK(tested({.max_distance_in_radii = 1e6}) == all.statistics().boxes_tested);
         CHECK(tested({.least_radius = 0.2}) == 0);
         CHECK(visible.size() == 0);
-        CHECK(tested({.radii = 50.0}) < 2000);
+        CHECK(tested({.max_distance_in_radii = 50.0}) < 2000);
         CHECK(visible.size() > 0);
     }
 
@@ -304,7 +307,7 @@ TEST_SUITE("cull/draw_limits") {
         view.frustum.plane_count = 5;
         for (const double radii : {1e-20, 0.5, 3.0, 1e3, 1e12, 1e25})
             for (const double least : {0.0, 1e-25, 1.0, 1e22}) {
-                const cull::DrawLimits limits{.radii = radii, .least_radius = least};
+                const cull::DrawLimits limits{.max_distance_in_radii = radii, .least_radius = least};
                 std::vector<cull::ItemId> expected;
                 for (cull::ItemId i = 0; i < boxes.size(); ++i)
                     if (cull::classify(view.frustum, boxes[i]) != cull::Verdict::outside &&
@@ -328,7 +331,7 @@ TEST_SUITE("cull/draw_limits") {
                     {.center = {0.0, 0.0, -distance * radius}, .half_extents = glm::vec3(half)}};
                 const boxtree::BoxTree tree = *boxtree::BoxTree::build(boxes);
                 for (const double radii : {0.25, 0.5, 0.8, 1.0}) {
-                    const cull::DrawLimits limits{.radii = radii};
+                    const cull::DrawLimits limits{.max_distance_in_radii = radii};
                     cull::VisibleSet visible;
                     cull::find_visible(tree, view, visible, {.limits = &limits});
                     CHECK(visible.size() == (cull::is_worth_drawing(limits, boxes[0], 0) ? 1 : 0));
@@ -341,7 +344,7 @@ TEST_SUITE("cull/draw_limits") {
     TEST_CASE("from an eye beyond all coordinates nothing is dropped") {
         const std::vector<Obb> boxes(40, Obb{.center = {0.0, 0.0, -10.0}, .half_extents = glm::vec3(1.0f)});
         const boxtree::BoxTree tree = *boxtree::BoxTree::build(boxes);
-        const cull::DrawLimits limits{.eye = {1e31, 0.0, 0.0}, .radii = 2.0};
+        const cull::DrawLimits limits{.eye = {1e31, 0.0, 0.0}, .max_distance_in_radii = 2.0};
         cull::VisibleSet visible;
         cull::find_visible(tree, {*frustum_of(Camera{})}, visible, {.limits = &limits});
         CHECK(visible.size() == boxes.size());
@@ -350,7 +353,7 @@ TEST_SUITE("cull/draw_limits") {
     TEST_CASE("with hysteresis an item at its limit comes and goes once, without it in every other frame") {
         const std::vector<Obb> boxes{{.center = {0.0, 0.0, -100.0}, .half_extents = glm::vec3(1.0f)}};
         for (const double longer : {1.0, 1.1}) {
-            cull::DrawLimits limits{.longer = longer};
+            cull::DrawLimits limits{.hysteresis = longer};
             const float distance[1] = {100.0f};
             limits.item_distances = distance;
             cull::VisibleSet visible;

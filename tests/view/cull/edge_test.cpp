@@ -76,7 +76,7 @@ int compare_at_edges(const Frustum& frustum, const Bound& bound) {
 
 TEST_SUITE("cull/edges") {
     TEST_CASE("a bound that moves out of a frustum changes its verdict where the exact oracle says, to the last bit") {
-        int boxes = 0, axis_aligned = 0, balls = 0;
+        int boxes = 0, axis_aligned = 0, spheres = 0;
         for (const double offset : {0.0, 1e6}) {
             oracle::NearMisses cases(11, offset);
             for (int trial = 0; trial < 24; ++trial) {
@@ -88,11 +88,11 @@ TEST_SUITE("cull/edges") {
                 tiny.half_extents *= float(std::pow(10.0, cases.number(-17.0, -5.0)));
                 boxes += compare_at_edges(frustum, tiny);
                 axis_aligned += compare_at_edges(frustum, oracle::near_aabb(cases, frustum));
-                balls += compare_at_edges(frustum, oracle::near_sphere(cases, frustum));
+                spheres += compare_at_edges(frustum, oracle::near_sphere(cases, frustum));
             }
         }
         CHECK(boxes > 500);
         CHECK(axis_aligned > 500);
-        CHECK(balls > 500);
+        CHECK(spheres > 500);
     }
 }

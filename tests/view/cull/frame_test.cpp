@@ -32,7 +32,7 @@ std::vector<cull::View> flight(std::size_t frames) {
     return views;
 }
 
-// An axis-aligned box around each box, and a ball within it.
+// An axis-aligned box around each box, and a sphere within it.
 struct OtherBounds {
     explicit OtherBounds(const std::vector<Obb>& boxes) {
         for (const Obb& box : boxes) {
@@ -59,7 +59,7 @@ TEST_SUITE("cull/frame") {
         cull::BoxSet set;
         set.assign(crowd.boxes);
         cull::VisibleSet visible;
-        cull::ManyVisible many;
+        cull::MaskedVisibleSet many;
         cull::VerdictBits bits;
         const OtherBounds others(crowd.boxes);
         std::vector<std::uint32_t> masks(crowd.boxes.size()), items{1, 70, 4999};
@@ -103,12 +103,12 @@ TEST_SUITE("cull/frame") {
                 CHECK(test::ranges::equal(one.ids(), many.ids()));
                 CHECK(test::ranges::equal(one.verdicts(), many.verdicts()));
                 CHECK(one.statistics().boxes_tested == many.statistics().boxes_tested);
-                CHECK(one.statistics().improper == many.statistics().improper);
+                CHECK(one.statistics().false_positives == many.statistics().false_positives);
                 cull::find_visible(set, crowd.boxes, view, one_bits);
                 cull::find_visible(set, crowd.boxes, view, many_bits, cull::CullMode::exact, three);
                 CHECK(one_bits.visible == many_bits.visible);
                 CHECK(one_bits.inside == many_bits.inside);
-                CHECK(one_bits.statistics.improper == many_bits.statistics.improper);
+                CHECK(one_bits.statistics.false_positives == many_bits.statistics.false_positives);
             }
     }
 
@@ -123,7 +123,7 @@ TEST_SUITE("cull/frame") {
         struct Answer {
             std::vector<cull::ItemId> ids;
             std::vector<cull::Verdict> verdicts;
-            std::vector<Vector<std::uint64_t>> visible, inside;  // of boxes, axis-aligned boxes, balls
+            std::vector<Vector<std::uint64_t>> visible, inside;  // of boxes, axis-aligned boxes, spheres
             std::vector<std::uint32_t> masks;
             bool operator==(const Answer&) const = default;
         };

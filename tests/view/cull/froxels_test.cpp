@@ -121,7 +121,7 @@ TEST_SUITE("cull/froxels") {
             }
             return std::pair(lowest, highest);
         };
-        // A half ball just left of the middle: columns 0 to 3. Its side leans across the middle only if it may lean.
+        // A half sphere just left of the middle: columns 0 to 3. Its side leans across the middle only if it may lean.
         cull::SpotLight spot;
         spot.apex = {-0x1p-31, 0.5, -5.0};
         spot.range = 1000.0f;
@@ -130,7 +130,7 @@ TEST_SUITE("cull/froxels") {
         CHECK(columns_of(spot) == std::pair(0u, 3u));
         spot.axis = {-1.0f, 0x1p-29f, 0.0f};
         CHECK(columns_of(spot) == std::pair(0u, 4u));
-        // From far above: right of the middle but for a hair, unless the cone is narrower than a half ball.
+        // From far above: right of the middle but for a hair, unless the cone is narrower than a half sphere.
         spot.apex = {-0x1p-31, 100.0, -5.0};
         spot.axis = {1.0f, 0.0f, 0.0f};
         spot.cos_half_angle = 0x1p-31f;
@@ -193,7 +193,7 @@ TEST_SUITE("cull/froxels") {
         CHECK(spots({{0.0, 0.0, 0.0}, {0.0f, 0.0f, -1.0f}, 0.9f, 1.0f}) == 4);
         CHECK(spots({{0.0, 0.0, 0.0}, {0.0f, 0.0f, -1.0f}, 0.9f, std::nextafter(1.0f, 0.0f)}) == 0);
         CHECK(spots({{0.0, 0.0, 0.0}, {0.0f, 0.0f, 1.0f}, 0.9f, 100.0f}) == 0);
-        // A half ball whose flat side is the plane of the first slice.
+        // A half sphere whose flat side is the plane of the first slice.
         CHECK(spots({{0.5, 0.5, -1.0}, {0.0f, 0.0f, 1.0f}, 0.0f, 0.25f}) == 1);
         CHECK(spots({{0.5, 0.5, -1.0}, {0.0f, 0.0f, 1.0f}, 1e-3f, 0.25f}) == 1);
         CHECK(spots({{0.5, 0.5, std::nextafter(-1.0, 0.0)}, {0.0f, 0.0f, 1.0f}, 0.0f, 0.25f}) == 0);
@@ -273,7 +273,8 @@ TEST_SUITE("cull/froxels") {
         CHECK(exact_tests > 10);
     }
 
-    TEST_CASE("half balls whose flat sides nearly touch agree with the exact oracle, however many froxels they reach") {
+    TEST_CASE(
+        "half spheres whose flat sides nearly touch agree with the exact oracle, however many froxels they reach") {
         std::size_t lit = 0, dark = 0;
         for (std::uint64_t trial = 0; trial < 24; ++trial) {
             oracle::NearMisses random(100 + trial);
@@ -330,7 +331,7 @@ TEST_SUITE("cull/froxels") {
                 }
     }
 
-    TEST_CASE("half balls tilted by less than an axis in doubles can tell reach as deep as their rims do") {
+    TEST_CASE("half spheres tilted by less than an axis in doubles can tell reach as deep as their rims do") {
         const cull::FroxelGrid grid = unit_grid();
         oracle::NearMisses random(200);
         std::size_t deeper = 0;

@@ -41,7 +41,7 @@ int draw_row(std::vector<crofton::Obb> house_boxes, const crofton::Camera& camer
     const crofton::cull::View right_eye{.frustum = crofton::frustum_of(beside).value()};
     crofton::cull::VisibleSet visible;
     crofton::cull::VerdictBits visible_sparks;
-    crofton::cull::ManyVisible seen_by;
+    crofton::cull::MaskedVisibleSet seen_by;
     const auto draw_house = [&](std::uint32_t id) { drawn.houses.push_back(id); };
     const auto draw_stereo = [&](std::uint32_t id, std::uint32_t mask) {
         if (mask & 1) drawn.left.push_back(id);
@@ -114,7 +114,7 @@ int light_row(const std::vector<crofton::Obb>& house_boxes, const crofton::Camer
     const Result<cull::FroxelGrid> grid = cull::FroxelGrid::build(camera, {16, 9, 24});
     if (!grid) return report(grid.error());
 
-    // Each frame: balls and cones. A spot's number follows those of the points.
+    // Each frame: spheres and cones. A spot's number follows those of the points.
     if (auto found = cull::find_lights(*grid, lamps, spots, lit); !found) return report(found.error());
     upload(lit.offsets(), lit.lights());  // froxel f: lights()[offsets()[f]] to before lights()[offsets()[f + 1]]
 
@@ -133,7 +133,7 @@ int light_row(const std::vector<crofton::Obb>& house_boxes, const crofton::Camer
     distances[3] = 50.0f;
     limits->layer_distances = distances;
     limits->drawn_before = drawn;
-    limits->longer = 1.1;
+    limits->hysteresis = 1.1;
     cull::find_visible(*houses, view, visible, {.limits = &*limits});
     cull::to_bits(visible.ids(), house_boxes.size(), drawn);  // for the next frame
     // clang-format on

@@ -150,15 +150,15 @@ void check_set(const std::vector<Bound>& bounds, const cull::View& view, CullMod
 void check_lists(const std::vector<Obb>& boxes, const cull::View& view) {
     std::vector<Aabb> bounds;
     for (const Obb& box : boxes) bounds.push_back(aabb_of(box));
-    std::vector<Sphere> balls;
-    for (const Obb& box : boxes) balls.push_back({box.center, double{box.half_extents.x}});
+    std::vector<Sphere> spheres;
+    for (const Obb& box : boxes) spheres.push_back({box.center, double{box.half_extents.x}});
     cull::VisibleSet visible;
     for (const CullMode mode : {CullMode::exact, CullMode::conservative}) {
         cull::find_visible(boxes, {}, view, visible, {mode});
         REQUIRE(is_answer(visible, expected_of(boxes, view, mode)));
         check_set(boxes, view, mode);
         check_set(bounds, view, mode);
-        check_set(balls, view, mode);
+        check_set(spheres, view, mode);
     }
 }
 
@@ -169,7 +169,7 @@ std::uint64_t check_tree(const std::vector<Obb>& boxes, const cull::View& view) 
     REQUIRE(tree.has_value());
     const std::vector<cull::View> views(2, view);
     cull::VisibleSet visible;
-    cull::ManyVisible many;
+    cull::MaskedVisibleSet many;
     for (const CullMode mode : {CullMode::exact, CullMode::conservative}) {
         const Answer expected = expected_of(boxes, view, mode);
         cull::find_visible(*tree, view, visible, {mode});

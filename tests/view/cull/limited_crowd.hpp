@@ -21,14 +21,14 @@ inline bool oracle_keeps(const cull::DrawLimits& limits, const Obb& box, std::ui
     }
     mpq_class longer = 1;
     if (item / 64 < limits.drawn_before.size() && limits.drawn_before[item / 64] >> (item % 64) & 1)
-        longer = limits.longer;
+        longer = limits.hysteresis;
     const auto within = [&](double limit, const mpq_class& size) {
         if (!std::isfinite(limit)) return true;
         const mpq_class most = longer * mpq_class(limit);
         return distance <= most * most * size;
     };
     const mpq_class least = mpq_class(limits.least_radius) / longer;
-    if (radius < least * least || !within(limits.radii, radius)) return false;
+    if (radius < least * least || !within(limits.max_distance_in_radii, radius)) return false;
     if (!limits.item_distances.empty() && !within(double(limits.item_distances[item]), 1)) return false;
     if (limits.layer_distances.empty()) return true;
     for (std::uint32_t l = 0; l < 32; ++l)
@@ -50,7 +50,7 @@ struct LimitedCrowd {
         camera.far_distance = camera.near_distance + 200.0;
         view = {*frustum_of(camera), random.index(2) ? ~0u : 7u};
         limits.eye = camera.position;
-        if (random.index(4)) limits.radii = random.number(5.0, 100.0);
+        if (random.index(4)) limits.max_distance_in_radii = random.number(5.0, 100.0);
         if (random.index(4) == 0) limits.least_radius = random.number(0.1, 1.0);
         for (int l = 0; l < 32; ++l)
             layer_distances.push_back(l % 7 == 6 ? std::numeric_limits<float>::infinity()
@@ -62,14 +62,14 @@ struct LimitedCrowd {
             drawn.push_back(std::uint64_t{random.index(~0u)} << 32 | random.index(~0u));
         if (random.index(2)) {
             limits.drawn_before = drawn;
-            limits.longer = random.number(1.0, 1.5);
+            limits.hysteresis = random.number(1.0, 1.5);
         }
         // Some exactly on a limit: five radii of √(1 + 4 + 4) away.
         for (std::size_t i = 0; i < count; i += 50) {
             crowd.boxes[i].half_extents = {1.0f, 2.0f, 2.0f};
             crowd.boxes[i].center = limits.eye + glm::dvec3(0.0, 0.0, i % 100 ? 15.0 : std::nextafter(15.0, 20.0));
         }
-        if (seed % 3 == 0) limits.radii = 5.0;
+        if (seed % 3 == 0) limits.max_distance_in_radii = 5.0;
     }
 
     std::vector<cull::ItemId> expected() const {

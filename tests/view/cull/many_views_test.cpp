@@ -34,7 +34,7 @@ TEST_SUITE("cull/many_views") {
     TEST_CASE("no views see nothing, a view that is not finite does not spoil the others") {
         const oracle::Crowd crowd = oracle::random_crowd(300, 0.0, 1);
         const auto tree = boxtree::BoxTree::build(crowd.boxes, crowd.layers);
-        cull::ManyVisible visible;
+        cull::MaskedVisibleSet visible;
         (void)cull::find_visible(*tree, std::span<const cull::View>{}, visible);
         CHECK(visible.size() == 0);
         std::vector<cull::View> views(3, cull::View{*frustum_of(Camera{}), 3u});
@@ -51,7 +51,7 @@ TEST_SUITE("cull/many_views") {
         everything.frustum.planes[0] = {{0.0, 0.0, 1.0}, 1e6};
         everything.frustum.plane_count = 1;
         const std::vector<cull::View> views(2, everything);
-        cull::ManyVisible visible;
+        cull::MaskedVisibleSet visible;
         // Leaves go to the kernel sixteen by sixteen: only in one of them something is missing.
         for (cull::ItemId removed = 5; removed < 4096; removed += 97) {
             auto tree = boxtree::BoxTree::build(crowd.boxes);
@@ -107,7 +107,7 @@ TEST_SUITE("cull/many_views") {
         const std::vector<cull::View> views(33, cull::View{*frustum_of(Camera{})});
         const auto fit = std::span(views).first(32);
         std::vector<std::uint32_t> masks(crowd.boxes.size(), 7);
-        cull::ManyVisible visible;
+        cull::MaskedVisibleSet visible;
         const cull::MovingBoxes moving;
         REQUIRE(cull::find_visible(*tree, fit, visible).has_value());
         const std::size_t seen = visible.size();
@@ -147,12 +147,12 @@ TEST_SUITE("cull/many_views") {
                 if (choice == 7) view.frustum.planes[1].offset = std::nan("");
                 cull::DrawLimits limits;
                 limits.eye = view.frustum.origin;
-                limits.radii = 30.0;
-                const std::vector<std::uint64_t> among(300, 0x0ff0f0f0ff0f0f0fu);
+                limits.max_distance_in_radii = 30.0;
+                const std::vector<std::uint64_t> candidate_mask(300, 0x0ff0f0f0ff0f0f0fu);
                 cull::CullOptions how{.mode = choice & 2u ? cull::CullMode::conservative : cull::CullMode::exact,
                                       .order = choice & 4u ? cull::ResultOrder::tree : cull::ResultOrder::ascending};
                 if (choice % 3 == 1) how.limits = &limits;
-                if (choice % 3 == 2) how.among = among;
+                if (choice % 3 == 2) how.candidate_mask = candidate_mask;
                 cull::find_visible(boxes, layers, view, serial, how);
                 Counting counting;
                 for (Executor* executor : {static_cast<Executor*>(&two), static_cast<Executor*>(&seven),
@@ -164,7 +164,7 @@ TEST_SUITE("cull/many_views") {
                     CHECK(serial.statistics().boxes_tested == threaded.statistics().boxes_tested);
                     CHECK(serial.statistics().straddling == threaded.statistics().straddling);
                     CHECK(serial.statistics().exact_tests == threaded.statistics().exact_tests);
-                    CHECK(serial.statistics().improper == threaded.statistics().improper);
+                    CHECK(serial.statistics().false_positives == threaded.statistics().false_positives);
                 }
                 CHECK((counting.calls > 0) == (size >= 16384));
             }
@@ -224,7 +224,7 @@ TEST_SUITE("cull/many_views") {
                             *cull::shadow_volume_of_point(view.frustum, camera.position + 30.0 * random.direction());
                     views.push_back(view);
                 }
-                cull::ManyVisible visible;
+                cull::MaskedVisibleSet visible;
                 for (const cull::CullMode mode : {cull::CullMode::conservative, cull::CullMode::exact})
                     for (const std::size_t used : {32u, 12u, 4u}) {
                         const auto some = std::span<const cull::View>(views).first(used);

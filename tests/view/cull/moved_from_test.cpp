@@ -31,13 +31,13 @@ TEST_SUITE("cull/moved_from") {
         const cull::View views[1] = {{*frustum_of(Camera{})}};
         cull::VisibleSet visible;
         cull::find_visible(tree, views[0], visible, {.order = cull::ResultOrder::tree});
-        cull::ManyVisible many;
+        cull::MaskedVisibleSet many;
         (void)cull::find_visible(tree, views, many);
         const std::size_t seen = visible.size();
         REQUIRE(visible.inside_count() > 0);
         REQUIRE(many.size() == seen);
         const cull::VisibleSet kept(std::move(visible));
-        const cull::ManyVisible kept_many(std::move(many));
+        const cull::MaskedVisibleSet kept_many(std::move(many));
         CHECK(kept.size() == seen);
         CHECK(kept_many.size() == seen);
         CHECK(visible.size() == 0);

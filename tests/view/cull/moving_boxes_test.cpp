@@ -67,7 +67,7 @@ cull::View view_near(oracle::NearMisses& random, unsigned v) {
 
 void check_answers(const Crowd& crowd, std::span<const cull::View> views, Executor& executor) {
     cull::VisibleSet visible, threaded;
-    cull::ManyVisible many;
+    cull::MaskedVisibleSet many;
     for (const cull::CullMode mode : {cull::CullMode::conservative, cull::CullMode::exact}) {
         std::map<ItemId, std::uint32_t> masks;
         for (std::size_t v = 0; v < views.size(); ++v) {
@@ -338,7 +338,7 @@ TEST_SUITE("cull/moving_boxes") {
         const BoxTree tree = *BoxTree::build(boxes.boxes, boxes.layers, {.detached = items});
         cull::MovingBoxes moving;
         cull::VisibleSet visible;
-        cull::ManyVisible many;
+        cull::MaskedVisibleSet many;
         oracle::NearMisses random(7);
         std::size_t warm = 0;
         std::vector<Obb> moved = boxes.boxes;
@@ -388,7 +388,7 @@ TEST_SUITE("cull/moving_boxes") {
             }
             CHECK(ids == first);
             CHECK(sum.boxes_tested == cost.boxes_tested);
-            CHECK(sum.improper == cost.improper);
+            CHECK(sum.false_positives == cost.false_positives);
             CHECK(sum.straddling == cost.straddling);
         }
         hwy::SetSupportedTargetsForTest(0);

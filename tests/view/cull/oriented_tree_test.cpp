@@ -69,7 +69,7 @@ TEST_SUITE("cull/oriented trees") {
                     REQUIRE(test::ranges::equal(visible.ids(), expected.ids));
                     REQUIRE(test::ranges::equal(visible.verdicts(), expected.verdicts));
                     const std::vector<cull::View> views{view, view_near(random, middle, spread, trial)};
-                    cull::ManyVisible many;
+                    cull::MaskedVisibleSet many;
                     (void)cull::find_visible(tree, views, many, mode);
                     std::vector<cull::ItemId> first;
                     for (std::size_t i = 0; i < many.size(); ++i)

@@ -85,21 +85,22 @@ TEST_SUITE("cull/rounding edges") {
         check_rows(random, 0.0);
     }
 
-    TEST_CASE("normals as long as kernels take them, before balls of many quanta that just touch or are just inside") {
+    TEST_CASE(
+        "normals as long as kernels take them, before spheres of many quanta that just touch or are just inside") {
         oracle::NearMisses random(48);
         for (int trial = 0; trial < 40; ++trial) {
             const glm::dvec3 n = random.direction();
             Frustum frustum = half_space(1.00049 * n, 100.0 * random.direction());
-            std::vector<Sphere> balls;
+            std::vector<Sphere> spheres;
             for (int i = 0; i < 120; ++i) {
                 // Most are small: so the rows' units are.
                 const double radius = random.number(4.0, 7.5) / (i % 6 == 0 ? 1.0 : 8.0);
                 const double value = (i % 2 ? radius : -radius) * (1.0 + 1e-7 * random.number(-1, 1));
                 const glm::dvec3 at = random.vector(-1, 1);
                 const double there = glm::dot(n, at) + frustum.planes[0].offset / 1.00049;
-                balls.push_back({at + (value - there) * n, radius});
+                spheres.push_back({at + (value - there) * n, radius});
             }
-            check_verdicts(balls, frustum);
+            check_verdicts(spheres, frustum);
         }
     }
 
@@ -198,7 +199,7 @@ TEST_SUITE("cull/rounding edges") {
             cull::VisibleSet visible;
             cull::find_visible(*tree, {frustum}, visible);
             CHECK(visible.size() == boxes.size());
-            cull::ManyVisible many;
+            cull::MaskedVisibleSet many;
             (void)cull::find_visible(*tree, std::vector<cull::View>(2, cull::View{frustum}), many);
             CHECK(many.ids().size() == boxes.size());
         }

@@ -152,9 +152,9 @@ TEST_SUITE("cull/shadow_casters") {
             const cull::SpotLight lamp{place, glm::vec3(aim), float(random.number(0.0, 0.9)),
                                        float(random.number(0.5, 3.0) * glm::length(aim))};
             const double length = random.index(2) ? 1e9 : random.number(1.0, 40.0);
-            const Sphere ball{lamp.apex, double(lamp.range)};
+            const Sphere sphere{lamp.apex, double(lamp.range)};
             REQUIRE((kind == 0   ? set.set_sun(scene.view, scene.receivers, toward, length)
-                     : kind == 1 ? set.set_point(scene.view, scene.receivers, ball)
+                     : kind == 1 ? set.set_point(scene.view, scene.receivers, sphere)
                                  : set.set_spot(scene.view, scene.receivers, lamp))
                         .has_value());
             // None where the light sees into the view from everywhere.
@@ -176,7 +176,7 @@ TEST_SUITE("cull/shadow_casters") {
                         casts = way_meets(caster, point, std::min(length, 1e3) * toward, margin);
                     } else {
                         const glm::dvec3 way = lamp.apex - point;
-                        if (glm::length(way) > ball.radius) continue;
+                        if (glm::length(way) > sphere.radius) continue;
                         if (kind == 2 && glm::dot(-way, glm::dvec3(lamp.axis)) < double(lamp.cos_half_angle) *
                                                                                      glm::length(way) *
                                                                                      glm::length(glm::dvec3(lamp.axis)))

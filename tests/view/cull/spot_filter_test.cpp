@@ -77,7 +77,7 @@ TEST_SUITE("cull/spot_filter") {
         CHECK(taken > meeting / 4);
     }
 
-    TEST_CASE("half a ball whose flat side is just above a froxel is never taken for one that reaches it") {
+    TEST_CASE("half a sphere whose flat side is just above a froxel is never taken for one that reaches it") {
         sampling::Random random(2);
         int refused = 0;
         for (int trial = 0; trial < 3000; ++trial) {

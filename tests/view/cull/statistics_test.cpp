@@ -16,7 +16,7 @@ using Counts = std::vector<std::uint64_t>;
 
 // Not exact_tests: how many are too near to call in floats depends on whether products are fused.
 void add(const cull::Statistics& s, Counts& counts) {
-    for (const std::uint64_t n : {s.nodes_tested, s.boxes_tested, s.accepted_whole, s.straddling, s.improper})
+    for (const std::uint64_t n : {s.nodes_tested, s.boxes_tested, s.accepted_whole, s.straddling, s.false_positives})
         counts.push_back(n);
 }
 

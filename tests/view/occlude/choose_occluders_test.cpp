@@ -95,7 +95,7 @@ TEST_SUITE("occlude/choose_occluders") {
         CHECK_FALSE(choose_occluders(candidates, camera, {}, choice).has_value());
     }
 
-    TEST_CASE("a box's candidate has the areas of its faces along its axes, and the ball around its corners") {
+    TEST_CASE("a box's candidate has the areas of its faces along its axes, and the sphere around its corners") {
         std::mt19937_64 random(8);
         for (int i = 0; i < 20; ++i) {
             const Obb box = random_box(random, 10.0);

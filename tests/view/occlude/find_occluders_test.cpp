@@ -157,7 +157,7 @@ TEST_SUITE("occlude/find_occluders") {
         const FoundOccluders found = found_in(sphere, {.max_occluders = 1, .max_edges = 12});
         REQUIRE(bodies_of(found) == 1);
         check_found(sphere, found, Sides::front, random);
-        // The greatest surface of a box in the unit ball is the cube's, 24/3: F/4 = 2. The mesh is a little less.
+        // The greatest surface of a box in the unit sphere is the cube's, 24/3: F/4 = 2. The mesh is a little less.
         CHECK(found.occluders[0].mean_shadow > 1.8);
         CHECK(found.occluders[0].mean_shadow < 2.0);
     }

@@ -158,13 +158,14 @@ TEST_SUITE("occlude/find_visible") {
         Random random(8);
         const auto [scene, buffer, layers] = layered_crowd(random);
         // Whole leaves may not be seen, and of others some.
-        std::vector<std::uint64_t> among((scene.objects.size() + 63) / 64, 0);
+        std::vector<std::uint64_t> candidate_mask((scene.objects.size() + 63) / 64, 0);
         for (std::size_t i = 0; i < scene.objects.size(); ++i)
-            if (scene.objects[i].center.x > scene.camera.position.x && i % 5 != 0) among[i / 64] |= 1ull << (i % 64);
+            if (scene.objects[i].center.x > scene.camera.position.x && i % 5 != 0)
+                candidate_mask[i / 64] |= 1ull << (i % 64);
         const auto wanted = [&](const occlude::VisibleSet& from, bool by_layer, bool by_list) {
             std::vector<boxtree::ItemId> result;
             for (const boxtree::ItemId id : from.ids())
-                if ((!by_layer || id % 3 == 1) && (!by_list || ((among[id / 64] >> (id % 64)) & 1) != 0))
+                if ((!by_layer || id % 3 == 1) && (!by_list || ((candidate_mask[id / 64] >> (id % 64)) & 1) != 0))
                     result.push_back(id);
             return result;
         };
@@ -174,13 +175,13 @@ TEST_SUITE("occlude/find_visible") {
         auto tree = *boxtree::BoxTree::build(scene.objects, layers);
         occlude::VisibleSet all, some;
         occlude::find_visible(tree, buffer, all);
-        occlude::find_visible(tree, buffer, some, {.among = among});
+        occlude::find_visible(tree, buffer, some, {.candidate_mask = candidate_mask});
         CHECK(ids(some) == wanted(all, false, true));
         CHECK(some.size() < all.size());
         occlude::find_visible(scene.objects, layers, buffer, all);
         occlude::find_visible(scene.objects, layers, buffer, some, {.layer_mask = 2});
         CHECK(ids(some) == wanted(all, true, false));
-        occlude::find_visible(scene.objects, layers, buffer, some, {.layer_mask = 2, .among = among});
+        occlude::find_visible(scene.objects, layers, buffer, some, {.layer_mask = 2, .candidate_mask = candidate_mask});
         CHECK(ids(some) == wanted(all, true, true));
         std::vector<boxtree::ItemId> items;
         for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {

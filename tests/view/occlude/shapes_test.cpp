@@ -24,7 +24,7 @@ struct ShapeScene {
     std::vector<Surface> surfaces;
 };
 
-TriangleMesh ball(std::uint32_t around, std::uint32_t up, Random& random, double rough) {
+TriangleMesh sphere(std::uint32_t around, std::uint32_t up, Random& random, double rough) {
     TriangleMesh mesh;
     for (std::uint32_t j = 0; j <= up; ++j)
         for (std::uint32_t i = 0; i < around; ++i) {
@@ -94,7 +94,7 @@ void add_random_shape(ShapeScene& scene, Random& random, const glm::dvec3& at, s
         CHECK(scene.set.place(*scene.set.add_convex(points), transform));
         add_surface(scene, points, hull.triangles, transform, false);
     } else if (kind == 1) {
-        const TriangleMesh mesh = ball(24, 12, random, 0.2);
+        const TriangleMesh mesh = sphere(24, 12, random, 0.2);
         CHECK(scene.set.place(*scene.set.add_mesh(mesh), transform));
         add_surface(scene, mesh.positions, mesh.indices, transform, false);
     } else {
@@ -164,13 +164,13 @@ TEST_SUITE("occlude/shapes") {
         occlude::OccluderSet set;
         Transform transform;
         transform.translation = {0.0, 0.0, -4.0};
-        REQUIRE(set.place(*set.add_mesh(ball(48, 24, random, 0.0)), transform));
+        REQUIRE(set.place(*set.add_mesh(sphere(48, 24, random, 0.0)), transform));
         Camera camera;
         camera.aspect = 1.0;
         auto buffer = *occlude::OcclusionBuffer::create({200, 200});
         buffer.draw(set, *occlude::occlusion_view_of(camera));
-        // The ball's picture is a disc of radius tan(asin(1/4)), less what the polyhedron lacks; a pixel and a half are
-        // lost at the rim at most.
+        // The sphere's picture is a disc of radius tan(asin(1/4)), less what the polyhedron lacks; a pixel and a half
+        // are lost at the rim at most.
         const double radius =
             std::tan(std::asin(0.25)) / std::tan(0.5 * camera.fov_y) * 100.0 * std::cos(3.15 / 24) - 1.5;
         std::size_t gaps = 0, inside = 0;

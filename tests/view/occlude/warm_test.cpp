@@ -32,7 +32,7 @@ TEST_SUITE("occlude/warm") {
             const auto view = *occlude::occlusion_view_of(scene.camera);
             cull::DrawLimits limits;
             limits.eye = scene.camera.position;
-            limits.radii = 500.0;
+            limits.max_distance_in_radii = 500.0;
             occlude::OccluderChoice choice;
             occlude::VisibleSet from_tree, from_list;
             occlude::OcclusionBits bits;
@@ -110,7 +110,7 @@ TEST_SUITE("occlude/warm") {
         buffer.draw(set_of(scene.occluders), *occlude::occlusion_view_of(scene.camera));
         cull::DrawLimits limits;
         limits.eye = scene.camera.position;
-        limits.radii = 60.0;
+        limits.max_distance_in_radii = 60.0;
         occlude::VisibleSet all, some;
         const auto tree = *boxtree::BoxTree::build(scene.objects);
         occlude::find_visible(tree, buffer, all);

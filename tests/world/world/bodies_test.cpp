@@ -57,7 +57,7 @@ TEST_SUITE("world/bodies") {
         CHECK(!world.closest(box, bad, 1e9));
         CHECK(!world.closest(half, {}, 1e9));
         CHECK(!world.closest(box, {}, NAN));
-        // Balls keep their radius in double, and bounds too large for a body are cut.
+        // Spheres keep their radius in double, and bounds too large for a body are cut.
         const double radius = 1.0 + 0x1p-40;
         REQUIRE(world.add({.bound = Sphere{{0, 9, 0}, radius}}).has_value());
         REQUIRE(world.add({.bound = Sphere{{5e17, 0, 0}, 4e17}}).has_value());
@@ -88,7 +88,7 @@ TEST_SUITE("world/bodies") {
         for (const double far : {0.0, 1e6, 1e9, 1e11}) {
             World world;
             const glm::dvec3 at(far, -far, far);
-            const convex::Body ball = convex::Body::ball(1.0).value();
+            const convex::Body sphere = convex::Body::sphere(1.0).value();
             const auto target = world.add({.bound = Obb{at, glm::mat3(1.0f), glm::vec3(1.0f)}}).value();
             REQUIRE(world.update().has_value());
             for (int axis = 0; axis < 3; ++axis)
@@ -96,7 +96,8 @@ TEST_SUITE("world/bodies") {
                     glm::dvec3 from(0.0), way(0.0);
                     from[axis] = 12.0 * side;
                     way[axis] = -10.5 * side;  // reaches in by 0.5
-                    const auto hit = world.cast(ball, {glm::dmat3(1.0), at + from}, {way, {}, {}}, {.tolerance = 1e-3});
+                    const auto hit =
+                        world.cast(sphere, {glm::dmat3(1.0), at + from}, {way, {}, {}}, {.tolerance = 1e-3});
                     REQUIRE(hit.has_value());
                     REQUIRE(hit->has_value());
                     CHECK((*hit)->object == target);
@@ -354,7 +355,7 @@ TEST_SUITE("world/bodies") {
 
     TEST_CASE("boxes whose axes are left-handed or not quite orthonormal are no larger for bodies than they are") {
         const auto s = std::sqrt(0.5f);
-        const auto ball = convex::Body::ball(0.05f).value();
+        const auto sphere = convex::Body::sphere(0.05f).value();
         for (int kind = 0; kind < 3; ++kind) {
             CAPTURE(kind);
             glm::mat3 axes(s, s, 0, -s, s, 0, 0, 0, 1);
@@ -367,11 +368,11 @@ TEST_SUITE("world/bodies") {
             // Beside the edge at 45 degrees, which a box along the coordinate axes would hold.
             const RigidTransform beside{glm::dmat3(1.0), box.center + glm::dvec3(1.2, 1.2, 0.0)};
             Vector<ObjectRef> found;
-            world.overlap(ball, beside, found);
+            world.overlap(sphere, beside, found);
             CHECK(found.empty());
             const auto gap = collide::distance(box, collide::Capsule{beside.translation, beside.translation, 0.05});
-            CHECK(world.closest(ball, beside, 9.0)->distance == doctest::Approx(gap.distance).epsilon(2e-4));
-            CHECK(world.closest(ball, beside, 9.0)->distance <= gap.distance * (1.0 + 1e-9));
+            CHECK(world.closest(sphere, beside, 9.0)->distance == doctest::Approx(gap.distance).epsilon(2e-4));
+            CHECK(world.closest(sphere, beside, 9.0)->distance <= gap.distance * (1.0 + 1e-9));
         }
     }
 }

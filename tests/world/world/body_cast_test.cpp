@@ -30,7 +30,7 @@ TEST_SUITE("world/body_cast") {
             World world;
             const convex::Body target = any_body(random), mover = any_body(random);
             const Obb box = box_around(target, {random.rotation(), 2.0 * random.direction()});
-            const int kind = round % 3;  // a body, the box, a ball
+            const int kind = round % 3;  // a body, the box, a sphere
             const double radius = random.number(0.2, 1);
             const ObjectHandle object =
                 (kind == 2 ? world.add({.bound = Sphere{box.center, radius}}) : world.add({.bound = box})).value();
@@ -47,7 +47,7 @@ TEST_SUITE("world/body_cast") {
             CHECK(hit->distance >= 0.0);
             CHECK(hit->distance < 1e-6);
             const convex::Body bound =
-                kind == 2 ? convex::Body::ball(radius).value() : convex::Body::box(box.half_extents).value();
+                kind == 2 ? convex::Body::sphere(radius).value() : convex::Body::box(box.half_extents).value();
             const RigidTransform stand = pose_of(box), then = convex::moved(from, fly, hit->time);
             convex::Impact impact;
             impact.normal = hit->normal;
@@ -93,20 +93,20 @@ TEST_SUITE("world/body_cast") {
 
     TEST_CASE("what overlaps from the start is told with its depth, or left out, so that the next object is met") {
         World world;
-        const convex::Body ball = convex::Body::ball(0.5).value();
+        const convex::Body sphere = convex::Body::sphere(0.5).value();
         const ObjectHandle near = world.add({.bound = Obb{{0, 0, 0}, glm::mat3(1.0f), glm::vec3(1.0f)}}).value();
         const ObjectHandle far = world.add({.bound = Obb{{5, 0, 0}, glm::mat3(1.0f), glm::vec3(1.0f)}}).value();
         REQUIRE(world.update().has_value());
         const RigidTransform from{glm::dmat3(1.0), {1.25, 0, 0}};
         const convex::Motion right{{8, 0, 0}, {}, {}};
-        const auto first = world.cast(ball, from, right, {}).value();
+        const auto first = world.cast(sphere, from, right, {}).value();
         REQUIRE(first.has_value());
         CHECK(first->object == near);
         CHECK(first->time == 0.0);
         CHECK(first->distance == doctest::Approx(-0.25));
         CHECK(first->normal.x == doctest::Approx(-1.0));
         CHECK(first->point.x == doctest::Approx(1.0));
-        const auto next = world.cast(ball, from, right, {.ignore_initial_overlaps = true}).value();
+        const auto next = world.cast(sphere, from, right, {.ignore_initial_overlaps = true}).value();
         REQUIRE(next.has_value());
         CHECK(next->object == far);
         CHECK(next->point.x == doctest::Approx(4.0));

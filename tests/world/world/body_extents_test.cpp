@@ -39,7 +39,7 @@ Bound any_bound(RandomBodies& random, const glm::dvec3& place, double size) {
     }
 }
 RigidTransform pose_of(const Bound& bound) {
-    if (bound.kind == BoundKind::ball) return at(bound.box.center);
+    if (bound.kind == BoundKind::sphere) return at(bound.box.center);
     return testing::pose_of(bound.box);
 }
 
@@ -81,7 +81,7 @@ void require_queries(RandomBodies& random, const World& world, const std::vector
     double nearest = HUGE_VAL, first = HUGE_VAL;
     for (const Thing& thing : things) {
         if (!thing.lives || !thing.body) continue;
-        const convex::Placed placed{*thing.body, thing.pose()};
+        const convex::BodyAtPose placed{*thing.body, thing.pose()};
         if (convex::intersects({probe, pose}, placed)) meeting.push_back(thing.object.index);
         nearest = std::min(nearest, convex::distance({probe, pose}, placed).distance);
         const auto impact = convex::cast({probe, pose}, motion, placed, {}).value();
@@ -169,7 +169,7 @@ struct Scaled {
     void require_same(RandomBodies& random, const convex::Body& right, const RigidTransform& pose, double size) const {
         REQUIRE(set.has_value());
         for (int i = 0; i < 20; ++i) {
-            const convex::Body probe = convex::Body::ball(0.1 * size).value();
+            const convex::Body probe = convex::Body::sphere(0.1 * size).value();
             const RigidTransform there = at(pose.translation + size * random.number(0.2, 3.0) * random.direction());
             const auto closest = world.closest(probe, there, HUGE_VAL);
             REQUIRE(closest.has_value());
@@ -266,14 +266,14 @@ TEST_SUITE("world/body_extents") {
     TEST_CASE(
         "the box is as it was given where the body fits, covers both where not, and comes back with the body's end") {
         World world;
-        const convex::Body ball = convex::Body::ball(1.0).value();
+        const convex::Body sphere = convex::Body::sphere(1.0).value();
         const Obb given{{3, 0, 0}, glm::mat3(1.0f), {0.5f, 2.0f, 0.5f}};
         const ObjectHandle object = world.add({.bound = given}).value();
         const ObjectHandle fits = world.add({.bound = Sphere{{9, 0, 0}, 1.0}}).value();
         REQUIRE(world.update().has_value());
         const Obb before = world.box_of(fits).value();
-        REQUIRE(world.set_body(object, &ball).has_value());
-        REQUIRE(world.set_body(fits, &ball).has_value());
+        REQUIRE(world.set_body(object, &sphere).has_value());
+        REQUIRE(world.set_body(fits, &sphere).has_value());
         REQUIRE(world.update().has_value());
         const Obb grown = world.box_of(object).value();
         for (int k = 0; k < 3; ++k) {
@@ -283,7 +283,7 @@ TEST_SUITE("world/body_extents") {
         }
         CHECK(world.box_of(fits)->half_extents == before.half_extents);
         // Views see what the body has.
-        VisibleObjects seen;
+        ViewResult seen;
         const Camera camera{.position = {2.1, 0, -5}, .forward = {0, 0, 1}, .up = {0, 1, 0}, .fov_y = 0.02};
         REQUIRE(world.view({.camera = camera}, seen).has_value());
         CHECK(seen.size() == 1);
@@ -317,7 +317,7 @@ TEST_SUITE("world/body_extents") {
         World world;
         const MeshHandle mesh = add_cube(world);
         const NodeHandle node = world.add_node({}).value();
-        const convex::Body large = convex::Body::ball(3.0).value(), small = convex::Body::ball(0.5).value();
+        const convex::Body large = convex::Body::sphere(3.0).value(), small = convex::Body::sphere(0.5).value();
         const ObjectHandle a = world.add({.mesh = mesh, .node = node}).value();
         const ObjectHandle b = world.add({.bound = Sphere{{0, 0, 0}, 0.5}}).value();
         REQUIRE(world.set_body(a, &large).has_value());
@@ -347,7 +347,7 @@ TEST_SUITE("world/body_extents") {
                                scaled = convex::Hull::build(scaled_points).value();
             const auto f = [&](float x) { return static_cast<float>(s * static_cast<double>(x)); };
             const std::pair<convex::Body, convex::Body> kinds[] = {
-                {*convex::Body::ball(rounding), *convex::Body::ball(s * rounding)},
+                {*convex::Body::sphere(rounding), *convex::Body::sphere(s * rounding)},
                 {*convex::Body::capsule(h, r), *convex::Body::capsule(f(h), f(r))},
                 {*convex::Body::cylinder(h, r), *convex::Body::cylinder(f(h), f(r))},
                 {*convex::Body::cone(h, r), *convex::Body::cone(f(h), f(r))},
@@ -476,7 +476,7 @@ TEST_SUITE("world/body_extents") {
 
     TEST_CASE(
         "a transform that would make another kind of body is refused by whoever sets it, and nothing has changed") {
-        const convex::Body ball = convex::Body::ball(1.0).value();
+        const convex::Body sphere = convex::Body::sphere(1.0).value();
         const Transform uneven{scaling({1, 2, 1}), {0, 0, 0}}, even{scaling({2, 2, 2}), {0, 0, 0}};
         World world;
         const MeshHandle mesh = add_cube(world);
@@ -486,10 +486,10 @@ TEST_SUITE("world/body_extents") {
         const ObjectHandle shares = world.add({.mesh = mesh, .node = inner}).value();
         const ObjectHandle scaled = world.add({.mesh = mesh, .transform = uneven}).value();
         // Before the first update as well.
-        CHECK(error_of(world.set_body(scaled, &ball)).code == ErrorCode::unsupported);
-        CHECK(error_of(world.set_body(scaled, &ball)).item == scaled.index);
-        REQUIRE(world.set_body(own, &ball).has_value());
-        REQUIRE(world.set_body(shares, &ball).has_value());
+        CHECK(error_of(world.set_body(scaled, &sphere)).code == ErrorCode::unsupported);
+        CHECK(error_of(world.set_body(scaled, &sphere)).item == scaled.index);
+        REQUIRE(world.set_body(own, &sphere).has_value());
+        REQUIRE(world.set_body(shares, &sphere).has_value());
         for (int round = 0; round < 2; ++round) {
             CHECK(error_of(world.set_transform(own, uneven)).code == ErrorCode::unsupported);
             CHECK(error_of(world.set_transform(own, uneven)).item == own.index);
@@ -516,7 +516,7 @@ TEST_SUITE("world/body_extents") {
         // What hides has no body meanwhile, and what comes back has one.
         REQUIRE(world.set_transform(outer, {scaling({0, 0, 0}), {0, 0, 0}}).has_value());
         REQUIRE(world.update().has_value());
-        CHECK(!world.closest(ball, at({0, 0, 0}), 1.0).has_value() == false);  // the unscaled object is there
+        CHECK(!world.closest(sphere, at({0, 0, 0}), 1.0).has_value() == false);  // the unscaled object is there
         Vector<ObjectHit> hits;
         world.raycast_all({{-9, 0, 0}, {1, 0, 0}}, hits);
         for (const ObjectHit& hit : hits) CHECK(hit.object == scaled);
@@ -532,12 +532,12 @@ TEST_SUITE("world/body_extents") {
         World world;
         const MeshHandle mesh = add_cube(world);
         const NodeHandle node = world.add_node({}).value();
-        const convex::Body ball = convex::Body::ball(1.0).value();
+        const convex::Body sphere = convex::Body::sphere(1.0).value();
         const ObjectHandle a =
             world.add({.mesh = mesh, .node = node, .transform = Transform{glm::dmat3(1.0), {1, 0, 0}}}).value();
         const ObjectHandle b = world.add({.bound = Sphere{{0, 0, 0}, 1.0}}).value();
-        REQUIRE(world.set_body(a, &ball).has_value());
-        REQUIRE(world.set_body(b, &ball).has_value());
+        REQUIRE(world.set_body(a, &sphere).has_value());
+        REQUIRE(world.set_body(b, &sphere).has_value());
         for (int i = 0; i < 200; ++i) {
             const double s = random.number(0.2, 4.0);
             const Transform transform{s * random.rotation(), random.number(0.0, 6.0) * random.direction()};
@@ -591,15 +591,15 @@ TEST_SUITE("world/body_extents") {
                 require_contacts(world, things, margin);
                 require_queries(random, world, things, 8.0);
                 require_rays(random, world, things, 8.0);
-                // Balls, boxes and capsules by the plane, where there is nothing else.
+                // Spheres, boxes and capsules by the plane, where there is nothing else.
                 for (int k = 0; k < 5; ++k) {
-                    const Sphere ball{1e4 * random.direction(), random.number(0.0, 3.0)};
+                    const Sphere sphere{1e4 * random.direction(), random.number(0.0, 3.0)};
                     const double height =
-                        -(glm::dot(normal, ball.center - things[0].bound.box.center) - 1.0 + ball.radius);
+                        -(glm::dot(normal, sphere.center - things[0].bound.box.center) - 1.0 + sphere.radius);
                     Vector<ObjectRef> found;
-                    world.overlap(ball, found);
+                    world.overlap(sphere, found);
                     CHECK(found.size() == (things[0].lives && height <= 0.0 ? 1u : 0u));
-                    const auto closest = world.closest(ball, 1e9);
+                    const auto closest = world.closest(sphere, 1e9);
                     if (things[0].lives && round % 4 < 2 && height < 5e3) {
                         REQUIRE(closest.has_value());
                         CHECK(closest->object == things[0].object);
@@ -621,32 +621,32 @@ TEST_SUITE("world/body_extents") {
         }
     }
 
-    TEST_CASE("what has no body lies on the ground with its box, ball or triangles, and leaves it") {
+    TEST_CASE("what has no body lies on the ground with its box, sphere or triangles, and leaves it") {
         World world;
         const convex::Body level = convex::Body::half_space({{0, -1, 0}, 0.0}).value();
         const ObjectHandle ground = world.add({.bound = Obb{{0, 0, 0}, glm::mat3(1.0f), glm::vec3(0.0f)}}).value();
         REQUIRE(world.set_body(ground, &level).has_value());
-        const ObjectHandle ball = world.add({.bound = Sphere{{1e6, 0.9, 0}, 1.0}}).value();
+        const ObjectHandle sphere = world.add({.bound = Sphere{{1e6, 0.9, 0}, 1.0}}).value();
         const ObjectHandle box = world.add({.bound = Obb{{-1e6, 0.75, 3}, glm::mat3(1.0f), glm::vec3(1.0f)}}).value();
         const Transform stretched{scaling({1, 2, 1}), {40, 1.5, 0}};
         const ObjectHandle mesh = world.add({.mesh = add_cube(world), .transform = stretched}).value();
         const ObjectHandle high = world.add({.bound = Sphere{{5, 9, 0}, 1.0}}).value();
         for (int frame = 0; frame < 4; ++frame) {
-            if (frame == 2) REQUIRE(world.set_bound(ball, Sphere{{1e6, 1.1, 0}, 1.0}).has_value());
+            if (frame == 2) REQUIRE(world.set_bound(sphere, Sphere{{1e6, 1.1, 0}, 1.0}).has_value());
             REQUIRE(world.update().has_value());
             std::map<std::uint32_t, double> depths;
             for (const Contact& contact : world.contacts()) {
                 CHECK(contact.first.object == ground);
                 const ContactPhase phase = frame == 0 ? ContactPhase::began : ContactPhase::stayed;
-                const bool ended = frame == 2 && contact.second.object == ball;
+                const bool ended = frame == 2 && contact.second.object == sphere;
                 CHECK(contact.phase == (ended ? ContactPhase::ended : phase));
                 if (ended) continue;
                 depths[contact.second.object.index] = contact.depth;
                 CHECK(glm::length(contact.normal - glm::dvec3(0, 1, 0)) < 1e-12);
-                CHECK(contact.points.size() == (contact.second.object == ball ? 1u : 4u));
+                CHECK(contact.points.size() == (contact.second.object == sphere ? 1u : 4u));
             }
             CHECK(depths.size() == (frame < 2 ? 3u : 2u));
-            if (frame < 2) CHECK(depths.at(ball.index) == doctest::Approx(0.1));
+            if (frame < 2) CHECK(depths.at(sphere.index) == doctest::Approx(0.1));
             CHECK(depths.at(box.index) == doctest::Approx(0.25));
             CHECK(depths.at(mesh.index) == doctest::Approx(0.5));
             CHECK(depths.count(high.index) == 0);
@@ -654,7 +654,7 @@ TEST_SUITE("world/body_extents") {
         }
     }
 
-    TEST_CASE("hits of boxes, balls and meshes have the normal that faces the ray, and say where it began inside") {
+    TEST_CASE("hits of boxes, spheres and meshes have the normal that faces the ray, and say where it began inside") {
         RandomBodies random(6000);
         for (int i = 0; i < 400; ++i) {
             World world;

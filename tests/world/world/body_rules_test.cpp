@@ -201,7 +201,7 @@ TEST_SUITE("world/body_rules") {
         const convex::HeightField field =
             convex::HeightField::build({.columns = 17, .rows = 17, .heights = level, .spacing = glm::dvec2(0.5)})
                 .value();
-        const convex::Body ball = convex::Body::ball(0.5f).value();
+        const convex::Body sphere = convex::Body::sphere(0.5f).value();
         for (const glm::dvec3& place : {glm::dvec3(0.0), glm::dvec3(1e6, -2e5, 3e6)})
             for (const convex::Sides sides : {convex::Sides::front, convex::Sides::both})
                 for (const bool is_mesh : {true, false}) {
@@ -216,7 +216,7 @@ TEST_SUITE("world/body_rules") {
                         return Obb{above + glm::dvec3(0, y, 0), glm::mat3(1.0f), glm::vec3(0.6f)};
                     };
                     const ObjectHandle object = world.add({.bound = crate(0.1)}).value();
-                    REQUIRE(world.set_body(object, &ball).has_value());
+                    REQUIRE(world.set_body(object, &sphere).has_value());
                     REQUIRE(world.update().has_value());
                     REQUIRE(world.body_contacts().size() == 1);
                     CHECK(world.body_contacts()[0].points[0].normal.y == doctest::Approx(1.0));
@@ -231,7 +231,7 @@ TEST_SUITE("world/body_rules") {
                     const glm::dvec3 aside = above + glm::dvec3(2, 0, 2);
                     const auto hit = [&](double from, double to) {
                         const RigidTransform pose{glm::dmat3(1.0), aside + glm::dvec3(0, from, 0)};
-                        return world.cast(ball, pose, {{0, to - from, 0}, {}, {}}, {}).value();
+                        return world.cast(sphere, pose, {{0, to - from, 0}, {}, {}}, {}).value();
                     };
                     const auto down = hit(3, -3), up = hit(-3, 3);
                     REQUIRE(down.has_value());
@@ -240,7 +240,7 @@ TEST_SUITE("world/body_rules") {
                     CHECK(up.has_value() == (sides == convex::Sides::both));
                     // Yes or no is of the surface, whichever side.
                     Vector<ObjectRef> found;
-                    world.overlap(ball, {glm::dmat3(1.0), aside - glm::dvec3(0, 0.4, 0)}, found);
+                    world.overlap(sphere, {glm::dmat3(1.0), aside - glm::dvec3(0, 0.4, 0)}, found);
                     CHECK(found.size() == 1);
                 }
     }
@@ -251,7 +251,7 @@ TEST_SUITE("world/body_rules") {
         const convex::Body bodies[] = {
             convex::Body::box({0.5f, 0.5f, 0.5f}).value(),
             convex::Body::box({0.05f, 0.5f, 0.05f}).value(),
-            convex::Body::ball(0.5f).value(),
+            convex::Body::sphere(0.5f).value(),
             convex::Body::capsule(0.2f, 0.3f).value(),
             convex::Body::cylinder(0.5f, 0.4f).value(),
             convex::Body::rounded(convex::Body::box({0.3f, 0.4f, 0.3f}).value(), 0.1f).value()};

@@ -54,7 +54,7 @@ std::vector<std::uint32_t> ids_of(const Vector<ObjectRef>& found) {
 
 // Everything that a world is asked, against the model.
 void check_answers(const World& world, const Model& model, NearMisses& random) {
-    VisibleObjects visible;
+    ViewResult visible;
     std::array<cull::View, 3> views{};
     for (cull::View& view : views) view = random_view(random);
     for (const cull::View& view : views) {
@@ -70,7 +70,7 @@ void check_answers(const World& world, const Model& model, NearMisses& random) {
             CHECK(visible[i].user == model.objects.at(visible.ids()[i]).user);
         }
     }
-    VisibleInViews in_views;
+    MultiViewResult in_views;
     REQUIRE(world.view(requests_of(views), in_views).has_value());
     for (std::size_t v = 0; v < views.size(); ++v) {
         std::vector<std::uint32_t> seen;
@@ -104,13 +104,13 @@ void check_answers(const World& world, const Model& model, NearMisses& random) {
             CHECK(nearest->object == hits[0].object);
         }
         const Obb box = oracle::random_box(random, {}, 30.0);
-        const Sphere ball{box.center, random.number(0.0, 8.0)};
+        const Sphere sphere{box.center, random.number(0.0, 8.0)};
         world.overlap(box, found, layers);
         CHECK(ids_of(found) == model.overlapping(box, layers));
-        world.overlap(ball, found, layers);
-        CHECK(ids_of(found) == model.overlapping(ball, layers));
-        world.overlap(collide::Capsule{ball.center, ball.center, ball.radius}, found, layers);
-        CHECK(ids_of(found) == model.overlapping(ball, layers));
+        world.overlap(sphere, found, layers);
+        CHECK(ids_of(found) == model.overlapping(sphere, layers));
+        world.overlap(collide::Capsule{sphere.center, sphere.center, sphere.radius}, found, layers);
+        CHECK(ids_of(found) == model.overlapping(sphere, layers));
         for (const double limit : {1.0, 1e3}) {
             const double least = model.distance_to(box, layers);
             const auto closest = world.closest(box, limit, layers);
@@ -219,7 +219,7 @@ TEST_SUITE("world/bounds changes") {
                            return p.position == q.position && p.depth == q.depth;
                        });
             }));
-            VisibleObjects a, b;
+            ViewResult a, b;
             const cull::View view = random_view(random);
             REQUIRE(serial.view(request_of(view), a).has_value());
             REQUIRE(parallel.view(request_of(view), b, pool).has_value());
@@ -239,8 +239,8 @@ TEST_SUITE("world/bounds changes") {
                 boxes.back().half_extents *= 6.0f;
                 objects.push_back(world.add({.bound = boxes.back()}).value());
             }
-            VisibleObjects visible;
-            VisibleInViews in_views;
+            ViewResult visible;
+            MultiViewResult in_views;
             Vector<ObjectHit> hits;
             Vector<ObjectRef> found;
             std::array<cull::View, 2> views{random_view(random), random_view(random)};
@@ -306,7 +306,7 @@ TEST_SUITE("world/bounds changes") {
             for (const ObjectHandle& handle : live)
                 REQUIRE(fresh.add({.bound = world.box_of(handle).value()}).has_value());
             REQUIRE(fresh.update().has_value());
-            VisibleObjects visible;
+            ViewResult visible;
             std::uint64_t tested = 0, tested_fresh = 0;
             for (int i = 0; i < 100; ++i) {
                 const cull::View view = random_view(random);

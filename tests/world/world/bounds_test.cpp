@@ -22,7 +22,7 @@ const double kNan = std::numeric_limits<double>::quiet_NaN(), kInfinity = std::n
 TEST_SUITE("world/bounds") {
     TEST_CASE("an empty world answers, before and after its first update") {
         World world;
-        VisibleObjects visible;
+        ViewResult visible;
         Vector<ObjectHit> hits(1);
         Vector<ObjectRef> found(1);
         for (int update = 0; update < 2; ++update) {
@@ -79,7 +79,7 @@ TEST_SUITE("world/bounds") {
         }
     }
 
-    TEST_CASE("the box of a ball holds the ball, whose radius no float has") {
+    TEST_CASE("the box of a sphere holds the sphere, whose radius no float has") {
         for (int i = 0; i < 1000; ++i) {
             const double radius = 1.0 + i * 0x1p-32;  // between two floats
             const Bound bound = Sphere{{0.0, 0.0, 0.0}, radius};
@@ -87,13 +87,13 @@ TEST_SUITE("world/bounds") {
         }
         World world;
         const double radius = 1.0 + 0.3 * 0x1p-23, height = 1.0 + 0.2 * 0x1p-23;
-        const auto ball = world.add({.bound = Sphere{{0.0, 0.0, 0.0}, radius}}).value();
+        const auto sphere = world.add({.bound = Sphere{{0.0, 0.0, 0.0}, radius}}).value();
         for (int frame = 0; frame < 3; ++frame) {  // in the tree, and among what moves
             REQUIRE(world.update().has_value());
             const auto hit = world.raycast({{-5.0, height, 0.0}, {1.0, 0.0, 0.0}});
             REQUIRE(hit.has_value());
-            CHECK(hit->object == ball);
-            REQUIRE(world.set_bound(ball, Sphere{{1e-9 * frame, 0.0, 0.0}, radius}).has_value());
+            CHECK(hit->object == sphere);
+            REQUIRE(world.set_bound(sphere, Sphere{{1e-9 * frame, 0.0, 0.0}, radius}).has_value());
         }
     }
 
@@ -210,10 +210,10 @@ TEST_SUITE("world/bounds") {
     TEST_CASE("contacts begin, stay and end, with their normal, depth and points") {
         World world;
         const auto box = world.add({.bound = box_at({}), .user = 10}).value();
-        const auto ball = world.add({.bound = Sphere{{3.0, 0.0, 0.0}, 1.0}, .user = 20}).value();
+        const auto sphere = world.add({.bound = Sphere{{3.0, 0.0, 0.0}, 1.0}, .user = 20}).value();
         REQUIRE(world.update().has_value());
         CHECK(world.contacts().empty());
-        REQUIRE(world.set_bound(ball, Sphere{{1.25, 0.0, 0.0}, 1.0}).has_value());
+        REQUIRE(world.set_bound(sphere, Sphere{{1.25, 0.0, 0.0}, 1.0}).has_value());
         double far = 0.0;
         for (const ContactPhase phase : {ContactPhase::began, ContactPhase::stayed, ContactPhase::stayed}) {
             REQUIRE(world.update().has_value());
@@ -221,7 +221,7 @@ TEST_SUITE("world/bounds") {
             const Contact& contact = world.contacts()[0];
             CHECK(contact.phase == phase);
             CHECK(contact.first.object == box);
-            CHECK(contact.second.object == ball);
+            CHECK(contact.second.object == sphere);
             CHECK(contact.first.user == 10);
             CHECK(contact.second.user == 20);
             CHECK(contact.depth == doctest::Approx(0.25));
@@ -231,12 +231,12 @@ TEST_SUITE("world/bounds") {
             if (phase == ContactPhase::stayed)  // as of an update in which something else moved, too
                 REQUIRE(world.add({.bound = box_at({far += 50.0, 0.0, 0.0})}).has_value());
         }
-        REQUIRE(world.remove(ball).has_value());
+        REQUIRE(world.remove(sphere).has_value());
         const auto third = world.add({.bound = box_at({0.0, 0.75, 0.0}), .user = 30}).value();
         REQUIRE(world.update().has_value());
         REQUIRE(world.contacts().size() == 2);
         CHECK(world.contacts()[0].phase == ContactPhase::ended);
-        CHECK(world.contacts()[0].second.object == ball);
+        CHECK(world.contacts()[0].second.object == sphere);
         CHECK(world.contacts()[0].second.user == 20);
         CHECK(world.contacts()[0].points.empty());
         CHECK(world.contacts()[1].phase == ContactPhase::began);
@@ -272,7 +272,7 @@ TEST_SUITE("world/bounds") {
         CHECK(error_of(world.update()).code == ErrorCode::budget_exceeded);
         CHECK(world.pairs().empty());
         CHECK(world.contacts().empty());
-        VisibleObjects visible;
+        ViewResult visible;
         Camera camera;
         camera.position.z = 10.0;
         REQUIRE(world.view({.camera = camera}, visible).has_value());

@@ -65,9 +65,9 @@ TEST_SUITE("world/conventions") {
         REQUIRE(ours.update().has_value());
         REQUIRE(theirs.update().has_value());
 
-        const auto ask = [](const World& world, const cull::View& view, const Ray& ray, const Sphere& ball) {
+        const auto ask = [](const World& world, const cull::View& view, const Ray& ray, const Sphere& sphere) {
             Answers answers;
-            VisibleObjects visible;
+            ViewResult visible;
             (void)world.view(request_of(view), visible);
             answers.visible.assign(visible.ids().begin(), visible.ids().end());
             for (const ObjectPair& pair : world.pairs())
@@ -80,7 +80,7 @@ TEST_SUITE("world/conventions") {
             world.raycast_all(ray, hits);
             for (const ObjectHit& hit : hits) answers.hits.emplace_back(hit.triangle, hit.t);
             Vector<ObjectRef> found;
-            world.overlap(ball, found);
+            world.overlap(sphere, found);
             for (const ObjectRef& object : found) answers.overlapping.push_back(object.object.index);
             return answers;
         };
@@ -97,10 +97,10 @@ TEST_SUITE("world/conventions") {
             const cull::View their_view{.frustum =
                                             frustum_of(to_clip * to_ours, DepthRange::reversed_zero_to_one).value()};
             const Ray ray{camera.position, camera.forward};
-            const Sphere ball{5.0 * random.direction(), 3.0};
-            const Answers a = ask(ours, our_view, ray, ball);
+            const Sphere sphere{5.0 * random.direction(), 3.0};
+            const Answers a = ask(ours, our_view, ray, sphere);
             const Answers b = ask(theirs, their_view, {kUnit * (kSwap * ray.origin), kUnit * (kSwap * ray.direction)},
-                                  {kUnit * (kSwap * ball.center), kUnit * ball.radius});
+                                  {kUnit * (kSwap * sphere.center), kUnit * sphere.radius});
             CHECK(a.visible == b.visible);
             CHECK(a.pairs == b.pairs);
             CHECK(a.contacts == b.contacts);

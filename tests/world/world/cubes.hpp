@@ -24,7 +24,7 @@ inline Ray down(double x, double y) {
 }
 
 inline std::size_t seen(const World& world) {
-    VisibleObjects visible;
+    ViewResult visible;
     Camera camera;
     camera.position.z = 50.0;
     REQUIRE(world.view({.camera = camera}, visible).has_value());

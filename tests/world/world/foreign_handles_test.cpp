@@ -73,7 +73,7 @@ TEST_SUITE("world/foreign_handles") {
         Furnished a, b;
         REQUIRE(a.world.update().has_value());
         REQUIRE(b.world.update().has_value());
-        VisibleObjects visible;
+        ViewResult visible;
         REQUIRE(a.world.view({.camera = Camera{}, .occlusion = OcclusionOptions{}}, visible).has_value());
         Vector<OccluderRef> occluders;
         CHECK(error_of(b.world.hidden_by(b.bound, visible, occluders)).code == ErrorCode::invalid_argument);

@@ -56,7 +56,7 @@ TEST_SUITE("world/guide") {
         enemies[3].dead = true;
         crofton::ThreadPool jobs(2);
         crofton::Camera camera;
-        crofton::VisibleObjects visible;
+        crofton::ViewResult visible;
 
         // Each frame: what the game has changed,
         world

@@ -12,7 +12,7 @@ using namespace crofton::testing;
 
 namespace {
 
-// Slabs that only hide, and balls. What should be hidden is what a buffer hides that all slabs are drawn into, chosen
+// Slabs that only hide, and spheres. What should be hidden is what a buffer hides that all slabs are drawn into, chosen
 // or not.
 struct Slabs {
     World world;
@@ -32,19 +32,19 @@ struct Slabs {
         box.half_extents = glm::vec3(half);
         ids.push_back(set.place(box).value());
     }
-    void add_ball(const glm::dvec3& center, double radius = 1.0) {
+    void add_sphere(const glm::dvec3& center, double radius = 1.0) {
         const Bound bound{Sphere{center, radius}};
         boxes.push_back(bound.box);
         REQUIRE(world.add({.bound = bound}).has_value());
     }
-    // How many balls are hidden, and how many the World finds hidden.
+    // How many spheres are hidden, and how many the World finds hidden.
     struct Hidden {
         std::size_t expected, found;
     };
     [[nodiscard]] Hidden count(const Camera& camera, std::uint32_t max_occluders = 256) {
         REQUIRE(world.update().has_value());
         OcclusionOptions options{.max_occluders = max_occluders, .list_occluded = true};
-        VisibleObjects visible;
+        ViewResult visible;
         REQUIRE(world.view({.camera = camera, .occlusion = options}, visible).has_value());
         auto buffer = *occlude::OcclusionBuffer::create(options.size);
         buffer.draw(set, ids, *occlude::occlusion_view_of(camera));
@@ -77,7 +77,7 @@ Camera parallel() {
 }
 
 void add_low_town(Slabs& slabs) {
-    for (int i = 0; i < 300; ++i) slabs.add_ball({i % 20 * 2.0 - 20.0, 1.0, -60.0 - i / 20 * 2.0});
+    for (int i = 0; i < 300; ++i) slabs.add_sphere({i % 20 * 2.0 - 20.0, 1.0, -60.0 - i / 20 * 2.0});
 }
 
 }  // namespace
@@ -116,9 +116,9 @@ TEST_SUITE("world/large_occluders") {
                 Slabs floor, ceiling, tunnel;
                 for (int i = 0; i < 200; ++i) {
                     const glm::dvec3 place(i % 10 - 4.5, 0.0, -4.0 - i / 10);
-                    floor.add_ball(place - glm::dvec3(0.0, 3.0, 0.0), 0.2);
-                    ceiling.add_ball(place + glm::dvec3(0.0, 6.0, 0.0), 0.2);
-                    tunnel.add_ball({place.x * 4.0, 1.0, place.z}, 0.3);
+                    floor.add_sphere(place - glm::dvec3(0.0, 3.0, 0.0), 0.2);
+                    ceiling.add_sphere(place + glm::dvec3(0.0, 6.0, 0.0), 0.2);
+                    tunnel.add_sphere({place.x * 4.0, 1.0, place.z}, 0.3);
                 }
                 floor.add_slab({aside * half, -0.1, -aside * half}, {half, 0.1, half});
                 check(floor.count(standing({0.0, -0.5, -1.0})));
@@ -150,7 +150,7 @@ TEST_SUITE("world/large_occluders") {
         slabs.add_slab({0.0, 50.0, -200.0}, {500.0, 50.0, 0.2});    // behind all
         slabs.add_slab({-500.0, 50.0, -60.0}, {400.0, 50.0, 1.0});  // beside
         REQUIRE(slabs.world.update().has_value());
-        VisibleObjects visible;
+        ViewResult visible;
         REQUIRE(slabs.world.view({.camera = standing(), .occlusion = OcclusionOptions{}}, visible).has_value());
         CHECK(visible.occlusion_statistics().occluders_drawn == 0);
     }

@@ -68,14 +68,14 @@ TEST_SUITE("world/mesh_contacts") {
         CHECK(hits > 200);
     }
 
-    TEST_CASE("contacts of meshes, boxes and balls with meshes are where their triangles meet") {
+    TEST_CASE("contacts of meshes, boxes and spheres with meshes are where their triangles meet") {
         World world({.mesh_depth = true});
         const TriangleMesh ring = wavy_torus(1.0, 0.3, 0.0);
         const auto torus = world.add_mesh(described(ring)).value();
         const auto a = world.add({.mesh = torus, .transform = at({})}).value();
         const auto b = world.add({.mesh = torus, .transform = at({2.5, 0.0, 0.0})}).value();  // overlaps by 0.1
-        world.add({.bound = Sphere{{0.0, 0.0, 0.0}, 0.5}}).value();                      // in the hole: touches nothing
-        const auto ball = world.add({.bound = Sphere{{-1.5, 0.0, 0.0}, 0.25}}).value();  // depth 0.05
+        world.add({.bound = Sphere{{0.0, 0.0, 0.0}, 0.5}}).value();  // in the hole: touches nothing
+        const auto sphere = world.add({.bound = Sphere{{-1.5, 0.0, 0.0}, 0.25}}).value();  // depth 0.05
         Obb inner;
         inner.center = {0.0, 1.0, 0.0};
         inner.half_extents = glm::vec3(0.01f);
@@ -90,7 +90,7 @@ TEST_SUITE("world/mesh_contacts") {
         CHECK(rings.depth == doctest::Approx(0.1).epsilon(0.3));
         for (const mesh::MeshContact& contact : rings.triangles) CHECK(std::abs(contact.segment.begin.x - 1.25) < 0.1);
         const Contact& touch = world.contacts()[1];
-        CHECK(touch.second.object == ball);
+        CHECK(touch.second.object == sphere);
         CHECK(touch.depth == doctest::Approx(0.05).epsilon(0.05));
         CHECK(touch.normal.x == doctest::Approx(-1.0).epsilon(0.01));
         REQUIRE(touch.points.size() == 1);
@@ -102,7 +102,7 @@ TEST_SUITE("world/mesh_contacts") {
         CHECK(world.pairs().size() > 3);
     }
 
-    TEST_CASE("a ball whose center is in a room leaves it by the nearest wall, whether a mesh or a box is the room") {
+    TEST_CASE("a sphere whose center is in a room leaves it by the nearest wall, whether a mesh or a box is the room") {
         oracle::NearMisses random(23);
         const glm::dvec3 half(6.0, 5.0, 4.0);
         const TriangleMesh walls = box_mesh(glm::vec3(-half), glm::vec3(half)), unit = cube_mesh();
@@ -127,14 +127,14 @@ TEST_SUITE("world/mesh_contacts") {
                 glm::dvec3 local;
                 for (int k = 0; k < 3; ++k) local[k] = random.number(-0.999, 0.999) * half[k];
                 const double radius = random.number(0.1, 2.0);
-                const auto ball = world.add({.bound = Sphere{place + turn * local, radius}}).value();
+                const auto sphere = world.add({.bound = Sphere{place + turn * local, radius}}).value();
                 int k = 0;
                 for (int j = 1; j < 3; ++j)
                     if (half[j] - std::abs(local[j]) < half[k] - std::abs(local[k])) k = j;
                 const double gap = half[k] - std::abs(local[k]), side = local[k] < 0.0 ? -1.0 : 1.0;
                 glm::dvec3 wall = local;
                 wall[k] = side * half[k];
-                Expected& e = expected[ball.index];
+                Expected& e = expected[sphere.index];
                 e = {radius + gap, side * turn[k], place + turn * wall, {}};
                 e.deepest = place + turn * local - (radius - 0.5 * e.depth) * e.normal;
             }

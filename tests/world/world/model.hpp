@@ -23,19 +23,19 @@ struct ModelObject {
 };
 
 inline bool meet(const Bound& a, const Bound& b) {
-    const bool ball_a = a.kind == BoundKind::ball, ball_b = b.kind == BoundKind::ball;
+    const bool sphere_a = a.kind == BoundKind::sphere, sphere_b = b.kind == BoundKind::sphere;
     const Sphere of_a{a.box.center, a.radius}, of_b{b.box.center, b.radius};
-    if (ball_a && ball_b) return glm::length(of_a.center - of_b.center) <= of_a.radius + of_b.radius;
-    if (ball_a) return collide::intersects(b.box, of_a);
-    if (ball_b) return collide::intersects(a.box, of_b);
+    if (sphere_a && sphere_b) return glm::length(of_a.center - of_b.center) <= of_a.radius + of_b.radius;
+    if (sphere_a) return collide::intersects(b.box, of_a);
+    if (sphere_b) return collide::intersects(a.box, of_b);
     return collide::intersects(a.box, b.box);
 }
 
-// Where a line enters a ball, by the quadratic formula in long double.
-inline std::optional<double> enter(const Ray& ray, const Sphere& ball) {
-    long double a = 0, b = 0, c = -static_cast<long double>(ball.radius) * ball.radius;
+// Where a line enters a sphere, by the quadratic formula in long double.
+inline std::optional<double> enter(const Ray& ray, const Sphere& sphere) {
+    long double a = 0, b = 0, c = -static_cast<long double>(sphere.radius) * sphere.radius;
     for (int k = 0; k < 3; ++k) {
-        const long double d = ray.direction[k], o = static_cast<long double>(ray.origin[k]) - ball.center[k];
+        const long double d = ray.direction[k], o = static_cast<long double>(ray.origin[k]) - sphere.center[k];
         a += d * d;
         b += d * o;
         c += o * o;
@@ -82,7 +82,7 @@ struct Model {
         std::vector<std::pair<double, std::uint32_t>> hits;
         for (const auto& [id, object] : objects) {
             if (object.hidden || (object.layers & layers) == 0) continue;
-            const auto t = object.bound.kind == BoundKind::ball
+            const auto t = object.bound.kind == BoundKind::sphere
                                ? enter(ray, {object.bound.box.center, object.bound.radius})
                                : mesh::raycast(ray, object.bound.box);
             if (t) hits.emplace_back(*t, id);
@@ -91,9 +91,10 @@ struct Model {
         return hits;
     }
     [[nodiscard]] double distance_to(const Bound& shape, std::uint32_t layers) const {
-        // A ball is a point, and as much nearer.
+        // A sphere is a point, and as much nearer.
         const auto core = [](const Bound& bound) {
-            return bound.kind == BoundKind::ball ? Obb{bound.box.center, glm::mat3(1.0f), glm::vec3(0.0f)} : bound.box;
+            return bound.kind == BoundKind::sphere ? Obb{bound.box.center, glm::mat3(1.0f), glm::vec3(0.0f)}
+                                                   : bound.box;
         };
         const auto between = [&](const Bound& a, const Bound& b) {
             return std::max(0.0, collide::distance(core(a), core(b)).distance - a.radius - b.radius);

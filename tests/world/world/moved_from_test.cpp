@@ -61,9 +61,9 @@ void move_around(Type first, Type second) {
 TEST_SUITE("world/moved_from") {
     TEST_CASE("the answer to a view that has been moved from is empty, and may be asked for again") {
         const World world = one_box();
-        VisibleObjects visible;
+        ViewResult visible;
         REQUIRE(world.view(forward(), visible).has_value());
-        const VisibleObjects kept(std::move(visible));
+        const ViewResult kept(std::move(visible));
         CHECK(kept.size() == 1);
         CHECK(visible.size() == 0);
         CHECK(visible.inside_count() == 0);
@@ -77,9 +77,9 @@ TEST_SUITE("world/moved_from") {
     TEST_CASE("the answer to many views that has been moved from is empty, and may be asked for again") {
         const World world = one_box();
         const ViewRequest views[2] = {forward(), forward()};
-        VisibleInViews visible;
+        MultiViewResult visible;
         REQUIRE(world.view(std::span(views), visible).has_value());
-        const VisibleInViews kept(std::move(visible));
+        const MultiViewResult kept(std::move(visible));
         CHECK(kept.view_count() == 2);
         CHECK(visible.size() == 0);
         CHECK(visible.view_count() == 0);
@@ -134,13 +134,13 @@ TEST_SUITE("world/moved_from") {
     }
 
     TEST_CASE("visible sets that have been moved from hold no cell: all is drawn") {
-        pvs::Subject subject{cube(), {}, {}, {box_at({0, 0, 0}, 1.0f)}};
-        subject.object_of.assign(subject.mesh.triangle_count(), 0);
+        pvs::BakeGeometry geometry{cube(), {}, {}, {box_at({0, 0, 0}, 1.0f)}};
+        geometry.object_of.assign(geometry.mesh.triangle_count(), 0);
         const Aabb room[1] = {{{-3, -3, -3}, {-2, -2, -2}}};
         const glm::dvec3 eye(-2.5);
         const std::uint32_t ids[1] = {0};
         for (const auto& cells : {*pvs::Cells::grid(room[0], {2, 2, 2}), *pvs::Cells::boxes(room)}) {
-            auto bake = *pvs::Bake::create(subject, cells, {.epsilon = 0.1});
+            auto bake = *pvs::Bake::create(geometry, cells, {.epsilon = 0.1});
             REQUIRE(bake.run().has_value());
             auto sets = *pvs::Pvs::finish(bake);
             const pvs::Pvs kept(std::move(sets));
@@ -161,14 +161,14 @@ TEST_SUITE("world/moved_from") {
     }
 
     TEST_CASE("contacts that have been moved from are none, and may be looked for again") {
-        const auto ball = *convex::Body::ball(1.0);
+        const auto sphere = *convex::Body::sphere(1.0);
         const RigidTransform place;
         convex::Manifolds found;
-        convex::contact_manifolds({ball, place}, {ball, place}, {}, found);
+        convex::contact_manifolds({sphere, place}, {sphere, place}, {}, found);
         convex::Manifolds kept(std::move(found));
         CHECK(kept.all().size() == 1);
         CHECK(found.all().empty());
-        convex::contact_manifolds({ball, place}, {ball, place}, {}, found);
+        convex::contact_manifolds({sphere, place}, {sphere, place}, {}, found);
         CHECK(found.all().size() == 1);
     }
 

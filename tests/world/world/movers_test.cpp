@@ -22,7 +22,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> listed_pairs(const World& w
 }
 
 std::vector<std::uint32_t> seen_ids(const World& world, const cull::View& view) {
-    VisibleObjects visible;
+    ViewResult visible;
     (void)world.view(request_of(view), visible);
     return {visible.ids().begin(), visible.ids().end()};
 }
@@ -151,7 +151,7 @@ TEST_SUITE("world/movers") {
         REQUIRE(world.update().has_value());
         CHECK(world.statistics().boxes_changed == 10);
         for (const Enemy& enemy : enemies) CHECK(world.box_of(enemy.object)->center == enemy.box.center);
-        // One becomes a ball and a box again, another is removed: its handle is stale.
+        // One becomes a sphere and a box again, another is removed: its handle is stale.
         REQUIRE(world.set_bound(enemies[70].object, Sphere{{}, 1.0}).has_value());
         REQUIRE(world.remove(enemies[80].object).has_value());
         for (Enemy& enemy : enemies) enemy.box.center.y += 1.0;
@@ -170,7 +170,7 @@ TEST_SUITE("world/movers") {
         ray.direction = {0.0, 0.0, -1.0};
         const auto hit = world.raycast(ray);
         REQUIRE(hit.has_value());
-        CHECK(hit->t == 8.0);  // a ball's, not its box's
+        CHECK(hit->t == 8.0);  // a sphere's, not its box's
         // The index of the removed one is used again: the old handle stays stale.
         const auto fresh = world.add({.bound = Sphere{{}, 1.0}}).value();
         CHECK(fresh.index == enemies[80].object.index);
@@ -248,7 +248,7 @@ TEST_SUITE("world/movers") {
         const TriangleMesh first = sheet(kSide, 0.0);
         const auto mesh = world.add_mesh({.positions = first.positions, .indices = first.indices}).value();
         const auto object = world.add({.mesh = mesh, .transform = Transform()}).value();
-        const auto ball = world.add({.bound = Sphere{{0.4, 0.6, 0.2}, 0.1}}).value();
+        const auto sphere = world.add({.bound = Sphere{{0.4, 0.6, 0.2}, 0.1}}).value();
         REQUIRE(world.update().has_value());
         std::size_t hits = 0, touches = 0;
         for (int frame = 0; frame < 30; ++frame) {
@@ -265,7 +265,7 @@ TEST_SUITE("world/movers") {
             World fresh({.mesh_depth = true});
             const auto copy = fresh.add_mesh({.positions = now.positions, .indices = now.indices}).value();
             REQUIRE(fresh.add({.mesh = copy, .transform = Transform()}).value().index == object.index);
-            REQUIRE(fresh.add({.bound = Sphere{{0.4, 0.6, 0.2}, 0.1}}).value().index == ball.index);
+            REQUIRE(fresh.add({.bound = Sphere{{0.4, 0.6, 0.2}, 0.1}}).value().index == sphere.index);
             REQUIRE(fresh.update().has_value());
             NearMisses random(static_cast<std::uint64_t>(40 + frame));
             for (int i = 0; i < 200; ++i) {

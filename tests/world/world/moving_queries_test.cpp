@@ -59,9 +59,9 @@ void check_queries(const World& world, const Model& model, NearMisses& random, d
     const auto expected = model.overlapping(shape.box, layers);
     world.overlap(shape.box, found, layers);
     CHECK(ids_of(found) == expected);
-    const Sphere ball{shape.box.center, 0.5 * random.index(6)};
-    world.overlap(ball, found, layers);
-    CHECK(ids_of(found) == model.overlapping(ball, layers));
+    const Sphere sphere{shape.box.center, 0.5 * random.index(6)};
+    world.overlap(sphere, found, layers);
+    CHECK(ids_of(found) == model.overlapping(sphere, layers));
     for (const double limit : {0.5, 1e3, 1e300}) {
         const double least = model.distance_to(shape.box, layers);
         const auto closest = world.closest(shape.box, limit, layers);

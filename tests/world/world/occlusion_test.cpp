@@ -13,7 +13,7 @@ using namespace crofton::testing;
 
 namespace {
 
-// A wall of 10 × 10 × 1 ten metres before the eye, and a ball behind it.
+// A wall of 10 × 10 × 1 ten metres before the eye, and a sphere behind it.
 struct BehindAWall {
     World world;
     MeshHandle mesh = world.add_mesh(description_of(cuboid({5.0f, 5.0f, 0.5f}), true)).value();
@@ -21,7 +21,7 @@ struct BehindAWall {
     ObjectHandle wall = world.add({.mesh = mesh, .node = node, .user = 7}).value();
     ObjectHandle behind = world.add({.bound = box_at({0.0, 0.0, -20.0}), .user = 9}).value();
     ObjectHandle beside = world.add({.bound = box_at({-14.0, 0.0, -20.0})}).value();
-    VisibleObjects visible;
+    ViewResult visible;
 
     [[nodiscard]] bool hides(const cull::DrawLimits* limits = nullptr, std::uint32_t layers = ~0u) {
         REQUIRE(world.update().has_value());
@@ -240,7 +240,7 @@ TEST_SUITE("world/occlusion") {
         CHECK(error_of(world.add({.bound = box_at({0.0, 0.0, -20.0}), .only_occludes = true})).code ==
               ErrorCode::invalid_argument);
         REQUIRE(world.update().has_value());
-        VisibleObjects visible;
+        ViewResult visible;
         REQUIRE(world.view({.camera = Camera()}, visible).has_value());
         CHECK(visible.size() == 1);
         REQUIRE(world.view({.camera = Camera(), .occlusion = OcclusionOptions{}}, visible).has_value());

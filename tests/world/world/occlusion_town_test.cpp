@@ -18,7 +18,7 @@ TEST_SUITE("world/occlusion") {
         std::size_t hidden = 0, witnessed = 0;
         for (const double offset : {0.0, 1e5, 1e7}) {
             Town town(random, offset * glm::dvec3(1.0, 0.5, -1.0), 300);
-            VisibleObjects visible, plain;
+            ViewResult visible, plain;
             for (int frame = 0; frame < 12; ++frame) {
                 REQUIRE(town.world.update().has_value());
                 const Camera camera = town.camera(random);
@@ -61,14 +61,14 @@ TEST_SUITE("world/occlusion") {
         for (int v = 0; v < 9; ++v)
             views.push_back(
                 {.camera = town.camera(random), .layers = v % 3 ? ~0u : 5u, .occlusion = OcclusionOptions{}});
-        VisibleInViews together, alone;
+        MultiViewResult together, alone;
         REQUIRE(town.world.view(views, together, pool).has_value());
         REQUIRE(town.world.view(views, alone).has_value());
         CHECK(test::ranges::equal(together.ids(), alone.ids()));
         CHECK(together.view_count() == views.size());
         std::size_t seen = 0;
         for (std::size_t v = 0; v < views.size(); ++v) {
-            VisibleObjects one, threaded;
+            ViewResult one, threaded;
             REQUIRE(town.world.view(views[v], one).has_value());
             REQUIRE(town.world.view(views[v], threaded, pool).has_value());
             CHECK(test::ranges::equal(one.ids(), threaded.ids()));
@@ -91,7 +91,7 @@ TEST_SUITE("world/occlusion") {
         // Again with fewer views, and without occlusion.
         REQUIRE(town.world.view(std::span(views).first(2), together).has_value());
         for (std::size_t i = 0; i < together.size(); ++i) CHECK(together.view_mask(i) < 4);
-        VisibleInViews plain;
+        MultiViewResult plain;
         for (ViewRequest& view : views) view.occlusion.reset();
         REQUIRE(town.world.view(std::span(views).first(2), plain).has_value());
         CHECK(plain.size() > together.size());
@@ -100,7 +100,7 @@ TEST_SUITE("world/occlusion") {
 
         // An engine's own matrix sees what the camera sees, up to rounding.
         const Camera camera = town.camera(random);
-        VisibleObjects by_camera, by_matrix;
+        ViewResult by_camera, by_matrix;
         REQUIRE(town.world.view({.camera = camera, .occlusion = OcclusionOptions{}}, by_camera).has_value());
         const ViewMatrix matrix{world_to_clip(camera)};
         REQUIRE(town.world.view({.matrix = matrix, .occlusion = OcclusionOptions{}}, by_matrix).has_value());
@@ -116,8 +116,8 @@ TEST_SUITE("world/occlusion") {
             for (ViewRequest& view : views) view = {.camera = town.camera(random), .occlusion = OcclusionOptions{}};
             ViewRequest listing = views[0];
             listing.occlusion->list_occluded = true;
-            VisibleObjects visible;
-            VisibleInViews in_views;
+            ViewResult visible;
+            MultiViewResult in_views;
             const auto frame = [&](double shift) {
                 for (std::size_t i = 0; i < town.boxes.size(); i += 3) town.boxes[i].center.x += shift;
                 REQUIRE(town.world.set_bounds(town.things, town.boxes).has_value());

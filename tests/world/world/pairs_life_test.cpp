@@ -35,11 +35,11 @@ Bound random_bound(NearMisses& random) {
 
 // The manifold of two bounds, from the one with the lower index.
 collide::Manifold touch(const Bound& a, const Bound& b) {
-    const bool ball_a = a.kind == BoundKind::ball, ball_b = b.kind == BoundKind::ball;
+    const bool sphere_a = a.kind == BoundKind::sphere, sphere_b = b.kind == BoundKind::sphere;
     const Sphere of_a{a.box.center, a.radius}, of_b{b.box.center, b.radius};
-    if (ball_a && ball_b) return collide::contact_manifold(of_a, of_b);
-    if (ball_b) return collide::contact_manifold(a.box, of_b);
-    if (!ball_a) return collide::contact_manifold(a.box, b.box);
+    if (sphere_a && sphere_b) return collide::contact_manifold(of_a, of_b);
+    if (sphere_b) return collide::contact_manifold(a.box, of_b);
+    if (!sphere_a) return collide::contact_manifold(a.box, b.box);
     collide::Manifold manifold = collide::contact_manifold(b.box, of_a);
     manifold.normal = -manifold.normal;
     return manifold;
@@ -157,7 +157,7 @@ class Life {
         if (kind == 6)
             bodies.insert_or_assign(known->first,
                                     convex::Body::box(glm::vec3(object.bound.box.half_extents) *
-                                                      (object.bound.kind == BoundKind::ball ? 0.57f : 0.99f))
+                                                      (object.bound.kind == BoundKind::sphere ? 0.57f : 0.99f))
                                         .value());
         for (const auto& [world, handle] : in_worlds(known->first)) {
             Result<void> done;
@@ -251,8 +251,8 @@ TEST_SUITE("world/pairs life") {
                     [&](const Key& pair) { return have_bodies(pair) && bodies_meet[pair]; }, before.body_contacts));
                 const auto pose_of = [&](std::uint32_t id) {
                     const Bound& bound = model.objects.at(id).bound;
-                    const bool ball = bound.kind == BoundKind::ball;
-                    return RigidTransform{ball ? glm::dmat3(1.0) : glm::dmat3(bound.box.axes), bound.box.center};
+                    const bool sphere = bound.kind == BoundKind::sphere;
+                    return RigidTransform{sphere ? glm::dmat3(1.0) : glm::dmat3(bound.box.axes), bound.box.center};
                 };
                 for (const Key& pair : pairs)
                     if (have_bodies(pair)) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What meets a box, a ball, a capsule or a body, and what is nearest.
+// What meets a box, a sphere, a capsule or a body, and what is nearest.
 #include <doctest/doctest.h>
 #include <cmath>
 #include <crofton/convex/query.hpp>
@@ -31,21 +31,21 @@ TEST_SUITE("world/shape_queries") {
             const auto half = static_cast<float>(i % 2 ? std::exp2(random.number(-40.0, 2.0)) : 0.0);
             const Obb box = box_at(far * random.direction(), half);
             const int k = i % 3;
-            Sphere ball{box.center, radius};
-            ball.center[k] += (i % 4 < 2 ? 1.0 : -1.0) * (double{half} + radius);
+            Sphere sphere{box.center, radius};
+            sphere.center[k] += (i % 4 < 2 ? 1.0 : -1.0) * (double{half} + radius);
             World world;
             REQUIRE(world.add({.bound = box}).has_value());
             for (int update = 0; update < (i % 5 ? 1 : 4); ++update) REQUIRE(world.update().has_value());
-            for (int step = 0; step < 3; ++step) ball.center[k] = std::nextafter(ball.center[k], -kInfinity);
+            for (int step = 0; step < 3; ++step) sphere.center[k] = std::nextafter(sphere.center[k], -kInfinity);
             for (int step = 0; step < 6; ++step) {
-                const bool meets = collide::intersects(box, ball);
+                const bool meets = collide::intersects(box, sphere);
                 Vector<ObjectRef> found;
-                world.overlap(ball, found);
+                world.overlap(sphere, found);
                 CHECK(found.size() == (meets ? 1 : 0));
-                world.overlap(collide::Capsule{ball.center, ball.center, radius}, found);
+                world.overlap(collide::Capsule{sphere.center, sphere.center, radius}, found);
                 CHECK(found.size() == (meets ? 1 : 0));
                 touches += meets;
-                ball.center[k] = std::nextafter(ball.center[k], kInfinity);
+                sphere.center[k] = std::nextafter(sphere.center[k], kInfinity);
             }
         }
         CHECK(touches > 600);
@@ -80,7 +80,7 @@ TEST_SUITE("world/shape_queries") {
         CHECK(!world.closest(Sphere{{-9e29, 0.0, 0.0}, 1.0}, 1e30));
     }
 
-    TEST_CASE("balls and capsules beyond the largest coordinate meet nothing, and nothing is near them") {
+    TEST_CASE("spheres and capsules beyond the largest coordinate meet nothing, and nothing is near them") {
         World world;
         REQUIRE(world.add({.bound = Obb{}}).has_value());
         REQUIRE(world.add({.bound = Sphere{{3, 0, 0}, 1.0}}).has_value());
@@ -97,7 +97,7 @@ TEST_SUITE("world/shape_queries") {
         }
     }
 
-    TEST_CASE("balls smaller than any float meet where they touch") {
+    TEST_CASE("spheres smaller than any float meet where they touch") {
         for (const double radius : {1e-46, 1e-45, 2e-45, 1e-40, 1e-38}) {
             CAPTURE(radius);
             World world;
@@ -109,7 +109,7 @@ TEST_SUITE("world/shape_queries") {
     }
 
     TEST_CASE("a box whose axes are not quite orthonormal is met at its corners") {
-        const auto speck = convex::Body::ball(1e-14).value();
+        const auto speck = convex::Body::sphere(1e-14).value();
         std::mt19937_64 rng(8);
         std::uniform_real_distribution<float> number(-1.0f, 1.0f), size(1.0f, 2.0f);
         for (int round = 0; round < 100; ++round) {

@@ -34,7 +34,7 @@ struct Told {
     }
 };
 
-void add_ball(World& world, double x) {
+void add_sphere(World& world, double x) {
     REQUIRE(world.add({.bound = Sphere{{x, 0.0, -5.0}, 1.0}}).has_value());
 }
 
@@ -44,15 +44,15 @@ TEST_SUITE("world/trace") {
     TEST_CASE("zones nest and end, and counters agree with the answers") {
         Told told;
         World world({.trace = told.hooks()});
-        add_ball(world, 0.0);
-        add_ball(world, 1.0);
-        add_ball(world, 300.0);
+        add_sphere(world, 0.0);
+        add_sphere(world, 1.0);
+        add_sphere(world, 300.0);
         REQUIRE(world.update().has_value());
         CHECK(told.has("update: transforms"));
         CHECK(told.has("update: pairs and contacts"));
         CHECK(told.ended.back() == "World::update");
         CHECK(told.counts["pairs"] == 1.0);
-        VisibleObjects visible;
+        ViewResult visible;
         REQUIRE(world.view({.camera = Camera{}}, visible).has_value());
         CHECK(told.ended.back() == "World::view");
         CHECK(told.counts["objects in view"] == static_cast<double>(visible.ids().size()));
@@ -71,7 +71,7 @@ TEST_SUITE("world/trace") {
         hooks.count = nullptr;
         World world({.trace = hooks});
         World moved = std::move(world);
-        add_ball(moved, 0.0);
+        add_sphere(moved, 0.0);
         REQUIRE(moved.update().has_value());
         CHECK(told.has("World::update"));
         CHECK(told.counts.empty());

@@ -55,13 +55,13 @@ struct Crowd {
             plain.push_back({frustum_of(camera).value(), kLayers[v]});
         }
         limits = *cull::limits_of(camera, 1080.0, 20.0);
-        among.assign(10, 0xf0f0f0f0f0f0f0f0u);
+        candidate_mask.assign(10, 0xf0f0f0f0f0f0f0f0u);
     }
     [[nodiscard]] ViewRequest request(std::size_t v, const cull::CullOptions& how) const {
         return {.camera = cameras[v],
                 .layers = kLayers[v],
                 .limits = how.limits,
-                .among = how.among,
+                .candidate_mask = how.candidate_mask,
                 .order = how.order,
                 .mode = how.mode};
     }
@@ -70,9 +70,9 @@ struct Crowd {
         const auto id = static_cast<std::uint32_t>(i);
         if (layers == 0 || cull::classify(plain[v].frustum, boxes[i], how.mode) == cull::Verdict::outside) return false;
         if (how.limits && !cull::is_worth_drawing(*how.limits, boxes[i], id, layers)) return false;
-        return i % 10 == 0 || cull::is_among(how.among, id);
+        return i % 10 == 0 || cull::is_candidate(how.candidate_mask, id);
     }
-    void check_one(const VisibleObjects& visible, std::size_t v, const cull::CullOptions& how) const {
+    void check_one(const ViewResult& visible, std::size_t v, const cull::CullOptions& how) const {
         const std::vector<std::uint32_t> ids(visible.ids().begin(), visible.ids().end());
         std::vector<std::uint32_t> expected, sorted = ids;
         for (std::uint32_t i = 0; i < boxes.size(); ++i)
@@ -93,7 +93,7 @@ struct Crowd {
         for (std::size_t i = 0; i < ids.size(); ++i)
             CHECK((i < visible.inside_count()) == (verdict(ids[i]) == cull::Verdict::inside));
     }
-    void check_many(const VisibleInViews& visible, const std::array<cull::CullOptions, 3>& how) const {
+    void check_many(const MultiViewResult& visible, const std::array<cull::CullOptions, 3>& how) const {
         std::vector<std::uint32_t> masks(boxes.size(), 0);
         for (std::size_t i = 0; i < visible.size(); ++i) {
             CHECK(masks[visible.ids()[i]] == 0);
@@ -113,7 +113,7 @@ struct Crowd {
     std::vector<Camera> cameras;
     std::vector<cull::View> plain;
     cull::DrawLimits limits;
-    std::vector<std::uint64_t> among;
+    std::vector<std::uint64_t> candidate_mask;
 };
 
 }  // namespace
@@ -128,14 +128,14 @@ TEST_SUITE("world/view_options") {
             if (choice & 1u) how.mode = cull::CullMode::conservative;
             if (choice & 2u) how.order = cull::ResultOrder::tree;
             if (choice & 4u) how.limits = &crowd.limits;
-            if (choice & 8u) how.among = crowd.among;
+            if (choice & 8u) how.candidate_mask = crowd.candidate_mask;
             Executor& executor = choice & 16u ? static_cast<Executor&>(pool) : serial_executor();
             CAPTURE(choice);
             std::array<ViewRequest, 3> requests;
             for (std::size_t v = 0; v < 3; ++v) {
                 requests[v] = crowd.request(v, how);
                 if (choice & 32u) requests[v].occlusion = OcclusionOptions{.list_occluded = (choice & 16u) != 0};
-                VisibleObjects visible;
+                ViewResult visible;
                 REQUIRE(crowd.world.view(requests[v], visible, executor).has_value());
                 crowd.check_one(visible, v, how);
                 ViewRequest same = requests[v];
@@ -145,7 +145,7 @@ TEST_SUITE("world/view_options") {
                 REQUIRE(crowd.world.view(same, visible, executor).has_value());
                 crowd.check_one(visible, v, how);
             }
-            VisibleInViews many;
+            MultiViewResult many;
             REQUIRE(crowd.world.view(requests, many, executor).has_value());
             crowd.check_many(many, {how, how, how});
             CHECK(many.view_count() == 3);
@@ -165,13 +165,13 @@ TEST_SUITE("world/view_options") {
             std::array<ViewRequest, 3> requests;
             for (std::size_t v = 0; v < 3; ++v) {
                 if (choice >> v & 1u) how[v].limits = &crowd.limits;
-                if (choice >> (v + 1) & 1u) how[v].among = crowd.among;
+                if (choice >> (v + 1) & 1u) how[v].candidate_mask = crowd.candidate_mask;
                 if (choice >> (v + 2) & 1u) how[v].mode = cull::CullMode::conservative;
                 if (choice & 64u) how[v].order = cull::ResultOrder::tree;
                 requests[v] = crowd.request(v, how[v]);
                 if (choice >> (v + 3) & 1u) requests[v].occlusion.emplace();
             }
-            VisibleInViews many, threaded;
+            MultiViewResult many, threaded;
             REQUIRE(crowd.world.view(requests, many).has_value());
             crowd.check_many(many, how);
             REQUIRE(crowd.world.view(requests, threaded, pool).has_value());
@@ -182,7 +182,7 @@ TEST_SUITE("world/view_options") {
 
     TEST_CASE("a request that contradicts itself is refused by name, and the answer stays as it was") {
         const Crowd crowd;
-        VisibleObjects visible;
+        ViewResult visible;
         REQUIRE(crowd.world.view(crowd.request(0, {}), visible).has_value());
         const std::vector<std::uint32_t> before(visible.ids().begin(), visible.ids().end());
         const Frustum volume = crowd.plain[0].frustum;
@@ -201,12 +201,12 @@ TEST_SUITE("world/view_options") {
             CHECK_FALSE(error.message.empty());
             CHECK(test::ranges::equal(visible.ids(), before));
             const std::array<ViewRequest, 2> second{crowd.request(0, {}), wrong};
-            VisibleInViews many;
+            MultiViewResult many;
             CHECK(error_of(crowd.world.view(second, many)).item == 1);
         }
         std::array<ViewRequest, 2> orders{crowd.request(0, {}), crowd.request(1, {})};
         orders[1].order = cull::ResultOrder::tree;
-        VisibleInViews many;
+        MultiViewResult many;
         CHECK(error_of(crowd.world.view(orders, many)).item == 1);
     }
 
@@ -217,11 +217,11 @@ TEST_SUITE("world/view_options") {
         std::size_t hidden = 0;
         for (int trial = 0; trial < 20; ++trial) {
             ViewRequest request{.camera = town.camera(random), .order = cull::ResultOrder::tree};
-            VisibleObjects plain, ascending, tree;
+            ViewResult plain, ascending, tree;
             REQUIRE(town.world.view(request, plain).has_value());
             request.occlusion = OcclusionOptions{.list_occluded = true};
             REQUIRE(town.world.view(request, tree).has_value());
-            VisibleInViews many;
+            MultiViewResult many;
             REQUIRE(town.world.view(std::span(&request, 1), many).has_value());
             request.order = cull::ResultOrder::ascending;
             REQUIRE(town.world.view(request, ascending).has_value());
@@ -253,7 +253,7 @@ TEST_SUITE("world/view_options") {
             if (occlusion)
                 for (ViewRequest& request : requests) request.occlusion.emplace();
             CountingExecutor executor;
-            VisibleInViews many;
+            MultiViewResult many;
             REQUIRE(crowd.world.view(requests, many, executor).has_value());
             CHECK(executor.calls > 0);
         }
@@ -265,7 +265,7 @@ TEST_SUITE("world/view_options") {
             std::vector<ViewRequest> requests(33, crowd.request(0, {}));
             if (occlusion)
                 for (ViewRequest& request : requests) request.occlusion.emplace();
-            VisibleInViews many;
+            MultiViewResult many;
             const Error error = error_of(crowd.world.view(requests, many));
             CHECK(error.code == ErrorCode::out_of_range);
             CHECK(error.item == 32);

@@ -10,14 +10,14 @@ pub fn tetrahedron(world: &mut World) -> Mesh {
     world.add_mesh(&MeshData::new(&TETRAHEDRON, &FACES)).unwrap()
 }
 
-pub fn ball(world: &mut World, center: [f64; 3], radius: f64, user: u64) -> Object {
-    world.add(&Description::bound(Bound::Ball { center, radius }).user(user)).unwrap()
+pub fn sphere(world: &mut World, center: [f64; 3], radius: f64, user: u64) -> Object {
+    world.add(&Description::bound(Bound::Sphere { center, radius }).user(user)).unwrap()
 }
 
-/// Balls of radius 0.25 along x at 0, 1, 2, …, five units before the default camera.
+/// Spheres of radius 0.25 along x at 0, 1, 2, …, five units before the default camera.
 pub fn row(count: usize) -> (World, Vec<Object>) {
     let mut world = World::new().unwrap();
-    let objects = (0..count).map(|i| ball(&mut world, [i as f64, 0.0, -5.0], 0.25, i as u64)).collect();
+    let objects = (0..count).map(|i| sphere(&mut world, [i as f64, 0.0, -5.0], 0.25, i as u64)).collect();
     world.update().unwrap();
     (world, objects)
 }

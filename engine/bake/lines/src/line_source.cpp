@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint64_t kMostGroups = 1 << 16;
 
-Sphere ball_around(const Aabb& box) {
+Sphere sphere_around(const Aabb& box) {
     return {box.center(), glm::length(box.half_extents())};
 }
 
@@ -31,12 +31,12 @@ const char* to_string(LineMethod method) {
 }
 
 LineSource::LineSource(const Aabb& bounds, LineMethod method, std::uint64_t seed, sampling::Sequence sequence)
-    : bounds_(bounds), ball_(ball_around(bounds)), method_(method), seed_(seed), points_(seed, sequence) {
+    : bounds_(bounds), sphere_(sphere_around(bounds)), method_(method), seed_(seed), points_(seed, sequence) {
     CROFTON_ASSERT(surface_area() > 0.0, "lines need a body of two dimensions at least");
 }
 
 double LineSource::surface_area() const {
-    if (method_ != LineMethod::walls) return 4.0 * std::numbers::pi * ball_.radius * ball_.radius;
+    if (method_ != LineMethod::walls) return 4.0 * std::numbers::pi * sphere_.radius * sphere_.radius;
     const glm::dvec3 d = bounds_.max - bounds_.min;
     return 2.0 * (d.x * d.y + d.y * d.z + d.z * d.x);
 }
@@ -45,15 +45,15 @@ void LineSource::draw(std::uint64_t block, Vector<Line>& lines) const {
     lines.clear();
     if (method_ == LineMethod::bundles) {
         sampling::Random random(seed_, block);
-        const double shadow = std::numbers::pi * ball_.radius * ball_.radius;
-        sampling::append_line_bundle(ball_, shadow / static_cast<double>(kBlock), random, lines);
+        const double shadow = std::numbers::pi * sphere_.radius * sphere_.radius;
+        sampling::append_line_bundle(sphere_, shadow / static_cast<double>(kBlock), random, lines);
         return;
     }
     for (std::uint64_t i = block * kBlock; i < (block + 1) * kBlock; ++i) {
         if (method_ == LineMethod::sphere_points)
-            lines.push_back(sampling::line_through_two_sphere_points(ball_, points_.at<4>(i)));
+            lines.push_back(sampling::line_through_two_sphere_points(sphere_, points_.at<4>(i)));
         else if (method_ == LineMethod::disc)
-            lines.push_back(sampling::line_through_disc(ball_, points_.at<4>(i)));
+            lines.push_back(sampling::line_through_disc(sphere_, points_.at<4>(i)));
         else
             lines.push_back(sampling::line_from_box(bounds_, points_.at<5>(i)));
     }

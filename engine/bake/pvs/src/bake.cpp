@@ -207,8 +207,8 @@ class BlockTracing {
     std::size_t words_ = state_.found.words();
 };
 
-std::uint64_t fingerprint_of(const Subject& subject, const Cells& cells, const BakeOptions& options) {
-    Vector<std::uint64_t> sums{pvs::fingerprint_of(subject)};
+std::uint64_t fingerprint_of(const BakeGeometry& geometry, const Cells& cells, const BakeOptions& options) {
+    Vector<std::uint64_t> sums{pvs::fingerprint_of(geometry)};
     for (std::size_t i = 0; i < cells.size(); ++i) {
         const Aabb box = cells.box(i);
         const ConvexCell convex = cells.corners(i);
@@ -220,23 +220,23 @@ std::uint64_t fingerprint_of(const Subject& subject, const Cells& cells, const B
     return bake::checksum(std::as_bytes(std::span(sums)));
 }
 
-Result<void> check(const Subject& subject, const Cells& cells, const BakeOptions& options) {
+Result<void> check(const BakeGeometry& geometry, const Cells& cells, const BakeOptions& options) {
     const auto within = [](double x) { return x > 0.0 && x < 1.0; };
     if (!within(options.epsilon) || !within(options.confidence))
         return fail(ErrorCode::invalid_argument, kNoItem, "pvs: epsilon and confidence lie between 0 and 1");
     if (cells.size() == 0 || !(cells.bounds().min.x <= cells.bounds().max.x))
         return fail(ErrorCode::empty, kNoItem, "pvs: there are no cells");
-    if (subject.object_of.size() != subject.mesh.triangle_count())
+    if (geometry.object_of.size() != geometry.mesh.triangle_count())
         return fail(ErrorCode::invalid_argument, kNoItem, "pvs: each triangle needs an object");
-    for (std::size_t t = 0; t < subject.object_of.size(); ++t)
-        if (subject.object_of[t] >= subject.boxes.size())
+    for (std::size_t t = 0; t < geometry.object_of.size(); ++t)
+        if (geometry.object_of[t] >= geometry.boxes.size())
             return fail(ErrorCode::out_of_range, t, "pvs: a triangle's object has no box");
-    if (!is_in_range(subject.origin)) return fail(ErrorCode::non_finite, kNoItem, "pvs: the origin is not finite");
-    if (subject.boxes.size() > 0xffffffffu || cells.size() * subject.boxes.size() > kMaxPairs)
-        return fail(ErrorCode::out_of_range, cells.size() * subject.boxes.size(),
+    if (!is_in_range(geometry.origin)) return fail(ErrorCode::non_finite, kNoItem, "pvs: the origin is not finite");
+    if (geometry.boxes.size() > 0xffffffffu || cells.size() * geometry.boxes.size() > kMaxPairs)
+        return fail(ErrorCode::out_of_range, cells.size() * geometry.boxes.size(),
                     "pvs: more than 2^34 pairs of a cell and an object: take fewer cells, or put objects together");
-    for (std::size_t i = 0; i < subject.boxes.size(); ++i)
-        if (auto valid = validate(subject.boxes[i], i); !valid) return valid;
+    for (std::size_t i = 0; i < geometry.boxes.size(); ++i)
+        if (auto valid = validate(geometry.boxes[i], i); !valid) return valid;
     return {};
 }
 
@@ -247,41 +247,41 @@ Bake::~Bake() = default;
 Bake::Bake(Bake&&) noexcept = default;
 Bake& Bake::operator=(Bake&&) noexcept = default;
 
-Result<Bake> Bake::create(const Subject& subject, const Cells& cells, const BakeOptions& options) {
+Result<Bake> Bake::create(const BakeGeometry& geometry, const Cells& cells, const BakeOptions& options) {
     return crofton::detail::recover([&]() -> Result<Bake> {
-        if (auto checked = check(subject, cells, options); !checked) return tl::unexpected(checked.error());
-        auto tracer = lines::LineTracer::build(subject.mesh);
+        if (auto checked = check(geometry, cells, options); !checked) return tl::unexpected(checked.error());
+        auto tracer = lines::LineTracer::build(geometry.mesh);
         if (!tracer) return tl::unexpected(tracer.error());
-        const auto plan = plan_lines(cells, cells.size() * subject.boxes.size(), options);
+        const auto plan = plan_lines(cells, cells.size() * geometry.boxes.size(), options);
         if (!plan) return tl::unexpected(plan.error());
         auto state = std::make_unique<State>();
         state->cells = cells;
         state->options = options;
-        state->boxes = subject.boxes;
-        state->origin = subject.origin;
-        state->mesh.positions = subject.mesh.positions;
-        state->mesh.indices = subject.mesh.indices;
-        state->object_of = subject.object_of;
-        state->subject = pvs::fingerprint_of(subject);
+        state->boxes = geometry.boxes;
+        state->origin = geometry.origin;
+        state->mesh.positions = geometry.mesh.positions;
+        state->mesh.indices = geometry.mesh.indices;
+        state->object_of = geometry.object_of;
+        state->geometry = pvs::fingerprint_of(geometry);
         state->plan = *plan;
-        state->walk.emplace(cells, subject.origin);
+        state->walk.emplace(cells, geometry.origin);
         Found& found = state->found;
-        found.name = {fingerprint_of(subject, cells, options),
+        found.name = {fingerprint_of(geometry, cells, options),
                       cells.size(),
                       plan->blocks,
-                      static_cast<std::uint32_t>(subject.boxes.size()),
+                      static_cast<std::uint32_t>(geometry.boxes.size()),
                       options.sides == occlude::Sides::both ? 1u : 0u,
                       options.epsilon,
                       options.confidence};
         state->baked.assign(found.words(), 0);
-        for (const std::uint32_t o : subject.object_of) state->baked[o / 64] |= std::uint64_t{1} << (o % 64);
+        for (const std::uint32_t o : geometry.object_of) state->baked[o / 64] |= std::uint64_t{1} << (o % 64);
         found.flags.assign(cells.size(), 0);
         found.seen.assign(cells.size() * found.words(), 0);
         Aabb all = cells.bounds();
-        all.include({tracer->bounds().min + subject.origin, tracer->bounds().max + subject.origin});
+        all.include({tracer->bounds().min + geometry.origin, tracer->bounds().max + geometry.origin});
         for (int k = 0; k < 3; ++k)
             state->extent = (std::max)(
-                {state->extent, std::abs(all.min[k] - subject.origin[k]), std::abs(all.max[k] - subject.origin[k])});
+                {state->extent, std::abs(all.min[k] - geometry.origin[k]), std::abs(all.max[k] - geometry.origin[k])});
         state->thin = static_cast<float>(2e-6 * state->extent);
         state->tracer.emplace(std::move(*tracer));
         return Bake(std::move(state));
@@ -299,7 +299,7 @@ Result<void> Bake::run(const RunLimits& limits, Executor& executor) {
         std::uint64_t lines = 0;
         // Blocks between two looks at the limits. Where somebody waits for these, as few as take a moment.
         const std::uint64_t most = 32 * std::uint64_t{executor.concurrency()};
-        const bool is_awaited = limits.go_on != nullptr || std::isfinite(limits.seconds);
+        const bool is_awaited = limits.should_stop != nullptr || std::isfinite(limits.seconds);
         std::uint64_t wave = is_awaited && limits.lines == RunLimits{}.lines ? executor.concurrency() : most;
         for (;;) {
             const auto wave_start = Clock::now();
@@ -307,7 +307,8 @@ Result<void> Bake::run(const RunLimits& limits, Executor& executor) {
             const auto done = static_cast<double>(found.done.count_within(shard));
             if (todo.begin >= todo.end || lines >= limits.lines ||
                 std::chrono::duration<double>(Clock::now() - start).count() >= limits.seconds ||
-                (limits.go_on && !limits.go_on(limits.user, done / static_cast<double>(shard.end - shard.begin))))
+                (limits.should_stop &&
+                 limits.should_stop(limits.user, done / static_cast<double>(shard.end - shard.begin))))
                 return {};
             crofton::detail::recoverable_for(executor, todo.end - todo.begin, 1,
                                              [&](std::size_t begin, std::size_t end, unsigned worker) {

@@ -78,7 +78,7 @@ struct Bake::State {
     glm::dvec3 origin{0.0};
     TriangleMesh mesh;  // of the subject, relative to the origin
     Vector<std::uint32_t> object_of;
-    std::uint64_t subject = 0;    // its fingerprint
+    std::uint64_t geometry = 0;   // its fingerprint
     Vector<std::uint64_t> baked;  // by object: it has triangles
     double extent = 0.0;          // of coordinates relative to the origin, cells included
     float thin = 0.0f;            // shorter ways than this are rounding's: between two sheets, through a cell's edge

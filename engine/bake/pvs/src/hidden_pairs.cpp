@@ -262,7 +262,7 @@ class Prover {
 void prove_hidden(const Bake::State& bake, std::span<const Blocker> bodies, const ProofOptions& options,
                   Executor& executor, Vector<std::uint64_t>& open) {
     if (bodies.empty() && options.surface_steps == 0) return;
-    crofton::detail::StopSignal stop(options.go_on, options.user);
+    crofton::detail::StopSignal stop(options.should_stop, options.user);
     if (stop.is_raised(0.0)) return;
     std::atomic<std::uint64_t> answered{0};
     const double margin = kMargin * bake.extent + 1e-13 * glm::length(bake.origin);

@@ -37,7 +37,7 @@ Result<Pvs> Pvs::finish(const Bake& bake, std::span<const PlacedOccluder> occlud
         Pvs pvs;
         pvs.cells_ = state.cells;
         pvs.objects_ = state.found.name.objects;
-        pvs.subject_ = state.subject;
+        pvs.geometry_ = state.geometry;
         pvs.epsilon_ = bake.epsilon_reached();
         pvs.confidence_ = state.options.confidence;
         for (const std::uint16_t flags : state.found.flags) pvs.kinds_.push_back(kind_of(flags));

@@ -18,7 +18,7 @@ struct Head {
     std::uint32_t counts[3] = {};      // 0: boxes or convex cells, in a section of their own
     std::uint32_t objects = 0;
     double epsilon = 1.0, confidence = 0.0;
-    std::uint64_t subject = 0;
+    std::uint64_t geometry = 0;
 };
 static_assert(sizeof(Head) == 88);
 
@@ -62,7 +62,7 @@ struct PvsFile {
             head.counts[k] = pvs.cells_.counts()[k];
         }
         head.objects = pvs.objects_;
-        head.subject = pvs.subject_;
+        head.geometry = pvs.geometry_;
         head.epsilon = pvs.epsilon_, head.confidence = pvs.confidence_;
         Vector<Aabb> boxes;
         Vector<ConvexCell> convex;
@@ -104,7 +104,7 @@ struct PvsFile {
         Pvs pvs;
         pvs.cells_ = std::move(*cells);
         pvs.objects_ = head->front().objects;
-        pvs.subject_ = head->front().subject;
+        pvs.geometry_ = head->front().geometry;
         pvs.epsilon_ = head->front().epsilon, pvs.confidence_ = head->front().confidence;
         if (kinds->size() != pvs.cells_.size() || baked->size() != pvs.words())
             return damaged("sections are not as long as the header says");

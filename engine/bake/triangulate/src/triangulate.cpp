@@ -86,7 +86,7 @@ Result<void> Triangulator::triangulate(const Polygon& polygon, const Triangulate
             if (!solved) return tl::unexpected<Error>(solved.error());
             if (!result.optimal && !workspace_->complete(watch, result)) {
                 result.triangles.clear();
-                return fail(ErrorCode::cancelled, kNoItem, "cancelled by the progress callback");
+                return fail(ErrorCode::cancelled, kNoItem, "stopped by the caller");
             }
             return {};
         }

@@ -32,8 +32,8 @@ class Watch {
     }
     // Whether the caller has cancelled. What is done after the search has no limits, but can be cancelled all the same.
     [[nodiscard]] bool cancelled_by_now() {
-        if (!cancelled_ && options_.progress != nullptr && ++quiet_steps_ % kStepsBetween == 0)
-            cancelled_ = !options_.progress(options_.user, fraction_);
+        if (!cancelled_ && options_.should_stop != nullptr && ++quiet_steps_ % kStepsBetween == 0)
+            cancelled_ = options_.should_stop(options_.user, fraction_);
         return cancelled_;
     }
     // So far, the same in every run.
@@ -54,7 +54,7 @@ class Watch {
         // Work ends exactly where it is used up.
         next_check_ = std::min(steps_ + kStepsBetween, std::max(work_, steps_ + 1));
         fraction_ = std::max(fraction_, fraction);
-        cancelled_ = options_.progress != nullptr && !options_.progress(options_.user, fraction_);
+        cancelled_ = options_.should_stop != nullptr && options_.should_stop(options_.user, fraction_);
         stopped_ = cancelled_ || steps_ >= work_ || (limited_ && Clock::now() >= deadline_);
     }
 

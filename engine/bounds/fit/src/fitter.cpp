@@ -76,7 +76,7 @@ Result<void> Fitter::assign(std::span<const Point> points) {
 }
 
 Supports Fitter::supports(const glm::dmat3& directions) {
-    for (const Known& known : known_)
+    for (const CachedSupports& known : known_)
         if (known.directions == directions) return known.supports;
     known_.push_back({directions, cloud_.supports(directions)});
     return known_.back().supports;
@@ -250,11 +250,12 @@ Result<ExactFit> Fitter::exact(std::span<const Point> points, const ExactOptions
     const double scale = flat ? 0.0 : normalised.scale;  // the search's values are areas then, and the volume is 0
 
     const Deadline deadline(options.time_budget_seconds);
-    const auto keep_going = [&](double value, double bound, std::uint64_t cells) {
-        if (options.progress != nullptr && !(*options.progress)({value * scale, bound * scale, cells})) return false;
-        return !deadline.passed();
+    const auto should_stop = [&](double value, double bound, std::uint64_t cells) {
+        if (options.should_stop != nullptr && (*options.should_stop)({value * scale, bound * scale, cells}))
+            return true;
+        return deadline.passed();
     };
-    const FunctionRef<bool(double, double, std::uint64_t)> callback(keep_going);
+    const FunctionRef<bool(double, double, std::uint64_t)> callback(should_stop);
     SearchLimits limits{options.gap, options.max_cells, &callback};
     const SearchResult found = global_search(weights, limits);
 

@@ -56,13 +56,13 @@ class Fitter {
     // The weights to search by: those asked for, or those of the area where the volume is 0 in many frames.
     [[nodiscard]] Weights search_weights(const Weights& weights);
 
-    struct Known {
+    struct CachedSupports {
         glm::dmat3 directions;
         Supports supports;
     };
 
     PointCloud cloud_;
-    Vector<Known> known_;
+    Vector<CachedSupports> known_;
     bool forgotten_ = false;  // the interior points, if that helps
     SearchBuffers buffers_;
     Vector<glm::dvec3> subset_;

@@ -298,13 +298,13 @@ Distance distance(const Obb& box, const Capsule& capsule) {
     return result;
 }
 
-Distance distance(const Capsule& capsule, const Sphere& ball) {
+Distance distance(const Capsule& capsule, const Sphere& sphere) {
     Distance result;
-    result.on_a = closest_on_segment(ball.center, capsule.begin, capsule.end);
-    result.on_b = ball.center;
+    result.on_a = closest_on_segment(sphere.center, capsule.begin, capsule.end);
+    result.on_b = sphere.center;
     const glm::dvec3 way = result.on_b - result.on_a;
     result.distance = glm::length(way);
-    grow_by_radii(capsule.radius, ball.radius, way, result);
+    grow_by_radii(capsule.radius, sphere.radius, way, result);
     return result;
 }
 

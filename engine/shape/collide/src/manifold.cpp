@@ -11,12 +11,12 @@
 namespace crofton::collide {
 namespace {
 
-// `axis` points to the ball, which lies `depth` ≥ 0 deep in the other body.
-Manifold touch_of_ball(const Sphere& ball, const glm::dvec3& axis, double depth) {
+// `axis` points to the sphere, which lies `depth` ≥ 0 deep in the other body.
+Manifold touch_of_sphere(const Sphere& sphere, const glm::dvec3& axis, double depth) {
     Manifold manifold;
     manifold.normal = axis;
     manifold.depth = depth;
-    manifold.points[manifold.count++] = {ball.center - (ball.radius - 0.5 * depth) * axis, depth};
+    manifold.points[manifold.count++] = {sphere.center - (sphere.radius - 0.5 * depth) * axis, depth};
     return manifold;
 }
 
@@ -63,28 +63,28 @@ std::optional<FaceGap> gap_across_face(const Obb& box, const glm::dvec3& point) 
 
 }  // namespace
 
-Manifold contact_manifold(const Obb& box, const Sphere& ball) {
-    if (!intersects(box, ball)) return {};
+Manifold contact_manifold(const Obb& box, const Sphere& sphere) {
+    if (!intersects(box, sphere)) return {};
     // Near the box's center, so that nothing is lost far from the origin.
-    const Sphere near_ball{ball.center - box.center, ball.radius};
+    const Sphere near_sphere{sphere.center - box.center, sphere.radius};
     const Obb near_box{glm::dvec3(0.0), box.axes, box.half_extents};
-    if (const auto face = gap_across_face(near_box, near_ball.center))
-        return touch_of_ball(ball, face->normal, std::max(0.0, ball.radius - face->gap));
-    const Distance center = distance(near_box, Capsule{near_ball.center, near_ball.center, 0.0});
+    if (const auto face = gap_across_face(near_box, near_sphere.center))
+        return touch_of_sphere(sphere, face->normal, std::max(0.0, sphere.radius - face->gap));
+    const Distance center = distance(near_box, Capsule{near_sphere.center, near_sphere.center, 0.0});
     const glm::dvec3 way = center.on_b - center.on_a;
     const double length = glm::length(way);
     // Nearer than this the direction is rounding: the face across which it lies farthest out parts them as well.
-    if (length > 1e-11 * glm::length(near_ball.center))
-        return touch_of_ball(ball, way / length, std::max(0.0, ball.radius - length));
-    const Penetration out = penetration(near_box, Obb{near_ball.center, glm::mat3(1.0f), glm::vec3(0.0f)});
-    return touch_of_ball(ball, out.axis, std::max(0.0, out.depth) + ball.radius);
+    if (length > 1e-11 * glm::length(near_sphere.center))
+        return touch_of_sphere(sphere, way / length, std::max(0.0, sphere.radius - length));
+    const Penetration out = penetration(near_box, Obb{near_sphere.center, glm::mat3(1.0f), glm::vec3(0.0f)});
+    return touch_of_sphere(sphere, out.axis, std::max(0.0, out.depth) + sphere.radius);
 }
 
 Manifold contact_manifold(const Sphere& a, const Sphere& b) {
     const glm::dvec3 way = b.center - a.center;
     const double length = glm::length(way), depth = a.radius + b.radius - length;
     if (!(depth >= 0.0)) return {};
-    return touch_of_ball(b, length > 0.0 ? way / length : glm::dvec3(0.0, 0.0, 1.0), depth);
+    return touch_of_sphere(b, length > 0.0 ? way / length : glm::dvec3(0.0, 0.0, 1.0), depth);
 }
 
 Penetration penetration(const Plane& half_space, const Obb& box) {

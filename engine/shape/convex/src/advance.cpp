@@ -27,7 +27,7 @@ constexpr double kShare = 0.03;
 
 class Advancement {
   public:
-    Advancement(const Placed& a, const Motion& motion_a, const Placed& b, const Motion& motion_b,
+    Advancement(const BodyAtPose& a, const Motion& motion_a, const BodyAtPose& b, const Motion& motion_b,
                 const CastOptions& options, double start, PairCache& cache)
         : flight_(a, motion_a, b, motion_b), options_(options), cache_(cache), start_(start) {
         early_ = std::min(options.early_out, options.duration);
@@ -75,7 +75,7 @@ Impact Advancement::miss(int steps) const {
 // As `distance`, where the bounds need not be close: a tenth of the distance. `reached`: it is not above `near`, and no
 // more is known.
 Contact Advancement::nearest(double near, bool& reached) {
-    const Placed a = flight_.a(), b = flight_.b();
+    const BodyAtPose a = flight_.a(), b = flight_.b();
     if (is_half_space(a) || is_half_space(b)) {
         const Distance d = distance(a, b);
         reached = d.distance <= near;
@@ -93,11 +93,12 @@ Contact Advancement::nearest(double near, bool& reached) {
 
 // The direction that proves the bound of round cores' distance, and the one between their nearest points, differ by the
 // root of what the search has left. Here that between the points, so that they are apart along the normal.
-void align(const Placed& a, const Placed& b, Contact& contact) {
+void align(const BodyAtPose& a, const BodyAtPose& b, Contact& contact) {
     const double ra = a.body.radius(), rb = b.body.radius();
     const glm::dvec3 on_a = contact.on_a - ra * contact.normal, on_b = contact.on_b + rb * contact.normal;
     const double length = glm::distance(on_a, on_b);
-    if (!(length > 1e-3 * (a.body.reach() + b.body.reach()))) return;  // what the points are off across would turn it
+    if (!(length > 1e-3 * (a.body.core_radius() + b.body.core_radius())))
+        return;  // what the points are off across would turn it
     contact.normal = (on_b - on_a) / length;
     contact.on_a = on_a + ra * contact.normal;
     contact.on_b = on_b - rb * contact.normal;
@@ -105,7 +106,7 @@ void align(const Placed& a, const Placed& b, Contact& contact) {
 
 // As `distance` and `penetration` tell.
 Contact Advancement::contact() {
-    const Placed a = flight_.a(), b = flight_.b();
+    const BodyAtPose a = flight_.a(), b = flight_.b();
     const Distance d = distance(a, b, &cache_);
     if (d.distance > 0.0) {
         Contact apart = contact_of(d);
@@ -179,7 +180,7 @@ Impact Advancement::run() {
 
 }  // namespace
 
-Impact advance(const Placed& a, const Motion& motion_a, const Placed& b, const Motion& motion_b,
+Impact advance(const BodyAtPose& a, const Motion& motion_a, const BodyAtPose& b, const Motion& motion_b,
                const CastOptions& options, double start, PairCache* cache) {
     PairCache own;
     return Advancement(a, motion_a, b, motion_b, options, start, cache != nullptr ? *cache : own).run();

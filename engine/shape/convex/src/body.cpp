@@ -49,14 +49,14 @@ void Body::set_corners(std::span<const glm::dvec3> corners) {
     for (std::size_t i = 0; i < 8; ++i)
         for (int k = 0; k < 3; ++k) corners_[k][i] = corners[std::min(i, corners.size() - 1)][k];
     for (const glm::dvec3& p : corners) {
-        reach_ = std::max(reach_, glm::length(p) * kUp);
+        core_radius_ = std::max(core_radius_, glm::length(p) * kUp);
         bounds_.include(p);
     }
     grow(bounds_, radius_);
 }
 
-void Body::set_reach_of_bounds() {
-    reach_ = glm::length((glm::max)(glm::abs(bounds_.min), glm::abs(bounds_.max))) * kUp;
+void Body::set_core_radius_of_bounds() {
+    core_radius_ = glm::length((glm::max)(glm::abs(bounds_.min), glm::abs(bounds_.max))) * kUp;
 }
 
 Body BodyMaker::triangle(const Triangle& corners) {
@@ -66,10 +66,10 @@ Body BodyMaker::triangle(const Triangle& corners) {
     return body;
 }
 
-Result<Body> Body::ball(double radius) {
+Result<Body> Body::sphere(double radius) {
     if (Result<void> good = check_length(radius, "radius"); !good) return tl::unexpected(good.error());
     Body body;
-    body.kind_ = Kind::ball;
+    body.kind_ = Kind::sphere;
     body.radius_ = radius;
     const glm::dvec3 center(0.0);
     body.set_corners({&center, 1});
@@ -92,7 +92,7 @@ Result<Body> Body::cylinder(float half_height, float radius) {
     Body body;
     body.kind_ = Kind::cylinder;
     body.half_ = {static_cast<double>(radius), static_cast<double>(half_height), static_cast<double>(radius)};
-    body.reach_ = std::sqrt(body.half_.x * body.half_.x + body.half_.y * body.half_.y) * kUp;
+    body.core_radius_ = std::sqrt(body.half_.x * body.half_.x + body.half_.y * body.half_.y) * kUp;
     body.bounds_ = {-body.half_, body.half_};
     return body;
 }
@@ -140,7 +140,7 @@ Body Body::hull(const Hull& hull) {
     body.kind_ = Kind::hull;
     body.hull_ = &hull;
     body.vertex_count_ = static_cast<int>(hull.vertices().size());
-    body.reach_ = hull.radius() * kUp;
+    body.core_radius_ = hull.radius() * kUp;
     for (const glm::vec3& p : hull.vertices()) body.bounds_.include(glm::dvec3(p));
     return body;
 }
@@ -157,7 +157,7 @@ Result<Body> Body::half_space(const Plane& plane) {
     Body body;
     body.kind_ = Kind::half_space;
     body.plane_ = plane;
-    body.reach_ = HUGE_VAL;
+    body.core_radius_ = HUGE_VAL;
     body.bounds_ = {glm::dvec3(-HUGE_VAL), glm::dvec3(HUGE_VAL)};
     return body;
 }
@@ -185,7 +185,7 @@ Result<Body> Body::mesh(const mesh::MeshTree& mesh, Sides sides) {
             for (int v = 0; v < 3; ++v)
                 body.bounds_.include(
                     glm::dvec3(glm::vec3(leaf.vertex[v][0][lane], leaf.vertex[v][1][lane], leaf.vertex[v][2][lane])));
-    body.set_reach_of_bounds();
+    body.set_core_radius_of_bounds();
     return body;
 }
 
@@ -195,7 +195,7 @@ Body Body::height_field(const HeightField& field, Sides sides) {
     body.sides_ = sides;
     body.field_ = &field;
     body.bounds_ = field.bounds();
-    body.set_reach_of_bounds();
+    body.set_core_radius_of_bounds();
     return body;
 }
 
@@ -204,7 +204,7 @@ Body Body::compound(const Compound& compound) {
     body.kind_ = Kind::compound;
     body.compound_ = &compound;
     body.bounds_ = compound.bounds();
-    body.set_reach_of_bounds();
+    body.set_core_radius_of_bounds();
     return body;
 }
 

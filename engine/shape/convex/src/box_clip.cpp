@@ -79,7 +79,7 @@ constexpr FaceFeatures kFeatures = features_of_corners();
 
 }  // namespace
 
-BoxClip::BoxClip(const Placed& a, const Placed& b, const BoxPair& pair, bool reference_is_a, int face,
+BoxClip::BoxClip(const BodyAtPose& a, const BodyAtPose& b, const BoxPair& pair, bool reference_is_a, int face,
                  const glm::dvec3& direction)
     : reference_(reference_is_a ? a : b),
       other_(reference_is_a ? b : a),

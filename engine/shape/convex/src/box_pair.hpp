@@ -84,7 +84,7 @@ class BoxPair {
 class BoxClip {
   public:
     // `direction`: unit, from a to b. The face is that of the reference.
-    BoxClip(const Placed& a, const Placed& b, const BoxPair& pair, bool reference_is_a, int face,
+    BoxClip(const BodyAtPose& a, const BodyAtPose& b, const BoxPair& pair, bool reference_is_a, int face,
             const glm::dvec3& direction);
     // How deep the deepest point is, without roundings; −infinity where there is none.
     [[nodiscard]] double deepest() const;
@@ -107,7 +107,7 @@ class BoxClip {
     [[nodiscard]] double level() const;  // of the reference face along its axis
     void clip();
 
-    const Placed &reference_, &other_;
+    const BodyAtPose &reference_, &other_;
     BoxPair::Seen seen_;
     glm::dvec3 direction_;  // unit, out of the reference, in its frame
     bool reference_is_a_;
@@ -118,7 +118,7 @@ class BoxClip {
 // The manifold of two boxes up to thinning out. The touch's depth and normal are proven, as the least of all axes. The
 // face that the cache names stays while it is the least deep within kKeptDepth of the size. `unknown`: nearer to a
 // touch than rounding tells, or apart where neither a face nor two edges decide.
-[[nodiscard]] Warm touch_of_boxes(const Placed& a, const Placed& b, const Pair& pair, double margin, PairCache* cache,
-                                  Touch& touch, GatheredPoints& points);
+[[nodiscard]] Warm touch_of_boxes(const BodyAtPose& a, const BodyAtPose& b, const Pair& pair, double margin,
+                                  PairCache* cache, Touch& touch, GatheredPoints& points);
 
 }  // namespace crofton::convex

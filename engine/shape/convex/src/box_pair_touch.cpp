@@ -15,7 +15,8 @@ constexpr double kParallelSine2 = 1.2181e-3;
 
 class BoxToucher {
   public:
-    BoxToucher(const Placed& a, const Placed& b, const Pair& pair, double margin, Touch& touch, GatheredPoints& points)
+    BoxToucher(const BodyAtPose& a, const BodyAtPose& b, const Pair& pair, double margin, Touch& touch,
+               GatheredPoints& points)
         : a_(a), b_(b), pair_(pair), axes_(pair), margin_(margin), touch_(touch), points_(points) {
         rounding_ = a.body.radius() + b.body.radius();
     }
@@ -40,7 +41,7 @@ class BoxToucher {
     // The corner of a or b that is farthest into the other, around a's origin.
     [[nodiscard]] glm::dvec3 deepest_corner(bool of_a, int& corner) const;
 
-    const Placed &a_, &b_;
+    const BodyAtPose &a_, &b_;
     const Pair& pair_;
     BoxPair axes_;
     BoxAxis least_;
@@ -50,7 +51,7 @@ class BoxToucher {
 };
 
 glm::dvec3 BoxToucher::deepest_corner(bool of_a, int& corner) const {
-    const Placed& box = of_a ? a_ : b_;
+    const BodyAtPose& box = of_a ? a_ : b_;
     const Support s = core_support(box.body, Pair::local(box.pose.rotation, of_a ? touch_.normal : -touch_.normal));
     corner = s.vertex;
     return box.pose.rotation * s.point + (of_a ? glm::dvec3(0.0) : pair_.offset);
@@ -173,8 +174,8 @@ Warm BoxToucher::ask(int& reference, int& face) {
 
 }  // namespace
 
-Warm touch_of_boxes(const Placed& a, const Placed& b, const Pair& pair, double margin, PairCache* cache, Touch& touch,
-                    GatheredPoints& points) {
+Warm touch_of_boxes(const BodyAtPose& a, const BodyAtPose& b, const Pair& pair, double margin, PairCache* cache,
+                    Touch& touch, GatheredPoints& points) {
     if (!(pair.size < std::numeric_limits<double>::infinity())) return Warm::unknown;
     const double limit = -(pair.rounding() + margin + pair.doubt());
     if (cache != nullptr && cache->reference == 0 && cache->axis != glm::dvec3(0.0) &&

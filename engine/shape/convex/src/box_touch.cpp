@@ -37,12 +37,12 @@ double length_of(const glm::dmat3& metric, const glm::dvec3& m) {
 
 }  // namespace
 
-BoxTouch::BoxTouch(const Placed& box, const glm::dvec3& origin, double reach, double margin)
+BoxTouch::BoxTouch(const BodyAtPose& box, const glm::dvec3& origin, double reach, double margin)
     : box_(box), offset_(box.pose.translation - origin), half_(box.body.half_extents()), margin_(margin) {
     to_local_ = glm::inverse(box.pose.rotation);
     metric_ = to_local_ * glm::transpose(to_local_);
     for (int k = 0; k < 3; ++k) unit_[k] = std::sqrt(metric_[k][k]);
-    size_ = reach + box.body.reach() + glm::length(offset_);
+    size_ = reach + box.body.core_radius() + glm::length(offset_);
     error_ = 0x1p-48 * size_;
 }
 

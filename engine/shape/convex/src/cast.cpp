@@ -53,7 +53,7 @@ RigidTransform moved(const RigidTransform& pose, const Motion& motion, double ti
     return result;
 }
 
-Result<Impact> cast(const Placed& a, const Motion& motion_a, const Placed& b, const Motion& motion_b,
+Result<Impact> cast(const BodyAtPose& a, const Motion& motion_a, const BodyAtPose& b, const Motion& motion_b,
                     const CastOptions& options, PairCache* cache) {
     if (Result<void> good = check(options); !good) return tl::unexpected(good.error());
     if (Result<void> good = check(motion_a, options, 0); !good) return tl::unexpected(good.error());

@@ -123,7 +123,7 @@ void clip(const Patch& reference, const Prism& sides, const Patch& incident, con
     }
 }
 
-BoxFace::BoxFace(const Placed& box, int face, const glm::dmat3& to_local, const glm::dvec3& origin)
+BoxFace::BoxFace(const BodyAtPose& box, int face, const glm::dmat3& to_local, const glm::dvec3& origin)
     : box_(box), to_local_(to_local), offset_(box.pose.translation - origin), face_(face), k_(face / 2) {
     u_ = k_ == 2 ? 0 : k_ + 1;
     v_ = k_ == 0 ? 2 : k_ - 1;

@@ -9,7 +9,7 @@ namespace {
 
 bool is_solid_of_revolution(const Body& body) {
     const Kind kind = body.kind();
-    return kind == Kind::ball || kind == Kind::capsule || kind == Kind::cylinder || kind == Kind::cone;
+    return kind == Kind::sphere || kind == Kind::capsule || kind == Kind::cylinder || kind == Kind::cone;
 }
 
 // A bound of how far the axes are from orthonormal ones: of |(Rᵀ R − 1) v| for unit vectors v, and some more.
@@ -27,12 +27,12 @@ double reaches(double rate, double bend, double gap) {
 }
 
 double arm_of(const Body& body, const Motion& motion) {
-    return motion.pivot == glm::dvec3(0.0) ? body.reach() : body.reach() + glm::length(motion.pivot);
+    return motion.pivot == glm::dvec3(0.0) ? body.core_radius() : body.core_radius() + glm::length(motion.pivot);
 }
 
 }  // namespace
 
-Advance::Advance(const Placed& now, const Motion& motion, const glm::dvec3& d) : body_(now.body) {
+Advance::Advance(const BodyAtPose& now, const Motion& motion, const glm::dvec3& d) : body_(now.body) {
     rate_ = drift_ = glm::dot(d, motion.velocity);
     if (motion.spin == glm::dvec3(0.0)) return;
     const double arm = arm_of(body_, motion);
@@ -54,7 +54,8 @@ void Advance::set_support(const glm::dvec3& local) {
 }
 
 // Where that bound is the lesser one. A pose that is not quite a rotation makes an ellipse of the disc, which turns.
-bool Advance::turn_as_solid_of_revolution(const Placed& now, const Motion& motion, const glm::dvec3& d, double arm) {
+bool Advance::turn_as_solid_of_revolution(const BodyAtPose& now, const Motion& motion, const glm::dvec3& d,
+                                          double arm) {
     if (!is_solid_of_revolution(body_) || motion.pivot.x != 0.0 || motion.pivot.z != 0.0) return false;
     const glm::dvec3 axis = now.pose.rotation[1], moves = glm::cross(motion.spin, axis);
     const double spin = glm::length(motion.spin), tilt = glm::length(moves) * 1.00001 + 0x1p-50 * spin;
@@ -67,7 +68,7 @@ bool Advance::turn_as_solid_of_revolution(const Placed& now, const Motion& motio
     return true;
 }
 
-Flight::Flight(const Placed& a, const Motion& motion_a, const Placed& b, const Motion& motion_b)
+Flight::Flight(const BodyAtPose& a, const Motion& motion_a, const BodyAtPose& b, const Motion& motion_b)
     : body_a_(a.body),
       body_b_(b.body),
       start_a_{a.pose.rotation, glm::dvec3(0.0)},
@@ -86,7 +87,7 @@ Flight::Flight(const Placed& a, const Motion& motion_a, const Placed& b, const M
         const double arm = arm_of(body, motion);
         error_at_start_ += 0x1p-47 * arm;
         if (motion.spin != glm::dvec3(0.0)) growth_ += 0x1p-47 * arm * glm::length(motion.spin);
-        size_ += body.reach() + body.radius();
+        size_ += body.core_radius() + body.radius();
     };
     add(body_a_, turn_a_);
     add(body_b_, way_b_);

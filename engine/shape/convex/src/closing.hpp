@@ -16,7 +16,7 @@ namespace crofton::convex {
 // u × u', whose length is w = |spin × u|, and whose derivative is at most |spin| w.
 class Advance {
   public:
-    Advance(const Placed& now, const Motion& motion, const glm::dvec3& d);
+    Advance(const BodyAtPose& now, const Motion& motion, const glm::dvec3& d);
     [[nodiscard]] double operator()(double s) const {
         return turns_ ? core_support(body_, local_ + s * turned_).along - now_ + s * drift_ + s * s * bend_
                       : s * drift_;
@@ -28,7 +28,7 @@ class Advance {
 
   private:
     void set_support(const glm::dvec3& local);
-    bool turn_as_solid_of_revolution(const Placed& now, const Motion& motion, const glm::dvec3& d, double arm);
+    bool turn_as_solid_of_revolution(const BodyAtPose& now, const Motion& motion, const glm::dvec3& d, double arm);
 
     const Body& body_;
     glm::dvec3 local_{0.0}, turned_{0.0};
@@ -56,12 +56,12 @@ class Closing {
 // fly fast, places in the world lack the digits that decide.
 class Flight {
   public:
-    Flight(const Placed& a, const Motion& motion_a, const Placed& b, const Motion& motion_b);
+    Flight(const BodyAtPose& a, const Motion& motion_a, const BodyAtPose& b, const Motion& motion_b);
 
     void move_to(double time);
     [[nodiscard]] double time() const { return time_; }
-    [[nodiscard]] Placed a() const { return {body_a_, pose_a_}; }
-    [[nodiscard]] Placed b() const { return {body_b_, pose_b_}; }
+    [[nodiscard]] BodyAtPose a() const { return {body_a_, pose_a_}; }
+    [[nodiscard]] BodyAtPose b() const { return {body_b_, pose_b_}; }
     // How far the bodies may be from where the real paths have them: by rounding of rotations and ways.
     [[nodiscard]] double path_error() const { return error_at_start_ + growth_ * time_; }
     [[nodiscard]] bool rests() const;

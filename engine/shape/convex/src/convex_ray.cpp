@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where a ray meets one convex body, in the body's frame. Balls, capsules and boxes by formulas, hulls by their
+// Where a ray meets one convex body, in the body's frame. Spheres, capsules and boxes by formulas, hulls by their
 // triangles, cylinders and cones by Newton's method on the distance. A rounded polytope is the union of its core, its
 // faces moved outward, and capsules around its edges: each of these lies within the body, and its surface is theirs.
 #include <algorithm>
@@ -46,7 +46,7 @@ std::optional<NearHit> entering(const NearRay& ray, double t, const glm::dvec3& 
     return NearHit{t, normal};
 }
 
-std::optional<NearHit> meet_ball(const NearRay& ray, const glm::dvec3& center, double radius) {
+std::optional<NearHit> meet_sphere(const NearRay& ray, const glm::dvec3& center, double radius) {
     const glm::dvec3 to = ray.origin - center;
     const double squared = glm::dot(ray.direction, ray.direction), nearest = -glm::dot(to, ray.direction) / squared;
     const glm::dvec3 off = to + nearest * ray.direction;
@@ -59,11 +59,11 @@ std::optional<NearHit> meet_ball(const NearRay& ray, const glm::dvec3& center, d
 }
 
 // All points within `radius` of the segment. The cylinder around its line comes first; what enters that beyond an end
-// can enter the capsule through the end's ball alone.
+// can enter the capsule through the end's sphere alone.
 std::optional<NearHit> meet_capsule(const NearRay& ray, const glm::dvec3& a, const glm::dvec3& b, double radius) {
     const glm::dvec3 axis = b - a, to = ray.origin - a;
     const double squared = glm::dot(axis, axis);
-    if (!(squared > 0.0)) return meet_ball(ray, a, radius);
+    if (!(squared > 0.0)) return meet_sphere(ray, a, radius);
     const glm::dvec3 u = ray.direction - glm::dot(ray.direction, axis) / squared * axis,
                      w = to - glm::dot(to, axis) / squared * axis;
     const double across = glm::dot(u, u);
@@ -83,10 +83,10 @@ std::optional<NearHit> meet_capsule(const NearRay& ray, const glm::dvec3& a, con
             if (*t > ray.max_t) return std::nullopt;
             return entering(ray, *t, at - along * axis);
         }
-        return meet_ball(ray, along < 0.0 ? a : b, radius);
+        return meet_sphere(ray, along < 0.0 ? a : b, radius);
     }
     if (glm::dot(w, w) > radius * radius) return std::nullopt;
-    return meet_ball(ray, glm::dot(ray.direction, axis) > 0.0 ? a : b, radius);
+    return meet_sphere(ray, glm::dot(ray.direction, axis) > 0.0 ? a : b, radius);
 }
 
 std::optional<NearHit> meet_box(const NearRay& ray, const glm::dvec3& half) {
@@ -156,7 +156,7 @@ RoundGap round_gap(const Body& body, const glm::dvec3& p) {
 std::optional<NearHit> meet_round(const Body& body, const NearRay& ray) {
     double t = 0.0;
     if (!passes_box(ray, body.bounds(), 0.0, t)) return std::nullopt;
-    const double enough = 0x1p-51 * (body.reach() + body.radius());
+    const double enough = 0x1p-51 * (body.core_radius() + body.radius());
     for (int i = 0; i < 300; ++i) {
         const RoundGap at = round_gap(body, ray.origin + t * ray.direction);
         const double gap = at.gap - body.radius(), speed = -glm::dot(at.gradient, ray.direction);
@@ -334,8 +334,8 @@ std::optional<NearHit> meet_convex(const Body& body, const NearRay& ray) {
     double from = 0.0;
     if (!passes_box(ray, body.bounds(), ray.error, from)) return std::nullopt;
     switch (body.kind()) {
-        case Kind::ball:
-            return meet_ball(ray, glm::dvec3(0.0), body.radius());
+        case Kind::sphere:
+            return meet_sphere(ray, glm::dvec3(0.0), body.radius());
         case Kind::capsule:
             return meet_capsule(ray, body.vertex(0), body.vertex(1), body.radius());
         case Kind::cylinder:

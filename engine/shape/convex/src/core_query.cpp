@@ -14,7 +14,7 @@ namespace {
 // of the simplex are nearly on a line, at about one in 10,000 pairs that nearly touch. From elsewhere it may go on.
 void search_anew(const Pair& pair, double near, double far, Nearest& found) {
     const auto is_done = [&] {
-        return found.meeting == Meeting::meeting || found.simplex.inside || found.simplex.count == 0 ||
+        return found.relation == Relation::overlapping || found.simplex.inside || found.simplex.count == 0 ||
                found.upper <= near || found.lower > far || found.upper - found.lower <= 1e-11 * pair.size;
     };
     for (int from = 0; from < 3 && !is_done(); ++from) {
@@ -28,7 +28,7 @@ void search_anew(const Pair& pair, double near, double far, Nearest& found) {
         }
         if (other.lower > found.lower) found.lower = other.lower, found.normal = other.normal;
         if (other.upper < found.upper) found.upper = other.upper, found.simplex = other.simplex;
-        if (found.lower > 0.0) found.meeting = Meeting::apart;
+        if (found.lower > 0.0) found.relation = Relation::apart;
     }
 }
 
@@ -37,16 +37,16 @@ void search_anew(const Pair& pair, double near, double far, Nearest& found) {
 Nearest core_distance(const Pair& pair, const PairCache* cache, double near, double far, double accuracy) {
     Nearest found = nearest_points(pair, cache, near, far);
     if (!pair.has_polytope_cores()) search_anew(pair, near, far, found);
-    if (!pair.has_polytope_cores() || found.meeting == Meeting::meeting) return found;
+    if (!pair.has_polytope_cores() || found.relation == Relation::overlapping) return found;
     const bool surely_near = near > 0.0 && found.upper <= near;
-    if (surely_near || (found.meeting == Meeting::apart && (found.lower > far || found.upper <= near))) return found;
+    if (surely_near || (found.relation == Relation::apart && (found.lower > far || found.upper <= near))) return found;
     const bool close_enough = found.upper - found.lower <= accuracy * pair.size;
-    if (found.meeting == Meeting::apart && close_enough) return found;
+    if (found.relation == Relation::apart && close_enough) return found;
     // The corners seem to contain the origin: a distance of 0, which is none if they turn out to be apart.
     const bool seems_inside = found.simplex.inside;
     const ExactNearest exact =
         exact_nearest(pair, found.simplex, !close_enough || found.upper > far || (seems_inside && far > 0.0));
-    found.meeting = exact.meet ? Meeting::meeting : Meeting::apart;
+    found.relation = exact.meet ? Relation::overlapping : Relation::apart;
     if (exact.meet) {
         found.simplex = exact.simplex;
         found.lower = found.upper = 0.0;
@@ -76,7 +76,7 @@ namespace {
 bool comes_first(const Body& a, const RigidTransform& pose_a, const Body& b, const RigidTransform& pose_b) {
     if (a.kind() != b.kind()) return a.kind() < b.kind();
     if (a.radius() != b.radius()) return a.radius() < b.radius();
-    if (a.reach() != b.reach()) return a.reach() < b.reach();
+    if (a.core_radius() != b.core_radius()) return a.core_radius() < b.core_radius();
     for (int k = 0; k < 3; ++k)
         if (pose_a.translation[k] != pose_b.translation[k]) return pose_a.translation[k] < pose_b.translation[k];
     for (int k = 0; k < 3; ++k)
@@ -108,13 +108,13 @@ Nearest deciding_search(const Pair& pair) {
 
 bool settle(const Pair& pair, Nearest& core) {
     const double rounding = pair.rounding(), doubt = pair.doubt();
-    if (core.meeting == Meeting::meeting) return true;
-    if (doubt == 0.0) return core.meeting != Meeting::apart;
+    if (core.relation == Relation::overlapping) return true;
+    if (doubt == 0.0) return core.relation != Relation::apart;
     if (core.lower > rounding + doubt) return false;
     if (core.upper < rounding - doubt) return true;
     core = deciding_search(pair);
     // Without a plane that parts them the cores count as meeting.
-    return core.meeting != Meeting::apart || glm::length(witness(core.simplex)) <= rounding;
+    return core.relation != Relation::apart || glm::length(witness(core.simplex)) <= rounding;
 }
 
 namespace {
@@ -129,7 +129,7 @@ void find_face(const Pair& pair, Depth& depth) {
         moved.translation += shift;
         const Pair moved_pair({pair.a, pair.pose_a}, {pair.b, moved});
         Nearest apart = core_distance(moved_pair, nullptr, 0.0, std::numeric_limits<double>::max());
-        if (apart.meeting == Meeting::apart) align_points(moved_pair, depth.normal, apart);
+        if (apart.relation == Relation::apart) align_points(moved_pair, depth.normal, apart);
         depth.face = apart.simplex;
         for (int i = 0; i < depth.face.count; ++i) {
             depth.face.corner[i].on_b -= shift;
@@ -159,7 +159,7 @@ Depth core_depth(const Pair& pair, const Simplex& start) {
 }
 
 // The image of { n·x + offset ≥ 0 } under y = R x + t is { (cof(R) n)·(y − t) + det(R) offset ≥ 0 }.
-HalfSpaceGap half_space_gap(const Placed& half_space, const Placed& body) {
+HalfSpaceGap half_space_gap(const BodyAtPose& half_space, const BodyAtPose& body) {
     const glm::dmat3& r = half_space.pose.rotation;
     const glm::dmat3 cofactor(glm::cross(r[1], r[2]), glm::cross(r[2], r[0]), glm::cross(r[0], r[1]));
     const Plane& plane = half_space.body.plane();
@@ -171,12 +171,12 @@ HalfSpaceGap half_space_gap(const Placed& half_space, const Placed& body) {
     const glm::dvec3 offset = body.pose.translation - half_space.pose.translation;
     const Support deepest = core_support(body.body, Pair::local(body.pose.rotation, -result.outward));
     result.gap = -((deepest.along + glm::dot(-result.outward, offset)) + level);
-    result.error = 0x1p-47 * (body.body.reach() + glm::length(offset) + std::abs(level));
+    result.error = 0x1p-47 * (body.body.core_radius() + glm::length(offset) + std::abs(level));
     result.deepest = body.pose.rotation * deepest.point + body.pose.translation;
     return result;
 }
 
-bool half_space_meets(const Placed& half_space, const Placed& body) {
+bool half_space_meets(const BodyAtPose& half_space, const BodyAtPose& body) {
     const HalfSpaceGap gap = half_space_gap(half_space, body);
     const double apart = gap.gap - body.body.radius();
     if (apart > gap.error) return false;
@@ -185,7 +185,7 @@ bool half_space_meets(const Placed& half_space, const Placed& body) {
     return body.body.is_polytope() ? meets_half_space(body, half_space) : apart <= 0.0;
 }
 
-double gap_of_half_spaces(const Placed& a, const Placed& b, glm::dvec3& normal) {
+double gap_of_half_spaces(const BodyAtPose& a, const BodyAtPose& b, glm::dvec3& normal) {
     // b's part that lies deepest along a's normal: a plane of points, or all directions.
     const glm::dmat3 &ra = a.pose.rotation, &rb = b.pose.rotation;
     const glm::dvec3 na = glm::normalize(ra * a.body.plane().normal), nb = glm::normalize(rb * b.body.plane().normal);

@@ -32,18 +32,18 @@ struct HalfSpaceGap {
     glm::dvec3 outward{0.0};        // unit normal of the boundary
     glm::dvec3 deepest{0.0};        // point of the core, in the world
 };
-[[nodiscard]] HalfSpaceGap half_space_gap(const Placed& half_space, const Placed& body);
+[[nodiscard]] HalfSpaceGap half_space_gap(const BodyAtPose& half_space, const BodyAtPose& body);
 
 // Whether they meet: exact for polytopes without rounding.
-[[nodiscard]] bool half_space_meets(const Placed& half_space, const Placed& body);
+[[nodiscard]] bool half_space_meets(const BodyAtPose& half_space, const BodyAtPose& body);
 // How far apart two half-spaces are, with the normal from the first; nothing if they meet.
-[[nodiscard]] double gap_of_half_spaces(const Placed& a, const Placed& b, glm::dvec3& normal);
+[[nodiscard]] double gap_of_half_spaces(const BodyAtPose& a, const BodyAtPose& b, glm::dvec3& normal);
 
-[[nodiscard]] inline bool is_half_space(const Placed& body) {
+[[nodiscard]] inline bool is_half_space(const BodyAtPose& body) {
     return body.body.kind() == Kind::half_space;
 }
 // A half-space, or a compound that holds one.
-[[nodiscard]] inline bool is_unbounded(const Placed& body) {
+[[nodiscard]] inline bool is_unbounded(const BodyAtPose& body) {
     return !body.body.is_bounded();
 }
 

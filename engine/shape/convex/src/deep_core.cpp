@@ -286,7 +286,7 @@ bool is_solid(const Body& body) {
            body.kind() == Kind::cone;
 }
 bool is_thin(const Body& body) {
-    return body.kind() == Kind::ball || body.kind() == Kind::capsule;
+    return body.kind() == Kind::sphere || body.kind() == Kind::capsule;
 }
 
 // Whether the thin one surely lies on the outer side of a face of the solid's box: most pairs that are not deep do.

@@ -64,7 +64,7 @@ glm::dvec3 product(const glm::dvec3& e, const glm::dvec3& f, double reach, doubl
     return n;
 }
 
-void offer_faces(const Placed& placed, double side, Axes& axes) {
+void offer_faces(const BodyAtPose& placed, double side, Axes& axes) {
     const Body& body = placed.body;
     const glm::dmat3& rotation = placed.pose.rotation;
     for (const auto& t : triangles_of(body)) {
@@ -72,7 +72,7 @@ void offer_faces(const Placed& placed, double side, Axes& axes) {
         const glm::dvec3 a = body.vertex(t[0]), e = rotation * (body.vertex(t[1]) - a),
                          f = rotation * (body.vertex(t[2]) - a);
         double turn = 0.0;
-        glm::dvec3 n = product(e, f, body.reach(), turn);
+        glm::dvec3 n = product(e, f, body.core_radius(), turn);
         if (turn > 1e-11) {
             n = exact_edge_normal(Pair(placed, placed), t[0], t[1], t[0], t[2]);
             turn = 0x1p-48;
@@ -97,7 +97,7 @@ Depth depth_by_axes(const Pair& pair, const Depth& known) {
             const glm::dvec3 u = pair.pose_a.rotation * (pair.a.vertex(e[1]) - pair.a.vertex(e[0]));
             const glm::dvec3 v = pair.pose_b.rotation * (pair.b.vertex(f[1]) - pair.b.vertex(f[0]));
             double turn = 0.0;
-            glm::dvec3 n = product(u, v, pair.a.reach() + pair.b.reach(), turn);
+            glm::dvec3 n = product(u, v, pair.a.core_radius() + pair.b.core_radius(), turn);
             if (turn > 1e-11) {
                 n = exact_edge_normal(pair, e[0], e[1], f[0], f[1]);
                 turn = 0x1p-48;

@@ -190,7 +190,7 @@ void Polytope::grow() {
     }
 }
 
-// The bounds as the polytope stands: the ball of radius `distance` lies in it where the origin does. All determinants
+// The bounds as the polytope stands: the sphere of radius `distance` lies in it where the origin does. All determinants
 // certainly positive: the surface, which is closed, goes around the origin at least once.
 void Polytope::finish(int nearest) {
     const Face& face = face_[nearest];

@@ -36,7 +36,7 @@ class ExactSearch {
         const glm::dvec3 rounded = rounded_direction(d), along = Pair::local(rotation, rounded);
         const double most = farthest_vertex(body, along).along;
         // `rounded` is off by 2^-51, the product by 9u of reach · |d|, twice.
-        const double least = most - 0x1p-46 * body.reach() * glm::length(rounded);
+        const double least = most - 0x1p-46 * body.core_radius() * glm::length(rounded);
         int best = -1;
         Dyadic value;
         for (int i = 0; i < body.vertex_count(); ++i) {
@@ -185,7 +185,7 @@ ExactNearest exact_nearest(const Pair& pair, const Simplex& start, bool nearest)
     return result;
 }
 
-bool meets_half_space(const Placed& polytope, const Placed& half_space) {
+bool meets_half_space(const BodyAtPose& polytope, const BodyAtPose& half_space) {
     // y in the image of { n·x + offset ≥ 0 } under R, t: (cof(R) n) · (y − t) + det(R) offset ≥ 0, det(R) > 0.
     const glm::dmat3& r = half_space.pose.rotation;
     const ExactVector c0 = exact_vector(r[0]), c1 = exact_vector(r[1]), c2 = exact_vector(r[2]);

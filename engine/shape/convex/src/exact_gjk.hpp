@@ -17,7 +17,7 @@ struct ExactNearest {
 [[nodiscard]] ExactNearest exact_nearest(const Pair& pair, const Simplex& start, bool nearest);
 
 // The side of the polytope's core on which the half-space's boundary is: whether they meet, exactly.
-[[nodiscard]] bool meets_half_space(const Placed& polytope, const Placed& half_space);
+[[nodiscard]] bool meets_half_space(const BodyAtPose& polytope, const BodyAtPose& half_space);
 
 // n = u × v exactly, then rounded and scaled to length about 1; for edges a_i a_j and b_k b_l of the two bodies.
 [[nodiscard]] glm::dvec3 exact_edge_normal(const Pair& pair, int i, int j, int k, int l);

@@ -107,7 +107,7 @@ int face_along(const Body& body, const glm::dvec3& d) {
                        along);
 }
 
-void patch_of_face(const Placed& placed, int face, const glm::dvec3& origin, Patch& patch) {
+void patch_of_face(const BodyAtPose& placed, int face, const glm::dvec3& origin, Patch& patch) {
     const Body& body = placed.body;
     const Frame place{placed.pose.rotation, placed.pose.translation - origin};
     patch.count = 0;
@@ -143,7 +143,7 @@ void patch_of_face(const Placed& placed, int face, const glm::dvec3& origin, Pat
     }
 }
 
-void patch_along(const Placed& placed, const glm::dvec3& direction, const glm::dvec3& origin, Patch& patch) {
+void patch_along(const BodyAtPose& placed, const glm::dvec3& direction, const glm::dvec3& origin, Patch& patch) {
     const Body& body = placed.body;
     const glm::dvec3 local = Pair::local(placed.pose.rotation, direction);
     if (const int face = face_along(body, local); face >= 0) {

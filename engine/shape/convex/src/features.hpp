@@ -15,18 +15,18 @@ struct Patch {
     Feature self;            // the face, or of segments the edge, or of points the vertex
     glm::dvec3 point[kMaxPatch];
     std::uint16_t vertex[kMaxPatch], edge[kMaxPatch];
-    const Placed* of = nullptr;  // none: the points are all that is known
+    const BodyAtPose* of = nullptr;  // none: the points are all that is known
 };
 
 // From point k to the next, from the numbers of the body: of a short edge the difference of the points is rounding.
 [[nodiscard]] glm::dvec3 exact_edge(const Patch& patch, int k);
 
 // Of the body's core; the face most nearly across `direction` (unit, in the world).
-void patch_along(const Placed& placed, const glm::dvec3& direction, const glm::dvec3& origin, Patch& patch);
+void patch_along(const BodyAtPose& placed, const glm::dvec3& direction, const glm::dvec3& origin, Patch& patch);
 
 // The patch of one face of a hull, box or triangle. A box's face without width is a segment or a point, with the normal
 // of the face.
-void patch_of_face(const Placed& placed, int face, const glm::dvec3& origin, Patch& patch);
+void patch_of_face(const BodyAtPose& placed, int face, const glm::dvec3& origin, Patch& patch);
 
 [[nodiscard]] inline bool has_same_id(const ContactPoint& p, const ContactPoint& q) {
     return p.on_a == q.on_a && p.on_b == q.on_b && p.part_a == q.part_a && p.part_b == q.part_b;

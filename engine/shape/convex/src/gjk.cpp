@@ -41,7 +41,7 @@ Nearest nearest_points(const Pair& pair, const PairCache* cache, double near, do
     result.upper = last;
     reduce(s, true);
     if (s.count == 0) {  // a pose with NaN: it is near to nothing
-        result.meeting = Meeting::apart;
+        result.relation = Relation::apart;
         result.lower = last;
         return result;
     }
@@ -49,7 +49,7 @@ Nearest nearest_points(const Pair& pair, const PairCache* cache, double near, do
         if (s.inside) {
             result.simplex = s;
             result.upper = 0.0;
-            if (certainly_inside(s, pair.size)) result.meeting = Meeting::meeting;
+            if (certainly_inside(s, pair.size)) result.relation = Relation::overlapping;
             return result;
         }
         const double length = glm::length(s.nearest);
@@ -77,7 +77,7 @@ Nearest nearest_points(const Pair& pair, const PairCache* cache, double near, do
         s.add(next);
         reduce(s, false);
     }
-    if (result.lower > 0.0) result.meeting = Meeting::apart;
+    if (result.lower > 0.0) result.relation = Relation::apart;
     return result;
 }
 
@@ -88,7 +88,7 @@ void remember(const Nearest& nearest, PairCache* cache) {
         cache->on_a[i] = static_cast<std::uint16_t>(nearest.simplex.corner[i].a);
         cache->on_b[i] = static_cast<std::uint16_t>(nearest.simplex.corner[i].b);
     }
-    if (nearest.meeting == Meeting::apart) cache->axis = nearest.normal;
+    if (nearest.relation == Relation::apart) cache->axis = nearest.normal;
 }
 
 }  // namespace crofton::convex

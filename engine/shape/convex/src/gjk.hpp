@@ -5,13 +5,13 @@
 
 namespace crofton::convex {
 
-enum class Meeting : std::uint8_t { apart, meeting, unknown };
+enum class Relation : std::uint8_t { apart, overlapping, unknown };
 
 struct Nearest {
-    Meeting meeting = Meeting::unknown;  // of the cores; certain but for `unknown`
-    Simplex simplex;                     // of the nearest point
-    double lower = 0.0, upper = 0.0;     // of the cores' distance, proven
-    glm::dvec3 normal{0.0};              // unit, from a to b: the plane across it proves `lower`
+    Relation relation = Relation::unknown;  // of the cores; certain but for `unknown`
+    Simplex simplex;                        // of the nearest point
+    double lower = 0.0, upper = 0.0;        // of the cores' distance, proven
+    glm::dvec3 normal{0.0};                 // unit, from a to b: the plane across it proves `lower`
 };
 
 // Gilbert, Johnson, Keerthi 1988. Stops as soon as the distance is known to be above `far`, or not above `near`, or to

@@ -56,7 +56,7 @@ Result<CornerHull> hull_of_corners(const Points& points, std::size_t max_vertice
 
 // The chosen corners moved away from the center until their hull holds all points. Rounding to float may push one out:
 // then a little farther.
-Result<CornerHull> grown(const CornerHull& small, const Points& points, double& excess) {
+Result<CornerHull> grown(const CornerHull& small, const Points& points, double& max_overshoot) {
     Points chosen;
     Vector<char> used(small.corners.size(), 0);
     for (const auto& t : small.hull.triangles)
@@ -74,7 +74,7 @@ Result<CornerHull> grown(const CornerHull& small, const Points& points, double& 
         Result<CornerHull> result = hull_of_corners(moved, static_cast<std::size_t>(kMaxHullVertices));
         if (!result) return result;
         if (!contains_all(result->hull, result->corners, points)) continue;
-        excess = farthest * (1.0 + 1e-6);
+        max_overshoot = farthest * (1.0 + 1e-6);
         return result;
     }
     return fail(ErrorCode::degenerate, kNoItem,
@@ -128,7 +128,7 @@ Result<Hull> Hull::build(std::span<const glm::vec3> points, const HullOptions& o
         if (!result) return tl::unexpected(result.error());
         Hull hull;
         if (result->hull.missing > 0.0) {
-            result = grown(*result, all, hull.excess_);
+            result = grown(*result, all, hull.max_overshoot_);
             if (!result) return tl::unexpected(result.error());
         }
         for (const glm::dvec3& p : result->corners) {

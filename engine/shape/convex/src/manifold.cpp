@@ -19,7 +19,7 @@ Manifold nothing() {
     return manifold;
 }
 
-Gathering gathering_of(const Placed& a, const Placed& b, double margin) {
+Gathering gathering_of(const BodyAtPose& a, const BodyAtPose& b, double margin) {
     return {a.pose.translation, a.body.radius(), b.body.radius(), margin};
 }
 
@@ -75,8 +75,8 @@ Manifold finish(const GatheredPoints& points, const Touch& touch, const Manifold
 }
 
 // What the touch's patches have in common, clipped against the face of a (1) or of b (2).
-Manifold gather_clipped(const Placed& a, const Placed& b, const Pair& pair, const Touch& touch, const Clipped& clipped,
-                        const ManifoldOptions& options, PairCache& cache) {
+Manifold gather_clipped(const BodyAtPose& a, const BodyAtPose& b, const Pair& pair, const Touch& touch,
+                        const Clipped& clipped, const ManifoldOptions& options, PairCache& cache) {
     GatheredPoints points;
     Gatherer gatherer(gathering_of(a, b, options.margin), touch, points);
     gatherer.add(clipped, cache.reference == 1);
@@ -85,7 +85,7 @@ Manifold gather_clipped(const Placed& a, const Placed& b, const Pair& pair, cons
 }
 
 // a is the half-space.
-Manifold on_half_space(const Placed& a, const Placed& b, const ManifoldOptions& options, PairCache* cache) {
+Manifold on_half_space(const BodyAtPose& a, const BodyAtPose& b, const ManifoldOptions& options, PairCache* cache) {
     const HalfSpaceGap gap = half_space_gap(a, b);
     const double apart = gap.gap - b.body.radius();
     const bool meet = apart <= gap.error && half_space_meets(a, b);
@@ -107,12 +107,12 @@ Manifold on_half_space(const Placed& a, const Placed& b, const ManifoldOptions& 
         gatherer.add(shadow(patch.point[i]), patch.point[i], {FeatureKind::face, 0}, {kind, patch.vertex[i]});
     touch.on_a = shadow(deepest);
     touch.on_b = deepest;
-    if (gatherer.lacks_deepest(gap.error + 1e-9 * b.body.reach())) {
+    if (gatherer.lacks_deepest(gap.error + 1e-9 * b.body.core_radius())) {
         touch.feature_a = {FeatureKind::face, 0};
         touch.feature_b = patch.self;
         gatherer.add_deepest();
     }
-    return finish(points, touch, options, b.body.reach(), cache);
+    return finish(points, touch, options, b.body.core_radius(), cache);
 }
 
 }  // namespace
@@ -126,7 +126,7 @@ Manifold flipped(Manifold m) {
     return m;
 }
 
-Manifold contact_manifold(const Placed& a, const Placed& b, const ManifoldOptions& options, PairCache* cache) {
+Manifold contact_manifold(const BodyAtPose& a, const BodyAtPose& b, const ManifoldOptions& options, PairCache* cache) {
     if (!a.body.is_convex() || !b.body.is_convex()) return deepest_manifold(a, b, options);
     if (is_half_space(a)) return is_half_space(b) ? nothing() : on_half_space(a, b, options, cache);
     if (is_half_space(b)) return flipped(on_half_space(b, a, options, cache));

@@ -22,11 +22,11 @@ MassProperties turned(double volume, double center_y, double across, double alon
 }
 
 MassProperties of_capsule(double h, double r) {
-    // A cylinder of height 2h and two half balls, whose centers of mass are 3r/8 beyond its ends.
-    const double cylinder = 2.0 * kPi * r * r * h, ball = 4.0 / 3.0 * kPi * r * r * r;
-    const double across = cylinder * r * r / 4.0 + ball * r * r / 5.0;
-    const double along = cylinder * h * h / 3.0 + ball * (r * r / 5.0 + h * h + 0.75 * h * r);
-    return turned(cylinder + ball, 0.0, across, along);
+    // A cylinder of height 2h and two half spheres, whose centers of mass are 3r/8 beyond its ends.
+    const double cylinder = 2.0 * kPi * r * r * h, sphere = 4.0 / 3.0 * kPi * r * r * r;
+    const double across = cylinder * r * r / 4.0 + sphere * r * r / 5.0;
+    const double along = cylinder * h * h / 3.0 + sphere * (r * r / 5.0 + h * h + 0.75 * h * r);
+    return turned(cylinder + sphere, 0.0, across, along);
 }
 
 MassProperties of_cylinder(double h, double r) {
@@ -77,7 +77,7 @@ Result<MassProperties> mass_properties(const Body& body) {
     const glm::dvec3& half = body.half_extents();
     const double radius = body.radius();
     switch (body.kind()) {
-        case Kind::ball:
+        case Kind::sphere:
             return of_capsule(0.0, radius);
         case Kind::capsule:
             return of_capsule(body.vertex(1).y, radius);

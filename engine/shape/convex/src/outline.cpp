@@ -118,7 +118,7 @@ void draw_convex(const Body& body, const RigidTransform& pose, LineVisitor line)
     const glm::dvec3& half = body.half_extents();
     const double r = body.radius();
     switch (body.kind()) {
-        case Kind::ball:
+        case Kind::sphere:
             pen.arc({}, {r, 0, 0}, {0, r, 0});
             pen.arc({}, {0, r, 0}, {0, 0, r});
             return pen.arc({}, {0, 0, r}, {r, 0, 0});
@@ -141,12 +141,12 @@ void draw_convex(const Body& body, const RigidTransform& pose, LineVisitor line)
 
 }  // namespace
 
-void outline(const Placed& body, LineVisitor line) {
+void outline(const BodyAtPose& body, LineVisitor line) {
     if (body.body.is_convex()) return draw_convex(body.body, body.pose, line);
     // All parts are near the middle, within the body's own reach.
-    const Result<Body> point = Body::ball(0.0f);
+    const Result<Body> point = Body::sphere(0.0f);
     Vector<Part> parts;
-    parts_near(body, {*point, body.pose}, std::min(2.0 * body.body.reach(), kEverything), parts);
+    parts_near(body, {*point, body.pose}, std::min(2.0 * body.body.core_radius(), kEverything), parts);
     for (const Part& part : parts) draw_convex(part.body, part.pose, line);
 }
 

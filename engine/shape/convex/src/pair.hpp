@@ -22,10 +22,10 @@ struct Corner {
 // direction is off by 5.4u of its length, its product with a point by 3u more: `along` is off by 9u of
 // size · |direction|, the offset's part by 4.1u. All are below `error` / 2 = 16u · size.
 struct Pair {
-    Pair(const Placed& first, const Placed& second)
+    Pair(const BodyAtPose& first, const BodyAtPose& second)
         : a(first.body), b(second.body), pose_a(first.pose), pose_b(second.pose) {
         offset = pose_b.translation - pose_a.translation;
-        size = a.reach() + b.reach() + glm::length(offset);
+        size = a.core_radius() + b.core_radius() + glm::length(offset);
         error = 0x1p-48 * size;
     }
 

@@ -7,7 +7,7 @@ namespace crofton::convex {
 
 // A body and its patch along the normal. Of a surface's triangle the patch alone: `body` is null.
 struct PatchOf {
-    const Placed* body;
+    const BodyAtPose* body;
     const Patch& patch;
 };
 

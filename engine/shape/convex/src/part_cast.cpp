@@ -24,7 +24,7 @@ glm::dvec3 arm_of(const RigidTransform& pose, const Motion& motion) {
 // those it meets last are not asked.
 class PartCaster {
   public:
-    PartCaster(const Placed& a, const Motion& motion_a, const Placed& b, const Motion& motion_b,
+    PartCaster(const BodyAtPose& a, const Motion& motion_a, const BodyAtPose& b, const Motion& motion_b,
                const CastOptions& options)
         : a_(a), b_(b), motion_a_(motion_a), motion_b_(motion_b), options_(options) {
         best_.time = std::min(options.early_out, options.duration);
@@ -124,7 +124,7 @@ class PartCaster {
     // Parts stand as at time 0, whenever the box is of.
     void visit(const QueryBox& box, PartVisitor visitor) const {
         if (is_unbounded(b_)) return (void)visit_parts(a_, {}, kEverything, visitor);
-        const double reach = is_unbounded(a_) ? 0.0 : a_.body.reach();
+        const double reach = is_unbounded(a_) ? 0.0 : a_.body.core_radius();
         visit_parts(a_, box, options_.tolerance + 1e-9 * (around_ + reach), visitor);
     }
 
@@ -138,7 +138,7 @@ class PartCaster {
         // A part that is met at the same time is of use only if it is deeper, at the start.
         const bool later = best_.result != CastResult::miss && best_.time > from;
         options.early_out = later ? std::nextafter(best_.time, 0.0) : best_.time;
-        const Placed placed{part.body, start};
+        const BodyAtPose placed{part.body, start};
         if (comes_later(placed)) return;
         Impact impact = b_.body.is_convex() ? advance(placed, motion, b_, motion_b_, options, from, nullptr)
                                             : reversed(cast_parts(b_, motion_b_, placed, motion, options, from));
@@ -150,7 +150,7 @@ class PartCaster {
     }
 
     // Whether neither turns, and along their way they are too far apart to touch by the time of the best.
-    [[nodiscard]] bool comes_later(const Placed& part) const {
+    [[nodiscard]] bool comes_later(const BodyAtPose& part) const {
         const glm::dvec3 velocity = motion_b_.velocity - motion_a_.velocity;
         const double speed = glm::length(velocity);
         if (b_turns_ || motion_a_.spin != glm::dvec3(0.0) || !(speed > 0.0) || is_unbounded(b_)) return false;
@@ -176,7 +176,7 @@ class PartCaster {
         return glm::dot(impact.normal, there.normal) <= 0.0;
     }
 
-    const Placed &a_, &b_;
+    const BodyAtPose &a_, &b_;
     const Motion &motion_a_, &motion_b_;
     const CastOptions& options_;
     Impact best_;
@@ -187,7 +187,7 @@ class PartCaster {
 
 }  // namespace
 
-Impact cast_parts(const Placed& a, const Motion& motion_a, const Placed& b, const Motion& motion_b,
+Impact cast_parts(const BodyAtPose& a, const Motion& motion_a, const BodyAtPose& b, const Motion& motion_b,
                   const CastOptions& options, double start) {
     PartCaster caster(a, motion_a, b, motion_b, options);
     caster.search(start, options.duration, 0);

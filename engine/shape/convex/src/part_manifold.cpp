@@ -9,7 +9,7 @@
 
 namespace crofton::convex {
 
-glm::dvec3 middle_of(const Placed& placed, const glm::dvec3& origin) {
+glm::dvec3 middle_of(const BodyAtPose& placed, const glm::dvec3& origin) {
     const Hull* const hull = placed.body.hull();
     const glm::dvec3 middle = hull != nullptr ? hull->mass().center : placed.body.bounds().center();
     return placed.pose.rotation * middle + (placed.pose.translation - origin);
@@ -39,7 +39,7 @@ class ManifoldFinder {
     ManifoldFinder(const ManifoldOptions& options, Manifolds& found)
         : options_(options), found_(found), scratch_(scratch_of(found)) {}
 
-    void run(const Placed& a, const Placed& b, PairCache* cache) {
+    void run(const BodyAtPose& a, const BodyAtPose& b, PairCache* cache) {
         found_.all_.clear();
         if (a.body.is_convex() && b.body.is_convex()) {
             const Manifold m = contact_manifold(a, b, options_, cache);
@@ -60,7 +60,7 @@ class ManifoldFinder {
     }
 
     // Bodies without surfaces.
-    void run_beside(const Placed& a, const Placed& b, const Beside& beside, PairCache* cache) {
+    void run_beside(const BodyAtPose& a, const BodyAtPose& b, const Beside& beside, PairCache* cache) {
         found_.all_.clear();
         scratch_.list.clear();
         UnionNormals& flush = scratch_.flush;
@@ -77,16 +77,16 @@ class ManifoldFinder {
             return std::abs(contact.depth) > flush_tolerance(a, b);  // what rests flush itself has no way to go
         });
         all = own;
-        for (const Placed& other : beside.a) add_parts(0, other, b, all.parts[0]);
-        for (const Placed& other : beside.b) add_parts(1, other, a, all.parts[1]);
+        for (const BodyAtPose& other : beside.a) add_parts(0, other, b, all.parts[0]);
+        for (const BodyAtPose& other : beside.b) add_parts(1, other, a, all.parts[1]);
         if (deep && flush.is_any_covered()) {
             // Of those beside only what lies flush: bodies that are deep in each other are no floor.
             flush.keep_parts(0, own.parts[0]);
             flush.keep_parts(1, own.parts[1]);
             all = own;
-            for (const Placed& other : beside.a)
+            for (const BodyAtPose& other : beside.a)
                 if (are_flush(a, other)) add_parts(0, other, b, all.parts[0]);
-            for (const Placed& other : beside.b)
+            for (const BodyAtPose& other : beside.b)
                 if (are_flush(b, other)) add_parts(1, other, a, all.parts[1]);
             for (std::uint32_t i = own.parts[0]; i < all.parts[0]; ++i)
                 for (std::uint32_t j = 0; j < own.parts[1]; ++j) add_flush_contact(i, j, nullptr);
@@ -102,10 +102,10 @@ class ManifoldFinder {
     struct Count {
         std::uint32_t parts[2] = {0, 0};  // of the lists of `flush`
     };
-    [[nodiscard]] static bool are_flush(const Placed& a, const Placed& b) {
+    [[nodiscard]] static bool are_flush(const BodyAtPose& a, const BodyAtPose& b) {
         return !has_surfaces(b.body) && !is_half_space(b) && !(penetration(a, b).depth > flush_tolerance(a, b));
     }
-    void add_parts(int list, const Placed& body, const Placed& near, std::uint32_t& count) {
+    void add_parts(int list, const BodyAtPose& body, const BodyAtPose& near, std::uint32_t& count) {
         if (has_surfaces(body.body) || is_half_space(body)) return;
         visit_parts_near(body, near, near_margin(near), [&](const Part& part) {
             count = scratch_.flush.add_part(list, part) + 1;
@@ -123,7 +123,7 @@ class ManifoldFinder {
     }
 
     // Both have convex parts alone.
-    void find_convex_parts(const Placed& a, const Placed& b) {
+    void find_convex_parts(const BodyAtPose& a, const BodyAtPose& b) {
         UnionNormals& flush = scratch_.flush;
         flush.start(options_.margin);
         scratch_.numbers.clear();
@@ -134,7 +134,7 @@ class ManifoldFinder {
         std::sort(scratch_.numbers.begin(), scratch_.numbers.end());
         visit_parts_near(a, b, near_margin(b), [&](const Part& first) {
             const std::uint32_t number = flush.add_part(0, first);
-            const Placed placed{first.body, first.pose};
+            const BodyAtPose placed{first.body, first.pose};
             visit_parts_near(b, placed, options_.margin, [&](const Part& second) {
                 const auto at = std::lower_bound(scratch_.numbers.begin(), scratch_.numbers.end(),
                                                  std::pair(second.id.child, std::uint32_t{0}));
@@ -148,14 +148,14 @@ class ManifoldFinder {
         add_flush(flush.contacts().size(), false);
     }
 
-    [[nodiscard]] Manifold manifold_of(const Placed& a, const Placed& b, PairCache* cache = nullptr) const {
+    [[nodiscard]] Manifold manifold_of(const BodyAtPose& a, const BodyAtPose& b, PairCache* cache = nullptr) const {
         ManifoldOptions all_points = options_;
         all_points.max_points = cache != nullptr ? options_.max_points : 8;
         return contact_manifold(a, b, all_points, cache);
     }
     // Parts that lie flush with those within the margin of a body are wanted as well.
-    [[nodiscard]] double near_margin(const Placed& body) const {
-        return options_.margin + (is_half_space(body) ? 0.0 : 1e-5 * (body.body.reach() + body.body.radius()));
+    [[nodiscard]] double near_margin(const BodyAtPose& body) const {
+        return options_.margin + (is_half_space(body) ? 0.0 : 1e-5 * (body.body.core_radius() + body.body.radius()));
     }
     // The first contacts.
     void add_flush(std::size_t count, bool flip) {
@@ -170,7 +170,7 @@ class ManifoldFinder {
 
     // Both have parts. A surface's rules hold where it is asked as a whole: a's for b's convex parts, if a has any
     // surface, and b's for all others of a.
-    void find_parts(const Placed& a, const Placed& b) {
+    void find_parts(const BodyAtPose& a, const BodyAtPose& b) {
         if (has_surfaces(a.body)) {
             const auto convex = [&](const Part& part) {
                 find(a, {part.body, part.pose}, part.id, false);
@@ -198,7 +198,7 @@ class ManifoldFinder {
 
     // The contacts of a, which has parts, and b, which is convex; `of_b`: b's part. Where several triangles meet in a
     // tip, each one's normal may point into the others: then the rule leaves no point, and does not hold.
-    void find(const Placed& a, const Placed& b, const PartId& of_b, bool flip) {
+    void find(const BodyAtPose& a, const BodyAtPose& b, const PartId& of_b, bool flip) {
         const std::size_t before = scratch_.list.point_count();
         list_near(a, b, of_b, flip);
         scratch_.rule.start(scratch_.triangles);
@@ -207,7 +207,7 @@ class ManifoldFinder {
     }
 
     // Whether the rule left out a triangle that the body meets.
-    bool ask_triangles(const Placed& b, EdgeRule* rule, const PartId& of_b, bool flip) {
+    bool ask_triangles(const BodyAtPose& b, EdgeRule* rule, const PartId& of_b, bool flip) {
         bool left_out = false;
         std::uint32_t i = 0;
         const auto count = static_cast<std::uint32_t>(scratch_.triangles.size());
@@ -225,7 +225,7 @@ class ManifoldFinder {
     }
 
     // Lists the triangles that may touch; convex parts are asked at once.
-    void list_near(const Placed& a, const Placed& b, const PartId& of_b, bool flip) {
+    void list_near(const BodyAtPose& a, const BodyAtPose& b, const PartId& of_b, bool flip) {
         Vector<NearSurface>& surfaces = scratch_.surfaces;
         surfaces.clear();
         scratch_.triangles.clear();
@@ -267,12 +267,12 @@ class ManifoldFinder {
     Manifolds::Scratch& scratch_;
 };
 
-void contact_manifolds(const Placed& a, const Placed& b, const ManifoldOptions& options, Manifolds& found,
+void contact_manifolds(const BodyAtPose& a, const BodyAtPose& b, const ManifoldOptions& options, Manifolds& found,
                        PairCache* cache) {
     ManifoldFinder(options, found).run(a, b, cache);
 }
 
-void contact_manifolds(const Placed& a, const Placed& b, const Beside& beside, const ManifoldOptions& options,
+void contact_manifolds(const BodyAtPose& a, const BodyAtPose& b, const Beside& beside, const ManifoldOptions& options,
                        Manifolds& found, PairCache* cache) {
     const bool alone = beside.a.empty() && beside.b.empty();
     if (alone || has_surfaces(a.body) || has_surfaces(b.body) || is_half_space(a) || is_half_space(b))
@@ -280,7 +280,7 @@ void contact_manifolds(const Placed& a, const Placed& b, const Beside& beside, c
     ManifoldFinder(options, found).run_beside(a, b, beside, cache);
 }
 
-Manifold deepest_manifold(const Placed& a, const Placed& b, const ManifoldOptions& options) {
+Manifold deepest_manifold(const BodyAtPose& a, const BodyAtPose& b, const ManifoldOptions& options) {
     Manifolds found;
     contact_manifolds(a, b, options, found);
     Manifold deepest;

@@ -16,20 +16,21 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Bodies of parts and a body this near to them, or nearer, may be told to meet: `Pair::doubt` of any pair of parts. An
 // offset between parts is at most twice as large as the size here.
-double doubt_of_parts(const Placed& a, const Placed& b) {
+double doubt_of_parts(const BodyAtPose& a, const BodyAtPose& b) {
     const auto has_corners = [](const Body& body) {
         return body.has_polytope_core() || body.kind() == Kind::mesh || body.kind() == Kind::height_field;
     };
-    const double size = a.body.reach() + b.body.reach() + glm::length(b.pose.translation - a.pose.translation);
+    const double size =
+        a.body.core_radius() + b.body.core_radius() + glm::length(b.pose.translation - a.pose.translation);
     return 4.0 * (has_corners(a.body) && has_corners(b.body) ? kRoundedDoubt : kRoundDoubt) * size;
 }
 
 // Improves `best` by the distances of a's parts from b, nearest first.
-void search_nearest(const Placed& a, const Placed& b, Distance& best, double& lower) {
+void search_nearest(const BodyAtPose& a, const BodyAtPose& b, Distance& best, double& lower) {
     const double doubt = doubt_of_parts(a, b);
     double limit = std::max(best.distance, doubt);
     const auto visit = [&](const Part& part) {
-        const Placed placed{part.body, part.pose};
+        const BodyAtPose placed{part.body, part.pose};
         Distance d;
         if (b.body.is_convex()) {
             d = near_distance(placed, b, limit);
@@ -58,20 +59,21 @@ void search_nearest(const Placed& a, const Placed& b, Distance& best, double& lo
 
 }  // namespace
 
-bool visit_parts_near(const Placed& a, const Placed& b, double margin, PartVisitor visit) {
+bool visit_parts_near(const BodyAtPose& a, const BodyAtPose& b, double margin, PartVisitor visit) {
     if (is_unbounded(b)) return visit_parts(a, {}, kEverything, visit);
     return visit_parts(a, box_around(b, a.pose), margin + doubt_of_parts(a, b), visit);
 }
 
-bool visit_parts_near(const Placed& a, const Placed& b, double margin, PartVisitor convex, TriangleVisitor triangle) {
+bool visit_parts_near(const BodyAtPose& a, const BodyAtPose& b, double margin, PartVisitor convex,
+                      TriangleVisitor triangle) {
     if (is_unbounded(b)) return visit_parts(a, {}, kEverything, convex, triangle);
     return visit_parts(a, box_around(b, a.pose), margin + doubt_of_parts(a, b), convex, triangle);
 }
 
-// Most triangles near a ball or a capsule are told in closed form.
-bool parts_meet(const Placed& a, const Placed& b) {
+// Most triangles near a sphere or a capsule are told in closed form.
+bool parts_meet(const BodyAtPose& a, const BodyAtPose& b) {
     const auto visit = [&](const Part& part) { return intersects({part.body, part.pose}, b); };
-    if (b.body.kind() != Kind::ball && b.body.kind() != Kind::capsule) return visit_parts_near(a, b, 0.0, visit);
+    if (b.body.kind() != Kind::sphere && b.body.kind() != Kind::capsule) return visit_parts_near(a, b, 0.0, visit);
     return visit_parts_near(a, b, 0.0, visit, [&](const PartSearch& of, const Triangle& corners, std::uint32_t) {
         const glm::dvec3& origin = of.pose.translation;
         Touch touch;
@@ -81,7 +83,7 @@ bool parts_meet(const Placed& a, const Placed& b) {
     });
 }
 
-Distance distance_of_parts(const Placed& a, const Placed& b) {
+Distance distance_of_parts(const BodyAtPose& a, const BodyAtPose& b) {
     Distance best;
     best.distance = kInfinity;
     double lower = kInfinity;
@@ -91,7 +93,7 @@ Distance distance_of_parts(const Placed& a, const Placed& b) {
     return best;
 }
 
-Penetration penetration_of_parts(const Placed& a, const Placed& b) {
+Penetration penetration_of_parts(const BodyAtPose& a, const BodyAtPose& b) {
     Penetration deepest;
     visit_parts_near(a, b, 0.0, [&](const Part& part) {
         const Penetration p = penetration({part.body, part.pose}, b);
@@ -107,7 +109,7 @@ Penetration penetration_of_parts(const Placed& a, const Placed& b) {
     return deepest;
 }
 
-void parts_near(const Placed& body, const Placed& other, double margin, Vector<Part>& parts) {
+void parts_near(const BodyAtPose& body, const BodyAtPose& other, double margin, Vector<Part>& parts) {
     parts.clear();
     if (body.body.is_convex()) return parts.push_back({body.body, body.pose, {}, Sides::both});
     visit_parts_near(body, other, margin, [&](const Part& part) {

@@ -5,17 +5,18 @@
 
 namespace crofton::convex {
 
-[[nodiscard]] bool parts_meet(const Placed& a, const Placed& b);
-[[nodiscard]] Distance distance_of_parts(const Placed& a, const Placed& b);
-[[nodiscard]] Penetration penetration_of_parts(const Placed& a, const Placed& b);
+[[nodiscard]] bool parts_meet(const BodyAtPose& a, const BodyAtPose& b);
+[[nodiscard]] Distance distance_of_parts(const BodyAtPose& a, const BodyAtPose& b);
+[[nodiscard]] Penetration penetration_of_parts(const BodyAtPose& a, const BodyAtPose& b);
 
 // `distance` of two convex bodies; above `far` any lower bound above it will do.
-[[nodiscard]] Distance near_distance(const Placed& a, const Placed& b, double far);
+[[nodiscard]] Distance near_distance(const BodyAtPose& a, const BodyAtPose& b, double far);
 
 // Calls visit for the parts of a that may be within `margin` of b.
-bool visit_parts_near(const Placed& a, const Placed& b, double margin, PartVisitor visit);
+bool visit_parts_near(const BodyAtPose& a, const BodyAtPose& b, double margin, PartVisitor visit);
 // The same, with the triangles of surfaces by themselves.
-bool visit_parts_near(const Placed& a, const Placed& b, double margin, PartVisitor convex, TriangleVisitor triangle);
+bool visit_parts_near(const BodyAtPose& a, const BodyAtPose& b, double margin, PartVisitor convex,
+                      TriangleVisitor triangle);
 
 [[nodiscard]] inline Distance flipped(Distance d) {
     std::swap(d.on_a, d.on_b);

@@ -40,7 +40,7 @@ double rounding_of(const glm::dvec3& a, const glm::dvec3& b) {
 
 }  // namespace
 
-QueryBox box_around(const Placed& placed, const RigidTransform& pose) {
+QueryBox box_around(const BodyAtPose& placed, const RigidTransform& pose) {
     const Aabb& bounds = placed.body.bounds();
     const glm::dmat3 back = glm::inverse(pose.rotation);
     QueryBox box;
@@ -100,7 +100,7 @@ bool search_mesh(const mesh::MeshTree& mesh, const QueryBox& box, const PartSear
     return ended;
 }
 
-bool search_parts(const Placed& placed, const QueryBox& box, const PartSearch& search) {
+bool search_parts(const BodyAtPose& placed, const QueryBox& box, const PartSearch& search) {
     const Body& body = placed.body;
     if (body.is_convex()) return search.visit({body, placed.pose, {search.child, 0}, Sides::both});
     if (body.kind() == Kind::mesh) return search_mesh(*body.mesh(), box, search);
@@ -108,18 +108,21 @@ bool search_parts(const Placed& placed, const QueryBox& box, const PartSearch& s
     return search_compound(*body.compound(), box, search);
 }
 
-bool visit_parts(const Placed& placed, const QueryBox& box, double margin, PartVisitor visit) {
-    return search_parts(placed, box, {placed.pose, placed.body.sides(), 0, false, margin, visit, placed.body.reach()});
+bool visit_parts(const BodyAtPose& placed, const QueryBox& box, double margin, PartVisitor visit) {
+    return search_parts(placed, box,
+                        {placed.pose, placed.body.sides(), 0, false, margin, visit, placed.body.core_radius()});
 }
 
-bool visit_parts(const Placed& placed, const QueryBox& box, double margin, PartVisitor visit,
+bool visit_parts(const BodyAtPose& placed, const QueryBox& box, double margin, PartVisitor visit,
                  TriangleVisitor triangles) {
     const Body& body = placed.body;
-    return search_parts(placed, box, {placed.pose, body.sides(), 0, false, margin, visit, body.reach(), &triangles});
+    return search_parts(placed, box,
+                        {placed.pose, body.sides(), 0, false, margin, visit, body.core_radius(), &triangles});
 }
 
-bool visit_nearest_parts(const Placed& placed, const QueryBox& box, const double& limit, PartVisitor visit) {
-    return search_parts(placed, box, {placed.pose, placed.body.sides(), 0, true, limit, visit, placed.body.reach()});
+bool visit_nearest_parts(const BodyAtPose& placed, const QueryBox& box, const double& limit, PartVisitor visit) {
+    return search_parts(placed, box,
+                        {placed.pose, placed.body.sides(), 0, true, limit, visit, placed.body.core_radius()});
 }
 
 }  // namespace crofton::convex

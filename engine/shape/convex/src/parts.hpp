@@ -20,7 +20,7 @@ struct QueryBox {
 };
 
 // Around the body, in the frame of `pose`.
-[[nodiscard]] QueryBox box_around(const Placed& body, const RigidTransform& pose);
+[[nodiscard]] QueryBox box_around(const BodyAtPose& body, const RigidTransform& pose);
 // The same box seen from the frame of `pose`.
 [[nodiscard]] QueryBox seen_from(const QueryBox& box, const RigidTransform& pose);
 [[nodiscard]] Aabb bounds_of(const QueryBox& box);
@@ -29,12 +29,13 @@ struct QueryBox {
 // frame. With a margin of kEverything: for all. True if a visit ended the search. Parts come in an order that depends
 // on the body alone.
 inline constexpr double kEverything = 1e300;
-bool visit_parts(const Placed& body, const QueryBox& box, double margin, PartVisitor visit);
+bool visit_parts(const BodyAtPose& body, const QueryBox& box, double margin, PartVisitor visit);
 // The same, with the triangles of surfaces by themselves.
-bool visit_parts(const Placed& body, const QueryBox& box, double margin, PartVisitor visit, TriangleVisitor triangles);
+bool visit_parts(const BodyAtPose& body, const QueryBox& box, double margin, PartVisitor visit,
+                 TriangleVisitor triangles);
 
 // Calls `visit` for parts that may be nearer to the box than `limit`, the visitor's to lessen; about the nearest first.
-bool visit_nearest_parts(const Placed& body, const QueryBox& box, const double& limit, PartVisitor visit);
+bool visit_nearest_parts(const BodyAtPose& body, const QueryBox& box, const double& limit, PartVisitor visit);
 
 // What the searches of one kind of body share: the body of the search, a child's number, and both ways to ask.
 struct PartSearch {
@@ -53,7 +54,7 @@ struct PartSearch {
 bool search_mesh(const mesh::MeshTree& mesh, const QueryBox& box, const PartSearch& search);
 bool search_field(const HeightField& field, const Aabb& box, const PartSearch& search);
 bool search_compound(const Compound& compound, const QueryBox& box, const PartSearch& search);
-bool search_parts(const Placed& body, const QueryBox& box, const PartSearch& search);
+bool search_parts(const BodyAtPose& body, const QueryBox& box, const PartSearch& search);
 
 // Whether the body is a mesh or a height field, or a compound that holds one.
 [[nodiscard]] bool has_surfaces(const Body& body);

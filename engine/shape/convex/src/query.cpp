@@ -18,7 +18,7 @@ bool finite_pair(const Pair& pair) {
            std::isfinite(pair.pose_b.rotation[0].x + pair.pose_b.rotation[1].y);
 }
 
-Distance half_space_distance(const Placed& a, const Placed& b) {
+Distance half_space_distance(const BodyAtPose& a, const BodyAtPose& b) {
     Distance d;
     if (is_half_space(b)) {
         d.distance = d.lower = d.upper = gap_of_half_spaces(a, b, d.normal);
@@ -36,7 +36,7 @@ Distance half_space_distance(const Placed& a, const Placed& b) {
     return d;
 }
 
-Penetration half_space_penetration(const Placed& a, const Placed& b) {
+Penetration half_space_penetration(const BodyAtPose& a, const BodyAtPose& b) {
     Penetration p;
     if (is_half_space(b)) {
         p.overlapping = intersects(a, b);
@@ -77,7 +77,7 @@ Result<void> validate_pose(const RigidTransform& pose, std::uint64_t item) {
     return {};
 }
 
-bool intersects(const Placed& a, const Placed& b, PairCache* cache) {
+bool intersects(const BodyAtPose& a, const BodyAtPose& b, PairCache* cache) {
     if (!a.body.is_convex()) return parts_meet(a, b);
     if (!b.body.is_convex()) return parts_meet(b, a);
     if (is_half_space(a) || is_half_space(b)) {
@@ -98,7 +98,7 @@ bool intersects(const Placed& a, const Placed& b, PairCache* cache) {
     return settle(pair, core);
 }
 
-Distance distance(const Placed& a, const Placed& b, PairCache* cache) {
+Distance distance(const BodyAtPose& a, const BodyAtPose& b, PairCache* cache) {
     if (!a.body.is_convex()) return distance_of_parts(a, b);
     if (!b.body.is_convex()) return flipped(distance_of_parts(b, a));
     if (is_half_space(a)) return half_space_distance(a, b);
@@ -120,7 +120,7 @@ Distance distance_of(const Pair& pair, Nearest core) {
     d.on_a = pair.pose_a.translation + points.on_a;
     d.on_b = pair.pose_a.translation + points.on_b;
     if (meet) {
-        if (core.meeting == Meeting::apart && rounding > 0.0) d.on_a += ra / rounding * (d.on_b - d.on_a);
+        if (core.relation == Relation::apart && rounding > 0.0) d.on_a += ra / rounding * (d.on_b - d.on_a);
         d.on_b = d.on_a;
         return d;
     }
@@ -133,14 +133,14 @@ Distance distance_of(const Pair& pair, Nearest core) {
     return d;
 }
 
-Distance near_distance(const Placed& a, const Placed& b, double far) {
+Distance near_distance(const BodyAtPose& a, const BodyAtPose& b, double far) {
     if (is_half_space(a) || is_half_space(b)) return distance(a, b);
     const Pair pair(a, b);
     if (!finite_pair(pair)) return {};
     return distance_of(pair, core_distance(pair, nullptr, 0.0, far + pair.rounding() + 1.5 * pair.doubt()));
 }
 
-Penetration penetration(const Placed& a, const Placed& b, PairCache* cache) {
+Penetration penetration(const BodyAtPose& a, const BodyAtPose& b, PairCache* cache) {
     if (!a.body.is_convex()) return penetration_of_parts(a, b);
     if (!b.body.is_convex()) return flipped(penetration_of_parts(b, a));
     if (is_half_space(a)) return half_space_penetration(a, b);
@@ -159,7 +159,7 @@ Penetration penetration(const Placed& a, const Placed& b, PairCache* cache) {
     }
     CorePoints points;
     const double error_bound = 0x1p-52 * rounding;
-    if (!deep && core.meeting == Meeting::apart) {
+    if (!deep && core.relation == Relation::apart) {
         if (rounding > 0.0) align_points(pair, core.normal, core);
         points = core_points(core.simplex);
         const double between = glm::length(points.on_a - points.on_b);
@@ -182,9 +182,9 @@ Penetration penetration(const Placed& a, const Placed& b, PairCache* cache) {
     return p;
 }
 
-Distance closest_point(const Placed& body, const glm::dvec3& point) {
+Distance closest_point(const BodyAtPose& body, const glm::dvec3& point) {
     const RigidTransform at{glm::dmat3(1.0), point};
-    static const Body kPoint = *Body::ball(0.0f);
+    static const Body kPoint = *Body::sphere(0.0f);
     return distance({kPoint, at}, body);
 }
 

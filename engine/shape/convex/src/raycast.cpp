@@ -76,7 +76,7 @@ struct Approach {
     [[nodiscard]] double parameter(double t) const { return skipped[0] + (skipped[1] + t); }
 };
 
-Approach approach(const Placed& placed, const Ray& ray) {
+Approach approach(const BodyAtPose& placed, const Ray& ray) {
     const bool bounded = placed.body.is_bounded();
     const glm::dvec3 center = bounded ? placed.pose.rotation * placed.body.bounds().center() : glm::dvec3(0.0);
     const double radius = bounded ? glm::length(placed.body.bounds().half_extents()) * (1.0 + 1e-5) : HUGE_VAL;
@@ -102,7 +102,7 @@ Approach approach(const Placed& placed, const Ray& ray) {
     result.near.origin = result.to_body * from;
     result.near.direction = result.to_body * ray.direction;
     result.near.max_t = (ray.max_t - result.skipped[0]) - result.skipped[1];
-    const double reach = bounded ? placed.body.reach() : 0.0;
+    const double reach = bounded ? placed.body.core_radius() : 0.0;
     result.near.error = kError * (reach + placed.body.radius() + std::min(glm::length(from), 16.0 * radius));
     return result;
 }
@@ -112,7 +112,7 @@ class RayCaster {
   public:
     explicit RayCaster(const Ray& ray) : ray_(ray) {}
 
-    void cast(const Placed& placed, std::uint32_t child) {
+    void cast(const BodyAtPose& placed, std::uint32_t child) {
         if (inside_ && best_ && best_->part.child <= child) return;
         const Body& body = placed.body;
         if (body.kind() == Kind::half_space) return cast_at_half_space(placed, child);
@@ -134,7 +134,7 @@ class RayCaster {
 
   private:
     // Of a solid, where the ray's own origin is near it.
-    [[nodiscard]] bool is_inside(const Placed& placed, const NearRay& near) const {
+    [[nodiscard]] bool is_inside(const BodyAtPose& placed, const NearRay& near) const {
         const Body& body = placed.body;
         if (!body.is_convex() || (body.kind() == Kind::triangle && body.radius() == 0.0)) return false;
         const Aabb& bounds = body.bounds();
@@ -142,7 +142,7 @@ class RayCaster {
             if (!(near.origin[k] >= bounds.min[k] - near.error && near.origin[k] <= bounds.max[k] + near.error))
                 return false;
         if (body.kind() == Kind::cylinder || body.kind() == Kind::cone) return is_in_round(body, near.origin);
-        static const Body kPoint = *Body::ball(0.0);
+        static const Body kPoint = *Body::sphere(0.0);
         const RigidTransform at{glm::dmat3(1.0), ray_.origin};
         return intersects({kPoint, at}, placed);
     }
@@ -156,7 +156,7 @@ class RayCaster {
         best_ = hit;
     }
 
-    void keep(const Placed& placed, const Approach& way, const NearHit& met, const PartId& part) {
+    void keep(const BodyAtPose& placed, const Approach& way, const NearHit& met, const PartId& part) {
         RayHit hit;
         hit.t = std::min(std::max(way.parameter(met.t), 0.0), ray_.max_t);
         hit.point = placed.pose.rotation * (way.near.origin + met.t * way.near.direction) + placed.pose.translation;
@@ -171,8 +171,8 @@ class RayCaster {
     }
 
     // The image of { n·x + offset ≥ 0 }: { n·inverse(R)(y − t) + offset ≥ 0 }.
-    void cast_at_half_space(const Placed& placed, std::uint32_t child) {
-        static const Body kPoint = *Body::ball(0.0);
+    void cast_at_half_space(const BodyAtPose& placed, std::uint32_t child) {
+        static const Body kPoint = *Body::sphere(0.0);
         const RigidTransform at{glm::dmat3(1.0), ray_.origin};
         if (half_space_meets(placed, {kPoint, at})) return keep_inside(child);
         const Plane& plane = placed.body.plane();
@@ -201,7 +201,7 @@ class RayCaster {
         keep(hit);
     }
 
-    void cast_at_compound(const Placed& placed, std::uint32_t first) {
+    void cast_at_compound(const BodyAtPose& placed, std::uint32_t first) {
         const Approach way = approach(placed, ray_);
         if (!(way.near.max_t >= 0.0)) return;
         NearRay rest = way.near;
@@ -258,7 +258,7 @@ std::optional<NearHit> meet_mesh(const Body& body, const NearRay& ray) {
     return best;
 }
 
-std::optional<RayHit> raycast(const Placed& body, const Ray& ray) {
+std::optional<RayHit> raycast(const BodyAtPose& body, const Ray& ray) {
     if (!is_valid(ray) || !validate_pose(body.pose)) return std::nullopt;
     const ScaledRay along = scaled(ray);
     RayCaster caster(along.ray);

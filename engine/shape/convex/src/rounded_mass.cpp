@@ -77,7 +77,7 @@ double add_sector(Moments& sum, const glm::dvec3& p, const glm::dvec3& q, const 
     return angle;
 }
 
-// What corner v has of the ball around it: the directions between its facets' normals. Sums over the edges at v of
+// What corner v has of the sphere around it: the directions between its facets' normals. Sums over the edges at v of
 // angle · u and u ⊗ s, where u leads along the edge and s is the integral of the directions over the edge's arc, and
 // the facets' angles, say it all: ∫ n = −½ Σ angle u; 6 ∫ n nᵀ = 2 Ω I − Σ (u sᵀ + s uᵀ), Green's formula for n nᵀ, as
 // its Laplacian is 2 I − 6 n nᵀ; Ω = 2π − Σ angles of facets (Gauss, Bonnet).
@@ -171,11 +171,11 @@ void add_edges(Moments& sum, const Vector<RoundFacet>& facets, double radius, Ve
 MassProperties mass_of_segment(const glm::dvec3& p, const glm::dvec3& q, double radius) {
     const double length = glm::length(q - p), r2 = radius * radius;
     const glm::dvec3 along = length > 0.0 ? (q - p) / length : glm::dvec3(0.0, 1.0, 0.0);
-    const double h = 0.5 * length, cylinder = kHalfTurn * r2 * length, ball = 4.0 / 3.0 * kHalfTurn * r2 * radius;
-    const double across = cylinder * r2 / 4.0 + ball * r2 / 5.0;
-    const double lengthwise = cylinder * h * h / 3.0 + ball * (r2 / 5.0 + h * h + 0.75 * h * radius);
+    const double h = 0.5 * length, cylinder = kHalfTurn * r2 * length, sphere = 4.0 / 3.0 * kHalfTurn * r2 * radius;
+    const double across = cylinder * r2 / 4.0 + sphere * r2 / 5.0;
+    const double lengthwise = cylinder * h * h / 3.0 + sphere * (r2 / 5.0 + h * h + 0.75 * h * radius);
     Moments moments;
-    moments.volume = cylinder + ball;
+    moments.volume = cylinder + sphere;
     moments.second = across * glm::dmat3(1.0) + (lengthwise - across) * outer_square(along);
     return mass_of(moments, 0.5 * (p + q));
 }

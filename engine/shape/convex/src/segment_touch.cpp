@@ -66,11 +66,11 @@ PlacedTriangle placed_triangle(const Triangle& corners, const RigidTransform& po
     return t;
 }
 
-SegmentTouch::SegmentTouch(const Placed& body, const glm::dvec3& origin, double reach, double margin)
+SegmentTouch::SegmentTouch(const BodyAtPose& body, const glm::dvec3& origin, double reach, double margin)
     : count_(body.body.vertex_count()), radius_(body.body.radius()), limit_(body.body.radius() + margin) {
     const glm::dvec3 offset = body.pose.translation - origin;
     for (int i = 0; i < 2; ++i) end_[i] = body.pose.rotation * body.body.vertex(std::min(i, count_ - 1)) + offset;
-    const double size = reach + body.body.reach() + glm::length(offset);
+    const double size = reach + body.body.core_radius() + glm::length(offset);
     error_ = 0x1p-48 * size;
     doubt_ = kRoundedDoubt * size + 2.0 * error_;
 }

@@ -34,13 +34,13 @@ double deepest(const GatheredPoints& points) {
 
 }  // namespace
 
-SurfaceContacts::SurfaceContacts(const NearSurface& surface, const Placed& body, double margin)
+SurfaceContacts::SurfaceContacts(const NearSurface& surface, const BodyAtPose& body, double margin)
     : surface_(surface), body_(body), gathering_{surface.pose.translation, 0.0, body.body.radius(), margin} {
     const glm::dvec3& origin = surface.pose.translation;
-    size_ = surface.reach + body.body.reach() + glm::length(body.pose.translation - origin);
+    size_ = surface.reach + body.body.core_radius() + glm::length(body.pose.translation - origin);
     middle_ = middle_of(body, origin);
     if (body.body.kind() == Kind::box) box_.emplace(body, origin, surface.reach, margin);
-    const bool round = body.body.kind() == Kind::ball || body.body.kind() == Kind::capsule;
+    const bool round = body.body.kind() == Kind::sphere || body.body.kind() == Kind::capsule;
     if (round) segment_.emplace(body, origin, surface.reach, margin);
 }
 
@@ -84,7 +84,7 @@ void SurfaceContacts::ask(const NearTriangle& near, std::uint32_t index, EdgeRul
 // The triangle's face is tried first: its points are clipped for that already.
 SurfaceContacts::Found SurfaceContacts::find(const PlacedTriangle& t, const Body& triangle, Touch& touch,
                                              Contact& contact) const {
-    const Placed placed{triangle, surface_.pose};
+    const BodyAtPose placed{triangle, surface_.pose};
     const Pair pair(placed, body_);
     PairCache face;
     face.reference = 1;
@@ -119,7 +119,7 @@ void SurfaceContacts::gather_patches_along(const PlacedTriangle& t, Gatherer& ga
     triangle_patch(t, normal, on_triangle);
     on_body.count = 0;
     on_body.self = {FeatureKind::vertex, 0};
-    if (body_.body.vertex_count() == 1) return;  // a ball has no patch
+    if (body_.body.vertex_count() == 1) return;  // a sphere has no patch
     Clipped clipped;
     const bool round = body_.body.radius() > 0.0 || !body_.body.has_polytope_core();
     if (!box_ || round) patch_along(body_, -normal, gathering_.origin, on_body);

@@ -12,7 +12,7 @@ namespace crofton::convex {
 // One surface and one convex body, asked triangle by triangle.
 class SurfaceContacts {
   public:
-    SurfaceContacts(const NearSurface& surface, const Placed& body, double margin);
+    SurfaceContacts(const NearSurface& surface, const BodyAtPose& body, double margin);
 
     // The contact points of one triangle, along `normal`, from the triangle to the body. No points where it does not
     // touch. `left_out`: the two meet, and the rule for inner edges leaves no point.
@@ -35,7 +35,7 @@ class SurfaceContacts {
     void gather_along_face(const PlacedTriangle& t, bool front, Contact& contact) const;
 
     const NearSurface& surface_;
-    const Placed& body_;
+    const BodyAtPose& body_;
     Gathering gathering_;
     double size_;
     glm::dvec3 middle_;

@@ -31,12 +31,12 @@ void set_depth(const Pair& pair, const Depth& depth, PairCache* cache, Touch& to
     if (cache != nullptr) cache->axis = touch.normal;
 }
 
-// A ball within the core, around a point given from its origin.
-struct InnerBall {
+// A sphere within the core, around a point given from its origin.
+struct InnerSphere {
     glm::dvec3 center;
     double radius;
 };
-InnerBall inner_ball(const Placed& p) {
+InnerSphere inner_sphere(const BodyAtPose& p) {
     if (p.body.hull() != nullptr)
         return {p.pose.rotation * p.body.hull()->mass().center, p.body.hull()->inner_radius()};
     if (p.body.kind() == Kind::triangle)
@@ -78,19 +78,19 @@ struct Depths {
 // Whether no direction is less deep than `depths.least`. The difference body has, across the unit vector n at these
 // depths, for each direction a point at least `inner` from the axis. At an angle t from n its extent is at least d ·
 // cos t + inner · sin t, with d the least depth up to a right angle and the most beyond. That is no less than the least
-// depth up to t = 2 atan(inner / most). Beyond, there is the ball of radius R around c within the difference body.
+// depth up to t = 2 atan(inner / most). Beyond, there is the sphere of radius R around c within the difference body.
 // At the angle s = π − t from −n it has extent −c·n cos s − |c across n| sin s + R. That falls with s up to a right
 // angle, so its value at the last s decides.
-bool least_deep(const Placed& a, const Placed& b, const Pair& pair, const glm::dvec3& n, const Depths& depths,
+bool least_deep(const BodyAtPose& a, const BodyAtPose& b, const Pair& pair, const glm::dvec3& n, const Depths& depths,
                 double inner) {
     // What rounding may have made of a touch counts as none.
     if (!(depths.least > 4.0 * pair.error) || !(inner > depths.most)) return false;
-    const InnerBall in_a = inner_ball(a), in_b = inner_ball(b);
+    const InnerSphere in_a = inner_sphere(a), in_b = inner_sphere(b);
     const glm::dvec3 c = in_a.center - in_b.center - pair.offset;
     const double along = -glm::dot(n, c), across = glm::length(c + along * n);
     const double t = depths.most / inner, cosine = (1.0 - t * t) / (1.0 + t * t), sine = 2.0 * t / (1.0 + t * t);
-    const double from_ball = along * cosine - across * sine + (in_a.radius + in_b.radius);
-    return along >= 0.0 && from_ball >= depths.least + pair.error;
+    const double from_sphere = along * cosine - across * sine + (in_a.radius + in_b.radius);
+    return along >= 0.0 && from_sphere >= depths.least + pair.error;
 }
 
 // How far the points of a face are from one plane across a direction. Hulls have faces that are not quite flat; the
@@ -120,7 +120,7 @@ bool find_touch(const Pair& pair, double margin, PairCache* cache, Touch& touch)
     if (core.simplex.count == 0) return false;
     const bool meet = settle(pair, core);
     if (!meet && (margin == 0.0 || core.lower > rounding + margin)) return false;
-    if (core.meeting == Meeting::apart) {
+    if (core.relation == Relation::apart) {
         if (rounding + margin > 0.0) align_points(pair, core.normal, core);
         set_points(core.simplex, touch);
         touch.depth = rounding - glm::length(touch.on_a - touch.on_b);
@@ -133,10 +133,10 @@ bool find_touch(const Pair& pair, double margin, PairCache* cache, Touch& touch)
     return true;
 }
 
-Warm touch_at_face(const Placed& a, const Placed& b, const Pair& pair, double margin, const PairCache& cache,
+Warm touch_at_face(const BodyAtPose& a, const BodyAtPose& b, const Pair& pair, double margin, const PairCache& cache,
                    double kept_share, Touch& touch, Clipped& clipped) {
     const bool on_a = cache.reference == 1;
-    const Placed &reference = on_a ? a : b, &incident = on_a ? b : a;
+    const BodyAtPose &reference = on_a ? a : b, &incident = on_a ? b : a;
     const Body& body = reference.body;
     const bool valid = body.kind() == Kind::box
                            ? cache.face < 6

@@ -24,7 +24,7 @@ enum class Warm : std::uint8_t { unknown, apart, touching };
 // bodies to be farther apart than the margin. Then `clipped` holds the patches' common part. kKeptDepth is for a face
 // that stays; kSameDepth for one that is a guess.
 inline constexpr double kKeptDepth = 1e-4, kSameDepth = 1e-12;
-[[nodiscard]] Warm touch_at_face(const Placed& a, const Placed& b, const Pair& pair, double margin,
+[[nodiscard]] Warm touch_at_face(const BodyAtPose& a, const BodyAtPose& b, const Pair& pair, double margin,
                                  const PairCache& cache, double kept, Touch& touch, Clipped& clipped);
 
 }  // namespace crofton::convex

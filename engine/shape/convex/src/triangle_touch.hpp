@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where a triangle of a surface touches a box, a ball or a capsule: in closed form, proven as found.
+// Where a triangle of a surface touches a box, a sphere or a capsule: in closed form, proven as found.
 #pragma once
 #include "touch.hpp"
 
@@ -25,7 +25,7 @@ struct PlacedTriangle {
 class BoxTouch {
   public:
     // `reach` is the surface's; the box stands in the world, the triangles around the surface's origin.
-    BoxTouch(const Placed& box, const glm::dvec3& origin, double reach, double margin);
+    BoxTouch(const BodyAtPose& box, const glm::dvec3& origin, double reach, double margin);
     // touching: sets normal, depth, deepest points and features. apart: surely farther than the margin. The triangle's
     // normal is not used.
     [[nodiscard]] Warm ask(const PlacedTriangle& triangle, Touch& touch) const;
@@ -41,18 +41,18 @@ class BoxTouch {
     [[nodiscard]] bool set_points(const Local& t, const Axis& axis, const PlacedTriangle& triangle, Touch& touch) const;
     [[nodiscard]] int lowest_corner(const glm::dvec3& m) const;
 
-    const Placed& box_;
+    const BodyAtPose& box_;
     glm::dvec3 offset_, half_;  // of the box from the surface's origin
     glm::dvec3 unit_;           // lengths of the frame's covectors in the world
     glm::dmat3 to_local_, metric_;
     double size_, error_, margin_;
 };
 
-// A ball or a capsule: a segment or point with a rounding. The nearest points are found case by case (Ericson 2005,
+// A sphere or a capsule: a segment or point with a rounding. The nearest points are found case by case (Ericson 2005,
 // ch. 5), then proven by the extent along the direction between them, so that the cases need no proof.
 class SegmentTouch {
   public:
-    SegmentTouch(const Placed& body, const glm::dvec3& origin, double reach, double margin);
+    SegmentTouch(const BodyAtPose& body, const glm::dvec3& origin, double reach, double margin);
     [[nodiscard]] Warm ask(const PlacedTriangle& triangle, Touch& touch) const;
 
   private:

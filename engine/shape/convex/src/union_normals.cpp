@@ -20,22 +20,22 @@ constexpr double kFlatSlope = 2e-5;
 constexpr double kShallow = 0.25;
 
 double reach_of(const Body& body) {
-    return body.reach() + body.radius();
+    return body.core_radius() + body.radius();
 }
 
-bool holds(const Placed& body, const glm::dvec3& point, double tolerance) {
+bool holds(const BodyAtPose& body, const glm::dvec3& point, double tolerance) {
     const glm::dvec3 offset = point - body.pose.translation;
     if (body.body.kind() == Kind::box && body.body.radius() == 0.0) {
         const glm::dvec3 p = glm::abs(glm::inverse(body.pose.rotation) * offset), &half = body.body.half_extents();
         return p.x <= half.x + tolerance && p.y <= half.y + tolerance && p.z <= half.z + tolerance;
     }
-    static const Body kPoint = *Body::ball(0.0);
+    static const Body kPoint = *Body::sphere(0.0);
     const RigidTransform at{glm::dmat3(1.0), point};
     const double within = body.body.radius() + tolerance;
     return !(nearest_points(Pair({kPoint, at}, body), nullptr, 0.5 * within, within).lower > within);
 }
 
-bool rises_above(const Placed& body, const glm::dvec3& point, const glm::dvec3& direction, double tolerance) {
+bool rises_above(const BodyAtPose& body, const glm::dvec3& point, const glm::dvec3& direction, double tolerance) {
     const Support s = core_support(body.body, Pair::local(body.pose.rotation, direction));
     const glm::dvec3 way =
         body.pose.rotation * s.point + (body.pose.translation - point) + body.body.radius() * direction;
@@ -57,7 +57,7 @@ int face_count(const Body& body) {
 }
 
 // Outward; 0 of a triangle without area.
-glm::dvec3 face_normal(const Placed& placed, int face) {
+glm::dvec3 face_normal(const BodyAtPose& placed, int face) {
     const Body& body = placed.body;
     const glm::dmat3& rotation = placed.pose.rotation;
     glm::dvec3 local(0.0);
@@ -110,7 +110,7 @@ double depth_of(const UnionNormals::Contact& contact) {
 
 }  // namespace
 
-double flush_tolerance(const Placed& a, const Placed& b) {
+double flush_tolerance(const BodyAtPose& a, const BodyAtPose& b) {
     const glm::dvec3 place = glm::abs(a.pose.translation);
     const double size = reach_of(a.body) + reach_of(b.body) + glm::distance(a.pose.translation, b.pose.translation);
     return kFlush * size + 0x1p-50 * (place.x + place.y + place.z);
@@ -172,7 +172,7 @@ void UnionNormals::add_contact(std::uint32_t first, std::uint32_t second, const 
 
 bool UnionNormals::is_neighbor(int list, std::uint32_t own, std::uint32_t other, const Samples& samples) const {
     if (other == own) return false;
-    const Placed body = placed(list, other);
+    const BodyAtPose body = placed(list, other);
     const double within = reach_of(body.body) + samples.radius + flush_tolerance(placed(list, own), body);
     return glm::distance(samples.middle, body.pose.translation) <= within;
 }
@@ -180,7 +180,7 @@ bool UnionNormals::is_neighbor(int list, std::uint32_t own, std::uint32_t other,
 bool UnionNormals::is_covered(int list, std::uint32_t own, const glm::dvec3& point, const glm::dvec3& direction) const {
     for (std::uint32_t other = 0; other < parts_[list].size(); ++other) {
         if (other == own) continue;
-        const Placed body = placed(list, other);
+        const BodyAtPose body = placed(list, other);
         const double tolerance = flush_tolerance(placed(list, own), body);
         if (glm::distance(point, body.pose.translation) > reach_of(body.body) + tolerance) continue;
         if (rises_above(body, point, direction, tolerance) && holds(body, point, tolerance)) return true;
@@ -191,7 +191,7 @@ bool UnionNormals::is_covered(int list, std::uint32_t own, const glm::dvec3& poi
 // Whether a neighbour that rises above the contact's polygon comes to any point of it.
 bool UnionNormals::meets_polygon(int list, std::uint32_t own, std::uint32_t other, const Samples& samples,
                                  const glm::dvec3& direction) const {
-    const Placed body = placed(list, other);
+    const BodyAtPose body = placed(list, other);
     const double tolerance = flush_tolerance(placed(list, own), body), within = body.body.radius() + tolerance;
     const RigidTransform at{glm::dmat3(1.0), samples.middle};
     for (int i = 1; i + 1 < std::max(samples.corners, 3); ++i) {
@@ -237,7 +237,7 @@ UnionNormals::State UnionNormals::state_of(const Contact& contact) const {
 
 // Whether the motion that ends one contact ends the other.
 bool UnionNormals::parts_pair(const Contact& by, const Contact& contact) const {
-    const Placed a = placed(0, contact.part[0]), b = placed(1, contact.part[1]);
+    const BodyAtPose a = placed(0, contact.part[0]), b = placed(1, contact.part[1]);
     const Pair pair(a, b);
     double extent = 0.0;
     const Corner farthest = pair.support(by.normal, extent);
@@ -250,7 +250,7 @@ bool UnionNormals::parts_pair(const Contact& by, const Contact& contact) const {
 // The points of a pair of parts along a normal, but those that neighbours cover. Returns how deep the deepest one is
 // with these.
 double UnionNormals::gather_along(const glm::dvec3& normal, Contact& contact) const {
-    const Placed a = placed(0, contact.part[0]), b = placed(1, contact.part[1]);
+    const BodyAtPose a = placed(0, contact.part[0]), b = placed(1, contact.part[1]);
     const Pair pair(a, b);
     Touch touch;
     touch.normal = normal;
@@ -313,7 +313,7 @@ void UnionNormals::replace_by_free() {
 // Along the free face of either part that is least deep, if that is not deep within them: there no way out is plain.
 bool UnionNormals::find_own_face(const Contact& contact, Contact& found) const {
     found.count = 0;
-    const Placed placed_parts[2] = {placed(0, contact.part[0]), placed(1, contact.part[1])};
+    const BodyAtPose placed_parts[2] = {placed(0, contact.part[0]), placed(1, contact.part[1])};
     const Pair pair(placed_parts[0], placed_parts[1]);
     const double rounding = pair.a.radius() + pair.b.radius();
     double least = kShallow * std::min(reach_of(pair.a), reach_of(pair.b));
@@ -360,7 +360,7 @@ bool UnionNormals::is_behind(const Contact& contact, const Contact& other) const
         const std::uint32_t own = contact.part[list], neighbor = other.part[list];
         if (own == neighbor || contact.part[1 - list] != other.part[1 - list]) continue;
         const Samples samples(contact, list);
-        const Placed body = placed(list, neighbor);
+        const BodyAtPose body = placed(list, neighbor);
         const double within = body.body.radius() + flush_tolerance(placed(list, own), body);
         const glm::dvec3 way = (list == 0 ? other.depth : -other.depth) * other.normal;
         const RigidTransform at{glm::dmat3(1.0), samples.middle};
@@ -382,7 +382,7 @@ void UnionNormals::replace_behind() {
 // A contact's deepest point seen along another normal, up at the face of the first part across it. Beside a round body
 // the overlap there is as deep as its surface is flat.
 void UnionNormals::keep_deepest(const Contact& from, Contact& contact) const {
-    const Placed a = placed(0, contact.part[0]), b = placed(1, contact.part[1]);
+    const BodyAtPose a = placed(0, contact.part[0]), b = placed(1, contact.part[1]);
     const Pair pair(a, b);
     const glm::dvec3 normal = contact.normal;
     const ContactPoint* deepest = from.points;

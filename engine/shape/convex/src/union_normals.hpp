@@ -8,7 +8,7 @@
 namespace crofton::convex {
 
 // Faces of two bodies count as flush that are within this of each other: rounding of their sizes to float.
-[[nodiscard]] double flush_tolerance(const Placed& a, const Placed& b);
+[[nodiscard]] double flush_tolerance(const BodyAtPose& a, const BodyAtPose& b);
 
 // Two lists of convex parts, and where parts of the first touch parts of the second. The least deep way out of one part
 // may lead into its neighbour. So a contact whose points the neighbours cover is none of the union's: its pair of parts
@@ -43,7 +43,7 @@ class UnionNormals {
   private:
     enum class State : std::uint8_t { free, partly_covered, covered, replaced };
     struct Samples;
-    [[nodiscard]] Placed placed(int list, std::uint32_t number) const {
+    [[nodiscard]] BodyAtPose placed(int list, std::uint32_t number) const {
         return {parts_[list][number].body, parts_[list][number].pose};
     }
     [[nodiscard]] State state_of(const Contact& contact) const;

@@ -12,14 +12,14 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// The caller's go_on, with the share that is done before a run.
+// The caller's StopCallback, with the share that is done before a run.
 struct Asked {
     const BakeLimits& limits;
     double share;
 
-    static bool go_on(void* who) {
+    static bool should_stop(void* who, double) {
         const Asked& it = *static_cast<const Asked*>(who);
-        return it.limits.go_on == nullptr || it.limits.go_on(it.limits.user, it.share);
+        return it.limits.should_stop != nullptr && it.limits.should_stop(it.limits.user, it.share);
     }
 };
 
@@ -59,7 +59,7 @@ Result<void> Bake::run(const BakeLimits& limits, Executor& executor) {
                 solver_.first_run_ = chain * kRunsOfChain;
                 while (solver_.runs() < runs) {
                     Asked asked{limits, (found + static_cast<double>(solver_.runs())) / all};
-                    if (!solver_.run(Asked::go_on, &asked, executor)) return {};
+                    if (!solver_.run(Asked::should_stop, &asked, executor)) return {};
                 }
                 add({chain, chain + 1, solver_.lines_traced_, solver_.unseen_, solver_.seen_, solver_.sum_,
                      solver_.squares_, solver_.drawn_, solver_.buried_},

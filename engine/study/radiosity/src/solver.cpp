@@ -118,16 +118,8 @@ void Solver::run(Executor& executor) {
     add_run(arriving_in_a_run(executor));
 }
 
-bool Solver::run(bool (*go_on)(void* user), void* user, Executor& executor) {
-    struct Asked {
-        bool (*go_on)(void* user);
-        void* user;
-    } asked{go_on, user};
-    const auto ask = [](void* who, double) {
-        const Asked& it = *static_cast<const Asked*>(who);
-        return it.go_on(it.user);
-    };
-    crofton::detail::StopSignal stop(go_on != nullptr ? +ask : nullptr, &asked);
+bool Solver::run(StopCallback should_stop, void* user, Executor& executor) {
+    crofton::detail::StopSignal stop(should_stop, user);
     const Vector<std::uint64_t> drawn = drawn_, buried = buried_;
     const std::uint64_t lines = lines_traced_, unseen = unseen_, seen = seen_;
     const std::uint32_t bounces = bounces_;

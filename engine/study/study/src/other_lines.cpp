@@ -20,7 +20,7 @@ WeightedLine line_through_opposite_faces(const Aabb& box, int axis, const std::a
     return {{from, across / std::sqrt(squared)}, area * area * size[axis] * size[axis] / (squared * squared)};
 }
 
-void append_parallelogram_bundle(const Sphere& ball, const glm::dvec2& first, const glm::dvec2& second,
+void append_parallelogram_bundle(const Sphere& sphere, const glm::dvec2& first, const glm::dvec2& second,
                                  sampling::Random& random, Vector<Line>& lines) {
     const double area = first.x * second.y - first.y * second.x;
     CROFTON_ASSERT(area != 0.0, "cells without area");
@@ -31,15 +31,15 @@ void append_parallelogram_bundle(const Sphere& ball, const glm::dvec2& first, co
     const glm::dvec2 a = turn * first, b = turn * second, shift = along_a * a + along_b * b;
     // p = i·a + j·b + shift has |i| ≤ |p × b| / area and |j| ≤ |p × a| / area, and the shift is less than one cell.
     const auto count_across = [&](const glm::dvec2& side) {
-        return static_cast<std::int64_t>(std::ceil(ball.radius * glm::length(side) / std::abs(area))) + 2;
+        return static_cast<std::int64_t>(std::ceil(sphere.radius * glm::length(side) / std::abs(area))) + 2;
     };
     const std::int64_t columns = count_across(b), rows = count_across(a);
     for (std::int64_t i = -columns; i <= columns; ++i)
         for (std::int64_t j = -rows; j <= rows; ++j) {
             const auto u = random.point<2>();
             const glm::dvec2 p = shift + (static_cast<double>(i) + u[0]) * a + (static_cast<double>(j) + u[1]) * b;
-            if (glm::dot(p, p) <= ball.radius * ball.radius)
-                lines.push_back({ball.center + p.x * x + p.y * y, direction});
+            if (glm::dot(p, p) <= sphere.radius * sphere.radius)
+                lines.push_back({sphere.center + p.x * x + p.y * y, direction});
         }
 }
 

@@ -10,7 +10,7 @@ namespace crofton::study {
 namespace {
 
 using std::numbers::pi;
-constexpr int kBallSides = 32;
+constexpr int kSphereSides = 32;
 
 using Polygon2 = Vector<glm::dvec2>;
 
@@ -68,7 +68,7 @@ class Shadows {
         for (std::size_t i = 0; i < bodies_.size(); ++i) {
             cast(bodies_[i], view);
             const bool first = i == 0;
-            intersect(inner_, middle_, first, margin_ + ball_gap_);
+            intersect(inner_, middle_, first, margin_ + sphere_gap_);
             intersect(low_middle_, middle_, first, 0.0);
             intersect(outer_, swept_, first, 0.0);
         }
@@ -86,18 +86,18 @@ class Shadows {
         return sum;
     }
 
-    // middle_: the shadow along the axis, a ball's outline as a polygon of its area; swept_: holds all shadows of the
+    // middle_: the shadow along the axis, a sphere's outline as a polygon of its area; swept_: holds all shadows of the
     // cell.
     void cast(const ConvexBody& body, const View& view) {
         points_.clear(), swept_points_.clear();
-        margin_ = ball_gap_ = 0.0;
-        const int sides = body.radius > 0.0 ? kBallSides : 1;
-        const double step = 2.0 * pi / kBallSides;
-        // A sheared ball's outline is an ellipse of radii r and r/cos; the polygon around it reaches
+        margin_ = sphere_gap_ = 0.0;
+        const int sides = body.radius > 0.0 ? kSphereSides : 1;
+        const double step = 2.0 * pi / kSphereSides;
+        // A sheared sphere's outline is an ellipse of radii r and r/cos; the polygon around it reaches
         // r/(cos·cos(step/2)).
         const double around = body.radius / (view.least_cosine * cosine(0.5 * step));
         const double same_area = body.radius * std::sqrt(step / sine(step));
-        if (body.radius > 0.0) ball_gap_ = same_area - body.radius * cosine(0.5 * step);
+        if (body.radius > 0.0) sphere_gap_ = same_area - body.radius * cosine(0.5 * step);
         for (const glm::dvec3& p : body.points) {
             const glm::dvec3 d = p - center_;
             const glm::dvec2 flat(glm::dot(d, view.right), glm::dot(d, view.up));
@@ -105,7 +105,7 @@ class Shadows {
             margin_ = std::max(margin_, std::abs(height) * view.largest_shear);
             for (int s = 0; s < sides; ++s) {
                 const glm::dvec2 spoke =
-                    sides == 1 ? glm::dvec2(0.0) : sampling::circle_point(static_cast<double>(s) / kBallSides);
+                    sides == 1 ? glm::dvec2(0.0) : sampling::circle_point(static_cast<double>(s) / kSphereSides);
                 points_.push_back(flat + same_area * spoke);
                 for (const glm::dvec2& shear : view.shears)
                     swept_points_.push_back(flat + height * shear + around * spoke);
@@ -126,7 +126,7 @@ class Shadows {
     std::span<const ConvexBody> bodies_;
     glm::dvec3 center_{0.0};
     Polygon2 points_, swept_points_, middle_, swept_, inner_, low_middle_, outer_, scratch_;
-    double margin_ = 0.0, ball_gap_ = 0.0;
+    double margin_ = 0.0, sphere_gap_ = 0.0;
 };
 
 }  // namespace

@@ -13,11 +13,11 @@ Line line_through_two_box_points(const Aabb& box, const std::array<double, 6>& u
     return {a, length > 0.0 ? (b - a) / length : glm::dvec3(0.0, 0.0, 1.0)};
 }
 
-Line line_from_sphere_uniform_direction(const Sphere& ball, const std::array<double, 4>& u) {
+Line line_from_sphere_uniform_direction(const Sphere& sphere, const std::array<double, 4>& u) {
     const glm::dvec3 normal = sampling::direction({u[0], u[1]});
     glm::dvec3 d = sampling::direction({u[2], u[3]});
     if (glm::dot(d, normal) > 0.0) d = -d;
-    return {ball.center + ball.radius * normal, d};
+    return {sphere.center + sphere.radius * normal, d};
 }
 
 PlaneLine line_through_two_circle_points(double radius, const std::array<double, 2>& u) {

@@ -12,7 +12,7 @@ struct KernelPlane {
     double normal[3];
     double offset;
     float normal_f[3];  // normal, rounded
-    float length_f;     // of normal, within 2^-23; for queries of balls
+    float length_f;     // of normal, within 2^-23; for queries of spheres
 };
 
 // A normal in units of 2^-14, rounded to the nearest, as pairs of 16-bit integers.

@@ -20,7 +20,7 @@ struct BoxTest {
     MF needs_edge_test;  // certainly not rejected by a plane, certainly not inside; whether they meet the frustum is
                          // open
     MF undecided;        // the rest of those that are not certainly outside
-    MF improper;         // rejected by no plane, and certainly outside all the same
+    MF false_positives;  // rejected by no plane, and certainly outside all the same
 };
 
 HWY_INLINE VF plane_value(const KernelPlane& plane, VF x, VF y, VF z, float offset) {
@@ -191,7 +191,7 @@ HWY_INLINE MF cut_twice_at_most(const BoxRows& box, MF wanted) {
 HWY_INLINE void resolve(const BoxRows& box, BoxTest& test) {
     const DF d;
     const PairTest pairs = test_pairs(box, test.needs_edge_test);
-    test.improper = pairs.separated;
+    test.false_positives = pairs.separated;
     MF meets = hn::And(pairs.met, cut_twice_at_most(box, test.needs_edge_test));
     const MF rest = hn::AndNot(hn::Or(meets, pairs.separated), test.needs_edge_test);
     if (!hn::AllFalse(d, rest)) meets = hn::Or(meets, has_witness(box, rest));

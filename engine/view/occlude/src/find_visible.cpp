@@ -61,7 +61,7 @@ class VisibleQuery {
             for (std::uint64_t rest = not_hidden(&boxes[first], nullptr, size); rest != 0; rest &= rest - 1) {
                 const std::size_t i = first + static_cast<std::size_t>(std::countr_zero(rest));
                 if (((layer_masks.empty() ? ~std::uint32_t{0} : layer_masks[i]) & options_.layer_mask) &&
-                    cull::is_among(options_.among, static_cast<ItemId>(i)))
+                    cull::is_candidate(options_.candidate_mask, static_cast<ItemId>(i)))
                     visible_.candidates_.push_back(static_cast<ItemId>(i));
             }
         }
@@ -104,9 +104,9 @@ class VisibleQuery {
             VisibleStatistics& statistics = visible_.statistics_;
             statistics.nodes_tested += static_cast<std::uint64_t>(std::popcount(open));
             statistics.nodes_hidden += static_cast<std::uint64_t>(std::popcount(open & bits.hidden));
-            statistics.nodes_outside += static_cast<std::uint64_t>(std::popcount(open & bits.beside));
+            statistics.nodes_outside += static_cast<std::uint64_t>(std::popcount(open & bits.outside_picture));
         }
-        for (open &= ~(bits.hidden | bits.beside); open != 0; open &= open - 1)
+        for (open &= ~(bits.hidden | bits.outside_picture); open != 0; open &= open - 1)
             visible_.stack_.push_back(node.child[std::countr_zero(open)]);
     }
 
@@ -117,7 +117,8 @@ class VisibleQuery {
         std::size_t count = 0;
         for (std::uint32_t l = 0; l < lanes.count; ++l) {
             const ItemId item = structure.slot_items()[leaf * boxtree::kWidth + l];
-            if ((lanes.layers[l] & options_.layer_mask) && cull::is_among(options_.among, item)) items[count++] = item;
+            if ((lanes.layers[l] & options_.layer_mask) && cull::is_candidate(options_.candidate_mask, item))
+                items[count++] = item;
         }
         if (count == 0) return;
         for (std::uint64_t rest = not_hidden(tree.boxes().data(), items, count); rest != 0; rest &= rest - 1)
@@ -131,7 +132,7 @@ class VisibleQuery {
             visible_.statistics_.items_tested += count;
             visible_.statistics_.items_hidden += static_cast<std::uint64_t>(std::popcount(bits.hidden));
         }
-        return ~(bits.hidden | bits.beside) & ~std::uint64_t{0} >> (64 - count);
+        return ~(bits.hidden | bits.outside_picture) & ~std::uint64_t{0} >> (64 - count);
     }
 
     // By a bit an item.

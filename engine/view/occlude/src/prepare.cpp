@@ -16,24 +16,24 @@ class Preparation {
         : map_(map), body_(body), bounds_(map, body.sizes), occluder_(occluder), out_(out) {}
 
     void run() {
-        if (!look_at_points()) return;
+        if (!classify_points()) return;
         result_.first_side = static_cast<std::uint32_t>(out_.sides.size());
         result_.first_plane = static_cast<std::uint32_t>(out_.planes.size());
         first_row_ = 0;
         end_row_ = map_.height;
         clip_rows();
-        if (!add_faces() || !limit_planes() || !add_contour() || first_row_ >= end_row_) return withdraw();
+        if (!add_faces() || !limit_planes() || !add_contour() || first_row_ >= end_row_) return discard();
         finish();
     }
 
   private:
-    void withdraw() {
+    void discard() {
         out_.sides.resize(result_.first_side);
         out_.planes.resize(result_.first_plane);
     }
 
     // False where all points are beyond one side of the window, or before a cut.
-    bool look_at_points() {
+    bool classify_points() {
         const MapSizes& sizes = body_.sizes;
         double most_near = -HUGE_VAL, least_near = HUGE_VAL;
         bool all_before[2] = {true, true}, outside[4] = {true, true, true, true};

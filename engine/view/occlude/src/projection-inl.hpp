@@ -33,11 +33,11 @@ constexpr float kFormError = 0x1p-20f;
 
 // What is known of some lanes, a bit each. Lanes that are in none are visible.
 struct LaneBits {
-    std::uint32_t hidden, beside, open;
+    std::uint32_t hidden, outside_picture, open;
 
     HWY_INLINE void add(const LaneBits& other, std::size_t first) {
         hidden |= other.hidden << first;
-        beside |= other.beside << first;
+        outside_picture |= other.outside_picture << first;
         open |= other.open << first;
     }
 };
@@ -206,8 +206,8 @@ struct Projection {
         const auto usable = hn::And(
             hn::And(hn::Ge(in_front, hn::Set(d, kPerspective ? view.least_w : 0.5f)), hn::Lt(m, hn::Set(d, 0.5f))),
             hn::Lt(largest, hn::Set(d, 1e6f)));
-        const auto beside = hn::Or(hn::Or(hn::Lt(hx, hn::Zero(d)), hn::Gt(lx, width)),
-                                   hn::Or(hn::Lt(hy, hn::Zero(d)), hn::Gt(ly, height)));
+        const auto outside_picture = hn::Or(hn::Or(hn::Lt(hx, hn::Zero(d)), hn::Gt(lx, width)),
+                                            hn::Or(hn::Lt(hy, hn::Zero(d)), hn::Gt(ly, height)));
         const auto clamped = [&](VF v, VF end) {
             v = hn::Min(hn::Max(v, hn::Zero(d)), hn::Sub(end, hn::Set(d, 1.0f)));
             return hn::IfThenElseZero(usable, v);
@@ -225,17 +225,17 @@ struct Projection {
                                            hn::ShiftRight<3>(y1));
         const auto hidden = hn::Gt(least, most);
         const std::uint32_t usable_bits = mask_bits(d, usable);
-        std::uint32_t beside_bits = mask_bits(d, beside) & usable_bits;
+        std::uint32_t outside_bits = mask_bits(d, outside_picture) & usable_bits;
         // What reaches behind the eye has no rectangle, but may be beside the view all the same.
         if (kPerspective && usable_bits != (1u << hn::Lanes(d)) - 1)
-            beside_bits |= mask_bits(d, outside_of_sides(view, form, error, bounds)) & ~usable_bits;
-        const std::uint32_t hidden_bits = mask_bits(d, hidden) & usable_bits & ~beside_bits;
+            outside_bits |= mask_bits(d, outside_of_sides(view, form, error, bounds)) & ~usable_bits;
+        const std::uint32_t hidden_bits = mask_bits(d, hidden) & usable_bits & ~outside_bits;
         // A short way to say that a box is seen: nothing in the tile of its middle is nearer than its centre.
         const VI middle_x = hn::ShiftRight<4>(hn::Add(x0, x1)), middle_y = hn::ShiftRight<4>(hn::Add(y0, y1));
         const VF front = depths.front_at(middle_x, middle_y);
         const auto seen =
             hn::Le(kPerspective ? hn::Mul(front, form[2][0]) : front, kPerspective ? hn::Set(d, 1.0f) : form[2][0]);
-        return {hidden_bits, beside_bits, usable_bits & ~beside_bits & ~hidden_bits & ~mask_bits(d, seen)};
+        return {hidden_bits, outside_bits, usable_bits & ~outside_bits & ~hidden_bits & ~mask_bits(d, seen)};
     }
 };
 

@@ -104,7 +104,7 @@ class Batch {
     // Of a group that has been projected, and of whose boxes `present` are wanted.
     HWY_INLINE void add(std::size_t group, const LaneBits& bits, std::uint32_t present) {
         hidden_ |= std::uint64_t{bits.hidden & present} << (kLanes * group);
-        beside_ |= std::uint64_t{bits.beside & present} << (kLanes * group);
+        outside_picture_ |= std::uint64_t{bits.outside_picture & present} << (kLanes * group);
         for (std::uint32_t open = bits.open & present; open != 0; open &= open - 1) {
             const auto i = static_cast<std::size_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(open));
             const MiddlePixel middle(view_, PixelRectangle(boxes_[group], i));
@@ -127,7 +127,7 @@ class Batch {
             const std::uint32_t box = open_[i].box;
             if (is_hidden(view_, boxes_[box / kLanes], box % kLanes)) hidden_ |= std::uint64_t{1} << box;
         }
-        return {hidden_, beside_};
+        return {hidden_, outside_picture_};
     }
 
   private:
@@ -139,7 +139,7 @@ class Batch {
     Projection boxes_[64 / kLanes];
     Open open_[64];
     std::size_t open_count_ = 0;
-    std::uint64_t hidden_ = 0, beside_ = 0;
+    std::uint64_t hidden_ = 0, outside_picture_ = 0;
 };
 
 QueryBits query_boxes(const QueryView& view, const unsigned char* boxes, const std::uint32_t* items,
@@ -200,7 +200,7 @@ ChildBits query_children(const QueryView& view, const boxtree::Node& node, const
         asked.add(first / kLanes, bits, 0xffu >> (kLanes - std::min<std::size_t>(kLanes, node.count - first)));
     }
     const QueryBits bits = asked.ask();
-    return {static_cast<std::uint32_t>(bits.hidden), static_cast<std::uint32_t>(bits.beside)};
+    return {static_cast<std::uint32_t>(bits.hidden), static_cast<std::uint32_t>(bits.outside_picture)};
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ struct QueryView {
 
 // Of 64 boxes or fewer, a bit each: hidden; wholly beside the picture (and then not hidden).
 struct QueryBits {
-    std::uint64_t hidden, beside;
+    std::uint64_t hidden, outside_picture;
 };
 
 // `boxes` is an array of Obb; box i is the one at items[i], or at i where there are no items.
@@ -38,7 +38,7 @@ struct QueryBits {
 
 // The same for the children of a tree's node: bit l for the bound of lane l.
 struct ChildBits {
-    std::uint32_t hidden, beside;
+    std::uint32_t hidden, outside_picture;
 };
 [[nodiscard]] ChildBits query_children_kernel(const QueryView& view, const boxtree::Node& node,
                                               const boxtree::Axes& axes);

@@ -133,7 +133,7 @@ void Bodies::begin() {
 void Bodies::prepare(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene, std::uint32_t id) {
     const Object& object = table.objects[id];
     Own wanted;
-    if (object.kind == BoundKind::ball) return;
+    if (object.kind == BoundKind::sphere) return;
     if (mesh_tree_of(object)) {
         wanted.linear = scene.world(scene.node_of(object.instance)).linear;
         if (is_rotation(wanted.linear)) return;
@@ -189,7 +189,7 @@ void Bodies::build(const scene::Scene& scene, Executor& executor) {
 PosedTree Bodies::posed_tree(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene,
                              std::uint32_t id) const {
     const Object& object = table.objects[id];
-    if (object.kind == BoundKind::ball) return {&point_, {glm::dmat3(1.0), index.box(id).center}};
+    if (object.kind == BoundKind::sphere) return {&point_, {glm::dmat3(1.0), index.box(id).center}};
     const auto own = [&]() -> const mesh::MeshTree* {
         const Own& kept = own_[own_of_object_[id]];
         return kept.is_usable ? &kept.tree : nullptr;

@@ -17,7 +17,7 @@ struct PosedTree {
 };
 
 // A mesh's tree serves all objects that turn and move it. An object with a scale or shear has a tree of its own, of the
-// vertices times the linear part, rounded to float. So has a box that meets a mesh. Balls are points.
+// vertices times the linear part, rounded to float. So has a box that meets a mesh. Spheres are points.
 class Bodies {
   public:
     Bodies();

@@ -49,7 +49,7 @@ class BodyContacts {
         Vector<convex::TrackedPoint> points, pair_points;
         Neighbors neighbors;
         Vector<RigidTransform> poses;  // of them
-        Vector<convex::Placed> placed[2];
+        Vector<convex::BodyAtPose> placed[2];
     };
     void list(std::span<const ObjectPair> pairs, const ObjectBodies& bodies);
     void list_neighbors(std::span<const ObjectPair> pairs, const SpatialIndex& index, double margin);

@@ -26,7 +26,7 @@ Aabb bounds_of(const convex::Body& body, const RigidTransform& pose) {
     return {center - half_size, center + half_size};
 }
 
-// All that the body passes in the time: a ball around its pivot, or the box at both ends.
+// All that the body passes in the time: a sphere around its pivot, or the box at both ends.
 Aabb swept_bounds(const convex::Body& body, const RigidTransform& pose, const convex::Motion& motion, double time,
                   double tolerance) {
     Aabb bounds = bounds_of(body, pose);
@@ -50,14 +50,14 @@ Result<void> check(const convex::Body& shape, const RigidTransform& pose) {
 
 }  // namespace
 
-World::State::Stand World::State::stand_of(std::uint32_t id) const {
+World::State::QueryShape World::State::query_shape_of(std::uint32_t id) const {
     const world::Object& object = table.objects[id];
     const Obb& box = index.box(id);
     if (object_bodies.has(id)) return {object_bodies.body(id), object_bodies.pose_of(id, object, box, scene)};
-    if (object.kind == BoundKind::ball)
-        return {*convex::Body::ball(std::min(object.radius, static_cast<double>(convex::kMaxExtent))),
+    if (object.kind == BoundKind::sphere)
+        return {*convex::Body::sphere(std::min(object.radius, static_cast<double>(convex::kMaxExtent))),
                 RigidTransform{glm::dmat3(1.0), box.center}};
-    Stand stand{*convex::Body::box(glm::min(box.half_extents, glm::vec3(convex::kMaxExtent))), std::nullopt};
+    QueryShape stand{*convex::Body::box(glm::min(box.half_extents, glm::vec3(convex::kMaxExtent))), std::nullopt};
     stand.pose = RigidTransform{glm::dmat3(box.axes), box.center};
     glm::dmat3& axes = stand.pose->rotation;
     if (glm::determinant(axes) < 0.0) axes[2] = -axes[2];  // the same box
@@ -83,7 +83,7 @@ void World::overlap(const convex::Body& shape, const RigidTransform& pose, Vecto
     if (!check(shape, pose)) return;
     const State& s = *state_;
     s.visit_near(bounds_of(shape, pose), 0.0, layers, [&](std::uint32_t id) {
-        const State::Stand stand = s.stand_of(id);
+        const State::QueryShape stand = s.query_shape_of(id);
         if (stand.pose && convex::intersects({shape, pose}, {stand.body, *stand.pose}))
             found.push_back(s.table.ref(id));
         return 0.0;
@@ -97,7 +97,7 @@ std::optional<ClosestObject> World::closest(const convex::Body& shape, const Rig
     if (!check(shape, pose)) return std::nullopt;
     const State& s = *state_;
     return s.closest(bounds_of(shape, pose), max_distance, layers, [&](std::uint32_t id) {
-        const State::Stand stand = s.stand_of(id);
+        const State::QueryShape stand = s.query_shape_of(id);
         if (!stand.pose) return collide::Distance{std::numeric_limits<double>::infinity(), {}, {}};
         const convex::Distance gap = convex::distance({shape, pose}, {stand.body, *stand.pose});
         return collide::Distance{gap.distance, gap.on_a, gap.on_b};
@@ -109,7 +109,7 @@ Result<std::optional<BodyHit>> World::cast(const convex::Body& shape, const Rigi
                                            std::uint32_t layers) const {
     if (auto good = check(shape, pose); !good) return tl::unexpected(good.error());
     // Bad motions and options are told also where nothing is near.
-    static const convex::Body kPoint = *convex::Body::ball(0.0);
+    static const convex::Body kPoint = *convex::Body::sphere(0.0);
     const RigidTransform far{glm::dmat3(1.0), glm::dvec3(1e15)};
     if (auto good = convex::cast({shape, pose}, motion, {kPoint, far}, {}, options); !good)
         return tl::unexpected(good.error());
@@ -118,7 +118,7 @@ Result<std::optional<BodyHit>> World::cast(const convex::Body& shape, const Rigi
     convex::CastOptions rest = options;
     const Aabb swept = swept_bounds(shape, pose, motion, options.duration, options.tolerance);
     s.visit_near(swept, 0.0, layers, [&](std::uint32_t id) {
-        const State::Stand stand = s.stand_of(id);
+        const State::QueryShape stand = s.query_shape_of(id);
         if (!stand.pose) return 0.0;
         const auto impact = convex::cast({shape, pose}, motion, {stand.body, *stand.pose}, {}, rest);
         if (!impact || impact->result == convex::CastResult::miss) return 0.0;

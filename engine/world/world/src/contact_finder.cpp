@@ -16,20 +16,20 @@ namespace {
 
 // Of two whose boxes meet.
 bool bounds_meet(const Object& a, const Obb& box_a, const Object& b, const Obb& box_b) {
-    const bool ball_a = a.kind == BoundKind::ball, ball_b = b.kind == BoundKind::ball;
-    if (ball_a && ball_b) return glm::length(box_a.center - box_b.center) <= a.radius + b.radius;
-    if (ball_a) return collide::intersects(box_b, ball_of(a, box_a));
-    if (ball_b) return collide::intersects(box_a, ball_of(b, box_b));
+    const bool sphere_a = a.kind == BoundKind::sphere, sphere_b = b.kind == BoundKind::sphere;
+    if (sphere_a && sphere_b) return glm::length(box_a.center - box_b.center) <= a.radius + b.radius;
+    if (sphere_a) return collide::intersects(box_b, sphere_of(a, box_a));
+    if (sphere_b) return collide::intersects(box_a, sphere_of(b, box_b));
     return true;
 }
 
 // Of two that meet.
 collide::Manifold touch_of_bounds(const Object& a, const Obb& box_a, const Object& b, const Obb& box_b) {
-    const bool ball_a = a.kind == BoundKind::ball, ball_b = b.kind == BoundKind::ball;
-    if (ball_a && ball_b) return collide::contact_manifold(ball_of(a, box_a), ball_of(b, box_b));
-    if (ball_b) return collide::contact_manifold(box_a, ball_of(b, box_b));
-    if (!ball_a) return collide::contact_manifold(box_a, box_b);
-    collide::Manifold manifold = collide::contact_manifold(box_b, ball_of(a, box_a));
+    const bool sphere_a = a.kind == BoundKind::sphere, sphere_b = b.kind == BoundKind::sphere;
+    if (sphere_a && sphere_b) return collide::contact_manifold(sphere_of(a, box_a), sphere_of(b, box_b));
+    if (sphere_b) return collide::contact_manifold(box_a, sphere_of(b, box_b));
+    if (!sphere_a) return collide::contact_manifold(box_a, box_b);
+    collide::Manifold manifold = collide::contact_manifold(box_b, sphere_of(a, box_a));
     manifold.normal = -manifold.normal;
     return manifold;
 }
@@ -139,9 +139,9 @@ void ContactFinder::touch_triangles(const PosedTree& a, const PosedTree& b, Work
     touch.normal = turned(a.pose, way_out.direction);
 }
 
-// The normal points from the mesh to the ball.
-void ContactFinder::touch_ball(const PosedTree& mesh, const PosedTree& center, double radius, Worker& worker,
-                               Touch& touch) const {
+// The normal points from the mesh to the sphere.
+void ContactFinder::touch_sphere(const PosedTree& mesh, const PosedTree& center, double radius, Worker& worker,
+                                 Touch& touch) const {
     const RigidTransform to_mesh = relative(mesh.pose, center.pose);
     const mesh::MeshDistance gap = mesh::distance_to_point(*mesh.tree, to_mesh.translation);
     const bool inside = options_.containment && mesh::contains(*mesh.tree, to_mesh.translation);
@@ -191,10 +191,10 @@ void ContactFinder::find_contacts(const ObjectTable& table, const SpatialIndex& 
             const PosedTree a = bodies.posed_tree(table, index, scene, first),
                             b = bodies.posed_tree(table, index, scene, second);
             if (!a.tree || !b.tree) continue;
-            if (table.objects[second].kind == BoundKind::ball) {
-                touch_ball(a, b, table.objects[second].radius, worker, touch);
-            } else if (table.objects[first].kind == BoundKind::ball) {
-                touch_ball(b, a, table.objects[first].radius, worker, touch);
+            if (table.objects[second].kind == BoundKind::sphere) {
+                touch_sphere(a, b, table.objects[second].radius, worker, touch);
+            } else if (table.objects[first].kind == BoundKind::sphere) {
+                touch_sphere(b, a, table.objects[first].radius, worker, touch);
                 touch.normal = -touch.normal;
             } else {
                 touch_triangles(a, b, worker, touch);
@@ -302,7 +302,7 @@ Result<void> ContactFinder::update(const ObjectTable& table, const SpatialIndex&
     note_colliders(table, index, scene, bodies_of, changes);
     const auto meet = [&](std::uint32_t a, std::uint32_t b) {
         const bool body_a = bodies_of.has(a), body_b = bodies_of.has(b);
-        // Two bodies are asked as far as the contact margin, beyond boxes and balls.
+        // Two bodies are asked as far as the contact margin, beyond boxes and spheres.
         if (options_.contact_margin > 0.0 && body_a && body_b) return true;
         const Obb &box_a = index.box(a), &box_b = index.box(b);
         if (options_.contact_margin > 0.0 && (body_a || body_b) && !collide::intersects(box_a, box_b)) return false;

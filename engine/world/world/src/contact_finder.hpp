@@ -79,7 +79,8 @@ class ContactFinder {
     void touch_bounds(const ObjectTable& table, const SpatialIndex& index, const IdPair& pair, Worker& worker,
                       Touch& touch) const;
     void touch_triangles(const PosedTree& a, const PosedTree& b, Worker& worker, Touch& touch) const;
-    void touch_ball(const PosedTree& mesh, const PosedTree& center, double radius, Worker& worker, Touch& touch) const;
+    void touch_sphere(const PosedTree& mesh, const PosedTree& center, double radius, Worker& worker,
+                      Touch& touch) const;
     void age_contacts();
     void replace_contacts(const ObjectTable& table, std::span<const IdPair> apart);
     void write_contact(const ObjectTable& table, const IdPair& pair, const Touch& touch, ContactPhase phase,

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "for_each_pair.hpp"
-#include "must.hpp"
+#include "require_ok.hpp"
 #include "world_state.hpp"
 
 namespace crofton {
@@ -132,7 +132,7 @@ Result<void> World::State::set_local(scene::NodeId node, const Transform& transf
     // What scales alike before and after leaves all shapes below as they are.
     if (mesh_bodies == 0 || (world::is_similarity(before.linear) && world::is_similarity(transform.linear))) return set;
     auto scales = check_bodies_below(node, item);
-    if (!scales) world::must(scene.set_local(node, before));
+    if (!scales) world::require_ok(scene.set_local(node, before));
     return scales;
 }
 
@@ -195,7 +195,7 @@ Result<void> World::set_parent(NodeHandle node, NodeHandle parent) {
     auto set = s.scene.set_parent(node.index, parent.index);
     if (!set || s.mesh_bodies == 0) return set;
     auto scales = s.check_bodies_below(node.index, node.index);
-    if (!scales) world::must(s.scene.set_parent(node.index, before));
+    if (!scales) world::require_ok(s.scene.set_parent(node.index, before));
     return scales;
 }
 

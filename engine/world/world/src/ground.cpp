@@ -213,15 +213,15 @@ void World::State::update_ground() {
     ground.merge_pairs(finder.pairs());
 }
 
-// Of a pair of which one has no body its mesh's triangles, its ball or its box touch the ground.
+// Of a pair of which one has no body its mesh's triangles, its sphere or its box touch the ground.
 void World::State::update_ground_contacts() {
     for (const ObjectPair& pair : ground.own_pairs()) {
         const std::uint32_t a = pair.first.object.index, b = pair.second.object.index;
         if (object_bodies.has(a) && object_bodies.has(b)) continue;
         const bool swapped = object_bodies.has(b);
         const std::uint32_t base = swapped ? b : a, other = swapped ? a : b;
-        const Stand level = stand_of(base);
-        Stand thing = stand_of(other);
+        const QueryShape level = query_shape_of(base);
+        QueryShape thing = query_shape_of(other);
         std::unique_ptr<world::ScaledBody> scaled;
         const world::Object& object = table.objects[other];
         if (const mesh::MeshTree* tree = bodies.mesh_tree_of(object)) {
@@ -236,7 +236,7 @@ void World::State::update_ground_contacts() {
             }
         }
         if (!level.pose || !thing.pose) continue;
-        const convex::Placed first{swapped ? thing.body : level.body, swapped ? *thing.pose : *level.pose},
+        const convex::BodyAtPose first{swapped ? thing.body : level.body, swapped ? *thing.pose : *level.pose},
             second{swapped ? level.body : thing.body, swapped ? *level.pose : *thing.pose};
         const convex::Manifold manifold = convex::contact_manifold(first, second);
         if (manifold.count > 0) ground.add_contact(pair, manifold);

@@ -20,7 +20,7 @@ struct GroundShape {
     static Aabb around(const Plane& plane);
 };
 
-// A ball or capsule, or a box, from the nearest of the planes.
+// A sphere or capsule, or a box, from the nearest of the planes.
 [[nodiscard]] collide::Distance gap_to(const GroundShape& ground, const collide::Capsule& shape);
 [[nodiscard]] collide::Distance gap_to(const GroundShape& ground, const Obb& shape);
 

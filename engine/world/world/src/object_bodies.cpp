@@ -32,8 +32,8 @@ bool has_nothing(const glm::dmat3& linear) {
 
 RigidTransform frame_of(BoundKind kind, const Obb& box) {
     RigidTransform frame{glm::dmat3(1.0), box.center};
-    if (kind == BoundKind::ball || is_rigid(glm::dmat3(box.axes))) {
-        if (kind != BoundKind::ball) frame.rotation = glm::dmat3(box.axes);
+    if (kind == BoundKind::sphere || is_rigid(glm::dmat3(box.axes))) {
+        if (kind != BoundKind::sphere) frame.rotation = glm::dmat3(box.axes);
         return frame;
     }
     // Axes of boxes may be off by more than those of poses, or left-handed.
@@ -66,7 +66,7 @@ Obb box_around(const Obb& box, const convex::Body& body, const RigidTransform& p
         // As far as the body itself reaches along each of the box's coordinates.
         for (int k = 0; k < 3; ++k) {
             const glm::dvec3 along(turn[0][k], turn[1][k], turn[2][k]);
-            const double rounding = 0x1p-48 * glm::length(along) * (body.reach() + body.radius());
+            const double rounding = 0x1p-48 * glm::length(along) * (body.core_radius() + body.radius());
             high[k] = origin[k] + glm::dot(along, convex::support_point(body, along)) + rounding + grown_by;
             low[k] = origin[k] + glm::dot(along, convex::support_point(body, -along)) - rounding - grown_by;
         }
@@ -130,7 +130,7 @@ std::optional<RigidTransform> ObjectBodies::pose_of(std::uint32_t id, const Obje
 bool ObjectBodies::fits(std::uint32_t object, const Bound& bound) const {
     const convex::Body& of = body(object);
     if (!of.is_bounded()) return true;
-    if (bound.kind == BoundKind::ball) return of.reach() + of.radius() <= bound.radius * kSlack;
+    if (bound.kind == BoundKind::sphere) return of.core_radius() + of.radius() <= bound.radius * kSlack;
     if (!is_rigid(glm::dmat3(bound.box.axes))) return false;
     const glm::dvec3 needed = glm::max(glm::abs(of.bounds().min), glm::abs(of.bounds().max));
     for (int k = 0; k < 3; ++k)
@@ -180,8 +180,8 @@ Bound ObjectBodies::cover(std::uint32_t object, const Bound& bound) {
     entry.given = {};
     if (!entry.own || fits(object, bound) || !body(object).is_bounded()) return bound;
     const Obb box = box_around(bound.box, body(object), frame_of(bound.kind, bound.box), 0.0);
-    // A ball stands for itself in pairs: what is in its cube alone would be missed.
-    if (bound.kind != BoundKind::ball && have_same_bits(box, bound.box)) return bound;
+    // A sphere stands for itself in pairs: what is in its cube alone would be missed.
+    if (bound.kind != BoundKind::sphere && have_same_bits(box, bound.box)) return bound;
     entry.given = bound;
     return Bound(box);
 }

@@ -21,7 +21,7 @@ struct Object {
     std::uint32_t instance = kNoIndex;  // of a mesh, in the scene
     std::uint32_t own_node = kNoIndex;  // that the object alone hangs on
     std::uint32_t mesh = kNoIndex;      // as of the last update
-    double radius = 0.0;                // of a ball
+    double radius = 0.0;                // of a sphere
 };
 
 // Grows the room by an eighth: what is loaded and then changes a little does not double its memory.
@@ -110,7 +110,7 @@ class MoverTable {
     Vector<Key> keys_;  // by object
 };
 
-[[nodiscard]] inline Sphere ball_of(const Object& object, const Obb& box) {
+[[nodiscard]] inline Sphere sphere_of(const Object& object, const Obb& box) {
     return {box.center, object.radius};
 }
 

@@ -13,9 +13,9 @@ namespace {
 Result<void> validate(const Bound& bound, std::uint64_t item) {
     if (bound.kind == BoundKind::none)
         return fail(ErrorCode::invalid_argument, item, "world: an object needs a mesh or a bound");
-    if (bound.kind == BoundKind::ball && !(bound.radius >= 0.0))
+    if (bound.kind == BoundKind::sphere && !(bound.radius >= 0.0))
         return fail(std::isnan(bound.radius) ? ErrorCode::non_finite : ErrorCode::invalid_argument, item,
-                    "ball: the radius is negative or NaN");
+                    "sphere: the radius is negative or NaN");
     return crofton::validate(bound.box, item);
 }
 
@@ -23,10 +23,10 @@ Result<void> validate(const Bound& bound, std::uint64_t item) {
 
 Bound::Bound(const Aabb& aligned) : kind(BoundKind::aligned_box), box(obb_of(aligned)) {}
 
-Bound::Bound(const Sphere& ball) : kind(BoundKind::ball), radius(ball.radius) {
-    box.center = ball.center;
+Bound::Bound(const Sphere& sphere) : kind(BoundKind::sphere), radius(sphere.radius) {
+    box.center = sphere.center;
     // A little more than the float's rounding, which is 2^-150 at most where floats are subnormal.
-    const double enough = ball.radius > 0.0 ? ball.radius * (1.0 + 0x1p-22) + 0x1p-149 : ball.radius;
+    const double enough = sphere.radius > 0.0 ? sphere.radius * (1.0 + 0x1p-22) + 0x1p-149 : sphere.radius;
     box.half_extents = glm::vec3(static_cast<float>(enough));
 }
 
@@ -47,7 +47,7 @@ StagedChange& World::State::stage(std::uint32_t object) {
 }
 
 // A mesh object's instance, on the node that was given or on one of its own.
-Result<void> World::State::hang(world::Object& object, const ObjectDescription& description) {
+Result<void> World::State::attach_mesh(world::Object& object, const ObjectDescription& description) {
     if (auto known = check(description.mesh, kNoItem); !known) return known;
     scene::NodeId node = scene::kNone;
     if (!description.node.is_null()) {
@@ -82,7 +82,7 @@ Result<ObjectHandle> World::add(const ObjectDescription& description) {
         return fail(ErrorCode::invalid_argument, kNoItem, "world: what only occludes needs a mesh with occluders");
     const auto item = s.index.add(description.layers);
     if (!item) return tl::unexpected(item.error());
-    if (auto valid = has_mesh ? s.hang(object, description) : validate(description.bound, kNoItem); !valid) {
+    if (auto valid = has_mesh ? s.attach_mesh(object, description) : validate(description.bound, kNoItem); !valid) {
         s.index.remove(*item);
         return tl::unexpected(valid.error());
     }

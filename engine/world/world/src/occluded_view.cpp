@@ -44,23 +44,23 @@ OcclusionStatistics OccludedView::statistics() const {
 
 }  // namespace world
 
-std::span<const std::uint32_t> VisibleObjects::seen_ids() const {
+std::span<const std::uint32_t> ViewResult::seen_ids() const {
     return occluded_->by_tree ? std::span<const std::uint32_t>(occluded_->in_order) : occluded_->visible.ids();
 }
 
-std::size_t VisibleObjects::seen_inside_count() const {
+std::size_t ViewResult::seen_inside_count() const {
     return occluded_->by_tree ? occluded_->inside_in_order : occluded_->visible.inside_count();
 }
 
-std::span<const cull::Verdict> VisibleObjects::seen_verdicts() const {
+std::span<const cull::Verdict> ViewResult::seen_verdicts() const {
     return occluded_->by_tree ? std::span<const cull::Verdict>() : occluded_->visible.verdicts();
 }
 
-std::span<const std::uint32_t> VisibleObjects::occluded_ids() const {
+std::span<const std::uint32_t> ViewResult::occluded_ids() const {
     return hides_ ? std::span<const std::uint32_t>(occluded_->occluded) : std::span<const std::uint32_t>();
 }
 
-occlude::Verdict VisibleObjects::verdict_of(std::uint32_t index) const {
+occlude::Verdict ViewResult::verdict_of(std::uint32_t index) const {
     const auto ascending = hides_ ? occluded_->visible.ids() : ids(), hidden = occluded_ids();
     const auto at = std::lower_bound(ascending.begin(), ascending.end(), index);
     if (at != ascending.end() && *at == index) {
@@ -71,11 +71,11 @@ occlude::Verdict VisibleObjects::verdict_of(std::uint32_t index) const {
                                                                    : occlude::Verdict::outside;
 }
 
-OcclusionStatistics VisibleObjects::occlusion_statistics() const {
+OcclusionStatistics ViewResult::occlusion_statistics() const {
     return hides_ ? occluded_->statistics() : OcclusionStatistics();
 }
 
-const occlude::OcclusionBuffer* VisibleObjects::occlusion_buffer() const {
+const occlude::OcclusionBuffer* ViewResult::occlusion_buffer() const {
     return hides_ ? &*occluded_->buffer : nullptr;
 }
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "must.hpp"
+#include "require_ok.hpp"
 
 namespace crofton::world {
 namespace {
@@ -84,7 +84,7 @@ Result<ShapeId> add_shape(occlude::OccluderSet& set, const FoundOccluder& occlud
 }  // namespace
 
 void Occluders::remove_shapes(Vector<ShapeId>& shapes) {
-    for (const ShapeId shape : shapes) must(set_.remove_shape(shape));
+    for (const ShapeId shape : shapes) require_ok(set_.remove_shape(shape));
     shapes.clear();
 }
 
@@ -121,15 +121,15 @@ Result<void> Occluders::set(scene::MeshId mesh, std::span<const FoundOccluder> o
 }
 
 void Occluders::clear(scene::MeshId mesh) {
-    if (mesh < meshes_.size()) must(set(mesh, {}));
+    if (mesh < meshes_.size()) require_ok(set(mesh, {}));
 }
 
 void Occluders::take_away(std::uint32_t object) {
     if (object >= holders_.size()) return;
     Holder& holder = holders_[object];
     for (OccluderId id = holder.first; id != kNoIndex; id = placed_[id].next) {
-        must(set_.remove(id));
-        must(candidates_.set(id, {}));  // without an area: worth nothing
+        require_ok(set_.remove(id));
+        require_ok(candidates_.set(id, {}));  // without an area: worth nothing
         placed_[id].object = kNoIndex;
     }
     holder = {};
@@ -151,8 +151,8 @@ void Occluders::place(std::uint32_t object, const Transform& transform, std::uin
         const auto id = set_.place(mesh.placed[i], transform);
         if (!id) continue;
         if (!set_candidate(*id, mesh.occluders[i], transform, layers)) {
-            must(set_.remove(*id));
-            if (*id < candidates_.size()) must(candidates_.set(*id, {}));
+            require_ok(set_.remove(*id));
+            if (*id < candidates_.size()) require_ok(candidates_.set(*id, {}));
             continue;
         }
         if (*id >= placed_.size()) placed_.resize(*id + std::size_t{1});

@@ -62,8 +62,7 @@ Result<void> World::State::check_viewed(const world::ObjectNames* viewed) const 
                 "world: the visible objects are of a view of another World: ask the one that was viewed");
 }
 
-Result<void> World::hidden_by(ObjectHandle object, const VisibleObjects& visible,
-                              Vector<OccluderRef>& occluders) const {
+Result<void> World::hidden_by(ObjectHandle object, const ViewResult& visible, Vector<OccluderRef>& occluders) const {
     occluders.clear();
     if (auto known = state_->check(object, object.index); !known) return known;
     if (auto own = state_->check_viewed(visible.names_); !own) return own;
@@ -77,7 +76,7 @@ Result<void> World::hidden_by(ObjectHandle object, const VisibleObjects& visible
     return {};
 }
 
-Result<void> World::drawn_occluders(const VisibleObjects& visible, Vector<OccluderRef>& occluders) const {
+Result<void> World::drawn_occluders(const ViewResult& visible, Vector<OccluderRef>& occluders) const {
     occluders.clear();
     if (auto own = state_->check_viewed(visible.names_); !own) return own;
     if (!visible.hides_) return {};

@@ -13,8 +13,8 @@
 #include <glm/matrix.hpp>
 #include <utility>
 
-#include "ray_ball.hpp"
 #include "ray_normal.hpp"
+#include "ray_sphere.hpp"
 #include "trace_zone.hpp"
 #include "world_state.hpp"
 
@@ -25,9 +25,9 @@ Aabb bounds_of(const Obb& box) {
     return aabb_of(box);
 }
 // Sums round by 2^-53 of themselves.
-Aabb bounds_of(const Sphere& ball) {
-    const glm::dvec3 half_size = ball.radius + 0x1p-50 * (glm::abs(ball.center) + ball.radius);
-    return {ball.center - half_size, ball.center + half_size};
+Aabb bounds_of(const Sphere& sphere) {
+    const glm::dvec3 half_size = sphere.radius + 0x1p-50 * (glm::abs(sphere.center) + sphere.radius);
+    return {sphere.center - half_size, sphere.center + half_size};
 }
 Aabb bounds_of(const collide::Capsule& capsule) {
     Aabb bounds = bounds_of(Sphere{capsule.begin, capsule.radius});
@@ -38,30 +38,30 @@ Aabb bounds_of(const collide::Capsule& capsule) {
 bool is_valid(const Obb& box) {
     return validate(box).has_value();
 }
-bool is_valid(const Sphere& ball) {
-    return is_in_range(ball);
+bool is_valid(const Sphere& sphere) {
+    return is_in_range(sphere);
 }
 bool is_valid(const collide::Capsule& capsule) {
     return is_in_range(capsule.begin) && is_in_range(Sphere{capsule.end, capsule.radius});
 }
 
-bool meets_ball(const Obb& shape, const Sphere& ball) {
-    return collide::intersects(shape, ball);
+bool meets_sphere(const Obb& shape, const Sphere& sphere) {
+    return collide::intersects(shape, sphere);
 }
-bool meets_ball(const Sphere& shape, const Sphere& ball) {
-    return glm::length(shape.center - ball.center) <= shape.radius + ball.radius;
+bool meets_sphere(const Sphere& shape, const Sphere& sphere) {
+    return glm::length(shape.center - sphere.center) <= shape.radius + sphere.radius;
 }
-bool meets_ball(const collide::Capsule& shape, const Sphere& ball) {
-    return collide::distance(shape, ball).distance <= 0.0;
+bool meets_sphere(const collide::Capsule& shape, const Sphere& sphere) {
+    return collide::distance(shape, sphere).distance <= 0.0;
 }
 
 // From the shape to an object's bound.
 collide::Distance gap_to(const Obb& shape, const world::Object& object, const Obb& box) {
-    if (object.kind != BoundKind::ball) return collide::distance(shape, box);
+    if (object.kind != BoundKind::sphere) return collide::distance(shape, box);
     return collide::distance(shape, collide::Capsule{box.center, box.center, object.radius});
 }
 collide::Distance gap_to(const collide::Capsule& shape, const world::Object& object, const Obb& box) {
-    if (object.kind == BoundKind::ball) return collide::distance(shape, world::ball_of(object, box));
+    if (object.kind == BoundKind::sphere) return collide::distance(shape, world::sphere_of(object, box));
     collide::Distance gap = collide::distance(box, shape);
     std::swap(gap.on_a, gap.on_b);
     return gap;
@@ -135,7 +135,7 @@ void World::State::visit_along(const Ray& ray, std::uint32_t layers, collide::Ra
 }
 
 std::optional<ObjectHit> World::State::body_hit(const Ray& ray, std::uint32_t id) const {
-    const Stand stand = stand_of(id);
+    const QueryShape stand = query_shape_of(id);
     if (!stand.pose) return std::nullopt;
     const auto met = convex::raycast({stand.body, *stand.pose}, ray);
     if (!met) return std::nullopt;
@@ -165,12 +165,12 @@ std::optional<ObjectHit> World::State::shape_hit(const Ray& ray, std::uint32_t i
             hit.triangle = on_mesh->triangle;
             hit.normal = world::normal_of(ray, bodies.triangle_of(object, on_mesh->triangle), world.linear);
         }
-    } else if (object.kind == BoundKind::ball) {
-        const Sphere ball = world::ball_of(object, index.box(id));
-        const auto t = world::raycast(ray, ball);
+    } else if (object.kind == BoundKind::sphere) {
+        const Sphere sphere = world::sphere_of(object, index.box(id));
+        const auto t = world::raycast(ray, sphere);
         if (!t) return std::nullopt;
         hit.t = *t;
-        hit.normal = world::normal_of(ray, ball, *t);
+        hit.normal = world::normal_of(ray, sphere, *t);
     }
     hit.point = ray.origin + hit.t * ray.direction;
     hit.started_inside = hit.normal == glm::dvec3(0.0);
@@ -249,8 +249,8 @@ void World::State::overlap(const Shape& shape, Vector<ObjectRef>& found, std::ui
         }
         const world::Object& object = table.objects[id];
         const Obb& box = index.box(id);
-        const bool meets = object.kind == BoundKind::ball ? meets_ball(shape, Sphere{box.center, object.radius})
-                                                          : collide::intersects(box, shape);
+        const bool meets = object.kind == BoundKind::sphere ? meets_sphere(shape, Sphere{box.center, object.radius})
+                                                            : collide::intersects(box, shape);
         if (meets) found.push_back(table.ref(id));
         return 0.0;
     });

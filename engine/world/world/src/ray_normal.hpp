@@ -15,10 +15,10 @@ namespace crofton::world {
     return (glm::dot(normal, ray.direction) > 0.0 ? -1.0 : 1.0) / length * normal;
 }
 
-// Of a ball that is met at t.
-[[nodiscard]] inline glm::dvec3 normal_of(const Ray& ray, const Sphere& ball, double t) {
-    const glm::dvec3 to = ray.origin - ball.center;
-    if (glm::dot(to, to) <= ball.radius * ball.radius) return glm::dvec3(0.0);
+// Of a sphere that is met at t.
+[[nodiscard]] inline glm::dvec3 normal_of(const Ray& ray, const Sphere& sphere, double t) {
+    const glm::dvec3 to = ray.origin - sphere.center;
+    if (glm::dot(to, to) <= sphere.radius * sphere.radius) return glm::dvec3(0.0);
     return facing(ray, to + t * ray.direction);
 }
 

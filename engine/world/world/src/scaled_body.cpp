@@ -45,8 +45,8 @@ Result<void> refuse(const char* what) {
 
 const char* name_of(const convex::Body& body) {
     switch (body.kind()) {
-        case convex::Kind::ball:
-            return "a ball";
+        case convex::Kind::sphere:
+            return "a sphere";
         case convex::Kind::capsule:
             return "a capsule";
         case convex::Kind::cylinder:
@@ -177,7 +177,7 @@ Result<void> ScaledBody::make_round(const convex::Body& body, const SplitMap& ma
     const bool stays =
         turns && body.radius() == 0.0 && map.orthogonal && std::abs(sides.x - sides.z) <= kUniform * sides.x;
     if (!map.uniform && !stays) return refuse(name_of(body));
-    if (body.kind() == convex::Kind::ball) return take(convex::Body::ball(scale * body.radius()));
+    if (body.kind() == convex::Kind::sphere) return take(convex::Body::sphere(scale * body.radius()));
     Result<convex::Body> core = turns ? (body.kind() == convex::Kind::cylinder
                                              ? convex::Body::cylinder(to_float(scale * body.half_extents().y),
                                                                       to_float(sides.x * body.half_extents().x))

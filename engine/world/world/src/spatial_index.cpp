@@ -7,7 +7,7 @@
 #include <crofton/core/recovery.hpp>
 #include <utility>
 
-#include "must.hpp"
+#include "require_ok.hpp"
 
 namespace crofton::world {
 namespace {
@@ -87,7 +87,7 @@ void SpatialIndex::take(ItemId item) {
 }
 
 void SpatialIndex::detach(ItemId item) {
-    must(tree_.detach(item));
+    require_ok(tree_.detach(item));
     ++tree_changes_;
     ++came_or_went_;
     ++recent_;
@@ -102,7 +102,7 @@ void SpatialIndex::remove(ItemId item) {
         take(item);
     if (is_placed(item)) member_items_.push_back(item);
     removed = {};
-    must(tree_.remove(item));
+    require_ok(tree_.remove(item));
 }
 
 const Obb& SpatialIndex::box(ItemId item) const {
@@ -169,7 +169,7 @@ void SpatialIndex::set_shown(ItemId id, bool shown) {
 
 void SpatialIndex::set_layers(ItemId item, std::uint32_t layers) {
     if (tree_.layer_masks()[item] == layers) return;
-    must(tree_.set_layer_mask(item, layers));
+    require_ok(tree_.set_layer_mask(item, layers));
     wants_refit_ = true;
     member_items_.push_back(item);
 }
@@ -177,7 +177,7 @@ void SpatialIndex::set_layers(ItemId item, std::uint32_t layers) {
 SpatialIndex::Changes SpatialIndex::update(const Settings& settings, Executor& executor) {
     Changes changes{static_cast<std::uint32_t>(moved_items_.size() + member_items_.size()), false};
     if (!moved_.empty()) {
-        must(tree_.move(moved_, moved_boxes_));
+        require_ok(tree_.move(moved_, moved_boxes_));
         tree_changes_ += moved_.size();
         wants_refit_ = true;
     }
@@ -258,7 +258,7 @@ void SpatialIndex::attach(ItemId item) {
     const Obb last = box(item);
     take(item);
     items_[item].place = Place::resting;
-    must(tree_.attach(item, last));
+    require_ok(tree_.attach(item, last));
     ++tree_changes_;
     ++came_or_went_;
 }
@@ -301,7 +301,7 @@ void SpatialIndex::build_tree(std::span<const ItemId> fresh, Executor& executor)
     CROFTON_ASSERT(built.has_value(), "boxes were checked before");
     if (!built) return;
     // The lowest ids are given first.
-    for (std::size_t i = removed.size(); i-- > 0;) must(built->remove(removed[i]));
+    for (std::size_t i = removed.size(); i-- > 0;) require_ok(built->remove(removed[i]));
     tree_ = std::move(*built);
     tree_changes_ = changes_before_ = came_or_went_ = came_or_went_before_ = 0;
     rebuilding_ = false;

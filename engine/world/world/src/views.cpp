@@ -6,8 +6,8 @@
 #include <crofton/core/error.hpp>
 #include <optional>
 
-#include "must.hpp"
 #include "occluded_view.hpp"
+#include "require_ok.hpp"
 #include "trace_zone.hpp"
 #include "world_state.hpp"
 
@@ -71,18 +71,18 @@ Result<Eye> eye_of(const ViewRequest& request, std::uint64_t item) {
 // Whether one walk through the tree answers all requests.
 bool fit_one_walk(std::span<const ViewRequest> requests) {
     return std::all_of(requests.begin(), requests.end(), [&](const ViewRequest& request) {
-        return !request.occlusion && request.among.empty() && request.limits == requests[0].limits &&
+        return !request.occlusion && request.candidate_mask.empty() && request.limits == requests[0].limits &&
                request.mode == requests[0].mode;
     });
 }
 
 }  // namespace
 
-std::span<const std::uint64_t> World::State::among_and_changed(std::span<const std::uint64_t> among,
-                                                               Vector<std::uint64_t>& both) const {
+std::span<const std::uint64_t> World::State::candidates_and_changed(std::span<const std::uint64_t> candidate_mask,
+                                                                    Vector<std::uint64_t>& both) const {
     const std::span<const std::uint64_t> changed = index.changed();
-    if (changed.empty()) return among;
-    both.assign(among.begin(), among.end());
+    if (changed.empty()) return candidate_mask;
+    both.assign(candidate_mask.begin(), candidate_mask.end());
     for (std::size_t w = 0; w < std::min(both.size(), changed.size()); ++w) both[w] |= changed[w];
     return both;
 }
@@ -112,16 +112,17 @@ void World::State::draw_and_ask(const occlude::OcclusionView& view, const Occlus
         result.buffer->draw(occluders.set(), ids, view, executor);
     }
     const world::TraceZone part(options.trace, "view: what is not hidden");
-    occlude::find_visible(index.tree(), index.moving(), *result.buffer, result.visible,
-                          {.layer_mask = layers, .mode = how.mode, .limits = how.limits, .among = how.among});
+    occlude::find_visible(
+        index.tree(), index.moving(), *result.buffer, result.visible,
+        {.layer_mask = layers, .mode = how.mode, .limits = how.limits, .candidate_mask = how.candidate_mask});
     world::trace_count(options.trace, "objects not hidden", result.visible.size());
 }
 
-Result<void> World::view(const ViewRequest& request, VisibleObjects& visible, Executor& executor) const {
+Result<void> World::view(const ViewRequest& request, ViewResult& visible, Executor& executor) const {
     const auto eye = eye_of(request, kNoItem);
     if (!eye) return tl::unexpected(eye.error());
     cull::CullOptions how{request.mode, request.order, request.limits, {}};
-    how.among = state_->among_and_changed(request.among, visible.among_);
+    how.candidate_mask = state_->candidates_and_changed(request.candidate_mask, visible.candidates_);
     if (!request.occlusion) {
         const world::TraceZone zone(state_->options.trace, "World::view");
         visible.names_ = &state_->table.names;
@@ -145,7 +146,7 @@ Result<void> World::view(const ViewRequest& request, VisibleObjects& visible, Ex
     return {};
 }
 
-Result<void> World::view(std::span<const ViewRequest> requests, VisibleInViews& visible, Executor& executor) const {
+Result<void> World::view(std::span<const ViewRequest> requests, MultiViewResult& visible, Executor& executor) const {
     if (auto few = cull::check_view_count(requests.size()); !few) return few;
     std::array<cull::View, cull::kMaxViews> volumes;
     for (std::size_t v = 0; v < requests.size(); ++v) {
@@ -190,7 +191,7 @@ Result<void> World::view(std::span<const ViewRequest> requests, VisibleInViews& 
 }
 
 // Every request by itself. Buffers are made first, so that nothing can fail while threads share the requests.
-Result<void> World::view_each(std::span<const ViewRequest> requests, VisibleInViews& visible,
+Result<void> World::view_each(std::span<const ViewRequest> requests, MultiViewResult& visible,
                               Executor& executor) const {
     while (visible.each_.size() < requests.size()) visible.each_.emplace_back();
     for (std::size_t v = 0; v < requests.size(); ++v) {
@@ -204,7 +205,7 @@ Result<void> World::view_each(std::span<const ViewRequest> requests, VisibleInVi
             ViewRequest request = requests[v];
             request.order =
                 request.occlusion ? cull::ResultOrder::ascending : cull::ResultOrder::tree;  // the quicker one
-            world::must(view(request, visible.each_[v]));
+            world::require_ok(view(request, visible.each_[v]));
         }
     });
     for (std::size_t v = 0; v < requests.size(); ++v)
@@ -212,27 +213,27 @@ Result<void> World::view_each(std::span<const ViewRequest> requests, VisibleInVi
     return {};
 }
 
-void VisibleInViews::forget_ids() {
+void MultiViewResult::forget_ids() {
     for (const std::uint32_t id : ids_) masks_[id] = 0;
     ids_.clear();
 }
 
-void VisibleInViews::add(std::uint32_t id, std::uint32_t views) {
+void MultiViewResult::add(std::uint32_t id, std::uint32_t views) {
     masks_[id] |= views;
     bits_[id / 64] |= std::uint64_t{1} << (id % 64);
 }
 
-void VisibleInViews::list_ascending() {
+void MultiViewResult::list_ascending() {
     for (std::size_t w = 0; w < bits_.size(); ++w)
         for (std::uint64_t rest = bits_[w]; rest != 0; rest &= rest - 1)
             ids_.push_back(static_cast<std::uint32_t>(64 * w) + static_cast<std::uint32_t>(std::countr_zero(rest)));
 }
 
-OcclusionStatistics VisibleInViews::occlusion_statistics(std::size_t view) const {
+OcclusionStatistics MultiViewResult::occlusion_statistics(std::size_t view) const {
     return view < view_count_ && !one_walk_ ? each_[view].occlusion_statistics() : OcclusionStatistics();
 }
 
-const occlude::OcclusionBuffer* VisibleInViews::occlusion_buffer(std::size_t view) const {
+const occlude::OcclusionBuffer* MultiViewResult::occlusion_buffer(std::size_t view) const {
     return view < view_count_ && !one_walk_ ? each_[view].occlusion_buffer() : nullptr;
 }
 

@@ -81,7 +81,7 @@ void World::State::apply_changes() {
         if (!object.alive) continue;
         if (object.instance != kNoIndex) {
             object.mesh = scene.mesh_of(object.instance);
-            show(change.object);
+            refresh_visibility(change.object);
             pair_changes.objects.push_back(change.object);
             body_contacts.note(change.object);
             continue;
@@ -142,7 +142,7 @@ Result<void> World::State::update_bodies() {
 }
 
 // An object with a mesh, after what decides it has changed.
-void World::State::show(std::uint32_t id) {
+void World::State::refresh_visibility(std::uint32_t id) {
     const world::Object& object = table.objects[id];
     index.set_shown(id, object.shown && !object.only_occludes && scene.layer_masks()[object.instance] != 0);
     occluders.note(id);
@@ -169,7 +169,7 @@ Result<void> World::State::apply_scene(Executor& executor) {
     apply_changes();
     for (const scene::InstanceId instance : scene.relayered_instances()) {
         const std::uint32_t object = object_of_instance[instance], layers = scene.layer_masks()[instance];
-        show(object);
+        refresh_visibility(object);
         if (layers != 0) index.set_layers(object, layers);
     }
     auto scaled = update_bodies();

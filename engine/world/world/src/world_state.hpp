@@ -88,7 +88,7 @@ struct World::State {
     [[nodiscard]] Result<void> check(MeshHandle mesh, std::uint64_t item) const;
     [[nodiscard]] Result<void> check_viewed(const world::ObjectNames* viewed) const;
     StagedChange& stage(std::uint32_t object);
-    [[nodiscard]] Result<void> hang(world::Object& object, const ObjectDescription& description);
+    [[nodiscard]] Result<void> attach_mesh(world::Object& object, const ObjectDescription& description);
     [[nodiscard]] Result<void> set_bound(ObjectHandle object, const Bound& bound, std::uint64_t item);
     [[nodiscard]] Result<void> set_transform(ObjectHandle object, const Transform& transform, std::uint64_t item);
     [[nodiscard]] Result<void> set_transform(NodeHandle node, const Transform& transform, std::uint64_t item);
@@ -98,7 +98,7 @@ struct World::State {
     void apply_changes();
     void note_movers();
     [[nodiscard]] Result<void> apply_scene(Executor& executor);
-    void show(std::uint32_t object);
+    void refresh_visibility(std::uint32_t object);
     // Of objects with bodies, or with some until now: what stands in the index for them. `bound`: that they have got.
     [[nodiscard]] Result<void> update_bodies();
     void update_bound(std::uint32_t object, const Bound& bound);
@@ -112,19 +112,20 @@ struct World::State {
     void update_ground_contacts();
     void update_occluders();
     [[nodiscard]] Result<void> set_found_occluders(scene::MeshId mesh, const occlude::FindOptions& how);
-    // CullOptions::among with the bits of what has changed since such a set can have been made; in `both`, or as it is.
-    [[nodiscard]] std::span<const std::uint64_t> among_and_changed(std::span<const std::uint64_t> among,
-                                                                   Vector<std::uint64_t>& both) const;
+    // CullOptions::candidate_mask with the bits of what has changed since such a set can have been made; in `both`, or
+    // as it is.
+    [[nodiscard]] std::span<const std::uint64_t> candidates_and_changed(std::span<const std::uint64_t> candidate_mask,
+                                                                        Vector<std::uint64_t>& both) const;
     // Draws the occluders that are worth most to the view into the result's buffer, then asks what they do not hide.
     void draw_and_ask(const occlude::OcclusionView& view, const OcclusionOptions& occlusion, std::uint32_t layers,
                       const cull::CullOptions& how, Executor& executor, world::OccludedView& result) const;
 
-    // An object's body, or what stands for it: a ball or box. No pose: it meets nothing.
-    struct Stand {
+    // An object's body, or what stands for it: a sphere or box. No pose: it meets nothing.
+    struct QueryShape {
         convex::Body body;
         std::optional<RigidTransform> pose;
     };
-    [[nodiscard]] Stand stand_of(std::uint32_t object) const;
+    [[nodiscard]] QueryShape query_shape_of(std::uint32_t object) const;
 
     // How far along the ray an object's own shape is met, no farther than the ray goes; its box is met at `box_t`.
     [[nodiscard]] std::optional<ObjectHit> shape_hit(const Ray& ray, std::uint32_t object, double box_t) const;

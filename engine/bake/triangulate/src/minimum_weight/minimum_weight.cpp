@@ -33,7 +33,7 @@ double sum_of_shortest(std::span<double> lengths, std::size_t count) {
 }
 
 tl::unexpected<Error> cancelled() {
-    return fail(ErrorCode::cancelled, kNoItem, "cancelled by the progress callback");
+    return fail(ErrorCode::cancelled, kNoItem, "stopped by the caller");
 }
 
 }  // namespace

@@ -15,9 +15,9 @@ struct InteriorTest {
     std::size_t count = 0;  // 0: no point is known to be inside
 };
 
-// Half-spaces whose common points lie in the hull of `points`, each with a ball of 9e-7 around it. Heights may be sums
-// of three products in double, of coordinates of at most 1 in magnitude. `points` are as large at most. There are no
-// half-spaces where they are too flat or too many.
+// Half-spaces whose common points lie in the hull of `points`, each with a sphere of 9e-7 around it. Heights may be
+// sums of three products in double, of coordinates of at most 1 in magnitude. `points` are as large at most. There are
+// no half-spaces where they are too flat or too many.
 [[nodiscard]] InteriorTest interior_test(std::span<const glm::dvec3> points);
 
 }  // namespace crofton::fit

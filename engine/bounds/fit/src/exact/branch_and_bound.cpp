@@ -9,14 +9,13 @@
 
 #include "exact/cell_kernels.hpp"
 #include "search/polish.hpp"
+#include "search/root_cell.hpp"
 
 namespace crofton::fit {
 namespace {
 
 using kernels::kBatch;
 
-// tan(π/8). By the 24 symmetries of a box, Rodrigues vectors c with |c_i| ≤ tan(π/8) and Σ|c_i| ≤ 1 cover all frames.
-constexpr double kRootHalf = 0.41421356237309515;
 // The host is asked after so many points of cells: some 0.1 ms.
 constexpr std::size_t kWorkBetween = 8192;
 
@@ -46,14 +45,14 @@ class Search {
     SearchResult run() {
         result_.best.value = std::numeric_limits<double>::infinity();
         search_from(root_);
-        Cell root{glm::dvec3(0.0), glm::dvec3(kRootHalf), glm::dvec3(1.0), 0.0, 0, {}, 0};
+        Cell root{glm::dvec3(0.0), glm::dvec3(kRootCellHalfSize), glm::dvec3(1.0), 0.0, 0, {}, 0};
         cells_.push_back(root);
         while (!cells_.empty()) {
             const Cell cell = cells_.back();
             cells_.pop_back();
             load_lists(cell);
             if (cell.bound >= target()) continue;
-            if (result_.cells >= limits_.cells || !keep_going(cell.bound)) {
+            if (result_.cells >= limits_.cells || is_stopped(cell.bound)) {
                 cells_.push_back(cell);
                 break;
             }
@@ -82,15 +81,15 @@ class Search {
     }
 
     // Asks the host now and then. `bound` is that of the cell which is about to be split.
-    bool keep_going(double bound) {
-        if (limits_.keep_going == nullptr) return true;
+    bool is_stopped(double bound) {
+        if (limits_.should_stop == nullptr) return false;
         work_ += 64;
         for (const std::size_t count : count_) work_ += count;
-        if (work_ < kWorkBetween) return true;
+        if (work_ < kWorkBetween) return false;
         work_ = 0;
         bound = std::min(bound, target());
         for (const Cell& cell : cells_) bound = std::min(bound, cell.bound);
-        return (*limits_.keep_going)(result_.best.value, bound, result_.cells);
+        return (*limits_.should_stop)(result_.best.value, bound, result_.cells);
     }
 
     // Adds a point to the subset and, in the root frame's coordinates, to the current lists.

@@ -15,7 +15,7 @@ struct SearchLimits {
     std::uint64_t cells = std::numeric_limits<std::uint64_t>::max();
     // Called with the best value and the proved bound so far, each time that some 0.1 ms of work are done; false stops
     // the search. May be null.
-    const FunctionRef<bool(double value, double lower_bound, std::uint64_t cells)>* keep_going = nullptr;
+    const FunctionRef<bool(double value, double lower_bound, std::uint64_t cells)>* should_stop = nullptr;
 };
 
 struct SearchResult {

@@ -8,6 +8,8 @@
 #include <crofton/geometry/trigonometry.hpp>
 #include <glm/geometric.hpp>
 
+#include "search/root_cell.hpp"
+
 namespace crofton::fit {
 namespace {
 
@@ -23,13 +25,12 @@ struct Frames {
 
     Frames() {
         std::array<glm::dvec3, kFrames> rodrigues;
-        constexpr double kFarthest = 0.41421356237309515;  // √2 − 1
         constexpr double kStep[3] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
         double at = 0.5;
         for (glm::dvec3& c : rodrigues) {
             do {
                 for (int k = 0; k < 3; ++k)
-                    c[k] = (2.0 * (at * kStep[k] - std::floor(at * kStep[k])) - 1.0) * kFarthest;
+                    c[k] = (2.0 * (at * kStep[k] - std::floor(at * kStep[k])) - 1.0) * kRootCellHalfSize;
                 at += 1.0;
             } while (std::abs(c.x) + std::abs(c.y) + std::abs(c.z) > 1.0);
         }

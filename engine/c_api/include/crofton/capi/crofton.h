@@ -80,7 +80,7 @@ typedef enum crofton_bound_kind {
     CROFTON_BOUND_NONE = 0,
     CROFTON_BOUND_BOX = 1,
     CROFTON_BOUND_ALIGNED_BOX = 2,
-    CROFTON_BOUND_BALL = 3
+    CROFTON_BOUND_SPHERE = 3
 } crofton_bound_kind;
 
 /* The shape of an object without a mesh, in the world's coordinates. */
@@ -88,7 +88,7 @@ typedef struct crofton_bound {
     uint32_t kind;            /* a crofton_bound_kind: which members below count */
     crofton_box box;          /* of a box */
     double min[3], max[3];    /* of an aligned box */
-    double center[3], radius; /* of a ball */
+    double center[3], radius; /* of a sphere */
 } crofton_bound;
 
 /* Either a mesh, which `transform` places under `node` or in the world, or a bound. */
@@ -164,7 +164,7 @@ CROFTON_API crofton_status crofton_world_set_user(crofton_world* world, crofton_
  * objects that both have bodies are in crofton_world_body_contacts instead of crofton_world_contact. From the next
  * update on the object's box also covers the body. Half-spaces, and compounds that hold some, are ground without end.
  * The object's transform scales the body. CROFTON_UNSUPPORTED: a transform that turns it into another kind of body, as
- * an uneven scale does with a ball; calls that move objects and nodes refuse such transforms too. */
+ * an uneven scale does with a sphere; calls that move objects and nodes refuse such transforms too. */
 CROFTON_API crofton_status crofton_world_set_body(crofton_world* world, crofton_object object,
                                                   const crofton_body* body);
 
@@ -193,7 +193,7 @@ typedef struct crofton_object_hit {
     uint32_t triangle;      /* of the object's mesh or of its body's surface, or CROFTON_NONE */
     uint32_t child;         /* of a body that is a compound: which */
     double normal[3];       /* unit, of the surface, to the side that the ray comes from; 0 if it began inside */
-    uint8_t started_inside; /* 1: the ray began in the body, box or ball, and t is 0; else 0 */
+    uint8_t started_inside; /* 1: the ray began in the body, box or sphere, and t is 0; else 0 */
 } crofton_object_hit;
 
 typedef struct crofton_closest_object {
@@ -289,7 +289,8 @@ CROFTON_API crofton_status crofton_visible_objects_get_statistics(const crofton_
 
 CROFTON_API crofton_status crofton_visible_in_views_create(crofton_visible_in_views** visible);
 CROFTON_API crofton_status crofton_visible_in_views_destroy(crofton_visible_in_views* visible);
-/* What up to 32 views see, each object once; `options` (its order, limits and `among` count for all) or NULL. */
+/* What up to 32 views see, each object once; `options` (its order, limits and `candidate_mask` count for all) or NULL.
+ */
 CROFTON_API crofton_status crofton_world_views(const crofton_world* world, const crofton_view* views, size_t count,
                                                const crofton_cull_options* options, crofton_visible_in_views* visible);
 CROFTON_API crofton_status crofton_visible_in_views_ids(const crofton_visible_in_views* visible, const uint32_t** ids,
@@ -300,7 +301,8 @@ CROFTON_API crofton_status crofton_visible_in_views_list(const crofton_visible_i
                                                          crofton_object_ref* objects, uint32_t* view_masks,
                                                          size_t capacity);
 
-/* Rays meet bodies; of objects without one triangles of meshes, boxes and balls. hits[i] is the nearest of rays[i]. */
+/* Rays meet bodies; of objects without one triangles of meshes, boxes and spheres. hits[i] is the nearest of rays[i].
+ */
 CROFTON_API crofton_status crofton_world_raycast(const crofton_world* world, const crofton_ray* rays, size_t count,
                                                  uint32_t layer_mask, crofton_object_hit* hits);
 /* *hit is 1 where the ray hits anything, else 0. */
@@ -318,27 +320,27 @@ CROFTON_API crofton_status crofton_found_hits(const crofton_found* found, const 
 /* Finds the nearest hit of every object that the ray meets, by t, then by index: hits. */
 CROFTON_API crofton_status crofton_world_raycast_all(const crofton_world* world, const crofton_ray* ray,
                                                      uint32_t layer_mask, crofton_found* found);
-/* Find whose box or ball meets the shape, by index: objects. A mesh's box stands for it. */
+/* Find whose box or sphere meets the shape, by index: objects. A mesh's box stands for it. */
 CROFTON_API crofton_status crofton_world_overlap_box(const crofton_world* world, const crofton_box* box,
                                                      uint32_t layer_mask, crofton_found* found);
-CROFTON_API crofton_status crofton_world_overlap_ball(const crofton_world* world, const double center[3], double radius,
-                                                      uint32_t layer_mask, crofton_found* found);
+CROFTON_API crofton_status crofton_world_overlap_sphere(const crofton_world* world, const double center[3],
+                                                        double radius, uint32_t layer_mask, crofton_found* found);
 CROFTON_API crofton_status crofton_world_overlap_capsule(const crofton_world* world, const double begin[3],
                                                          const double end[3], double radius, uint32_t layer_mask,
                                                          crofton_found* found);
-/* Fill a struct whose `size` is set: the box or ball nearest to the shape, no farther than max_distance, which may be
+/* Fill a struct whose `size` is set: the box or sphere nearest to the shape, no farther than max_distance, which may be
  * infinite. Of several the lowest index. */
 CROFTON_API crofton_status crofton_world_closest_to_box(const crofton_world* world, const crofton_box* box,
                                                         double max_distance, uint32_t layer_mask,
                                                         crofton_closest_object* closest);
-CROFTON_API crofton_status crofton_world_closest_to_ball(const crofton_world* world, const double center[3],
-                                                         double radius, double max_distance, uint32_t layer_mask,
-                                                         crofton_closest_object* closest);
+CROFTON_API crofton_status crofton_world_closest_to_sphere(const crofton_world* world, const double center[3],
+                                                           double radius, double max_distance, uint32_t layer_mask,
+                                                           crofton_closest_object* closest);
 CROFTON_API crofton_status crofton_world_closest_to_capsule(const crofton_world* world, const double begin[3],
                                                             const double end[3], double radius, double max_distance,
                                                             uint32_t layer_mask, crofton_closest_object* closest);
 
-/* Objects whose boxes or balls meet, in order; valid until the next update. */
+/* Objects whose boxes or spheres meet, in order; valid until the next update. */
 CROFTON_API crofton_status crofton_world_pairs(const crofton_world* world, const crofton_object_pair** pairs,
                                                size_t* count);
 CROFTON_API crofton_status crofton_world_contact_count(const crofton_world* world, size_t* count);
@@ -350,7 +352,7 @@ CROFTON_API crofton_status crofton_world_contact(const crofton_world* world, siz
  * computed again. */
 CROFTON_API crofton_status crofton_world_body_contacts(const crofton_world* world,
                                                        const crofton_body_contact** contacts, size_t* count);
-/* Finds what a body meets, exactly, by index: objects. Those without bodies are their boxes or balls. */
+/* Finds what a body meets, exactly, by index: objects. Those without bodies are their boxes or spheres. */
 CROFTON_API crofton_status crofton_world_overlap_body(const crofton_world* world, const crofton_placed* shape,
                                                       uint32_t layer_mask, crofton_found* found);
 /* Fills a struct whose `size` is set: the object nearest to a body, as crofton_world_closest_to_box. */

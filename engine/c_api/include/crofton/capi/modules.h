@@ -69,14 +69,14 @@ typedef struct crofton_view {
 typedef struct crofton_draw_limits {
     size_t size;
     double eye[3];
-    double radii;                 /* farther than so many times its radius; 0: no limit */
+    double max_distance_in_radii; /* farther than so many times its radius; 0: no limit */
     double least_radius;          /* smaller than this */
     const float* layer_distances; /* 32, or NULL */
     const float* item_distances;  /* by item id or object index, or NULL */
     size_t item_count;
     const uint64_t* drawn_before; /* bit i % 64 of word i / 64 for item i, or NULL */
     size_t drawn_word_count;
-    double longer; /* times as long are the limits of what was drawn before; 0: 1 */
+    double hysteresis; /* times as long are the limits of what was drawn before; 0: 1 */
 } crofton_draw_limits;
 
 typedef struct crofton_cull_options {
@@ -86,14 +86,14 @@ typedef struct crofton_cull_options {
     /* Items that may be seen at all, as crofton_pvs_visible gives them: bit i % 64 of among[i / 64] is item i. Those
      * beyond may, and so may what has moved in a world since it came. NULL, and 0 words: all. A caller's smaller struct
      * lacks it: all. Views of many frusta at once do not look at it. */
-    const uint64_t* among;
-    size_t among_words;
+    const uint64_t* candidate_mask;
+    size_t candidate_words;
     const crofton_draw_limits* limits; /* or NULL: all is worth drawing. crofton_world_views checks it, no more */
 } crofton_cull_options;
 
 typedef struct crofton_cull_statistics {
     size_t size;
-    uint64_t nodes_tested, boxes_tested, accepted_whole, straddling, exact_tests, improper;
+    uint64_t nodes_tested, boxes_tested, accepted_whole, straddling, exact_tests, false_positives;
 } crofton_cull_statistics;
 
 /* Item i is boxes[i], seen in the layers layer_masks[i] (or NULL: in all). Both are copied. */
@@ -133,7 +133,7 @@ CROFTON_API crofton_status crofton_visible_set_items(const crofton_visible_set* 
 CROFTON_API crofton_status crofton_visible_set_statistics(const crofton_visible_set* visible,
                                                           crofton_cull_statistics* statistics);
 
-/* Limits for a camera: nothing whose ball is less than `pixels` wide in a picture so many pixels high. Each is judged
+/* Limits for a camera: nothing whose sphere is less than `pixels` wide in a picture so many pixels high. Each is judged
  * as if it were in the middle. Fills a struct whose `size` is set; all else is 0. */
 CROFTON_API crofton_status crofton_draw_limits_of_camera(const crofton_camera* camera, double picture_height,
                                                          double pixels, crofton_draw_limits* limits);
@@ -259,7 +259,7 @@ typedef struct crofton_body crofton_body;
 typedef struct crofton_body_contacts crofton_body_contacts; /* where one pair touches, kept from step to step */
 
 typedef enum crofton_body_kind {
-    CROFTON_BODY_BALL = 0,
+    CROFTON_BODY_SPHERE = 0,
     CROFTON_BODY_CAPSULE = 1,
     CROFTON_BODY_CYLINDER = 2,
     CROFTON_BODY_CONE = 3,
@@ -295,7 +295,7 @@ typedef struct crofton_body_info {
     uint32_t vertex_count, face_count; /* of a hull, else 0 */
     uint32_t part_count;               /* of a compound, else 1 */
     double min[3], max[3];             /* in its frame, rounded outward; infinite for half-spaces */
-    double excess;                     /* how far a hull reaches beyond that of its points at most */
+    double max_overshoot;              /* how far a hull reaches beyond that of its points at most */
 } crofton_body_info;
 
 /* Of a body of density 1, in its frame; the inertia about the center of mass, symmetric. */
@@ -414,7 +414,7 @@ typedef struct crofton_impact {
 } crofton_impact;
 
 /* Solids of revolution stand along y, with the origin half way up. Lengths are >= 0 and at most 1e15. */
-CROFTON_API crofton_status crofton_body_ball(float radius, crofton_body** body);
+CROFTON_API crofton_status crofton_body_sphere(float radius, crofton_body** body);
 CROFTON_API crofton_status crofton_body_capsule(float half_height, float radius, crofton_body** body);
 CROFTON_API crofton_status crofton_body_cylinder(float half_height, float radius, crofton_body** body);
 CROFTON_API crofton_status crofton_body_cone(float half_height, float radius, crofton_body** body);
@@ -534,9 +534,9 @@ CROFTON_API crofton_status crofton_tree_raycast(const crofton_tree* tree, const 
 CROFTON_API crofton_status crofton_tree_within_box(const crofton_tree* tree, const crofton_box* box,
                                                    uint32_t layer_mask, uint32_t* items, size_t capacity,
                                                    size_t* found);
-CROFTON_API crofton_status crofton_tree_within_ball(const crofton_tree* tree, const double center[3], double radius,
-                                                    uint32_t layer_mask, uint32_t* items, size_t capacity,
-                                                    size_t* found);
+CROFTON_API crofton_status crofton_tree_within_sphere(const crofton_tree* tree, const double center[3], double radius,
+                                                      uint32_t layer_mask, uint32_t* items, size_t capacity,
+                                                      size_t* found);
 
 /* Boxes around points, best by the criterion that the queries imply. */
 

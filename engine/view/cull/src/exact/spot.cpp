@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Spot light against convex volume, exactly. If they share a point, so do the volume, the light's cone and the ball of
-// its range. Then the point of volume and cone nearest to the apex is in that ball. It is the apex; or the foot of the
-// apex on a plane, on the line of two planes or the corner of three. Or it is on the cone's surface: the end of the
+// Spot light against convex volume, exactly. If they share a point, so do the volume, the light's cone and the sphere
+// of its range. Then the point of volume and cone nearest to the apex is in that sphere. It is the apex; or the foot of
+// the apex on a plane, on the line of two planes or the corner of three. Or it is on the cone's surface: the end of the
 // shortest way along it to a plane, or where the line of two planes pierces it. So it is enough to ask whether any of
-// these points lies in volume, cone and ball. Each is (X + Y √D) / W with sums and products for X, Y, D and W, and so
+// these points lies in volume, cone and sphere. Each is (X + Y √D) / W with sums and products for X, Y, D and W, and so
 // is the sign of A + B √D, by squares.
 #include "exact/spot.hpp"
 
@@ -107,7 +107,7 @@ class SpotTest {
         return result;
     }
 
-    // Is the point in volume, cone and ball?
+    // Is the point in volume, cone and sphere?
     Answer contains(const Point& p) const {
         Answer result = Answer::yes;
         const auto fails = [&](Answer one) {

@@ -47,16 +47,16 @@ class OpenPairs {
         const double low = std::max(grid_.doubles.depth[k], w - support(light_, -light_.axis[2]) - eta),
                      high = std::min(grid_.doubles.depth[k + 1], w + support(light_, light_.axis[2]) + eta);
         if (low > high) return false;
-        const Answer answer = light_.is_spot ? ask_spot(i, j, low, high) : ask_ball(i, j, low, high);
+        const Answer answer = light_.is_spot ? ask_spot(i, j, low, high) : ask_sphere(i, j, low, high);
         if (answer != Answer::unknown) return answer == Answer::yes;
         return in_.decide(in_.context, number_, (k * grid_.size[1] + j) * grid_.size[0] + i);
     }
 
   private:
-    [[nodiscard]] Answer ask_ball(std::uint32_t i, std::uint32_t j, double low, double high) const {
+    [[nodiscard]] Answer ask_sphere(std::uint32_t i, std::uint32_t j, double low, double high) const {
         const SingleTag d;
         const Lit<SingleTag> lit =
-            test_ball(FroxelLanes<SingleTag>(grid_.doubles, i, j, low, high), LightLanes<SingleTag>::all(filter_));
+            test_sphere(FroxelLanes<SingleTag>(grid_.doubles, i, j, low, high), LightLanes<SingleTag>::all(filter_));
         return !hn::AllFalse(d, lit.yes) ? Answer::yes : !hn::AllFalse(d, lit.no) ? Answer::no : Answer::unknown;
     }
     [[nodiscard]] Answer ask_spot(std::uint32_t i, std::uint32_t j, double low, double high) const {
@@ -223,7 +223,7 @@ class LightWalk {
         return {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last)};
     }
 
-    // What of columns or rows the ball's part in the slab may reach.
+    // What of columns or rows the sphere's part in the slab may reach.
     HWY_INLINE Range narrowed(unsigned axis, Range range) const {
         const float gap = std::max(0.0f, std::max(from_ - filter_.at[2], filter_.at[2] - to_));
         const float square = filter_.radius * filter_.radius * (1.0f + 0x1p-18f) - gap * gap * (1.0f - 0x1p-18f);
@@ -239,13 +239,13 @@ class LightWalk {
         return range;
     }
 
-    // Balls, a row's froxels at a time.
+    // Spheres, a row's froxels at a time.
     HWY_INLINE void visit_slice(std::uint32_t k, Range columns, Range rows) {
         const auto light = LightLanes<FroxelTag>::all(filter_);
         for (std::uint32_t j = rows.first; j < rows.last; ++j)
             for (std::uint32_t i = columns.first; i < columns.last; i += kLanes) {
                 const FroxelLanes<FroxelTag> froxels(grid_.floats, i, j, from_, to_);
-                const Lit<FroxelTag> lit = test_ball(froxels, light);
+                const Lit<FroxelTag> lit = test_sphere(froxels, light);
                 const std::uint32_t present =
                     columns.last - i < 32 ? (1u << (columns.last - i)) - 1 : ~std::uint32_t{0};
                 std::uint32_t mask = lanes_of(lit.yes) & present;

@@ -42,7 +42,7 @@ struct FroxelKernelGrid {
 // A light in the grid's frame; the axis is a unit vector up to rounding.
 struct KernelLight {
     double at[3];
-    double radius;                 // of the ball, or the spot's range
+    double radius;                 // of the sphere, or the spot's range
     double axis[3], cosine, sine;  // of the half angle; the sine is above 0
     bool is_spot;
 };

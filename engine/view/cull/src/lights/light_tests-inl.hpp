@@ -135,7 +135,7 @@ struct NearestAt {
 // first term of the bound gives up. Where F < R² nothing is claimed. The slope's sign may be wrong where it is below s
 // δ, which η² covers.
 template <class D>
-HWY_INLINE Lit<D> test_ball(const FroxelLanes<D>& froxels, const LightLanes<D>& light) {
+HWY_INLINE Lit<D> test_sphere(const FroxelLanes<D>& froxels, const LightLanes<D>& light) {
     const D d;
     using V = hn::Vec<D>;
     const V u0 = light.at[0], v0 = light.at[1], w0 = light.at[2], low = froxels.low, high = froxels.high;

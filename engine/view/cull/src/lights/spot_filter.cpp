@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The distance of two convex bodies by their support points (Gilbert, Johnson, Keerthi 1988). Let A be the set of all
 // differences of a point of the froxel and one of the light. A plane that all of A is beyond, seen from the origin, by
-// more than η proves that they are apart. A tetrahedron of A that contains the ball of radius η around the origin
+// more than η proves that they are apart. A tetrahedron of A that contains the sphere of radius η around the origin
 // proves that they meet.
 #include "lights/spot_filter.hpp"
 

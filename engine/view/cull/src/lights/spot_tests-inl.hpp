@@ -73,7 +73,7 @@ struct Sector {
         return {along, hn::Sqrt(rest.dot(rest)), rest};
     }
 
-    // A ball of radius η around y lies within.
+    // A sphere of radius η around y lies within.
     HWY_INLINE hn::Mask<D> contains(const Vectors<D>& y, const Split& of) const {
         const V margin = hn::Sub(range, eta);
         const V to_side = hn::Sub(hn::Mul(of.along, sine), hn::Mul(of.across, cosine));
@@ -98,7 +98,7 @@ struct Sector {
                 component(y.w, axis.w, of.rest.w)};
     }
 
-    // The middle of the largest ball within.
+    // The middle of the largest sphere within.
     HWY_INLINE Vectors<D> center() const {
         const V along = hn::Div(range, hn::Add(hn::Set(D(), hn::TFromD<D>(1)), sine));
         return {hn::Mul(axis.u, along), hn::Mul(axis.v, along), hn::Mul(axis.w, along)};
@@ -149,8 +149,8 @@ HWY_INLINE Lit<D> test_spot(const FroxelLanes<D>& froxels, const LightLanes<D>& 
     const D d;
     const Sector<D> sector(light);
     const Vectors<D> apex{light.at[0], light.at[1], light.at[2]};
-    Lit<D> lit = test_ball(froxels, light);
-    lit.yes = hn::FirstN(d, 0);  // of the ball of its range
+    Lit<D> lit = test_sphere(froxels, light);
+    lit.yes = hn::FirstN(d, 0);  // of the sphere of its range
     const Vectors<D> x = apex.plus(sector.center());
     V w = hn::Max(froxels.low, hn::Min(froxels.high, x.w));
     w = NearestAt<D>(froxels, x.u, x.v, x.w, w).next(froxels.low, froxels.high);

@@ -35,9 +35,9 @@ bool exceeds(const glm::dvec3& from, const glm::dvec3& to, double limit, double 
 
 constexpr glm::dvec3 kOne{1.0, 0.0, 0.0};
 
-// A ball around `center`, of the radius |half|.
-bool is_ball_within(const DrawLimits& limits, const glm::dvec3& center, const glm::dvec3& half, boxtree::ItemId item,
-                    double layer_limit) {
+// A sphere around `center`, of the radius |half|.
+bool is_sphere_within(const DrawLimits& limits, const glm::dvec3& center, const glm::dvec3& half, boxtree::ItemId item,
+                      double layer_limit) {
     if (!is_usable(Sphere{limits.eye, 0.0})) return true;
     const double factor = factor_of(limits, item);
     const auto is_beyond = [&](double limit, const glm::dvec3& sizes) {
@@ -47,7 +47,7 @@ bool is_ball_within(const DrawLimits& limits, const glm::dvec3& center, const gl
     if (counts(limits.least_radius) && limits.least_radius > 0.0 &&
         exceeds(glm::dvec3(0.0), glm::dvec3(limits.least_radius, 0.0, 0.0), 1.0, factor, half))
         return false;
-    if (is_beyond(limits.radii, half)) return false;
+    if (is_beyond(limits.max_distance_in_radii, half)) return false;
     if (item < limits.item_distances.size() && is_beyond(static_cast<double>(limits.item_distances[item]), kOne))
         return false;
     return !is_beyond(layer_limit, kOne);
@@ -62,13 +62,13 @@ bool is_moderate_limit(double value) {
 
 KernelLimits kernel_limits_of(const DrawLimits& limits) {
     constexpr float kEndless = std::numeric_limits<float>::infinity();
-    const double longer = std::min(std::max(1.0, limits.longer), kMaxCoordinate), radii = std::max(0.0, limits.radii),
-                 least = limits.least_radius;
+    const double longer = std::min(std::max(1.0, limits.hysteresis), kMaxCoordinate),
+                 radii = std::max(0.0, limits.max_distance_in_radii), least = limits.least_radius;
     KernelLimits result{};
     for (int j = 0; j < 3; ++j) result.eye[j] = limits.eye[j];
     // Radii are at least 1e-18 in floats: up to 1e9 of them are a length that is truly too long.
     const bool is_eye = is_usable(Sphere{limits.eye, 0.0});  // otherwise no limit counts
-    const bool has_radii = is_eye && counts(limits.radii), radii_fit = radii * longer <= 1e9;
+    const bool has_radii = is_eye && counts(limits.max_distance_in_radii), radii_fit = radii * longer <= 1e9;
     result.radii[0] = !has_radii ? kEndless : radii_fit ? static_cast<float>(radii * radii) : 0.0f;
     result.radii[1] = has_radii && radii_fit ? static_cast<float>(radii * longer * (radii * longer)) : kEndless;
     const bool has_least = is_eye && counts(least) && least > 0.0, least_fits = is_moderate_limit(least);
@@ -122,15 +122,15 @@ bool is_worth_drawing(const DrawLimits& limits, const Sphere& sphere, boxtree::I
 }
 
 bool is_within_limits(const DrawLimits& limits, const Obb& box, boxtree::ItemId item, double layer_limit) {
-    return !is_usable(box) || is_ball_within(limits, box.center, glm::dvec3(box.half_extents), item, layer_limit);
+    return !is_usable(box) || is_sphere_within(limits, box.center, glm::dvec3(box.half_extents), item, layer_limit);
 }
 bool is_within_limits(const DrawLimits& limits, const Aabb& box, boxtree::ItemId item, double layer_limit) {
     const glm::dvec3 center = 0.5 * (box.min + box.max), half = 0.5 * (box.max - box.min);
-    return !is_usable(box) || is_ball_within(limits, center, half, item, layer_limit);
+    return !is_usable(box) || is_sphere_within(limits, center, half, item, layer_limit);
 }
 bool is_within_limits(const DrawLimits& limits, const Sphere& sphere, boxtree::ItemId item, double layer_limit) {
     const glm::dvec3 size(sphere.radius, 0.0, 0.0);
-    return !is_usable(sphere) || is_ball_within(limits, sphere.center, size, item, layer_limit);
+    return !is_usable(sphere) || is_sphere_within(limits, sphere.center, size, item, layer_limit);
 }
 
 Result<DrawLimits> limits_of(const Camera& camera, double picture_height, double pixels) {
@@ -145,9 +145,9 @@ Result<DrawLimits> limits_of(const Camera& camera, double picture_height, double
         result.least_radius = 0.5 * pixels * camera.height / picture_height;
         return result;
     }
-    // A ball's outline at distance d: 2 f r / √(d² − r²) pixels wide, f = height / (2 tan(fov / 2)).
+    // A sphere's outline at distance d: 2 f r / √(d² − r²) pixels wide, f = height / (2 tan(fov / 2)).
     const double ratio = picture_height / (tangent(0.5 * camera.fov_y) * pixels);
-    result.radii = std::sqrt(1.0 + ratio * ratio);
+    result.max_distance_in_radii = std::sqrt(1.0 + ratio * ratio);
     return result;
 }
 

@@ -53,7 +53,7 @@ class LayerLimit {
 [[nodiscard]] inline double factor_of(const DrawLimits& limits, boxtree::ItemId item) {
     const bool drawn =
         item / 64 < limits.drawn_before.size() && (limits.drawn_before[item / 64] >> (item % 64) & 1) != 0;
-    return drawn ? std::min(std::max(1.0, limits.longer), kMaxCoordinate) : 1.0;
+    return drawn ? std::min(std::max(1.0, limits.hysteresis), kMaxCoordinate) : 1.0;
 }
 
 }  // namespace crofton::cull

@@ -112,9 +112,9 @@ void BoundSet<Bound>::choose_frame(std::size_t c, std::span<const Bound> bounds)
     std::size_t usable = 0;
     for (const Bound& bound : bounds.subspan(c * kChunk, std::min(kChunk, size() - c * kChunk))) {
         if (!is_usable(bound)) continue;
-        const Sphere ball = ball_around(bound);
-        centers.include(ball.center);
-        exponents += std::ilogb(std::max(ball.radius, 1e-30));
+        const Sphere sphere = sphere_around(bound);
+        centers.include(sphere.center);
+        exponents += std::ilogb(std::max(sphere.radius, 1e-30));
         ++usable;
     }
     double extent = 1e-30;
@@ -211,12 +211,12 @@ void BoundSet<Bound>::write(std::size_t i, const Bound& bound) {
     if (is_out_of_frame(block, i % 16)) --chunk.out_of_frame;
     bool bounded = false;
     if (is_usable(bound)) {
-        const Sphere ball = ball_around(bound);
-        const glm::dvec3 offset = ball.center - glm::dvec3(chunk.origin[0], chunk.origin[1], chunk.origin[2]);
+        const Sphere sphere = sphere_around(bound);
+        const glm::dvec3 offset = sphere.center - glm::dvec3(chunk.origin[0], chunk.origin[1], chunk.origin[2]);
         records_[i] = record_of(bound, offset);
         const double l1_radius = std::fabs(offset.x) + std::fabs(offset.y) + std::fabs(offset.z);
         chunk.l1_radius = std::max(chunk.l1_radius, static_cast<float>(l1_radius * (1.0 + 0x1p-20)));
-        bounded = write_row(block, i % 16, offset, ball.radius, chunk);
+        bounded = write_row(block, i % 16, offset, sphere.radius, chunk);
     } else {
         records_[i] = undecidable_record<Record>();
     }

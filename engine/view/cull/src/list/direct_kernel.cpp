@@ -72,7 +72,7 @@ struct DirectLanes {
         }
         return hn::MulAdd(skew, hn::Set(d, 2.0f), square);
     }
-    // A radius of the ball around the box, for any axes: 2^-18 covers twenty roundings, 1e-18 squares that underflow.
+    // A radius of the sphere around the box, for any axes: 2^-18 covers twenty roundings, 1e-18 squares that underflow.
     HWY_INLINE VF radius(float scale) const {
         const DF d;
         return hn::MulAdd(hn::Sqrt(square_of_radius()), hn::Set(d, scale * (1.0f + 0x1p-18f)), hn::Set(d, 1e-18f));
@@ -211,7 +211,7 @@ class DirectQuery {
 
     void run() {
         out_.undecided_count = out_.resolved_count = 0;
-        out_.improper = 0;
+        out_.false_positives = 0;
         const std::size_t straddling = test_all();
         OpenCounts counts;
         if (resolve_count_ > 0) {
@@ -224,7 +224,7 @@ class DirectQuery {
                                                : records.resolve(resolve_, resolve_count_);
         }
         out_.resolved_count = resolve_count_;
-        out_.improper = counts.improper;
+        out_.false_positives = counts.false_positives;
         out_.open = straddling + counts.straddling + out_.undecided_count;
     }
 

@@ -31,7 +31,7 @@ class ChunkQuery {
 
     void run() {
         out_.undecided_count = out_.resolved_count = 0;
-        out_.improper = out_.open = 0;
+        out_.false_positives = out_.open = 0;
         const std::uint64_t last = ~std::uint64_t{0} >> (64 * words_ - in_.count);
         if (is_few()) return test_few(last);
         if (rows_.outside || rows_.planes == 0) {
@@ -91,7 +91,7 @@ class ChunkQuery {
 
     HWY_INLINE void count_open(const OpenCounts& counts) {
         out_.resolved_count = counts.resolved;
-        out_.improper = counts.improper;
+        out_.false_positives = counts.false_positives;
         out_.open = counts.straddling + counts.undecided;
     }
 

@@ -23,7 +23,7 @@ struct ListKernelOutput {
     std::uint64_t inside[kChunk / 64];
     std::uint32_t undecided[kChunk + 16];  // theirs are open
     std::size_t undecided_count, resolved_count;
-    std::uint64_t improper, open;  // open: straddling or undecided
+    std::uint64_t false_positives, open;  // open: straddling or undecided
 };
 
 void run_list_kernel(const ListKernelInput<BoxRecord>& input, ListKernelOutput& output);

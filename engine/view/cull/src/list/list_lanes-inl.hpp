@@ -3,7 +3,7 @@
 #include <crofton/cull/list_layout.hpp>
 #include <crofton/simd/gather_rows-inl.hpp>
 
-#include "list/ball_tests-inl.hpp"
+#include "list/sphere_tests-inl.hpp"
 #include "tree/block_tests-inl.hpp"
 
 #if defined(CROFTON_CULL_LIST_LANES_INL) == defined(HWY_TARGET_TOGGLE)

@@ -45,7 +45,7 @@ struct ListQuery {
         if (kCountStatistics) {
             statistics.boxes_tested = count;
             statistics.exact_tests = output.resolved_count + output.undecided_count;
-            statistics.improper = output.improper;
+            statistics.false_positives = output.false_positives;
             statistics.straddling = output.open;
         }
         for (std::size_t n = 0; n < output.undecided_count; ++n) {
@@ -66,8 +66,8 @@ struct ListQuery {
             usable && is_usable(bound) ? classify_usable(view.frustum, bound, mode) : Verdict::straddling;
         if (!kCountStatistics || verdict == Verdict::straddling) return verdict;
         --statistics.straddling;
-        statistics.improper += mode == CullMode::exact && verdict == Verdict::outside &&
-                               classify_usable(view.frustum, bound, CullMode::conservative) != Verdict::outside;
+        statistics.false_positives += mode == CullMode::exact && verdict == Verdict::outside &&
+                                      classify_usable(view.frustum, bound, CullMode::conservative) != Verdict::outside;
         return verdict;
     }
 };
@@ -145,7 +145,7 @@ class ListViews {
                 cost[v] += {.boxes_tested = count,
                             .straddling = own.straddling + own.undecided,
                             .exact_tests = own.resolved + own.undecided,
-                            .improper = own.improper};
+                            .false_positives = own.false_positives};
             if (singly_ >> v & 1) chunk.ask_singly(v, count, layers, masks);
         }
         for (std::size_t i = 0; blind_ != 0 && i < count; ++i) masks[i] &= ~blind_;

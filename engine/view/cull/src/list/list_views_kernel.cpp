@@ -181,7 +181,7 @@ class ChunkViews {
                                           in_.exact, sink);
         const OpenCounts counts = records.test(indices, count, needs_edge_test);
         cost.resolved += counts.resolved;
-        cost.improper += counts.improper;
+        cost.false_positives += counts.false_positives;
         cost.straddling += counts.straddling;
         cost.undecided += counts.undecided;
     }

@@ -11,7 +11,7 @@ inline constexpr std::size_t kMaxListViews = 32;
 
 // The statistics of one view, without the rows, which are read once for all.
 struct ListViewCost {
-    std::uint64_t resolved, improper, straddling, undecided;
+    std::uint64_t resolved, false_positives, straddling, undecided;
 };
 
 template <class Record>

@@ -21,14 +21,14 @@ namespace crofton::cull::HWY_NAMESPACE {
 
 // Verdicts of up to 16 bounds, a bit each.
 struct Sixteen {
-    std::uint32_t inside = 0, straddling = 0, needs_edge_test = 0, undecided = 0, improper = 0;
+    std::uint32_t inside = 0, straddling = 0, needs_edge_test = 0, undecided = 0, false_positives = 0;
 
     HWY_INLINE void add(const BoxTest& test, std::size_t shift) {
         inside |= bits_of(test.inside) << shift;
         straddling |= bits_of(test.straddling) << shift;
         needs_edge_test |= bits_of(test.needs_edge_test) << shift;
         undecided |= bits_of(test.undecided) << shift;
-        improper |= bits_of(test.improper) << shift;
+        false_positives |= bits_of(test.false_positives) << shift;
     }
 };
 
@@ -69,7 +69,7 @@ class OpenBits {
 
 // How many of the records went which way.
 struct OpenCounts {
-    std::size_t resolved = 0, straddling = 0, undecided = 0, improper = 0;
+    std::size_t resolved = 0, straddling = 0, undecided = 0, false_positives = 0;
 };
 
 // The records ahead of those in work that are asked for.
@@ -122,7 +122,7 @@ class OpenRecords {
     HWY_INLINE OpenCounts resolve(std::uint32_t* indices, std::size_t count) {
         resolve_all(indices, count, [&](const auto& bounds, std::size_t) HWY_ATTR {
             BoxTest result;
-            result.inside = result.straddling = result.undecided = result.improper = hn::FirstN(DF(), 0);
+            result.inside = result.straddling = result.undecided = result.false_positives = hn::FirstN(DF(), 0);
             result.needs_edge_test = bounds.present;
             HWY_NAMESPACE::resolve(view_, bounds, planes_, local_, result);
             return result;
@@ -198,7 +198,7 @@ class OpenRecords {
         for_each_bit(test.undecided, [&](unsigned i) { sink_.undecided(which[i]); });
         counts_.straddling += hwy::PopCount(test.straddling);
         counts_.undecided += hwy::PopCount(test.undecided);
-        counts_.improper += hwy::PopCount(test.improper);
+        counts_.false_positives += hwy::PopCount(test.false_positives);
     }
 
     template <class Test>

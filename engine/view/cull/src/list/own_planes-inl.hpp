@@ -108,7 +108,7 @@ HWY_INLINE BoxTest test_all_planes(const PlaneTable& table, const BoxLanes& boun
     }
     const VF beyond = hn::Neg(error);
     BoxTest result;
-    result.improper = hn::FirstN(d, 0);
+    result.false_positives = hn::FirstN(d, 0);
     result.inside = hn::And(bounds.present, hn::Ge(bottom, error));
     const MF crossing = hn::And(bounds.present, hn::And(hn::Ge(top, error), hn::Lt(bottom, beyond)));
     // A box that crosses one plane and lies inside all others meets the frustum; so does one whose centre is inside.
@@ -138,7 +138,7 @@ HWY_INLINE BoxTest resolve_own_planes(const PlaneTable& table, const BoxLanes& b
         row.projected_radius = hn::Add(hn::Add(hn::Abs(row.slope[0]), hn::Abs(row.slope[1])), hn::Abs(row.slope[2]));
     }
     BoxTest result;
-    result.inside = result.straddling = result.undecided = result.improper = hn::FirstN(d, 0);
+    result.inside = result.straddling = result.undecided = result.false_positives = hn::FirstN(d, 0);
     result.needs_edge_test = bounds.present;
     box.keep_first(count, bounds.present);
     resolve(box, result);

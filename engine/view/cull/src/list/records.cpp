@@ -30,7 +30,7 @@ void set_center(float (&center)[3], const glm::dvec3& offset) {
 
 }  // namespace
 
-Sphere ball_around(const Obb& box) {
+Sphere sphere_around(const Obb& box) {
     glm::dvec3 edge[3];
     for (int k = 0; k < 3; ++k) edge[k] = half_edge(box, k);
     const auto dot = [](const glm::dvec3& a, const glm::dvec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; };
@@ -40,20 +40,20 @@ Sphere ball_around(const Obb& box) {
     return {box.center, std::sqrt(square) * (1.0 + 0x1p-48) + 1e-150};
 }
 
-Sphere ball_around(const Aabb& box) {
+Sphere sphere_around(const Aabb& box) {
     const glm::dvec3 half = 0.5 * box.max - 0.5 * box.min, size = glm::abs(box.min) + glm::abs(box.max);
     const double radius = std::sqrt(half.x * half.x + half.y * half.y + half.z * half.z);
     return {0.5 * box.min + 0.5 * box.max, radius * (1.0 + 0x1p-48) + (size.x + size.y + size.z) * 0x1p-52 + 1e-150};
 }
 
-Sphere ball_around(const Sphere& sphere) {
+Sphere sphere_around(const Sphere& sphere) {
     return sphere;
 }
 
 BoxRecord record_of(const Obb& box, const glm::dvec3& offset) {
     BoxRecord record;
     set_center(record.center, offset);
-    const float radius = std::max(kLeastUnit, float_at_least(ball_around(box).radius));
+    const float radius = std::max(kLeastUnit, float_at_least(sphere_around(box).radius));
     record.radius = upper_half_at_least(radius);
     const float stored = std::bit_cast<float>(std::uint32_t{record.radius} << 16);
     const double per_unit = 0x1p15 / double{stored};

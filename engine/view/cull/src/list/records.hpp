@@ -7,10 +7,10 @@
 
 namespace crofton::cull {
 
-// A ball that contains the bound, in double: radius rounded up, centre to the nearest (the radius makes up for it).
-[[nodiscard]] Sphere ball_around(const Obb& box);
-[[nodiscard]] Sphere ball_around(const Aabb& box);
-[[nodiscard]] Sphere ball_around(const Sphere& sphere);
+// A sphere that contains the bound, in double: radius rounded up, centre to the nearest (the radius makes up for it).
+[[nodiscard]] Sphere sphere_around(const Obb& box);
+[[nodiscard]] Sphere sphere_around(const Aabb& box);
+[[nodiscard]] Sphere sphere_around(const Sphere& sphere);
 
 // The record of a bound; `offset` is its centre relative to the chunk's origin.
 [[nodiscard]] BoxRecord record_of(const Obb& box, const glm::dvec3& offset);

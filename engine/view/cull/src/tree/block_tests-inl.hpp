@@ -152,7 +152,7 @@ HWY_INLINE BoxTest test_boxes(const KernelView& view, const Lanes& boxes, std::u
         open_once = hn::Or(open_once, open);
     }
     BoxTest result;
-    result.improper = none;
+    result.false_positives = none;
     result.inside = hn::AndNot(open_once, boxes.present);
     const MF crossing = hn::And(passes, crosses);
     // A box that crosses one plane and lies inside all others meets the frustum; so does one whose centre is inside.

@@ -77,7 +77,7 @@ HWY_INLINE BoxTest test_leaf(const LeafRows& rows, MF present, const LeafPlane& 
     result.straddling = hn::And(present, test.cuts);
     result.inside = hn::And(present, test.inside);
     result.undecided = hn::And(present, test.unsure);
-    result.needs_edge_test = result.improper = hn::FirstN(DF(), 0);
+    result.needs_edge_test = result.false_positives = hn::FirstN(DF(), 0);
     return result;
 }
 
@@ -131,7 +131,7 @@ HWY_INLINE BoxTest test_leaf(const boxtree::Leaf& leaf, std::size_t l, MF presen
     const MF sure = hn::AndNot(unsure, maybe);
     result.undecided = hn::And(unsure, maybe);
     result.inside = hn::AndNot(once, sure);
-    result.improper = result.needs_edge_test = none;
+    result.false_positives = result.needs_edge_test = none;
     result.straddling = hn::And(once, sure);
     if (!exact) return result;
     result.needs_edge_test = hn::AndNot(center, hn::And(twice, sure));

@@ -48,7 +48,7 @@ std::size_t most_leaves_below(const boxtree::Structure& structure, boxtree::Node
 }  // namespace
 
 void leave_all_undecided(std::size_t count, ListKernelOutput& output) {
-    output.resolved_count = output.improper = 0;
+    output.resolved_count = output.false_positives = 0;
     output.open = output.undecided_count = count;
     for (std::size_t i = 0; i < count; ++i) output.undecided[i] = static_cast<std::uint32_t>(i);
     std::fill_n(output.visible, (count + 63) / 64, 0);
@@ -116,7 +116,7 @@ Statistics Query::ask(const ListChunks& list, std::size_t begin, std::size_t end
             if (!list.layer_masks.empty()) visible &= layer_bits(list.layer_masks.subspan(first + 64 * w));
             if (view_.layer_mask == 0) visible = 0;  // without layer masks, too
             if (options_.limits) visible = wanted_bits(visible, list.boxes, list.layer_masks, first + 64 * w);
-            if (first / 64 + w < options_.among.size()) visible &= options_.among[first / 64 + w];
+            if (first / 64 + w < options_.candidate_mask.size()) visible &= options_.candidate_mask[first / 64 + w];
             list.seen[first / 64 + w] = visible;
             list.marked[first / 64 + w] = visible & ~output.inside[w];
         }
@@ -161,7 +161,7 @@ void Query::decide(std::span<const Obb> boxes, ListKernelOutput& output, Statist
     if (!kCountStatistics) return;
     statistics.boxes_tested += boxes.size();
     statistics.exact_tests += output.resolved_count + output.undecided_count;
-    statistics.improper += output.improper + rejected;
+    statistics.false_positives += output.false_positives + rejected;
 }
 
 // Lists the ids of the bits in `seen`; those that are also in `marked` straddle.
@@ -212,10 +212,10 @@ void Query::run(const boxtree::BoxTree& tree, Executor& executor) {
     const Tasks tasks(input, tree.item_count() >= kParallelItems);
     if (executor.concurrency() > 1 && tasks.count > 1 && !options_.limits)
         return run_parallel(tree, input, tasks, executor);
-    if (!options_.among.empty() && !options_.limits && has_among_slots(structure)) {
+    if (!options_.candidate_mask.empty() && !options_.limits && has_candidate_slots(structure)) {
         by_slots_ = true;
-        input.leaves_among = visible_.among_slots_.leaves.data();
-        input.nodes_among = visible_.among_slots_.nodes.data();
+        input.leaves_with_candidates = visible_.candidate_slots_.leaves.data();
+        input.nodes_with_candidates = visible_.candidate_slots_.nodes.data();
     }
     TreeKernelOutput output{};
     output.inside = visible_.ids_.data();
@@ -337,7 +337,7 @@ std::size_t Query::decide(const boxtree::BoxTree& tree, TreeKernelOutput& output
         if (verdict != Verdict::outside)
             output.undecided[kept++] = verdict == Verdict::inside ? item | kInside : item;
         else if (kCountStatistics && options_.mode == CullMode::exact)
-            output.improper += classify_usable(view_.frustum, box, CullMode::conservative) != Verdict::outside;
+            output.false_positives += classify_usable(view_.frustum, box, CullMode::conservative) != Verdict::outside;
     }
     return kept;
 }
@@ -358,17 +358,19 @@ void Query::append_decided(const TreeKernelOutput& output, std::size_t kept, std
     statistics.boxes_tested += output.boxes_tested;
     statistics.accepted_whole += output.accepted_whole;
     statistics.exact_tests += output.undecided_count;
-    statistics.improper += output.improper;
+    statistics.false_positives += output.false_positives;
 }
 
-// Of resting items, those that CullOptions::among leaves out are dropped here, or by sort() where nothing moves.
+// Of resting items, those that CullOptions::candidate_mask leaves out are dropped here, or by sort() where nothing
+// moves.
 void Query::finish(const boxtree::BoxTree& tree, std::size_t inside, std::size_t straddling, Executor& executor) {
-    const std::span<const std::uint64_t> among = options_.among;
-    if (!among.empty() && !by_slots_) {
-        visible_.among_slots_.looked_up += inside + straddling;
-        straddling = keep_ids_kernel(visible_.straddling_.data(), straddling, among.data(), among.size());
+    const std::span<const std::uint64_t> candidate_mask = options_.candidate_mask;
+    if (!candidate_mask.empty() && !by_slots_) {
+        visible_.candidate_slots_.looked_up += inside + straddling;
+        straddling =
+            keep_ids_kernel(visible_.straddling_.data(), straddling, candidate_mask.data(), candidate_mask.size());
         if (moving_ || options_.order == ResultOrder::tree)
-            inside = keep_ids_kernel(visible_.ids_.data(), inside, among.data(), among.size());
+            inside = keep_ids_kernel(visible_.ids_.data(), inside, candidate_mask.data(), candidate_mask.size());
     }
     if (moving_) add_moving(tree, inside, straddling, executor);
     finish(inside, straddling, tree.boxes().size());
@@ -398,7 +400,8 @@ std::size_t Query::sort(std::size_t inside, std::size_t straddling, std::size_t 
     mark_ids_kernel(visible_.straddling_.data(), straddling, seen);
     mark_ids_kernel(visible_.ids_.data(), inside, seen);
     if (!moving_ && !by_slots_)  // otherwise they are dropped already: what moves is never left out
-        for (std::size_t w = 0; w < std::min(words, options_.among.size()); ++w) seen[w] &= options_.among[w];
+        for (std::size_t w = 0; w < std::min(words, options_.candidate_mask.size()); ++w)
+            seen[w] &= options_.candidate_mask[w];
     const std::size_t count = list_placed_bits_kernel(seen, words, visible_.ids_.data(), before);
     static_assert(sizeof(Verdict) == 1);
     std::uint8_t* const verdicts = reinterpret_cast<std::uint8_t*>(visible_.verdicts_.data());

@@ -11,10 +11,10 @@
 
 namespace crofton::cull {
 
-// A view's planes, without what only trees and balls need. Returns whether the kernels of lists can take them. They
+// A view's planes, without what only trees and spheres need. Returns whether the kernels of lists can take them. They
 // find invalid bounds by planes, so they need one, with an offset of at most 1e32.
 [[nodiscard]] bool set_planes(const View& view, KernelView& result);
-void set_lengths(KernelView& view);  // for balls
+void set_lengths(KernelView& view);  // for spheres
 
 // For a tree: its planes in small integers as well.
 [[nodiscard]] KernelView kernel_view_of(const View& view);
@@ -42,8 +42,8 @@ class Query {
     }
     [[nodiscard]] std::uint64_t wanted_bits(std::uint64_t visible, std::span<const Obb> boxes,
                                             std::span<const std::uint32_t> layer_masks, std::size_t first);
-    [[nodiscard]] bool has_among_slots(const boxtree::Structure& structure);
-    void make_among_slots(const boxtree::Structure& structure);
+    [[nodiscard]] bool has_candidate_slots(const boxtree::Structure& structure);
+    void make_candidate_slots(const boxtree::Structure& structure);
     static bool mark_below(std::span<const boxtree::Node> nodes, boxtree::NodeId n,
                            std::span<const std::uint16_t> leaves, std::span<std::uint16_t> marks);
     struct Tasks {

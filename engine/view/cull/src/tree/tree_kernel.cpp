@@ -26,8 +26,8 @@ void run_tree(const TreeKernelInput& input, const std::uint64_t* entries, std::s
     output = walk.result();
 }
 
-void run_tree_among(const TreeKernelInput& input, const std::uint64_t* entries, std::size_t count,
-                    TreeKernelOutput& output) {
+void run_tree_of_candidates(const TreeKernelInput& input, const std::uint64_t* entries, std::size_t count,
+                            TreeKernelOutput& output) {
     Walk<NoLimits, true> walk(input, output, {});
     walk.run(entries, count);
     output = walk.result();
@@ -68,7 +68,7 @@ HWY_AFTER_NAMESPACE();
 namespace crofton::cull {
 
 HWY_EXPORT(run_tree);
-HWY_EXPORT(run_tree_among);
+HWY_EXPORT(run_tree_of_candidates);
 HWY_EXPORT(run_limited_tree);
 HWY_EXPORT(expand_tree);
 
@@ -78,7 +78,8 @@ std::size_t expand_tree_kernel(const TreeKernelInput& input, std::uint64_t entry
 
 void run_tree_kernel(const TreeKernelInput& input, const std::uint64_t* entries, std::size_t count,
                      TreeKernelOutput& output) {
-    if (input.leaves_among != nullptr) return HWY_DYNAMIC_DISPATCH(run_tree_among)(input, entries, count, output);
+    if (input.leaves_with_candidates != nullptr)
+        return HWY_DYNAMIC_DISPATCH(run_tree_of_candidates)(input, entries, count, output);
     HWY_DYNAMIC_DISPATCH(run_tree)(input, entries, count, output);
 }
 

@@ -19,8 +19,8 @@ struct TreeKernelInput {
     bool exact;  // boxes that straddle two planes or more may yet be outside: undecided
     // Where they are given, the slots of a leaf and the children of a node that are asked for. The others are left out
     // in silence. For run_tree_kernel without `runs`.
-    const std::uint16_t* leaves_among = nullptr;
-    const std::uint16_t* nodes_among = nullptr;
+    const std::uint16_t* leaves_with_candidates = nullptr;
+    const std::uint16_t* nodes_with_candidates = nullptr;
 };
 
 // Slots [first, first + count), all of whose items are inside.
@@ -42,7 +42,7 @@ struct TreeKernelOutput {
     std::size_t run_count;
     std::size_t inside_count, straddling_count, undecided_count, whole_count;
     std::uint64_t nodes_tested, boxes_tested, accepted_whole;
-    std::uint64_t improper;  // outside, found by a separating axis
+    std::uint64_t false_positives;  // outside, found by a separating axis
 };
 
 inline constexpr std::size_t kWorkLists = 9;

@@ -28,7 +28,7 @@ constexpr std::uint32_t kWhole = 1u << 31;
 constexpr std::uint32_t kLimited = 1u << 30;
 
 // Goes from some entries down to the leaves.
-template <class Limits, bool kAmong = false>
+template <class Limits, bool kCandidates = false>
 class Walk {
   public:
     HWY_INLINE Walk(const TreeKernelInput& input, const TreeKernelOutput& output, const Limits& limits)
@@ -81,11 +81,11 @@ class Walk {
                     visit_limited(node, nodes_.children[head], planes & ~kLimited);
                     continue;
                 }
-            const std::uint32_t among = kAmong ? in_.nodes_among[nodes_.children[head]] : ~0u;
+            const std::uint32_t candidates = kCandidates ? in_.nodes_with_candidates[nodes_.children[head]] : ~0u;
             if (is_one(planes))
-                visit_one_plane_node(node, planes, among);
+                visit_one_plane_node(node, planes, candidates);
             else
-                visit_many_plane_node(node, planes, among);
+                visit_many_plane_node(node, planes, candidates);
         }
     }
 
@@ -103,7 +103,7 @@ class Walk {
     }
 
     // Below the first levels most nodes that cross a frustum cross one plane.
-    HWY_INLINE void visit_one_plane_node(const boxtree::Node& node, std::uint32_t planes, std::uint32_t among) {
+    HWY_INLINE void visit_one_plane_node(const boxtree::Node& node, std::uint32_t planes, std::uint32_t candidates) {
         const DU du;
         const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(planes);
         const BlockPlane plane = block_plane(*in_.view, i, node);
@@ -111,17 +111,17 @@ class Walk {
         for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(du)) {
             const NodeSide side(NodeRows(node, l), normal, plane);
             MF alive = hn::AndNot(side.outside, present(*in_.view, node.layers_every, node.layers_any, node.count, l));
-            if constexpr (kAmong) alive = hn::And(alive, hn::RebindMask(DF(), mask_of(among >> l)));
+            if constexpr (kCandidates) alive = hn::And(alive, hn::RebindMask(DF(), mask_of(candidates >> l)));
             note<true>(node, l, alive, hn::IfThenZeroElse(hn::RebindMask(du, side.inside), hn::Set(du, planes)),
                        planes);
         }
     }
 
-    HWY_INLINE void visit_many_plane_node(const boxtree::Node& node, std::uint32_t planes, std::uint32_t among) {
+    HWY_INLINE void visit_many_plane_node(const boxtree::Node& node, std::uint32_t planes, std::uint32_t candidates) {
         const DU du;
         const NodeTest test = test_node(*in_.view, turned_.along(node.axes, planes), node, planes);
         for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(du))
-            note<false>(node, l, hn::RebindMask(DF(), mask_of((test.alive & among) >> l)),
+            note<false>(node, l, hn::RebindMask(DF(), mask_of((test.alive & candidates) >> l)),
                         hn::Load(du, test.planes + l));
     }
 
@@ -226,9 +226,9 @@ class Walk {
             if (r + kRunsAhead < out_.run_count) hwy::Prefetch(in_.slot_items + runs_[r + kRunsAhead].first);
             const boxtree::ItemId* from = in_.slot_items + runs_[r].first;
             boxtree::ItemId* to = out_.inside + out_.inside_count;
-            if constexpr (kAmong) {
+            if constexpr (kCandidates) {
                 for (std::size_t i = 0; i < runs_[r].count; i += hn::Lanes(du))
-                    to += simd::compress_store(du, hn::Load(du, from + i), among(runs_[r].first + i), to);
+                    to += simd::compress_store(du, hn::Load(du, from + i), candidates(runs_[r].first + i), to);
                 out_.inside_count = static_cast<std::size_t>(to - out_.inside);
                 continue;
             }
@@ -239,8 +239,8 @@ class Walk {
     }
 
     // Of a vector's length of slots, those that are asked for.
-    HWY_INLINE auto among(std::size_t slot) const {
-        return mask_of(std::uint32_t{in_.leaves_among[slot / boxtree::kWidth]} >> slot % boxtree::kWidth);
+    HWY_INLINE auto candidates(std::size_t slot) const {
+        return mask_of(std::uint32_t{in_.leaves_with_candidates[slot / boxtree::kWidth]} >> slot % boxtree::kWidth);
     }
 
     template <class V>
@@ -254,16 +254,16 @@ class Walk {
         const VU items = hn::Load(du, in_.slot_items + id * boxtree::kWidth + l);
         append(items, test.inside, out_.inside, out_.inside_count);
         append(items, test.straddling, out_.straddling, out_.straddling_count);
-        if (kCountStatistics) out_.improper += hn::CountTrue(DF(), test.improper);
+        if (kCountStatistics) out_.false_positives += hn::CountTrue(DF(), test.false_positives);
         if (HWY_UNLIKELY(!hn::AllFalse(DF(), test.undecided)))
             append(hn::Iota(du, static_cast<std::uint32_t>(id * boxtree::kWidth + l)), test.undecided, out_.undecided,
                    out_.undecided_count);
     }
 
-    HWY_INLINE MF present_among(boxtree::LeafId id, const boxtree::Leaf& leaf, std::size_t l) const {
+    HWY_INLINE MF present_candidates(boxtree::LeafId id, const boxtree::Leaf& leaf, std::size_t l) const {
         const MF lanes = present(*in_.view, leaf.layers_every, leaf.layers, leaf.count, l);
-        if constexpr (kAmong)
-            return hn::And(lanes, hn::RebindMask(DF(), among(id * boxtree::kWidth + l)));
+        if constexpr (kCandidates)
+            return hn::And(lanes, hn::RebindMask(DF(), candidates(id * boxtree::kWidth + l)));
         else
             return lanes;
     }
@@ -278,7 +278,7 @@ class Walk {
             const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(one_plane_leaves_.planes[at]);
             const LeafPlane plane{&view.pair_planes[i], block_plane(view, i, leaf)};
             for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(DU())) {
-                emit(id, l, test_leaf(LeafRows(leaf, l), present_among(id, leaf, l), plane));
+                emit(id, l, test_leaf(LeafRows(leaf, l), present_candidates(id, leaf, l), plane));
             }
         }
     }
@@ -303,7 +303,7 @@ class Walk {
             }
             // Nearly all have two: then there is no loop.
             for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(DU())) {
-                const MF lanes = present_among(id, leaf, l);
+                const MF lanes = present_candidates(id, leaf, l);
                 emit(id, l,
                      HWY_LIKELY(count == 2) ? test_leaf(leaf, l, lanes, planes, 2, in_.exact)
                                             : test_leaf(leaf, l, lanes, planes, count, in_.exact));

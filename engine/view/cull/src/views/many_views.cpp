@@ -15,13 +15,13 @@
 
 namespace crofton::cull {
 
-// One query of many views at work in a ManyVisible's buffers.
+// One query of many views at work in a MaskedVisibleSet's buffers.
 class ManyViewsQuery {
   public:
     ManyViewsQuery(const boxtree::BoxTree& tree, std::span<const View> views, CullMode mode, const DrawLimits* limits)
         : tree_(tree.structure()), views_(views), mode_(mode), limits_(limits) {}
 
-    void run(ManyVisible& visible, const MovingBoxes* moving = nullptr) {
+    void run(MaskedVisibleSet& visible, const MovingBoxes* moving = nullptr) {
         find_resting(visible, moving ? moving->size() : 0);
         if (limits_) drop_beyond_limits(visible);
         if (moving) add_moving(*moving, visible);
@@ -29,7 +29,7 @@ class ManyViewsQuery {
 
   private:
     // Leaves room for `more` items.
-    void find_resting(ManyVisible& visible, std::size_t more) {
+    void find_resting(MaskedVisibleSet& visible, std::size_t more) {
         const std::size_t leaves = tree_.leaves().size() + boxtree::kWidth;
         grow(visible.ids_, tree_.items().boxes().size() + more + boxtree::kWidth);
         visible.mask_bytes_ = views_.size() > 16 ? 4 : views_.size() > 8 ? 2 : 1;
@@ -81,7 +81,7 @@ class ManyViewsQuery {
         visible.size_ = output.count;
     }
 
-    void add_moving(const MovingBoxes& moving, ManyVisible& visible) const {
+    void add_moving(const MovingBoxes& moving, MaskedVisibleSet& visible) const {
         grow(visible.moving_masks_, moving.size());
         const std::span<std::uint32_t> masks = std::span(visible.moving_masks_).first(moving.size());
         (void)find_visible(moving.set(), moving.boxes(), {}, views_, masks, mode_);  // few enough: checked before
@@ -93,7 +93,7 @@ class ManyViewsQuery {
         }
     }
 
-    void drop_beyond_limits(ManyVisible& visible) const {
+    void drop_beyond_limits(MaskedVisibleSet& visible) const {
         const std::size_t size = visible.size_;
         visible.size_ = 0;
         for (std::size_t i = 0; i < size; ++i) {
@@ -124,7 +124,7 @@ class ManyViewsQuery {
         return with;
     }
 
-    static void append(ManyVisible& visible, ItemId item, std::uint32_t mask) {
+    static void append(MaskedVisibleSet& visible, ItemId item, std::uint32_t mask) {
         if (mask == 0) return;
         visible.ids_[visible.size_] = item;
         std::memcpy(visible.masks_.data() + visible.size_++ * visible.mask_bytes_, &mask, visible.mask_bytes_);
@@ -139,7 +139,7 @@ class ManyViewsQuery {
     static_assert(std::endian::native == std::endian::little);
 
     // Where the kernel cannot take one of the views: each item is tested against each view.
-    void run_one_by_one(ManyVisible& visible) const {
+    void run_one_by_one(MaskedVisibleSet& visible) const {
         for (const ItemId item : tree_.slot_items()) {
             if (item == boxtree::kNone) continue;
             std::uint32_t mask = 0;
@@ -163,7 +163,7 @@ Result<void> check_view_count(std::size_t views) {
                 {"cull: ", views, " views; one pass takes at most ", kMaxViews, ": ask in several passes"});
 }
 
-Result<void> find_visible(const boxtree::BoxTree& tree, std::span<const View> views, ManyVisible& visible,
+Result<void> find_visible(const boxtree::BoxTree& tree, std::span<const View> views, MaskedVisibleSet& visible,
                           CullMode mode, const DrawLimits* limits) {
     if (auto few = check_view_count(views.size()); !few) return few;
     ManyViewsQuery(tree, views, mode, limits).run(visible);
@@ -171,7 +171,7 @@ Result<void> find_visible(const boxtree::BoxTree& tree, std::span<const View> vi
 }
 
 Result<void> find_visible(const boxtree::BoxTree& resting, const MovingBoxes& moving, std::span<const View> views,
-                          ManyVisible& visible, CullMode mode, const DrawLimits* limits) {
+                          MaskedVisibleSet& visible, CullMode mode, const DrawLimits* limits) {
     if (auto few = check_view_count(views.size()); !few) return few;
     ManyViewsQuery(resting, views, mode, limits).run(visible, &moving);
     return {};

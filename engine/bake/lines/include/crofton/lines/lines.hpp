@@ -107,7 +107,7 @@ class LineSource {
 
   private:
     Aabb bounds_;
-    Sphere ball_;
+    Sphere sphere_;
     LineMethod method_;
     std::uint64_t seed_;
     sampling::UnitPoints points_;

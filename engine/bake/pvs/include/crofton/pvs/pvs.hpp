@@ -5,6 +5,7 @@
 #include <crofton/core/error.hpp>
 #include <crofton/core/executor.hpp>
 #include <crofton/core/memory.hpp>
+#include <crofton/core/stop.hpp>
 #include <crofton/geometry/box.hpp>
 #include <crofton/geometry/mesh.hpp>
 #include <crofton/geometry/shapes.hpp>
@@ -74,7 +75,7 @@ class Cells {
 // ---- Geometry to bake ----
 
 // Triangles of objects, relative to `origin`: choose it near them, so that floats are fine enough.
-struct Subject {
+struct BakeGeometry {
     TriangleMesh mesh;
     glm::dvec3 origin{0.0};
     Vector<std::uint32_t> object_of;  // by triangle
@@ -82,9 +83,10 @@ struct Subject {
 };
 // A scene as of its last update(): objects are its instances. Those that are removed, in no layer or in `moving` have
 // no triangles: nothing is said about them, and they are always drawn. Errors: no triangle at all (empty).
-[[nodiscard]] Result<Subject> subject_of(const scene::Scene& scene, std::span<const scene::InstanceId> moving = {});
+[[nodiscard]] Result<BakeGeometry> geometry_of(const scene::Scene& scene,
+                                               std::span<const scene::InstanceId> moving = {});
 // 64 bits of the triangles, where they are, and whose they are. Boxes do not count.
-[[nodiscard]] std::uint64_t fingerprint_of(const Subject& subject);
+[[nodiscard]] std::uint64_t fingerprint_of(const BakeGeometry& geometry);
 
 // What lines find.
 
@@ -105,7 +107,7 @@ struct RunLimits {
     double seconds = std::numeric_limits<double>::infinity();
     std::uint64_t lines = ~std::uint64_t{0};  // at least so many more, unless the shard ends
     Shard shard = {};
-    bool (*go_on)(void* user, double share_done) = nullptr;  // false stops the run; what it found is kept
+    StopCallback should_stop = nullptr;  // what was found by then is kept
     void* user = nullptr;
 };
 
@@ -125,7 +127,7 @@ class Bake {
   public:
     // Errors: epsilon or confidence not within (0, 1); a triangle whose object has no box (item: the triangle); boxes
     // that fail validate(Obb) (item: the object); more than 2^34 pairs or 2^44 lines; as lines::LineTracer::build.
-    [[nodiscard]] static Result<Bake> create(const Subject& subject, const Cells& cells,
+    [[nodiscard]] static Result<Bake> create(const BakeGeometry& geometry, const Cells& cells,
                                              const BakeOptions& options = {});
     ~Bake();
     Bake(Bake&&) noexcept;
@@ -182,9 +184,8 @@ struct ProofOptions {
     // many sides of triangles a question may visit: more prove more. 400 is a good number for levels. Each unseen
     // pair is asked, so it is slow where there are millions. Edges must have equal corners, or meet along an axis.
     std::uint32_t surface_steps = 0;
-    // Asked some hundred times a second, from any of the executor's threads and never from two at once. Where it
-    // returns false the proofs end: what is proved stays, and the other pairs stay unseen, which draws them.
-    bool (*go_on)(void* user, double share_done) = nullptr;
+    // Once it returns true, the pairs that are not proved yet stay unseen, which draws them.
+    StopCallback should_stop = nullptr;
     void* user = nullptr;
 };
 
@@ -224,7 +225,7 @@ class Pvs {
     [[nodiscard]] bool is_baked(std::uint32_t object) const;  // false: it had no triangles, and is always drawn
     [[nodiscard]] PairCounts counts() const;                  // of cells that are not solid and objects that were baked
     // fingerprint_of the subject that was baked. Sets of other triangles hide what is visible: ask before you use them.
-    [[nodiscard]] std::uint64_t subject_fingerprint() const { return subject_; }
+    [[nodiscard]] std::uint64_t geometry_fingerprint() const { return geometry_; }
     // Of the bake: see BakeOptions and Bake::epsilon_reached.
     [[nodiscard]] double epsilon() const { return epsilon_; }
     [[nodiscard]] double confidence() const { return confidence_; }
@@ -233,8 +234,8 @@ class Pvs {
     [[nodiscard]] std::uint32_t find_cell(const glm::dvec3& eye) const;
     // Bit o % 64 of word o / 64: object o may be seen from the cell. Objects that were not baked have theirs set.
     [[nodiscard]] std::span<const std::uint64_t> visible_from(std::uint32_t cell, Mode mode) const;
-    // The set of the eye's cell, for CullOptions::among. In a view of a World or a tree only what it holds is found,
-    // and what moves. Empty, which is everything, where find_cell() says kNoCell.
+    // The set of the eye's cell, for CullOptions::candidate_mask. In a view of a World or a tree only what it holds is
+    // found, and what moves. Empty, which is everything, where find_cell() says kNoCell.
     [[nodiscard]] std::span<const std::uint64_t> visible_from(const glm::dvec3& eye, Mode mode) const;
     // Keeps of `ids` (what a view has found, with or without occlusion) those that may be seen from the eye, in order.
     // Ids that are not below object_count() are kept: what came later moves. Returns the eye's cell.
@@ -255,7 +256,7 @@ class Pvs {
 
     Cells cells_;
     ResetOnMove<std::uint32_t> objects_;
-    std::uint64_t subject_ = 0;
+    std::uint64_t geometry_ = 0;
     double epsilon_ = 1.0, confidence_ = 0.0;
     Vector<CellKind> kinds_;
     Vector<std::uint64_t> baked_;        // by object

@@ -4,6 +4,7 @@
 #include <array>
 #include <crofton/core/error.hpp>
 #include <crofton/core/memory.hpp>
+#include <crofton/core/stop.hpp>
 #include <crofton/geometry/mesh.hpp>
 #include <cstdint>
 #include <limits>
@@ -35,9 +36,8 @@ struct TriangulateOptions {
     double seconds = std::numeric_limits<double>::infinity();
     // Of the candidates' memory.
     std::size_t bytes = std::size_t{1} << 30;
-    // Called now and then with the share of the work done, between 0 and 1; returning false ends the call with the
-    // error `cancelled`.
-    bool (*progress)(void* user, double fraction) = nullptr;
+    // Once it returns true, the call ends with the error `cancelled`.
+    StopCallback should_stop = nullptr;
     void* user = nullptr;
 };
 

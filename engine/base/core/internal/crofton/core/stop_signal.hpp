@@ -1,31 +1,30 @@
 // SPDX-License-Identifier: MIT
-// A caller's wish to stop, asked for by whichever worker has the time.
+// A StopCallback that many threads may ask.
 #pragma once
 #include <atomic>
 #include <chrono>
+#include <crofton/core/stop.hpp>
 #include <cstdint>
 
 namespace crofton::detail {
 
 // Asks the caller's callback from any of the threads that work, never from two at once, and some hundred times a second
-// at most. Once the callback has said no it is not asked again.
+// at most. Once it has returned true it is not asked again.
 class StopSignal {
   public:
-    using GoOn = bool (*)(void* user, double share_done);
-
-    StopSignal(GoOn go_on, void* user) : go_on_(go_on), user_(user) {}
+    StopSignal(StopCallback should_stop, void* user) : should_stop_(should_stop), user_(user) {}
     StopSignal(const StopSignal&) = delete;
     StopSignal& operator=(const StopSignal&) = delete;
 
     // Whether the caller wants to stop. May ask it.
     [[nodiscard]] bool is_raised(double share_done) {
-        if (go_on_ == nullptr) return false;
+        if (should_stop_ == nullptr) return false;
         if (raised_.load(std::memory_order_relaxed)) return true;
         const std::int64_t now = Clock::now().time_since_epoch().count();
         if (now < next_.load(std::memory_order_relaxed) || asking_.test_and_set(std::memory_order_acquire))
             return false;
         next_.store(now + kBetween.count(), std::memory_order_relaxed);
-        if (!go_on_(user_, share_done)) raised_.store(true, std::memory_order_relaxed);
+        if (should_stop_(user_, share_done)) raised_.store(true, std::memory_order_relaxed);
         asking_.clear(std::memory_order_release);
         return raised_.load(std::memory_order_relaxed);
     }
@@ -37,7 +36,7 @@ class StopSignal {
     static constexpr Clock::duration kBetween =
         std::chrono::duration_cast<Clock::duration>(std::chrono::milliseconds(5));
 
-    GoOn go_on_;
+    StopCallback should_stop_;
     void* user_;
     std::atomic<bool> raised_{false};
     std::atomic<std::int64_t> next_{0};

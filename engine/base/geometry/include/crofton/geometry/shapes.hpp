@@ -20,7 +20,7 @@ struct Plane {
     double offset = 0.0;
 };
 
-// Sphere, the solid ball: the cheapest bound.
+// Sphere, a solid one: the cheapest bound.
 // All points within `radius` ≥ 0 of `center`.
 struct Sphere {
     glm::dvec3 center{0.0};

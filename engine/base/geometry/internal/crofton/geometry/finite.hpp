@@ -22,9 +22,9 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 [[nodiscard]] inline bool is_in_range(const Aabb& box) {
     return is_in_range(box.min) && is_in_range(box.max);
 }
-// Whether a ball is one that answers are given for.
-[[nodiscard]] inline bool is_in_range(const Sphere& ball) {
-    return is_in_range(ball.center) && ball.radius >= 0.0 && ball.radius <= kMaxCoordinate;
+// Whether a sphere is one that answers are given for.
+[[nodiscard]] inline bool is_in_range(const Sphere& sphere) {
+    return is_in_range(sphere.center) && sphere.radius >= 0.0 && sphere.radius <= kMaxCoordinate;
 }
 
 }  // namespace crofton

@@ -69,12 +69,13 @@ struct Progress {
 struct ExactOptions {
     measure::Criterion criterion = measure::minimal_perimeter();
     double gap = 2e-7;  // relative; the search stops when it has proved this much. In [1e-12, 1)
-    // The search also ends when one of these is spent, or when `progress` says so; the result carries the gap reached.
+    // The search also ends when one of these is spent, or when `should_stop` says so; the result carries the gap
+    // reached.
     double time_budget_seconds = std::numeric_limits<double>::infinity();
     std::uint64_t max_cells = 1u << 22;
-    // Called some thousand times a second; returning false ends the search. May be null. The clock is read as often. A
-    // step may take half a second where 100,000 points lie on a sphere, since each cell then needs others of them.
-    const FunctionRef<bool(const Progress&)>* progress = nullptr;
+    // Return true to end the search. Called some thousand times a second, or null. The clock is read as often. A step
+    // may take half a second where 100,000 points lie on a sphere, since each cell then needs others of them.
+    const FunctionRef<bool(const Progress&)>* should_stop = nullptr;
 };
 
 struct ExactFit {

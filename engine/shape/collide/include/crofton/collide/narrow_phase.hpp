@@ -110,11 +110,11 @@ struct Distance {
 // For numbers up to kMaxCoordinate. Whether the distance is 0 is exact: iff intersects(a, b). Else within 1e-12 of the
 // size, which is the sum of the half extents and of the offset of the centres.
 [[nodiscard]] Distance distance(const Obb& a, const Obb& b);
-// The same for a capsule's segment, minus the radius; 0 iff intersects(box, capsule). A ball is a capsule whose ends
+// The same for a capsule's segment, minus the radius; 0 iff intersects(box, capsule). A sphere is a capsule whose ends
 // are equal.
 [[nodiscard]] Distance distance(const Obb& box, const Capsule& capsule);
 // In double: within 1e-15 of the coordinates' size and the radii.
-[[nodiscard]] Distance distance(const Capsule& capsule, const Sphere& ball);
+[[nodiscard]] Distance distance(const Capsule& capsule, const Sphere& sphere);
 
 // The shortest motion of b that ends the overlap is depth · axis; the axis has unit length and points from a to b. A
 // negative depth is a gap: the bodies are at least so far apart. Over the separating axes of the two bodies: exact for
@@ -153,8 +153,8 @@ enum class ManifoldPoints : std::uint8_t {
 // No contacts: no points.
 [[nodiscard]] Manifold contact_manifold(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& b_to_a,
                                         std::span<const mesh::MeshContact> contacts);
-// One point, at the ball's deepest place; none where they do not meet. Balls with one center part along z.
-[[nodiscard]] Manifold contact_manifold(const Obb& box, const Sphere& ball);
+// One point, at the sphere's deepest place; none where they do not meet. Spheres with one center part along z.
+[[nodiscard]] Manifold contact_manifold(const Obb& box, const Sphere& sphere);
 [[nodiscard]] Manifold contact_manifold(const Sphere& a, const Sphere& b);
 [[nodiscard]] Manifold contact_manifold(const Plane& half_space, const Obb& box,
                                         ManifoldPoints points = ManifoldPoints::reduced);

@@ -54,8 +54,8 @@ class Hull {
     // Exact predicates decide, so nothing is lost: the body is the hull of the points, taken as reals. Duplicates,
     // points inside and points on faces or edges are dropped; points that are nearly coplanar are kept where they are
     // corners. A hull with more than max_vertices corners is replaced by a larger one that contains all points;
-    // excess() says by how much. Errors: fewer than four points; all on one point, line or plane (item kNoItem); NaN,
-    // infinite or beyond kMaxExtent (the first such point); options out of range. Takes n log n time for n points.
+    // max_overshoot() says by how much. Errors: fewer than four points; all on one point, line or plane (item kNoItem);
+    // NaN, infinite or beyond kMaxExtent (the first such point); options out of range. Takes n log n time for n points.
     [[nodiscard]] static Result<Hull> build(std::span<const glm::vec3> points, const HullOptions& options = {});
 
     [[nodiscard]] std::span<const glm::vec3> vertices() const { return vertices_; }
@@ -71,11 +71,11 @@ class Hull {
         return normals_[static_cast<std::size_t>(face)];
     }
     // How far the body reaches beyond the hull of the points at most, where it was replaced; else 0.
-    [[nodiscard]] double excess() const { return excess_; }
-    [[nodiscard]] double radius() const { return radius_; }  // of the ball around the frame's origin that contains it
+    [[nodiscard]] double max_overshoot() const { return max_overshoot_; }
+    [[nodiscard]] double radius() const { return radius_; }  // of the sphere around the frame's origin that contains it
     [[nodiscard]] const MassProperties& mass() const { return mass_; }
 
-    // Of a ball around the center of mass that lies within the body, rounded down.
+    // Of a sphere around the center of mass that lies within the body, rounded down.
     [[nodiscard]] double inner_radius() const { return inner_radius_; }
 
     // For the kernels: coordinate k of all vertices, or face normals, side by side; the last is repeated up to a
@@ -110,7 +110,7 @@ class Hull {
     Vector<HullEdge> edges_;
     Vector<double> columns_, normal_columns_, planes_;
     MassProperties mass_;
-    double excess_ = 0.0, radius_ = 0.0, inner_radius_ = 0.0, plane_error_ = 0.0;
+    double max_overshoot_ = 0.0, radius_ = 0.0, inner_radius_ = 0.0, plane_error_ = 0.0;
 };
 
 // A body, whichever kind: what every query of this module takes.
@@ -119,7 +119,7 @@ class HeightField;
 class Compound;
 
 enum class Kind : std::uint8_t {
-    ball,
+    sphere,
     capsule,
     cylinder,
     cone,
@@ -138,7 +138,7 @@ enum class Sides : std::uint8_t {
     front,  // contacts push to the front; what comes from behind passes
 };
 
-inline constexpr double kInfiniteReach = std::numeric_limits<double>::infinity();
+inline constexpr double kInfiniteRadius = std::numeric_limits<double>::infinity();
 
 // A small value; of a hull, mesh, height field or compound it is a view, which the caller keeps alive and unchanged.
 // Solids of revolution stand along the frame's y axis, with the origin half way up. Made by the functions below, which
@@ -146,7 +146,7 @@ inline constexpr double kInfiniteReach = std::numeric_limits<double>::infinity()
 // segment, a disc, a point.
 class Body {
   public:
-    [[nodiscard]] static Result<Body> ball(double radius);
+    [[nodiscard]] static Result<Body> sphere(double radius);
     // All points within `radius` of the segment from −half_height to half_height.
     [[nodiscard]] static Result<Body> capsule(float half_height, float radius);
     [[nodiscard]] static Result<Body> cylinder(float half_height, float radius);
@@ -176,8 +176,8 @@ class Body {
     [[nodiscard]] const Compound* compound() const { return compound_; }
     // Around the body in its frame, rounded outward; infinite for half-spaces and compounds that hold some.
     [[nodiscard]] const Aabb& bounds() const { return bounds_; }
-    [[nodiscard]] bool is_bounded() const { return reach_ < kInfiniteReach; }
-    [[nodiscard]] double radius() const { return radius_; }  // of the rounding; of balls and capsules
+    [[nodiscard]] bool is_bounded() const { return core_radius_ < kInfiniteRadius; }
+    [[nodiscard]] double radius() const { return radius_; }  // of the rounding; of spheres and capsules
     [[nodiscard]] const Hull* hull() const { return hull_; }
     [[nodiscard]] const Plane& plane() const { return plane_; }
     // Boxes. Of cylinders and cones: radius, half height, radius.
@@ -185,7 +185,7 @@ class Body {
     // Whether the core, that is the body without its rounding, is the hull of finitely many points.
     [[nodiscard]] bool has_polytope_core() const { return vertex_count_ > 0; }
     [[nodiscard]] bool is_polytope() const { return vertex_count_ > 0 && radius_ == 0.0; }
-    [[nodiscard]] int vertex_count() const { return vertex_count_; }  // of the core: ball 1, capsule 2, box 8
+    [[nodiscard]] int vertex_count() const { return vertex_count_; }  // of the core: sphere 1, capsule 2, box 8
     [[nodiscard]] glm::dvec3 vertex(int i) const {
         const std::size_t at = static_cast<std::size_t>(i);
         return {column(0)[at], column(1)[at], column(2)[at]};
@@ -193,19 +193,19 @@ class Body {
     // Corner i of a box is on the + side of axis k where bit k of i is set.
     [[nodiscard]] const double* column(int k) const { return hull_ != nullptr ? hull_->column(k) : corners_[k]; }
     [[nodiscard]] int padded_count() const { return hull_ != nullptr ? hull_->padded_count() : padded_; }
-    // Of the ball around the frame's origin that contains the core, rounded up; infinite where bounds() are.
-    [[nodiscard]] double reach() const { return reach_; }
+    // Of the sphere around the frame's origin that contains the core, rounded up; infinite where bounds() are.
+    [[nodiscard]] double core_radius() const { return core_radius_; }
 
   private:
     friend struct BodyMaker;
     Body() = default;
     void set_corners(std::span<const glm::dvec3> corners);
-    void set_reach_of_bounds();
+    void set_core_radius_of_bounds();
 
-    Kind kind_ = Kind::ball;
+    Kind kind_ = Kind::sphere;
     Sides sides_ = Sides::both;
     int vertex_count_ = 0, padded_ = 0;
-    double radius_ = 0.0, reach_ = 0.0;
+    double radius_ = 0.0, core_radius_ = 0.0;
     glm::dvec3 half_{0.0};
     Plane plane_;
     Aabb bounds_;

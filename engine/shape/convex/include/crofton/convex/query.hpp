@@ -18,7 +18,7 @@ namespace crofton::convex {
 // A body where it stands: the image of its stored points under the stored pose, all taken as reals. Poses are valid
 // and without reflection, as validate_pose tells. A rotation that is orthonormal to 1e-6 alone skews the stored points
 // as it says; a body's rounding keeps its radius. Alive for the call only.
-struct Placed {
+struct BodyAtPose {
     const Body& body;
     const RigidTransform& pose;
 };
@@ -44,7 +44,7 @@ struct PairCache {
 // The size of a pair is the sum of the bodies' reaches and of the offset between their origins. Two half-spaces: exact
 // where the normals' rounded cross product is not 0, as they meet then. A body of parts meets what one of its parts
 // meets: as exact as these. A pose with NaN meets nothing.
-[[nodiscard]] bool intersects(const Placed& a, const Placed& b, PairCache* cache = nullptr);
+[[nodiscard]] bool intersects(const BodyAtPose& a, const BodyAtPose& b, PairCache* cache = nullptr);
 
 struct Distance {
     double distance = 0.0;  // between on_a and on_b; 0 iff the bodies meet
@@ -58,7 +58,7 @@ struct Distance {
 // upper − lower ≤ 1e-9 of the size for polytopes, also rounded ones. Gilbert, Johnson,
 // Keerthi 1988; where double does not reach the bound, in exact arithmetic. Half-spaces that do not meet: parallel
 // ones. Of bodies of parts: of the nearest parts; caches are not used.
-[[nodiscard]] Distance distance(const Placed& a, const Placed& b, PairCache* cache = nullptr);
+[[nodiscard]] Distance distance(const BodyAtPose& a, const BodyAtPose& b, PairCache* cache = nullptr);
 
 // The shortest motion of b that ends the overlap: depth · normal.
 struct Penetration {
@@ -71,14 +71,14 @@ struct Penetration {
 };
 // upper − lower ≤ 1e-9 of the size for polytopes, also rounded ones. 1e-5 for cylinders and cones, but 1e-3 where all
 // ways out around an axis are as long. Expanding polytope (van den Bergen 2001), checked afterwards from both sides;
-// where that fails, all separating axes. A ball whose center lies in a box, hull, cylinder or cone, and a capsule whose
-// segment meets a box: in closed form. Two half-spaces overlap without end: depth, lower and upper are infinite. Of
-// bodies of parts: of the two deepest. `lower` holds for the bodies; `upper` is infinite: parts may be pushed into
+// where that fails, all separating axes. A sphere whose center lies in a box, hull, cylinder or cone, and a capsule
+// whose segment meets a box: in closed form. Two half-spaces overlap without end: depth, lower and upper are infinite.
+// Of bodies of parts: of the two deepest. `lower` holds for the bodies; `upper` is infinite: parts may be pushed into
 // others.
-[[nodiscard]] Penetration penetration(const Placed& a, const Placed& b, PairCache* cache = nullptr);
+[[nodiscard]] Penetration penetration(const BodyAtPose& a, const BodyAtPose& b, PairCache* cache = nullptr);
 
 // From a point (in the world) to the body: a is the point.
-[[nodiscard]] Distance closest_point(const Placed& body, const glm::dvec3& point);
+[[nodiscard]] Distance closest_point(const BodyAtPose& body, const glm::dvec3& point);
 
 // Where a ray first meets a body.
 struct RayHit {
@@ -91,20 +91,20 @@ struct RayHit {
 // Returns the first point of the ray in the body, or nothing.
 //
 // A ray that begins in a solid body has started inside: t is 0, the point is its origin, the normal is 0. "In" is said
-// as by `intersects` of a ball of radius 0 at the origin, of cylinders and cones by their distance, within 1e-15 of the
-// size. Triangles, meshes and height fields have no inside: a ray that begins within one hits the nearest triangle. A
-// ray that lies in the plane of a triangle does not hit that triangle, as in mesh::raycast. One-sided triangles are
+// as by `intersects` of a sphere of radius 0 at the origin, of cylinders and cones by their distance, within 1e-15 of
+// the size. Triangles, meshes and height fields have no inside: a ray that begins within one hits the nearest triangle.
+// A ray that lies in the plane of a triangle does not hit that triangle, as in mesh::raycast. One-sided triangles are
 // passed from behind.
 //
 // The point is the ray's first in a body that is larger or smaller by at most 1e-13 of its size, where the size is
-// reach() and radius() together (of half-spaces: the distances from the frame's origin to the ray's, and from there to
-// the point). So a ray that passes the surface nearer than that may hit or miss, and t · |direction| is off by at most
-// that by the cosine between the ray and the normal, and 2^-51 of itself. This holds however far away the ray begins,
-// and for directions of any length. Rays within a surface meet its triangles exactly, so that nothing slips through
-// between two that share an edge. No allocation. Nothing is hit by a ray whose origin or direction is NaN or infinite,
-// whose direction is 0, or whose max_t is NaN or negative, nor at a pose that is not valid: validate(Ray) and
+// core_radius() and radius() together (of half-spaces: the distances from the frame's origin to the ray's, and from
+// there to the point). So a ray that passes the surface nearer than that may hit or miss, and t · |direction| is off by
+// at most that by the cosine between the ray and the normal, and 2^-51 of itself. This holds however far away the ray
+// begins, and for directions of any length. Rays within a surface meet its triangles exactly, so that nothing slips
+// through between two that share an edge. No allocation. Nothing is hit by a ray whose origin or direction is NaN or
+// infinite, whose direction is 0, or whose max_t is NaN or negative, nor at a pose that is not valid: validate(Ray) and
 // validate_pose tell why.
-[[nodiscard]] std::optional<RayHit> raycast(const Placed& body, const Ray& ray);
+[[nodiscard]] std::optional<RayHit> raycast(const BodyAtPose& body, const Ray& ray);
 
 // ---- Contacts ----
 
@@ -152,7 +152,7 @@ struct ManifoldOptions {
 // each end of their common stretch. It is midway between them, also where they pass each other. Round sides are those
 // of capsules, cylinders and cones, and the edges of rounded bodies. Beside a sharp edge this holds where the two lie
 // on each other. Of bodies of parts: the deepest of the manifolds below; this allocates.
-[[nodiscard]] Manifold contact_manifold(const Placed& a, const Placed& b, const ManifoldOptions& options = {},
+[[nodiscard]] Manifold contact_manifold(const BodyAtPose& a, const BodyAtPose& b, const ManifoldOptions& options = {},
                                         PairCache* cache = nullptr);
 
 // One part of a body, where it stands.
@@ -193,22 +193,22 @@ class Manifolds {
 // sideways. Deep within the parts, or where no other is found, the contact stays. Surfaces with Sides::front push to
 // the front, and only bodies whose center is there (of mass for hulls; else the middle of the bounds). The cache serves
 // two convex bodies. No allocation once `found` has seen as many parts.
-void contact_manifolds(const Placed& a, const Placed& b, const ManifoldOptions& options, Manifolds& found,
+void contact_manifolds(const BodyAtPose& a, const BodyAtPose& b, const ManifoldOptions& options, Manifolds& found,
                        PairCache* cache = nullptr);
 
 // Bodies that lie flush with a and touch b, and the other way round, as tiles of a floor do.
 struct Beside {
-    std::span<const Placed> a, b;
+    std::span<const BodyAtPose> a, b;
 };
 // As above, where a and those beside it touch as their union does, like children of a compound; so do b and those
 // beside it. Replaces `found` by the contacts of a and b, at least one where they meet. Ask each pair with the others
 // beside it. Meshes, height fields, half-spaces and bodies that overlap by more than rounding to float take no part in
 // it.
-void contact_manifolds(const Placed& a, const Placed& b, const Beside& beside, const ManifoldOptions& options,
+void contact_manifolds(const BodyAtPose& a, const BodyAtPose& b, const Beside& beside, const ManifoldOptions& options,
                        Manifolds& found, PairCache* cache = nullptr);
 
 // Replaces `parts` by the parts of a body that may be within `margin` ≥ 0 of another: all that are, and some more.
-void parts_near(const Placed& body, const Placed& other, double margin, Vector<Part>& parts);
+void parts_near(const BodyAtPose& body, const BodyAtPose& other, double margin, Vector<Part>& parts);
 
 // What a pair's contact points are from step to step.
 struct TrackedPoint {
@@ -226,7 +226,7 @@ using LineVisitor = FunctionRef<void(const glm::dvec3& from, const glm::dvec3& t
 // The edges of a body and of its parts. What is round is drawn as circles, in pieces of a 24th. A rounded polytope's
 // faces are drawn where they are, `radius` out. A half-space is drawn as its normal and a square of 20 around the point
 // nearest to its frame's origin. Surfaces and compounds allocate.
-void outline(const Placed& body, LineVisitor line);
+void outline(const BodyAtPose& body, LineVisitor line);
 // At each point its normal from surface to surface, with a cross of size `size` across it.
 void outline(std::span<const TrackedPoint> points, double size, LineVisitor line);
 
@@ -292,7 +292,7 @@ struct Impact {
 //
 // Bodies of parts: the first time at which parts touch. A one-sided triangle that is first touched from behind is
 // passed through. Errors: NaN or infinite motions, a turn beyond 1e5 radians, options out of range, half-spaces turned.
-[[nodiscard]] Result<Impact> cast(const Placed& a, const Motion& motion_a, const Placed& b, const Motion& motion_b,
-                                  const CastOptions& options = {}, PairCache* cache = nullptr);
+[[nodiscard]] Result<Impact> cast(const BodyAtPose& a, const Motion& motion_a, const BodyAtPose& b,
+                                  const Motion& motion_b, const CastOptions& options = {}, PairCache* cache = nullptr);
 
 }  // namespace crofton::convex

@@ -2,6 +2,7 @@
 // Light in a scene of patches, by random walks along global lines: usable at any time, better with every run.
 #pragma once
 #include <crofton/core/executor.hpp>
+#include <crofton/core/stop.hpp>
 #include <crofton/lines/lines.hpp>
 #include <crofton/radiosity/patches.hpp>
 #include <cstddef>
@@ -61,9 +62,9 @@ class Solver {
 
     // One more run. The same bits for any executor.
     void run(Executor& executor = serial_executor());
-    // The same, but asks `go_on` some hundred times a second, from any of the executor's threads and never from two at
-    // once. Where it returns false, the run is dropped as if it had not begun, and the result is false.
-    bool run(bool (*go_on)(void* user), void* user, Executor& executor = serial_executor());
+    // The same, unless `should_stop` returns true on the way: then the run is dropped as if it had not begun, and the
+    // result is false. `share_done` is always 0.
+    bool run(StopCallback should_stop, void* user, Executor& executor = serial_executor());
 
     [[nodiscard]] std::uint64_t runs() const { return runs_; }
     [[nodiscard]] std::span<const glm::vec3> radiosity() const { return mean_; }  // by patch; the mean over runs
@@ -154,9 +155,8 @@ struct Shard {
 struct BakeLimits {
     double seconds = std::numeric_limits<double>::infinity();  // no further chain is begun then; one always is
     Shard shard = {};
-    // Asked before each run and some hundred times a second within it, from any of the executor's threads and never
-    // from two at once; false stops the bake. Complete chains are kept.
-    bool (*go_on)(void* user, double share_done) = nullptr;
+    // Once it returns true, the bake stops and keeps the chains that are complete.
+    StopCallback should_stop = nullptr;
     void* user = nullptr;
 };
 

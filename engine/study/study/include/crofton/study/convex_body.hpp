@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Convex bodies of space by their support function: the hull of points, grown by a radius. Balls, boxes, frusta, flat
+// Convex bodies of space by their support function: the hull of points, grown by a radius. Spheres, boxes, frusta, flat
 // polygons, segments and hulls are all of this kind.
 #pragma once
 #include <crofton/core/error.hpp>
@@ -15,7 +15,7 @@ struct ConvexBody {
     Vector<glm::dvec3> points;  // at least one
     double radius = 0.0;
 
-    [[nodiscard]] static ConvexBody ball(const glm::dvec3& center, double radius) { return {{center}, radius}; }
+    [[nodiscard]] static ConvexBody sphere(const glm::dvec3& center, double radius) { return {{center}, radius}; }
     [[nodiscard]] static ConvexBody box(const Obb& box);
     // Errors: as validate(Camera); far must be finite.
     [[nodiscard]] static Result<ConvexBody> frustum(const Camera& camera);

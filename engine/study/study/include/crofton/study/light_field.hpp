@@ -50,12 +50,12 @@ class LightField {
     };
     struct Drawn {
         LightPicture picture;
-        double aperture = 0.0;      // radius of the ball around the eye through which the lines used pass
+        double aperture = 0.0;      // radius of the sphere around the eye through which the lines used pass
         std::uint64_t samples = 0;  // points in the picture that they gave
     };
     // The lines that pass near the eye see nearly what it sees. Where such a line first arrives, either way, is drawn
-    // at its true place in the picture. Pixels take the nearest of these points, hidden ones left out. The ball is the
-    // least that gives the samples asked for, so with more lines it shrinks, and with it the error. Errors: as
+    // at its true place in the picture. Pixels take the nearest of these points, hidden ones left out. The sphere is
+    // the least that gives the samples asked for, so with more lines it shrinks, and with it the error. Errors: as
     // validate(Camera); an orthographic camera; a picture of no size or beyond 2^24 pixels; options out of range; no
     // line near the eye, or nothing recorded.
     [[nodiscard]] Result<Drawn> draw(const Camera& camera, std::uint32_t width, std::uint32_t height,

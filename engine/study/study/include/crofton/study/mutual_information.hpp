@@ -18,7 +18,7 @@ struct MutualInformation {
 
 // p_ij is the share of the rays that go from i to j, F_ij·A_i over the whole area, as `factors` has counted them. What
 // escapes goes to one more patch, the sky; what meets a back, to another; and rays come from there as many as go. 0
-// where every patch sees the others by their area alone, as inside a ball; the more walls, the more. Depends on the
+// where every patch sees the others by their area alone, as inside a sphere; the more walls, the more. Depends on the
 // patches: finer ones give more, up to a limit. Trust it where bias ≪ bits. Errors: no rays.
 [[nodiscard]] Result<MutualInformation> mutual_information(const radiosity::FactorMatrix& factors);
 

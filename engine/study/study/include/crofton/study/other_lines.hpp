@@ -24,9 +24,9 @@ struct WeightedLine {
 
 // A bundle as sampling::append_line_bundle draws it, but with parallelograms for cells. These are spanned by `first`
 // and `second` in the plane across the direction, at a random place and turn. One uniform line in each cell. A surface
-// of area S in the ball expects S/(2·|first × second|) crossings. Requires cells of positive area, and at most 2^31 of
-// them.
-void append_parallelogram_bundle(const Sphere& ball, const glm::dvec2& first, const glm::dvec2& second,
+// of area S in the sphere expects S/(2·|first × second|) crossings. Requires cells of positive area, and at most 2^31
+// of them.
+void append_parallelogram_bundle(const Sphere& sphere, const glm::dvec2& first, const glm::dvec2& second,
                                  sampling::Random& random, Vector<Line>& lines);
 
 }  // namespace crofton::study

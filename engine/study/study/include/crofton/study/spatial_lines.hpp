@@ -34,7 +34,7 @@ struct QuadratureOptions {
 // common to the shadows along n. On a triangle of directions every shadow lies in the hull of the shadows along the
 // corners. It contains the middle one with each side moved inward by how far any point of it can move. Error ∝ 1/√cells
 // only, so ask for 1e-2; `value` is the middle directions' sum, held to the bounds, and is far better than they prove.
-// Balls are treated as polygons of 32 sides, inside and outside.
+// Spheres are treated as polygons of 32 sides, inside and outside.
 [[nodiscard]] Result<Enclosure> measure_of_lines_hitting_all(std::span<const ConvexBody> bodies,
                                                              const QuadratureOptions& options = {.tolerance = 2e-2});
 

@@ -12,7 +12,7 @@ namespace crofton::study::wrong {
 [[nodiscard]] Line line_through_two_box_points(const Aabb& box, const std::array<double, 6>& u);
 
 // From a sphere point in a uniform instead of a cosine-weighted inward direction: too many grazing lines.
-[[nodiscard]] Line line_from_sphere_uniform_direction(const Sphere& ball, const std::array<double, 4>& u);
+[[nodiscard]] Line line_from_sphere_uniform_direction(const Sphere& sphere, const std::array<double, 4>& u);
 
 // Two uniform points of a circle: right on the sphere, wrong in the plane (Bertrand's paradox).
 struct PlaneLine {

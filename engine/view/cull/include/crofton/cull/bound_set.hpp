@@ -164,6 +164,7 @@ void find_visible(const boxtree::BoxTree& resting, const MovingBoxes& moving, co
 
 // Up to kMaxViews views in one pass, more are an error; the items that move come last.
 Result<void> find_visible(const boxtree::BoxTree& resting, const MovingBoxes& moving, std::span<const View> views,
-                          ManyVisible& visible, CullMode mode = CullMode::exact, const DrawLimits* limits = nullptr);
+                          MaskedVisibleSet& visible, CullMode mode = CullMode::exact,
+                          const DrawLimits* limits = nullptr);
 
 }  // namespace crofton::cull

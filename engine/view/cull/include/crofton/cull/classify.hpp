@@ -38,8 +38,8 @@ enum class CullMode : std::uint8_t {
 // rounding could still matter, exact arithmetic decides.
 [[nodiscard]] Verdict classify(const Frustum& frustum, const Obb& box, CullMode mode = CullMode::exact);
 
-// The same for axis-aligned boxes and for balls. An empty Aabb and a negative radius are `straddling`, as is what is
-// not finite. `inside` and `outside` are exact for a ball too, with two exceptions. Numbers of the ball or the view
+// The same for axis-aligned boxes and for spheres. An empty Aabb and a negative radius are `straddling`, as is what is
+// not finite. `inside` and `outside` are exact for a sphere too, with two exceptions. Numbers of the sphere or the view
 // that are not 0 but below 1e-60 in magnitude may leave it `straddling` though an edge rejects it. So may a view whose
 // half-spaces have no point in common while each three of them do: a camera's always have.
 [[nodiscard]] Verdict classify(const Frustum& frustum, const Aabb& box, CullMode mode = CullMode::exact);
@@ -65,12 +65,12 @@ inline constexpr bool kCountStatistics = true;
 // The same on every processor but for exact_tests: how many items are too near to call in floats depends on whether the
 // processor fuses products with sums.
 struct Statistics {
-    std::uint64_t nodes_tested = 0;    // bounds of inner nodes and leaves against planes
-    std::uint64_t boxes_tested = 0;    // items' boxes against planes
-    std::uint64_t accepted_whole = 0;  // items reported because a node above them is inside
-    std::uint64_t straddling = 0;      // items reported as straddling
-    std::uint64_t exact_tests = 0;     // items that went through the second stage
-    std::uint64_t improper = 0;        // items that no plane rejects and that are outside all the same (mode exact)
+    std::uint64_t nodes_tested = 0;     // bounds of inner nodes and leaves against planes
+    std::uint64_t boxes_tested = 0;     // items' boxes against planes
+    std::uint64_t accepted_whole = 0;   // items reported because a node above them is inside
+    std::uint64_t straddling = 0;       // items reported as straddling
+    std::uint64_t exact_tests = 0;      // items that went through the second stage
+    std::uint64_t false_positives = 0;  // items that no plane rejects and that are outside all the same (mode exact)
 
     Statistics& operator+=(const Statistics& other) {
         nodes_tested += other.nodes_tested;
@@ -78,7 +78,7 @@ struct Statistics {
         accepted_whole += other.accepted_whole;
         straddling += other.straddling;
         exact_tests += other.exact_tests;
-        improper += other.improper;
+        false_positives += other.false_positives;
         return *this;
     }
 };
@@ -100,28 +100,29 @@ struct VerdictBits {
 // ---- Draw limits: leave out what is too small or too far ----
 
 // An item's radius r is half its box's diagonal, √(h₀² + h₁² + h₂²) of its half extents; its distance d is that of its
-// box's centre from `eye`. The item is dropped if d > radii · r, if d > item_distances[id], if r < least_radius, or if
-// d > layer_distances[l] for every layer l that it shares with the view. All of it exactly, for the stored numbers
-// taken as reals; on a limit it is kept. Limits that are not finite or beyond 1e30 do not count, nor do any for a box
-// or an eye that is not finite. Negative ones are 0.
+// box's centre from `eye`. The item is dropped if d > max_distance_in_radii · r, if d > item_distances[id], if r <
+// least_radius, or if d > layer_distances[l] for every layer l that it shares with the view. All of it exactly, for the
+// stored numbers taken as reals; on a limit it is kept. Limits that are not finite or beyond 1e30 do not count, nor do
+// any for a box or an eye that is not finite. Negative ones are 0.
 struct DrawLimits {
     static constexpr double kNone = std::numeric_limits<double>::infinity();
     glm::dvec3 eye{0.0};  // of the camera whose picture counts: for its shadows' views too
-    double radii = kNone;
+    double max_distance_in_radii = kNone;
     double least_radius = 0.0;
     std::span<const float> layer_distances = {};  // 32, or none
     std::span<const float> item_distances = {};   // one per item id, or none
-    // Hysteresis: for items whose bit is set (id % 64 of word id / 64; beyond the end none is) distances are `longer`
-    // times as long and least_radius as much smaller. Give the last frame's visible items (to_bits), and what goes in
-    // and out at a limit flickers no more. Requires longer ≥ 1.
+    // Hysteresis: for items whose bit is set (id % 64 of word id / 64; beyond the end none is) distances are
+    // `hysteresis` times as long and least_radius as much smaller. Give the last frame's visible items (to_bits), and
+    // what goes in and out at a limit flickers no more. Requires hysteresis ≥ 1.
     std::span<const std::uint64_t> drawn_before = {};
-    double longer = 1.0;
+    double hysteresis = 1.0;
 };
 
-// Drops what is below `pixels` in a picture `picture_height` pixels high. In perspective: items whose ball of radius r
-// has a diameter of less than `pixels`. It is seen from its distance, in the middle of the picture. A ball elsewhere in
-// the picture is drawn larger, but is judged as if in its middle. Orthographic: items whose 2 r is less. Up to rounding
-// of `radii` or `least_radius` by 2^-50. Errors: as validate(Camera); a height or size that is not positive and finite.
+// Drops what is below `pixels` in a picture `picture_height` pixels high. In perspective: items whose sphere of radius
+// r has a diameter of less than `pixels`. It is seen from its distance, in the middle of the picture. A sphere
+// elsewhere in the picture is drawn larger, but is judged as if in its middle. Orthographic: items whose 2 r is less.
+// Up to rounding of `max_distance_in_radii` or `least_radius` by 2^-50. Errors: as validate(Camera); a height or size
+// that is not positive and finite.
 [[nodiscard]] Result<DrawLimits> limits_of(const Camera& camera, double picture_height, double pixels);
 
 // The test of one item, in these layers of it that the view sees.

@@ -43,15 +43,15 @@ class VisibleSet {
     Vector<std::uint32_t> work_;
     VerdictBits moving_bits_;
     Vector<std::uint32_t> listed_;
-    // CullOptions::among of the last queries, and once that pays its bits in the order of the tree's slots.
-    struct AmongSlots {
+    // CullOptions::candidate_mask of the last queries, and once that pays its bits in the order of the tree's slots.
+    struct CandidateSlots {
         Vector<std::uint64_t> set;
         std::uint64_t structure = 0, changes = 0;  // the tree's
         std::uint64_t looked_up = 0;               // items, one by one, since set and tree are these
         bool made = false;
         Vector<std::uint16_t> leaves, nodes;  // slots that the set has; children with such slots below
     };
-    AmongSlots among_slots_;
+    CandidateSlots candidate_slots_;
     std::size_t size_ = 0, inside_ = 0;
     Statistics statistics_;
 };
@@ -84,11 +84,11 @@ struct CullOptions {
     // Items that may be seen at all: bit i % 64 of word i / 64 is item i. Items beyond the span may be seen, and so may
     // all if it is empty. pvs::Pvs::visible_from() gives such sets. In a query of what rests and what moves it says
     // nothing about what moves.
-    std::span<const std::uint64_t> among = {};
+    std::span<const std::uint64_t> candidate_mask = {};
 };
 
-// Whether a set as CullOptions::among has the item.
-[[nodiscard]] constexpr bool is_among(std::span<const std::uint64_t> set, boxtree::ItemId item) {
+// Whether a set as CullOptions::candidate_mask has the item.
+[[nodiscard]] constexpr bool is_candidate(std::span<const std::uint64_t> set, boxtree::ItemId item) {
     return item / 64 >= set.size() || (set[item / 64] >> (item % 64) & 1) != 0;
 }
 
@@ -105,14 +105,14 @@ void find_visible(std::span<const Obb> boxes, std::span<const std::uint32_t> lay
 
 // Shadow cascades, cube faces: a list for each view, visible[v] as find_visible() for views[v] alone. Any number of
 // views. They are shared among threads where there are as many views as threads; else the threads share each. Where
-// lists are wanted this is faster than masks (ManyVisible). Requires visible.size() ==
+// lists are wanted this is faster than masks (MaskedVisibleSet). Requires visible.size() ==
 // views.size().
 void find_visible(const boxtree::BoxTree& tree, std::span<const View> views, std::span<VisibleSet> visible,
                   const CullOptions& options = {}, Executor& executor = serial_executor());
 
 // Two eyes, cascades that draw together: up to 32 views in one walk through the tree, and a mask of views an item.
 
-class ManyVisible {
+class MaskedVisibleSet {
   public:
     // The items that at least one view sees, each once, in the order of the tree's slots. Those in leaves that each
     // view sees whole or not at all come first.
@@ -140,7 +140,7 @@ class ManyVisible {
 // For each view the items that find_visible() finds for it alone, within `limits` if there are any: one eye for all
 // views. Allocates nothing once `visible` has been used for as many views of a tree of this size. Error: more than
 // kMaxViews views.
-Result<void> find_visible(const boxtree::BoxTree& tree, std::span<const View> views, ManyVisible& visible,
+Result<void> find_visible(const boxtree::BoxTree& tree, std::span<const View> views, MaskedVisibleSet& visible,
                           CullMode mode = CullMode::exact, const DrawLimits* limits = nullptr);
 
 // ---- Bit sets and draw ranges ----

@@ -64,7 +64,7 @@ class FroxelGrid {
 
 // The points x with |x − apex| ≤ range and (x − apex) · axis ≥ cos_half_angle · |x − apex| · |axis|: a cone with a
 // spherical cap. `axis` is not zero and need not have length 1; components below 2^-30 of the largest are read as 0, as
-// are cosines below 2^-30. cos_half_angle is in [0, 1]: at most a half ball.
+// are cosines below 2^-30. cos_half_angle is in [0, 1]: at most a half sphere.
 struct SpotLight {
     glm::dvec3 apex{0.0};
     glm::vec3 axis{0.0f, 0.0f, -1.0f};
@@ -129,7 +129,7 @@ class ShadowReceivers {
                                        const glm::dvec3& toward_light,
                                        double shadow_length = std::numeric_limits<double>::infinity(),
                                        std::uint32_t tiles = kDefaultTiles);
-    // A light at a point, of the ball's range: a cube of six pictures.
+    // A light at a point, of the sphere's range: a cube of six pictures.
     [[nodiscard]] Result<void> set_point(const Frustum& view, std::span<const Obb> receivers, const Sphere& light,
                                          std::uint32_t tiles = kDefaultTiles);
     // One picture along the axis; a cube if the half angle is above 75 degrees.

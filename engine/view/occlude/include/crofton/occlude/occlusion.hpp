@@ -65,8 +65,8 @@ struct EyeLimits {
 // How large an occluder looks from where, and where it must not be used. World coordinates.
 struct OccluderCandidate {
     glm::dvec3 center{0.0};
-    double radius = 0.0;        // of a ball around the center that contains the occluder
-    glm::vec3 half_size{0.0f};  // of its bounds along the world's axes, around the center; 0: those of the ball
+    double radius = 0.0;        // of a sphere around the center that contains the occluder
+    glm::vec3 half_size{0.0f};  // of its bounds along the world's axes, around the center; 0: those of the sphere
     // Seen along a unit direction d it covers the area Σ |dot(d, areas[k])|. Of a box, areas[k] is the area of the
     // faces across axis k times the axis. Of a patch, areas[0] is its area times its normal; the others are 0.
     std::array<glm::vec3, 3> areas{};
@@ -122,7 +122,7 @@ struct ChooseBudget {
     // Where the objects are that may be hidden. What lies behind an occluder is then counted: how far the ray from the
     // eye through its center runs on in these bounds. So the ground, with nothing below, is worth nothing, and of two
     // walls that look alike the nearer one is worth more. 25 rays are asked instead, through the part of the picture
-    // where the occluder and these bounds meet, if the occluder looks large (its ball's radius is more than a quarter
+    // where the occluder and these bounds meet, if the occluder looks large (its sphere's radius is more than a quarter
     // of its distance, or an eighth of a parallel view's picture) or nothing is behind its center: a tall wall hides
     // low objects with its foot. Empty: all that covers alike is worth the same.
     Aabb objects = {};
@@ -248,8 +248,8 @@ class VisibleSet {
 struct VisibleOptions {
     std::uint32_t layer_mask = ~std::uint32_t{0};
     cull::CullMode mode = cull::CullMode::exact;
-    const cull::DrawLimits* limits = nullptr;   // what is too small or too far is left out
-    std::span<const std::uint64_t> among = {};  // as cull::CullOptions::among
+    const cull::DrawLimits* limits = nullptr;            // what is too small or too far is left out
+    std::span<const std::uint64_t> candidate_mask = {};  // as cull::CullOptions::candidate_mask
 };
 
 // The items that cull::find_visible() finds in the buffer's view, less those that the buffer hides. An item is hidden

@@ -49,7 +49,7 @@ struct OcclusionStatistics {
 
 // What one view sees, in memory that is kept from frame to frame. Objects are looked up when asked for: ask before the
 // next change of the World, and while it lives. ids() and counts stay.
-class VisibleObjects {
+class ViewResult {
   public:
     [[nodiscard]] std::size_t size() const { return ids().size(); }
     [[nodiscard]] std::span<const std::uint32_t> ids() const { return hides_ ? seen_ids() : set_.ids(); }  // indices
@@ -82,11 +82,11 @@ class VisibleObjects {
     world::OccludedViewOwner occluded_;
     ResetOnMove<bool> hides_;
     const world::ObjectNames* names_ = nullptr;
-    Vector<std::uint64_t> among_;  // CullOptions::among and what has changed since
+    Vector<std::uint64_t> candidates_;  // CullOptions::candidate_mask and what has changed since
 };
 
 // What up to 32 views see, each object once, in memory that is kept from frame to frame.
-class VisibleInViews {
+class MultiViewResult {
   public:
     [[nodiscard]] std::size_t size() const { return ids().size(); }
     // Indices: ascending, or by and large along the tree if the requests asked for tree order.
@@ -112,8 +112,8 @@ class VisibleInViews {
     void forget_ids();
     void add(std::uint32_t id, std::uint32_t views);
     void list_ascending();               // ids_ from bits_
-    cull::ManyVisible set_;              // of views that are answered in one walk
-    Vector<VisibleObjects> each_;        // of views that are not: at least view_count_
+    cull::MaskedVisibleSet set_;         // of views that are answered in one walk
+    Vector<ViewResult> each_;            // of views that are not: at least view_count_
     Vector<std::uint32_t> ids_, masks_;  // masks by object: 0 but for those in ids_
     Vector<std::uint64_t> bits_;         // by object, while ids are put in order
     ResetOnMove<std::size_t> view_count_;
@@ -131,7 +131,7 @@ struct ObjectHit {
     std::uint32_t triangle = kNoTriangle;  // of the object's mesh, or of the body's surface
     std::uint32_t child = 0;               // of a body that is a compound: which (convex::PartId)
     glm::dvec3 normal{0.0};       // unit, of the surface, to the side that the ray comes from; 0 if it began inside
-    bool started_inside = false;  // the ray began in the body, box or ball: t is 0; meshes have no inside
+    bool started_inside = false;  // the ray began in the body, box or sphere: t is 0; meshes have no inside
 };
 
 struct ClosestObject {

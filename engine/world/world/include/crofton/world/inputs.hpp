@@ -136,18 +136,18 @@ struct NodeDescription {
     std::uint32_t layers = ~0u;  // of all below: an object is in those that it and all nodes above it have
 };
 
-enum class BoundKind : std::uint8_t { none, box, aligned_box, ball };
+enum class BoundKind : std::uint8_t { none, box, aligned_box, sphere };
 
 // A bound without a mesh.
 struct Bound {
     BoundKind kind = BoundKind::none;
-    Obb box;              // around the ball, for a ball
-    double radius = 0.0;  // of a ball
+    Obb box;              // around the sphere, for a sphere
+    double radius = 0.0;  // of a sphere
 
     Bound() = default;
     Bound(const Obb& oriented) : kind(BoundKind::box), box(oriented) {}
     Bound(const Aabb& aligned);  // rounded outward to an Obb; an empty one is refused
-    Bound(const Sphere& ball);
+    Bound(const Sphere& sphere);
 };
 
 // Either a mesh, which `transform` places under `node` or in the world, or a bound in the world's coordinates.
@@ -201,7 +201,7 @@ struct ViewRequest {
     // If not empty, bit i % 64 of word i / 64 says whether the object with index i may be seen at all: baked sets
     // (docs/pvs.md). Objects beyond its end may be seen, and so may those that have moved since they were first updated
     // or whose index another object had before.
-    std::span<const std::uint64_t> among = {};
+    std::span<const std::uint64_t> candidate_mask = {};
     cull::ResultOrder order = cull::ResultOrder::ascending;
     cull::CullMode mode = cull::CullMode::exact;
 };

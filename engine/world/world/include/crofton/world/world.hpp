@@ -92,12 +92,12 @@ class World {
     //
     // Pairs of objects that both have bodies are in body_contacts() instead of contacts(). What the body is a view of
     // stays the caller's, alive and unchanged; to change it, set the body again. It stands where the object's
-    // transform, or the frame of its box or ball, puts it; axes that are left-handed or off by more than 1e-6 are
+    // transform, or the frame of its box or sphere, puts it; axes that are left-handed or off by more than 1e-6 are
     // turned into the nearest rotation.
     // Box: from the next update on, the object's box is the least in its own frame around the bound, or the mesh's box,
-    // and the body. It stands for the object in views, pairs and queries, so that nothing of the body is missed. A ball
-    // whose body does not fit into it counts as that box. A bound of size 0 is enough: it only says where the body is.
-    // No bounds: half-spaces, and compounds that hold some, are ground without end. They meet, and are met by,
+    // and the body. It stands for the object in views, pairs and queries, so that nothing of the body is missed. A
+    // sphere whose body does not fit into it counts as that box. A bound of size 0 is enough: it only says where the
+    // body is. No bounds: half-spaces, and compounds that hold some, are ground without end. They meet, and are met by,
     // everything that shares layers with them, wherever their object's box is; views go by that box. Level ground costs
     // an update what lies on it; tilted ground looks at each object.
     // Scale: a transform that is not rigid scales the body. Uniform scales, within 1e-5, do so with any kind. Other
@@ -153,32 +153,31 @@ class World {
     // query. Errors name what cannot be obeyed: no camera, matrix or volume, or two that contradict each other; a
     // camera or matrix that is not valid; a volume of more than 12 planes; occlusion without an eye; a depth buffer's
     // size out of its range.
-    Result<void> view(const ViewRequest& request, VisibleObjects& visible,
-                      Executor& executor = serial_executor()) const;
+    Result<void> view(const ViewRequest& request, ViewResult& visible, Executor& executor = serial_executor()) const;
     // The same for up to 32 views: each object once, with a mask of the views that see it.
     //
     // Views without occlusion and candidates, with equal limits and mode, are answered in one walk through the tree;
     // others one by one, shared among the executor's threads. Further errors, whose item is the place among the
     // requests: more than 32 views; views of different orders.
-    Result<void> view(std::span<const ViewRequest> requests, VisibleInViews& visible,
+    Result<void> view(std::span<const ViewRequest> requests, MultiViewResult& visible,
                       Executor& executor = serial_executor()) const;
     // Of a view with occlusion, before the next update: which occluders hide an object (none where it is not hidden).
     // Also which were drawn, those worth most first. The first draws all of them again, and allocates. Errors of both:
     // invalid_argument where `visible` is of another World.
-    Result<void> hidden_by(ObjectHandle object, const VisibleObjects& visible, Vector<OccluderRef>& occluders) const;
-    Result<void> drawn_occluders(const VisibleObjects& visible, Vector<OccluderRef>& occluders) const;
+    Result<void> hidden_by(ObjectHandle object, const ViewResult& visible, Vector<OccluderRef>& occluders) const;
+    Result<void> drawn_occluders(const ViewResult& visible, Vector<OccluderRef>& occluders) const;
 
-    // Bodies, as convex::raycast; of objects without one triangles of meshes, balls and boxes, whichever they have. A
-    // ray that begins inside a body, ball or box hits it at t = 0, without a normal. Directions may have any length
+    // Bodies, as convex::raycast; of objects without one triangles of meshes, spheres and boxes, whichever they have. A
+    // ray that begins inside a body, sphere or box hits it at t = 0, without a normal. Directions may have any length
     // but 0. A ray that is none hits nothing. Objects removed since the last update are in none of the answers.
     [[nodiscard]] std::optional<ObjectHit> raycast(const Ray& ray, std::uint32_t layers = ~0u) const;
     [[nodiscard]] bool raycast_any(const Ray& ray, std::uint32_t layers = ~0u) const;
     // Every object's nearest hit, by t, then by index.
     void raycast_all(const Ray& ray, Vector<ObjectHit>& hits, std::uint32_t layers = ~0u) const;
 
-    // Whose box or ball meets the shape; by index. Meshes by their boxes, ground without end by its half-spaces and the
-    // box around the rest of its body. Here and in closest() a box that is not
-    // valid meets nothing and has nothing near. So do balls and capsules with NaN or numbers beyond kMaxCoordinate.
+    // Whose box or sphere meets the shape; by index. Meshes by their boxes, ground without end by its half-spaces and
+    // the box around the rest of its body. Here and in closest() a box that is not valid meets nothing and has nothing
+    // near. So do spheres and capsules with NaN or numbers beyond kMaxCoordinate.
     void overlap(const Obb& shape, Vector<ObjectRef>& found, std::uint32_t layers = ~0u) const;
     void overlap(const Sphere& shape, Vector<ObjectRef>& found, std::uint32_t layers = ~0u) const;
     void overlap(const collide::Capsule& shape, Vector<ObjectRef>& found, std::uint32_t layers = ~0u) const;
@@ -187,14 +186,14 @@ class World {
     // nearest orthonormal ones. A pose that is not valid meets nothing.
     void overlap(const convex::Body& shape, const RigidTransform& pose, Vector<ObjectRef>& found,
                  std::uint32_t layers = ~0u) const;
-    // The first object that a moving body meets: as convex::cast against each one's body, ball or box at rest. So a
+    // The first object that a moving body meets: as convex::cast against each one's body, sphere or box at rest. So a
     // body that stands on an object or stops at one can slide along it and part from it. What it overlaps from the
     // start is met at time 0, or left out by CastOptions::ignore_initial_overlaps. Errors: of convex::cast; a
     // half-space; a pose that is not valid.
     [[nodiscard]] Result<std::optional<BodyHit>> cast(const convex::Body& shape, const RigidTransform& pose,
                                                       const convex::Motion& motion, const convex::CastOptions& options,
                                                       std::uint32_t layers = ~0u) const;
-    // The box or ball nearest to the shape, no farther than max_distance; of several the lowest index.
+    // The box or sphere nearest to the shape, no farther than max_distance; of several the lowest index.
     [[nodiscard]] std::optional<ClosestObject> closest(const Sphere& shape, double max_distance,
                                                        std::uint32_t layers = ~0u) const;
     [[nodiscard]] std::optional<ClosestObject> closest(const Obb& shape, double max_distance,
@@ -206,16 +205,16 @@ class World {
     [[nodiscard]] std::optional<ClosestObject> closest(const convex::Body& shape, const RigidTransform& pose,
                                                        double max_distance, std::uint32_t layers = ~0u) const;
 
-    // Found by update(): objects whose boxes or balls meet, in order; and of them those that touch, with those that no
-    // longer do. Where the contact margin is not 0, pairs of two bodies are told as far as that; on ground without end
-    // within rounding.
+    // Found by update(): objects whose boxes or spheres meet, in order; and of them those that touch, with those that
+    // no longer do. Where the contact margin is not 0, pairs of two bodies are told as far as that; on ground without
+    // end within rounding.
     [[nodiscard]] std::span<const ObjectPair> pairs() const;
     [[nodiscard]] std::span<const Contact> contacts() const;
     // Of objects that both have bodies, in order. Pairs of which neither has moved are not computed again.
     [[nodiscard]] std::span<const BodyContact> body_contacts() const;
 
   private:
-    [[nodiscard]] Result<void> view_each(std::span<const ViewRequest> requests, VisibleInViews& visible,
+    [[nodiscard]] Result<void> view_each(std::span<const ViewRequest> requests, MultiViewResult& visible,
                                          Executor& executor) const;
     struct State;
     Owner<State> state_;

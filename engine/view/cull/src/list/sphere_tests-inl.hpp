@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The second stage for balls, 16 lanes at a time. Compiled once per instruction set (Highway).
+// The second stage for spheres, 16 lanes at a time. Compiled once per instruction set (Highway).
 #include "tree/block_tests-inl.hpp"
 
-#if defined(CROFTON_CULL_BALL_TESTS_INL) == defined(HWY_TARGET_TOGGLE)
-#ifdef CROFTON_CULL_BALL_TESTS_INL
-#undef CROFTON_CULL_BALL_TESTS_INL
+#if defined(CROFTON_CULL_SPHERE_TESTS_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef CROFTON_CULL_SPHERE_TESTS_INL
+#undef CROFTON_CULL_SPHERE_TESTS_INL
 #else
-#define CROFTON_CULL_BALL_TESTS_INL
+#define CROFTON_CULL_SPHERE_TESTS_INL
 #endif
 
 HWY_BEFORE_NAMESPACE();
@@ -26,7 +26,7 @@ struct SphereLanes {
 };
 
 // What a plane's value at the centre may be off by is its error bound; so it is at the centre + v, |v| ≤ radius.
-struct BallRow {
+struct SphereRow {
     const KernelPlane* plane;
     VF base, error_bound;
 };
@@ -34,12 +34,12 @@ struct BallRow {
 // Those of the wanted lanes that certainly have a point inside all planes. The search steps from the centre onto the
 // plane that is missed by most, a little beyond it, again and again. 2^-16 covers the roundings of |v|² and of the
 // radius. Radii whose squares might overflow, or underflow to where floats lose digits, are left to exact arithmetic.
-HWY_INLINE MF has_witness(const SphereLanes& balls, const BallRow* rows, unsigned count, MF wanted) {
+HWY_INLINE MF has_witness(const SphereLanes& spheres, const SphereRow* rows, unsigned count, MF wanted) {
     const DF d;
     wanted =
-        hn::And(wanted, hn::And(hn::Ge(balls.radius, hn::Set(d, 1e-15f)), hn::Le(balls.radius, hn::Set(d, 1e18f))));
+        hn::And(wanted, hn::And(hn::Ge(spheres.radius, hn::Set(d, 1e-15f)), hn::Le(spheres.radius, hn::Set(d, 1e18f))));
     VF v[3] = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-    const VF most = hn::Mul(hn::Mul(balls.radius, balls.radius), hn::Set(d, 1.0f - 0x1p-16f));
+    const VF most = hn::Mul(hn::Mul(spheres.radius, spheres.radius), hn::Set(d, 1.0f - 0x1p-16f));
     MF found = hn::FirstN(d, 0);
     for (int round = 0;; ++round) {
         VF worst = hn::Set(d, 3e38f), normal[3] = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
@@ -57,7 +57,7 @@ HWY_INLINE MF has_witness(const SphereLanes& balls, const BallRow* rows, unsigne
         }
         found = hn::Or(found, inside);
         if (round == 6 || hn::AllFalse(d, hn::AndNot(found, wanted))) return found;
-        const VF step = hn::MulAdd(balls.radius, hn::Set(d, 0x1p-6f), hn::Neg(worst));
+        const VF step = hn::MulAdd(spheres.radius, hn::Set(d, 0x1p-6f), hn::Neg(worst));
         for (unsigned k = 0; k < 3; ++k) v[k] = hn::MulAdd(step, normal[k], v[k]);
     }
 }
@@ -65,14 +65,14 @@ HWY_INLINE MF has_witness(const SphereLanes& balls, const BallRow* rows, unsigne
 // Those of the wanted lanes that two planes together certainly exclude: λ_a s_a + λ_b s_b + radius |λ_a n_a + λ_b n_b|
 // < 0 for some λ ≥ 0 (sphere.cpp). The square of the length rounds by less than 2^-20 (λ_a + λ_b)², the rest by less
 // than 2^-19 relative to each term. What underflow eats is far below 1e-30, and sums near overflow prove nothing.
-HWY_INLINE MF is_excluded(const SphereLanes& balls, const BallRow* rows, unsigned count, MF wanted) {
+HWY_INLINE MF is_excluded(const SphereLanes& spheres, const SphereRow* rows, unsigned count, MF wanted) {
     const DF d;
     const VF zero = hn::Zero(d), trifle = hn::Set(d, 0x1p-19f);
-    const VF radius = hn::Mul(balls.radius, hn::Set(d, 1.0f + 0x1p-18f));
+    const VF radius = hn::Mul(spheres.radius, hn::Set(d, 1.0f + 0x1p-18f));
     MF excluded = hn::FirstN(d, 0);
     for (unsigned i = 0; i < count; ++i)
         for (unsigned j = i + 1; j < count; ++j) {
-            const BallRow &a = rows[i], &b = rows[j];
+            const SphereRow &a = rows[i], &b = rows[j];
             const float *n = a.plane->normal_f, *m = b.plane->normal_f;
             const VF product = hn::Set(d, n[0] * m[0] + n[1] * m[1] + n[2] * m[2]);
             const VF square_a = hn::Set(d, a.plane->length_f * a.plane->length_f),
@@ -93,21 +93,22 @@ HWY_INLINE MF is_excluded(const SphereLanes& balls, const BallRow* rows, unsigne
     return hn::And(excluded, wanted);
 }
 
-HWY_INLINE void resolve(const KernelView& view, const SphereLanes& balls, std::uint32_t planes, const LocalPlane* local,
-                        BoxTest& test) {
+HWY_INLINE void resolve(const KernelView& view, const SphereLanes& spheres, std::uint32_t planes,
+                        const LocalPlane* local, BoxTest& test) {
     const DF d;
-    BallRow rows[KernelView::kMaxPlanes];
+    SphereRow rows[KernelView::kMaxPlanes];
     unsigned count = 0;
     for (std::uint32_t rest = planes; rest; rest &= rest - 1) {
         const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(rest);
-        rows[count++] = {&view.planes[i], plane_value(view.planes[i], balls.x, balls.y, balls.z, local[i].offset),
-                         balls.error_bound(local[i])};
+        rows[count++] = {&view.planes[i], plane_value(view.planes[i], spheres.x, spheres.y, spheres.z, local[i].offset),
+                         spheres.error_bound(local[i])};
     }
-    const MF meets = has_witness(balls, rows, count, test.needs_edge_test);
+    const MF meets = has_witness(spheres, rows, count, test.needs_edge_test);
     test.straddling = hn::Or(test.straddling, meets);
     test.needs_edge_test = hn::AndNot(meets, test.needs_edge_test);
-    if (!hn::AllFalse(d, test.needs_edge_test)) test.improper = is_excluded(balls, rows, count, test.needs_edge_test);
-    test.undecided = hn::Or(test.undecided, hn::AndNot(test.improper, test.needs_edge_test));
+    if (!hn::AllFalse(d, test.needs_edge_test))
+        test.false_positives = is_excluded(spheres, rows, count, test.needs_edge_test);
+    test.undecided = hn::Or(test.undecided, hn::AndNot(test.false_positives, test.needs_edge_test));
 }
 
 }  // namespace crofton::cull::HWY_NAMESPACE

@@ -36,11 +36,11 @@ cull::View random_view(oracle::NearMisses& random) {
 }
 
 // The same view without a set, less what the set leaves out: also the same order.
-std::size_t check_among(const boxtree::BoxTree& tree, const cull::View& view, std::span<const std::uint64_t> set,
-                        ResultOrder order, Executor& executor, cull::VisibleSet& kept) {
+std::size_t check_candidates(const boxtree::BoxTree& tree, const cull::View& view, std::span<const std::uint64_t> set,
+                             ResultOrder order, Executor& executor, cull::VisibleSet& kept) {
     cull::VisibleSet all;
     cull::find_visible(tree, view, all, {.order = order}, executor);
-    cull::find_visible(tree, view, kept, {.order = order, .among = set}, executor);
+    cull::find_visible(tree, view, kept, {.order = order, .candidate_mask = set}, executor);
     std::vector<cull::ItemId> ids;
     std::vector<cull::Verdict> verdicts;
     std::size_t inside = 0;
@@ -74,7 +74,7 @@ TEST_SUITE("cull/among") {
                         set[random.index(static_cast<unsigned>(set.size()))] ^= 1ull << (frame % 64);
                     if (random.index(25) == 0) aged.live(random, 5);
                     const auto order = random.index(2) ? ResultOrder::tree : ResultOrder::ascending;
-                    left_out += check_among(aged.tree, random_view(random), set, order, serial_executor(), kept);
+                    left_out += check_candidates(aged.tree, random_view(random), set, order, serial_executor(), kept);
                 }
             });
             CHECK(left_out > 20 * count);
@@ -98,10 +98,10 @@ TEST_SUITE("cull/among") {
             const auto order = random.index(2) ? ResultOrder::tree : ResultOrder::ascending;
             const cull::View view = random_view(random);
             cull::find_visible(tree, moving, view, all, {.order = order});
-            cull::find_visible(tree, moving, view, kept, {.order = order, .among = set});
+            cull::find_visible(tree, moving, view, kept, {.order = order, .candidate_mask = set});
             std::vector<cull::ItemId> ids;
             for (const cull::ItemId id : all.ids())
-                if (id % 5 == 0 || cull::is_among(set, id)) ids.push_back(id), moved += id % 5 == 0;
+                if (id % 5 == 0 || cull::is_candidate(set, id)) ids.push_back(id), moved += id % 5 == 0;
             REQUIRE(test::ranges::equal(kept.ids(), ids));
             left_out += all.size() - ids.size();
         }
@@ -118,8 +118,8 @@ TEST_SUITE("cull/among") {
         cull::VisibleSet kept;
         std::size_t left_out = 0;
         for (int frame = 0; frame < 40; ++frame)
-            left_out += check_among(random.index(2) ? one : other, random_view(random), set, ResultOrder::tree,
-                                    serial_executor(), kept);
+            left_out += check_candidates(random.index(2) ? one : other, random_view(random), set, ResultOrder::tree,
+                                         serial_executor(), kept);
         CHECK(left_out > 1000);
     }
 
@@ -134,8 +134,8 @@ TEST_SUITE("cull/among") {
             const cull::View view = random_view(random);
             const auto order = frame % 2 ? ResultOrder::tree : ResultOrder::ascending;
             Executor& executor = frame % 4 < 2 ? static_cast<Executor&>(pool) : serial_executor();
-            (void)check_among(tree, view, set, order, executor, kept);
-            cull::find_visible(tree, view, by_one, {.order = order, .among = set});
+            (void)check_candidates(tree, view, set, order, executor, kept);
+            cull::find_visible(tree, view, by_one, {.order = order, .candidate_mask = set});
             REQUIRE(test::ranges::equal(by_one.ids(), kept.ids()));
         }
     }

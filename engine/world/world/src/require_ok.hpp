@@ -6,7 +6,7 @@
 namespace crofton::world {
 
 // Of calls that fail only where the parts of a World disagree.
-inline void must(const Result<void>& done) {
+inline void require_ok(const Result<void>& done) {
     detail::give_up_without_memory(done);
     CROFTON_ASSERT(done.has_value(), "the parts of a World disagree");
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// CullOptions::among as bits of a tree's slots. By these, a query asks nothing of what is left out, and skips nodes
-// below which nothing is left.
+// CullOptions::candidate_mask as bits of a tree's slots. By these, a query asks nothing of what is left out, and skips
+// nodes below which nothing is left.
 #include <algorithm>
 #include <bit>
 #include <crofton/boxtree/structure.hpp>
@@ -12,7 +12,7 @@ namespace {
 
 // Calls visit(item) for each item below `items` that the set has.
 template <class Visit>
-void for_each_among(std::span<const std::uint64_t> set, std::size_t items, const Visit& visit) {
+void for_each_candidate(std::span<const std::uint64_t> set, std::size_t items, const Visit& visit) {
     for (std::size_t first = 0; first < items; first += 64) {
         std::uint64_t bits = first / 64 < set.size() ? set[first / 64] : ~std::uint64_t{0};
         if (items - first < 64) bits &= (std::uint64_t{1} << (items - first)) - 1;
@@ -28,7 +28,7 @@ std::size_t bit_count(std::uint64_t bits) {
     return ((bits + (bits >> 4)) & 0x0f0f0f0f0f0f0f0fu) * 0x0101010101010101u >> 56;
 }
 
-std::size_t count_among(std::span<const std::uint64_t> set, std::size_t items) {
+std::size_t count_candidates(std::span<const std::uint64_t> set, std::size_t items) {
     std::size_t count = items - std::min(items, 64 * set.size());
     for (const std::uint64_t word : set) count += bit_count(word);
     return count;
@@ -40,10 +40,10 @@ std::size_t count_among(std::span<const std::uint64_t> set, std::size_t items) {
 // longer than looking up what the view finds. Those of many are made when queries among the same set have looked up as
 // many items one by one as there are slots. So making them at most doubles what a set costs that is soon replaced, and
 // an eye that stays in its cell pays once.
-bool Query::has_among_slots(const boxtree::Structure& structure) {
+bool Query::has_candidate_slots(const boxtree::Structure& structure) {
     constexpr std::size_t kFew = 8;  // one item in so many
-    VisibleSet::AmongSlots& slots = visible_.among_slots_;
-    const std::span<const std::uint64_t> set = options_.among;
+    VisibleSet::CandidateSlots& slots = visible_.candidate_slots_;
+    const std::span<const std::uint64_t> set = options_.candidate_mask;
     const std::size_t slot_count = structure.slot_items().size();
     const boxtree::SlotsVersion version = structure.slots_version();
     const bool same = slots.structure == version.structure && slots.changes == version.changes &&
@@ -54,18 +54,18 @@ bool Query::has_among_slots(const boxtree::Structure& structure) {
         slots.leaves.resize(structure.leaves().size());
         slots.nodes.resize(structure.nodes().size());
         slots.made = false;
-        slots.looked_up = kFew * count_among(set, structure.item_slots().size()) <= slot_count ? slot_count : 0;
+        slots.looked_up = kFew * count_candidates(set, structure.item_slots().size()) <= slot_count ? slot_count : 0;
     }
-    if (!slots.made && slots.looked_up >= slot_count) make_among_slots(structure);
+    if (!slots.made && slots.looked_up >= slot_count) make_candidate_slots(structure);
     return slots.made;
 }
 
-void Query::make_among_slots(const boxtree::Structure& structure) {
-    VisibleSet::AmongSlots& slots = visible_.among_slots_;
+void Query::make_candidate_slots(const boxtree::Structure& structure) {
+    VisibleSet::CandidateSlots& slots = visible_.candidate_slots_;
     slots.made = true;
     std::fill(slots.leaves.begin(), slots.leaves.end(), std::uint16_t{0});
     const std::span<const std::uint32_t> item_slots = structure.item_slots();
-    for_each_among(options_.among, item_slots.size(), [&](ItemId item) {
+    for_each_candidate(options_.candidate_mask, item_slots.size(), [&](ItemId item) {
         const std::uint32_t slot = item_slots[item];
         if (slot == boxtree::kNone) return;
         std::uint16_t& bits = slots.leaves[slot / boxtree::kWidth];

@@ -9,14 +9,14 @@
 
 namespace crofton::study {
 
-struct BallOptions {
+struct SphereOptions {
     double largest = 8.0;             // spheres of up to so many times the least one's radius are considered
     double tolerance = 1e-3;          // stop when value − lower_bound ≤ tolerance · value …
     std::uint64_t max_cells = 20000;  // … or after this many cells of centres
 };
 
-struct BallGivenAncestors {
-    Sphere ball;
+struct SphereGivenAncestors {
+    Sphere sphere;
     double value = 0.0;        // the measure of the planes that hit it and all ancestors, theory.md (4)
     double lower_bound = 0.0;  // no sphere of the size considered has less
     double plain_value = 0.0;  // that of the least sphere
@@ -24,14 +24,14 @@ struct BallGivenAncestors {
 };
 
 // All measures are by the same 1,024 directions, a quadrature within about 1e-3 of (4); the certificate is for it. With
-// h the ball's support and A the least of the ancestors', the measure is 4π × the mean of min(A, h) over directions.
+// h the sphere's support and A the least of the ancestors', the measure is 4π × the mean of min(A, h) over directions.
 // That is so since all hold the object. Branch and bound over centres c = c₀ + δ. For any point p of the object the
 // radius is at least |p − c₀| + e·δ, e the unit vector from p to c₀. So h is at least a linear function of δ, the mean
 // of min(A, that) is concave, and over a cube least in a corner. Errors: no points; NaN or infinite ones (by index); as
 // validate_bodies for ancestors; an object that sticks out of them across one of these directions; options out of
 // range.
-[[nodiscard]] Result<BallGivenAncestors> ball_given_ancestors(std::span<const glm::dvec3> points,
-                                                              std::span<const ConvexBody> ancestors,
-                                                              const BallOptions& options = {});
+[[nodiscard]] Result<SphereGivenAncestors> sphere_given_ancestors(std::span<const glm::dvec3> points,
+                                                                  std::span<const ConvexBody> ancestors,
+                                                                  const SphereOptions& options = {});
 
 }  // namespace crofton::study

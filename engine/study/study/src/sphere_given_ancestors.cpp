@@ -4,7 +4,7 @@
 #include <cmath>
 #include <crofton/core/memory.hpp>
 #include <crofton/fit/fit.hpp>
-#include <crofton/study/ball_given_ancestors.hpp>
+#include <crofton/study/sphere_given_ancestors.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numbers>
@@ -17,17 +17,17 @@ namespace {
 
 using std::numbers::pi;
 
-struct BallCell {
+struct SphereCell {
     glm::dvec3 center;
     double half;
     double bound;
     std::uint64_t age;
 };
 
-class BallSearch {
+class SphereSearch {
   public:
     // All relative to `origin`, amid the points: the directions' sum is not quite zero, which far away would count.
-    BallSearch(std::span<const glm::dvec3> points, const glm::dvec3& origin, const AncestorDirections& directions)
+    SphereSearch(std::span<const glm::dvec3> points, const glm::dvec3& origin, const AncestorDirections& directions)
         : normals_(directions.normals), ancestors_(directions.limits) {
         for (const glm::dvec3& p : points) points_.push_back(p - origin);
         for (std::size_t i = 0; i < normals_.size(); ++i) ancestors_[i] -= glm::dot(normals_[i], origin);
@@ -47,7 +47,7 @@ class BallSearch {
         return 4.0 * pi * sum / static_cast<double>(normals_.size());
     }
 
-    // Below the measure of every ball whose centre lies in the cube; infinite where all are larger than `largest`.
+    // Below the measure of every sphere whose centre lies in the cube; infinite where all are larger than `largest`.
     [[nodiscard]] double bound(const glm::dvec3& center, double half, double largest) const {
         glm::dvec3 farthest = points_[0];
         for (const glm::dvec3& p : points_)
@@ -67,17 +67,17 @@ class BallSearch {
         return 4.0 * pi * *std::min_element(sums.begin(), sums.end()) / static_cast<double>(normals_.size());
     }
 
-    // `least` is the radius of the smallest ball, whose centre is the origin.
-    void run(double least, const BallOptions& options, BallGivenAncestors& result) {
+    // `least` is the radius of the smallest sphere, whose centre is the origin.
+    void run(double least, const SphereOptions& options, SphereGivenAncestors& result) {
         const double largest = options.largest * least;
-        const auto lower = [](const BallCell& a, const BallCell& b) {
+        const auto lower = [](const SphereCell& a, const SphereCell& b) {
             return a.bound != b.bound ? a.bound > b.bound : a.age > b.age;
         };
-        Vector<BallCell> heap;
+        Vector<SphereCell> heap;
         const auto consider = [&](const glm::dvec3& center) {
             if (radius_at(center) > largest) return;
             if (const double value = measure_of(center); value < result.value)
-                result.value = value, result.ball = {center, radius_at(center)};
+                result.value = value, result.sphere = {center, radius_at(center)};
         };
         // Every centre within `largest` of the object's points lies in this cube.
         heap.push_back({glm::dvec3(0.0), largest, bound(glm::dvec3(0.0), largest, largest), 0});
@@ -86,7 +86,7 @@ class BallSearch {
         while (!heap.empty() && result.cells < options.max_cells &&
                heap.front().bound < result.value * (1.0 - options.tolerance)) {
             std::pop_heap(heap.begin(), heap.end(), lower);
-            const BallCell cell = heap.back();
+            const SphereCell cell = heap.back();
             heap.pop_back();
             const double half = 0.5 * cell.half;
             for (unsigned corner = 0; corner < 8; ++corner) {
@@ -116,29 +116,30 @@ class BallSearch {
 
 }  // namespace
 
-Result<BallGivenAncestors> ball_given_ancestors(std::span<const glm::dvec3> points,
-                                                std::span<const ConvexBody> ancestors, const BallOptions& options) {
+Result<SphereGivenAncestors> sphere_given_ancestors(std::span<const glm::dvec3> points,
+                                                    std::span<const ConvexBody> ancestors,
+                                                    const SphereOptions& options) {
     if (!(options.largest >= 1.0 && options.largest <= 1e6) || !(options.tolerance > 0.0 && options.tolerance < 1.0))
         return fail(ErrorCode::invalid_argument, kNoItem,
-                    "ball given ancestors: `largest` must lie in [1, 1e6], `tolerance` in (0, 1)");
+                    "sphere given ancestors: `largest` must lie in [1, 1e6], `tolerance` in (0, 1)");
     if (auto valid = validate_bodies(ancestors); !valid) return tl::unexpected(valid.error());
     const auto least = fit::minimal_sphere(points);
     if (!least) return tl::unexpected(least.error());
     const AncestorDirections directions(ancestors);
     if (!directions.contain(points))
         return fail(ErrorCode::invalid_argument, kNoItem,
-                    "ball given ancestors: the object is not inside its ancestors' bounds");
-    BallSearch search(points, least->center, directions);
-    BallGivenAncestors result;
-    result.ball = {glm::dvec3(0.0), least->radius};
+                    "sphere given ancestors: the object is not inside its ancestors' bounds");
+    SphereSearch search(points, least->center, directions);
+    SphereGivenAncestors result;
+    result.sphere = {glm::dvec3(0.0), least->radius};
     result.value = result.plain_value = search.measure_of(glm::dvec3(0.0));
     if (least->radius > 0.0)
         search.run(least->radius, options, result);
     else
         result.lower_bound = result.value;
-    result.ball.center += least->center;
+    result.sphere.center += least->center;
     for (const glm::dvec3& p : points)
-        result.ball.radius = std::max(result.ball.radius, glm::distance(p, result.ball.center));
+        result.sphere.radius = std::max(result.sphere.radius, glm::distance(p, result.sphere.center));
     return result;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where a ray enters a ball.
+// Where a ray enters a sphere.
 #pragma once
 #include <cmath>
 #include <crofton/geometry/shapes.hpp>
@@ -10,15 +10,15 @@
 namespace crofton::world {
 
 // 0 where the ray starts inside. Rounded. The discriminant is that of the distance from the centre to the line, which
-// keeps its digits for small balls far away (Haines, Günther, Akenine-Möller 2019).
-[[nodiscard]] inline std::optional<double> raycast(const Ray& ray, const Sphere& ball) {
-    const glm::dvec3 to_center = ball.center - ray.origin;
-    const double outside = glm::dot(to_center, to_center) - ball.radius * ball.radius;
+// keeps its digits for small spheres far away (Haines, Günther, Akenine-Möller 2019).
+[[nodiscard]] inline std::optional<double> raycast(const Ray& ray, const Sphere& sphere) {
+    const glm::dvec3 to_center = sphere.center - ray.origin;
+    const double outside = glm::dot(to_center, to_center) - sphere.radius * sphere.radius;
     if (outside <= 0.0) return 0.0;
     const double squared = glm::dot(ray.direction, ray.direction), along = glm::dot(to_center, ray.direction);
     if (!(along > 0.0)) return std::nullopt;
     const glm::dvec3 off = to_center - (along / squared) * ray.direction;
-    const double half_chord = ball.radius * ball.radius - glm::dot(off, off);
+    const double half_chord = sphere.radius * sphere.radius - glm::dot(off, off);
     if (!(half_chord >= 0.0)) return std::nullopt;
     const double t = outside / (along + std::sqrt(squared * half_chord));
     return t <= ray.max_t ? std::optional(t) : std::nullopt;
