@@ -65,7 +65,7 @@ class ManifoldFinder {
         scratch_.list.clear();
         UnionNormals& flush = scratch_.flush;
         flush.start(options_.margin);
-        Count own, all;
+        Count own;
         add_parts(0, a, b, own.parts[0]);
         add_parts(1, b, a, own.parts[1]);
         for (std::uint32_t i = 0; i < own.parts[0]; ++i)
@@ -76,24 +76,7 @@ class ManifoldFinder {
         const bool deep = std::any_of(flush.contacts().begin(), flush.contacts().end(), [&](const auto& contact) {
             return std::abs(contact.depth) > flush_tolerance(a, b);  // what rests flush itself has no way to go
         });
-        all = own;
-        for (const Placed& other : beside.a) add_parts(0, other, b, all.parts[0]);
-        for (const Placed& other : beside.b) add_parts(1, other, a, all.parts[1]);
-        if (deep && flush.is_any_covered()) {
-            // Of those beside only what lies flush: bodies that are deep in each other are no floor.
-            flush.keep_parts(0, own.parts[0]);
-            flush.keep_parts(1, own.parts[1]);
-            all = own;
-            for (const Placed& other : beside.a)
-                if (are_flush(a, other)) add_parts(0, other, b, all.parts[0]);
-            for (const Placed& other : beside.b)
-                if (are_flush(b, other)) add_parts(1, other, a, all.parts[1]);
-            for (std::uint32_t i = own.parts[0]; i < all.parts[0]; ++i)
-                for (std::uint32_t j = 0; j < own.parts[1]; ++j) add_flush_contact(i, j, nullptr);
-            for (std::uint32_t i = 0; i < own.parts[0]; ++i)
-                for (std::uint32_t j = own.parts[1]; j < all.parts[1]; ++j) add_flush_contact(i, j, nullptr);
-            flush.apply(wanted);
-        }
+        if (deep) push_out_of_union(a, b, beside, own);
         add_flush(wanted, false);
         scratch_.list.finish(std::clamp(options_.max_points, 1, 8), found_.all_);
     }
@@ -102,6 +85,27 @@ class ManifoldFinder {
     struct Count {
         std::uint32_t parts[2] = {0, 0};  // of the lists of `flush`
     };
+    void push_out_of_union(const Placed& a, const Placed& b, const Beside& beside, const Count& own) {
+        UnionNormals& flush = scratch_.flush;
+        const std::size_t wanted = flush.contacts().size();
+        Count all = own;
+        for (const Placed& other : beside.a) add_parts(0, other, b, all.parts[0]);
+        for (const Placed& other : beside.b) add_parts(1, other, a, all.parts[1]);
+        if (!flush.is_any_covered()) return;
+        // Of those beside only what lies flush: bodies that are deep in each other are no floor.
+        flush.keep_parts(0, own.parts[0]);
+        flush.keep_parts(1, own.parts[1]);
+        all = own;
+        for (const Placed& other : beside.a)
+            if (are_flush(a, other)) add_parts(0, other, b, all.parts[0]);
+        for (const Placed& other : beside.b)
+            if (are_flush(b, other)) add_parts(1, other, a, all.parts[1]);
+        for (std::uint32_t i = own.parts[0]; i < all.parts[0]; ++i)
+            for (std::uint32_t j = 0; j < own.parts[1]; ++j) add_flush_contact(i, j, nullptr);
+        for (std::uint32_t i = 0; i < own.parts[0]; ++i)
+            for (std::uint32_t j = own.parts[1]; j < all.parts[1]; ++j) add_flush_contact(i, j, nullptr);
+        flush.apply(wanted);
+    }
     [[nodiscard]] static bool are_flush(const Placed& a, const Placed& b) {
         return !has_surfaces(b.body) && !is_half_space(b) && !(penetration(a, b).depth > flush_tolerance(a, b));
     }
