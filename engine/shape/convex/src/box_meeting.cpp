@@ -145,6 +145,15 @@ std::optional<bool> BoxPair::meet_exactly() const {
     return true;
 }
 
+std::optional<bool> boxes_overlap_by_more(const Pair& pair, double depth) {
+    BoxPair axes(pair);
+    const double surely_less = depth - axes.error();
+    const BoxAxis least = axes.least(surely_less);
+    if (least.extent < surely_less) return false;
+    if (least.extent > depth + axes.error() + kSameDepth * pair.size + axes.sliver_width()) return true;
+    return std::nullopt;
+}
+
 // Roundings are left to `settle` where the cores are apart.
 std::optional<bool> boxes_meet(const Pair& pair) {
     BoxPair axes(pair);

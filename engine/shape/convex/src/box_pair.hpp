@@ -133,6 +133,9 @@ class BoxClip {
 // Whether two solid boxes meet. Nothing: that is nearer to their rounding than the search tells, or beyond exact sums.
 [[nodiscard]] std::optional<bool> boxes_meet(const Pair& pair);
 
+// Whether two boxes overlap by more than so much ≥ 0. Nothing: that is nearer to it than the search tells.
+[[nodiscard]] std::optional<bool> boxes_overlap_by_more(const Pair& pair, double depth);
+
 // The manifold of two boxes up to thinning out. The touch's depth and normal are proven, as the least of all axes. The
 // face that the cache names stays while it is the least deep within kKeptDepth of the size. `unknown`: apart where
 // neither a face nor two edges decide, or beyond exact sums.

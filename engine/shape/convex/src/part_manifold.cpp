@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "box_pair.hpp"
 #include "core_query.hpp"
 #include "surface_manifold.hpp"
 #include "union_normals.hpp"
@@ -107,7 +108,12 @@ class ManifoldFinder {
         flush.apply(wanted);
     }
     [[nodiscard]] static bool are_flush(const Placed& a, const Placed& b) {
-        return !has_surfaces(b.body) && !is_half_space(b) && !(penetration(a, b).depth > flush_tolerance(a, b));
+        if (has_surfaces(b.body) || is_half_space(b)) return false;
+        const double flush = flush_tolerance(a, b);
+        const bool boxes = is_solid_box(a.body) && is_solid_box(b.body) && a.body.radius() + b.body.radius() == 0.0;
+        if (boxes)
+            if (const std::optional<bool> more = boxes_overlap_by_more(Pair(a, b), flush)) return !*more;
+        return !(penetration(a, b).depth > flush);
     }
     void add_parts(int list, const Placed& body, const Placed& near, std::uint32_t& count) {
         if (has_surfaces(body.body) || is_half_space(body)) return;
