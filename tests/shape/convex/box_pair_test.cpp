@@ -89,9 +89,116 @@ double wrong_place(const BoxCase& c, const ContactPoint& p) {
            allowed;
 }
 
+// Rotations as poses of crates have them: none, quarter turns, turns about one axis, any; skewed or not.
+glm::dmat3 crate_rotation(RandomBodies& random) {
+    const int form = random.index(5);
+    if (form == 0) return glm::dmat3(1.0);
+    if (form == 1) return glm::dmat3(0, 1, 0, -1, 0, 0, 0, 0, 1);
+    if (form == 2) {
+        const double angle = random.index(2) == 0 ? 0.7853981633974483 : random.number(0, 6);
+        const double c = std::cos(angle), s = std::sin(angle);
+        return glm::dmat3(c, 0, -s, 0, 1, 0, s, 0, c);
+    }
+    glm::dmat3 rotation = random.rotation();
+    if (form == 3) skew(random, rotation);
+    return rotation;
+}
+
+// Whether the boxes meet, by the search in exact integers, which boxes do not take otherwise.
+bool meet_by_distance(const BodyAtPose& a, const BodyAtPose& b) {
+    return distance(a, b).distance == 0.0;
+}
+
+void check_touch(const BodyAtPose& a, const BodyAtPose& b, bool meet, double size) {
+    CHECK(intersects(a, b) == meet);
+    CHECK(intersects(b, a) == meet);
+    for (const double margin : {0.0, 1e-3 * size}) {
+        PairCache cache;
+        for (int frame = 0; frame < 3; ++frame) {
+            const Manifold m =
+                contact_manifold(a, b, {.margin = margin, .max_points = 8}, frame == 2 ? nullptr : &cache);
+            CHECK((m.count > 0) == (meet || margin > 0.0));
+            if (m.count == 0) continue;
+            CHECK(std::abs(m.depth) <= 1e-13 * size);
+            CHECK((m.depth >= 0.0) == (meet || m.depth == 0.0));
+            CHECK(glm::length(m.normal) == doctest::Approx(1.0).epsilon(1e-12));
+            // Along the normal the boxes overlap by no more than rounding.
+            CHECK(std::abs(overlap_along(a, b, m.normal)) <= 1e-13 * size + 1e-15 * glm::length(a.pose.translation));
+            for (int k = 0; k < m.count; ++k)
+                for (const BodyAtPose* const body : {&a, &b})
+                    CHECK(closest_point(*body, m.points[k].position).distance <=
+                          0.5 * std::abs(m.points[k].depth) + 1e-9 * size + 1e-15 * glm::length(a.pose.translation));
+        }
+    }
+}
+
 }  // namespace
 
 TEST_SUITE("convex/box_pair") {
+    TEST_CASE("crates that touch exactly at faces, edges and corners meet, and 2^-50 beyond do not") {
+        RandomBodies random(41);
+        const auto dyadic = [&](double most) { return random.index(static_cast<int>(most * 64)) / 64.0 + 1.0 / 64; };
+        for (int i = 0; i < 2000; ++i) {
+            CAPTURE(i);
+            const glm::dvec3 ha(dyadic(2), dyadic(2), dyadic(2)), hb(dyadic(2), dyadic(2), dyadic(2));
+            const Body a = Body::box(glm::vec3(ha)).value(), b = Body::box(glm::vec3(hb)).value();
+            const glm::dvec3 place = i % 3 == 0 ? glm::dvec3(0.0) : glm::dvec3(dyadic(100), -dyadic(100), dyadic(100));
+            glm::dvec3 offset(0.0);
+            int touching = random.index(7) + 1;
+            for (int k = 0; k < 3; ++k) {
+                offset[k] = (touching >> k & 1) != 0 ? ha[k] + hb[k] : 0.5 * random.number(-1, 1) * (ha[k] + hb[k]);
+                if (random.index(2) != 0) offset[k] = -offset[k];
+            }
+            const int axis = (touching & 1) != 0 ? 0 : (touching & 2) != 0 ? 1 : 2;
+            const double size = glm::length(ha) + glm::length(hb) + glm::length(offset);
+            for (const double beyond : {0.0, 0x1p-44, -0x1p-44}) {
+                glm::dvec3 moved = place + offset;
+                moved[axis] = place[axis] + (offset[axis] + std::copysign(beyond, beyond * offset[axis]));
+                check_touch({a, at(place)}, {b, at(moved)}, beyond <= 0.0, size);
+            }
+        }
+    }
+
+    TEST_CASE("crates in frames of their own meet iff exact integers say so, at all ranges of sizes") {
+        RandomBodies random(43);
+        int meeting = 0, apart = 0;
+        for (int i = 0; i < 8000; ++i) {
+            CAPTURE(i);
+            const double scale = i % 16 == 0 ? std::pow(10.0, random.number(-18, 14)) : 1.0;
+            const Body a = random.box(scale), b = random.box(scale);
+            const glm::dvec3 ha = a.half_extents(), hb = b.half_extents();
+            const glm::dmat3 ra = crate_rotation(random), yaw = crate_rotation(random);
+            // Turned about a's axis y, or as it is, or anyhow.
+            const int how = random.index(4);
+            const double c = std::cos(0.3 * how), s = std::sin(0.3 * how);
+            const glm::dmat3 rb = how == 0 ? ra : how == 3 ? yaw : ra * glm::dmat3(c, 0, -s, 0, 1, 0, s, 0, c);
+            glm::dvec3 offset(random.number(-1, 1) * ha.x, ha.y + hb.y, random.number(-1, 1) * ha.z);
+            if (how == 0 && random.index(2) == 0) offset.x = ha.x + hb.x;
+            if (how == 3) offset = scale * random.direction();
+            const RigidTransform pose_a{ra, i % 3 == 0 ? glm::dvec3(0.0) : 10.0 * scale * random.direction()};
+            RigidTransform pose_b{rb, pose_a.translation + ra * offset};
+            if (how == 3) {
+                const glm::dvec3 n = random.index(2) == 0 ? glm::normalize(ra[1]) : random.direction();
+                const double out = overlap_along({a, pose_a}, {b, pose_b}, n);
+                pose_b.translation += out * n;
+            }
+            const double size =
+                glm::length(ha) + glm::length(hb) + glm::length(pose_b.translation - pose_a.translation);
+            const BodyAtPose first{a, pose_a}, second{b, pose_b};
+            const bool meet = meet_by_distance(first, second);
+            CHECK(intersects(first, second) == meet);
+            CHECK(intersects(second, first) == meet);
+            CHECK((contact_manifold(first, second).count > 0) == meet);
+            meeting += meet;
+            apart += !meet;
+            if (penetration(first, second).depth < 1e-14 * size && distance(first, second).distance < 1e-14 * size)
+                check_touch(first, second, meet, size);
+        }
+        MESSAGE(meeting, " meet, ", apart, " do not");
+        CHECK(meeting > 1000);
+        CHECK(apart > 1000);
+    }
+
     // A face looks 2e-10 deep; an axis across two edges parts them, by less than a choice among axes tells.
     TEST_CASE("a thin box 7e-10 m beside one of 1 km has no points") {
         const auto body = [](float x, float y, float z) { return Body::box({x, y, z}).value(); };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Objects that are bounds alone.
 #include <doctest/doctest.h>
+#include <algorithm>
 #include <cmath>
 #include <crofton/crofton.hpp>
 #include <error_of.hpp>
@@ -205,6 +206,34 @@ TEST_SUITE("world/bounds") {
         CHECK(world.statistics().moving == 0);
         CHECK(world.statistics().resting == 101);
         CHECK(world.raycast({{0.0, 0.0, 60.0}, {0.0, 0.0, -1.0}})->object == late);
+    }
+
+    TEST_CASE("objects that live for 20 updates stay in the list of what moves, those that live on come to rest") {
+        World world;
+        std::vector<ObjectHandle> bullets;
+        for (int i = 0; i < 500; ++i) REQUIRE(world.add({.bound = Sphere{{5.0 * i, 0, 0}, 1.0}}).has_value());
+        for (int i = 0; i < 20; ++i) REQUIRE(world.update().has_value());
+        REQUIRE(world.statistics().resting == 500);
+        const auto spawn = [&](int frame) {
+            bullets.push_back(world.add({.bound = Sphere{{0.1 * frame, 3, 0}, 1.0}}).value());
+            if (bullets.size() > 20) REQUIRE(world.remove(bullets[bullets.size() - 21]).has_value());
+            REQUIRE(world.update().has_value());
+        };
+        for (int frame = 0; frame < 100; ++frame) spawn(frame);
+        std::size_t most_resting = 0;
+        Vector<ObjectRef> found;
+        for (int frame = 100; frame < 300; ++frame) {
+            spawn(frame);
+            most_resting = std::max<std::size_t>(most_resting, world.statistics().resting);
+            world.overlap(Sphere{{0.1 * frame, 3, 0}, 0.5}, found);
+            CHECK(std::any_of(found.begin(), found.end(),
+                              [&](const ObjectRef& ref) { return ref.object == bullets.back(); }));
+        }
+        CHECK(most_resting == 500);
+        CHECK(world.statistics().moving == 20);
+        for (int i = 0; i < 100; ++i) REQUIRE(world.update().has_value());
+        CHECK(world.statistics().moving == 0);
+        CHECK(world.statistics().resting == 520);
     }
 
     TEST_CASE("contacts begin, stay and end, with their normal, depth and points") {

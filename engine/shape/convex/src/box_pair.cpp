@@ -9,7 +9,6 @@
 namespace crofton::convex {
 namespace {
 
-constexpr int kNext[3] = {1, 2, 0}, kLast[3] = {2, 0, 1};
 constexpr double kParallel = 1e-9;  // squared: below, two edges make a sliver
 
 // a b − c d within 2 u of its size, or 2^-104 of the products where they cancel.
@@ -34,6 +33,7 @@ BoxPair::BoxPair(const Pair& pair)
     : pair_(pair),
       half_a_(pair.a.half_extents()),
       half_b_(pair.b.half_extents()),
+      common_frame_(pair.pose_a.rotation == pair.pose_b.rotation),
       depth_margin_(kSameDepth * pair.size),
       error_(4.0 * pair.error) {
     const glm::dmat3& r = pair.pose_a.rotation;
@@ -78,12 +78,14 @@ bool BoxPair::try_faces(double far, BoxAxis& least) {
     for (int k = 0; k < 3; ++k) {
         find_edges(k);
         const double extent = face_of_a(k);
+        near_ |= (extent > error_ ? 0 : 1) << k;
         if (k == 0 || extent < far || extent < least.extent - depth_margin_) least = {k, extent};
         if (extent < far) return false;
     }
     find_products();
     for (int j = 0; j < 3; ++j) {
         const double extent = face_of_b(j);
+        near_ |= (extent > error_ ? 0 : 1) << (3 + j);
         if (extent < far || extent < least.extent - depth_margin_) least = {3 + j, extent};
         if (extent < far) return false;
     }
@@ -105,6 +107,7 @@ void BoxPair::try_edges(BoxAxis& least) {
                 half_b_[kNext[j]] * std::abs(across_[kLast[j]][i]) + half_b_[kLast[j]] * std::abs(across_[kNext[j]][i]);
             const double extent = (radius_a + radius_b) - std::abs(mu * at_[u] + mv * at_[v]);
             const double best = least.extent - depth_margin_;
+            near_ |= (extent > error_ ? 0 : 1) << (6 + 3 * i + j);
             if (!(squared > kParallel)) {
                 slivers_ |= 1 << (3 * i + j);
                 sliver_width_ =
@@ -129,7 +132,22 @@ void BoxPair::try_slivers(BoxAxis& least) const {
     }
 }
 
+BoxAxis BoxPair::least_in_common_frame(double far) {
+    BoxAxis least;
+    for (int k = 0; k < 3; ++k) edge_[k] = across_[k] = glm::dvec3(k == 0, k == 1, k == 2);
+    for (int k = 0; k < 3; ++k) {
+        const double extent = face_of_a(k);
+        near_ |= (extent > error_ ? 0 : 1) << k;
+        if (k == 0 || extent < far || extent < least.extent - depth_margin_) least = {k, extent};
+        if (extent < far) return least;
+        radius_sum_[1][k] = radius_sum_[0][k];
+        along_[1][k] = along_[0][k];
+    }
+    return least;
+}
+
 BoxAxis BoxPair::least(double far) {
+    if (common_frame_) return least_in_common_frame(far);
     BoxAxis least;
     if (try_faces(far, least)) try_edges(least);
     return least;

@@ -2,6 +2,7 @@
 // Two boxes, closely: along which of their fifteen axes do they overlap least, and where?
 #pragma once
 #include <glm/gtc/type_ptr.hpp>
+#include <optional>
 
 #include "gather.hpp"
 
@@ -11,6 +12,14 @@ namespace crofton::convex {
 [[nodiscard]] inline double coordinate(const glm::dvec3& v, int i) {
     return glm::value_ptr(v)[i];
 }
+
+// The faces of other boxes are segments or points.
+[[nodiscard]] inline bool is_solid_box(const Body& body) {
+    const glm::dvec3& half = body.half_extents();
+    return body.kind() == Kind::box && half.x > 0.0 && half.y > 0.0 && half.z > 0.0;
+}
+
+inline constexpr int kNext[3] = {1, 2, 0}, kLast[3] = {2, 0, 1};  // in a circle
 
 // A separating axis: 0-2 across the faces of a, 3-5 of b, 6 + 3i + j across edge i of a and edge j of b.
 struct BoxAxis {
@@ -34,6 +43,9 @@ class BoxPair {
     [[nodiscard]] BoxAxis least(double far);
     [[nodiscard]] double sliver_width() const { return sliver_width_; }
     void try_slivers(BoxAxis& least) const;
+    // Whether the cores meet, after least() has not ended early: along most axes rounding tells, along the others exact
+    // sums do. Nothing: numbers beyond what exact sums take.
+    [[nodiscard]] std::optional<bool> meet_exactly() const;
 
     // Of one face's axis alone, 0 to 5; then normal() and face_towards_other() know this axis, and seen_by() and
     // into_frame() this box.
@@ -62,6 +74,7 @@ class BoxPair {
         for (int j = 0; j < 3; ++j) edge_[j][k] = glm::dot(to_a_[k], pair_.pose_b.rotation[j]);
     }
     void find_products();
+    [[nodiscard]] BoxAxis least_in_common_frame(double far);
     [[nodiscard]] double face_of_a(int k);
     [[nodiscard]] double face_of_b(int j);
     [[nodiscard]] bool try_faces(double far, BoxAxis& least);
@@ -69,8 +82,10 @@ class BoxPair {
 
     const Pair& pair_;
     const glm::dvec3 &half_a_, &half_b_;
+    bool common_frame_;  // the poses' rotations are the same: the faces of a have all axes
     double depth_margin_, error_, sliver_width_ = 0.0;
     int slivers_ = 0;                         // bit 3i + j
+    int near_ = 0;                            // by number: axes along which rounding may hide that they part the boxes
     glm::dvec3 to_a_[3];                      // rows of the inverse of a's rotation
     glm::dvec3 edge_[3];                      // of b in a's frame
     glm::dvec3 across_[3];                    // products of the other two edges
@@ -115,10 +130,16 @@ class BoxClip {
     FlatCorner corner_[kMost + 1];
 };
 
+// Whether two solid boxes meet. Nothing: that is nearer to their rounding than the search tells, or beyond exact sums.
+[[nodiscard]] std::optional<bool> boxes_meet(const Pair& pair);
+
+// Whether two boxes overlap by more than so much ≥ 0. Nothing: that is nearer to it than the search tells.
+[[nodiscard]] std::optional<bool> boxes_overlap_by_more(const Pair& pair, double depth);
+
 // The manifold of two boxes up to thinning out. The touch's depth and normal are proven, as the least of all axes. The
-// face that the cache names stays while it is the least deep within kKeptDepth of the size. `unknown`: nearer to a
-// touch than rounding tells, or apart where neither a face nor two edges decide.
-[[nodiscard]] Warm touch_of_boxes(const BodyAtPose& a, const BodyAtPose& b, const Pair& pair, double margin,
-                                  PairCache* cache, Touch& touch, GatheredPoints& points);
+// face that the cache names stays while it is the least deep within kKeptDepth of the size. `unknown`: apart where
+// neither a face nor two edges decide, or beyond exact sums.
+[[nodiscard]] Warm touch_of_boxes(const BodyAtPose& a, const BodyAtPose& b, const Pair& pair, double margin, PairCache* cache,
+                                  Touch& touch, GatheredPoints& points);
 
 }  // namespace crofton::convex

@@ -24,8 +24,18 @@ class BoxToucher {
     // The answer, and for the cache whose face of which number the touch is at: 0 where it is at edges.
     [[nodiscard]] Warm ask(int& reference, int& face);
     [[nodiscard]] glm::dvec3 separating_normal() const { return axes_.normal(least_.number); }
+    // Whether exact sums have told that boxes without rounding meet.
+    [[nodiscard]] bool surely_meets() const { return surely_meets_; }
+    // Of boxes that do: what rounding has put above the face touches it.
+    void lower_points() {
+        for (int i = 0; i < points_.count; ++i)
+            if (double& depth = points_.point[i].depth; depth < 0.0 && depth >= -axes_.error()) depth = 0.0;
+    }
 
   private:
+    // Of boxes nearer to a touch than rounding tells: as they are exactly.
+    [[nodiscard]] Warm decide();
+
     // Whether the cached face is proven to be the least deep but for kKeptDepth, looking along no other axis.
     [[nodiscard]] Warm stays(bool of_a, int face, double limit);
     // Where the boxes touch at a face, of this extent. False if nothing above the face is as deep, but for `kept`: then
@@ -45,7 +55,8 @@ class BoxToucher {
     const Pair& pair_;
     BoxPair axes_;
     BoxAxis least_;
-    double margin_, rounding_;
+    double margin_, rounding_, above_ = 0.0;
+    bool surely_meets_ = false;
     Touch& touch_;
     GatheredPoints& points_;
 };
@@ -77,7 +88,7 @@ bool BoxToucher::at_face(const BoxClip& clip, bool of_a, int face, double extent
     // The deepest corner itself may be of another face than the one that was clipped.
     int corner = 0;
     const glm::dvec3 x = deepest_corner(!of_a, corner);
-    if (clip.corner_within(corner) >= 0.0) {
+    if (clip.corner_within(corner) >= above_) {
         clip.gather(touch_, margin_, points_);
         const Feature self{FeatureKind::face, static_cast<std::uint16_t>(face)},
             other{FeatureKind::vertex, static_cast<std::uint16_t>(corner)};
@@ -138,6 +149,20 @@ Warm BoxToucher::stays(bool of_a, int face, double limit) {
     return at_face(clip, of_a, face, extent, kept) ? Warm::touching : Warm::unknown;
 }
 
+// The difference body holds an octant of space at each of its corners. So boxes that no axis parts by more than
+// rounding are no farther apart than its square root of 3 times. Points within it of a face's rim are above the face.
+Warm BoxToucher::decide() {
+    if (rounding_ > 0.0) return Warm::touching;
+    const std::optional<bool> meet = axes_.meet_exactly();
+    if (!meet) return Warm::unknown;
+    surely_meets_ = *meet;
+    if (!*meet && margin_ == 0.0) return Warm::apart;
+    least_.extent = *meet ? std::max(0.0, least_.extent) : std::min(0.0, least_.extent);
+    above_ = -axes_.error();
+    if (*meet) margin_ += axes_.error();
+    return Warm::touching;
+}
+
 Warm BoxToucher::ask(int& reference, int& face) {
     const double limit = -(rounding_ + margin_) - axes_.error() - pair_.doubt();
     if (reference != 0) {
@@ -161,8 +186,8 @@ Warm BoxToucher::ask(int& reference, int& face) {
     }
     if (axes_.sliver_width() > 0.1 * kSameFace * pair_.size || !sure) axes_.try_slivers(least_);
     if (least_.extent < limit) return Warm::apart;
-    // Contacts nearer than rounding tells are decided exactly by the other way.
-    if (std::abs(least_.extent) <= axes_.error()) return Warm::unknown;
+    if (std::abs(least_.extent) <= axes_.error())
+        if (const Warm decided = decide(); decided != Warm::touching) return decided;
     if (least_.number >= 6) {
         reference = 0;
         return at_edges() ? Warm::touching : Warm::unknown;
@@ -185,11 +210,13 @@ Warm touch_of_boxes(const BodyAtPose& a, const BodyAtPose& b, const Pair& pair, 
     int face = reference != 0 ? cache->face : 0;
     BoxToucher toucher(a, b, pair, margin, touch, points);
     const Warm answer = toucher.ask(reference, face);
+    if (toucher.surely_meets()) toucher.lower_points();
     // Another axis may be less deep by kSameDepth of the size, and leave the boxes farther apart than the margin.
     const double least_depth = -margin + kSameDepth * pair.size;
+    const bool too_far = !toucher.surely_meets() && !(touch.depth >= least_depth);
     const bool doubtful = pair.doubt() > 0.0 && std::abs(touch.depth) <= pair.doubt() + kSameDepth * pair.size;
     if (answer == Warm::touching && doubtful) return Warm::unknown;
-    if (answer == Warm::unknown || (answer == Warm::touching && !(touch.depth >= least_depth))) return Warm::unknown;
+    if (answer == Warm::unknown || (answer == Warm::touching && too_far)) return Warm::unknown;
     if (cache != nullptr) {
         cache->axis = answer == Warm::apart ? toucher.separating_normal() : touch.normal;
         cache->reference = static_cast<std::uint16_t>(answer == Warm::apart ? 0 : reference);

@@ -23,12 +23,6 @@ Gathering gathering_of(const BodyAtPose& a, const BodyAtPose& b, double margin) 
     return {a.pose.translation, a.body.radius(), b.body.radius(), margin};
 }
 
-// The faces of other boxes are segments or points.
-bool is_solid_box(const Body& body) {
-    const glm::dvec3& half = body.half_extents();
-    return body.kind() == Kind::box && half.x > 0.0 && half.y > 0.0 && half.z > 0.0;
-}
-
 // A point's id in one number that is not 0. Features of convex bodies have indices below 1024.
 std::uint32_t number_of(const ContactPoint& p) {
     const auto feature = [](const Feature& f) { return static_cast<std::uint32_t>(f.kind) << 10 | f.index; };

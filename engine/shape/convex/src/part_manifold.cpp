@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "box_pair.hpp"
 #include "core_query.hpp"
 #include "surface_manifold.hpp"
 #include "union_normals.hpp"
@@ -65,7 +66,7 @@ class ManifoldFinder {
         scratch_.list.clear();
         UnionNormals& flush = scratch_.flush;
         flush.start(options_.margin);
-        Count own, all;
+        Count own;
         add_parts(0, a, b, own.parts[0]);
         add_parts(1, b, a, own.parts[1]);
         for (std::uint32_t i = 0; i < own.parts[0]; ++i)
@@ -76,24 +77,7 @@ class ManifoldFinder {
         const bool deep = std::any_of(flush.contacts().begin(), flush.contacts().end(), [&](const auto& contact) {
             return std::abs(contact.depth) > flush_tolerance(a, b);  // what rests flush itself has no way to go
         });
-        all = own;
-        for (const BodyAtPose& other : beside.a) add_parts(0, other, b, all.parts[0]);
-        for (const BodyAtPose& other : beside.b) add_parts(1, other, a, all.parts[1]);
-        if (deep && flush.is_any_covered()) {
-            // Of those beside only what lies flush: bodies that are deep in each other are no floor.
-            flush.keep_parts(0, own.parts[0]);
-            flush.keep_parts(1, own.parts[1]);
-            all = own;
-            for (const BodyAtPose& other : beside.a)
-                if (are_flush(a, other)) add_parts(0, other, b, all.parts[0]);
-            for (const BodyAtPose& other : beside.b)
-                if (are_flush(b, other)) add_parts(1, other, a, all.parts[1]);
-            for (std::uint32_t i = own.parts[0]; i < all.parts[0]; ++i)
-                for (std::uint32_t j = 0; j < own.parts[1]; ++j) add_flush_contact(i, j, nullptr);
-            for (std::uint32_t i = 0; i < own.parts[0]; ++i)
-                for (std::uint32_t j = own.parts[1]; j < all.parts[1]; ++j) add_flush_contact(i, j, nullptr);
-            flush.apply(wanted);
-        }
+        if (deep) push_out_of_union(a, b, beside, own);
         add_flush(wanted, false);
         scratch_.list.finish(std::clamp(options_.max_points, 1, 8), found_.all_);
     }
@@ -102,8 +86,34 @@ class ManifoldFinder {
     struct Count {
         std::uint32_t parts[2] = {0, 0};  // of the lists of `flush`
     };
+    void push_out_of_union(const BodyAtPose& a, const BodyAtPose& b, const Beside& beside, const Count& own) {
+        UnionNormals& flush = scratch_.flush;
+        const std::size_t wanted = flush.contacts().size();
+        Count all = own;
+        for (const BodyAtPose& other : beside.a) add_parts(0, other, b, all.parts[0]);
+        for (const BodyAtPose& other : beside.b) add_parts(1, other, a, all.parts[1]);
+        if (!flush.is_any_covered()) return;
+        // Of those beside only what lies flush: bodies that are deep in each other are no floor.
+        flush.keep_parts(0, own.parts[0]);
+        flush.keep_parts(1, own.parts[1]);
+        all = own;
+        for (const BodyAtPose& other : beside.a)
+            if (are_flush(a, other)) add_parts(0, other, b, all.parts[0]);
+        for (const BodyAtPose& other : beside.b)
+            if (are_flush(b, other)) add_parts(1, other, a, all.parts[1]);
+        for (std::uint32_t i = own.parts[0]; i < all.parts[0]; ++i)
+            for (std::uint32_t j = 0; j < own.parts[1]; ++j) add_flush_contact(i, j, nullptr);
+        for (std::uint32_t i = 0; i < own.parts[0]; ++i)
+            for (std::uint32_t j = own.parts[1]; j < all.parts[1]; ++j) add_flush_contact(i, j, nullptr);
+        flush.apply(wanted);
+    }
     [[nodiscard]] static bool are_flush(const BodyAtPose& a, const BodyAtPose& b) {
-        return !has_surfaces(b.body) && !is_half_space(b) && !(penetration(a, b).depth > flush_tolerance(a, b));
+        if (has_surfaces(b.body) || is_half_space(b)) return false;
+        const double flush = flush_tolerance(a, b);
+        const bool boxes = is_solid_box(a.body) && is_solid_box(b.body) && a.body.radius() + b.body.radius() == 0.0;
+        if (boxes)
+            if (const std::optional<bool> more = boxes_overlap_by_more(Pair(a, b), flush)) return !*more;
+        return !(penetration(a, b).depth > flush);
     }
     void add_parts(int list, const BodyAtPose& body, const BodyAtPose& near, std::uint32_t& count) {
         if (has_surfaces(body.body) || is_half_space(body)) return;

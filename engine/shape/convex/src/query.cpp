@@ -5,6 +5,7 @@
 #include <glm/matrix.hpp>
 #include <limits>
 
+#include "box_pair.hpp"
 #include "core_query.hpp"
 #include "deep_core.hpp"
 #include "exact_gjk.hpp"
@@ -88,6 +89,8 @@ bool intersects(const BodyAtPose& a, const BodyAtPose& b, PairCache* cache) {
     }
     const Pair pair(a, b);
     if (!finite_pair(pair)) return false;
+    if (is_solid_box(a.body) && is_solid_box(b.body))
+        if (const std::optional<bool> meet = boxes_meet(pair)) return *meet;
     const double near = std::max(0.0, pair.rounding() - 1.5 * pair.doubt()), far = pair.rounding() + 1.5 * pair.doubt();
     if (cache != nullptr && cache->count < 4 && cache->axis != glm::dvec3(0.0)) {
         // A plane that parted them before; its normal's length is 1 within 4u.

@@ -23,18 +23,6 @@ double reach_of(const Body& body) {
     return body.core_radius() + body.radius();
 }
 
-bool holds(const BodyAtPose& body, const glm::dvec3& point, double tolerance) {
-    const glm::dvec3 offset = point - body.pose.translation;
-    if (body.body.kind() == Kind::box && body.body.radius() == 0.0) {
-        const glm::dvec3 p = glm::abs(glm::inverse(body.pose.rotation) * offset), &half = body.body.half_extents();
-        return p.x <= half.x + tolerance && p.y <= half.y + tolerance && p.z <= half.z + tolerance;
-    }
-    static const Body kPoint = *Body::sphere(0.0);
-    const RigidTransform at{glm::dmat3(1.0), point};
-    const double within = body.body.radius() + tolerance;
-    return !(nearest_points(Pair({kPoint, at}, body), nullptr, 0.5 * within, within).lower > within);
-}
-
 bool rises_above(const BodyAtPose& body, const glm::dvec3& point, const glm::dvec3& direction, double tolerance) {
     const Support s = core_support(body.body, Pair::local(body.pose.rotation, direction));
     const glm::dvec3 way =
@@ -170,29 +158,69 @@ void UnionNormals::add_contact(std::uint32_t first, std::uint32_t second, const 
     std::copy_n(manifold.points, manifold.count, contact.points);
 }
 
-bool UnionNormals::is_neighbor(int list, std::uint32_t own, std::uint32_t other, const Samples& samples) const {
-    if (other == own) return false;
-    const BodyAtPose body = placed(list, other);
-    const double within = reach_of(body.body) + samples.radius + flush_tolerance(placed(list, own), body);
-    return glm::distance(samples.middle, body.pose.translation) <= within;
+UnionNormals::Neighbor UnionNormals::neighbor_of(int list, std::uint32_t own, std::uint32_t other) const {
+    Neighbor neighbor{placed(list, other), 0.0, 0.0, glm::dmat3(1.0)};
+    neighbor.tolerance = flush_tolerance(placed(list, own), neighbor.body);
+    neighbor.reach = reach_of(neighbor.body.body) + neighbor.tolerance;
+    if (neighbor.is_box()) neighbor.to_local = glm::inverse(neighbor.body.pose.rotation);
+    return neighbor;
 }
 
-bool UnionNormals::is_covered(int list, std::uint32_t own, const glm::dvec3& point, const glm::dvec3& direction) const {
+bool UnionNormals::Neighbor::is_near(const glm::dvec3& point, double radius) const {
+    const glm::dvec3 offset = point - body.pose.translation;
+    const double within = reach + radius;
+    if (glm::dot(offset, offset) > within * within * (1.0 + 1e-12)) return false;
+    if (!is_box()) return true;
+    // Frames are rigid to 1e-6.
+    const double wider = (radius + tolerance) * (1.0 + 1e-5) + 1e-5 * tolerance;
+    const glm::dvec3 p = glm::abs(to_local * offset), &half = body.body.half_extents();
+    return p.x <= half.x + wider && p.y <= half.y + wider && p.z <= half.z + wider;
+}
+
+bool UnionNormals::Neighbor::holds(const glm::dvec3& point) const {
+    if (is_box()) {
+        const glm::dvec3 p = glm::abs(to_local * (point - body.pose.translation)), &half = body.body.half_extents();
+        return p.x <= half.x + tolerance && p.y <= half.y + tolerance && p.z <= half.z + tolerance;
+    }
+    static const Body kPoint = *Body::sphere(0.0);
+    const RigidTransform at{glm::dmat3(1.0), point};
+    const double within = body.body.radius() + tolerance;
+    return !(nearest_points(Pair({kPoint, at}, body), nullptr, 0.5 * within, within).lower > within);
+}
+
+bool UnionNormals::Neighbor::covers(const glm::dvec3& point, const glm::dvec3& direction) const {
+    if (glm::distance(point, body.pose.translation) > reach) return false;
+    if (is_box()) return holds(point) && rises_above(body, point, direction, tolerance);
+    return rises_above(body, point, direction, tolerance) && holds(point);
+}
+
+void UnionNormals::list_near(int list, std::uint32_t own, const glm::dvec3& middle, double radius) const {
+    near_.clear();
     for (std::uint32_t other = 0; other < parts_[list].size(); ++other) {
         if (other == own) continue;
-        const BodyAtPose body = placed(list, other);
-        const double tolerance = flush_tolerance(placed(list, own), body);
-        if (glm::distance(point, body.pose.translation) > reach_of(body.body) + tolerance) continue;
-        if (rises_above(body, point, direction, tolerance) && holds(body, point, tolerance)) return true;
+        const Neighbor neighbor = neighbor_of(list, own, other);
+        if (neighbor.is_near(middle, radius)) near_.push_back(neighbor);
     }
-    return false;
+}
+
+bool UnionNormals::is_covered(const glm::dvec3& point, const glm::dvec3& direction) const {
+    return std::any_of(near_.begin(), near_.end(),
+                       [&](const Neighbor& neighbor) { return neighbor.covers(point, direction); });
 }
 
 // Whether a neighbour that rises above the contact's polygon comes to any point of it.
-bool UnionNormals::meets_polygon(int list, std::uint32_t own, std::uint32_t other, const Samples& samples,
-                                 const glm::dvec3& direction) const {
-    const BodyAtPose body = placed(list, other);
-    const double tolerance = flush_tolerance(placed(list, own), body), within = body.body.radius() + tolerance;
+bool UnionNormals::meets_polygon(const Neighbor& neighbor, const Samples& samples, const glm::dvec3& direction) {
+    const BodyAtPose& body = neighbor.body;
+    const double within = body.body.radius() + neighbor.tolerance;
+    // How far its highest point rises above the lowest of the polygon's, and how far it is from all of them.
+    const Support top = core_support(body.body, Pair::local(body.pose.rotation, direction));
+    const glm::dvec3 way =
+        body.pose.rotation * top.point + (body.pose.translation - samples.middle) + body.body.radius() * direction;
+    double lowest = 0.0;
+    for (int i = 0; i < samples.corners; ++i)
+        lowest = std::min(lowest, glm::dot(direction, samples.point[i] - samples.middle));
+    const double away = std::max(0.0, glm::length(way) - samples.radius);
+    if (glm::dot(direction, way) - lowest < 0.999 * (kFlatSine * away + neighbor.tolerance)) return false;
     const RigidTransform at{glm::dmat3(1.0), samples.middle};
     for (int i = 1; i + 1 < std::max(samples.corners, 3); ++i) {
         const auto corner = [&](int k) { return samples.point[std::min(k, samples.corners - 1)] - samples.middle; };
@@ -202,7 +230,7 @@ bool UnionNormals::meets_polygon(int list, std::uint32_t own, std::uint32_t othe
         glm::dvec3 on_polygon = samples.middle;
         for (int k = 0; k < found.simplex.count; ++k)
             on_polygon += found.simplex.weight[k] * found.simplex.corner[k].on_a;
-        if (rises_above(body, on_polygon, direction, tolerance)) return true;
+        if (rises_above(body, on_polygon, direction, neighbor.tolerance)) return true;
     }
     return false;
 }
@@ -211,22 +239,20 @@ UnionNormals::State UnionNormals::state_on(int list, const Contact& contact) con
     if (parts_[list].size() < 2) return State::free;
     const Samples samples(contact, list);
     const glm::dvec3 direction = list == 0 ? contact.normal : -contact.normal;
-    const std::uint32_t own = contact.part[list];
-    bool alone = true;
-    for (std::uint32_t other = 0; other < parts_[list].size() && alone; ++other)
-        alone = !is_neighbor(list, own, other, samples);
-    if (alone) return State::free;
+    list_near(list, contact.part[list], samples.middle, samples.radius);
+    if (near_.empty()) return State::free;
     int covered = 0;
     for (int i = 0; i < samples.count; ++i)
-        if (is_covered(list, own, samples.point[i], direction))
+        if (is_covered(samples.point[i], direction))
             ++covered;
         else if (covered > 0)
             return State::partly_covered;
     if (covered == samples.count) return State::covered;
     if (covered > 0) return State::partly_covered;
-    for (std::uint32_t other = 0; samples.corners > 1 && other < parts_[list].size(); ++other)
-        if (is_neighbor(list, own, other, samples) && meets_polygon(list, own, other, samples, direction))
-            return State::partly_covered;
+    if (samples.corners > 1 && std::any_of(near_.begin(), near_.end(), [&](const Neighbor& neighbor) {
+            return meets_polygon(neighbor, samples, direction);
+        }))
+        return State::partly_covered;
     return State::free;
 }
 
@@ -245,6 +271,22 @@ bool UnionNormals::parts_pair(const Contact& by, const Contact& contact) const {
     const glm::dvec3 near = contact.points[0].position - a.pose.translation;
     const double away = glm::distance(farthest.on_a, near) + glm::distance(farthest.on_b, near);
     return extent <= by.depth + flush_tolerance(a, b) + kFlatSlope * away;
+}
+
+// Keeps the points that no neighbour covers, at the front. Returns how many.
+int UnionNormals::leave_out_covered(int list, std::uint32_t own, const glm::dvec3& normal, ContactPoint* points,
+                                    int count) const {
+    if (count == 0) return 0;
+    const double side = list == 0 ? 1.0 : -1.0;
+    const auto place = [&](int i) { return points[i].position + side * 0.5 * points[i].depth * normal; };
+    const glm::dvec3 middle = place(0);
+    double radius = 0.0;
+    for (int i = 1; i < count; ++i) radius = std::max(radius, glm::distance(place(i), middle));
+    list_near(list, own, middle, radius);
+    int kept = 0;
+    for (int i = 0; i < count; ++i)
+        if (!is_covered(place(i), side * normal)) points[kept++] = points[i];
+    return kept;
 }
 
 // The points of a pair of parts along a normal, but those that neighbours cover. Returns how deep the deepest one is
@@ -269,16 +311,10 @@ double UnionNormals::gather_along(const glm::dvec3& normal, Contact& contact) co
         add_support(on_a, normal, deepest.on_b, deepest.b, true, gatherer);
         add_support(on_b, -normal, deepest.on_a, deepest.a, false, gatherer);
     }
-    int kept = 0;
     double most = -HUGE_VAL;
-    for (int i = 0; i < points.count; ++i) {
-        const ContactPoint& p = points.point[i];
-        most = std::max(most, p.depth);
-        const glm::dvec3 half = 0.5 * p.depth * normal;
-        if (is_covered(0, contact.part[0], p.position + half, normal)) continue;
-        if (is_covered(1, contact.part[1], p.position - half, -normal)) continue;
-        points.point[kept++] = p;
-    }
+    for (int i = 0; i < points.count; ++i) most = std::max(most, points.point[i].depth);
+    int kept = points.count;
+    for (int list = 0; list < 2; ++list) kept = leave_out_covered(list, contact.part[list], normal, points.point, kept);
     Manifold manifold;
     manifold.normal = normal;
     if (kept > 0) thin_out(manifold, points.point, kept, 8);

@@ -48,11 +48,24 @@ class UnionNormals {
     }
     [[nodiscard]] State state_of(const Contact& contact) const;
     [[nodiscard]] State state_on(int list, const Contact& contact) const;
-    [[nodiscard]] bool is_neighbor(int list, std::uint32_t own, std::uint32_t other, const Samples& samples) const;
-    [[nodiscard]] bool is_covered(int list, std::uint32_t own, const glm::dvec3& point,
-                                  const glm::dvec3& direction) const;
-    [[nodiscard]] bool meets_polygon(int list, std::uint32_t own, std::uint32_t other, const Samples& samples,
-                                     const glm::dvec3& direction) const;
+    // A part beside another of its list.
+    struct Neighbor {
+        BodyAtPose body;
+        double tolerance;     // within which the two count as flush
+        double reach;         // of the neighbor, wider by that
+        glm::dmat3 to_local;  // of a box without rounding
+        [[nodiscard]] bool is_box() const { return body.body.kind() == Kind::box && body.body.radius() == 0.0; }
+        // Whether it may hold a point that is no farther than `radius` from `point`.
+        [[nodiscard]] bool is_near(const glm::dvec3& point, double radius) const;
+        [[nodiscard]] bool holds(const glm::dvec3& point) const;
+        [[nodiscard]] bool covers(const glm::dvec3& point, const glm::dvec3& direction) const;
+    };
+    [[nodiscard]] Neighbor neighbor_of(int list, std::uint32_t own, std::uint32_t other) const;
+    // Into `near_`: those that may hold a point no farther from `middle`.
+    void list_near(int list, std::uint32_t own, const glm::dvec3& middle, double radius) const;
+    [[nodiscard]] bool is_covered(const glm::dvec3& point, const glm::dvec3& direction) const;
+    [[nodiscard]] static bool meets_polygon(const Neighbor& neighbor, const Samples& samples,
+                                            const glm::dvec3& direction);
     [[nodiscard]] bool parts_pair(const Contact& by, const Contact& contact) const;
     [[nodiscard]] const Contact* find_free(const Contact& contact) const;
     void replace_by_free();
@@ -60,13 +73,15 @@ class UnionNormals {
     void replace_behind();
     void keep_deepest(const Contact& from, Contact& contact) const;
     bool push_least_deep();
+    int leave_out_covered(int list, std::uint32_t own, const glm::dvec3& normal, ContactPoint* points, int count) const;
     double gather_along(const glm::dvec3& normal, Contact& contact) const;
     [[nodiscard]] bool find_own_face(const Contact& contact, Contact& found) const;
 
     double margin_ = 0.0;
     Vector<Part> parts_[2];
     Vector<Contact> contacts_, raw_;
-    Vector<State> states_;  // by contact
+    Vector<State> states_;           // by contact
+    mutable Vector<Neighbor> near_;  // scratch
 };
 
 }  // namespace crofton::convex

@@ -6,26 +6,146 @@
 #include "pair_order.hpp"
 
 namespace crofton::world {
+namespace {
 
-// The pairs of two bodies, each with its state in the update before. Both lists are in order.
-void BodyContacts::list(std::span<const ObjectPair> pairs, const ObjectBodies& bodies) {
-    touches_.clear();
-    std::size_t old = 0;
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-        if (!bodies.has(pairs[i].first.object.index) || !bodies.has(pairs[i].second.object.index)) continue;
-        while (old < states_.size() && is_before(states_[old].pair, pairs[i])) ++old;
-        Touch& touch = touches_.emplace_back();
-        touch.pair = static_cast<std::uint32_t>(i);
-        if (old < states_.size() && are_same(states_[old].pair, pairs[i]))
-            touch.before = static_cast<std::uint32_t>(old);
-    }
+// Where more objects move than one in so many pairs has, all pairs are looked at.
+constexpr std::size_t kManyMovers = 8;
+
+IdPair ids_of(const ObjectRef& first, const ObjectRef& second) {
+    return {first.object.index, second.object.index};
 }
 
-void BodyContacts::list_neighbors(std::span<const ObjectPair> pairs, const SpatialIndex& index, double margin) {
-    neighbors_.clear();
-    for (const Touch& touch : touches_)
-        neighbors_.add({pairs[touch.pair].first.object.index, pairs[touch.pair].second.object.index});
-    neighbors_.list(moved_.size(), index, margin);
+constexpr auto is_state_before = [](const auto& state, const IdPair& pair) {
+    return ids_of(state.pair.first, state.pair.second) < pair;
+};
+constexpr auto is_contact_before = [](const BodyContact& contact, const IdPair& pair) {
+    return ids_of(contact.first, contact.second) < pair;
+};
+
+bool is_at(const Vector<BodyContact>& contacts, std::size_t place, const IdPair& pair) {
+    return place < contacts.size() && ids_of(contacts[place].first, contacts[place].second) == pair;
+}
+
+// Whether bodies overlap, or are apart, by more than flush ones may. Others have no way out to look for.
+bool is_deep(const convex::Manifolds& found, const convex::Body& a, const convex::Body& b) {
+    const double flush = 0x1p-22 * (a.core_radius() + a.radius() + b.core_radius() + b.radius());
+    return std::any_of(found.all().begin(), found.all().end(),
+                       [&](const convex::Manifold& m) { return std::abs(m.depth) > flush; });
+}
+
+}  // namespace
+
+void BodyContacts::note_moved(const Surroundings& around) {
+    moved_.resize(std::max(moved_.size(), around.index.size()), 0);
+    movers_.clear();
+    for (const auto items : {around.index.moved_items(), std::span<const std::uint32_t>(changed_)})
+        for (const std::uint32_t item : items)
+            if (item < around.index.size() && moved_[item] == 0) {
+                moved_[item] = 1;
+                movers_.push_back(item);
+            }
+    changed_.clear();
+}
+
+// Another user's data.
+void BodyContacts::rename(PairState& state, const ObjectPair& pair) {
+    if (state.pair.first.user == pair.first.user && state.pair.second.user == pair.second.user) return;
+    state.pair = pair;
+    const IdPair ids = ids_of(pair.first, pair.second);
+    for (std::size_t at = find_from(0, contacts_, ids, is_contact_before); is_at(contacts_, at, ids); ++at)
+        contacts_[at].first = pair.first, contacts_[at].second = pair.second;
+}
+
+// The pair is there no more.
+void BodyContacts::drop(const PairState& state) {
+    const IdPair ids = ids_of(state.pair.first, state.pair.second);
+    if (state.point_count > 0) dropped_.push_back(ids);
+    points_.give_back(state.points);
+}
+
+// The states of pairs of two bodies that have come or gone.
+void BodyContacts::note_pairs(const ChangedPairs& pairs, const Surroundings& around) {
+    came_.clear();
+    joined_.clear();
+    parted_.clear();
+    dropped_.clear();
+    edits_.begin();
+    std::size_t t = 0, e = 0, place = 0;
+    while (t < pairs.there.size() || e < pairs.ended.size()) {
+        const bool is_there = t < pairs.there.size() && (e == pairs.ended.size() || !(pairs.ended[e] < pairs.there[t]));
+        const IdPair ids = is_there ? pairs.there[t++] : pairs.ended[e++];
+        const bool of_bodies = is_there && around.bodies.has(ids.first) && around.bodies.has(ids.second);
+        place = find_from(place, states_, ids, is_state_before);
+        const bool was_there =
+            place < states_.size() && ids_of(states_[place].pair.first, states_[place].pair.second) == ids;
+        if (!of_bodies && !was_there) continue;
+        const ObjectPair pair{around.table.ref(ids.first), around.table.ref(ids.second)};
+        if (was_there && of_bodies && are_same(states_[place].pair, pair)) {
+            rename(states_[place], pair);
+            continue;
+        }
+        if (of_bodies) {
+            edits_.add(place);
+            came_.push_back(pair);
+            joined_.push_back({ids.first, ids.second});
+        }
+        if (was_there) {
+            drop(states_[place]);
+            edits_.remove(place);
+            parted_.push_back({ids.first, ids.second});
+        }
+    }
+    edits_.apply(states_);
+    for (std::size_t n = 0; n < came_.size(); ++n) {
+        PairState& state = states_[edits_.places()[n]];
+        state = {};
+        state.pair = came_[n];
+    }
+    for (const PairNeighbors::Pair& pair : parted_) neighbors_.remove(pair);
+    for (const PairNeighbors::Pair& pair : joined_) neighbors_.add(pair);
+    for (const PairNeighbors::Pair& pair : joined_)
+        for (const std::uint32_t object : {pair.first, pair.second}) place_object(object, around);
+    // Those that meet no body have nothing to do with pairs.
+    movers_.erase(std::remove_if(movers_.begin(), movers_.end(),
+                                 [&](std::uint32_t object) {
+                                     const bool alone = neighbors_.partners_of(object).empty();
+                                     if (alone) moved_[object] = 0;
+                                     return alone;
+                                 }),
+                  movers_.end());
+    for (const std::uint32_t object : movers_) place_object(object, around);
+}
+
+void BodyContacts::place_object(std::uint32_t object, const Surroundings& around) {
+    const Obb& box = around.index.box(object);
+    neighbors_.place(object, box, around.margin,
+                     around.bodies.pose_of(object, around.table.objects[object], box, around.scene));
+}
+
+// Pairs that may have to be computed; touch() tells.
+void BodyContacts::list_candidates() {
+    touches_.clear();
+    const auto add = [&](std::size_t state) { touches_.emplace_back().state = static_cast<std::uint32_t>(state); };
+    if ((movers_.size() + joined_.size() + parted_.size()) * kManyMovers > states_.size()) {
+        for (std::size_t i = 0; i < states_.size(); ++i) add(i);
+        return;
+    }
+    candidates_.clear();
+    const auto add_pair = [&](std::uint32_t a, std::uint32_t b) {
+        candidates_.push_back({std::min(a, b), std::max(a, b)});
+    };
+    for (const std::uint32_t object : movers_) {
+        for (const std::uint32_t partner : neighbors_.partners_of(object)) add_pair(object, partner);
+        neighbors_.visit_pairs_beside(object, add_pair);
+    }
+    for (const auto* const pairs : {&joined_, &parted_})
+        for (const PairNeighbors::Pair& pair : *pairs)
+            for (const std::uint32_t object : {pair.first, pair.second})
+                for (const std::uint32_t partner : neighbors_.partners_of(object)) add_pair(object, partner);
+    std::sort(candidates_.begin(), candidates_.end());
+    candidates_.erase(std::unique(candidates_.begin(), candidates_.end()), candidates_.end());
+    std::size_t place = 0;
+    for (const IdPair& pair : candidates_) add(place = find_from(place, states_, pair, is_state_before));
 }
 
 bool BodyContacts::have_moved(const Neighbors& neighbors) const {
@@ -35,124 +155,196 @@ bool BodyContacts::have_moved(const Neighbors& neighbors) const {
     return false;
 }
 
-void BodyContacts::place_neighbors(const ObjectBodies& bodies, const ObjectTable& table, const SpatialIndex& index,
-                                   const scene::Scene& scene, Worker& worker) const {
-    worker.poses.clear();
-    worker.poses.reserve(worker.neighbors.objects[0].size() + worker.neighbors.objects[1].size());
+void BodyContacts::place_neighbors(const Surroundings& around, Worker& worker) const {
     for (int side = 0; side < 2; ++side) {
         worker.placed[side].clear();
         for (const std::uint32_t object : worker.neighbors.objects[side])
-            if (const auto pose = bodies.pose_of(object, table.objects[object], index.box(object), scene))
-                worker.placed[side].push_back({bodies.body(object), worker.poses.emplace_back(*pose)});
+            if (const auto& pose = neighbors_.pose_of(object))
+                worker.placed[side].push_back({around.bodies.body(object), *pose});
     }
 }
 
-void BodyContacts::note_moved(const SpatialIndex& index) {
-    moved_.assign(index.size(), 0);
-    for (const auto items : {index.moved_items(), std::span<const std::uint32_t>(changed_)})
-        for (const std::uint32_t item : items)
-            if (item < moved_.size()) moved_[item] = 1;
-    changed_.clear();
+// The contacts of two convex bodies that rest flush are the same whatever lies beside them.
+void BodyContacts::compute(Touch& touch, const Surroundings& around, Worker& worker) const {
+    const PairState& state = states_[touch.state];
+    const std::uint32_t a = state.pair.first.object.index, b = state.pair.second.object.index;
+    touch.computed = true;
+    const auto &pose_a = neighbors_.pose_of(a), &pose_b = neighbors_.pose_of(b);
+    if (!pose_a || !pose_b) return worker.pair_points.clear();
+    const convex::BodyAtPose placed_a{around.bodies.body(a), *pose_a}, placed_b{around.bodies.body(b), *pose_b};
+    const convex::ManifoldOptions options{.margin = around.margin};
+    const convex::PairCache before = touch.cache;
+    if (placed_a.body.is_convex() && placed_b.body.is_convex()) {
+        convex::contact_manifolds(placed_a, placed_b, options, worker.found, &touch.cache);
+        touch.asks_neighbors = is_deep(worker.found, placed_a.body, placed_b.body);
+        if (!touch.asks_neighbors) return void(convex::track(worker.found.all(), worker.pair_points));
+    }
+    touch.asks_neighbors = true;
+    neighbors_.find({a, b}, worker.neighbors);
+    touch.neighbors = worker.neighbors.name;
+    place_neighbors(around, worker);
+    touch.cache = before;
+    convex::contact_manifolds(placed_a, placed_b, {worker.placed[0], worker.placed[1]}, options, worker.found,
+                              &touch.cache);
+    convex::track(worker.found.all(), worker.pair_points);
 }
 
-void BodyContacts::update(std::span<const ObjectPair> pairs, const ObjectBodies& bodies, const ObjectTable& table,
+void BodyContacts::touch(Touch& touch, const Surroundings& around, Worker& worker) const {
+    const PairState& state = states_[touch.state];
+    const std::uint32_t a = state.pair.first.object.index, b = state.pair.second.object.index;
+    if (!state.is_new && moved_[a] == 0 && moved_[b] == 0) {
+        if (!state.asks_neighbors) return;
+        neighbors_.find({a, b}, worker.neighbors);
+        if (worker.neighbors.name == state.neighbors && !have_moved(worker.neighbors)) return;
+    }
+    touch.cache = state.cache;
+    worker.pair_points.assign(state.points.begin(), state.points.begin() + state.point_count);
+    compute(touch, around, worker);
+    touch.first_point = static_cast<std::uint32_t>(worker.points.size());
+    touch.point_count = static_cast<std::uint32_t>(worker.pair_points.size());
+    worker.points.insert(worker.points.end(), worker.pair_points.begin(), worker.pair_points.end());
+}
+
+void BodyContacts::update(const ChangedPairs& pairs, const ObjectBodies& bodies, const ObjectTable& table,
                           const SpatialIndex& index, const scene::Scene& scene, double margin, Executor& executor) {
     computed_ = 0;
     if (!has_work(bodies)) {
+        for (Vector<IdPair>* const list : {&began_, &ended_, &fresh_}) list->clear();
         changed_.clear();
         return contacts_.clear();
     }
-    note_moved(index);
-    list(pairs, bodies);
-    list_neighbors(pairs, index, margin);
+    const Surroundings around{bodies, table, index, scene, margin};
+    note_moved(around);
+    note_pairs(pairs, around);
+    list_candidates();
     workers_.resize(std::max<std::size_t>(workers_.size(), executor.concurrency()));
     for (Worker& worker : workers_) worker.points.clear();
     executor.parallel_for(touches_.size(), kPairsATask, [&](std::size_t begin, std::size_t end, unsigned w) {
-        Worker& worker = workers_[w];
         for (std::size_t i = begin; i < end; ++i) {
-            Touch& touch = touches_[i];
-            const std::uint32_t a = pairs[touch.pair].first.object.index, b = pairs[touch.pair].second.object.index;
-            const PairState* const before = touch.before != kNoIndex ? &states_[touch.before] : nullptr;
-            touch.worker = w;
-            touch.first_point = static_cast<std::uint32_t>(worker.points.size());
-            worker.pair_points.clear();
-            if (before != nullptr) {
-                touch.cache = before->cache;
-                const auto first = points_.begin() + before->first_point;
-                worker.pair_points.assign(first, first + before->point_count);
-            }
-            neighbors_.find({a, b}, worker.neighbors);
-            touch.neighbors = worker.neighbors.name;
-            const bool same = before != nullptr && before->neighbors == touch.neighbors;
-            if (same && moved_[a] == 0 && moved_[b] == 0 && !have_moved(worker.neighbors)) {
-                for (convex::TrackedPoint& point : worker.pair_points) point.began = false;
-            } else {
-                touch.computed = true;
-                const auto pose_a = bodies.pose_of(a, table.objects[a], index.box(a), scene),
-                           pose_b = bodies.pose_of(b, table.objects[b], index.box(b), scene);
-                if (!pose_a || !pose_b) continue;
-                place_neighbors(bodies, table, index, scene, worker);
-                convex::contact_manifolds({bodies.body(a), *pose_a}, {bodies.body(b), *pose_b},
-                                          {worker.placed[0], worker.placed[1]}, {.margin = margin}, worker.found,
-                                          &touch.cache);
-                convex::track(worker.found.all(), worker.pair_points);
-            }
-            touch.point_count = static_cast<std::uint32_t>(worker.pair_points.size());
-            worker.points.insert(worker.points.end(), worker.pair_points.begin(), worker.pair_points.end());
+            touches_[i].worker = w;
+            touch(touches_[i], around, workers_[w]);
         }
     });
-    gather(pairs);
+    touches_.erase(std::remove_if(touches_.begin(), touches_.end(), [](const Touch& t) { return !t.computed; }),
+                   touches_.end());
+    computed_ = touches_.size();
+    for (const std::uint32_t object : movers_) moved_[object] = 0;
+    write_contacts();
 }
 
-void BodyContacts::add(const ObjectPair& pair, ContactPhase phase, std::uint32_t first_point, std::uint32_t count) {
-    contacts_.push_back({pair.first, pair.second, phase, next_points_.data() + first_point, count});
-}
-
-// In the order of the pairs, whoever computed them. A state is kept while the pair's boxes meet, for its cache.
-void BodyContacts::gather(std::span<const ObjectPair> pairs) {
-    contacts_.clear();
-    next_states_.clear();
-    next_points_.clear();
-    std::size_t count = 0;
-    for (const Touch& touch : touches_) count += touch.point_count;
-    if (count > next_points_.capacity()) next_points_.reserve(count + count / 2);
-    std::size_t old = 0;
-    const auto end_until = [&](std::size_t state) {
-        for (; old < state; ++old)
-            if (states_[old].point_count > 0) add(states_[old].pair, ContactPhase::ended, 0, 0);
-    };
-    for (const Touch& touch : touches_) {
-        computed_ += touch.computed ? 1 : 0;
-        const ObjectPair& pair = pairs[touch.pair];
-        while (old < states_.size() && (is_before(states_[old].pair, pair) ||
-                                        (touch.before == kNoIndex && !is_before(pair, states_[old].pair))))
-            end_until(old + 1);
-        const auto first = static_cast<std::uint32_t>(next_points_.size());
-        const auto from = workers_[touch.worker].points.begin() + touch.first_point;
-        next_points_.insert(next_points_.end(), from, from + touch.point_count);
-        next_states_.push_back({pair, touch.cache, touch.neighbors, first, touch.point_count});
-        const bool touched = touch.before != kNoIndex && states_[touch.before].point_count > 0;
-        if (touch.point_count > 0)
-            add(pair, touched ? ContactPhase::stayed : ContactPhase::began, first, touch.point_count);
-        else if (touched)
-            add(pair, ContactPhase::ended, 0, 0);
-        if (touch.before != kNoIndex) old = touch.before + std::size_t{1};
+void BodyContacts::update_all(std::span<const ObjectPair> pairs, const ObjectBodies& bodies, const ObjectTable& table,
+                              const SpatialIndex& index, const scene::Scene& scene, double margin, Executor& executor) {
+    all_.clear();
+    gone_.clear();
+    for (const ObjectPair& pair : pairs) all_.push_back(ids_of(pair.first, pair.second));
+    std::size_t place = 0;
+    for (const PairState& state : states_) {
+        const IdPair ids = ids_of(state.pair.first, state.pair.second);
+        while (place < all_.size() && all_[place] < ids) ++place;
+        if (place == all_.size() || !(all_[place] == ids)) gone_.push_back(ids);
     }
-    end_until(states_.size());
-    std::swap(states_, next_states_);
-    std::swap(points_, next_points_);
+    update({all_, gone_}, bodies, table, index, scene, margin, executor);
+}
+
+// What began in the update before stays.
+void BodyContacts::age() {
+    std::size_t place = 0;
+    for (const IdPair& pair : began_) {
+        place = find_from(place, contacts_, pair, is_contact_before);
+        for (std::size_t at = place; is_at(contacts_, at, pair); ++at)
+            if (contacts_[at].phase == ContactPhase::began) contacts_[at].phase = ContactPhase::stayed;
+    }
+    place = 0;
+    for (const IdPair& pair : fresh_) {
+        place = find_from(place, states_, pair, is_state_before);
+        if (place == states_.size()) break;
+        for (std::uint32_t i = 0; i < states_[place].point_count; ++i) states_[place].points[i].began = false;
+    }
+    began_.clear();
+    fresh_.clear();
+    std::swap(ended_, ended_before_);
+    ended_.clear();
+}
+
+void BodyContacts::write(PairState& state, const Touch& touch) {
+    state.cache = touch.cache;
+    state.neighbors = touch.neighbors;
+    state.asks_neighbors = touch.asks_neighbors;
+    state.is_new = false;
+    if (touch.point_count > state.points.size()) {
+        points_.give_back(state.points);
+        state.points = points_.take(touch.point_count);
+    }
+    state.point_count = touch.point_count;
+    std::copy_n(workers_[touch.worker].points.begin() + touch.first_point, touch.point_count, state.points.begin());
+}
+
+// Goes through the pairs that were computed, those that touched and are gone, and the contacts that ended in the update
+// before; all are in order. Two contacts of objects of the same indices are one that ended and one of new objects.
+void BodyContacts::write_contacts() {
+    age();
+    edits_.begin();
+    added_.clear();
+    std::size_t t = 0, d = 0, e = 0, place = 0;
+    while (t < touches_.size() || d < dropped_.size() || e < ended_before_.size()) {
+        const PairState* const next = t < touches_.size() ? &states_[touches_[t].state] : nullptr;
+        IdPair ids = next != nullptr ? ids_of(next->pair.first, next->pair.second) : IdPair{kNoIndex, kNoIndex};
+        const bool is_touch_at = next != nullptr;
+        const IdPair of_touch = ids;
+        if (d < dropped_.size() && dropped_[d] < ids) ids = dropped_[d];
+        if (e < ended_before_.size() && ended_before_[e] < ids) ids = ended_before_[e];
+        const bool is_touched = is_touch_at && of_touch == ids, is_dropped = d < dropped_.size() && dropped_[d] == ids;
+        place = find_from(place, contacts_, ids, is_contact_before);
+        std::size_t at = place;
+        if (e < ended_before_.size() && ended_before_[e] == ids) {
+            edits_.remove(at++);
+            ++e;
+        }
+        const bool was_touching = is_at(contacts_, at, ids);
+        const auto end = [&](BodyContact& contact) {
+            contact.phase = ContactPhase::ended;
+            contact.points = nullptr;
+            contact.point_count = 0;
+            ended_.push_back(ids);
+        };
+        if (is_dropped) {
+            end(contacts_[at++]);
+            ++d;
+        }
+        if (is_touched) {
+            const Touch& touch = touches_[t];
+            PairState& state = states_[touch.state];
+            write(state, touch);
+            const bool stays = was_touching && !is_dropped;
+            if (touch.point_count > 0) {
+                fresh_.push_back(ids);
+                if (!stays) began_.push_back(ids);
+            }
+            if (stays && touch.point_count > 0) {
+                contacts_[at].points = state.points.data();
+                contacts_[at].point_count = state.point_count;
+            } else if (stays) {
+                end(contacts_[at]);
+            } else if (touch.point_count > 0) {
+                edits_.add(at);
+                added_.push_back(static_cast<std::uint32_t>(t));
+            }
+            ++t;
+        }
+    }
+    edits_.apply(contacts_);
+    for (std::size_t n = 0; n < added_.size(); ++n) {
+        const PairState& state = states_[touches_[added_[n]].state];
+        contacts_[edits_.places()[n]] = {state.pair.first, state.pair.second, ContactPhase::began, state.points.data(),
+                                         state.point_count};
+    }
 }
 
 void BodyContacts::stay() {
     computed_ = 0;
-    std::size_t kept = 0;
-    for (BodyContact& contact : contacts_) {
-        if (contact.phase == ContactPhase::ended) continue;
-        contact.phase = ContactPhase::stayed;
-        for (std::uint32_t i = 0; i < contact.point_count; ++i) contact.points[i].began = false;
-        contacts_[kept++] = contact;
-    }
-    contacts_.resize(kept);
+    touches_.clear();
+    dropped_.clear();
+    write_contacts();
 }
 
 }  // namespace crofton::world

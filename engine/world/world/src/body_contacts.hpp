@@ -2,8 +2,11 @@
 // Where bodies of objects touch from update to update.
 #pragma once
 #include <crofton/convex/query.hpp>
+#include <crofton/core/sorted_edits.hpp>
+#include <crofton/geometry/shapes.hpp>
 #include <crofton/scene/scene.hpp>
 
+#include "block_pool.hpp"
 #include "object_bodies.hpp"
 #include "object_table.hpp"
 #include "pair_neighbors.hpp"
@@ -13,6 +16,12 @@ namespace crofton::world {
 
 class BodyContacts {
   public:
+    // Pairs since the update before, in order: those that are there and new, or of an object that has moved or changed,
+    // and maybe others; and those that are there no more.
+    struct ChangedPairs {
+        std::span<const IdPair> there, ended;
+    };
+
     // The object's body, or where it stands, has changed otherwise than by its box.
     void note(std::uint32_t object) { changed_.push_back(object); }
     void forget_changes() { changed_.clear(); }  // where contacts are not asked for
@@ -20,27 +29,32 @@ class BodyContacts {
     // False: the pairs do not matter to an update.
     [[nodiscard]] bool has_work(const ObjectBodies& bodies) const { return bodies.count() > 0 || !states_.empty(); }
     // Pairs are computed that are new, or of an object among the index's moved_items(), or with another body, or noted;
-    // or where that holds of a neighbour.
-    void update(std::span<const ObjectPair> pairs, const ObjectBodies& bodies, const ObjectTable& table,
+    // or where a neighbour matters for which that holds. The cost follows these, however many others rest.
+    void update(const ChangedPairs& pairs, const ObjectBodies& bodies, const ObjectTable& table,
                 const SpatialIndex& index, const scene::Scene& scene, double margin, Executor& executor);
+    // The same, of all pairs.
+    void update_all(std::span<const ObjectPair> pairs, const ObjectBodies& bodies, const ObjectTable& table,
+                    const SpatialIndex& index, const scene::Scene& scene, double margin, Executor& executor);
     void stay();  // nothing has changed
     [[nodiscard]] std::span<const BodyContact> contacts() const { return contacts_; }
     [[nodiscard]] std::size_t computed() const { return computed_; }  // pairs, in the last update or stay
 
   private:
-    // A pair that touches, with what it remembers.
+    // A pair whose boxes meet, with what it remembers.
     struct PairState {
         ObjectPair pair;
         convex::PairCache cache;
         std::uint64_t neighbors = 0;  // their name
-        std::uint32_t first_point = 0, point_count = 0;
+        bool asks_neighbors = false;  // else they do not matter
+        bool is_new = true;
+        std::uint32_t point_count = 0;
+        std::span<convex::TrackedPoint> points;  // with room for more
     };
     // What one pair has come to: a range of the worker's points.
     struct Touch {
-        std::uint32_t pair = 0;           // of the pairs given
-        std::uint32_t before = kNoIndex;  // its state in the update before
+        std::uint32_t state = 0;
         std::uint32_t worker = 0, first_point = 0, point_count = 0;
-        bool computed = false;
+        bool computed = false, asks_neighbors = false;
         std::uint64_t neighbors = 0;
         convex::PairCache cache;
     };
@@ -48,27 +62,49 @@ class BodyContacts {
         convex::Manifolds found;
         Vector<convex::TrackedPoint> points, pair_points;
         Neighbors neighbors;
-        Vector<RigidTransform> poses;  // of them
         Vector<convex::BodyAtPose> placed[2];
     };
-    void list(std::span<const ObjectPair> pairs, const ObjectBodies& bodies);
-    void list_neighbors(std::span<const ObjectPair> pairs, const SpatialIndex& index, double margin);
+    // What an update looks things up in.
+    struct Surroundings {
+        const ObjectBodies& bodies;
+        const ObjectTable& table;
+        const SpatialIndex& index;
+        const scene::Scene& scene;
+        double margin;
+    };
+    void note_moved(const Surroundings& around);
+    void note_pairs(const ChangedPairs& pairs, const Surroundings& around);
+    void place_object(std::uint32_t object, const Surroundings& around);
+    void rename(PairState& state, const ObjectPair& pair);
+    void drop(const PairState& state);
+    void list_candidates();
     [[nodiscard]] bool have_moved(const Neighbors& neighbors) const;
-    void place_neighbors(const ObjectBodies& bodies, const ObjectTable& table, const SpatialIndex& index,
-                         const scene::Scene& scene, Worker& worker) const;
-    void note_moved(const SpatialIndex& index);
-    void gather(std::span<const ObjectPair> pairs);
-    void add(const ObjectPair& pair, ContactPhase phase, std::uint32_t first_point, std::uint32_t count);
+    void place_neighbors(const Surroundings& around, Worker& worker) const;
+    void compute(Touch& touch, const Surroundings& around, Worker& worker) const;
+    void touch(Touch& touch, const Surroundings& around, Worker& worker) const;
+    void age();
+    void write_contacts();
+    void write(PairState& state, const Touch& touch);
 
     std::size_t computed_ = 0;
     Vector<std::uint32_t> changed_;  // noted since the last update
     Vector<std::uint8_t> moved_;     // by object, in this update
+    Vector<std::uint32_t> movers_;   // of these
     PairNeighbors neighbors_;
+    Vector<PairState> states_;      // in order
+    Vector<BodyContact> contacts_;  // in order
+    Vector<IdPair> began_, ended_;  // contacts that have in the last update
+    Vector<IdPair> fresh_;          // pairs whose points were computed in the last update
+    BlockPool<convex::TrackedPoint> points_;
+    // Scratch of an update.
+    Vector<ObjectPair> came_;
+    Vector<PairNeighbors::Pair> joined_, parted_;
+    Vector<IdPair> dropped_;  // pairs that touched and are there no more
+    Vector<IdPair> candidates_, ended_before_, all_, gone_;
     Vector<Touch> touches_;
+    Vector<std::uint32_t> added_;  // contacts that are new, by their touches
     Vector<Worker> workers_;
-    Vector<PairState> states_, next_states_;
-    Vector<convex::TrackedPoint> points_, next_points_;
-    Vector<BodyContact> contacts_;
+    ListEdits edits_;
 };
 
 }  // namespace crofton::world

@@ -55,6 +55,9 @@ class ContactFinder {
     [[nodiscard]] std::size_t pair_count() const { return broadphase_.statistics().box_pairs; }
     [[nodiscard]] std::size_t tested_count() const { return touches_.size(); }  // pairs whose shapes were looked at
     [[nodiscard]] std::span<const Contact> contacts() const { return contacts_; }
+    // Of the last update(), where contacts are asked for: pairs that were looked at, and those that ended; in order.
+    [[nodiscard]] std::span<const IdPair> touched() const { return touched_; }
+    [[nodiscard]] std::span<const IdPair> ended() const { return broadphase_.ended(); }
     [[nodiscard]] const collide::BroadphaseStatistics& broadphase() const { return broadphase_.statistics(); }
 
   private:

@@ -46,9 +46,15 @@ class Ground {
     [[nodiscard]] bool is_used() const { return is_used_; }
     [[nodiscard]] std::span<const ObjectPair> pairs() const { return all_pairs_; }
     [[nodiscard]] std::span<const Contact> contacts() const { return all_contacts_; }
-    void set_used(bool used) { is_used_ = used || !before_.empty(); }
+    // Now, or in the update before.
+    [[nodiscard]] bool is_or_was_used() const { return is_used_ || was_used_; }
+    void set_used(bool used) {
+        was_used_ = is_used_;
+        is_used_ = used || !before_.empty();
+    }
 
   private:
+    bool was_used_ = false;
     bool is_used_ = false;  // there is ground, or was in the update before
     Vector<ObjectPair> pairs_, all_pairs_, before_;
     Vector<Touching> touching_;

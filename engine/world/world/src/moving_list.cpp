@@ -104,11 +104,12 @@ void MovingList::commit(std::uint32_t now, Vector<ItemId>& moved) {
 }
 
 void MovingList::list_rested(std::uint32_t now, std::uint32_t updates, Vector<ItemId>& rested) {
-    if (now - earliest_ < updates) return;
-    earliest_ = now;
+    const auto has_rested = [&](std::uint32_t last_moved) { return last_moved <= now && now - last_moved >= updates; };
+    if (!has_rested(earliest_)) return;
+    earliest_ = ~std::uint32_t{0};
     for (std::size_t entry = 0; entry < items_.size(); ++entry) {
         earliest_ = std::min(earliest_, last_moved_[entry]);
-        if (now - last_moved_[entry] >= updates) rested.push_back(items_[entry]);
+        if (has_rested(last_moved_[entry])) rested.push_back(items_[entry]);
     }
 }
 

@@ -4,48 +4,71 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 
+#include "object_table.hpp"
+
 namespace crofton::world {
 namespace {
 
-// What meets more objects than these, as a ground does, asks only those that meet the other of the pair as well.
-constexpr std::size_t kCrowd = 64;
 constexpr double kFlush = 1e-6;  // of the size
+
+double size_of(const Aabb& bounds) {
+    return glm::distance(bounds.min, bounds.max);
+}
 
 }  // namespace
 
-void PairNeighbors::list(std::size_t count, const SpatialIndex& index, double margin) {
-    first_.assign(count + 1, 0);
-    for (const Pair& pair : pairs_)
-        for (const std::uint32_t object : {pair.first, pair.second}) ++first_[object + std::size_t{1}];
-    bounds_.resize(count);
-    for (std::uint32_t i = 0; i < count; ++i) {
-        if (first_[i + std::size_t{1}] > 0) {
-            Aabb& box = bounds_[i];
-            box = aabb_of(index.box(i));
-            const glm::dvec3 size = box.max - box.min;
-            const double wider = margin + kFlush * (size.x + size.y + size.z);
-            box.min -= wider;
-            box.max += wider;
+void PairNeighbors::add(const Pair& pair) {
+    const auto insert = [&](std::uint32_t object, std::uint32_t partner) {
+        if (object >= slot_of_.size()) resize(slot_of_, object + std::size_t{1}, kNoIndex);
+        std::uint32_t& slot = slot_of_[object];
+        if (slot == kNoIndex) {
+            if (free_.empty()) {
+                free_.push_back(static_cast<std::uint32_t>(slots_.size()));
+                slots_.emplace_back();
+            }
+            slot = free_.back();
+            free_.pop_back();
         }
-        first_[i + std::size_t{1}] += first_[i];
-    }
-    next_.assign(first_.begin(), first_.end());
-    partners_.resize(2 * pairs_.size());
-    for (const Pair& pair : pairs_) partners_[next_[pair.second]++] = pair.first;
-    for (const Pair& pair : pairs_) partners_[next_[pair.first]++] = pair.second;
+        Vector<std::uint32_t>& partners = slots_[slot].partners;
+        partners.insert(std::lower_bound(partners.begin(), partners.end(), partner), partner);
+    };
+    insert(pair.first, pair.second);
+    insert(pair.second, pair.first);
+}
+
+void PairNeighbors::remove(const Pair& pair) {
+    const auto erase = [&](std::uint32_t object, std::uint32_t partner) {
+        Vector<std::uint32_t>& partners = slots_[slot_of_[object]].partners;
+        partners.erase(std::lower_bound(partners.begin(), partners.end(), partner));
+        if (!partners.empty()) return;
+        free_.push_back(slot_of_[object]);
+        slot_of_[object] = kNoIndex;
+    };
+    erase(pair.first, pair.second);
+    erase(pair.second, pair.first);
+}
+
+void PairNeighbors::place(std::uint32_t object, const Obb& box, double margin,
+                          const std::optional<RigidTransform>& pose) {
+    Slot& slot = slots_[slot_of_[object]];
+    slot.pose = pose;
+    slot.bounds = aabb_of(box);
+    const glm::dvec3 size = slot.bounds.max - slot.bounds.min;
+    const double wider = margin + kFlush * (size.x + size.y + size.z);
+    slot.bounds.min -= wider;
+    slot.bounds.max += wider;
 }
 
 void PairNeighbors::find_beside(std::uint32_t own, std::uint32_t other, Vector<std::uint32_t>& objects) const {
     objects.clear();
     const auto meeting = partners_of(other), own_meeting = partners_of(own);
     // Of what meets a much larger object, as a ground, only what is near takes part.
-    const bool far_reaching =
-        glm::distance(bounds_[other].min, bounds_[other].max) > 4.0 * glm::distance(bounds_[own].min, bounds_[own].max);
+    const bool far_reaching = size_of(bounds_of(other)) > 4.0 * size_of(bounds_of(own));
     const bool crowd = meeting.size() > kCrowd && own_meeting.size() < meeting.size();
     for (const std::uint32_t object : crowd ? own_meeting : meeting) {
         if (object == own || object == other) continue;
         if (crowd && !std::binary_search(meeting.begin(), meeting.end(), object)) continue;
-        if (!far_reaching || intersects(bounds_[object], bounds_[own])) objects.push_back(object);
+        if (!far_reaching || intersects(bounds_of(object), bounds_of(own))) objects.push_back(object);
     }
 }
 

@@ -2,6 +2,8 @@
 // Of a pair of objects that meet: which others lie beside either where they do.
 #pragma once
 #include <crofton/geometry/box.hpp>
+#include <crofton/geometry/transform.hpp>
+#include <optional>
 
 #include "spatial_index.hpp"
 
@@ -20,22 +22,50 @@ class PairNeighbors {
     struct Pair {
         std::uint32_t first, second;  // objects
     };
-    void clear() { pairs_.clear(); }
-    // In the order of first and second.
-    void add(const Pair& pair) { pairs_.push_back(pair); }
-    // After the last add(). The boxes of `count` objects are wider by `margin`, and by what counts as flush.
-    void list(std::size_t count, const SpatialIndex& index, double margin);
+    void add(const Pair& pair);
+    void remove(const Pair& pair);
+    // Whom an object meets, ascending.
+    [[nodiscard]] std::span<const std::uint32_t> partners_of(std::uint32_t object) const {
+        if (object >= slot_of_.size() || slot_of_[object] == kNoIndex) return {};
+        return slots_[slot_of_[object]].partners;
+    }
+    // Where the body of an object that meets others stands; nothing: it meets none for now.
+    [[nodiscard]] const std::optional<RigidTransform>& pose_of(std::uint32_t object) const {
+        return slots_[slot_of_[object]].pose;
+    }
+    // After the object has come into a pair, or moved. Its box is taken wider by `margin`, and by what counts as flush.
+    void place(std::uint32_t object, const Obb& box, double margin, const std::optional<RigidTransform>& pose);
     void find(const Pair& pair, Neighbors& neighbors) const;
+    // Visits the pairs that `object` may lie beside.
+    template <class Visit>
+    void visit_pairs_beside(std::uint32_t object, Visit visit) const {
+        const auto own = partners_of(object);
+        for (const std::uint32_t partner : own) {
+            const auto meeting = partners_of(partner);
+            for (const std::uint32_t other : meeting) {
+                if (other == object) continue;
+                const bool crowd = meeting.size() > kCrowd && partners_of(other).size() < meeting.size();
+                if (!crowd || std::binary_search(own.begin(), own.end(), other)) visit(partner, other);
+            }
+        }
+    }
 
   private:
-    [[nodiscard]] std::span<const std::uint32_t> partners_of(std::uint32_t object) const {
-        return {partners_.data() + first_[object], first_[object + std::size_t{1}] - first_[object]};
-    }
+    // What meets more objects than these, as a ground does, asks only those that meet the other of the pair as well.
+    static constexpr std::size_t kCrowd = 64;
     void find_beside(std::uint32_t own, std::uint32_t other, Vector<std::uint32_t>& objects) const;
 
-    Vector<Pair> pairs_;
-    Vector<std::uint32_t> first_, next_, partners_;  // by object: whom it meets, ascending
-    Vector<Aabb> bounds_;                            // by object, of those that meet several
+    // Of an object that meets others.
+    struct Slot {
+        Vector<std::uint32_t> partners;
+        Aabb bounds;
+        std::optional<RigidTransform> pose;
+    };
+    [[nodiscard]] const Aabb& bounds_of(std::uint32_t object) const { return slots_[slot_of_[object]].bounds; }
+
+    Vector<std::uint32_t> slot_of_;  // by object
+    Vector<Slot> slots_;
+    Vector<std::uint32_t> free_;  // slots
 };
 
 }  // namespace crofton::world

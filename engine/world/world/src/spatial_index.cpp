@@ -14,6 +14,11 @@ namespace {
 
 constexpr std::uint8_t kUpdatesToMove = 2;    // in a row, until an item leaves the tree
 constexpr std::uint32_t kUpdatesToEnter = 1;  // without moving, until a new item does not wait in the list any more
+// Where most that go have come within this many age marks, as bullets do, new items wait as long while the list is
+// short: then they never enter the tree. An old item's mark looks young once in 32 times.
+constexpr std::uint8_t kYoungMarks = 8;
+constexpr std::uint32_t kYoungGoes = 4, kMostShortLived = 64, kManyShortLived = 16;
+constexpr std::size_t kShortList = 64;
 // Into the tree one at a time, at about a microsecond each; a part of the list where many wait.
 constexpr std::size_t kAttachedPerUpdate = 64, kAttachedPart = 16;
 // A tree that is small, or whose items come and go fast, is built anew in one go once such a part of them has come or
@@ -94,8 +99,16 @@ void SpatialIndex::detach(ItemId item) {
     wants_refit_ = true;
 }
 
+void SpatialIndex::note_age_of_removed(const Item& item) {
+    if (static_cast<std::uint8_t>(age_mark() - item.born) < kYoungMarks)
+        short_lived_ = std::min(short_lived_ + kYoungGoes, kMostShortLived);
+    else if (short_lived_ > 0)
+        --short_lived_;
+}
+
 void SpatialIndex::remove(ItemId item) {
     Item& removed = items_[item];
+    if (removed.place != Place::nowhere) note_age_of_removed(removed);
     if (removed.place == Place::resting)
         detach(item);
     else if (removed.place != Place::nowhere)
@@ -131,6 +144,7 @@ void SpatialIndex::set_box_elsewhere(ItemId id, const Obb& box) {
     switch (item.place) {
         case Place::nowhere:
             put(id, item.shown ? Place::entering : Place::hidden, box);
+            item.born = age_mark();
             if (item.shown) member_items_.push_back(id);
             return;
         case Place::hidden:
@@ -244,12 +258,16 @@ void SpatialIndex::enter(const Settings& settings, Changes& changes, Executor& e
         return;
     }
     recent_ += entering.items.size();
-    const std::uint32_t early = settings.updates_to_rest - std::min(settings.updates_to_rest, kUpdatesToEnter);
+    const bool patient = short_lived_ >= kManyShortLived;
     while (!entering.items.empty()) {
         const ItemId item = entering.items.back();
         const Obb box = entering.boxes.back();
+        const bool waits = patient && moving_.size() < kShortList;
+        const std::uint32_t wait =
+            waits ? kYoungMarks * kUpdatesAMark : std::min(kUpdatesToEnter, settings.updates_to_rest);
         take(item);
-        add_mover(item, box, now_ - std::min(now_, early));
+        // As if it had moved so long before that it has waited when it has not moved since; or will move.
+        add_mover(item, box, std::max(now_ + wait, settings.updates_to_rest) - settings.updates_to_rest);
     }
 }
 

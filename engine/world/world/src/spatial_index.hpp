@@ -109,6 +109,7 @@ class SpatialIndex {
         std::uint32_t entry = 0;       // in the list or the group of its place
         std::uint32_t last_moved = 0;  // while it rests; in the list: as of when it came
         std::uint8_t streak = 0;       // updates in a row in which it moved, up to kUpdatesToMove
+        std::uint8_t born = 0;         // age_mark() of the update in which it came
         Place place = Place::nowhere;
         bool shown = true;
     };
@@ -116,6 +117,7 @@ class SpatialIndex {
         Vector<ItemId> items;
         Vector<Obb> boxes;
     };
+    static constexpr std::uint32_t kUpdatesAMark = 8;
     [[nodiscard]] Group& group(Place place) { return groups_[static_cast<std::size_t>(place)]; }
     [[nodiscard]] const Group& group(Place place) const { return groups_[static_cast<std::size_t>(place)]; }
     // Into a group; into the list with add_mover().
@@ -126,6 +128,8 @@ class SpatialIndex {
     void detach(ItemId item);
     void note_move(ItemId item);
     void note_changed(ItemId item);
+    void note_age_of_removed(const Item& item);
+    [[nodiscard]] std::uint8_t age_mark() const { return static_cast<std::uint8_t>(now_ / kUpdatesAMark); }
     [[nodiscard]] bool is_built_at_once() const;
     void rebuild_step(std::size_t budget);
     void attach(ItemId item);
@@ -158,7 +162,8 @@ class SpatialIndex {
     // Since the last rebuild began; of them those before the last update, and those when the one under way began.
     std::size_t tree_changes_ = 0, changes_before_ = 0, changes_at_start_ = 0;
     std::size_t came_or_went_ = 0, came_or_went_before_ = 0;  // in the tree, since it was last built; before the update
-    std::size_t recent_ = 0;  // items that came, or went from the tree, in about the last eight updates
+    std::uint32_t short_lived_ = 0;  // rises where items go that are young, falls where others do
+    std::size_t recent_ = 0;         // items that came, or went from the tree, in about the last eight updates
     bool rebuilding_ = false, wants_refit_ = false;
     // Over the list's boxes; made when someone asks.
     mutable std::mutex mover_tree_mutex_;

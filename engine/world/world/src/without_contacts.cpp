@@ -15,8 +15,10 @@ Result<void> ContactFinder::update(const ObjectTable&, const SpatialIndex&, cons
 }
 void ContactFinder::stay() {}
 
-void BodyContacts::update(std::span<const ObjectPair>, const ObjectBodies&, const ObjectTable&, const SpatialIndex&,
+void BodyContacts::update(const ChangedPairs&, const ObjectBodies&, const ObjectTable&, const SpatialIndex&,
                           const scene::Scene&, double, Executor&) {}
+void BodyContacts::update_all(std::span<const ObjectPair>, const ObjectBodies&, const ObjectTable&, const SpatialIndex&,
+                              const scene::Scene&, double, Executor&) {}
 void BodyContacts::stay() {}
 
 }  // namespace crofton::world

@@ -206,9 +206,12 @@ Result<void> World::update(Executor& executor) {
         if (s.ground.is_used()) s.update_ground();
         if (s.options.contacts) {
             if (s.ground.is_used()) s.update_ground_contacts();
-            const bool has_work = s.body_contacts.has_work(s.object_bodies);
-            s.body_contacts.update(has_work ? pairs() : std::span<const ObjectPair>(), s.object_bodies, s.table,
-                                   s.index, s.scene, s.options.contact_margin, executor);
+            if (s.ground.is_or_was_used())
+                s.body_contacts.update_all(pairs(), s.object_bodies, s.table, s.index, s.scene,
+                                           s.options.contact_margin, executor);
+            else
+                s.body_contacts.update({s.finder.touched(), s.finder.ended()}, s.object_bodies, s.table, s.index,
+                                       s.scene, s.options.contact_margin, executor);
         }
     }
     if (!s.options.pairs || !s.options.contacts) s.body_contacts.forget_changes();

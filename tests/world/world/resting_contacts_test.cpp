@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+// Contacts of bodies of which few move: what is not computed anew is as if it were.
+#include <doctest/doctest.h>
+#include <algorithm>
+#include <counting_memory.hpp>
+#include <crofton/convex/query.hpp>
+#include <crofton/crofton.hpp>
+#include <random>
+#include <vector>
+
+#include "new_counter.hpp"
+
+using namespace crofton;
+
+namespace {
+
+// The same crates in two Worlds. In the second each body is set again before each update, so that all is computed.
+class Heaps {
+  public:
+    explicit Heaps(std::uint64_t seed) : random_(seed) {}
+
+    int index(int count) { return std::uniform_int_distribution<int>(0, count - 1)(random_); }
+    // A place of a grid on which crates touch exactly, or a little off it.
+    Obb place() {
+        Obb box;
+        box.half_extents = glm::vec3(0.5f);
+        box.center = glm::dvec3(index(5), index(4), index(5));
+        if (index(3) == 0)
+            for (int k = 0; k < 3; ++k) box.center[k] += std::uniform_real_distribution<double>(-1e-3, 1e-3)(random_);
+        return box;
+    }
+    void add() {
+        const Obb box = place();
+        const std::uint64_t user = random_();
+        for (World* const world : {&few, &all}) {
+            const ObjectHandle object = world->add({.bound = box, .user = user}).value();
+            REQUIRE(world->set_body(object, &crate_).has_value());
+            if (world == &few) objects.push_back(object);
+        }
+    }
+    void remove(std::size_t which) {
+        for (World* const world : {&few, &all}) REQUIRE(world->remove(in(*world, objects[which])).has_value());
+        objects.erase(objects.begin() + static_cast<std::ptrdiff_t>(which));
+    }
+    void change() {
+        const std::size_t which = static_cast<std::size_t>(index(static_cast<int>(objects.size())));
+        const Obb box = place();
+        const std::uint64_t user = random_();
+        const int what = index(8);
+        const std::uint32_t layers = index(2) == 0 ? 0u : ~0u;
+        if (what == 0) return remove(which);
+        if (what == 1) return add();
+        for (World* const world : {&few, &all}) {
+            const ObjectHandle object = in(*world, objects[which]);
+            if (what == 2) REQUIRE(world->set_user(object, user).has_value());
+            if (what == 3) REQUIRE(world->set_body(object, layers == 0 ? nullptr : &crate_).has_value());
+            if (what == 4) REQUIRE(world->set_collides_with(object, layers).has_value());
+            if (what >= 5) REQUIRE(world->set_bound(object, box).has_value());
+        }
+        if (what == 3) bare_[objects[which].index] = layers == 0;
+    }
+    void update() {
+        for (const ObjectHandle object : objects)
+            if (!bare_[object.index]) REQUIRE(all.set_body(in(all, object), &crate_).has_value());
+        REQUIRE(few.update().has_value());
+        REQUIRE(all.update().has_value());
+    }
+    // Handles of the two Worlds differ by where their generations begin.
+    ObjectHandle in(World& world, ObjectHandle object) {
+        if (&world == &few) return object;
+        ObjectHandle other = object;
+        other.generation += offset();
+        return other;
+    }
+    std::uint32_t offset() {
+        if (offset_ == 0) {
+            const ObjectHandle a = few.add({.bound = Sphere{{1e6, 0, 0}, 1.0}}).value(),
+                               b = all.add({.bound = Sphere{{1e6, 0, 0}, 1.0}}).value();
+            offset_ = b.generation - a.generation;
+        }
+        return offset_;
+    }
+
+    World few, all;
+    std::vector<ObjectHandle> objects;
+
+  private:
+    std::mt19937_64 random_;
+    convex::Body crate_ = convex::Body::box(glm::vec3(0.5f)).value();
+    std::uint32_t offset_ = 0;
+    bool bare_[4096] = {};
+};
+
+}  // namespace
+
+TEST_SUITE("world/resting_contacts") {
+    TEST_CASE("while few crates of a heap move, come and go, all contacts are as if each were computed anew") {
+        std::size_t contacts = 0, computed_few = 0, computed_all = 0, ended = 0, deep = 0;
+        for (const std::uint64_t seed : {1u, 2u, 3u}) {
+            Heaps heaps(seed);
+            (void)heaps.offset();
+            for (int i = 0; i < 60; ++i) heaps.add();
+            for (int frame = 0; frame < 150; ++frame) {
+                CAPTURE(seed);
+                CAPTURE(frame);
+                for (int n = heaps.index(3); n > 0; --n) heaps.change();
+                heaps.update();
+                computed_few += heaps.few.statistics().body_pairs_computed;
+                computed_all += heaps.all.statistics().body_pairs_computed;
+                const auto few = heaps.few.body_contacts(), all = heaps.all.body_contacts();
+                REQUIRE(few.size() == all.size());
+                for (std::size_t i = 0; i < few.size(); ++i) {
+                    const BodyContact &a = few[i], &b = all[i];
+                    CHECK(heaps.in(heaps.all, a.first.object) == b.first.object);
+                    CHECK(heaps.in(heaps.all, a.second.object) == b.second.object);
+                    CHECK(a.first.user == b.first.user);
+                    CHECK(a.second.user == b.second.user);
+                    CHECK(a.phase == b.phase);
+                    REQUIRE(a.point_count == b.point_count);
+                    CHECK((a.point_count > 0) == (a.phase != ContactPhase::ended));
+                    ended += a.phase == ContactPhase::ended;
+                    double most = 0.0;
+                    for (std::uint32_t k = 0; k < a.point_count; ++k) {
+                        CHECK(glm::distance(a.points[k].normal, b.points[k].normal) < 1e-12);
+                        CHECK(glm::distance(a.points[k].contact.position, b.points[k].contact.position) < 1e-12);
+                        CHECK(std::abs(a.points[k].contact.depth - b.points[k].contact.depth) < 1e-12);
+                        CHECK(a.points[k].began == b.points[k].began);
+                        most = std::max(most, std::abs(a.points[k].contact.depth));
+                    }
+                    deep += most > 1e-5;
+                }
+                contacts += few.size();
+            }
+        }
+        MESSAGE(contacts, " contacts, ", ended, " ended, ", deep, " deep; computed ", computed_few, " of ",
+                computed_all);
+        CHECK(ended > 100);
+        CHECK(deep > 1000);
+        CHECK(2 * computed_few < computed_all);
+    }
+
+    TEST_CASE("a stack that rests costs one crate's mover its own pairs, and allocates nothing once warm") {
+        testing::CountingMemory memory;
+        {
+            World world;
+            const convex::Body crate = convex::Body::box(glm::vec3(0.5f)).value();
+            std::vector<ObjectHandle> objects;
+            std::vector<Obb> boxes;
+            for (int i = 0; i < 8 * 8 * 8; ++i) {
+                Obb box;
+                box.half_extents = glm::vec3(0.5f);
+                box.center = glm::dvec3(i % 8, i / 8 % 8, i / 64);
+                boxes.push_back(box);
+                objects.push_back(world.add({.bound = box}).value());
+                REQUIRE(world.set_body(objects.back(), &crate).has_value());
+            }
+            for (int i = 0; i < 10; ++i) REQUIRE(world.update().has_value());
+            CHECK(world.body_contacts().size() == (22 * 22 * 22 - 512) / 2);
+            CHECK(world.statistics().body_pairs_computed == 0);
+            // In and out of the layer on top. Lists of pairs that nobody asks for gather changes for 100 updates.
+            const std::size_t which = 3 + 8 * 7 + 64 * 3;
+            const auto move = [&](int frame) {
+                Obb moved = boxes[which];
+                moved.center.y += frame % 2 != 0 ? 0.25 : 0.0;
+                REQUIRE(world.set_bound(objects[which], moved).has_value());
+                REQUIRE(world.update().has_value());
+            };
+            for (int frame = 0; frame < 400; ++frame) move(frame);
+            const std::size_t before = memory.allocations(), news = testing::operator_news();
+            for (int frame = 0; frame < 20; ++frame) {
+                move(frame);
+                CHECK(world.statistics().body_pairs_computed <= 17);
+            }
+            CHECK(memory.allocations() == before);
+            CHECK(testing::operator_news() == news);
+        }
+        CHECK(memory.bytes_in_use() == 0);
+    }
+}
