@@ -8,6 +8,8 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "rigid.hpp"
+
 namespace crofton::world {
 namespace {
 
@@ -15,13 +17,7 @@ constexpr double kSlack = 1.0 + 0x1p-40;  // outweighs what bounds of bodies are
 
 // As validate_pose tells; what is clearly a rotation is told without its words.
 bool is_rigid(const glm::dmat3& linear) {
-    constexpr double kSurely = 2e-7;
-    const glm::dvec3 &x = linear[0], &y = linear[1], &z = linear[2];
-    const double most =
-        std::max({std::abs(glm::dot(x, x) - 1.0), std::abs(glm::dot(y, y) - 1.0), std::abs(glm::dot(z, z) - 1.0),
-                  std::abs(glm::dot(x, y)), std::abs(glm::dot(y, z)), std::abs(glm::dot(z, x))});
-    if (most <= kSurely && glm::dot(glm::cross(x, y), z) > 0.0) return true;
-    return convex::validate_pose({linear, glm::dvec3(0.0)}).has_value();
+    return is_clearly_rotation(linear) || convex::validate_pose({linear, glm::dvec3(0.0)}).has_value();
 }
 
 bool has_nothing(const glm::dmat3& linear) {
@@ -127,15 +123,23 @@ std::optional<RigidTransform> ObjectBodies::pose_of(std::uint32_t id, const Obje
     return RigidTransform{world.linear, world.translation};
 }
 
+glm::vec3 ObjectBodies::least_half_extents(std::uint32_t object) const {
+    if (!has(object) || !body(object).is_bounded()) return glm::vec3(-1.0f);
+    const Aabb& bounds = body(object).bounds();
+    const glm::dvec3 reach = glm::max(glm::abs(bounds.min), glm::abs(bounds.max)) / kSlack;
+    glm::vec3 least(reach);
+    for (int k = 0; k < 3; ++k)
+        if (static_cast<double>(least[k]) < reach[k]) least[k] = std::nextafter(least[k], HUGE_VALF);
+    return least;
+}
+
 bool ObjectBodies::fits(std::uint32_t object, const Bound& bound) const {
     const convex::Body& of = body(object);
     if (!of.is_bounded()) return true;
     if (bound.kind == BoundKind::ball) return of.reach() + of.radius() <= bound.radius * kSlack;
     if (!is_rigid(glm::dmat3(bound.box.axes))) return false;
-    const glm::dvec3 needed = glm::max(glm::abs(of.bounds().min), glm::abs(of.bounds().max));
-    for (int k = 0; k < 3; ++k)
-        if (!(needed[k] <= static_cast<double>(bound.box.half_extents[k]) * kSlack)) return false;
-    return true;
+    const glm::vec3 least = least_half_extents(object), &half = bound.box.half_extents;
+    return half.x >= least.x && half.y >= least.y && half.z >= least.z;
 }
 
 Result<void> ObjectBodies::scale(std::uint32_t object, const glm::dmat3& linear) {

@@ -38,6 +38,8 @@ class ObjectBodies {
         return object < entries_.size() && entries_[object].given.kind != BoundKind::none;
     }
     [[nodiscard]] const Bound& given(std::uint32_t object) const { return entries_[object].given; }
+    // A box in the body's frame covers the body if it has these half extents, at least; −1: any does.
+    [[nodiscard]] glm::vec3 least_half_extents(std::uint32_t object) const;
     // Whether an object with this bound covers its body with it. Quick; false where that is not sure.
     [[nodiscard]] bool fits(std::uint32_t object, const Bound& bound) const;
 

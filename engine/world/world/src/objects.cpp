@@ -174,7 +174,7 @@ Result<void> World::set_bounds(Strided<ObjectHandle> objects, Strided<Obb> boxes
     for (std::size_t begin = 0; begin < boxes.size(); begin += kAtOnce) {
         const std::size_t end = std::min(begin + kAtOnce, boxes.size());
         std::uint32_t entries[kAtOnce];
-        const std::size_t movers = s.movers.list_entries(objects, begin, end, entries);
+        const std::size_t movers = s.movers.list_entries(objects, boxes, begin, end, entries);
         const std::size_t staged = s.index.stage_movers({entries, movers}, &boxes[begin], boxes.stride());
         for (std::size_t i = begin + staged; i < end; ++i) {
             auto set = s.set_bound(objects[i], boxes[i], i);

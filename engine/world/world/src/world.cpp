@@ -152,8 +152,8 @@ void World::State::show(std::uint32_t id) {
 void World::State::note_movers() {
     const auto note = [&](std::uint32_t id) {
         const world::Object& object = table.objects[id];
-        const bool is_box = object.alive && object.kind == BoundKind::box && !object_bodies.has(id);
-        movers.set(table.handle(id), is_box ? index.mover_entry(id) : kNoIndex);
+        const bool is_box = object.alive && object.kind == BoundKind::box && !object_bodies.is_grown(id);
+        movers.set(table.handle(id), is_box ? index.mover_entry(id) : kNoIndex, object_bodies.least_half_extents(id));
     };
     for (const std::uint32_t id : index.relisted_items()) note(id);
     for (const std::uint32_t id : rebound) note(id);
