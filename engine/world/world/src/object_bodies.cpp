@@ -78,6 +78,11 @@ Obb box_around(const Obb& box, const convex::Body& body, const RigidTransform& p
     return grown;
 }
 
+Obb box_around(const convex::Body& body, const RigidTransform& pose) {
+    const glm::dvec3 center = pose.rotation * body.bounds().center() + pose.translation;
+    return box_around({center, glm::mat3(pose.rotation), glm::vec3(0.0f)}, body, pose, 0.0);
+}
+
 void ObjectBodies::list_unbounded(std::uint32_t object) {
     const auto place = std::lower_bound(unbounded_.begin(), unbounded_.end(), object);
     const bool listed = place != unbounded_.end() && *place == object;
@@ -192,11 +197,15 @@ Bound ObjectBodies::cover(std::uint32_t object, const Bound& bound) {
 
 // The scene's box holds the image of all that the mesh's box holds. So a rigid transform needs a look at the body only
 // where the body or the mesh is another.
-Obb ObjectBodies::cover(std::uint32_t object, scene::InstanceId instance, const scene::Scene& scene) {
+Obb ObjectBodies::cover(std::uint32_t object, scene::InstanceId instance, const scene::Scene& scene, bool alone) {
     Entry& entry = entries_[object];
     const Obb& box = scene.world_boxes()[instance];
     const Transform& world = scene.world(scene.node_of(instance));
     if (entry.nowhere || has_nothing(world.linear) || !body(object).is_bounded()) return box;
+    if (alone) {
+        const glm::dmat3& rotation = entry.scaled ? entry.map.rotation : world.linear;
+        return box_around(body(object), {rotation, world.translation});
+    }
     if (entry.scaled) return box_around(box, body(object), {entry.map.rotation, world.translation}, 0.0);
     const scene::MeshId mesh = scene.mesh_of(instance);
     if (entry.mesh_revision != scene.mesh_revision(mesh)) {
