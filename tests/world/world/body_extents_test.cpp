@@ -353,7 +353,8 @@ TEST_SUITE("world/body_extents") {
                                            convex::Body::height_field(field)};
             const convex::Body& body = bodies[i % 5];
             const double scale = i % 2 == 0 ? 1.0 : random.number(0.2, 3.0);
-            const RigidTransform pose{random.rotation(), 9.0 * random.direction()};
+            const double far = i % 7 == 0 ? 1e9 : 9.0;
+            const RigidTransform pose{random.rotation(), far * random.direction()};
             const Transform transform{scale * pose.rotation, pose.translation};
             const bool has_node = i % 3 == 0;
             const ObjectHandle object = has_node ? world.add({.node = node, .body = &body}).value()
@@ -371,6 +372,14 @@ TEST_SUITE("world/body_extents") {
                 CHECK(glm::length(glm::dvec3(box.axes[k]) - pose.rotation[k]) < 1e-6);
                 CHECK(std::abs(box.center[k] - middle[k]) < 1e-5);
                 CHECK(std::abs(static_cast<double>(box.half_extents[k]) - half[k]) < 1e-5);
+            }
+            // And nothing of the body sticks out.
+            const glm::dmat3 to_box = glm::inverse(glm::dmat3(box.axes));
+            for (int n = 0; n < 30 && body.is_convex(); ++n) {
+                const glm::dvec3 tip = scale * convex::support_point(body, random.direction());
+                const glm::dvec3 in_box = glm::abs(to_box * (pose.rotation * tip + (pose.translation - box.center)));
+                const double rounding = i % 2 == 0 ? 1e-14 * far : 1e-6;  // a scaled body's sizes are floats
+                for (int k = 0; k < 3; ++k) CHECK(in_box[k] <= static_cast<double>(box.half_extents[k]) + rounding);
             }
         }
     }

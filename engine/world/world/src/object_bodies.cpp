@@ -24,6 +24,19 @@ bool has_nothing(const glm::dmat3& linear) {
     return linear[0] == glm::dvec3(0.0) && linear[1] == glm::dvec3(0.0) && linear[2] == glm::dvec3(0.0);
 }
 
+glm::vec3 rounded_up(const glm::dvec3& half, double rounding) {
+    return glm::vec3(half * (1.0 + 0x1p-22) + (rounding * (1.0 + 0x1p-22) + 0x1p-149));
+}
+
+// From and to these coordinates along the axes from the box's centre, with its axes.
+Obb spanning(const Obb& box, const glm::dvec3& from, const glm::dvec3& to) {
+    Obb result = box;
+    result.center = box.center + glm::dmat3(box.axes) * (0.5 * (from + to));
+    const glm::dvec3 size = glm::abs(result.center);
+    result.half_extents = rounded_up(0.5 * (to - from), 0x1p-50 * (size.x + size.y + size.z));
+    return result;
+}
+
 }  // namespace
 
 RigidTransform frame_of(BoundKind kind, const Obb& box) {
@@ -68,19 +81,19 @@ Obb box_around(const Obb& box, const convex::Body& body, const RigidTransform& p
         }
         if (covers()) return box;
     }
-    const glm::dvec3 from = glm::min(-given, low), to = glm::max(given, high), center = 0.5 * (from + to);
-    Obb grown = box;
-    grown.center = box.center + axes * center;
-    const double rounding = 0x1p-50 * (std::abs(grown.center.x) + std::abs(grown.center.y) + std::abs(grown.center.z));
-    for (int k = 0; k < 3; ++k)
-        grown.half_extents[k] =
-            static_cast<float>((0.5 * (to[k] - from[k])) * (1.0 + 0x1p-22) + rounding * (1.0 + 0x1p-22) + 0x1p-149);
-    return grown;
+    return spanning(box, glm::min(-given, low), glm::max(given, high));
 }
 
+// The axes are the pose's but for their rounding to float, which tilts the body a little in the box.
 Obb box_around(const convex::Body& body, const RigidTransform& pose) {
-    const glm::dvec3 center = pose.rotation * body.bounds().center() + pose.translation;
-    return box_around({center, glm::mat3(pose.rotation), glm::vec3(0.0f)}, body, pose, 0.0);
+    const glm::dvec3 middle = body.bounds().center(), half = body.bounds().half_extents();
+    Obb box{pose.rotation * middle + pose.translation, glm::mat3(pose.rotation), glm::vec3(0.0f)};
+    const glm::dmat3 tilt = glm::transpose(pose.rotation) * (glm::dmat3(box.axes) - pose.rotation);
+    glm::dvec3 needed = half * kSlack;
+    for (int k = 0; k < 3; ++k) needed += (1.0 + 1e-5) * half[k] * glm::abs(tilt[k]);
+    const glm::dvec3 size = glm::abs(middle) + glm::abs(pose.translation);
+    box.half_extents = rounded_up(needed, 0x1p-49 * (size.x + size.y + size.z));
+    return box;
 }
 
 void ObjectBodies::list_unbounded(std::uint32_t object) {
@@ -188,6 +201,12 @@ Bound ObjectBodies::cover(std::uint32_t object, const Bound& bound) {
     Entry& entry = entries_[object];
     entry.given = {};
     if (!entry.own || fits(object, bound) || !body(object).is_bounded()) return bound;
+    if (bound.kind != BoundKind::ball && is_rigid(glm::dmat3(bound.box.axes))) {  // as in frame_of
+        const glm::dvec3 given(bound.box.half_extents);
+        const Aabb& bounds = body(object).bounds();
+        entry.given = bound;
+        return Bound(spanning(bound.box, glm::min(-given, bounds.min * kSlack), glm::max(given, bounds.max * kSlack)));
+    }
     const Obb box = box_around(bound.box, body(object), frame_of(bound.kind, bound.box), 0.0);
     // A ball stands for itself in pairs: what is in its cube alone would be missed.
     if (bound.kind != BoundKind::ball && have_same_bits(box, bound.box)) return bound;
