@@ -100,6 +100,40 @@ TEST_SUITE("capi/world bodies") {
         CHECK(s.contacts(1)->phase == CROFTON_CONTACT_ENDED);
     }
 
+    TEST_CASE("an object is added by its body alone, which lives as long as the object, and is moved by a transform") {
+        const WorldHandle world = make_world();
+        auto description = sized<crofton_object_description>();
+        crofton_object low{}, high{};
+        CHECK(crofton_world_add(world.get(), &description, &low) == CROFTON_INVALID_ARGUMENT);
+        const crofton_transform place{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 1.75, 0}};
+        {
+            const BodyHandle crate = crate_of(1.0f);
+            description.body = crate.get();
+            REQUIRE(crofton_world_add(world.get(), &description, &low) == CROFTON_OK);
+            description.transform = &place;
+            REQUIRE(crofton_world_add(world.get(), &description, &high) == CROFTON_OK);
+            const crofton_bound bound = box_bound(box_at(0, 0, 0, 0.25f));
+            description.bound = &bound;
+            CHECK(crofton_world_add(world.get(), &description, &high) == CROFTON_INVALID_ARGUMENT);
+        }
+        CHECK(crofton_world_set_body(world.get(), low, nullptr) == CROFTON_INVALID_ARGUMENT);
+        for (const double height : {1.75, 1.5}) {
+            const crofton_transform there{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, height, 0}};
+            REQUIRE(crofton_world_set_transforms(world.get(), &high, 0, &there, 0, 1) == CROFTON_OK);
+            update(world);
+            const crofton_body_contact* contacts = nullptr;
+            std::size_t count = 0;
+            REQUIRE(crofton_world_body_contacts(world.get(), &contacts, &count) == CROFTON_OK);
+            REQUIRE(count == 1);
+            CHECK(contacts->point_count == 4);
+            CHECK(contacts->points[0].depth == doctest::Approx(2.0 - height));
+            crofton_box box{};
+            REQUIRE(crofton_world_get_box(world.get(), high, &box) == CROFTON_OK);
+            CHECK(box.center[1] == doctest::Approx(height));
+            for (const float half : box.half_extents) CHECK(half == doctest::Approx(1.0));
+        }
+    }
+
     TEST_CASE("overlaps and casts of bodies") {
         const Resting s;
         update(s.world);

@@ -60,6 +60,7 @@ namespace Crofton {
             public MeshHandle Mesh;
             public NodeHandle Node;
             public uint HiddenLayers, IgnoredLayers, Transparent, OnlyOccludes;
+            public IntPtr Body;
         }
 
         [StructLayout(LayoutKind.Sequential)]

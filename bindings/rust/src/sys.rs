@@ -123,6 +123,7 @@ pub struct ObjectDescription {
     pub ignored_layers: u32,
     pub transparent: u32,
     pub only_occludes: u32,
+    pub body: *const c_void,
 }
 
 #[repr(C)]

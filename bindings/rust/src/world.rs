@@ -173,6 +173,7 @@ impl World {
             ignored_layers: !description.collides_with,
             transparent: description.transparent as u32,
             only_occludes: 0,
+            body: std::ptr::null(),
         };
         let mut object = Object { index: 0, generation: 0 };
         check(unsafe { sys::crofton_world_add(self.raw, &raw, &mut object) })?;

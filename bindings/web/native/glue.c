@@ -34,7 +34,7 @@ AT(crofton_world_options, without_pairs, 4);
 SIZE(crofton_bound, 160);
 AT(crofton_bound, box, 8);
 AT(crofton_bound, center, 128);
-SIZE(crofton_object_description, 64);
+SIZE(crofton_object_description, 72);
 AT(crofton_object_description, user, 8);
 AT(crofton_object_description, mesh, 32);
 SIZE(crofton_ray, 56);

@@ -140,8 +140,7 @@ crofton_status to_bound(const crofton_bound& given, const char* function, Bound&
 }
 
 crofton_status to_object_description(const crofton_object_description* argument, const char* function,
-                                     ObjectDescription& description) {
-    crofton_object_description given;
+                                     crofton_object_description& given, ObjectDescription& description) {
     CROFTON_CHECK(read_growing(argument, function, given));
     if (given.has_mesh) description.mesh = to_handle(given.mesh);
     if (given.has_node) description.node = to_handle(given.node);
@@ -246,9 +245,16 @@ crofton_status crofton_world_add(crofton_world* world, const crofton_object_desc
     const ExclusiveUse use(world, __func__);
     if (use.failed()) return use.status();
     CROFTON_CHECK(check_pointer(object, __func__));
-    ObjectDescription given;
-    CROFTON_CHECK(to_object_description(description, __func__, given));
-    return hand_out(world->world.add(given), object, __func__);
+    crofton_object_description given;
+    ObjectDescription made;
+    CROFTON_CHECK(to_object_description(description, __func__, given, made));
+    if (!given.body) return hand_out(world->world.add(made), object, __func__);
+    const SharedUse use_body(given.body, __func__);
+    if (use_body.failed()) return use_body.status();
+    made.body = &*given.body->data->body;
+    CROFTON_CHECK(hand_out(world->world.add(made), object, __func__));
+    world->keep(object->index, given.body->data);
+    return CROFTON_OK;
 }
 
 crofton_status crofton_world_remove(crofton_world* world, crofton_object object) {

@@ -14,6 +14,12 @@ struct crofton_world {
     crofton::World world;
     std::uint64_t serial;  // of its state after an update: unlike any other of the process, and not 0
     crofton::Vector<crofton::capi::SharedBody> bodies{};  // by object, so that they live as long as they are used
+
+    // Until the object's index has another body.
+    void keep(std::uint32_t object, const crofton::capi::SharedBody& body) {
+        if (bodies.size() <= object) bodies.resize(object + std::size_t{1});
+        bodies[object] = body;
+    }
 };
 
 namespace crofton::capi {

@@ -24,9 +24,7 @@ crofton_status crofton_world_set_body(crofton_world* world, crofton_object objec
     const SharedUse use(body, __func__);
     if (use.failed()) return use.status();
     CROFTON_CHECK(status_of(world->world.set_body(to_handle(object), &*body->data->body), __func__));
-    // Kept until the object's index has another body.
-    if (world->bodies.size() <= object.index) world->bodies.resize(object.index + std::size_t{1});
-    world->bodies[object.index] = body->data;
+    world->keep(object.index, body->data);
     return CROFTON_OK;
 }
 

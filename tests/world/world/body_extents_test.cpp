@@ -49,9 +49,26 @@ struct Thing {
     ObjectHandle object;
     bool lives = true;
     std::uint32_t layers = ~0u;
+    bool alone = false;  // the object has a body and nothing else; `bound` is then the box that says where
 
     [[nodiscard]] RigidTransform pose() const { return ::pose_of(bound); }
 };
+
+// With the thing's layers, which are those it collides with.
+void add_to(World& world, Thing& thing) {
+    ObjectDescription description{.body = &*thing.body};
+    if (thing.alone)
+        description.transform = Transform{thing.pose().rotation, thing.pose().translation};
+    else
+        description.bound = thing.bound;
+    description.layers = description.collides_with = thing.layers;
+    thing.object = world.add(description).value();
+}
+void move(World& world, const Thing& thing) {
+    if (!thing.alone) REQUIRE(world.set_bound(thing.object, thing.bound).has_value());
+    const Transform transform{thing.pose().rotation, thing.pose().translation};
+    if (thing.alone) REQUIRE(world.set_transform(thing.object, transform).has_value());
+}
 
 void require_contacts(const World& world, const std::vector<Thing>& things, double margin) {
     std::set<IndexPair> expected, now, paired;
@@ -203,10 +220,8 @@ TEST_SUITE("world/body_extents") {
                 const auto add = [&] {
                     Thing thing{any_body(random, 1.0), any_bound(random, 5.0 * random.direction(), 1.0), {}};
                     thing.layers = random.index(8) == 0 ? 2u : ~0u;
-                    ObjectDescription description{.bound = thing.bound};
-                    description.layers = description.collides_with = thing.layers;
-                    thing.object = world.add(description).value();
-                    REQUIRE(world.set_body(thing.object, &*thing.body).has_value());
+                    thing.alone = random.index(3) == 0;
+                    add_to(world, thing);
                     things.push_back(thing);
                 };
                 for (int i = 0; i < 30; ++i) add();
@@ -220,10 +235,10 @@ TEST_SUITE("world/body_extents") {
                         const int what = random.index(12);
                         if (what < 3) {
                             thing.bound.box.center += 0.5 * random.direction();
-                            REQUIRE(world.set_bound(thing.object, thing.bound).has_value());
+                            move(world, thing);
                         } else if (what == 3) {
                             thing.bound = any_bound(random, thing.bound.box.center, 1.0);
-                            REQUIRE(world.set_bound(thing.object, thing.bound).has_value());
+                            move(world, thing);
                         } else if (what == 4) {
                             thing.body = any_body(random, random.number(0.2, 2.0));
                             REQUIRE(world.set_body(thing.object, &*thing.body).has_value());
@@ -240,6 +255,14 @@ TEST_SUITE("world/body_extents") {
 
     TEST_CASE("many boxes set at once cover their bodies too, and moving ones stay the caller's") {
         RandomBodies random(5300);
+        // Some boxes are as large as their bodies to the bit, or lack a bit.
+        const auto any_half_extents = [&](const convex::Body& body) {
+            const int what = random.index(4);
+            if (what == 0) return glm::vec3(static_cast<float>(random.number(0.0, 2.0)));
+            glm::vec3 half(glm::max(glm::abs(body.bounds().min), glm::abs(body.bounds().max)));
+            for (int k = 0; k < 3; ++k) half[k] = std::nextafter(half[k], what == 1 && k == 1 ? 0.0f : HUGE_VALF);
+            return half;
+        };
         World world;
         std::vector<Thing> things;
         for (int i = 0; i < 60; ++i) {
@@ -251,11 +274,23 @@ TEST_SUITE("world/body_extents") {
         for (int frame = 0; frame < 25; ++frame) {
             REQUIRE(world.update().has_value());
             require_contacts(world, things, 0.0);
+            for (const Thing& thing : things) {
+                const Obb box = world.box_of(thing.object).value();
+                const glm::dmat3 to_box = glm::inverse(glm::dmat3(box.axes));
+                for (int i = 0; i < 10 && thing.body->is_convex(); ++i) {
+                    const glm::dvec3 way = random.direction(), local = glm::transpose(thing.pose().rotation) * way;
+                    const glm::dvec3 tip =
+                        thing.pose().rotation * convex::support_point(*thing.body, local) + thing.pose().translation;
+                    const glm::dvec3 in_box = glm::abs(to_box * (tip - box.center));
+                    for (int k = 0; k < 3; ++k) REQUIRE(in_box[k] <= static_cast<double>(box.half_extents[k]) + 1e-9);
+                }
+            }
             std::vector<ObjectHandle> handles;
             std::vector<Obb> boxes;
             for (Thing& thing : things) {
                 thing.bound.box.center += 0.2 * random.direction();
-                thing.bound.box.half_extents = glm::vec3(static_cast<float>(random.number(0.0, 2.0)));
+                thing.bound.box.half_extents = any_half_extents(*thing.body);
+                if (random.index(2) == 0) thing.bound.box.axes = glm::mat3(random.rotation());
                 handles.push_back(thing.object);
                 boxes.push_back(thing.bound.box);
             }
@@ -293,6 +328,107 @@ TEST_SUITE("world/body_extents") {
         CHECK(world.box_of(object)->center == given.center);
         REQUIRE(world.view({.camera = camera}, seen).has_value());
         CHECK(seen.size() == 0);
+    }
+
+    TEST_CASE("an object needs nothing besides its body: its box is the least in the body's frame, whatever the body") {
+        RandomBodies random(6100);
+        std::vector<float> heights(20);
+        for (float& h : heights) h = static_cast<float>(random.number(3.0, 4.0));
+        const convex::HeightField field =
+            convex::HeightField::build({.columns = 5, .rows = 4, .heights = heights, .spacing = {0.5, 0.7}}).value();
+        for (int i = 0; i < 400; ++i) {
+            World world;
+            const NodeHandle node = world.add_node({}).value();
+            // Off their origins, so that a box around that as well would be larger.
+            const std::vector<convex::CompoundChild> children{
+                {random.box(0.5), {random.rotation(), glm::dvec3(4, 0, 0) + random.direction()}},
+                {*convex::Body::capsule(0.5f, 0.2f), {random.rotation(), glm::dvec3(4, 0, 0) + random.direction()}}};
+            const convex::Compound compound = convex::Compound::build(children).value();
+            const Surface surface = ground(random, 3, 0.5, [](double x, double) { return 5.0 + x; });
+            std::vector<glm::vec3> points = random.points(20);
+            for (glm::vec3& p : points) p.x += 3.0f;
+            const convex::Hull hull = convex::Hull::build(points).value();
+            const convex::Body bodies[] = {any_body(random, 1.0), convex::Body::hull(hull),
+                                           convex::Body::compound(compound), surface.body(),
+                                           convex::Body::height_field(field)};
+            const convex::Body& body = bodies[i % 5];
+            const double scale = i % 2 == 0 ? 1.0 : random.number(0.2, 3.0);
+            const double far = i % 7 == 0 ? 1e9 : 9.0;
+            const RigidTransform pose{random.rotation(), far * random.direction()};
+            const Transform transform{scale * pose.rotation, pose.translation};
+            const bool has_node = i % 3 == 0;
+            const ObjectHandle object = has_node ? world.add({.node = node, .body = &body}).value()
+                                                 : world.add({.transform = Transform(), .body = &body}).value();
+            REQUIRE(world.update().has_value());
+            REQUIRE(
+                (has_node ? world.set_transform(node, transform) : world.set_transform(object, transform)).has_value());
+            REQUIRE(world.update().has_value());
+            CHECK(world.transform_of(object)->translation == pose.translation);
+            const Obb box = world.box_of(object).value();
+            const glm::dvec3 middle = pose.rotation * (scale * body.bounds().center()) + pose.translation;
+            const glm::dvec3 half = scale * body.bounds().half_extents();
+            CAPTURE(i);
+            for (int k = 0; k < 3; ++k) {
+                CHECK(glm::length(glm::dvec3(box.axes[k]) - pose.rotation[k]) < 1e-6);
+                CHECK(std::abs(box.center[k] - middle[k]) < 1e-5);
+                CHECK(std::abs(static_cast<double>(box.half_extents[k]) - half[k]) < 1e-5);
+            }
+            // And nothing of the body sticks out.
+            const glm::dmat3 to_box = glm::inverse(glm::dmat3(box.axes));
+            for (int n = 0; n < 30 && body.is_convex(); ++n) {
+                const glm::dvec3 tip = scale * convex::support_point(body, random.direction());
+                const glm::dvec3 in_box = glm::abs(to_box * (pose.rotation * tip + (pose.translation - box.center)));
+                const double rounding = i % 2 == 0 ? 1e-14 * far : 1e-6;  // a scaled body's sizes are floats
+                for (int k = 0; k < 3; ++k) CHECK(in_box[k] <= static_cast<double>(box.half_extents[k]) + rounding);
+            }
+        }
+    }
+
+    TEST_CASE("an object of a body alone takes other bodies and transforms, and says what it has not") {
+        World world;
+        const convex::Body ball = convex::Body::sphere(1.0).value(), box = convex::Body::box({1, 1, 1}).value();
+        const NodeHandle node = world.add_node({}).value();
+        const MeshHandle mesh = add_cube(world);
+        const Transform uneven{scaling({1, 2, 1}), {0, 0, 0}};
+        CHECK(error_of(world.add({})).code == ErrorCode::invalid_argument);
+        CHECK(error_of(world.add({.transform = uneven, .body = &ball})).code == ErrorCode::unsupported);
+        CHECK(error_of(world.add({.mesh = mesh, .transform = uneven, .body = &ball})).code == ErrorCode::unsupported);
+        CHECK(error_of(world.add({.transform = Transform{glm::dmat3(NAN), {0, 0, 0}}, .body = &ball})).code ==
+              ErrorCode::non_finite);
+        CHECK(error_of(world.add({.node = node, .bound = Sphere{{0, 0, 0}, 1.0}, .body = &ball})).code ==
+              ErrorCode::invalid_argument);
+        ObjectDescription occluder{.body = &ball};
+        occluder.only_occludes = true;
+        CHECK(error_of(world.add(occluder)).code == ErrorCode::invalid_argument);
+        CHECK(world.object_count() == 0);
+        const ObjectHandle own = world.add({.body = &ball}).value(),
+                           below = world.add({.node = node, .body = &box}).value();
+        CHECK(error_of(world.set_bound(own, Sphere{{0, 0, 0}, 1.0})).code == ErrorCode::invalid_argument);
+        CHECK(error_of(world.set_mesh(own, mesh)).code == ErrorCode::invalid_argument);
+        CHECK(error_of(world.set_occludes(own, false)).code == ErrorCode::invalid_argument);
+        CHECK(error_of(world.set_body(own, nullptr)).code == ErrorCode::invalid_argument);
+        CHECK(error_of(world.set_transform(own, uneven)).code == ErrorCode::unsupported);
+        CHECK(error_of(world.set_transform(below, {})).code == ErrorCode::invalid_argument);
+        REQUIRE(world.set_transform(own, {glm::dmat3(1.0), {1.9, 0, 0}}).has_value());
+        REQUIRE(world.update().has_value());
+        REQUIRE(world.body_contacts().size() == 1);
+        CHECK(world.body_contacts()[0].points[0].contact.depth == doctest::Approx(0.1));
+        REQUIRE(world.set_body(own, &box).has_value());
+        REQUIRE(world.set_transform(node, uneven).has_value());  // boxes take it
+        REQUIRE(world.update().has_value());
+        CHECK(world.box_of(own)->half_extents.x == doctest::Approx(1.0));
+        CHECK(world.box_of(below)->half_extents[1] == doctest::Approx(2.0));
+        CHECK(error_of(world.set_body(below, &ball)).code == ErrorCode::unsupported);
+        // A view lists what it sees of it.
+        VisibleObjects seen;
+        const Camera camera{.position = {0, 1.9, -5}, .forward = {0, 0, 1}, .up = {0, 1, 0}, .fov_y = 0.02};
+        REQUIRE(world.view({.camera = camera}, seen).has_value());
+        CHECK(seen.size() == 1);
+        REQUIRE(world.remove(node).has_value());
+        REQUIRE(world.remove(own).has_value());
+        REQUIRE(world.update().has_value());
+        CHECK(world.object_count() == 0);
+        CHECK(!world.raycast({{0, 0, -9}, {0, 0, 1}}).has_value());
     }
 
     TEST_CASE("a box whose axes are left-handed or a little off carries its body") {
@@ -571,18 +707,17 @@ TEST_SUITE("world/body_extents") {
                 Obb{50.0 * random.direction() * (round % 3 == 0 ? 0.0 : 1.0), glm::mat3(1.0f), glm::vec3(0.0f)},
                 {}};
             if (round % 3 != 0) ground.bound.box.center -= glm::dot(ground.bound.box.center, normal) * normal;
-            ground.object = world.add({.bound = ground.bound}).value();
-            REQUIRE(world.set_body(ground.object, &*ground.body).has_value());
+            ground.alone = round % 8 < 4;
+            add_to(world, ground);
             things.push_back(ground);
             for (int i = 0; i < 40; ++i) {
                 Thing thing{any_body(random, 1.0), any_bound(random, 40.0 * random.direction(), 1.0), {}};
                 thing.bound.box.center -=
                     (glm::dot(thing.bound.box.center, normal) - random.number(-2.0, 3.0)) * normal;
-                thing.layers = i % 5 == 0 ? 0u : ~0u;
-                ObjectDescription description{.bound = thing.bound};
-                description.collides_with = thing.layers;
-                thing.object = world.add(description).value();
-                REQUIRE(world.set_body(thing.object, &*thing.body).has_value());
+                thing.alone = i % 3 == 0;
+                add_to(world, thing);
+                if (i % 5 == 0) thing.layers = 0u;  // of what it collides with
+                if (i % 5 == 0) REQUIRE(world.set_collides_with(thing.object, 0u).has_value());
                 things.push_back(thing);
             }
             for (int frame = 0; frame < 8; ++frame) {
@@ -609,7 +744,7 @@ TEST_SUITE("world/body_extents") {
                 for (std::size_t i = 0; i < things.size(); ++i) {
                     if (!things[i].lives || random.index(4) != 0) continue;
                     things[i].bound.box.center += 0.7 * random.direction();
-                    REQUIRE(world.set_bound(things[i].object, things[i].bound).has_value());
+                    move(world, things[i]);
                 }
                 if (frame == 4) REQUIRE(world.set_hidden(things[0].object, true).has_value());
                 if (frame == 4) things[0].lives = false;

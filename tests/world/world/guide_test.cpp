@@ -125,9 +125,8 @@ TEST_SUITE("world/guide") {
         };
 
         const auto capsule = crofton::convex::Body::capsule(0.6f, 0.3f).value();  // a character, upright
-        const crofton::Obb around{{0.0, 1.0, 0.0}, glm::mat3(1.0f), {0.4f, 1.0f, 0.4f}};
-        const auto hero = world.add({.bound = around, .user = 7}).value();
-        world.set_body(hero, &capsule).value();
+        const crofton::Transform standing{glm::dmat3(1.0), {0.0, 1.0, 0.0}};
+        const auto hero = world.add({.transform = standing, .body = &capsule, .user = 7}).value();
         world.update(jobs).value();
         for (const crofton::BodyContact& contact : world.body_contacts())
             for (std::uint32_t i = 0; i < contact.point_count; ++i) {

@@ -8,6 +8,8 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "rigid.hpp"
+
 namespace crofton::world {
 namespace {
 
@@ -15,17 +17,24 @@ constexpr double kSlack = 1.0 + 0x1p-40;  // outweighs what bounds of bodies are
 
 // As validate_pose tells; what is clearly a rotation is told without its words.
 bool is_rigid(const glm::dmat3& linear) {
-    constexpr double kSurely = 2e-7;
-    const glm::dvec3 &x = linear[0], &y = linear[1], &z = linear[2];
-    const double most =
-        std::max({std::abs(glm::dot(x, x) - 1.0), std::abs(glm::dot(y, y) - 1.0), std::abs(glm::dot(z, z) - 1.0),
-                  std::abs(glm::dot(x, y)), std::abs(glm::dot(y, z)), std::abs(glm::dot(z, x))});
-    if (most <= kSurely && glm::dot(glm::cross(x, y), z) > 0.0) return true;
-    return convex::validate_pose({linear, glm::dvec3(0.0)}).has_value();
+    return is_clearly_rotation(linear) || convex::validate_pose({linear, glm::dvec3(0.0)}).has_value();
 }
 
 bool has_nothing(const glm::dmat3& linear) {
     return linear[0] == glm::dvec3(0.0) && linear[1] == glm::dvec3(0.0) && linear[2] == glm::dvec3(0.0);
+}
+
+glm::vec3 rounded_up(const glm::dvec3& half, double rounding) {
+    return glm::vec3(half * (1.0 + 0x1p-22) + (rounding * (1.0 + 0x1p-22) + 0x1p-149));
+}
+
+// From and to these coordinates along the axes from the box's centre, with its axes.
+Obb spanning(const Obb& box, const glm::dvec3& from, const glm::dvec3& to) {
+    Obb result = box;
+    result.center = box.center + glm::dmat3(box.axes) * (0.5 * (from + to));
+    const glm::dvec3 size = glm::abs(result.center);
+    result.half_extents = rounded_up(0.5 * (to - from), 0x1p-50 * (size.x + size.y + size.z));
+    return result;
 }
 
 }  // namespace
@@ -72,14 +81,19 @@ Obb box_around(const Obb& box, const convex::Body& body, const RigidTransform& p
         }
         if (covers()) return box;
     }
-    const glm::dvec3 from = glm::min(-given, low), to = glm::max(given, high), center = 0.5 * (from + to);
-    Obb grown = box;
-    grown.center = box.center + axes * center;
-    const double rounding = 0x1p-50 * (std::abs(grown.center.x) + std::abs(grown.center.y) + std::abs(grown.center.z));
-    for (int k = 0; k < 3; ++k)
-        grown.half_extents[k] =
-            static_cast<float>((0.5 * (to[k] - from[k])) * (1.0 + 0x1p-22) + rounding * (1.0 + 0x1p-22) + 0x1p-149);
-    return grown;
+    return spanning(box, glm::min(-given, low), glm::max(given, high));
+}
+
+// The axes are the pose's but for their rounding to float, which tilts the body a little in the box.
+Obb box_around(const convex::Body& body, const RigidTransform& pose) {
+    const glm::dvec3 middle = body.bounds().center(), half = body.bounds().half_extents();
+    Obb box{pose.rotation * middle + pose.translation, glm::mat3(pose.rotation), glm::vec3(0.0f)};
+    const glm::dmat3 tilt = glm::transpose(pose.rotation) * (glm::dmat3(box.axes) - pose.rotation);
+    glm::dvec3 needed = half * kSlack;
+    for (int k = 0; k < 3; ++k) needed += (1.0 + 1e-5) * half[k] * glm::abs(tilt[k]);
+    const glm::dvec3 size = glm::abs(middle) + glm::abs(pose.translation);
+    box.half_extents = rounded_up(needed, 0x1p-49 * (size.x + size.y + size.z));
+    return box;
 }
 
 void ObjectBodies::list_unbounded(std::uint32_t object) {
@@ -127,15 +141,23 @@ std::optional<RigidTransform> ObjectBodies::pose_of(std::uint32_t id, const Obje
     return RigidTransform{world.linear, world.translation};
 }
 
+glm::vec3 ObjectBodies::least_half_extents(std::uint32_t object) const {
+    if (!has(object) || !body(object).is_bounded()) return glm::vec3(-1.0f);
+    const Aabb& bounds = body(object).bounds();
+    const glm::dvec3 reach = glm::max(glm::abs(bounds.min), glm::abs(bounds.max)) / kSlack;
+    glm::vec3 least(reach);
+    for (int k = 0; k < 3; ++k)
+        if (static_cast<double>(least[k]) < reach[k]) least[k] = std::nextafter(least[k], HUGE_VALF);
+    return least;
+}
+
 bool ObjectBodies::fits(std::uint32_t object, const Bound& bound) const {
     const convex::Body& of = body(object);
     if (!of.is_bounded()) return true;
     if (bound.kind == BoundKind::sphere) return of.core_radius() + of.radius() <= bound.radius * kSlack;
     if (!is_rigid(glm::dmat3(bound.box.axes))) return false;
-    const glm::dvec3 needed = glm::max(glm::abs(of.bounds().min), glm::abs(of.bounds().max));
-    for (int k = 0; k < 3; ++k)
-        if (!(needed[k] <= static_cast<double>(bound.box.half_extents[k]) * kSlack)) return false;
-    return true;
+    const glm::vec3 least = least_half_extents(object), &half = bound.box.half_extents;
+    return half.x >= least.x && half.y >= least.y && half.z >= least.z;
 }
 
 Result<void> ObjectBodies::scale(std::uint32_t object, const glm::dmat3& linear) {
@@ -179,6 +201,12 @@ Bound ObjectBodies::cover(std::uint32_t object, const Bound& bound) {
     Entry& entry = entries_[object];
     entry.given = {};
     if (!entry.own || fits(object, bound) || !body(object).is_bounded()) return bound;
+    if (bound.kind != BoundKind::sphere && is_rigid(glm::dmat3(bound.box.axes))) {  // as in frame_of
+        const glm::dvec3 given(bound.box.half_extents);
+        const Aabb& bounds = body(object).bounds();
+        entry.given = bound;
+        return Bound(spanning(bound.box, glm::min(-given, bounds.min * kSlack), glm::max(given, bounds.max * kSlack)));
+    }
     const Obb box = box_around(bound.box, body(object), frame_of(bound.kind, bound.box), 0.0);
     // A sphere stands for itself in pairs: what is in its cube alone would be missed.
     if (bound.kind != BoundKind::sphere && have_same_bits(box, bound.box)) return bound;
@@ -188,11 +216,15 @@ Bound ObjectBodies::cover(std::uint32_t object, const Bound& bound) {
 
 // The scene's box holds the image of all that the mesh's box holds. So a rigid transform needs a look at the body only
 // where the body or the mesh is another.
-Obb ObjectBodies::cover(std::uint32_t object, scene::InstanceId instance, const scene::Scene& scene) {
+Obb ObjectBodies::cover(std::uint32_t object, scene::InstanceId instance, const scene::Scene& scene, bool alone) {
     Entry& entry = entries_[object];
     const Obb& box = scene.world_boxes()[instance];
     const Transform& world = scene.world(scene.node_of(instance));
     if (entry.nowhere || has_nothing(world.linear) || !body(object).is_bounded()) return box;
+    if (alone) {
+        const glm::dmat3& rotation = entry.scaled ? entry.map.rotation : world.linear;
+        return box_around(body(object), {rotation, world.translation});
+    }
     if (entry.scaled) return box_around(box, body(object), {entry.map.rotation, world.translation}, 0.0);
     const scene::MeshId mesh = scene.mesh_of(instance);
     if (entry.mesh_revision != scene.mesh_revision(mesh)) {

@@ -38,6 +38,8 @@ class ObjectBodies {
         return object < entries_.size() && entries_[object].given.kind != BoundKind::none;
     }
     [[nodiscard]] const Bound& given(std::uint32_t object) const { return entries_[object].given; }
+    // A box in the body's frame covers the body if it has these half extents, at least; −1: any does.
+    [[nodiscard]] glm::vec3 least_half_extents(std::uint32_t object) const;
     // Whether an object with this bound covers its body with it. Quick; false where that is not sure.
     [[nodiscard]] bool fits(std::uint32_t object, const Bound& bound) const;
 
@@ -52,8 +54,9 @@ class ObjectBodies {
 
     // The bound, or the box that covers it and the body; what was given is kept while that is larger.
     [[nodiscard]] Bound cover(std::uint32_t object, const Bound& bound);
-    // Of an object with a mesh: its box in the scene, or one that covers the body as well.
-    [[nodiscard]] Obb cover(std::uint32_t object, scene::InstanceId instance, const scene::Scene& scene);
+    // Of an object with a mesh: its box in the scene, or one that covers the body as well. `alone`: one around the body
+    // only, if it has bounds.
+    [[nodiscard]] Obb cover(std::uint32_t object, scene::InstanceId instance, const scene::Scene& scene, bool alone);
     // The object's box, or a larger one that covers what is within `margin` of the body.
     [[nodiscard]] Obb collider_box(std::uint32_t id, const Object& object, const Obb& box, const scene::Scene& scene,
                                    double margin) const;
@@ -79,6 +82,8 @@ class ObjectBodies {
 
 // A bound's frame, as a rotation.
 [[nodiscard]] RigidTransform frame_of(BoundKind kind, const Obb& box);
+// Around the body, in its frame.
+[[nodiscard]] Obb box_around(const convex::Body& body, const RigidTransform& pose);
 // Around the box, and what is within `margin` of the body's bounds.
 [[nodiscard]] Obb box_around(const Obb& box, const convex::Body& body, const RigidTransform& pose, double margin);
 

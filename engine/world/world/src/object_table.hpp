@@ -7,6 +7,8 @@
 #include <crofton/world/inputs.hpp>
 #include <span>
 
+#include "rigid.hpp"
+
 namespace crofton::world {
 
 struct Object {
@@ -82,30 +84,38 @@ struct ObjectTable {
 // Which objects are boxes in the list of what moves, and their entries: all that a call for many of them looks up.
 class MoverTable {
   public:
-    // The entries of handles[begin … end), up to the first that is another thing or stale. Returns how many.
-    std::size_t list_entries(const Strided<ObjectHandle>& handles, std::size_t begin, std::size_t end,
-                             std::uint32_t* entries) const {
+    // The entries of handles[begin … end), up to the first that is another thing or stale, or whose box may not cover
+    // its body. Returns how many.
+    std::size_t list_entries(const Strided<ObjectHandle>& handles, const Strided<Obb>& boxes, std::size_t begin,
+                             std::size_t end, std::uint32_t* entries) const {
         std::size_t count = 0;
         for (; begin + count < end; ++count) {
             const ObjectHandle handle = handles[begin + count];
             if (handle.index >= keys_.size()) break;
-            const Key key = keys_[handle.index];
+            const Key& key = keys_[handle.index];
             if (key.generation != handle.generation || key.entry == kNoIndex) break;
+            if (key.least.x >= 0.0f && !covers(boxes[begin + count], key.least)) break;
             entries[count] = key.entry;
         }
         return count;
     }
-    void set(ObjectHandle handle, std::uint32_t entry) {
+    // `least_half_extents` as ObjectBodies tells them.
+    void set(ObjectHandle handle, std::uint32_t entry, const glm::vec3& least_half_extents) {
         if (handle.index >= keys_.size()) resize(keys_, handle.index + std::size_t{1});
-        keys_[handle.index] = {handle.generation, entry};
+        keys_[handle.index] = {handle.generation, entry, least_half_extents};
     }
     void forget(std::uint32_t object) {
         if (object < keys_.size()) keys_[object].entry = kNoIndex;
     }
 
   private:
+    [[nodiscard]] static bool covers(const Obb& box, const glm::vec3& least) {
+        const glm::vec3& half = box.half_extents;
+        return half.x >= least.x && half.y >= least.y && half.z >= least.z && is_clearly_rotation(glm::dmat3(box.axes));
+    }
     struct Key {
         std::uint32_t generation = 0, entry = kNoIndex;
+        glm::vec3 least{-1.0f};
     };
     Vector<Key> keys_;  // by object
 };

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "for_each_pair.hpp"
+#include "must.hpp"
 #include "world_state.hpp"
 
 namespace crofton {
@@ -12,7 +13,7 @@ namespace {
 
 Result<void> validate(const Bound& bound, std::uint64_t item) {
     if (bound.kind == BoundKind::none)
-        return fail(ErrorCode::invalid_argument, item, "world: an object needs a mesh or a bound");
+        return fail(ErrorCode::invalid_argument, item, "world: an object needs a mesh, a bound or a body");
     if (bound.kind == BoundKind::sphere && !(bound.radius >= 0.0))
         return fail(std::isnan(bound.radius) ? ErrorCode::non_finite : ErrorCode::invalid_argument, item,
                     "sphere: the radius is negative or NaN");
@@ -46,20 +47,43 @@ StagedChange& World::State::stage(std::uint32_t object) {
     return staged[entry];
 }
 
-// A mesh object's instance, on the node that was given or on one of its own.
+// What hangs on the object's node: its mesh, or a point that stands for none.
+Result<scene::MeshId> World::State::mesh_of(const ObjectDescription& description) {
+    if (!description.mesh.is_null()) {
+        if (auto known = check(description.mesh, kNoItem); !known) return tl::unexpected(known.error());
+        return description.mesh.index;
+    }
+    if (point != scene::kNone) return point;
+    TriangleMesh mesh;
+    mesh.positions = {glm::vec3(0.0f)};
+    mesh.indices = {0, 0, 0};
+    const auto added = scene.add_mesh(std::move(mesh));
+    if (!added) return added;
+    bodies.set_mesh(*added, false);
+    return point = *added;
+}
+
+// The instance of an object with a mesh or a body alone, on the node that was given or on one of its own.
 Result<void> World::State::attach_mesh(world::Object& object, const ObjectDescription& description) {
-    if (auto known = check(description.mesh, kNoItem); !known) return known;
+    const auto mesh = mesh_of(description);
+    if (!mesh) return tl::unexpected(mesh.error());
     scene::NodeId node = scene::kNone;
     if (!description.node.is_null()) {
         if (auto known = check(description.node, kNoItem); !known) return known;
         node = description.node.index;
     }
+    const Transform local = description.transform.value_or(Transform());
+    if (description.body != nullptr) {
+        if (auto valid = crofton::validate(local, kNoItem); !valid) return valid;
+        const Transform world = node == scene::kNone ? local : world_to_be(node) * local;
+        if (auto scales = world::ObjectBodies::check(*description.body, world.linear, kNoItem); !scales) return scales;
+    }
     if (node == scene::kNone || description.transform) {
-        const auto own = scene.add_node(node, description.transform.value_or(Transform()));
+        const auto own = scene.add_node(node, local);
         if (!own) return tl::unexpected(own.error());
         node = object.own_node = *own;
     }
-    const auto instance = scene.add_instance(node, description.mesh.index);
+    const auto instance = scene.add_instance(node, *mesh);
     if (!instance) return tl::unexpected(instance.error());
     object.instance = *instance;
     return scene.set_instance_layers(*instance, description.layers);
@@ -72,29 +96,31 @@ Result<ObjectHandle> World::add(const ObjectDescription& description) {
     object.collides_with = description.collides_with;
     object.occludes = description.occludes;
     object.only_occludes = description.only_occludes;
-    const bool has_mesh = !description.mesh.is_null();
-    if (has_mesh && description.bound.kind != BoundKind::none)
+    const bool has_mesh = !description.mesh.is_null(), has_bound = description.bound.kind != BoundKind::none;
+    const bool hangs = has_mesh || (!has_bound && description.body != nullptr);
+    if (has_mesh && has_bound)
         return fail(ErrorCode::invalid_argument, kNoItem, "world: an object has a mesh or a bound, not both");
-    if (!has_mesh && (description.transform || !description.node.is_null()))
+    if (has_bound && (description.transform || !description.node.is_null()))
         return fail(ErrorCode::invalid_argument, kNoItem,
                     "world: a bound is given in the world's coordinates, without node and transform");
     if (!has_mesh && description.only_occludes)
         return fail(ErrorCode::invalid_argument, kNoItem, "world: what only occludes needs a mesh with occluders");
     const auto item = s.index.add(description.layers);
     if (!item) return tl::unexpected(item.error());
-    if (auto valid = has_mesh ? s.attach_mesh(object, description) : validate(description.bound, kNoItem); !valid) {
+    if (auto valid = hangs ? s.attach_mesh(object, description) : validate(description.bound, kNoItem); !valid) {
         s.index.remove(*item);
         return tl::unexpected(valid.error());
     }
     s.table.add(*item, object, description.user);
     StagedChange& change = s.stage(*item);
-    change.has_bound = !has_mesh;
+    change.has_bound = !hangs;
     change.bound = description.bound;
-    if (has_mesh) {
+    if (hangs) {
         if (s.object_of_instance.size() <= object.instance)
             s.object_of_instance.resize(object.instance + std::size_t{1}, kNoIndex);
         s.object_of_instance[object.instance] = *item;
     }
+    if (description.body != nullptr) world::must(set_body(s.table.handle(*item), description.body));
     return s.table.handle(*item);
 }
 
@@ -138,7 +164,7 @@ Result<void> World::set_transforms(Strided<ObjectHandle> objects, Strided<Transf
 Result<void> World::State::set_bound(ObjectHandle object, const Bound& bound, std::uint64_t item) {
     if (auto known = check(object, item); !known) return known;
     if (table.objects[object.index].instance != kNoIndex)
-        return fail(ErrorCode::invalid_argument, item, "world: the object has a mesh: set_transform moves it");
+        return fail(ErrorCode::invalid_argument, item, "world: the object has no bound: set_transform moves it");
     if (auto valid = validate(bound, item); !valid) return valid;
     if (stage_box_of_mover(object.index, bound.kind, bound.box, bound.radius)) return {};
     StagedChange& change = stage(object.index);
@@ -174,7 +200,7 @@ Result<void> World::set_bounds(Strided<ObjectHandle> objects, Strided<Obb> boxes
     for (std::size_t begin = 0; begin < boxes.size(); begin += kAtOnce) {
         const std::size_t end = std::min(begin + kAtOnce, boxes.size());
         std::uint32_t entries[kAtOnce];
-        const std::size_t movers = s.movers.list_entries(objects, begin, end, entries);
+        const std::size_t movers = s.movers.list_entries(objects, boxes, begin, end, entries);
         const std::size_t staged = s.index.stage_movers({entries, movers}, &boxes[begin], boxes.stride());
         for (std::size_t i = begin + staged; i < end; ++i) {
             auto set = s.set_bound(objects[i], boxes[i], i);
@@ -191,6 +217,8 @@ Result<void> World::set_mesh(ObjectHandle object, MeshHandle mesh) {
     const std::uint32_t instance = s.table.objects[object.index].instance;
     if (instance == kNoIndex)
         return fail(ErrorCode::invalid_argument, object.index, "world: the object is a bound and takes no mesh");
+    if (s.is_body_alone(s.table.objects[object.index]))
+        return fail(ErrorCode::invalid_argument, object.index, "world: the object was added without a mesh");
     s.stage(object.index);
     return s.scene.set_instance_mesh(instance, mesh.index);
 }
@@ -199,6 +227,9 @@ Result<void> World::set_body(ObjectHandle object, const convex::Body* body) {
     State& s = *state_;
     if (auto known = s.check(object, object.index); !known) return known;
     const std::uint32_t id = object.index, instance = s.table.objects[id].instance;
+    if (body == nullptr && s.is_body_alone(s.table.objects[id]))
+        return fail(ErrorCode::invalid_argument, id,
+                    "world: the object has nothing besides its body: remove the object, or set another body");
     if (body != nullptr && instance != kNoIndex) {
         const glm::dmat3 linear = s.world_to_be(s.scene.node_of(instance)).linear;
         if (auto scales = world::ObjectBodies::check(*body, linear, id); !scales) return scales;

@@ -33,9 +33,9 @@ std::span<const occlude::FoundOccluder> World::occluders_of(MeshHandle mesh) con
 Result<void> World::set_occludes(ObjectHandle object, bool occludes) {
     if (auto known = state_->check(object, object.index); !known) return known;
     world::Object& changed = state_->table.objects[object.index];
-    if (changed.instance == kNoIndex)
+    if (changed.instance == kNoIndex || state_->is_body_alone(changed))
         return fail(ErrorCode::invalid_argument, object.index,
-                    "world: the object is a bound and hides nothing: add an object with a mesh that only occludes");
+                    "world: the object has no mesh and hides nothing: add an object with a mesh that only occludes");
     changed.occludes = occludes;
     state_->stage(object.index);
     return {};

@@ -124,7 +124,7 @@ Result<void> World::State::update_bodies() {
         const Transform& world = scene.world(scene.node_of(instance));
         if (!object_bodies.has(id)) return index.set_box_of_moved(id, scene.world_boxes()[instance]);
         if (auto scaled = object_bodies.scale(id, world.linear); !scaled && first) first = std::move(scaled);
-        index.set_box_of_moved(id, object_bodies.cover(id, instance, scene));
+        index.set_box_of_moved(id, object_bodies.cover(id, instance, scene, is_body_alone(table.objects[id])));
     };
     for (const std::uint32_t id : object_bodies.fresh()) {
         if (!table.objects[id].alive || !index.has_box(id)) continue;
@@ -152,8 +152,8 @@ void World::State::refresh_visibility(std::uint32_t id) {
 void World::State::note_movers() {
     const auto note = [&](std::uint32_t id) {
         const world::Object& object = table.objects[id];
-        const bool is_box = object.alive && object.kind == BoundKind::box && !object_bodies.has(id);
-        movers.set(table.handle(id), is_box ? index.mover_entry(id) : kNoIndex);
+        const bool is_box = object.alive && object.kind == BoundKind::box && !object_bodies.is_grown(id);
+        movers.set(table.handle(id), is_box ? index.mover_entry(id) : kNoIndex, object_bodies.least_half_extents(id));
     };
     for (const std::uint32_t id : index.relisted_items()) note(id);
     for (const std::uint32_t id : rebound) note(id);

@@ -76,6 +76,7 @@ struct World::State {
     Aabb object_bounds;  // about; where there are occluders
     scene::Scene scene;
     Generations nodes, meshes;
+    scene::MeshId point = scene::kNone;  // the mesh of objects that are added by their bodies alone; kNone: none is
     Vector<std::uint32_t> object_of_instance;
     Vector<glm::vec3> vertices;  // scratch
     Vector<StagedChange> staged;
@@ -89,6 +90,11 @@ struct World::State {
     [[nodiscard]] Result<void> check_viewed(const world::ObjectNames* viewed) const;
     StagedChange& stage(std::uint32_t object);
     [[nodiscard]] Result<void> attach_mesh(world::Object& object, const ObjectDescription& description);
+    [[nodiscard]] Result<scene::MeshId> mesh_of(const ObjectDescription& description);
+    // Whether the object was added with neither mesh nor bound.
+    [[nodiscard]] bool is_body_alone(const world::Object& object) const {
+        return object.instance != kNoIndex && scene.mesh_of(object.instance) == point;
+    }
     [[nodiscard]] Result<void> set_bound(ObjectHandle object, const Bound& bound, std::uint64_t item);
     [[nodiscard]] Result<void> set_transform(ObjectHandle object, const Transform& transform, std::uint64_t item);
     [[nodiscard]] Result<void> set_transform(NodeHandle node, const Transform& transform, std::uint64_t item);

@@ -91,19 +91,21 @@ typedef struct crofton_bound {
     double center[3], radius; /* of a sphere */
 } crofton_bound;
 
-/* Either a mesh, which `transform` places under `node` or in the world, or a bound. */
+/* A mesh or a body, which `transform` places under `node` or in the world; or a bound. An object with a body needs
+ * neither mesh nor bound. */
 typedef struct crofton_object_description {
     size_t size;
     uint64_t user;                      /* given back with every answer */
-    const crofton_bound* bound;         /* or NULL, of a mesh */
+    const crofton_bound* bound;         /* or NULL, of a mesh or a body alone */
     const crofton_transform* transform; /* or NULL: the node's own */
     uint32_t has_mesh, has_node;        /* 1: the next two count */
     crofton_world_mesh mesh;
     crofton_node node;
-    uint32_t hidden_layers;  /* layers that the object is not in; 0: it is in all */
-    uint32_t ignored_layers; /* layers that the object does not collide with; 0: it does with all */
-    uint32_t transparent;    /* 1: of an object with a mesh; it hides nothing */
-    uint32_t only_occludes;  /* 1: of an object with a mesh; it is in no answer, and hides what its occluders hide */
+    uint32_t hidden_layers;   /* layers that the object is not in; 0: it is in all */
+    uint32_t ignored_layers;  /* layers that the object does not collide with; 0: it does with all */
+    uint32_t transparent;     /* 1: of an object with a mesh; it hides nothing */
+    uint32_t only_occludes;   /* 1: of an object with a mesh; it is in no answer, and hides what its occluders hide */
+    const crofton_body* body; /* or NULL: as crofton_world_set_body, kept alive likewise */
 } crofton_object_description;
 
 /* `options` or NULL: all defaults. */
@@ -142,7 +144,7 @@ CROFTON_API crofton_status crofton_world_set_node_transforms(crofton_world* worl
 CROFTON_API crofton_status crofton_world_add(crofton_world* world, const crofton_object_description* description,
                                              crofton_object* object);
 CROFTON_API crofton_status crofton_world_remove(crofton_world* world, crofton_object object);
-/* Of objects that were added with a transform. */
+/* Of objects that were added with a transform, or by a body under no node. */
 CROFTON_API crofton_status crofton_world_set_transforms(crofton_world* world, const crofton_object* objects,
                                                         size_t object_stride, const crofton_transform* transforms,
                                                         size_t transform_stride, size_t count);
@@ -163,6 +165,7 @@ CROFTON_API crofton_status crofton_world_set_user(crofton_world* world, crofton_
 /* Gives an object a body, or with NULL takes it away: for pairs from the next update on, for queries at once. Pairs of
  * objects that both have bodies are in crofton_world_body_contacts instead of crofton_world_contact. From the next
  * update on the object's box also covers the body. Half-spaces, and compounds that hold some, are ground without end.
+ * An object that was added by its body alone keeps one: CROFTON_INVALID_ARGUMENT for NULL.
  * The object's transform scales the body. CROFTON_UNSUPPORTED: a transform that turns it into another kind of body, as
  * an uneven scale does with a sphere; calls that move objects and nodes refuse such transforms too. */
 CROFTON_API crofton_status crofton_world_set_body(crofton_world* world, crofton_object object,

@@ -21,6 +21,10 @@
 
 namespace crofton {
 
+namespace convex {
+class Body;
+}  // namespace convex
+
 // Names of things in a World: an index that is used again, and a generation that tells its users apart.
 
 inline constexpr std::uint32_t kNoIndex = ~std::uint32_t{0};
@@ -150,12 +154,15 @@ struct Bound {
     Bound(const Sphere& sphere);
 };
 
-// Either a mesh, which `transform` places under `node` or in the world, or a bound in the world's coordinates.
+// A mesh or a body, which `transform` places under `node` or in the world; or a bound in the world's coordinates.
 struct ObjectDescription {
     MeshHandle mesh = {};
     NodeHandle node = {};
     std::optional<Transform> transform = {};  // none: the node's own
     Bound bound = {};
+    // As World::set_body. An object with neither mesh nor bound needs nothing else: its box is the body's, and
+    // set_transform moves it. The box of ground without end is a point then, so views seldom list it.
+    const convex::Body* body = nullptr;
     std::uint64_t user = 0;      // given back with every answer
     std::uint32_t layers = ~0u;  // views and queries ask for layers
     std::uint32_t collides_with =

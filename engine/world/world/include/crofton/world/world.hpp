@@ -76,7 +76,7 @@ class World {
 
     Result<ObjectHandle> add(const ObjectDescription& description);
     Result<void> remove(ObjectHandle object);
-    // Of an object that was added with a transform.
+    // Of an object that was added with a transform, or by its body under no node.
     Result<void> set_transform(ObjectHandle object, const Transform& transform);
     Result<void> set_transforms(Strided<ObjectHandle> objects, Strided<Transform> transforms);
     // Of an object that was added with a bound.
@@ -95,16 +95,17 @@ class World {
     // transform, or the frame of its box or sphere, puts it; axes that are left-handed or off by more than 1e-6 are
     // turned into the nearest rotation.
     // Box: from the next update on, the object's box is the least in its own frame around the bound, or the mesh's box,
-    // and the body. It stands for the object in views, pairs and queries, so that nothing of the body is missed. A
-    // sphere whose body does not fit into it counts as that box. A bound of size 0 is enough: it only says where the
-    // body is. No bounds: half-spaces, and compounds that hold some, are ground without end. They meet, and are met by,
-    // everything that shares layers with them, wherever their object's box is; views go by that box. Level ground costs
-    // an update what lies on it; tilted ground looks at each object.
-    // Scale: a transform that is not rigid scales the body. Uniform scales, within 1e-5, do so with any kind. Other
-    // maps, flat and mirroring ones too, are for what has vertices and no rounding, and for half-spaces. Cylinders,
-    // cones and height fields may be scaled along their axes. Sizes are rounded to float. Scaled hulls and meshes are
-    // built anew whenever the scale changes. Errors: a body that the object's transform, as it is set now, turns into
-    // another kind (unsupported), or puts out of range. Calls that set transforms or parents refuse them likewise.
+    // and the body; around the body alone where the object was added with neither. It stands for the object in views,
+    // pairs and queries, so that nothing of the body is missed. A sphere whose body does not fit into it counts as that
+    // box. A bound of size 0 is enough: it only says where the body is. No bounds: half-spaces, and compounds that hold
+    // some, are ground without end. They meet, and are met by, everything that shares layers with them, wherever their
+    // object's box is; views go by that box. Level ground costs an update what lies on it; tilted ground looks at each
+    // object. Scale: a transform that is not rigid scales the body. Uniform scales, within 1e-5, do so with any kind.
+    // Other maps, flat and mirroring ones too, are for what has vertices and no rounding, and for half-spaces.
+    // Cylinders, cones and height fields may be scaled along their axes. Sizes are rounded to float. Scaled hulls and
+    // meshes are built anew whenever the scale changes. Errors: a body that the object's transform, as it is set now,
+    // turns into another kind (unsupported), or puts out of range. Calls that set transforms or parents refuse them
+    // likewise. An object that was added by its body alone keeps one: nullptr is refused (invalid_argument).
     Result<void> set_body(ObjectHandle object, const convex::Body* body);
 
     // A mesh must have triangles and pass validate(TriangleMesh).
@@ -137,7 +138,7 @@ class World {
     [[nodiscard]] Result<std::uint64_t> user_of(ObjectHandle object) const;
     // As of the last update; before the first one after the object was added: an error (empty).
     [[nodiscard]] Result<Obb> box_of(ObjectHandle object) const;
-    [[nodiscard]] Result<Transform> transform_of(ObjectHandle object) const;  // to the world; of a mesh
+    [[nodiscard]] Result<Transform> transform_of(ObjectHandle object) const;  // to the world; not of a bound
 
     // Once a frame. Errors: more than max_pairs pairs; then there are none, and all else is as it should be. A body
     // that its object's transform puts out of range: it is nowhere until that changes.

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+
+namespace crofton::world {
+
+// Quick; false where the map is no rotation, or is one within the tolerance of poses but not clearly.
+[[nodiscard]] inline bool is_clearly_rotation(const glm::dmat3& linear) {
+    constexpr double kClearly = 2e-7;
+    const glm::dvec3 &x = linear[0], &y = linear[1], &z = linear[2];
+    const double most =
+        std::max({std::abs(glm::dot(x, x) - 1.0), std::abs(glm::dot(y, y) - 1.0), std::abs(glm::dot(z, z) - 1.0),
+                  std::abs(glm::dot(x, y)), std::abs(glm::dot(y, z)), std::abs(glm::dot(z, x))});
+    return most <= kClearly && glm::dot(glm::cross(x, y), z) > 0.0;
+}
+
+}  // namespace crofton::world
