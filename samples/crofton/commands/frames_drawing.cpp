@@ -73,7 +73,10 @@ Result<const render::Image*> FramesDrawing::picture() {
 }
 
 Result<void> FramesDrawing::find_seen(pipeline::FrameStatistics& frame) {
-    list_.select(frame.occlusion ? frame.occlusion->visible_ids : frame.visible_ids, frame.camera);
+    if (frame.occlusion && frame.occlusion->by_depth)
+        list_.select(frame.occlusion->clusters, frame.camera);
+    else
+        list_.select(frame.occlusion ? frame.occlusion->visible_ids : frame.visible_ids, frame.camera);
     if (auto drawn = owners_of_shown_.draw(*rasterizer_, kOwners, list_, frame.camera); !drawn)
         return drawn.error().code == ErrorCode::unsupported ? Result<void>{} : drawn;
     frame.seen = pipeline::Seen{owners_of_shown_.instances().size(), owners_of_shown_.triangles().size()};

@@ -25,17 +25,14 @@ TEST_SUITE("pipeline/draw_list") {
                 all.push_back(*scene.add_instance(*scene.add_node(scene::kNone, {linear, {0, 0, -10}}), *mesh));
         scene.update();
         const std::vector<std::uint8_t> sides{0, 1};
-        for (const std::uint8_t moves : {std::uint8_t{0}, std::uint8_t{1}}) {
-            const std::vector<std::uint8_t> is_mover(all.size(), moves);
-            DrawList list(scene, all, is_mover, {.one_sided = sides});
-            list.select(all, Camera{});
-            REQUIRE(list.ranges().size() == 4);
-            for (std::size_t r = 0; r < 4; ++r) {
-                CHECK(list.ranges()[r].one_sided == (list.instance_of(r) == all[2]));
-                CHECK(list.ranges()[r].unclipped);
-            }
-            CHECK(list.predict_clipped() == 4);
+        DrawList list(scene, {.one_sided = sides});
+        list.select(all, Camera{});
+        REQUIRE(list.ranges().size() == 4);
+        for (std::size_t r = 0; r < 4; ++r) {
+            CHECK(list.ranges()[r].one_sided == (list.instance_of(r) == all[2]));
+            CHECK(list.ranges()[r].unclipped);
         }
+        CHECK(list.predict_clipped() == 4);
     }
 
     TEST_CASE("draws go front to back, by their farthest points") {
@@ -50,15 +47,12 @@ TEST_SUITE("pipeline/draw_list") {
             all.push_back(
                 *scene.add_instance(*scene.add_node(scene::kNone, {glm::dmat3(scale), {0, -0.5 * scale, z}}), *mesh));
         scene.update();
-        for (const std::uint8_t moves : {std::uint8_t{0}, std::uint8_t{1}}) {
-            const std::vector<std::uint8_t> is_mover(all.size(), moves);
-            DrawList list(scene, all, is_mover, {});
-            list.select(all, Camera{});
-            REQUIRE(list.ranges().size() == 3);
-            CHECK(list.instance_of(0) == all[1]);
-            CHECK(list.instance_of(1) == all[0]);
-            CHECK(list.instance_of(2) == all[2]);
-        }
+        DrawList list(scene, {});
+        list.select(all, Camera{});
+        REQUIRE(list.ranges().size() == 3);
+        CHECK(list.instance_of(0) == all[1]);
+        CHECK(list.instance_of(1) == all[0]);
+        CHECK(list.instance_of(2) == all[2]);
     }
 
     TEST_CASE("each face of a flat mesh has its own normal, of others those that meet at a small angle share one") {
@@ -69,11 +63,8 @@ TEST_SUITE("pipeline/draw_list") {
         roof.indices = {0, 1, 2, 0, 3, 1};
         scene::Scene scene;
         const auto smooth = scene.add_mesh(roof), flat = scene.add_mesh(roof);
-        const std::vector<scene::InstanceId> all{*scene.add_instance(*scene.add_node(scene::kNone, {}), *smooth),
-                                                 *scene.add_instance(*scene.add_node(scene::kNone, {}), *flat)};
-        scene.update();
-        const std::vector<std::uint8_t> is_mover(2, 0), which{0, 1};
-        const DrawList list(scene, all, is_mover, {.flat = which});
+        const std::vector<std::uint8_t> which{0, 1};
+        const DrawList list(scene, {.flat = which});
         REQUIRE(list.indices().size() == 12);
         const auto normal = [&](std::size_t corner) { return list.vertices()[list.indices()[corner]].normal; };
         for (const std::size_t shared : {0u, 1u}) {
@@ -83,5 +74,35 @@ TEST_SUITE("pipeline/draw_list") {
             CHECK(normal(6 + other).z == doctest::Approx(cosine));
             CHECK(normal(6 + other).x == doctest::Approx(sine));
         }
+    }
+
+    TEST_CASE(
+        "listed triangles are drawn as runs of the clusters' order, instances and triangles in the order of all") {
+        TriangleMesh strip;
+        for (std::uint32_t i = 0; i < 42; ++i) strip.positions.push_back({float(i / 2), float(i % 2), 0.0f});
+        for (std::uint32_t i = 0; i < 40; ++i) strip.indices.insert(strip.indices.end(), {i, i + 1, i + 2});
+        scene::Scene scene;
+        const auto mesh = scene.add_mesh(strip);
+        std::vector<scene::InstanceId> all;
+        for (const double z : {-60.0, -50.0})
+            all.push_back(*scene.add_instance(*scene.add_node(scene::kNone, {glm::dmat3(1.0), {-10, 0, z}}), *mesh));
+        scene.update();
+        const auto clusters = std::make_shared<const SceneClusters>(*cut_scene(scene, serial_executor()));
+        REQUIRE(clusters->meshes[0].clusters().size() >= 3);
+        DrawList list(scene, {}, clusters);
+        const depth::Cluster& second = clusters->meshes[0].clusters()[1];
+        const std::vector<depth::VisibleCluster> visible = {{all[0], 0, 0b1011}, {all[1], 1, 0b1}, {all[1], 2, 0b10}};
+        list.select(visible, Camera{});
+        REQUIRE(list.ranges().size() == 4);
+        CHECK(list.instance_of(0) == all[1]);
+        CHECK(list.ranges()[0].first_index == 3 * second.first_triangle);
+        CHECK(list.ranges()[0].index_count == 3);
+        CHECK(list.ranges()[1].first_index == 3 * (clusters->meshes[0].clusters()[2].first_triangle + 1));
+        CHECK(list.instance_of(2) == all[0]);
+        CHECK(list.ranges()[2].first_index == 0);
+        CHECK(list.ranges()[2].index_count == 6);
+        CHECK(list.ranges()[3].first_index == 9);
+        CHECK(list.transforms().size() == 2);
+        CHECK(list.predict_clipped() == 5);
     }
 }

@@ -420,7 +420,7 @@ TEST_SUITE("world/body_extents") {
         CHECK(world.box_of(below)->half_extents[1] == doctest::Approx(2.0));
         CHECK(error_of(world.set_body(below, &ball)).code == ErrorCode::unsupported);
         // A view lists what it sees of it.
-        VisibleObjects seen;
+        ViewResult seen;
         const Camera camera{.position = {0, 1.9, -5}, .forward = {0, 0, 1}, .up = {0, 1, 0}, .fov_y = 0.02};
         REQUIRE(world.view({.camera = camera}, seen).has_value());
         CHECK(seen.size() == 1);

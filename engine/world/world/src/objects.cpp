@@ -5,7 +5,7 @@
 #include <string>
 
 #include "for_each_pair.hpp"
-#include "must.hpp"
+#include "require_ok.hpp"
 #include "world_state.hpp"
 
 namespace crofton {
@@ -120,7 +120,7 @@ Result<ObjectHandle> World::add(const ObjectDescription& description) {
             s.object_of_instance.resize(object.instance + std::size_t{1}, kNoIndex);
         s.object_of_instance[object.instance] = *item;
     }
-    if (description.body != nullptr) world::must(set_body(s.table.handle(*item), description.body));
+    if (description.body != nullptr) world::require_ok(set_body(s.table.handle(*item), description.body));
     return s.table.handle(*item);
 }
 
