@@ -43,8 +43,8 @@ struct FramesOptions {
     unsigned threads = 1;
     bool draw = false, no_draw = false, no_seen = false, verify = false;
     bool occlude = false;
-    std::string occlusion = "depth", occlusion_size = "400x225";
-    std::uint32_t occluders = 128;
+    std::string occlusion, occlusion_size;  // empty: not said
+    std::optional<std::uint32_t> occluders;
     std::string baked;  // a file with the scene's occluders; empty: they are found
     FramesOutput output;
     std::string report;  // a file of HTML; empty: not wanted
@@ -149,14 +149,7 @@ class FramesRun {
         path_ = std::move(*path);
         pipeline_options_ = {*bounds, *mode, true};
         pipeline_options_.one_sided = source_->one_sided;
-        if (options_.occlude && options_.occlusion == "depth") {
-            pipeline_options_.picture = {size->width, size->height};
-        } else if (options_.occlude) {
-            const auto buffer = image_size_from(options_.occlusion_size, "--occlusion-size", 8, 4096);
-            if (!buffer) return tl::unexpected(buffer.error());
-            pipeline_options_.occlusion =
-                OcclusionOptions{.size = {buffer->width, buffer->height}, .max_occluders = options_.occluders};
-        }
+        if (auto set = set_occlusion(*size); !set) return set;
         pipeline_options_.tree = *tree;
         if (trace_) pipeline_options_.trace = trace_->hooks();
         const auto occluders = baked_occluders();
@@ -168,10 +161,36 @@ class FramesRun {
         return prepare_drawing(*size);
     }
 
+    // What is said of occluders asks for them.
+    [[nodiscard]] bool by_occluders() const {
+        if (!options_.occlusion.empty()) return options_.occlusion == "occluders";
+        return options_.occluders || !options_.occlusion_size.empty() || !options_.baked.empty();
+    }
+
+    Result<void> set_occlusion(const ImageSize& size) {
+        if (!options_.occlude) return {};
+        if (!options_.occlusion.empty() && options_.occlusion != "depth" && options_.occlusion != "occluders")
+            return fail(ErrorCode::invalid_argument, kNoItem,
+                        "--occlusion: '" + options_.occlusion + "' is not one of depth, occluders");
+        if (by_occluders()) {
+            const auto buffer = image_size_from(options_.occlusion_size.empty() ? "400x225" : options_.occlusion_size,
+                                                "--occlusion-size", 8, 4096);
+            if (!buffer) return tl::unexpected(buffer.error());
+            pipeline_options_.occlusion = OcclusionOptions{.size = {buffer->width, buffer->height},
+                                                           .max_occluders = options_.occluders.value_or(128)};
+            return {};
+        }
+        if (options_.occluders || !options_.occlusion_size.empty() || !options_.baked.empty())
+            return fail(ErrorCode::invalid_argument, kNoItem,
+                        "--occluders, --occlusion-size and --baked need --occlusion occluders");
+        pipeline_options_.picture = {size.width, size.height};
+        return {};
+    }
+
     Result<std::shared_ptr<const pipeline::SceneOccluders>> baked_occluders() {
         std::shared_ptr<const pipeline::SceneOccluders> none;
         const bool is_own = options_.baked.empty() && assets::extension(options_.scene) == "crofton";
-        if (!options_.occlude || (options_.baked.empty() && !is_own)) return none;
+        if (!pipeline_options_.occlusion || (options_.baked.empty() && !is_own)) return none;
         const auto parts =
             pipeline::load_baked_parts(is_own ? options_.scene : options_.baked, source_->scene, options_.read.limits);
         if (is_own && (!parts || !parts->occluders)) return none;  // baked without: they are found
@@ -269,21 +288,26 @@ class FramesRun {
                               const std::optional<pipeline::Verification>& verification) {
         if (options_.report.empty()) return {};
         ReportContents contents{facts, {}, frames, verification, std::move(report_pictures_)};
-        contents.settings = {
-            {"scene", options_.scene},
-            {"map", options_.map},
-            {"camera", options_.camera},
-            {"frames", std::to_string(frames.size())},
-            {"seed", std::to_string(options_.seed)},
-            {"size", options_.size},
-            {"bounds", options_.bounds},
-            {"cull", options_.cull},
-            {"tree", options_.tree},
-            {"occlusion", options_.occlude ? std::to_string(options_.occluders) + " occluders at most, " +
-                                                 options_.occlusion_size + " pixels"
-                                           : ""},
-            {"device", drawing_ ? drawing_->device().name() : "none: not drawn"}};
+        contents.settings = {{"scene", options_.scene},
+                             {"map", options_.map},
+                             {"camera", options_.camera},
+                             {"frames", std::to_string(frames.size())},
+                             {"seed", std::to_string(options_.seed)},
+                             {"size", options_.size},
+                             {"bounds", options_.bounds},
+                             {"cull", options_.cull},
+                             {"tree", options_.tree},
+                             {"occlusion", occlusion_setting()},
+                             {"device", drawing_ ? drawing_->device().name() : "none: not drawn"}};
         return write_file(options_.report, html_report(contents));
+    }
+
+    [[nodiscard]] std::string occlusion_setting() const {
+        if (pipeline_options_.picture) return "by the depth of what is drawn";
+        if (!pipeline_options_.occlusion) return "";
+        const OcclusionOptions& o = *pipeline_options_.occlusion;
+        return std::to_string(o.max_occluders) + " occluders at most, " + std::to_string(o.size.width) + "x" +
+               std::to_string(o.size.height) + " pixels";
     }
 
     Executor& executor() { return pool_ ? static_cast<Executor&>(*pool_) : serial_executor(); }
@@ -310,9 +334,9 @@ constexpr const char* kFramesExamples =
     "With --occlude: two columns each, of what is in the view and of what nothing hides as well. Instances;\n"
     "triangles submitted; those that meet the frustum, with what is seen, and how many pass for each that is;\n"
     "milliseconds to find what to draw and to draw it, and what occlusion takes of that.\n"
-    "Occluders are found in the scene's meshes, or come from --baked. --verify then also draws who owns which pixel: "
-    "nothing that\n"
-    "does may be hidden, and both pictures must be the same.\n\n"
+    "Triangles are listed front to back by the depth of those before. With --occlusion occluders whole instances are\n"
+    "hidden instead, by occluders found in the scene's meshes or baked. --verify then also draws who owns which\n"
+    "pixel: nothing that does may be hidden, and both pictures must be the same.\n\n"
     "Exit status: 0 done, 1 --verify found a mismatch, 2 bad usage or input, or nothing could be written,\n"
     "130 interrupted: what was done by then is written.\n\n"
     "Examples:\n"
@@ -343,10 +367,14 @@ void add_frames_command(CommandLine& line) {
     command.option("--cull", options->cull, "none, flat or tree").show_default();
     const Option occlude = command.flag("--occlude", options->occlude,
                                         "Draw each frame also without what other objects hide, and show both");
-    command.option("--occlusion", options->occlusion, "depth or occluders").show_default().needs(occlude);
-    command.option("--occluders", options->occluders, "How many occluders to draw, at most")
+    command
+        .option(
+            "--occlusion", options->occlusion,
+            "How: depth, by the depth of the triangles drawn before, for this picture; or occluders, by solid boxes "
+            "found in the scene, for any picture. Where absent: depth, or occluders if one of the next three is given")
+        .needs(occlude);
+    command.option("--occluders", options->occluders, "How many occluders to draw, at most; where absent 128")
         .whole_between(0, 1000000)
-        .show_default()
         .needs(occlude);
     command
         .option("--baked", options->baked,
@@ -354,8 +382,8 @@ void add_frames_command(CommandLine& line) {
                 "are taken")
         .needs(occlude);
     command
-        .option("--occlusion-size", options->occlusion_size, "Pixels of the occlusion buffer, WIDTHxHEIGHT, 8 to 4096")
-        .show_default()
+        .option("--occlusion-size", options->occlusion_size,
+                "Pixels of the occluders' buffer, WIDTHxHEIGHT, 8 to 4096; where absent 400x225")
         .needs(occlude);
     command.option("--tree", options->tree, "The tree's inner bounds: aligned, oriented or automatic").show_default();
     command.option("--map", options->map, "Which level of a .wad; the first where absent");

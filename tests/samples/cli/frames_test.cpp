@@ -54,6 +54,8 @@ TEST_SUITE("cli/frames") {
             {"town --png pictures --no-draw", "--no-draw excludes --png"},
             {"town --occluders 10", "occlude"},
             {"town --occlude --occlusion-size 4x90", "4x90"},
+            {"town --occlude --occlusion boxes", "boxes"},
+            {"town --occlude --occlusion depth --occluders 9", "need --occlusion occluders"},
         };
         for (const Case& wrong : cases) {
             CAPTURE(wrong.arguments);
@@ -153,7 +155,8 @@ TEST_SUITE("cli/frames") {
 
     TEST_CASE("--trace writes zones that nest, with the stages of each frame") {
         const std::string file = scratch().file("trace.json");
-        REQUIRE(run_cli(kSmallTown + "--frames 3 --no-draw --occlude --trace " + file).status == 0);
+        REQUIRE(run_cli(kSmallTown + "--frames 3 --no-draw --occlude --occlusion occluders --trace " + file).status ==
+                0);
         std::ifstream stream(file);
         const json events = json::parse(stream)["traceEvents"];
         std::vector<std::string> open;
@@ -178,8 +181,8 @@ TEST_SUITE("cli/frames") {
     }
 
     TEST_CASE("with --occlude frames have both columns, the second has less, and nothing that owns a pixel is hidden") {
-        for (const char* choice : {"", "--bounds sphere", "--bounds aabb --cull flat", "--occlusion-size 64x36",
-                                   "--occluders 0", "--threads 2"}) {
+        for (const char* choice : {"", "--bounds sphere", "--bounds aabb --cull flat", "--threads 2",
+                                   "--occlusion occluders", "--occlusion-size 64x36", "--occluders 0"}) {
             CAPTURE(choice);
             const CliRun run =
                 run_cli(kSmallTown + "--frames 6 --camera street --occlude --verify --ids --json - " + choice);
