@@ -27,13 +27,14 @@ FLAGS = {"simd": "-msimd128", "plain": "-DHWY_COMPILE_ONLY_SCALAR"}
 OPTIMIZE, KERNELS = "-Os", "-O2;-finline-functions"
 MODULES = ["core", "geometry", "measure", "mesh", "boxtree", "convex", "collide", "scene", "fit", "cull", "occlude",
            "triangulate", "world", "capi", "bake_capi"]
-EXPORTED = """last_error status_name version_string set_log_hook log camera_default frustum_from_camera
+EXPORTED = """last_error status_name version_string set_log_hook log default_camera frustum_from_camera
 frustum_from_matrix boxes_validate tree_create tree_destroy tree_move tree_remove tree_refit visible_set_create
 visible_set_destroy visible_set_items visible_set_statistics cull_tree cull_boxes classify criterion_minimal_perimeter
 fit_floats fit_doubles triangulator_create triangulator_destroy triangulate world_create world_destroy world_add_mesh
 world_find_occluders world_set_occluders world_add world_remove world_set_hidden world_set_bound world_set_transforms
-world_contains world_object_count world_update world_view world_view_occluding world_raycast visible_objects_create
-visible_objects_destroy visible_objects_ids visible_objects_occluded_ids web_error_item""".split()
+world_contains world_object_count world_update default_world_options default_mesh_data
+default_object_description default_occlusion_options default_view_request world_view world_raycast view_result_create
+view_result_destroy view_result_ids view_result_occluded_ids web_error_item""".split()
 
 
 def do(command, log, **more):

@@ -82,16 +82,16 @@ export interface World extends Owned {
     setConvexOccluder(mesh: MeshHandle, positions: Float32Array): void;
     /** `transform`: sixteen numbers by columns, the last row 0, 0, 0, 1. */
     add(object: { box?: BoxLike; sphere?: { center: Vector; radius: number }; mesh?: MeshHandle; transform?: Vector;
-        user?: number; hiddenLayers?: number; transparent?: boolean }): ObjectHandle;
+        user?: number; layers?: number; occludes?: boolean }): ObjectHandle;
     remove(object: ObjectHandle): void;
     setHidden(object: ObjectHandle, hidden: boolean): void;
     setBox(object: ObjectHandle, box: BoxLike): void;
     setTransform(object: ObjectHandle, transform: Vector): void;
     contains(object: ObjectHandle): boolean;
     update(): void;
-    view(frustum: Frustum, visible: ViewResult): ViewResult;
-    viewOccluding(camera: Camera, visible: ViewResult,
-        options?: { listOccluded?: boolean; occlusion?: boolean; width?: number; height?: number }): ViewResult;
+    /** `camera` or `volume`, or both: then objects are tested against the volume, and hidden from the camera. */
+    view(request: { camera?: Camera; volume?: Frustum; layers?: number;
+        occlusion?: { listOccluded?: boolean; width?: number; height?: number; maxOccluders?: number } }, visible: ViewResult): ViewResult;
     raycast(origin: Vector, direction: Vector, maxT?: number, layers?: number): Hit | null;
 }
 export interface Crofton {

@@ -17,14 +17,20 @@ static void check(crofton_status status) {
 static void add_tetrahedra(crofton_world* world) {
     static const float positions[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
     static const uint32_t indices[] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
-    const crofton_mesh_data data = {
-        .size = sizeof data, .positions = positions, .position_count = 4, .indices = indices, .index_count = 12};
+    crofton_mesh_data data = crofton_default_mesh_data();
+    data.positions = positions;
+    data.position_count = 4;
+    data.indices = indices;
+    data.index_count = 12;
     crofton_world_mesh mesh;
     check(crofton_world_add_mesh(world, &data, &mesh));
     for (int i = 0; i < 100; ++i) {
         const crofton_transform place = {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0.9 * (i % 10) - 4.5, 0.0, -1.5 * (i / 10)}};
-        const crofton_object_description description = {
-            .size = sizeof description, .user = (uint64_t)i, .transform = &place, .has_mesh = 1, .mesh = mesh};
+        crofton_object_description description = crofton_default_object_description();
+        description.user = (uint64_t)i;
+        description.transform = &place;
+        description.has_mesh = 1;
+        description.mesh = mesh;
         crofton_object object;
         check(crofton_world_add(world, &description, &object));
     }
@@ -33,7 +39,9 @@ static void add_tetrahedra(crofton_world* world) {
 /* An object may be a bound alone. */
 static crofton_object add_sphere(crofton_world* world, double x) {
     const crofton_bound bound = {.kind = CROFTON_BOUND_SPHERE, .center = {x, 0.2, -3.0}, .radius = 0.5};
-    const crofton_object_description description = {.size = sizeof description, .user = 100, .bound = &bound};
+    crofton_object_description description = crofton_default_object_description();
+    description.user = 100;
+    description.bound = &bound;
     crofton_object object;
     check(crofton_world_add(world, &description, &object));
     return object;
@@ -41,17 +49,18 @@ static crofton_object add_sphere(crofton_world* world, double x) {
 
 int main(void) {
     crofton_world* world;
-    crofton_visible_objects* visible;
-    crofton_camera camera = {.size = sizeof camera};
+    crofton_view_result* visible;
+    const crofton_camera camera = crofton_default_camera();
+    crofton_view_request request = crofton_default_view_request();
     crofton_object_hit hit;
     const crofton_object_pair* pairs;
     const uint32_t* ids;
     const crofton_ray ray = {{-4.3, 0.2, 5.0}, {0.0, 0.0, -1.0}, 100.0};
     size_t seen = 0, count = 0, pair_count = 0, contacts = 0;
     if (crofton_api_version() != CROFTON_API_VERSION) return 1;
-    check(crofton_camera_default(&camera));
+    request.camera = &camera;
     check(crofton_world_create(NULL, &world));
-    check(crofton_visible_objects_create(&visible));
+    check(crofton_view_result_create(&visible));
     add_tetrahedra(world);
     const crofton_object sphere = add_sphere(world, -6.0);
     for (int frame = 0; frame < 10; ++frame) {
@@ -59,8 +68,8 @@ int main(void) {
             .kind = CROFTON_BOUND_SPHERE, .center = {0.5 * frame - 6.0, 0.2, -3.0}, .radius = 0.5};
         check(crofton_world_set_bound(world, sphere, &moved));
         check(crofton_world_update(world, NULL)); /* once a frame; then ask */
-        check(crofton_world_view_camera(world, &camera, NULL, NULL, visible));
-        check(crofton_visible_objects_ids(visible, &ids, &seen, NULL, NULL));
+        check(crofton_world_view(world, &request, NULL, visible));
+        check(crofton_view_result_ids(visible, &ids, &seen, NULL, NULL));
         check(crofton_world_contact_count(world, &contacts));
     }
     check(crofton_world_object_count(world, &count));
@@ -69,7 +78,7 @@ int main(void) {
     printf("crofton %s: %zu of %zu objects in view, %zu pairs of bounds meet, %zu of them touch\n",
            crofton_version_string(), seen, count, pair_count, contacts);
     printf("the ray hits object %llu at %.2f\n", (unsigned long long)hit.user, hit.t);
-    check(crofton_visible_objects_destroy(visible));
+    check(crofton_view_result_destroy(visible));
     check(crofton_world_destroy(world));
     return seen > 0 && seen < count && pair_count > contacts && contacts > 0 && hit.user == 0 ? 0 : 1;
 }

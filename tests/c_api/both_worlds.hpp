@@ -34,7 +34,7 @@ struct BothWorlds {
 
     BothWorlds() {
         auto options = sized<crofton_world_options>();
-        options.with_mesh_depth = 1;
+        options.mesh_depth = 1;
         c = make_world(&options);
         jobs.user = &pool;
         jobs.concurrency = pool.concurrency();
@@ -152,9 +152,9 @@ inline void add_object(BothWorlds& both, oracle::NearMisses& random, const std::
     }
     c.user = description.user = random.index(1u << 30);
     description.layers = 1u << random.index(4) | 1u << random.index(4);
-    c.hidden_layers = ~description.layers;
+    c.layers = description.layers;
     description.collides_with = random.index(3) ? ~0u : 3u;
-    c.ignored_layers = ~description.collides_with;
+    c.collides_with = description.collides_with;
     crofton_object object{};
     REQUIRE(crofton_world_add(both.c.get(), &c, &object) == CROFTON_OK);
     REQUIRE(both.world.add(description).value() == both.twin<ObjectHandle>(object));

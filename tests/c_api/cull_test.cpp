@@ -20,8 +20,7 @@ std::vector<crofton_box> random_boxes(std::size_t count) {
 }
 
 crofton_camera default_camera() {
-    auto camera = sized<crofton_camera>();
-    REQUIRE(crofton_camera_default(&camera) == CROFTON_OK);
+    crofton_camera camera = crofton_default_camera();
     return camera;
 }
 
@@ -187,11 +186,13 @@ TEST_SUITE("capi/cull") {
             REQUIRE(crofton_world_add(world.get(), &description, &object) == CROFTON_OK);
         }
         REQUIRE(crofton_world_update(world.get(), nullptr) == CROFTON_OK);
-        const ViewResultHandle objects = make_visible_objects();
-        REQUIRE(crofton_world_view(world.get(), &view, &options, nullptr, objects.get()) == CROFTON_OK);
+        const ViewResultHandle objects = make_view_result();
+        crofton_view_request request = request_of(view);
+        request.limits = options.limits;
+        REQUIRE(crofton_world_view(world.get(), &request, nullptr, objects.get()) == CROFTON_OK);
         const uint32_t* ids = nullptr;
         std::size_t count = 0;
-        REQUIRE(crofton_visible_objects_ids(objects.get(), &ids, &count, nullptr, nullptr) == CROFTON_OK);
+        REQUIRE(crofton_view_result_ids(objects.get(), &ids, &count, nullptr, nullptr) == CROFTON_OK);
         CHECK(std::vector<std::uint32_t>(ids, ids + count) == expected);
     }
 

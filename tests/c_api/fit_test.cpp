@@ -26,8 +26,7 @@ TEST_SUITE("capi/fit") {
         crofton_criterion criterion{};
         CHECK(crofton_criterion_for_rays(-1.0, &criterion) == CROFTON_OUT_OF_RANGE);
         CHECK(crofton_criterion_for_frustum(nullptr, &criterion) == CROFTON_INVALID_ARGUMENT);
-        auto camera = sized<crofton_camera>();
-        REQUIRE(crofton_camera_default(&camera) == CROFTON_OK);
+        crofton_camera camera = crofton_default_camera();
         camera.projection = 7;
         CHECK(crofton_criterion_for_frustum(&camera, &criterion) == CROFTON_INVALID_ARGUMENT);
         CHECK(criterion.volume_weight == 0.0);
@@ -64,8 +63,7 @@ TEST_SUITE("capi/fit") {
         crofton_criterion criterion{};
         REQUIRE(crofton_criterion_for_rays(8.0, &criterion) == CROFTON_OK);
         CHECK(criterion.area_weight == doctest::Approx(2.0));  // length / 4
-        auto camera = sized<crofton_camera>();
-        REQUIRE(crofton_camera_default(&camera) == CROFTON_OK);
+        crofton_camera camera = crofton_default_camera();
         REQUIRE(crofton_criterion_for_frustum(&camera, &criterion) == CROFTON_OK);
         CHECK(criterion.volume_weight == 1.0);
         CHECK(criterion.mean_curvature_weight > criterion.area_weight);

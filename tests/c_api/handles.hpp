@@ -6,6 +6,7 @@
 #include <doctest/doctest.h>
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,8 +25,7 @@ using Broadphase = Owned<crofton_broadphase, crofton_broadphase_destroy>;
 using Collider = Owned<crofton_collider, crofton_collider_destroy>;
 using Triangulator = Owned<crofton_triangulator, crofton_triangulator_destroy>;
 using WorldHandle = Owned<crofton_world, crofton_world_destroy>;
-using ViewResultHandle = Owned<crofton_visible_objects, crofton_visible_objects_destroy>;
-using VisibleInViewsHandle = Owned<crofton_visible_in_views, crofton_visible_in_views_destroy>;
+using ViewResultHandle = Owned<crofton_view_result, crofton_view_result_destroy>;
 using BodyHandle = Owned<crofton_body, crofton_body_destroy>;
 using BodyContactsHandle = Owned<crofton_body_contacts, crofton_body_contacts_destroy>;
 using Found = Owned<crofton_found, crofton_found_destroy>;
@@ -53,21 +53,59 @@ inline WorldHandle make_world(const crofton_world_options* options = nullptr) {
     REQUIRE(crofton_world_create(options, &world) == CROFTON_OK);
     return WorldHandle(world);
 }
-inline ViewResultHandle make_visible_objects() {
-    return make<ViewResultHandle>(crofton_visible_objects_create);
-}
-inline VisibleInViewsHandle make_visible_in_views() {
-    return make<VisibleInViewsHandle>(crofton_visible_in_views_create);
+inline ViewResultHandle make_view_result() {
+    return make<ViewResultHandle>(crofton_view_result_create);
 }
 inline Found make_found() {
     return make<Found>(crofton_found_create);
 }
 
+// With the defaults of its members.
 template <class Struct>
 Struct sized() {
     Struct result{};
     result.size = sizeof result;
     return result;
+}
+template <>
+inline crofton_world_options sized() {
+    return crofton_default_world_options();
+}
+template <>
+inline crofton_mesh_data sized() {
+    return crofton_default_mesh_data();
+}
+template <>
+inline crofton_object_description sized() {
+    return crofton_default_object_description();
+}
+template <>
+inline crofton_view_request sized() {
+    return crofton_default_view_request();
+}
+
+// What a view by a frustum asks; `view` must outlive the request.
+inline crofton_view_request request_of(const crofton_view& view) {
+    crofton_view_request request = crofton_default_view_request();
+    request.volume = &view.frustum;
+    request.layers = view.layer_mask;
+    return request;
+}
+inline crofton_view_request request_of(const crofton_camera& camera) {
+    crofton_view_request request = crofton_default_view_request();
+    request.camera = &camera;
+    return request;
+}
+template <class View>
+crofton_status look(const crofton_world* world, const View& view, crofton_view_result* result) {
+    const crofton_view_request request = request_of(view);
+    return crofton_world_view(world, &request, nullptr, result);
+}
+inline crofton_status look_at_many(const crofton_world* world, std::span<const crofton_view> views,
+                                   crofton_view_result* result) {
+    std::vector<crofton_view_request> requests;
+    for (const crofton_view& view : views) requests.push_back(request_of(view));
+    return crofton_world_view_many(world, requests.data(), requests.size(), nullptr, result);
 }
 
 inline crofton_box box_at(double x, double y, double z, float half = 0.5f) {
@@ -75,8 +113,7 @@ inline crofton_box box_at(double x, double y, double z, float half = 0.5f) {
 }
 
 inline crofton_view default_view() {
-    auto camera = sized<crofton_camera>();
-    REQUIRE(crofton_camera_default(&camera) == CROFTON_OK);
+    crofton_camera camera = crofton_default_camera();
     auto view = sized<crofton_view>();
     view.layer_mask = ~0u;
     view.frustum.size = sizeof view.frustum;

@@ -125,8 +125,8 @@ TEST_SUITE("capi/hooks") {
                 REQUIRE(crofton_world_add(world.get(), &description, &object) == CROFTON_OK);
             }
             REQUIRE(crofton_world_update(world.get(), nullptr) == CROFTON_OK);
-            const ViewResultHandle visible = make_visible_objects();
-            const VisibleInViewsHandle in_views = make_visible_in_views();
+            const ViewResultHandle visible = make_view_result();
+            const ViewResultHandle in_views = make_view_result();
             const Found found = make_found();
             const crofton_view view = default_view();
             const crofton_ray ray{{0, 0, 0}, {0, 0, -1}, 1e3};
@@ -136,8 +136,8 @@ TEST_SUITE("capi/hooks") {
             std::size_t before = 0;
             for (int i = 0; i < 5; ++i) {
                 if (i == 1) before = counter.allocations;
-                REQUIRE(crofton_world_view(world.get(), &view, nullptr, nullptr, visible.get()) == CROFTON_OK);
-                REQUIRE(crofton_world_views(world.get(), &view, 1, nullptr, in_views.get()) == CROFTON_OK);
+                REQUIRE(look(world.get(), view, visible.get()) == CROFTON_OK);
+                REQUIRE(look_at_many(world.get(), std::span(&view, 1), in_views.get()) == CROFTON_OK);
                 REQUIRE(crofton_world_raycast(world.get(), &ray, 1, ~0u, &hit) == CROFTON_OK);
                 REQUIRE(crofton_world_raycast_all(world.get(), &ray, ~0u, found.get()) == CROFTON_OK);
                 REQUIRE(crofton_world_overlap_sphere(world.get(), center, 9, ~0u, found.get()) == CROFTON_OK);
@@ -243,10 +243,10 @@ TEST_SUITE("capi/hooks") {
             crofton_object object{};
             REQUIRE(crofton_world_add(world.get(), &description, &object) == CROFTON_OK);
         }
-        const ViewResultHandle visible = make_visible_objects();
+        const ViewResultHandle visible = make_view_result();
         struct Attempt {
             crofton_world* world;
-            crofton_visible_objects* visible;
+            crofton_view_result* visible;
             crofton_view view = default_view();
             crofton_status write = CROFTON_OK, read = CROFTON_OK;
         } attempt{world.get(), visible.get()};
@@ -254,7 +254,7 @@ TEST_SUITE("capi/hooks") {
                                 [](void* user, size_t count, size_t grain, crofton_range_task task, void* data) {
                                     auto& a = *static_cast<Attempt*>(user);
                                     a.write = crofton_world_set_hidden(a.world, {0, 0}, 1);
-                                    a.read = crofton_world_view(a.world, &a.view, nullptr, nullptr, a.visible);
+                                    a.read = look(a.world, a.view, a.visible);
                                     for (size_t i = 0; i < count; i += grain)
                                         task(data, i, i + grain < count ? i + grain : count, 0);
                                 }};

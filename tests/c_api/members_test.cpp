@@ -60,8 +60,7 @@ TEST_SUITE("capi/members") {
 
     TEST_CASE("criteria: what has no measure is refused and changes nothing, boxes merge by the one that is given") {
         crofton_criterion criterion{1, 2, 3};
-        auto camera = sized<crofton_camera>();
-        REQUIRE(crofton_camera_default(&camera) == CROFTON_OK);
+        crofton_camera camera = crofton_default_camera();
         camera.far_distance = kNoLimit;
         CHECK(crofton_criterion_for_frustum(&camera, &criterion) != CROFTON_OK);
         for (const double length : {-1.0, 2e30, kNoLimit, kNotANumber})
@@ -237,10 +236,9 @@ TEST_SUITE("capi/members") {
     TEST_CASE("planes alone keep a box beside the frustum's edge, masks may be left out, and names of meshes") {
         const SmallWorld small;
         const crofton_view view = default_view();
-        REQUIRE(crofton_world_views(small.world.get(), &view, 1, nullptr, small.in_views.get()) == CROFTON_OK);
+        REQUIRE(look_at_many(small.world.get(), std::span(&view, 1), small.in_views.get()) == CROFTON_OK);
         crofton_object_ref listed[1] = {};
-        REQUIRE(crofton_visible_in_views_list(small.in_views.get(), small.world.get(), 0, listed, nullptr, 1) ==
-                CROFTON_OK);
+        REQUIRE(crofton_view_result_list(small.in_views.get(), small.world.get(), 0, listed, nullptr, 1) == CROFTON_OK);
         CHECK(listed[0].user == 7);
         // A sliver past the edge of the near and the right plane: each of them has one of its ends on its inner side.
         crofton_box sliver = box_at(0.113, 0.0, -0.082, 0.001f);

@@ -43,10 +43,10 @@ std::string file_of_sets() {
     return path;
 }
 
-std::vector<std::uint32_t> ids_in_view(const crofton_visible_objects* visible) {
+std::vector<std::uint32_t> ids_in_view(const crofton_view_result* visible) {
     const std::uint32_t* ids = nullptr;
     std::size_t count = 0;
-    REQUIRE(crofton_visible_objects_ids(visible, &ids, &count, nullptr, nullptr) == CROFTON_OK);
+    REQUIRE(crofton_view_result_ids(visible, &ids, &count, nullptr, nullptr) == CROFTON_OK);
     return {ids, ids + count};
 }
 
@@ -78,30 +78,27 @@ TEST_SUITE("capi/pvs") {
             add_bound(world, bound);
         }
         for (int i = 0; i < 40; ++i) update(world);  // what is new counts as moving at first
-        const ViewResultHandle visible = make_visible_objects();
-        crofton_camera camera;
-        camera.size = sizeof camera;
-        REQUIRE(crofton_camera_default(&camera) == CROFTON_OK);
+        const ViewResultHandle visible = make_view_result();
+        crofton_camera camera = crofton_default_camera();
         for (int k = 0; k < 3; ++k) camera.position[k] = inside[k];
-        crofton_cull_options options{};
-        options.size = sizeof options;
-        REQUIRE(crofton_world_view_camera(world.get(), &camera, &options, nullptr, visible.get()) == CROFTON_OK);
+        crofton_view_request request = request_of(camera);
+        REQUIRE(crofton_world_view(world.get(), &request, nullptr, visible.get()) == CROFTON_OK);
         CHECK(ids_in_view(visible.get()) == std::vector<std::uint32_t>{0, 1, 2, 3});
-        REQUIRE(crofton_pvs_visible(sets.get(), inside, CROFTON_PVS_STATISTICAL, &options.candidate_mask,
-                                    &options.candidate_words) == CROFTON_OK);
-        REQUIRE(crofton_world_view_camera(world.get(), &camera, &options, nullptr, visible.get()) == CROFTON_OK);
+        REQUIRE(crofton_pvs_visible(sets.get(), inside, CROFTON_PVS_STATISTICAL, &request.candidate_mask,
+                                    &request.candidate_words) == CROFTON_OK);
+        REQUIRE(crofton_world_view(world.get(), &request, nullptr, visible.get()) == CROFTON_OK);
         CHECK(ids_in_view(visible.get()) == std::vector<std::uint32_t>{0, 1, 3});
         // A caller compiled before there were sets.
-        options.size = offsetof(crofton_cull_options, candidate_mask);
-        REQUIRE(crofton_world_view_camera(world.get(), &camera, &options, nullptr, visible.get()) == CROFTON_OK);
+        request.size = offsetof(crofton_view_request, candidate_mask);
+        REQUIRE(crofton_world_view(world.get(), &request, nullptr, visible.get()) == CROFTON_OK);
         CHECK(ids_in_view(visible.get()).size() == 4);
         // Without a cell everything is drawn.
-        options.size = sizeof options;
-        REQUIRE(crofton_pvs_visible(sets.get(), outside, CROFTON_PVS_CONSERVATIVE, &options.candidate_mask,
-                                    &options.candidate_words) == CROFTON_OK);
-        CHECK(options.candidate_mask == nullptr);
-        CHECK(options.candidate_words == 0);
-        REQUIRE(crofton_world_view_camera(world.get(), &camera, &options, nullptr, visible.get()) == CROFTON_OK);
+        request.size = sizeof request;
+        REQUIRE(crofton_pvs_visible(sets.get(), outside, CROFTON_PVS_CONSERVATIVE, &request.candidate_mask,
+                                    &request.candidate_words) == CROFTON_OK);
+        CHECK(request.candidate_mask == nullptr);
+        CHECK(request.candidate_words == 0);
+        REQUIRE(crofton_world_view(world.get(), &request, nullptr, visible.get()) == CROFTON_OK);
         CHECK(ids_in_view(visible.get()).size() == 4);
     }
 
@@ -124,15 +121,11 @@ TEST_SUITE("capi/pvs") {
         CHECK(crofton_pvs_visible(sets.get(), eye, 2, &words, &count) == CROFTON_INVALID_ARGUMENT);
         CHECK(crofton_pvs_visible(sets.get(), eye, 0, nullptr, &count) == CROFTON_INVALID_ARGUMENT);
         CHECK(crofton_pvs_counts(nullptr, nullptr, nullptr) != CROFTON_OK);
-        const ViewResultHandle visible = make_visible_objects();
+        const ViewResultHandle visible = make_view_result();
         const WorldHandle world = make_world();
-        crofton_camera camera;
-        camera.size = sizeof camera;
-        REQUIRE(crofton_camera_default(&camera) == CROFTON_OK);
-        crofton_cull_options options{};
-        options.size = sizeof options;
-        options.candidate_words = 3;
-        CHECK(crofton_world_view_camera(world.get(), &camera, &options, nullptr, visible.get()) ==
-              CROFTON_INVALID_ARGUMENT);
+        crofton_camera camera = crofton_default_camera();
+        crofton_view_request request = request_of(camera);
+        request.candidate_words = 3;
+        CHECK(crofton_world_view(world.get(), &request, nullptr, visible.get()) == CROFTON_INVALID_ARGUMENT);
     }
 }

@@ -84,31 +84,31 @@ std::size_t compare_contacts(const BothWorlds& both) {
     return count;
 }
 
-void compare_visible(const BothWorlds& both, const crofton_visible_objects* c, const ViewResult& expected) {
+void compare_visible(const BothWorlds& both, const crofton_view_result* c, const ViewResult& expected) {
     const std::uint32_t* ids = nullptr;
     const std::uint8_t* verdicts = nullptr;
     std::size_t count = 0, inside = 0;
-    REQUIRE(crofton_visible_objects_ids(c, &ids, &count, &verdicts, &inside) == CROFTON_OK);
+    REQUIRE(crofton_view_result_ids(c, &ids, &count, &verdicts, &inside) == CROFTON_OK);
     REQUIRE(count == expected.size());
     CHECK(inside == expected.inside_count());
     CHECK((verdicts == nullptr) == expected.verdicts().empty());
     std::vector<crofton_object_ref> refs(count);
     const std::size_t half = count / 2;
-    REQUIRE(crofton_visible_objects_list(c, both.c.get(), 0, refs.data(), half) == CROFTON_OK);
-    REQUIRE(crofton_visible_objects_list(c, both.c.get(), half, refs.data() + half, count) == CROFTON_OK);
+    REQUIRE(crofton_view_result_list(c, both.c.get(), 0, refs.data(), nullptr, half) == CROFTON_OK);
+    REQUIRE(crofton_view_result_list(c, both.c.get(), half, refs.data() + half, nullptr, count) == CROFTON_OK);
     for (std::size_t i = 0; i < count; ++i) {
         CHECK(ids[i] == expected.ids()[i]);
         CHECK(same_ref(both, refs[i], expected[i]));
         if (verdicts) CHECK(verdicts[i] == static_cast<std::uint8_t>(expected.verdicts()[i]));
     }
     auto statistics = sized<crofton_cull_statistics>();
-    REQUIRE(crofton_visible_objects_get_statistics(c, &statistics) == CROFTON_OK);
+    REQUIRE(crofton_view_result_get_statistics(c, &statistics) == CROFTON_OK);
     CHECK(statistics.boxes_tested == expected.statistics().boxes_tested);
     CHECK(statistics.straddling == expected.statistics().straddling);
 }
 
 std::size_t compare_views(const BothWorlds& both, NearMisses& random) {
-    const ViewResultHandle seen = make_visible_objects();
+    const ViewResultHandle seen = make_view_result();
     ViewResult visible;
     std::array<cull::View, 3> views{};
     std::array<crofton_view, 3> c_views{};
@@ -125,10 +125,10 @@ std::size_t compare_views(const BothWorlds& both, NearMisses& random) {
         c_camera.aspect = camera.aspect;
         c_camera.near_distance = camera.near_distance;
         c_camera.far_distance = camera.far_distance;
-        auto options = sized<crofton_cull_options>();
-        options.tree_order = v % 2;
+        crofton_view_request request = request_of(c_camera);
+        request.tree_order = v % 2;
         const cull::CullOptions cull_options{.order = v % 2 ? cull::ResultOrder::tree : cull::ResultOrder::ascending};
-        REQUIRE(crofton_world_view_camera(both.c.get(), &c_camera, &options, &both.jobs, seen.get()) == CROFTON_OK);
+        REQUIRE(crofton_world_view(both.c.get(), &request, &both.jobs, seen.get()) == CROFTON_OK);
         REQUIRE(both.world.view({.camera = camera, .order = cull_options.order}, visible).has_value());
         compare_visible(both, seen.get(), visible);
         total += visible.size();
@@ -137,22 +137,23 @@ std::size_t compare_views(const BothWorlds& both, NearMisses& random) {
         c_views[v].layer_mask = views[v].layer_mask;
         c_views[v].frustum.size = sizeof(crofton_frustum);
         REQUIRE(crofton_frustum_from_camera(&c_camera, &c_views[v].frustum) == CROFTON_OK);
-        REQUIRE(crofton_world_view(both.c.get(), &c_views[v], &options, nullptr, seen.get()) == CROFTON_OK);
+        request = request_of(c_views[v]);
+        request.tree_order = v % 2;
+        REQUIRE(crofton_world_view(both.c.get(), &request, nullptr, seen.get()) == CROFTON_OK);
         REQUIRE(both.world.view(request_of(views[v], cull_options.order), visible).has_value());
         compare_visible(both, seen.get(), visible);
     }
-    const VisibleInViewsHandle in_views = make_visible_in_views();
+    const ViewResultHandle in_views = make_view_result();
     MultiViewResult expected;
-    REQUIRE(crofton_world_views(both.c.get(), c_views.data(), 3, nullptr, in_views.get()) == CROFTON_OK);
+    REQUIRE(look_at_many(both.c.get(), c_views, in_views.get()) == CROFTON_OK);
     REQUIRE(both.world.view(requests_of(views), expected).has_value());
     const std::uint32_t* ids = nullptr;
     std::size_t count = 0;
-    REQUIRE(crofton_visible_in_views_ids(in_views.get(), &ids, &count) == CROFTON_OK);
+    REQUIRE(crofton_view_result_ids(in_views.get(), &ids, &count, nullptr, nullptr) == CROFTON_OK);
     REQUIRE(count == expected.size());
     std::vector<crofton_object_ref> refs(count);
     std::vector<std::uint32_t> masks(count);
-    REQUIRE(crofton_visible_in_views_list(in_views.get(), both.c.get(), 0, refs.data(), masks.data(), count) ==
-            CROFTON_OK);
+    REQUIRE(crofton_view_result_list(in_views.get(), both.c.get(), 0, refs.data(), masks.data(), count) == CROFTON_OK);
     for (std::size_t i = 0; i < count; ++i) {
         CHECK(ids[i] == expected.ids()[i]);
         CHECK(same_ref(both, refs[i], expected[i]));
@@ -323,7 +324,7 @@ TEST_SUITE("capi/world agreement") {
             const std::vector<std::uint32_t> indices{0, 1, 2, 0, 2, 3};
             data.indices = indices.data();
             data.index_count = indices.size();
-            data.without_triangles = static_cast<std::uint32_t>(frame % 2);
+            data.triangles = frame % 2 == 0;
             REQUIRE(crofton_world_replace_mesh(c, meshes[1], &data) == CROFTON_OK);
             REQUIRE(both.world
                         .replace_mesh(both.twin<MeshHandle>(meshes[1]),

@@ -49,8 +49,8 @@ inline crofton_world_mesh add_tetrahedron(const WorldHandle& world) {
 // One object, and results to ask it with.
 struct SmallWorld {
     WorldHandle world = make_world();
-    ViewResultHandle visible = make_visible_objects();
-    VisibleInViewsHandle in_views = make_visible_in_views();
+    ViewResultHandle visible = make_view_result();
+    ViewResultHandle in_views = make_view_result();
     Found found = make_found();
     crofton_object box = add_bound(world, box_bound(box_at(0, 0, -5)), 7);
     SmallWorld() { update(world); }

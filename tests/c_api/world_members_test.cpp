@@ -8,10 +8,9 @@ using namespace crofton::capi_test;
 
 TEST_SUITE("capi/world members") {
     TEST_CASE("a World answers the same with any budget for its tree, and knows its nodes and meshes") {
-        for (const auto& [budget, without] : {std::pair(0u, 0u), std::pair(1u, 0u), std::pair(0u, 1u)}) {
+        for (const std::uint64_t budget : {CROFTON_AUTOMATIC, std::uint64_t{1}, std::uint64_t{0}}) {
             auto options = sized<crofton_world_options>();
             options.rebuild_budget = budget;
-            options.without_rebuild = without;
             const WorldHandle world = make_world(&options);
             std::vector<crofton_object> objects;
             for (int i = 0; i < 200; ++i) objects.push_back(add_bound(world, sphere_bound(0, 0, -3.0 * i, 1.0)));
@@ -110,19 +109,17 @@ TEST_SUITE("capi/world members") {
         description.mesh = mesh;
         REQUIRE(crofton_world_add(world.get(), &description, &object) == CROFTON_OK);
         update(world);
-        const ViewResultHandle visible = make_visible_objects();
-        auto camera = sized<crofton_camera>();
-        REQUIRE(crofton_camera_default(&camera) == CROFTON_OK);
-        auto view = sized<crofton_occluding_view>();
-        view.camera = &camera;
+        const ViewResultHandle visible = make_view_result();
+        crofton_camera camera = crofton_default_camera();
+        crofton_view_request view = request_of(camera);
         const auto drawn = [&](std::uint32_t most, float least) {
             auto options = sized<crofton_occlusion_options>();
             options.max_occluders = most;
             options.least_cover = least;
-            REQUIRE(crofton_world_view_occluding(world.get(), &view, &options, nullptr, nullptr, visible.get()) ==
-                    CROFTON_OK);
+            view.occlusion = &options;
+            REQUIRE(crofton_world_view(world.get(), &view, nullptr, visible.get()) == CROFTON_OK);
             auto statistics = sized<crofton_occlusion_statistics>();
-            REQUIRE(crofton_visible_objects_get_occlusion_statistics(visible.get(), &statistics) == CROFTON_OK);
+            REQUIRE(crofton_view_result_get_occlusion_statistics(visible.get(), 0, &statistics) == CROFTON_OK);
             return statistics.occluders_drawn;
         };
         CHECK(drawn(0, 0.0f) >= 1);

@@ -28,9 +28,10 @@ struct Walled {
     WorldHandle world = make_world();
     crofton_world_mesh mesh{};
     crofton_object wall{}, behind{}, beside{};
-    ViewResultHandle visible = make_visible_objects();
+    ViewResultHandle visible = make_view_result();
     crofton_camera camera = sized<crofton_camera>();
-    crofton_occluding_view view = sized<crofton_occluding_view>();
+    crofton_occlusion_options occlusion = crofton_default_occlusion_options();
+    crofton_view_request view = crofton_default_view_request();
 
     Walled() {
         const Cuboid cuboid(5.0f, 5.0f, 0.5f);
@@ -40,31 +41,33 @@ struct Walled {
         data.indices = cuboid.indices.data();
         data.index_count = 36;
         REQUIRE(crofton_world_add_mesh(world.get(), &data, &mesh) == CROFTON_OK);
-        wall = add_wall(0);
+        wall = add_wall(1);
         behind = add_bound(world, box_bound(box_at(0, 0, -20)), 9);
         beside = add_bound(world, box_bound(box_at(-14, 0, -20)), 10);
-        REQUIRE(crofton_camera_default(&camera) == CROFTON_OK);
+        camera = crofton_default_camera();
         view.camera = &camera;
+        view.occlusion = &occlusion;
     }
-    crofton_object add_wall(std::uint32_t transparent) const {
+    Walled(const Walled&) = delete;
+    Walled& operator=(const Walled&) = delete;
+    crofton_object add_wall(std::uint32_t occludes) const {
         const crofton_transform place = translation(0, 0, -10);
         auto description = sized<crofton_object_description>();
         description.has_mesh = 1;
         description.mesh = mesh;
         description.transform = &place;
-        description.transparent = transparent;
+        description.occludes = occludes;
         description.user = 7;
         crofton_object object{};
         REQUIRE(crofton_world_add(world.get(), &description, &object) == CROFTON_OK);
         return object;
     }
-    std::vector<std::uint32_t> look(const crofton_occlusion_options* occlusion = nullptr) const {
+    std::vector<std::uint32_t> look() const {
         update(world);
-        REQUIRE(crofton_world_view_occluding(world.get(), &view, occlusion, nullptr, nullptr, visible.get()) ==
-                CROFTON_OK);
+        REQUIRE(crofton_world_view(world.get(), &view, nullptr, visible.get()) == CROFTON_OK);
         const std::uint32_t* ids = nullptr;
         std::size_t count = 0;
-        REQUIRE(crofton_visible_objects_ids(visible.get(), &ids, &count, nullptr, nullptr) == CROFTON_OK);
+        REQUIRE(crofton_view_result_ids(visible.get(), &ids, &count, nullptr, nullptr) == CROFTON_OK);
         return {ids, ids + count};
     }
     bool hides() const {
@@ -133,50 +136,62 @@ TEST_SUITE("capi/world occlusion") {
         CHECK(s.hides());
         REQUIRE(crofton_world_set_occludes(s.world.get(), s.wall, 0) == CROFTON_OK);
         CHECK_FALSE(s.hides());
-        (void)s.add_wall(1);
-        CHECK_FALSE(s.hides());
         (void)s.add_wall(0);
+        CHECK_FALSE(s.hides());
+        (void)s.add_wall(1);
         CHECK(s.hides());
     }
 
     TEST_CASE("options, limits, matrices, statistics and the depth buffer") {
         Walled s;
         REQUIRE(crofton_world_find_occluders(s.world.get(), s.mesh, nullptr) == CROFTON_OK);
-        auto occlusion = sized<crofton_occlusion_options>();
-        occlusion.list_occluded = 1;
-        occlusion.width = 160;
-        occlusion.height = 90;
-        CHECK(s.look(&occlusion) == std::vector<std::uint32_t>{s.wall.index, s.beside.index});
+        s.occlusion.list_occluded = 1;
+        s.occlusion.width = 160;
+        s.occlusion.height = 90;
+        CHECK(s.look() == std::vector<std::uint32_t>{s.wall.index, s.beside.index});
         const std::uint32_t* ids = nullptr;
         std::size_t count = 0;
-        REQUIRE(crofton_visible_objects_occluded_ids(s.visible.get(), &ids, &count) == CROFTON_OK);
+        REQUIRE(crofton_view_result_occluded_ids(s.visible.get(), &ids, &count) == CROFTON_OK);
         REQUIRE(count == 1);
         CHECK(ids[0] == s.behind.index);
         auto statistics = sized<crofton_occlusion_statistics>();
-        REQUIRE(crofton_visible_objects_get_occlusion_statistics(s.visible.get(), &statistics) == CROFTON_OK);
+        REQUIRE(crofton_view_result_get_occlusion_statistics(s.visible.get(), 0, &statistics) == CROFTON_OK);
         CHECK(statistics.occluders_drawn == 1);
         CHECK(statistics.pieces_drawn == 1);
         CHECK(statistics.items_hidden >= 1);
         std::uint32_t width = 0, height = 0;
-        REQUIRE(crofton_visible_objects_depth(s.visible.get(), &width, &height, nullptr, 0) == CROFTON_OK);
+        REQUIRE(crofton_view_result_depth(s.visible.get(), 0, &width, &height, nullptr, 0) == CROFTON_OK);
         CHECK(width == 160);
         CHECK(height == 90);
         std::vector<float> pixels(160 * 90);
-        CHECK(crofton_visible_objects_depth(s.visible.get(), &width, &height, pixels.data(), pixels.size() - 1) ==
+        CHECK(crofton_view_result_depth(s.visible.get(), 0, &width, &height, pixels.data(), pixels.size() - 1) ==
               CROFTON_OUT_OF_RANGE);
-        REQUIRE(crofton_visible_objects_depth(s.visible.get(), &width, &height, pixels.data(), pixels.size()) ==
+        REQUIRE(crofton_view_result_depth(s.visible.get(), 0, &width, &height, pixels.data(), pixels.size()) ==
                 CROFTON_OK);
         CHECK(1.0 / double(pixels[45 * 160 + 80]) == doctest::Approx(9.5).epsilon(1e-3));
         CHECK(pixels[0] < -1e38f);
 
         // The same view by its matrix.
         const glm::dmat4 to_clip = crofton::world_to_clip(crofton::Camera());
+        const glm::dmat4 by_rows = glm::transpose(to_clip);
+        const glm::mat4 floats(to_clip), floats_by_rows(by_rows);
+        crofton_view_matrix matrix = crofton_default_view_matrix();
         s.view.camera = nullptr;
-        s.view.to_clip = &to_clip[0][0];
-        CHECK(s.look() == std::vector<std::uint32_t>{s.wall.index, s.beside.index});
-        s.view.hidden_layers = ~0u;
+        s.view.matrix = &matrix;
+        for (const int form : {0, 1, 2, 3}) {
+            matrix.is_row_major = form % 2;
+            matrix.doubles = form == 0 ? &to_clip[0][0] : form == 1 ? &by_rows[0][0] : nullptr;
+            matrix.floats = form == 2 ? &floats[0][0] : form == 3 ? &floats_by_rows[0][0] : nullptr;
+            CHECK(s.look() == std::vector<std::uint32_t>{s.wall.index, s.beside.index});
+        }
+        s.view.layers = 0;
         CHECK(s.look().empty());
-        s.view.hidden_layers = 0;
+        s.view.layers = ~0u;
+        // A volume beside the eye's: what is in it, unless it is hidden from the eye.
+        crofton_view around = default_view();
+        s.view.volume = &around.frustum;
+        CHECK(s.look() == std::vector<std::uint32_t>{s.wall.index, s.beside.index});
+        s.view.volume = nullptr;
         // The wall is too far to be drawn, and hides nothing then.
         std::vector<float> distances{5.0f, 1e9f, 1e9f};
         auto limits = sized<crofton_draw_limits>();
@@ -185,78 +200,79 @@ TEST_SUITE("capi/world occlusion") {
         s.view.limits = &limits;
         CHECK(s.look() == std::vector<std::uint32_t>{s.behind.index, s.beside.index});
         s.view.limits = nullptr;
-        occlusion.disabled = 1;
-        CHECK(s.look(&occlusion).size() == 3);
-        CHECK(crofton_visible_objects_depth(s.visible.get(), &width, &height, nullptr, 0) == CROFTON_EMPTY);
-        REQUIRE(crofton_visible_objects_get_occlusion_statistics(s.visible.get(), &statistics) == CROFTON_OK);
+        s.view.occlusion = nullptr;
+        CHECK(s.look().size() == 3);
+        CHECK(crofton_view_result_depth(s.visible.get(), 0, &width, &height, nullptr, 0) == CROFTON_EMPTY);
+        REQUIRE(crofton_view_result_get_occlusion_statistics(s.visible.get(), 0, &statistics) == CROFTON_OK);
         CHECK(statistics.occluders_drawn == 0);
 
         // Many views: the second looks away.
         crofton_camera away = s.camera;
         away.forward[2] = 1.0;
-        crofton_occluding_view views[2] = {s.view, s.view};
-        views[1].to_clip = nullptr;
+        s.view.occlusion = &s.occlusion;
+        crofton_view_request views[2] = {s.view, s.view};
+        views[1].matrix = nullptr;
         views[1].camera = &away;
-        const VisibleInViewsHandle in_views = make_visible_in_views();
-        REQUIRE(crofton_world_views_occluding(s.world.get(), views, 2, nullptr, nullptr, nullptr, in_views.get()) ==
-                CROFTON_OK);
-        // What is asked beside the views is read with the first of them, which may be the only one.
-        auto disabled = sized<crofton_occlusion_options>();
-        disabled.disabled = 1;
-        const VisibleInViewsHandle without = make_visible_in_views();
-        REQUIRE(crofton_world_views_occluding(s.world.get(), views, 1, &disabled, nullptr, nullptr, without.get()) ==
-                CROFTON_OK);
-        CHECK(crofton_visible_in_views_depth(without.get(), 0, &width, &height, nullptr, 0) == CROFTON_OUT_OF_RANGE);
+        const ViewResultHandle in_views = make_view_result();
+        REQUIRE(crofton_world_view_many(s.world.get(), views, 2, nullptr, in_views.get()) == CROFTON_OK);
         crofton_object_ref refs[3] = {};
         std::uint32_t masks[3] = {};
-        REQUIRE(crofton_visible_in_views_list(in_views.get(), s.world.get(), 0, refs, masks, 3) == CROFTON_OK);
+        REQUIRE(crofton_view_result_list(in_views.get(), s.world.get(), 0, refs, masks, 3) == CROFTON_OK);
         CHECK(masks[0] == 1);
         CHECK(masks[1] == 1);
         CHECK(masks[2] == 0);
-        REQUIRE(crofton_visible_in_views_get_occlusion_statistics(in_views.get(), 1, &statistics) == CROFTON_OK);
+        REQUIRE(crofton_view_result_get_occlusion_statistics(in_views.get(), 1, &statistics) == CROFTON_OK);
         CHECK(statistics.occluders_drawn == 0);
-        CHECK(crofton_visible_in_views_get_occlusion_statistics(in_views.get(), 2, &statistics) ==
-              CROFTON_OUT_OF_RANGE);
-        CHECK(crofton_visible_in_views_depth(in_views.get(), 0, &width, &height, nullptr, 0) == CROFTON_OK);
-        CHECK(crofton_visible_in_views_depth(in_views.get(), 2, &width, &height, nullptr, 0) == CROFTON_OUT_OF_RANGE);
+        CHECK(crofton_view_result_get_occlusion_statistics(in_views.get(), 2, &statistics) == CROFTON_OUT_OF_RANGE);
+        CHECK(crofton_view_result_depth(in_views.get(), 0, &width, &height, nullptr, 0) == CROFTON_OK);
+        CHECK(crofton_view_result_depth(in_views.get(), 2, &width, &height, nullptr, 0) == CROFTON_OUT_OF_RANGE);
+        // The same result holds one view or many, and what only one has is refused of many.
+        auto cull_statistics = sized<crofton_cull_statistics>();
+        CHECK(crofton_view_result_get_statistics(in_views.get(), &cull_statistics) == CROFTON_UNSUPPORTED);
+        CHECK(crofton_world_drawn_occluders(s.world.get(), in_views.get(), nullptr, 0, &count) == CROFTON_UNSUPPORTED);
+        REQUIRE(crofton_world_view(s.world.get(), &views[0], nullptr, in_views.get()) == CROFTON_OK);
+        CHECK(crofton_view_result_get_statistics(in_views.get(), &cull_statistics) == CROFTON_OK);
+        REQUIRE(crofton_view_result_list(in_views.get(), s.world.get(), 0, refs, masks, 3) == CROFTON_OK);
+        CHECK(masks[1] == 1);
+        views[0].occlusion = nullptr;
+        REQUIRE(crofton_world_view_many(s.world.get(), views, 1, nullptr, in_views.get()) == CROFTON_OK);
+        CHECK(crofton_view_result_depth(in_views.get(), 0, &width, &height, nullptr, 0) == CROFTON_EMPTY);
     }
 
-    TEST_CASE("the first view's limits count for all, and a later view with others is refused") {
+    TEST_CASE("each view of many keeps its own limits, mask and occlusion") {
         Walled s;
-        update(s.world);
-        // The wall is too far to be drawn. It hides nothing then.
-        std::vector<float> distances{5.0f, 1e9f, 1e9f};
+        REQUIRE(crofton_world_find_occluders(s.world.get(), s.mesh, nullptr) == CROFTON_OK);
+        for (int i = 0; i < 40; ++i) update(s.world);  // masks say nothing about what may have moved since
+        std::vector<float> distances{5.0f, 1e9f, 1e9f};  // the wall is too far to be drawn: it hides nothing then
         auto limits = sized<crofton_draw_limits>();
         limits.item_distances = distances.data();
         limits.item_count = distances.size();
-        const crofton_draw_limits others = limits;
-        crofton_occluding_view views[2] = {s.view, s.view};
-        const VisibleInViewsHandle visible = make_visible_in_views();
-        const auto look = [&] {
-            return crofton_world_views_occluding(s.world.get(), views, 2, nullptr, nullptr, nullptr, visible.get());
-        };
-        // Listed are those that any view sees.
-        const auto seen_by_both = [&] {
-            crofton_object_ref refs[3] = {};
-            std::uint32_t masks[3] = {};
-            REQUIRE(crofton_visible_in_views_list(visible.get(), s.world.get(), 0, refs, masks, 3) == CROFTON_OK);
-            std::vector<std::uint32_t> seen;
-            for (std::size_t i = 0; i < 3; ++i)
-                if (masks[i] == 3) seen.push_back(refs[i].object.index);
-            return seen;
-        };
-        views[0].limits = &limits;
-        for (const crofton_draw_limits* later :
-             {static_cast<const crofton_draw_limits*>(nullptr), &std::as_const(limits)}) {
-            views[1].limits = later;
-            REQUIRE(look() == CROFTON_OK);
-            CHECK(seen_by_both() == std::vector<std::uint32_t>{s.behind.index, s.beside.index});
+        const crofton_draw_limits same = limits;
+        const std::uint64_t mask = ~(std::uint64_t{1} << s.beside.index);
+        std::vector<crofton_view_request> views(5, s.view);
+        views[1].limits = &limits;
+        views[2].limits = &same;
+        views[3].occlusion = nullptr;
+        views[4].candidate_mask = &mask;
+        views[4].candidate_words = 1;
+        const ViewResultHandle many = make_view_result();
+        REQUIRE(crofton_world_view_many(s.world.get(), views.data(), 5, nullptr, many.get()) == CROFTON_OK);
+        crofton_object_ref refs[3] = {};
+        std::uint32_t masks[3] = {};
+        REQUIRE(crofton_view_result_list(many.get(), s.world.get(), 0, refs, masks, 3) == CROFTON_OK);
+        CHECK(masks[0] == 0b11001);  // the wall
+        CHECK(masks[1] == 0b01110);  // behind it
+        CHECK(masks[2] == 0b01111);  // beside it
+        for (std::size_t v = 0; v < views.size(); ++v) {
+            CAPTURE(v);
+            REQUIRE(crofton_world_view(s.world.get(), &views[v], nullptr, s.visible.get()) == CROFTON_OK);
+            std::vector<crofton_object_ref> seen(3);
+            const std::uint32_t* ids = nullptr;
+            std::size_t count = 0, expected = 0;
+            REQUIRE(crofton_view_result_ids(s.visible.get(), &ids, &count, nullptr, nullptr) == CROFTON_OK);
+            for (const std::uint32_t bits : masks) expected += bits >> v & 1u;
+            CHECK(count == expected);
         }
-        views[1].limits = &others;
-        CHECK(look() == CROFTON_INVALID_ARGUMENT);
-        CHECK(crofton_last_error_item() == 1);
-        views[0].limits = nullptr;
-        CHECK(look() == CROFTON_INVALID_ARGUMENT);
     }
 
     TEST_CASE("bad calls are refused by name") {
@@ -305,60 +321,78 @@ TEST_SUITE("capi/world occlusion") {
         find.grid = 99;
         CHECK(crofton_world_find_occluders(world, s.mesh, &find) == CROFTON_OUT_OF_RANGE);
 
-        const auto view = [&](const crofton_occluding_view& asked, const crofton_occlusion_options* occlusion) {
-            return crofton_world_view_occluding(world, &asked, occlusion, nullptr, nullptr, s.visible.get());
+        const auto view = [&](const crofton_view_request& asked) {
+            return crofton_world_view(world, &asked, nullptr, s.visible.get());
         };
-        CHECK(view(s.view, nullptr) == CROFTON_OK);
-        auto occlusion = sized<crofton_occlusion_options>();
-        occlusion.width = 5;
-        CHECK(view(s.view, &occlusion) == CROFTON_OUT_OF_RANGE);
-        occlusion.size = 4096;
-        CHECK(view(s.view, &occlusion) == CROFTON_WRONG_SIZE);
-        crofton_occluding_view bad = s.view;
+        CHECK(view(s.view) == CROFTON_OK);
+        s.occlusion.width = 5;
+        CHECK(view(s.view) == CROFTON_OUT_OF_RANGE);
+        s.occlusion.size = 4096;
+        CHECK(view(s.view) == CROFTON_WRONG_SIZE);
+        s.occlusion = crofton_default_occlusion_options();
+        crofton_view_request bad = s.view;
         bad.camera = nullptr;
-        CHECK(view(bad, nullptr) == CROFTON_INVALID_ARGUMENT);
+        CHECK(view(bad) == CROFTON_INVALID_ARGUMENT);
         const glm::dmat4 to_clip(0.0);
-        bad.to_clip = &to_clip[0][0];
-        CHECK(view(bad, nullptr) != CROFTON_OK);
-        bad.depth = 7;
-        CHECK(view(bad, nullptr) == CROFTON_INVALID_ARGUMENT);
+        const glm::mat4 floats(1.0f);
+        crofton_view_matrix matrix = crofton_default_view_matrix();
+        bad.matrix = &matrix;
+        CHECK(view(bad) == CROFTON_INVALID_ARGUMENT);  // neither kind of numbers
+        matrix.doubles = &to_clip[0][0];
+        CHECK(view(bad) != CROFTON_OK);
+        matrix.floats = &floats[0][0];
+        CHECK(view(bad) == CROFTON_INVALID_ARGUMENT);  // both
+        matrix.doubles = nullptr;
+        matrix.depth = 7;
+        CHECK(view(bad) == CROFTON_INVALID_ARGUMENT);
+        matrix.depth = 0;
+        bad.camera = &s.camera;
+        CHECK(view(bad) == CROFTON_INVALID_ARGUMENT);  // two eyes
         s.camera.fov_y = -1.0;
-        CHECK(view(s.view, nullptr) == CROFTON_OUT_OF_RANGE);
+        CHECK(view(s.view) == CROFTON_OUT_OF_RANGE);
         s.camera.fov_y = 1.0;
         auto limits = sized<crofton_draw_limits>();
         limits.hysteresis = 0.5;
         s.view.limits = &limits;
-        CHECK(view(s.view, nullptr) == CROFTON_OUT_OF_RANGE);
+        CHECK(view(s.view) == CROFTON_OUT_OF_RANGE);
+        s.view.limits = nullptr;
+        s.view.candidate_words = 1;
+        CHECK(view(s.view) == CROFTON_INVALID_ARGUMENT);
+        s.view.candidate_words = 0;
+        crofton_frustum planes = default_view().frustum;
+        planes.plane_count = CROFTON_MAX_PLANES + 1;
+        s.view.volume = &planes;
+        CHECK(view(s.view) == CROFTON_OUT_OF_RANGE);
+        s.view.volume = nullptr;
+        const crofton_view_request zero{};
+        CHECK(view(zero) == CROFTON_WRONG_SIZE);
+        CHECK(mentions(crofton_last_error(), "crofton_default_"));
         const WorldHandle other = make_world();
         CHECK(crofton_world_hidden_by(other.get(), s.behind, s.visible.get(), nullptr, 0, &count) ==
               CROFTON_INVALID_ARGUMENT);
-        CHECK(crofton_world_views_occluding(world, &s.view, 33, nullptr, nullptr, nullptr,
-                                            make_visible_in_views().get()) == CROFTON_OUT_OF_RANGE);
+        const std::vector<crofton_view_request> many(33, s.view);
+        CHECK(crofton_world_view_many(world, many.data(), 33, nullptr, make_view_result().get()) ==
+              CROFTON_OUT_OF_RANGE);
     }
 
-    TEST_CASE("of no views at all, too, the options and the jobs are looked at") {
+    TEST_CASE("of no views at all, too, the jobs are looked at") {
         const Walled s;
-        const VisibleInViewsHandle visible = make_visible_in_views();
-        const auto look = [&](const crofton_occlusion_options* occlusion, const crofton_cull_options* options,
-                              const crofton_jobs* jobs) {
-            return crofton_world_views_occluding(s.world.get(), nullptr, 0, occlusion, options, jobs, visible.get());
+        const ViewResultHandle visible = make_view_result();
+        const auto look = [&](const crofton_jobs* jobs) {
+            return crofton_world_view_many(s.world.get(), nullptr, 0, jobs, visible.get());
         };
-        const crofton_occlusion_options no_occlusion{};
-        const crofton_cull_options no_options{};
         const crofton_jobs no_jobs{}, no_function{sizeof no_jobs, nullptr, 1, nullptr};
-        CHECK(look(nullptr, nullptr, nullptr) == CROFTON_OK);
-        CHECK(look(&no_occlusion, nullptr, nullptr) == CROFTON_WRONG_SIZE);
-        CHECK(look(nullptr, &no_options, nullptr) == CROFTON_WRONG_SIZE);
-        CHECK(look(nullptr, nullptr, &no_jobs) == CROFTON_WRONG_SIZE);
-        CHECK(look(nullptr, nullptr, &no_function) == CROFTON_INVALID_ARGUMENT);
+        CHECK(look(nullptr) == CROFTON_OK);
+        CHECK(look(&no_jobs) == CROFTON_WRONG_SIZE);
+        CHECK(look(&no_function) == CROFTON_INVALID_ARGUMENT);
     }
 
     TEST_CASE("of several views the one that is wrong is named") {
         Walled s;
-        crofton_occluding_view views[3] = {s.view, s.view, s.view};
+        crofton_view_request views[3] = {s.view, s.view, s.view};
         views[2].camera = nullptr;
-        CHECK(crofton_world_views_occluding(s.world.get(), views, 3, nullptr, nullptr, nullptr,
-                                            make_visible_in_views().get()) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_world_view_many(s.world.get(), views, 3, nullptr, make_view_result().get()) ==
+              CROFTON_INVALID_ARGUMENT);
         CHECK(crofton_last_error_item() == 2);
     }
 }

@@ -58,13 +58,13 @@ TEST_SUITE("capi/world structs") {
         crofton_world_options options;
         std::memset(static_cast<void*>(&options), 0x01, sizeof options);
         options.size = offsetof(crofton_world_options, max_pairs);
-        options.without_pairs = options.without_contacts = options.without_containment = options.with_mesh_depth = 0;
+        options.pairs = options.contacts = options.containment = 1;
         const WorldHandle world = make_world(&options);
-        // A description that ended before `hidden_layers`.
+        // A description that ended before `layers`.
         const crofton_bound bound = box_bound(box_at(0, 0, -5));
         crofton_object_description description;
         std::memset(static_cast<void*>(&description), 0xff, sizeof description);
-        description.size = offsetof(crofton_object_description, hidden_layers);
+        description.size = offsetof(crofton_object_description, layers);
         description.user = 3;
         description.bound = &bound;
         description.transform = nullptr;

@@ -37,11 +37,10 @@ TEST_SUITE("capi/world") {
         CHECK(crofton_world_get_user(world, s.box, nullptr) == bad);
         CHECK(crofton_world_get_box(world, s.box, nullptr) == bad);
         CHECK(crofton_world_contains(world, s.box, nullptr) == bad);
-        CHECK(crofton_world_view(world, nullptr, nullptr, nullptr, s.visible.get()) == bad);
-        CHECK(crofton_world_view_camera(world, nullptr, nullptr, nullptr, s.visible.get()) == bad);
-        CHECK(crofton_world_views(world, nullptr, 1, nullptr, s.in_views.get()) == bad);
-        CHECK(crofton_visible_objects_ids(s.visible.get(), nullptr, &count, nullptr, nullptr) == bad);
-        CHECK(crofton_visible_in_views_ids(s.in_views.get(), nullptr, &count) == bad);
+        CHECK(crofton_world_view(world, nullptr, nullptr, s.visible.get()) == bad);
+        CHECK(crofton_world_view_many(world, nullptr, 1, nullptr, s.in_views.get()) == bad);
+        CHECK(crofton_view_result_ids(s.visible.get(), nullptr, &count, nullptr, nullptr) == bad);
+        CHECK(crofton_view_result_ids(s.in_views.get(), nullptr, &count, nullptr, nullptr) == bad);
         CHECK(crofton_world_raycast(world, nullptr, 1, ~0u, &hit) == bad);
         CHECK(crofton_world_raycast(world, &ray, 1, ~0u, nullptr) == bad);
         CHECK(crofton_world_raycast_any(world, &ray, ~0u, nullptr) == bad);
@@ -64,17 +63,17 @@ TEST_SUITE("capi/world") {
         CHECK(crofton_world_update(nullptr, nullptr) == CROFTON_BAD_HANDLE);
         CHECK(crofton_world_destroy(reinterpret_cast<crofton_world*>(s.found.get())) == CROFTON_BAD_HANDLE);
         CHECK(crofton_world_set_bound(nullptr, s.box, &bound) == CROFTON_BAD_HANDLE);
-        CHECK(crofton_world_view(world, &view, nullptr, nullptr, nullptr) == CROFTON_BAD_HANDLE);
+        CHECK(look(world, view, nullptr) == CROFTON_BAD_HANDLE);
         CHECK(crofton_world_overlap_box(world, &box, ~0u, nullptr) == CROFTON_BAD_HANDLE);
         CHECK(crofton_world_contains(nullptr, s.box, &flag) == CROFTON_BAD_HANDLE);
         // What was never viewed, lists no world's objects.
-        CHECK(crofton_visible_objects_list(s.visible.get(), world, 0, refs, 1) == bad);
+        CHECK(crofton_view_result_list(s.visible.get(), world, 0, refs, nullptr, 1) == bad);
         CHECK(crofton_world_set_boxes(world, nullptr, 0, nullptr, 0, 0) == CROFTON_OK);
         CHECK(crofton_world_raycast(world, nullptr, 0, ~0u, nullptr) == CROFTON_OK);
-        CHECK(crofton_world_views(world, nullptr, 0, nullptr, s.in_views.get()) == CROFTON_OK);
+        CHECK(crofton_world_view_many(world, nullptr, 0, nullptr, s.in_views.get()) == CROFTON_OK);
     }
 
-    TEST_CASE("each option does what it says, and 0 is its default") {
+    TEST_CASE("each option does what it says") {
         const crofton_bound bound = box_bound(box_at(0, 0, 0));
         const auto count_in = [&](const crofton_world_options& options, crofton_status expected, std::size_t& pairs,
                                   std::size_t& contacts) {
@@ -90,14 +89,14 @@ TEST_SUITE("capi/world") {
         count_in(options, CROFTON_OK, pairs, contacts);
         CHECK(pairs == 3);
         CHECK(contacts == 3);
-        options.without_contacts = 1;
+        options.contacts = 0;
         count_in(options, CROFTON_OK, pairs, contacts);
         CHECK(pairs == 3);
         CHECK(contacts == 0);
         options.max_pairs = 2;
         count_in(options, CROFTON_BUDGET_EXCEEDED, pairs, contacts);
         CHECK(pairs == 0);
-        options.without_pairs = 1;
+        options.pairs = 0;
         count_in(options, CROFTON_OK, pairs, contacts);
         CHECK(pairs == 0);
         // After how many updates at rest a box that has moved counts as resting.
@@ -120,7 +119,7 @@ TEST_SUITE("capi/world") {
             }
             return updates;
         };
-        CHECK(updates_to_rest(0) == updates_to_rest(16));
+        CHECK(updates_to_rest(crofton_default_world_options().updates_to_rest) == updates_to_rest(16));
         CHECK(updates_to_rest(16) - updates_to_rest(4) == 12);
     }
 
@@ -254,10 +253,9 @@ TEST_SUITE("capi/world") {
             CHECK(crofton_world_overlap_sphere(world, box.center, 1, ~0u, s.found.get()) == CROFTON_NON_FINITE);
             CHECK(crofton_world_overlap_capsule(world, place.linear, box.center, 1, ~0u, s.found.get()) ==
                   CROFTON_NON_FINITE);
-            auto camera = sized<crofton_camera>();
-            REQUIRE(crofton_camera_default(&camera) == CROFTON_OK);
+            crofton_camera camera = crofton_default_camera();
             camera.position[0] = number;
-            CHECK(crofton_world_view_camera(world, &camera, nullptr, nullptr, s.visible.get()) != CROFTON_OK);
+            CHECK(look(world, camera, s.visible.get()) != CROFTON_OK);
         }
         const double center[3] = {};
         auto closest = sized<crofton_closest_object>();
@@ -303,7 +301,7 @@ TEST_SUITE("capi/world") {
         data.index_count = 3;
         CHECK(crofton_world_add_mesh(world, &data, &mesh) == CROFTON_INVALID_ARGUMENT);
         const std::vector<crofton_view> views(33, default_view());
-        CHECK(crofton_world_views(world, views.data(), 33, nullptr, s.in_views.get()) == CROFTON_OUT_OF_RANGE);
+        CHECK(look_at_many(world, views, s.in_views.get()) == CROFTON_OUT_OF_RANGE);
         auto contact = sized<crofton_object_contact>();
         CHECK(crofton_world_contact(world, 0, &contact) == CROFTON_OUT_OF_RANGE);
     }
@@ -337,24 +335,26 @@ TEST_SUITE("capi/world") {
         SmallWorld s;
         const crofton_view view = default_view();
         crofton_object_ref refs[2] = {};
-        REQUIRE(crofton_world_view(s.world.get(), &view, nullptr, nullptr, s.visible.get()) == CROFTON_OK);
-        REQUIRE(crofton_world_views(s.world.get(), &view, 1, nullptr, s.in_views.get()) == CROFTON_OK);
-        REQUIRE(crofton_visible_objects_list(s.visible.get(), s.world.get(), 0, refs, 2) == CROFTON_OK);
+        REQUIRE(look(s.world.get(), view, s.visible.get()) == CROFTON_OK);
+        REQUIRE(look_at_many(s.world.get(), std::span(&view, 1), s.in_views.get()) == CROFTON_OK);
+        REQUIRE(crofton_view_result_list(s.visible.get(), s.world.get(), 0, refs, nullptr, 2) == CROFTON_OK);
         CHECK(refs[0].user == 7);
         CHECK(refs[1].user == 0);
-        CHECK(crofton_visible_objects_list(s.visible.get(), s.world.get(), 1, refs, 2) == CROFTON_OK);
-        CHECK(crofton_visible_objects_list(s.visible.get(), s.world.get(), 2, refs, 2) == CROFTON_OUT_OF_RANGE);
+        CHECK(crofton_view_result_list(s.visible.get(), s.world.get(), 1, refs, nullptr, 2) == CROFTON_OK);
+        CHECK(crofton_view_result_list(s.visible.get(), s.world.get(), 2, refs, nullptr, 2) == CROFTON_OUT_OF_RANGE);
         // An index may be another object's after an update.
         REQUIRE(crofton_world_remove(s.world.get(), s.box) == CROFTON_OK);
         update(s.world);
         CHECK(add_bound(s.world, box_bound(box_at(0, 0, 50)), 8).index == s.box.index);
-        CHECK(crofton_visible_objects_list(s.visible.get(), s.world.get(), 0, refs, 2) == CROFTON_INVALID_ARGUMENT);
-        CHECK(crofton_visible_in_views_list(s.in_views.get(), s.world.get(), 0, refs, nullptr, 2) ==
+        CHECK(crofton_view_result_list(s.visible.get(), s.world.get(), 0, refs, nullptr, 2) ==
+              CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_view_result_list(s.in_views.get(), s.world.get(), 0, refs, nullptr, 2) ==
               CROFTON_INVALID_ARGUMENT);
         CHECK(refs[0].user == 7);
         s.world = make_world();  // perhaps where the other one was
-        CHECK(crofton_visible_objects_list(s.visible.get(), s.world.get(), 0, refs, 2) == CROFTON_INVALID_ARGUMENT);
-        CHECK(crofton_visible_in_views_list(s.in_views.get(), s.world.get(), 0, refs, nullptr, 2) ==
+        CHECK(crofton_view_result_list(s.visible.get(), s.world.get(), 0, refs, nullptr, 2) ==
+              CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_view_result_list(s.in_views.get(), s.world.get(), 0, refs, nullptr, 2) ==
               CROFTON_INVALID_ARGUMENT);
     }
 }

@@ -18,8 +18,8 @@ using Pointee = std::remove_const_t<std::remove_pointer_t<P>>;
 template <class P>
 inline constexpr bool kIsHandle = std::is_pointer_v<P>&&
     kIsOneOf<Pointee<P>, crofton_scene, crofton_tree, crofton_visible_set, crofton_broadphase, crofton_collider,
-             crofton_triangulator, crofton_world, crofton_visible_objects, crofton_visible_in_views, crofton_body,
-             crofton_body_contacts, crofton_found, crofton_baked_scene, crofton_pvs>;
+             crofton_triangulator, crofton_world, crofton_view_result, crofton_body, crofton_body_contacts,
+             crofton_found, crofton_baked_scene, crofton_pvs>;
 
 constexpr unsigned char kUntouched = 0xA5;
 
@@ -60,10 +60,8 @@ struct Sound {
         using T = Pointee<P>;
         if constexpr (std::is_same_v<T, crofton_world>)
             return small.world.get();
-        else if constexpr (std::is_same_v<T, crofton_visible_objects>)
+        else if constexpr (std::is_same_v<T, crofton_view_result>)
             return small.visible.get();
-        else if constexpr (std::is_same_v<T, crofton_visible_in_views>)
-            return small.in_views.get();
         else if constexpr (std::is_same_v<T, crofton_found>)
             return small.found.get();
         else if constexpr (std::is_same_v<T, crofton_tree>)
@@ -93,8 +91,8 @@ struct Sound {
     // Asked before and after: what stands in the objects.
     void fill() {
         const auto& [world, visible, in_views, found, object] = small;
-        REQUIRE(crofton_world_view(world.get(), &view, nullptr, nullptr, visible.get()) == CROFTON_OK);
-        REQUIRE(crofton_world_views(world.get(), &view, 1, nullptr, in_views.get()) == CROFTON_OK);
+        REQUIRE(look(world.get(), view, visible.get()) == CROFTON_OK);
+        REQUIRE(look_at_many(world.get(), std::span(&view, 1), in_views.get()) == CROFTON_OK);
         REQUIRE(crofton_world_overlap_box(world.get(), &box, ~0u, found.get()) == CROFTON_OK);
         REQUIRE(crofton_cull_tree(tree.get(), &view, nullptr, nullptr, visible_set.get()) == CROFTON_OK);
     }
@@ -106,8 +104,8 @@ struct Sound {
         std::uint64_t user = 0;
         CHECK((crofton_world_object_count(world.get(), &count) == CROFTON_OK && count == 1));
         CHECK((crofton_world_get_user(world.get(), object, &user) == CROFTON_OK && user == 7));
-        CHECK((crofton_visible_objects_ids(visible.get(), &ids, &count, nullptr, nullptr) == CROFTON_OK && count == 1));
-        CHECK((crofton_visible_in_views_ids(in_views.get(), &ids, &count) == CROFTON_OK && count == 1));
+        CHECK((crofton_view_result_ids(visible.get(), &ids, &count, nullptr, nullptr) == CROFTON_OK && count == 1));
+        CHECK((crofton_view_result_ids(in_views.get(), &ids, &count, nullptr, nullptr) == CROFTON_OK && count == 1));
         CHECK((crofton_found_objects(found.get(), &objects, &count) == CROFTON_OK && count == 1));
         CHECK((crofton_visible_set_items(visible_set.get(), &ids, nullptr, &count) == CROFTON_OK && count == 1));
         std::uint32_t first_node = 7;

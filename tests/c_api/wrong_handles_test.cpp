@@ -46,8 +46,7 @@ void refuse_world_changes(Table& table) {
 void refuse_world_queries(Table& table) {
     CROFTON_REFUSE(crofton_world_get_transform);
     CROFTON_REFUSE(crofton_world_view);
-    CROFTON_REFUSE(crofton_world_view_camera);
-    CROFTON_REFUSE(crofton_world_views);
+    CROFTON_REFUSE(crofton_world_view_many);
     CROFTON_REFUSE(crofton_world_raycast);
     CROFTON_REFUSE(crofton_world_raycast_any);
     CROFTON_REFUSE(crofton_world_raycast_all);
@@ -69,28 +68,21 @@ void refuse_world_queries(Table& table) {
     CROFTON_REFUSE(crofton_world_occluder_count);
     CROFTON_REFUSE(crofton_world_get_occluder);
     CROFTON_REFUSE(crofton_world_set_occludes);
-    CROFTON_REFUSE(crofton_world_view_occluding);
-    CROFTON_REFUSE(crofton_world_views_occluding);
     CROFTON_REFUSE(crofton_world_hidden_by);
     CROFTON_REFUSE(crofton_world_drawn_occluders);
 }
 
 void refuse_results(Table& table) {
-    CROFTON_REFUSE(crofton_visible_objects_destroy);
-    CROFTON_REFUSE(crofton_visible_objects_ids);
-    CROFTON_REFUSE(crofton_visible_objects_list);
-    CROFTON_REFUSE(crofton_visible_objects_get_statistics);
-    CROFTON_REFUSE(crofton_visible_in_views_destroy);
-    CROFTON_REFUSE(crofton_visible_in_views_ids);
-    CROFTON_REFUSE(crofton_visible_in_views_list);
+    CROFTON_REFUSE(crofton_view_result_destroy);
+    CROFTON_REFUSE(crofton_view_result_ids);
+    CROFTON_REFUSE(crofton_view_result_list);
+    CROFTON_REFUSE(crofton_view_result_get_statistics);
     CROFTON_REFUSE(crofton_found_destroy);
     CROFTON_REFUSE(crofton_found_objects);
     CROFTON_REFUSE(crofton_found_hits);
-    CROFTON_REFUSE(crofton_visible_objects_occluded_ids);
-    CROFTON_REFUSE(crofton_visible_objects_get_occlusion_statistics);
-    CROFTON_REFUSE(crofton_visible_in_views_get_occlusion_statistics);
-    CROFTON_REFUSE(crofton_visible_objects_depth);
-    CROFTON_REFUSE(crofton_visible_in_views_depth);
+    CROFTON_REFUSE(crofton_view_result_occluded_ids);
+    CROFTON_REFUSE(crofton_view_result_get_occlusion_statistics);
+    CROFTON_REFUSE(crofton_view_result_depth);
     CROFTON_REFUSE(crofton_visible_set_destroy);
     CROFTON_REFUSE(crofton_visible_set_items);
     CROFTON_REFUSE(crofton_visible_set_statistics);
@@ -191,12 +183,25 @@ const std::set<std::string> kWithoutHandle = {
     "boxes_meet",
     "boxes_validate",
     "broadphase_create",
-    "camera_default",
     "classify",
     "collider_create",
     "criterion_for_frustum",
     "criterion_for_rays",
     "criterion_minimal_perimeter",
+    "default_camera",
+    "default_cast_options",
+    "default_cull_options",
+    "default_draw_limits",
+    "default_find_options",
+    "default_fit_options",
+    "default_hull_options",
+    "default_manifold_options",
+    "default_mesh_data",
+    "default_object_description",
+    "default_occlusion_options",
+    "default_view_matrix",
+    "default_view_request",
+    "default_world_options",
     "draw_limits_of_camera",
     "fit_boxes",
     "fit_doubles",
@@ -217,8 +222,7 @@ const std::set<std::string> kWithoutHandle = {
     "tree_create",
     "triangulator_create",
     "version_string",
-    "visible_in_views_create",
-    "visible_objects_create",
+    "view_result_create",
     "visible_set_create",
     "world_create",
 };

@@ -5,13 +5,12 @@
 
 int main(void) {
     const crofton_box box = {{0, 0, -5}, {1, 0, 0, 0, 1, 0, 0, 0, 1}, {1, 1, 1}};
-    crofton_camera camera = {.size = sizeof camera};
+    const crofton_camera camera = crofton_default_camera();
     crofton_view view = {.size = sizeof view, .layer_mask = 1, .frustum = {.size = sizeof view.frustum}};
     crofton_visible_set* visible = NULL;
     const uint32_t* ids = NULL;
     size_t count = 0;
-    if (crofton_camera_default(&camera) != CROFTON_OK ||
-        crofton_frustum_from_camera(&camera, &view.frustum) != CROFTON_OK ||
+    if (crofton_frustum_from_camera(&camera, &view.frustum) != CROFTON_OK ||
         crofton_visible_set_create(&visible) != CROFTON_OK ||
         crofton_cull_boxes(&box, NULL, 1, &view, NULL, NULL, visible) != CROFTON_OK ||
         crofton_visible_set_items(visible, &ids, NULL, &count) != CROFTON_OK) {

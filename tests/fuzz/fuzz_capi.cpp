@@ -123,7 +123,7 @@ struct Mesh {
 crofton_frustum frustum(Input& in) {
     auto camera = sized<crofton_camera>();
     auto result = sized<crofton_frustum>();
-    crofton_camera_default(&camera);
+    camera = crofton_default_camera();
     for (double& x : camera.position) x = in.number();
     for (double& x : camera.forward) x = in.number();
     camera.projection = in.below(3);

@@ -41,16 +41,16 @@ struct Known {
 class Sequence {
   public:
     explicit Sequence(fuzz::Shapes& in) : in_(in) {
-        auto options = sized<crofton_world_options>();
-        options.without_contacts = in.below(2);
+        crofton_world_options options = crofton_default_world_options();
+        options.contacts = in.below(2);
         options.updates_to_rest = in.below(5);
-        options.without_rebuild = in.below(2);
+        if (in.below(2)) options.rebuild_budget = 0;
         demand(crofton_world_create(&options, &world_) == CROFTON_OK, "create");
-        demand(crofton_visible_objects_create(&visible_) == CROFTON_OK && crofton_found_create(&found_) == CROFTON_OK,
+        demand(crofton_view_result_create(&visible_) == CROFTON_OK && crofton_found_create(&found_) == CROFTON_OK,
                "create");
     }
     ~Sequence() {
-        crofton_visible_objects_destroy(visible_);
+        crofton_view_result_destroy(visible_);
         crofton_found_destroy(found_);
         crofton_world_destroy(world_);
     }
@@ -127,10 +127,10 @@ class Sequence {
         crofton_bound bound{};
         bound.kind = CROFTON_BOUND_BOX;
         bound.box = c_box(object.box);
-        auto description = sized<crofton_object_description>();
+        crofton_object_description description = crofton_default_object_description();
         description.bound = &bound;
         description.user = object.user;
-        description.hidden_layers = ~object.layers;
+        description.layers = object.layers;
         const bool bad = in_.below(8) == 0;
         if (bad) bound.box.center[in_.below(3)] = std::numeric_limits<double>::quiet_NaN();
         const crofton_status status = crofton_world_add(world_, &description, &object.handle);
@@ -146,8 +146,8 @@ class Sequence {
         demand(crofton_world_set_boxes(world_, &object.handle, sizeof object.handle, &box, sizeof box, 1) != CROFTON_OK,
                "a box that is none");
         demand(crofton_world_set_layers(nullptr, object.handle, 0) != CROFTON_OK, "no world");
-        demand(crofton_world_view(world_, nullptr, nullptr, nullptr, visible_) != CROFTON_OK, "no view");
-        auto description = sized<crofton_object_description>();
+        demand(crofton_world_view(world_, nullptr, nullptr, visible_) != CROFTON_OK, "no view");
+        crofton_object_description description = crofton_default_object_description();
         description.size += 8 + in_.byte();
         crofton_object handle{};
         demand(crofton_world_add(world_, &description, &handle) == CROFTON_WRONG_SIZE, "a struct too large");
@@ -172,10 +172,13 @@ class Sequence {
             if (!object.hidden && (object.layers & view.layer_mask) != 0 &&
                 cull::classify(frustum, object.box) != cull::Verdict::outside)
                 expected.push_back(index);
-        demand(crofton_world_view(world_, &view, nullptr, nullptr, visible_) == CROFTON_OK, "a view");
+        crofton_view_request request = crofton_default_view_request();
+        request.volume = &view.frustum;
+        request.layers = view.layer_mask;
+        demand(crofton_world_view(world_, &request, nullptr, visible_) == CROFTON_OK, "a view");
         const std::uint32_t* ids = nullptr;
         std::size_t count = 0;
-        demand(crofton_visible_objects_ids(visible_, &ids, &count, nullptr, nullptr) == CROFTON_OK, "ids of a view");
+        demand(crofton_view_result_ids(visible_, &ids, &count, nullptr, nullptr) == CROFTON_OK, "ids of a view");
         demand(std::equal(expected.begin(), expected.end(), ids, ids + count), "what a view sees");
     }
     void check_overlap() {
@@ -200,7 +203,7 @@ class Sequence {
 
     fuzz::Shapes& in_;
     crofton_world* world_ = nullptr;
-    crofton_visible_objects* visible_ = nullptr;
+    crofton_view_result* visible_ = nullptr;
     crofton_found* found_ = nullptr;
     std::map<std::uint32_t, Known> objects_;
     std::vector<crofton_object> stale_;

@@ -66,9 +66,7 @@ std::vector<crofton_box> row_of_boxes(int count) {
 }
 
 crofton_view default_view() {
-    crofton_camera camera{};
-    camera.size = sizeof camera;
-    crofton_camera_default(&camera);
+    crofton_camera camera = crofton_default_camera();
     crofton_view view{};
     view.size = sizeof view;
     view.layer_mask = ~0u;
@@ -93,10 +91,7 @@ TEST_SUITE("memory/capi") {
         sweep_create<crofton_broadphase>("broadphase", crofton_broadphase_create, crofton_broadphase_destroy);
         sweep_create<crofton_triangulator>("triangulator", crofton_triangulator_create, crofton_triangulator_destroy);
         sweep_create<crofton_found>("found", crofton_found_create, crofton_found_destroy);
-        sweep_create<crofton_visible_objects>("visible objects", crofton_visible_objects_create,
-                                              crofton_visible_objects_destroy);
-        sweep_create<crofton_visible_in_views>("visible in views", crofton_visible_in_views_create,
-                                               crofton_visible_in_views_destroy);
+        sweep_create<crofton_view_result>("view result", crofton_view_result_create, crofton_view_result_destroy);
         sweep_create<crofton_world>(
             "world", [](crofton_world** world) { return crofton_world_create(nullptr, world); }, crofton_world_destroy);
         const auto boxes = row_of_boxes(300);
@@ -198,16 +193,17 @@ TEST_SUITE("memory/capi") {
                 crofton_bound bound{};
                 bound.kind = CROFTON_BOUND_BOX;
                 bound.box = box;
-                crofton_object_description description{};
-                description.size = sizeof description;
+                crofton_object_description description = crofton_default_object_description();
                 description.bound = &bound;
                 crofton_object object{};
                 crofton_world_add(world, &description, &object);
             }
             crofton_world_update(world, nullptr);
-            crofton_visible_objects* seen = nullptr;
-            if (crofton_visible_objects_create(&seen) != CROFTON_OK) return;
-            crofton_world_view(world, &view, nullptr, nullptr, seen);
+            crofton_view_result* seen = nullptr;
+            if (crofton_view_result_create(&seen) != CROFTON_OK) return;
+            crofton_view_request request = crofton_default_view_request();
+            request.volume = &view.frustum;
+            crofton_world_view(world, &request, nullptr, seen);
             crofton_found* found = nullptr;
             if (crofton_found_create(&found) != CROFTON_OK) return;
             crofton_world_overlap_box(world, &boxes[0], ~0u, found);

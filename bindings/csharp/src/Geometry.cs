@@ -111,8 +111,7 @@ namespace Crofton {
         /// <summary>At the origin, looking along -z, 60 degrees, 16:9, from 0.1 to 1000.</summary>
         public Camera() {
             Library.Load();
-            var c = new Native.CameraData { Size = Native.SizeOf<Native.CameraData>() };
-            Library.Check(Native.crofton_camera_default(ref c));
+            Native.CameraData c = Native.crofton_default_camera();
             Position = c.Position;
             Forward = c.Forward;
             Up = c.Up;

@@ -6,7 +6,7 @@ using System.Runtime.InteropServices;
 namespace Crofton {
     internal static class Native {
         const string Library = "crofton", Bake = "crofton_bake";
-        internal const uint ApiVersion = 2;
+        internal const uint ApiVersion = 3;
 
         [StructLayout(LayoutKind.Sequential)]
         internal struct CameraData {
@@ -27,20 +27,13 @@ namespace Crofton {
         }
 
         [StructLayout(LayoutKind.Sequential)]
-        internal struct ViewData {
-            public UIntPtr Size;
-            public uint LayerMask;
-            public FrustumData Frustum;
-        }
-
-        [StructLayout(LayoutKind.Sequential)]
         internal struct MeshData {
             public UIntPtr Size;
             public IntPtr Positions;
             public UIntPtr PositionCount, PositionStride;
             public IntPtr Indices;
             public UIntPtr IndexCount;
-            public uint IsDouble, IsShort, WithoutTriangles;
+            public uint IsDouble, IsShort, Triangles;
         }
 
         [StructLayout(LayoutKind.Sequential)]
@@ -59,16 +52,17 @@ namespace Crofton {
             public uint HasMesh, HasNode;
             public MeshHandle Mesh;
             public NodeHandle Node;
-            public uint HiddenLayers, IgnoredLayers, Transparent, OnlyOccludes;
+            public uint Layers, CollidesWith, Occludes, OnlyOccludes;
             public IntPtr Body;
         }
 
         [StructLayout(LayoutKind.Sequential)]
         internal struct WorldOptionsData {
             public UIntPtr Size;
-            public uint WithoutPairs, WithoutContacts, WithoutContainment, WithMeshDepth;
+            public uint Pairs, Contacts, Containment, MeshDepth;
             public ulong MaxPairs, RebuildBudget;
-            public uint WithoutRebuild, UpdatesToRest;
+            public uint UpdatesToRest;
+            public double ContactMargin;
         }
 
         [StructLayout(LayoutKind.Sequential)]
@@ -94,17 +88,18 @@ namespace Crofton {
         [StructLayout(LayoutKind.Sequential)]
         internal struct OcclusionOptionsData {
             public UIntPtr Size;
-            public uint Disabled, Width, Height, MaxOccluders, ListOccluded;
+            public uint Width, Height, MaxOccluders, ListOccluded;
             public float LeastCover;
         }
 
         [StructLayout(LayoutKind.Sequential)]
-        internal struct OccludingViewData {
+        internal struct ViewRequestData {
             public UIntPtr Size;
-            public IntPtr Camera, ToClip;
-            public Vector3 Origin;
-            public uint Depth, HiddenLayers;
-            public IntPtr Limits;
+            public IntPtr Camera, Matrix, Volume;
+            public uint Layers;
+            public IntPtr Occlusion, Limits, CandidateMask;
+            public UIntPtr CandidateWords;
+            public uint Conservative, TreeOrder;
         }
 
         [StructLayout(LayoutKind.Sequential)]
@@ -140,7 +135,12 @@ namespace Crofton {
         [DllImport(Library)] internal static extern IntPtr crofton_version_string();
         [DllImport(Library)] internal static extern int crofton_set_thread_checks(int on);
 
-        [DllImport(Library)] internal static extern int crofton_camera_default(ref CameraData camera);
+        [DllImport(Library)] internal static extern CameraData crofton_default_camera();
+        [DllImport(Library)] internal static extern WorldOptionsData crofton_default_world_options();
+        [DllImport(Library)] internal static extern MeshData crofton_default_mesh_data();
+        [DllImport(Library)] internal static extern ObjectData crofton_default_object_description();
+        [DllImport(Library)] internal static extern OcclusionOptionsData crofton_default_occlusion_options();
+        [DllImport(Library)] internal static extern ViewRequestData crofton_default_view_request();
         [DllImport(Library)] internal static extern int crofton_frustum_from_camera(ref CameraData camera, ref FrustumData frustum);
         [DllImport(Library)] internal static extern int crofton_frustum_from_matrix(double[] toClip, uint depth, ref Vector3 origin, ref FrustumData frustum);
         [DllImport(Library)] internal static extern int crofton_boxes_validate(Obb[] boxes, UIntPtr count);
@@ -190,12 +190,11 @@ namespace Crofton {
         [DllImport(Library)] internal static extern int crofton_world_occluder_count(WorldHandle world, MeshHandle mesh, out UIntPtr count);
         [DllImport(Library)] internal static extern int crofton_world_set_occludes(WorldHandle world, ObjectHandle handle, int occludes);
 
-        [DllImport(Library)] internal static extern int crofton_visible_objects_create(out VisibleHandle visible);
-        [DllImport(Library)] internal static extern int crofton_visible_objects_destroy(IntPtr visible);
-        [DllImport(Library)] internal static extern int crofton_world_view(WorldHandle world, ref ViewData view, IntPtr options, IntPtr jobs, VisibleHandle visible);
-        [DllImport(Library)] internal static extern int crofton_world_view_occluding(WorldHandle world, ref OccludingViewData view, ref OcclusionOptionsData occlusion, IntPtr options, IntPtr jobs, VisibleHandle visible);
-        [DllImport(Library)] internal static extern int crofton_visible_objects_ids(VisibleHandle visible, out IntPtr ids, out UIntPtr count, IntPtr verdicts, IntPtr insideCount);
-        [DllImport(Library)] internal static extern int crofton_visible_objects_list(VisibleHandle visible, WorldHandle world, UIntPtr first, [Out] ObjectRef[] objects, UIntPtr capacity);
+        [DllImport(Library)] internal static extern int crofton_view_result_create(out VisibleHandle visible);
+        [DllImport(Library)] internal static extern int crofton_view_result_destroy(IntPtr visible);
+        [DllImport(Library)] internal static extern int crofton_world_view(WorldHandle world, ref ViewRequestData request, IntPtr jobs, VisibleHandle visible);
+        [DllImport(Library)] internal static extern int crofton_view_result_ids(VisibleHandle visible, out IntPtr ids, out UIntPtr count, IntPtr verdicts, IntPtr insideCount);
+        [DllImport(Library)] internal static extern int crofton_view_result_list(VisibleHandle visible, WorldHandle world, UIntPtr first, [Out] ObjectRef[] objects, IntPtr viewMasks, UIntPtr capacity);
 
         [DllImport(Library)] internal static extern int crofton_found_create(out FoundHandle found);
         [DllImport(Library)] internal static extern int crofton_found_destroy(IntPtr found);
@@ -224,7 +223,7 @@ namespace Crofton {
         protected override int Destroy(IntPtr raw) { return Native.crofton_world_destroy(raw); }
     }
     internal sealed class VisibleHandle : OwnedHandle {
-        protected override int Destroy(IntPtr raw) { return Native.crofton_visible_objects_destroy(raw); }
+        protected override int Destroy(IntPtr raw) { return Native.crofton_view_result_destroy(raw); }
     }
     internal sealed class FoundHandle : OwnedHandle {
         protected override int Destroy(IntPtr raw) { return Native.crofton_found_destroy(raw); }

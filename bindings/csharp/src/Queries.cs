@@ -10,7 +10,7 @@ namespace Crofton {
 
         public ViewResult() {
             Library.Load();
-            Library.Check(Native.crofton_visible_objects_create(out Handle));
+            Library.Check(Native.crofton_view_result_create(out Handle));
         }
         public void Dispose() { Handle.Dispose(); }
 
@@ -22,9 +22,9 @@ namespace Crofton {
         internal int Read(World world) {
             IntPtr ids;
             UIntPtr count;
-            Library.Check(Native.crofton_visible_objects_ids(Handle, out ids, out count, IntPtr.Zero, IntPtr.Zero));
+            Library.Check(Native.crofton_view_result_ids(Handle, out ids, out count, IntPtr.Zero, IntPtr.Zero));
             var listed = objects.Length < (int)count ? new ObjectRef[(int)count + (int)count / 2] : objects;
-            Library.Check(Native.crofton_visible_objects_list(Handle, world.Handle, UIntPtr.Zero, listed, count));
+            Library.Check(Native.crofton_view_result_list(Handle, world.Handle, UIntPtr.Zero, listed, IntPtr.Zero, count));
             objects = listed;
             return Count = (int)count;
         }
@@ -93,34 +93,61 @@ namespace Crofton {
         public MeshContact[] Triangles;
     }
 
-    public sealed partial class World {
-        /// <summary>What a view sees, by the objects' boxes, exactly: no visible box is left out.</summary>
-        public void View(Frustum frustum, ViewResult visible, uint layers = AllLayers) {
-            Library.NotNull(frustum, "frustum");
-            Library.NotNull(visible, "visible");
-            var view = new Native.ViewData { Size = Native.SizeOf<Native.ViewData>(), LayerMask = layers, Frustum = frustum.Data };
-            Read(() => {
-                Library.Check(Native.crofton_world_view(Handle, ref view, IntPtr.Zero, IntPtr.Zero, visible.Handle));
-                return visible.Read(this);
-            });
-        }
+    /// <summary>How a view leaves out what other objects hide.</summary>
+    public sealed class OcclusionOptions {
+        /// <summary>Of the depth buffer, in pixels.</summary>
+        public uint Width = 480, Height = 270;
+        /// <summary>Draws at most so many.</summary>
+        public uint MaxOccluders = 256;
 
-        /// <summary>What a camera sees, without what is hidden behind occluders; nothing visible is left out.</summary>
-        public void ViewOccluding(Camera camera, ViewResult visible) {
-            Library.NotNull(camera, "camera");
+        internal Native.OcclusionOptionsData Data() {
+            Native.OcclusionOptionsData data = Native.crofton_default_occlusion_options();
+            data.Width = Width;
+            data.Height = Height;
+            data.MaxOccluders = MaxOccluders;
+            return data;
+        }
+    }
+
+    /// <summary>What a view asks: where it looks from, and what it lists.</summary>
+    public sealed class ViewRequest {
+        /// <summary>Set a camera,</summary>
+        public Camera Camera;
+        /// <summary>or any convex volume. For occlusion set a camera as well: objects are tested against the volume instead of its frustum.</summary>
+        public Frustum Volume;
+        /// <summary>Lists objects that share a layer with these.</summary>
+        public uint Layers = World.AllLayers;
+        /// <summary>If set, leaves out objects that others hide; never one that is seen.</summary>
+        public OcclusionOptions Occlusion;
+
+        public static implicit operator ViewRequest(Camera camera) { return camera == null ? null : new ViewRequest { Camera = camera }; }
+        public static implicit operator ViewRequest(Frustum volume) { return volume == null ? null : new ViewRequest { Volume = volume }; }
+    }
+
+    public sealed partial class World {
+        /// <summary>What a view sees, by the objects' boxes, exactly: no visible box is left out. With Occlusion also without
+        /// what other objects hide. A Camera or a Frustum stands for a request with all layers.</summary>
+        public void View(ViewRequest request, ViewResult visible) {
+            Library.NotNull(request, "request");
             Library.NotNull(visible, "visible");
-            var view = new Native.OccludingViewData { Size = Native.SizeOf<Native.OccludingViewData>() };
-            var options = new Native.OcclusionOptionsData { Size = Native.SizeOf<Native.OcclusionOptionsData>() };
-            view.Camera = Marshal.AllocHGlobal(Marshal.SizeOf(typeof(Native.CameraData)));
+            Native.ViewRequestData data = Native.crofton_default_view_request();
+            data.Layers = request.Layers;
             try {
-                Marshal.StructureToPtr(camera.Data(), view.Camera, false);
+                if (request.Camera != null) data.Camera = Copied(request.Camera.Data());
+                if (request.Volume != null) data.Volume = Copied(request.Volume.Data);
+                if (request.Occlusion != null) data.Occlusion = Copied(request.Occlusion.Data());
                 Read(() => {
-                    Library.Check(Native.crofton_world_view_occluding(Handle, ref view, ref options, IntPtr.Zero, IntPtr.Zero, visible.Handle));
+                    Library.Check(Native.crofton_world_view(Handle, ref data, IntPtr.Zero, visible.Handle));
                     return visible.Read(this);
                 });
             } finally {
-                Marshal.FreeHGlobal(view.Camera);
+                foreach (IntPtr memory in new[] { data.Camera, data.Volume, data.Occlusion }) Marshal.FreeHGlobal(memory);
             }
+        }
+        static IntPtr Copied<T>(T data) where T : struct {
+            IntPtr memory = Marshal.AllocHGlobal(Marshal.SizeOf(typeof(T)));
+            Marshal.StructureToPtr(data, memory, false);
+            return memory;
         }
 
         /// <summary>The nearest hit of a ray: triangles of meshes, boxes and spheres.</summary>

@@ -42,18 +42,18 @@ namespace Crofton {
         }
     }
 
-    /// <summary>What a World looks for; the default is everything.</summary>
-    public struct WorldOptions {
-        /// <summary>Neither pairs nor contacts.</summary>
-        public bool WithoutPairs;
-        /// <summary>Pairs alone.</summary>
-        public bool WithoutContacts;
-        /// <summary>A closed mesh around another object does not touch it.</summary>
-        public bool WithoutContainment;
+    /// <summary>What a World looks for.</summary>
+    public sealed class WorldOptions {
+        /// <summary>Looks for pairs and contacts; false: for neither.</summary>
+        public bool Pairs = true;
+        /// <summary>False: pairs alone.</summary>
+        public bool Contacts = true;
+        /// <summary>An object inside a closed mesh touches it.</summary>
+        public bool Containment = true;
         /// <summary>Contacts between meshes have a way out, which costs more.</summary>
-        public bool WithMeshDepth;
-        /// <summary>More are an error; 0: 2^24.</summary>
-        public ulong MaxPairs;
+        public bool MeshDepth = false;
+        /// <summary>More are an error.</summary>
+        public ulong MaxPairs = 1ul << 24;
     }
 
     /// <summary>An engine's objects, what they are and where. Changes take effect in Update, once a frame; answers are as of
@@ -66,12 +66,14 @@ namespace Crofton {
 
         public World() : this(new WorldOptions()) { }
         public World(WorldOptions options) {
+            Library.NotNull(options, "options");
             Library.Load();
-            var data = new Native.WorldOptionsData {
-                Size = Native.SizeOf<Native.WorldOptionsData>(), WithoutPairs = Flag(options.WithoutPairs),
-                WithoutContacts = Flag(options.WithoutContacts), WithoutContainment = Flag(options.WithoutContainment),
-                WithMeshDepth = Flag(options.WithMeshDepth), MaxPairs = options.MaxPairs
-            };
+            Native.WorldOptionsData data = Native.crofton_default_world_options();
+            data.Pairs = Flag(options.Pairs);
+            data.Contacts = Flag(options.Contacts);
+            data.Containment = Flag(options.Containment);
+            data.MeshDepth = Flag(options.MeshDepth);
+            data.MaxPairs = options.MaxPairs;
             Library.Check(Native.crofton_world_create(ref data, out Handle));
         }
         /// <summary>Frees it; any later call throws ObjectDisposedException.</summary>
@@ -231,9 +233,11 @@ namespace Crofton {
         static uint Flag(bool value) { return value ? 1u : 0u; }
         static NodeHandle[] ToArray(NodeHandle? node) { return node.HasValue ? new[] { node.Value } : null; }
         static Native.ObjectData Describe(ulong user, uint layers, uint collidesWith) {
-            return new Native.ObjectData {
-                Size = Native.SizeOf<Native.ObjectData>(), User = user, HiddenLayers = ~layers, IgnoredLayers = ~collidesWith
-            };
+            Native.ObjectData data = Native.crofton_default_object_description();
+            data.User = user;
+            data.Layers = layers;
+            data.CollidesWith = collidesWith;
+            return data;
         }
 
         delegate void Put(ref Native.ObjectData data, IntPtr pointer);
@@ -258,11 +262,12 @@ namespace Crofton {
             var p = GCHandle.Alloc(positions, GCHandleType.Pinned);
             var i = indices == null ? default(GCHandle) : GCHandle.Alloc(indices, GCHandleType.Pinned);
             try {
-                Library.Check(call(new Native.MeshData {
-                    Size = Native.SizeOf<Native.MeshData>(), Positions = p.AddrOfPinnedObject(),
-                    PositionCount = (UIntPtr)(positions.Length / 3), Indices = indices == null ? IntPtr.Zero : i.AddrOfPinnedObject(),
-                    IndexCount = (UIntPtr)(indices == null ? 0 : indices.Length)
-                }));
+                Native.MeshData data = Native.crofton_default_mesh_data();
+                data.Positions = p.AddrOfPinnedObject();
+                data.PositionCount = (UIntPtr)(positions.Length / 3);
+                data.Indices = indices == null ? IntPtr.Zero : i.AddrOfPinnedObject();
+                data.IndexCount = (UIntPtr)(indices == null ? 0 : indices.Length);
+                Library.Check(call(data));
             } finally {
                 p.Free();
                 if (indices != null) i.Free();

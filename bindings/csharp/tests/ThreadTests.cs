@@ -8,7 +8,7 @@ static class ThreadTests {
     // Boxes that all meet in one update, and by twos in the next.
     [Test] static void PairsAreThoseOfOneUpdateWhileAnotherThreadUpdates() {
         const int count = 200;
-        using (var world = new World(new WorldOptions { WithoutContacts = true })) {
+        using (var world = new World(new WorldOptions { Contacts = false })) {
             Func<Func<int, double>, Obb[]> row = x => Enumerable.Range(0, count).Select(i => Obb.Aligned(new Vector3(x(i), 0, 0), new Float3(1, 1, 1))).ToArray();
             Obb[] all = row(i => 0), twos = row(i => 10 * (i / 2));
             var objects = all.Select(b => world.Add(Bound.Box(b))).ToArray();
@@ -41,7 +41,7 @@ static class ThreadTests {
     }
     // What a view has found is looked up in the world by a second call of the library.
     [Test] static void AViewIsOfOneUpdateWhileAnotherThreadUpdates() {
-        using (var world = new World(new WorldOptions { WithoutContacts = true }))
+        using (var world = new World(new WorldOptions { Contacts = false }))
         using (var visible = new ViewResult()) {
             for (int i = 0; i < 50; ++i) world.Add(Bound.Sphere(new Vector3(0, 0, -5), 1), (ulong)i);
             world.Update();

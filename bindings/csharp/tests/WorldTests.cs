@@ -160,7 +160,7 @@ static class WorldTests {
         using (var visible = new ViewResult()) {
             world.Add(Sphere(0, 0, 5, 0.25), 99);
             world.Update();
-            world.View(new Camera().Frustum(), visible);
+            world.View(new Camera(), visible);
             Expect.Sequence(new ulong[] { 0, 1, 2 }, Users(visible));
         }
     }
@@ -170,7 +170,7 @@ static class WorldTests {
         using (var visible = new ViewResult()) {
             world.SetLayers(o[1], 2);
             world.Update();
-            world.View(new Camera().Frustum(), visible, 1);
+            world.View(new ViewRequest { Camera = new Camera(), Layers = 1 }, visible);
             Expect.Sequence(new ulong[] { 0, 2 }, Users(visible));
         }
     }
@@ -180,7 +180,7 @@ static class WorldTests {
         using (var visible = new ViewResult()) {
             world.SetHidden(o[0], true);
             world.Update();
-            world.View(new Camera().Frustum(), visible);
+            world.View(new Camera(), visible);
             Expect.Sequence(new ulong[] { 1 }, Users(visible));
         }
     }
@@ -198,11 +198,11 @@ static class WorldTests {
             world.Add(Sphere(0, 0, -20, 0.5), 2);
             world.Add(Sphere(0, 0, -3, 0.2), 3);
             world.Update();
-            world.ViewOccluding(new Camera(), visible);
+            world.View(new ViewRequest { Camera = new Camera(), Occlusion = new OcclusionOptions() }, visible);
             Expect.Sequence(new ulong[] { 1, 3 }, Users(visible));
             world.SetOccludes(wall, false);
             world.Update();
-            world.ViewOccluding(new Camera(), visible);
+            world.View(new ViewRequest { Camera = new Camera(), Occlusion = new OcclusionOptions() }, visible);
             Expect.Equal(3, visible.Count);
         }
     }
@@ -320,7 +320,7 @@ static class WorldTests {
                 var o = world.Add(world.AddMesh(Tetrahedron.ToArray(), Faces.ToArray()), Transform.At(0, 0, -5), 7);
                 world.Update();
                 var visible = new ViewResult();
-                world.View(new Camera().Frustum(), visible);
+                world.View(new Camera(), visible);
                 Expect.Sequence(new ulong[] { 7 }, Users(visible));
                 Expect.True(world.Contains(o));
             }

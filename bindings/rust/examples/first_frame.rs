@@ -18,7 +18,7 @@ fn main() -> Result<()> {
     for frame in 0..10 {
         world.set_bound(rolling, sphere(0.5 * frame as f64 - 6.0))?;
         world.update()?; // once a frame; then ask
-        let seen = world.view(&frustum, &mut visible)?.ids().len();
+        let seen = world.view(&frustum.into(), &mut visible)?.ids().len();
         let touching =
             world.contacts()?.iter().filter(|c| c.second.object == rolling && c.phase != Phase::Ended).count();
         println!("frame {frame}: {seen} of {} objects in view, the sphere touches {touching}", world.object_count());

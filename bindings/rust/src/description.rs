@@ -40,14 +40,14 @@ pub struct MeshData<'a> {
     pub vertices: Vertices<'a>,
     /// Which of them make a triangle.
     pub indices: Indices<'a>,
-    /// Its box stands for it in rays and contacts.
-    pub without_triangles: bool,
+    /// Rays and contacts ask the triangles; false: the mesh's box stands for it.
+    pub triangles: bool,
 }
 
 impl<'a> MeshData<'a> {
     /// The usual kind.
     pub fn new(positions: &'a [[f32; 3]], indices: &'a [u32]) -> MeshData<'a> {
-        MeshData { vertices: Vertices::F32(positions), indices: Indices::U32(indices), without_triangles: false }
+        MeshData { vertices: Vertices::F32(positions), indices: Indices::U32(indices), triangles: true }
     }
 
     pub(crate) fn raw(&self) -> Result<sys::MeshData> {
@@ -82,7 +82,7 @@ impl<'a> MeshData<'a> {
             index_count,
             is_double,
             is_short,
-            without_triangles: self.without_triangles as u32,
+            triangles: self.triangles as u32,
         })
     }
 }
@@ -137,7 +137,7 @@ pub struct Description {
     pub(crate) user: u64,
     pub(crate) layers: u32,
     pub(crate) collides_with: u32,
-    pub(crate) transparent: bool,
+    pub(crate) occludes: bool,
 }
 
 impl Description {
@@ -150,7 +150,7 @@ impl Description {
             user: 0,
             layers: u32::MAX,
             collides_with: u32::MAX,
-            transparent: false,
+            occludes: true,
         }
     }
     /// An object with a mesh.
@@ -183,6 +183,6 @@ impl Description {
     }
     /// Hides nothing.
     pub fn transparent(self) -> Description {
-        Description { transparent: true, ..self }
+        Description { occludes: false, ..self }
     }
 }

@@ -120,9 +120,7 @@ pub struct Camera {
 impl Default for Camera {
     /// At the origin, looking along -z, 60 degrees, 16:9, from 0.1 to 1000.
     fn default() -> Camera {
-        let mut c: sys::Camera = unsafe { std::mem::zeroed() };
-        c.size = size_of::<sys::Camera>();
-        check(unsafe { sys::crofton_camera_default(&mut c) }).expect("the default camera always exists");
+        let c = unsafe { sys::crofton_default_camera() };
         Camera {
             position: c.position,
             forward: c.forward,

@@ -10,7 +10,7 @@
 //! let sphere = world.add(&Description::bound(Bound::Sphere { center: [0.0, 0.0, -5.0], radius: 1.0 }).user(7))?;
 //! world.update()?; // once a frame; then ask
 //! let mut visible = ViewResult::new()?;
-//! let seen = world.view(&Camera::default().frustum()?, &mut visible)?;
+//! let seen = world.view(&Camera::default().into(), &mut visible)?;
 //! assert_eq!(seen.ids(), [sphere.index]);
 //! # Ok(()) }
 //! ```
@@ -44,7 +44,7 @@ pub use jobs::{Executor, Threads};
 pub use occlusion::{FindOptions, OcclusionOptions, OcclusionStatistics};
 pub use queries::{Closest, Contact, Containment, Found, MeshContact, ObjectHit, ObjectPair, Phase, Shape};
 pub use triangulate::{Method, Triangulation, Triangulator};
-pub use views::{Seen, SeenInViews, MultiViewResult, ViewResult};
+pub use views::{Seen, SeenByMany, ViewMatrix, ViewRequest, ViewResult};
 pub use world::{Mesh, Node, Object, ObjectRef, Statistics, World, WorldOptions};
 
 /// All 32 layers.

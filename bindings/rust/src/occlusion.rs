@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 //! Views that leave out what is hidden behind other objects.
 use crate::error::{check, slice};
-use crate::jobs::with_jobs;
-use crate::{sys, Camera, Executor, Mesh, Object, Result, Seen, ViewResult, World};
+use crate::{sys, Mesh, Object, Result, Seen, World};
 use std::{mem::size_of, ptr};
 
 /// How occluders are looked for in a mesh; 0 stands for the library's default.
@@ -41,8 +40,7 @@ pub struct OcclusionStatistics {
 impl World {
     /// Looks for occluders in a mesh, which takes a second or more for 100,000 triangles. They count from the next update on.
     pub fn find_occluders(&mut self, mesh: Mesh, options: &FindOptions) -> Result<()> {
-        let mut raw: sys::FindOptions = unsafe { std::mem::zeroed() };
-        raw.size = size_of::<sys::FindOptions>();
+        let mut raw = unsafe { sys::crofton_default_find_options() };
         raw.is_two_sided = options.is_two_sided as u32;
         raw.max_occluders = options.max_occluders;
         check(unsafe { sys::crofton_world_find_occluders(self.raw, mesh, &raw) })
@@ -59,36 +57,21 @@ impl World {
     pub fn set_occludes(&mut self, object: Object, occludes: bool) -> Result<()> {
         check(unsafe { sys::crofton_world_set_occludes(self.raw, object, occludes as i32) })
     }
+}
 
-    /// What a camera sees, without what is hidden; nothing visible is left out.
-    pub fn view_occluding<'a>(
-        &'a self, camera: &Camera, options: &OcclusionOptions, executor: Option<&dyn Executor>,
-        visible: &'a mut ViewResult,
-    ) -> Result<Seen<'a>> {
-        let camera = camera.raw();
-        let view = sys::OccludingView {
-            size: size_of::<sys::OccludingView>(),
-            camera: &camera,
-            to_clip: ptr::null(),
-            origin: [0.0; 3],
-            depth: 0,
-            hidden_layers: 0,
-            limits: ptr::null(),
-        };
-        let occlusion = sys::OcclusionOptions {
-            size: size_of::<sys::OcclusionOptions>(),
-            disabled: 0,
-            width: options.width,
-            height: options.height,
-            max_occluders: options.max_occluders,
-            list_occluded: options.list_occluded as u32,
-            least_cover: 0.0,
-        };
-        check(with_jobs(executor, |jobs| unsafe {
-            sys::crofton_world_view_occluding(self.raw, &view, &occlusion, ptr::null(), jobs, visible.raw)
-        }))?;
-        Ok(Seen { world: self, visible })
+pub(crate) fn raw_occlusion(options: &OcclusionOptions) -> sys::OcclusionOptions {
+    let mut raw = unsafe { sys::crofton_default_occlusion_options() };
+    if options.width != 0 {
+        raw.width = options.width;
     }
+    if options.height != 0 {
+        raw.height = options.height;
+    }
+    if options.max_occluders != 0 {
+        raw.max_occluders = options.max_occluders;
+    }
+    raw.list_occluded = options.list_occluded as u32;
+    raw
 }
 
 impl<'a> Seen<'a> {
@@ -96,7 +79,7 @@ impl<'a> Seen<'a> {
     pub fn occluded_ids(&self) -> &'a [u32] {
         let (mut ids, mut count) = (ptr::null(), 0);
         unsafe {
-            sys::crofton_visible_objects_occluded_ids(self.visible.raw, &mut ids, &mut count);
+            sys::crofton_view_result_occluded_ids(self.result.raw, &mut ids, &mut count);
             slice(ids, count)
         }
     }
@@ -105,7 +88,7 @@ impl<'a> Seen<'a> {
     pub fn occlusion_statistics(&self) -> Result<OcclusionStatistics> {
         let mut s: sys::OcclusionStatistics = unsafe { std::mem::zeroed() };
         s.size = size_of::<sys::OcclusionStatistics>();
-        check(unsafe { sys::crofton_visible_objects_get_occlusion_statistics(self.visible.raw, &mut s) })?;
+        check(unsafe { sys::crofton_view_result_get_occlusion_statistics(self.result.raw, 0, &mut s) })?;
         Ok(OcclusionStatistics {
             occluders_drawn: s.occluders_drawn,
             items_tested: s.items_tested,

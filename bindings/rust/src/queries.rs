@@ -224,9 +224,14 @@ impl World {
         check(unsafe {
             match shape {
                 Shape::Box(b) => sys::crofton_world_closest_to_box(self.raw, b, max_distance, layers, &mut c),
-                Shape::Sphere { center, radius } => {
-                    sys::crofton_world_closest_to_sphere(self.raw, center.as_ptr(), *radius, max_distance, layers, &mut c)
-                }
+                Shape::Sphere { center, radius } => sys::crofton_world_closest_to_sphere(
+                    self.raw,
+                    center.as_ptr(),
+                    *radius,
+                    max_distance,
+                    layers,
+                    &mut c,
+                ),
                 Shape::Capsule { begin, end, radius } => {
                     let (b, e) = (begin.as_ptr(), end.as_ptr());
                     sys::crofton_world_closest_to_capsule(self.raw, b, e, *radius, max_distance, layers, &mut c)

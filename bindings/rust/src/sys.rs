@@ -6,7 +6,7 @@ use std::os::raw::{c_char, c_int, c_void};
 pub type Status = c_int;
 
 /// CROFTON_API_VERSION of the headers that this file was written from.
-pub const API_VERSION: u32 = 2;
+pub const API_VERSION: u32 = 3;
 
 macro_rules! opaque {
     ($($name:ident),*) => {$(
@@ -16,7 +16,7 @@ macro_rules! opaque {
         }
     )*};
 }
-opaque!(World, ViewResult, MultiViewResult, Found, Collider, Triangulator);
+opaque!(World, ViewResult, Found, Collider, Triangulator);
 
 #[repr(C)]
 pub struct Jobs {
@@ -61,21 +61,6 @@ pub struct Frustum {
 }
 
 #[repr(C)]
-#[derive(Clone, Copy)]
-pub struct View {
-    pub size: usize,
-    pub layer_mask: u32,
-    pub frustum: Frustum,
-}
-
-#[repr(C)]
-pub struct CullOptions {
-    pub size: usize,
-    pub conservative: u32,
-    pub tree_order: u32,
-}
-
-#[repr(C)]
 pub struct MeshData {
     pub size: usize,
     pub positions: *const c_void,
@@ -85,7 +70,7 @@ pub struct MeshData {
     pub index_count: usize,
     pub is_double: u32,
     pub is_short: u32,
-    pub without_triangles: u32,
+    pub triangles: u32,
 }
 
 /// The triangles of a collider.
@@ -119,9 +104,9 @@ pub struct ObjectDescription {
     pub has_node: u32,
     pub mesh: crate::Mesh,
     pub node: crate::Node,
-    pub hidden_layers: u32,
-    pub ignored_layers: u32,
-    pub transparent: u32,
+    pub layers: u32,
+    pub collides_with: u32,
+    pub occludes: u32,
     pub only_occludes: u32,
     pub body: *const c_void,
 }
@@ -129,14 +114,14 @@ pub struct ObjectDescription {
 #[repr(C)]
 pub struct WorldOptions {
     pub size: usize,
-    pub without_pairs: u32,
-    pub without_contacts: u32,
-    pub without_containment: u32,
-    pub with_mesh_depth: u32,
+    pub pairs: u32,
+    pub contacts: u32,
+    pub containment: u32,
+    pub mesh_depth: u32,
     pub max_pairs: u64,
     pub rebuild_budget: u64,
-    pub without_rebuild: u32,
     pub updates_to_rest: u32,
+    pub contact_margin: f64,
 }
 
 #[repr(C)]
@@ -209,7 +194,6 @@ pub struct DrawLimits {
 #[repr(C)]
 pub struct OcclusionOptions {
     pub size: usize,
-    pub disabled: u32,
     pub width: u32,
     pub height: u32,
     pub max_occluders: u32,
@@ -218,14 +202,28 @@ pub struct OcclusionOptions {
 }
 
 #[repr(C)]
-pub struct OccludingView {
+pub struct ViewMatrix {
+    pub size: usize,
+    pub doubles: *const f64,
+    pub floats: *const f32,
+    pub is_row_major: u32,
+    pub depth: u32,
+    pub origin: [f64; 3],
+}
+
+#[repr(C)]
+pub struct ViewRequest {
     pub size: usize,
     pub camera: *const Camera,
-    pub to_clip: *const f64,
-    pub origin: [f64; 3],
-    pub depth: u32,
-    pub hidden_layers: u32,
+    pub matrix: *const ViewMatrix,
+    pub volume: *const Frustum,
+    pub layers: u32,
+    pub occlusion: *const OcclusionOptions,
     pub limits: *const DrawLimits,
+    pub candidate_mask: *const u64,
+    pub candidate_words: usize,
+    pub conservative: u32,
+    pub tree_order: u32,
 }
 
 #[repr(C)]
@@ -285,7 +283,12 @@ extern "C" {
     pub fn crofton_api_version() -> u32;
     pub fn crofton_version_string() -> *const c_char;
 
-    pub fn crofton_camera_default(camera: *mut Camera) -> Status;
+    pub fn crofton_default_camera() -> Camera;
+    pub fn crofton_default_world_options() -> WorldOptions;
+    pub fn crofton_default_view_request() -> ViewRequest;
+    pub fn crofton_default_view_matrix() -> ViewMatrix;
+    pub fn crofton_default_occlusion_options() -> OcclusionOptions;
+    pub fn crofton_default_find_options() -> FindOptions;
     pub fn crofton_frustum_from_camera(camera: *const Camera, frustum: *mut Frustum) -> Status;
     pub fn crofton_frustum_from_matrix(
         to_clip: *const f64, depth: u32, origin: *const f64, frustum: *mut Frustum,
@@ -383,32 +386,27 @@ extern "C" {
         world: *const World, object: crate::Object, transform: *mut crate::Transform,
     ) -> Status;
 
-    pub fn crofton_visible_objects_create(visible: *mut *mut ViewResult) -> Status;
-    pub fn crofton_visible_objects_destroy(visible: *mut ViewResult) -> Status;
+    pub fn crofton_view_result_create(result: *mut *mut ViewResult) -> Status;
+    pub fn crofton_view_result_destroy(result: *mut ViewResult) -> Status;
     pub fn crofton_world_view(
-        world: *const World, view: *const View, options: *const CullOptions, jobs: *const Jobs,
-        visible: *mut ViewResult,
+        world: *const World, request: *const ViewRequest, jobs: *const Jobs, result: *mut ViewResult,
     ) -> Status;
-    pub fn crofton_visible_objects_ids(
-        visible: *const ViewResult, ids: *mut *const u32, count: *mut usize, verdicts: *mut *const u8,
+    pub fn crofton_world_view_many(
+        world: *const World, requests: *const ViewRequest, count: usize, jobs: *const Jobs, result: *mut ViewResult,
+    ) -> Status;
+    pub fn crofton_view_result_ids(
+        result: *const ViewResult, ids: *mut *const u32, count: *mut usize, verdicts: *mut *const u8,
         inside_count: *mut usize,
     ) -> Status;
-    pub fn crofton_visible_objects_list(
-        visible: *const ViewResult, world: *const World, first: usize, objects: *mut crate::ObjectRef,
-        capacity: usize,
-    ) -> Status;
-    pub fn crofton_visible_in_views_create(visible: *mut *mut MultiViewResult) -> Status;
-    pub fn crofton_visible_in_views_destroy(visible: *mut MultiViewResult) -> Status;
-    pub fn crofton_world_views(
-        world: *const World, views: *const View, count: usize, options: *const CullOptions,
-        visible: *mut MultiViewResult,
-    ) -> Status;
-    pub fn crofton_visible_in_views_ids(
-        visible: *const MultiViewResult, ids: *mut *const u32, count: *mut usize,
-    ) -> Status;
-    pub fn crofton_visible_in_views_list(
-        visible: *const MultiViewResult, world: *const World, first: usize, objects: *mut crate::ObjectRef,
+    pub fn crofton_view_result_list(
+        result: *const ViewResult, world: *const World, first: usize, objects: *mut crate::ObjectRef,
         view_masks: *mut u32, capacity: usize,
+    ) -> Status;
+    pub fn crofton_view_result_occluded_ids(
+        result: *const ViewResult, ids: *mut *const u32, count: *mut usize,
+    ) -> Status;
+    pub fn crofton_view_result_get_occlusion_statistics(
+        result: *const ViewResult, view: usize, statistics: *mut OcclusionStatistics,
     ) -> Status;
 
     pub fn crofton_world_raycast(
@@ -453,14 +451,4 @@ extern "C" {
     pub fn crofton_world_find_occluders(world: *mut World, mesh: crate::Mesh, options: *const FindOptions) -> Status;
     pub fn crofton_world_occluder_count(world: *const World, mesh: crate::Mesh, count: *mut usize) -> Status;
     pub fn crofton_world_set_occludes(world: *mut World, object: crate::Object, occludes: c_int) -> Status;
-    pub fn crofton_world_view_occluding(
-        world: *const World, view: *const OccludingView, occlusion: *const OcclusionOptions,
-        options: *const CullOptions, jobs: *const Jobs, visible: *mut ViewResult,
-    ) -> Status;
-    pub fn crofton_visible_objects_occluded_ids(
-        visible: *const ViewResult, ids: *mut *const u32, count: *mut usize,
-    ) -> Status;
-    pub fn crofton_visible_objects_get_occlusion_statistics(
-        visible: *const ViewResult, statistics: *mut OcclusionStatistics,
-    ) -> Status;
 }

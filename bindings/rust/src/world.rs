@@ -35,19 +35,32 @@ pub struct ObjectRef {
     pub user: u64,
 }
 
-/// What a [`World`] looks for; the default is everything.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+/// What a [`World`] looks for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct WorldOptions {
-    /// Neither pairs nor contacts.
-    pub without_pairs: bool,
-    /// Pairs alone.
-    pub without_contacts: bool,
-    /// A closed mesh around another object does not touch it.
-    pub without_containment: bool,
-    /// Contacts between meshes have a way out, which costs more.
-    pub with_mesh_depth: bool,
-    /// More are an error; 0: 2^24.
+    /// True: looks for pairs and contacts; false: for neither.
+    pub pairs: bool,
+    /// True; false: pairs alone.
+    pub contacts: bool,
+    /// True: an object inside a closed mesh touches it.
+    pub containment: bool,
+    /// False; true: contacts between meshes have a way out, which costs more.
+    pub mesh_depth: bool,
+    /// 2^24; more are an error.
     pub max_pairs: u64,
+}
+
+impl Default for WorldOptions {
+    fn default() -> WorldOptions {
+        let raw = unsafe { sys::crofton_default_world_options() };
+        WorldOptions {
+            pairs: raw.pairs != 0,
+            contacts: raw.contacts != 0,
+            containment: raw.containment != 0,
+            mesh_depth: raw.mesh_depth != 0,
+            max_pairs: raw.max_pairs,
+        }
+    }
 }
 
 /// As of the last update.
@@ -88,24 +101,19 @@ impl World {
 
     /// An empty world that does less, or more.
     pub fn with(options: WorldOptions) -> Result<World> {
-        let options = sys::WorldOptions {
-            size: size_of::<sys::WorldOptions>(),
-            without_pairs: options.without_pairs as u32,
-            without_contacts: options.without_contacts as u32,
-            without_containment: options.without_containment as u32,
-            with_mesh_depth: options.with_mesh_depth as u32,
-            max_pairs: options.max_pairs,
-            rebuild_budget: 0,
-            without_rebuild: 0,
-            updates_to_rest: 0,
-        };
         if unsafe { sys::crofton_api_version() } != sys::API_VERSION {
             return Err(wrong(
                 "this crate and the library that was loaded have different API versions: build both anew",
             ));
         }
+        let mut given = unsafe { sys::crofton_default_world_options() };
+        given.pairs = options.pairs as u32;
+        given.contacts = options.contacts as u32;
+        given.containment = options.containment as u32;
+        given.mesh_depth = options.mesh_depth as u32;
+        given.max_pairs = options.max_pairs;
         let mut raw = ptr::null_mut();
-        check(unsafe { sys::crofton_world_create(&options, &mut raw) })?;
+        check(unsafe { sys::crofton_world_create(&given, &mut raw) })?;
         Ok(World { raw })
     }
 
@@ -121,7 +129,7 @@ impl World {
     }
     /// For a mesh that deforms: as many vertices as before.
     pub fn set_vertices(&mut self, mesh: Mesh, vertices: Vertices) -> Result<()> {
-        let data = MeshData { vertices, indices: Indices::None, without_triangles: false };
+        let data = MeshData { vertices, indices: Indices::None, triangles: true };
         check(unsafe { sys::crofton_world_set_vertices(self.raw, mesh, &data.raw()?) })
     }
     /// An error while objects use it.
@@ -169,9 +177,9 @@ impl World {
             has_node: description.node.is_some() as u32,
             mesh,
             node,
-            hidden_layers: !description.layers,
-            ignored_layers: !description.collides_with,
-            transparent: description.transparent as u32,
+            layers: description.layers,
+            collides_with: description.collides_with,
+            occludes: description.occludes as u32,
             only_occludes: 0,
             body: std::ptr::null(),
         };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //! Rays, shapes, pairs and contacts.
 mod common;
-use common::{sphere, row, tetrahedron};
+use common::{row, sphere, tetrahedron};
 use crofton::*;
 
 const DOWN: [f64; 3] = [0.0, 0.0, -1.0];
@@ -136,5 +136,5 @@ fn a_limit_of_pairs_is_kept() {
     assert!(world.pairs().unwrap().is_empty());
     let frustum = Camera { position: [0.0, 0.0, 5.0], ..Camera::default() }.frustum().unwrap();
     let mut visible = ViewResult::new().unwrap();
-    assert_eq!(world.view(&frustum, &mut visible).unwrap().ids().len(), 3);
+    assert_eq!(world.view(&frustum.into(), &mut visible).unwrap().ids().len(), 3);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //! What cameras see, with layers, in several views, and behind walls.
 mod common;
-use common::{sphere, row};
+use common::{row, sphere};
 use crofton::*;
 
 #[test]
@@ -10,7 +10,7 @@ fn a_view_lists_what_is_before_it() {
     let behind = sphere(&mut world, [0.0, 0.0, 5.0], 0.25, 99);
     world.update().unwrap();
     let mut visible = ViewResult::new().unwrap();
-    let seen = world.view(&Camera::default().frustum().unwrap(), &mut visible).unwrap();
+    let seen = world.view(&Camera::default().into(), &mut visible).unwrap();
     assert_eq!(seen.ids(), [objects[0].index, objects[1].index, objects[2].index]);
     assert!(!seen.ids().contains(&behind.index));
     let users: Vec<u64> = seen.objects().unwrap().iter().map(|o| o.user).collect();
@@ -25,7 +25,7 @@ fn layers_choose() {
     world.update().unwrap();
     let frustum = Camera::default().frustum().unwrap();
     let mut visible = ViewResult::new().unwrap();
-    let seen = world.view_layers(&frustum, 0b01, None, &mut visible).unwrap();
+    let seen = world.view(&ViewRequest { layers: 0b01, ..frustum.into() }, &mut visible).unwrap();
     assert_eq!(seen.ids(), [objects[0].index, objects[2].index]);
 }
 
@@ -36,10 +36,10 @@ fn hidden_objects_are_not_seen() {
     world.update().unwrap();
     let frustum = Camera::default().frustum().unwrap();
     let mut visible = ViewResult::new().unwrap();
-    assert_eq!(world.view(&frustum, &mut visible).unwrap().ids(), [objects[1].index]);
+    assert_eq!(world.view(&frustum.into(), &mut visible).unwrap().ids(), [objects[1].index]);
     world.set_hidden(objects[0], false).unwrap();
     world.update().unwrap();
-    assert_eq!(world.view(&frustum, &mut visible).unwrap().ids().len(), 2);
+    assert_eq!(world.view(&frustum.into(), &mut visible).unwrap().ids().len(), 2);
 }
 
 #[test]
@@ -49,9 +49,9 @@ fn several_views_say_which_of_them_sees() {
     world.update().unwrap();
     let forth = Camera::default().frustum().unwrap();
     let back = Camera { forward: [0.0, 0.0, 1.0], ..Camera::default() }.frustum().unwrap();
-    let mut visible = MultiViewResult::new().unwrap();
-    let views = [(forth, ALL_LAYERS), (back, ALL_LAYERS), (forth, 0)];
-    let seen = world.views(&views, &mut visible).unwrap();
+    let mut visible = ViewResult::new().unwrap();
+    let views = [forth.into(), back.into(), ViewRequest { layers: 0, ..forth.into() }];
+    let seen = world.view_many(None, &views, &mut visible).unwrap();
     let mut masks: Vec<_> = seen.objects().unwrap().iter().map(|(o, m)| (o.object, *m)).collect();
     masks.sort_by_key(|(o, _)| o.index);
     assert_eq!(masks, [(objects[0], 0b001), (behind, 0b010)]);
@@ -115,7 +115,7 @@ fn what_a_wall_hides_is_not_seen() {
     let (world, _) = walled();
     let mut visible = ViewResult::new().unwrap();
     let options = OcclusionOptions { list_occluded: true, ..Default::default() };
-    let seen = world.view_occluding(&Camera::default(), &options, None, &mut visible).unwrap();
+    let seen = world.view(&ViewRequest { occlusion: Some(options), ..Camera::default().into() }, &mut visible).unwrap();
     let users: Vec<u64> = seen.objects().unwrap().iter().map(|o| o.user).collect();
     assert_eq!(users, [1, 3]);
     assert_eq!(seen.occluded_ids().len(), 1);
@@ -128,6 +128,8 @@ fn glass_hides_nothing() {
     world.set_occludes(wall, false).unwrap();
     world.update().unwrap();
     let mut visible = ViewResult::new().unwrap();
-    let seen = world.view_occluding(&Camera::default(), &OcclusionOptions::default(), None, &mut visible).unwrap();
+    let seen = world
+        .view(&ViewRequest { occlusion: Some(OcclusionOptions::default()), ..Camera::default().into() }, &mut visible)
+        .unwrap();
     assert_eq!(seen.ids().len(), 3);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //! Objects that come, move, hide and go; handles that go stale; input that is refused.
 mod common;
-use common::{sphere, row, tetrahedron, FACES, TETRAHEDRON};
+use common::{row, sphere, tetrahedron, FACES, TETRAHEDRON};
 use crofton::*;
 
 #[test]
@@ -133,11 +133,11 @@ fn vertices_and_indices_come_in_several_kinds() {
     let interleaved: Vec<f32> = TETRAHEDRON.iter().flat_map(|p| [p[0], p[1], p[2], 7.0, 8.0]).collect();
     let kinds = [
         MeshData::new(&TETRAHEDRON, &FACES),
-        MeshData { vertices: Vertices::F64(&doubles), indices: Indices::U16(&shorts), without_triangles: false },
+        MeshData { vertices: Vertices::F64(&doubles), indices: Indices::U16(&shorts), triangles: true },
         MeshData {
             vertices: Vertices::Interleaved { floats: &interleaved, stride: 5 },
             indices: Indices::U32(&FACES),
-            without_triangles: false,
+            triangles: true,
         },
     ];
     let objects = kinds.map(|data| {
@@ -157,7 +157,7 @@ fn an_index_beyond_the_vertices_is_refused() {
     let half = MeshData {
         vertices: Vertices::Interleaved { floats: &[0.0; 7], stride: 3 },
         indices: Indices::None,
-        without_triangles: false,
+        triangles: true,
     };
     assert_eq!(world.add_mesh(&half).unwrap_err().status, Status::InvalidArgument);
 }
@@ -188,8 +188,8 @@ fn what_a_view_sees_is_the_same_on_any_number_of_threads() {
     worlds[1].update_on(&Threads(4)).unwrap();
     let frustum = Camera::default().frustum().unwrap();
     let (mut a, mut b) = (ViewResult::new().unwrap(), ViewResult::new().unwrap());
-    let one = worlds[0].view(&frustum, &mut a).unwrap();
-    let four = worlds[1].view_layers(&frustum, ALL_LAYERS, Some(&Threads(4)), &mut b).unwrap();
+    let one = worlds[0].view(&frustum.into(), &mut a).unwrap();
+    let four = worlds[1].view_on(Some(&Threads(4)), &frustum.into(), &mut b).unwrap();
     assert!(!one.ids().is_empty());
     assert_eq!(one.ids(), four.ids());
 }
@@ -204,7 +204,7 @@ fn a_world_is_asked_from_many_threads_at_once() {
             scope.spawn(move || {
                 let mut visible = ViewResult::new().unwrap();
                 for _ in 0..200 {
-                    assert!(!world.view(frustum, &mut visible).unwrap().ids().is_empty());
+                    assert!(!world.view(&(*frustum).into(), &mut visible).unwrap().ids().is_empty());
                     let ray = Ray::new([i as f64, 0.0, 0.0], [0.0, 0.0, -1.0]);
                     assert_eq!(world.raycast(&ray, ALL_LAYERS).unwrap().unwrap().object, object);
                 }
@@ -234,10 +234,10 @@ fn no_indices_are_no_triangles() {
     let mut world = World::new().unwrap();
     let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     for indices in [Indices::U32(&[]), Indices::U16(&[])] {
-        let data = MeshData { vertices: Vertices::F32(&corners), indices, without_triangles: false };
+        let data = MeshData { vertices: Vertices::F32(&corners), indices, triangles: true };
         assert_eq!(world.add_mesh(&data).unwrap_err().status, Status::Empty);
     }
-    let data = MeshData { vertices: Vertices::F32(&corners), indices: Indices::None, without_triangles: false };
+    let data = MeshData { vertices: Vertices::F32(&corners), indices: Indices::None, triangles: true };
     assert!(world.add_mesh(&data).is_ok());
 }
 

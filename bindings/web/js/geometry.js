@@ -112,8 +112,7 @@ export class Frustum extends Owned {
 /** Writes a camera into the scratch memory, and says where. */
 export function writeCamera(memory, camera) {
     const at = memory.scratch(256), { words, doubles } = memory, first = at >> 3;
-    words[at >> 2] = 128;
-    memory.call('camera_default', at);
+    memory.fill('default_camera', at);
     for (const [name, place] of [['position', 1], ['forward', 4], ['up', 7]])
         if (camera[name]) for (let k = 0; k < 3; ++k) doubles[first + place + k] = camera[name][k];
     if (camera.height !== undefined) words[(at >> 2) + 20] = 1;

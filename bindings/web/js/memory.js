@@ -92,6 +92,9 @@ export class Memory {
         }
     }
 
+    /** Writes the struct that a function of the library returns. */
+    fill(name, at) { this.module[`_crofton_${name}`](at); }
+
     /** Calls a function of the library; a status that is not 0 becomes an error, as does what a callback threw. */
     call(name, ...given) {
         let status;

@@ -8,11 +8,11 @@ const ALL = 0xffffffff;
 /** What one view of a world sees, in memory that is kept; views of it are valid until its next view or growth of memory. */
 export class ViewResult extends Owned {
     constructor(memory) {
-        super(memory, 'ViewResult', create(memory, 'visible_objects'), '_crofton_visible_objects_destroy');
+        super(memory, 'ViewResult', create(memory, 'view_result'), '_crofton_view_result_destroy');
     }
     #list() {
         const at = this.memory.scratch(16);
-        this.memory.call('visible_objects_ids', this.handle, at, at + 4, at + 8, 0);
+        this.memory.call('view_result_ids', this.handle, at, at + 4, at + 8, 0);
         return this.memory.words.subarray(at >> 2, (at >> 2) + 3);
     }
     get length() { return this.#list()[1]; }
@@ -29,7 +29,7 @@ export class ViewResult extends Owned {
     /** Indices of what is in the frustum and hidden, where `listOccluded` asked for it. */
     get occluded() {
         const at = this.memory.scratch(16);
-        this.memory.call('visible_objects_occluded_ids', this.handle, at, at + 4);
+        this.memory.call('view_result_occluded_ids', this.handle, at, at + 4);
         const [ids, count] = this.memory.words.subarray(at >> 2, (at >> 2) + 2);
         return this.memory.words.subarray(ids >> 2, (ids >> 2) + count);
     }
@@ -39,7 +39,8 @@ export class ViewResult extends Owned {
 export class World extends Owned {
     constructor(memory) {
         const at = memory.scratch(56);
-        memory.words.set([56, 1], at >> 2);  // without pairs, which this build does not look for
+        memory.fill('default_world_options', at);
+        memory.words[(at >> 2) + 1] = 0;  // pairs, which this build does not look for
         super(memory, 'World', create(memory, 'world', at), '_crofton_world_destroy');
     }
 
@@ -52,7 +53,8 @@ export class World extends Owned {
         const { memory } = this, { handle } = this;
         return memory.lend([positions, indices, new Uint8Array(48)], (places, corners, at) => {
             const isShort = indices instanceof Uint16Array ? 1 : 0;
-            memory.words.set([36, places, positions.length / 3, 0, corners, indices.length, 0, isShort], at >> 2);
+            memory.fill('default_mesh_data', at);
+            memory.words.set([places, positions.length / 3, 0, corners, indices.length, 0, isShort], (at >> 2) + 1);
             memory.call('world_add_mesh', handle, at, at + 40);
             return this.#handleAt(at + 40, 'mesh');
         });
@@ -73,11 +75,11 @@ export class World extends Owned {
     }
 
     /** `{ box: { center, halfExtents, axes } }`, `{ sphere: { center, radius } }` or `{ mesh, transform }`; `user`: a number. */
-    add({ box, sphere, mesh, transform, user = 0, hiddenLayers = 0, transparent = false }) {
+    add({ box, sphere, mesh, transform, user = 0, layers = ALL, occludes = true }) {
         if ([box, sphere, mesh].filter(Boolean).length !== 1) throw failure(1, 'an object has one of box, sphere and mesh');
         if (!(Number.isInteger(user) && user >= 0 && user < 2 ** 53)) throw failure(1, 'user is a whole number below 2^53');
         const { memory } = this, at = memory.scratch(64 + 160 + 96 + 16), { words } = memory, first = at >> 2;
-        words[first] = 64;
+        memory.fill('default_object_description', at);
         words.set([user % 2 ** 32, Math.floor(user / 2 ** 32)], first + 2);
         if (box || sphere) this.#writeBound(at + 64, box, sphere), words[first + 4] = at + 64;
         if (transform) this.#writeTransform(at + 224, transform), words[first + 5] = at + 224;
@@ -85,8 +87,8 @@ export class World extends Owned {
             words[first + 6] = 1;
             this.#give(mesh, 'mesh', at + 32);
         }
-        words[first + 12] = hiddenLayers;
-        words[first + 14] = transparent ? 1 : 0;
+        words[first + 12] = layers;
+        words[first + 14] = occludes ? 1 : 0;
         memory.call('world_add', this.handle, at, at + 320);
         return this.#handleAt(at + 320, 'object');
     }
@@ -117,16 +119,25 @@ export class World extends Owned {
     /** Once a frame; then ask. */
     update() { this.memory.call('world_update', this.handle, 0); }
 
-    view(frustum, visible) {
-        this.memory.call('world_view', this.handle, frustum.handle, 0, 0, visible.handle);
-        return visible;
-    }
-    /** Without what is hidden behind others. `listOccluded`: also lists that; `occlusion` false: for comparison. */
-    viewOccluding(camera, visible, { listOccluded = false, occlusion = true, width = 0, height = 0 } = {}) {
-        const { memory } = this, at = writeCamera(memory, camera), first = at >> 2;
-        memory.words.set([56, at], first + 32);
-        memory.words.set([28, occlusion ? 0 : 1, width, height, 0, listOccluded ? 1 : 0, 0], first + 48);
-        memory.call('world_view_occluding', this.handle, at + 128, at + 192, 0, 0, visible.handle);
+    /**
+     * What a view sees: `{ camera }` or `{ volume }`, a Frustum, or both; `layers`; `occlusion`: leaves out what others hide,
+     * `{ listOccluded, width, height, maxOccluders }` with these options.
+     */
+    view({ camera, volume, layers = ALL, occlusion }, visible) {
+        const { memory } = this, at = camera ? writeCamera(memory, camera) : memory.scratch(256);
+        const request = at + 128, options = at + 192, first = request >> 2, { words } = memory;
+        memory.fill('default_view_request', request);
+        if (camera) words[first + 1] = at;
+        if (volume) words[first + 3] = volume.handle + 8;
+        words[first + 4] = layers;
+        if (occlusion) {
+            memory.fill('default_occlusion_options', options);
+            for (const [name, place] of [['width', 1], ['height', 2], ['maxOccluders', 3]])
+                if (occlusion[name]) words[(options >> 2) + place] = occlusion[name];
+            words[(options >> 2) + 4] = occlusion.listOccluded ? 1 : 0;
+            words[first + 5] = options;
+        }
+        memory.call('world_view', this.handle, request, 0, visible.handle);
         return visible;
     }
     /** The nearest hit of a ray, `{ object, user, t, point, triangle, normal, startedInside }`, or null. */

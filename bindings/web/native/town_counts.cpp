@@ -34,8 +34,7 @@ struct Reader {
 crofton_world_mesh read_mesh(Reader& in, crofton_world* world) {
     const std::vector<float> positions = in.list<float>(in.count());
     const std::vector<std::uint32_t> indices = in.list<std::uint32_t>(in.count());
-    crofton_mesh_data data{};
-    data.size = sizeof data;
+    crofton_mesh_data data = crofton_default_mesh_data();
     data.positions = positions.data(), data.position_count = positions.size() / 3;
     data.indices = indices.data(), data.index_count = indices.size();
     crofton_world_mesh mesh{};
@@ -56,8 +55,7 @@ void add_object(Reader& in, crofton_world* world, const std::vector<crofton_worl
     crofton_transform transform{};
     static_assert(sizeof transform == 12 * sizeof(double));
     for (std::size_t i = 0; i < 12; ++i) reinterpret_cast<double*>(&transform)[i] = columns[i];
-    crofton_object_description description{};
-    description.size = sizeof description;
+    crofton_object_description description = crofton_default_object_description();
     description.transform = &transform, description.has_mesh = 1, description.mesh = meshes.at(mesh);
     crofton_object object{};
     require_ok(crofton_world_add(world, &description, &object));
@@ -72,9 +70,7 @@ crofton_box read_box(Reader& in) {
 }
 
 crofton_camera read_camera(Reader& in) {
-    crofton_camera camera{};
-    camera.size = sizeof camera;
-    require_ok(crofton_camera_default(&camera));
+    crofton_camera camera = crofton_default_camera();
     for (double* vector : {camera.position, camera.forward, camera.up})
         for (int k = 0; k < 3; ++k) vector[k] = in.next();
     camera.fov_y = in.next(), camera.aspect = in.next();
@@ -102,8 +98,8 @@ int main(int, char** arguments) {
     require_ok(crofton_tree_create(boxes.data(), nullptr, objects, nullptr, &tree));
     crofton_visible_set* set = nullptr;
     require_ok(crofton_visible_set_create(&set));
-    crofton_visible_objects* seen = nullptr;
-    require_ok(crofton_visible_objects_create(&seen));
+    crofton_view_result* seen = nullptr;
+    require_ok(crofton_view_result_create(&seen));
     for (std::size_t cameras = in.count(); cameras > 0; --cameras) {
         const bool occlusion = in.next() != 0.0;
         const crofton_camera camera = read_camera(in);
@@ -117,13 +113,14 @@ int main(int, char** arguments) {
         require_ok(crofton_visible_set_items(set, &ids, &found, &count));
         std::vector<std::uint8_t> verdicts(objects);
         for (std::size_t i = 0; i < count; ++i) verdicts[ids[i]] = found[i];
-        crofton_occluding_view eye{};
-        eye.size = sizeof eye, eye.camera = &camera;
-        crofton_occlusion_options options{};
-        options.size = sizeof options, options.disabled = occlusion ? 0 : 1, options.list_occluded = 1;
-        require_ok(crofton_world_view_occluding(world, &eye, &options, nullptr, nullptr, seen));
+        crofton_occlusion_options options = crofton_default_occlusion_options();
+        options.list_occluded = 1;
+        crofton_view_request request = crofton_default_view_request();
+        request.camera = &camera;
+        if (occlusion) request.occlusion = &options;
+        require_ok(crofton_world_view(world, &request, nullptr, seen));
         if (occlusion) {
-            require_ok(crofton_visible_objects_occluded_ids(seen, &ids, &count));
+            require_ok(crofton_view_result_occluded_ids(seen, &ids, &count));
             for (std::size_t i = 0; i < count; ++i)
                 if (verdicts[ids[i]] != 0) verdicts[ids[i]] = 3;
         }

@@ -72,7 +72,7 @@ export class Culling {
         const { ids, verdicts: found } = this.#visible;
         for (let i = 0; i < ids.length; ++i) verdicts[ids[i]] = found[i];
         if (occlusion) {
-            this.#world.viewOccluding(camera, this.#seen, { listOccluded: true });
+            this.#world.view({ camera, occlusion: { listOccluded: true } }, this.#seen);
             for (const id of this.#seen.occluded) if (verdicts[id]) verdicts[id] = 3;
         }
         const counts = [0, 0, 0, 0];

@@ -256,14 +256,14 @@ for (const build of BUILDS) {
         const sphere = world.add({ sphere: { center: [0, 0, -5], radius: 1 }, user: 2 ** 40 + 7 });
         world.add({ box: { center: [0, 0, 5], halfExtents: [1, 1, 1] } });
         world.update();
-        assert.deepEqual([...world.view(new crofton.Frustum(), visible).ids], [sphere.index]);
+        assert.deepEqual([...world.view({ camera: {} }, visible).ids], [sphere.index]);
         const hit = world.raycast([0, 0, 0], [0, 0, -1]);
         assert.deepEqual([hit.user, hit.t, hit.object], [2 ** 40 + 7, 4, sphere]);
         assert.equal(world.raycast([0, 0, 0], [0, 1, 0]), null);
     });
     here('objects move, hide and go', () => {
         const world = new crofton.World(), visible = new crofton.ViewResult(), frustum = new crofton.Frustum();
-        const seen = () => { world.update(); return world.view(frustum, visible).length; };
+        const seen = () => { world.update(); return world.view({ volume: frustum }, visible).length; };
         const box = world.add({ box: { center: [0, 0, 5], halfExtents: [1, 1, 1] } });
         assert.equal(seen(), 0);
         world.setBox(box, { center: [0, 0, -5], halfExtents: [1, 1, 1] });
@@ -283,12 +283,12 @@ for (const build of BUILDS) {
         const wall = world.add({ mesh: cube, transform: scaled });
         const behind = world.add({ mesh: cube, transform: translation(0, 0, -12) });
         world.update();
-        assert.deepEqual([...world.viewOccluding({}, visible, { listOccluded: true }).ids], [wall.index]);
+        assert.deepEqual([...world.view({ camera: {}, occlusion: { listOccluded: true } }, visible).ids], [wall.index]);
         assert.deepEqual([...visible.occluded], [behind.index]);
-        assert.equal(world.viewOccluding({}, visible, { occlusion: false }).length, 2);
+        assert.equal(world.view({ camera: {} }, visible).length, 2);
         world.setTransform(wall, translation(50, 0, -5));
         world.update();
-        assert.deepEqual([...world.viewOccluding({}, visible).ids], [behind.index]);
+        assert.deepEqual([...world.view({ camera: {}, occlusion: {} }, visible).ids], [behind.index]);
     });
     here('occluders are found in a closed mesh', () => {
         const world = new crofton.World(), visible = new crofton.ViewResult(), cube = world.addMesh(CUBE.positions, CUBE.indices);
@@ -296,7 +296,7 @@ for (const build of BUILDS) {
         world.add({ mesh: cube, transform: [5, 0, 0, 0, 0, 5, 0, 0, 0, 0, 0.5, 0, 0, 0, -5, 1] });
         world.add({ mesh: cube, transform: translation(0, 0, -12) });
         world.update();
-        assert.equal(world.viewOccluding({}, visible).length, 1);
+        assert.equal(world.view({ camera: {}, occlusion: {} }, visible).length, 1);
     });
     here('a world that looks for contacts is refused: this build finds none', () => {
         const { memory } = new crofton.World(), slot = memory.allocate(8, 'a handle');

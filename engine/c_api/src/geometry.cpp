@@ -46,8 +46,7 @@ crofton_status check_valid_boxes(const crofton_box* boxes, std::size_t count, co
 using namespace crofton;
 using namespace crofton::capi;
 
-crofton_status crofton_camera_default(crofton_camera* camera) {
-    CROFTON_CHECK(check_struct(camera, __func__));
+crofton_camera crofton_default_camera(void) {
     const Camera source;
     crofton_camera result{.size = sizeof(crofton_camera),
                           .position = {},
@@ -63,8 +62,7 @@ crofton_status crofton_camera_default(crofton_camera* camera) {
         result.forward[i] = source.forward[i];
         result.up[i] = source.up[i];
     }
-    *camera = result;
-    return CROFTON_OK;
+    return result;
 }
 
 crofton_status crofton_frustum_from_camera(const crofton_camera* camera, crofton_frustum* frustum) {

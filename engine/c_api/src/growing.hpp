@@ -3,6 +3,7 @@
 #pragma once
 #include <cstring>
 
+#include <crofton/capi/crofton.h>
 #include <crofton/capi/call.hpp>
 
 namespace crofton::capi {
@@ -14,15 +15,41 @@ template <class Struct>
     if (!argument) return report(CROFTON_INVALID_ARGUMENT, function, "a struct is NULL");
     if (argument->size < sizeof argument->size || argument->size > sizeof(Struct) ||
         argument->size % alignof(Struct) != 0)
-        return report(CROFTON_WRONG_SIZE, function, "a struct's `size` is larger than this library knows, or no size");
+        return report(
+            CROFTON_WRONG_SIZE, function,
+            "a struct's `size` is larger than this library knows, or no size: begin with its crofton_default_...()");
     return CROFTON_OK;
 }
 
-// Copies what the caller's struct has; the other members of `copy` are 0.
+// The defaults of a struct: what its crofton_default_...() returns, and 0 for structs that have none.
+template <class Struct>
+[[nodiscard]] Struct default_of() {
+    Struct result{};
+    result.size = sizeof result;
+    return result;
+}
+template <>
+[[nodiscard]] inline crofton_world_options default_of<crofton_world_options>() {
+    return crofton_default_world_options();
+}
+template <>
+[[nodiscard]] inline crofton_mesh_data default_of<crofton_mesh_data>() {
+    return crofton_default_mesh_data();
+}
+template <>
+[[nodiscard]] inline crofton_object_description default_of<crofton_object_description>() {
+    return crofton_default_object_description();
+}
+template <>
+[[nodiscard]] inline crofton_view_request default_of<crofton_view_request>() {
+    return crofton_default_view_request();
+}
+
+// Copies what the caller's struct has; the other members of `copy` have their defaults.
 template <class Struct>
 [[nodiscard]] crofton_status read_growing(const Struct* argument, const char* function, Struct& copy) {
     CROFTON_CHECK(check_growing(argument, function));
-    copy = {};
+    copy = default_of<Struct>();
     std::memcpy(&copy, argument, argument->size);
     return CROFTON_OK;
 }

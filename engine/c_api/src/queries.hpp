@@ -36,25 +36,22 @@ struct CullAsked {
     CullAsked& operator=(const CullAsked&) = delete;
 };
 
-// `limits` or NULL: `asked` keeps what it has.
-[[nodiscard]] inline crofton_status read_limits(const crofton_draw_limits* limits, const char* function,
-                                                CullAsked& asked) {
-    if (!limits) return CROFTON_OK;
+[[nodiscard]] inline crofton_status read_limits(const crofton_draw_limits& argument, const char* function,
+                                                cull::DrawLimits& limits) {
     crofton_draw_limits given;
-    CROFTON_CHECK(read_growing(limits, function, given));
+    CROFTON_CHECK(read_growing(&argument, function, given));
     CROFTON_CHECK(check_array(given.item_distances, given.item_count, function));
     CROFTON_CHECK(check_array(given.drawn_before, given.drawn_word_count, function));
     if (given.hysteresis != 0.0 && !(given.hysteresis >= 1.0))
-        return report(CROFTON_OUT_OF_RANGE, function, "draw limits: `longer` is less than 1 or NaN");
-    asked.limits = {.eye = to_vector(given.eye),
-                    .max_distance_in_radii =
-                        given.max_distance_in_radii != 0.0 ? given.max_distance_in_radii : cull::DrawLimits::kNone,
-                    .least_radius = given.least_radius,
-                    .layer_distances = std::span(given.layer_distances, given.layer_distances ? 32 : 0),
-                    .item_distances = std::span(given.item_distances, given.item_count),
-                    .drawn_before = std::span(given.drawn_before, given.drawn_word_count),
-                    .hysteresis = given.hysteresis != 0.0 ? given.hysteresis : 1.0};
-    asked.options.limits = &asked.limits;
+        return report(CROFTON_OUT_OF_RANGE, function, "draw limits: `hysteresis` is less than 1 or NaN");
+    limits = {.eye = to_vector(given.eye),
+              .max_distance_in_radii =
+                  given.max_distance_in_radii != 0.0 ? given.max_distance_in_radii : cull::DrawLimits::kNone,
+              .least_radius = given.least_radius,
+              .layer_distances = std::span(given.layer_distances, given.layer_distances ? 32 : 0),
+              .item_distances = std::span(given.item_distances, given.item_count),
+              .drawn_before = std::span(given.drawn_before, given.drawn_word_count),
+              .hysteresis = given.hysteresis != 0.0 ? given.hysteresis : 1.0};
     return CROFTON_OK;
 }
 
@@ -69,7 +66,9 @@ struct CullAsked {
         .mode = given.conservative ? cull::CullMode::conservative : cull::CullMode::exact,
         .order = given.tree_order ? cull::ResultOrder::tree : cull::ResultOrder::ascending,
         .candidate_mask = std::span(given.candidate_mask, given.candidate_mask ? given.candidate_words : 0)};
-    return read_limits(given.limits, function, asked);
+    if (!given.limits) return CROFTON_OK;
+    asked.options.limits = &asked.limits;
+    return read_limits(*given.limits, function, asked.limits);
 }
 
 [[nodiscard]] inline crofton_status read_query(const crofton_view* view, const crofton_cull_options* options,

@@ -13,6 +13,7 @@ using namespace crofton;
 using namespace crofton::capi;
 
 static_assert(CROFTON_NONE == kNoIndex);
+static_assert(CROFTON_AUTOMATIC >= kAutomatic);
 
 namespace {
 
@@ -22,14 +23,13 @@ std::size_t clamp_to_size(std::uint64_t value) {
 
 WorldOptions to_world_options(const crofton_world_options& given) {
     WorldOptions options;
-    options.pairs = given.without_pairs == 0;
-    options.contacts = given.without_contacts == 0;
-    options.containment = given.without_containment == 0;
-    options.mesh_depth = given.with_mesh_depth != 0;
-    if (given.max_pairs != 0) options.max_pairs = clamp_to_size(given.max_pairs);
-    if (given.rebuild_budget != 0) options.rebuild_budget = clamp_to_size(given.rebuild_budget);
-    if (given.without_rebuild != 0) options.rebuild_budget = 0;
-    if (given.updates_to_rest != 0) options.updates_to_rest = given.updates_to_rest;
+    options.pairs = given.pairs != 0;
+    options.contacts = given.contacts != 0;
+    options.containment = given.containment != 0;
+    options.mesh_depth = given.mesh_depth != 0;
+    options.max_pairs = clamp_to_size(given.max_pairs);
+    options.rebuild_budget = clamp_to_size(given.rebuild_budget);
+    options.updates_to_rest = given.updates_to_rest;
     options.contact_margin = given.contact_margin;
     return options;
 }
@@ -116,7 +116,7 @@ crofton_status to_mesh_description(const crofton_mesh_data* given, const char* f
     CROFTON_CHECK(read_growing(given, function, data));
     CROFTON_CHECK(to_points(data, function, description.positions));
     CROFTON_CHECK(to_indices(data, function, description.indices));
-    description.triangles = data.without_triangles == 0;
+    description.triangles = data.triangles != 0;
     return CROFTON_OK;
 }
 
@@ -147,9 +147,9 @@ crofton_status to_object_description(const crofton_object_description* argument,
     if (given.transform) description.transform = to_transform(*given.transform);
     if (given.bound) CROFTON_CHECK(to_bound(*given.bound, function, description.bound));
     description.user = given.user;
-    description.layers = ~given.hidden_layers;
-    description.collides_with = ~given.ignored_layers;
-    description.occludes = given.transparent == 0;
+    description.layers = given.layers;
+    description.collides_with = given.collides_with;
+    description.occludes = given.occludes != 0;
     description.only_occludes = given.only_occludes != 0;
     return CROFTON_OK;
 }
@@ -163,7 +163,7 @@ std::uint64_t next_serial() {
 
 crofton_status crofton_world_create(const crofton_world_options* options, crofton_world** world) {
     CROFTON_CHECK(check_pointer(world, __func__));
-    crofton_world_options given{};
+    crofton_world_options given = crofton_default_world_options();
     if (options) CROFTON_CHECK(read_growing(options, __func__, given));
     CROFTON_CHECK(check_length(given.contact_margin, "contact_margin", __func__));
     const char* const function = __func__;

@@ -18,7 +18,7 @@ extern "C" {
 #endif
 
 /* Counts breaking changes of these headers. Equal numbers: the binaries fit together. */
-#define CROFTON_API_VERSION 2u
+#define CROFTON_API_VERSION 3u
 #define CROFTON_NO_ITEM UINT64_MAX
 #define CROFTON_NONE UINT32_MAX /* no parent, no id */
 
@@ -148,8 +148,8 @@ typedef struct crofton_frustum {
     crofton_plane planes[CROFTON_MAX_PLANES];
 } crofton_frustum;
 
-/* Fills a camera whose `size` is set: at the origin, looking along -z, 60 degrees, 16:9, from 0.1 to 1000. */
-CROFTON_API crofton_status crofton_camera_default(crofton_camera* camera);
+/* At the origin, looking along -z, 60 degrees, 16:9, from 0.1 to 1000. */
+CROFTON_API crofton_camera crofton_default_camera(void);
 
 /* Both fill a frustum whose `size` is set. */
 CROFTON_API crofton_status crofton_frustum_from_camera(const crofton_camera* camera, crofton_frustum* frustum);

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* Crofton for C and for languages that call C: all of the CPU modules behind opaque handles.
+/* Crofton for C and for languages that call C. World comes first; modules.h has the parts that it is made of.
  *
- * Every function returns a status; nothing throws, and nothing but a failed allocation ends the program. Results go to
- * the last parameters and are untouched on failure. Structs that may grow begin with `size`: set it to sizeof(the
- * struct), so that library and caller agree on what it holds. Those of World may be older and smaller. Optional
- * pointers are marked "or NULL".
+ * Every function that can fail returns a status; nothing throws. Results go to the last parameters, which stay
+ * untouched on failure. Only a failed allocation may end the program. Parameters that may be NULL are marked "or NULL".
+ *
+ * Structs that may grow begin with `size`. Fill descriptions and options by their crofton_default_...(), then change
+ * what differs. Of the structs that a call fills, set `size` to sizeof(the struct).
  *
  * Threads: calls on different handles are independent. On one handle, calls that take a pointer to const may run at the
  * same time; any other call needs the handle to itself. crofton_set_thread_checks makes a breach a status.
@@ -36,20 +37,22 @@ typedef struct crofton_world_mesh {
     uint32_t index, generation;
 } crofton_world_mesh;
 
-/* The structs of this header that begin with `size` may grow. An older, smaller one is taken: members that it lacks are
- * 0, the default of every member. Results are written as far as it goes. A larger one is CROFTON_WRONG_SIZE. */
+/* A struct of this header that was compiled against an older version, and is smaller, is accepted: members that it
+ * lacks have their defaults, and results are written as far as it goes. A larger one is CROFTON_WRONG_SIZE. */
+
+#define CROFTON_AUTOMATIC UINT64_MAX
 
 typedef struct crofton_world_options {
     size_t size;
-    uint32_t without_pairs;       /* 1: neither pairs nor contacts are looked for */
-    uint32_t without_contacts;    /* 1: pairs alone */
-    uint32_t without_containment; /* 1: a closed mesh around another object does not touch it */
-    uint32_t with_mesh_depth;     /* 1: contacts between meshes have a way out, which costs more */
-    uint64_t max_pairs;           /* more are an error; 0: 2^24 */
-    uint64_t rebuild_budget;      /* items' worth of work on the tree an update; 0: a 128th of the objects and 512 */
-    uint32_t without_rebuild;     /* 1: no such work, and no allocation for it */
-    uint32_t updates_to_rest;     /* without moving, until an object counts as resting again; 0: 16 */
-    double contact_margin;        /* gaps up to this between bodies are contacts */
+    uint32_t pairs;          /* 1: look for pairs and contacts; 0: for neither */
+    uint32_t contacts;       /* 1; 0: pairs alone */
+    uint32_t containment;    /* 1: an object inside a closed mesh touches it */
+    uint32_t mesh_depth;     /* 0; 1: contacts between meshes have a way out, which costs more */
+    uint64_t max_pairs;      /* 2^24; more are an error */
+    uint64_t rebuild_budget; /* items' worth of background work on the tree an update; CROFTON_AUTOMATIC: a 128th of the
+                                objects and 512. 0: none, and no allocation for it */
+    uint32_t updates_to_rest; /* 16: updates without motion until an object counts as resting */
+    double contact_margin;    /* 0: gaps up to this between bodies are contacts */
 } crofton_world_options;
 
 /* As of the last update. */
@@ -71,9 +74,9 @@ typedef struct crofton_mesh_data {
     size_t position_stride; /* in bytes; 0: packed */
     const void* indices;    /* packed */
     size_t index_count;
-    uint32_t is_double;         /* 1: positions are double, rounded to float; 0: float */
-    uint32_t is_short;          /* 1: indices are uint16_t; 0: uint32_t */
-    uint32_t without_triangles; /* 1: the mesh's box stands for it in rays and contacts */
+    uint32_t is_double; /* 1: positions are double, rounded to float; 0: float */
+    uint32_t is_short;  /* 1: indices are uint16_t; 0: uint32_t */
+    uint32_t triangles; /* 1: rays and contacts ask the triangles; 0: the mesh's box stands for it */
 } crofton_mesh_data;
 
 typedef enum crofton_bound_kind {
@@ -101,12 +104,16 @@ typedef struct crofton_object_description {
     uint32_t has_mesh, has_node;        /* 1: the next two count */
     crofton_world_mesh mesh;
     crofton_node node;
-    uint32_t hidden_layers;   /* layers that the object is not in; 0: it is in all */
-    uint32_t ignored_layers;  /* layers that the object does not collide with; 0: it does with all */
-    uint32_t transparent;     /* 1: of an object with a mesh; it hides nothing */
-    uint32_t only_occludes;   /* 1: of an object with a mesh; it is in no answer, and hides what its occluders hide */
+    uint32_t layers;        /* all: views and queries ask for layers */
+    uint32_t collides_with; /* all layers; 0: the object has no pairs */
+    uint32_t occludes;      /* 1: an object with a mesh hides others; 0: it does not, as where it is transparent */
+    uint32_t only_occludes; /* 0; 1: of an object with a mesh: it is in no answer, and hides what its occluders hide */
     const crofton_body* body; /* or NULL: as crofton_world_set_body, kept alive likewise */
 } crofton_object_description;
+
+CROFTON_API crofton_world_options crofton_default_world_options(void);
+CROFTON_API crofton_mesh_data crofton_default_mesh_data(void);
+CROFTON_API crofton_object_description crofton_default_object_description(void);
 
 /* `options` or NULL: all defaults. */
 CROFTON_API crofton_status crofton_world_create(const crofton_world_options* options, crofton_world** world);
@@ -179,9 +186,8 @@ CROFTON_API crofton_status crofton_world_get_statistics(const crofton_world* wor
 
 /* What a World answers: what is seen, what rays and shapes meet, what touches. All as of its last update. */
 
-typedef struct crofton_visible_objects crofton_visible_objects;   /* what one view sees, in memory that is kept */
-typedef struct crofton_visible_in_views crofton_visible_in_views; /* what up to 32 views see, likewise */
-typedef struct crofton_found crofton_found;                       /* a list of objects or of hits, likewise */
+typedef struct crofton_view_result crofton_view_result; /* what one view sees, or up to 32; its memory is kept */
+typedef struct crofton_found crofton_found;             /* a list of objects or of hits, likewise */
 
 typedef struct crofton_object_ref {
     crofton_object object;
@@ -267,42 +273,96 @@ CROFTON_API crofton_status crofton_world_get_box(const crofton_world* world, cro
 CROFTON_API crofton_status crofton_world_get_transform(const crofton_world* world, crofton_object object,
                                                        crofton_transform* transform);
 
-CROFTON_API crofton_status crofton_visible_objects_create(crofton_visible_objects** visible);
-CROFTON_API crofton_status crofton_visible_objects_destroy(crofton_visible_objects* visible);
-/* What a view sees, by the objects' boxes; `options`, `jobs` or NULL. Allocates nothing once `visible` has grown to the
- * largest answer. */
-CROFTON_API crofton_status crofton_world_view(const crofton_world* world, const crofton_view* view,
-                                              const crofton_cull_options* options, const crofton_jobs* jobs,
-                                              crofton_visible_objects* visible);
-/* The same for a camera, which sees all layers. */
-CROFTON_API crofton_status crofton_world_view_camera(const crofton_world* world, const crofton_camera* camera,
-                                                     const crofton_cull_options* options, const crofton_jobs* jobs,
-                                                     crofton_visible_objects* visible);
-/* The objects' indices; valid until the next view. In tree order the first *inside_count (or NULL) lie inside the view.
- * In ascending order *verdicts (or NULL) are a crofton_verdict each; in tree order they are NULL. */
-CROFTON_API crofton_status crofton_visible_objects_ids(const crofton_visible_objects* visible, const uint32_t** ids,
-                                                       size_t* count, const uint8_t** verdicts, size_t* inside_count);
-/* Writes the objects from place `first` on, at most `capacity`. `world` is the one that was viewed; ask before it next
- * changes. After its next update it is CROFTON_INVALID_ARGUMENT. */
-CROFTON_API crofton_status crofton_visible_objects_list(const crofton_visible_objects* visible,
-                                                        const crofton_world* world, size_t first,
-                                                        crofton_object_ref* objects, size_t capacity);
-CROFTON_API crofton_status crofton_visible_objects_get_statistics(const crofton_visible_objects* visible,
-                                                                  crofton_cull_statistics* statistics);
+/* Views. docs/world.md and docs/occlude.md are the guides. */
 
-CROFTON_API crofton_status crofton_visible_in_views_create(crofton_visible_in_views** visible);
-CROFTON_API crofton_status crofton_visible_in_views_destroy(crofton_visible_in_views* visible);
-/* What up to 32 views see, each object once; `options` (its order, limits and `candidate_mask` count for all) or NULL.
- */
-CROFTON_API crofton_status crofton_world_views(const crofton_world* world, const crofton_view* views, size_t count,
-                                               const crofton_cull_options* options, crofton_visible_in_views* visible);
-CROFTON_API crofton_status crofton_visible_in_views_ids(const crofton_visible_in_views* visible, const uint32_t** ids,
-                                                        size_t* count);
-/* As crofton_visible_objects_list; bit v of view_masks[i] (or NULL): view v sees objects[i]. */
-CROFTON_API crofton_status crofton_visible_in_views_list(const crofton_visible_in_views* visible,
-                                                         const crofton_world* world, size_t first,
-                                                         crofton_object_ref* objects, uint32_t* view_masks,
-                                                         size_t capacity);
+/* How a view leaves out what other objects hide. */
+typedef struct crofton_occlusion_options {
+    size_t size;
+    uint32_t width, height; /* of the depth buffer: 480 and 270; more pixels find more and cost more */
+    uint32_t max_occluders; /* 256: draws at most so many, those that are worth most to the view */
+    uint32_t list_occluded; /* 0; 1: also lists what is hidden, which costs a second query */
+    float least_cover;      /* 2e-5: does not draw what covers a smaller part of the sphere of directions */
+} crofton_occlusion_options;
+
+/* An engine's own matrix, from positions relative to `origin` to clip space, for column vectors. */
+typedef struct crofton_view_matrix {
+    size_t size;
+    const double* doubles; /* sixteen numbers, */
+    const float* floats;   /* or these: set one of the two */
+    uint32_t is_row_major; /* 0: column by column; 1: row by row */
+    uint32_t depth;        /* a crofton_depth_range; CROFTON_DEPTH_REVERSED_ZERO_TO_ONE */
+    double origin[3];      /* 0, 0, 0 */
+} crofton_view_matrix;
+
+/* What a view asks. All that is set counts, in every combination, or the call is refused by name. */
+typedef struct crofton_view_request {
+    size_t size;
+    const crofton_camera* camera;      /* set one of the three; NULL */
+    const crofton_view_matrix* matrix; /* NULL */
+    const crofton_frustum* volume;     /* NULL. Any convex volume. For occlusion set camera or matrix, too: objects are
+                                          tested against the volume instead of theirs */
+    uint32_t layers;                   /* all: lists objects that share a layer with these */
+    const crofton_occlusion_options* occlusion; /* NULL: lists what other objects hide, too */
+    const crofton_draw_limits* limits;          /* NULL: lists what is small or far, too */
+    const uint64_t* candidate_mask; /* NULL, or bit i % 64 of word i / 64: may object i be seen, as crofton_pvs_visible
+                                       gives it. Objects beyond the end may, and so may those that have moved since */
+    size_t candidate_words;
+    uint32_t conservative; /* 0: exact; 1: planes only, which keeps some boxes near the volume's corners */
+    uint32_t tree_order;   /* 0: indices ascend; 1: as the tree lies in memory, in half the time where much is seen */
+} crofton_view_request;
+
+typedef struct crofton_occlusion_statistics {
+    size_t size;
+    uint64_t occluders_drawn, pieces_drawn, triangles_drawn;
+    uint64_t nodes_tested, nodes_outside, nodes_hidden; /* of the tree; nothing below the latter was looked at */
+    uint64_t items_tested, items_hidden;
+} crofton_occlusion_statistics;
+
+CROFTON_API crofton_occlusion_options crofton_default_occlusion_options(void);
+CROFTON_API crofton_view_matrix crofton_default_view_matrix(void);
+CROFTON_API crofton_view_request crofton_default_view_request(void);
+
+CROFTON_API crofton_status crofton_view_result_create(crofton_view_result** result);
+CROFTON_API crofton_status crofton_view_result_destroy(crofton_view_result* result);
+
+/* Finds what a view sees, by the objects' boxes, and with occlusion by what is not hidden. `jobs` or NULL.
+ *
+ * Allocates nothing once `result` has grown to the largest answer. */
+CROFTON_API crofton_status crofton_world_view(const crofton_world* world, const crofton_view_request* request,
+                                              const crofton_jobs* jobs, crofton_view_result* result);
+/* The same for up to 32 views, each object once. Each view keeps its own options. All requests have the same `size` and
+ * lie so far apart; crofton_last_error_item is the place of one that is refused. */
+CROFTON_API crofton_status crofton_world_view_many(const crofton_world* world, const crofton_view_request* requests,
+                                                   size_t count, const crofton_jobs* jobs, crofton_view_result* result);
+
+/* The objects' indices; valid until the result's next view.
+ *
+ * Of one view in tree order, the first *inside_count (or NULL) lie inside its volume. In ascending order *verdicts (or
+ * NULL) are a crofton_verdict each. Otherwise they are 0 and NULL. */
+CROFTON_API crofton_status crofton_view_result_ids(const crofton_view_result* result, const uint32_t** ids,
+                                                   size_t* count, const uint8_t** verdicts, size_t* inside_count);
+/* Writes the objects from place `first` on, at most `capacity`; bit v of view_masks[i] (or NULL): view v sees
+ * objects[i].
+ *
+ * `world` is the one that was viewed. After its next update it is CROFTON_INVALID_ARGUMENT. */
+CROFTON_API crofton_status crofton_view_result_list(const crofton_view_result* result, const crofton_world* world,
+                                                    size_t first, crofton_object_ref* objects, uint32_t* view_masks,
+                                                    size_t capacity);
+/* Of one view; CROFTON_UNSUPPORTED after crofton_world_view_many. */
+CROFTON_API crofton_status crofton_view_result_get_statistics(const crofton_view_result* result,
+                                                              crofton_cull_statistics* statistics);
+/* Indices of what is in the view's volume and hidden, ascending. None unless list_occluded asked for it, nor after
+ * crofton_world_view_many. */
+CROFTON_API crofton_status crofton_view_result_occluded_ids(const crofton_view_result* result, const uint32_t** ids,
+                                                            size_t* count);
+/* Of view number `view`; all 0 for a view without occlusion. CROFTON_OUT_OF_RANGE: there are fewer views. */
+CROFTON_API crofton_status crofton_view_result_get_occlusion_statistics(const crofton_view_result* result, size_t view,
+                                                                        crofton_occlusion_statistics* statistics);
+/* The depth buffer of view number `view`: its size, and the occluders' nearness where `nearness` is not NULL and has
+ * room for width * height numbers. These are 1 / w (parallel views: minus the distance), row by row from the bottom;
+ * below -1e38 where nothing is drawn. CROFTON_EMPTY: the view was without occlusion. */
+CROFTON_API crofton_status crofton_view_result_depth(const crofton_view_result* result, size_t view, uint32_t* width,
+                                                     uint32_t* height, float* nearness, size_t capacity);
 
 /* Rays meet bodies; of objects without one triangles of meshes, boxes and spheres. hits[i] is the nearest of rays[i].
  */
@@ -367,9 +427,7 @@ CROFTON_API crofton_status crofton_world_cast(const crofton_world* world, const 
                                               const crofton_motion* motion, const crofton_cast_options* options,
                                               uint32_t layer_mask, crofton_body_hit* hit);
 
-/* Views of a World that leave out what is hidden: occluders in, what is seen out. docs/occlude.md is the guide. */
-
-/* The structs of this part may grow, as those of World. */
+/* What hides other objects: the occluders of meshes. docs/occlude.md is the guide. */
 
 typedef enum crofton_occluder_kind {
     CROFTON_OCCLUDER_BOX = 0,    /* inside a closed piece of the mesh */
@@ -395,7 +453,7 @@ typedef struct crofton_occluder {
     double mean_shadow, gain;          /* of what was found: how much it covers, and adds to those before it */
 } crofton_occluder;
 
-/* 0 is the default of every member. */
+/* 0: the default. */
 typedef struct crofton_find_options {
     size_t size;
     uint32_t is_two_sided; /* 1: back faces are drawn as well */
@@ -405,33 +463,6 @@ typedef struct crofton_find_options {
     uint32_t level_triangles; /* not 0: a level of many small pieces, as surfaces of so many triangles, say 48 */
 } crofton_find_options;
 
-typedef struct crofton_occlusion_options {
-    size_t size;
-    uint32_t disabled;      /* 1: without occlusion, for comparison */
-    uint32_t width, height; /* of the depth buffer; 0: 480 and 270 */
-    uint32_t max_occluders; /* drawn; 0: 256 */
-    uint32_t list_occluded; /* 1: also list what is hidden */
-    float least_cover;      /* of the sphere of directions; 0: 2e-5 */
-} crofton_occlusion_options;
-
-/* From a camera or from an engine's own matrix. */
-typedef struct crofton_occluding_view {
-    size_t size;
-    const crofton_camera* camera; /* or NULL: then */
-    const double* to_clip;        /* 16 numbers, as crofton_frustum_from_matrix takes them, relative to `origin` */
-    double origin[3];
-    uint32_t depth;                    /* a crofton_depth_range */
-    uint32_t hidden_layers;            /* not drawn; 0: all are */
-    const crofton_draw_limits* limits; /* or NULL: those of the options. Of several views the first's */
-} crofton_occluding_view;
-
-typedef struct crofton_occlusion_statistics {
-    size_t size;
-    uint64_t occluders_drawn, pieces_drawn, triangles_drawn;
-    uint64_t nodes_tested, nodes_outside, nodes_hidden; /* of the tree; nothing below the latter was looked at */
-    uint64_t items_tested, items_hidden;
-} crofton_occlusion_statistics;
-
 typedef struct crofton_occluder_ref {
     crofton_object object;
     uint64_t user;
@@ -439,6 +470,7 @@ typedef struct crofton_occluder_ref {
     uint32_t unused;
 } crofton_occluder_ref;
 
+CROFTON_API crofton_find_options crofton_default_find_options(void);
 /* Looks for occluders in a mesh; `options` or NULL. They take effect in the next update. Takes a second or more for
  * 100,000 triangles. */
 CROFTON_API crofton_status crofton_world_find_occluders(crofton_world* world, crofton_world_mesh mesh,
@@ -455,45 +487,13 @@ CROFTON_API crofton_status crofton_world_get_occluder(const crofton_world* world
 /* Whether an object with a mesh hides others (1, as at first) or not (0), as where it is drawn transparent. */
 CROFTON_API crofton_status crofton_world_set_occludes(crofton_world* world, crofton_object object, int occludes);
 
-/* As crofton_world_view, without what is hidden; `occlusion`, `options`, `jobs` or NULL. */
-CROFTON_API crofton_status crofton_world_view_occluding(const crofton_world* world, const crofton_occluding_view* view,
-                                                        const crofton_occlusion_options* occlusion,
-                                                        const crofton_cull_options* options, const crofton_jobs* jobs,
-                                                        crofton_visible_objects* visible);
-/* Up to 32 views of one `size`, which lie so far apart. The limits of the first count for all: a later view has NULL or
- * the same pointer, else CROFTON_INVALID_ARGUMENT, item the view. */
-CROFTON_API crofton_status crofton_world_views_occluding(const crofton_world* world,
-                                                         const crofton_occluding_view* views, size_t count,
-                                                         const crofton_occlusion_options* occlusion,
-                                                         const crofton_cull_options* options, const crofton_jobs* jobs,
-                                                         crofton_visible_in_views* visible);
-
-/* Indices of what is in the view's frustum and hidden, ascending; none unless list_occluded asked for it. */
-CROFTON_API crofton_status crofton_visible_objects_occluded_ids(const crofton_visible_objects* visible,
-                                                                const uint32_t** ids, size_t* count);
-/* All 0 after a view without occlusion. */
-CROFTON_API crofton_status crofton_visible_objects_get_occlusion_statistics(const crofton_visible_objects* visible,
-                                                                            crofton_occlusion_statistics* statistics);
-/* Of a view; CROFTON_OUT_OF_RANGE where there are fewer with occlusion. */
-CROFTON_API crofton_status crofton_visible_in_views_get_occlusion_statistics(const crofton_visible_in_views* visible,
-                                                                             size_t view,
-                                                                             crofton_occlusion_statistics* statistics);
-/* The depth buffer: its size, and the occluders' nearness where `nearness` is not NULL and has room for width * height
- * numbers. These are 1 / w (parallel views: minus the distance), row by row from the bottom; below -1e38 where nothing
- * is drawn. CROFTON_EMPTY after a view without occlusion. */
-CROFTON_API crofton_status crofton_visible_objects_depth(const crofton_visible_objects* visible, uint32_t* width,
-                                                         uint32_t* height, float* nearness, size_t capacity);
-CROFTON_API crofton_status crofton_visible_in_views_depth(const crofton_visible_in_views* visible, size_t view,
-                                                          uint32_t* width, uint32_t* height, float* nearness,
-                                                          size_t capacity);
 /* Both write at most `capacity` occluders, and how many there are to *count. `world` is the one that was viewed; after
- * its next update it is CROFTON_INVALID_ARGUMENT. The first names those that hide an object, none where it is not
- * hidden, and is slow. */
+ * its next update it is CROFTON_INVALID_ARGUMENT. `result` is of one view. The first names those that hide an object,
+ * none where it is not hidden, and is slow. */
 CROFTON_API crofton_status crofton_world_hidden_by(const crofton_world* world, crofton_object object,
-                                                   const crofton_visible_objects* visible,
-                                                   crofton_occluder_ref* occluders, size_t capacity, size_t* count);
-CROFTON_API crofton_status crofton_world_drawn_occluders(const crofton_world* world,
-                                                         const crofton_visible_objects* visible,
+                                                   const crofton_view_result* result, crofton_occluder_ref* occluders,
+                                                   size_t capacity, size_t* count);
+CROFTON_API crofton_status crofton_world_drawn_occluders(const crofton_world* world, const crofton_view_result* result,
                                                          crofton_occluder_ref* occluders, size_t capacity,
                                                          size_t* count);
 

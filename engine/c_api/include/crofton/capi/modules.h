@@ -83,12 +83,10 @@ typedef struct crofton_cull_options {
     size_t size;
     uint32_t conservative; /* 0: exact; 1: planes only, which keeps some boxes near the frustum's corners */
     uint32_t tree_order;   /* 0: ids ascending; 1: as the tree lies in memory, in half the time where much is seen */
-    /* Items that may be seen at all, as crofton_pvs_visible gives them: bit i % 64 of among[i / 64] is item i. Those
-     * beyond may, and so may what has moved in a world since it came. NULL, and 0 words: all. A caller's smaller struct
-     * lacks it: all. Views of many frusta at once do not look at it. */
+    /* NULL, or bit i % 64 of word i / 64: may item i be seen? Items beyond the end may. */
     const uint64_t* candidate_mask;
     size_t candidate_words;
-    const crofton_draw_limits* limits; /* or NULL: all is worth drawing. crofton_world_views checks it, no more */
+    const crofton_draw_limits* limits; /* or NULL: all is worth drawing */
 } crofton_cull_options;
 
 typedef struct crofton_cull_statistics {
@@ -114,6 +112,8 @@ CROFTON_API crofton_status crofton_tree_refit(crofton_tree* tree);
  * long. */
 CROFTON_API crofton_status crofton_tree_rebuild_step(crofton_tree* tree, size_t budget);
 
+CROFTON_API crofton_cull_options crofton_default_cull_options(void);
+CROFTON_API crofton_draw_limits crofton_default_draw_limits(void);
 CROFTON_API crofton_status crofton_visible_set_create(crofton_visible_set** visible);
 CROFTON_API crofton_status crofton_visible_set_destroy(crofton_visible_set* visible);
 
@@ -413,6 +413,10 @@ typedef struct crofton_impact {
     uint32_t steps;
 } crofton_impact;
 
+CROFTON_API crofton_hull_options crofton_default_hull_options(void);
+CROFTON_API crofton_manifold_options crofton_default_manifold_options(void);
+CROFTON_API crofton_cast_options crofton_default_cast_options(void);
+
 /* Solids of revolution stand along y, with the origin half way up. Lengths are >= 0 and at most 1e15. */
 CROFTON_API crofton_status crofton_body_sphere(float radius, crofton_body** body);
 CROFTON_API crofton_status crofton_body_capsule(float half_height, float radius, crofton_body** body);
@@ -557,6 +561,8 @@ typedef struct crofton_fit_options {
     crofton_criterion criterion;
 } crofton_fit_options;
 
+/* Tight, minimal perimeter. */
+CROFTON_API crofton_fit_options crofton_default_fit_options(void);
 /* For frusta large beside the objects: the sum of the edges. */
 CROFTON_API crofton_status crofton_criterion_minimal_perimeter(crofton_criterion* criterion);
 /* The criterion that makes the camera's expected number of hits smallest; its far distance must be finite. */

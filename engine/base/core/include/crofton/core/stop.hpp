@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <crofton/core/version.hpp>
 
 namespace crofton {
 

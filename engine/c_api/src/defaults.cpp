@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+#include <crofton/capi/crofton.h>
+
+#include <crofton/fit/fit.hpp>
+#include <crofton/world/world.hpp>
+
+using namespace crofton;
+
+namespace {
+
+template <class Struct>
+Struct sized() {
+    Struct result{};
+    result.size = sizeof result;
+    return result;
+}
+
+}  // namespace
+
+crofton_world_options crofton_default_world_options(void) {
+    const WorldOptions options;
+    auto result = sized<crofton_world_options>();
+    result.pairs = options.pairs;
+    result.contacts = options.contacts;
+    result.containment = options.containment;
+    result.mesh_depth = options.mesh_depth;
+    result.max_pairs = options.max_pairs;
+    result.rebuild_budget = CROFTON_AUTOMATIC;
+    result.updates_to_rest = options.updates_to_rest;
+    result.contact_margin = options.contact_margin;
+    return result;
+}
+
+crofton_mesh_data crofton_default_mesh_data(void) {
+    auto result = sized<crofton_mesh_data>();
+    result.triangles = 1;
+    return result;
+}
+
+crofton_object_description crofton_default_object_description(void) {
+    const ObjectDescription description;
+    auto result = sized<crofton_object_description>();
+    result.layers = description.layers;
+    result.collides_with = description.collides_with;
+    result.occludes = description.occludes;
+    result.only_occludes = description.only_occludes;
+    return result;
+}
+
+crofton_occlusion_options crofton_default_occlusion_options(void) {
+    const OcclusionOptions options;
+    auto result = sized<crofton_occlusion_options>();
+    result.width = static_cast<std::uint32_t>(options.size.width);
+    result.height = static_cast<std::uint32_t>(options.size.height);
+    result.max_occluders = options.max_occluders;
+    result.list_occluded = options.list_occluded;
+    result.least_cover = options.least_cover;
+    return result;
+}
+
+crofton_view_matrix crofton_default_view_matrix(void) {
+    return sized<crofton_view_matrix>();
+}
+
+crofton_view_request crofton_default_view_request(void) {
+    auto result = sized<crofton_view_request>();
+    result.layers = ViewRequest().layers;
+    return result;
+}
+
+crofton_find_options crofton_default_find_options(void) {
+    return sized<crofton_find_options>();
+}
+
+crofton_cull_options crofton_default_cull_options(void) {
+    return sized<crofton_cull_options>();
+}
+
+crofton_draw_limits crofton_default_draw_limits(void) {
+    return sized<crofton_draw_limits>();
+}
+
+crofton_hull_options crofton_default_hull_options(void) {
+    return sized<crofton_hull_options>();
+}
+
+crofton_manifold_options crofton_default_manifold_options(void) {
+    return sized<crofton_manifold_options>();
+}
+
+crofton_cast_options crofton_default_cast_options(void) {
+    auto result = sized<crofton_cast_options>();
+    result.duration = 1.0;
+    return result;
+}
+
+crofton_fit_options crofton_default_fit_options(void) {
+    const fit::FitOptions options;
+    auto result = sized<crofton_fit_options>();
+    result.quality = CROFTON_FIT_TIGHT;
+    result.criterion = {options.criterion.volume_weight, options.criterion.area_weight,
+                        options.criterion.mean_curvature_weight};
+    return result;
+}
