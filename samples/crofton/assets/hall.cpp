@@ -98,8 +98,8 @@ void add_pipes(MeshBuilder& b, town::Library& library) {
             for (int k = 0; k < 4; ++k) {
                 const double s = side == 0 ? 1.0 : -1.0, x = kPitch * (c - 0.5 * (kCylinders - 1)) + 0.32 * (k - 1.5),
                              out = 1.9 + 0.28 * k, top = 3.0 + 0.45 * k, end = -9.6 + 0.25 * k;
-                const glm::vec3 paint =
-                    scaled(paints[static_cast<std::size_t>(library.pick(4))], library.random.uniform(0.85, 1.1));
+                const double shade = library.random.uniform(0.85, 1.1);
+                const glm::vec3 paint = scaled(paints[static_cast<std::size_t>(library.pick(4))], shade);
                 const std::array corners{glm::dvec3(x, kBed + 2.2 + 0.2 * k, 0.7 * s),
                                          glm::dvec3(x, kBed + 2.2 + 0.2 * k, out * s),
                                          glm::dvec3(x, top + 2.6, out * s), glm::dvec3(end, top + 2.6, out * s),

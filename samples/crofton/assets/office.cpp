@@ -142,13 +142,16 @@ class Storey {
             maker_.place(mesh, frame * standing(at, own_turn));
         };
         on(any(f_.desks), {}, 0.0);
-        on(any(f_.screens), {0.1 * library.random.uniform(), 0.74, -0.1}, 0.2 * library.random.uniform() - 0.1);
+        // One draw after the other: in which order arguments are computed is left to the compiler.
+        const double shifted = 0.1 * library.random.uniform(), skewed = 0.2 * library.random.uniform() - 0.1;
+        on(any(f_.screens), {shifted, 0.74, -0.1}, skewed);
         const double aside = 0.3 * library.random.uniform() - 0.15, back = 0.3 * library.random.uniform(),
                      swivel = kPi + 1.2 * library.random.uniform() - 0.6;
         on(any(f_.chairs), {aside, 0.0, 0.65 + back}, swivel);
         on(f_.computer, {-0.5, 0.0, -0.1}, 0.0);
-        if (library.chance(0.5)) on(any(f_.lamps), {-0.6, 0.74, -0.2}, 2.0 * library.random.uniform());
-        if (library.chance(0.6)) on(any(f_.mugs), {0.5, 0.74, 0.1}, 6.0 * library.random.uniform());
+        const double lamp_turn = 2.0 * library.random.uniform(), mug_turn = 6.0 * library.random.uniform();
+        if (library.chance(0.5)) on(any(f_.lamps), {-0.6, 0.74, -0.2}, lamp_turn);
+        if (library.chance(0.6)) on(any(f_.mugs), {0.5, 0.74, 0.1}, mug_turn);
         if (library.chance(0.4)) on(f_.bin, {-0.95, 0.0, 0.3}, 0.0);
     }
 
