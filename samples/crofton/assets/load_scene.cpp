@@ -15,6 +15,12 @@ Result<SceneSource> checked(Result<SceneSource> source, const std::string& path,
 
 }  // namespace
 
+bool is_made(const std::string& source) {
+    for (const char* name : {"town", "room", "office", "valley", "hall"})
+        if (source == name) return true;
+    return holds_city_parts(source);
+}
+
 Result<SceneSource> load_scene(const std::string& source, const LoadOptions& options) {
     const std::string kind = extension(source);
     if (kind != "wad" && !options.map.empty())
@@ -23,9 +29,14 @@ Result<SceneSource> load_scene(const std::string& source, const LoadOptions& opt
         return fail(ErrorCode::invalid_argument, kNoItem, source + ": a number of instances goes with the town only");
     if (source == "town") return make_town(options);
     if (source == "room") return make_room(options);
+    if (source == "office") return make_office(options);
+    if (source == "valley") return make_valley(options);
+    if (source == "hall") return make_hall(options);
     std::error_code ignored;
-    if (std::filesystem::is_directory(source, ignored))
+    if (std::filesystem::is_directory(source, ignored)) {
+        if (holds_city_parts(source)) return make_city(source, options);
         return fail(ErrorCode::io, kNoItem, source + ": is a folder; name a file in it");
+    }
     if (std::filesystem::is_regular_file(source, ignored) && std::filesystem::is_empty(source, ignored))
         return fail(ErrorCode::empty, kNoItem, source + ": the file is empty");
     if (kind == "crofton") return load_baked(source, options);
@@ -36,9 +47,10 @@ Result<SceneSource> load_scene(const std::string& source, const LoadOptions& opt
         return loaded;
     }
     if (kind == "wad") return checked(load_wad(source, options), source, options);
-    return fail(
-        ErrorCode::unsupported, kNoItem,
-        source + ": unknown kind of scene; known are town, room and files .glb, .gltf, .obj, .wad and .crofton");
+    return fail(ErrorCode::unsupported, kNoItem,
+                source +
+                    ": unknown kind of scene; known are town, room, office, valley, hall, folders of city parts, and "
+                    "files .glb, .gltf, .obj, .wad and .crofton");
 }
 
 }  // namespace crofton::assets

@@ -174,4 +174,93 @@ void MeshBuilder::sweep(std::span<const glm::dvec2> profile, double depth, const
     }
 }
 
+std::uint32_t MeshBuilder::vertex(const glm::dvec3& point, const glm::vec3& color) {
+    mesh_.positions.emplace_back(frame * point);
+    mesh_.colors.push_back(color);
+    return static_cast<std::uint32_t>(mesh_.positions.size() - 1);
+}
+
+void MeshBuilder::face(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    for (const std::uint32_t i : {a, b, c}) mesh_.indices.push_back(i);
+}
+
+void MeshBuilder::face(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+    face(a, b, c);
+    face(a, c, d);
+}
+
+void MeshBuilder::lathe(std::span<const glm::dvec2> profile, int sides, const glm::vec3& color, bool ring) {
+    // By profile point: its circle of vertices, or one at radius 0.
+    std::vector<std::vector<std::uint32_t>> circles;
+    for (const glm::dvec2& p : profile) {
+        auto& circle = circles.emplace_back();
+        for (int k = 0; k < (p.x > 0.0 ? sides : 1); ++k) {
+            const double angle = 2.0 * std::numbers::pi * k / sides;
+            circle.push_back(vertex({p.x * std::cos(angle), p.y, p.x * std::sin(angle)}, color));
+        }
+    }
+    const auto at = [](const std::vector<std::uint32_t>& circle, int k) {
+        return circle[static_cast<std::size_t>(k) % circle.size()];
+    };
+    for (std::size_t i = 0; i + (ring ? 0 : 1) < circles.size(); ++i) {
+        const auto &low = circles[i], &high = circles[(i + 1) % circles.size()];
+        for (int k = 0; k < sides; ++k) {
+            if (low.size() == 1)
+                face(low[0], at(high, k), at(high, k + 1));
+            else if (high.size() == 1)
+                face(at(low, k), high[0], at(low, k + 1));
+            else
+                face(at(low, k), at(high, k), at(high, k + 1), at(low, k + 1));
+        }
+    }
+}
+
+void MeshBuilder::gear(int teeth, double radius, double depth, double hole, double thickness, const glm::vec3& color) {
+    struct Spoke {
+        std::uint32_t outer_low, outer_high, inner_low, inner_high;
+    };
+    std::vector<Spoke> spokes;
+    for (int k = 0; k < 4 * teeth; ++k) {
+        const double angle = 2.0 * std::numbers::pi * k / (4 * teeth), r = k % 4 < 2 ? radius : radius + depth;
+        const glm::dvec3 out(std::cos(angle), 0.0, std::sin(angle)), up(0.0, thickness, 0.0);
+        const std::uint32_t a = vertex(r * out, color), b = vertex(r * out + up, color), c = vertex(hole * out, color),
+                            d = vertex(hole * out + up, color);
+        spokes.push_back({a, b, c, d});
+    }
+    for (std::size_t k = 0; k < spokes.size(); ++k) {
+        const Spoke &s = spokes[k], &t = spokes[(k + 1) % spokes.size()];
+        face(s.outer_low, s.outer_high, t.outer_high, t.outer_low);
+        face(s.inner_high, s.inner_low, t.inner_low, t.inner_high);
+        face(s.outer_high, s.inner_high, t.inner_high, t.outer_high);
+        face(s.inner_low, s.outer_low, t.outer_low, t.inner_low);
+    }
+}
+
+void MeshBuilder::pipe(std::span<const glm::dvec3> line, double radius, int sides, const glm::vec3& color) {
+    glm::dvec3 side, up;
+    complete(glm::normalize(line[1] - line[0]), side, up);
+    std::vector<std::vector<std::uint32_t>> circles;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        // The frame is carried along: turned as little as the line turns.
+        const glm::dvec3 before = i > 0 ? glm::normalize(line[i] - line[i - 1]) : glm::normalize(line[1] - line[0]);
+        const glm::dvec3 after = i + 1 < line.size() ? glm::normalize(line[i + 1] - line[i]) : before;
+        const glm::dvec3 axis = glm::normalize(before + after);
+        side = glm::normalize(side - glm::dot(side, axis) * axis);
+        up = glm::cross(axis, side);
+        auto& circle = circles.emplace_back();
+        for (int k = 0; k < sides; ++k) {
+            const double angle = 2.0 * std::numbers::pi * k / sides;
+            circle.push_back(vertex(line[i] + radius * (std::cos(angle) * side + std::sin(angle) * up), color));
+        }
+    }
+    const auto n = static_cast<std::size_t>(sides);
+    for (std::size_t i = 0; i + 1 < circles.size(); ++i)
+        for (std::size_t k = 0; k < n; ++k)
+            face(circles[i][k], circles[i][(k + 1) % n], circles[i + 1][(k + 1) % n], circles[i + 1][k]);
+    for (std::size_t k = 1; k + 1 < n; ++k) {
+        face(circles.front()[0], circles.front()[k + 1], circles.front()[k]);
+        face(circles.back()[0], circles.back()[k], circles.back()[k + 1]);
+    }
+}
+
 }  // namespace crofton::assets

@@ -35,6 +35,15 @@ class MeshBuilder {
     // A convex profile (x, y), counter-clockwise, swept from z = −depth/2 to +depth/2; sides and caps in two colours.
     void sweep(std::span<const glm::dvec2> profile, double depth, const glm::vec3& sides, const glm::vec3& caps);
 
+    // Closed solids whose faces share their vertices.
+    // A profile (radius, height) turned about y. It begins and ends at radius 0, or is a ring that closes by itself;
+    // the solid lies to its left.
+    void lathe(std::span<const glm::dvec2> profile, int sides, const glm::vec3& color, bool ring = false);
+    // A wheel about y from height 0 to `thickness`, with a hole; `depth` is how far its teeth stand out.
+    void gear(int teeth, double radius, double depth, double hole, double thickness, const glm::vec3& color);
+    // A round bar along a line of points, with ends.
+    void pipe(std::span<const glm::dvec3> line, double radius, int sides, const glm::vec3& color);
+
     // The radiosity that faces added from now on give off by themselves; none at first.
     void glow(const glm::vec3& emission);
 
@@ -44,6 +53,10 @@ class MeshBuilder {
     [[nodiscard]] std::size_t triangle_count() const { return mesh_.triangle_count(); }
 
   private:
+    std::uint32_t vertex(const glm::dvec3& point, const glm::vec3& color);
+    void face(std::uint32_t a, std::uint32_t b, std::uint32_t c);
+    void face(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d);
+
     struct Change {
         std::size_t first;  // triangle
         glm::vec3 emission;

@@ -58,16 +58,26 @@ struct SceneSource {
     }
 };
 
-// "town", "room" (an interior to light), or a file by its extension: .glb, .gltf, .obj, .wad, and .crofton by
-// `crofton bake`. Errors name the file, the
-// item in it and the reason: missing or damaged file, unknown extension, unknown map, nothing to draw, beyond a limit.
-// What is bad in a file (a node with a NaN, a primitive, face or sector that makes no sense, an image that cannot be
-// read) is left out, with a warning each that names it; with `strict` the first one is an error. So is an extension of
-// glTF that is not read, if it may change what is where; where the file requires such a one, it is refused.
+// "town", "room" (an interior to light), "office", "valley", "hall"; a folder of parts that make a city
+// (holds_city_parts()); or a file by its extension: .glb, .gltf, .obj, .wad, and .crofton by `crofton bake`. Errors
+// name the file, the item in it and the reason: missing or damaged file, unknown extension, unknown map, nothing to
+// draw, beyond a limit. What is bad in a file (a node with a NaN, a primitive, face or sector that makes no sense, an
+// image that cannot be read) is left out, with a warning each that names it; with `strict` the first one is an error.
+// So is an extension of glTF that is not read, if it may change what is where; where the file requires such a one, it
+// is refused.
 [[nodiscard]] Result<SceneSource> load_scene(const std::string& source, const LoadOptions& options = {});
+
+// Whether load_scene() makes it, rather than read a scene's file.
+[[nodiscard]] bool is_made(const std::string& source);
 
 [[nodiscard]] Result<SceneSource> make_town(const LoadOptions& options);
 [[nodiscard]] Result<SceneSource> make_room(const LoadOptions& options);
+[[nodiscard]] Result<SceneSource> make_office(const LoadOptions& options);
+[[nodiscard]] Result<SceneSource> make_valley(const LoadOptions& options);
+[[nodiscard]] Result<SceneSource> make_hall(const LoadOptions& options);
+// A folder with a road_straight.gltf or .glb. Of each other part there may be none but for building_….
+[[nodiscard]] bool holds_city_parts(const std::string& folder);
+[[nodiscard]] Result<SceneSource> make_city(const std::string& folder, const LoadOptions& options);
 [[nodiscard]] Result<SceneSource> load_gltf(const std::string& path, const LoadOptions& options);
 [[nodiscard]] Result<SceneSource> load_obj(const std::string& path, const LoadOptions& options);
 [[nodiscard]] Result<SceneSource> load_wad(const std::string& path, const LoadOptions& options);

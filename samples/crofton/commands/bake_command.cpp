@@ -109,8 +109,7 @@ class BakeRun {
 
     [[nodiscard]] bool is_scene() const {
         const std::string kind = assets::extension(options_.scene);
-        return options_.scene == "town" || options_.scene == "room" || kind == "obj" || kind == "glb" ||
-               kind == "gltf" || kind == "wad";
+        return assets::is_made(options_.scene) || kind == "obj" || kind == "glb" || kind == "gltf" || kind == "wad";
     }
 
     int write() {
@@ -152,7 +151,8 @@ void add_bake_command(CommandLine& line) {
         line.command("bake", "Write a scene's boxes, tree, triangulations and occluders to a .crofton file");
     command
         .option("scene", options->scene,
-                "town, room, or a .glb, .gltf, .obj or .wad file to bake with -o; without -o a .crofton file to check")
+                "town, room, office, valley, hall, a folder of city parts, or a .glb, .gltf, .obj or .wad file to bake "
+                "with -o; without -o a .crofton file to check")
         .required();
     const Option output = command.option("-o,--output", options->output, "The file to write").writable_file();
     command.option("--map", options->map, "Which level of a WAD").needs(output);

@@ -344,6 +344,7 @@ constexpr const char* kFramesExamples =
     "  crofton frames town --camera street --verify       every frame checked by brute force\n"
     "  crofton frames town --camera street --occlude      with and without what is hidden, side by side\n"
     "  crofton frames town --instances 100000 --no-draw   a larger town, culled and collided only\n"
+    "  crofton frames parts/ --camera street              a city composed from a folder of parts\n"
     "  crofton frames level.wad --map MAP01 --png out     a DOOM level, a picture per frame in out/\n"
     "  crofton frames city.glb --bounds aabb --csv -      another bound, one line per frame to stdout\n"
     "  crofton frames town --report town.html             one page with pictures and charts\n"
@@ -356,7 +357,11 @@ void add_frames_command(CommandLine& line) {
     Command command =
         line.command("frames", "Run a camera path through a scene: cull, collide, draw and count each frame");
     command.footer(std::string(kFramesExamples) + "\n" + kSceneFormats);
-    command.option("scene", options->scene, "town, room, or a .glb, .gltf, .obj, .wad or .crofton file").show_default();
+    command
+        .option(
+            "scene", options->scene,
+            "town, room, office, valley, hall, a folder of city parts, or a .glb, .gltf, .obj, .wad or .crofton file")
+        .show_default();
     command.option("--frames", options->frames, "How many frames; where absent 120, or all of a recorded path");
     command.option("--camera", options->camera, "orbit, street, random, or a JSON file of cameras").show_default();
     command.option("--seed", options->seed, "Seed of the town and of random cameras").show_default();

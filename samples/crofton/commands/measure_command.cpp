@@ -163,7 +163,8 @@ void add_measure_command(CommandLine& line) {
         kSceneFormats);
     command
         .option("file", options->file,
-                "town, room, or a .glb, .gltf, .obj, .wad or .crofton file; of a .wad the first level")
+                "town, room, office, valley, hall, a folder of city parts, or a .glb, .gltf, .obj, .wad or .crofton "
+                "file; of a .wad the first level")
         .required();
     command.option("--lines", options->lines, "How many lines, rounded up to blocks of 1024")
         .whole_between(1000, std::uint64_t{1} << 40)

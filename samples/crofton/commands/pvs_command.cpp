@@ -363,7 +363,11 @@ void add_pvs_command(CommandLine& line) {
         "  crofton pvs town --shard 0/2 --state part0       half of the lines; the others: 1/2, part1\n"
         "  crofton merge part0 part1 --out town.state          then both together\n"
         "  crofton pvs town --state town.state --out town_pvs.crofton --views 1000");
-    command.option("scene", options->scene, "town, room, or a .glb, .gltf, .obj, .wad or .crofton file").required();
+    command
+        .option(
+            "scene", options->scene,
+            "town, room, office, valley, hall, a folder of city parts, or a .glb, .gltf, .obj, .wad or .crofton file")
+        .required();
     command
         .option("--cells", options->cells,
                 "NXxNYxNZ, rooms (sectors of a WAD in convex pieces), or a file of boxes and convex cells")

@@ -299,7 +299,11 @@ void add_radiosity_command(CommandLine& line) {
         "  crofton radiosity room --runs 64 --state whole.state --out room.glb\n"
         "  crofton radiosity room --light-field lines.png --stored-lines 16000000\n"
         "  crofton radiosity level.wad --map MAP01 --method local --json -\n");
-    command.option("scene", options->scene, "town, room, or a .glb, .gltf, .obj, .wad or .crofton file").required();
+    command
+        .option(
+            "scene", options->scene,
+            "town, room, office, valley, hall, a folder of city parts, or a .glb, .gltf, .obj, .wad or .crofton file")
+        .required();
     const Option lines =
         command
             .option("--lines", options->lines,

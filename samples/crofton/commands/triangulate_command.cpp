@@ -170,8 +170,7 @@ Result<int> run_triangulate(const TriangulateOptions& options) {
     if (options.has_tolerance && !(options.tolerance >= 0.0))
         return fail(ErrorCode::invalid_argument, kNoItem, "--tolerance must not be negative");
     const std::string kind = assets::extension(options.file);
-    const bool mesh =
-        kind == "obj" || kind == "glb" || kind == "gltf" || options.file == "town" || options.file == "room";
+    const bool mesh = kind == "obj" || kind == "glb" || kind == "gltf" || assets::is_made(options.file);
     if (!mesh && !is_polygon_file(options.file)) {
         return fail(ErrorCode::unsupported, kNoItem,
                     options.file + ": unknown kind of file; known are .poly, .json, .geojson, .wad, .obj, .glb, .gltf");

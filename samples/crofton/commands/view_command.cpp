@@ -70,7 +70,10 @@ void add_view_command(CommandLine& line) {
     viewer::ViewerOptions& options = arguments->options;
     Command command = line.command("view", "Fly through a scene and see what is culled, why, and what it costs");
     command.footer(viewer::key_help() + "\n" + kScriptHelp + "\n" + kViewExamples);
-    command.option("SCENE", options.scene.source, "town, room, or a .glb, .gltf, .obj, .wad or .crofton file")
+    command
+        .option(
+            "SCENE", options.scene.source,
+            "town, room, office, valley, hall, a folder of city parts, or a .glb, .gltf, .obj, .wad or .crofton file")
         .show_default();
     command.option("--map", options.scene.map, "which level of a WAD");
     command.option("--seed", options.scene.seed, "of the town").show_default();
