@@ -153,6 +153,21 @@ CROFTON_PAIRS("hull32 manifold 0.01", Ask::manifold, -0.01, false);
 CROFTON_PAIRS("hull32 manifold gap 0.01", Ask::manifold, 0.01, false);
 CROFTON_PAIRS("box manifold 0.01", Ask::manifold, -0.01, true);
 
+// Cubes whose faces touch exactly: in one frame, as stacked crates are, or each turned about the normal.
+void touching_boxes(benchmark::State& state, Ask ask, bool turned) {
+    const Body cube = Body::box(glm::vec3(0.5f)).value();
+    const auto yaw = [turned](double angle) {
+        const double c = std::cos(angle), s = std::sin(angle);
+        return turned ? glm::dmat3(c, 0, -s, 0, 1, 0, s, 0, c) : glm::dmat3(1.0);
+    };
+    const RigidTransform low{yaw(0.3), {}}, top{yaw(0.7), {0.1, 1.0, 0.2}};
+    for (auto _ : state) benchmark::DoNotOptimize(crofton_ask(ask, {cube, low}, {cube, top}, nullptr));
+}
+BENCHMARK_CAPTURE(touching_boxes, a, Ask::meet, false)->Name("box touching yes-no/crofton");
+BENCHMARK_CAPTURE(touching_boxes, b, Ask::manifold, false)->Name("box touching manifold/crofton");
+BENCHMARK_CAPTURE(touching_boxes, c, Ask::meet, true)->Name("box touching, turned, yes-no/crofton");
+BENCHMARK_CAPTURE(touching_boxes, d, Ask::manifold, true)->Name("box touching, turned, manifold/crofton");
+
 void crofton_cast(benchmark::State& state) {
     const Scene scene = make_scene(0.5, false);
     frames(

@@ -6,6 +6,7 @@
 //     --live=N, --part=N      among so many objects, of which an Nth changes in an update; 20,000 and 100
 //   bench_world --changes     what an update costs in which one object comes, goes, moves or changes, and queries
 //                             among what moves
+//   bench_world --stacks      what an update of a thousand stacked crates costs, as bodies and as boxes
 //   --frames=N                instead of 200
 //   --target=AVX2             with this instruction set
 //   --benchmark_filter=REGEX, --benchmark_repetitions=N, --benchmark_out=FILE: as Google Benchmark's, for results.py
@@ -43,7 +44,7 @@ constexpr Row kRows[] = {
 
 struct Options {
     int frames = 200, repetitions = 1;
-    bool churn = false, changes = false;
+    bool churn = false, changes = false, stacks = false;
     std::size_t spawns = 10'000'000, live = 20'000, part = 100;
     std::string out;
     std::regex filter{""};
@@ -61,6 +62,8 @@ bool parse(int argc, char** argv, Options& options) {
             options.churn = true, options.spawns = value.empty() ? options.spawns : std::stoul(value);
         else if (key == "--changes")
             options.changes = true;
+        else if (key == "--stacks")
+            options.stacks = true;
         else if (key == "--live")
             options.live = std::stoul(value);
         else if (key == "--part")
@@ -116,6 +119,11 @@ int main(int argc, char** argv) {
     if (options.changes) {
         std::printf("instruction set: %s\n", target);
         crofton::bench::changes(options.frames);
+        return 0;
+    }
+    if (options.stacks) {
+        std::printf("instruction set: %s\n", target);
+        crofton::bench::stacks(options.frames);
         return 0;
     }
     std::printf("instruction set: %s\n%-48s %10s %10s %8s\n", target, "microseconds a frame", "by hand", "World",

@@ -59,4 +59,7 @@ void churn(std::size_t live_count, std::size_t part, std::size_t spawns);
 // Updates in which one object changes, and queries while some move: a table to stdout (world_changes.cpp).
 void changes(int frames);
 
+// Updates of stacked crates: a table to stdout (world_stacks.cpp).
+void stacks(int frames);
+
 }  // namespace crofton::bench

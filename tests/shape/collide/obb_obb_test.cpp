@@ -149,6 +149,42 @@ TEST_SUITE("collide/obb_obb") {
         CHECK(hits < 16000);
     }
 
+    TEST_CASE("20,000 crates that are not turned, of sizes from 1e-40 to 1e30, touching or one bit off: none wrong") {
+        std::mt19937_64 random(79);
+        std::uniform_real_distribution<double> number(0.0, 1.0);
+        int wrong = 0, hits = 0, edges = 0;
+        for (int trial = 0; trial < 20000; ++trial) {
+            Obb a = unit_box({}), b = a;
+            const double size = std::pow(10.0, -40.0 + 70.0 * number(random));
+            int touching = 0;
+            for (int k = 0; k < 3; ++k) {
+                // Half extents whose sum no double holds, and alike ones.
+                const double ratio = std::pow(10.0, (trial % 2 == 0 ? -30.0 : -1.0) * number(random));
+                a.half_extents[k] = static_cast<float>(size * number(random));
+                b.half_extents[k] = static_cast<float>(std::min(1e30, size * ratio * number(random)));
+                const double sum = double(a.half_extents[k]) + double(b.half_extents[k]);
+                const bool touches = number(random) < 0.6;
+                touching += touches;
+                a.center[k] = trial % 3 == 0 ? 0.0 : size * (number(random) - 0.5);
+                b.center[k] = a.center[k] + (touches ? sum : sum * number(random));
+                if (touches && number(random) < 0.3)
+                    b.center[k] = std::nextafter(b.center[k], number(random) < 0.5 ? 1e35 : -1e35);
+                if (number(random) < 0.5) std::swap(a.center[k], b.center[k]);
+            }
+            const bool truth = oracle::boxes_meet_by_integers(a, b);
+            wrong += intersects(a, b) != truth;
+            wrong += intersects(b, a) != truth;
+            wrong += (separating_axis(a, b) == kNotSeparated) != truth;
+            wrong += (contact_manifold(a, b).count > 0) != truth;
+            hits += truth;
+            edges += touching > 1;
+        }
+        CHECK(wrong == 0);
+        CHECK(hits > 4000);
+        CHECK(hits < 17000);
+        CHECK(edges > 5000);
+    }
+
     TEST_CASE("gives the same axis on every instruction set") {
         std::vector<int> expected;
         for (std::int64_t rest = hwy::SupportedTargets(); rest != 0; rest &= rest - 1) {

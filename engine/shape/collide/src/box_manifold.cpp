@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "box_penetration.hpp"
+#include "careful_axis.hpp"
 #include "manifold_points.hpp"
 
 namespace crofton::collide {
@@ -194,7 +195,7 @@ Manifold contact_manifold(const Obb& a, const Obb& b, ManifoldPoints points) {
     Manifold manifold;
     const BoxPairInDouble pair(a, b);
     const AxisMeasures measures = measures_of(a, b);
-    if (measures.surely_apart || (!measures.surely_meet && !intersects(a, b))) return manifold;
+    if (measures.surely_apart || (!measures.surely_meet && careful_axis(a, b) != kNotSeparated)) return manifold;
     const int axis = contact_axis(pair, measures);
     glm::dvec3 normal = pair.axis(axis) / std::sqrt(squared_length(measures, axis));
     if (glm::dot(normal, pair.offset) < 0.0) normal = -normal;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Whether boxes meet that are nearer to a touch than rounding tells.
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <crofton/geometry/expansion.hpp>
@@ -58,6 +59,27 @@ struct RoughSum {
     // 2 for those of adding up the errors.
     [[nodiscard]] bool is_sure() const { return error == 0.0 || std::abs(sum) > 2.0 * error; }
 };
+
+// Whether each of the frame's axes is one of the world's, or its opposite.
+bool is_straight(const glm::dmat3& r) {
+    const auto along_one = [](const glm::dvec3& v) {
+        const int zeros = static_cast<int>(v.x == 0.0) + static_cast<int>(v.y == 0.0) + static_cast<int>(v.z == 0.0);
+        return zeros == 2 && std::abs(v.x + v.y + v.z) == 1.0;
+    };
+    return along_one(r[0]) && along_one(r[1]) && along_one(r[2]);
+}
+
+// The same of two boxes in one such frame, along its axis k.
+bool straight_boxes_overlap(const Pair& pair, int k) {
+    const glm::dvec3& axis = pair.pose_a.rotation[k];
+    const int i = axis.x != 0.0 ? 0 : axis.y != 0.0 ? 1 : 2;
+    const double a = pair.pose_a.translation[i], b = pair.pose_b.translation[i], half_a = pair.a.half_extents()[k],
+                 half_b = pair.b.half_extents()[k], low = std::min(a, b), high = std::max(a, b);
+    RoughSum rough;
+    for (const double term : {low, -high, half_a, half_b}) rough.add(term);
+    if (rough.is_sure()) return rough.sum >= 0.0;
+    return (exact_sum(half_a, half_b) - exact_difference(high, low)).sign() >= 0;
+}
 
 using ExactNormal = Expansion<4>[3];
 
@@ -126,6 +148,11 @@ class MeetingBoxes {
 // Edges that are parallel have no axis across them. If edge i of a is parallel to one of b, what is across edge i and
 // another of b is across two edges of b: a face's axis. The same holds where edge j of b is parallel to one of a.
 std::optional<bool> BoxPair::meet_exactly() const {
+    if (common_frame_ && is_straight(pair_.pose_a.rotation)) {
+        for (int k = 0; k < 3; ++k)
+            if ((near_ >> k & 1) != 0 && !straight_boxes_overlap(pair_, k)) return false;
+        return true;
+    }
     if (!is_moderate({pair_.a, pair_.pose_a}) || !is_moderate({pair_.b, pair_.pose_b})) return std::nullopt;
     const glm::dmat3 &ra = pair_.pose_a.rotation, &rb = pair_.pose_b.rotation;
     int near = near_;

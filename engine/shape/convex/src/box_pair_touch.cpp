@@ -26,10 +26,10 @@ class BoxToucher {
     [[nodiscard]] glm::dvec3 separating_normal() const { return axes_.normal(least_.number); }
     // Whether exact sums have told that boxes without rounding meet.
     [[nodiscard]] bool surely_meets() const { return surely_meets_; }
-    // Of boxes that do: what rounding has put above the face touches it.
+    // Of boxes that do: what is above the face by no more than counts as the same face touches it.
     void lower_points() {
         for (int i = 0; i < points_.count; ++i)
-            if (double& depth = points_.point[i].depth; depth < 0.0 && depth >= -axes_.error()) depth = 0.0;
+            if (double& depth = points_.point[i].depth; depth < 0.0 && depth >= -kSameFace * pair_.size) depth = 0.0;
     }
 
   private:
@@ -159,7 +159,7 @@ Warm BoxToucher::decide() {
     if (!*meet && margin_ == 0.0) return Warm::apart;
     least_.extent = *meet ? std::max(0.0, least_.extent) : std::min(0.0, least_.extent);
     above_ = -axes_.error();
-    if (*meet) margin_ += axes_.error();
+    if (*meet) margin_ = std::max(margin_, kSameFace * pair_.size);
     return Warm::touching;
 }
 

@@ -117,6 +117,10 @@ class ManifoldFinder {
     }
     void add_parts(int list, const BodyAtPose& body, const BodyAtPose& near, std::uint32_t& count) {
         if (has_surfaces(body.body) || is_half_space(body)) return;
+        if (body.body.is_convex()) {
+            count = scratch_.flush.add_part(list, {body.body, body.pose, {}, Sides::both}) + 1;
+            return;
+        }
         visit_parts_near(body, near, near_margin(near), [&](const Part& part) {
             count = scratch_.flush.add_part(list, part) + 1;
             return false;

@@ -138,12 +138,13 @@ struct UnionNormals::Samples {
 
 void UnionNormals::start(double margin) {
     margin_ = margin;
-    for (Vector<Part>& parts : parts_) parts.clear();
+    for (int list = 0; list < 2; ++list) keep_parts(list, 0);
     contacts_.clear();
 }
 
 std::uint32_t UnionNormals::add_part(int list, const Part& part) {
     parts_[list].push_back(part);
+    to_local_[list].push_back(is_sharp_box(part.body) ? glm::inverse(part.pose.rotation) : glm::dmat3(1.0));
     return static_cast<std::uint32_t>(parts_[list].size() - 1);
 }
 
@@ -159,11 +160,9 @@ void UnionNormals::add_contact(std::uint32_t first, std::uint32_t second, const 
 }
 
 UnionNormals::Neighbor UnionNormals::neighbor_of(int list, std::uint32_t own, std::uint32_t other) const {
-    Neighbor neighbor{placed(list, other), 0.0, 0.0, glm::dmat3(1.0)};
-    neighbor.tolerance = flush_tolerance(placed(list, own), neighbor.body);
-    neighbor.reach = reach_of(neighbor.body.body) + neighbor.tolerance;
-    if (neighbor.is_box()) neighbor.to_local = glm::inverse(neighbor.body.pose.rotation);
-    return neighbor;
+    const BodyAtPose body = placed(list, other);
+    const double tolerance = flush_tolerance(placed(list, own), body);
+    return {body, tolerance, reach_of(body.body) + tolerance, to_local_[list][other]};
 }
 
 bool UnionNormals::Neighbor::is_near(const glm::dvec3& point, double radius) const {
@@ -188,6 +187,21 @@ bool UnionNormals::Neighbor::holds(const glm::dvec3& point) const {
     return !(nearest_points(Pair({kPoint, at}, body), nullptr, 0.5 * within, within).lower > within);
 }
 
+// Along one of the box's axes. Frames are rigid to 1e-6.
+bool UnionNormals::Neighbor::is_beside(const Samples& polygon) const {
+    glm::dvec3 low(HUGE_VAL), high(-HUGE_VAL);
+    for (int i = 0; i < polygon.corners; ++i) {
+        const glm::dvec3 p = to_local * (polygon.point[i] - body.pose.translation);
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+    }
+    for (int k = 0; k < 3; ++k) {
+        const double within = body.body.half_extents()[k] + tolerance * (1.0 + 1e-5) + 1e-13 * reach;
+        if (low[k] > within || high[k] < -within) return true;
+    }
+    return false;
+}
+
 bool UnionNormals::Neighbor::covers(const glm::dvec3& point, const glm::dvec3& direction) const {
     if (glm::distance(point, body.pose.translation) > reach) return false;
     if (is_box()) return holds(point) && rises_above(body, point, direction, tolerance);
@@ -210,6 +224,7 @@ bool UnionNormals::is_covered(const glm::dvec3& point, const glm::dvec3& directi
 
 // Whether a neighbour that rises above the contact's polygon comes to any point of it.
 bool UnionNormals::meets_polygon(const Neighbor& neighbor, const Samples& samples, const glm::dvec3& direction) {
+    if (neighbor.is_box() && neighbor.is_beside(samples)) return false;
     const BodyAtPose& body = neighbor.body;
     const double within = body.body.radius() + neighbor.tolerance;
     // How far its highest point rises above the lowest of the polygon's, and how far it is from all of them.
@@ -391,19 +406,18 @@ bool UnionNormals::push_least_deep() {
 // Whether a contact's points are where the body has sunk in through the part of another, below a thin one or beside a
 // sheet: they are out once that contact has pushed.
 bool UnionNormals::is_behind(const Contact& contact, const Contact& other) const {
-    if (!(other.depth > 0.0) || !parts_pair(other, contact) || parts_pair(contact, other)) return false;
-    for (int list = 0; list < 2; ++list) {
-        const std::uint32_t own = contact.part[list], neighbor = other.part[list];
-        if (own == neighbor || contact.part[1 - list] != other.part[1 - list]) continue;
-        const Samples samples(contact, list);
-        const BodyAtPose body = placed(list, neighbor);
-        const double within = body.body.radius() + flush_tolerance(placed(list, own), body);
-        const glm::dvec3 way = (list == 0 ? other.depth : -other.depth) * other.normal;
-        const RigidTransform at{glm::dmat3(1.0), samples.middle};
-        const Body swept = BodyMaker::triangle({glm::dvec3(0.0), way, way});
-        if (nearest_points(Pair({swept, at}, body), nullptr, 0.5 * within, within).lower <= within) return true;
-    }
-    return false;
+    // One of the two parts is another.
+    const bool first_differs = contact.part[0] != other.part[0], second_differs = contact.part[1] != other.part[1];
+    if (!(other.depth > 0.0) || first_differs == second_differs) return false;
+    if (!parts_pair(other, contact) || parts_pair(contact, other)) return false;
+    const int list = first_differs ? 0 : 1;
+    const Samples samples(contact, list);
+    const BodyAtPose body = placed(list, other.part[list]);
+    const double within = body.body.radius() + flush_tolerance(placed(list, contact.part[list]), body);
+    const glm::dvec3 way = (list == 0 ? other.depth : -other.depth) * other.normal;
+    const RigidTransform at{glm::dmat3(1.0), samples.middle};
+    const Body swept = BodyMaker::triangle({glm::dvec3(0.0), way, way});
+    return nearest_points(Pair({swept, at}, body), nullptr, 0.5 * within, within).lower <= within;
 }
 
 void UnionNormals::replace_behind() {

@@ -36,6 +36,7 @@ class UnionNormals {
     void apply(std::size_t told = 0);
     void keep_parts(int list, std::uint32_t count) {
         parts_[list].erase(parts_[list].begin() + count, parts_[list].end());
+        to_local_[list].resize(count);
     }
     [[nodiscard]] std::span<const Contact> contacts() const { return contacts_; }
     [[nodiscard]] const Part& part(int list, std::uint32_t number) const { return parts_[list][number]; }
@@ -48,16 +49,21 @@ class UnionNormals {
     }
     [[nodiscard]] State state_of(const Contact& contact) const;
     [[nodiscard]] State state_on(int list, const Contact& contact) const;
+    [[nodiscard]] static bool is_sharp_box(const Body& body) {
+        return body.kind() == Kind::box && body.radius() == 0.0;
+    }
     // A part beside another of its list.
     struct Neighbor {
         BodyAtPose body;
-        double tolerance;     // within which the two count as flush
-        double reach;         // of the neighbor, wider by that
-        glm::dmat3 to_local;  // of a box without rounding
-        [[nodiscard]] bool is_box() const { return body.body.kind() == Kind::box && body.body.radius() == 0.0; }
+        double tolerance;            // within which the two count as flush
+        double reach;                // of the neighbor, wider by that
+        const glm::dmat3& to_local;  // of a box without rounding
+        [[nodiscard]] bool is_box() const { return is_sharp_box(body.body); }
         // Whether it may hold a point that is no farther than `radius` from `point`.
         [[nodiscard]] bool is_near(const glm::dvec3& point, double radius) const;
         [[nodiscard]] bool holds(const glm::dvec3& point) const;
+        // Whether all points of a polygon are surely farther away than what counts as flush; of a box.
+        [[nodiscard]] bool is_beside(const Samples& polygon) const;
         [[nodiscard]] bool covers(const glm::dvec3& point, const glm::dvec3& direction) const;
     };
     [[nodiscard]] Neighbor neighbor_of(int list, std::uint32_t own, std::uint32_t other) const;
@@ -79,6 +85,7 @@ class UnionNormals {
 
     double margin_ = 0.0;
     Vector<Part> parts_[2];
+    Vector<glm::dmat3> to_local_[2];  // inverse rotations of the parts that are boxes without rounding
     Vector<Contact> contacts_, raw_;
     Vector<State> states_;           // by contact
     mutable Vector<Neighbor> near_;  // scratch
