@@ -10,7 +10,9 @@ namespace crofton::convex {
                              const CastOptions& options, double start, PairCache* cache);
 
 // The same where a has parts.
+// `slide`, or nullptr, knows what is no hit. `flipped`: its bodies come in the other order.
+class ContactsAt;
 [[nodiscard]] Impact cast_parts(const Placed& a, const Motion& motion_a, const Placed& b, const Motion& motion_b,
-                                const CastOptions& options, double start);
+                                const CastOptions& options, double start, const ContactsAt* slide, bool flipped);
 
 }  // namespace crofton::convex
