@@ -102,12 +102,14 @@ Result<Impact> cast(const Placed& a, const Motion& motion_a, const Placed& b, co
     const Impact first = cast_once(a, motion_a, b, motion_b, options, cache, nullptr);
     const bool alone = a.body.is_convex() && b.body.is_convex() && beside.a.empty() && beside.b.empty();
     if (first.result == CastResult::miss || alone || rests(motion_a, motion_b) || options.duration == 0.0) return first;
+    if (first.time == 0.0 && first.distance <= -options.tolerance) return first;
     const Mover mover_a{a, motion_a, beside.a}, mover_b{b, motion_b, beside.b};
     ContactsAt start(mover_a, mover_b, options, 0.0);
     const Impact impact = start.slides() ? cast_once(a, motion_a, b, motion_b, options, cache, &start) : first;
     if (impact.result != CastResult::hit || impact.distance <= -options.tolerance) return impact;
     if (impact.time == 0.0) return start.deepest(impact, kAnyNormal).value_or(miss(options));
     if (options.ignore_initial_overlaps) return impact;
+    if (!is_nearer_elsewhere(mover_a, mover_b, impact, impact.distance - 1e-3 * options.tolerance)) return impact;
     // What it slides on may seem to come nearer, within rounding.
     const double least_cosine = start.slides() ? kSameSurface : kAnyNormal;
     return *ContactsAt(mover_a, mover_b, options, impact.time).deepest(impact, least_cosine);

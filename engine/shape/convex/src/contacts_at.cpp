@@ -14,7 +14,29 @@ namespace {
 constexpr double kSameNormal = 1e-9;
 constexpr double kShallowOverlap = 0.25;  // of the lesser body: deeper overlaps have no plain way out
 
+using PairVisitor = FunctionRef<bool(const Part& a, const Part& b)>;
+
+// Calls `visit` for pairs of parts that may be within the margin. True ends the search.
+bool visit_pairs(const Placed& a, const Placed& b, double margin, PairVisitor visit) {
+    const auto with_a = [&](const Part& part_a) {
+        const auto with_b = [&](const Part& part_b) { return visit(part_a, part_b); };
+        if (b.body.is_convex()) return with_b({b.body, b.pose, {}, Sides::both});
+        return visit_parts_near(b, {part_a.body, part_a.pose}, margin, with_b);
+    };
+    if (a.body.is_convex()) return with_a({a.body, a.pose, {}, Sides::both});
+    return visit_parts_near(a, b, margin, with_a);
+}
+
 }  // namespace
+
+bool is_nearer_elsewhere(const Mover& a, const Mover& b, const Impact& hit, double limit) {
+    Flight flight(a.body, a.motion, b.body, b.motion);
+    flight.move_to(hit.time);
+    return visit_pairs(flight.a(), flight.b(), limit, [&](const Part& part_a, const Part& part_b) {
+        if (part_a.id == hit.part_a && part_b.id == hit.part_b) return false;
+        return near_distance({part_a.body, part_a.pose}, {part_b.body, part_b.pose}, limit).distance < limit;
+    });
+}
 
 Motion motion_of_part(const Placed& whole, const Motion& motion, const RigidTransform& part) {
     Motion result = motion;
@@ -55,32 +77,20 @@ ContactsAt::ContactsAt(const Mover& a, const Mover& b, const CastOptions& option
                     });
 }
 
-void ContactsAt::visit_all_pairs(FunctionRef<void(bool own)> begin, PairVisitor visit) const {
+void ContactsAt::visit_all_pairs(FunctionRef<void(bool own)> begin, MovingPairVisitor visit) const {
+    const auto visit_moving = [&](const Placed& a, const Motion& motion_a, const Placed& b, const Motion& motion_b) {
+        visit_pairs(a, b, options_.tolerance, [&](const Part& part_a, const Part& part_b) {
+            visit(part_a, motion_of_part(a, motion_a, part_a.pose), part_b, motion_of_part(b, motion_b, part_b.pose));
+            return false;
+        });
+    };
     begin(true);
-    visit_pairs(a_.body, a_.motion, b_.body, b_.motion, visit);
+    visit_moving(a_.body, a_.motion, b_.body, b_.motion);
     if (time_ > 0.0) return;
     begin(false);
     const Motion along_a{a_.motion.velocity, {}, {}}, along_b{b_.motion.velocity, {}, {}};
-    for (const Placed& other : b_.beside) visit_pairs(a_.body, a_.motion, other, along_b, visit);
-    for (const Placed& other : a_.beside) visit_pairs(other, along_a, b_.body, b_.motion, visit);
-}
-
-void ContactsAt::visit_pairs(const Placed& a, const Motion& motion_a, const Placed& b, const Motion& motion_b,
-                             PairVisitor visit) const {
-    const auto with_a = [&](const Part& part_a) {
-        const Placed placed_a{part_a.body, part_a.pose};
-        const Motion of_a = motion_of_part(a, motion_a, part_a.pose);
-        const auto with_b = [&](const Part& part_b) {
-            visit(part_a, of_a, part_b, motion_of_part(b, motion_b, part_b.pose));
-            return false;
-        };
-        if (b.body.is_convex()) return with_b({b.body, b.pose, {}, Sides::both});
-        return visit_parts_near(b, placed_a, options_.tolerance, with_b);
-    };
-    if (a.body.is_convex())
-        with_a({a.body, a.pose, {}, Sides::both});
-    else
-        visit_parts_near(a, b, options_.tolerance, with_a);
+    for (const Placed& other : b_.beside) visit_moving(a_.body, a_.motion, other, along_b);
+    for (const Placed& other : a_.beside) visit_moving(other, along_a, b_.body, b_.motion);
 }
 
 // Where two parts are within the tolerance, or overlap by less; by more, if such are left out.

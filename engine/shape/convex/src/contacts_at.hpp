@@ -16,6 +16,9 @@ struct Mover {
     std::span<const Placed> beside;  // bodies that move by the motion's velocity and do not turn
 };
 
+// Whether parts of the two bodies are nearer to each other at the time of a hit than `limit`, but for those that hit.
+[[nodiscard]] bool is_nearer_elsewhere(const Mover& a, const Mover& b, const Impact& hit, double limit);
+
 // The contacts of two bodies at a time of their cast: of all pairs of parts of the two, and at the start also of either
 // with what is beside the other.
 //
@@ -48,11 +51,10 @@ class ContactsAt {
         std::size_t behind = 0;  // contacts in its plane or behind it
     };
     static constexpr std::size_t kMost = 16;  // with different normals
-    using PairVisitor = FunctionRef<void(const Part& a, const Motion& motion_a, const Part& b, const Motion& motion_b)>;
+    using MovingPairVisitor =
+        FunctionRef<void(const Part& a, const Motion& motion_a, const Part& b, const Motion& motion_b)>;
 
-    void visit_pairs(const Placed& a, const Motion& motion_a, const Placed& b, const Motion& motion_b,
-                     PairVisitor visit) const;
-    void visit_all_pairs(FunctionRef<void(bool own)> begin, PairVisitor visit) const;
+    void visit_all_pairs(FunctionRef<void(bool own)> begin, MovingPairVisitor visit) const;
     [[nodiscard]] std::optional<Impact> touch(const Part& a, const Part& b) const;
     void add(const Contact& contact);
     void count_behind();

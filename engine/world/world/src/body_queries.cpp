@@ -52,12 +52,14 @@ Aabb swept_bounds(const convex::Body& body, const RigidTransform& pose, const co
 // Objects that a cast begins in contact with. Of very many the first are enough: the others have the same normals.
 class TouchedObjects {
   public:
-    void add(std::uint32_t id, const convex::Body& body, const RigidTransform& pose) {
+    void add(std::uint32_t id, const convex::Body& body, const RigidTransform& pose, double distance) {
+        nearest_ = std::min(nearest_, distance);
         if (count_ == kMost) return;
         const Touched& touched = touched_[count_].emplace(Touched{id, body, pose});
         new (placed_[count_++]) convex::Placed{touched.body, touched.pose};
     }
     [[nodiscard]] bool has_any() const { return count_ > 0; }
+    [[nodiscard]] double nearest() const { return nearest_; }
     // Whether there are others than this.
     [[nodiscard]] bool has_others(std::uint32_t id) const {
         return count_ > 1 || (count_ == 1 && touched_[0]->id != id);
@@ -76,6 +78,7 @@ class TouchedObjects {
     std::array<std::optional<Touched>, kMost> touched_;
     alignas(convex::Placed) std::byte placed_[kMost][sizeof(convex::Placed)];
     std::size_t count_ = 0;
+    double nearest_ = HUGE_VAL;
 };
 
 Result<void> check(const convex::Body& shape, const RigidTransform& pose) {
@@ -187,12 +190,14 @@ Result<std::optional<BodyHit>> World::cast(const convex::Body& shape, const Rigi
             const State::Stand stand = s.stand_of(id);
             if (!stand.pose) return options.tolerance;
             const auto impact = convex::cast({shape, there}, {}, {stand.body, *stand.pose}, {}, now);
-            if (impact && impact->result == convex::CastResult::hit) touched.add(id, stand.body, *stand.pose);
+            if (impact && impact->result == convex::CastResult::hit)
+                touched.add(id, stand.body, *stand.pose, impact->distance);
             return options.tolerance;
         });
     };
     std::optional<BodyHit> first = find_first(pose, options.duration, {}, false);
-    if (!first) return first;
+    const auto overlaps = [&] { return first->time == 0.0 && first->distance <= -options.tolerance; };
+    if (!first || overlaps()) return first;
     TouchedObjects at_start;
     list_touched(pose, at_start);
     if (at_start.has_others(first->object.index)) first = find_first(pose, options.duration, at_start.placed(), false);
@@ -200,7 +205,7 @@ Result<std::optional<BodyHit>> World::cast(const convex::Body& shape, const Rigi
     TouchedObjects at_end;
     const RigidTransform there = convex::moved(pose, motion, first->time);
     list_touched(there, at_end);
-    if (!at_end.has_others(first->object.index)) return first;
+    if (!(at_end.nearest() < first->distance - 1e-3 * options.tolerance)) return first;
     auto nearest = find_first(there, options.duration - first->time, at_end.placed(), true);
     if (!nearest || nearest->time > 0.0) return first;
     // What it slides on may seem to come nearer, within rounding.
