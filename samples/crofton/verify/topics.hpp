@@ -24,6 +24,8 @@ namespace crofton::cli {
 [[nodiscard]] std::vector<VerifyRow> tree_rows(const VerifyOptions& options);
 // What no theorem's row calls, mostly without chance.
 [[nodiscard]] std::vector<VerifyRow> formula_rows(const VerifyOptions& options);
+// Likewise of shapes: least figures, masses, meshes, limits and shadows.
+[[nodiscard]] std::vector<VerifyRow> shape_rows(const VerifyOptions& options);
 
 // Part of verify_lines.
 [[nodiscard]] std::vector<VerifyRow> factor_rows(const VerifyOptions& options);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <algorithm>
+#include <array>
 #include <set>
 
-#include "surfaces.hpp"
+#include "flat_floors.hpp"
 
 using namespace crofton;
 using namespace crofton::convex;
@@ -109,6 +110,64 @@ TEST_SUITE("convex/surface_contact") {
                 }
             }
         }
+    }
+
+    TEST_CASE("over flat and ridged meshes and fields, on a seam or beside it, all normals are those of the surface") {
+        RandomBodies random(9600);
+        const Sliders sliders(random);
+        Manifolds found;
+        int touching = 0;
+        for (int round = 0; round < 240; ++round) {
+            const double slope = round % 3 == 2 ? -random.number(0.05, 1.0) : 0.0;  // right of x = 0
+            const auto height = [&](double x, double) { return std::min(0.0, slope * x); };
+            const Surface s = ground(random, 16, 0.5, height, slope == 0.0 ? random.index(2) * 0.25 : 0.0);
+            std::vector<float> heights;
+            for (int i = 0; i < 17 * 17; ++i) heights.push_back(static_cast<float>(height(0.5 * (i % 17) - 4.0, 0.0)));
+            const HeightField field =
+                HeightField::build({.columns = 17, .rows = 17, .heights = heights, .spacing = {0.5, 0.5}}).value();
+            const Sides sides = random.index(2) == 0 ? Sides::front : Sides::both;
+            const bool is_field = round % 2 == 0;
+            const Body floor = is_field ? Body::height_field(field, sides) : s.body(sides);
+            const RigidTransform frame{random.index(3) == 0 ? glm::dmat3(1.0) : random.rotation(),
+                                       std::exp2(random.number(0.0, 8.0)) * random.direction()};
+            const RigidTransform place = is_field ? placed_in(frame, at({-4, 0, -4})) : frame;
+            for (int i = 0; i < 220; ++i) {
+                const Body& body = sliders.bodies[static_cast<std::size_t>(i % 11)];
+                const bool lattice = random.index(3) == 0;
+                const glm::dmat3 turn = random.index(2) == 0 ? around_y(random.number(0, 6)) : random.rotation();
+                const double depth =
+                    std::array{0.001, 0.005, 0.02, 0.0, 1e-9}[static_cast<std::size_t>(random.index(5))];
+                glm::dvec3 at_x((slope < 0.0 ? 0.5 : 2.0) * random.number(-1, 1), 0.0, random.number(-2, 2));
+                if (lattice) at_x = glm::round(at_x * 4.0) / 4.0;
+                at_x.y = below(body, turn) - depth;
+                const RigidTransform pose = placed_in(frame, {turn, at_x});
+                // The least way out at the very end of a ridge's edge may turn along the edge where a cone's tip is on
+                // it.
+                if (slope < 0.0 && body.kind() == Kind::cone) continue;
+                const bool body_first = random.index(2) == 0;
+                if (body_first)
+                    contact_manifolds({body, pose}, {floor, place}, {}, found);
+                else
+                    contact_manifolds({floor, place}, {body, pose}, {}, found);
+                CAPTURE(round);
+                CAPTURE(i);
+                CAPTURE(depth);
+                if (intersects({body, pose}, {floor, place})) {
+                    ++touching;
+                    CHECK(!found.all().empty());
+                }
+                for (const Manifold& m : found.all()) {
+                    const glm::dvec3 n = glm::transpose(frame.rotation) * (body_first ? -m.normal : m.normal);
+                    // Between the normals of the two faces.
+                    CHECK(n.y > 0.0);
+                    CHECK(std::abs(n.z) < 2e-3);
+                    CHECK(n.x > -2e-3);
+                    CHECK(n.x < -slope * n.y + 2e-3);
+                    for (int k = 0; k < m.count && slope == 0.0; ++k) CHECK(m.points[k].depth <= depth + 1e-6);
+                }
+            }
+        }
+        CHECK(touching > 40000);
     }
 
     TEST_CASE("what lies along a large triangle has a point at either end, as deep, from the front and from behind") {

@@ -101,6 +101,61 @@ TEST_SUITE("world/flush_bodies") {
         CHECK(several > 200);
     }
 
+    TEST_CASE("a cast slides over tiles that are objects, lands on them and presses on them with the floor's normal") {
+        RandomBodies random(9500);
+        const Sliders sliders(random);
+        for (int round = 0; round < 40; ++round) {
+            CAPTURE(round);
+            const Floor floor = round % 5 == 4 ? triangulated(random, 0.5f, false)
+                                               : strips(random,
+                                                        std::array{Tiles::boxes, Tiles::turned_boxes, Tiles::hulls,
+                                                                   Tiles::prisms}[static_cast<std::size_t>(round % 5)],
+                                                        round % 2 == 0, 0.5f);
+            const RigidTransform frame{round % 3 == 0 ? glm::dmat3(1.0) : random.rotation(),
+                                       (round % 2 == 0 ? 0.0 : 100.0) * random.direction()};
+            World world;
+            for (const convex::CompoundChild& tile : floor.parts) {
+                const RigidTransform pose = placed_in(frame, tile.pose);
+                REQUIRE(world.add({.transform = Transform{pose.rotation, pose.translation}, .body = &tile.body})
+                            .has_value());
+            }
+            REQUIRE(world.update().has_value());
+            const glm::dvec3 up = frame.rotation[1];
+            for (int i = 0; i < 40; ++i) {
+                const convex::Body& mover = sliders.bodies[static_cast<std::size_t>(random.index(11))];
+                const bool lattice = random.index(3) == 0, lands = i % 4 == 3;
+                const glm::dmat3 turn = lattice ? glm::dmat3(1.0) : random.rotation();
+                const std::array gaps{0.0, random.number(-1, 1) * 1e-9, random.number(-1, 1) * 1e-7,
+                                      random.number(-8, 8) * 1e-7};
+                const double gap =
+                    lands ? std::exp2(random.number(-14.0, 0.0)) : gaps[static_cast<std::size_t>(random.index(4))];
+                glm::dvec3 place(random.number(-1, 1), 0.0, random.number(-1, 1));
+                if (lattice) place = glm::round(place * 4.0) / 4.0;
+                place.y = below(mover, turn) + gap;
+                const RigidTransform from = placed_in(frame, {turn, place});
+                const glm::dvec3 way(random.number(-1, 1), 0.0, random.number(-1, 1));
+                const auto go = [&](double rise) {
+                    return world.cast(mover, from, {frame.rotation * (way + glm::dvec3(0, rise, 0)), {}, {}}, {})
+                        .value();
+                };
+                CAPTURE(gap);
+                CAPTURE(lattice);
+                if (!lands) {
+                    CHECK_FALSE(go(0.0).has_value());
+                    CHECK_FALSE(go(random.number(0.01, 1.0)).has_value());
+                }
+                const double fall = lands ? gap / random.number(0.1, 0.9) : random.number(0.01, 1.0);
+                const auto hit = go(-fall);
+                REQUIRE(hit.has_value());
+                CHECK(glm::length(hit->normal + up) < 1.7453e-3);
+                const double left = gap - hit->time * fall;
+                CHECK(left >= (lands ? -1e-9 : gap - 1e-9));
+                CHECK(left <= 1e-6);
+                CHECK(std::abs(hit->distance - left) < 1e-8);
+            }
+        }
+    }
+
     TEST_CASE("a wall on tiles pushes sideways, and the tiles up, the contact changes when a tile comes or goes") {
         World world;
         const convex::Body tile = convex::Body::box({1, 0.5f, 4}).value(),

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cmath>
 #include <crofton/convex/query.hpp>
 #include <crofton/geometry/trigonometry.hpp>
 
+#include "contacts_at.hpp"
 #include "core_query.hpp"
 #include "part_cast.hpp"
 
@@ -10,6 +12,7 @@ namespace crofton::convex {
 namespace {
 
 constexpr double kMaxTurn = 1e5;
+constexpr double kSameSurface = 0.996, kAnyNormal = -2.0;  // cosines: of 5 degrees, less than any
 
 bool finite(const glm::dvec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
@@ -34,6 +37,12 @@ Result<void> check(const CastOptions& options) {
     return {};
 }
 
+Impact miss(const CastOptions& options) {
+    Impact impact;
+    impact.time = std::min(options.early_out, options.duration);
+    return impact;
+}
+
 }  // namespace
 
 RigidTransform moved(const RigidTransform& pose, const Motion& motion, double time) {
@@ -53,8 +62,35 @@ RigidTransform moved(const RigidTransform& pose, const Motion& motion, double ti
     return result;
 }
 
+namespace {
+
+Impact cast_once(const BodyAtPose& a, const Motion& motion_a, const BodyAtPose& b, const Motion& motion_b,
+                 const CastOptions& options, PairCache* cache, const ContactsAt* slide) {
+    if (!a.body.is_convex()) return cast_parts(a, motion_a, b, motion_b, options, 0.0, slide, false);
+    if (!b.body.is_convex()) {
+        Impact impact = cast_parts(b, motion_b, a, motion_a, options, 0.0, slide, true);
+        impact.normal = -impact.normal;
+        std::swap(impact.on_a, impact.on_b);
+        std::swap(impact.part_a, impact.part_b);
+        return impact;
+    }
+    if (slide != nullptr && slide->passes(a, motion_a, b, motion_b, false)) return miss(options);
+    return advance(a, motion_a, b, motion_b, options, 0.0, cache);
+}
+
+bool rests(const Motion& a, const Motion& b) {
+    return a.velocity == b.velocity && a.spin == glm::dvec3(0.0) && b.spin == glm::dvec3(0.0);
+}
+
+}  // namespace
+
 Result<Impact> cast(const BodyAtPose& a, const Motion& motion_a, const BodyAtPose& b, const Motion& motion_b,
                     const CastOptions& options, PairCache* cache) {
+    return cast(a, motion_a, b, motion_b, options, Beside{}, cache);
+}
+
+Result<Impact> cast(const BodyAtPose& a, const Motion& motion_a, const BodyAtPose& b, const Motion& motion_b,
+                    const CastOptions& options, const Beside& beside, PairCache* cache) {
     if (Result<void> good = check(options); !good) return tl::unexpected(good.error());
     if (Result<void> good = check(motion_a, options, 0); !good) return tl::unexpected(good.error());
     if (Result<void> good = check(motion_b, options, 1); !good) return tl::unexpected(good.error());
@@ -63,15 +99,20 @@ Result<Impact> cast(const BodyAtPose& a, const Motion& motion_a, const BodyAtPos
         return fail(ErrorCode::unsupported, a_turns ? 0 : 1, "cast: a half-space cannot turn; turn the other");
     if (is_unbounded(a) && is_unbounded(b))
         return fail(ErrorCode::unsupported, 1, "cast: two half-spaces; ask `distance` at the two times");
-    if (!a.body.is_convex()) return cast_parts(a, motion_a, b, motion_b, options, 0.0);
-    if (!b.body.is_convex()) {
-        Impact impact = cast_parts(b, motion_b, a, motion_a, options, 0.0);
-        impact.normal = -impact.normal;
-        std::swap(impact.on_a, impact.on_b);
-        std::swap(impact.part_a, impact.part_b);
-        return impact;
-    }
-    return advance(a, motion_a, b, motion_b, options, 0.0, cache);
+    const Impact first = cast_once(a, motion_a, b, motion_b, options, cache, nullptr);
+    const bool alone = a.body.is_convex() && b.body.is_convex() && beside.a.empty() && beside.b.empty();
+    if (first.result == CastResult::miss || alone || rests(motion_a, motion_b) || options.duration == 0.0) return first;
+    if (first.time == 0.0 && first.distance <= -options.tolerance) return first;
+    const Mover mover_a{a, motion_a, beside.a}, mover_b{b, motion_b, beside.b};
+    ContactsAt start(mover_a, mover_b, options, 0.0);
+    const Impact impact = start.slides() ? cast_once(a, motion_a, b, motion_b, options, cache, &start) : first;
+    if (impact.result != CastResult::hit || impact.distance <= -options.tolerance) return impact;
+    if (impact.time == 0.0) return start.deepest(impact, kAnyNormal).value_or(miss(options));
+    if (options.ignore_initial_overlaps) return impact;
+    if (!is_nearer_elsewhere(mover_a, mover_b, impact, impact.distance - 1e-3 * options.tolerance)) return impact;
+    // What it slides on may seem to come nearer, within rounding.
+    const double least_cosine = start.slides() ? kSameSurface : kAnyNormal;
+    return *ContactsAt(mover_a, mover_b, options, impact.time).deepest(impact, least_cosine);
 }
 
 }  // namespace crofton::convex

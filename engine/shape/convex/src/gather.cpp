@@ -34,6 +34,17 @@ void gather_segments(const Patch& a, const Patch& b, const glm::dvec3& normal, C
     if (are_opposite(clipped, normal, length)) gatherer.add(clipped, true);
 }
 
+// A last point takes the place of one with the same id.
+void keep_ids_apart(GatheredPoints& points, int before) {
+    if (points.count == before) return;
+    for (int i = 0; i < before; ++i)
+        if (has_same_id(points.point[i], points.point[before])) {
+            points.point[i] = points.point[before];
+            points.count = before;
+            return;
+        }
+}
+
 }  // namespace
 
 void Gatherer::add(const glm::dvec3& core_a, const glm::dvec3& core_b, const Feature& on_a, const Feature& on_b) {
@@ -99,6 +110,24 @@ void name_features(const Body& a, const Body& b, const Patch& patch_a, const Pat
     touch.feature_a = feature(a, touch.vertices_a, patch_a.self);
     touch.feature_b = feature(b, touch.vertices_b, patch_b.self);
     touch.known = true;
+}
+
+void add_support(const Patch& face, const glm::dvec3& out, const glm::dvec3& deepest, int vertex, bool face_is_a,
+                 Gatherer& gatherer) {
+    const double steepness = face.count > 2 ? glm::dot(face.normal, out) : 0.0;
+    if (!(steepness > 0.05)) return;
+    Prism sides;
+    find_sides(face, out, sides);
+    for (int k = 0; k < sides.count; ++k)
+        if (glm::dot(sides.outward[k], deepest) > sides.level[k]) return;
+    const glm::dvec3 shadow = deepest - glm::dot(face.normal, deepest - face.point[0]) / steepness * out;
+    const Feature corner{FeatureKind::vertex, static_cast<std::uint16_t>(vertex)};
+    const int before = gatherer.points.count;
+    if (face_is_a)
+        gatherer.add(shadow, deepest, face.self, corner);
+    else
+        gatherer.add(deepest, shadow, corner, face.self);
+    keep_ids_apart(gatherer.points, before);
 }
 
 }  // namespace crofton::convex

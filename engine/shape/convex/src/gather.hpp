@@ -39,6 +39,10 @@ class Gatherer {
 // alike a's, so that it stays. Returns whose it is: 1 a's, 2 b's, 0 where no face is clipped.
 int gather_patches(const Patch& a, const Patch& b, const glm::dvec3& normal, Clipped& clipped, Gatherer& gatherer);
 
+// The deepest point of one core, a vertex of it, above the other's face; if it is over it.
+void add_support(const Patch& face, const glm::dvec3& out, const glm::dvec3& deepest, int vertex, bool face_is_a,
+                 Gatherer& gatherer);
+
 // Sets the features of a touch that are not known: what the vertices of its simplex span, else the patches.
 void name_features(const Body& a, const Body& b, const Patch& patch_a, const Patch& patch_b, Touch& touch);
 

@@ -6,8 +6,8 @@
 #include <crofton/geometry/orthonormal_frame.hpp>
 #include <glm/matrix.hpp>
 
+#include "contacts_at.hpp"
 #include "core_query.hpp"
-#include "part_manifold.hpp"
 
 namespace crofton::convex {
 namespace {
@@ -25,8 +25,8 @@ glm::dvec3 arm_of(const RigidTransform& pose, const Motion& motion) {
 class PartCaster {
   public:
     PartCaster(const BodyAtPose& a, const Motion& motion_a, const BodyAtPose& b, const Motion& motion_b,
-               const CastOptions& options)
-        : a_(a), b_(b), motion_a_(motion_a), motion_b_(motion_b), options_(options) {
+               const CastOptions& options, const ContactsAt* slide, bool flipped)
+        : a_(a), b_(b), motion_a_(motion_a), motion_b_(motion_b), options_(options), slide_(slide), flipped_(flipped) {
         best_.time = std::min(options.early_out, options.duration);
         const Aabb& bounds = b.body.bounds();
         around_ = glm::length(bounds.half_extents()) + glm::length(bounds.center() - motion_b.pivot);
@@ -130,21 +130,24 @@ class PartCaster {
 
     void cast_part(const Part& part, double from) {
         const RigidTransform& start = part.pose;
-        Motion motion = motion_a_;
-        if (a_.body.kind() == Kind::compound)
-            motion.pivot =
-                glm::inverse(start.rotation) * (arm_of(a_.pose, motion_a_) + (a_.pose.translation - start.translation));
+        const Motion motion = a_.body.kind() == Kind::compound ? motion_of_part(a_, motion_a_, start) : motion_a_;
         CastOptions options = options_;
         // A part that is met at the same time is of use only if it is deeper, at the start.
         const bool later = best_.result != CastResult::miss && best_.time > from;
         options.early_out = later ? std::nextafter(best_.time, 0.0) : best_.time;
         const BodyAtPose placed{part.body, start};
         if (comes_later(placed)) return;
-        Impact impact = b_.body.is_convex() ? advance(placed, motion, b_, motion_b_, options, from, nullptr)
-                                            : reversed(cast_parts(b_, motion_b_, placed, motion, options, from));
+        const bool convex = b_.body.is_convex();
+        if (convex && slide_ != nullptr && slide_->passes(placed, motion, b_, motion_b_, flipped_)) return;
+        Impact impact = convex ? advance(placed, motion, b_, motion_b_, options, from, nullptr)
+                               : reversed(cast_parts(b_, motion_b_, placed, motion, options, from, slide_, !flipped_));
         if (impact.result == CastResult::miss || impact.time > best_.time) return;
         if (impact.time == best_.time && best_.result != CastResult::miss && impact.distance >= best_.distance) return;
-        if (part.sides == Sides::front && comes_from_behind(part, start, motion, impact)) return;
+        if (part.sides == Sides::front) {
+            const RigidTransform then = moved(start, motion, impact.time),
+                                 b_then = moved(b_.pose, motion_b_, impact.time);
+            if (comes_from_behind({part.body, then}, {b_.body, b_then}, impact)) return;
+        }
         best_ = impact;
         best_.part_a = part.id;
     }
@@ -167,18 +170,12 @@ class PartCaster {
         std::swap(impact.part_a, impact.part_b);
         return impact;
     }
-    [[nodiscard]] bool comes_from_behind(const Part& part, const RigidTransform& start, const Motion& motion,
-                                         const Impact& impact) const {
-        const RigidTransform then = moved(start, motion, impact.time), b_then = moved(b_.pose, motion_b_, impact.time);
-        const Triangle corners{part.body.vertex(0), part.body.vertex(1), part.body.vertex(2)};
-        const PlacedTriangle there = placed_triangle(corners, then, then.translation);
-        if (impact.distance <= 0.0) return !is_in_front(there, b_.body, middle_of({b_.body, b_then}, then.translation));
-        return glm::dot(impact.normal, there.normal) <= 0.0;
-    }
 
     const BodyAtPose &a_, &b_;
     const Motion &motion_a_, &motion_b_;
     const CastOptions& options_;
+    const ContactsAt* const slide_;
+    const bool flipped_;
     Impact best_;
     double around_ = 0.0;  // radius of b around its pivot
     glm::dvec3 apart_{0.0};
@@ -188,8 +185,8 @@ class PartCaster {
 }  // namespace
 
 Impact cast_parts(const BodyAtPose& a, const Motion& motion_a, const BodyAtPose& b, const Motion& motion_b,
-                  const CastOptions& options, double start) {
-    PartCaster caster(a, motion_a, b, motion_b, options);
+                  const CastOptions& options, double start, const ContactsAt* slide, bool flipped) {
+    PartCaster caster(a, motion_a, b, motion_b, options, slide, flipped);
     caster.search(start, options.duration, 0);
     return caster.best();
 }

@@ -10,7 +10,10 @@ namespace crofton::convex {
                              const CastOptions& options, double start, PairCache* cache);
 
 // The same where a has parts.
+// `slide`, or nullptr, knows what is no hit. `flipped`: its bodies come in the other order.
+class ContactsAt;
 [[nodiscard]] Impact cast_parts(const BodyAtPose& a, const Motion& motion_a, const BodyAtPose& b,
-                                const Motion& motion_b, const CastOptions& options, double start);
+                                const Motion& motion_b, const CastOptions& options, double start,
+                                const ContactsAt* slide, bool flipped);
 
 }  // namespace crofton::convex

@@ -8,6 +8,7 @@
 #include "core_query.hpp"
 #include "parallel_edges.hpp"
 #include "part_manifold.hpp"
+#include "support.hpp"
 
 namespace crofton::convex {
 namespace {
@@ -155,6 +156,10 @@ void SurfaceContacts::gather_along_face(const PlacedTriangle& t, bool front, Con
     Gatherer gatherer(gathering_, touch, contact.points);
     Patch on_triangle, on_body;
     gather_patches_along(t, gatherer, touch.normal, on_triangle, on_body);
+    if (contact.points.count > 0) return;
+    const Support lowest = core_support(body_.body, Pair::local(body_.pose.rotation, -touch.normal));
+    const glm::dvec3 point = body_.pose.rotation * lowest.point + (body_.pose.translation - gathering_.origin);
+    add_support(on_triangle, touch.normal, point, lowest.vertex, true, gatherer);
 }
 
 }  // namespace crofton::convex

@@ -60,36 +60,6 @@ glm::dvec3 face_normal(const BodyAtPose& placed, int face) {
     return local == glm::dvec3(0.0) ? local : turned_normal(rotation, local);
 }
 
-// A last point takes the place of one with the same id.
-void keep_ids_apart(GatheredPoints& points, int before) {
-    if (points.count == before) return;
-    for (int i = 0; i < before; ++i)
-        if (has_same_id(points.point[i], points.point[before])) {
-            points.point[i] = points.point[before];
-            points.count = before;
-            return;
-        }
-}
-
-// The deepest point of one core above the other's face, if it is over it.
-void add_support(const Patch& face, const glm::dvec3& out, const glm::dvec3& deepest, int vertex, bool face_is_a,
-                 Gatherer& gatherer) {
-    const double steepness = face.count > 2 ? glm::dot(face.normal, out) : 0.0;
-    if (!(steepness > 0.05)) return;
-    Prism sides;
-    find_sides(face, out, sides);
-    for (int k = 0; k < sides.count; ++k)
-        if (glm::dot(sides.outward[k], deepest) > sides.level[k]) return;
-    const glm::dvec3 shadow = deepest - glm::dot(face.normal, deepest - face.point[0]) / steepness * out;
-    const Feature corner{FeatureKind::vertex, static_cast<std::uint16_t>(vertex)};
-    const int before = gatherer.points.count;
-    if (face_is_a)
-        gatherer.add(shadow, deepest, face.self, corner);
-    else
-        gatherer.add(deepest, shadow, corner, face.self);
-    keep_ids_apart(gatherer.points, before);
-}
-
 double depth_of(const UnionNormals::Contact& contact) {
     double depth = -HUGE_VAL;
     for (int i = 0; i < contact.count; ++i) depth = std::max(depth, contact.points[i].depth);

@@ -1,17 +1,24 @@
 // SPDX-License-Identifier: MIT
 // Any body against all objects.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <crofton/convex/query.hpp>
+#include <cstddef>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
+#include <new>
+#include <optional>
+#include <span>
 
 #include "world_state.hpp"
 
 namespace crofton {
 namespace {
+
+constexpr double kSameSurface = 0.996;  // normals within 5 degrees
 
 // Around a body, and some more.
 Aabb bounds_of(const convex::Body& body, const RigidTransform& pose) {
@@ -41,6 +48,38 @@ Aabb swept_bounds(const convex::Body& body, const RigidTransform& pose, const co
     const glm::dvec3 margin = tolerance + 1e-9 * (glm::abs(bounds.min) + glm::abs(bounds.max));
     return {bounds.min - margin, bounds.max + margin};
 }
+
+// Objects that a cast begins in contact with. Of very many the first are enough: the others have the same normals.
+class TouchedObjects {
+  public:
+    void add(std::uint32_t id, const convex::Body& body, const RigidTransform& pose, double distance) {
+        nearest_ = std::min(nearest_, distance);
+        if (count_ == kMost) return;
+        const Touched& touched = touched_[count_].emplace(Touched{id, body, pose});
+        new (placed_[count_++]) convex::BodyAtPose{touched.body, touched.pose};
+    }
+    [[nodiscard]] bool has_any() const { return count_ > 0; }
+    [[nodiscard]] double nearest() const { return nearest_; }
+    // Whether there are others than this.
+    [[nodiscard]] bool has_others(std::uint32_t id) const {
+        return count_ > 1 || (count_ == 1 && touched_[0]->id != id);
+    }
+    [[nodiscard]] std::span<const convex::BodyAtPose> placed() const {
+        return {std::launder(reinterpret_cast<const convex::BodyAtPose*>(placed_)), count_};
+    }
+
+  private:
+    static constexpr std::size_t kMost = 32;
+    struct Touched {
+        std::uint32_t id;
+        convex::Body body;
+        RigidTransform pose;
+    };
+    std::array<std::optional<Touched>, kMost> touched_;
+    alignas(convex::BodyAtPose) std::byte placed_[kMost][sizeof(convex::BodyAtPose)];
+    std::size_t count_ = 0;
+    double nearest_ = HUGE_VAL;
+};
 
 Result<void> check(const convex::Body& shape, const RigidTransform& pose) {
     if (!shape.is_bounded())
@@ -114,28 +153,65 @@ Result<std::optional<BodyHit>> World::cast(const convex::Body& shape, const Rigi
     if (auto good = convex::cast({shape, pose}, motion, {kPoint, far}, {}, options); !good)
         return tl::unexpected(good.error());
     const State& s = *state_;
-    std::optional<BodyHit> first;
-    convex::CastOptions rest = options;
-    const Aabb swept = swept_bounds(shape, pose, motion, options.duration, options.tolerance);
-    s.visit_near(swept, 0.0, layers, [&](std::uint32_t id) {
-        const State::QueryShape stand = s.query_shape_of(id);
-        if (!stand.pose) return 0.0;
-        const auto impact = convex::cast({shape, pose}, motion, {stand.body, *stand.pose}, {}, rest);
-        if (!impact || impact->result == convex::CastResult::miss) return 0.0;
-        if (first && (impact->time > first->time || (impact->time == first->time && id > first->object.index)))
+    const auto find_first = [&](const RigidTransform& from, double duration,
+                                std::span<const convex::BodyAtPose> touched, bool nearest) {
+        std::optional<BodyHit> first;
+        convex::CastOptions rest = options;
+        rest.duration = duration;
+        const Aabb swept = swept_bounds(shape, from, motion, duration, options.tolerance);
+        s.visit_near(swept, 0.0, layers, [&](std::uint32_t id) {
+            const State::Stand stand = s.stand_of(id);
+            if (!stand.pose) return 0.0;
+            const auto impact = convex::cast({shape, from}, motion, {stand.body, *stand.pose}, {}, rest, {{}, touched});
+            if (!impact || impact->result == convex::CastResult::miss) return 0.0;
+            if (first && impact->time > first->time) return 0.0;
+            if (first && impact->time == first->time &&
+                (nearest ? impact->distance >= first->distance : id > first->object.index))
+                return 0.0;
+            first = BodyHit{s.table.handle(id),
+                            s.table.names.users[id],
+                            impact->time,
+                            impact->normal,
+                            impact->on_b,
+                            impact->part_b.triangle,
+                            impact->result == convex::CastResult::hit,
+                            impact->distance};
+            rest.early_out = impact->time;
             return 0.0;
-        first = BodyHit{s.table.handle(id),
-                        s.table.names.users[id],
-                        impact->time,
-                        impact->normal,
-                        impact->on_b,
-                        impact->part_b.triangle,
-                        impact->result == convex::CastResult::hit,
-                        impact->distance};
-        rest.early_out = impact->time;
-        return 0.0;
-    });
-    return first;
+        });
+        return first;
+    };
+    // Objects that the body touches at one time are one surface, to slide on or to land on.
+    const auto list_touched = [&](const RigidTransform& there, TouchedObjects& touched) {
+        convex::CastOptions now = options;
+        now.duration = 0.0;
+        now.ignore_initial_overlaps = false;
+        s.visit_near(bounds_of(shape, there), options.tolerance, layers, [&](std::uint32_t id) {
+            const State::Stand stand = s.stand_of(id);
+            if (!stand.pose) return options.tolerance;
+            const auto impact = convex::cast({shape, there}, {}, {stand.body, *stand.pose}, {}, now);
+            if (impact && impact->result == convex::CastResult::hit)
+                touched.add(id, stand.body, *stand.pose, impact->distance);
+            return options.tolerance;
+        });
+    };
+    std::optional<BodyHit> first = find_first(pose, options.duration, {}, false);
+    const auto overlaps = [&] { return first->time == 0.0 && first->distance <= -options.tolerance; };
+    if (!first || overlaps()) return first;
+    TouchedObjects at_start;
+    list_touched(pose, at_start);
+    if (at_start.has_others(first->object.index)) first = find_first(pose, options.duration, at_start.placed(), false);
+    if (!first || first->time == 0.0 || !first->resolved || options.ignore_initial_overlaps) return first;
+    TouchedObjects at_end;
+    const RigidTransform there = convex::moved(pose, motion, first->time);
+    list_touched(there, at_end);
+    if (!(at_end.nearest() < first->distance - 1e-3 * options.tolerance)) return first;
+    auto nearest = find_first(there, options.duration - first->time, at_end.placed(), true);
+    if (!nearest || nearest->time > 0.0) return first;
+    // What it slides on may seem to come nearer, within rounding.
+    if (at_start.has_any() && glm::dot(nearest->normal, first->normal) < kSameSurface) return first;
+    nearest->time = first->time;
+    return nearest;
 }
 
 }  // namespace crofton

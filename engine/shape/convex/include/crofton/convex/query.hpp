@@ -290,9 +290,18 @@ struct Impact {
 // - Bodies that rest, and casts of duration 0, tell whether the bodies are within the tolerance.
 // - Bodies that turn and stay within the tolerance hit where 32 steps do not prove that they pass.
 //
-// Bodies of parts: the first time at which parts touch. A one-sided triangle that is first touched from behind is
-// passed through. Errors: NaN or infinite motions, a turn beyond 1e5 radians, options out of range, half-spaces turned.
+// Bodies of parts: the first time at which parts touch. What begins in contact with a part, and slides along it, passes
+// all parts that lie in the plane of that contact or behind it, within the tolerance or 2^-22 of their size. So nothing
+// on a floor of flush parts stops a slide, and a hit at time 0 has the normal of the floor. A one-sided triangle that
+// is first touched from behind is passed through. Errors: NaN or infinite motions, a turn beyond 1e5 radians, options
+// out of range, half-spaces turned.
 [[nodiscard]] Result<Impact> cast(const BodyAtPose& a, const Motion& motion_a, const BodyAtPose& b,
                                   const Motion& motion_b, const CastOptions& options = {}, PairCache* cache = nullptr);
+// As above, where b and the bodies beside it are one surface to slide on, like parts of one body; so are a and those
+// beside it. They move by the velocity of that body. Ask each pair with the others beside it that the cast begins in
+// contact with. A hit at time 0 that one of these tells better is a miss.
+[[nodiscard]] Result<Impact> cast(const BodyAtPose& a, const Motion& motion_a, const BodyAtPose& b,
+                                  const Motion& motion_b, const CastOptions& options, const Beside& beside,
+                                  PairCache* cache = nullptr);
 
 }  // namespace crofton::convex

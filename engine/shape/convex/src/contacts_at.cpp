@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: MIT
+#include "contacts_at.hpp"
+
+#include <algorithm>
+#include <glm/matrix.hpp>
+
+#include "part_cast.hpp"
+#include "part_manifold.hpp"
+#include "union_normals.hpp"
+
+namespace crofton::convex {
+namespace {
+
+constexpr double kSameNormal = 1e-9;
+constexpr double kShallowOverlap = 0.25;  // of the lesser body: deeper overlaps have no plain way out
+
+using PairVisitor = FunctionRef<bool(const Part& a, const Part& b)>;
+
+// Calls `visit` for pairs of parts that may be within the margin. True ends the search.
+bool visit_pairs(const BodyAtPose& a, const BodyAtPose& b, double margin, PairVisitor visit) {
+    const auto with_a = [&](const Part& part_a) {
+        const auto with_b = [&](const Part& part_b) { return visit(part_a, part_b); };
+        if (b.body.is_convex()) return with_b({b.body, b.pose, {}, Sides::both});
+        return visit_parts_near(b, {part_a.body, part_a.pose}, margin, with_b);
+    };
+    if (a.body.is_convex()) return with_a({a.body, a.pose, {}, Sides::both});
+    return visit_parts_near(a, b, margin, with_a);
+}
+
+}  // namespace
+
+bool is_nearer_elsewhere(const Mover& a, const Mover& b, const Impact& hit, double limit) {
+    Flight flight(a.body, a.motion, b.body, b.motion);
+    flight.move_to(hit.time);
+    return visit_pairs(flight.a(), flight.b(), limit, [&](const Part& part_a, const Part& part_b) {
+        if (part_a.id == hit.part_a && part_b.id == hit.part_b) return false;
+        return near_distance({part_a.body, part_a.pose}, {part_b.body, part_b.pose}, limit).distance < limit;
+    });
+}
+
+Motion motion_of_part(const BodyAtPose& whole, const Motion& motion, const RigidTransform& part) {
+    Motion result = motion;
+    result.pivot = glm::inverse(part.rotation) *
+                   (whole.pose.rotation * motion.pivot + (whole.pose.translation - part.translation));
+    return result;
+}
+
+bool comes_from_behind(const BodyAtPose& triangle, const BodyAtPose& b, const Impact& impact) {
+    const glm::dvec3& origin = triangle.pose.translation;
+    const Triangle corners{triangle.body.vertex(0), triangle.body.vertex(1), triangle.body.vertex(2)};
+    const PlacedTriangle there = placed_triangle(corners, triangle.pose, origin);
+    if (impact.distance <= 0.0) return !is_in_front(there, b.body, middle_of(b, origin));
+    return glm::dot(impact.normal, there.normal) <= 0.0;
+}
+
+// At the start where the bodies are, later around a's place at the start: the world may lack digits there.
+ContactsAt::ContactsAt(const Mover& a, const Mover& b, const CastOptions& options, double time)
+    : flight_(a.body, a.motion, b.body, b.motion),
+      time_(time),
+      pose_a_(time > 0.0 ? (flight_.move_to(time), flight_.a().pose) : a.body.pose),
+      pose_b_(time > 0.0 ? flight_.b().pose : b.body.pose),
+      placed_a_{a.body.body, pose_a_},
+      placed_b_{b.body.body, pose_b_},
+      a_{placed_a_, a.motion, a.beside},
+      b_{placed_b_, b.motion, b.beside},
+      options_(options) {
+    bool own = true;
+    const double left = options.duration - time;
+    visit_all_pairs([&](bool is_own) { own = is_own; },
+                    [&](const Part& part_a, const Motion& motion_a, const Part& part_b, const Motion& motion_b) {
+                        const auto impact = touch(part_a, part_b);
+                        if (!impact) return;
+                        const Flight flight({part_a.body, part_a.pose}, motion_a, {part_b.body, part_b.pose}, motion_b);
+                        const double slack = 0x1p-40 * (flight.size() + flight.way(left));
+                        const bool slides = flight.closing(impact->normal)(left) < std::max(impact->distance, slack);
+                        add({part_a, part_b, *impact, own, slides});
+                    });
+}
+
+void ContactsAt::visit_all_pairs(FunctionRef<void(bool own)> begin, MovingPairVisitor visit) const {
+    const auto visit_moving = [&](const BodyAtPose& a, const Motion& motion_a, const BodyAtPose& b,
+                                  const Motion& motion_b) {
+        visit_pairs(a, b, options_.tolerance, [&](const Part& part_a, const Part& part_b) {
+            visit(part_a, motion_of_part(a, motion_a, part_a.pose), part_b, motion_of_part(b, motion_b, part_b.pose));
+            return false;
+        });
+    };
+    begin(true);
+    visit_moving(a_.body, a_.motion, b_.body, b_.motion);
+    if (time_ > 0.0) return;
+    begin(false);
+    const Motion along_a{a_.motion.velocity, {}, {}}, along_b{b_.motion.velocity, {}, {}};
+    for (const BodyAtPose& other : b_.beside) visit_moving(a_.body, a_.motion, other, along_b);
+    for (const BodyAtPose& other : a_.beside) visit_moving(other, along_a, b_.body, b_.motion);
+}
+
+// Where two parts are within the tolerance, or overlap by less; by more, if such are left out.
+std::optional<Impact> ContactsAt::touch(const Part& a, const Part& b) const {
+    const BodyAtPose placed_a{a.body, a.pose}, placed_b{b.body, b.pose};
+    if (is_half_space(placed_a) && is_half_space(placed_b)) return std::nullopt;
+    const CastOptions now{.duration = 0.0, .tolerance = options_.tolerance};
+    Impact impact = advance(placed_a, {}, placed_b, {}, now, 0.0, nullptr);
+    if (impact.result == CastResult::miss || impact.normal == glm::dvec3(0.0)) return std::nullopt;
+    if (impact.distance <= -options_.tolerance) {
+        const auto size = [](const Body& body) { return body.core_radius() + body.radius(); };
+        const bool shallow = -impact.distance <= kShallowOverlap * std::min(size(a.body), size(b.body));
+        if (!options_.ignore_initial_overlaps || !shallow) return std::nullopt;
+    }
+    if (a.sides == Sides::front && comes_from_behind(placed_a, placed_b, impact)) return std::nullopt;
+    impact.normal = -impact.normal;
+    if (b.sides == Sides::front && comes_from_behind(placed_b, placed_a, impact)) return std::nullopt;
+    impact.normal = -impact.normal;
+    impact.part_a = a.id;
+    impact.part_b = b.id;
+    return impact;
+}
+
+// One of each normal, the deepest.
+void ContactsAt::add(const Contact& contact) {
+    slides_ |= contact.slides;
+    for (std::size_t i = 0; i < count_; ++i) {
+        Contact& other = *contacts_[i];
+        if (other.slides != contact.slides || other.own != contact.own) continue;
+        if (glm::distance(other.impact.normal, contact.impact.normal) > kSameNormal) continue;
+        if (contact.impact.distance < other.impact.distance) other = contact;
+        return;
+    }
+    if (count_ < kMost) contacts_[count_++] = contact;
+}
+
+void ContactsAt::count_behind() {
+    visit_all_pairs([](bool) {},
+                    [&](const Part& a, const Motion&, const Part& b, const Motion&) {
+                        const BodyAtPose placed_a{a.body, a.pose}, placed_b{b.body, b.pose};
+                        if (is_half_space(placed_a) || is_half_space(placed_b) || !touch(a, b)) return;
+                        for (std::size_t i = 0; i < count_; ++i)
+                            contacts_[i]->behind += is_behind(placed_a, placed_b, *contacts_[i], 0.0);
+                    });
+}
+
+// Whether two parts are no deeper along the contact's normal than it is, also when they have come together by
+// `closing`.
+bool ContactsAt::is_behind(const BodyAtPose& a, const BodyAtPose& b, const Contact& contact, double closing) const {
+    const Pair pair(a, b);
+    const double gap = -pair.extent(contact.impact.normal) - pair.rounding();
+    const double allowed = std::max(options_.tolerance, flush_tolerance(a, b));
+    return gap - std::max(closing, 0.0) >= std::min(contact.impact.distance, 0.0) - allowed;
+}
+
+bool ContactsAt::passes(const BodyAtPose& first, const Motion& motion_first, const BodyAtPose& second,
+                        const Motion& motion_second, bool flipped) const {
+    if (is_half_space(first) || is_half_space(second)) return false;
+    const BodyAtPose &a = flipped ? second : first, &b = flipped ? first : second;
+    const Motion &motion_a = flipped ? motion_second : motion_first, &motion_b = flipped ? motion_first : motion_second;
+    for (std::size_t i = 0; i < count_; ++i) {
+        const Contact& contact = *contacts_[i];
+        if (!contact.slides || !is_behind(a, b, contact, 0.0)) continue;
+        const Flight flight(a, motion_a, b, motion_b);
+        if (is_behind(a, b, contact, flight.closing(contact.impact.normal)(options_.duration))) return true;
+    }
+    return false;
+}
+
+bool ContactsAt::is_told_by(const Contact& contact, const Contact& by) const {
+    const BodyAtPose a{contact.a.body, contact.a.pose}, b{contact.b.body, contact.b.pose};
+    return by.behind > contact.behind && !is_half_space(a) && !is_half_space(b) && is_behind(a, b, by, 0.0);
+}
+
+std::optional<Impact> ContactsAt::deepest(const Impact& hit, double least_cosine) {
+    if (count_ > 1) count_behind();
+    std::optional<Impact> best;
+    bool others_tell = false;
+    for (std::size_t i = 0; i < count_; ++i) {
+        const Contact& contact = *contacts_[i];
+        if (!contact.own || contact.slides) continue;
+        if (glm::dot(contact.impact.normal, hit.normal) < least_cosine) continue;
+        bool is_told = false;
+        for (std::size_t k = 0; k < count_; ++k) {
+            if (!is_told_by(contact, *contacts_[k])) continue;
+            is_told = true;
+            others_tell |= !contacts_[k]->own;
+        }
+        if (!is_told && !(best && contact.impact.distance >= best->distance)) best = contact.impact;
+    }
+    if (!best) return others_tell ? best : hit;
+    best->time = time_;
+    if (time_ > 0.0) {
+        best->on_a = flight_.in_world(best->on_a);
+        best->on_b = flight_.in_world(best->on_b);
+    }
+    return best;
+}
+
+}  // namespace crofton::convex

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+// What a cast begins in contact with, and what it passes while it slides along that.
+#pragma once
+#include <array>
+#include <optional>
+
+#include "closing.hpp"
+#include "part_query.hpp"
+
+namespace crofton::convex {
+
+// One of the bodies of a cast.
+struct Mover {
+    const BodyAtPose& body;
+    const Motion& motion;
+    std::span<const BodyAtPose> beside;  // bodies that move by the motion's velocity and do not turn
+};
+
+// Whether parts of the two bodies are nearer to each other at the time of a hit than `limit`, but for those that hit.
+[[nodiscard]] bool is_nearer_elsewhere(const Mover& a, const Mover& b, const Impact& hit, double limit);
+
+// The contacts of two bodies at a time of their cast: of all pairs of parts of the two, and at the start also of either
+// with what is beside the other.
+//
+// Take a contact whose parts do not come together along its normal. Another pair of parts that is no deeper than it
+// along that normal at the start never gets deeper either. A plane across the normal stays between its parts, within
+// the tolerance. So the bodies slide past it: it is no hit, whatever edge it turns to the mover. This holds for all
+// that lies in the plane of a floor, or below it. Likewise, of two contacts at one time the one tells where the surface
+// is that has more of them in its plane or behind it.
+class ContactsAt {
+  public:
+    ContactsAt(const Mover& a, const Mover& b, const CastOptions& options, double time);
+
+    [[nodiscard]] double time() const { return time_; }
+    [[nodiscard]] bool slides() const { return slides_; }
+    // Of contacts at the start: whether two convex parts slide past each other. They stand as at time 0. `flipped`: the
+    // first is b's.
+    [[nodiscard]] bool passes(const BodyAtPose& first, const Motion& motion_first, const BodyAtPose& second,
+                              const Motion& motion_second, bool flipped) const;
+    // For a hit at this time: the deepest of the two bodies' contacts that come together and that no other contact
+    // tells better. Normals are within an angle of the hit's, told by its cosine. Nothing if contacts of bodies beside
+    // them tell all of them better.
+    [[nodiscard]] std::optional<Impact> deepest(const Impact& hit, double least_cosine);
+
+  private:
+    struct Contact {
+        Part a, b;
+        Impact impact;
+        bool own;  // of the two bodies
+        bool slides;
+        std::size_t behind = 0;  // contacts in its plane or behind it
+    };
+    static constexpr std::size_t kMost = 16;  // with different normals
+    using MovingPairVisitor =
+        FunctionRef<void(const Part& a, const Motion& motion_a, const Part& b, const Motion& motion_b)>;
+
+    void visit_all_pairs(FunctionRef<void(bool own)> begin, MovingPairVisitor visit) const;
+    [[nodiscard]] std::optional<Impact> touch(const Part& a, const Part& b) const;
+    void add(const Contact& contact);
+    void count_behind();
+    [[nodiscard]] bool is_behind(const BodyAtPose& a, const BodyAtPose& b, const Contact& contact,
+                                 double closing) const;
+    [[nodiscard]] bool is_told_by(const Contact& contact, const Contact& by) const;
+
+    Flight flight_;
+    const double time_;
+    const RigidTransform pose_a_, pose_b_;
+    const BodyAtPose placed_a_, placed_b_;
+    const Mover a_, b_;
+    const CastOptions& options_;
+    std::array<std::optional<Contact>, kMost> contacts_;
+    std::size_t count_ = 0;
+    bool slides_ = false;
+};
+
+// Of a part of a body, about the body's pivot.
+[[nodiscard]] Motion motion_of_part(const BodyAtPose& whole, const Motion& motion, const RigidTransform& part);
+// Whether b meets the back of a triangle: both where they are at the impact's time.
+[[nodiscard]] bool comes_from_behind(const BodyAtPose& triangle, const BodyAtPose& b, const Impact& impact);
+
+}  // namespace crofton::convex
