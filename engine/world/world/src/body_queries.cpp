@@ -160,7 +160,7 @@ Result<std::optional<BodyHit>> World::cast(const convex::Body& shape, const Rigi
         rest.duration = duration;
         const Aabb swept = swept_bounds(shape, from, motion, duration, options.tolerance);
         s.visit_near(swept, 0.0, layers, [&](std::uint32_t id) {
-            const State::Stand stand = s.stand_of(id);
+            const State::QueryShape stand = s.query_shape_of(id);
             if (!stand.pose) return 0.0;
             const auto impact = convex::cast({shape, from}, motion, {stand.body, *stand.pose}, {}, rest, {{}, touched});
             if (!impact || impact->result == convex::CastResult::miss) return 0.0;
@@ -187,7 +187,7 @@ Result<std::optional<BodyHit>> World::cast(const convex::Body& shape, const Rigi
         now.duration = 0.0;
         now.ignore_initial_overlaps = false;
         s.visit_near(bounds_of(shape, there), options.tolerance, layers, [&](std::uint32_t id) {
-            const State::Stand stand = s.stand_of(id);
+            const State::QueryShape stand = s.query_shape_of(id);
             if (!stand.pose) return options.tolerance;
             const auto impact = convex::cast({shape, there}, {}, {stand.body, *stand.pose}, {}, now);
             if (impact && impact->result == convex::CastResult::hit)
