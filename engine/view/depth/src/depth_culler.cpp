@@ -12,7 +12,6 @@
 namespace crofton::depth {
 namespace {
 
-constexpr std::uint32_t kMaxSize = 16'384;
 constexpr std::uint32_t kWholeObject = ~std::uint32_t{0};
 constexpr std::uint32_t kEnd = ~std::uint32_t{0};
 
@@ -235,7 +234,8 @@ DepthCuller& DepthCuller::operator=(DepthCuller&&) noexcept = default;
 
 Result<std::span<const VisibleCluster>> DepthCuller::find_visible(std::span<const DepthObject> objects,
                                                                   const PictureView& view) {
-    if (view.width == 0 || view.height == 0 || view.width > kMaxSize || view.height > kMaxSize)
+    if (view.width == 0 || view.height == 0 || view.width > PictureView::kMaxSize ||
+        view.height > PictureView::kMaxSize)
         return fail(ErrorCode::out_of_range, kNoItem, "depth: a picture has 1 to 16,384 pixels each way");
     if (objects.size() >= kEnd) return fail(ErrorCode::out_of_range, kNoItem, "depth: too many objects");
     for (std::size_t i = 0; i < objects.size(); ++i)

@@ -45,22 +45,32 @@ OcclusionStatistics OccludedView::statistics() const {
 }  // namespace world
 
 std::span<const std::uint32_t> ViewResult::seen_ids() const {
+    if (occluded_->by_picture) return occluded_->picture.ids();
     return occluded_->by_tree ? std::span<const std::uint32_t>(occluded_->in_order) : occluded_->visible.ids();
 }
 
 std::size_t ViewResult::seen_inside_count() const {
+    if (occluded_->by_picture) return occluded_->picture.inside_count();
     return occluded_->by_tree ? occluded_->inside_in_order : occluded_->visible.inside_count();
 }
 
 std::span<const cull::Verdict> ViewResult::seen_verdicts() const {
+    if (occluded_->by_picture) return occluded_->picture.verdicts();
     return occluded_->by_tree ? std::span<const cull::Verdict>() : occluded_->visible.verdicts();
 }
 
 std::span<const std::uint32_t> ViewResult::occluded_ids() const {
-    return hides_ ? std::span<const std::uint32_t>(occluded_->occluded) : std::span<const std::uint32_t>();
+    return has_occlusion() ? std::span<const std::uint32_t>(occluded_->occluded) : std::span<const std::uint32_t>();
 }
 
 occlude::Verdict ViewResult::verdict_of(std::uint32_t index) const {
+    if (has_picture()) {
+        const auto listed = std::find(ids().begin(), ids().end(), index);
+        if (listed == ids().end()) return occlude::Verdict::outside;
+        const auto at = static_cast<std::size_t>(listed - ids().begin());
+        if (!verdicts().empty()) return static_cast<occlude::Verdict>(verdicts()[at]);
+        return at < inside_count() ? occlude::Verdict::inside : occlude::Verdict::straddling;
+    }
     const auto ascending = hides_ ? occluded_->visible.ids() : ids(), hidden = occluded_ids();
     const auto at = std::lower_bound(ascending.begin(), ascending.end(), index);
     if (at != ascending.end() && *at == index) {
@@ -72,11 +82,23 @@ occlude::Verdict ViewResult::verdict_of(std::uint32_t index) const {
 }
 
 OcclusionStatistics ViewResult::occlusion_statistics() const {
-    return hides_ ? occluded_->statistics() : OcclusionStatistics();
+    return has_occlusion() ? occluded_->statistics() : OcclusionStatistics();
 }
 
 const occlude::OcclusionBuffer* ViewResult::occlusion_buffer() const {
-    return hides_ ? &*occluded_->buffer : nullptr;
+    return has_occlusion() ? &*occluded_->buffer : nullptr;
+}
+
+bool ViewResult::has_picture() const {
+    return hides_ && occluded_->by_picture;
+}
+
+std::span<const depth::VisibleCluster> ViewResult::triangles() const {
+    return has_picture() ? occluded_->picture.triangles() : std::span<const depth::VisibleCluster>();
+}
+
+depth::DepthStatistics ViewResult::picture_statistics() const {
+    return has_picture() ? occluded_->picture.statistics() : depth::DepthStatistics();
 }
 
 }  // namespace crofton

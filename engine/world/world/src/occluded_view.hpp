@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
-// A view's depth buffer, the occluders that were drawn, and what was found.
+// What a view keeps of what is hidden in it: a depth buffer, the occluders that were drawn, and what was found; or a
+// picture's triangles.
 #pragma once
 #include <crofton/occlude/occlusion.hpp>
 #include <crofton/world/answers.hpp>
 #include <optional>
+
+#include "picture_view.hpp"
 
 namespace crofton::world {
 
@@ -15,7 +18,9 @@ struct OccludedView {
     Vector<std::uint32_t> occluded;
     Vector<std::uint32_t> in_order;  // those that are visible, in the tree's order
     std::size_t inside_in_order = 0;
-    bool by_tree = false;        // asked for in the tree's order
+    bool by_tree = false;     // asked for in the tree's order
+    bool by_picture = false;  // `picture` has the answer
+    PictureView picture;
     Vector<std::uint64_t> bits;  // scratch
 
     // A buffer of this size, new where it was another. Errors: as OcclusionBuffer::create.

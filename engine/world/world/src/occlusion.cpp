@@ -30,6 +30,12 @@ std::span<const occlude::FoundOccluder> World::occluders_of(MeshHandle mesh) con
     return state_->occluders.occluders_of(mesh.index);
 }
 
+const depth::ClusteredMesh* World::clusters_of(MeshHandle mesh) const {
+    if (!contains(mesh)) return nullptr;
+    const world::MeshClusters::Mesh* const clusters = state_->mesh_clusters.find(mesh.index);
+    return clusters != nullptr ? &clusters->cut : nullptr;
+}
+
 Result<void> World::set_occludes(ObjectHandle object, bool occludes) {
     if (auto known = state_->check(object, object.index); !known) return known;
     world::Object& changed = state_->table.objects[object.index];
@@ -66,7 +72,7 @@ Result<void> World::hidden_by(ObjectHandle object, const ViewResult& visible, Ve
     occluders.clear();
     if (auto known = state_->check(object, object.index); !known) return known;
     if (auto own = state_->check_viewed(visible.names_); !own) return own;
-    if (!visible.hides_ || !state_->index.has_box(object.index)) return {};
+    if (!visible.has_occlusion() || !state_->index.has_box(object.index)) return {};
     Vector<occlude::OccluderId> ids;
     visible.occluded_->buffer->hidden_by(state_->index.box(object.index), ids);
     for (const occlude::OccluderId id : ids) {
@@ -79,7 +85,7 @@ Result<void> World::hidden_by(ObjectHandle object, const ViewResult& visible, Ve
 Result<void> World::drawn_occluders(const ViewResult& visible, Vector<OccluderRef>& occluders) const {
     occluders.clear();
     if (auto own = state_->check_viewed(visible.names_); !own) return own;
-    if (!visible.hides_) return {};
+    if (!visible.has_occlusion()) return {};
     for (const occlude::OccluderId id : visible.occluded_->choice.ids) {
         const ObjectRef ref = state_->table.ref(state_->occluders.object_of(id));
         occluders.push_back({ref.object, ref.user, state_->occluders.place_of(id)});

@@ -27,6 +27,7 @@ Result<void> check(const ViewRequest& request, std::uint64_t item) {
     if (request.camera && request.matrix) return refuse("view: set `camera` or `matrix`, not both");
     if (request.volume && request.volume->plane_count > Frustum::kMaxPlanes)
         return fail(ErrorCode::out_of_range, item, "view: a volume has at most 12 planes");
+    if (auto good = world::check_picture(request, item); !good) return good;
     if (!request.occlusion) {
         if (has_eye && request.volume)
             return refuse("view: a volume beside a camera or matrix is for occlusion; set one of them");
@@ -71,8 +72,8 @@ Result<Eye> eye_of(const ViewRequest& request, std::uint64_t item) {
 // Whether one walk through the tree answers all requests.
 bool fit_one_walk(std::span<const ViewRequest> requests) {
     return std::all_of(requests.begin(), requests.end(), [&](const ViewRequest& request) {
-        return !request.occlusion && request.candidate_mask.empty() && request.limits == requests[0].limits &&
-               request.mode == requests[0].mode;
+        return !request.occlusion && !request.picture && request.candidate_mask.empty() &&
+               request.limits == requests[0].limits && request.mode == requests[0].mode;
     });
 }
 
@@ -85,6 +86,14 @@ std::span<const std::uint64_t> World::State::candidates_and_changed(std::span<co
     both.assign(candidate_mask.begin(), candidate_mask.end());
     for (std::size_t w = 0; w < std::min(both.size(), changed.size()); ++w) both[w] |= changed[w];
     return both;
+}
+
+void World::State::find_triangles(const ViewRequest& request, const cull::VisibleSet& in_frustum,
+                                  world::OccludedView& result) const {
+    const world::TraceZone zone(options.trace, "view: list triangles");
+    result.by_picture = true;
+    result.picture.find(request, in_frustum, table, index, scene, mesh_clusters);
+    world::trace_count(options.trace, "triangles to draw", result.picture.statistics().triangles_listed);
 }
 
 void World::State::draw_and_ask(const occlude::OcclusionView& view, const OcclusionOptions& occlusion,
@@ -129,10 +138,16 @@ Result<void> World::view(const ViewRequest& request, ViewResult& visible, Execut
         visible.hides_ = false;
         cull::find_visible(state_->index.tree(), state_->index.moving(), eye->plain, visible.set_, how, executor);
         world::trace_count(state_->options.trace, "objects in view", visible.set_.size());
+        if (request.picture) {
+            if (!visible.occluded_) visible.occluded_ = world::make_occluded_view();
+            state_->find_triangles(request, visible.set_, *visible.occluded_);
+        }
+        visible.hides_ = request.picture.has_value();
         return {};
     }
     if (!visible.occluded_) visible.occluded_ = world::make_occluded_view();
     world::OccludedView& result = *visible.occluded_;
+    result.by_picture = false;
     if (auto sized = result.resize(request.occlusion->size); !sized) return sized;
     state_->draw_and_ask(eye->occluding, *request.occlusion, request.layers, how, executor, result);
     visible.names_ = &state_->table.names;
@@ -227,6 +242,10 @@ void MultiViewResult::list_ascending() {
     for (std::size_t w = 0; w < bits_.size(); ++w)
         for (std::uint64_t rest = bits_[w]; rest != 0; rest &= rest - 1)
             ids_.push_back(static_cast<std::uint32_t>(64 * w) + static_cast<std::uint32_t>(std::countr_zero(rest)));
+}
+
+std::span<const depth::VisibleCluster> MultiViewResult::triangles(std::size_t view) const {
+    return view < view_count_ && !one_walk_ ? each_[view].triangles() : std::span<const depth::VisibleCluster>();
 }
 
 OcclusionStatistics MultiViewResult::occlusion_statistics(std::size_t view) const {

@@ -174,6 +174,7 @@ Result<void> World::State::apply_scene(Executor& executor) {
     }
     auto scaled = update_bodies();
     pair_changes.all_contacts |= bodies.update(scene, executor);
+    mesh_clusters.update(scene);
     return scaled;
 }
 

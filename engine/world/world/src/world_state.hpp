@@ -7,6 +7,7 @@
 #include "body_contacts.hpp"
 #include "contact_finder.hpp"
 #include "ground.hpp"
+#include "mesh_clusters.hpp"
 #include "object_bodies.hpp"
 #include "object_table.hpp"
 #include "occluders.hpp"
@@ -73,6 +74,7 @@ struct World::State {
     world::BodyContacts body_contacts;
     world::Ground ground;
     world::Occluders occluders;
+    world::MeshClusters mesh_clusters;
     Aabb object_bounds;  // about; where there are occluders
     scene::Scene scene;
     Generations nodes, meshes;
@@ -122,6 +124,8 @@ struct World::State {
     // as it is.
     [[nodiscard]] std::span<const std::uint64_t> candidates_and_changed(std::span<const std::uint64_t> candidate_mask,
                                                                         Vector<std::uint64_t>& both) const;
+    void find_triangles(const ViewRequest& request, const cull::VisibleSet& in_frustum,
+                        world::OccludedView& result) const;
     // Draws the occluders that are worth most to the view into the result's buffer, then asks what they do not hide.
     void draw_and_ask(const occlude::OcclusionView& view, const OcclusionOptions& occlusion, std::uint32_t layers,
                       const cull::CullOptions& how, Executor& executor, world::OccludedView& result) const;

@@ -27,7 +27,9 @@ struct DepthObject {
 
 // The picture that is drawn: one sample a pixel, at its centre.
 struct PictureView {
-    std::uint32_t width = 1280;  // 1 to 16,384 pixels
+    static constexpr std::uint32_t kMaxSize = 16'384;
+
+    std::uint32_t width = 1280;  // 1 to kMaxSize pixels
     std::uint32_t height = 720;
     DepthRange depth = DepthRange::reversed_zero_to_one;
 };

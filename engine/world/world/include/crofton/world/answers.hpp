@@ -4,6 +4,7 @@
 #include <crofton/collide/narrow_phase.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/cull/cull.hpp>
+#include <crofton/depth/depth_culler.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <crofton/occlude/occlusion.hpp>
 #include <crofton/world/inputs.hpp>
@@ -64,7 +65,7 @@ class ViewResult {
     [[nodiscard]] ObjectRef ref(std::uint32_t id) const { return {{id, names_->generations[id]}, names_->users[id]}; }
 
     // Of the last view with occlusion; without, or before it: nothing.
-    [[nodiscard]] bool has_occlusion() const { return hides_; }
+    [[nodiscard]] bool has_occlusion() const { return hides_ && !has_picture(); }
     // Indices, ascending: in the view's frustum, and hidden. Empty unless OcclusionOptions::list_occluded.
     [[nodiscard]] std::span<const std::uint32_t> occluded_ids() const;
     // With list_occluded; an index that is in neither list is outside, or not worth drawing.
@@ -72,6 +73,12 @@ class ViewResult {
     [[nodiscard]] OcclusionStatistics occlusion_statistics() const;
     // The depth buffer as it was drawn, or nullptr.
     [[nodiscard]] const occlude::OcclusionBuffer* occlusion_buffer() const;
+
+    // Of the last view with ViewRequest::picture: the triangles to draw, by object index, then by cluster of its mesh
+    // (World::clusters_of). ids() are the objects that have some, and those without clusters whose boxes may be seen.
+    [[nodiscard]] bool has_picture() const;
+    [[nodiscard]] std::span<const depth::VisibleCluster> triangles() const;
+    [[nodiscard]] depth::DepthStatistics picture_statistics() const;
 
   private:
     friend class World;
@@ -106,6 +113,8 @@ class MultiViewResult {
     [[nodiscard]] OcclusionStatistics occlusion_statistics(std::size_t view) const;
     // A view's depth buffer, or nullptr for a view without occlusion.
     [[nodiscard]] const occlude::OcclusionBuffer* occlusion_buffer(std::size_t view) const;
+    // As ViewResult::triangles, of one view; empty for a view without a picture.
+    [[nodiscard]] std::span<const depth::VisibleCluster> triangles(std::size_t view) const;
 
   private:
     friend class World;

@@ -5,6 +5,7 @@
 #include <compare>
 #include <crofton/core/version.hpp>
 #include <crofton/cull/cull.hpp>
+#include <crofton/depth/depth_culler.hpp>
 #include <crofton/geometry/box.hpp>
 #include <crofton/geometry/camera.hpp>
 #include <crofton/geometry/shapes.hpp>
@@ -132,6 +133,10 @@ struct MeshDescription {
     // True: World::find_occluders, with its defaults, at once. What is found hides other objects; ask it of opaque
     // meshes alone. A second or more for 100,000 triangles.
     bool occluders = false;
+    // True: views that ask for a picture list the mesh's triangles, in clusters (World::clusters_of).
+    bool clusters = false;
+    // With clusters: the renderer drops back faces, so they are not listed. Of mirrored objects both sides are.
+    bool one_sided = false;
 };
 
 struct NodeDescription {
@@ -203,6 +208,11 @@ struct ViewRequest {
     // If set, objects that others hide are left out: never one that is seen (docs/occlude.md). An object hides with its
     // mesh's occluders if the view draws it: shown, in one of `layers`, within `limits`.
     std::optional<OcclusionOptions> occlusion = {};
+    // If set, lists the triangles without which this picture would change, found by the depth of those before them
+    // (docs/depth.md). Of objects whose mesh has MeshDescription::clusters; objects that do not `occlude` hide nothing.
+    // Others are listed where their boxes may be seen. For a camera, `picture->depth` says how the renderer's
+    // projection gives depth. In place of `occlusion`.
+    std::optional<depth::PictureView> picture = {};
     // Leaves out what is too small or too far. The caller's, alive for the call.
     const cull::DrawLimits* limits = nullptr;
     // If not empty, bit i % 64 of word i / 64 says whether the object with index i may be seen at all: baked sets

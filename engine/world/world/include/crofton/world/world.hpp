@@ -124,6 +124,10 @@ class World {
     [[nodiscard]] std::span<const occlude::FoundOccluder> occluders_of(MeshHandle mesh) const;  // none: empty
     Result<void> set_occludes(ObjectHandle object, bool occludes);  // as ObjectDescription; of an object with a mesh
 
+    // How a mesh with MeshDescription::clusters is cut, as of the last update; nullptr where it is not. Permute the
+    // index buffer that you draw by its triangle_order().
+    [[nodiscard]] const depth::ClusteredMesh* clusters_of(MeshHandle mesh) const;
+
     Result<NodeHandle> add_node(const NodeDescription& description = {});
     Result<void> remove(NodeHandle node);  // with all nodes and objects below it
     Result<void> set_transform(NodeHandle node, const Transform& transform);
@@ -153,7 +157,7 @@ class World {
     // executor. Allocates nothing once `visible` has held as many objects. Tree order with occlusion costs a second
     // query. Errors name what cannot be obeyed: no camera, matrix or volume, or two that contradict each other; a
     // camera or matrix that is not valid; a volume of more than 12 planes; occlusion without an eye; a depth buffer's
-    // size out of its range.
+    // size or a picture's out of its range; a picture beside occlusion, or without an eye.
     Result<void> view(const ViewRequest& request, ViewResult& visible, Executor& executor = serial_executor()) const;
     // The same for up to 32 views: each object once, with a mask of the views that see it.
     //

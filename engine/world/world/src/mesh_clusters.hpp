@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+// The meshes that views list triangle by triangle.
+#pragma once
+#include <crofton/depth/clustered_mesh.hpp>
+#include <crofton/scene/scene.hpp>
+
+namespace crofton::world {
+
+class MeshClusters {
+  public:
+    struct Mesh {
+        depth::ClusteredMesh cut;
+        std::uint64_t revision = 0;  // of the scene's mesh that was cut
+        bool wanted = false, one_sided = false;
+        bool usable = false;  // false: not wanted, or what it deformed into cannot be cut
+    };
+
+    // The mesh is new or another. Errors: as ClusteredMesh::cut; nothing has changed then.
+    Result<void> set(scene::MeshId mesh, const TriangleMesh& triangles, bool one_sided);
+    void set(scene::MeshId mesh, Mesh cut);
+    void clear(scene::MeshId mesh);
+    // Cuts what has changed since.
+    void update(const scene::Scene& scene);
+
+    [[nodiscard]] const Mesh* find(scene::MeshId mesh) const {
+        return mesh < meshes_.size() && meshes_[mesh].usable ? &meshes_[mesh] : nullptr;
+    }
+
+  private:
+    Vector<Mesh> meshes_;
+};
+
+}  // namespace crofton::world

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+#include "picture_view.hpp"
+
+#include <algorithm>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+#include <numeric>
+
+namespace crofton::world {
+namespace {
+
+// [-1, 1]³, for objects that have a box alone.
+const depth::ClusteredMesh& unit_cube() {
+    static const depth::ClusteredMesh kCube = [] {
+        Vector<glm::vec3> corners;
+        for (unsigned i = 0; i < 8; ++i)
+            corners.push_back({(i & 1u) ? 1.0f : -1.0f, (i & 2u) ? 1.0f : -1.0f, (i & 4u) ? 1.0f : -1.0f});
+        constexpr std::uint32_t kIndices[] = {0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4,
+                                              2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6};
+        return std::move(*depth::ClusteredMesh::cut(corners, kIndices));
+    }();
+    return kCube;
+}
+
+ViewMatrix matrix_of(const ViewRequest& request) {
+    if (request.matrix) return *request.matrix;
+    const Camera& camera = *request.camera;
+    return {view_to_clip(camera, request.picture->depth) * glm::dmat4(world_to_view_rotation(camera)),
+            request.picture->depth, camera.position};
+}
+
+// Rounded once, so that coordinates lose nothing at large offsets.
+glm::mat4 model_to_clip(const ViewMatrix& view, const glm::dmat3& linear, const glm::dvec3& translation) {
+    glm::dmat4 placed(linear);
+    placed[3] = glm::dvec4(translation - view.origin, 1.0);
+    return glm::mat4(view.to_clip * placed);
+}
+
+}  // namespace
+
+Result<void> check_picture(const ViewRequest& request, std::uint64_t item) {
+    if (!request.picture) return {};
+    const auto refuse = [&](const char* why) { return fail(ErrorCode::invalid_argument, item, why); };
+    if (!request.camera && !request.matrix) return refuse("view: a picture needs a `camera` or a `matrix`");
+    if (request.occlusion) return refuse("view: set `occlusion` or `picture`, not both");
+    if (request.matrix && request.matrix->depth != request.picture->depth)
+        return refuse("view: the matrix and the picture must have the same depth range");
+    const depth::PictureView& p = *request.picture;
+    if (p.width == 0 || p.height == 0 || p.width > depth::PictureView::kMaxSize ||
+        p.height > depth::PictureView::kMaxSize)
+        return fail(ErrorCode::out_of_range, item, "view: a picture has 1 to 16,384 pixels each way");
+    return {};
+}
+
+void PictureView::find(const ViewRequest& request, const cull::VisibleSet& in_frustum, const ObjectTable& table,
+                       const SpatialIndex& index, const scene::Scene& scene, const MeshClusters& clusters) {
+    const ViewMatrix view = matrix_of(request);
+    const std::span<const std::uint32_t> ids = in_frustum.ids();
+    // Ascending, so that the answer does not depend on the order that is asked for.
+    places_.resize(ids.size());
+    std::iota(places_.begin(), places_.end(), 0u);
+    if (!std::is_sorted(ids.begin(), ids.end()))
+        std::sort(places_.begin(), places_.end(), [&](std::uint32_t a, std::uint32_t b) { return ids[a] < ids[b]; });
+    objects_.clear();
+    for (const std::uint32_t place : places_) {
+        const std::uint32_t id = ids[place];
+        const Object& object = table.objects[id];
+        const MeshClusters::Mesh* mesh = object.kind == BoundKind::none ? clusters.find(object.mesh) : nullptr;
+        depth::DepthObject asked;
+        if (mesh != nullptr) {
+            const Transform& world = scene.world(scene.node_of(object.instance));
+            asked = {&mesh->cut, model_to_clip(view, world.linear, world.translation)};
+            // Mirrored, fronts and backs change places.
+            asked.one_sided = mesh->one_sided && glm::determinant(world.linear) > 0.0;
+            asked.hides = object.occludes;
+        } else {
+            const Obb& box = index.box(id);
+            glm::dmat3 linear(box.axes);
+            for (int k = 0; k < 3; ++k) linear[k] *= double{box.half_extents[k]};
+            asked = {&unit_cube(), model_to_clip(view, linear, box.center)};
+            asked.hides = false;
+        }
+        objects_.push_back(asked);
+    }
+    // Sizes and meshes are checked: nothing can fail.
+    const auto found = culler_.find_visible(objects_, *request.picture);
+    seen_.assign(ids.size(), 0);
+    triangles_.clear();
+    for (const depth::VisibleCluster& cluster : *found) {
+        const std::uint32_t place = places_[cluster.object];
+        seen_[place] = 1;
+        if (objects_[cluster.object].mesh != &unit_cube())
+            triangles_.push_back({ids[place], cluster.cluster, cluster.triangles});
+    }
+    ids_.clear();
+    verdicts_.clear();
+    inside_count_ = 0;
+    const std::span<const cull::Verdict> verdicts = in_frustum.verdicts();
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        if (seen_[i] == 0) continue;
+        ids_.push_back(ids[i]);
+        if (!verdicts.empty()) verdicts_.push_back(verdicts[i]);
+        inside_count_ += verdicts.empty() ? i < in_frustum.inside_count() : verdicts[i] == cull::Verdict::inside;
+    }
+}
+
+}  // namespace crofton::world

@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: MIT
+// World::view with a picture: the triangles to draw.
+#include <crofton/crofton.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "../../box_mesh.hpp"
+#include "../../error_of.hpp"
+#include "../../view/depth/depth_scenes.hpp"
+
+namespace crofton::testing {
+namespace {
+
+struct Town {
+    World world;
+    std::vector<CutMesh> meshes;
+    std::vector<MeshHandle> handles;
+    struct Placed {
+        ObjectHandle object;
+        std::size_t mesh;
+        Transform transform;
+        bool occludes;
+    };
+    std::vector<Placed> placed;
+
+    void add_mesh(TriangleMesh mesh, bool one_sided) {
+        handles.push_back(world
+                              .add_mesh({.positions = mesh.positions,
+                                         .indices = mesh.indices,
+                                         .triangles = false,
+                                         .clusters = true,
+                                         .one_sided = one_sided})
+                              .value());
+        meshes.emplace_back(std::move(mesh));
+    }
+    void add(std::size_t mesh, const Transform& transform, bool occludes = true) {
+        const auto object =
+            world.add({.mesh = handles[mesh], .transform = transform, .user = placed.size(), .occludes = occludes});
+        placed.push_back({object.value(), mesh, transform, occludes});
+    }
+};
+
+Transform random_transform(oracle::NearMisses& random) {
+    const glm::dvec3 at(random.number(-20, 20), random.number(-2, 3), random.number(-20, 20));
+    const glm::dvec3 scale(random.number(0.3, 3), random.number(0.3, 3),
+                           random.index(3) == 0 ? -0.5 : random.number(0.3, 3));
+    const glm::dmat4 m = placed(at, scale, {0, 1, 0}, random.number(0, 6));
+    return {glm::dmat3(m), at};
+}
+
+Town random_town(std::uint64_t seed, oracle::NearMisses& random) {
+    Town town;
+    town.add_mesh(cube_mesh(), seed % 2 == 0);
+    town.add_mesh(ball(12, random), true);
+    town.add_mesh(hills(30, 25.0f, 1.0f, random), false);
+    town.add(2, {glm::dmat3(1.0), {0, -3, 0}});
+    for (int i = 0; i < 60; ++i) {
+        const std::size_t mesh = random.index(2);
+        const Transform transform = random_transform(random);
+        town.add(mesh, transform, random.index(6) != 0);
+    }
+    (void)town.world.update();
+    return town;
+}
+
+Camera camera_in(oracle::NearMisses& random) {
+    Camera camera;
+    const double x = random.number(-20, 20), z = random.number(-20, 20), y = random.number(0, 3);
+    camera.position = {x, y, z};
+    const double fx = random.number(-1, 1), fz = random.number(-1, 1);
+    camera.forward = {fx, -0.1, fz};
+    return camera;
+}
+
+// What a renderer shows of the town, by the oracle.
+std::set<std::pair<std::uint32_t, std::uint32_t>> owners_of(const Town& town, const Camera& camera, std::uint32_t width,
+                                                            std::uint32_t height) {
+    oracle::OwnerPicture picture(width, height);
+    oracle::OwnerRenderer renderer(picture, 0.0004, 5);
+    for (std::size_t i = 0; i < town.placed.size(); ++i) {
+        const Town::Placed& p = town.placed[i];
+        const CutMesh& mesh = town.meshes[p.mesh];
+        glm::dmat4 world(p.transform.linear);
+        world[3] = glm::dvec4(p.transform.translation, 1.0);
+        renderer.draw({mesh.mesh.positions, mesh.mesh.indices, glm::mat4(world_to_clip(camera) * world)},
+                      static_cast<std::uint32_t>(i));
+    }
+    std::set<std::pair<std::uint32_t, std::uint32_t>> owners;
+    for (const std::uint64_t owner : picture.owners)
+        if (owner != oracle::OwnerPicture::kNobody) owners.emplace(owner >> 32, owner & 0xffffffffu);
+    return owners;
+}
+
+std::set<std::pair<std::uint32_t, std::uint32_t>> listed_in(const Town& town,
+                                                            std::span<const depth::VisibleCluster> triangles) {
+    std::set<std::pair<std::uint32_t, std::uint32_t>> listed;
+    for (const depth::VisibleCluster& c : triangles) {
+        const depth::ClusteredMesh& mesh = town.meshes[town.placed[c.object].mesh].clusters;
+        for (std::uint32_t k = 0; k < 64; ++k)
+            if (c.triangles >> k & 1) listed.emplace(c.object, mesh.clusters()[c.cluster].first_triangle + k);
+    }
+    return listed;
+}
+
+}  // namespace
+
+TEST_SUITE("world/picture_view") {
+    TEST_CASE("the triangles that own a pixel are listed, by objects in order, and what is behind walls is not") {
+        std::uint64_t listed_sum = 0, total = 0;
+        for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+            CAPTURE(seed);
+            oracle::NearMisses random(seed);
+            const Town town = random_town(seed, random);
+            // Objects were added in the order of their indices.
+            for (std::size_t i = 0; i < town.placed.size(); ++i) REQUIRE(town.placed[i].object.index == i);
+            const Camera camera = camera_in(random);
+            ViewResult result;
+            REQUIRE(town.world.view({.camera = camera, .picture = depth::PictureView{160, 90}}, result));
+            CHECK(result.has_picture());
+            CHECK_FALSE(result.has_occlusion());
+            const auto listed = listed_in(town, result.triangles());
+            // One-sided meshes: closed ones show no back face but from within.
+            std::size_t lost = 0;
+            for (const auto& owner : owners_of(town, camera, 160, 90)) {
+                const bool one_sided =
+                    town.placed[owner.first].mesh == 1 || (town.placed[owner.first].mesh == 0 && seed % 2 == 0);
+                lost += !one_sided && listed.count(owner) == 0;
+            }
+            CHECK(lost == 0);
+            CHECK(
+                std::is_sorted(result.triangles().begin(), result.triangles().end(), [](const auto& a, const auto& b) {
+                    return a.object != b.object ? a.object < b.object : a.cluster < b.cluster;
+                }));
+            std::set<std::uint32_t> objects;
+            for (const auto& [object, triangle] : listed) objects.insert(object);
+            CHECK(std::equal(objects.begin(), objects.end(), result.ids().begin(), result.ids().end()));
+            CHECK(result.verdicts().size() == result.size());
+            listed_sum += listed.size();
+            ViewResult all;
+            REQUIRE(town.world.view({.camera = camera}, all));
+            for (const std::uint32_t id : all.ids()) total += town.meshes[town.placed[id].mesh].mesh.triangle_count();
+            for (const std::uint32_t id : result.ids())
+                CHECK(std::binary_search(all.ids().begin(), all.ids().end(), id));
+        }
+        CHECK(4 * listed_sum < total);
+    }
+
+    TEST_CASE("a camera, its matrix, tree order, many views and threads list the same triangles") {
+        oracle::NearMisses random(77);
+        const Town town = random_town(3, random);
+        ThreadPool pool(2);
+        std::vector<ViewRequest> requests;
+        std::vector<std::vector<depth::VisibleCluster>> single;
+        for (int v = 0; v < 4; ++v) {
+            Camera camera = camera_in(random);
+            const ViewRequest request{.camera = camera, .picture = depth::PictureView{200, 112}};
+            ViewResult result, by_matrix, by_tree;
+            REQUIRE(town.world.view(request, result));
+            single.emplace_back(result.triangles().begin(), result.triangles().end());
+            const auto same = [&](std::span<const depth::VisibleCluster> other) {
+                return std::equal(other.begin(), other.end(), result.triangles().begin(), result.triangles().end(),
+                                  [](const auto& a, const auto& b) {
+                                      return a.object == b.object && a.cluster == b.cluster &&
+                                             a.triangles == b.triangles;
+                                  });
+            };
+            const glm::dmat4 to_clip = view_to_clip(camera) * glm::dmat4(world_to_view_rotation(camera));
+            REQUIRE(town.world.view({.matrix = ViewMatrix{to_clip, DepthRange::reversed_zero_to_one, camera.position},
+                                     .picture = depth::PictureView{200, 112}},
+                                    by_matrix));
+            CHECK(same(by_matrix.triangles()));
+            ViewRequest tree = request;
+            tree.order = cull::ResultOrder::tree;
+            REQUIRE(town.world.view(tree, by_tree));
+            CHECK(same(by_tree.triangles()));
+            CHECK(by_tree.inside_count() <= by_tree.size());
+            requests.push_back(request);
+        }
+        requests.push_back({.camera = *requests[0].camera});
+        MultiViewResult many;
+        REQUIRE(town.world.view(requests, many, pool));
+        for (std::size_t v = 0; v < 4; ++v) {
+            REQUIRE(many.triangles(v).size() == single[v].size());
+            for (std::size_t i = 0; i < single[v].size(); ++i)
+                CHECK(many.triangles(v)[i].triangles == single[v][i].triangles);
+        }
+        CHECK(many.triangles(4).empty());
+        CHECK(many.triangles(5).empty());
+    }
+
+    TEST_CASE("objects without clusters are listed where their boxes may be seen, and hide nothing") {
+        World world;
+        const TriangleMesh wall = box_mesh({-5, -5, -0.1f}, {5, 5, 0.1f});
+        const MeshHandle mesh =
+            world.add_mesh({.positions = wall.positions, .indices = wall.indices, .clusters = true}).value();
+        const auto add_box = [&](double x, double z) {
+            return world.add({.bound = Obb{{x, 0, z}, glm::mat3(1.0f), glm::vec3(0.5f)}}).value();
+        };
+        const ObjectHandle hidden = add_box(0, -20), open = add_box(12, -20), front = add_box(0, -5);
+        const ObjectHandle wall_object =
+            world.add({.mesh = mesh, .transform = Transform{glm::dmat3(1.0), {0, 0, -10}}}).value();
+        (void)world.update();
+        const ViewRequest request{.camera = Camera{}, .picture = depth::PictureView{320, 180}};
+        ViewResult result;
+        const auto sees = [&](ObjectHandle object) {
+            return std::count(result.ids().begin(), result.ids().end(), object.index) == 1;
+        };
+        REQUIRE(world.view(request, result));
+        CHECK_FALSE(sees(hidden));
+        CHECK(sees(open));
+        CHECK(sees(front));
+        CHECK(sees(wall_object));
+        for (const depth::VisibleCluster& c : result.triangles()) CHECK(c.object == wall_object.index);
+        CHECK(result.verdict_of(hidden.index) == occlude::Verdict::outside);
+        CHECK(result.verdict_of(front.index) == occlude::Verdict::inside);
+        CHECK(result.occlusion_buffer() == nullptr);
+        CHECK(result.picture_statistics().triangles_listed > 0);
+        // A window pane hides nothing.
+        REQUIRE(world.set_occludes(wall_object, false));
+        (void)world.update();
+        REQUIRE(world.view(request, result));
+        CHECK(sees(hidden));
+        REQUIRE(world.set_occludes(wall_object, true));
+        // The mesh deforms: the wall shrinks to a plank.
+        Vector<glm::vec3> plank = wall.positions;
+        for (glm::vec3& p : plank) p.x *= 0.01f;
+        REQUIRE(world.set_vertices(mesh, plank));
+        (void)world.update();
+        REQUIRE(world.view(request, result));
+        CHECK(sees(hidden));
+        CHECK(world.clusters_of(mesh) != nullptr);
+        // Answers of other kinds after it.
+        REQUIRE(world.view({.camera = Camera{}, .occlusion = OcclusionOptions{}}, result));
+        CHECK(result.has_occlusion());
+        CHECK(result.triangles().empty());
+        REQUIRE(world.view({.camera = Camera{}}, result));
+        CHECK_FALSE(result.has_picture());
+        CHECK(sees(hidden));
+    }
+
+    TEST_CASE("requests that cannot be obeyed are refused by name") {
+        World world;
+        ViewResult result;
+        const depth::PictureView picture{320, 180};
+        CHECK(error_of(world.view({.volume = *frustum_of(Camera{}), .picture = picture}, result)).code ==
+              ErrorCode::invalid_argument);
+        CHECK(error_of(world.view({.camera = Camera{}, .occlusion = OcclusionOptions{}, .picture = picture}, result))
+                  .code == ErrorCode::invalid_argument);
+        CHECK(error_of(world.view({.camera = Camera{}, .picture = depth::PictureView{0, 180}}, result)).code ==
+              ErrorCode::out_of_range);
+        CHECK(error_of(world.view({.camera = Camera{}, .picture = depth::PictureView{20000, 180}}, result)).code ==
+              ErrorCode::out_of_range);
+        CHECK(error_of(world.view(
+                           {.matrix = ViewMatrix{world_to_clip(Camera{}), DepthRange::zero_to_one}, .picture = picture},
+                           result))
+                  .code == ErrorCode::invalid_argument);
+        MultiViewResult many;
+        const std::vector<ViewRequest> two = {{.camera = Camera{}, .picture = picture},
+                                              {.camera = Camera{}, .picture = depth::PictureView{0, 0}}};
+        const auto refused = world.view(two, many);
+        REQUIRE_FALSE(refused);
+        CHECK(refused.error().item == 1);
+        REQUIRE(world.view({.camera = Camera{}, .picture = picture}, result));
+        CHECK(result.size() == 0);
+        CHECK(world.clusters_of({}) == nullptr);
+        // A mesh that cannot be cut leaves nothing behind.
+        TriangleMesh far = cube_mesh();
+        for (glm::vec3& p : far.positions) p *= 1e16f;
+        const auto added = world.add_mesh({.positions = far.positions, .indices = far.indices, .clusters = true});
+        CHECK_FALSE(added);
+    }
+}
+
+}  // namespace crofton::testing
