@@ -31,6 +31,31 @@ TEST_SUITE("viewer/freeze") {
         CHECK(Pixels(scratch().file("outside.png")).different(Pixels(scratch().file("frozen.png"))) > 500);
         CHECK(picture(result, "thawed.png")["statistics"]["camera"] == picture(result, "thawed.png")["eye"]);
     }
+    TEST_CASE("what is seen is counted for each picture, from the eye that culls, and not where that is switched off") {
+        const ViewRun result = view({set(0, {{"panels", false}, {"paused", true}}),
+                                     shot(1, "before.png"),
+                                     {{"frame", 2}, {"key", "F"}},
+                                     {{"frame", 3}, {"key", "Home"}},
+                                     shot(4, "frozen.png"),
+                                     set(5, {{"occlude", true}, {"inset", true}}),
+                                     shot(6, "occluded.png"),
+                                     set(7, {{"seen", false}}),
+                                     shot(8, "off.png")},
+                                    {}, false);
+        check_clean(result);
+        const json& seen = picture(result, "before.png")["statistics"]["seen"];
+        REQUIRE(seen.is_object());
+        CHECK(seen["triangles"].get<int>() > 0);
+        CHECK(seen["triangles"].get<int>() <=
+              picture(result, "before.png")["statistics"]["triangles_passed"].get<int>());
+        CHECK(seen["instances"].get<int>() <= picture(result, "before.png")["statistics"]["visible"].get<int>());
+        CHECK(picture(result, "frozen.png")["statistics"]["seen"] == seen);
+        CHECK(picture(result, "occluded.png")["statistics"]["seen"] == seen);
+        CHECK(picture(result, "off.png")["statistics"]["seen"].is_null());
+        // Every thirtieth frame, and those of pictures.
+        CHECK(result.document["frames"][0]["seen"].is_object());
+        CHECK(result.document["frames"][2]["seen"].is_null());
+    }
     TEST_CASE("time stands still when paused, and steps frame by frame") {
         const ViewRun result = view({set(0, {{"panels", false}, {"paused", true}}),
                                      shot(1, "a.png"),
