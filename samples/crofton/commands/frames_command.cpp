@@ -364,7 +364,7 @@ void add_frames_command(CommandLine& line) {
         .show_default();
     command.option("--frames", options->frames, "How many frames; where absent 120, or all of a recorded path");
     command.option("--camera", options->camera, "orbit, street, random, or a JSON file of cameras").show_default();
-    command.option("--seed", options->seed, "Seed of the town and of random cameras").show_default();
+    command.option("--seed", options->seed, "Seed of made scenes and of random cameras").show_default();
     command.option("--instances", options->instances, "Size of the town, up to 1000000; 0: about 3000").show_default();
     command.option("--size", options->size, "Pixels, WIDTHxHEIGHT").show_default();
     command.option("--bounds", options->bounds, "sphere, aabb, obb-volume, obb-area, obb-perimeter or obb-frustum")

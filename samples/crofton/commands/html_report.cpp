@@ -219,7 +219,8 @@ std::string numbers(std::span<const FrameStatistics> frames) {
     for (const pipeline::StatisticsColumn& column : pipeline::columns_of(frames)) {
         const std::string name = column.name;
         std::vector<double> values;
-        for (const FrameStatistics& frame : frames) values.push_back(column.value(frame));
+        for (const FrameStatistics& frame : frames)
+            if (column.has_value(frame)) values.push_back(column.value(frame));
         std::sort(values.begin(), values.end());
         html += "<tr><td>" + name + "</td><td>" + readable(values.front()) + "</td><td>" +
                 readable(values[values.size() / 2]) + "</td><td>" + readable(mean_of(frames, column.value)) +

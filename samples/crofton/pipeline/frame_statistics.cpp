@@ -113,9 +113,9 @@ bool drawn(std::span<const FrameStatistics> frames) {
     return std::any_of(frames.begin(), frames.end(), [](const FrameStatistics& f) { return f.gpu.has_value(); });
 }
 
-Json seen_json(const std::optional<Seen>& seen) {
+Json ratio_json(std::uint64_t passed, const std::optional<Seen>& seen) {
     if (!seen) return nullptr;
-    return {{"instances", seen->instances}, {"triangles", seen->triangles}};
+    return passed_per_seen(passed, seen);
 }
 
 Json gpu_json(const std::optional<render::GpuCounters>& gpu) {
@@ -126,12 +126,13 @@ Json gpu_json(const std::optional<render::GpuCounters>& gpu) {
             {"samples_passed", gpu->samples_passed}};
 }
 
-Json occlusion_json(const std::optional<OccludedFrame>& f, bool with_ids) {
+Json occlusion_json(const std::optional<OccludedFrame>& f, const std::optional<Seen>& seen, bool with_ids) {
     if (!f) return nullptr;
     Json entry = {{"visible", f->visible},
                   {"occluders", f->occluders},
                   {"triangles_submitted", f->triangles_submitted},
                   {"triangles_passed", f->triangles_passed},
+                  {"passed_per_seen", ratio_json(f->triangles_passed, seen)},
                   {"triangles_clipped", f->triangles_clipped},
                   {"gpu", gpu_json(f->gpu)},
                   {"occlude_us", f->occlude_us},
@@ -176,7 +177,9 @@ Json to_json(const FrameStatistics& f, bool with_ids) {
                   {"triangles_submitted", f.triangles_submitted},
                   {"triangles_passed", f.triangles_passed},
                   {"triangles_clipped", f.triangles_clipped},
-                  {"seen", seen_json(f.seen)},
+                  {"triangles_seen", f.seen ? Json(f.seen->triangles) : Json(nullptr)},
+                  {"passed_per_seen", ratio_json(f.triangles_passed, f.seen)},
+                  {"instances_seen", f.seen ? Json(f.seen->instances) : Json(nullptr)},
                   {"gpu", gpu_json(f.gpu)},
                   {"colliding_pairs", f.colliding_pairs},
                   {"pairs_tested", f.pairs_tested},
@@ -189,7 +192,7 @@ Json to_json(const FrameStatistics& f, bool with_ids) {
                   {"cull_us", f.cull_us},
                   {"collide_us", f.collide_us},
                   {"draw_us", f.draw_us},
-                  {"occlusion", occlusion_json(f.occlusion, with_ids)}};
+                  {"occlusion", occlusion_json(f.occlusion, f.seen, with_ids)}};
     if (with_ids) {
         entry["visible_ids"] = f.visible_ids;
         entry["colliding_ids"] = f.colliding_ids;
@@ -199,11 +202,14 @@ Json to_json(const FrameStatistics& f, bool with_ids) {
 
 Json summary_json(std::span<const FrameStatistics> frames, const std::optional<Verification>& verification) {
     Json summary = {{"frames", frames.size()}};
-    const double count = static_cast<double>(std::max<std::size_t>(1, frames.size()));
     for (const Column& column : columns_of(frames)) {
-        double sum = 0.0;
-        for (const FrameStatistics& frame : frames) sum += column.value(frame);
-        summary["mean_" + std::string(column.name)] = sum / count;
+        double sum = 0.0, count = 0.0;
+        for (const FrameStatistics& frame : frames) {
+            if (!column.has_value(frame)) continue;
+            sum += column.value(frame);
+            ++count;
+        }
+        summary["mean_" + std::string(column.name)] = sum / std::max(count, 1.0);
     }
     summary["drawn"] = drawn(frames);
     // Of the means, not the mean of the frames' ratios.
@@ -253,7 +259,8 @@ std::string to_csv(std::span<const FrameStatistics> frames) {
     text += "\n";
     for (const FrameStatistics& frame : frames) {
         text += std::to_string(frame.index);
-        for (const Column& column : columns) text += "," + number(column.value(frame));
+        for (const Column& column : columns)
+            text += "," + (column.has_value(frame) ? number(column.value(frame)) : std::string());
         text += "\n";
     }
     return text;

@@ -80,8 +80,8 @@ struct Verification {
     }
 };
 
-// The numbers of a frame under the names that CSV and means give them, in that order; GPU counts begin with "gpu_", and
-// are 0 where nothing was drawn.
+// The numbers of a frame under the names that CSV and means give them, in that order; GPU counts begin with "gpu_".
+// Where a frame has no value, `value` is 0, and CSV leaves the place empty.
 struct StatisticsColumn {
     const char* name;
     double (*value)(const FrameStatistics&);

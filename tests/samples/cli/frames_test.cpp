@@ -101,7 +101,9 @@ TEST_SUITE("cli/frames") {
                                       "triangles_submitted",
                                       "triangles_passed",
                                       "triangles_clipped",
-                                      "seen",
+                                      "triangles_seen",
+                                      "passed_per_seen",
+                                      "instances_seen",
                                       "gpu",
                                       "colliding_pairs",
                                       "update_us",
@@ -205,9 +207,9 @@ TEST_SUITE("cli/frames") {
                 if (!with["gpu"].is_object()) continue;
                 CHECK(with["gpu"]["input_assembly_primitives"] == with["triangles_submitted"]);
                 CHECK(with["gpu"]["clipping_primitives"] == with["triangles_clipped"]);
-                CHECK(frame["seen"]["triangles"].get<int>() <= with["triangles_passed"].get<int>());
-                CHECK(frame["seen"]["instances"].get<int>() > 0);
-                CHECK(frame["seen"]["instances"].get<int>() <= with["visible"].get<int>());
+                CHECK(frame["triangles_seen"].get<int>() <= with["triangles_passed"].get<int>());
+                CHECK(frame["instances_seen"].get<int>() > 0);
+                CHECK(frame["instances_seen"].get<int>() <= with["visible"].get<int>());
             }
             CHECK((hidden > 0) == hides);
         }
@@ -224,12 +226,13 @@ TEST_SUITE("cli/frames") {
         double passed = 0.0, seen = 0.0;
         for (std::size_t i = 0; i < 4; ++i) {
             const json &without = plain["frames"][i], &with = occluded["frames"][i];
-            CHECK(static_cast<bool>(without["seen"] == with["seen"]));
-            CHECK(without["seen"]["triangles"].get<int>() > 0);
-            CHECK(without["seen"]["triangles"].get<int>() <= with["occlusion"]["triangles_passed"].get<int>());
-            CHECK(without["seen"]["instances"].get<int>() <= with["occlusion"]["visible"].get<int>());
+            CHECK(static_cast<bool>(without["triangles_seen"] == with["triangles_seen"] &&
+                                    without["instances_seen"] == with["instances_seen"]));
+            CHECK(without["triangles_seen"].get<int>() > 0);
+            CHECK(without["triangles_seen"].get<int>() <= with["occlusion"]["triangles_passed"].get<int>());
+            CHECK(without["instances_seen"].get<int>() <= with["occlusion"]["visible"].get<int>());
             passed += without["triangles_passed"].get<double>();
-            seen += without["seen"]["triangles"].get<double>();
+            seen += without["triangles_seen"].get<double>();
         }
         CHECK(plain["summary"]["passed_per_seen"].get<double>() == doctest::Approx(passed / seen));
         CHECK(occluded["summary"]["passed_per_seen"] == plain["summary"]["passed_per_seen"]);
@@ -239,9 +242,9 @@ TEST_SUITE("cli/frames") {
         CHECK(says(run_cli(path + "--csv -").out, "triangles_seen,passed_per_seen,instances_seen"));
         // Not counted where it is not wanted, nor where nothing is drawn.
         const json none = run_cli(path + "--no-seen --json -").json();
-        CHECK(none["frames"][0]["seen"].is_null());
+        CHECK(none["frames"][0]["triangles_seen"].is_null());
         CHECK_FALSE(none["summary"].contains("passed_per_seen"));
-        CHECK(run_cli(path + "--no-draw --json -").json()["frames"][0]["seen"].is_null());
+        CHECK(run_cli(path + "--no-draw --json -").json()["frames"][0]["triangles_seen"].is_null());
         CHECK_FALSE(says(run_cli(path + "--no-seen --csv -").out, "seen"));
     }
 

@@ -35,7 +35,7 @@ bool is_of_the_frame(const std::string& name) {
 
 bool same_work(const json& a, const json& b) {
     for (const auto& [name, value] : a.items())
-        if (is_of_the_frame(name) && value != b[name]) return false;
+        if (is_of_the_frame(name) && !name.ends_with("seen") && value != b[name]) return false;
     return true;
 }
 
@@ -96,6 +96,8 @@ TEST_SUITE("viewer/files") {
                 const std::string& name = replayed.names[column];
                 if (!is_of_the_frame(name)) continue;
                 CAPTURE(name);
+                // The viewer does not count in every frame what is seen.
+                if (viewed.rows[i + 2][column].empty() && name.ends_with("seen")) continue;
                 CHECK(replayed.rows[i][column] == viewed.rows[i + 2][column]);
             }
         // The viewer shows the same again, and so does the key.
@@ -124,6 +126,10 @@ TEST_SUITE("viewer/files") {
                 const std::string& name = table.names[column];
                 const json& frame = exported["frames"][i];
                 const json value = name.rfind("gpu_", 0) == 0 ? frame["gpu"][name.substr(4)] : frame[name];
+                if (value.is_null()) {
+                    CHECK_MESSAGE(table.rows[i][column].empty(), name);
+                    continue;
+                }
                 CHECK_MESSAGE(std::stod(table.rows[i][column]) == doctest::Approx(value.get<double>()).epsilon(1e-3),
                               name);
             }

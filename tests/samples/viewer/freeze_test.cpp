@@ -31,6 +31,31 @@ TEST_SUITE("viewer/freeze") {
         CHECK(Pixels(scratch().file("outside.png")).different(Pixels(scratch().file("frozen.png"))) > 500);
         CHECK(picture(result, "thawed.png")["statistics"]["camera"] == picture(result, "thawed.png")["eye"]);
     }
+    TEST_CASE("what is seen is counted for each picture, from the eye that culls, and not where that is switched off") {
+        const ViewRun result = view({set(0, {{"panels", false}, {"paused", true}}),
+                                     shot(1, "before.png"),
+                                     {{"frame", 2}, {"key", "F"}},
+                                     {{"frame", 3}, {"key", "Home"}},
+                                     shot(4, "frozen.png"),
+                                     set(5, {{"occlude", true}, {"inset", true}}),
+                                     shot(6, "occluded.png"),
+                                     set(7, {{"seen", false}}),
+                                     shot(8, "off.png")},
+                                    {}, false);
+        check_clean(result);
+        const json& before = picture(result, "before.png")["statistics"];
+        REQUIRE(before["triangles_seen"].is_number());
+        CHECK(before["triangles_seen"].get<int>() > 0);
+        CHECK(before["triangles_seen"].get<int>() <= before["triangles_passed"].get<int>());
+        CHECK(before["instances_seen"].get<int>() <= before["visible"].get<int>());
+        for (const char* name : {"frozen.png", "occluded.png"})
+            for (const char* field : {"triangles_seen", "instances_seen"})
+                CHECK(picture(result, name)["statistics"][field] == before[field]);
+        CHECK(picture(result, "off.png")["statistics"]["triangles_seen"].is_null());
+        // Every thirtieth frame, and those of pictures.
+        CHECK(result.document["frames"][0]["triangles_seen"].is_number());
+        CHECK(result.document["frames"][2]["triangles_seen"].is_null());
+    }
     TEST_CASE("time stands still when paused, and steps frame by frame") {
         const ViewRun result = view({set(0, {{"panels", false}, {"paused", true}}),
                                      shot(1, "a.png"),
