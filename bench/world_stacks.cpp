@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <crofton/convex/query.hpp>
 #include <crofton/crofton.hpp>
+#include <cstdio>
+#include <cstdlib>
 #include <random>
 #include <vector>
 
@@ -10,6 +12,12 @@
 
 namespace crofton::bench {
 namespace {
+
+void expect(bool good, const char* what) {
+    if (good) return;
+    std::fprintf(stderr, "bench_world: %s failed\n", what);
+    std::exit(1);
+}
 
 enum class Motion { none, set_alike, one, all, all_jiggle };
 
@@ -37,7 +45,7 @@ class Crates {
             box.center = {apart * (i / 100) - 5.0, 0.5 + i % 10, apart * (i / 10 % 10) - 5.0};
             add(box, bodies ? &crate_ : nullptr);
         }
-        for (int update = 0; update < 5; ++update) must(world_.update().has_value(), "loading");
+        for (int update = 0; update < 5; ++update) expect(world_.update().has_value(), "loading");
     }
     double frame(Motion motion, int number) {
         std::uniform_real_distribution<double> off(-1e-4, 1e-4);
@@ -49,9 +57,9 @@ class Crates {
             if (motion == Motion::all) box.center.x += step;
             if (motion == Motion::all_jiggle)
                 for (int k = 0; k < 3; ++k) box.center[k] += off(random_);
-            must(world_.set_bound(objects_[i], box).has_value(), "a move");
+            expect(world_.set_bound(objects_[i], box).has_value(), "a move");
         }
-        return microseconds([&] { must(world_.update().has_value(), "an update"); });
+        return microseconds([&] { expect(world_.update().has_value(), "an update"); });
     }
     [[nodiscard]] std::size_t pairs() const { return world_.pairs().size(); }
 
@@ -59,7 +67,7 @@ class Crates {
     void add(const Obb& box, const convex::Body* body) {
         boxes_.push_back(box);
         objects_.push_back(world_.add({.bound = box}).value());
-        if (body != nullptr) must(world_.set_body(objects_.back(), body).has_value(), "a body");
+        if (body != nullptr) expect(world_.set_body(objects_.back(), body).has_value(), "a body");
     }
 
     convex::Body crate_ = convex::Body::box(glm::vec3(0.5f)).value(),

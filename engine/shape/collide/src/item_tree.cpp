@@ -249,7 +249,7 @@ void ItemTree::grow(std::size_t level, std::uint32_t block, const LaneBounds& bo
 
 // Seventeen children in two blocks, cut along the axis, or by size, where the sum of both blocks' extents is least.
 void ItemTree::split(std::size_t level, std::uint32_t block, const Entry& entry) {
-    constexpr std::size_t kCount = kBoxBlock + 1;
+    constexpr std::size_t kCount = kBoxBlock + 1, kPadded = kBoxBlock + 4;
     Entry entries[kCount], best[kCount];
     for (std::size_t lane = 0; lane < kBoxBlock; ++lane)
         entries[lane] = {level, levels_[level].children[block * kBoxBlock + lane],
@@ -260,19 +260,20 @@ void ItemTree::split(std::size_t level, std::uint32_t block, const Entry& entry)
     std::size_t order[kCount], best_order[kCount];
     for (std::size_t n = 0; n < kCount; ++n) best_order[n] = n;
     for (int axis = 0; axis < 4; ++axis) {
-        float keys[kCount];
-        for (std::size_t n = 0; n < kCount; ++n) {
-            const LaneBounds& bounds = entries[n].bounds;
+        float keys[kPadded];
+        for (std::size_t n = 0; n < kPadded; ++n) {
+            const LaneBounds& bounds = entries[std::min(n, kCount - 1)].bounds;
             keys[n] = axis < 3 ? bounds.low[axis] + bounds.high[axis] : extent_of(bounds);
         }
-        // Each one's place is how many come before it: no branch to guess.
-        for (std::size_t n = 0; n < kCount; ++n) {
-            std::size_t place = 0;
-            for (std::size_t m = 0; m < kCount; ++m)
-                place += static_cast<std::size_t>(keys[m] < keys[n]) +
-                         static_cast<std::size_t>((keys[m] == keys[n]) & (m < n));
-            order[place] = n;
+        // Each one's place is how many come before it: no branch to guess, and vectors of four.
+        std::int32_t places[kPadded] = {};
+        for (std::int32_t m = 0; m < static_cast<std::int32_t>(kCount); ++m) {
+            const float key = keys[m];
+            for (std::int32_t n = 0; n < static_cast<std::int32_t>(kPadded); ++n)
+                places[n] += static_cast<std::int32_t>(key < keys[n]) |
+                             (static_cast<std::int32_t>(key == keys[n]) & static_cast<std::int32_t>(m < n));
         }
+        for (std::size_t n = 0; n < kCount; ++n) order[places[n]] = n;
         float extent_from[kCount + 1];
         LaneBounds bounds = kEmpty;
         for (std::size_t n = kCount; n-- > kFewestAfterSplit;) {

@@ -139,9 +139,11 @@ void BodyContacts::list_candidates() {
         neighbors_.visit_pairs_beside(object, add_pair);
     }
     for (const auto* const pairs : {&joined_, &parted_})
-        for (const PairNeighbors::Pair& pair : *pairs)
-            for (const std::uint32_t object : {pair.first, pair.second})
-                for (const std::uint32_t partner : neighbors_.partners_of(object)) add_pair(object, partner);
+        for (const PairNeighbors::Pair& pair : *pairs) {
+            if (pairs == &joined_) add_pair(pair.first, pair.second);
+            neighbors_.visit_pairs_at(pair.first, pair.second, add_pair);
+            neighbors_.visit_pairs_at(pair.second, pair.first, add_pair);
+        }
     std::sort(candidates_.begin(), candidates_.end());
     candidates_.erase(std::unique(candidates_.begin(), candidates_.end()), candidates_.end());
     std::size_t place = 0;

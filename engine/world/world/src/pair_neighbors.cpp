@@ -31,6 +31,7 @@ void PairNeighbors::add(const Pair& pair) {
         }
         Vector<std::uint32_t>& partners = slots_[slot].partners;
         partners.insert(std::lower_bound(partners.begin(), partners.end(), partner), partner);
+        if (partners.size() == kCrowd + 1) crowds_.push_back(object);
     };
     insert(pair.first, pair.second);
     insert(pair.second, pair.first);
@@ -40,6 +41,7 @@ void PairNeighbors::remove(const Pair& pair) {
     const auto erase = [&](std::uint32_t object, std::uint32_t partner) {
         Vector<std::uint32_t>& partners = slots_[slot_of_[object]].partners;
         partners.erase(std::lower_bound(partners.begin(), partners.end(), partner));
+        if (partners.size() == kCrowd) crowds_.erase(std::find(crowds_.begin(), crowds_.end(), object));
         if (!partners.empty()) return;
         free_.push_back(slot_of_[object]);
         slot_of_[object] = kNoIndex;

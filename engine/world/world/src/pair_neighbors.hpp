@@ -36,18 +36,27 @@ class PairNeighbors {
     // After the object has come into a pair, or moved. Its box is taken wider by `margin`, and by what counts as flush.
     void place(std::uint32_t object, const Obb& box, double margin, const std::optional<RigidTransform>& pose);
     void find(const Pair& pair, Neighbors& neighbors) const;
-    // Visits the pairs that `object` may lie beside.
+    // Visits the pairs that `object` may lie beside, or might have before it moved or parted; some of them twice.
     template <class Visit>
     void visit_pairs_beside(std::uint32_t object, Visit visit) const {
-        const auto own = partners_of(object);
-        for (const std::uint32_t partner : own) {
-            const auto meeting = partners_of(partner);
-            for (const std::uint32_t other : meeting) {
-                if (other == object) continue;
-                const bool crowd = meeting.size() > kCrowd && partners_of(other).size() < meeting.size();
-                if (!crowd || std::binary_search(own.begin(), own.end(), other)) visit(partner, other);
-            }
+        for (const std::uint32_t partner : partners_of(object)) visit_pairs_at(partner, object, visit);
+    }
+    // The same, of the partner's pairs.
+    template <class Visit>
+    void visit_pairs_at(std::uint32_t partner, std::uint32_t object, Visit visit) const {
+        const auto meeting = partners_of(partner);
+        const auto visit_other = [&](std::uint32_t other) {
+            if (other != object && other != partner) visit(partner, other);
+        };
+        if (meeting.size() <= kCrowd) {
+            for (const std::uint32_t other : meeting) visit_other(other);
+            return;
         }
+        const auto visit_if_met = [&](std::uint32_t other) {
+            if (std::binary_search(meeting.begin(), meeting.end(), other)) visit_other(other);
+        };
+        for (const std::uint32_t other : partners_of(object)) visit_if_met(other);
+        for (const std::uint32_t other : crowds_) visit_if_met(other);
     }
 
   private:
@@ -65,7 +74,8 @@ class PairNeighbors {
 
     Vector<std::uint32_t> slot_of_;  // by object
     Vector<Slot> slots_;
-    Vector<std::uint32_t> free_;  // slots
+    Vector<std::uint32_t> free_;    // slots
+    Vector<std::uint32_t> crowds_;  // objects that meet more than kCrowd
 };
 
 }  // namespace crofton::world
