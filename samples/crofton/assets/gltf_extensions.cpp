@@ -16,16 +16,16 @@ constexpr std::array<std::string_view, 5> kRead = {"KHR_mesh_quantization", "EXT
                                                    "KHR_node_visibility", "KHR_materials_unlit",
                                                    "KHR_materials_emissive_strength"};
 
+// What any vendor's names go on with.
+constexpr std::array<std::string_view, 4> kAnyAppearance = {"texture_", "materials_", "lights_", "xmp"};
 // Beginnings of names.
-constexpr std::array<std::string_view, 34> kAppearance = {
-    // textures, materials, lights
-    "KHR_texture_", "EXT_texture_", "KHR_materials_", "EXT_materials_", "ADOBE_materials_", "NV_materials_",
-    "KHR_technique", "KHR_lights_", "EXT_lights_", "KHR_environment_map", "MOZ_lightmap",
+constexpr std::array<std::string_view, 26> kAppearance = {
+    "KHR_technique", "KHR_environment_map", "MOZ_lightmap",
     // what vertices, faces and instances mean, and which edges are drawn as lines
     "EXT_mesh_features", "EXT_instance_features", "EXT_feature_metadata", "EXT_structural_metadata",
     "EXT_mesh_manifold", "EXT_mesh_primitive_edge_visibility", "CESIUM_primitive_outline", "FB_",
     // metadata and behaviour; coarser levels of detail (MSFT_lod) are no children of the node that is shown
-    "KHR_xmp", "KHR_audio", "KHR_animation_", "KHR_interactivity", "KHR_physics_", "KHR_implicit_shapes",
+    "KHR_audio", "KHR_animation_", "KHR_interactivity", "KHR_physics_", "KHR_implicit_shapes", "KHR_collision_shapes",
     "KHR_node_hoverability", "KHR_node_selectability", "AGI_", "VRM", "OMI_", "MSFT_", "MOZ_hubs_", "GODOT_",
     "GRIFFEL_"};
 
@@ -107,8 +107,14 @@ ExtensionUse use_of(std::string_view extension) {
     if (decodes(extension)) return ExtensionUse::decoded;
     if (decoder_package(extension)) return ExtensionUse::no_decoder;
     const auto known = [&](std::string_view name) { return begins_with(extension, name); };
-    return std::any_of(kAppearance.begin(), kAppearance.end(), known) ? ExtensionUse::appearance
-                                                                      : ExtensionUse::unknown;
+    const auto after_vendor = [&](std::string_view name) {
+        const std::size_t end = extension.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789");
+        return end != std::string_view::npos && extension[end] == '_' && begins_with(extension.substr(end + 1), name);
+    };
+    return std::any_of(kAppearance.begin(), kAppearance.end(), known) ||
+                   std::any_of(kAnyAppearance.begin(), kAnyAppearance.end(), after_vendor)
+               ? ExtensionUse::appearance
+               : ExtensionUse::unknown;
 }
 
 Result<std::vector<std::string>> check_extensions(const GltfDocument& document) {
