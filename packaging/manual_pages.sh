@@ -15,6 +15,12 @@ page() { # NAME ONE-LINE-TEXT ARGUMENT…
     rm "$folder/run"
 }
 page crofton "frustum culling, collision detection and triangle counts by integral geometry"
-"$program" --help | sed -n '/^Subcommands:/,$s/^  \([a-z]*\)  *\(.*\)/\1 \2/p' | while read -r command text; do
+commands_of() { # ARGUMENT…: a name and a text on each line
+    "$program" "$@" --help | sed -n '/^Subcommands:/,$s/^  \([a-z]*\)  *\(.*\)/\1 \2/p'
+}
+commands_of | while read -r command text; do
     page "crofton-$command" "$text" "$command"
+done
+commands_of study | while read -r command text; do
+    page "crofton-study-$command" "$text" study "$command"
 done

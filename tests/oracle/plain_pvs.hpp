@@ -77,7 +77,7 @@ inline bool span_in(const pvs::ConvexCell& cell, const glm::dvec3& origin, const
 
 using Pairs = std::set<std::pair<std::size_t, std::uint32_t>>;  // cell, object
 
-// The lines are relative to the subject's origin.
+// The lines are relative to the geometry's origin.
 inline void add_witnessed(const pvs::BakeGeometry& geometry, const pvs::Cells& cells, occlude::Sides sides,
                           const Line& line, Pairs& pairs) {
     const auto hits = crossings(geometry, line);

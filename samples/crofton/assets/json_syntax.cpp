@@ -55,8 +55,7 @@ Result<void> check_json_shape(std::string_view text, const ReadLimits& limits) {
         values += c == ',' || c == '{' || c == '[';
         if ((c == '{' || c == '[') && ++depth > limits.nesting)
             return fail(ErrorCode::budget_exceeded, kNoItem,
-                        "its JSON is nested deeper than " + std::to_string(limits.nesting) +
-                            ", the limit: --max-nesting raises it");
+                        "its JSON is nested deeper than " + std::to_string(limits.nesting) + ", the limit");
         if ((c == '}' || c == ']') && depth > 0) --depth;
     }
     if (values / kValuesPerNode <= limits.nodes) return {};

@@ -9,7 +9,8 @@
 
 namespace crofton::assets {
 
-// The defaults keep a small hostile file below 1 GB of memory. An error names the limit and the option that raises it.
+// The defaults keep a small hostile file below 1 GB of memory. An error names the limit and, but for nesting, the
+// option that raises it.
 struct ReadLimits {
     std::uint64_t bytes = std::uint64_t{1} << 30;      // of a file with all that it refers to
     std::uint64_t triangles = std::uint64_t{1} << 23;  // of all meshes; vertices may be three times as many

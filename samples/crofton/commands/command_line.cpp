@@ -53,10 +53,23 @@ std::string did_you_mean(const std::string& word) {
     return word.empty() ? std::string{} : "; did you mean '" + word + "'?";
 }
 
-// The sub-command typed, or the program itself.
-const CLI::App& chosen(const CLI::App& app) {
-    const auto parsed = app.get_subcommands();
-    return parsed.empty() ? app : *parsed.front();
+// The sub-command typed, or the program itself, and the words that lead to it.
+struct Chosen {
+    const CLI::App* command;
+    std::size_t depth = 0;
+    std::string name = "crofton";
+};
+Chosen chosen(const CLI::App& app) {
+    Chosen result{&app};
+    for (auto parsed = app.get_subcommands(); !parsed.empty(); parsed = result.command->get_subcommands()) {
+        result.command = parsed.front();
+        ++result.depth;
+        result.name += " " + result.command->get_name();
+    }
+    return result;
+}
+bool is_group(const CLI::App& command) {
+    return !command.get_subcommands({}).empty();
 }
 
 std::vector<std::string> option_names(const CLI::App& command) {
@@ -102,17 +115,28 @@ std::string of_conversion(const CLI::App& command, const std::string& what) {
     return name + ": '" + what.substr(equals + 3) + "'" + wanted;
 }
 
+// Where another group has a sub-command of this name, how to call it.
+std::string elsewhere(const CLI::App& app, const std::string& word) {
+    for (const CLI::App* group : app.get_subcommands({}))
+        for (const CLI::App* command : group->get_subcommands({}))
+            if (command->get_name() == word) return ": it is 'crofton " + group->get_name() + " " + word + "'";
+    return {};
+}
+
 std::string reason(const CLI::App& app, const CLI::ParseError& error, const std::vector<std::string>& arguments) {
-    const CLI::App& command = chosen(app);
-    if (&command == &app && !arguments.empty()) {
-        const std::string& first = arguments.front();
+    const Chosen typed = chosen(app);
+    const CLI::App& command = *typed.command;
+    if (is_group(command) && arguments.size() > typed.depth) {
+        const std::string& first = arguments[typed.depth];
         if (first[0] == '-')
-            return "there is no option '" + first + "'" + did_you_mean(nearest_word(first, option_names(app)));
-        return "there is no sub-command '" + first + "'" + did_you_mean(nearest_word(first, command_names(app)));
+            return "there is no option '" + first + "'" + did_you_mean(nearest_word(first, option_names(command)));
+        const std::string place = elsewhere(app, first);
+        return "there is no sub-command '" + first + "'" +
+               (place.empty() ? did_you_mean(nearest_word(first, command_names(command))) : place);
     }
     if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) return unexpected(command, arguments);
     if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) return of_conversion(command, error.what());
-    if (&command == &app) return "a sub-command is missing";
+    if (is_group(command)) return "a sub-command is missing";
     const std::string what = error.what();
     const std::size_t required = what.find(" is required");
     return what[0] == '-' || required == std::string::npos ? what
@@ -120,10 +144,9 @@ std::string reason(const CLI::App& app, const CLI::ParseError& error, const std:
 }
 
 std::string usage_error(const CLI::App& app, const CLI::ParseError& error, const std::vector<std::string>& arguments) {
-    const CLI::App& command = chosen(app);
-    const std::string name = &command == &app ? "crofton" : "crofton " + command.get_name();
-    return "crofton: " + reason(app, error, arguments) + "\n'" + name + " --help' lists " +
-           (&command == &app ? "the sub-commands.\n" : "its options, with examples.\n");
+    const Chosen typed = chosen(app);
+    return "crofton: " + reason(app, error, arguments) + "\n'" + typed.name + " --help' lists " +
+           (is_group(*typed.command) ? "the sub-commands.\n" : "its options, with examples.\n");
 }
 
 // After all sub-commands are added: options that take a number without sign refuse one with a minus, and one that has
@@ -137,9 +160,11 @@ void demand_whole_numbers(CLI::App& app) {
             return read.ec == std::errc{} && read.ptr == end ? std::string{} : "'" + text + "'" + kNotWhole;
         },
         "");
-    for (CLI::App* command : app.get_subcommands({}))
+    for (CLI::App* command : app.get_subcommands({})) {
         for (CLI::Option* option : command->get_options())
             if (option->get_type_name().compare(0, 4, "UINT") == 0) option->check(whole);
+        demand_whole_numbers(*command);
+    }
 }
 
 constexpr const char* kWritableFile = "FILE";  // the type of options that name a file to write
@@ -349,6 +374,14 @@ CommandLine::~CommandLine() = default;
 
 Command CommandLine::command(const char* name, const char* description) {
     return {app_->add_subcommand(name, description), &status_};
+}
+
+Command CommandLine::study_command(const char* name, const char* description) {
+    if (study_ == nullptr) {
+        study_ = app_->add_subcommand("study", "What the paper claims, on your data: measures, lines, light");
+        study_->require_subcommand(1);
+    }
+    return {study_->add_subcommand(name, description), &status_};
 }
 
 int CommandLine::run(int argc, char** argv) {

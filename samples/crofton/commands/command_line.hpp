@@ -79,6 +79,8 @@ class CommandLine {
     CommandLine& operator=(const CommandLine&) = delete;
 
     [[nodiscard]] Command command(const char* name, const char* description);
+    // `crofton study NAME`: for those who study the paper, not for those who make a game.
+    [[nodiscard]] Command study_command(const char* name, const char* description);
 
     // Parses, and runs the sub-command that was chosen. Where something was mistyped: a line to stderr that says which
     // argument is wrong and why, a line that says where the right ones are listed, and kBadInput.
@@ -86,6 +88,7 @@ class CommandLine {
 
   private:
     std::unique_ptr<CLI::App> app_;
+    CLI::App* study_ = nullptr;
     int status_ = kSuccess;
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `crofton hierarchy`: chains of bounds of the plane, each the best given the ones before it: section 4 of the paper.
+// `crofton study hierarchy`: chains of bounds of the plane, each the best given the ones before it: section 4 of the
+// paper.
 #include <algorithm>
 #include <cmath>
 #include <crofton/fit/fit.hpp>
@@ -181,7 +182,7 @@ Result<int> run_hierarchy(const HierarchyOptions& options) {
 void add_hierarchy_command(CommandLine& line) {
     auto options = std::make_shared<HierarchyOptions>();
     Command command =
-        line.command("hierarchy", "Bounds of the plane, each the best given the ones before it, as in the paper");
+        line.study_command("hierarchy", "Bounds of the plane, each the best given the ones before it, as in the paper");
     command.footer(
         "A bound is tested only by lines that hit all its ancestors. The best one given these is not the tightest: "
         "the\n"
@@ -190,8 +191,8 @@ void add_hierarchy_command(CommandLine& line) {
         "40 % of the improper tests. Three chains an object: circles; a circle, then rectangles; a circle, then boxes\n"
         "with sides along the axes. Predicted by (8), (9) or (3) of docs/theory.md, measured by random lines.\n\n"
         "Examples:\n"
-        "  crofton hierarchy --svg chains.svg\n"
-        "  crofton hierarchy counties.poly --levels 4\n");
+        "  crofton study hierarchy --svg chains.svg\n"
+        "  crofton study hierarchy counties.poly --levels 4\n");
     command.option("file", options->file, "Polygons, of which the first four are taken; the paper's example if absent");
     command.option("--levels", options->levels, "Bounds in a chain").whole_between(1, 8).show_default();
     command.option("--lines", options->lines, "Random lines a chain")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `crofton lines`: the ways to draw global lines, compared on one scene.
+// `crofton study lines`: the ways to draw global lines, compared on one scene.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -146,7 +146,7 @@ Result<void> run_lines(const LinesOptions& options) {
 
 void add_lines_command(CommandLine& line) {
     auto options = std::make_shared<LinesOptions>();
-    Command command = line.command("lines", "Compare the ways to draw global lines on a scene");
+    Command command = line.study_command("lines", "Compare the ways to draw global lines on a scene");
     command.footer(
         "Each way of drawing uniform lines counts the scene's surface S, a number known exactly, as\n"
         "S = crossings a line * F / 2, where F is the surface of the body that the lines fill (docs/theory.md).\n"
@@ -154,11 +154,11 @@ void add_lines_command(CommandLine& line) {
         "relative error of an estimate of S; 1 / (error^2 seconds), which does not depend on how many lines\n"
         "were spent (efficiency).\n\n"
         "Examples:\n"
-        "  crofton lines                       the built-in town\n"
-        "  crofton lines level.wad --map MAP07\n"
-        "  crofton lines room --json -\n"
-        "  crofton lines --factors             form factors of Howell's standard pairs\n"
-        "  crofton lines --factors room town   complexity: mean crossings, and mutual information in bits\n");
+        "  crofton study lines                       the built-in town\n"
+        "  crofton study lines level.wad --map MAP07\n"
+        "  crofton study lines room --json -\n"
+        "  crofton study lines --factors             form factors of Howell's standard pairs\n"
+        "  crofton study lines --factors room town   complexity: mean crossings, and mutual information in bits\n");
     command.option("scenes", options->scenes,
                    "town (the default), room, or a .glb, .gltf, .obj or .wad file; several with --factors");
     const Option blocks = command

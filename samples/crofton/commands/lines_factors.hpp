@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `crofton lines --factors`: form factors by global lines, of Howell's standard pairs or of a scene.
+// `crofton study lines --factors`: form factors by global lines, of Howell's standard pairs or of a scene.
 #pragma once
 #include <crofton/core/error.hpp>
 #include <cstdint>

@@ -11,21 +11,21 @@ int main(int argc, char** argv) {
     using namespace crofton::cli;
     CommandLine line("Frustum culling, collision detection and triangle counts, chosen by integral geometry.",
                      crofton::version_string());
-    add_fit_command(line);
-    add_bake_command(line);
-    add_collide_command(line);
     add_frames_command(line);
-    add_hierarchy_command(line);
-    add_lines_command(line);
-    add_measure_command(line);
-    add_merge_command(line);
-    add_pvs_command(line);
-    add_radiosity_command(line);
-    add_triangulate_command(line);
-    add_verify_command(line);
 #if defined(CROFTON_VIEWER)
     add_view_command(line);
 #endif
+    add_fit_command(line);
+    add_collide_command(line);
+    add_triangulate_command(line);
+    add_bake_command(line);
+    add_pvs_command(line);
+    add_merge_command(line);
+    add_verify_command(line);
+    add_measure_command(line);
+    add_lines_command(line);
+    add_hierarchy_command(line);
+    add_radiosity_command(line);
     const int status = line.run(argc, argv);
     // What was printed may still be in the buffer, and a full disk is told only when it goes out.
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;

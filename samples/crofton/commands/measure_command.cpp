@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `crofton measure`: Crofton's formula on one's own mesh. What random lines count, beside what the mesh's geometry
-// says.
+// `crofton study measure`: Crofton's formula on one's own mesh. What random lines count, beside what the mesh's
+// geometry says.
 #include <algorithm>
 #include <cmath>
 #include <crofton/geometry/mesh.hpp>
@@ -148,8 +148,8 @@ Result<void> run_measure(const MeasureOptions& options) {
 
 void add_measure_command(CommandLine& line) {
     auto options = std::make_shared<MeasureOptions>();
-    Command command =
-        line.command("measure", "Crofton's formula on a mesh: its area, volume and curvature, exact and by lines");
+    Command command = line.study_command(
+        "measure", "Crofton's formula on a mesh: its area, volume and curvature, exact and by lines");
     command.footer(
         std::string(
             "Columns: what is measured; what is counted; the value that follows from the triangles; the estimate, its\n"
@@ -157,9 +157,9 @@ void add_measure_command(CommandLine& line) {
             "the\n"
             "file's unit.\n\n"
             "Examples:\n"
-            "  crofton measure bunny.obj\n"
-            "  crofton measure room --lines 1000000\n"
-            "  crofton measure level.wad --json -\n\n") +
+            "  crofton study measure bunny.obj\n"
+            "  crofton study measure room --lines 1000000\n"
+            "  crofton study measure level.wad --json -\n\n") +
         kSceneFormats);
     command
         .option("file", options->file,

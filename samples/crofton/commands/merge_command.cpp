@@ -56,7 +56,7 @@ void add_merge_command(CommandLine& line) {
     Command command = line.command("merge", "Add up the parts of a bake that ran as shards");
     command
         .option("parts", options->parts,
-                "Files that `crofton pvs` or `crofton radiosity` wrote with --shard i/n --state FILE")
+                "Files that `crofton pvs` or `crofton study radiosity` wrote with --shard i/n --state FILE")
         .required();
     command.option("--out", options->out, "The sum: the bytes that one run would have saved")
         .writable_file()

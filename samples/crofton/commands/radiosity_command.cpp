@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `crofton radiosity`: light in a scene, to a target error, baked into vertex colours.
+// `crofton study radiosity`: light in a scene, to a target error, baked into vertex colours.
 #include <chrono>
 #include <cmath>
 #include <crofton/core/executor.hpp>
@@ -284,7 +284,7 @@ Result<int> run_radiosity(const RadiosityOptions& options) {
 
 void add_radiosity_command(CommandLine& line) {
     auto options = std::make_shared<RadiosityOptions>();
-    Command command = line.command("radiosity", "Light a scene by global lines and bake it into vertex colours");
+    Command command = line.study_command("radiosity", "Light a scene by global lines and bake it into vertex colours");
     command.footer(
         "Colours are reflectances; above 0.9, white paint's, they count as 0.9, so that light ends. Triangles of no "
         "area are "
@@ -292,13 +292,14 @@ void add_radiosity_command(CommandLine& line) {
         "Light comes from the sun and the sky, from emission in glTF and OBJ materials, and from the town's and room's "
         "lamps.\n\n"
         "Examples:\n"
-        "  crofton radiosity room --edge 0.2 --error 0.02 --out room.glb --png room.png\n"
-        "  crofton radiosity town --lines 20000000 --checkpoint town.state --out town.glb\n"
-        "  crofton radiosity room --runs 64 --shard 0/2 --state part0    half of the runs; the others: 1/2, part1\n"
+        "  crofton study radiosity room --edge 0.2 --error 0.02 --out room.glb --png room.png\n"
+        "  crofton study radiosity town --lines 20000000 --checkpoint town.state --out town.glb\n"
+        "  crofton study radiosity room --runs 64 --shard 0/2 --state part0    half of the runs; the others: 1/2, "
+        "part1\n"
         "  crofton merge part0 part1 --out whole.state                   then both together\n"
-        "  crofton radiosity room --runs 64 --state whole.state --out room.glb\n"
-        "  crofton radiosity room --light-field lines.png --stored-lines 16000000\n"
-        "  crofton radiosity level.wad --map MAP01 --method local --json -\n");
+        "  crofton study radiosity room --runs 64 --state whole.state --out room.glb\n"
+        "  crofton study radiosity room --light-field lines.png --stored-lines 16000000\n"
+        "  crofton study radiosity level.wad --map MAP01 --method local --json -\n");
     command
         .option(
             "scene", options->scene,

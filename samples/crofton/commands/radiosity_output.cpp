@@ -216,7 +216,7 @@ Result<void> write_glb(const std::string& path, const TriangleMesh& whole) {
         primitives.push_back(
             {{"attributes", {{"POSITION", position}, {"COLOR_0", color}}}, {"indices", indices}, {"material", 0}});
     }
-    const Json document = {{"asset", {{"version", "2.0"}, {"generator", "crofton radiosity"}}},
+    const Json document = {{"asset", {{"version", "2.0"}, {"generator", "crofton study radiosity"}}},
                            {"extensionsUsed", {"KHR_materials_unlit"}},
                            {"scene", 0},
                            {"scenes", {{{"nodes", {0}}}}},

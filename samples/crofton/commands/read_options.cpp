@@ -14,9 +14,6 @@ void add_read_options(Command& command, ReadOptions& options) {
     whole("--max-triangles", limits.triangles, "Refuse a file of more triangles, or points of polygons");
     whole("--max-pixels", limits.pixels, "Leave out images of more pixels");
     whole("--max-nodes", limits.nodes, "Refuse a file of more nodes or instances");
-    command.option("--max-nesting", limits.nesting, "Refuse JSON that is nested deeper")
-        .whole_between(1, 10'000)
-        .show_default();
     command.option("--max-seconds", limits.seconds, "Give up reading after so long").positive().show_default();
     command.flag("--strict", options.strict, "Refuse a file of which anything would be left out");
 }

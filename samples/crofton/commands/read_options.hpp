@@ -24,7 +24,7 @@ inline constexpr const char* kSceneFormats =
     "  .obj         faces of any number of corners, concave ones and keyholes too; materials' colours\n"
     "  .wad         levels of DOOM, of Hexen and in text (UDMF)\n";
 
-// --max-bytes, --max-triangles, --max-pixels, --max-nodes, --max-nesting, --max-seconds and --strict. `options` must
+// --max-bytes, --max-triangles, --max-pixels, --max-nodes, --max-seconds and --strict. `options` must
 // outlive the parsing.
 void add_read_options(Command& command, ReadOptions& options);
 

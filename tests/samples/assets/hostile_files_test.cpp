@@ -154,7 +154,7 @@ TEST_SUITE("assets/hostile_files") {
         CHECK(says(load(asset, options), "--max-bytes"));
         options.limits = {};
         options.limits.nesting = 3;
-        CHECK(says(load(asset, options), "--max-nesting"));
+        CHECK(says(load(asset, options), "nested deeper than 3"));
         options.limits = {};
         options.limits.seconds = -1.0;
         CHECK(says(load(asset, options), "--max-seconds"));

@@ -63,8 +63,8 @@ TEST_SUITE("cli/bake") {
             CHECK(a["visible_ids"] == b["visible_ids"]);
             CHECK(a["camera"] == b["camera"]);
         }
-        const CliRun area = run_cli("measure room --lines 1000 --json -"),
-                     same = run_cli("measure " + baked + " --lines 1000 --json -");
+        const CliRun area = run_cli("study measure room --lines 1000 --json -"),
+                     same = run_cli("study measure " + baked + " --lines 1000 --json -");
         REQUIRE_MESSAGE(same.status == 0, same.err);
         CHECK(area.json()["rows"] == same.json()["rows"]);
         const CliRun street = run_cli("frames " + baked + " --frames 4 --camera street --no-draw --occlude --json -");

@@ -34,7 +34,9 @@ expect() {
 }
 
 expect frames crofton fr
-expect 'measure merge' crofton me
+expect merge crofton me
+expect measure crofton study me
+expect '--lines' crofton study measure room --li
 expect '--help --version' crofton --
 expect '' crofton nothing
 expect '--trace --tree' crofton frames --tr

@@ -86,8 +86,8 @@ TEST_SUITE("cli/faults") {
     TEST_CASE("limits are options of every sub-command that reads files, and the message names the option") {
         const std::string obj = scratch().file("large.obj");
         write_contents(obj, "v 0 0 0\nv 1 0 0\nv 1 1 1\nv 0 1 0\nf 1 2 3\nf 1 3 4\n");
-        for (const char* command :
-             {"frames --no-draw", "bake -o /dev/null", "radiosity", "lines", "measure", "triangulate", "fit"}) {
+        for (const char* command : {"frames --no-draw", "bake -o /dev/null", "study radiosity", "study lines",
+                                    "study measure", "triangulate", "fit"}) {
             CAPTURE(command);
             const CliRun run = run_cli(std::string(command) + " '" + obj + "' --max-bytes 10");
             CHECK(run.status == 2);
@@ -99,8 +99,8 @@ TEST_SUITE("cli/faults") {
         CHECK(tells(run_cli("triangulate '" + poly + "' --max-triangles 3").err, "--max-triangles"));
         const std::string deep = scratch().file("deep.json");
         write_contents(deep, std::string(300, '[') + std::string(300, ']'));
-        CHECK(tells(run_cli("triangulate '" + deep + "'").err, "--max-nesting"));
-        CHECK(tells(run_cli("frames room --no-draw --camera '" + deep + "' --max-nesting 100").err, "--max-nesting"));
+        CHECK(tells(run_cli("triangulate '" + deep + "'").err, "nested deeper than 200"));
+        CHECK(tells(run_cli("frames room --no-draw --camera '" + deep + "'").err, "nested deeper than 200"));
     }
 
     TEST_CASE("--strict refuses a file of which something is left out") {
@@ -174,9 +174,9 @@ TEST_SUITE("cli/faults") {
     TEST_CASE("radiosity and triangulate, interrupted, write what they have") {
         const std::string folder = fresh_folder("long");
         const std::string glb = folder + "/lit.glb", state = folder + "/state";
-        const Child light(
-            {"radiosity", "room", "--edge", "0.5", "--lines", "1000000000000", "--out", glb, "--checkpoint", state},
-            "/dev/null");
+        const Child light({"study", "radiosity", "room", "--edge", "0.5", "--lines", "1000000000000", "--out", glb,
+                           "--checkpoint", state},
+                          "/dev/null");
         for (int i = 0; i < 3000 && !std::filesystem::exists(state); ++i)
             std::this_thread::sleep_for(std::chrono::milliseconds(10));
         light.signal(SIGINT);

@@ -10,9 +10,10 @@ TEST_SUITE("cli/hierarchy") {
         write_contents(scratch().file("chain.obj"), "v 0 0 0\n");
         write_contents(scratch().file("chain_nan.poly"), "P a 1\n3 0 0 1 nan 2 2\n");
         for (const std::string& arguments :
-             {std::string("hierarchy --levels 0"), std::string("hierarchy --lines 1"),
-              "hierarchy '" + scratch().file("chain.obj") + "'", "hierarchy '" + scratch().file("missing.poly") + "'",
-              "hierarchy '" + scratch().file("chain_nan.poly") + "'"}) {
+             {std::string("study hierarchy --levels 0"), std::string("study hierarchy --lines 1"),
+              "study hierarchy '" + scratch().file("chain.obj") + "'",
+              "study hierarchy '" + scratch().file("missing.poly") + "'",
+              "study hierarchy '" + scratch().file("chain_nan.poly") + "'"}) {
             CAPTURE(arguments);
             const CliRun run = run_cli(arguments);
             CHECK(run.status == 2);
@@ -22,7 +23,7 @@ TEST_SUITE("cli/hierarchy") {
 
     TEST_CASE(
         "the paper's example: the second circle saves 40.3 percent, random lines agree, the picture has all chains") {
-        const CliRun run = run_cli("hierarchy --lines 200000 --json -");
+        const CliRun run = run_cli("study hierarchy --lines 200000 --json -");
         REQUIRE(run.status == 0);
         const auto document = run.json();
         const auto& circles = document.at("chains")[0].at("levels");
@@ -36,7 +37,7 @@ TEST_SUITE("cli/hierarchy") {
             const auto& boxes = document.at("chains")[3 * object + 2].at("levels");
             CHECK(rectangles[1].at("improper").get<double>() <= boxes[1].at("improper").get<double>() + 1e-8);
         }
-        const CliRun drawn = run_cli("hierarchy --lines 1000 --svg -");
+        const CliRun drawn = run_cli("study hierarchy --lines 1000 --svg -");
         CHECK(drawn.out.rfind("<svg", 0) == 0);
         CHECK(drawn.out.find("a triangle: boxes") != std::string::npos);
         CHECK(drawn.out.find(">level 3<") != std::string::npos);

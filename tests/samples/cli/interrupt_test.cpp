@@ -98,9 +98,9 @@ TEST_SUITE("cli/interrupt") {
         const std::vector<std::string> commands[] = {
             {"bake", "town", "--instances", "900000", "-o", out},
             {"frames", "town", "--instances", "1000000", "--no-draw", "--json", out},
-            {"measure", "room", "--lines", "1000000000000", "--json", out},
-            {"lines", "room", "--blocks", "100000", "--json", out},
-            {"hierarchy", "--lines", "60000000000", "--json", out},
+            {"study", "measure", "room", "--lines", "1000000000000", "--json", out},
+            {"study", "lines", "room", "--blocks", "100000", "--json", out},
+            {"study", "hierarchy", "--lines", "60000000000", "--json", out},
             {"verify", "--trials", "1000000000", "--json", out},
             {"triangulate", ring_file(), "--work-limit", "1e15", "--svg", out},
             {"pvs", "town", "--cells", "400x4x400", "--epsilon", "1e-6", "--threads", "2"}};
@@ -139,11 +139,13 @@ TEST_SUITE("cli/interrupt") {
     TEST_CASE("radiosity drops the run that it is in and writes the light of those before, if there are any") {
         const std::string folder = fresh("light");
         const std::string glb = folder + "/lit.glb";
-        const Ended first = end_after({"radiosity", "town", "--edge", "0.5", "--out", glb}, milliseconds(4000), SIGINT);
+        const Ended first =
+            end_after({"study", "radiosity", "town", "--edge", "0.5", "--out", glb}, milliseconds(4000), SIGINT);
         check_ended(first);
         CHECK_FALSE(std::filesystem::exists(glb));
-        const Ended later = end_after({"radiosity", "room", "--edge", "0.5", "--lines", "1000000000000", "--out", glb},
-                                      milliseconds(4000), SIGTERM);
+        const Ended later =
+            end_after({"study", "radiosity", "room", "--edge", "0.5", "--lines", "1000000000000", "--out", glb},
+                      milliseconds(4000), SIGTERM);
         check_ended(later);
         CHECK(later.err.find("radiosity: 0 % after 2 s") != std::string::npos);
         CHECK(contents_of(glb).substr(0, 4) == "glTF");
@@ -162,11 +164,12 @@ TEST_SUITE("cli/interrupt") {
     }
 
     TEST_CASE("what takes longer than two seconds says how long it has been at it, on standard error") {
-        const Ended ended = end_after({"measure", "room", "--lines", "1000000000000"}, milliseconds(2600), SIGINT);
+        const Ended ended =
+            end_after({"study", "measure", "room", "--lines", "1000000000000"}, milliseconds(2600), SIGINT);
         CHECK(ended.err.find("crofton: measure: 2 s\n") == 0);
         CHECK(ended.out.empty());
         // What is done sooner says nothing.
-        CHECK(run_cli("measure room --lines 1000").err == "");
+        CHECK(run_cli("study measure room --lines 1000").err == "");
     }
 
     TEST_CASE("a signal that comes twice at once, as `timeout` sends it, is one: what there is is written") {

@@ -10,8 +10,9 @@ using namespace crofton::test;
 
 TEST_SUITE("cli/lines") {
     TEST_CASE("a scene that is missing, several without --factors and too many patches are bad usage") {
-        for (const char* arguments : {"lines /no/such/scene.obj", "lines room town", "lines --factors --patches 1",
-                                      "lines --factors /no/such/scene.glb", "lines --factors --blocks 0"}) {
+        for (const char* arguments :
+             {"study lines /no/such/scene.obj", "study lines room town", "study lines --factors --patches 1",
+              "study lines --factors /no/such/scene.glb", "study lines --factors --blocks 0"}) {
             CAPTURE(arguments);
             const CliRun run = run_cli(arguments);
             CHECK(run.status == 2);
@@ -22,7 +23,7 @@ TEST_SUITE("cli/lines") {
     TEST_CASE("estimates of two seeds share no draw") {
         // Crossings per line of each method. The room is the same for all seeds.
         const auto crossings = [](const char* seed_and_repeats) {
-            const CliRun run = run_cli(std::string("lines room --blocks 2 --json - --seed ") + seed_and_repeats);
+            const CliRun run = run_cli(std::string("study lines room --blocks 2 --json - --seed ") + seed_and_repeats);
             CHECK(run.status == 0);
             const auto report = run.json();
             std::vector<double> means;
@@ -40,7 +41,7 @@ TEST_SUITE("cli/lines") {
     }
 
     TEST_CASE("--factors: six pairs, each within four errors of its known value, two of them printed in tables") {
-        const CliRun run = run_cli("lines --factors --blocks 300 --json -");
+        const CliRun run = run_cli("study lines --factors --blocks 300 --json -");
         CHECK(run.status == 0);
         const auto rows = run.json();
         REQUIRE(rows.size() == 6);
@@ -50,7 +51,7 @@ TEST_SUITE("cli/lines") {
     }
 
     TEST_CASE("--factors of scenes: bits between 0 and the entropy, and one line a scene") {
-        const CliRun run = run_cli("lines --factors room town --blocks 50 --patches 300 --json -");
+        const CliRun run = run_cli("study lines --factors room town --blocks 50 --patches 300 --json -");
         CHECK(run.status == 0);
         const auto scenes = run.json();
         REQUIRE(scenes.size() == 2);

@@ -23,7 +23,7 @@ TEST_SUITE("cli/measure") {
         const std::string file = scratch().file("box.obj");
         write_contents(file, kBox);
         for (const char* seed : {"1", "2", "3"}) {
-            const CliRun run = run_cli("measure '" + file + "' --json - --seed " + seed);
+            const CliRun run = run_cli("study measure '" + file + "' --json - --seed " + seed);
             REQUIRE(run.status == 0);
             const auto document = run.json();
             CHECK(document["F0"].get<double>() == doctest::Approx(pi * 14.0));  // the sphere of diameter √14
@@ -41,12 +41,12 @@ TEST_SUITE("cli/measure") {
     TEST_CASE("a flat mesh has no volume to count, and points on a line have nothing") {
         const std::string square = scratch().file("square.obj"), line = scratch().file("line.obj");
         write_contents(square, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
-        const auto rows = run_cli("measure '" + square + "' --json -").json()["rows"];
+        const auto rows = run_cli("study measure '" + square + "' --json -").json()["rows"];
         REQUIRE(rows.size() == 2);
         CHECK(rows[0]["predicted"].get<double>() == doctest::Approx(1.0));
         CHECK(rows[1]["predicted"].get<double>() == doctest::Approx(2.0 * pi));  // πL/2 of a perimeter of 4
         write_contents(line, "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
-        const CliRun run = run_cli("measure '" + line + "'");
+        const CliRun run = run_cli("study measure '" + line + "'");
         CHECK(run.status == 2);
         CHECK(run.err.find("all vertices lie on one line") != std::string::npos);
     }

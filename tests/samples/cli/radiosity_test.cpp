@@ -37,23 +37,23 @@ TEST_SUITE("cli/radiosity") {
             CHECK_MESSAGE(run.err.find(reason) != std::string::npos, run.err);
             CHECK_FALSE(std::filesystem::exists(out));
         };
-        refused("radiosity '" + scratch().file("missing.obj") + "'", "missing.obj");
-        refused("radiosity " + box(kGlowing) + common() + "--method guess", "guess");
-        refused("radiosity " + box(kGlowing) + common() + "--lines 5 --error 0.1", "--error");
-        refused("radiosity " + box("Kd 0.5 0.5 0.5\n") + common(), "nothing gives light");
-        refused("radiosity " + box("Kd 0.5 0.5 0.5\nKe -1 0 0\n") + common(), "emission");
+        refused("study radiosity '" + scratch().file("missing.obj") + "'", "missing.obj");
+        refused("study radiosity " + box(kGlowing) + common() + "--method guess", "guess");
+        refused("study radiosity " + box(kGlowing) + common() + "--lines 5 --error 0.1", "--error");
+        refused("study radiosity " + box("Kd 0.5 0.5 0.5\n") + common(), "nothing gives light");
+        refused("study radiosity " + box("Kd 0.5 0.5 0.5\nKe -1 0 0\n") + common(), "emission");
         const std::string damaged = scratch().file("damaged.state");
         write_contents(damaged, "no checkpoint");
-        refused("radiosity " + box(kGlowing) + common() + "--checkpoint '" + damaged + "'", "damaged.state");
-        refused("lines '" + scratch().file("missing.obj") + "'", "missing.obj");
-        CHECK(run_cli("radiosity").status == 2);
-        CHECK(run_cli("lines " + box(kGlowing) + " --repeats 0").status == 2);
+        refused("study radiosity " + box(kGlowing) + common() + "--checkpoint '" + damaged + "'", "damaged.state");
+        refused("study lines '" + scratch().file("missing.obj") + "'", "missing.obj");
+        CHECK(run_cli("study radiosity").status == 2);
+        CHECK(run_cli("study lines " + box(kGlowing) + " --repeats 0").status == 2);
     }
 
     TEST_CASE("furnace: every method finds 1/(1 - reflectance), with the emission and reflectance of the file") {
         for (const char* method : {"global", "local", "bundles", "walls"}) {
             const CliRun run =
-                run_cli("radiosity " + box(kGlowing) + common() + "--lines 400000 --json - --method " + method);
+                run_cli("study radiosity " + box(kGlowing) + common() + "--lines 400000 --json - --method " + method);
             CHECK(run.status == 0);
             const auto report = run.json();
             REQUIRE(report.is_object());
@@ -65,7 +65,7 @@ TEST_SUITE("cli/radiosity") {
     }
 
     TEST_CASE("--error runs until the estimated error is reached") {
-        const CliRun run = run_cli("radiosity " + box(kGlowing) + common() + "--error 0.01 --json -");
+        const CliRun run = run_cli("study radiosity " + box(kGlowing) + common() + "--error 0.01 --json -");
         CHECK(run.status == 0);
         CHECK(run.json()["relative_error"].get<double>() <= 0.01);
         CHECK(run.json()["runs"].get<int>() >= 2);
@@ -74,7 +74,7 @@ TEST_SUITE("cli/radiosity") {
     TEST_CASE("interrupted and resumed, or with more threads, a run writes the same bytes") {
         const std::string whole = scratch().file("whole.glb"), resumed = scratch().file("resumed.glb"),
                           threads = scratch().file("threads.glb"), state = scratch().file("run.state");
-        const std::string scene = "radiosity " + box(kGlowing) + common();
+        const std::string scene = "study radiosity " + box(kGlowing) + common();
         CHECK(run_cli(scene + "--lines 300000 --out '" + whole + "'").status == 0);
         CHECK(run_cli(scene + "--lines 150000 --checkpoint '" + state + "'").status == 0);
         CHECK(run_cli(scene + "--lines 300000 --checkpoint '" + state + "' --out '" + resumed + "'").status == 0);
@@ -85,12 +85,12 @@ TEST_SUITE("cli/radiosity") {
         CHECK(bytes == contents_of(resumed));
         CHECK(bytes == contents_of(threads));
         // The state is of this scene only.
-        CHECK(run_cli("radiosity room --checkpoint '" + state + "'").status == 2);
+        CHECK(run_cli("study radiosity room --checkpoint '" + state + "'").status == 2);
     }
 
     TEST_CASE("shards merge to the state of one run, a lost one is named, and one given twice counts once") {
         const auto quoted = [](const std::string& name) { return "'" + scratch().file(name) + "'"; };
-        const std::string base = "radiosity " + box(kGlowing) + common() + "--runs 28 ";
+        const std::string base = "study radiosity " + box(kGlowing) + common() + "--runs 28 ";
         for (int i = 0; i < 3; ++i)
             REQUIRE(run_cli(base + "--shard " + std::to_string(i) + "/3 --state " + quoted("light" + std::to_string(i)))
                         .status == 0);
@@ -137,18 +137,20 @@ TEST_SUITE("cli/radiosity") {
         for (const char* bad :
              {"--shard 3/3 --state x", "--shard 0/3", "--error 0.1", "--lines 5", "--shard 0/3 --state x --out y.glb"})
             CHECK_MESSAGE(run_cli(base + bad).status == 2, bad);
-        CHECK(run_cli("radiosity " + box(kGlowing) + common() + "--shard 0/3 --state x").status == 2);
+        CHECK(run_cli("study radiosity " + box(kGlowing) + common() + "--shard 0/3 --state x").status == 2);
     }
 
     TEST_CASE("--png draws the lit scene") {
         const std::string picture = scratch().file("lit.png");
-        CHECK(run_cli("radiosity " + box(kGlowing) + common() + "--lines 100000 --png '" + picture + "'").status == 0);
+        CHECK(
+            run_cli("study radiosity " + box(kGlowing) + common() + "--lines 100000 --png '" + picture + "'").status ==
+            0);
         CHECK(contents_of(picture).substr(1, 3) == "PNG");
     }
 
     TEST_CASE("--light-field draws from stored lines, and says how far that is from the scene's own picture") {
         const std::string picture = scratch().file("lines.png");
-        const std::string room = "radiosity room --edge 0.5 --lines 300000 --json -";
+        const std::string room = "study radiosity room --edge 0.5 --lines 300000 --json -";
         const CliRun run = run_cli(room + " --stored-lines 200000 --light-field '" + picture + "'");
         REQUIRE(run.status == 0);
         const auto field = run.json().at("light_field");
@@ -162,7 +164,7 @@ TEST_SUITE("cli/radiosity") {
     }
 
     TEST_CASE("lines: every way to draw them with its figures, and the choice") {
-        const CliRun run = run_cli("lines " + box(kGlowing) + " --blocks 2 --repeats 3 --json -");
+        const CliRun run = run_cli("study lines " + box(kGlowing) + " --blocks 2 --repeats 3 --json -");
         CHECK(run.status == 0);
         const auto report = run.json();
         REQUIRE(report.is_object());

@@ -38,7 +38,7 @@ TEST_SUITE("cli/scene_files") {
             CHECK(hit(2.0, 0.5));
             CHECK(hit(0.3, 2.5));
             CHECK(hit(3.8, 2.5));
-            const auto rows = run_cli("measure '" + face + "' --json -").json()["rows"];
+            const auto rows = run_cli("study measure '" + face + "' --json -").json()["rows"];
             CHECK(rows[0]["predicted"].get<double>() == doctest::Approx(10.0));  // 16 less the notch's 0.5 · 4 · 3
         }
     }
@@ -46,7 +46,7 @@ TEST_SUITE("cli/scene_files") {
     TEST_CASE("a face that crosses itself is named, and refused with --strict") {
         const std::string file = scratch().file("bow_tie.obj");
         write_contents(file, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 3 2 4\n");
-        for (const char* command : {"measure", "triangulate", "frames --no-draw --frames 1"}) {
+        for (const char* command : {"study measure", "triangulate", "frames --no-draw --frames 1"}) {
             CAPTURE(command);
             const CliRun run = run_cli(command + (" '" + file + "'"));
             CHECK(run.err.find("line 5: face: crosses itself or has no area") != std::string::npos);

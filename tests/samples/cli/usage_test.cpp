@@ -28,7 +28,9 @@ TEST_SUITE("cli/usage") {
     TEST_CASE("a word that is nearly a sub-command or an option is answered with the one that was meant") {
         CHECK(run_cli("frame").err.find("there is no sub-command 'frame'; did you mean 'frames'?") !=
               std::string::npos);
-        CHECK(run_cli("rdaiosity").err.find("did you mean 'radiosity'?") != std::string::npos);
+        CHECK(run_cli("measure room").err.find("it is 'crofton study measure'") != std::string::npos);
+        CHECK(run_cli("study").err.find("a sub-command is missing\n'crofton study --help' lists") != std::string::npos);
+        CHECK(run_cli("study rdaiosity").err.find("did you mean 'radiosity'?") != std::string::npos);
         CHECK(run_cli("--hlep").err.find("there is no option '--hlep'; did you mean '--help'?") != std::string::npos);
         CHECK(run_cli("frames town --frmaes 3").err.find("there is no option '--frmaes'; did you mean '--frames'?") !=
               std::string::npos);
@@ -72,11 +74,11 @@ TEST_SUITE("cli/usage") {
             {"pvs room --eye 0,0,0", "--svg"},
             {"pvs room --with-scene", "--out"},
             {"pvs room --shard 0/2", "--state"},
-            {"radiosity room --shard 0/2", "--runs"},
-            {"radiosity room --stored-lines 9", "--light-field"},
+            {"study radiosity room --shard 0/2", "--runs"},
+            {"study radiosity room --stored-lines 9", "--light-field"},
             {"verify cull --map MAP01", "--scene"},
             {"verify cull --instances 40", "--scene"},
-            {"lines room --patches 9", "--factors"}};
+            {"study lines room --patches 9", "--factors"}};
         for (const auto& refused : cases) {
             const std::string& reason = refused.second;
             CAPTURE(refused.first);
@@ -111,8 +113,8 @@ TEST_SUITE("cli/usage") {
             {"frames --no-draw --frames 1 --max-seconds nan", "--max-seconds: 'nan' is not a number above 0"},
             {"frames --no-draw --frames 1 --max-seconds inf", "--max-seconds: 'inf' is not a number above 0"},
             {"frames --no-draw --frames 1 --max-seconds x", "--max-seconds: 'x' is not a number"},
-            {"radiosity room --error nan", "--error: 'nan' is not a number above 0"},
-            {"radiosity room --sun -1", "--sun: '-1' is not a number from 0"},
+            {"study radiosity room --error nan", "--error: 'nan' is not a number above 0"},
+            {"study radiosity room --sun -1", "--sun: '-1' is not a number from 0"},
             {"fit room --budget nan", "--budget: 'nan' is not a number from 0"},
             {"fit room --bounds all --region nan", "--region: 'nan' is not a number in [1 - 1e+09]"},
             {"view --no-window --after 1 --scale nan", "--scale: 'nan' is not a number in [0.5 - 8]"},
@@ -136,8 +138,8 @@ TEST_SUITE("cli/usage") {
             {"fit room --directions '1,0,0'", "--directions", "--bounds"},
             {"fit room --trees", "--trees", "--views"},
             {"collide room room --max-vertices 9", "--max-vertices", "--hulls"},
-            {"lines room --patches 9", "--patches", "--factors"},
-            {"radiosity room --stored-lines 9", "--stored-lines", "--light-field"},
+            {"study lines room --patches 9", "--patches", "--factors"},
+            {"study radiosity room --stored-lines 9", "--stored-lines", "--light-field"},
             {"pvs room --cells 1x1x1 --with-scene", "--with-scene", "--out"},
             {"pvs room --cells 1x1x1 --eye 1,1,1", "--eye", "--svg"},
         };
@@ -170,7 +172,7 @@ TEST_SUITE("cli/usage") {
         }
         // States are read and written by intent.
         const std::string state = " --state '" + scratch().file("own.state") + "'";
-        const std::string bake = "radiosity room --edge 2 --shadow-cuts 0 --runs 2" + state;
+        const std::string bake = "study radiosity room --edge 2 --shadow-cuts 0 --runs 2" + state;
         CHECK(run_cli(bake).status == 0);
         CHECK(run_cli(bake).status == 0);
     }
@@ -207,10 +209,10 @@ TEST_SUITE("cli/usage") {
             {"triangulate town", "--json", "--out"},
             {"triangulate a.poly", "--json", "--svg"},
             {"view --no-window --after 1", "--screenshot", "--json"},
-            {"hierarchy --lines 1000", "--json", "--svg"},
+            {"study hierarchy --lines 1000", "--json", "--svg"},
             {"pvs room --cells 1x1x1", "--state", "--out"},
-            {"radiosity room", "--out", "--png"},
-            {"radiosity room", "--json", "--checkpoint"},
+            {"study radiosity room", "--out", "--png"},
+            {"study radiosity room", "--json", "--checkpoint"},
             {"bake room", "--output", "--json"},
             {"fit room", "--json", "--svg"},
             {"frames --no-draw --frames 1", "--report", "--trace"},
@@ -222,8 +224,8 @@ TEST_SUITE("cli/usage") {
             CHECK(run.err.find(p.first + " and " + p.second + " name one file") != std::string::npos);
             CHECK(contents_of(out) == "old");
         }
-        for (const char* command : {"triangulate a.poly --json - --svg -", "hierarchy --lines 1000 --json - --svg -",
-                                    "fit room --json - --svg -"})
+        for (const char* command : {"triangulate a.poly --json - --svg -",
+                                    "study hierarchy --lines 1000 --json - --svg -", "fit room --json - --svg -"})
             CHECK(run_cli(command).err.find("--json and --svg cannot both go to stdout") != std::string::npos);
         // Through two links to a file that is not there yet.
         const std::string later = scratch().file("later"), to_later = scratch().file("to_later");
@@ -240,7 +242,7 @@ TEST_SUITE("cli/usage") {
 
     TEST_CASE("an output that shares stdout with the command's own words is refused") {
         for (const char* arguments : {"bake room -o -", "pvs room --cells 1x1x1 --svg -", "frames --no-draw --trace -",
-                                      "radiosity room --out -", "merge a b --out -"}) {
+                                      "study radiosity room --out -", "merge a b --out -"}) {
             const CliRun run = run_cli(arguments);
             CHECK(run.status == 2);
             CHECK(run.out.empty());

@@ -48,7 +48,7 @@ inline constexpr int kEscapesOfOpen = 8;
 
 // What tells bakes apart: parts of one have the same.
 struct BakeName {
-    std::uint64_t fingerprint = 0;  // of the subject, the cells and the seed
+    std::uint64_t fingerprint = 0;  // of the geometry, the cells and the seed
     std::uint64_t cells = 0, blocks = 0;
     std::uint32_t objects = 0, sides = 0;
     double epsilon = 0.0, confidence = 0.0;
@@ -76,7 +76,7 @@ struct Bake::State {
     BakeOptions options;
     Vector<Obb> boxes;
     glm::dvec3 origin{0.0};
-    TriangleMesh mesh;  // of the subject, relative to the origin
+    TriangleMesh mesh;  // of the geometry, relative to the origin
     Vector<std::uint32_t> object_of;
     std::uint64_t geometry = 0;   // its fingerprint
     Vector<std::uint64_t> baked;  // by object: it has triangles

@@ -133,9 +133,9 @@ CROFTON_API crofton_status crofton_world_remove_mesh(crofton_world* world, croft
 CROFTON_API crofton_status crofton_world_add_node(crofton_world* world, const crofton_node* parent,
                                                   const crofton_transform* transform, uint32_t layers,
                                                   crofton_node* node);
-/* With all nodes and objects below it. */
+/* Removes the node with all nodes and objects below it. */
 CROFTON_API crofton_status crofton_world_remove_node(crofton_world* world, crofton_node node);
-/* `parent` or NULL: none. An error where it is the node itself or one below it. */
+/* `parent` or NULL: none. CROFTON_INVALID_ARGUMENT: the node itself, or one below it. */
 CROFTON_API crofton_status crofton_world_set_parent(crofton_world* world, crofton_node node,
                                                     const crofton_node* parent);
 CROFTON_API crofton_status crofton_world_set_node_layers(crofton_world* world, crofton_node node, uint32_t layers);
@@ -151,17 +151,17 @@ CROFTON_API crofton_status crofton_world_set_node_transforms(crofton_world* worl
 CROFTON_API crofton_status crofton_world_add(crofton_world* world, const crofton_object_description* description,
                                              crofton_object* object);
 CROFTON_API crofton_status crofton_world_remove(crofton_world* world, crofton_object object);
-/* Of objects that were added with a transform, or by a body under no node. */
+/* Requires objects that were added with a transform, or by a body under no node. */
 CROFTON_API crofton_status crofton_world_set_transforms(crofton_world* world, const crofton_object* objects,
                                                         size_t object_stride, const crofton_transform* transforms,
                                                         size_t transform_stride, size_t count);
-/* Of objects that were added with a bound, which becomes a box. */
+/* Requires objects that were added with a bound, which becomes a box. */
 CROFTON_API crofton_status crofton_world_set_boxes(crofton_world* world, const crofton_object* objects,
                                                    size_t object_stride, const crofton_box* boxes, size_t box_stride,
                                                    size_t count);
 CROFTON_API crofton_status crofton_world_set_bound(crofton_world* world, crofton_object object,
                                                    const crofton_bound* bound);
-/* Of an object that has one. */
+/* Requires an object that has a mesh. */
 CROFTON_API crofton_status crofton_world_set_mesh(crofton_world* world, crofton_object object, crofton_world_mesh mesh);
 /* A hidden object (1) is in no answer until it is shown again (0). */
 CROFTON_API crofton_status crofton_world_set_hidden(crofton_world* world, crofton_object object, int hidden);
@@ -184,7 +184,7 @@ CROFTON_API crofton_status crofton_world_update(crofton_world* world, const crof
 CROFTON_API crofton_status crofton_world_get_statistics(const crofton_world* world,
                                                         crofton_world_statistics* statistics);
 
-/* What a World answers: what is seen, what rays and shapes meet, what touches. All as of its last update. */
+/* Queries, all as of the last update: what is seen, what rays and shapes meet, what touches. */
 
 typedef struct crofton_view_result crofton_view_result; /* what one view sees, or up to 32; its memory is kept */
 typedef struct crofton_found crofton_found;             /* a list of objects or of hits, likewise */
@@ -237,7 +237,7 @@ typedef struct crofton_object_contact {
     size_t point_count, triangle_count;
 } crofton_object_contact;
 
-/* Two objects with bodies that touch, or did in the update before. What ended has no points. */
+/* Two objects with bodies that touch, or did in the update before. Ended contacts have no points. */
 typedef struct crofton_body_contact {
     crofton_object_ref first, second; /* ordered as in crofton_object_pair; the first is body a */
     uint8_t phase;                    /* a crofton_contact_phase */
@@ -247,7 +247,7 @@ typedef struct crofton_body_contact {
     uint32_t unused_too;
 } crofton_body_contact;
 
-/* What a moving body meets first. */
+/* The first object that a moving body meets. */
 typedef struct crofton_body_hit {
     size_t size;
     crofton_object object; /* index CROFTON_NONE: nothing, and time is infinite */
@@ -269,7 +269,7 @@ CROFTON_API crofton_status crofton_world_contains_mesh(const crofton_world* worl
 CROFTON_API crofton_status crofton_world_get_user(const crofton_world* world, crofton_object object, uint64_t* user);
 /* CROFTON_EMPTY before the first update after the object was added. */
 CROFTON_API crofton_status crofton_world_get_box(const crofton_world* world, crofton_object object, crofton_box* box);
-/* To the world's coordinates. Of an object with a mesh; CROFTON_EMPTY as above. */
+/* Object to world, of an object with a mesh. CROFTON_EMPTY as above. */
 CROFTON_API crofton_status crofton_world_get_transform(const crofton_world* world, crofton_object object,
                                                        crofton_transform* transform);
 
@@ -383,7 +383,7 @@ CROFTON_API crofton_status crofton_found_hits(const crofton_found* found, const 
 /* Finds the nearest hit of every object that the ray meets, by t, then by index: hits. */
 CROFTON_API crofton_status crofton_world_raycast_all(const crofton_world* world, const crofton_ray* ray,
                                                      uint32_t layer_mask, crofton_found* found);
-/* Find whose box or sphere meets the shape, by index: objects. A mesh's box stands for it. */
+/* Find the objects whose box or sphere meets the shape, in order of index. A mesh counts as its box. */
 CROFTON_API crofton_status crofton_world_overlap_box(const crofton_world* world, const crofton_box* box,
                                                      uint32_t layer_mask, crofton_found* found);
 CROFTON_API crofton_status crofton_world_overlap_sphere(const crofton_world* world, const double center[3],
@@ -415,7 +415,8 @@ CROFTON_API crofton_status crofton_world_contact(const crofton_world* world, siz
  * computed again. */
 CROFTON_API crofton_status crofton_world_body_contacts(const crofton_world* world,
                                                        const crofton_body_contact** contacts, size_t* count);
-/* Finds what a body meets, exactly, by index: objects. Those without bodies are their boxes or spheres. */
+/* Finds the objects that a body meets, exactly, in order of index. Objects without bodies count as their boxes or
+ * spheres. */
 CROFTON_API crofton_status crofton_world_overlap_body(const crofton_world* world, const crofton_placed* shape,
                                                       uint32_t layer_mask, crofton_found* found);
 /* Fills a struct whose `size` is set: the object nearest to a body, as crofton_world_closest_to_box. */
@@ -427,7 +428,7 @@ CROFTON_API crofton_status crofton_world_cast(const crofton_world* world, const 
                                               const crofton_motion* motion, const crofton_cast_options* options,
                                               uint32_t layer_mask, crofton_body_hit* hit);
 
-/* What hides other objects: the occluders of meshes. docs/occlude.md is the guide. */
+/* Occluders: what the objects of a mesh hide others with. docs/occlude.md is the guide. */
 
 typedef enum crofton_occluder_kind {
     CROFTON_OCCLUDER_BOX = 0,    /* inside a closed piece of the mesh */
@@ -471,8 +472,8 @@ typedef struct crofton_occluder_ref {
 } crofton_occluder_ref;
 
 CROFTON_API crofton_find_options crofton_default_find_options(void);
-/* Looks for occluders in a mesh; `options` or NULL. They take effect in the next update. Takes a second or more for
- * 100,000 triangles. */
+/* Looks for occluders in a mesh; `options` or NULL: defaults. They take effect in the next update. Takes a second or
+ * more for 100,000 triangles. */
 CROFTON_API crofton_status crofton_world_find_occluders(crofton_world* world, crofton_world_mesh mesh,
                                                         const crofton_find_options* options);
 /* Gives a mesh its occluders: those stored of an earlier search, or the caller's own; none: count 0. All have the same

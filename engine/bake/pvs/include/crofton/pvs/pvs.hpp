@@ -180,7 +180,7 @@ struct ProofOptions {
     double near_radius = 0.5;
     // Halvings of a cell or an object's box, where no single body hides all of it: more prove more and take longer.
     std::uint32_t halvings = 4;
-    // Above 0, what the subject's own triangles hide together is proved too: walls of a level, which are no bodies. So
+    // Above 0, what the scene's own triangles hide together is proved too: walls of a level, which are no bodies. So
     // many sides of triangles a question may visit: more prove more. 400 is a good number for levels. Each unseen
     // pair is asked, so it is slow where there are millions. Edges must have equal corners, or meet along an axis.
     std::uint32_t surface_steps = 0;
@@ -224,7 +224,7 @@ class Pvs {
     [[nodiscard]] PairState state(std::size_t cell, std::uint32_t object) const;
     [[nodiscard]] bool is_baked(std::uint32_t object) const;  // false: it had no triangles, and is always drawn
     [[nodiscard]] PairCounts counts() const;                  // of cells that are not solid and objects that were baked
-    // fingerprint_of the subject that was baked. Sets of other triangles hide what is visible: ask before you use them.
+    // fingerprint_of the geometry that was baked. Sets of other triangles hide what is visible: ask before you use them.
     [[nodiscard]] std::uint64_t geometry_fingerprint() const { return geometry_; }
     // Of the bake: see BakeOptions and Bake::epsilon_reached.
     [[nodiscard]] double epsilon() const { return epsilon_; }

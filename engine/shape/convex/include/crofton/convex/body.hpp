@@ -75,7 +75,7 @@ class Hull {
     [[nodiscard]] double radius() const { return radius_; }  // of the sphere around the frame's origin that contains it
     [[nodiscard]] const MassProperties& mass() const { return mass_; }
 
-    // Of a sphere around the center of mass that lies within the body, rounded down.
+    // Radius of the sphere around the center of mass that lies within the body, rounded down.
     [[nodiscard]] double inner_radius() const { return inner_radius_; }
 
     // For the kernels: coordinate k of all vertices, or face normals, side by side; the last is repeated up to a
@@ -132,7 +132,7 @@ enum class Kind : std::uint8_t {
     compound,
 };
 
-// Which sides of a surface's triangles contacts and casts see. Yes or no, distances and depths see both.
+// The sides of a surface's triangles that contacts and casts see. intersects, distance and penetration see both.
 enum class Sides : std::uint8_t {
     both,
     front,  // contacts push to the front; what comes from behind passes
@@ -193,7 +193,7 @@ class Body {
     // Corner i of a box is on the + side of axis k where bit k of i is set.
     [[nodiscard]] const double* column(int k) const { return hull_ != nullptr ? hull_->column(k) : corners_[k]; }
     [[nodiscard]] int padded_count() const { return hull_ != nullptr ? hull_->padded_count() : padded_; }
-    // Of the sphere around the frame's origin that contains the core, rounded up; infinite where bounds() are.
+    // Radius of the sphere around the frame's origin that contains the core, rounded up; infinite where bounds() are.
     [[nodiscard]] double core_radius() const { return core_radius_; }
 
   private:
@@ -218,7 +218,7 @@ class Body {
 
 // One of the convex parts of a body, by number.
 struct PartId {
-    // Of a compound: which child, with the children of compounds within it counted in their place. Else 0.
+    // The child of a compound, where the children of a compound within it are counted in its place. Else 0.
     std::uint32_t child;
     std::uint32_t triangle;  // of a mesh or height field; else 0
     auto operator<=>(const PartId&) const = default;

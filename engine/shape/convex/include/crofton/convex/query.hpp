@@ -26,7 +26,7 @@ struct BodyAtPose {
 // As validate(RigidTransform), and refuses a pose that mirrors: it would turn the body inside out.
 [[nodiscard]] Result<void> validate_pose(const RigidTransform& pose, std::uint64_t item = kNoItem);
 
-// What a pair remembers from one call to the next: it makes calls faster and changes no answer of `intersects`. Numbers
+// A pair's memory from one call to the next: it makes calls faster and changes no answer of `intersects`. Numbers
 // stay within their stated bounds. Zero-initialised for a new pair; belongs to one pair in one order, and to one thread
 // at a time.
 struct PairCache {
@@ -232,7 +232,7 @@ void outline(std::span<const TrackedPoint> points, double size, LineVisitor line
 
 // ---- Casts ----
 
-// What a body does from its pose on. Its `pivot` (in the body's frame: the center of mass) moves by velocity · t. The
+// A body's motion from its pose on. Its `pivot` (in the body's frame: the center of mass) moves by velocity · t. The
 // body turns about it by |spin| · t radians around `spin` (world axes). Zero: it rests. Any number of turns.
 struct Motion {
     glm::dvec3 velocity{0.0};

@@ -128,7 +128,7 @@ struct DrawLimits {
 // The test of one item, in these layers of it that the view sees.
 [[nodiscard]] bool is_worth_drawing(const DrawLimits& limits, const Obb& box, boxtree::ItemId item,
                                     std::uint32_t common_layers = ~std::uint32_t{0});
-// Of an Aabb the centre and half extents count as doubles hold them.
+// An Aabb counts by its centre and half extents, rounded to double.
 [[nodiscard]] bool is_worth_drawing(const DrawLimits& limits, const Aabb& box, boxtree::ItemId item,
                                     std::uint32_t common_layers = ~std::uint32_t{0});
 [[nodiscard]] bool is_worth_drawing(const DrawLimits& limits, const Sphere& sphere, boxtree::ItemId item,

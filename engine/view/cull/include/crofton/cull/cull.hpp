@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What does a view see of a tree: one view, many at once; as lists, bits and runs; with shadow casters.
+// Queries of trees and lists: the items that one view or many views see, as lists, bits and runs; shadow casters.
 #pragma once
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/core/error.hpp>
@@ -78,8 +78,8 @@ enum class ResultOrder : std::uint8_t { ascending, tree };
 struct CullOptions {
     CullMode mode = CullMode::exact;
     ResultOrder order = ResultOrder::ascending;
-    // What is too small or too far is left out. A query without limits costs what it did; one of a tree with limits
-    // uses no other thread.
+    // Leaves out what is too small or too far. A query without limits pays nothing for them; one of a tree with
+    // limits uses no other thread.
     const DrawLimits* limits = nullptr;
     // Items that may be seen at all: bit i % 64 of word i / 64 is item i. Items beyond the span may be seen, and so may
     // all if it is empty. pvs::Pvs::visible_from() gives such sets. In a query of what rests and what moves it says

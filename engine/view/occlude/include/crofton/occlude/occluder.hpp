@@ -14,7 +14,7 @@
 
 namespace crofton::occlude {
 
-// What hides other things: boxes, convex bodies, surfaces and closed meshes, where they stand.
+// Occluders and their transforms: boxes, convex bodies, surfaces and closed meshes.
 
 using ShapeId = std::uint32_t;
 using OccluderId = std::uint32_t;
@@ -112,7 +112,7 @@ struct FindOptions {
     std::uint32_t max_occluders = 16;     // of the mesh
     std::uint32_t max_edges = 400;        // of all of them together
     std::uint32_t max_boxes_a_piece = 4;  // in a closed piece that is not convex
-    // What adds less than this share of the mesh's mean shadow is left out.
+    // Leaves out occluders that add less than this share of the mesh's mean shadow.
     double least_gain = 0.02;
     // Patches: how far from the plane of their largest triangle vertices may lie, relative to the size of the mesh.
     double flatness = 1e-4;

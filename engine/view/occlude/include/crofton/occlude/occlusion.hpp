@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a view's occluders hide: which are drawn, the depth buffer, queries against it.
+// Occlusion culling of a view: chooses occluders, draws them into a depth buffer, and tests boxes against it.
 #pragma once
 #include <array>
 #include <crofton/boxtree/box_tree.hpp>
@@ -256,7 +256,7 @@ struct VisibleOptions {
 // if its box is, or the bound of a node above it. Requires a buffer that has been drawn.
 void find_visible(const boxtree::BoxTree& tree, const OcclusionBuffer& buffer, VisibleSet& visible,
                   const VisibleOptions& options = {});
-// What rests and what moves in one answer. Requires the tree that `moving` was updated with.
+// Tests what rests and what moves together. Requires the tree that `moving` was updated with.
 void find_visible(const boxtree::BoxTree& resting, const cull::MovingBoxes& moving, const OcclusionBuffer& buffer,
                   VisibleSet& visible, const VisibleOptions& options = {});
 // Item i is boxes[i] with layer mask layer_masks[i], or all layers if that span is empty.

@@ -43,7 +43,7 @@ using MeshId = std::uint32_t;
 using InstanceId = std::uint32_t;
 inline constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
-// What update() found changed, and how much work it was.
+// What update() changed, and how much work it was.
 struct UpdateStatistics {
     std::uint32_t nodes_updated = 0;      // whose world transform or layer mask was computed anew
     std::uint32_t instances_updated = 0;  // whose box was computed anew

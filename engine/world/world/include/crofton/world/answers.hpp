@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a World answers.
+// Answers of a World: results of views, hits, pairs, contacts.
 #pragma once
 #include <crofton/collide/narrow_phase.hpp>
 #include <crofton/core/memory.hpp>
@@ -48,8 +48,10 @@ struct OcclusionStatistics {
     occlude::VisibleStatistics asked;
 };
 
-// What one view sees, in memory that is kept from frame to frame. Objects are looked up when asked for: ask before the
-// next change of the World, and while it lives. ids() and counts stay.
+// The result of one view. Keep it from frame to frame, and it allocates nothing once it is large enough.
+//
+// Objects are looked up when you ask for them: ask before the World's next change, and while it lives. ids() and counts
+// stay.
 class ViewResult {
   public:
     [[nodiscard]] std::size_t size() const { return ids().size(); }
@@ -59,12 +61,12 @@ class ViewResult {
     // order verdicts() says it of each.
     [[nodiscard]] std::size_t inside_count() const { return hides_ ? seen_inside_count() : set_.inside_count(); }
     [[nodiscard]] std::span<const cull::Verdict> verdicts() const { return hides_ ? seen_verdicts() : set_.verdicts(); }
-    // Of the query by the view volume. With occlusion: that of OcclusionOptions::list_occluded or of tree order, if
-    // either was asked for.
+    // Counts the query by the view volume. With occlusion there is one only for OcclusionOptions::list_occluded and for
+    // tree order.
     [[nodiscard]] const cull::Statistics& statistics() const { return set_.statistics(); }
     [[nodiscard]] ObjectRef ref(std::uint32_t id) const { return {{id, names_->generations[id]}, names_->users[id]}; }
 
-    // Of the last view with occlusion; without, or before it: nothing.
+    // Whether the last view was with occlusion. If not, the calls below return nothing.
     [[nodiscard]] bool has_occlusion() const { return hides_ && !has_picture(); }
     // Indices, ascending: in the view's frustum, and hidden. Empty unless OcclusionOptions::list_occluded.
     [[nodiscard]] std::span<const std::uint32_t> occluded_ids() const;
@@ -92,7 +94,7 @@ class ViewResult {
     Vector<std::uint64_t> candidates_;  // CullOptions::candidate_mask and what has changed since
 };
 
-// What up to 32 views see, each object once, in memory that is kept from frame to frame.
+// The result of up to 32 views, each object once. Keep it from frame to frame.
 class MultiViewResult {
   public:
     [[nodiscard]] std::size_t size() const { return ids().size(); }
@@ -156,8 +158,8 @@ struct ObjectPair {
 
 enum class ContactPhase : std::uint8_t { began, stayed, ended };
 
-// Two objects that touch, or that did in the update before. What ended has no more than its objects, whose handles are
-// stale where they have been removed.
+// Two objects that touch, or that did in the update before. Ended contacts carry only the two object handles, which are
+// stale if the objects have been removed.
 struct Contact {
     ObjectRef first, second;  // ordered as in ObjectPair
     ContactPhase phase = ContactPhase::began;
@@ -170,8 +172,8 @@ struct Contact {
     std::span<const mesh::MeshContact> triangles;   // of two meshes, or a mesh and a box
 };
 
-// Two objects with bodies that touch, or come within WorldOptions::contact_margin, or did in the update before. What
-// ended has no points. Points keep their memory, which is the caller's to write, while their ids stay
+// Two objects with bodies that touch, or come within WorldOptions::contact_margin, or did in the update before. Ended
+// contacts have no points. Points keep their memory, which is the caller's to write, while their ids stay
 // (crofton/convex/query.hpp); valid until the next update.
 struct BodyContact {
     ObjectRef first, second;  // ordered as in ObjectPair; the first is body a

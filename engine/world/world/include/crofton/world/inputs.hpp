@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a World is told: handles, views of the caller's memory, and what an object is.
+// Inputs of a World: handles, views of the caller's memory, descriptions of objects, requests of views.
 #pragma once
 #include <array>
 #include <compare>
@@ -172,10 +172,10 @@ struct ObjectDescription {
     std::uint32_t layers = ~0u;  // views and queries ask for layers
     std::uint32_t collides_with =
         ~0u;  // two objects may be a pair where each one's layers meet what the other's has here
-    // Of an object with a mesh. False: it hides nothing, as where it is drawn transparent.
+    // For an object with a mesh. False: it hides nothing, as where it is drawn transparent.
     bool occludes = true;
-    // Of an object with a mesh: it is in no answer, and hides what its mesh's occluders hide. So an engine that draws
-    // bounds gives occluders of its own, which must lie within what it draws in the same layers.
+    // For an object with a mesh. True: it is in no answer, and hides what its mesh's occluders hide. An engine whose
+    // objects are bounds adds its occluders so; they must lie within what it draws in the same layers.
     bool only_occludes = false;
 };
 
@@ -195,7 +195,7 @@ struct ViewMatrix {
     glm::dvec3 origin{0.0};
 };
 
-// What World::view is asked.
+// A view that World::view answers.
 struct ViewRequest {
     // Where the view looks from: set a camera, a matrix or a volume.
     std::optional<Camera> camera = {};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The front door: objects in, what is seen and what touches out.
+// World, the front door: holds objects, and answers what is seen, what touches and what rays hit.
 #pragma once
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/collide/narrow_phase.hpp>
@@ -35,9 +35,9 @@ struct TraceHooks {
 struct WorldOptions {
     bool pairs = true;            // false: neither pairs nor contacts are looked for
     bool contacts = true;         // false: pairs alone
-    bool containment = true;      // a closed mesh around another object touches it
+    bool containment = true;      // an object inside a closed mesh touches it
     double contact_margin = 0.0;  // ≥ 0: gaps up to this between bodies are contacts
-    bool mesh_depth = false;      // a way out of contacts between meshes, which costs more than finding them
+    bool mesh_depth = false;      // finds a way out of contacts between meshes, which costs more than finding them
     std::size_t max_pairs = std::size_t{1} << 24;  // more are an error, not an exhausted memory
     // Items' worth of background work on the tree an update (BoxTree::rebuild_step), beside what changes make
     // necessary; kAutomatic: a 128th of the objects and 512. 0: none, and no allocation.
@@ -61,12 +61,15 @@ struct WorldStatistics {
         0;  // objects that the product of transforms has put beyond it: hidden until they return
 };
 
-// Owns nodes, meshes, objects, the tree of what rests and the list of what moves; which is which it finds out.
+// Owns nodes, meshes and objects. Detects motion automatically: resting objects are in a tree, moving ones in a list.
+//
 // Changes take effect in update(). Const calls answer as of the last update and may run on any number of threads; the
-// others need the World for themselves. An error names the item and leaves all as it was. Calls that take many handles
-// do what they can and return the first error; its item is the place among the handles. Errors of all calls: a stale
-// handle (stale_handle); numbers that are NaN, infinite or out of range, for which see validate(Obb) and
-// validate(Transform). A transform may flatten: zero scale hides, a flat scale gives a flat box.
+// other calls need the World to themselves. A transform may flatten: a zero scale hides the object, a flat scale gives
+// a flat box.
+//
+// Errors name the item, and the call changes nothing. Calls that take many handles do what they can and return the
+// first error; its item is the place among the handles. Every call can fail with stale_handle, and with numbers that
+// are NaN, infinite or out of range (validate(Obb), validate(Transform)).
 class World {
   public:
     explicit World(const WorldOptions& options = {});
@@ -76,10 +79,10 @@ class World {
 
     Result<ObjectHandle> add(const ObjectDescription& description);
     Result<void> remove(ObjectHandle object);
-    // Of an object that was added with a transform, or by its body under no node.
+    // Requires an object that was added with a transform, or by its body under no node.
     Result<void> set_transform(ObjectHandle object, const Transform& transform);
     Result<void> set_transforms(Strided<ObjectHandle> objects, Strided<Transform> transforms);
-    // Of an object that was added with a bound.
+    // Requires an object that was added with a bound.
     Result<void> set_bound(ObjectHandle object, const Bound& bound);
     Result<void> set_bounds(Strided<ObjectHandle> objects, Strided<Obb> boxes);
     Result<void> set_mesh(ObjectHandle object, MeshHandle mesh);  // of an object that has one
@@ -114,10 +117,12 @@ class World {
     Result<void> set_vertices(MeshHandle mesh, PointsView positions);  // as many as before: a mesh that deforms
     Result<void> remove(MeshHandle mesh);                              // error: objects use it
 
-    // What objects of a mesh hide other objects with, in views that ask for occlusion. They are found in its triangles,
-    // which takes time, or given, in the mesh's frame. Given ones must lie within what is drawn of the mesh, and be
-    // opaque. One is a box (kind and box alone are enough), the convex hull of surface.positions, or a patch of any
-    // triangles. Store what was found, and give it the next time. Replacing a mesh or its vertices forgets its
+    // Occluders: what a mesh's objects hide others with, in views with occlusion. find_occluders() looks for them in
+    // the triangles, which takes a second or more for 100,000; set_occluders() takes your own, or stored ones, in the
+    // mesh's frame.
+    //
+    // Your own must be opaque and lie within what is drawn of the mesh. An occluder is a box (kind and box are enough),
+    // the convex hull of surface.positions, or a patch of any triangles. Replacing a mesh or its vertices forgets its
     // occluders. Errors name the occluder: as occlude::find_occluders and occlude::OccluderSet.
     Result<void> find_occluders(MeshHandle mesh, const occlude::FindOptions& options = {});
     Result<void> set_occluders(MeshHandle mesh, std::span<const occlude::FoundOccluder> occluders);
@@ -144,8 +149,10 @@ class World {
     [[nodiscard]] Result<Obb> box_of(ObjectHandle object) const;
     [[nodiscard]] Result<Transform> transform_of(ObjectHandle object) const;  // to the world; not of a bound
 
-    // Once a frame. Errors: more than max_pairs pairs; then there are none, and all else is as it should be. A body
-    // that its object's transform puts out of range: it is nowhere until that changes.
+    // Makes the changes take effect and finds pairs and contacts. Call it once a frame.
+    //
+    // Errors: more than max_pairs pairs (then there are none, and all else is up to date); a body that its object's
+    // transform puts out of range (it is nowhere until that changes).
     Result<void> update(Executor& executor = serial_executor());
     [[nodiscard]] const WorldStatistics& statistics() const;
     // For overlays and measurements: the tree of what rests. Items are the objects' indices.
@@ -166,56 +173,65 @@ class World {
     // requests: more than 32 views; views of different orders.
     Result<void> view(std::span<const ViewRequest> requests, MultiViewResult& visible,
                       Executor& executor = serial_executor()) const;
-    // Of a view with occlusion, before the next update: which occluders hide an object (none where it is not hidden).
-    // Also which were drawn, those worth most first. The first draws all of them again, and allocates. Errors of both:
-    // invalid_argument where `visible` is of another World.
+    // After a view with occlusion and before the next update: hidden_by() lists the occluders that hide an object (none
+    // if it is not hidden), drawn_occluders() those that were drawn, those worth most first.
+    //
+    // hidden_by() draws all of them again, and allocates. Errors: invalid_argument if `visible` is of another World.
     Result<void> hidden_by(ObjectHandle object, const ViewResult& visible, Vector<OccluderRef>& occluders) const;
     Result<void> drawn_occluders(const ViewResult& visible, Vector<OccluderRef>& occluders) const;
 
-    // Bodies, as convex::raycast; of objects without one triangles of meshes, spheres and boxes, whichever they have. A
-    // ray that begins inside a body, sphere or box hits it at t = 0, without a normal. Directions may have any length
-    // but 0. A ray that is none hits nothing. Objects removed since the last update are in none of the answers.
+    // Returns the nearest hit: on an object's body (as convex::raycast), else on its mesh's triangles, its sphere or
+    // its box.
+    //
+    // A ray that begins inside a body, sphere or box hits it at t = 0, without a normal. Directions may have any length
+    // but 0; an invalid ray hits nothing. Objects removed since the last update are in none of the answers.
     [[nodiscard]] std::optional<ObjectHit> raycast(const Ray& ray, std::uint32_t layers = ~0u) const;
     [[nodiscard]] bool raycast_any(const Ray& ray, std::uint32_t layers = ~0u) const;
-    // Every object's nearest hit, by t, then by index.
+    // Lists every object's nearest hit, in order of t, then of index.
     void raycast_all(const Ray& ray, Vector<ObjectHit>& hits, std::uint32_t layers = ~0u) const;
 
-    // Whose box or sphere meets the shape; by index. Meshes by their boxes, ground without end by its half-spaces and
-    // the box around the rest of its body. Here and in closest() a box that is not valid meets nothing and has nothing
-    // near. So do spheres and capsules with NaN or numbers beyond kMaxCoordinate.
+    // Lists the objects whose box or sphere meets the shape, in order of index. A mesh counts as its box, endless
+    // ground as its half-spaces and the box around the rest of its body.
+    //
+    // Here and in closest(), an invalid box, and a sphere or capsule with NaN or numbers beyond kMaxCoordinate, meets
+    // nothing and has nothing near.
     void overlap(const Obb& shape, Vector<ObjectRef>& found, std::uint32_t layers = ~0u) const;
     void overlap(const Sphere& shape, Vector<ObjectRef>& found, std::uint32_t layers = ~0u) const;
     void overlap(const collide::Capsule& shape, Vector<ObjectRef>& found, std::uint32_t layers = ~0u) const;
-    // The same for any body but a half-space, exactly; objects with bodies by these. Of bounds beyond
-    // convex::kMaxExtent that part alone. A box whose axes deviate by more than 1e-6 is the least around it along the
-    // nearest orthonormal ones. A pose that is not valid meets nothing.
+    // The same for any body but a half-space, exactly. Objects that have bodies count as these.
+    //
+    // Bounds beyond convex::kMaxExtent are cut off there. A box whose axes are off by more than 1e-6 counts as the
+    // least box around it along the nearest orthonormal axes. An invalid pose meets nothing.
     void overlap(const convex::Body& shape, const RigidTransform& pose, Vector<ObjectRef>& found,
                  std::uint32_t layers = ~0u) const;
-    // The first object that a moving body meets: as convex::cast against each one's body, sphere or box at rest. So a
-    // body that stands on an object or stops at one can slide along it and part from it. What it overlaps from the
-    // start is met at time 0, or left out by CastOptions::ignore_initial_overlaps. Errors: of convex::cast; a
-    // half-space; a pose that is not valid.
+    // Returns the first object that a moving body meets: convex::cast against each object's body, sphere or box at
+    // rest.
+    //
+    // A body that stands on an object can slide along it and part from it. An object that it overlaps from the start is
+    // met at time 0; CastOptions::ignore_initial_overlaps leaves it out. Errors: as convex::cast; a half-space; an
+    // invalid pose.
     [[nodiscard]] Result<std::optional<BodyHit>> cast(const convex::Body& shape, const RigidTransform& pose,
                                                       const convex::Motion& motion, const convex::CastOptions& options,
                                                       std::uint32_t layers = ~0u) const;
-    // The box or sphere nearest to the shape, no farther than max_distance; of several the lowest index.
+    // Returns the object whose box or sphere is nearest to the shape, within max_distance; of several the lowest index.
     [[nodiscard]] std::optional<ClosestObject> closest(const Sphere& shape, double max_distance,
                                                        std::uint32_t layers = ~0u) const;
     [[nodiscard]] std::optional<ClosestObject> closest(const Obb& shape, double max_distance,
                                                        std::uint32_t layers = ~0u) const;
     [[nodiscard]] std::optional<ClosestObject> closest(const collide::Capsule& shape, double max_distance,
                                                        std::uint32_t layers = ~0u) const;
-    // The same for any body but a half-space; objects with bodies by these. Within the bounds that convex::distance
-    // proves. Nothing for a pose that is not valid.
+    // The same for any body but a half-space, within the bounds that convex::distance proves. Objects that have bodies
+    // count as these. Returns nothing for an invalid pose.
     [[nodiscard]] std::optional<ClosestObject> closest(const convex::Body& shape, const RigidTransform& pose,
                                                        double max_distance, std::uint32_t layers = ~0u) const;
 
-    // Found by update(): objects whose boxes or spheres meet, in order; and of them those that touch, with those that
-    // no longer do. Where the contact margin is not 0, pairs of two bodies are told as far as that; on ground without
-    // end within rounding.
+    // pairs(): objects whose boxes or spheres meet, in order. contacts(): those of them that touch, and those that have
+    // ended touching. Both as update() found them.
+    //
+    // With a contact margin, pairs of two bodies are listed up to that gap; on endless ground within rounding.
     [[nodiscard]] std::span<const ObjectPair> pairs() const;
     [[nodiscard]] std::span<const Contact> contacts() const;
-    // Of objects that both have bodies, in order. Pairs of which neither has moved are not computed again.
+    // Contacts of two objects that both have bodies, in order. Pairs of which neither has moved are not computed again.
     [[nodiscard]] std::span<const BodyContact> body_contacts() const;
 
   private:
