@@ -324,7 +324,7 @@ TEST_SUITE("capi/depth") {
         CHECK(permute(indices.data(), SIZE_MAX, permuted.data()) == CROFTON_OUT_OF_RANGE);
         CHECK(permuted == std::vector<std::uint32_t>(36, 77));
         indices.resize(72);
-        for (const std::size_t shift : {0, 1, 35})
+        for (const std::size_t shift : {0u, 1u, 35u})
             CHECK(permute(indices.data(), 36, indices.data() + shift) == CROFTON_INVALID_ARGUMENT);
         CHECK(mentions(crofton_last_error(), "overlap"));
         CHECK(permute(indices.data(), 36, indices.data() + 36) == CROFTON_OK);
