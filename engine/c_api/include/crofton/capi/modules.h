@@ -142,7 +142,8 @@ CROFTON_API crofton_status crofton_draw_limits_of_camera(const crofton_camera* c
 CROFTON_API crofton_status crofton_classify(const crofton_frustum* frustum, const crofton_box* boxes, size_t count,
                                             uint8_t* verdicts);
 
-/* Which triangles does a picture need? By the depth of the triangles found so far, front to back. */
+/* Which triangles does a picture need? Each is asked against the depth of those before, front to back. docs/depth.md is
+ * the guide. */
 
 typedef struct crofton_clustered_mesh crofton_clustered_mesh; /* a mesh cut into clusters; it never changes */
 typedef struct crofton_depth_culler crofton_depth_culler;     /* the answer for one picture, in buffers that are kept */
@@ -218,9 +219,9 @@ CROFTON_API crofton_status crofton_depth_culler_create(crofton_depth_culler** cu
 CROFTON_API crofton_status crofton_depth_culler_destroy(crofton_depth_culler* culler);
 /* Lists the triangles without which the picture would change, by object, then by cluster; valid until the culler's next
  * call of this. Draw them, or any set that contains them, in the order in which you would draw all, and the picture has
- * the same bits: with the depth test on and 32-bit float depth, one sample a pixel, and positions computed in float and
- * snapped to a grid of at most 1/256 pixel. Errors name the object. A call that fails leaves the last answer as it was.
- * Allocates nothing once it has grown to the largest answer. */
+ * the same bits. It holds for opaque triangles with the depth test on, one sample a pixel and 32-bit float depth; the
+ * guide says what else the renderer must do. Errors name the object. A call that fails leaves the last answer as it
+ * was. Allocates nothing once it has grown to the largest answer. */
 CROFTON_API crofton_status crofton_depth_culler_find_visible(crofton_depth_culler* culler,
                                                              const crofton_depth_object* objects, size_t object_count,
                                                              const crofton_picture_view* picture,
