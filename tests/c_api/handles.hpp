@@ -29,6 +29,8 @@ using ViewResultHandle = Owned<crofton_view_result, crofton_view_result_destroy>
 using BodyHandle = Owned<crofton_body, crofton_body_destroy>;
 using BodyContactsHandle = Owned<crofton_body_contacts, crofton_body_contacts_destroy>;
 using Found = Owned<crofton_found, crofton_found_destroy>;
+using ClusteredMesh = Owned<crofton_clustered_mesh, crofton_clustered_mesh_destroy>;
+using DepthCuller = Owned<crofton_depth_culler, crofton_depth_culler_destroy>;
 
 template <class OwnedHandle, class... Arguments>
 OwnedHandle make(crofton_status (*create)(Arguments..., typename OwnedHandle::pointer*), Arguments... arguments) {
@@ -59,6 +61,9 @@ inline ViewResultHandle make_view_result() {
 inline Found make_found() {
     return make<Found>(crofton_found_create);
 }
+inline DepthCuller make_depth_culler() {
+    return make<DepthCuller>(crofton_depth_culler_create);
+}
 
 // With the defaults of its members.
 template <class Struct>
@@ -82,6 +87,14 @@ inline crofton_object_description sized() {
 template <>
 inline crofton_view_request sized() {
     return crofton_default_view_request();
+}
+template <>
+inline crofton_depth_object sized() {
+    return crofton_default_depth_object();
+}
+template <>
+inline crofton_picture_view sized() {
+    return crofton_default_picture_view();
 }
 
 // What a view by a frustum asks; `view` must outlive the request.

@@ -111,6 +111,39 @@ TEST_SUITE("capi/hooks") {
         REQUIRE(crofton_set_memory_hooks(nullptr) == CROFTON_OK);
     }
 
+    TEST_CASE("a warm search for the triangles of a picture allocates nothing, and its memory is the host's") {
+        Counter counter;
+        const crofton_memory_hooks hooks{sizeof hooks, &counter, count_allocate, count_release};
+        REQUIRE(crofton_set_memory_hooks(&hooks) == CROFTON_OK);
+        {
+            const Tetrahedron tetrahedron;
+            const crofton_mesh mesh = tetrahedron.mesh();
+            crofton_clustered_mesh* made = nullptr;
+            REQUIRE(crofton_clustered_mesh_create(&mesh, 1, &made) == CROFTON_OK);
+            const ClusteredMesh clustered(made);
+            const DepthCuller culler = make_depth_culler();
+            std::vector<crofton_depth_object> objects(200, crofton_default_depth_object());
+            for (std::size_t i = 0; i < objects.size(); ++i) {
+                objects[i].mesh = made;
+                objects[i].to_clip[12] = static_cast<float>(i % 20) * 0.1f - 1.0f;
+                objects[i].to_clip[13] = static_cast<float>(i / 20) * 0.2f - 1.0f;
+            }
+            const crofton_picture_view picture = crofton_default_picture_view();
+            const crofton_visible_cluster* clusters = nullptr;
+            std::size_t count = 0, warm = 0;
+            for (int i = 0; i < 10; ++i) {
+                REQUIRE(crofton_depth_culler_find_visible(culler.get(), objects.data(), objects.size(), &picture,
+                                                          &clusters, &count) == CROFTON_OK);
+                CHECK(count > 20);
+                if (i == 0) warm = counter.allocations;
+                CHECK(counter.allocations == warm);
+            }
+            CHECK(warm > 4);
+        }
+        CHECK(counter.bytes_live == 0);
+        REQUIRE(crofton_set_memory_hooks(nullptr) == CROFTON_OK);
+    }
+
     TEST_CASE("a World lives in the host's memory, and its warm queries allocate nothing") {
         Counter counter;
         const crofton_memory_hooks hooks{sizeof hooks, &counter, count_allocate, count_release};

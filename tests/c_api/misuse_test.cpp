@@ -27,6 +27,7 @@ TEST_SUITE("capi/misuse") {
         const Scene scene = make_scene();
         const Triangulator triangulator = make_triangulator();
         const Collider collider = make_collider();
+        const DepthCuller culler = make_depth_culler();
         crofton_tree* tree = nullptr;
         REQUIRE(crofton_tree_create(&box, nullptr, 1, nullptr, &tree) == CROFTON_OK);
         const Tree owner(tree);
@@ -59,6 +60,15 @@ TEST_SUITE("capi/misuse") {
             mesh = tetrahedron.mesh();
             mesh.index_count = SIZE_MAX;
             CHECK(crofton_scene_add_mesh(scene.get(), &mesh, &id) == CROFTON_OUT_OF_RANGE);
+            crofton_clustered_mesh* clustered = nullptr;
+            CHECK(crofton_clustered_mesh_create(&mesh, 0, &clustered) == CROFTON_OUT_OF_RANGE);
+            CHECK(clustered == nullptr);
+            const crofton_depth_object object = crofton_default_depth_object();
+            const crofton_picture_view picture = crofton_default_picture_view();
+            const crofton_visible_cluster* clusters = nullptr;
+            std::size_t found = 0;
+            CHECK(crofton_depth_culler_find_visible(culler.get(), &object, count, &picture, &clusters, &found) ==
+                  CROFTON_OUT_OF_RANGE);
             auto polygon = sized<crofton_polygon>();
             polygon.points = doubles;
             polygon.point_count = count;

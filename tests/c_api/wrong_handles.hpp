@@ -19,7 +19,7 @@ template <class P>
 inline constexpr bool kIsHandle = std::is_pointer_v<P>&&
     kIsOneOf<Pointee<P>, crofton_scene, crofton_tree, crofton_visible_set, crofton_broadphase, crofton_collider,
              crofton_triangulator, crofton_world, crofton_view_result, crofton_body, crofton_body_contacts,
-             crofton_found, crofton_baked_scene, crofton_pvs>;
+             crofton_found, crofton_baked_scene, crofton_pvs, crofton_clustered_mesh, crofton_depth_culler>;
 
 constexpr unsigned char kUntouched = 0xA5;
 

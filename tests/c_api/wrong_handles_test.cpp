@@ -150,6 +150,17 @@ void refuse_modules_queries(Table& table) {
     CROFTON_REFUSE(crofton_pvs_visible);
 }
 
+void refuse_depth(Table& table) {
+    CROFTON_REFUSE(crofton_clustered_mesh_destroy);
+    CROFTON_REFUSE(crofton_clustered_mesh_triangle_order);
+    CROFTON_REFUSE(crofton_clustered_mesh_permute);
+    CROFTON_REFUSE(crofton_clustered_mesh_clusters);
+    CROFTON_REFUSE(crofton_depth_culler_destroy);
+    CROFTON_REFUSE(crofton_depth_culler_find_visible);
+    CROFTON_REFUSE(crofton_depth_culler_get_statistics);
+    CROFTON_REFUSE(crofton_depth_culler_nearness);
+}
+
 // Calls without a handle, or with one inside a struct or an array: other tests are theirs.
 const std::set<std::string> kWithoutHandle = {
     "api_version",
@@ -184,6 +195,7 @@ const std::set<std::string> kWithoutHandle = {
     "boxes_validate",
     "broadphase_create",
     "classify",
+    "clustered_mesh_create",
     "collider_create",
     "criterion_for_frustum",
     "criterion_for_rays",
@@ -191,6 +203,7 @@ const std::set<std::string> kWithoutHandle = {
     "default_camera",
     "default_cast_options",
     "default_cull_options",
+    "default_depth_object",
     "default_draw_limits",
     "default_find_options",
     "default_fit_options",
@@ -199,9 +212,11 @@ const std::set<std::string> kWithoutHandle = {
     "default_mesh_data",
     "default_object_description",
     "default_occlusion_options",
+    "default_picture_view",
     "default_view_matrix",
     "default_view_request",
     "default_world_options",
+    "depth_culler_create",
     "draw_limits_of_camera",
     "fit_boxes",
     "fit_doubles",
@@ -239,6 +254,7 @@ TEST_SUITE("capi/wrong handles") {
         refuse_results(table);
         refuse_modules_changes(table);
         refuse_modules_queries(table);
+        refuse_depth(table);
         CHECK(table.nothing_is_changed());
         sound.check_contents();
 

@@ -86,12 +86,15 @@ struct World {
     crofton_broadphase* broadphase = nullptr;
     crofton_collider* colliders[2] = {};
     crofton_triangulator* triangulator = nullptr;
+    crofton_clustered_mesh* clustered[2] = {};
+    crofton_depth_culler* depth_culler = nullptr;
 
     World() {
         crofton_scene_create(&scene);
         crofton_visible_set_create(&visible);
         crofton_broadphase_create(&broadphase);
         crofton_triangulator_create(&triangulator);
+        crofton_depth_culler_create(&depth_culler);
     }
     ~World() {
         crofton_tree_destroy(tree);
@@ -100,6 +103,8 @@ struct World {
         crofton_broadphase_destroy(broadphase);
         for (crofton_collider* collider : colliders) crofton_collider_destroy(collider);
         crofton_triangulator_destroy(triangulator);
+        for (crofton_clustered_mesh* mesh : clustered) crofton_clustered_mesh_destroy(mesh);
+        crofton_depth_culler_destroy(depth_culler);
     }
 };
 
@@ -262,6 +267,49 @@ void meshes(World& world, Input& in) {
         demand((any != 0) == (hit.index != CROFTON_NONE));
 }
 
+void picture(World& world, Input& in) {
+    crofton_clustered_mesh*& changed = world.clustered[in.below(2)];
+    if (in.flag()) {
+        Mesh mesh(in);
+        const std::size_t vertices = mesh.positions.size() / 3;
+        for (std::uint32_t& i : mesh.indices)
+            if (vertices != 0 && i < 40) i %= static_cast<std::uint32_t>(vertices);
+        crofton_clustered_mesh_destroy(changed);
+        changed = nullptr;
+        crofton_clustered_mesh_create(&mesh.view, in.below(66), &changed);
+    }
+    std::vector<crofton_depth_object> objects(in.below(6), crofton_default_depth_object());
+    for (crofton_depth_object& object : objects) {
+        object.mesh = world.clustered[in.below(2)];
+        if (!object.mesh && in.below(8)) object.mesh = world.clustered[world.clustered[0] ? 0 : 1];
+        for (float& x : object.to_clip)
+            if (in.below(4) == 0) x = in.real();
+        object.one_sided = in.below(2);
+        object.hides = in.below(3);
+        object.position_error = in.below(4) ? 0.0f : in.real();
+    }
+    crofton_picture_view view = crofton_default_picture_view();
+    view.width = in.below(8) ? 1 + in.below(70) : in.word();
+    view.height = in.below(8) ? 1 + in.below(70) : in.word();
+    view.depth = in.below(4);
+    const crofton_visible_cluster* found = nullptr;
+    std::size_t count = 0, cluster_count = 0;
+    if (crofton_depth_culler_find_visible(world.depth_culler, objects.data(), objects.size(), &view, &found, &count) !=
+        CROFTON_OK)
+        return;
+    for (std::size_t i = 0; i < count; ++i) {
+        demand(found[i].object < objects.size());
+        const crofton_cluster* clusters = nullptr;
+        demand(crofton_clustered_mesh_clusters(objects[found[i].object].mesh, &clusters, &cluster_count) == CROFTON_OK);
+        demand(found[i].cluster < cluster_count);
+        const std::uint32_t triangles = clusters[found[i].cluster].triangle_count;
+        demand(found[i].triangles != 0 && (triangles == 64 || found[i].triangles >> triangles == 0));
+    }
+    float nearness = 0.0f;
+    demand(crofton_depth_culler_nearness(world.depth_culler, view.width - 1, view.height - 1, &nearness) == CROFTON_OK);
+    demand(nearness == nearness);
+}
+
 void change_scene(World& world, Input& in) {
     const crofton_transform transform = in.transform();
     std::uint32_t id = 0;
@@ -338,7 +386,7 @@ void triangulate(World& world, Input& in) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     Input in(data, size);
     World world;
-    for (int call = 0; call < 20 && in.more(); ++call) switch (in.below(9)) {
+    for (int call = 0; call < 20 && in.more(); ++call) switch (in.below(10)) {
             case 0:
                 change_tree(world, in);
                 break;
@@ -362,6 +410,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                 break;
             case 7:
                 fit(in);
+                break;
+            case 8:
+                picture(world, in);
                 break;
             default:
                 triangulate(world, in);

@@ -105,6 +105,11 @@ TEST_SUITE("memory/capi") {
         sweep_create<crofton_collider>(
             "collider", [&](crofton_collider** collider) { return crofton_collider_create(&sail.mesh, collider); },
             crofton_collider_destroy);
+        sweep_create<crofton_clustered_mesh>(
+            "clustered mesh",
+            [&](crofton_clustered_mesh** clustered) { return crofton_clustered_mesh_create(&sail.mesh, 0, clustered); },
+            crofton_clustered_mesh_destroy);
+        sweep_create<crofton_depth_culler>("depth culler", crofton_depth_culler_create, crofton_depth_culler_destroy);
     }
 
     TEST_CASE("boxes, triangulations, files") {

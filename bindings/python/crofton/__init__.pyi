@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 import os
-from typing import Any, Callable, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Iterable, Optional, Sequence, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -137,6 +137,28 @@ class BoxList:
     def __len__(self) -> int: ...
     boxes: Array
     def find_visible(self, view: View, *, conservative: bool = False) -> Array: ...
+
+class ClusteredMesh:
+    def __init__(self, positions: Points, indices: npt.ArrayLike, max_triangles: int = 0) -> None: ...
+    def __len__(self) -> int: ...
+    triangle_order: Array
+    clusters: Array  # records: first_triangle, triangle_count, center (3), half_edges (3, 3)
+
+class DepthObject:
+    def __init__(self, mesh: ClusteredMesh, to_clip: npt.ArrayLike, *, one_sided: bool = False, hides: bool = True,
+                 position_error: float = 0.0) -> None: ...
+    mesh: ClusteredMesh
+    to_clip: Array
+    one_sided: bool
+    hides: bool
+    position_error: float
+
+class DepthCuller:
+    def __init__(self) -> None: ...
+    def find_visible(self, objects: Iterable[DepthObject], width: int, height: int, *,
+                     depth: str = "reversed_zero_to_one") -> Tuple[Array, Array, Array]: ...
+    statistics: dict[str, int]
+    nearness: Array
 
 def intersects(a: AnyBoxes, b: AnyBoxes) -> Array: ...
 def distance(a: AnyBoxes, b: AnyBoxes) -> Array: ...

@@ -295,6 +295,25 @@ py::array matrix_of(const Transform& transform) {
     return result;
 }
 
+glm::dmat4 projection_of(const py::handle& given, const char* name) {
+    const auto values = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(given);
+    if (!values || values.ndim() != 2 || values.shape(0) != 4 || values.shape(1) != 4) {
+        PyErr_Clear();
+        raise_type(std::string(name) + ": an array of shape (4, 4) is expected");
+    }
+    glm::dmat4 to_clip;
+    for (int row = 0; row < 4; ++row)
+        for (int column = 0; column < 4; ++column) to_clip[column][row] = values.at(row, column);
+    return to_clip;
+}
+
+DepthRange depth_range(const std::string& name) {
+    return choice_of<DepthRange>("depth", name,
+                                 {{"reversed_zero_to_one", DepthRange::reversed_zero_to_one},
+                                  {"zero_to_one", DepthRange::zero_to_one},
+                                  {"minus_one_to_one", DepthRange::minus_one_to_one}});
+}
+
 measure::Criterion criterion_of(const py::handle& given) {
     if (py::isinstance<measure::Criterion>(given)) return given.cast<measure::Criterion>();
     if (!py::isinstance<py::str>(given)) raise_type("criterion: a Criterion or its name is expected");

@@ -12,6 +12,7 @@
 #include <crofton/measure/measure.hpp>
 #include <crofton/world/inputs.hpp>
 #include <cstdint>
+#include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <initializer_list>
@@ -139,6 +140,8 @@ template <class T>
 [[nodiscard]] Transform transform_of(const py::handle& given, const char* name);
 [[nodiscard]] std::vector<Transform> transforms_of(const py::handle& given, const char* name);
 [[nodiscard]] py::array matrix_of(const Transform& transform);
+// A matrix of shape (4, 4) to clip space.
+[[nodiscard]] glm::dmat4 projection_of(const py::handle& given, const char* name);
 
 // A Criterion, or the name of one: "perimeter", "area", "volume".
 [[nodiscard]] measure::Criterion criterion_of(const py::handle& given);
@@ -155,6 +158,9 @@ template <class T>
     raise({ErrorCode::invalid_argument, kNoItem,
            std::string(argument) + ": one of " + names + " is expected, not '" + name + "'"});
 }
+
+// "reversed_zero_to_one", "zero_to_one" or "minus_one_to_one".
+[[nodiscard]] DepthRange depth_range(const std::string& name);
 
 // Runs f without the interpreter's lock.
 template <class F>

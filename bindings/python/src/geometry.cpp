@@ -63,22 +63,8 @@ Camera make_camera(const py::handle& position, const py::handle& forward, const 
     return camera;
 }
 
-DepthRange depth_range(const std::string& name) {
-    return choice_of<DepthRange>("depth", name,
-                                 {{"reversed_zero_to_one", DepthRange::reversed_zero_to_one},
-                                  {"zero_to_one", DepthRange::zero_to_one},
-                                  {"minus_one_to_one", DepthRange::minus_one_to_one}});
-}
-
 Frustum frustum_from(const py::handle& matrix, const std::string& depth, const py::handle& origin) {
-    const auto values = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(matrix);
-    if (!values || values.ndim() != 2 || values.shape(0) != 4 || values.shape(1) != 4) {
-        PyErr_Clear();
-        raise_type("matrix: an array of shape (4, 4) is expected");
-    }
-    glm::dmat4 to_clip;
-    for (int row = 0; row < 4; ++row)
-        for (int column = 0; column < 4; ++column) to_clip[column][row] = values.at(row, column);
+    const glm::dmat4 to_clip = projection_of(matrix, "matrix");
     return value_of(frustum_of(to_clip, depth_range(depth), vector_of(origin, "origin")));
 }
 

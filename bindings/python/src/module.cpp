@@ -49,6 +49,7 @@ PYBIND11_MODULE(_crofton, module) {
     bind_fit(module);
     bind_triangulate(module);
     bind_cull(module);
+    bind_depth(module);
     bind_collide(module);
     bind_world(module);
     bind_pvs(module);

@@ -10,6 +10,7 @@ void bind_measure(pybind11::module_& module);
 void bind_fit(pybind11::module_& module);
 void bind_triangulate(pybind11::module_& module);
 void bind_cull(pybind11::module_& module);
+void bind_depth(pybind11::module_& module);
 void bind_collide(pybind11::module_& module);
 void bind_world(pybind11::module_& module);
 void bind_pvs(pybind11::module_& module);

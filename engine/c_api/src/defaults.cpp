@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <crofton/capi/crofton.h>
 
+#include <algorithm>
+#include <crofton/depth/depth_culler.hpp>
 #include <crofton/fit/fit.hpp>
 #include <crofton/world/world.hpp>
 
@@ -78,6 +80,25 @@ crofton_cull_options crofton_default_cull_options(void) {
 
 crofton_draw_limits crofton_default_draw_limits(void) {
     return sized<crofton_draw_limits>();
+}
+
+crofton_depth_object crofton_default_depth_object(void) {
+    const depth::DepthObject object;
+    auto result = sized<crofton_depth_object>();
+    std::copy_n(&object.to_clip[0][0], 16, result.to_clip);
+    result.one_sided = object.one_sided;
+    result.hides = object.hides;
+    result.position_error = object.position_error;
+    return result;
+}
+
+crofton_picture_view crofton_default_picture_view(void) {
+    const depth::PictureView view;
+    auto result = sized<crofton_picture_view>();
+    result.width = view.width;
+    result.height = view.height;
+    result.depth = static_cast<std::uint32_t>(view.depth);
+    return result;
 }
 
 crofton_hull_options crofton_default_hull_options(void) {

@@ -44,6 +44,14 @@ template <>
 [[nodiscard]] inline crofton_view_request default_of<crofton_view_request>() {
     return crofton_default_view_request();
 }
+template <>
+[[nodiscard]] inline crofton_depth_object default_of<crofton_depth_object>() {
+    return crofton_default_depth_object();
+}
+template <>
+[[nodiscard]] inline crofton_picture_view default_of<crofton_picture_view>() {
+    return crofton_default_picture_view();
+}
 
 // Copies what the caller's struct has; the other members of `copy` have their defaults.
 template <class Struct>

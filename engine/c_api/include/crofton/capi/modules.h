@@ -142,6 +142,99 @@ CROFTON_API crofton_status crofton_draw_limits_of_camera(const crofton_camera* c
 CROFTON_API crofton_status crofton_classify(const crofton_frustum* frustum, const crofton_box* boxes, size_t count,
                                             uint8_t* verdicts);
 
+/* Which triangles does a picture need? Each is asked against the depth of those before, front to back. docs/depth.md is
+ * the guide. */
+
+typedef struct crofton_clustered_mesh crofton_clustered_mesh; /* a mesh cut into clusters; it never changes */
+typedef struct crofton_depth_culler crofton_depth_culler;     /* the answer for one picture, in buffers that are kept */
+
+#define CROFTON_MAX_CLUSTER_TRIANGLES 64u
+
+/* The triangles [first_triangle, first_triangle + triangle_count) of the order, and a box in the mesh's coordinates
+ * that contains them. */
+typedef struct crofton_cluster {
+    uint32_t first_triangle, triangle_count; /* 1 to CROFTON_MAX_CLUSTER_TRIANGLES */
+    float center[3];
+    float half_edges[9]; /* half_edges[3 k + i] is component i of edge k; center +- each edge gives the corners */
+} crofton_cluster;
+
+/* One mesh that is drawn. */
+typedef struct crofton_depth_object {
+    size_t size;
+    const crofton_clustered_mesh* mesh; /* NULL: set it */
+    float to_clip[16];    /* the identity; column-major, takes columns (x, y, z, 1) of the mesh's to clip space, as the
+                             vertex shader does in float. Not finite: all of the object is listed and it hides nothing */
+    uint32_t one_sided;   /* 0; 1: back faces are not drawn; front faces are counter-clockwise seen with y up */
+    uint32_t hides;       /* 1; 0: hides nothing, as alpha-tested and transparent things */
+    float position_error; /* 0; how far drawn vertices may lie from the mesh's, in its units, besides the rounding of
+                             to_clip times vertex. Negative or not finite: as of to_clip */
+} crofton_depth_object;
+
+/* The picture that is drawn: one sample a pixel, at its centre. */
+typedef struct crofton_picture_view {
+    size_t size;
+    uint32_t width, height; /* 1280 and 720; 1 to 16384 */
+    uint32_t depth;         /* a crofton_depth_range; CROFTON_DEPTH_REVERSED_ZERO_TO_ONE */
+} crofton_picture_view;
+
+/* Bit k of `triangles` stands for triangle first_triangle + k of the cluster; at least one is set. */
+typedef struct crofton_visible_cluster {
+    uint32_t object, cluster;
+    uint64_t triangles;
+} crofton_visible_cluster;
+
+typedef struct crofton_depth_statistics {
+    size_t size;
+    uint64_t objects_listed;  /* with at least one triangle */
+    uint64_t objects_asked;   /* whose bounds cover a sample of the picture */
+    uint64_t clusters_asked;  /* of the objects that were not hidden as a whole */
+    uint64_t clusters_drawn;  /* that were not hidden as a whole */
+    uint64_t triangles_drawn; /* of those clusters */
+    uint64_t triangles_listed;
+} crofton_depth_statistics;
+
+CROFTON_API crofton_depth_object crofton_default_depth_object(void);
+CROFTON_API crofton_picture_view crofton_default_picture_view(void);
+
+/* Cuts a mesh, which is copied, into clusters of up to `max_triangles`, 0 to CROFTON_MAX_CLUSTER_TRIANGLES. 0 chooses:
+ * 16 for meshes of up to 1,000 triangles, 64 for those of 10,000 and more, and between them in proportion. Errors name
+ * the vertex or the index. */
+CROFTON_API crofton_status crofton_clustered_mesh_create(const crofton_mesh* mesh, uint32_t max_triangles,
+                                                         crofton_clustered_mesh** clustered);
+CROFTON_API crofton_status crofton_clustered_mesh_destroy(crofton_clustered_mesh* clustered);
+/* Writes the first `capacity` numbers of the order, and in *count how many there are: one a triangle. Triangle
+ * triangles[k] of the mesh that was given is number k of the order. */
+CROFTON_API crofton_status crofton_clustered_mesh_triangle_order(const crofton_clustered_mesh* clustered,
+                                                                 uint32_t* triangles, size_t capacity, size_t* count);
+/* Writes the mesh's `index_count` indices to `permuted` in that order, so that each cluster is one range of an index
+ * buffer. The arrays must not overlap. */
+CROFTON_API crofton_status crofton_clustered_mesh_permute(const crofton_clustered_mesh* clustered,
+                                                          const uint32_t* indices, size_t index_count,
+                                                          uint32_t* permuted);
+/* Valid while the clustered mesh lives. */
+CROFTON_API crofton_status crofton_clustered_mesh_clusters(const crofton_clustered_mesh* clustered,
+                                                           const crofton_cluster** clusters, size_t* count);
+
+CROFTON_API crofton_status crofton_depth_culler_create(crofton_depth_culler** culler);
+CROFTON_API crofton_status crofton_depth_culler_destroy(crofton_depth_culler* culler);
+/* Lists the triangles without which the picture would change, by object, then by cluster; valid until the culler's next
+ * call of this. Draw them, or any set that contains them, in the order in which you would draw all, and the picture has
+ * the same bits. It holds for opaque triangles with the depth test on, one sample a pixel and 32-bit float depth; the
+ * guide says what else the renderer must do. Errors name the object. A call that fails leaves the last answer as it
+ * was. Allocates nothing once it has grown to the largest answer. */
+CROFTON_API crofton_status crofton_depth_culler_find_visible(crofton_depth_culler* culler,
+                                                             const crofton_depth_object* objects, size_t object_count,
+                                                             const crofton_picture_view* picture,
+                                                             const crofton_visible_cluster** clusters, size_t* count);
+/* Of the last answer. Fills a struct whose `size` is set. */
+CROFTON_API crofton_status crofton_depth_culler_get_statistics(const crofton_depth_culler* culler,
+                                                               crofton_depth_statistics* statistics);
+/* The nearness that the listed triangles surely have at a pixel of the last picture: its depth, negated unless
+ * reversed; minus infinity where none surely covers it. Row 0 is at the bottom. CROFTON_OUT_OF_RANGE: not a pixel of
+ * that picture, or there was none. */
+CROFTON_API crofton_status crofton_depth_culler_nearness(const crofton_depth_culler* culler, uint32_t x, uint32_t y,
+                                                         float* nearness);
+
 /* What touches what? Exactly; touching counts. */
 
 typedef struct crofton_broadphase crofton_broadphase; /* all pairs of many moving boxes */

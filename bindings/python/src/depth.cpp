@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: MIT
+// Meshes cut into clusters, and the triangles of them that a picture needs.
+#include <crofton/depth/clustered_mesh.hpp>
+#include <crofton/depth/depth_culler.hpp>
+
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "convert.hpp"
+#include "module.hpp"
+
+namespace crofton::python {
+namespace {
+
+using depth::ClusteredMesh;
+using depth::DepthCuller;
+
+struct ClusterRecord {
+    std::uint32_t first_triangle, triangle_count;
+    float center[3];
+    float half_edges[3][3];
+};
+static_assert(sizeof(ClusterRecord) == sizeof(depth::Cluster));
+
+// The library's message, with the names of Python's arguments in place of the module's.
+Error with_arguments(Error error, std::string arguments) {
+    const std::size_t colon = error.message.find(": ");
+    error.message = std::move(arguments) + error.message.substr(colon == std::string::npos ? 0 : colon + 2);
+    return error;
+}
+
+Error in_cut(const Error& error) {
+    if (error.code == ErrorCode::non_finite) return with_arguments(error, "positions: ");
+    const bool is_of_indices = error.item != kNoItem || error.code == ErrorCode::empty;
+    return with_arguments(error, is_of_indices ? "indices: " : "");
+}
+
+std::shared_ptr<ClusteredMesh> cut(const py::handle& given, const py::handle& given_indices,
+                                   const py::handle& max_triangles) {
+    const Points<3> points(given, "positions");
+    const auto corners = integers<std::uint32_t>(given_indices, "indices");
+    const depth::ClusterOptions options{number_of<std::uint32_t>(max_triangles, "max_triangles")};
+    // Copies: another thread could change what has been checked.
+    std::vector<glm::vec3> positions;
+    points.visit([&](auto span) { positions.assign(span.begin(), span.end()); });
+    const std::vector<std::uint32_t> indices(span_of(corners).begin(), span_of(corners).end());
+    auto mesh = unlocked([&] { return ClusteredMesh::cut(positions, indices, options); });
+    if (!mesh) raise(in_cut(mesh.error()));
+    return std::make_shared<ClusteredMesh>(std::move(*mesh));
+}
+
+py::array clusters_of(const ClusteredMesh& mesh) {
+    py::array_t<ClusterRecord> result(static_cast<py::ssize_t>(mesh.clusters().size()));
+    std::memcpy(result.mutable_data(), mesh.clusters().data(), mesh.clusters().size_bytes());
+    return result;
+}
+
+// A mesh as a picture draws it. The matrix is the vertex shader's, in float.
+struct DrawnMesh {
+    std::shared_ptr<const ClusteredMesh> mesh;
+    glm::mat4 to_clip{1.0f};
+    bool one_sided = false;
+    bool hides = true;
+    float position_error = 0.0f;
+
+    [[nodiscard]] depth::DepthObject object() const { return {mesh.get(), to_clip, one_sided, hides, position_error}; }
+};
+
+DrawnMesh drawn_mesh(const py::handle& mesh, const py::handle& to_clip, bool one_sided, bool hides,
+                     const py::handle& position_error) {
+    if (!py::isinstance<ClusteredMesh>(mesh)) raise_type("mesh: a ClusteredMesh is expected");
+    return {mesh.cast<std::shared_ptr<ClusteredMesh>>(), glm::mat4(projection_of(to_clip, "to_clip")), one_sided, hides,
+            number_of<float>(position_error, "position_error")};
+}
+
+py::array_t<float> rows_of(const glm::mat4& matrix) {
+    py::array_t<float> result({4, 4});
+    for (int row = 0; row < 4; ++row)
+        for (int column = 0; column < 4; ++column) result.mutable_at(row, column) = matrix[column][row];
+    return result;
+}
+
+// Copies, which keep the meshes alive.
+std::vector<DrawnMesh> drawn_meshes(const py::handle& given) {
+    constexpr const char* kExpected = "objects: a list of DepthObject is expected";
+    if (!py::isinstance<py::iterable>(given)) raise_type(kExpected);
+    std::vector<DrawnMesh> result;
+    for (const py::handle one : py::reinterpret_borrow<py::iterable>(given)) {
+        if (!py::isinstance<DrawnMesh>(one)) raise_type(kExpected);
+        result.push_back(one.cast<const DrawnMesh&>());
+    }
+    return result;
+}
+
+// A culler, the size of its last picture, and a lock: calls run without the interpreter's.
+class Culler {
+  public:
+    py::tuple find_visible(const py::handle& given, const py::handle& width, const py::handle& height,
+                           const std::string& depth) {
+        const std::vector<DrawnMesh> meshes = drawn_meshes(given);
+        const depth::PictureView view{number_of<std::uint32_t>(width, "width"),
+                                      number_of<std::uint32_t>(height, "height"), depth_range(depth)};
+        std::vector<depth::DepthObject> objects;
+        for (const DrawnMesh& mesh : meshes) objects.push_back(mesh.object());
+        std::vector<std::uint32_t> object, cluster;
+        std::vector<std::uint64_t> triangles;
+        auto done = unlocked([&]() -> Result<void> {
+            const std::lock_guard lock(mutex_);
+            const auto found = culler_.find_visible(objects, view);
+            if (!found) return fail(found.error().code, found.error().item, found.error().message);
+            width_ = view.width;
+            height_ = view.height;
+            for (const depth::VisibleCluster& c : *found) {
+                object.push_back(c.object);
+                cluster.push_back(c.cluster);
+                triangles.push_back(c.triangles);
+            }
+            return {};
+        });
+        if (!done) raise(with_arguments(done.error(), "width, height: "));
+        return py::make_tuple(array_of<std::uint32_t>(object), array_of<std::uint32_t>(cluster),
+                              array_of<std::uint64_t>(triangles));
+    }
+
+    py::dict statistics() {
+        const depth::DepthStatistics s = unlocked([&] {
+            const std::lock_guard lock(mutex_);
+            return culler_.statistics();
+        });
+        py::dict result;
+        result["objects_listed"] = s.objects_listed;
+        result["objects_asked"] = s.objects_asked;
+        result["clusters_asked"] = s.clusters_asked;
+        result["clusters_drawn"] = s.clusters_drawn;
+        result["triangles_drawn"] = s.triangles_drawn;
+        result["triangles_listed"] = s.triangles_listed;
+        return result;
+    }
+
+    py::array nearness() {
+        std::vector<float> values;
+        py::ssize_t width = 0, height = 0;
+        unlocked([&] {
+            const std::lock_guard lock(mutex_);
+            width = width_;
+            height = height_;
+            for (std::uint32_t y = 0; y < height_; ++y)
+                for (std::uint32_t x = 0; x < width_; ++x) values.push_back(culler_.nearness(x, y));
+        });
+        return array_of<float>(values).reshape({height, width});
+    }
+
+  private:
+    DepthCuller culler_;
+    std::uint32_t width_ = 0, height_ = 0;
+    std::mutex mutex_;
+};
+
+}  // namespace
+
+void bind_depth(py::module_& module) {
+    PYBIND11_NUMPY_DTYPE(ClusterRecord, first_triangle, triangle_count, center, half_edges);
+    py::class_<ClusteredMesh, std::shared_ptr<ClusteredMesh>>(
+        module, "ClusteredMesh", "A mesh cut into clusters, groups of neighbouring triangles, for DepthCuller.")
+        .def(py::init(&cut), py::arg("positions"), py::arg("indices"), py::arg("max_triangles") = 0,
+             "From points (n, 3), stored as float32, and indices, three a triangle. A cluster has up to "
+             "`max_triangles`, at most 64; 0 chooses by the mesh's size.")
+        .def_property_readonly(
+            "triangle_order", [](const ClusteredMesh& mesh) { return array_of<std::uint32_t>(mesh.triangle_order()); },
+            "the mesh's triangles in the order of the clusters: indices.reshape(-1, 3)[triangle_order] is an index "
+            "buffer in which each cluster is one range")
+        .def_property_readonly(
+            "clusters", &clusters_of,
+            "an array of records: `first_triangle` and `triangle_count` in that order, and a box around "
+            "them, `center` ± each of the three `half_edges`")
+        .def("__len__", [](const ClusteredMesh& mesh) { return mesh.clusters().size(); });
+
+    py::class_<DrawnMesh>(module, "DepthObject", "A mesh that a picture draws, for DepthCuller.")
+        .def(py::init(&drawn_mesh), py::arg("mesh"), py::arg("to_clip"), py::kw_only(), py::arg("one_sided") = false,
+             py::arg("hides") = true, py::arg("position_error") = 0.0,
+             "`to_clip` takes columns (x, y, z, 1) of the mesh's to clip space, in float32 as a vertex shader does. "
+             "`position_error`: how far drawn vertices may lie from the mesh's, besides that product's rounding.")
+        .def_property_readonly("mesh",
+                               [](const DrawnMesh& m) { return std::const_pointer_cast<ClusteredMesh>(m.mesh); })
+        .def_property(
+            "to_clip", [](const DrawnMesh& m) { return rows_of(m.to_clip); },
+            [](DrawnMesh& m, const py::handle& given) { m.to_clip = glm::mat4(projection_of(given, "to_clip")); },
+            "shape (4, 4), as NumPy prints it")
+        .def_readwrite("one_sided", &DrawnMesh::one_sided,
+                       "back faces are not drawn; front faces are counter-clockwise seen with y up")
+        .def_readwrite("hides", &DrawnMesh::hides, "False for what is alpha-tested or transparent: it hides nothing")
+        .def_readwrite("position_error", &DrawnMesh::position_error);
+
+    py::class_<Culler>(module, "DepthCuller",
+                       "Finds the triangles without which a picture would change, front to back, by the depth of those "
+                       "that it has found. It keeps its memory between calls.")
+        .def(py::init<>())
+        .def("find_visible", &Culler::find_visible, py::arg("objects"), py::arg("width"), py::arg("height"),
+             py::kw_only(), py::arg("depth") = "reversed_zero_to_one",
+             "(object, cluster, triangles): arrays with one item for each cluster that is listed, by object, then by "
+             "cluster. Bit k of `triangles` stands for triangle first_triangle + k of the cluster. The picture has one "
+             "sample a pixel and 32-bit float depth.")
+        .def_property_readonly("statistics", &Culler::statistics, "what the last call asked, drew and listed: a dict")
+        .def_property_readonly("nearness", &Culler::nearness,
+                               "what the triangles listed last surely cover, (height, width), the bottom row first: "
+                               "their depth, negated unless reversed; −inf where none does");
+}
+
+}  // namespace crofton::python

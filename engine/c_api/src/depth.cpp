@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: MIT
+// Meshes cut into clusters, and the triangles of them that a picture needs.
+#include <crofton/capi/modules.h>
+
+#include <algorithm>
+#include <crofton/depth/clustered_mesh.hpp>
+#include <crofton/depth/depth_culler.hpp>
+#include <cstddef>
+#include <functional>
+
+#include <crofton/capi/call.hpp>
+#include "growing.hpp"
+
+using namespace crofton;
+using namespace crofton::capi;
+
+struct crofton_clustered_mesh {
+    static constexpr std::uint32_t kKind = 0x43724f0d;
+    Header header;
+    depth::ClusteredMesh mesh;
+};
+
+struct crofton_depth_culler {
+    static constexpr std::uint32_t kKind = 0x43724f0e;
+    Header header;
+    depth::DepthCuller culler{};
+    Vector<depth::DepthObject> objects{};
+    std::uint32_t width = 0, height = 0;  // of the last picture
+};
+
+static_assert(CROFTON_MAX_CLUSTER_TRIANGLES == depth::Cluster::kMaxTriangles);
+static_assert(sizeof(crofton_cluster) == sizeof(depth::Cluster) &&
+              offsetof(crofton_cluster, triangle_count) == offsetof(depth::Cluster, triangle_count) &&
+              offsetof(crofton_cluster, center) == offsetof(depth::Cluster, center) &&
+              offsetof(crofton_cluster, half_edges) == offsetof(depth::Cluster, half_edges));
+static_assert(sizeof(crofton_visible_cluster) == sizeof(depth::VisibleCluster) &&
+              offsetof(crofton_visible_cluster, cluster) == offsetof(depth::VisibleCluster, cluster) &&
+              offsetof(crofton_visible_cluster, triangles) == offsetof(depth::VisibleCluster, triangles));
+
+namespace {
+
+crofton_status read_picture(const crofton_picture_view* picture, const char* function, depth::PictureView& view) {
+    crofton_picture_view given;
+    CROFTON_CHECK(read_growing(picture, function, given));
+    if (given.depth > CROFTON_DEPTH_MINUS_ONE_TO_ONE)
+        return report(CROFTON_INVALID_ARGUMENT, function, "unknown depth range");
+    view = {given.width, given.height, static_cast<DepthRange>(given.depth)};
+    return CROFTON_OK;
+}
+
+crofton_status add_object(const crofton_depth_object& given, const char* function,
+                          Vector<depth::DepthObject>& objects) {
+    const SharedUse use(given.mesh, function);
+    if (use.failed()) return use.status();
+    depth::DepthObject object{&given.mesh->mesh, {}, given.one_sided != 0, given.hides != 0, given.position_error};
+    std::copy_n(given.to_clip, 16, &object.to_clip[0][0]);
+    objects.push_back(object);
+    return CROFTON_OK;
+}
+
+}  // namespace
+
+crofton_status crofton_clustered_mesh_create(const crofton_mesh* mesh, uint32_t max_triangles,
+                                             crofton_clustered_mesh** clustered) {
+    CROFTON_CHECK(check_pointer(clustered, __func__));
+    CROFTON_CHECK(check_struct(mesh, __func__));
+    CROFTON_CHECK(check_array(mesh->positions, mesh->vertex_count, __func__, 3));
+    CROFTON_CHECK(check_array(mesh->indices, mesh->index_count, __func__));
+    return recover(__func__, [&, function = __func__] {
+        auto cut = depth::ClusteredMesh::cut(
+            std::span(reinterpret_cast<const glm::vec3*>(mesh->positions), mesh->vertex_count),
+            std::span(mesh->indices, mesh->index_count), {.max_triangles = max_triangles});
+        if (!cut) return report(cut.error(), function);
+        return create(clustered, function, std::move(*cut));
+    });
+}
+
+crofton_status crofton_clustered_mesh_destroy(crofton_clustered_mesh* clustered) {
+    return destroy(clustered, __func__);
+}
+
+crofton_status crofton_clustered_mesh_triangle_order(const crofton_clustered_mesh* clustered, uint32_t* triangles,
+                                                     size_t capacity, size_t* count) {
+    const SharedUse use(clustered, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_room(triangles, capacity, __func__));
+    CROFTON_CHECK(check_pointer(count, __func__));
+    const std::span<const std::uint32_t> order = clustered->mesh.triangle_order();
+    std::copy_n(order.begin(), std::min(capacity, order.size()), triangles);
+    *count = order.size();
+    return CROFTON_OK;
+}
+
+crofton_status crofton_clustered_mesh_permute(const crofton_clustered_mesh* clustered, const uint32_t* indices,
+                                              size_t index_count, uint32_t* permuted) {
+    const SharedUse use(clustered, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_array(indices, index_count, __func__));
+    CROFTON_CHECK(check_pointer(permuted, __func__));
+    if (index_count != 3 * clustered->mesh.triangle_order().size())
+        return report(CROFTON_INVALID_ARGUMENT, __func__, "index_count is not that of the mesh");
+    const std::less<const std::uint32_t*> before;
+    if (before(permuted, indices + index_count) && before(indices, permuted + index_count))
+        return report(CROFTON_INVALID_ARGUMENT, __func__, "the arrays overlap");
+    clustered->mesh.permute({indices, index_count}, {permuted, index_count});
+    return CROFTON_OK;
+}
+
+crofton_status crofton_clustered_mesh_clusters(const crofton_clustered_mesh* clustered,
+                                               const crofton_cluster** clusters, size_t* count) {
+    const SharedUse use(clustered, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_pointer(clusters, __func__));
+    CROFTON_CHECK(check_pointer(count, __func__));
+    *clusters = reinterpret_cast<const crofton_cluster*>(clustered->mesh.clusters().data());
+    *count = clustered->mesh.clusters().size();
+    return CROFTON_OK;
+}
+
+crofton_status crofton_depth_culler_create(crofton_depth_culler** culler) {
+    CROFTON_CHECK(check_pointer(culler, __func__));
+    return create(culler, __func__);
+}
+
+crofton_status crofton_depth_culler_destroy(crofton_depth_culler* culler) {
+    return destroy(culler, __func__);
+}
+
+crofton_status crofton_depth_culler_find_visible(crofton_depth_culler* culler, const crofton_depth_object* objects,
+                                                 size_t object_count, const crofton_picture_view* picture,
+                                                 const crofton_visible_cluster** clusters, size_t* count) {
+    const ExclusiveUse use(culler, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_array(objects, object_count, __func__));
+    CROFTON_CHECK(check_pointer(clusters, __func__));
+    CROFTON_CHECK(check_pointer(count, __func__));
+    depth::PictureView view;
+    CROFTON_CHECK(read_picture(picture, __func__, view));
+    culler->objects.clear();
+    for (std::size_t i = 0; i < object_count; ++i) {
+        crofton_depth_object given;
+        CROFTON_CHECK(of_item(read_growing_at(objects, i, __func__, given), i));
+        CROFTON_CHECK(of_item(add_object(given, __func__, culler->objects), i));
+    }
+    const auto found = culler->culler.find_visible(culler->objects, view);
+    if (!found) return report(found.error(), __func__);
+    culler->width = view.width;
+    culler->height = view.height;
+    *clusters = reinterpret_cast<const crofton_visible_cluster*>(found->data());
+    *count = found->size();
+    return CROFTON_OK;
+}
+
+crofton_status crofton_depth_culler_get_statistics(const crofton_depth_culler* culler,
+                                                   crofton_depth_statistics* statistics) {
+    const SharedUse use(culler, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_growing(statistics, __func__));
+    const depth::DepthStatistics& s = culler->culler.statistics();
+    write_growing({sizeof *statistics, s.objects_listed, s.objects_asked, s.clusters_asked, s.clusters_drawn,
+                   s.triangles_drawn, s.triangles_listed},
+                  statistics);
+    return CROFTON_OK;
+}
+
+crofton_status crofton_depth_culler_nearness(const crofton_depth_culler* culler, uint32_t x, uint32_t y,
+                                             float* nearness) {
+    const SharedUse use(culler, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_pointer(nearness, __func__));
+    if (x >= culler->width || y >= culler->height)
+        return report(CROFTON_OUT_OF_RANGE, __func__, "not a pixel of the last picture");
+    *nearness = culler->culler.nearness(x, y);
+    return CROFTON_OK;
+}

@@ -1,0 +1,441 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <crofton/depth/depth_culler.hpp>
+#include <crofton/geometry/camera.hpp>
+#include <crofton/geometry/mesh.hpp>
+#include <cstddef>
+#include <cstring>
+#include <glm/gtc/matrix_transform.hpp>
+#include <limits>
+#include <random>
+
+#include "../box_mesh.hpp"
+#include "handles.hpp"
+
+using namespace crofton::capi_test;
+using crofton::TriangleMesh;
+
+namespace {
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+
+// n × n squares over [-half, half]² of the plane z = 0, seen from +z.
+TriangleMesh wall(std::uint32_t n, float half) {
+    TriangleMesh mesh;
+    for (std::uint32_t j = 0; j <= n; ++j)
+        for (std::uint32_t i = 0; i <= n; ++i)
+            mesh.positions.push_back({half * (2.0f * static_cast<float>(i) / static_cast<float>(n) - 1.0f),
+                                      half * (2.0f * static_cast<float>(j) / static_cast<float>(n) - 1.0f), 0.0f});
+    for (std::uint32_t j = 0; j < n; ++j)
+        for (std::uint32_t i = 0; i < n; ++i) {
+            const std::uint32_t p = j * (n + 1) + i, q = p + n + 1;
+            for (const std::uint32_t v : {p, p + 1, q + 1, p, q + 1, q}) mesh.indices.push_back(v);
+        }
+    return mesh;
+}
+
+crofton_mesh to_c(const TriangleMesh& mesh) {
+    return {sizeof(crofton_mesh), &mesh.positions[0].x, mesh.positions.size(),
+            mesh.indices.data(),  mesh.indices.size(),  "a mesh"};
+}
+
+ClusteredMesh cut(const TriangleMesh& mesh, std::uint32_t max_triangles = 0) {
+    const crofton_mesh given = to_c(mesh);
+    crofton_clustered_mesh* clustered = nullptr;
+    REQUIRE(crofton_clustered_mesh_create(&given, max_triangles, &clustered) == CROFTON_OK);
+    return ClusteredMesh(clustered);
+}
+
+std::span<const crofton_cluster> clusters_of(const ClusteredMesh& mesh) {
+    const crofton_cluster* clusters = nullptr;
+    std::size_t count = 0;
+    REQUIRE(crofton_clustered_mesh_clusters(mesh.get(), &clusters, &count) == CROFTON_OK);
+    return {clusters, count};
+}
+
+std::vector<std::uint32_t> order_of(const ClusteredMesh& mesh) {
+    std::size_t count = 0;
+    REQUIRE(crofton_clustered_mesh_triangle_order(mesh.get(), nullptr, 0, &count) == CROFTON_OK);
+    std::vector<std::uint32_t> order(count);
+    REQUIRE(crofton_clustered_mesh_triangle_order(mesh.get(), order.data(), count, &count) == CROFTON_OK);
+    return order;
+}
+
+// By the default camera, which looks along -z from the origin.
+glm::mat4 to_clip(const glm::dmat4& place, crofton::DepthRange depth = crofton::DepthRange::reversed_zero_to_one) {
+    return glm::mat4(crofton::world_to_clip(crofton::Camera{}, depth) * place);
+}
+glm::dmat4 at(double x, double y, double z) {
+    return glm::translate(glm::dmat4(1.0), glm::dvec3(x, y, z));
+}
+
+crofton_depth_object object_of(const ClusteredMesh& mesh, const glm::mat4& matrix) {
+    crofton_depth_object object = crofton_default_depth_object();
+    object.mesh = mesh.get();
+    std::memcpy(object.to_clip, &matrix[0][0], sizeof object.to_clip);
+    return object;
+}
+
+crofton_picture_view picture_of(std::uint32_t width, std::uint32_t height) {
+    crofton_picture_view picture = crofton_default_picture_view();
+    picture.width = width;
+    picture.height = height;
+    return picture;
+}
+
+std::span<const crofton_visible_cluster> find(const DepthCuller& culler, std::span<const crofton_depth_object> objects,
+                                              const crofton_picture_view& picture) {
+    const crofton_visible_cluster* clusters = nullptr;
+    std::size_t count = 0;
+    REQUIRE(crofton_depth_culler_find_visible(culler.get(), objects.data(), objects.size(), &picture, &clusters,
+                                              &count) == CROFTON_OK);
+    return {clusters, count};
+}
+
+int listed_of(std::span<const crofton_visible_cluster> found, std::uint32_t object) {
+    int triangles = 0;
+    for (const crofton_visible_cluster& c : found)
+        if (c.object == object) triangles += std::popcount(c.triangles);
+    return triangles;
+}
+
+}  // namespace
+
+TEST_SUITE("capi/depth") {
+    TEST_CASE("the order holds each triangle once, and each cluster's box holds its triangles") {
+        const TriangleMesh mesh = wall(20, 3.0f);
+        for (const std::uint32_t most : {1u, 7u, 64u}) {
+            const ClusteredMesh clustered = cut(mesh, most);
+            const std::vector<std::uint32_t> order = order_of(clustered);
+            std::vector<std::uint32_t> sorted = order;
+            std::sort(sorted.begin(), sorted.end());
+            REQUIRE(order.size() == 800);
+            for (std::uint32_t t = 0; t < 800; ++t) CHECK(sorted[t] == t);
+            std::vector<std::uint32_t> permuted(mesh.indices.size());
+            REQUIRE(crofton_clustered_mesh_permute(clustered.get(), mesh.indices.data(), mesh.indices.size(),
+                                                   permuted.data()) == CROFTON_OK);
+            std::uint32_t next = 0;
+            for (const crofton_cluster& c : clusters_of(clustered)) {
+                CHECK(c.first_triangle == next);
+                CHECK((c.triangle_count >= 1 && c.triangle_count <= most));
+                next += c.triangle_count;
+                for (std::uint32_t k = 3 * c.first_triangle; k < 3 * next; ++k) {
+                    CHECK(permuted[k] == mesh.indices[3 * order[k / 3] + k % 3]);
+                    const glm::vec3 p = mesh.positions[permuted[k]];
+                    // Of a flat box one edge is nearly nothing: its extent along an axis is the sum of the edges'.
+                    for (int axis = 0; axis < 3; ++axis) {
+                        double extent = 0.0;
+                        for (int edge = 0; edge < 3; ++edge) extent += std::abs(double{c.half_edges[3 * edge + axis]});
+                        CHECK(std::abs(double{p[axis]} - double{c.center[axis]}) <= extent);
+                    }
+                }
+            }
+            CHECK(next == 800);
+        }
+        std::uint32_t first[2] = {77, 77};
+        std::size_t count = 0;
+        const ClusteredMesh clustered = cut(mesh);
+        REQUIRE(crofton_clustered_mesh_triangle_order(clustered.get(), first, 1, &count) == CROFTON_OK);
+        CHECK(count == 800);
+        CHECK(first[0] == order_of(clustered)[0]);
+        CHECK(first[1] == 77);
+    }
+
+    TEST_CASE("what C lists is what C++ lists, with every member of an object and in every depth range") {
+        std::mt19937 random(9);
+        const auto uniform = [&](double low, double high) {
+            return low + (high - low) * (static_cast<double>(random()) / 4294967296.0);
+        };
+        const std::array<TriangleMesh, 3> meshes{crofton::testing::cube_mesh(0.5f), wall(30, 4.0f), wall(8, 0.7f)};
+        std::vector<ClusteredMesh> in_c;
+        std::vector<crofton::depth::ClusteredMesh> in_cpp;
+        for (const TriangleMesh& mesh : meshes) {
+            in_c.push_back(cut(mesh, 24));
+            in_cpp.push_back(
+                crofton::depth::ClusteredMesh::cut(mesh.positions, mesh.indices, {.max_triangles = 24}).value());
+            const auto& same = in_cpp.back();
+            const auto clusters = clusters_of(in_c.back());
+            REQUIRE(clusters.size() == same.clusters().size());
+            CHECK(std::memcmp(clusters.data(), same.clusters().data(), clusters.size_bytes()) == 0);
+            const auto order = order_of(in_c.back());
+            CHECK(std::equal(order.begin(), order.end(), same.triangle_order().begin(), same.triangle_order().end()));
+        }
+        const DepthCuller culler = make_depth_culler();
+        crofton::depth::DepthCuller same;
+        for (const auto depth : {crofton::DepthRange::reversed_zero_to_one, crofton::DepthRange::zero_to_one,
+                                 crofton::DepthRange::minus_one_to_one}) {
+            CAPTURE(static_cast<int>(depth));
+            std::vector<crofton_depth_object> objects;
+            std::vector<crofton::depth::DepthObject> same_objects;
+            for (int i = 0; i < 60; ++i) {
+                const std::size_t which = random() % 3;
+                const double z = uniform(-30.0, -3.0);
+                const double x = uniform(-0.6, 0.6) * z, y = uniform(-0.4, 0.4) * z;
+                const double angle = uniform(-3.1, 3.1);
+                const glm::mat4 matrix = to_clip(glm::rotate(at(x, y, z), angle, glm::dvec3(0, 1, 0)), depth);
+                crofton_depth_object object = object_of(in_c[which], matrix);
+                object.one_sided = random() % 2;
+                object.hides = random() % 4 != 0;
+                object.position_error = random() % 3 == 0 ? 0.25f : 0.0f;
+                objects.push_back(object);
+                same_objects.push_back(
+                    {&in_cpp[which], matrix, object.one_sided == 1, object.hides == 1, object.position_error});
+            }
+            crofton_picture_view picture = picture_of(192, 108);
+            picture.depth = static_cast<std::uint32_t>(depth);
+            const auto found = find(culler, objects, picture);
+            const auto expected = same.find_visible(same_objects, {192, 108, depth}).value();
+            REQUIRE(found.size() == expected.size());
+            REQUIRE(found.size() > 20);
+            CHECK(std::memcmp(found.data(), expected.data(), found.size_bytes()) == 0);
+            auto statistics = sized<crofton_depth_statistics>();
+            REQUIRE(crofton_depth_culler_get_statistics(culler.get(), &statistics) == CROFTON_OK);
+            CHECK(statistics.objects_listed == same.statistics().objects_listed);
+            CHECK(statistics.objects_asked == same.statistics().objects_asked);
+            CHECK(statistics.clusters_asked == same.statistics().clusters_asked);
+            CHECK(statistics.clusters_drawn == same.statistics().clusters_drawn);
+            CHECK(statistics.triangles_drawn == same.statistics().triangles_drawn);
+            CHECK(statistics.triangles_listed == same.statistics().triangles_listed);
+            CHECK(statistics.triangles_listed < statistics.triangles_drawn);
+            for (std::uint32_t y = 0; y < 108; ++y)
+                for (std::uint32_t x = 0; x < 192; ++x) {
+                    float nearness = 0.0f;
+                    REQUIRE(crofton_depth_culler_nearness(culler.get(), x, y, &nearness) == CROFTON_OK);
+                    if (nearness != same.nearness(x, y)) FAIL_CHECK("nearness at " << x << ", " << y);
+                }
+        }
+    }
+
+    TEST_CASE("a wall hides what stands behind it, unless it does not hide, faces away or lies anywhere") {
+        const TriangleMesh large = wall(10, 4.0f), small = wall(4, 1.0f);
+        const ClusteredMesh front = cut(large), behind = cut(small);
+        const DepthCuller culler = make_depth_culler();
+        const crofton_picture_view picture = picture_of(320, 180);
+        std::vector<crofton_depth_object> objects{object_of(front, to_clip(at(0, 0, -5))),
+                                                  object_of(behind, to_clip(at(0, 0, -10)))};
+        auto found = find(culler, objects, picture);
+        CHECK(listed_of(found, 0) > 0);
+        CHECK(listed_of(found, 1) == 0);
+        float nearness = 0.0f;
+        REQUIRE(crofton_depth_culler_nearness(culler.get(), 160, 90, &nearness) == CROFTON_OK);
+        const auto depth_at = [](double z) {
+            const glm::dvec4 p = crofton::world_to_clip(crofton::Camera{}) * glm::dvec4(0.0, 0.0, z, 1.0);
+            return p.z / p.w;
+        };
+        CHECK(double{nearness} <= depth_at(-5.0));
+        CHECK(double{nearness} >= depth_at(-5.01));
+
+        objects[0].hides = 0;
+        found = find(culler, objects, picture);
+        CHECK(listed_of(found, 0) > 0);
+        CHECK(listed_of(found, 1) == 32);
+        objects[0].hides = 1;
+        objects[0].position_error = 100.0f;
+        CHECK(listed_of(find(culler, objects, picture), 1) == 32);
+        objects[0].position_error = 0.0f;
+        const glm::dmat4 turned = glm::rotate(at(0, 0, -5), 3.14159265358979, glm::dvec3(0, 1, 0));
+        objects[0] = object_of(front, to_clip(turned));
+        CHECK(listed_of(find(culler, objects, picture), 1) == 0);
+        objects[0].one_sided = 1;
+        found = find(culler, objects, picture);
+        CHECK(listed_of(found, 0) == 0);
+        CHECK(listed_of(found, 1) == 32);
+        objects[0].to_clip[5] = kNaN;
+        found = find(culler, objects, picture);
+        CHECK(listed_of(found, 0) == 200);
+        CHECK(listed_of(found, 1) == 32);
+        CHECK(find(culler, {}, picture).empty());
+        REQUIRE(crofton_depth_culler_nearness(culler.get(), 0, 0, &nearness) == CROFTON_OK);
+        CHECK(nearness == -std::numeric_limits<float>::infinity());
+    }
+
+    TEST_CASE("defaults are those of C++, and a default object lacks its mesh") {
+        const crofton_depth_object object = crofton_default_depth_object();
+        const crofton_picture_view picture = crofton_default_picture_view();
+        for (std::size_t k = 0; k < 16; ++k) CHECK(object.to_clip[k] == (k % 5 == 0 ? 1.0f : 0.0f));
+        CHECK((object.size == sizeof object && !object.mesh && !object.one_sided && object.hides == 1));
+        CHECK(object.position_error == 0.0f);
+        CHECK((picture.size == sizeof picture && picture.width == 1280 && picture.height == 720));
+        CHECK(picture.depth == CROFTON_DEPTH_REVERSED_ZERO_TO_ONE);
+    }
+
+    TEST_CASE("bad meshes are refused by their vertex and index, and make no handle") {
+        TriangleMesh mesh = crofton::testing::cube_mesh();
+        crofton_clustered_mesh* made = nullptr;
+        const auto status = [&](std::uint32_t most = 0) {
+            const crofton_mesh given = to_c(mesh);
+            const crofton_status result = crofton_clustered_mesh_create(&given, most, &made);
+            CHECK(made == nullptr);
+            CHECK(mentions(crofton_last_error(), "crofton_clustered_mesh_create: "));
+            return result;
+        };
+        CHECK(status(CROFTON_MAX_CLUSTER_TRIANGLES + 1) == CROFTON_INVALID_ARGUMENT);
+        CHECK(mentions(crofton_last_error(), "max_triangles is 65"));
+        mesh.indices[17] = 8;
+        CHECK(status() == CROFTON_OUT_OF_RANGE);
+        CHECK(crofton_last_error_item() == 17);
+        mesh.indices[17] = 0;
+        mesh.positions[3].y = kNaN;
+        CHECK(status() == CROFTON_NON_FINITE);
+        CHECK(crofton_last_error_item() == 3);
+        mesh = crofton::testing::cube_mesh();
+        mesh.indices.pop_back();
+        CHECK(status() == CROFTON_INVALID_ARGUMENT);
+
+        mesh = crofton::testing::cube_mesh();
+        crofton_mesh given = to_c(mesh);
+        CHECK(crofton_clustered_mesh_create(&given, 0, nullptr) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_clustered_mesh_create(nullptr, 0, &made) == CROFTON_INVALID_ARGUMENT);
+        given.size = 8;
+        CHECK(crofton_clustered_mesh_create(&given, 0, &made) == CROFTON_WRONG_SIZE);
+        given = to_c(mesh);
+        given.positions = nullptr;
+        CHECK(crofton_clustered_mesh_create(&given, 0, &made) == CROFTON_INVALID_ARGUMENT);
+        given = to_c(mesh);
+        given.indices = nullptr;
+        CHECK(crofton_clustered_mesh_create(&given, 0, &made) == CROFTON_INVALID_ARGUMENT);
+        given.index_count = 0;
+        CHECK(crofton_clustered_mesh_create(&given, 0, &made) == CROFTON_EMPTY);
+        CHECK(made == nullptr);
+    }
+
+    TEST_CASE("lists without a place for the answer, and indices of another mesh or in place, are refused") {
+        const TriangleMesh mesh = crofton::testing::cube_mesh();
+        const ClusteredMesh clustered = cut(mesh);
+        std::size_t count = 77;
+        std::uint32_t triangle = 0;
+        CHECK(crofton_clustered_mesh_triangle_order(clustered.get(), nullptr, 1, &count) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_clustered_mesh_triangle_order(clustered.get(), &triangle, 1, nullptr) ==
+              CROFTON_INVALID_ARGUMENT);
+        const crofton_cluster* clusters = nullptr;
+        CHECK(crofton_clustered_mesh_clusters(clustered.get(), nullptr, &count) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_clustered_mesh_clusters(clustered.get(), &clusters, nullptr) == CROFTON_INVALID_ARGUMENT);
+        CHECK(count == 77);
+        CHECK(clusters == nullptr);
+        std::vector<std::uint32_t> indices(mesh.indices.begin(), mesh.indices.end()), permuted(36, 77);
+        const auto permute = [&](const std::uint32_t* from, std::size_t n, std::uint32_t* to) {
+            return crofton_clustered_mesh_permute(clustered.get(), from, n, to);
+        };
+        CHECK(permute(nullptr, 36, permuted.data()) == CROFTON_INVALID_ARGUMENT);
+        CHECK(permute(indices.data(), 36, nullptr) == CROFTON_INVALID_ARGUMENT);
+        CHECK(permute(indices.data(), 33, permuted.data()) == CROFTON_INVALID_ARGUMENT);
+        CHECK(permute(indices.data(), SIZE_MAX, permuted.data()) == CROFTON_OUT_OF_RANGE);
+        CHECK(permuted == std::vector<std::uint32_t>(36, 77));
+        indices.resize(72);
+        for (const std::size_t shift : {0u, 1u, 35u})
+            CHECK(permute(indices.data(), 36, indices.data() + shift) == CROFTON_INVALID_ARGUMENT);
+        CHECK(mentions(crofton_last_error(), "overlap"));
+        CHECK(permute(indices.data(), 36, indices.data() + 36) == CROFTON_OK);
+    }
+
+    TEST_CASE("a bad object is named, a bad picture refused, and the last answer stays") {
+        const TriangleMesh mesh = wall(4, 1.0f);
+        const ClusteredMesh clustered = cut(mesh);
+        const DepthCuller culler = make_depth_culler();
+        const crofton_depth_object good = object_of(clustered, to_clip(at(0, 0, -5)));
+        std::vector<crofton_depth_object> objects(3, good);
+        crofton_picture_view picture = picture_of(64, 36);
+        float nearness = 7.0f;
+        CHECK(crofton_depth_culler_nearness(culler.get(), 0, 0, &nearness) == CROFTON_OUT_OF_RANGE);
+        const auto first = find(culler, objects, picture);
+        const std::vector<std::uint64_t> listed{first[0].triangles, first.back().triangles};
+
+        const crofton_visible_cluster* clusters = nullptr;
+        std::size_t count = 77;
+        const auto ask = [&] {
+            return crofton_depth_culler_find_visible(culler.get(), objects.data(), objects.size(), &picture, &clusters,
+                                                     &count);
+        };
+        objects[1].mesh = nullptr;
+        CHECK(ask() == CROFTON_BAD_HANDLE);
+        CHECK(crofton_last_error_item() == 1);
+        CHECK(mentions(crofton_last_error(), "crofton_depth_culler_find_visible: the handle is NULL"));
+        objects[1].mesh = reinterpret_cast<const crofton_clustered_mesh*>(culler.get());
+        CHECK(ask() == CROFTON_BAD_HANDLE);
+        CHECK(crofton_last_error_item() == 1);
+        objects[1] = good;
+        objects[2].size = offsetof(crofton_depth_object, position_error);
+        CHECK(ask() == CROFTON_WRONG_SIZE);
+        CHECK(crofton_last_error_item() == 2);
+        objects[2] = good;
+        objects[0].size = 0;
+        CHECK(ask() == CROFTON_WRONG_SIZE);
+        objects[0] = good;
+        for (const std::uint32_t bad : {0u, 16385u, ~0u}) {
+            picture = picture_of(bad, 36);
+            CHECK(ask() == CROFTON_OUT_OF_RANGE);
+            picture = picture_of(64, bad);
+            CHECK(ask() == CROFTON_OUT_OF_RANGE);
+        }
+        picture = picture_of(64, 36);
+        picture.depth = 3;
+        CHECK(ask() == CROFTON_INVALID_ARGUMENT);
+        CHECK(mentions(crofton_last_error(), "unknown depth range"));
+        picture = picture_of(64, 36);
+        picture.size = sizeof picture + 8;
+        CHECK(ask() == CROFTON_WRONG_SIZE);
+        picture = picture_of(64, 36);
+        const auto ask_with = [&](const crofton_depth_object* some, const crofton_picture_view* seen,
+                                  const crofton_visible_cluster** answer, std::size_t* answer_count) {
+            return crofton_depth_culler_find_visible(culler.get(), some, 3, seen, answer, answer_count);
+        };
+        CHECK(ask_with(nullptr, &picture, &clusters, &count) == CROFTON_INVALID_ARGUMENT);
+        CHECK(ask_with(objects.data(), nullptr, &clusters, &count) == CROFTON_INVALID_ARGUMENT);
+        CHECK(ask_with(objects.data(), &picture, nullptr, &count) == CROFTON_INVALID_ARGUMENT);
+        CHECK(ask_with(objects.data(), &picture, &clusters, nullptr) == CROFTON_INVALID_ARGUMENT);
+        CHECK(clusters == nullptr);
+        CHECK(count == 77);
+
+        CHECK(first[0].triangles == listed[0]);
+        CHECK(first.back().triangles == listed[1]);
+        auto statistics = sized<crofton_depth_statistics>();
+        REQUIRE(crofton_depth_culler_get_statistics(culler.get(), &statistics) == CROFTON_OK);
+        CHECK(statistics.objects_listed == 3);
+        statistics.size = 4;
+        CHECK(crofton_depth_culler_get_statistics(culler.get(), &statistics) == CROFTON_WRONG_SIZE);
+        CHECK(crofton_depth_culler_get_statistics(culler.get(), nullptr) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_depth_culler_nearness(culler.get(), 64, 0, &nearness) == CROFTON_OUT_OF_RANGE);
+        CHECK(crofton_depth_culler_nearness(culler.get(), 0, 36, &nearness) == CROFTON_OUT_OF_RANGE);
+        CHECK(nearness == 7.0f);
+        CHECK(crofton_depth_culler_nearness(culler.get(), 0, 0, nullptr) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_depth_culler_nearness(culler.get(), 63, 35, &nearness) == CROFTON_OK);
+        CHECK(crofton_depth_culler_create(nullptr) == CROFTON_INVALID_ARGUMENT);
+    }
+
+    TEST_CASE("arrays of older, smaller structs are read as far as they go, and older statistics are filled so") {
+        const TriangleMesh mesh = wall(4, 1.0f);
+        const ClusteredMesh clustered = cut(mesh);
+        const DepthCuller culler = make_depth_culler();
+        std::vector<crofton_depth_object> objects;
+        for (const double z : {-5.0, -8.0, -11.0}) objects.push_back(object_of(clustered, to_clip(at(0.3 * z, 0, z))));
+        crofton_picture_view picture = picture_of(320, 180);
+        const auto found = find(culler, objects, picture);
+        const std::vector<crofton_visible_cluster> expected(found.begin(), found.end());
+        constexpr std::size_t kStride = offsetof(crofton_depth_object, position_error);
+        static_assert(kStride % alignof(crofton_depth_object) == 0);
+        alignas(crofton_depth_object) std::array<unsigned char, 3 * sizeof(crofton_depth_object)> packed;
+        packed.fill(0xff);
+        for (std::size_t i = 0; i < 3; ++i) {
+            objects[i].size = kStride;
+            std::memcpy(packed.data() + i * kStride, &objects[i], kStride);
+        }
+        picture.size = offsetof(crofton_picture_view, depth);
+        picture.depth = 99;
+        const crofton_visible_cluster* clusters = nullptr;
+        std::size_t count = 0;
+        REQUIRE(crofton_depth_culler_find_visible(culler.get(),
+                                                  reinterpret_cast<const crofton_depth_object*>(packed.data()), 3,
+                                                  &picture, &clusters, &count) == CROFTON_OK);
+        REQUIRE(count == expected.size());
+        CHECK(std::memcmp(clusters, expected.data(), count * sizeof *clusters) == 0);
+        crofton_depth_statistics statistics;
+        std::memset(static_cast<void*>(&statistics), 0x5a, sizeof statistics);
+        const std::uint64_t untouched = statistics.triangles_listed;
+        statistics.size = offsetof(crofton_depth_statistics, triangles_listed);
+        REQUIRE(crofton_depth_culler_get_statistics(culler.get(), &statistics) == CROFTON_OK);
+        CHECK(statistics.objects_asked == 3);
+        CHECK(statistics.triangles_listed == untouched);
+    }
+}
