@@ -4,7 +4,9 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <bit>
 #include <crofton/sampling/sampling.hpp>
+#include <limits>
 
 #include "depth_scenes.hpp"
 
@@ -139,6 +141,111 @@ TEST_CASE("no triangle that owns a sample is left out, however the renderer roun
     MESSAGE("listed ", sum.listed, ", owners ", sum.owners, ", all ", sum.total, "; lost ", sum.lost, ", too near ",
             sum.too_near);
     CHECK(sum.listed < 4 * sum.owners);
+}
+
+TEST_CASE("every projection's depth range and far cameras lose nothing") {
+    DepthCuller culler;
+    std::uint64_t listed[3] = {};
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+        CAPTURE(seed);
+        oracle::NearMisses random(1000 + seed);
+        const Scene scene = random_scene(random);
+        Camera camera = random_camera(random);
+        camera.aspect = 1.5;
+        if (camera.far_distance > 1e6) camera.far_distance = 500.0;
+        oracle::OwnerPicture picture(150, 100);
+        oracle::OwnerRenderer renderer(picture, 0.0005, seed);
+        for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
+            const PlacedMesh& o = scene.objects[i];
+            renderer.draw(
+                {o.mesh->mesh.positions, o.mesh->mesh.indices, glm::mat4(world_to_clip(camera) * o.world), o.one_sided},
+                i);
+        }
+        const DepthRange ranges[] = {DepthRange::reversed_zero_to_one, DepthRange::zero_to_one,
+                                     DepthRange::minus_one_to_one};
+        for (int r = 0; r < 3; ++r) {
+            const glm::dmat4 to_clip = world_to_clip(camera, ranges[r]);
+            std::vector<DepthObject> objects;
+            for (const PlacedMesh& o : scene.objects)
+                objects.push_back({&o.mesh->clusters, glm::mat4(to_clip * o.world), o.one_sided, o.hides});
+            const auto found = culler.find_visible(objects, {150, 100, ranges[r]});
+            REQUIRE(found);
+            std::vector<std::uint64_t> all;
+            for (const VisibleCluster& c : *found)
+                for (std::uint32_t k = 0; k < 64; ++k)
+                    if (c.triangles >> k & 1)
+                        all.push_back(std::uint64_t{c.object} << 32 |
+                                      (objects[c.object].mesh->clusters()[c.cluster].first_triangle + k));
+            listed[r] += all.size();
+            std::size_t lost = 0;
+            for (const std::uint64_t owner : picture.owners)
+                lost += owner != oracle::OwnerPicture::kNobody && !std::binary_search(all.begin(), all.end(), owner);
+            CHECK(lost == 0);
+        }
+    }
+    // Depth that is not reversed has fewer bits far away, and finds less.
+    CHECK(listed[1] < 3 * listed[0]);
+}
+
+TEST_CASE("matrices and meshes that cannot be placed are listed whole, and spoil nothing else") {
+    oracle::NearMisses random(3);
+    const CutMesh cube(cube_mesh()), round(ball(12, random));
+    const glm::mat4 good(world_to_clip(Camera{}) * glm::translate(glm::dmat4(1.0), {0, 0, -5}));
+    const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+    DepthCuller culler;
+    const std::vector<DepthObject> alone = {{&cube.clusters, good}};
+    const auto before = culler.find_visible(alone, {320, 180});
+    REQUIRE(before);
+    const std::vector<VisibleCluster> expected(before->begin(), before->end());
+    REQUIRE(expected.size() == 1);
+    for (const float bad : {nan, infinity, -infinity, 1e38f, 3e30f})
+        for (int column = 0; column < 4; ++column)
+            for (int row = 0; row < 4; ++row) {
+                glm::mat4 matrix = good;
+                matrix[column][row] = bad;
+                const std::vector<DepthObject> objects = {{&round.clusters, matrix}, {&cube.clusters, good}};
+                const auto found = culler.find_visible(objects, {320, 180});
+                REQUIRE(found);
+                CHECK(found->back().object == 1);
+                CHECK(found->back().triangles == expected[0].triangles);
+                std::uint64_t listed = 0;
+                for (const VisibleCluster& c : *found) listed += c.object == 0 ? std::popcount(c.triangles) : 0;
+                CHECK(listed == round.mesh.triangle_count());
+            }
+    // Nothing there, flat, all in one point, behind the eye, huge, tiny.
+    for (const glm::dvec3& scale :
+         {glm::dvec3(0.0), glm::dvec3(1, 0, 1), glm::dvec3(1e-30), glm::dvec3(1e9), glm::dvec3(-1, 1, 1)})
+        for (const double z : {-5.0, 0.0, 5.0, -1e7}) {
+            const glm::dmat4 place = glm::scale(glm::translate(glm::dmat4(1.0), {0, 0, z}), scale);
+            const std::vector<DepthObject> objects = {
+                {&round.clusters, glm::mat4(world_to_clip(Camera{}) * place), true}};
+            CHECK(culler.find_visible(objects, {320, 180}));
+        }
+    const std::vector<DepthObject> none = {{&cube.clusters, good}, {}};
+    CHECK(culler.find_visible(none, {320, 180}).error().item == 1);
+    CHECK(culler.find_visible(alone, {0, 180}).error().code == ErrorCode::out_of_range);
+    CHECK(culler.find_visible(alone, {320, 20000}).error().code == ErrorCode::out_of_range);
+    CHECK(culler.find_visible({}, {1, 1})->empty());
+    CHECK(culler.find_visible(alone, {1, 1}));
+    DepthCuller moved = std::move(culler);
+    CHECK(moved.find_visible(alone, {320, 180})->size() == 1);
+}
+
+TEST_CASE("what a wall hides is dropped as a whole, and what does not hide is only asked") {
+    const CutMesh cube(cube_mesh());
+    const auto placed_at = [](double z, const glm::dvec3& scale) {
+        return glm::mat4(world_to_clip(Camera{}) * glm::scale(glm::translate(glm::dmat4(1.0), {0, 0, z}), scale));
+    };
+    std::vector<DepthObject> objects = {{&cube.clusters, placed_at(-10, {8, 8, 0.1})}};
+    for (int i = 0; i < 50; ++i) objects.push_back({&cube.clusters, placed_at(-15.0 - i, glm::dvec3(1))});
+    DepthCuller culler;
+    CHECK(culler.find_visible(objects, {640, 360})->size() == 1);
+    CHECK(culler.statistics().objects_listed == 1);
+    CHECK(culler.statistics().objects_asked == 51);
+    objects[0].hides = false;
+    CHECK(culler.find_visible(objects, {640, 360})->size() > 1);
+    CHECK(culler.nearness(320, 180) > 0.0f);
+    CHECK(culler.nearness(0, 0) == -std::numeric_limits<float>::infinity());
 }
 
 }  // namespace
