@@ -203,7 +203,8 @@ class PatchDrawer {
     // Edges between the samples of the rectangle and those beside it; no sample is surely covered.
     static HWY_INLINE void set_whole_rectangle(Raster& r) {
         const float infinity = std::numeric_limits<float>::infinity();
-        r.edge_count = 2;
+        r.edge_count = 3;
+        r.edges[2] = kEverywhere;
         r.edges[0] = {1.0f, 0.0f, 0.0f, static_cast<float>(r.x0), 0.0f, infinity, 0.0f};
         r.edges[1] = {-1.0f, 0.0f, 0.0f, static_cast<float>(r.x1 + 1), 0.0f, infinity, 0.0f};
         r.below = 0.0f;
@@ -277,6 +278,7 @@ class PatchDrawer {
         const double middle_x = picture_.half_width, middle_y = picture_.half_height;
         double depth[3] = {0, 0, 0}, inverse_w[3] = {0, 0, 0};
         r.edge_count = 3;
+        std::fill(std::begin(r.edges), std::end(r.edges), kEverywhere);
         const float infinity = std::numeric_limits<float>::infinity();
         for (int k = 0; k < 3; ++k) {
             const double* const line = lines[k];
