@@ -174,7 +174,7 @@ class Rasterizer {
         for (std::int32_t tx = whole.first; tx <= whole.last; tx += static_cast<std::int32_t>(hn::Lanes(d))) {
             const auto count = std::min<std::size_t>(hn::Lanes(d), static_cast<std::size_t>(whole.last - tx) + 1);
             const std::size_t t = row + static_cast<std::size_t>(tx);
-            const VF x = hn::Iota(d, static_cast<float>(tx));
+            const VF x = steps_from(static_cast<float>(tx));
             const VF from = hn::Sub(hn::Add(hn::Mul(x, hn::Set(d, 8.0f)), hn::Set(d, 4.0f)), hn::Set(d, r_.at_x));
             const VF middle = hn::Add(hn::Set(d, up), hn::Mul(hn::Set(d, r_.across), from));
             const VF lower =
@@ -221,7 +221,7 @@ class Rasterizer {
         if (tiles_.states[t] == TileState::unused)
             begin_tile(tiles_, static_cast<std::uint32_t>(tx), static_cast<std::uint32_t>(ty), t);
         for (std::size_t i = 0; i < kTile; i += hn::Lanes(d)) {
-            const VF y = hn::Iota(d, static_cast<float>(8 * ty) + 0.5f + static_cast<float>(i));
+            const VF y = steps_from(static_cast<float>(8 * ty) + 0.5f + static_cast<float>(i));
             hn::Store(hn::Mul(hn::Set(d, r_.up), hn::Sub(y, hn::Set(d, r_.at_y))), d, depth_ups_ + i);
             for (std::size_t k = 0; k < kEdges; ++k) {
                 const Edge& e = r_.edges[k];
@@ -262,7 +262,7 @@ class Rasterizer {
         const VF floor = hn::Set(d, tiles_.floors[t]);
         const VF above = hn::Set(d, r_.above), nearest = hn::Set(d, r_.nearest);
         for (std::size_t i = 0; i < kTile; i += hn::Lanes(d)) {
-            const auto at = columns_at<kEdges>(hn::Iota(d, static_cast<float>(8 * tx) + 0.5f + static_cast<float>(i)));
+            const auto at = columns_at<kEdges>(steps_from(static_cast<float>(8 * tx) + 0.5f + static_cast<float>(i)));
             for (auto row = static_cast<std::size_t>(first); row <= static_cast<std::size_t>(last); ++row) {
                 const VF before = hn::Max(hn::Load(d, pixels + row * kTile + i), floor);
                 const VF depth = hn::Add(at.depth, hn::Set(d, depth_ups_[row]));
@@ -290,7 +290,7 @@ class Rasterizer {
         for (std::size_t k = 0; k < kEdges; ++k) inner_at[k] = hn::Set(d, r_.edges[k].inner);
         auto wrote = hn::FirstN(d, 0);
         for (std::size_t i = 0; i < kTile; i += hn::Lanes(d)) {
-            const VF x = hn::Iota(d, static_cast<float>(8 * tx) + 0.5f + static_cast<float>(i));
+            const VF x = steps_from(static_cast<float>(8 * tx) + 0.5f + static_cast<float>(i));
             const auto at = columns_at<kEdges>(x);
             for (auto row = static_cast<std::size_t>(first); row <= static_cast<std::size_t>(last); ++row) {
                 float* const pixel = pixels + row * kTile + i;
