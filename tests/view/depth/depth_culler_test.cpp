@@ -141,5 +141,52 @@ TEST_CASE("no triangle that owns a sample is left out, however the renderer roun
     CHECK(sum.listed < 4 * sum.owners);
 }
 
+TEST_CASE("walls seen edge-on are listed whichever side a renderer sees") {
+    DepthCuller culler;
+    std::uint64_t owners = 0;
+    for (std::uint64_t seed = 1; seed <= 3000; ++seed) {
+        CAPTURE(seed);
+        oracle::NearMisses random(seed);
+        Scene scene;
+        scene.meshes.emplace_back(fins(1 + static_cast<std::uint32_t>(random.index(12)), random));
+        const double turn = random.index(2) == 0 ? 0.0 : 1.5707963267948966;
+        scene.objects.push_back({&scene.meshes[0], placed({0, 0, 0}, glm::dvec3(1), {0, 0, 1}, turn), true});
+        Camera camera;
+        camera.near_distance = 0.1;
+        camera.aspect = 161.0 / 91.0;
+        const Checked c = check(scene, camera, 161, 91, seed, culler);
+        CHECK(c.lost == 0);
+        CHECK(c.too_near == 0);
+        owners += c.owners;
+    }
+    CHECK(owners > 1000);
+}
+
+TEST_CASE("fans of needles hide no more than they cover") {
+    DepthCuller culler;
+    for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+        CAPTURE(seed);
+        oracle::NearMisses random(seed);
+        Scene scene;
+        for (int i = 0; i < 4; ++i) {
+            const auto count = static_cast<std::uint32_t>(3 + random.index(300));
+            scene.meshes.emplace_back(needles(count, random), static_cast<std::uint32_t>(1 + random.index(64)));
+        }
+        for (int i = 0; i < 12; ++i) {
+            const glm::dvec3 at(random.number(-2, 2), random.number(-1, 1), random.number(-8, -1));
+            const double size = std::exp(random.number(-1.5, 1.0));
+            const glm::dvec3 axis = random.direction();
+            const double angle = random.number(-0.7, 0.7);
+            scene.objects.push_back({&scene.meshes[random.index(4)], placed(at, glm::dvec3(size), axis, angle)});
+        }
+        Camera camera;
+        camera.near_distance = random.index(2) == 0 ? 0.1 : 1.5;
+        camera.aspect = 160.0 / 90.0;
+        const Checked c = check(scene, camera, 160, 90, seed, culler);
+        CHECK(c.lost == 0);
+        CHECK(c.too_near == 0);
+    }
+}
+
 }  // namespace
 }  // namespace crofton::testing
