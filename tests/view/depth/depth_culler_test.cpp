@@ -188,5 +188,26 @@ TEST_CASE("fans of needles hide no more than they cover") {
     }
 }
 
+TEST_CASE("ground that reaches behind the eye hides no more than it covers") {
+    DepthCuller culler;
+    for (std::uint64_t seed = 1; seed <= 400; ++seed) {
+        CAPTURE(seed);
+        oracle::NearMisses random(seed);
+        Scene scene;
+        const auto squares = static_cast<std::uint32_t>(3 + random.index(30));
+        scene.meshes.emplace_back(hills(squares, 30.0f, float(random.number(0.1, 4.0)), random),
+                                  static_cast<std::uint32_t>(1 + random.index(6)));
+        scene.objects.push_back({&scene.meshes[0], glm::dmat4(1.0), random.index(2) == 0});
+        Camera camera;
+        camera.position = {random.number(-20, 20), random.number(-1.0, 4.0), random.number(-20, 20)};
+        camera.forward = glm::dvec3(random.number(-1, 1), random.number(-0.9, 0.1), random.number(-1, 1));
+        camera.near_distance = random.index(2) == 0 ? 0.1 : 2.0;
+        camera.aspect = 160.0 / 90.0;
+        const Checked c = check(scene, camera, 160, 90, seed, culler);
+        CHECK(c.lost == 0);
+        CHECK(c.too_near == 0);
+    }
+}
+
 }  // namespace
 }  // namespace crofton::testing
