@@ -248,5 +248,73 @@ TEST_CASE("what a wall hides is dropped as a whole, and what does not hide is on
     CHECK(culler.nearness(0, 0) == -std::numeric_limits<float>::infinity());
 }
 
+TEST_CASE("walls seen edge-on are listed whichever side a renderer sees") {
+    DepthCuller culler;
+    std::uint64_t owners = 0;
+    for (std::uint64_t seed = 1; seed <= 3000; ++seed) {
+        CAPTURE(seed);
+        oracle::NearMisses random(seed);
+        Scene scene;
+        scene.meshes.emplace_back(fins(1 + static_cast<std::uint32_t>(random.index(12)), random));
+        const double turn = random.index(2) == 0 ? 0.0 : 1.5707963267948966;
+        scene.objects.push_back({&scene.meshes[0], placed({0, 0, 0}, glm::dvec3(1), {0, 0, 1}, turn), true});
+        Camera camera;
+        camera.near_distance = 0.1;
+        camera.aspect = 161.0 / 91.0;
+        const Checked c = check(scene, camera, 161, 91, seed, culler);
+        CHECK(c.lost == 0);
+        CHECK(c.too_near == 0);
+        owners += c.owners;
+    }
+    CHECK(owners > 1000);
+}
+
+TEST_CASE("fans of needles hide no more than they cover") {
+    DepthCuller culler;
+    for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+        CAPTURE(seed);
+        oracle::NearMisses random(seed);
+        Scene scene;
+        for (int i = 0; i < 4; ++i) {
+            const auto count = static_cast<std::uint32_t>(3 + random.index(300));
+            scene.meshes.emplace_back(needles(count, random), static_cast<std::uint32_t>(1 + random.index(64)));
+        }
+        for (int i = 0; i < 12; ++i) {
+            const glm::dvec3 at(random.number(-2, 2), random.number(-1, 1), random.number(-8, -1));
+            const double size = std::exp(random.number(-1.5, 1.0));
+            const glm::dvec3 axis = random.direction();
+            const double angle = random.number(-0.7, 0.7);
+            scene.objects.push_back({&scene.meshes[random.index(4)], placed(at, glm::dvec3(size), axis, angle)});
+        }
+        Camera camera;
+        camera.near_distance = random.index(2) == 0 ? 0.1 : 1.5;
+        camera.aspect = 160.0 / 90.0;
+        const Checked c = check(scene, camera, 160, 90, seed, culler);
+        CHECK(c.lost == 0);
+        CHECK(c.too_near == 0);
+    }
+}
+
+TEST_CASE("ground that reaches behind the eye hides no more than it covers") {
+    DepthCuller culler;
+    for (std::uint64_t seed = 1; seed <= 400; ++seed) {
+        CAPTURE(seed);
+        oracle::NearMisses random(seed);
+        Scene scene;
+        const auto squares = static_cast<std::uint32_t>(3 + random.index(30));
+        scene.meshes.emplace_back(hills(squares, 30.0f, float(random.number(0.1, 4.0)), random),
+                                  static_cast<std::uint32_t>(1 + random.index(6)));
+        scene.objects.push_back({&scene.meshes[0], glm::dmat4(1.0), random.index(2) == 0});
+        Camera camera;
+        camera.position = {random.number(-20, 20), random.number(-1.0, 4.0), random.number(-20, 20)};
+        camera.forward = glm::dvec3(random.number(-1, 1), random.number(-0.9, 0.1), random.number(-1, 1));
+        camera.near_distance = random.index(2) == 0 ? 0.1 : 2.0;
+        camera.aspect = 160.0 / 90.0;
+        const Checked c = check(scene, camera, 160, 90, seed, culler);
+        CHECK(c.lost == 0);
+        CHECK(c.too_near == 0);
+    }
+}
+
 }  // namespace
 }  // namespace crofton::testing

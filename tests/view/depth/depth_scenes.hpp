@@ -68,6 +68,45 @@ inline TriangleMesh ball(std::uint32_t n, oracle::NearMisses& random) {
     return mesh;
 }
 
+// Needles around the origin, some of them missing.
+inline TriangleMesh needles(std::uint32_t n, oracle::NearMisses& random) {
+    TriangleMesh mesh;
+    mesh.positions.push_back(glm::vec3(0.0f));
+    const double sweep = random.number(0.2, 6.2);
+    for (std::uint32_t i = 0; i <= n; ++i) {
+        const double a = sweep * i / n, r = random.number(0.5, 1.5);
+        mesh.positions.push_back(glm::vec3(r * std::cos(a), r * std::sin(a), random.number(-0.02, 0.02)));
+    }
+    for (std::uint32_t i = 1; i <= n; ++i) {
+        if (random.index(9) == 0) continue;
+        for (const std::uint32_t v : {0u, i, i + 1}) mesh.indices.push_back(v);
+    }
+    if (mesh.indices.empty()) mesh.indices = {0, 1, 2};
+    return mesh;
+}
+
+// Walls in the plane x = 0, or nearly: an eye in that plane sees them edge-on, where the samples of a column lie in a
+// picture of odd width.
+inline TriangleMesh fins(std::uint32_t n, oracle::NearMisses& random) {
+    TriangleMesh mesh;
+    for (std::uint32_t i = 0; i < n; ++i) {
+        const auto p = static_cast<std::uint32_t>(mesh.positions.size());
+        const double near = random.number(1.0, 9.0), far = near + random.number(0.1, 3.0);
+        const double low = random.number(-2.0, 1.0), high = low + random.number(0.1, 2.0);
+        const auto x = [&] {
+            return random.index(2) == 0 ? 0.0 : random.number(-1.0, 1.0) * std::exp(random.number(-11.0, -6.0));
+        };
+        for (const double z : {-near, -far})
+            for (const double y : {low, high}) {
+                const double at = x();
+                mesh.positions.push_back(glm::vec3(at, y, z));
+            }
+        const bool turned = random.index(2) == 0;
+        for (const std::uint32_t v : {0u, 1u, 3u, 0u, 3u, 2u}) mesh.indices.push_back(p + (turned ? 3 - v : v));
+    }
+    return mesh;
+}
+
 struct PlacedMesh {
     const CutMesh* mesh;
     glm::dmat4 world;

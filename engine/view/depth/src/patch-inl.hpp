@@ -61,13 +61,14 @@ class PatchDrawer {
             exclude_corners();
         }
         std::uint64_t visible = 0;
-        for (std::uint32_t t = 0; t < patch_.all_triangles; ++t) {
+        for (std::uint32_t i = 0; i < live_count_; ++i) {
+            const std::uint32_t t = live_[i];
             Face& face = faces_[t];
             Raster& raster = face.raster;
             const bool own = t < patch_.own_triangles;
-            raster.asks = own && face.drawn && !always_[t];
-            raster.draws = object_.hides && face.drawn && face.solid && (own || is_drawn(t));
-            if (own && face.drawn && always_[t]) visible |= std::uint64_t{1} << t;
+            raster.asks = own && !always_[t];
+            raster.draws = object_.hides && face.solid && (own || is_drawn(t));
+            if (own && always_[t]) visible |= std::uint64_t{1} << t;
             if (!raster.asks && !raster.draws) continue;
             if (raster.x0 > raster.x1 || raster.y0 > raster.y1) continue;
             if (!own && !keep_to_seam(t)) continue;
@@ -117,7 +118,10 @@ class PatchDrawer {
         const float w = patch_.least_w - 8.0f * object_.errors[3];
         move_ = picture_.grid + pixel_error(picture_, object_, w);
         depth_error_ = (object_.errors[2] + object_.errors[3]) / w;
-        for (std::uint32_t t = 0; t < patch_.all_triangles; ++t) prepare(t);
+        for (std::uint32_t t = 0; t < patch_.all_triangles; ++t) {
+            prepare(t);
+            note(t);
+        }
     }
 
     // A triangle around the cluster: decided, and no nearer than the cluster, whose margins hold for it then.
@@ -138,7 +142,6 @@ class PatchDrawer {
         const std::uint16_t* const c = patch_.corners + 3 * t;
         always_[t] = false;
         face.solid = false;
-        r.x1 = -1, r.x0 = 0, r.y0 = 0, r.y1 = -1;
         face.drawn = c[0] != c[1] && c[1] != c[2] && c[2] != c[0];
         face.facing = Facing::unclear;
         if (!face.drawn || (t >= patch_.own_triangles && !is_usable(t))) return;
@@ -203,7 +206,8 @@ class PatchDrawer {
     // Edges between the samples of the rectangle and those beside it; no sample is surely covered.
     static HWY_INLINE void set_whole_rectangle(Raster& r) {
         const float infinity = std::numeric_limits<float>::infinity();
-        r.edge_count = 2;
+        r.edge_count = 3;
+        r.edges[2] = kEverywhere;
         r.edges[0] = {1.0f, 0.0f, 0.0f, static_cast<float>(r.x0), 0.0f, infinity, 0.0f};
         r.edges[1] = {-1.0f, 0.0f, 0.0f, static_cast<float>(r.x1 + 1), 0.0f, infinity, 0.0f};
         r.below = 0.0f;
@@ -217,7 +221,16 @@ class PatchDrawer {
         near_w_ = std::max(near_w_, 1e-30f);
         move_ = picture_.grid + kError;
         depth_error_ = (object_.errors[2] + object_.errors[3]) / near_w_;
-        for (std::uint32_t t = 0; t < patch_.all_triangles; ++t) prepare_unclear(t);
+        for (std::uint32_t t = 0; t < patch_.all_triangles; ++t) {
+            prepare_unclear(t);
+            note(t);
+        }
+    }
+
+    // Keeps it if it may ask or draw.
+    HWY_INLINE void note(std::uint32_t t) {
+        live_[live_count_] = static_cast<std::uint16_t>(t);
+        live_count_ += faces_[t].drawn && (t < patch_.own_triangles || faces_[t].solid);
     }
 
     // Beyond a side of the picture or before the near plane, by more than products may be off.
@@ -277,6 +290,7 @@ class PatchDrawer {
         const double middle_x = picture_.half_width, middle_y = picture_.half_height;
         double depth[3] = {0, 0, 0}, inverse_w[3] = {0, 0, 0};
         r.edge_count = 3;
+        std::fill(std::begin(r.edges), std::end(r.edges), kEverywhere);
         const float infinity = std::numeric_limits<float>::infinity();
         for (int k = 0; k < 3; ++k) {
             const double* const line = lines[k];
@@ -370,10 +384,11 @@ class PatchDrawer {
     }
 
     void close_edges() {
-        for (std::uint32_t t = 0; t < patch_.all_triangles; ++t)
-            for (bool& closed : faces_[t].closed) closed = false;
-        for (std::uint32_t t = 0; t < patch_.own_triangles; ++t) {
-            if (!faces_[t].drawn || !faces_[t].solid) continue;
+        for (std::uint32_t i = 0; i < live_count_; ++i)
+            for (bool& closed : faces_[live_[i]].closed) closed = false;
+        for (std::uint32_t i = 0; i < live_count_ && live_[i] < patch_.own_triangles; ++i) {
+            const std::uint32_t t = live_[i];
+            if (!faces_[t].solid) continue;
             for (std::uint32_t k = 0; k < 3; ++k) {
                 const std::uint32_t other = patch_.neighbors[3 * t + k];
                 if (other == ClusteredMesh::kNone || (other < t && other < patch_.own_triangles)) continue;
@@ -384,9 +399,10 @@ class PatchDrawer {
                 faces_[t].closed[k] = faces_[other].closed[back] = true;
             }
         }
-        for (std::uint32_t t = 0; t < patch_.all_triangles; ++t) {
+        for (std::uint32_t i = 0; i < live_count_; ++i) {
+            const std::uint32_t t = live_[i];
             Face& face = faces_[t];
-            if (!face.drawn || !face.solid) continue;
+            if (!face.solid) continue;
             float steps = face.steps;
             face.farthest = face.raster.farthest;
             for (std::uint32_t k = 0; k < 3; ++k) {
@@ -398,8 +414,8 @@ class PatchDrawer {
             }
             face.below = face.raster.below + steps;
         }
-        for (std::uint32_t t = 0; t < patch_.all_triangles; ++t)
-            if (Face& face = faces_[t]; face.drawn && face.solid)
+        for (std::uint32_t i = 0; i < live_count_; ++i)
+            if (Face& face = faces_[live_[i]]; face.solid)
                 face.raster.below = face.below, face.raster.farthest = face.farthest;
     }
 
@@ -411,22 +427,27 @@ class PatchDrawer {
 
     // The samples at corners where the surface ends.
     void exclude_corners() {
+        bool closes = false;
         excluded_count_ = 0;
         std::fill_n(radius_, patch_.vertex_count, 0.0f);
-        for (std::uint32_t t = 0; t < patch_.all_triangles; ++t) {
+        for (std::uint32_t i = 0; i < live_count_; ++i) {
+            const std::uint32_t t = live_[i];
             const Face& face = faces_[t];
-            if (!face.drawn || !face.solid) continue;
+            if (!face.solid) continue;
             const std::uint16_t* const c = patch_.corners + 3 * t;
             for (std::uint32_t k = 0; k < 3; ++k) {
                 const bool before = face.closed[k == 0 ? 2 : k - 1], after = face.closed[k];
                 if (!before && !after) continue;  // all of its edges there keep the distance
                 radius_[c[k]] = std::max(radius_[c[k]], face.corner[k]);
+                closes = true;
             }
         }
+        if (!closes) return;
         for (std::uint32_t t = 0; t < patch_.own_triangles; ++t) {
+            const Face& face = faces_[t];
             const std::uint16_t* const c = patch_.corners + 3 * t;
             for (std::uint32_t k = 0; k < 3; ++k)
-                if (!faces_[t].closed[k]) ends_[c[k]] = ends_[c[k == 2 ? 0 : k + 1]] = true;
+                if (!face.drawn || !face.closed[k]) ends_[c[k]] = ends_[c[k == 2 ? 0 : k + 1]] = true;
         }
         for (std::uint32_t v = 0; v < patch_.vertex_count; ++v) {
             const bool ends = ends_[v] || patch_.enclosed[v] == 0;
@@ -477,6 +498,8 @@ class PatchDrawer {
     const PatchData& patch_;
     float move_ = 0.0f, depth_error_ = 0.0f, near_w_ = 0.0f;
     Face faces_[kMaxPatchTriangles];
+    std::uint16_t live_[kMaxPatchTriangles + 1];
+    std::uint32_t live_count_ = 0;
     bool always_[kMaxPatchTriangles];  // visible, whatever the tiles say
     alignas(64) float xs_[kMaxPatchVertices], ys_[kMaxPatchVertices], zs_[kMaxPatchVertices], ws_[kMaxPatchVertices];
     float radius_[kMaxPatchVertices];

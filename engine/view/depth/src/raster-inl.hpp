@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "culler_data.hpp"
 #include "tiles-inl.hpp"
@@ -29,9 +30,14 @@ struct Edge {
     float outer;  // those with less are surely outside
 };
 
+// Inside everywhere.
+inline constexpr Edge kEverywhere{
+    0.0f, 0.0f, 0.0f, 0.0f, 0.0f, -std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
+
 struct Raster {
     static constexpr std::size_t kMaxEdges = 6;
 
+    // At least three; where there are more than four, those beyond edge_count are kEverywhere.
     Edge edges[kMaxEdges];
     std::uint32_t edge_count;
     std::int32_t x0, y0, x1, y1;         // samples; within the picture
@@ -57,7 +63,7 @@ class Rasterizer {
 
     // True if a sample may be the triangle's.
     HWY_INLINE bool run() {
-        if (r_.x0 / 8 != r_.x1 / 8 || r_.y1 - r_.y0 >= 4) set_slopes();
+        if (is_wide()) set_slopes();
         const std::int32_t last_row = r_.y1 / 8;
         for (std::int32_t ty = r_.y0 / 8; ty <= last_row; ++ty) {
             draw_tile_row(ty);
@@ -67,20 +73,23 @@ class Rasterizer {
     }
 
   private:
+    // More tiles wide than are worth asking one by one.
+    [[nodiscard]] HWY_INLINE bool is_wide() const { return r_.x1 / 8 - r_.x0 / 8 > kNarrow; }
+    static constexpr std::int32_t kNarrow = 1;
+
     struct Interval {
         std::int32_t first, last;  // empty where first > last
     };
 
-    // Of an edge: columns per row and rows per column, 0 where it lies along them; a share of a pixel, in its unit.
+    // Of an edge: columns per unit, 0 where it lies along the row; a share of a pixel, in its unit.
     struct Slopes {
-        float per_across, per_up, slack;
+        float per_across, slack;
     };
     HWY_INLINE void set_slopes() {
         for (std::size_t k = 0; k < r_.edge_count; ++k) {
             const Edge& e = r_.edges[k];
             const float l1 = std::abs(e.across) + std::abs(e.up);
-            slopes_[k] = {std::abs(e.across) < l1 * 0x1p-12f ? 0.0f : 1.0f / e.across,
-                          std::abs(e.up) < l1 * 0x1p-6f ? 0.0f : 1.0f / e.up, l1 * 0x1p-6f};
+            slopes_[k] = {std::abs(e.across) < l1 * 0x1p-12f ? 0.0f : 1.0f / e.across, l1 * 0x1p-6f};
         }
     }
 
@@ -89,12 +98,7 @@ class Rasterizer {
 
     HWY_INLINE void draw_tile_row(std::int32_t ty) {
         Interval touched{r_.x0 / 8, r_.x1 / 8}, whole{1, 0};
-        if (touched.first != touched.last) {
-            find_intervals(ty, touched, whole);
-        } else {
-            active_count_ = r_.edge_count;
-            for (std::uint32_t k = 0; k < active_count_; ++k) active_[k] = k;
-        }
+        if (is_wide()) find_intervals(ty, touched, whole);
         for (std::int32_t tx = touched.first; tx <= touched.last; ++tx) {
             if (tx == whole.first && whole.last >= whole.first) {
                 draw_whole(whole, ty);
@@ -113,7 +117,6 @@ class Rasterizer {
         auto low = static_cast<float>(r_.x0), high = static_cast<float>(r_.x1);
         float inner_low = low, inner_high = high;
         bool inside = r_.y0 <= 8 * ty && r_.y1 >= 8 * ty + 7;
-        active_count_ = 0;
         for (std::uint32_t k = 0; k < r_.edge_count; ++k) {
             const Edge& e = r_.edges[k];
             const float y0 = e.up * (bottom - e.at_y), y1 = e.up * (bottom + 7.0f - e.at_y);
@@ -125,7 +128,6 @@ class Rasterizer {
             const float x0 = e.across * (static_cast<float>(r_.x0 / 8 * 8) - origin);
             const float x1 = e.across * (static_cast<float>(r_.x1 / 8 * 8 + 7) - origin);
             if (least + std::min(x0, x1) > 0.0f) continue;
-            active_[active_count_++] = k;
             const float inverse = slopes_[k].per_across;
             if (inverse == 0.0f) {
                 // Along the row: no column tells apart, but for what a picture's width makes of it.
@@ -172,7 +174,7 @@ class Rasterizer {
         for (std::int32_t tx = whole.first; tx <= whole.last; tx += static_cast<std::int32_t>(hn::Lanes(d))) {
             const auto count = std::min<std::size_t>(hn::Lanes(d), static_cast<std::size_t>(whole.last - tx) + 1);
             const std::size_t t = row + static_cast<std::size_t>(tx);
-            const VF x = hn::Iota(d, static_cast<float>(tx));
+            const VF x = steps_from(static_cast<float>(tx));
             const VF from = hn::Sub(hn::Add(hn::Mul(x, hn::Set(d, 8.0f)), hn::Set(d, 4.0f)), hn::Set(d, r_.at_x));
             const VF middle = hn::Add(hn::Set(d, up), hn::Mul(hn::Set(d, r_.across), from));
             const VF lower =
@@ -203,98 +205,117 @@ class Rasterizer {
     }
 
     HWY_INLINE void draw_rows(std::int32_t tx, std::int32_t ty, std::size_t t, bool draws) {
-        std::int32_t first = std::max(r_.y0, 8 * ty), last = std::min(r_.y1, 8 * ty + 7);
-        if (r_.y1 - r_.y0 >= 4) cut_rows(tx, first, last);
-        if (first > last) return;
-        switch (active_count_) {
-            case 0:
-                return draw_rows_of<0>(tx, ty, t, first, last, draws);
-            case 1:
-                return draw_rows_of<1>(tx, ty, t, first, last, draws);
-            case 2:
-                return draw_rows_of<2>(tx, ty, t, first, last, draws);
-            case 3:
-                return draw_rows_of<3>(tx, ty, t, first, last, draws);
-            default:
-                return draw_rows_of<Raster::kMaxEdges>(tx, ty, t, first, last, draws);
-        }
+        // Alike for all tiles of a triangle: what the processor guesses is right then.
+        if (r_.edge_count <= 3)
+            draw_rows_of<3>(tx, ty, t, draws);
+        else if (r_.edge_count == 4)
+            draw_rows_of<4>(tx, ty, t, draws);
+        else
+            draw_rows_of<Raster::kMaxEdges>(tx, ty, t, draws);
     }
 
-    // To the rows of the tile that the triangle may touch.
-    HWY_INLINE void cut_rows(std::int32_t tx, std::int32_t& first, std::int32_t& last) const {
-        const float left = static_cast<float>(8 * tx) + 0.5f;
-        auto low = static_cast<float>(first), high = static_cast<float>(last);
-        for (std::uint32_t i = 0; i < active_count_; ++i) {
-            const Edge& e = r_.edges[active_[i]];
-            const Slopes& slopes = slopes_[active_[i]];
-            if (slopes.per_up == 0.0f) continue;
-            const float from = e.across * (left - e.at_x), rise = 7.0f * std::max(e.across, 0.0f);
-            const float most = e.constant + from + rise - e.outer + slopes.slack;
-            const float end = e.at_y - 0.5f - most * slopes.per_up;
-            if (e.up > 0.0f)
-                low = std::max(low, end);
-            else
-                high = std::min(high, end);
-        }
-        // A row on either side for the rounding of these ends.
-        first = std::max(first, static_cast<std::int32_t>(std::max(low - 1.0f, 0.0f)));
-        last = high < low - 2.0f ? first - 1 : std::min(last, static_cast<std::int32_t>(high + 1.0f));
-    }
-
-    // kEdges: at least how many are active.
+    // kEdges: at least how many there are.
     template <std::size_t kEdges>
-    HWY_INLINE void draw_rows_of(std::int32_t tx, std::int32_t ty, std::size_t t, std::int32_t first, std::int32_t last,
-                                 bool draws) {
+    HWY_INLINE void draw_rows_of(std::int32_t tx, std::int32_t ty, std::size_t t, bool draws) {
         const DF d;
-        const std::size_t edge_count = kEdges == Raster::kMaxEdges ? active_count_ : kEdges;
         if (tiles_.states[t] == TileState::unused)
             begin_tile(tiles_, static_cast<std::uint32_t>(tx), static_cast<std::uint32_t>(ty), t);
-        float* const pixels = tiles_.pixels + t * kTilePixels;
-        const VF floor = hn::Set(d, tiles_.floors[t]);
-        const VF above = hn::Set(d, r_.above), nearest = hn::Set(d, r_.nearest);
-        const VF below = hn::Set(d, r_.below), farthest = hn::Set(d, r_.farthest);
-        bool asks = asks_ && !visible_, wrote = false;
         for (std::size_t i = 0; i < kTile; i += hn::Lanes(d)) {
-            const VF x = hn::Iota(d, static_cast<float>(8 * tx) + 0.5f + static_cast<float>(i));
-            VF at_x[kEdges + 1], inner_at[kEdges + 1], outer_at[kEdges + 1];
-            for (std::size_t k = 0; k < edge_count; ++k) {
-                const Edge& e = r_.edges[active_[k]];
-                at_x[k] =
-                    hn::Add(hn::Mul(hn::Set(d, e.across), hn::Sub(x, hn::Set(d, e.at_x))), hn::Set(d, e.constant));
-                inner_at[k] = hn::Set(d, e.inner), outer_at[k] = hn::Set(d, e.outer);
-            }
-            const VF depth_at_x =
-                hn::Add(hn::Set(d, r_.base), hn::Mul(hn::Set(d, r_.across), hn::Sub(x, hn::Set(d, r_.at_x))));
-            for (std::int32_t row = first; row <= last; ++row) {
-                const float y = static_cast<float>(row) + 0.5f;
-                auto inner = hn::FirstN(d, kTile), outer = inner;
-                for (std::size_t k = 0; k < edge_count; ++k) {
-                    const Edge& e = r_.edges[active_[k]];
-                    const VF value = hn::Add(at_x[k], hn::Set(d, e.up * (y - e.at_y)));
-                    const auto in = hn::Ge(value, inner_at[k]), out = hn::Ge(value, outer_at[k]);
-                    inner = k == 0 ? in : hn::And(inner, in);
-                    outer = k == 0 ? out : hn::And(outer, out);
-                }
-                const VF depth = hn::Add(depth_at_x, hn::Set(d, r_.up * (y - r_.at_y)));
-                float* const at = pixels + static_cast<std::size_t>(row - 8 * ty) * kTile + i;
-                const VF pixel = hn::Load(d, at), before = hn::Max(pixel, floor);
-                if (asks) {
-                    const VF upper = hn::Min(hn::Add(depth, above), nearest);
-                    if (!hn::AllFalse(d, hn::And(outer, hn::Ge(upper, before)))) {
-                        visible_ = true, asks = false;
-                        if (!draws) return;
-                    }
-                }
-                if (!draws) continue;
-                if (excluded_count_ != 0) inner = without_excluded(inner, x, y);
-                const VF lower = hn::Max(hn::Sub(depth, below), farthest);
-                const auto writes = hn::And(inner, hn::Gt(lower, before));
-                if (hn::AllFalse(d, writes)) continue;
-                hn::Store(hn::IfThenElse(writes, lower, pixel), d, at);
-                wrote = true;
+            const VF y = steps_from(static_cast<float>(8 * ty) + 0.5f + static_cast<float>(i));
+            hn::Store(hn::Mul(hn::Set(d, r_.up), hn::Sub(y, hn::Set(d, r_.at_y))), d, depth_ups_ + i);
+            for (std::size_t k = 0; k < kEdges; ++k) {
+                const Edge& e = r_.edges[k];
+                hn::Store(hn::Mul(hn::Set(d, e.up), hn::Sub(y, hn::Set(d, e.at_y))), d, ups_[k] + i);
             }
         }
-        if (wrote) tiles_.states[t] = TileState::changed;
+        const std::int32_t first = std::max(r_.y0 - 8 * ty, 0), last = std::min(r_.y1 - 8 * ty, 7);
+        if (asks_ && !visible_) {
+            visible_ = shows_in_rows<kEdges>(tx, t, first, last);
+            // Nor is it nearer than the tile anywhere then.
+            if (!visible_) return;
+        }
+        if (draws && write_rows<kEdges>(tx, ty, t, first, last)) tiles_.states[t] = TileState::changed;
+    }
+
+    // The edges and the plane along eight columns.
+    template <std::size_t kEdges>
+    struct Columns {
+        VF edges[kEdges], depth;
+    };
+    template <std::size_t kEdges>
+    HWY_INLINE Columns<kEdges> columns_at(VF x) const {
+        const DF d;
+        Columns<kEdges> at;
+        for (std::size_t k = 0; k < kEdges; ++k) {
+            const Edge& e = r_.edges[k];
+            at.edges[k] =
+                hn::Add(hn::Mul(hn::Set(d, e.across), hn::Sub(x, hn::Set(d, e.at_x))), hn::Set(d, e.constant));
+        }
+        at.depth = hn::Add(hn::Set(d, r_.base), hn::Mul(hn::Set(d, r_.across), hn::Sub(x, hn::Set(d, r_.at_x))));
+        return at;
+    }
+    // Whether a sample may be the triangle's.
+    template <std::size_t kEdges>
+    HWY_INLINE bool shows_in_rows(std::int32_t tx, std::size_t t, std::int32_t first, std::int32_t last) const {
+        const DF d;
+        const float* const pixels = tiles_.pixels + t * kTilePixels;
+        const VF floor = hn::Set(d, tiles_.floors[t]);
+        const VF above = hn::Set(d, r_.above), nearest = hn::Set(d, r_.nearest);
+        for (std::size_t i = 0; i < kTile; i += hn::Lanes(d)) {
+            const auto at = columns_at<kEdges>(steps_from(static_cast<float>(8 * tx) + 0.5f + static_cast<float>(i)));
+            for (auto row = static_cast<std::size_t>(first); row <= static_cast<std::size_t>(last); ++row) {
+                const VF before = hn::Max(hn::Load(d, pixels + row * kTile + i), floor);
+                const VF depth = hn::Add(at.depth, hn::Set(d, depth_ups_[row]));
+                auto shows = hn::Ge(hn::Min(hn::Add(depth, above), nearest), before);
+                for (std::size_t k = 0; k < kEdges; ++k) {
+                    const VF value = hn::Add(at.edges[k], hn::Set(d, ups_[k][row]));
+                    shows = hn::And(shows, hn::Ge(value, hn::Set(d, r_.edges[k].outer)));
+                }
+                if (!hn::AllFalse(d, shows)) return true;
+            }
+        }
+        return false;
+    }
+
+    // True if it wrote.
+    template <std::size_t kEdges>
+    HWY_INLINE bool write_rows(std::int32_t tx, std::int32_t ty, std::size_t t, std::int32_t first,
+                               std::int32_t last) const {
+        const DF d;
+        float* const pixels = tiles_.pixels + t * kTilePixels;
+        const VF floor = hn::Set(d, tiles_.floors[t]);
+        const VF below = hn::Set(d, r_.below), farthest = hn::Set(d, r_.farthest);
+        const std::uint32_t excluded = excluded_rows(tx, ty);
+        VF inner_at[kEdges];
+        for (std::size_t k = 0; k < kEdges; ++k) inner_at[k] = hn::Set(d, r_.edges[k].inner);
+        auto wrote = hn::FirstN(d, 0);
+        for (std::size_t i = 0; i < kTile; i += hn::Lanes(d)) {
+            const VF x = steps_from(static_cast<float>(8 * tx) + 0.5f + static_cast<float>(i));
+            const auto at = columns_at<kEdges>(x);
+            for (auto row = static_cast<std::size_t>(first); row <= static_cast<std::size_t>(last); ++row) {
+                float* const pixel = pixels + row * kTile + i;
+                const VF before = hn::Load(d, pixel);
+                const VF depth = hn::Add(at.depth, hn::Set(d, depth_ups_[row]));
+                const VF lower = hn::Max(hn::Sub(depth, below), farthest);
+                auto writes = hn::Gt(lower, hn::Max(before, floor));
+                for (std::size_t k = 0; k < kEdges; ++k)
+                    writes = hn::And(writes, hn::Ge(hn::Add(at.edges[k], hn::Set(d, ups_[k][row])), inner_at[k]));
+                if ((excluded >> row & 1) != 0)
+                    writes = without_excluded(writes, x, static_cast<float>(8 * ty + static_cast<int>(row)) + 0.5f);
+                hn::Store(hn::IfThenElse(writes, lower, before), d, pixel);
+                wrote = hn::Or(wrote, writes);
+            }
+        }
+        return !hn::AllFalse(d, wrote);
+    }
+
+    // The rows of a tile that have excluded samples, one bit each.
+    [[nodiscard]] HWY_INLINE std::uint32_t excluded_rows(std::int32_t tx, std::int32_t ty) const {
+        const std::uint32_t tile = static_cast<std::uint32_t>(8 * ty) << 16 | static_cast<std::uint32_t>(8 * tx);
+        std::uint32_t rows = 0;
+        for (std::uint32_t i = 0; i < excluded_count_; ++i)
+            if ((excluded_[i] & 0xfff8fff8u) == tile) rows |= 1u << (excluded_[i] >> 16 & 7);
+        return rows;
     }
 
     HWY_INLINE hn::Mask<DF> without_excluded(hn::Mask<DF> mask, VF x, float y) const {
@@ -314,8 +335,8 @@ class Rasterizer {
     bool asks_;
     bool visible_ = false;
     Slopes slopes_[Raster::kMaxEdges];
-    std::uint32_t active_[Raster::kMaxEdges];  // edges that tell the samples of the tile row apart
-    std::uint32_t active_count_ = 0;
+    alignas(32) float ups_[Raster::kMaxEdges][kTile];  // of those edges, and of the plane: up · (y − at_y) by row
+    alignas(32) float depth_ups_[kTile];
 };
 
 }  // namespace crofton::depth::HWY_NAMESPACE

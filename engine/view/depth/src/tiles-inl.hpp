@@ -24,6 +24,13 @@ namespace hn = hwy::HWY_NAMESPACE;
 using DF = hn::CappedTag<float, kTile>;
 using VF = hn::Vec<DF>;
 
+// first, first + 1, …; loaded, as hn::Iota stores lane by lane what it then waits for.
+HWY_INLINE VF steps_from(float first) {
+    alignas(32) static constexpr float kSteps[kTile] = {0, 1, 2, 3, 4, 5, 6, 7};
+    const DF d;
+    return hn::Add(hn::Set(d, first), hn::Load(d, kSteps));
+}
+
 HWY_INLINE void begin_tile(const Tiles& tiles, std::uint32_t tx, std::uint32_t ty, std::size_t t) {
     const DF d;
     float* const pixels = tiles.pixels + t * kTilePixels;
@@ -63,7 +70,7 @@ HWY_INLINE bool shows_in_tile(const Tiles& tiles, const Projection& p, std::int3
     const std::int32_t end = std::min(p.y1 - bottom, 7);
     for (std::int32_t y = std::max(p.y0 - bottom, 0); y <= end; ++y)
         for (std::size_t x = 0; x < kTile; x += hn::Lanes(d)) {
-            const VF column = hn::Iota(d, static_cast<float>(x));
+            const VF column = steps_from(static_cast<float>(x));
             const auto within = hn::And(hn::Ge(column, first), hn::Le(column, last));
             const VF pixels = hn::Load(d, tiles.pixels + t * kTilePixels + static_cast<std::size_t>(y) * kTile + x);
             if (!hn::AllFalse(d, hn::And(within, hn::Le(pixels, nearest)))) return true;
