@@ -242,7 +242,7 @@ TEST_SUITE("capi/world occlusion") {
     TEST_CASE("each view of many keeps its own limits, mask and occlusion") {
         Walled s;
         REQUIRE(crofton_world_find_occluders(s.world.get(), s.mesh, nullptr) == CROFTON_OK);
-        for (int i = 0; i < 40; ++i) update(s.world);  // masks say nothing about what may have moved since
+        for (int i = 0; i < 40; ++i) update(s.world);    // masks say nothing about what may have moved since
         std::vector<float> distances{5.0f, 1e9f, 1e9f};  // the wall is too far to be drawn: it hides nothing then
         auto limits = sized<crofton_draw_limits>();
         limits.item_distances = distances.data();

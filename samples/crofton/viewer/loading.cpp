@@ -138,7 +138,8 @@ Result<void> Session::load(const SceneRequest& request) {
         if (window_) window_->set_title("Crofton: " + loaded_->source().name + " (F1: help)");
     }
     list_ = std::make_unique<pipeline::DrawList>(
-        loaded_->scene(), pipeline::DrawList::Looks{loaded_->source().unlit, loaded_->source().one_sided, loaded_->source().flat});
+        loaded_->scene(),
+        pipeline::DrawList::Looks{loaded_->source().unlit, loaded_->source().one_sided, loaded_->source().flat});
     return upload_geometry();
 }
 

@@ -136,9 +136,11 @@ TEST_SUITE("cli/pvs") {
                   .status == 0);
         CHECK(contents_of(scratch().file("sum")) == contents_of(scratch().file("whole")));
         // Of another bake, or of another kind.
-        REQUIRE(run_cli("study radiosity room --edge 2 --shadow-cuts 0 --runs 2 --state " + quoted("light_state")).status ==
-                0);
-        const CliRun light = run_cli("merge " + quoted("part0") + " " + quoted("light_state") + " --out " + quoted("sum"));
+        REQUIRE(
+            run_cli("study radiosity room --edge 2 --shadow-cuts 0 --runs 2 --state " + quoted("light_state")).status ==
+            0);
+        const CliRun light =
+            run_cli("merge " + quoted("part0") + " " + quoted("light_state") + " --out " + quoted("sum"));
         CHECK(light.status == 2);
         CHECK_MESSAGE(light.err.find("light_state: is of a bake of light, and ") != std::string::npos, light.err);
         REQUIRE(run_cli(base + "--seed 2 --state " + quoted("other")).status == 0);

@@ -139,7 +139,7 @@ class BoxClip {
 // The manifold of two boxes up to thinning out. The touch's depth and normal are proven, as the least of all axes. The
 // face that the cache names stays while it is the least deep within kKeptDepth of the size. `unknown`: apart where
 // neither a face nor two edges decide, or beyond exact sums.
-[[nodiscard]] Warm touch_of_boxes(const BodyAtPose& a, const BodyAtPose& b, const Pair& pair, double margin, PairCache* cache,
-                                  Touch& touch, GatheredPoints& points);
+[[nodiscard]] Warm touch_of_boxes(const BodyAtPose& a, const BodyAtPose& b, const Pair& pair, double margin,
+                                  PairCache* cache, Touch& touch, GatheredPoints& points);
 
 }  // namespace crofton::convex

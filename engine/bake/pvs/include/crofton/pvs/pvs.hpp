@@ -224,7 +224,8 @@ class Pvs {
     [[nodiscard]] PairState state(std::size_t cell, std::uint32_t object) const;
     [[nodiscard]] bool is_baked(std::uint32_t object) const;  // false: it had no triangles, and is always drawn
     [[nodiscard]] PairCounts counts() const;                  // of cells that are not solid and objects that were baked
-    // fingerprint_of the geometry that was baked. Sets of other triangles hide what is visible: ask before you use them.
+    // fingerprint_of the geometry that was baked. Sets of other triangles hide what is visible: ask before you use
+    // them.
     [[nodiscard]] std::uint64_t geometry_fingerprint() const { return geometry_; }
     // Of the bake: see BakeOptions and Bake::epsilon_reached.
     [[nodiscard]] double epsilon() const { return epsilon_; }
