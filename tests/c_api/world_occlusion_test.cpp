@@ -178,7 +178,7 @@ TEST_SUITE("capi/world occlusion") {
         crofton_view_matrix matrix = crofton_default_view_matrix();
         s.view.camera = nullptr;
         s.view.matrix = &matrix;
-        for (const int form : {0, 1, 2, 3}) {
+        for (const std::uint32_t form : {0u, 1u, 2u, 3u}) {
             matrix.is_row_major = form % 2;
             matrix.doubles = form == 0 ? &to_clip[0][0] : form == 1 ? &by_rows[0][0] : nullptr;
             matrix.floats = form == 2 ? &floats[0][0] : form == 3 ? &floats_by_rows[0][0] : nullptr;
