@@ -48,7 +48,9 @@ struct Ground {
 RigidTransform any_frame(RandomBodies& random, int kind) {
     if (kind == 0) return at({});
     if (kind == 1) return {around_y(random.number(0, 6)), 10.0 * random.direction()};
-    return {random.rotation(), std::exp2(random.number(0.0, 10.0)) * random.direction()};
+    const glm::dmat3 turn = random.rotation();
+    const glm::dvec3 direction = random.direction();
+    return {turn, std::exp2(random.number(0.0, 10.0)) * direction};
 }
 
 // A cast of a mover over the ground, with either as the first body. The normal is from the ground.
@@ -70,7 +72,8 @@ bool is_up(const Answer& answer, const glm::dvec3& up) {
 
 // Somewhere over the middle of the floor; on a lattice now and then, where corners and edges come together.
 glm::dvec3 any_place(RandomBodies& random, bool lattice) {
-    const glm::dvec3 place(random.number(-1.2, 1.2), 0.0, random.number(-1.2, 1.2));
+    const double z = random.number(-1.2, 1.2), x = random.number(-1.2, 1.2);
+    const glm::dvec3 place(x, 0.0, z);
     return lattice ? glm::round(place * 4.0) / 4.0 : place;
 }
 
@@ -99,7 +102,8 @@ TEST_SUITE("convex/sliding_cast") {
                 glm::dvec3 place = any_place(random, lattice);
                 place.y = low + gap;
                 const RigidTransform from = placed_in(frame, {turn, place});
-                glm::dvec3 way(random.number(-1.5, 1.5), 0.0, random.number(-1.5, 1.5));
+                const double way_z = random.number(-1.5, 1.5), way_x = random.number(-1.5, 1.5);
+                glm::dvec3 way(way_x, 0.0, way_z);
                 if (lattice && random.index(2) == 0) way[2 * random.index(2)] = 0.0;
                 const double rise = std::exp2(random.number(-8.0, 1.0));
                 const bool ground_first = random.index(2) == 0;
@@ -145,7 +149,8 @@ TEST_SUITE("convex/sliding_cast") {
                 glm::dvec3 place = any_place(random, false);
                 place.y = below(mover, turn) + height;
                 const RigidTransform from = placed_in(frame, {turn, place});
-                const glm::dvec3 velocity(random.number(-1.5, 1.5), -height / when, random.number(-1.5, 1.5));
+                const double velocity_z = random.number(-1.5, 1.5), velocity_x = random.number(-1.5, 1.5);
+                const glm::dvec3 velocity(velocity_x, -height / when, velocity_z);
                 const Answer hit = go(ground, mover, from, {frame.rotation * velocity, {}, {}}, random.index(2) == 0);
                 CAPTURE(round);
                 CAPTURE(height);
@@ -191,7 +196,8 @@ TEST_SUITE("convex/sliding_cast") {
             const glm::dvec3 right = glm::transpose(turn) * glm::dvec3(1, 0, 0);
             const double reach = glm::dot(support_point(mover, right), right);
             const double free = 2.0 - reach - glm::dot(frame.rotation[0], from.translation - frame.translation);
-            const glm::dvec3 velocity(random.number(1.6, 3.0), 0.0, random.number(-1, 1));
+            const double velocity_z = random.number(-1, 1);
+            const glm::dvec3 velocity(random.number(1.6, 3.0), 0.0, velocity_z);
             const Answer hit = go(ground, mover, from, {frame.rotation * velocity, {}, {}}, random.index(2) == 0);
             CAPTURE(round);
             CAPTURE(step);
@@ -230,7 +236,8 @@ TEST_SUITE("convex/sliding_cast") {
             const double gap = std::array{0.0, 5e-7, -5e-7}[static_cast<std::size_t>(random.index(3))];
             const double x = random.number(-1.0, -0.5);
             const RigidTransform from = placed_in(frame, {glm::dmat3(1.0), {x, 0.25 + gap, random.number(-1, 1)}});
-            const glm::dvec3 velocity(random.number(1.0, 2.0), 0.0, random.number(-0.5, 0.5));
+            const double velocity_z = random.number(-0.5, 0.5);
+            const glm::dvec3 velocity(random.number(1.0, 2.0), 0.0, velocity_z);
             const Answer hit = go(land, mover, from, {frame.rotation * velocity, {}, {}}, random.index(2) == 0);
             CAPTURE(round);
             CAPTURE(slope);

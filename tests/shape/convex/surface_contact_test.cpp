@@ -128,8 +128,9 @@ TEST_SUITE("convex/surface_contact") {
             const Sides sides = random.index(2) == 0 ? Sides::front : Sides::both;
             const bool is_field = round % 2 == 0;
             const Body floor = is_field ? Body::height_field(field, sides) : s.body(sides);
-            const RigidTransform frame{random.index(3) == 0 ? glm::dmat3(1.0) : random.rotation(),
-                                       std::exp2(random.number(0.0, 8.0)) * random.direction()};
+            const glm::dmat3 tilt = random.index(3) == 0 ? glm::dmat3(1.0) : random.rotation();
+            const glm::dvec3 direction = random.direction();
+            const RigidTransform frame{tilt, std::exp2(random.number(0.0, 8.0)) * direction};
             const RigidTransform place = is_field ? placed_in(frame, at({-4, 0, -4})) : frame;
             for (int i = 0; i < 220; ++i) {
                 const Body& body = sliders.bodies[static_cast<std::size_t>(i % 11)];
@@ -137,7 +138,8 @@ TEST_SUITE("convex/surface_contact") {
                 const glm::dmat3 turn = random.index(2) == 0 ? around_y(random.number(0, 6)) : random.rotation();
                 const double depth =
                     std::array{0.001, 0.005, 0.02, 0.0, 1e-9}[static_cast<std::size_t>(random.index(5))];
-                glm::dvec3 at_x((slope < 0.0 ? 0.5 : 2.0) * random.number(-1, 1), 0.0, random.number(-2, 2));
+                const double z = random.number(-2, 2), x = random.number(-1, 1);
+                glm::dvec3 at_x((slope < 0.0 ? 0.5 : 2.0) * x, 0.0, z);
                 if (lattice) at_x = glm::round(at_x * 4.0) / 4.0;
                 at_x.y = below(body, turn) - depth;
                 const RigidTransform pose = placed_in(frame, {turn, at_x});
