@@ -21,9 +21,7 @@ class RandomBodies {
     int index(int count) { return std::uniform_int_distribution<int>(0, count - 1)(random_); }
     glm::dvec3 direction() {
         for (;;) {
-            // One after the other: in which order arguments are computed is left to the compiler.
-            const double z = number(-1, 1), y = number(-1, 1), x = number(-1, 1);
-            const glm::dvec3 v(x, y, z);
+            const glm::dvec3 v(number(-1, 1), number(-1, 1), number(-1, 1));
             if (const double length = glm::length(v); length > 0.1 && length < 1.0) return v / length;
         }
     }
