@@ -8,7 +8,10 @@
 #include <crofton/mesh/mesh_tree.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <iterator>
 #include <utility>
+
+#include "box_triangles.hpp"
 
 namespace crofton::world {
 namespace {
@@ -29,11 +32,7 @@ TriangleMesh box_mesh(const glm::dmat3& linear, const glm::vec3& half) {
                            (corner & 4 ? half.z : -half.z));
         mesh.positions.push_back(glm::vec3(linear * p));
     }
-    // Two triangles a face, counter-clockwise from outside.
-    constexpr std::uint32_t kFaces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
-                                            {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
-    for (const auto& f : kFaces)
-        for (const std::uint32_t i : {f[0], f[1], f[2], f[0], f[2], f[3]}) mesh.indices.push_back(i);
+    mesh.indices.assign(std::begin(kBoxTriangles), std::end(kBoxTriangles));
     return mesh;
 }
 

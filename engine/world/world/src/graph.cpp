@@ -53,13 +53,13 @@ Result<MeshHandle> World::add_mesh(const MeshDescription& description) {
             (void)s.scene.remove_mesh(*mesh);
             return tl::unexpected(found.error());
         }
-    s.mesh_clusters.clear(*mesh);
-    if (description.clusters)
-        if (auto cut = s.mesh_clusters.set(*mesh, s.scene.mesh(*mesh), description.one_sided); !cut) {
-            s.occluders.clear(*mesh);
-            (void)s.scene.remove_mesh(*mesh);
-            return tl::unexpected(cut.error());
-        }
+    auto clusters = world::MeshClusters::cut(s.scene.mesh(*mesh), description);
+    if (!clusters) {
+        s.occluders.clear(*mesh);
+        (void)s.scene.remove_mesh(*mesh);
+        return tl::unexpected(clusters.error());
+    }
+    s.mesh_clusters.set(*mesh, std::move(*clusters), s.scene.mesh_revision(*mesh));
     s.bodies.set_mesh(*mesh, description.triangles);
     s.meshes.add(*mesh);
     return MeshHandle{*mesh, s.meshes.generations[*mesh]};
@@ -74,15 +74,11 @@ Result<void> World::replace_mesh(MeshHandle mesh, const MeshDescription& descrip
         if (!looked_for) return tl::unexpected(looked_for.error());
         found = std::move(*looked_for);
     }
-    world::MeshClusters::Mesh clusters;
-    if (description.clusters) {
-        auto cut = depth::ClusteredMesh::cut(replacement.positions, replacement.indices);
-        if (!cut) return tl::unexpected(cut.error());
-        clusters = {std::move(*cut), 0, true, description.one_sided, true};
-    }
+    auto clusters = world::MeshClusters::cut(replacement, description);
+    if (!clusters) return tl::unexpected(clusters.error());
     auto replaced = state_->scene.replace_mesh(mesh.index, std::move(replacement));
     if (!replaced) return replaced;
-    state_->mesh_clusters.set(mesh.index, std::move(clusters));
+    state_->mesh_clusters.set(mesh.index, std::move(*clusters), state_->scene.mesh_revision(mesh.index));
     state_->bodies.set_mesh(mesh.index, description.triangles);
     return state_->occluders.set(mesh.index, found.occluders);
 }

@@ -5,17 +5,18 @@
 
 namespace crofton::world {
 
-Result<void> MeshClusters::set(scene::MeshId mesh, const TriangleMesh& triangles, bool one_sided) {
+Result<MeshClusters::Mesh> MeshClusters::cut(const TriangleMesh& triangles, const MeshDescription& description) {
+    if (!description.clusters) return Mesh{};
     auto cut = depth::ClusteredMesh::cut(triangles.positions, triangles.indices);
     if (!cut) return tl::unexpected(cut.error());
-    // Revision 0 is no mesh's: update() looks at it once more, and finds it as it is.
-    set(mesh, {std::move(*cut), 0, true, one_sided, true});
-    return {};
+    return Mesh{std::move(*cut), 0, true, description.one_sided, true};
 }
 
-void MeshClusters::set(scene::MeshId mesh, Mesh cut) {
+void MeshClusters::set(scene::MeshId mesh, Mesh cut, std::uint64_t revision) {
+    if (!cut.wanted) return clear(mesh);
     if (mesh >= meshes_.size()) meshes_.resize(mesh + std::size_t{1});
     meshes_[mesh] = std::move(cut);
+    meshes_[mesh].revision = revision;
 }
 
 void MeshClusters::clear(scene::MeshId mesh) {
@@ -25,11 +26,8 @@ void MeshClusters::clear(scene::MeshId mesh) {
 void MeshClusters::update(const scene::Scene& scene) {
     for (scene::MeshId id = 0; id < meshes_.size(); ++id) {
         Mesh& mesh = meshes_[id];
-        if (!mesh.wanted || scene.is_mesh_removed(id)) continue;
-        const std::uint64_t revision = scene.mesh_revision(id);
-        if (mesh.revision == revision) continue;
-        const bool is_new = std::exchange(mesh.revision, revision) == 0;
-        if (is_new && mesh.usable) continue;
+        if (!mesh.wanted || scene.is_mesh_removed(id) || mesh.revision == scene.mesh_revision(id)) continue;
+        mesh.revision = scene.mesh_revision(id);
         auto cut = depth::ClusteredMesh::cut(scene.mesh(id).positions, scene.mesh(id).indices);
         mesh.usable = cut.has_value();
         if (cut) mesh.cut = std::move(*cut);

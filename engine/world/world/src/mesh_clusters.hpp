@@ -3,6 +3,7 @@
 #pragma once
 #include <crofton/depth/clustered_mesh.hpp>
 #include <crofton/scene/scene.hpp>
+#include <crofton/world/inputs.hpp>
 
 namespace crofton::world {
 
@@ -15,9 +16,11 @@ class MeshClusters {
         bool usable = false;  // false: not wanted, or what it deformed into cannot be cut
     };
 
-    // The mesh is new or another. Errors: as ClusteredMesh::cut; nothing has changed then.
-    Result<void> set(scene::MeshId mesh, const TriangleMesh& triangles, bool one_sided);
-    void set(scene::MeshId mesh, Mesh cut);
+    // As the description wants it. Errors: as ClusteredMesh::cut.
+    [[nodiscard]] static Result<Mesh> cut(const TriangleMesh& triangles, const MeshDescription& description);
+
+    // The mesh is new or another, and has this revision.
+    void set(scene::MeshId mesh, Mesh cut, std::uint64_t revision);
     void clear(scene::MeshId mesh);
     // Cuts what has changed since.
     void update(const scene::Scene& scene);

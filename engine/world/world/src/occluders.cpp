@@ -6,10 +6,12 @@
 #include <cmath>
 #include <crofton/core/error.hpp>
 #include <glm/matrix.hpp>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "box_triangles.hpp"
 #include "require_ok.hpp"
 
 namespace crofton::world {
@@ -56,11 +58,7 @@ Result<void> complete_surface(FoundOccluder& occluder, std::uint64_t place) {
     const auto inner = inner_corners(occluder.box);
     if (!inner) return fail(ErrorCode::degenerate, place, "world: the occluder's box is flat; give a patch");
     occluder.surface.positions.assign(inner->begin(), inner->end());
-    // Two triangles a face, counter-clockwise from outside; corner numbers as in corners(box).
-    constexpr std::uint32_t kFaces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
-                                            {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
-    for (const auto& f : kFaces)
-        for (const std::uint32_t i : {f[0], f[1], f[2], f[0], f[2], f[3]}) occluder.surface.indices.push_back(i);
+    occluder.surface.indices.insert(occluder.surface.indices.end(), std::begin(kBoxTriangles), std::end(kBoxTriangles));
     if (occluder.piece_bounds.is_empty()) occluder.piece_bounds = aabb_of(occluder.box);
     return {};
 }

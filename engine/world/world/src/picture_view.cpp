@@ -6,6 +6,8 @@
 #include <glm/matrix.hpp>
 #include <numeric>
 
+#include "box_triangles.hpp"
+
 namespace crofton::world {
 namespace {
 
@@ -15,9 +17,7 @@ const depth::ClusteredMesh& unit_cube() {
         Vector<glm::vec3> corners;
         for (unsigned i = 0; i < 8; ++i)
             corners.push_back({(i & 1u) ? 1.0f : -1.0f, (i & 2u) ? 1.0f : -1.0f, (i & 4u) ? 1.0f : -1.0f});
-        constexpr std::uint32_t kIndices[] = {0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4,
-                                              2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6};
-        return std::move(*depth::ClusteredMesh::cut(corners, kIndices));
+        return std::move(*depth::ClusteredMesh::cut(corners, kBoxTriangles));
     }();
     return kCube;
 }
