@@ -6,7 +6,6 @@
 #include <cmath>
 #include <crofton/crofton.hpp>
 #include <crofton/depth/depth_culler.hpp>
-#include <crofton/render/clip_space.hpp>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -27,7 +26,7 @@ using namespace crofton::bench;
 
 namespace {
 
-// Of this thread: what other programs take does not count.
+// Returns this thread's processor time, so that other programs do not count.
 double cpu_seconds() {
     std::timespec now{};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
@@ -50,7 +49,7 @@ struct Objects {
     std::size_t triangles = 0;
 };
 
-// What the frustum leaves, frame by frame.
+// Lists the objects in the frustum of each frame.
 std::vector<Objects> objects_along(assets::SceneSource& source, const pipeline::SceneClusters& clusters,
                                    const std::vector<Camera>& cameras) {
     auto& executor = serial_executor();
@@ -60,20 +59,14 @@ std::vector<Objects> objects_along(assets::SceneSource& source, const pipeline::
     std::vector<Objects> frames;
     for (const Camera& camera : cameras) {
         (void)expect(pipeline.run(camera), "frame");
-        const render::ModelToClip to_clip(camera);
         Objects& objects = frames.emplace_back();
+        std::vector<scene::InstanceId> visible;
         for (scene::InstanceId i = 0; i < source.scene.instance_count(); ++i) {
             if (pipeline.verdicts()[i] == cull::Verdict::outside) continue;
-            const scene::MeshId mesh = source.scene.mesh_of(i);
-            if (clusters.meshes[mesh].clusters().empty()) continue;
-            const Transform& place = source.scene.world(source.scene.node_of(i));
-            const bool one_sided =
-                mesh < source.one_sided.size() && source.one_sided[mesh] != 0 && glm::determinant(place.linear) > 0.0;
-            objects.list.push_back({.mesh = &clusters.meshes[mesh],
-                                    .to_clip = to_clip(place.linear, place.translation),
-                                    .one_sided = one_sided});
-            objects.triangles += source.scene.mesh(mesh).triangle_count();
+            visible.push_back(i);
+            objects.triangles += source.scene.mesh(source.scene.mesh_of(i)).triangle_count();
         }
+        pipeline::append_depth_objects(source.scene, clusters, source.one_sided, visible, camera, objects.list);
     }
     return frames;
 }

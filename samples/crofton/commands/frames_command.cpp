@@ -246,10 +246,7 @@ class FramesRun {
         list_->select(frame.visible_ids, frame.camera);
         frame.triangles_clipped = list_->predict_clipped();
         if (!frame.occlusion) return;
-        if (frame.occlusion->by_depth)
-            list_->select(frame.occlusion->clusters, frame.camera);
-        else
-            list_->select(frame.occlusion->visible_ids, frame.camera);
+        list_->select(*frame.occlusion, frame.camera);
         frame.occlusion->triangles_clipped = list_->predict_clipped();
     }
 

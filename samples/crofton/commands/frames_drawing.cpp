@@ -35,14 +35,10 @@ Result<std::unique_ptr<FramesDrawing>> FramesDrawing::create(pipeline::DrawList&
 template <class Columns>
 Result<void> FramesDrawing::draw(Columns& columns, const Camera& camera, std::uint32_t picture) {
     const auto start = Clock::now();
-    if constexpr (std::is_same_v<Columns, pipeline::OccludedFrame>) {
-        if (columns.by_depth)
-            list_.select(columns.clusters, camera);
-        else
-            list_.select(columns.visible_ids, camera);
-    } else {
+    if constexpr (std::is_same_v<Columns, pipeline::OccludedFrame>)
+        list_.select(columns, camera);
+    else
         list_.select(columns.visible_ids, camera);
-    }
     render::Frame frame;
     frame.camera = camera;
     frame.transforms = list_.transforms();
@@ -73,10 +69,10 @@ Result<const render::Image*> FramesDrawing::picture() {
 }
 
 Result<void> FramesDrawing::find_seen(pipeline::FrameStatistics& frame) {
-    if (frame.occlusion && frame.occlusion->by_depth)
-        list_.select(frame.occlusion->clusters, frame.camera);
+    if (frame.occlusion)
+        list_.select(*frame.occlusion, frame.camera);
     else
-        list_.select(frame.occlusion ? frame.occlusion->visible_ids : frame.visible_ids, frame.camera);
+        list_.select(frame.visible_ids, frame.camera);
     if (auto drawn = owners_of_shown_.draw(*rasterizer_, kOwners, list_, frame.camera); !drawn)
         return drawn.error().code == ErrorCode::unsupported ? Result<void>{} : drawn;
     frame.seen = pipeline::Seen{owners_of_shown_.instances().size(), owners_of_shown_.triangles().size()};

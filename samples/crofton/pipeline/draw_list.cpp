@@ -60,14 +60,10 @@ void DrawList::append(scene::MeshId mesh, bool flat) {
     parts_.push_back(part);
 }
 
-bool DrawList::is_one_sided(scene::InstanceId instance) const {
-    return one_sided_[scene_.mesh_of(instance)] != 0 &&
-           glm::determinant(scene_.world(scene_.node_of(instance)).linear) > 0.0;
-}
-
 void DrawList::select(std::span<const scene::InstanceId> visible, const Camera& camera) {
     unsorted_.clear();
-    for (const scene::InstanceId instance : visible) unsorted_.push_back({instance});
+    for (const scene::InstanceId instance : visible)
+        unsorted_.push_back({instance, is_one_sided(scene_, one_sided_, instance)});
     place(camera);
     for (std::size_t i = 0; i < selected_.size(); ++i) {
         const Part& part = parts_[scene_.mesh_of(selected_[i].instance)];
@@ -79,7 +75,8 @@ void DrawList::select(std::span<const depth::VisibleCluster> visible, const Came
     unsorted_.clear();
     for (std::size_t begin = 0, end = 0; begin < visible.size(); begin = end) {
         while (end < visible.size() && visible[end].object == visible[begin].object) ++end;
-        unsorted_.push_back({visible[begin].object, begin, end});
+        unsorted_.push_back(
+            {visible[begin].object, is_one_sided(scene_, one_sided_, visible[begin].object), begin, end});
     }
     place(camera);
     for (std::size_t i = 0; i < selected_.size(); ++i) {
@@ -98,6 +95,13 @@ void DrawList::select(std::span<const depth::VisibleCluster> visible, const Came
             }
         }
     }
+}
+
+void DrawList::select(const OccludedFrame& frame, const Camera& camera) {
+    if (frame.by_depth)
+        select(frame.clusters, camera);
+    else
+        select(frame.visible_ids, camera);
 }
 
 // By the farthest point of a ball around the part, so that the ground comes last. Bits of positive floats sort as they
@@ -128,8 +132,7 @@ void DrawList::place(const Camera& camera) {
 
 void DrawList::add_range(std::size_t selected, std::uint32_t first_index, std::uint32_t index_count,
                          const Aabb& bounds) {
-    ranges_.push_back({first_index, index_count, static_cast<std::uint32_t>(selected),
-                       is_one_sided(selected_[selected].instance),
+    ranges_.push_back({first_index, index_count, static_cast<std::uint32_t>(selected), selected_[selected].one_sided,
                        render::inside_clip_planes(bounds, transforms_[selected].to_clip)});
 }
 

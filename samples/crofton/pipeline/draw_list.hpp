@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "frame_statistics.hpp"
 #include "scene_clusters.hpp"
 
 namespace crofton::pipeline {
@@ -33,6 +34,8 @@ class DrawList {
     void select(std::span<const scene::InstanceId> visible, const Camera& camera);
     // For these triangles alone, in the same order; objects are instances, ascending. Requires clusters.
     void select(std::span<const depth::VisibleCluster> visible, const Camera& camera);
+    // What the frame shows with occlusion: triangles, or whole instances, as it was found.
+    void select(const OccludedFrame& frame, const Camera& camera);
     [[nodiscard]] std::span<const render::DrawRange> ranges() const { return ranges_; }
     // One an instance.
     [[nodiscard]] std::span<const render::DrawTransform> transforms() const { return transforms_; }
@@ -40,9 +43,6 @@ class DrawList {
     [[nodiscard]] scene::InstanceId instance_of(std::size_t range) const {
         return selected_[ranges_[range].transform].instance;
     }
-
-    // Back faces of the instance are not seen. Mirrored, fronts and backs change places: such instances show both.
-    [[nodiscard]] bool is_one_sided(scene::InstanceId instance) const;
 
     // Σ (vertices of the clipped polygon − 2) over the selection, as lavapipe will count it.
     [[nodiscard]] std::uint64_t predict_clipped();
@@ -54,6 +54,7 @@ class DrawList {
     };
     struct Selected {
         scene::InstanceId instance;
+        bool one_sided;
         std::size_t begin = 0, end = 0;  // of the clusters given, where there are some
     };
 

@@ -5,8 +5,6 @@
 #include <array>
 #include <chrono>
 #include <crofton/cull/cull.hpp>
-#include <crofton/render/clip_space.hpp>
-#include <glm/matrix.hpp>
 #include <utility>
 
 #include "object_counts.hpp"
@@ -265,17 +263,8 @@ struct Pipeline::State {
     // By the depth of what is drawn.
     Result<void> find_triangles(const Camera& camera, const Frustum& frustum, OccludedFrame& frame) {
         const auto start = Clock::now();
-        const render::ModelToClip to_clip(camera);
         depth_objects.clear();
-        for (const scene::InstanceId i : visible_ids) {
-            const scene::MeshId mesh = scene.mesh_of(i);
-            const Transform& place = scene.world(scene.node_of(i));
-            const bool one_sided =
-                mesh < options.one_sided.size() && options.one_sided[mesh] != 0 && glm::determinant(place.linear) > 0.0;
-            depth_objects.push_back({.mesh = &clusters->meshes[mesh],
-                                     .to_clip = to_clip(place.linear, place.translation),
-                                     .one_sided = one_sided});
-        }
+        append_depth_objects(scene, *clusters, options.one_sided, visible_ids, camera, depth_objects);
         const auto found = depth_culler.find_visible(depth_objects, *options.picture);
         if (!found) return tl::unexpected(found.error());
         frame.by_depth = true;
@@ -398,22 +387,6 @@ const World& Pipeline::world() const {
 }
 const ViewResult& Pipeline::not_hidden() const {
     return state_->not_hidden;
-}
-
-// Those that the tree does not hold, hidden at first, come last.
-std::vector<scene::InstanceId> Pipeline::spatial_order() const {
-    const State& s = *state_;
-    std::vector<scene::InstanceId> order;
-    std::vector<std::uint8_t> listed(s.objects.size(), 0);
-    const auto append = [&](scene::InstanceId instance) {
-        if (s.scene.is_removed(instance) || listed[instance] != 0) return;
-        listed[instance] = 1;
-        order.push_back(instance);
-    };
-    for (const boxtree::ItemId item : s.world.tree().spatial_order())
-        if (item < s.objects.size()) append(item);
-    for (scene::InstanceId i = 0; i < s.objects.size(); ++i) append(i);
-    return order;
 }
 
 }  // namespace crofton::pipeline

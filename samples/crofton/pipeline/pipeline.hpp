@@ -79,8 +79,6 @@ class Pipeline {
     // The answer with occlusion of the last run(), where PipelineOptions ask for it: what hides what, the depth buffer.
     // Objects without a bound of their own hide others; their user data are nodes.
     [[nodiscard]] const ViewResult& not_hidden() const;
-    // Instances in the order in which the World's tree holds them: neighbours in space are neighbours here.
-    [[nodiscard]] std::vector<scene::InstanceId> spatial_order() const;
 
   private:
     struct State;

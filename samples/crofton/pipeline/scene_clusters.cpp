@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "scene_clusters.hpp"
 
+#include <crofton/render/clip_space.hpp>
+#include <glm/matrix.hpp>
+
 namespace crofton::pipeline {
 
 std::size_t SceneClusters::memory() const {
@@ -25,6 +28,24 @@ Result<SceneClusters> cut_scene(const scene::Scene& scene, Executor& executor) {
         result.meshes.push_back(std::move(*cut[m]));
     }
     return result;
+}
+
+bool is_one_sided(const scene::Scene& scene, std::span<const std::uint8_t> one_sided, scene::InstanceId instance) {
+    const scene::MeshId mesh = scene.mesh_of(instance);
+    return mesh < one_sided.size() && one_sided[mesh] != 0 &&
+           glm::determinant(scene.world(scene.node_of(instance)).linear) > 0.0;
+}
+
+void append_depth_objects(const scene::Scene& scene, const SceneClusters& clusters,
+                          std::span<const std::uint8_t> one_sided, std::span<const scene::InstanceId> instances,
+                          const Camera& camera, std::vector<depth::DepthObject>& objects) {
+    const render::ModelToClip to_clip(camera);
+    for (const scene::InstanceId instance : instances) {
+        const Transform& place = scene.world(scene.node_of(instance));
+        objects.push_back({.mesh = &clusters.meshes[scene.mesh_of(instance)],
+                           .to_clip = to_clip(place.linear, place.translation),
+                           .one_sided = is_one_sided(scene, one_sided, instance)});
+    }
 }
 
 }  // namespace crofton::pipeline

@@ -2,8 +2,10 @@
 // The meshes of a scene, cut into clusters.
 #pragma once
 #include <crofton/core/executor.hpp>
-#include <crofton/depth/clustered_mesh.hpp>
+#include <crofton/depth/depth_culler.hpp>
 #include <crofton/scene/scene.hpp>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 namespace crofton::pipeline {
@@ -17,5 +19,15 @@ struct SceneClusters {
 
 // Errors: as ClusteredMesh::cut(), with the mesh's number as the item.
 [[nodiscard]] Result<SceneClusters> cut_scene(const scene::Scene& scene, Executor& executor);
+
+// Back faces of the instance are not seen, by flags of its mesh: 0 beyond their end. Mirrored, fronts and backs change
+// places: such instances show both.
+[[nodiscard]] bool is_one_sided(const scene::Scene& scene, std::span<const std::uint8_t> one_sided,
+                                scene::InstanceId instance);
+
+// These instances as DepthCuller asks them, in their order, behind those that `objects` holds.
+void append_depth_objects(const scene::Scene& scene, const SceneClusters& clusters,
+                          std::span<const std::uint8_t> one_sided, std::span<const scene::InstanceId> instances,
+                          const Camera& camera, std::vector<depth::DepthObject>& objects);
 
 }  // namespace crofton::pipeline
