@@ -3,9 +3,8 @@
 //
 // A renderer covers a sample by some triangle of a closed surface, but which one is known only up to its grid. So what
 // is drawn here is
-// - inside all edges that end the surface in this picture, by more than the grid; at edges between two triangles that
-// both
-//   cover the picture, up to the very edge;
+// - inside all edges that end the surface in this picture, by more than the grid;
+// - up to the very edge between two triangles that both cover the picture;
 // - not where a sample lies so close to a corner of such an end that a neighbour may be missing there;
 // - not nearer than the triangle and those neighbours may be.
 #include <hwy/highway.h>
@@ -98,18 +97,17 @@ class PatchDrawer {
                                                   hn::Mul(hn::Set(d, object_.columns[1][k]), y)),
                                           hn::Mul(hn::Set(d, object_.columns[2][k]), z)),
                                   hn::Set(d, object_.columns[3][k]));
+            hn::Store(clip[3], d, ws_ + i);
             if (patch_.unclear) {
                 hn::Store(clip[0], d, xs_ + i);
                 hn::Store(clip[1], d, ys_ + i);
                 hn::Store(clip[2], d, zs_ + i);
-                hn::Store(clip[3], d, ws_ + i);
                 continue;
             }
             const VF inverse = hn::Div(hn::Set(d, 1.0f), clip[3]);
             hn::Store(hn::Add(hn::Mul(hn::Mul(clip[0], inverse), half_width), half_width), d, xs_ + i);
             hn::Store(hn::Add(hn::Mul(hn::Mul(clip[1], inverse), half_height), half_height), d, ys_ + i);
             hn::Store(hn::Mul(clip[2], inverse), d, zs_ + i);
-            hn::Store(clip[3], d, ws_ + i);
         }
     }
 

@@ -200,7 +200,7 @@ class Rasterizer {
                              r_.up * (static_cast<float>(8 * ty) + 4.0f - r_.at_y);
         const float spread = 3.5f * (std::abs(r_.across) + std::abs(r_.up));
         const float upper = std::min(r_.nearest, middle + spread + r_.above + r_.below);
-        if (tiles_.least[t] > upper || least_of(tiles_, t) > upper) return;
+        if (is_nearer(tiles_, t, upper)) return;
         draw_rows(tx, ty, t, r_.draws);
     }
 

@@ -55,9 +55,9 @@ HWY_INLINE float least_of(const Tiles& tiles, std::size_t t) {
     return tiles.least[t] = std::max(hn::GetLane(hn::MinOfLanes(d, least)), tiles.floors[t]);
 }
 
-HWY_INLINE void raise_floor(const Tiles& tiles, std::size_t t, float nearness) {
-    tiles.floors[t] = std::max(tiles.floors[t], nearness);
-    tiles.least[t] = std::max(tiles.least[t], nearness);
+// Every pixel of the tile is nearer.
+HWY_INLINE bool is_nearer(const Tiles& tiles, std::size_t t, float nearness) {
+    return tiles.least[t] > nearness || least_of(tiles, t) > nearness;
 }
 
 // A pixel of the rectangle is not nearer than `nearness`. The rectangle meets the tile.
@@ -82,8 +82,7 @@ HWY_INLINE bool hides(const Tiles& tiles, const Projection& p) {
     for (std::int32_t ty = p.y0 / 8; ty <= p.y1 / 8; ++ty)
         for (std::int32_t tx = p.x0 / 8; tx <= p.x1 / 8; ++tx) {
             const std::size_t t = static_cast<std::size_t>(ty) * tiles.columns + static_cast<std::size_t>(tx);
-            if (tiles.least[t] > p.nearest) continue;
-            if (least_of(tiles, t) > p.nearest) continue;
+            if (is_nearer(tiles, t, p.nearest)) continue;
             if (tiles.states[t] == TileState::unused) return false;
             if (p.x0 <= 8 * tx && p.y0 <= 8 * ty && p.x1 >= 8 * tx + 7 && p.y1 >= 8 * ty + 7) return false;
             if (shows_in_tile(tiles, p, tx, ty, t)) return false;

@@ -60,7 +60,7 @@ struct DepthStatistics {
 //   1/256 pixel (Vulkan's subPixelPrecisionBits ≥ 8),
 // - cover no sample twice and leave none out where two triangles share an edge,
 // - never give a sample a depth nearer than the triangle's nearest vertex, and write and compare depth as 32-bit
-// floats. DESIGN: docs/notes/depth.md derives the margins.
+// floats. docs/notes/depth.md derives the margins.
 //
 // Keeps its memory between calls: once warm it allocates nothing. One culler per thread.
 class DepthCuller {
