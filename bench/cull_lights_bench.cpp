@@ -59,7 +59,8 @@ BENCHMARK_CAPTURE(froxel_lights, 10k_points_5m, 10000, 0, 5.0)->Unit(benchmark::
 BENCHMARK_CAPTURE(froxel_lights, 5k_points_5k_spots_2m, 5000, 5000, 2.0)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(froxel_lights, 10k_spots_2m, 0, 10000, 2.0)->Unit(benchmark::kMillisecond);
 
-// What others test: a froxel's axis-aligned box in view space against the sphere; its bounding sphere against the cone.
+// Tests as other engines do: a froxel's axis-aligned box in view space against the sphere, its bounding sphere against
+// the cone.
 struct Cell {
     glm::dvec3 low, high, center;
     double radius;

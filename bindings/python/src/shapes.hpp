@@ -8,8 +8,8 @@
 
 namespace crofton::python {
 
-// Of a Box, a sphere (center, radius) or an aligned box (low, high); of none: no bound. Raises TypeError for more than
-// one. World::add checks the numbers.
+// Returns the bound of a Box, a sphere (center, radius) or an aligned box (low, high); no bound if none is given.
+// Raises TypeError for more than one. World::add checks the numbers.
 [[nodiscard]] Bound bound_of(const py::object& box, const py::object& sphere, const py::object& aligned);
 
 // A shape to ask with, its numbers checked: queries find nothing for bad ones, and say nothing.

@@ -240,9 +240,16 @@ TEST_CASE("what a wall hides is dropped as a whole, and what does not hide is on
     std::vector<DepthObject> objects = {{&cube.clusters, placed_at(-10, {8, 8, 0.1})}};
     for (int i = 0; i < 50; ++i) objects.push_back({&cube.clusters, placed_at(-15.0 - i, glm::dvec3(1))});
     DepthCuller culler;
-    CHECK(culler.find_visible(objects, {640, 360})->size() == 1);
+    const auto found = culler.find_visible(objects, {640, 360});
+    REQUIRE(found->size() == 1);
+    CHECK((*found)[0].object == 0);
     CHECK(culler.statistics().objects_listed == 1);
     CHECK(culler.statistics().objects_asked == 51);
+    // The wall alone is looked into: one cluster of twelve triangles.
+    CHECK(culler.statistics().clusters_asked == 1);
+    CHECK(culler.statistics().clusters_drawn == 1);
+    CHECK(culler.statistics().triangles_drawn == 12);
+    CHECK(culler.statistics().triangles_listed == static_cast<std::uint64_t>(std::popcount((*found)[0].triangles)));
     objects[0].hides = false;
     CHECK(culler.find_visible(objects, {640, 360})->size() > 1);
     CHECK(culler.nearness(320, 180) > 0.0f);

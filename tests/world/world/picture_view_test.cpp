@@ -138,6 +138,9 @@ TEST_SUITE("world/picture_view") {
             for (const auto& [object, triangle] : listed) objects.insert(object);
             CHECK(std::equal(objects.begin(), objects.end(), result.ids().begin(), result.ids().end()));
             CHECK(result.verdicts().size() == result.size());
+            CHECK(result.inside_count() ==
+                  std::size_t(std::count(result.verdicts().begin(), result.verdicts().end(), cull::Verdict::inside)));
+            CHECK(result.picture_statistics().triangles_listed == listed.size());
             listed_sum += listed.size();
             ViewResult all;
             REQUIRE(town.world.view({.camera = camera}, all));
