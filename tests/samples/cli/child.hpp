@@ -3,7 +3,9 @@
 #pragma once
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 #include <string>
 #include <vector>
@@ -29,11 +31,25 @@ class Child {
         _exit(127);
     }
     void signal(int number) const { ::kill(pid_, number); }
-    // The exit status; −1 where a signal ended it.
-    [[nodiscard]] int wait() const {
+    // Gives the processor time that the child's threads have used so far, in seconds.
+    [[nodiscard]] double processor_seconds() const {
+        clockid_t clock{};
+        timespec used{};
+        if (clock_getcpuclockid(pid_, &clock) != 0 || clock_gettime(clock, &used) != 0) return 0.0;
+        return static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
+    }
+    struct Exit {
+        int status = -1;  // the exit status; −1 where a signal ended it
+        double processor_seconds = 0.0;
+    };
+    [[nodiscard]] Exit wait() const {
         int status = 0;
-        ::waitpid(pid_, &status, 0);
-        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+        rusage used{};
+        ::wait4(pid_, &status, 0, &used);
+        const auto seconds = [](const timeval& time) {
+            return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+        };
+        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, seconds(used.ru_utime) + seconds(used.ru_stime)};
     }
 
   private:

@@ -54,7 +54,7 @@ int interrupt(const std::vector<std::string>& arguments, int milliseconds = 200)
         const Child child(arguments, "/dev/null");
         std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
         child.signal(SIGINT);
-        if (const int status = child.wait(); status >= 0) return status;
+        if (const int status = child.wait().status; status >= 0) return status;
     }
     return -1;
 }
@@ -150,7 +150,7 @@ TEST_SUITE("cli/faults") {
         REQUIRE(wait_for_lines(out, 5));
         CHECK_FALSE(std::filesystem::exists(json));
         child.signal(SIGINT);
-        CHECK(child.wait() == 130);
+        CHECK(child.wait().status == 130);
         const auto document = nlohmann::json::parse(contents_of(json), nullptr, false);
         REQUIRE(document.is_object());
         const std::string csv = contents_of(out);
@@ -167,7 +167,7 @@ TEST_SUITE("cli/faults") {
         REQUIRE(wait_for_lines(out, 2));
         child.signal(SIGINT);
         child.signal(SIGINT);
-        const int status = child.wait();
+        const int status = child.wait().status;
         CHECK((status == 130 || status == -1));
     }
 
@@ -180,7 +180,7 @@ TEST_SUITE("cli/faults") {
         for (int i = 0; i < 3000 && !std::filesystem::exists(state); ++i)
             std::this_thread::sleep_for(std::chrono::milliseconds(10));
         light.signal(SIGINT);
-        CHECK(light.wait() == 130);
+        CHECK(light.wait().status == 130);
         CHECK(contents_of(glb).substr(0, 4) == "glTF");
         CHECK(names_in(folder) == std::vector<std::string>{"lit.glb", "state"});
         // Many polygons, of which the time of all is long.
