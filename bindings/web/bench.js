@@ -2,10 +2,10 @@
 // Times the package's culling of the boxes and views in a file that bindings/web/native/digests.cpp writes.
 //   node bindings/web/bench.js FILE [simd|plain]
 import { readFileSync } from 'node:fs';
-import { load } from './js/crofton.js';
+import { loadBuild } from './test/builds.js';
 
 const BOXES = 100000, VIEWS = 20, NUMBERS = 52, REPETITIONS = 40;
-const file = readFileSync(process.argv[2]), crofton = await load({ simd: process.argv[3] !== 'plain' });
+const file = readFileSync(process.argv[2]), crofton = await loadBuild(process.argv[3] ?? 'simd');
 const boxes = new crofton.Boxes(BOXES);
 boxes.bytes.set(file.subarray(0, 72 * BOXES));
 const numbers = new Float64Array(file.buffer.slice(file.byteOffset + 72 * BOXES, file.byteOffset + file.length));

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Compiles the package's WebAssembly: bindings/web/wasm/simd.{js,wasm} and plain.{js,wasm}.
+"""Compiles the package's WebAssembly, bindings/web/wasm/simd.*, and a build without SIMD for the tests, plain.*.
 
 bindings/web/build.py [simd] [plain] [--jobs J]
 
@@ -9,11 +9,14 @@ Highway of the build with SIMD is Debian 13's, because that of Debian 12 has no 
 `third_party/install.sh --web` installs the compiler.
 """
 import argparse
+import base64
 import hashlib
 import os
+import re
 import shutil
 import subprocess
 import sys
+import zlib
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -25,7 +28,7 @@ FLAGS = {"simd": "-msimd128", "plain": "-DHWY_COMPILE_ONLY_SCALAR"}
 # Emscripten takes `-Os` for `-fno-inline-functions`, whatever level follows. Kernels need calls inlined: they would take
 # three times as long.
 OPTIMIZE, KERNELS = "-Os", "-O2;-finline-functions"
-MODULES = ["core", "geometry", "measure", "mesh", "boxtree", "convex", "collide", "scene", "fit", "cull", "occlude",
+MODULES = ["core", "geometry", "measure", "mesh", "boxtree", "convex", "collide", "scene", "fit", "cull", "occlude", "depth",
            "triangulate", "world", "capi", "bake_capi"]
 EXPORTED = """last_error status_name version_string set_log_hook log default_camera frustum_from_camera
 frustum_from_matrix boxes_validate tree_create tree_destroy tree_move tree_remove tree_refit visible_set_create
@@ -93,6 +96,18 @@ def build(name, jobs):
         "-sALLOW_MEMORY_GROWTH=1", "-sMAXIMUM_MEMORY=2147483648", "-sINITIAL_MEMORY=16777216", "-sTOTAL_STACK=1048576",
         "-sALLOW_TABLE_GROWTH=1", "-sWASM_BIGINT=1", "-sEXPORTED_RUNTIME_METHODS=addFunction,removeFunction,HEAPU8",
         f"-sEXPORTED_FUNCTIONS={names}", "--no-entry", "-o", out / f"{name}.js"], log)
+
+    # Its bytes are given to it: webpack would look for a file that the package has not.
+    script = out / f"{name}.js"
+    text, found = re.subn(r'new URL\("\w+\.wasm", ?import\.meta\.url\)\.(toString\(\)|href)', f'"{name}.wasm"', script.read_text())
+    if found != 1:
+        sys.exit(f"web: {script} names its file in another way than Emscripten 3.1.6 does")
+    script.write_text(text)
+    # The package has them within JavaScript.
+    if name == "simd":
+        shutil.copy(ROOT / "LICENSE", ROOT / "bindings/web/LICENSE")
+        text = base64.b64encode(zlib.compress((out / "simd.wasm").read_bytes(), 9)).decode()
+        (out / "simd.base64.js").write_text(f"export default '{text}';\n")
 
     # The digests of bindings/web/native/digests.cpp, for node (tests alone: not in the package).
     includes = [f"-I{p}" for kind in ("include", "internal") for p in sorted((ROOT / "engine").glob(f"**/{kind}"))]

@@ -12,8 +12,7 @@ export interface Camera {
 }
 export type Depth = 'reversed' | 'zeroToOne' | 'minusOneToOne';
 export interface LoadOptions {
-    /** true: fail without SIMD; false: the build without; left out: the best that runs here. */
-    simd?: boolean;
+    /** The bytes of the WebAssembly, where the page has them already; otherwise they are unpacked from the package. */
     wasmBinary?: ArrayBuffer | Uint8Array;
 }
 export interface CullOptions { conservative?: boolean; treeOrder?: boolean }
@@ -95,7 +94,6 @@ export interface World extends Owned {
     raycast(origin: Vector, direction: Vector, maxT?: number, layers?: number): Hit | null;
 }
 export interface Crofton {
-    readonly simd: boolean;
     readonly version: string;
     readonly memoryBytes: number;
     readonly Boxes: new (count: number) => Boxes;
@@ -114,4 +112,3 @@ export interface Crofton {
     log(level: number, message: string): void;
 }
 export function load(options?: LoadOptions): Promise<Crofton>;
-export function hasSimd(): boolean;

@@ -4,7 +4,7 @@
 
 bindings/web/site.py [--out DIR] [--page-only]
 
-Needs the package's builds (bindings/web/test.sh or bindings/web/build.py), and doxygen for all but the page. The folder can be served, or
+Needs the package's build (bindings/web/test.sh or bindings/web/build.py), and doxygen for all but the page. The folder can be served, or
 its index.html opened as a file: modules are put into the page by an import map, the compiled library into scripts.
 """
 import argparse
@@ -27,18 +27,17 @@ def module_url(text):
     return "data:text/javascript;base64," + base64.b64encode(text.encode()).decode()
 
 
-def write_page(out, builds):
-    modules = {f"crofton/{p.name}": p.read_text() for p in sorted((WEB / "js").glob("*.js"))}
+def write_page(out):
+    modules = {f"crofton/{p.name}": p.read_text() for p in sorted((WEB / "js").glob("*.js")) if not p.name.startswith("inline")}
     modules |= {f"crofton/{name}.js": (WEB / f"page/{name}.js").read_text() for name in PAGE}
-    modules |= {f"crofton/wasm/{name}.js": (WEB / f"wasm/{name}.js").read_text() for name in builds}
+    modules["crofton/wasm/simd.js"] = (WEB / "wasm/simd.js").read_text()
     urls = {name: module_url(text) for name, text in modules.items()}
     urls["crofton"] = urls["crofton/crofton.js"]
     scripts = (f'<script type="importmap">{json.dumps({"imports": urls})}</script>\n'
                '<script type="module">import "crofton/main.js";</script>')
     (out / "index.html").write_text((WEB / "page/index.html").read_text().replace("<!-- modules -->", scripts))
-    for name in builds:
-        data = base64.b64encode((WEB / f"wasm/{name}.wasm").read_bytes()).decode()
-        (out / f"{name}.wasm.js").write_text(f'globalThis.croftonBytes = "{data}";\n')
+    data = base64.b64encode((WEB / "wasm/simd.wasm").read_bytes()).decode()
+    (out / "simd.wasm.js").write_text(f'globalThis.croftonBytes = "{data}";\n')
 
 
 def run_doxygen(settings, log):
@@ -93,11 +92,10 @@ def main():
     parser.add_argument("--out", type=Path, default=ROOT / "build/site")
     parser.add_argument("--page-only", action="store_true")
     options = parser.parse_args()
-    builds = [name for name in ("simd", "plain") if (WEB / f"wasm/{name}.wasm").exists()]
-    if not builds:
+    if not (WEB / "wasm/simd.wasm").exists():
         sys.exit("site: the package is not built: bindings/web/build.py")
     options.out.mkdir(parents=True, exist_ok=True)
-    write_page(options.out, builds)
+    write_page(options.out)
     if not options.page_only:
         if not shutil.which("doxygen"):
             sys.exit("site: doxygen is not here; third_party/install.sh --web installs it")

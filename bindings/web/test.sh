@@ -28,3 +28,4 @@ if command -v tsc >/dev/null; then
 else
     echo "web: types are not checked, no tsc here; third_party/install.sh --web installs it"
 fi
+bindings/web/bundlers/test.sh

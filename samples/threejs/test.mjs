@@ -8,9 +8,9 @@ import { fileURLToPath } from 'node:url';
 import { Browser, missing } from '../../bindings/web/test/browser.js';
 
 const ROOT = fileURLToPath(new URL('../../', import.meta.url));
-const least = Number(process.env.CROFTON_LEAST_RATIO ?? 20);
+const least = Number(process.env.CROFTON_LEAST_RATIO ?? 40);
 const why = missing ?? (existsSync(`${ROOT}samples/threejs/node_modules/three`) ? null : 'no three.js; `npm install` here')
-    ?? (existsSync(`${ROOT}bindings/web/wasm/simd.wasm`) ? null : 'the package is not built; bindings/web/test.sh');
+    ?? (existsSync(`${ROOT}bindings/web/wasm/simd.base64.js`) ? null : 'the package is not built; bindings/web/test.sh');
 if (why) {
     console.log(`threejs: skipped, ${why}`);
     process.exit(0);
@@ -34,7 +34,7 @@ try {
     const ratio = answer.own / answer.crofton;
     console.log(`threejs: three.js ${answer.own?.toFixed(3)} ms, Crofton ${answer.crofton?.toFixed(3)} ms, ${ratio.toFixed(1)} x; ` +
         `${answer.different} bytes of pixels differ`);
-    if (answer.error || answer.different !== 0 || !(answer.lit > 10000) || !(ratio >= least)) process.exitCode = 1;
+    if (answer.error || answer.different !== 0 || !(answer.lit > 10000) || !answer.moved || !answer.all || !(ratio >= least)) process.exitCode = 1;
 } finally {
     await browser.close();
     server.close();

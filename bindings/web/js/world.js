@@ -78,19 +78,19 @@ export class World extends Owned {
     add({ box, sphere, mesh, transform, user = 0, layers = ALL, occludes = true }) {
         if ([box, sphere, mesh].filter(Boolean).length !== 1) throw failure(1, 'an object has one of box, sphere and mesh');
         if (!(Number.isInteger(user) && user >= 0 && user < 2 ** 53)) throw failure(1, 'user is a whole number below 2^53');
-        const { memory } = this, at = memory.scratch(64 + 160 + 96 + 16), { words } = memory, first = at >> 2;
+        const { memory } = this, at = memory.scratch(80 + 160 + 96 + 16), { words } = memory, first = at >> 2;
         memory.fill('default_object_description', at);
         words.set([user % 2 ** 32, Math.floor(user / 2 ** 32)], first + 2);
-        if (box || sphere) this.#writeBound(at + 64, box, sphere), words[first + 4] = at + 64;
-        if (transform) this.#writeTransform(at + 224, transform), words[first + 5] = at + 224;
+        if (box || sphere) this.#writeBound(at + 80, box, sphere), words[first + 4] = at + 80;
+        if (transform) this.#writeTransform(at + 240, transform), words[first + 5] = at + 240;
         if (mesh) {
             words[first + 6] = 1;
             this.#give(mesh, 'mesh', at + 32);
         }
         words[first + 12] = layers;
         words[first + 14] = occludes ? 1 : 0;
-        memory.call('world_add', this.handle, at, at + 320);
-        return this.#handleAt(at + 320, 'object');
+        memory.call('world_add', this.handle, at, at + 336);
+        return this.#handleAt(at + 336, 'object');
     }
     remove(object) { this.memory.call('world_remove', this.handle, this.#give(object, 'object', this.memory.scratch(16))); }
     setHidden(object, hidden) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The page: a flight through the town, its switches, and what the address says:
 //   #at=x,y,z,yaw,pitch  stand there      #frozen=x,y,z,yaw,pitch  the camera that culls stands there
-//   #criterion=volume    #occlusion=0     #simd=0  the build without SIMD
+//   #criterion=volume    #occlusion=0
 //   #all  draw what is culled too        #plainly  edges are not smoothed
 import { load } from 'crofton';
 import { makeTown } from './town.js';
@@ -104,16 +104,16 @@ function say(text) {
 }
 
 /** A script that gives the bytes of the compiled library: a file may not fetch others, but may run them. */
-function bytesFromScript(name) {
+function bytesFromScript() {
     return new Promise((done, failed) => {
         const script = document.createElement('script');
-        script.src = `${name}.wasm.js`;
+        script.src = 'simd.wasm.js';
         script.onload = () => {
             const text = atob(globalThis.croftonBytes), bytes = new Uint8Array(text.length);
             for (let i = 0; i < bytes.length; ++i) bytes[i] = text.charCodeAt(i);
             done(bytes);
         };
-        script.onerror = () => failed(new Error(`${name}.wasm.js is missing beside this page`));
+        script.onerror = () => failed(new Error('simd.wasm.js is missing beside this page'));
         document.head.append(script);
     });
 }
@@ -124,15 +124,13 @@ async function start() {
     const gl = element('view').getContext('webgl2', { antialias: !address.has('plainly'), preserveDrawingBuffer: true });
     if (!gl) return say('This browser gives no WebGL 2 here. The page needs it for drawing; the guides work without.');
     element('view').addEventListener('webglcontextlost', () => say('The graphics driver stopped WebGL. Load the page again.'));
-    const { hasSimd } = await import('crofton');
-    const simd = address.get('simd') !== '0' && hasSimd();
-    const crofton = await load({ simd, wasmBinary: await bytesFromScript(simd ? 'simd' : 'plain') });
+    const crofton = await load({ wasmBinary: await bytesFromScript() });
     const objects = makeTown(), page = new Page(gl, new Culling(crofton, objects), objects);
     page.connect();
     VERDICTS.forEach((name, verdict) => {
         element(name).parentElement.style.setProperty('--tint', `rgb(${COLOURS[verdict].map((c) => Math.round(255 * c))})`);
     });
-    element('build').textContent = `Crofton ${crofton.version}, WebAssembly ${simd ? 'with' : 'without'} SIMD`;
+    element('build').textContent = `Crofton ${crofton.version}`;
     let last;
     const next = (now) => {
         page.frame(Math.min(0.1, (now - (last ?? now)) / 1000));

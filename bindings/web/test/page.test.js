@@ -16,8 +16,7 @@ const SITE = `${ROOT}build/web/page`, ADDRESS = `${pathToFileURL(SITE)}/index.ht
 const READY = 'document.documentElement.dataset.state';
 const LIBRARY = `${ROOT}build/release/engine/libcrofton.a`;
 const STREET = '200,9,120,0.1,-0.02', ABOVE = '0,220,520,0.3,-0.5';
-const builds = ['simd', 'plain'].filter((name) => existsSync(`${ROOT}bindings/web/wasm/${name}.wasm`));
-const skip = missing ?? (builds.length ? false : 'the package is not built');
+const skip = missing ?? (existsSync(`${ROOT}bindings/web/wasm/simd.wasm`) ? false : 'the package is not built');
 let browser;
 
 before(async () => {
@@ -172,15 +171,10 @@ test('page: counts are those of the native library, for every criterion', {
     }
 });
 
-test('page: without SIMD the same counts', { skip: skip || (builds.length < 2 ? 'only one build' : false) }, async () => {
-    const one = await see(`at=${STREET}`, answer), other = await see(`at=${STREET}&simd=0`, answer);
-    assert.deepEqual([one.counts, one.digest], [other.counts, other.digest]);
-});
-
-test('page: says so where there is no WebGL, or no WebAssembly, and starts where there is no SIMD', { skip }, async () => {
+test('page: says so where there is no WebGL, no WebAssembly, or no SIMD', { skip }, async () => {
     for (const [first, state, word] of [['HTMLCanvasElement.prototype.getContext = () => null', 'refused', /no WebGL 2/],
         ['delete globalThis.WebAssembly', 'refused', /no WebAssembly/],
-        ...builds.length < 2 ? [] : [['WebAssembly.validate = () => false', 'ready', /^$/]]]) {
+        ['WebAssembly.validate = () => false', 'refused', /no SIMD/]]) {
         const page = await browser.open(ADDRESS, { when: READY, first });
         assert.equal(await page.evaluate(READY), state);
         assert.match(await page.evaluate('document.getElementById("message").textContent'), word);

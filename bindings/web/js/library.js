@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// The library's classes over one build in memory.
+import { Memory } from './memory.js';
+import { loadModule } from './load.js';
+import { Boxes, Frustum } from './geometry.js';
+import { Tree, VisibleSet, cullBoxes, classify } from './cull.js';
+import { fitBox } from './fit.js';
+import { Triangulator } from './triangulate.js';
+import { World, ViewResult } from './world.js';
+
+/** Starts `build`; every class is a member of what it gives. */
+export async function loadLibrary(build, options = {}) {
+    const memory = new Memory(await loadModule(build, options));
+    const bind = (Class) => class extends Class {
+        constructor(...given) { super(memory, ...given); }
+    };
+    const crofton = {
+        version: memory.text(memory.module._crofton_version_string()),
+        /** Bytes of the library's memory; it grows, and views of it are then detached. */
+        get memoryBytes() { return memory.bytes.byteLength; },
+        Boxes: bind(Boxes), Frustum: bind(Frustum), Tree: bind(Tree), VisibleSet: bind(VisibleSet),
+        Triangulator: bind(Triangulator), World: bind(World), ViewResult: bind(ViewResult),
+        cullBoxes: (boxes, frustum, visible, how) => cullBoxes(memory, boxes, frustum, visible, how),
+        classify: (boxes, frustum) => classify(memory, boxes, frustum),
+        fitBox: (points, how) => fitBox(memory, points, how),
+        setLogger: (logger) => memory.setLogger(logger),
+        log: (level, message) => memory.log(level, message),
+    };
+    return Object.freeze(crofton);
+}
