@@ -10,7 +10,7 @@ from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
 
 here = pathlib.Path(__file__).resolve().parent
-root = here.parents[1]
+root = here / "source" if (here / "source").is_dir() else here.parents[1]  # of an sdist, or of a checkout
 
 
 class CMakeBuild(build_ext):
