@@ -28,6 +28,8 @@ if(TARGET crofton_cli)
     install(TARGETS crofton_cli COMPONENT tools)
     install(FILES ${PROJECT_SOURCE_DIR}/packaging/crofton.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
             RENAME crofton COMPONENT tools)
+    install(FILES ${PROJECT_SOURCE_DIR}/packaging/_crofton DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions COMPONENT tools)
+    install(FILES ${PROJECT_SOURCE_DIR}/packaging/crofton.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT tools)
 endif()
 
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/crofton-config.cmake.in ${PROJECT_BINARY_DIR}/crofton-config.cmake

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# What bash completes: packaging/crofton.bash is sourced and its function called as bash would.
+# What bash completes: packaging/crofton.bash is sourced and its function called as bash would. Fish is asked itself, where it is installed.
 #   tests/samples/cli/completion_test.sh FOLDER    of the program `crofton`
 set -uo pipefail
 cd "$(dirname "$0")/../../.."
@@ -51,4 +51,19 @@ for command in $(crofton --help | sed -n '/^Subcommands:/,$s/^  \([a-z]*\) .*/\1
     [[ " $(completed crofton "$command" --) " == *' --help '* ]] || { echo "$command: no options are offered"; failed=1; }
 done
 [[ $(complete -p crofton) == *_crofton* ]] || { echo 'the function is not registered'; failed=1; }
+if command -v fish >/dev/null; then
+    # fish WANTED LINE: the first word of each line that fish offers.
+    in_fish() {
+        local found
+        found=$(fish --no-config -c 'source packaging/crofton.fish; complete -C $argv[1]' "$2" | cut -f1 | sort -u | paste -sd' ')
+        [[ $found == "$1" ]] && return
+        echo "fish completes \`$2\` to '$found', not to '$1'"
+        failed=1
+    }
+    in_fish frames 'crofton fr'
+    in_fish measure 'crofton study me'
+    in_fish '--trace --tree' 'crofton frames --tr'
+    in_fish 'exact fast tight' 'crofton fit --quality '
+    in_fish README.md 'crofton frames READ'
+fi
 exit $failed
