@@ -334,7 +334,7 @@ constexpr const char* kFramesExamples =
     "  ratio       passed / seen\n"
     "  clipped     triangles that clipping leaves\n"
     "  pairs       pairs of instances whose boxes overlap\n"
-    "  … us        microseconds to update, cull, collide (hits) and draw\n"
+    "  ... us      microseconds to update, cull, collide (hits) and draw\n"
     "\n"
     "With --occlude the columns come in pairs, without and with occlusion culling: instances; triangles submitted;\n"
     "triangles passed, with seen and the ratio; milliseconds to find and draw, and the part that occlusion culling "
