@@ -154,25 +154,26 @@ void add_bake_command(CommandLine& line) {
                 "town, room, office, valley, hall, a folder of city parts, or a .glb, .gltf, .obj or .wad file to bake "
                 "with -o; without -o a .crofton file to check")
         .required();
-    const Option output = command.option("-o,--output", options->output, "The file to write").writable_file();
-    command.option("--map", options->map, "Which level of a WAD").needs(output);
-    command.option("--instances", options->instances, "Size of the town, roughly").needs(output);
-    command.option("--seed", options->seed, "Of the town").show_default().needs(output);
-    command.option("--tree", options->tree, "The tree's inner bounds: aligned, oriented or automatic")
+    const Option output = command.option("-o,--output", options->output, "File to write").writable_file();
+    command.option("--map", options->map, "Level of a .wad file").needs(output);
+    command.option("--instances", options->instances, "Approximate number of instances of the town").needs(output);
+    command.option("--seed", options->seed, "Seed of the town").show_default().needs(output);
+    command.option("--tree", options->tree, "Axes of the tree's inner bounds: aligned, oriented or automatic")
         .show_default()
         .needs(output);
     command
         .flag("--no-occluders", options->no_occluders,
-              "Do not look for what hides other things; a second or more for each mesh of 100,000 triangles")
+              "Do not search for occluders, which takes a second or more for each mesh of 100,000 triangles")
         .needs(output);
-    command.option("--threads", options->threads, "0: one per core").whole_between(0, 256).show_default();
-    command.option("--json", options->json, "Write the figures as JSON to this file; - for standard output")
-        .writable_file_or_stdout();
+    command.option("--threads", options->threads, "Worker threads; 0: one per core")
+        .whole_between(0, 256)
+        .show_default();
+    command.option("--json", options->json, "Write the figures as JSON; - for stdout").writable_file_or_stdout();
     command.footer(
-        "A .crofton file holds the whole scene: every sub-command that reads scenes reads it too.\n"
-        "Exit status: 0 done, 2 bad usage, a scene that cannot be read or a .crofton file that is damaged, 130 "
-        "interrupted\n"
-        "(nothing is written then).\n\n"
+        "A .crofton file contains the whole scene; every sub-command that reads scenes reads it too.\n"
+        "Exit status: 0 done, 2 bad usage, a scene that cannot be read or a damaged .crofton file, 130 interrupted\n"
+        "(nothing is written then).\n"
+        "\n"
         "Examples:\n"
         "  crofton bake level.wad --map MAP01 -o map01.crofton\n"
         "  crofton bake map01.crofton\n"

@@ -235,42 +235,44 @@ int run_collide(const CollideRequest& request) {
 
 void add_collide_command(CommandLine& line) {
     auto request = std::make_shared<CollideRequest>();
-    Command command = line.command("collide", "Do two meshes meet, where, how deep, or how far apart are they?");
+    Command command =
+        line.command("collide", "Test two meshes for overlap; print contacts, depth, distance or time of impact");
     command.option("A", request->a, "Mesh file (.obj, or any scene format; of a .wad the first level)").required();
-    command.option("B", request->b, "Mesh file that the pose moves").required();
-    command.option("--pose", request->pose, "Of B in A's frame: tx,ty,tz,qw,qx,qy,qz or a file with these numbers");
+    command.option("B", request->b, "Mesh file, moved by the pose").required();
+    command.option("--pose", request->pose,
+                   "Pose of B in A's frame: tx,ty,tz,qw,qx,qy,qz, or a file with these numbers");
     command
         .option("--mode", request->mode,
-                "any: whether they meet; all: which triangles, where and how deep; distance: between the surfaces; "
-                "contain: is one inside the other; cast: when does B, which moves, first touch A")
+                "any: whether they overlap; all: which triangles, where and how deep; distance: between the surfaces; "
+                "contain: whether one is inside the other; cast: when the moving B first touches A")
         .one_of({"any", "all", "distance", "contain", "cast"})
         .show_default();
     const Option hulls =
-        command.flag("--hulls", request->hulls, "Ask the convex hulls of the vertices instead of the triangles");
+        command.flag("--hulls", request->hulls, "Test the convex hulls of the vertices instead of the triangles");
     command
         .option("--max-vertices", request->max_vertices,
-                "Of a hull: one with more becomes a larger one, whose excess is reported")
+                "Largest number of vertices of a hull; one with more is replaced by a larger hull, whose excess is "
+                "reported")
         .whole_between(4, convex::kMaxHullVertices)
         .show_default()
         .needs(hulls);
     const Option velocity =
-        command.option("--velocity", request->velocity, "Of a cast: x,y,z that B moves by in a time of 1");
+        command.option("--velocity", request->velocity, "With --mode cast: x,y,z, B's translation in a time of 1");
     const Option spin = command.option("--spin", request->spin,
-                                       "Of a cast: x,y,z, the axis times the radians that B turns by in a time of 1");
+                                       "With --mode cast: x,y,z, B's rotation in a time of 1, as axis times radians");
     const Option duration =
-        command.option("--duration", request->duration, "Of a cast: how long B moves").positive().show_default();
-    command.option("--json", request->json_path, "Write the answer as JSON to this file; - for standard output")
-        .writable_file_or_stdout();
+        command.option("--duration", request->duration, "With --mode cast: how long B moves").positive().show_default();
+    command.option("--json", request->json_path, "Write the answer as JSON; - for stdout").writable_file_or_stdout();
     command.footer(
-        "A mesh inside the other, which is to be closed, counts as a hit and is reported in `contained`. Each piece "
-        "is\n"
-        "asked, and triangles make a piece where they share vertices, by index or by position: of loose triangles "
-        "every\n"
-        "one. `partly`: some pieces are inside, but not all. Where surfaces meet, `contained` is `none`.\n"
-        "Depth is an upper bound: the shortest way out of those along the axes of both frames and boxes, the mean "
-        "contact\n"
-        "normal and the line of centres. Distance is between the surfaces, also of a mesh inside the other.\n"
-        "Exit status: 0 answered, 2 bad usage or input.\n\n"
+        "A mesh inside the other, which must be closed, counts as overlapping and is reported in `contained`. Each "
+        "connected piece is\n"
+        "tested; triangles are connected if they share vertices, by index or by position. `partly` means that some "
+        "pieces\n"
+        "are inside, but not all. If the surfaces meet, `contained` is `none`.\n"
+        "Depth is an upper bound: the shortest way out along the axes of both frames and boxes, the mean contact\n"
+        "normal and the line of centres. Distance is between the surfaces, also for a mesh inside the other.\n"
+        "Exit status: 0 answered, 2 bad usage or input.\n"
+        "\n"
         "Examples:\n"
         "  crofton collide bunny.obj cow.obj\n"
         "  crofton collide bunny.obj bunny.obj --pose 0.05,0,0,1,0,0,0 --mode all --json -\n"

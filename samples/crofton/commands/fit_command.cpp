@@ -176,11 +176,11 @@ int run_fit(const FitRequest& request) {
 
 void add_fit_command(CommandLine& line) {
     auto request = std::make_shared<FitRequest>();
-    Command command = line.command("fit", "The best oriented box around each mesh, for a criterion of your choice");
+    Command command = line.command("fit", "Fit the best oriented box around each mesh, for a criterion of your choice");
     command
-        .option(
-            "files", request->files,
-            "OBJ, glTF, GLB or WAD files; only their vertices count; of a WAD the first level, or with --planar all")
+        .option("files", request->files,
+                "OBJ, glTF, GLB or WAD files; only their vertices count. Of a WAD the first level is used, with "
+                "--planar all levels")
         .required();
     command.option("--criterion", request->criterion, kCriterionSyntax).show_default();
     command
@@ -190,53 +190,54 @@ void add_fit_command(CommandLine& line) {
         .show_default();
     const Option budget = command
                               .option("--budget", request->budget_seconds,
-                                      "Seconds per box after which exact returns the best so far, with its gap")
+                                      "Seconds per box; then --quality exact returns the best box so far, with its gap")
                               .not_negative();
-    command
-        .option("--json", request->json_path,
-                "Write the boxes as JSON to this file; - for standard output, instead of the text")
+    command.option("--json", request->json_path, "Write the boxes as JSON; - for stdout, instead of the text")
         .writable_file_or_stdout();
-    command.option("--svg", request->svg_path, "Draw hulls and boxes into this file; - for standard output")
-        .writable_file_or_stdout();
+    command.option("--svg", request->svg_path, "Draw hulls and boxes as SVG; - for stdout").writable_file_or_stdout();
     const Option bounds = command
                               .option("--bounds", request->bounds,
-                                      "Compare sphere, boxes and k-DOPs by C_v + p C_p, a test's time and what passes "
-                                      "it: all of them, or the "
-                                      "best for each mesh")
+                                      "Compare sphere, boxes and k-DOPs by the expected cost C_v + p C_p of a test and "
+                                      "of what passes it: all, or the best for each mesh")
                               .one_of({"all", "best"});
-    command.option("--region", request->region, "--bounds: queries hit a sphere of so many times the mesh's radius")
+    command
+        .option("--region", request->region,
+                "With --bounds: radius of the sphere that queries hit, in radii of the mesh")
         .between(1.0, 1e9)
         .show_default()
         .needs(bounds);
-    command.option("--triangle-cost", request->triangle_cost, "--bounds: nanoseconds for a triangle that is passed on")
+    command
+        .option("--triangle-cost", request->triangle_cost, "With --bounds: nanoseconds for each triangle that passes")
         .not_negative()
         .show_default()
         .needs(bounds);
     command
-        .option("--directions", request->directions,
-                "--bounds: a k-DOP of these too, as x,y,z;x,y,z;...: one of each pair of opposite faces")
+        .option(
+            "--directions", request->directions,
+            "With --bounds: add a k-DOP of these directions, as x,y,z;x,y,z;...: one for each pair of opposite faces")
         .needs(bounds);
     const Option views =
         command
             .option("--views", request->views,
-                    "Boxes for the directions of a recorded camera path (the JSON of `crofton frames`), beside those "
-                    "for uniform ones, and the improper tests of both")
+                    "Fit boxes for the directions of a recorded camera path (the JSON of 'crofton frames'), and "
+                    "compare their false positives with those of boxes for uniform directions")
             .excludes(bounds);
     command
         .flag("--trees", request->trees,
-              "--views: the files are scenes; the nodes that the path visits in trees for its directions and in "
-              "plain ones")
+              "With --views: the files are scenes; count the nodes that the path visits in trees for its directions "
+              "and in default trees")
         .needs(views);
     command
         .flag("--planar", request->planar,
-              "Polygons (.poly, .json, .geojson, .wad): the best rectangles, disc and triangles, by perimeter and by "
+              "Fit rectangles, disc and triangles around polygons (.poly, .json, .geojson, .wad), by perimeter and by "
               "area")
         .excludes(bounds)
         .excludes(views);
     command.footer(
-        "The criterion is alpha V + beta F + gamma M of volume, surface area and integral of mean curvature (pi times "
+        "The criterion is alpha V + beta F + gamma M: volume, surface area and integral of mean curvature (pi times "
         "the edge sum).\n"
-        "Every box contains every vertex, checked in exact arithmetic. Several files give a table of all criteria.\n\n"
+        "Every box contains every vertex, checked in exact arithmetic. Several files give a table of all criteria.\n"
+        "\n"
         "Examples:\n"
         "  crofton fit bunny.obj\n"
         "  crofton fit bunny.obj --criterion frustum:1.0472,1.7778,0.1,1000 --json -\n"

@@ -323,23 +323,35 @@ class FramesRun {
 };
 
 constexpr const char* kFramesExamples =
-    "The table, a line per frame: instances whose bound meets the view (visible), meets its surface\n"
-    "(straddle), or does so while the object's triangles lie inside or outside as a whole (improper); tree\n"
-    "nodes tested; triangles of what is visible (submitted), those that meet the frustum (passed), those that\n"
-    "own a pixel (seen), and how many pass for each that is seen (ratio); those that clipping leaves (clipped);\n"
-    "pairs of instances whose boxes meet; microseconds to update, cull, collide (hits) and draw.\n\n"
-    "With --occlude: two columns each, of what is in the view and of what nothing hides as well. Instances;\n"
-    "triangles submitted; those that meet the frustum, with what is seen, and how many pass for each that is;\n"
-    "milliseconds to find what to draw and to draw it, and what occlusion takes of that.\n"
-    "Triangles are listed front to back by the depth of those before. With --occlusion occluders whole instances are\n"
-    "hidden instead, by occluders found in the scene's meshes or baked. --verify then also draws who owns which\n"
-    "pixel: nothing that does may be hidden, and both pictures must be the same.\n\n"
+    "Columns of the table, one line per frame:\n"
+    "  visible     instances whose bound meets the view\n"
+    "  straddle    those whose bound meets the surface of the view\n"
+    "  improper    of those, instances whose triangles lie entirely inside or outside\n"
+    "  nodes       tested tree nodes\n"
+    "  submitted   triangles of the visible instances\n"
+    "  passed      those that meet the frustum\n"
+    "  seen        those that own a pixel\n"
+    "  ratio       passed / seen\n"
+    "  clipped     triangles that clipping leaves\n"
+    "  pairs       pairs of instances whose boxes overlap\n"
+    "  ... us      microseconds to update, cull, collide (hits) and draw\n"
+    "\n"
+    "With --occlude the columns come in pairs, without and with occlusion culling: instances; triangles submitted;\n"
+    "triangles passed, with seen and the ratio; milliseconds to find and draw, and the part that occlusion culling "
+    "takes.\n"
+    "Triangles are tested front to back against the depth of those before. --occlusion occluders hides whole "
+    "instances\n"
+    "by occluders that are found in the scene's meshes or baked. --verify then also compares the triangles that own "
+    "each\n"
+    "pixel: none of them may be hidden, and both pictures must be equal.\n"
+    "\n"
     "Exit status: 0 done, 1 --verify found a mismatch, 2 bad usage or input, or nothing could be written,\n"
-    "130 interrupted: what was done by then is written.\n\n"
+    "130 interrupted; results so far are written.\n"
+    "\n"
     "Examples:\n"
     "  crofton frames                                     the built-in town, 120 frames around it\n"
     "  crofton frames town --camera street --verify       every frame checked by brute force\n"
-    "  crofton frames town --camera street --occlude      with and without what is hidden, side by side\n"
+    "  crofton frames town --camera street --occlude      without and with occlusion culling, side by side\n"
     "  crofton frames town --instances 100000 --no-draw   a larger town, culled and collided only\n"
     "  crofton frames parts/ --camera street              a city composed from a folder of parts\n"
     "  crofton frames level.wad --map MAP01 --png out     a DOOM level, a picture per frame in out/\n"
@@ -359,45 +371,47 @@ void add_frames_command(CommandLine& line) {
             "scene", options->scene,
             "town, room, office, valley, hall, a folder of city parts, or a .glb, .gltf, .obj, .wad or .crofton file")
         .show_default();
-    command.option("--frames", options->frames, "How many frames; where absent 120, or all of a recorded path");
+    command.option("--frames", options->frames, "Number of frames; by default 120, or all of a recorded path");
     command.option("--camera", options->camera, "orbit, street, random, or a JSON file of cameras").show_default();
-    command.option("--seed", options->seed, "Seed of made scenes and of random cameras").show_default();
-    command.option("--instances", options->instances, "Size of the town, up to 1000000; 0: about 3000").show_default();
-    command.option("--size", options->size, "Pixels, WIDTHxHEIGHT").show_default();
+    command.option("--seed", options->seed, "Seed of built-in scenes and of random cameras").show_default();
+    command.option("--instances", options->instances, "Number of instances of the town, up to 1000000; 0: about 3000")
+        .show_default();
+    command.option("--size", options->size, "Size of the picture, WIDTHxHEIGHT").show_default();
     command.option("--bounds", options->bounds, "sphere, aabb, obb-volume, obb-area, obb-perimeter or obb-frustum")
         .show_default();
     command.option("--cull", options->cull, "none, flat or tree").show_default();
-    const Option occlude = command.flag("--occlude", options->occlude,
-                                        "Draw each frame also without what other objects hide, and show both");
+    const Option occlude =
+        command.flag("--occlude", options->occlude, "Also draw each frame without hidden objects, and compare both");
     command
-        .option(
-            "--occlusion", options->occlusion,
-            "How: depth, by the depth of the triangles drawn before, for this picture; or occluders, by solid boxes "
-            "found in the scene, for any picture. Where absent: depth, or occluders if one of the next three is given")
+        .option("--occlusion", options->occlusion,
+                "depth: finds hidden triangles of this picture by the depth of those drawn before. occluders: finds "
+                "hidden instances by solid boxes found in the scene, for any picture. Default: depth, or occluders if "
+                "one of the next three options is given")
         .needs(occlude);
-    command.option("--occluders", options->occluders, "How many occluders to draw, at most; where absent 128")
+    command.option("--occluders", options->occluders, "Largest number of occluders to draw; 128 by default")
         .whole_between(0, 1000000)
         .needs(occlude);
     command
         .option("--baked", options->baked,
-                "Take the occluders from this .crofton file, by 'crofton bake'; of a scene that is such a file its own "
-                "are taken")
+                "Use the occluders in this .crofton file, by 'crofton bake'; if the scene is such a file, its own are "
+                "used by default")
         .needs(occlude);
     command
         .option("--occlusion-size", options->occlusion_size,
-                "Pixels of the occluders' buffer, WIDTHxHEIGHT, 8 to 4096; where absent 400x225")
+                "Size of the occluders' buffer, WIDTHxHEIGHT, 8 to 4096; 400x225 by default")
         .needs(occlude);
-    command.option("--tree", options->tree, "The tree's inner bounds: aligned, oriented or automatic").show_default();
-    command.option("--map", options->map, "Which level of a .wad; the first where absent");
+    command.option("--tree", options->tree, "Axes of the tree's inner bounds: aligned, oriented or automatic")
+        .show_default();
+    command.option("--map", options->map, "Level of a .wad file; the first by default");
     command.option("--threads", options->threads, "Worker threads; 0: one per core")
         .whole_between(0, 256)
         .show_default();
     const Option draw =
-        command.flag("--draw", options->draw, "Fail where nothing can be drawn, instead of going on without");
+        command.flag("--draw", options->draw, "Fail if nothing can be drawn, instead of continuing without pictures");
     command.flag("--no-seen", options->no_seen,
-                 "Do not count the triangles that own a pixel: each frame is drawn once more for that");
+                 "Do not count the triangles that own a pixel, which takes another draw of each frame");
     const Option no_draw =
-        command.flag("--no-draw", options->no_draw, "Do not draw; counts are the CPU's alone").excludes(draw);
+        command.flag("--no-draw", options->no_draw, "Do not draw; all counts are the CPU's").excludes(draw);
     command.flag("--verify", options->verify, "Check every frame by brute force; exit 1 on any mismatch");
     const Option json = command.option("--json", options->output.json, "Write everything as JSON; - for stdout")
                             .writable_file_or_stdout();
@@ -407,8 +421,7 @@ void add_frames_command(CommandLine& line) {
     command.option("--png", options->output.png, "Write a picture per frame into this folder").excludes(no_draw);
     command.option("--report", options->report, "Write one self-contained HTML page: pictures, charts, summary")
         .writable_file();
-    command.option("--trace", options->trace, "Write what took how long, for chrome://tracing or Perfetto")
-        .writable_file();
+    command.option("--trace", options->trace, "Write timings for chrome://tracing or Perfetto").writable_file();
     add_read_options(command, options->read);
     command.action([options] {
         const auto status = FramesRun(*options).run();

@@ -181,21 +181,23 @@ Result<int> run_hierarchy(const HierarchyOptions& options) {
 
 void add_hierarchy_command(CommandLine& line) {
     auto options = std::make_shared<HierarchyOptions>();
-    Command command =
-        line.study_command("hierarchy", "Bounds of the plane, each the best given the ones before it, as in the paper");
+    Command command = line.study_command(
+        "hierarchy", "Chains of plane bounds, each the best under the ones before it, as in the paper");
     command.footer(
-        "A bound is tested only by lines that hit all its ancestors. The best one given these is not the tightest: "
+        "A bound is tested only by lines that hit all its ancestors. The best bound under them is not the tightest: in "
         "the\n"
-        "paper's example (a triangle so flat that it is a segment, in a circle) takes a larger second circle and "
-        "saves\n"
-        "40 % of the improper tests. Three chains an object: circles; a circle, then rectangles; a circle, then boxes\n"
-        "with sides along the axes. Predicted by (8), (9) or (3) of docs/theory.md, measured by random lines.\n\n"
+        "paper's example (a flat triangle, in fact a segment, in a circle) the best second circle is larger and saves\n"
+        "40 % of the improper tests. Each object gets three chains: circles; a circle, then rectangles; a circle, then "
+        "boxes\n"
+        "with sides along the axes. Results are predicted by (8), (9) or (3) of docs/theory.md and measured by random "
+        "lines.\n"
+        "\n"
         "Examples:\n"
         "  crofton study hierarchy --svg chains.svg\n"
         "  crofton study hierarchy counties.poly --levels 4\n");
-    command.option("file", options->file, "Polygons, of which the first four are taken; the paper's example if absent");
-    command.option("--levels", options->levels, "Bounds in a chain").whole_between(1, 8).show_default();
-    command.option("--lines", options->lines, "Random lines a chain")
+    command.option("file", options->file, "Polygons, of which the first four are used; the paper's example by default");
+    command.option("--levels", options->levels, "Number of bounds in a chain").whole_between(1, 8).show_default();
+    command.option("--lines", options->lines, "Number of random lines per chain")
         .whole_between(1000, std::uint64_t{1} << 36)
         .show_default();
     command.option("--seed", options->seed, "The same seed gives the same lines").show_default();

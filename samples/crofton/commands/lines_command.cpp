@@ -146,13 +146,14 @@ Result<void> run_lines(const LinesOptions& options) {
 
 void add_lines_command(CommandLine& line) {
     auto options = std::make_shared<LinesOptions>();
-    Command command = line.study_command("lines", "Compare the ways to draw global lines on a scene");
+    Command command = line.study_command("lines", "Compare methods to draw global lines through a scene");
     command.footer(
-        "Each way of drawing uniform lines counts the scene's surface S, a number known exactly, as\n"
+        "Each method of drawing uniform lines estimates the scene's surface S, which is known exactly, as\n"
         "S = crossings a line * F / 2, where F is the surface of the body that the lines fill (docs/theory.md).\n"
-        "Columns: lines a second; crossings a line, and their deviation; lines that meet nothing (wasted); the\n"
-        "relative error of an estimate of S; 1 / (error^2 seconds), which does not depend on how many lines\n"
-        "were spent (efficiency).\n\n"
+        "Columns: lines a second; crossings a line, and their deviation; lines that hit nothing (wasted); the\n"
+        "relative error of an estimate of S; 1 / (error^2 seconds), which does not depend on the number of lines\n"
+        "(efficiency).\n"
+        "\n"
         "Examples:\n"
         "  crofton study lines                       the built-in town\n"
         "  crofton study lines level.wad --map MAP07\n"
@@ -163,13 +164,15 @@ void add_lines_command(CommandLine& line) {
                    "town (the default), room, or a .glb, .gltf, .obj or .wad file; several with --factors");
     const Option blocks = command
                               .option("--blocks", options->blocks,
-                                      "Blocks of 1024 lines per estimate; 5000 with --factors where not given")
+                                      "Blocks of 1024 lines per estimate; with --factors the default is 5000")
                               .whole_between(1, 100000)
                               .show_default();
     const Option factors = command.flag(
         "--factors", options->factors,
-        "Form factors instead: of standard pairs beside their known values, or of scenes, and what these say");
-    command.option("--patches", options->patches, "--factors: merge small triangles until there are no more patches")
+        "Estimate form factors: of standard pairs next to their known values, or of scenes, with their statistics");
+    command
+        .option("--patches", options->patches,
+                "With --factors: merge small triangles until there are at most this many patches")
         .whole_between(2, 16384)
         .show_default()
         .needs(factors);
@@ -177,7 +180,7 @@ void add_lines_command(CommandLine& line) {
         .whole_between(2, 10000)
         .show_default();
     command.option("--seed", options->seed, "Seed of the lines and of the town").show_default();
-    command.option("--map", options->map, "Which level of a .wad");
+    command.option("--map", options->map, "Level of a .wad file");
     command.option("--json", options->json, "Write the comparison as JSON; - for stdout").writable_file_or_stdout();
     add_read_options(command, options->read);
     command.action([options, blocks] {

@@ -149,24 +149,24 @@ Result<void> run_measure(const MeasureOptions& options) {
 void add_measure_command(CommandLine& line) {
     auto options = std::make_shared<MeasureOptions>();
     Command command = line.study_command(
-        "measure", "Crofton's formula on a mesh: its area, volume and curvature, exact and by lines");
-    command.footer(
-        std::string(
-            "Columns: what is measured; what is counted; the value that follows from the triangles; the estimate, its\n"
-            "standard error, and how many of these it is off (z). docs/theory.md derives the formulas. Lengths are in "
-            "the\n"
-            "file's unit.\n\n"
-            "Examples:\n"
-            "  crofton study measure bunny.obj\n"
-            "  crofton study measure room --lines 1000000\n"
-            "  crofton study measure level.wad --json -\n\n") +
-        kSceneFormats);
+        "measure", "Test Crofton's formula on a mesh: area, volume and curvature, exact and by lines");
+    command.footer(std::string("Columns: the measure; the count that estimates it; the value predicted from the "
+                               "triangles; the estimate; its\n"
+                               "standard error; the difference in standard errors (z). docs/theory.md derives the "
+                               "formulas. Lengths are in the\n"
+                               "file's unit.\n"
+                               "\n"
+                               "Examples:\n"
+                               "  crofton study measure bunny.obj\n"
+                               "  crofton study measure room --lines 1000000\n"
+                               "  crofton study measure level.wad --json -\n\n") +
+                   kSceneFormats);
     command
         .option("file", options->file,
                 "town, room, office, valley, hall, a folder of city parts, or a .glb, .gltf, .obj, .wad or .crofton "
                 "file; of a .wad the first level")
         .required();
-    command.option("--lines", options->lines, "How many lines, rounded up to blocks of 1024")
+    command.option("--lines", options->lines, "Number of lines, rounded up to blocks of 1024")
         .whole_between(1000, std::uint64_t{1} << 40)
         .show_default();
     command.option("--seed", options->seed, "The same seed gives the same lines").show_default();

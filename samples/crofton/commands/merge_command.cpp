@@ -53,19 +53,19 @@ Result<int> run_merge(const MergeRequest& options) {
 
 void add_merge_command(CommandLine& line) {
     auto options = std::make_shared<MergeRequest>();
-    Command command = line.command("merge", "Add up the parts of a bake that ran as shards");
+    Command command = line.command("merge", "Merge the parts of a bake that ran as shards");
     command
         .option("parts", options->parts,
                 "Files that `crofton pvs` or `crofton study radiosity` wrote with --shard i/n --state FILE")
         .required();
-    command.option("--out", options->out, "The sum: the bytes that one run would have saved")
+    command.option("--out", options->out, "File for the sum; it has the bytes that one run would have saved")
         .writable_file()
         .required();
-    command.option("--shards", options->shards,
-                   "Into how many parts the work was split; without, as many as are given");
+    command.option("--shards", options->shards, "Number of parts of the work; by default the number given");
     command.footer(
-        "A part given twice counts once. Exit status: 0 nothing is missing, 1 some parts are (the sum is written, and "
-        "the shards to run again are named), 2 a part that is damaged or of another bake.\n\n"
+        "A part that is given twice counts once. Exit status: 0 nothing is missing, 1 parts are missing (the sum is "
+        "written, and the shards to run again are named), 2 a part is damaged or of another bake.\n"
+        "\n"
         "Example:\n"
         "  crofton merge part0 part1 part2 part3 --out whole.state");
     command.action([options] {

@@ -352,16 +352,17 @@ Result<int> run_pvs(const PvsRequest& options) {
 
 void add_pvs_command(CommandLine& line) {
     auto options = std::make_shared<PvsRequest>();
-    Command command = line.command("pvs", "Bake what can be seen from each cell of a level, by global lines");
+    Command command = line.command("pvs", "Bake visible sets: the objects that can be seen from each cell of a level");
     command.footer(
-        "Cells are NXxNYxNZ equal boxes over the places of eyes, or a file with a box a line: six numbers, min and "
-        "max.\n"
-        "Exit status: 0 done, 2 bad usage or input, 130 interrupted (what there is has been written).\n\n"
+        "Cells are NXxNYxNZ equal boxes over the possible eye positions, or a file with a box per line: six numbers, "
+        "min and max.\n"
+        "Exit status: 0 done, 2 bad usage or input, 130 interrupted (results so far have been written).\n"
+        "\n"
         "Examples:\n"
         "  crofton pvs town --cells 64x2x64 --out town_pvs.crofton --svg town.svg\n"
         "  crofton pvs level.wad --map MAP01 --cells rooms --near 0.2 --out map01.crofton\n"
         "  crofton pvs town --shard 0/2 --state part0       half of the lines; the others: 1/2, part1\n"
-        "  crofton merge part0 part1 --out town.state          then both together\n"
+        "  crofton merge part0 part1 --out town.state       then both together\n"
         "  crofton pvs town --state town.state --out town_pvs.crofton --views 1000");
     command
         .option(
@@ -370,53 +371,60 @@ void add_pvs_command(CommandLine& line) {
         .required();
     command
         .option("--cells", options->cells,
-                "NXxNYxNZ, rooms (sectors of a WAD in convex pieces), or a file of boxes and convex cells")
+                "NXxNYxNZ, rooms (the sectors of a WAD, cut into convex pieces), or a file of boxes and convex cells")
         .show_default();
     const Option cell_size =
-        command.option("--cell-size", options->cell_size, "Of rooms: cut until no cell is longer in x or z").positive();
+        command
+            .option("--cell-size", options->cell_size, "With --cells rooms: cut cells until none is longer in x or z")
+            .positive();
     const Option eyes = command.option("--eyes", options->eyes,
-                                       "x,y,z,x,y,z: the box that the grid fills; without, where the scene is dense");
+                                       "x,y,z,x,y,z: the box of the grid; by default where the scene is dense");
     command
         .option("--height", options->height,
-                "Of the grid over the lowest point there, without --eyes; it begins at a twentieth of it")
+                "Height of the grid over the lowest point, without --eyes; the grid begins at a twentieth of it")
         .positive()
         .show_default()
         .excludes(eyes);
-    command.option("--epsilon", options->epsilon, "Of the lines through a cell: pairs above it are not missed")
+    command.option("--epsilon", options->epsilon, "Share of the lines through a cell above which no pair is missed")
         .show_default();
-    command.option("--confidence", options->confidence, "That none of them is").show_default();
-    command.option("--seconds", options->seconds, "Trace no longer than this").positive();
-    command.option("--sides", options->sides, "Of triangles that are drawn: both or front")
+    command.option("--confidence", options->confidence, "Confidence that no such pair is missed").show_default();
+    command.option("--seconds", options->seconds, "Stop tracing after this time").positive();
+    command.option("--sides", options->sides, "The sides of triangles that you draw: both or front")
         .one_of({"both", "front"})
         .show_default();
-    const Option shard = command.option("--shard", options->shard, "i/n: trace part i of n only; needs --state");
-    command.option("--state", options->state, "Save to this file, and go on from it where it exists").writable_file();
-    command.option("--near", options->near_radius, "How far a point of a camera's near plane may be from the eye")
+    const Option shard = command.option("--shard", options->shard, "i/n: trace only part i of n; needs --state");
+    command.option("--state", options->state, "Save to this file from time to time; continue from it if it exists")
+        .writable_file();
+    command
+        .option("--near", options->near_radius, "Largest distance of a point of the camera's near plane from the eye")
         .not_negative()
         .show_default();
-    command.option("--halvings", options->halvings, "Of pairs that no single proof hides: more prove more")
+    command
+        .option("--halvings", options->halvings,
+                "How often to halve cells and boxes that no single proof hides: more prove more")
         .whole_between(0, 16)
         .show_default();
     command
         .option("--surface-steps", options->surface_steps,
-                "Sides of triangles that a proof by the scene's own surface may visit; 0: bodies alone; "
-                "without, 10000 in levels (minutes for thousands of cells), else 0")
+                "Triangle sides that a proof by the scene's own surface may visit; 0: prove by bodies only. By default "
+                "10000 in levels (minutes for thousands of cells), otherwise 0")
         .whole_between(0, 1'000'000);
     const Option out =
         command.option("--out", options->out, "Write the sets to this .crofton file").writable_file().excludes(shard);
     command.flag("--with-scene", options->with_scene, "Put the baked scene into the same file").needs(out);
-    const Option svg =
-        command.option("--svg", options->svg, "Write a map with what one cell sees").writable_file().excludes(shard);
-    command.option("--eye", options->eye, "x,y,z: the map's cell holds it; without, the middle one").needs(svg);
+    const Option svg = command.option("--svg", options->svg, "Write a map of the objects that one cell sees, as SVG")
+                           .writable_file()
+                           .excludes(shard);
+    command.option("--eye", options->eye, "x,y,z: a point in the map's cell; by default the middle cell").needs(svg);
     command
         .option("--views", options->views,
-                "Look at the sets from so many random places: wrong pixels and triangles in either mode, "
-                "with and without occlusion")
+                "Test the sets from this many random places: wrong pixels and triangles in either mode, with and "
+                "without occlusion")
         .whole_between(1, 1'000'000)
         .excludes(shard);
-    command.option("--seed", options->seed, "Of the lines, of the town and of the views").show_default();
-    command.option("--instances", options->instances, "Size of the town, roughly");
-    command.option("--map", options->map, "Which level of a .wad");
+    command.option("--seed", options->seed, "Seed of the lines, of the town and of the views").show_default();
+    command.option("--instances", options->instances, "Approximate number of instances of the town");
+    command.option("--map", options->map, "Level of a .wad file");
     command.option("--threads", options->threads, "Worker threads; 0: one per core")
         .whole_between(0, 256)
         .show_default();

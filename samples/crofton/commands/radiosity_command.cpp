@@ -33,7 +33,7 @@ struct RadiosityOptions {
     ReadOptions read;
     std::string scene, method = "global", out, png, light_field, json, checkpoint, map, shard;
     std::uint64_t lines = 20'000'000, seed = 1, stored_lines = 1 << 22, runs = 0, reference = 0;
-    double error = 0.0, edge = 0.0, sky = 1.0, sun = 3.0, exposure = 0.0;
+    double error = 0.0, edge = 0.0, sky = 1.0, sun = 3.0;
     unsigned threads = 1, shadow_cuts = 3;
 };
 
@@ -192,8 +192,7 @@ Result<int> run_radiosity(const RadiosityOptions& options) {
     finish_what_there_is();
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     const TriangleMesh light = lit_mesh(*lit, *solver);
-    const float exposure =
-        options.exposure > 0.0 ? static_cast<float>(options.exposure) : automatic_exposure(*lit, *solver);
+    const float exposure = automatic_exposure(*lit, *solver);
     TriangleMesh picture = light;
     for (glm::vec3& color : picture.colors) color = compressed(exposure * color);
     if (!options.out.empty())
@@ -284,19 +283,20 @@ Result<int> run_radiosity(const RadiosityOptions& options) {
 
 void add_radiosity_command(CommandLine& line) {
     auto options = std::make_shared<RadiosityOptions>();
-    Command command = line.study_command("radiosity", "Light a scene by global lines and bake it into vertex colours");
+    Command command =
+        line.study_command("radiosity", "Light a scene by global lines and bake the light into vertex colours");
     command.footer(
-        "Colours are reflectances; above 0.9, white paint's, they count as 0.9, so that light ends. Triangles of no "
-        "area are "
-        "left out.\n"
-        "Light comes from the sun and the sky, from emission in glTF and OBJ materials, and from the town's and room's "
-        "lamps.\n\n"
+        "Colours are reflectances. Those above 0.9, as of white paint, count as 0.9, so that light ends. Triangles "
+        "without area are left out.\n"
+        "Light comes from the sun and the sky, from emission in glTF and OBJ materials, and from the lamps of the town "
+        "and the room.\n"
+        "\n"
         "Examples:\n"
         "  crofton study radiosity room --edge 0.2 --error 0.02 --out room.glb --png room.png\n"
         "  crofton study radiosity town --lines 20000000 --checkpoint town.state --out town.glb\n"
         "  crofton study radiosity room --runs 64 --shard 0/2 --state part0    half of the runs; the others: 1/2, "
         "part1\n"
-        "  crofton merge part0 part1 --out whole.state                   then both together\n"
+        "  crofton merge part0 part1 --out whole.state                         then both together\n"
         "  crofton study radiosity room --runs 64 --state whole.state --out room.glb\n"
         "  crofton study radiosity room --light-field lines.png --stored-lines 16000000\n"
         "  crofton study radiosity level.wad --map MAP01 --method local --json -\n");
@@ -308,60 +308,56 @@ void add_radiosity_command(CommandLine& line) {
     const Option lines =
         command
             .option("--lines", options->lines,
-                    "Make runs, two at least, until so many lines are traced; patches decide how many a run has")
+                    "Trace at least this many lines, in two or more runs; the patches decide how many lines a run has")
             .show_default();
     const Option error =
         command
             .option("--error", options->error,
-                    "Stop at this relative error instead, for example 0.02, when 95 % of patches are within twice that")
+                    "Stop at this relative error instead, for example 0.02, once 95 % of patches are within twice that")
             .positive()
             .excludes(lines);
     command
         .option("--runs", options->runs,
-                "Make so many runs instead, in chains of eight that know nothing of each other: such a bake can be "
-                "split")
+                "Make this many runs instead, in independent chains of eight, so that the bake can be split")
         .whole_between(1, std::uint64_t{1} << 32)
         .excludes(lines)
         .excludes(error);
     const Option shard =
-        command.option("--shard", options->shard, "i/n: make part i of n only; needs --runs and --state");
-    command.option("--reference", options->reference, "Compare with so many runs of another seed, patch by patch")
+        command.option("--shard", options->shard, "i/n: make only part i of n; needs --runs and --state");
+    command.option("--reference", options->reference, "Compare with this many runs of another seed, patch by patch")
         .whole_between(2, 1'000'000)
         .excludes(shard);
     command.option("--method", options->method, "local, global, bundles or walls").show_default();
-    command.option("--edge", options->edge, "Cut patches until no edge is longer (metres); automatic without")
+    command.option("--edge", options->edge, "Longest edge of a patch in metres; chosen automatically by default")
         .positive();
     command
         .option("--shadow-cuts", options->shadow_cuts,
-                "Cut patches into four so often where shadows of the sun end; 0: shadows are as sharp as patches")
+                "How often to cut patches into four where shadows of the sun end; 0: shadows are as sharp as patches")
         .whole_between(0, 8)
         .show_default();
     command.option("--sky", options->sky, "Radiosity of the sky").not_negative().show_default();
     command.option("--sun", options->sun, "Irradiance toward the sun").not_negative().show_default();
-    command.option("--exposure", options->exposure, "Factor from radiosity to colour; automatic without").positive();
     command.option("--seed", options->seed, "Seed of the lines and of the town").show_default();
-    command.option("--map", options->map, "Which level of a .wad");
+    command.option("--map", options->map, "Level of a .wad file");
     command.option("--threads", options->threads, "Worker threads; 0: one per core")
         .whole_between(0, 256)
         .show_default();
     command.option("--out", options->out, "Write the lit scene as .glb").writable_file().excludes(shard);
-    command.option("--png", options->png, "Write a picture of it").writable_file().excludes(shard);
-    const Option light_field =
-        command
-            .option(
-                "--light-field", options->light_field,
-                "Store global lines with the light along them, draw a picture from these lines alone, and say how far "
-                "it is from the scene's own")
-            .writable_file()
-            .excludes(shard);
-    command.option("--stored-lines", options->stored_lines, "--light-field: about so many lines")
+    command.option("--png", options->png, "Write a picture of the lit scene").writable_file().excludes(shard);
+    const Option light_field = command
+                                   .option("--light-field", options->light_field,
+                                           "Store global lines with the light along them, draw a picture from these "
+                                           "lines alone, and print how much it differs from the scene's own")
+                                   .writable_file()
+                                   .excludes(shard);
+    command.option("--stored-lines", options->stored_lines, "With --light-field: the approximate number of lines")
         .whole_between(1, 1 << 28)
         .show_default()
         .needs(light_field);
     command.option("--json", options->json, "Write the figures as JSON; - for stdout").writable_file_or_stdout();
     command
         .option("--checkpoint,--state", options->checkpoint,
-                "Save to this file as time goes by; go on from it where it exists")
+                "Save to this file from time to time; continue from it if it exists")
         .writable_file();
     add_read_options(command, options->read);
     command.action([options] {

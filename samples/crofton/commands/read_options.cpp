@@ -10,12 +10,12 @@ void add_read_options(Command& command, ReadOptions& options) {
     const auto whole = [&](const char* name, std::uint64_t& limit, const char* help) {
         command.option(name, limit, help).whole_between(1, std::uint64_t{1} << 48).show_default();
     };
-    whole("--max-bytes", limits.bytes, "Refuse a file larger than this, with all that it refers to");
-    whole("--max-triangles", limits.triangles, "Refuse a file of more triangles, or points of polygons");
+    whole("--max-bytes", limits.bytes, "Refuse files that are larger than this, with all files they refer to");
+    whole("--max-triangles", limits.triangles, "Refuse files of more triangles, or points of polygons");
     whole("--max-pixels", limits.pixels, "Leave out images of more pixels");
-    whole("--max-nodes", limits.nodes, "Refuse a file of more nodes or instances");
-    command.option("--max-seconds", limits.seconds, "Give up reading after so long").positive().show_default();
-    command.flag("--strict", options.strict, "Refuse a file of which anything would be left out");
+    whole("--max-nodes", limits.nodes, "Refuse files of more nodes or instances");
+    command.option("--max-seconds", limits.seconds, "Stop reading after this time").positive().show_default();
+    command.flag("--strict", options.strict, "Refuse files of which anything would be left out");
 }
 
 void print_warnings(const std::vector<std::string>& warnings) {

@@ -199,68 +199,66 @@ Result<int> run_triangulate(const TriangulateOptions& options) {
 }
 
 constexpr const char* kTriangulateExamples =
-    "Polygons: .poly, .json (earcut's rings or GeoJSON), .geojson, .wad. Meshes, whose planar patches are triangulated "
-    "anew:\n"
-    ".obj, .glb, .gltf. Indices count a polygon's points ring by ring. A polygon that is refused is named on stderr, "
-    "has an\n"
-    "`error` in the JSON, and makes the exit status 2; the others are done all the same. So it is with a mesh's "
-    "parts.\n"
-    "--out keeps all of a glTF asset but indices: materials, images, skins, animations, extensions. Images and buffers "
-    "in\n"
-    "other files are taken in. A patch ends at seams, and where texture coordinates, normals or colours bend.\n"
+    "Polygons: .poly, .json (earcut's rings or GeoJSON), .geojson, .wad. Meshes, whose planar patches are "
+    "triangulated\n"
+    "again: .obj, .glb, .gltf. Indices count a polygon's points ring by ring.\n"
+    "A polygon that is refused is named on stderr, has an `error` in the JSON, and makes the exit status 2; the "
+    "others\n"
+    "are triangulated all the same. The same holds for the parts of a mesh.\n"
+    "--out keeps everything of a glTF asset except indices: materials, images, skins, animations, extensions. Images "
+    "and\n"
+    "buffers in other files are embedded. A patch ends at seams, and where texture coordinates, normals or colours "
+    "bend.\n"
+    "\n"
     "Examples:\n"
     "  crofton triangulate county.geojson --svg county.svg          exact minimum weight, and a picture\n"
     "  crofton triangulate glyphs.poly --no-indices --json -        weights and times only\n"
     "  crofton triangulate level.wad --map MAP01 --method delaunay  every sector of one level\n"
-    "  crofton triangulate glyphs.poly --compare                    what each method costs frusta and pixels\n"
+    "  crofton triangulate glyphs.poly --compare                    the cost of each method for frusta and pixels\n"
     "  crofton triangulate house.glb --out lighter.glb              the same house with shorter inner edges\n"
-    "  crofton triangulate town --out town.glb                      the town that comes with crofton, as a file\n";
+    "  crofton triangulate town --out town.glb                      the built-in town as a file\n";
 
 }  // namespace
 
 void add_triangulate_command(CommandLine& line) {
     auto options = std::make_shared<TriangulateOptions>();
-    Command command = line.command("triangulate", "Polygons with holes, or the planar patches of meshes, to triangles");
+    Command command = line.command("triangulate", "Triangulate polygons with holes, or the planar patches of meshes");
     command.footer(kTriangulateExamples);
-    command.option("file", options->file, "What to triangulate").required();
+    command.option("file", options->file, "File to triangulate").required();
     command.option("--method", options->method, "ear, delaunay or minimum-weight").show_default();
-    command.option("--map", options->map, "Only this level of a .wad");
-    const Option work =
-        command
-            .option(
-                "--work-limit", options->work,
-                "Millions of steps (some 10 ms each) allowed per polygon; then the best so far, with its proven "
-                "gap: the same on every machine. Without, 1000 or 0.05 for each point, no more than 10000; no limit "
-                "where --time-limit is given")
-            .not_negative();
+    command.option("--map", options->map, "Level of a .wad file; all by default");
+    const Option work = command
+                            .option("--work-limit", options->work,
+                                    "Millions of steps (some 10 ms each) per polygon; then the best so far is "
+                                    "returned, with its proved gap, the same on every machine. By default 1000, or "
+                                    "0.05 for each point, at most 10000; no limit if --time-limit is given")
+                            .not_negative();
     command
         .option("--time-limit,--seconds", options->seconds,
-                "Seconds allowed per polygon; the answer then depends on the machine")
+                "Seconds per polygon; the result then depends on the machine")
         .show_default();
     const Option tolerance =
         command.option("--tolerance", options->tolerance,
-                       "Distance from a plane that still counts as in it; a millionth of the mesh's size where absent");
+                       "Largest distance from a plane that counts as in it; a millionth of the mesh's size by default");
     const Option attribute_tolerance =
         command
             .option("--attribute-tolerance", options->attribute_tolerance,
-                    "How far texture coordinates, normals, colours, ... may leave one linear function of the position "
-                    "within a patch; inf: as far as they like")
+                    "Largest deviation of texture coordinates, normals, colours, ... from one linear function of the "
+                    "position within a patch; inf: no limit")
             .show_default();
-    const Option compare =
-        command.flag("--compare", options->compare,
-                     "All methods: weights; triangles passed and pixel quads, predicted and measured; draw time");
-    command.option("--frusta", options->frusta, "How many random frusta --compare measures with")
-        .show_default()
-        .needs(compare);
-    command.option("--least-vertices", options->least_vertices, "--compare leaves smaller polygons out")
+    const Option compare = command.flag(
+        "--compare", options->compare,
+        "Compare all methods: weights; triangles passed and pixel quads, predicted and measured; draw time");
+    command.option("--frusta", options->frusta, "Number of random frusta for --compare").show_default().needs(compare);
+    command.option("--least-vertices", options->least_vertices, "With --compare: leave out polygons of fewer vertices")
         .show_default()
         .needs(compare);
     const Option json =
         command.option("--json", options->json, "Write results as JSON; - for stdout").writable_file_or_stdout();
     command.flag("--no-indices", options->no_indices, "Leave the triangles out of the JSON").needs(json);
-    command.option("--svg", options->svg, "Draw the polygons, at most 400 of them; - for stdout")
+    command.option("--svg", options->svg, "Draw at most 400 of the polygons as SVG; - for stdout")
         .writable_file_or_stdout();
-    command.option("--out", options->out, "Write the asset with its patches triangulated anew, as .glb; - for stdout")
+    command.option("--out", options->out, "Write the asset with its new triangles as .glb; - for stdout")
         .writable_file_or_stdout();
     add_read_options(command, options->read);
     command.action([=] {

@@ -69,35 +69,33 @@ int run_verify(const VerifyRequest& request) {
 
 void add_verify_command(CommandLine& line) {
     auto request = std::make_shared<VerifyRequest>();
-    Command command = line.command("verify", "Check the claims Crofton is built on, one row each");
+    Command command = line.command("verify", "Check the mathematical claims behind Crofton, one row each");
     std::vector<std::string> names;
     for (const Topic& topic : kTopics) names.emplace_back(topic.name);
     command
-        .option(
-            "topic", request->topic,
-            "Only this topic; all when absent. convex: those rows of collide that are of convex bodies in good order")
+        .option("topic", request->topic,
+                "Only this topic; all by default. convex: the rows of collide about convex bodies")
         .one_of(names);
     command.option("--trials", request->options.trials, "Random queries per row; more make every check sharper")
         .whole_between(1000, std::uint64_t{1} << 40)
         .show_default();
-    const Option scene = command.option(
-        "--scene", request->scenes,
-        "Instead, of these scenes (files, or \"town\"): with the topic occlude what is hidden, by witness rays; "
-        "with collide hulls, meshes and maps of polygons as bodies");
-    command.option("--map", request->map, "Which level of a WAD given to --scene").needs(scene);
-    command.option("--instances", request->instances, "Of the town with --scene: roughly so many")
+    const Option scene =
+        command.option("--scene", request->scenes,
+                       "Check these scenes (files, or \"town\") instead: with the topic occlude the hidden objects, by "
+                       "witness rays; with collide hulls, meshes and maps of polygons as bodies");
+    command.option("--map", request->map, "Level of a .wad file given to --scene").needs(scene);
+    command.option("--instances", request->instances, "Approximate number of instances of the town given to --scene")
         .show_default()
         .needs(scene);
     command.option("--seed", request->options.seed, "The same seed gives the same table, bit by bit").show_default();
-    command
-        .option("--json", request->json_path,
-                "Also write the rows as JSON to this file; - for standard output, instead of the table")
+    command.option("--json", request->json_path, "Also write the rows as JSON; - for stdout, instead of the table")
         .writable_file_or_stdout();
     command.footer(
-        "`holds` says whether the claim's sentence is borne out; sentences that begin \"wrong, must be rejected\" hold "
-        "when the\n"
+        "`holds` says whether the measurement confirms the claim. Claims that begin \"wrong, must be rejected\" hold "
+        "if the\n"
         "measurement rejects them at |z| > 4. Exit status: 0 all hold, 1 one does not, 2 bad usage.\n"
-        "All topics together take minutes.\n\n"
+        "All topics together take minutes.\n"
+        "\n"
         "Examples:\n"
         "  crofton verify\n"
         "  crofton verify lines --trials 1000000 --seed 7\n"

@@ -68,38 +68,42 @@ constexpr const char* kViewExamples =
 void add_view_command(CommandLine& line) {
     auto arguments = std::make_shared<ViewArguments>();
     viewer::ViewerOptions& options = arguments->options;
-    Command command = line.command("view", "Fly through a scene and see what is culled, why, and what it costs");
+    Command command =
+        line.command("view", "Fly through a scene and see which objects are culled, why, and how long that takes");
     command.footer(viewer::key_help() + "\n" + kScriptHelp + "\n" + kViewExamples);
     command
         .option(
             "SCENE", options.scene.source,
             "town, room, office, valley, hall, a folder of city parts, or a .glb, .gltf, .obj, .wad or .crofton file")
         .show_default();
-    command.option("--map", options.scene.map, "which level of a WAD");
+    command.option("--map", options.scene.map, "Level of a .wad file");
     command.option("--seed", options.scene.seed, "of the town").show_default();
-    command.option("--instances", options.scene.instances, "of the town, roughly");
-    command.option("--scale", options.scale, "of texts and panels; as the display asks where absent").between(0.5, 8.0);
-    command.option("--resolution", options.settings.resolution, "draw this share of the pixels each way, enlarged")
+    command.option("--instances", options.scene.instances, "Approximate number of instances of the town");
+    command.option("--scale", options.scale, "Scale of texts and panels; that of the display by default")
+        .between(0.5, 8.0);
+    command
+        .option("--resolution", options.settings.resolution,
+                "Draw this share of the pixels each way, and enlarge the picture")
         .between(viewer::kMinResolution, 1.0)
         .show_default();
-    command.option("--size", arguments->size, "of the window, as 1280x720").show_default();
+    command.option("--size", arguments->size, "Size of the window, WIDTHxHEIGHT").show_default();
     command.option("--bounds", arguments->bounds, "sphere, aabb, obb-volume, obb-area, obb-perimeter or obb-frustum")
         .show_default();
     command.option("--cull", arguments->cull, "none, flat or tree").show_default();
-    command.flag("--occlude", options.settings.method.occlude, "leave out what is hidden behind other things");
+    command.flag("--occlude", options.settings.method.occlude, "Leave out objects that are hidden behind others");
     command.option("--baked", options.scene.baked,
-                   "what was baked of the scene: occluders by 'crofton bake', visible sets by 'crofton pvs'");
-    command.option("--camera", options.camera, "replay a path: orbit, street, random or a JSON file");
-    command.option("--after", options.frames, "quit after so many frames");
-    command.option("--screenshot", options.screenshot, "the last frame as PNG").writable_file();
+                   "A baked file of the scene: occluders by 'crofton bake', visible sets by 'crofton pvs'");
+    command.option("--camera", options.camera, "Play a path: orbit, street, random, or a JSON file");
+    command.option("--after", options.frames, "Quit after this many frames");
+    command.option("--screenshot", options.screenshot, "Write the last frame as PNG").writable_file();
     command.option("--script", options.script, "JSON file of keys, cameras, switches and screenshots by frame");
-    command.option("--json", options.json, "statistics of all frames into this file, - for stdout")
+    command.option("--json", options.json, "Write the statistics of all frames as JSON; - for stdout")
         .writable_file_or_stdout();
-    command.option("--output", options.output_folder, "folder for recorded paths, exports and screenshots")
+    command.option("--output", options.output_folder, "Folder for recorded paths, exports and screenshots")
         .show_default();
-    command.option("--device", options.device, "part of the Vulkan device's name, or cpu");
-    command.flag("--validation", options.validation, "check every Vulkan call (needs the validation layer)");
-    command.flag("--no-window", arguments->no_window, "draw without any display");
+    command.option("--device", options.device, "Part of the Vulkan device's name, or cpu");
+    command.flag("--validation", options.validation, "Check every Vulkan call (needs the validation layer)");
+    command.flag("--no-window", arguments->no_window, "Draw without a display");
     add_read_options(command, arguments->read);
     command.action_with_window([arguments] {
         const auto done = run(*arguments);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A scene as a file that is used where it lies.
+// Baked scenes: files that are used in place.
 #pragma once
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/core/error.hpp>
@@ -17,26 +17,29 @@ namespace crofton::bake {
 
 // ---- Mapped files ----
 
-// `map`: pages come from the file when they are used. Nobody may shorten or change the file meanwhile: reading what was
-// cut off ends the program (SIGBUS on POSIX). Replacing it, as write_file does, is safe.
-// `read`: the file is copied into memory first; what then happens to it does no harm.
+// How a file is accessed.
+//
+// - `map`: pages are read from the file when they are used. Nobody may shorten or change the file meanwhile: reading a
+//   missing part ends the program (SIGBUS on POSIX). Replacing the file, as write_file does, is safe.
+// - `read`: the file is copied into memory first. Later changes to it do no harm.
 enum class FileAccess : std::uint8_t { map, read };
 
 struct FileOptions {
-    FileAccess access = FileAccess::map;              // where files cannot be mapped they are read
+    FileAccess access = FileAccess::map;              // files that cannot be mapped are read
     std::uint64_t largest = std::uint64_t{64} << 30;  // bytes; a larger file is refused (out_of_range)
 };
 
-// Read-only.
+// A read-only file.
 class MappedFile {
   public:
-    // Errors name the path and the system's reason. Folders, pipes, devices and a path with a zero byte are refused.
+    // Opens a file. Errors name the path and the system's reason. Folders, pipes, devices and a path with a zero byte
+    // are refused.
     [[nodiscard]] static Result<MappedFile> open(const std::string& path, const FileOptions& options = {});
     ~MappedFile();
     MappedFile(MappedFile&& other) noexcept;
     MappedFile& operator=(MappedFile&& other) noexcept;
 
-    // Aligned to 64 bytes at least.
+    // The contents, aligned to 64 bytes at least.
     [[nodiscard]] std::span<const std::byte> bytes() const { return bytes_; }
 
   private:
@@ -47,7 +50,7 @@ class MappedFile {
 
 // ---- Baked scenes ----
 
-// What the sections hold; `first` and `count` are ranges of the sections positions, colors, indices, names, points
+// Records of the sections. `first_…` and `…_count` are ranges of the sections positions, colors, indices, names, points
 // (of polygons) and rings.
 struct MeshRecord {
     Obb box;  // in the mesh's own frame
@@ -56,7 +59,7 @@ struct MeshRecord {
     std::uint32_t first_name = 0, name_size = 0;
     std::uint32_t polygon = scene::kNone;  // its PolygonRecord, if it is a triangulated polygon
 };
-struct InstanceRecord {  // both kNone where the instance was removed; its layer mask is 0 then
+struct InstanceRecord {  // both kNone if the instance was removed; its layer mask is then 0
     scene::MeshId mesh = scene::kNone;
     scene::NodeId node = scene::kNone;
 };
@@ -72,8 +75,8 @@ struct PolygonRecord {
 };
 static_assert(sizeof(MeshRecord) == 120 && sizeof(NodeRecord) == 104 && sizeof(PolygonRecord) == 96);
 
-// What hides others, found at build time (occlude::find_occluders). Nodes with the same meshes are of one kind, whose
-// occluders are in the node's frame and within what the node's instances draw together.
+// A node that hides others by occluders found at build time (occlude::find_occluders). Nodes with the same meshes are
+// of one kind. The kind's occluders are in the node's frame, and lie within what the node's instances draw together.
 struct OccludingNode {
     scene::NodeId node = scene::kNone;
     std::uint32_t kind = 0;
@@ -83,9 +86,10 @@ struct BakedOccluders {
     Vector<OccludingNode> nodes;  // ascending, each once; others hide nothing
 };
 
-// The scene as of its last update(), and what hides others where it is given. Deterministic. Errors: what
-// BoxTree::build refuses; more than 2^32 − 1 name bytes; occluders that BakedScene would refuse (item: the occluder,
-// counted through all kinds).
+// Bakes the scene as of its last update(), and its occluders if given, into a file. Deterministic.
+//
+// Errors: those of BoxTree::build; more than 2^32 − 1 name bytes; occluders that BakedScene would refuse (item: the
+// occluder, counted through all kinds).
 [[nodiscard]] Result<Vector<std::byte>> bake(const scene::Scene& scene, Executor& executor = serial_executor(),
                                              boxtree::Orientation tree = boxtree::Orientation::aligned,
                                              const BakedOccluders* occluders = nullptr);
@@ -96,21 +100,23 @@ struct MeshView {
     std::span<const glm::vec3> positions, colors;
     std::span<const std::uint32_t> indices;
 };
-// The rings around a mesh whose triangles are a triangulation: triangle corners are indices into `points`.
+// The rings around a mesh whose triangles are a triangulation. Triangle corners are indices into `points`.
 struct PolygonView {
     std::span<const glm::dvec2> points;
     std::span<const std::uint32_t> ring_ends;
     glm::dvec3 origin, u, v;
 };
 
-// Spans point into the file and live as long as this. Const calls from any thread.
+// A baked scene. Spans point into the file and live as long as this object. Const calls from any thread.
 class BakedScene {
   public:
-    // Maps the file, or reads it, and checks it whole. Errors name the path and what is damaged, too large, of another
-    // version or byte order. A mapped file must not be shortened or changed meanwhile: see FileAccess.
+    // Maps or reads the file, and checks all of it.
+    //
+    // Errors name the path and say what is damaged, too large, of another version or byte order. A mapped file must not
+    // be shortened or changed meanwhile: see FileAccess.
     [[nodiscard]] static Result<BakedScene> open(const std::string& path, Executor& executor = serial_executor(),
                                                  const FileOptions& options = {});
-    // From memory that starts at a multiple of 64 and outlives this.
+    // Uses a file in memory. The memory starts at a multiple of 64 and outlives this object.
     [[nodiscard]] static Result<BakedScene> from_memory(std::span<const std::byte> file,
                                                         Executor& executor = serial_executor());
 
@@ -119,10 +125,10 @@ class BakedScene {
     [[nodiscard]] std::optional<PolygonView> polygon(scene::MeshId mesh) const;
     [[nodiscard]] std::span<const InstanceRecord> instances() const { return instances_; }
     [[nodiscard]] std::span<const NodeRecord> nodes() const { return nodes_; }
-    // None: the file was baked without, and they can be found again. Copied from the file, each number checked; that
-    // they lie within the meshes is for who baked them to know.
+    // Returns the occluders, or none if the file was baked without them; they can then be found again. Each number is
+    // copied from the file and checked. Whoever baked the file must know that the occluders lie within the meshes.
     [[nodiscard]] const std::optional<BakedOccluders>& occluders() const { return occluders_; }
-    // Over the instances: item i is instance i; its boxes() and layer masks are theirs. Yours to change.
+    // Returns the tree over the instances: item i is instance i, with its box and layer mask. You may change the tree.
     [[nodiscard]] boxtree::BoxTree& tree() { return *tree_; }
     [[nodiscard]] const boxtree::BoxTree& tree() const { return *tree_; }
 
@@ -144,12 +150,14 @@ class BakedScene {
 
 // ---- Write files atomically ----
 
-// Writes `bytes` to PATH.partial, flushes them to the disk, and renames that file to PATH. Then it flushes the folder,
-// where the system can: the new file outlives a power cut. A full disk, a crash or a killed process leaves the old file
-// as it was. A PATH.partial left behind is used up by the next write to PATH. Who has the old file open or mapped keeps
-// its contents, since the new file is another inode. Writers of one path wait for each other; the last one wins. A link
-// stays a link, permissions stay, and what is no regular file (a pipe, /dev/null) is written to directly. Errors name
-// the path and the system's reason. A zero byte in the path is refused.
+// Writes a file atomically: writes `bytes` to PATH.partial, flushes them to the disk, renames that file to PATH, and
+// flushes the folder if the system can. The new file then survives a power cut.
+//
+// A full disk, a crash or a killed process leaves the old file unchanged. The next write to PATH reuses a PATH.partial
+// left behind. Processes that have the old file open or mapped keep its contents, because the new file is another
+// inode. Writers of one path wait for each other; the last one wins. A link stays a link, and permissions stay. If PATH
+// is not a regular file (a pipe, /dev/null), it is written to directly. Errors name the path and the system's reason. A
+// zero byte in the path is refused.
 [[nodiscard]] Result<void> write_file(const std::string& path, std::span<const std::byte> bytes);
 
 }  // namespace crofton::bake

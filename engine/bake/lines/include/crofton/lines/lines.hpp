@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Lines through a scene with all their crossings: one at a time, or bundles of parallel ones.
+// Lines through a scene with all their crossings, one at a time or in bundles of parallel lines.
 #pragma once
 #include <array>
 #include <crofton/core/error.hpp>
@@ -13,13 +13,13 @@
 
 namespace crofton::mesh {
 
-// Global lines for a scene, and what lines and rays meet among many triangles.
+// Declared here for LineTracer below.
 struct BoxNode;
 }  // namespace crofton::mesh
 
 namespace crofton::lines {
 
-// What lines and rays meet among many triangles: every crossing in order, or the first.
+// Crossings of lines and rays with many triangles: all in order, or the first.
 
 namespace detail {
 struct TracerLeaf;
@@ -33,36 +33,40 @@ struct Hit {
     bool front = false;  // the line comes from the triangle's front
 };
 
-// The crossings of line i are hits[ends[i−1] .. ends[i]), ascending in t (ties: see LineTracer).
+// Crossings by line. Those of line i are hits[ends[i−1] .. ends[i]), ascending in t (ties: see LineTracer).
 struct LineHits {
     Vector<Hit> hits;
     Vector<std::uint32_t> ends;
 };
 
-// Where a line, followed forward from its point, first meets a triangle other than `skip`, the one it starts on.
+// A query for the first triangle that a line meets, forward from its point, other than `skip`, the triangle it starts
+// on.
 struct FirstHitQuery {
     Line line;
     std::uint32_t skip = Hit::kNothing;
 };
 
-// A hierarchy of axis-aligned boxes, eight to a node, over the triangles. For measuring, where a crossing more or less
-// in 10^6 drowns in the spread of random lines. It works in single precision. A line through the common edge of two
-// triangles may cross both or neither, about once in 10^6. Crossings closer together than 10^-6 of the scene's half
-// diagonal count as one place, fronts first. So two faces back to back at one place (a sheet with two sides) are seen
-// from either side. The same bits on every machine and for any thread count.
+// A hierarchy of axis-aligned boxes, eight per node, over the triangles.
+//
+// It is for measurements, where one wrong crossing in 10^6 is far below the spread of random lines, and works in single
+// precision. A line through the common edge of two triangles may cross both or neither, about once in 10^6. Crossings
+// closer together than 10^-6 of the scene's half diagonal count as one place, fronts first, so that two faces back to
+// back at one place (a two-sided sheet) are seen from either side. The bits are the same on every machine and for any
+// thread count.
 class LineTracer {
   public:
-    // Errors: as validate(TriangleMesh); no triangles; 2^30 of them or more.
+    // Builds the hierarchy. Errors: as validate(TriangleMesh); no triangles; 2^30 of them or more.
     [[nodiscard]] static Result<LineTracer> build(const TriangleMesh& mesh);
     ~LineTracer();
     LineTracer(LineTracer&&) noexcept;
     LineTracer& operator=(LineTracer&&) noexcept;
 
-    // All crossings of each line over its whole length. Appends nothing, replaces `result`; thread-safe. Lines go
-    // through the hierarchy together, up to 4,096 at once: give many in one call. Lines near each other in place and
-    // direction take less time than others. Keeps about a megabyte for each thread.
+    // Replaces `result` by all crossings of each line over its whole length; thread-safe.
+    //
+    // Lines go through the hierarchy together, up to 4,096 at once, so pass many in one call. Lines with similar
+    // positions and directions are faster. Keeps about a megabyte per thread.
     void all_hits(std::span<const Line> lines, LineHits& result) const;
-    // The first crossing for each query beyond that distance, triangle = kNothing where there is none. Same sizes.
+    // Finds the first crossing of each query, with triangle = kNothing if there is none. Requires equal sizes.
     void first_hits(std::span<const FirstHitQuery> queries, std::span<Hit> result) const;
 
     [[nodiscard]] const Aabb& bounds() const { return bounds_; }
@@ -78,7 +82,7 @@ class LineTracer {
     Vector<detail::TracerLeaf> leaves_;
 };
 
-// Global lines for a scene, in blocks that anyone can draw again: the four right ways of theory.md section 6.
+// Global lines for a scene, in reproducible blocks, by the four correct ways of docs/theory.md, section 6.
 
 enum class LineMethod : std::uint8_t {
     sphere_points,  // two uniform points of the bounding sphere
@@ -88,20 +92,20 @@ enum class LineMethod : std::uint8_t {
 };
 [[nodiscard]] const char* to_string(LineMethod method);
 
-// Lines in blocks of about kBlock: exactly that many, but for bundles, which hold that many on average.
+// Draws lines in blocks of kBlock, exactly or, for bundles, on average.
 class LineSource {
   public:
     static constexpr std::size_t kBlock = 1024;
 
-    // Requires bounds of at least two positive extents.
+    // Requires bounds with at least two positive extents.
     LineSource(const Aabb& bounds, LineMethod method, std::uint64_t seed,
                sampling::Sequence sequence = sampling::Sequence::pseudo_random);
 
-    // Replaces `lines` with block number `block`: the same lines whenever and wherever it is drawn.
+    // Replaces `lines` by block number `block`: the same lines whenever and wherever it is drawn.
     void draw(std::uint64_t block, Vector<Line>& lines) const;
 
-    // Of the body that the lines fill uniformly. N lines cross a surface of area S inside it 2·N·S/surface_area() times
-    // on average.
+    // Returns the surface area of the body that the lines fill uniformly. N lines cross a surface of area S inside it
+    // 2·N·S/surface_area() times on average.
     [[nodiscard]] double surface_area() const;
     [[nodiscard]] LineMethod method() const { return method_; }
 
@@ -113,8 +117,9 @@ class LineSource {
     sampling::UnitPoints points_;
 };
 
-// What uniform lines see of a scene. The mean number of crossings is 2·S/F for a surface S in a convex body of surface
-// F, whatever the shape. The spread, and the share of lines that meet nothing, tell open scenes from crowded ones.
+// Statistics of uniform lines in a scene. The mean number of crossings is 2·S/F for a surface S in a convex body of
+// surface F, for every shape. The spread, and the share of lines that hit nothing, distinguish open scenes from crowded
+// ones.
 struct VisibilityComplexity {
     double mean_crossings = 0.0;
     double deviation = 0.0;  // of the number of crossings, from line to line
@@ -124,9 +129,11 @@ struct VisibilityComplexity {
 [[nodiscard]] VisibilityComplexity visibility_complexity(const LineTracer& tracer, const LineSource& source,
                                                          std::uint64_t blocks, Executor& executor = serial_executor());
 
-// The way that wastes fewer lines on this scene: walls or disc, by a trial of 8 blocks each. A box always has less
-// surface than its circumscribed sphere: for a cube 2/π of it, for a flat square box 1/π. The chance to meet a scene
-// inside goes with the reciprocal. So for boxes as bodies `walls` is better; docs/notes/radiosity.md says by how much.
+// Returns the method that wastes fewer lines on this scene, walls or disc, by a trial of 8 blocks each.
+//
+// A box always has less surface than its circumscribed sphere: for a cube 2/π of it, for a flat square box 1/π. The
+// probability that a line hits the scene inside is proportional to the reciprocal. So `walls` is better for box-shaped
+// scenes; docs/notes/radiosity.md says by how much.
 [[nodiscard]] LineMethod choose_method(const LineTracer& tracer, std::uint64_t seed);
 
 // Whole bundles of parallel global lines at once: the scene is drawn into the grid whose cells the lines pass through.
@@ -135,28 +142,30 @@ namespace detail {
 struct DrawnTriangles;
 }  // namespace detail
 
-// One line in each cell of a square grid, at a uniform place of its cell (jitter), all in one uniform direction. The
-// grid covers the shadow of the scene's box, so every place in it is met with density 1/cell_area. A surface of area S
-// expects S/(2·cell_area) crossings per bundle, averaged over directions.
+// A bundle: one line in each cell of a square grid, at a uniform place of its cell (jitter), all in one uniform
+// direction.
+//
+// The grid covers the projection of the scene's box, so lines have density 1/cell_area everywhere in it. A surface of
+// area S is crossed S/(2·cell_area) times per bundle, averaged over directions.
 struct Bundle {
     glm::dvec3 direction{0.0}, right{0.0}, up{0.0};  // orthonormal, right-handed
     glm::dvec3 corner{0.0};                          // of cell (0, 0); lines start in the plane through it
     double cell = 1.0;                               // side of a cell
     std::uint32_t columns = 0, rows = 0;
     std::uint64_t seed = 0;  // of the jitter
-    double lines = 0.0;      // expected number of lines that meet the box; the others are no lines at all
+    double lines = 0.0;      // expected number of lines that meet the box; the others do not count
 
     [[nodiscard]] std::size_t cells() const { return std::size_t{columns} * rows; }
     [[nodiscard]] Line line(std::size_t cell_number) const;  // row by row
 };
 
-// u: two uniform numbers, of the direction. Requires bounds of two positive extents at least, cell_area > 0 and at most
-// 2^24 cells across the shadow.
+// Makes a bundle. `u` are two uniform numbers, for the direction. Requires bounds with at least two positive extents,
+// cell_area > 0 and at most 2^24 cells across the projection.
 [[nodiscard]] Bundle make_bundle(const Aabb& bounds, double cell_area, const std::array<double, 2>& u,
                                  std::uint64_t seed);
 
-// What LineTracer::all_hits(bundle.line(0), bundle.line(1), …) gives, with the same caveats, at a cost that hardly
-// depends on the number of lines: triangles + crossings instead of lines · log(triangles).
+// Returns the crossings that LineTracer::all_hits(bundle.line(0), bundle.line(1), …) gives, with the same limits of
+// accuracy. Its cost hardly depends on the number of lines: triangles + crossings instead of lines · log(triangles).
 class BundleTracer {
   public:
     // Errors: as LineTracer::build.
@@ -165,15 +174,15 @@ class BundleTracer {
     BundleTracer(BundleTracer&&) noexcept;
     BundleTracer& operator=(BundleTracer&&) noexcept;
 
-    // Memory of one thread's tracing, kept between calls.
+    // Memory for one thread, kept between calls.
     struct Scratch {
         Vector<float> sample_x, sample_y;
         Vector<std::uint32_t> cells, starts;
         Vector<Hit> fragments;
     };
 
-    // The crossings of the line of cell i are result.hits[ends[i−1] .. ends[i]), ascending in t. Replaces `result`;
-    // thread-safe with a scratch per thread.
+    // Replaces `result` by the crossings; those of the line of cell i are result.hits[ends[i−1] .. ends[i]), ascending
+    // in t. Thread-safe with a scratch per thread.
     void all_hits(const Bundle& bundle, Scratch& scratch, LineHits& result) const;
 
     [[nodiscard]] const Aabb& bounds() const { return bounds_; }

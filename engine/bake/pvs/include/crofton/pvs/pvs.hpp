@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Potentially visible sets: what can be seen from each cell, found by uniform lines before the game runs.
+// Potentially visible sets: the objects visible from each cell, found by uniform lines before the game runs.
 #pragma once
 #include <array>
 #include <crofton/core/error.hpp>
@@ -22,28 +22,30 @@
 
 namespace crofton::pvs {
 
-// Where eyes may be.
+// Cells that may contain eyes.
 
 inline constexpr std::uint32_t kNoCell = ~std::uint32_t{0};
 
-// The hull of eight points in world coordinates, of which some may be equal: a prism over a triangle or a quadrangle,
-// say.
+// A convex cell: the hull of eight points in world coordinates, of which some may be equal, such as a prism over a
+// triangle or a quadrangle.
 struct ConvexCell {
     std::array<glm::dvec3, 8> corners{};
 };
 
 struct BoxVoxels;
 
-// Closed and convex, in world coordinates: a grid, or boxes or convex cells of the caller's, which may overlap.
+// Closed convex cells in world coordinates: a grid, or your own boxes or convex cells, which may overlap.
 class Cells {
   public:
-    // `counts` equal boxes along each axis that fill `bounds`; cell (x, y, z) is x + counts.x · (y + counts.y · z).
-    // Errors: bounds that are empty, not finite or flat along any axis; a count of 0; more than 2^24 cells.
+    // Makes a grid of `counts` equal boxes along each axis that fill `bounds`. Cell (x, y, z) has index x + counts.x ·
+    // (y + counts.y · z). Errors: bounds that are empty, not finite or flat along any axis; a count of 0; more than
+    // 2^24 cells.
     [[nodiscard]] static Result<Cells> grid(const Aabb& bounds, const glm::uvec3& counts);
-    // Errors, item the box: empty, not finite, or without an area; none at all; more than 2^24.
+    // Makes cells of boxes. Errors (item: the box): empty, not finite, or without an area; no boxes at all; more than
+    // 2^24.
     [[nodiscard]] static Result<Cells> boxes(std::span<const Aabb> boxes);
 
-    // Errors, item the cell: not finite, or without a volume; none at all; more than 2^24.
+    // Makes convex cells. Errors (item: the cell): not finite, or without a volume; no cells at all; more than 2^24.
     [[nodiscard]] static Result<Cells> convex(std::span<const ConvexCell> cells);
 
     [[nodiscard]] std::size_t size() const;
@@ -53,11 +55,12 @@ class Cells {
     [[nodiscard]] const Aabb& bounds() const { return bounds_; }
     [[nodiscard]] bool is_grid() const { return boxes_.empty(); }
     [[nodiscard]] bool is_convex() const { return !corners_.empty(); }  // made by `convex`
-    // Of a convex cell: it is where all of these are at least 0, relative to its corner 0. Unit normals.
+    // The planes of a convex cell, with unit normals. The cell is where all of them are at least 0, relative to its
+    // corner 0.
     [[nodiscard]] std::span<const Plane> planes(std::size_t cell) const;
     [[nodiscard]] const glm::uvec3& counts() const { return counts_; }  // of a grid; 0 otherwise
-    // The cell that holds the point, of several the lowest; kNoCell: none does. A grid takes a few operations. Cells of
-    // the caller's are listed in voxels, about one for each.
+    // Returns the cell that contains the point, the lowest if there are several, or kNoCell. A grid takes a few
+    // operations. Your own cells are listed in voxels, about one per cell.
     [[nodiscard]] std::uint32_t find(const glm::dvec3& point) const;
 
   private:
@@ -74,27 +77,28 @@ class Cells {
 
 // ---- Geometry to bake ----
 
-// Triangles of objects, relative to `origin`: choose it near them, so that floats are fine enough.
+// The triangles of objects, relative to `origin`. Choose the origin near them, so that floats are fine enough.
 struct BakeGeometry {
     TriangleMesh mesh;
     glm::dvec3 origin{0.0};
     Vector<std::uint32_t> object_of;  // by triangle
     Vector<Obb> boxes;                // by object, in world coordinates: around all that is drawn of it
 };
-// A scene as of its last update(): objects are its instances. Those that are removed, in no layer or in `moving` have
-// no triangles: nothing is said about them, and they are always drawn. Errors: no triangle at all (empty).
+// Returns the geometry of a scene as of its last update(); objects are its instances. Instances that are removed, in no
+// layer or in `moving` have no triangles: they are not baked, and always drawn. Errors: no triangle at all (empty).
 [[nodiscard]] Result<BakeGeometry> geometry_of(const scene::Scene& scene,
                                                std::span<const scene::InstanceId> moving = {});
-// 64 bits of the triangles, where they are, and whose they are. Boxes do not count.
+// Returns 64 bits that depend on the triangles, their positions and their objects, but not on the boxes.
 [[nodiscard]] std::uint64_t fingerprint_of(const BakeGeometry& geometry);
 
-// What lines find.
+// Bakes: visible objects found by lines.
 
 struct BakeOptions {
     double epsilon = 1e-4;      // of the lines through a cell: a pair that holds more is missed with at most …
     double confidence = 0.999;  // … 1 − confidence, all pairs of all cells together
     std::uint64_t seed = 1;
-    // Which sides of triangles are drawn. `both`: lines end at every triangle. `front`: they pass through back faces.
+    // The sides of triangles that you draw. `both`: lines end at every triangle. `front`: lines pass through back
+    // faces.
     occlude::Sides sides = occlude::Sides::both;
 };
 
@@ -105,24 +109,24 @@ struct Shard {
 
 struct RunLimits {
     double seconds = std::numeric_limits<double>::infinity();
-    std::uint64_t lines = ~std::uint64_t{0};  // at least so many more, unless the shard ends
+    std::uint64_t lines = ~std::uint64_t{0};  // traces at least so many more, unless the shard ends
     Shard shard = {};
-    StopCallback should_stop = nullptr;  // what was found by then is kept
+    StopCallback should_stop = nullptr;  // results so far are kept
     void* user = nullptr;
 };
 
-// What a cell is, by the lines that pass through it.
+// The kind of a cell, by the lines that pass through it.
 enum class CellKind : std::uint8_t {
     unknown,  // no line has passed yet
-    solid,    // inside closed objects throughout, as far as lines tell: no eye belongs there, and its set is empty
+    solid,    // inside closed objects, by all lines: no eye belongs there, and its set is empty
     inner,    // lines from it end within the scene
-    open,     // the outside is seen from it: the sky of a town, the leak of a level. A few lines that slip between two
+    open,     // sees the outside: the sky of a town, the leak of a level. A few lines that slip between two
               // triangles do not count: see docs/notes/pvs.md
 };
 
-// Uniform lines through the cells, with all crossings along each. A gap between two crossings witnesses, for each cell
-// that it passes, the objects at both of its ends. Line i is a function of the seed and i. So any executor, order, stop
-// and split gives the same bytes.
+// Traces uniform lines through the cells, with all crossings along each. A gap between two crossings witnesses, for
+// each cell that it passes, the objects at both of its ends. Line i is a function of the seed and i, so any executor,
+// order, stop and split gives the same bytes.
 class Bake {
   public:
     // Errors: epsilon or confidence not within (0, 1); a triangle whose object has no box (item: the triangle); boxes
@@ -133,22 +137,24 @@ class Bake {
     Bake(Bake&&) noexcept;
     Bake& operator=(Bake&&) noexcept;
 
-    // Traces what is left of a shard, up to the limits. Errors: a shard's index that is not below its count; a count of
-    // 0; out of memory. What was found before is kept.
+    // Traces the remaining lines of a shard, up to the limits. Errors, which keep the results so far: a shard's index
+    // that is not below its count; a count of 0; out of memory.
     [[nodiscard]] Result<void> run(const RunLimits& limits = {}, Executor& executor = serial_executor());
     [[nodiscard]] std::uint64_t lines_planned() const;  // for the guarantee
     [[nodiscard]] std::uint64_t lines_done() const;
     [[nodiscard]] bool is_complete() const { return lines_done() == lines_planned(); }
-    // What the lines so far promise: no pair that holds more than this share of its cell's lines is missed, with the
-    // confidence asked for. Above 1: nothing.
+    // Returns the epsilon that the lines so far guarantee: no pair that has more than this share of its cell's lines is
+    // missed, with the given confidence. Above 1, nothing is guaranteed.
     [[nodiscard]] double epsilon_reached() const;
     [[nodiscard]] bool is_seen(std::size_t cell, std::uint32_t object) const;
 
-    // All that is known, to be stored: the same bytes for the same lines.
+    // Returns all results so far, to be stored: the same bytes for the same lines.
     [[nodiscard]] Result<Vector<std::byte>> state() const;
-    // Adds what a state of the same bake holds: a checkpoint, a part. Twice is once. Errors: damaged (parse); of
-    // another scene, other cells or options (invalid_argument); then nothing has changed. States, here and below, and
-    // scene files are in memory that starts at a multiple of 64, as that of bake::MappedFile and Vector.
+    // Adds the results in a state of the same bake, such as a checkpoint or a part. Adding one twice counts once.
+    //
+    // Errors, which change nothing: a damaged state (parse); a state of another scene, other cells or options
+    // (invalid_argument). States, here and below, and scene files must be in memory that starts at a multiple of 64, as
+    // that of bake::MappedFile and Vector does.
     [[nodiscard]] Result<void> add_state(std::span<const std::byte> state);
 
     struct State;
@@ -159,45 +165,47 @@ class Bake {
     std::unique_ptr<State> state_;
 };
 
-// Parts of one bake as one: the same bytes as from a single run. Errors: none given; item, the part: damaged, or of
-// another bake.
+// Merges parts of one bake into the same bytes as those of a single run. Errors: no parts; a part that is damaged or of
+// another bake (item: the part).
 [[nodiscard]] Result<Vector<std::byte>> merge_states(std::span<const std::span<const std::byte>> states);
 
-// Lines that a state lacks, as shards of `count`: those that must run again. Ascending. Errors: damaged; a count of 0.
+// Returns the shards of `count` whose lines a state lacks, and which must run again, ascending. Errors: a damaged
+// state; a count of 0.
 [[nodiscard]] Result<Vector<std::uint32_t>> missing_shards(std::span<const std::byte> state, std::uint32_t count);
 
 // ---- Proofs that objects are hidden ----
 
-// An occluder of a mesh that stands under a transform. Boxes and convex bodies prove; patches are left out.
+// An occluder of a mesh under a transform. Proofs use boxes and convex bodies, not patches.
 struct PlacedOccluder {
     const occlude::FoundOccluder* occluder = nullptr;
     Transform to_world;
 };
 
 struct ProofOptions {
-    // No point of a camera's near plane is farther from the eye. Bodies nearer to a cell prove nothing for it, as the
-    // near plane may cut them.
+    // The largest distance of a point of the camera's near plane from the eye. Bodies nearer to a cell prove nothing
+    // for it, because the near plane may cut them.
     double near_radius = 0.5;
-    // Halvings of a cell or an object's box, where no single body hides all of it: more prove more and take longer.
+    // How often a cell or an object's box is halved if no single body hides all of it. More halvings prove more and
+    // take longer.
     std::uint32_t halvings = 4;
-    // Above 0, what the scene's own triangles hide together is proved too: walls of a level, which are no bodies. So
-    // many sides of triangles a question may visit: more prove more. 400 is a good number for levels. Each unseen
-    // pair is asked, so it is slow where there are millions. Edges must have equal corners, or meet along an axis.
+    // If above 0, proofs also use the scene's own triangles, such as the walls of a level, which are not bodies. It is
+    // the number of triangle sides that a proof may visit: more prove more. 400 is a good number for levels. Each
+    // unseen pair is tested, so it is slow for millions of pairs. Edges must have equal corners, or meet along an axis.
     std::uint32_t surface_steps = 0;
-    // Once it returns true, the pairs that are not proved yet stay unseen, which draws them.
+    // If it returns true, the pairs that are not proved yet stay unseen, so they are drawn.
     StopCallback should_stop = nullptr;
     void* user = nullptr;
 };
 
 enum class PairState : std::uint8_t {
-    hidden,  // proved: what is opaque meets every segment from the cell to the object. To its box, or with
+    hidden,  // proved: opaque surfaces meet every segment from the cell to the object's box, or with
              // ProofOptions::surface_steps to its triangles
-    unseen,  // no line has witnessed it, and no proof was found
+    unseen,  // no line has found it, and no proof was found
     seen,    // a line has witnessed it
 };
 
-// What counts as visible. `conservative`: all that is not proved hidden; no pixel is ever wrong. `statistical`: what
-// lines have seen; what is missed is below epsilon.
+// The objects that count as visible. `conservative`: all that are not proved hidden; no pixel is ever wrong.
+// `statistical`: those that lines have seen; the missed ones are below epsilon.
 enum class Mode : std::uint8_t { conservative, statistical };
 
 struct PairCounts {
@@ -205,16 +213,17 @@ struct PairCounts {
     [[nodiscard]] std::uint64_t all() const { return hidden + unseen + seen; }
 };
 
-// What a file may ask for. A byte may stand for 16,000 pairs, each of which takes a byte while the file is read.
+// Limits of a file. A byte of the file may stand for 16,000 pairs, each of which takes a byte while the file is read.
 struct ReadLimits {
     std::uint64_t pairs = std::uint64_t{1} << 30;  // of a cell and an object
 };
 
-// The finished sets. Const calls from any thread; none of those asked each frame allocates once `kept` has grown.
+// The finished sets. Const calls from any thread. Functions that are called each frame allocate nothing once `kept` has
+// grown.
 class Pvs {
   public:
-    // Tries to prove hidden what the lines have not seen. Errors: options out of range; out of memory. Occluders that
-    // are flat, or under transforms that are not valid, are left out.
+    // Tries to prove that the unseen objects are hidden, and returns the sets. Occluders that are flat, or under
+    // invalid transforms, are left out. Errors: options out of range; out of memory.
     [[nodiscard]] static Result<Pvs> finish(const Bake& bake, std::span<const PlacedOccluder> occluders = {},
                                             const ProofOptions& options = {}, Executor& executor = serial_executor());
 
@@ -222,33 +231,33 @@ class Pvs {
     [[nodiscard]] std::uint32_t object_count() const { return objects_; }
     [[nodiscard]] CellKind kind(std::size_t cell) const { return kinds_[cell]; }
     [[nodiscard]] PairState state(std::size_t cell, std::uint32_t object) const;
-    [[nodiscard]] bool is_baked(std::uint32_t object) const;  // false: it had no triangles, and is always drawn
-    [[nodiscard]] PairCounts counts() const;                  // of cells that are not solid and objects that were baked
-    // fingerprint_of the geometry that was baked. Sets of other triangles hide what is visible: ask before you use
-    // them.
+    [[nodiscard]] bool is_baked(std::uint32_t object) const;  // false: it has no triangles, and is always drawn
+    [[nodiscard]] PairCounts counts() const;                  // of non-solid cells and baked objects
+    // fingerprint_of the baked geometry. Sets of other triangles hide visible objects: compare it before you use them.
     [[nodiscard]] std::uint64_t geometry_fingerprint() const { return geometry_; }
-    // Of the bake: see BakeOptions and Bake::epsilon_reached.
+    // Those of the bake: see BakeOptions and Bake::epsilon_reached.
     [[nodiscard]] double epsilon() const { return epsilon_; }
     [[nodiscard]] double confidence() const { return confidence_; }
 
-    // The cell to ask for an eye there; kNoCell where none holds it, or one that is solid: then draw everything.
+    // Returns the cell to use for an eye, or kNoCell if no cell contains it or the cell is solid: then draw everything.
     [[nodiscard]] std::uint32_t find_cell(const glm::dvec3& eye) const;
-    // Bit o % 64 of word o / 64: object o may be seen from the cell. Objects that were not baked have theirs set.
+    // Returns a bit set: bit o % 64 of word o / 64 is set if object o may be seen from the cell, or was not baked.
     [[nodiscard]] std::span<const std::uint64_t> visible_from(std::uint32_t cell, Mode mode) const;
-    // The set of the eye's cell, for CullOptions::candidate_mask. In a view of a World or a tree only what it holds is
-    // found, and what moves. Empty, which is everything, where find_cell() says kNoCell.
+    // Returns the set of the eye's cell, for CullOptions::candidate_mask: a view of a World or a tree then finds only
+    // the objects of the set, and moving objects. It is empty, which means everything, if find_cell() returns kNoCell.
     [[nodiscard]] std::span<const std::uint64_t> visible_from(const glm::dvec3& eye, Mode mode) const;
-    // Keeps of `ids` (what a view has found, with or without occlusion) those that may be seen from the eye, in order.
-    // Ids that are not below object_count() are kept: what came later moves. Returns the eye's cell.
+    // Copies to `kept` those of `ids` (the result of a view, with or without occlusion) that may be seen from the eye,
+    // in order. Keeps ids that are not below object_count(), because later objects move. Returns the eye's cell.
     std::uint32_t keep_visible(const glm::dvec3& eye, Mode mode, std::span<const std::uint32_t> ids,
                                Vector<std::uint32_t>& kept) const;
 
-    // A .crofton file of its own, or `scene_file` (by bake::bake) with the sets as further sections. Errors: a scene
-    // file that is damaged, or that has such sections already.
+    // Returns a .crofton file of the sets, or `scene_file` (by bake::bake) with the sets as further sections. Errors: a
+    // scene file that is damaged or already has such sections.
     [[nodiscard]] Result<Vector<std::byte>> to_file(std::span<const std::byte> scene_file = {}) const;
-    // Errors: as bake::BakedScene::open; a file without such sections (parse); more than the limits (out_of_range).
+    // Reads sets from a file. Errors: as bake::BakedScene::open; a file without such sections (parse); more than the
+    // limits (out_of_range).
     [[nodiscard]] static Result<Pvs> open(const std::string& path, const ReadLimits& limits = {});
-    // From memory that starts at a multiple of 64; copied.
+    // Copies sets from a file in memory that starts at a multiple of 64.
     [[nodiscard]] static Result<Pvs> from_memory(std::span<const std::byte> file, const ReadLimits& limits = {});
 
   private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Errors as values; the log; assertions.
+// Errors as values, the log, assertions.
 #pragma once
 #include <concepts>
 #include <crofton/core/version.hpp>
@@ -13,31 +13,33 @@
 
 namespace crofton {
 
-// How bad data is reported: a value that names the item, never an exception.
+// Bad data is reported as a value that names the item, never as an exception.
 
 enum class ErrorCode : std::uint8_t {
-    invalid_argument,  // a parameter outside its documented range
-    non_finite,        // NaN or infinity where a finite number is needed
-    out_of_range,      // an index or a size beyond its limit
-    degenerate,        // geometry without the extent or rank the operation needs
+    invalid_argument,  // a parameter is outside its documented range
+    non_finite,        // a number is NaN or infinite
+    out_of_range,      // an index or a size is beyond its limit
+    degenerate,        // the geometry lacks the extent or rank that the operation needs
     empty,             // nothing to work on
-    unsupported,       // well-formed, but not something we handle
+    unsupported,       // well-formed, but not supported
     io,                // a file could not be read or written
-    parse,             // a file's contents are damaged or not of its format
+    parse,             // a file is damaged or not of its format
     cancelled,         // a callback asked to stop
     budget_exceeded,   // a time or memory budget ran out before any usable result
     unavailable,       // a device or driver is missing
-    stale_handle,      // a handle of something that has been removed
-    internal,          // our mistake: please report it
-    out_of_memory,     // the memory hook had none; the operation changed nothing
+    stale_handle,      // the handle's object has been removed
+    internal,          // a fault of Crofton: please report it
+    out_of_memory,     // the memory hook returned none; the operation changed nothing
 };
 
 [[nodiscard]] const char* to_string(ErrorCode code);
 
 inline constexpr std::uint64_t kNoItem = ~std::uint64_t{0};
 
-// `item` is the index of the offending input (vertex, instance, ring, …) or kNoItem; `message` says which, why and what
-// to do.
+// Describes one failure.
+//
+// `item` is the index of the bad input (vertex, instance, ring, …), or kNoItem. `message` says which input is bad, why,
+// and what to do.
 struct Error {
     ErrorCode code = ErrorCode::internal;
     std::uint64_t item = kNoItem;
@@ -46,7 +48,7 @@ struct Error {
     Error() = default;
     Error(ErrorCode the_code, std::uint64_t the_item, std::string the_message = {}) noexcept
         : code(the_code), item(the_item), message(std::move(the_message)) {}
-    // Copies leave the message empty where memory has ended.
+    // A copy has an empty message if there is no memory for it.
     Error(const Error& other) noexcept;
     Error& operator=(const Error& other) noexcept;
     Error(Error&&) noexcept = default;
@@ -54,7 +56,7 @@ struct Error {
     ~Error() = default;
 };
 
-// What Result::value() throws where there is none: uncaught, it says the error's message.
+// Result::value() throws this if there is no value. If nothing catches it, the program ends with the error's message.
 class BadResult : public tl::bad_expected_access<Error> {
   public:
     using tl::bad_expected_access<Error>::bad_expected_access;
@@ -67,8 +69,9 @@ namespace detail {
 [[noreturn]] void end_without_value(const Error& error);  // prints the message and aborts
 }
 
-// A value, or the Error for which there is none. The compiler warns where one is ignored: look at it, or write
-// (void)world.update() where an error cannot be.
+// Holds a value, or the Error that says why there is none.
+//
+// The compiler warns if you ignore one. Test it, or write (void)world.update() if the call cannot fail.
 template <class T>
 class [[nodiscard]] Result : public tl::expected<T, Error> {
     using Base = tl::expected<T, Error>;
@@ -83,8 +86,10 @@ class [[nodiscard]] Result : public tl::expected<T, Error> {
         Result(U&& value)
         : Base(std::forward<U>(value)) {}
 
-    // The value; nothing, of a Result<void>. Without one it throws BadResult, or ends the program with the message
-    // where exceptions are off: for programs to which an error is the end, and for tests.
+    // Returns the value; returns nothing for a Result<void>.
+    //
+    // If there is no value, it throws BadResult; if exceptions are disabled, it prints the message and ends the
+    // program. Use it in tests, and in programs that end with the first error.
     std::add_lvalue_reference_t<const T> value() const& {
         demand();
         if constexpr (!std::is_void_v<T>) return **this;
@@ -109,7 +114,7 @@ class [[nodiscard]] Result : public tl::expected<T, Error> {
     }
 };
 
-// A text or a number within a message. Views what it is made of.
+// A text or a number of a message. It does not copy the text.
 class MessagePart {
   public:
     MessagePart(const char* text) : text_(text), kind_(Kind::text) {}
@@ -134,13 +139,13 @@ class MessagePart {
     Kind kind_;
 };
 
-// Where memory has ended, the message is empty; code and item are told all the same.
+// Makes an error. If there is no memory for the message, the message is empty; code and item are set all the same.
 [[nodiscard]] tl::unexpected<Error> fail(ErrorCode code, std::uint64_t item,
                                          std::initializer_list<MessagePart> message) noexcept;
 [[nodiscard]] inline tl::unexpected<Error> fail(ErrorCode code, std::uint64_t item, const char* message) noexcept {
     return fail(code, item, {MessagePart(message)});
 }
-// A message that is there already; a template, so that braces mean parts.
+// Takes a finished message. (A template, so that braces mean parts.)
 template <std::same_as<std::string> String>
 [[nodiscard]] tl::unexpected<Error> fail(ErrorCode code, std::uint64_t item, String message) {
     return tl::unexpected<Error>(Error{code, item, std::move(message)});
@@ -152,16 +157,17 @@ enum class LogLevel : std::uint8_t { debug, info, warning, error };
 
 using LogHandler = void (*)(void* user, LogLevel level, std::string_view message);
 
-// Installs a handler with its user pointer; nullptr restores the default: warnings and errors to stderr. Thread-safe.
+// Installs a handler with its user pointer. nullptr restores the default, which prints warnings and errors to stderr.
+// Thread-safe.
 void set_log_handler(LogHandler handler, void* user);
 
 void log(LogLevel level, std::string_view message);
 
-// A caller's mistake (as opposed to bad data) goes to a hook; the host decides whether to stop.
+// A caller's mistake (as opposed to bad data) calls this hook; the host decides whether to stop.
 
 using AssertHandler = void (*)(const char* condition, const char* message, const char* file, int line);
 
-// Installs a handler; nullptr restores the default, which prints to stderr and aborts. Thread-safe.
+// Installs a handler. nullptr restores the default, which prints to stderr and aborts. Thread-safe.
 void set_assert_handler(AssertHandler handler);
 
 namespace detail {

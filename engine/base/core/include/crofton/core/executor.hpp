@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Work handed to the host's threads: callables by reference, the hook, and a pool for hosts without a job system.
+// References to callables, the interface to the host's threads, and a thread pool for hosts without a job system.
 #pragma once
 #include <crofton/core/memory.hpp>
 #include <crofton/core/version.hpp>
@@ -9,7 +9,7 @@
 
 namespace crofton {
 
-// A callable by reference: two words, no allocation; valid only while the callable lives.
+// Refers to a callable: two words, no allocation. Valid only while the callable lives.
 
 template <class Signature>
 class FunctionRef;
@@ -32,34 +32,39 @@ class FunctionRef<R(Args...)> {
     R (*call_)(void*, Args...);
 };
 
-// The engine owns no threads: work is handed to the host's, through this hook.
+// The engine owns no threads. It passes work to the host's threads through this interface.
 
-// body(begin, end, worker) does the items [begin, end). worker < concurrency(), and no two bodies run at once on one
-// worker. So it may index scratch memory of each worker.
+// body(begin, end, worker) processes the items [begin, end).
+//
+// worker < concurrency(), and two bodies never run at once with the same worker. A body may therefore use scratch
+// memory indexed by worker.
 using RangeTask = FunctionRef<void(std::size_t begin, std::size_t end, unsigned worker)>;
 
 class Executor {
   public:
     virtual ~Executor() = default;
 
-    // How many bodies may run at once; at least 1, and the same for the executor's life.
+    // Returns how many bodies may run at once: at least 1, and the same for the executor's life.
     [[nodiscard]] virtual unsigned concurrency() const = 0;
 
-    // Calls `body` for the ranges [0, grain), [grain, 2·grain), … of [0, count), in any order and on any threads, and
-    // returns when all are done. The ranges depend on count and grain alone, so a body that writes only its own range's
-    // output gives the same bits with any executor. Requires grain ≥ 1. Bodies do not throw.
+    // Calls `body` for the ranges [0, grain), [grain, 2·grain), … of [0, count), in any order and on any threads.
+    // Returns when all are done.
+    //
+    // The ranges depend only on count and grain. A body that writes only its own range's output therefore gives the
+    // same bits with any executor. Requires grain ≥ 1. Bodies must not throw.
     virtual void parallel_for(std::size_t count, std::size_t grain, RangeTask body) = 0;
 };
 
-// Runs everything on the calling thread, in order. Stateless: may be shared by any number of threads.
+// Returns an executor that runs everything on the calling thread, in order. It has no state: any number of threads may
+// share it.
 [[nodiscard]] Executor& serial_executor();
 
-// A plain pool of std::threads behind the Executor hook, for hosts without a job system.
+// An Executor over std::threads, for hosts without a job system.
 
-// One parallel_for at a time: a second caller waits. A body must not call parallel_for of its own pool.
+// Runs one parallel_for at a time; a second caller waits. A body must not call parallel_for of its own pool.
 class ThreadPool final : public Executor {
   public:
-    // `threads` counts the calling thread, which works too; 0 asks for one per hardware thread.
+    // `threads` includes the calling thread, which works too. 0 means one per hardware thread.
     explicit ThreadPool(unsigned threads = 0);
     ~ThreadPool() override;
     ThreadPool(const ThreadPool&) = delete;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where the engine's containers get their memory: the host's allocator, when it gives one.
+// Memory of the engine's containers, from the host's allocator if it sets one.
 #pragma once
 #include <crofton/core/version.hpp>
 #include <cstddef>
@@ -8,28 +8,29 @@
 
 namespace crofton {
 
-// Both functions may be called from any thread. `allocate` returns memory aligned to `alignment`, a power of two, or
-// nullptr where the host has none. Then what builds, loads, bakes, fits or triangulates returns
-// ErrorCode::out_of_memory and has changed nothing; docs/testing.md has the list. Elsewhere the program ends with a
-// message (std::abort).
+// The host's allocator. Both functions may be called from any thread.
+//
+// `allocate` returns memory aligned to `alignment`, a power of two, or nullptr if the host has none. Functions that
+// build, load, bake, fit or triangulate then return ErrorCode::out_of_memory and have changed nothing; docs/testing.md
+// has the list. All others end the program with a message (std::abort).
 struct MemoryHooks {
     void* (*allocate)(void* user, std::size_t bytes, std::size_t alignment);
     void (*release)(void* user, void* memory, std::size_t bytes, std::size_t alignment);
     void* user;
 };
 
-// Replaces the hooks; call it before any other call into the engine, since memory is released through the hooks in
-// force.
+// Replaces the hooks. Call it before any other function of the engine, because memory is released through the hooks
+// that are set at that time.
 void set_memory_hooks(const MemoryHooks& hooks);
 void reset_memory_hooks();
 
 namespace detail {
 [[nodiscard]] void* allocate(std::size_t bytes, std::size_t alignment);
-[[nodiscard]] void* try_allocate(std::size_t bytes, std::size_t alignment);  // nullptr where the host has no memory
+[[nodiscard]] void* try_allocate(std::size_t bytes, std::size_t alignment);  // nullptr if the host has no memory
 void release(void* memory, std::size_t bytes, std::size_t alignment);
 }  // namespace detail
 
-// A standard allocator over the hooks; blocks are aligned for the widest vector loads.
+// A standard allocator over the hooks. It aligns blocks for the widest vector loads.
 template <class T>
 struct Allocator {
     using value_type = T;
@@ -50,8 +51,8 @@ struct Allocator {
 template <class T>
 using Vector = std::vector<T, Allocator<T>>;
 
-// A value beside vectors: moved from, it is T() again, as they are empty. Then a class of both needs no moves of its
-// own.
+// Holds a value that becomes T() when it is moved from, as a moved-from vector becomes empty. A class that has both
+// then needs no move functions of its own.
 template <class T>
 class ResetOnMove {
   public:
@@ -76,8 +77,8 @@ class ResetOnMove {
     T value_{};
 };
 
-// Owns an object of a class that only its own sources know, in memory of the hooks. As std::unique_ptr, whose header
-// would cost everyone who includes ours a third more.
+// Owns an object in memory of the hooks; the class may be incomplete for users. It replaces std::unique_ptr, whose
+// header would make each file that includes ours compile a third longer.
 template <class T>
 struct Destroy {
     void operator()(T* object) const {
@@ -107,7 +108,7 @@ class Owner {
     [[nodiscard]] static Owner make(Arguments&&... arguments) {
         struct Memory {
             void* block = detail::allocate(sizeof(T), alignof(T));
-            ~Memory() { detail::release(block, sizeof(T), alignof(T)); }  // where the constructor throws
+            ~Memory() { detail::release(block, sizeof(T), alignof(T)); }  // if the constructor throws
         } memory;
         Owner made(new (memory.block) T(static_cast<Arguments&&>(arguments)...));
         memory.block = nullptr;

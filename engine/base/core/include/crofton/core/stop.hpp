@@ -4,11 +4,11 @@
 
 namespace crofton {
 
-// Asks the caller whether long work should stop: return true to stop it. `user` is the caller's own; `share_done` is
-// how much of the work is done, in [0, 1], and never decreases.
+// Asks the caller whether a long operation should stop; return true to stop it. `user` is your own pointer.
+// `share_done` is the finished share of the work, in [0, 1]; it never decreases.
 //
-// Called now and then from any of the executor's threads, never from two at once, and not again once it has returned
-// true. Must not throw.
+// It is called now and then on any of the executor's threads, but never on two at once, and not again after it has
+// returned true. Must not throw.
 using StopCallback = bool (*)(void* user, double share_done);
 
 }  // namespace crofton

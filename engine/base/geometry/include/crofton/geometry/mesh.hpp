@@ -10,8 +10,8 @@
 
 namespace crofton {
 
-// An indexed triangle mesh, as plain data.
-// Three indices a triangle, counter-clockwise seen from outside. `colors` is empty or holds one linear RGB per vertex.
+// An indexed triangle mesh, as plain data. Each triangle has three indices, counter-clockwise seen from outside.
+// `colors` is empty or has one linear RGB per vertex.
 struct TriangleMesh {
     Vector<glm::vec3> positions;
     Vector<std::uint32_t> indices;
@@ -20,17 +20,20 @@ struct TriangleMesh {
     [[nodiscard]] std::size_t triangle_count() const { return indices.size() / 3; }
 };
 
-// Errors: non-finite position, index out of range, index count not a multiple of three, colour count; item = first
-// culprit. An empty mesh is valid here; who needs triangles says so.
+// Checks a mesh. Errors: a non-finite position, an index out of range, an index count that is not a multiple of three,
+// a wrong number of colours; item = the first bad one. An empty mesh is valid here; functions that need triangles
+// refuse it.
 [[nodiscard]] Result<void> validate(const TriangleMesh& mesh);
 
-// Adds the part's vertices and triangles behind those of `mesh`. Colours are kept if all vertices of both have one,
-// else dropped. Requires less than 2^32 vertices together, and that `part` is not `mesh` itself.
+// Appends the vertices and triangles of `part`. Colours are kept if all vertices of both have one, and dropped
+// otherwise. Requires less than 2^32 vertices in total, and that `part` is not `mesh` itself.
 void append(TriangleMesh& mesh, const TriangleMesh& part);
 
 // A planar polygon with holes.
-// Rings one after another in `points`; ring r is [ring_ends[r−1], ring_ends[r]), the first is the outer one, the others
-// holes. Rings are closed implicitly and may have either orientation; triangle indices refer to `points`.
+//
+// `points` has the rings one after another. Ring r is [ring_ends[r−1], ring_ends[r]). The first ring is the outer one,
+// the others are holes. The last point of a ring is joined to its first. Rings may have either orientation. Triangle
+// indices refer to `points`.
 struct Polygon {
     Vector<glm::dvec2> points;
     Vector<std::uint32_t> ring_ends;
@@ -42,21 +45,23 @@ struct Polygon {
     }
 };
 
-// Convex hulls of points in space.
+// The convex hull of points in space.
 struct ConvexHull {
-    // Dimension of the set: 0 a point, 1 a segment, 2 a planar polygon, 3 a solid. Sets thinner than 1e-12 of their
-    // size count as flat.
+    // The dimension of the set: 0 for a point, 1 for a segment, 2 for a planar polygon, 3 for a solid. Sets thinner
+    // than 1e-12 of their size count as flat.
     int rank = 0;
-    // Indices of the hull's corners into the input, each once; of equal points the first. Rank 0: one; 1: the two ends;
-    // 2: the polygon, in order around it; 3: ascending.
+    // Indices of the hull's corners into the input, each once; the first of equal points. Rank 0: one point; rank 1:
+    // the two ends; rank 2: the polygon, in order around it; rank 3: ascending.
     Vector<std::uint32_t> vertices;
-    // Rank 3: faces, triangulated, counter-clockwise seen from outside; indices into the input. Otherwise empty.
+    // Rank 3: the triangulated faces, counter-clockwise seen from outside, as indices into the input. Otherwise empty.
     Vector<std::uint32_t> triangles;
 };
 
-// By Qhull (Barber, Dobkin and Huhdanpaa 1996), after points that cannot be corners have been dropped. Decided in
-// rounded arithmetic: points within about 1e-15 of the set's size of the hull's boundary may be taken for inner ones.
-// Errors: no points, more than 2^31; NaN, infinite or beyond kMaxCoordinate, with the first such index as the item.
+// Computes the convex hull by Qhull (Barber, Dobkin and Huhdanpaa 1996), after dropping points that cannot be corners.
+//
+// It decides in rounded arithmetic: a point closer than about 1e-15 of the set's size to the hull's boundary may be
+// dropped as an inner point. Errors: no points; more than 2^31; a point that is NaN, infinite or beyond kMaxCoordinate,
+// with the first such index as the item.
 [[nodiscard]] Result<ConvexHull> convex_hull(std::span<const glm::vec3> points);
 [[nodiscard]] Result<ConvexHull> convex_hull(std::span<const glm::dvec3> points);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Signs of determinants, exactly: a filter with Shewchuk's proven bounds first, expansions where it cannot tell.
+// Exact signs of determinants: a filter with Shewchuk's proven bounds decides most, expansions decide the rest.
 #pragma once
 #include <cmath>
 #include <crofton/core/version.hpp>
@@ -8,8 +8,9 @@
 
 namespace crofton {
 
-// Inputs must be finite. Exact while |coordinates| lie in [1e-70, 1e70], of in_circle in [1e-65, 1e70], or are 0.
-// Products of three differences, and of four, then stay within double, down to the last place of the smallest.
+// Inputs must be finite. Results are exact if all coordinates are 0 or have magnitudes in [1e-70, 1e70], for in_circle
+// in [1e-65, 1e70]. Products of three or four differences then stay within double, down to the last place of the
+// smallest.
 
 namespace detail {
 
@@ -28,7 +29,7 @@ inline constexpr double kInCircleBound = (10.0 + 96.0 * kRounding) * kRounding;
 
 }  // namespace detail
 
-// > 0 if a, b, c turn counter-clockwise, < 0 if clockwise, 0 if collinear.
+// Returns > 0 if a, b, c turn counter-clockwise, < 0 if clockwise, 0 if they are collinear.
 [[nodiscard]] inline int orientation(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
     const double left = (a.x - c.x) * (b.y - c.y);
     const double right = (a.y - c.y) * (b.x - c.x);
@@ -40,7 +41,7 @@ inline constexpr double kInCircleBound = (10.0 + 96.0 * kRounding) * kRounding;
     return detail::orientation_exact(a, b, c);
 }
 
-// > 0 if d lies inside the circle through the counter-clockwise a, b, c, < 0 outside, 0 on it.
+// Returns > 0 if d lies inside the circle through the counter-clockwise a, b, c, < 0 if outside, 0 if on it.
 [[nodiscard]] inline int in_circle(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c, const glm::dvec2& d) {
     const double ax = a.x - d.x, ay = a.y - d.y, bx = b.x - d.x, by = b.y - d.y, cx = c.x - d.x, cy = c.y - d.y;
     const double bxcy = bx * cy, cxby = cx * by, cxay = cx * ay, axcy = ax * cy, axby = ax * by, bxay = bx * ay;
@@ -53,8 +54,8 @@ inline constexpr double kInCircleBound = (10.0 + 96.0 * kRounding) * kRounding;
     return detail::in_circle_exact(a, b, c, d);
 }
 
-// > 0 if d lies below the plane through a, b, c, < 0 above it, 0 on it. "Above" is where a, b, c turn counter-clockwise
-// as seen from there. This is the sign of det(a − d, b − d, c − d), as in Shewchuk's orient3d.
+// Returns > 0 if d lies below the plane through a, b, c, < 0 if above it, 0 if on it. "Above" is the side from which a,
+// b, c turn counter-clockwise. This is the sign of det(a − d, b − d, c − d), as in Shewchuk's orient3d.
 [[nodiscard]] int orientation(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d);
 
 }  // namespace crofton

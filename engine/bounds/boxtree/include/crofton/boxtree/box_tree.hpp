@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A dynamic hierarchy of oriented boxes over items, for views, collisions and rays alike.
+// A dynamic hierarchy of oriented boxes for culling, collision and ray queries.
 #pragma once
 #include <crofton/core/executor.hpp>
 #include <crofton/core/memory.hpp>
@@ -16,29 +16,34 @@ class Rebuilder;
 class Structure;
 using ItemId = std::uint32_t;
 
-// Along which axes the tree's inner bounds lie. aligned: the world's. oriented: those along which the bounds below a
-// node have the least perimeters. automatic: these only where they save more visits than turning a view's planes costs.
+// The axes of the tree's inner bounds.
+//
+// - aligned: the world's axes.
+// - oriented: the axes along which the bounds below a node have the least perimeters.
+// - automatic: those axes only if they save more visits than rotating a view's planes costs.
 enum class Orientation : std::uint8_t { aligned, oriented, automatic };
 
 struct BuildOptions {
     measure::Criterion criterion = measure::minimal_perimeter();
-    // What will move nearly every frame, if known. In a tree of more than 32,768 items it shares leaves with its like,
-    // so that frames touch few leaves besides. rebuild_step() finds such items by itself.
+    // Items that will move nearly every frame, if you know them. In a tree of more than 32,768 items they share leaves
+    // with each other, so that a frame touches few other leaves. rebuild_step() finds such items by itself.
     std::span<const ItemId> moving = {};
-    std::span<const ItemId> detached = {};  // from the start: see BoxTree::detach
-    // The tree keeps it: rebuild_step() chooses axes anew, insert() takes those that are there.
+    std::span<const ItemId> detached = {};  // detached from the start: see BoxTree::detach
+    // The tree keeps this setting: rebuild_step() chooses new axes, insert() uses the existing ones.
     Orientation orientation = Orientation::aligned;
 };
 
-// What deserialise() may take on trust. `contents`: a checksum has shown that serialise() wrote these bytes. Then only
-// links are checked, which takes a tenth of the time.
+// How much deserialise() may trust its input. `contents`: a checksum has shown that serialise() wrote these bytes.
+// deserialise() then checks only links, which takes a tenth of the time.
 enum class Trust : std::uint8_t { nothing, contents };
 
-// Item i's box is boxes()[i]. Every bound contains (exactly) all boxes of the items below it. Const functions may run
-// on any number of threads at once; the others need the tree for themselves.
+// A tree of items with boxes. Item i's box is boxes()[i]. Every bound contains (exactly) all boxes of the items below
+// it. Const functions may run on any number of threads at once; the others need exclusive access to the tree.
 class BoxTree {
   public:
-    // Item i is visible in the layers layer_masks[i]; without masks, in all. No boxes at all is fine.
+    // Builds a tree. Item i is visible in the layers layer_masks[i], or in all layers if there are no masks. A tree
+    // without boxes is valid.
+    //
     // Errors: a box that fails validate(Obb), named by its index; more than 2^30 boxes; a criterion that fails
     // validate; layer_masks neither empty nor as many as boxes.
     [[nodiscard]] static Result<BoxTree> build(std::span<const Obb> boxes, const BuildOptions& options = {},
@@ -50,44 +55,50 @@ class BoxTree {
     BoxTree(BoxTree&&) noexcept;
     BoxTree& operator=(BoxTree&&) noexcept;
 
-    // Errors leave the tree as it was: a box that fails validate(Obb), an item that is not in the tree (item = its id),
-    // 2^30 items. After moves and removals bounds are right again, and tight, after refit(); insert keeps them right.
+    // These functions change items. After moves and removals, bounds are right and tight again after refit(); insert
+    // keeps them right.
+    //
+    // Errors, which leave the tree unchanged: a box that fails validate(Obb); an item that is not in the tree (item =
+    // its id); 2^30 items.
     [[nodiscard]] Result<void> move(ItemId item, const Obb& box);
     [[nodiscard]] Result<void> move(std::span<const ItemId> items, std::span<const Obb> boxes);  // all or none
     [[nodiscard]] Result<ItemId> insert(const Obb& box, std::uint32_t layer_mask = ~std::uint32_t{0});
-    [[nodiscard]] Result<void> remove(ItemId item);  // its id is given to a later insert
+    [[nodiscard]] Result<void> remove(ItemId item);  // a later insert reuses its id
     [[nodiscard]] Result<void> set_layer_mask(ItemId item, std::uint32_t layer_mask);
     void refit();
 
-    // For what moves in every frame: cull::MovingBoxes keeps it beside the tree. A detached item is in no leaf and
-    // keeps its id and layers until attach() puts it back or remove() gives the id away. Otherwise as remove and
+    // For items that move every frame, which cull::MovingBoxes stores separately from the tree. A detached item is in
+    // no leaf. It keeps its id and layers until attach() puts it back or remove() frees the id. Otherwise as remove and
     // insert.
     [[nodiscard]] Result<void> detach(ItemId item);
     [[nodiscard]] Result<ItemId> insert_detached(std::uint32_t layer_mask = ~std::uint32_t{0});
     [[nodiscard]] Result<void> attach(ItemId item, const Obb& box);
     [[nodiscard]] bool is_detached(ItemId item) const;
 
-    // Does a step of a rebuild in the background; true when one has just been completed. Call it once a frame, after
-    // refit(), where items move for long. `budget` bounds the work of a step. Its unit is adding an item: a whole build
-    // costs some 10 an item. Changes since the last call come on top: 64 for an insertion, 2 for another change. Items
-    // that moved before each of the last two refits count as always moving (BuildOptions).
+    // Does one step of a rebuild in the background; returns true if it has just completed one. Call it once a frame,
+    // after refit(), if items move for a long time.
+    //
+    // `budget` bounds the work of a step. Its unit is adding an item: a whole build costs some 10 per item. Changes
+    // since the last call cost extra: 64 for an insertion, 2 for any other change. Items that moved before each of the
+    // last two refits count as always moving (BuildOptions).
     bool rebuild_step(std::size_t budget);
 
-    // Checks every invariant: links, counts, slots, bounds. Errors name the node, leaf or item.
+    // Checks all invariants: links, counts, slots, bounds. Errors name the node, leaf or item.
     [[nodiscard]] Result<void> validate() const;
 
-    // A byte string that deserialise() turns into an equal tree, on machines of the same byte order. Errors: damage.
+    // Returns bytes from which deserialise() makes an equal tree, on machines of the same byte order. Errors: damaged
+    // bytes.
     [[nodiscard]] Vector<std::byte> serialise() const;
     [[nodiscard]] static Result<BoxTree> deserialise(std::span<const std::byte> bytes, Trust trust = Trust::nothing);
 
-    // By ItemId. Ids are below boxes().size(), removed ones included.
+    // Indexed by ItemId. Ids are below boxes().size(), those of removed items included.
     [[nodiscard]] std::span<const Obb> boxes() const;
     [[nodiscard]] std::span<const std::uint32_t> layer_masks() const;
     [[nodiscard]] bool contains(ItemId item) const;      // in a leaf: neither removed nor detached
-    [[nodiscard]] std::size_t item_count() const;        // how many the leaves hold
-    [[nodiscard]] Vector<ItemId> spatial_order() const;  // these, leaf by leaf: neighbours lie beside each other
+    [[nodiscard]] std::size_t item_count() const;        // the number of items in leaves
+    [[nodiscard]] Vector<ItemId> spatial_order() const;  // these, leaf by leaf: near items are near in the list
 
-    // For the engine alone: nodes and leaves as its queries read them; what a rebuild does.
+    // For the engine's own use: the nodes and leaves that queries read, and the state of a rebuild.
     [[nodiscard]] const Structure& structure() const { return *structure_; }
     [[nodiscard]] const Rebuilder& rebuilder() const { return *rebuilder_; }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Bodies of all kinds: convex ones, hulls of points, meshes, height fields, compounds; mass.
+// Bodies: convex ones, hulls of points, meshes, height fields, compounds. Mass properties.
 #pragma once
 #include <compare>
 #include <crofton/core/error.hpp>
@@ -22,7 +22,7 @@ namespace crofton::convex {
 
 // ---- Mass ----
 
-// In the body's frame. Times the density: mass and inertia tensor.
+// Mass properties in the body's frame. Multiply them by the density to get mass and inertia tensor.
 struct MassProperties {
     double volume = 0.0;
     glm::dvec3 center{0.0};   // of mass
@@ -32,14 +32,15 @@ struct MassProperties {
 // Convex hulls as bodies: exactly the hull of the points, with faces, edges and vertices that keep their ids.
 
 inline constexpr int kMaxHullVertices = 256;
-// Lengths and coordinates of a body, in its own frame, are at most this.
+// The largest length or coordinate of a body in its own frame.
 inline constexpr float kMaxExtent = 1e15f;
 
 struct HullOptions {
-    // In [4, kMaxHullVertices]. A hull with more vertices is replaced by one that contains it.
+    // In [4, kMaxHullVertices]. A hull with more vertices is replaced by a larger one that contains it.
     int max_vertices = kMaxHullVertices;
-    // Neighbouring triangles become one face where all its vertices lie within this of a common plane, relative to the
-    // hull's size. For contacts alone: faces say where bodies touch, the vertices say what the body is. In [0, 1e-2].
+    // Neighbouring triangles become one face if all its vertices lie within this of a common plane, relative to the
+    // hull's size. It affects contacts only: faces say where bodies touch, while the vertices define the body. In [0,
+    // 1e-2].
     float face_tolerance = 1e-5f;
 };
 
@@ -48,44 +49,47 @@ struct HullEdge {
     std::uint16_t faces[2];
 };
 
-// The convex hull of its vertices, which are corners: none lies in the hull of the others.
+// A convex hull. Its vertices are corners: none lies in the hull of the others.
 class Hull {
   public:
-    // Exact predicates decide, so nothing is lost: the body is the hull of the points, taken as reals. Duplicates,
-    // points inside and points on faces or edges are dropped; points that are nearly coplanar are kept where they are
-    // corners. A hull with more than max_vertices corners is replaced by a larger one that contains all points;
-    // max_overshoot() says by how much. Errors: fewer than four points; all on one point, line or plane (item kNoItem);
-    // NaN, infinite or beyond kMaxExtent (the first such point); options out of range. Takes n log n time for n points.
+    // Builds the hull of the points, taken as reals, by exact predicates.
+    //
+    // Duplicates, points inside and points on faces or edges are dropped; nearly coplanar points are kept if they are
+    // corners. If the hull has more than max_vertices corners, it is replaced by a larger one that contains all points;
+    // max_overshoot() bounds how far that reaches beyond. Takes n log n time for n points.
+    //
+    // Errors: fewer than four points; all on one point, line or plane (item kNoItem); a point that is NaN, infinite or
+    // beyond kMaxExtent (the first such point); options out of range.
     [[nodiscard]] static Result<Hull> build(std::span<const glm::vec3> points, const HullOptions& options = {});
 
     [[nodiscard]] std::span<const glm::vec3> vertices() const { return vertices_; }
-    // The surface as triangles, counter-clockwise seen from outside: exact, three vertices each.
+    // Returns the exact surface as triangles of three vertices each, counter-clockwise seen from outside.
     [[nodiscard]] std::span<const std::uint16_t> triangles() const { return triangles_; }
     [[nodiscard]] std::span<const HullEdge> edges() const { return edges_; }
     [[nodiscard]] int face_count() const { return static_cast<int>(normals_.size()); }
-    // Vertices around the face, counter-clockwise seen from outside.
+    // Returns the vertices around the face, counter-clockwise seen from outside.
     [[nodiscard]] std::span<const std::uint16_t> face_vertices(int face) const { return loop(face_vertices_, face); }
-    // Edge k leads from vertex k of the face to the next.
+    // Returns the edges of the face. Edge k leads from vertex k of the face to the next.
     [[nodiscard]] std::span<const std::uint16_t> face_edges(int face) const { return loop(face_edges_, face); }
     [[nodiscard]] const glm::dvec3& face_normal(int face) const {  // unit, outward
         return normals_[static_cast<std::size_t>(face)];
     }
-    // How far the body reaches beyond the hull of the points at most, where it was replaced; else 0.
+    // Returns how far the body extends at most beyond the hull of the points if it was replaced, and 0 otherwise.
     [[nodiscard]] double max_overshoot() const { return max_overshoot_; }
     [[nodiscard]] double radius() const { return radius_; }  // of the sphere around the frame's origin that contains it
     [[nodiscard]] const MassProperties& mass() const { return mass_; }
 
-    // Radius of the sphere around the center of mass that lies within the body, rounded down.
+    // Returns the radius of the sphere around the center of mass that lies within the body, rounded down.
     [[nodiscard]] double inner_radius() const { return inner_radius_; }
 
-    // For the kernels: coordinate k of all vertices, or face normals, side by side; the last is repeated up to a
-    // multiple of four.
+    // For the kernels: coordinate k of all vertices, or of all face normals, contiguous; the last one is repeated up to
+    // a multiple of four.
     [[nodiscard]] const double* column(int k) const { return column_of(columns_, k); }
     [[nodiscard]] int padded_count() const { return static_cast<int>(columns_.size() / 3); }
     [[nodiscard]] const double* normal_column(int k) const { return column_of(normal_columns_, k); }
     [[nodiscard]] int padded_face_count() const { return static_cast<int>(normal_columns_.size() / 3); }
-    // Of the planes through triangles(): the unit normals' coordinates, and for k = 3 their levels dot(normal, corner).
-    // Normals are off by plane_error() at most.
+    // The planes through triangles(): the coordinates of the unit normals, and for k = 3 their offsets dot(normal,
+    // corner). Normals are off by plane_error() at most.
     [[nodiscard]] const double* plane_column(int k) const {
         return planes_.data() + planes_.size() / 4 * static_cast<std::size_t>(k);
     }
@@ -113,7 +117,7 @@ class Hull {
     double max_overshoot_ = 0.0, radius_ = 0.0, inner_radius_ = 0.0, plane_error_ = 0.0;
 };
 
-// A body, whichever kind: what every query of this module takes.
+// Bodies of any kind, the argument of every query of this module.
 
 class HeightField;
 class Compound;
@@ -132,7 +136,7 @@ enum class Kind : std::uint8_t {
     compound,
 };
 
-// The sides of a surface's triangles that contacts and casts see. intersects, distance and penetration see both.
+// The sides of a surface's triangles that contacts and casts see. intersects, distance and penetration see both sides.
 enum class Sides : std::uint8_t {
     both,
     front,  // contacts push to the front; what comes from behind passes
@@ -140,49 +144,54 @@ enum class Sides : std::uint8_t {
 
 inline constexpr double kInfiniteRadius = std::numeric_limits<double>::infinity();
 
-// A small value; of a hull, mesh, height field or compound it is a view, which the caller keeps alive and unchanged.
-// Solids of revolution stand along the frame's y axis, with the origin half way up. Made by the functions below, which
-// refuse NaN, infinite and negative lengths, and lengths beyond kMaxExtent. Zero lengths are allowed and give a
-// segment, a disc, a point.
+// A body, as a small value. For a hull, mesh, height field or compound it is a view of an object that you keep alive
+// and unchanged.
+//
+// Solids of revolution have the frame's y axis as axis, with the origin half way up. The functions below make bodies.
+// They refuse NaN, infinite and negative lengths, and lengths beyond kMaxExtent. Zero lengths are allowed and give a
+// segment, a disc or a point.
 class Body {
   public:
     [[nodiscard]] static Result<Body> sphere(double radius);
-    // All points within `radius` of the segment from −half_height to half_height.
+    // A capsule: all points within `radius` of the segment from −half_height to half_height.
     [[nodiscard]] static Result<Body> capsule(float half_height, float radius);
     [[nodiscard]] static Result<Body> cylinder(float half_height, float radius);
-    // The apex is at half_height, the disc of `radius` at −half_height.
+    // A cone with its apex at half_height and its disc of `radius` at −half_height.
     [[nodiscard]] static Result<Body> cone(float half_height, float radius);
-    // A negative half extent would turn the box inside out: refused with the axis as the item.
+    // A box. Error: a negative half extent, with the axis as the item.
     [[nodiscard]] static Result<Body> box(const glm::vec3& half_extents);
-    // Counter-clockwise seen from its front; may be a segment or a point. The item of an error is the corner.
+    // A triangle, counter-clockwise seen from its front; it may be a segment or a point. The item of an error is the
+    // corner.
     [[nodiscard]] static Result<Body> triangle(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);
     [[nodiscard]] static Body hull(const Hull& hull);
-    // { x : dot(normal, x) + offset ≥ 0 }: `normal`, of any length but 0, points into the solid, as everywhere.
+    // The half-space { x : dot(normal, x) + offset ≥ 0 }. `normal` points into the solid, as everywhere, and has any
+    // length but 0.
     [[nodiscard]] static Result<Body> half_space(const Plane& plane);
-    // All points within `radius` of `core`: of any convex kind but a half-space.
+    // All points within `radius` of `core`, which is of any convex kind except a half-space.
     [[nodiscard]] static Result<Body> rounded(const Body& core, double radius);
-    // The mesh's triangles: a surface, also where it is closed. Error: a tree without triangles.
+    // The triangles of a mesh: a surface, even if it is closed. Error: a tree without triangles.
     [[nodiscard]] static Result<Body> mesh(const mesh::MeshTree& mesh, Sides sides = Sides::both);
-    // Its triangles, whose fronts look up.
+    // The triangles of a height field, whose fronts face up.
     [[nodiscard]] static Body height_field(const HeightField& field, Sides sides = Sides::front);
     [[nodiscard]] static Body compound(const Compound& compound);  // the union of its children
 
     [[nodiscard]] Kind kind() const { return kind_; }
-    // One convex body; else a body of parts, each of which is convex.
+    // Returns true for a single convex body, and false for a body of several convex parts.
     [[nodiscard]] bool is_convex() const { return kind_ < Kind::mesh; }
     [[nodiscard]] Sides sides() const { return sides_; }  // of a surface; else both
     [[nodiscard]] const mesh::MeshTree* mesh() const { return mesh_; }
     [[nodiscard]] const HeightField* height_field() const { return field_; }
     [[nodiscard]] const Compound* compound() const { return compound_; }
-    // Around the body in its frame, rounded outward; infinite for half-spaces and compounds that hold some.
+    // Returns the bounds of the body in its frame, rounded outward. They are infinite for half-spaces and for compounds
+    // that contain one.
     [[nodiscard]] const Aabb& bounds() const { return bounds_; }
     [[nodiscard]] bool is_bounded() const { return core_radius_ < kInfiniteRadius; }
     [[nodiscard]] double radius() const { return radius_; }  // of the rounding; of spheres and capsules
     [[nodiscard]] const Hull* hull() const { return hull_; }
     [[nodiscard]] const Plane& plane() const { return plane_; }
-    // Boxes. Of cylinders and cones: radius, half height, radius.
+    // Returns the half extents of a box; for cylinders and cones: radius, half height, radius.
     [[nodiscard]] const glm::dvec3& half_extents() const { return half_; }
-    // Whether the core, that is the body without its rounding, is the hull of finitely many points.
+    // Tests whether the core, the body without its rounding, is the hull of finitely many points.
     [[nodiscard]] bool has_polytope_core() const { return vertex_count_ > 0; }
     [[nodiscard]] bool is_polytope() const { return vertex_count_ > 0 && radius_ == 0.0; }
     [[nodiscard]] int vertex_count() const { return vertex_count_; }  // of the core: sphere 1, capsule 2, box 8
@@ -190,10 +199,11 @@ class Body {
         const std::size_t at = static_cast<std::size_t>(i);
         return {column(0)[at], column(1)[at], column(2)[at]};
     }
-    // Corner i of a box is on the + side of axis k where bit k of i is set.
+    // Returns coordinate k of all vertices. Corner i of a box is on the + side of axis k if bit k of i is set.
     [[nodiscard]] const double* column(int k) const { return hull_ != nullptr ? hull_->column(k) : corners_[k]; }
     [[nodiscard]] int padded_count() const { return hull_ != nullptr ? hull_->padded_count() : padded_; }
-    // Radius of the sphere around the frame's origin that contains the core, rounded up; infinite where bounds() are.
+    // Returns the radius of the sphere around the frame's origin that contains the core, rounded up; infinite if
+    // bounds() are.
     [[nodiscard]] double core_radius() const { return core_radius_; }
 
   private:
@@ -218,13 +228,13 @@ class Body {
 
 // One of the convex parts of a body, by number.
 struct PartId {
-    // The child of a compound, where the children of a compound within it are counted in its place. Else 0.
+    // The child of a compound, or 0. Children of nested compounds are counted in the place of their compound.
     std::uint32_t child;
     std::uint32_t triangle;  // of a mesh or height field; else 0
     auto operator<=>(const PartId&) const = default;
 };
 
-// Ground given by heights at the corners of square or oblong cells, two triangles each.
+// Ground, given by heights at the corners of square or rectangular cells of two triangles each.
 
 inline constexpr std::uint8_t kHole = 255;  // as a cell's material: nothing is there
 
@@ -235,13 +245,13 @@ struct HeightFieldDescription {
     std::span<const std::uint8_t> materials = {};  // of the cells, row by row: (columns − 1)(rows − 1); empty: all 0
 };
 
-// Corner (i, j) is at (i · spacing.x, height, j · spacing.y), each rounded to double. Cell c = j (columns − 1) + i has
-// triangles 2c and 2c + 1; 2c lies on the side of its corner (i, j). Their common edge leads from (i + 1, j) to (i, j +
-// 1).
+// A height field. Corner (i, j) is at (i · spacing.x, height, j · spacing.y), each rounded to double. Cell c = j
+// (columns − 1) + i has triangles 2c and 2c + 1; 2c lies on the side of its corner (i, j). Their common edge leads from
+// (i + 1, j) to (i, j + 1).
 class HeightField {
   public:
-    // Copies what it needs. Errors: sizes out of range or that do not fit; a height that is NaN, infinite or beyond
-    // kMaxExtent (item: the first such corner); no cell but holes.
+    // Builds a height field; copies the arrays. Errors: sizes out of range or that do not match; a height that is NaN,
+    // infinite or beyond kMaxExtent (item: the first such corner); a field that consists of holes only.
     [[nodiscard]] static Result<HeightField> build(const HeightFieldDescription& description);
 
     [[nodiscard]] std::uint32_t columns() const { return columns_; }
@@ -279,7 +289,7 @@ class HeightField {
     Vector<Span> spans_;
 };
 
-// Many bodies as one.
+// Several bodies as one.
 
 inline constexpr int kMaxCompoundDepth = 16;
 
@@ -288,19 +298,22 @@ struct CompoundChild {
     RigidTransform pose;  // in the compound's frame
 };
 
-// A tree over the children. A child stands where the product of the poses puts it, rounded to double.
+// A compound, with a tree over its children. A child's pose in the world is the product of the poses, rounded to
+// double.
 class Compound {
   public:
-    // Copies the children; what they are views of stays the caller's. A half-space is ground without end: the compound
-    // then has no bounds. Errors: no children; a pose that is not valid or mirrors, compounds in compounds deeper than
-    // kMaxCompoundDepth (item: the child).
+    // Builds a compound. It copies the children; the objects that they are views of stay yours. A half-space is
+    // infinite ground: the compound then has no finite bounds.
+    //
+    // Errors: no children; a pose that is not valid or mirrors; compounds nested deeper than kMaxCompoundDepth (item:
+    // the child).
     [[nodiscard]] static Result<Compound> build(std::span<const CompoundChild> children);
 
     [[nodiscard]] std::span<const CompoundChild> children() const { return children_; }
     [[nodiscard]] int depth() const { return depth_; }  // 1: no compound within
-    // Children that are no compounds, with those of compounds within: PartId::child is less.
+    // Returns the number of children that are not compounds, those of nested compounds included. PartId::child is less.
     [[nodiscard]] std::uint32_t part_count() const { return part_count_; }
-    // The child of that number, with its pose in its own compound. Requires part < part_count().
+    // Returns the child of that number, with its pose in its own compound. Requires part < part_count().
     [[nodiscard]] const CompoundChild& part(std::uint32_t part) const;
     [[nodiscard]] const Aabb& bounds() const { return bounds_; }  // infinite with half-spaces
 
@@ -325,14 +338,15 @@ class Compound {
     bool has_surfaces_ = false;
 };
 
-// Exact formulas, rounded. A triangle has volume 0. Of compounds the sum over the children: what lies in two counts
-// twice. There the inertia about the axis of a child that is h times as long as thick is off by h² roundings. Errors:
-// half-spaces, meshes and height fields, which have no volume (`unsupported`; of a compound's child the item is the
-// child).
+// Returns the mass properties of a body, by exact formulas, rounded. A triangle has volume 0.
+//
+// For compounds it is the sum over the children: a volume that two children share counts twice. The inertia of a
+// compound about the axis of a child that is h times as long as thick is off by h² roundings. Errors: half-spaces,
+// meshes and height fields, which have no volume (`unsupported`; for a compound's child the item is the child).
 [[nodiscard]] Result<MassProperties> mass_properties(const Body& body);
 
-// The farthest point of the body along `direction` (finite, of any length; of length 0 some point of the body), in its
-// frame. Of convex bodies but half-spaces.
+// Returns the farthest point of the body along `direction`, in the body's frame. `direction` is finite and of any
+// length; for length 0, returns some point of the body. For all convex bodies except half-spaces.
 [[nodiscard]] glm::dvec3 support_point(const Body& body, const glm::dvec3& direction);
 
 }  // namespace crofton::convex

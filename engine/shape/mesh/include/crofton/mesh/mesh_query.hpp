@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Questions asked of triangles and meshes: contacts, distances, rays.
+// Queries of triangles and meshes: overlap, contacts, distance, depth, containment, rays.
 #pragma once
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/box.hpp>
@@ -16,29 +16,33 @@ class MeshTree;
 
 // ---- Overlap of two triangles ----
 
-// True iff the closed convex hulls of the three points of each share a point. Coplanar triangles and those that are
-// segments or points are answered like all others. Signs come from a double filter with a proven bound, then from exact
-// arithmetic. Exact while coordinates are 0 or have magnitudes in [1e-70, 1e70]; NaN meets nothing.
+// Tests whether two triangles, the closed convex hulls of their points, share a point. Coplanar triangles, and
+// triangles that are segments or points, are handled as well.
+//
+// Signs come from a double filter with a proven bound, then from exact arithmetic. Exact while coordinates are 0 or
+// have magnitudes in [1e-70, 1e70]; NaN overlaps nothing.
 [[nodiscard]] bool intersects(const Triangle& a, const Triangle& b);
 
 struct SegmentOfContact {
     glm::dvec3 begin{0.0}, end{0.0};
 };
-// Where two triangles that meet do so: the ends of their common segment, equal for a point. For coplanar triangles: the
-// ends of a longest diagonal of their common polygon, at most. Rounded: within 1e-9 of the triangles' size of both.
+// Returns the ends of the common segment of two triangles that overlap, equal for a point. For coplanar triangles they
+// are at most the ends of a longest diagonal of the common polygon. Rounded: within 1e-9 of the triangles' size of
+// both.
 [[nodiscard]] SegmentOfContact contact_segment(const Triangle& a, const Triangle& b);
 
 // ---- Meshes against meshes: overlap, contacts, distance ----
 
-// All queries take the pose of b in a's frame; it has passed validate(RigidTransform). Triangles are a's own and those
-// of b with each vertex put through transform(RigidTransform); for these the answers are exact. Boxes are only ever
-// used to leave out pairs that cannot meet. const, thread-safe; no allocation beyond the growth of the caller's
-// vectors.
+// All queries take the pose of b in a's frame, which must pass validate(RigidTransform).
+//
+// The triangles are a's own, and those of b with each vertex put through transform(RigidTransform). For these the
+// answers are exact; boxes only skip pairs that cannot overlap. The queries are const and thread-safe, and allocate
+// only to grow the caller's vectors.
 
 struct MeshStatistics {
     std::uint64_t box_tests = 0;       // boxes tested against a box
     std::uint64_t triangle_tests = 0;  // pairs of triangles that went through the eight-wide test
-    std::uint64_t exact_tests = 0;  // of those, pairs that needed exact arithmetic (in distance queries: the distance)
+    std::uint64_t exact_tests = 0;     // of those, pairs (or distances) that needed exact arithmetic
 };
 
 // Indices of triangles in mesh a (first) and mesh b (second).
@@ -47,26 +51,27 @@ using TrianglePair = IdPair;
 [[nodiscard]] bool intersects(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& b_to_a,
                               MeshStatistics* statistics = nullptr);
 
-// Replaces `pairs` by all pairs of triangles that meet, sorted.
+// Replaces `pairs` by all pairs of triangles that overlap, sorted.
 void intersecting_triangles(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& b_to_a,
                             Vector<TrianglePair>& pairs, MeshStatistics* statistics = nullptr);
 
-// Where two triangles meet, in a's frame. `normal` is the unit normal of b's triangle, or of a's where b's has none.
-// The segment runs along the cross product of a's and b's normals: counter-clockwise around what lies in both, seen
-// from b.
+// A contact of two triangles, in a's frame. `normal` is the unit normal of b's triangle, or of a's if b's has none. The
+// segment runs along the cross product of a's and b's normals: counter-clockwise around the common region, seen from b.
 struct MeshContact {
     TrianglePair triangles;
     SegmentOfContact segment;
     glm::dvec3 normal{0.0};
 };
-// As intersecting_triangles, with the place of each.
+// Does the same as intersecting_triangles, with the segment and normal of each contact.
 void contacts(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& b_to_a,
               Vector<MeshContact>& found, MeshStatistics* statistics = nullptr);
 
-// A motion of b that ends the contact, containment included: `depth` along the unit vector `direction`. An upper bound
-// of the penetration depth, 0 where they do not meet. It is tried along these: the axes of both meshes' frames and
-// boxes, the mean normal of the contacts, the line of centres. Of meshes that stay apart once they are, as convex ones
-// do, it is the shortest of these motions, to 1e-6 of the meshes' size. Others may part earlier, and meet again.
+// A motion of b that ends the contact, containment included: `depth` along the unit vector `direction`.
+//
+// It is an upper bound of the penetration depth; 0 if they do not overlap. It tries these directions: the axes of both
+// meshes' frames and boxes, the mean normal of the contacts, and the line of centres. If the meshes stay apart once
+// they are apart, as convex ones do, it is the shortest of these motions, to 1e-6 of the meshes' size. Others may
+// separate earlier, and overlap again.
 struct MeshDepth {
     double depth = 0.0;
     glm::dvec3 direction{0.0};
@@ -74,18 +79,20 @@ struct MeshDepth {
 [[nodiscard]] MeshDepth penetration(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& b_to_a,
                                     std::span<const MeshContact> contacts);
 
-// Of a mesh in several pieces each is asked: all of them inside the other mesh, or `partly`: some but not all.
+// The containment of meshes, tested for each piece of a mesh: `a_inside_b` means that all pieces of a lie in b;
+// `partly` means that some pieces do, but not all.
 enum class Containment : std::uint8_t { none, a_inside_b, b_inside_a, partly };
 
-// Whether one mesh lies within the other without their surfaces meeting; `none` when they meet. Only closed pieces
-// contain (MeshPiece): the answer is the parity of their crossings with a line, decided exactly.
+// Tests whether one mesh lies within the other without a contact of their surfaces; returns `none` if the surfaces
+// meet. Only closed pieces contain anything (MeshPiece): the answer is the parity of their crossings with a line,
+// decided exactly.
 [[nodiscard]] Containment containment(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& b_to_a,
                                       MeshStatistics* statistics = nullptr);
-// As above where it is known that the surfaces do not meet.
+// Does the same for meshes whose surfaces are known not to meet.
 [[nodiscard]] Containment containment_of_disjoint(const mesh::MeshTree& a, const mesh::MeshTree& b,
                                                   const RigidTransform& b_to_a);
-// Whether the point lies within the closed pieces of the mesh, their surfaces included; exact while its coordinates are
-// 0 or at least 1e-70 in size. One that is not finite lies in none.
+// Tests whether the point lies within the closed pieces of the mesh, surfaces included. Exact while its coordinates are
+// 0 or at least 1e-70 in magnitude. A point that is not finite lies in none.
 [[nodiscard]] bool contains(const mesh::MeshTree& mesh, const glm::dvec3& point);
 
 struct MeshDistance {
@@ -93,37 +100,41 @@ struct MeshDistance {
     glm::dvec3 on_a{0.0}, on_b{0.0};  // in a's frame
     TrianglePair triangles{};
 };
-// The smallest distance between the surfaces: 0 when they meet and positive when they do not, exactly so; else within
-// 1e-12 of the coordinates' size. Gives up, with `distance` infinite, where it is at least `limit`.
+// Returns the smallest distance between the surfaces: exactly 0 if they meet and positive if they do not, and otherwise
+// within 1e-12 of the coordinates' size. If it is at least `limit`, it stops early, with `distance` infinite.
 [[nodiscard]] MeshDistance distance(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& b_to_a,
                                     double limit = std::numeric_limits<double>::infinity(),
                                     MeshStatistics* statistics = nullptr);
 
-// True iff some point of a is closer than `tolerance` ≥ 0 to some point of b, or they meet.
+// Tests whether some point of a is closer than `tolerance` ≥ 0 to some point of b, or the surfaces meet.
 [[nodiscard]] bool closer_than(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& b_to_a,
                                double tolerance, MeshStatistics* statistics = nullptr);
 
 // ---- Rays and segments ----
 
-// Where a ray enters a box, or 0 where it starts inside. Rounded: a grazing hit within 1e-14 of the coordinates' size
-// may be told either way.
+// Returns the t at which a ray enters a box, or 0 if it starts inside. Rounded: a grazing hit within 1e-14 of the
+// coordinates' size may be decided either way.
 [[nodiscard]] std::optional<double> raycast(const Ray& ray, const Obb& box);
 
-// Whether the ray meets a triangle is decided exactly, edges and corners included, and the ray's start and end. So
-// nothing slips through between triangles that share an edge. t is rounded, but stays within 0 … max_t; it is told
-// of directions whose length is from 1e-150 to 1e150. A ray within the plane of a triangle does not hit that triangle.
+// Returns the t at which a ray hits a triangle.
+//
+// Whether it hits is exact, edges, corners and the ray's ends included, so that nothing slips through between triangles
+// that share an edge. t is rounded, but stays within 0 … max_t. It is returned for directions whose length is from
+// 1e-150 to 1e150. A ray within the plane of a triangle does not hit that triangle.
 [[nodiscard]] std::optional<double> raycast(const Ray& ray, const Triangle& triangle);
 
 struct RayHit {
     double t = 0.0;
     std::uint32_t triangle = 0;
 };
-// The nearest triangle, decided likewise for origins within 1e37; of hits with equal t that of the lowest index.
+// Returns the nearest triangle, with the same exactness for origins within 1e37; of hits with equal t, that of the
+// lowest index.
 [[nodiscard]] std::optional<RayHit> raycast(const Ray& ray, const mesh::MeshTree& mesh);
-// Many rays: hits[i] is what raycast(rays[i], mesh) gives, the same bits. Where rays are prepared
-// (MeshTree::prepare_rays), sixteen at a time go through the hierarchy as a packet. The closer they lie together, the
-// less time that takes. A picture's are best cast in tiles of 4 × 4 pixels. Requires hits.size() >= rays.size().
-// Allocates nothing.
+// Casts many rays: hits[i] has the same bits as raycast(rays[i], mesh).
+//
+// If rays are prepared (MeshTree::prepare_rays), sixteen at a time go through the hierarchy as a packet. This is faster
+// the closer they lie together; cast the rays of a picture in tiles of 4 × 4 pixels. Requires hits.size() >=
+// rays.size(). Allocates nothing.
 void raycast(std::span<const Ray> rays, const mesh::MeshTree& mesh, std::span<std::optional<RayHit>> hits);
 [[nodiscard]] bool hits_any(const Ray& ray, const mesh::MeshTree& mesh);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Light in a scene of patches, by random walks along global lines: usable at any time, better with every run.
+// Light in a scene of patches, by random walks along global lines. It is usable after the first run, and better with
+// every run.
 #pragma once
 #include <crofton/core/executor.hpp>
 #include <crofton/core/stop.hpp>
@@ -32,63 +33,68 @@ enum class Transport : std::uint8_t {
 struct SolverOptions {
     std::uint64_t lines = 0;       // global lines of a run's first gathering; 0: 64 bundles
     std::uint64_t first_shot = 0;  // rays from the lamps per run; 0: a quarter of the lines, within [2^12, 2^18]
-    std::optional<lines::LineMethod> method{};  // absent: bundles
+    std::optional<lines::LineMethod> method{};  // default: bundles
     Transport transport = Transport::global;
     sampling::Sequence sequence = sampling::Sequence::quasi_random;
     std::uint64_t seed = 1;
-    double cutoff = 1e-3;  // a run ends when what still travels is below this share of all light
+    double cutoff = 1e-3;  // a run ends when the light that still travels is below this share of all light
     std::uint32_t most_bounces = 200;
     Outside outside{};
 };
 
-// One run. First lamps shoot local lines and patches look for the sun; global lines would rarely meet what is small and
-// bright. Then each patch gathers the mean of what its rays along N global lines bring. That is the sky, and what the
-// runs before know of all patches' light. What that gathering finds beyond what was known travels on, gathered along
-// new and fewer lines, until it is spent. A run's expectation is the light itself, whatever the runs before knew: that
-// serves as a control variate. The better it is known, the less the many bounces spread.
+// Computes light in runs.
 //
-// The result is the mean of the runs, its error their spread: it falls as 1/√runs. With quasi-random numbers the true
-// error is smaller than this estimate, since runs share a sequence and make up for each other.
+// In a run, lamps first shoot local lines, and patches test whether they see the sun, because global lines would rarely
+// meet small bright lamps. Then each patch gathers the mean of the light that its rays along N global lines bring: the
+// sky's, and the light of all patches as known from earlier runs. The light that a gathering finds in addition to the
+// known light travels on: it is gathered along new and fewer lines, until it is spent. The expected value of a run is
+// the exact light, whatever the earlier runs found: their result is a control variate. The better it is, the less the
+// many bounces spread.
 //
-// Where solids intersect, parts of patches lie inside: a ray from there meets a back first. Such rays count as not
-// drawn, so a patch's light is that of the part that can be seen.
-// What is not exact: a patch without any ray in a gathering is given four local ones. unseen() is the share of patches
-// that even so saw nothing: those buried.
+// The result is the mean of the runs. Its error is their spread, which falls as 1/√runs. With quasi-random numbers the
+// true error is smaller than this estimate, because runs share a sequence and compensate each other.
+//
+// Where solids intersect, parts of patches lie inside: a ray from there meets a back first. Such rays do not count, so
+// a patch's light is that of its visible part. One step is not exact: a patch that gets no ray in a gathering gets four
+// local rays. unseen() is the share of patches that saw nothing even so, because they are buried.
 class Solver {
   public:
     // The patches must outlive the solver. Errors: no light at all, neither emission, sky nor sun; numbers out of
     // range.
     [[nodiscard]] static Result<Solver> create(const Patches& patches, const SolverOptions& options = {});
 
-    // One more run. The same bits for any executor.
+    // Makes one more run. The bits are the same for any executor.
     void run(Executor& executor = serial_executor());
-    // The same, unless `should_stop` returns true on the way: then the run is dropped as if it had not begun, and the
-    // result is false. `share_done` is always 0.
+    // Does the same, unless `should_stop` returns true meanwhile. The run is then discarded as if it had not begun, and
+    // the function returns false. `share_done` is always 0.
     bool run(StopCallback should_stop, void* user, Executor& executor = serial_executor());
 
     [[nodiscard]] std::uint64_t runs() const { return runs_; }
     [[nodiscard]] std::span<const glm::vec3> radiosity() const { return mean_; }  // by patch; the mean over runs
-    // What arrives per unit area; of patches of reflectance 0 too.
+    // Returns the incoming light per unit area, also for patches of reflectance 0.
     [[nodiscard]] Vector<glm::vec3> irradiance() const;
-    // Root of the area-weighted mean square standard error over that of the radiosity, all channels together; infinite
-    // before the second run.
+    // Returns the root of the area-weighted mean square standard error over that of the radiosity, all channels
+    // together. It is infinite before the second run.
     [[nodiscard]] double relative_error() const;
-    // relative_error() is a mean: bright patches weigh most. This is the share of patches, by number, whose radiosity
-    // is within `tolerance` of its own size, all channels together. By the spread of their runs and Student's t; so it
-    // is rather too small after few runs, and 0 before the third. Patches that give off nothing are left out.
+    // Returns the share of patches, by number, whose radiosity is within `tolerance` of its own size, all channels
+    // together.
+    //
+    // relative_error() is a mean in which bright patches weigh most; this is not. It uses the spread of the runs and
+    // Student's t, so it tends to be too small after few runs, and is 0 before the third. Patches that give off no
+    // light are left out.
     [[nodiscard]] double share_within(double tolerance) const;
     [[nodiscard]] double unseen() const;
-    // The share of a patch that lies in the open, as its rays so far tell. It is 0 where all is buried, 1 before the
-    // first run.
+    // Returns the share of a patch that is not buried, by its rays so far. It is 0 if all of it is buried, and 1 before
+    // the first run.
     [[nodiscard]] double exposed_share(std::size_t patch) const;
     [[nodiscard]] lines::LineMethod method() const { return method_; }
     [[nodiscard]] std::uint64_t lines_traced() const { return lines_traced_; }
     [[nodiscard]] std::uint32_t bounces_of_last_run() const { return bounces_; }
-    // All that this object keeps, patches apart: linear in the triangles.
+    // Returns the memory of this object without the patches, which is linear in the triangles.
     [[nodiscard]] std::size_t bytes() const;
 
-    // All that resume() needs to go on as if nothing had happened, on machines of the same byte order. Errors of
-    // resume: damaged bytes; a checkpoint of other patches or options.
+    // checkpoint() returns the data that resume() needs to continue with the same bits, on machines of the same byte
+    // order. Errors of resume: damaged bytes; a checkpoint of other patches or options.
     [[nodiscard]] Vector<std::byte> checkpoint() const;
     [[nodiscard]] Result<void> resume(std::span<const std::byte> bytes);
 
@@ -142,9 +148,10 @@ class Solver {
     crofton::detail::StopSignal* stop_ = nullptr;  // of the run that is being made, if it may be stopped
 };
 
-// A bake in parts: as many runs as one likes, on any machines, to the same bytes.
+// Bakes in parts: any number of runs, on any machines, with the same bytes as result.
 
-// Runs that know of each other's light. Those of other chains are independent: each part of a bake is some chains.
+// The number of consecutive runs that use each other's light. Chains are independent of each other; each part of a bake
+// consists of chains.
 inline constexpr std::uint64_t kRunsOfChain = 8;
 
 // One of `count` parts of a bake, which may run on different machines.
@@ -153,36 +160,40 @@ struct Shard {
 };
 
 struct BakeLimits {
-    double seconds = std::numeric_limits<double>::infinity();  // no further chain is begun then; one always is
+    double seconds = std::numeric_limits<double>::infinity();  // no further chain begins after this; at least one does
     Shard shard = {};
-    // Once it returns true, the bake stops and keeps the chains that are complete.
+    // If it returns true, the bake stops and keeps the complete chains.
     StopCallback should_stop = nullptr;
     void* user = nullptr;
 };
 
-// Runs of a Solver in chains of kRunsOfChain. Chain c is a function of the patches, the options and c. Sums over chains
-// are added up in one binary tree, by their numbers. So any executor, order, stop and split gives the same bytes.
+// Makes runs of a Solver in chains of kRunsOfChain.
+//
+// Chain c is a function of the patches, the options and c. Sums over chains are added in one binary tree, by their
+// numbers. So any executor, order, stop and split gives the same bytes.
 class Bake {
   public:
-    // `runs` in all. The patches must outlive the bake. Errors: as Solver::create; no run, or more than 2^32.
+    // Makes a bake of `runs` runs in total. The patches must outlive it. Errors: as Solver::create; no run, or more
+    // than 2^32.
     [[nodiscard]] static Result<Bake> create(const Patches& patches, const SolverOptions& options, std::uint64_t runs);
 
-    // Makes what is left of a shard, up to the limits. Errors: a shard's index that is not below its count; a count of
-    // 0; out of memory. What was found before is kept.
+    // Makes the remaining runs of a shard, up to the limits. Errors, which keep the results so far: a shard's index
+    // that is not below its count; a count of 0; out of memory.
     [[nodiscard]] Result<void> run(const BakeLimits& limits = {}, Executor& executor = serial_executor());
     [[nodiscard]] std::uint64_t runs_planned() const { return sums_.runs; }
     [[nodiscard]] std::uint64_t runs_done() const { return solver_.runs(); }
     [[nodiscard]] bool is_complete() const { return runs_done() == runs_planned(); }
-    // The light that all runs so far found, with their error.
+    // Returns the light of all runs so far, with its error.
     [[nodiscard]] const Solver& solver() const { return solver_; }
 
-    // All that is known, to be stored: the same bytes for the same chains.
+    // Returns all results so far, to be stored: the same bytes for the same chains.
     [[nodiscard]] Result<Vector<std::byte>> state() const;
-    // Adds what a state of the same bake holds: a checkpoint, a part. Twice is once. Errors: damaged (parse); of other
-    // patches, options or another number of runs (invalid_argument); then nothing has changed.
+    // Adds the results in a state of the same bake, such as a checkpoint or a part. Adding one twice counts once.
+    // Errors, which change nothing: a damaged state (parse); a state of other patches, options or another number of
+    // runs (invalid_argument).
     [[nodiscard]] Result<void> add_state(std::span<const std::byte> state);
 
-    // What some neighbouring chains found together.
+    // The sum of the results of some consecutive chains.
     struct Sum {
         std::uint64_t begin = 0, end = 0;  // chains: as many as a power of two, of which `begin` is a multiple
         std::uint64_t lines = 0, unseen = 0, seen = 0;
@@ -191,7 +202,7 @@ class Bake {
     };
     struct Sums {
         std::uint64_t fingerprint = 0, patches = 0, runs = 0;
-        Vector<Sum> all;  // ascending, no two that belong together
+        Vector<Sum> all;  // ascending, no two that could be merged
     };
 
   private:
@@ -201,14 +212,15 @@ class Bake {
     Sums sums_;
 };
 
-// Whether these bytes begin as a state of a bake of light does.
+// Tests whether these bytes begin like a state of a light bake.
 [[nodiscard]] bool is_bake_state(std::span<const std::byte> bytes);
 
-// Parts of one bake as one: the same bytes as from a single run. Errors: none given; item, the part: damaged, or of
-// another bake.
+// Merges parts of one bake into the same bytes as those of a single run. Errors: no parts; a part that is damaged or of
+// another bake (item: the part).
 [[nodiscard]] Result<Vector<std::byte>> merge_states(std::span<const std::span<const std::byte>> states);
 
-// Runs that a state lacks, as shards of `count`: those that must run again. Ascending. Errors: damaged; a count of 0.
+// Returns the shards of `count` whose runs a state lacks, and which must run again, ascending. Errors: a damaged state;
+// a count of 0.
 [[nodiscard]] Result<Vector<std::uint32_t>> missing_shards(std::span<const std::byte> state, std::uint32_t count);
 
 }  // namespace crofton::radiosity

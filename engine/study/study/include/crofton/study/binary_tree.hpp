@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A binary hierarchy of boxes built by the chance of a visit. It is for studying what a criterion is worth, and for
-// items that come and go. BoxTree is the one to cull with where speed counts. This is the one to compare by, and its
-// inner bounds may be oriented box by box (docs/notes/boxtree.md).
+// A binary hierarchy of boxes, built by the probability of a visit. Use it to compare criteria, and for items that come
+// and go; its inner bounds may be oriented box by box (docs/notes/boxtree.md). BoxTree is faster for culling.
 #pragma once
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/core/memory.hpp>
@@ -18,24 +17,25 @@ using boxtree::ItemId;
 inline constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
 enum class Split : std::uint8_t {
-    median,  // halves along the longest axis: no measure at all
-    nested,  // least Σ criterion(side) · items(side): the chance of a visit where bounds are nested
+    median,  // halves along the longest axis, without any measure
+    nested,  // least Σ criterion(side) · items(side): the probability of a visit if bounds are nested
     sampled  // least Σ queries(side) · items(side), over the sampled queries that straddle *all* ancestors' bounds
 };
 
 struct BinaryTreeOptions {
     Split split = Split::nested;
-    // What Split::nested weighs sides by. The area wins there even for frusta. items(side) overrates what is below a
-    // side, and more so for M, which shrinks more slowly on the way down (docs/notes/boxtree.md).
+    // The weight of sides for Split::nested. The area is best even for frusta, because items(side) overestimates the
+    // cost below a side, and more so for M, which shrinks more slowly on the way down (docs/notes/boxtree.md).
     measure::Criterion split_criterion = measure::minimal_area();
-    // What chooses places for insertion, and among bounds. Here the cost is the expected number of visits itself. With
-    // (2) for the frustum in use it is exact for nested boxes.
+    // The criterion that chooses places for insertion, and among bounds. Here the cost is the expected number of visits
+    // itself. With (2) for the frustum in use it is exact for nested boxes.
     measure::Criterion criterion = measure::minimal_perimeter();
-    // false: axis-aligned bounds, nested by nature. true: oriented ones, which need not lie within their parent's. Each
-    // is the best of a few fits, by the criterion (nested, median) or by the queries that straddle all ancestors
-    // (sampled).
+    // false: axis-aligned bounds, which are always nested. true: oriented bounds, which need not lie within their
+    // parent's. Each is the best of a few fits, by the criterion (nested, median) or by the queries that straddle all
+    // ancestors (sampled).
     bool oriented = false;
-    // For Split::sampled; where fewer than min_queries are left, the criterion decides. Lives as long as build().
+    // For Split::sampled. If fewer than min_queries are left, the criterion decides. It must live as long as build()
+    // runs.
     const QuerySample* queries = nullptr;
     std::uint32_t min_queries = 64;
 };
@@ -52,16 +52,18 @@ class BinaryTree {
         ItemId item = kNone;  // leaves only
     };
 
-    // Errors: a box that fails validate(Obb), by its index; more than 2^30; a criterion that fails validate;
-    // Split::sampled without queries. Items are numbered as in `boxes`. Deterministic.
+    // Builds a tree; deterministic. Items are numbered as in `boxes`. Errors: a box that fails validate(Obb), by its
+    // index; more than 2^30; a criterion that fails validate; Split::sampled without queries.
     [[nodiscard]] static Result<BinaryTree> build(std::span<const Obb> boxes, const BinaryTreeOptions& options = {});
 
-    // Places the box where the expected number of visits grows least, by branch and bound over the whole tree. Δ =
-    // criterion of the new inner node + what it adds to its ancestors. Goldsmith and Salmon (1987) descend greedily and
-    // by area. Bounds that it changes become axis-aligned. Ids of removed items are used again. Errors: as
+    // Inserts a box where the expected number of visits grows least, by branch and bound over the whole tree.
+    //
+    // Δ = criterion of the new inner node + its addition to its ancestors. (Goldsmith and Salmon (1987) descend
+    // greedily and by area.) Bounds that it changes become axis-aligned. Ids of removed items are reused. Errors: as
     // validate(Obb).
     [[nodiscard]] Result<ItemId> insert(const Obb& box);
-    // False where there is no such item. The boxes above shrink again; bounds that change become axis-aligned.
+    // Removes an item; returns false if it does not exist. The boxes above shrink again; bounds that change become
+    // axis-aligned.
     bool remove(ItemId item);
 
     [[nodiscard]] std::size_t item_count() const { return item_count_; }
@@ -70,12 +72,13 @@ class BinaryTree {
     [[nodiscard]] bool holds(ItemId item) const { return item < leaf_of_.size() && leaf_of_[item] != kNone; }
     [[nodiscard]] const Node* root() const { return root_ == kNone ? nullptr : &nodes_[root_]; }
     [[nodiscard]] const Node& node(std::uint32_t n) const { return nodes_[n]; }
-    // Σ criterion over the inner nodes: half the expected number of tests below the root, up to a factor and a
+    // Returns Σ criterion over the inner nodes: half the expected number of tests below the root, up to a factor and a
     // constant.
     [[nodiscard]] double cost() const;
 
-    // test(bound) → Visit for the root and for both children of every node that said descend. A leaf that says descend
-    // or take is found. All leaves below a node that says take are found without further tests. Returns how many tests.
+    // Visits the tree. It calls test(bound) → Visit for the root and for both children of every node that returned
+    // descend. A leaf that returned descend or take is found. All leaves below a node that returned take are found
+    // without further tests. Returns the number of tests.
     template <class Test, class Found>
     std::size_t visit(Test test, Found found) const;
 
@@ -97,8 +100,8 @@ class BinaryTree {
     std::size_t item_count_ = 0;
 };
 
-// Replaces `ids` by the items whose boxes the view sees, ascending; returns how many bounds were tested. Same answers
-// as cull's queries of a BoxTree.
+// Replaces `ids` by the items whose boxes the view sees, ascending; returns the number of tested bounds. The answers
+// are those of cull's queries of a BoxTree.
 std::size_t find_visible(const BinaryTree& tree, const cull::View& view, Vector<ItemId>& ids);
 
 template <class Test, class Found>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Convex bodies of space by their support function: the hull of points, grown by a radius. Spheres, boxes, frusta, flat
-// polygons, segments and hulls are all of this kind.
+// Convex bodies in space, by their support function: the hull of points, grown by a radius. Spheres, boxes, frusta,
+// flat polygons, segments and hulls have this form.
 #pragma once
 #include <crofton/core/error.hpp>
 #include <crofton/core/memory.hpp>
@@ -21,11 +21,11 @@ struct ConvexBody {
     [[nodiscard]] static Result<ConvexBody> frustum(const Camera& camera);
 };
 
-// h(n) = max over the body of dot(x, n), for n of any length.
+// Returns h(n) = max over the body of dot(x, n), for n of any length.
 [[nodiscard]] double support(const ConvexBody& body, const glm::dvec3& n);
-// A point of the body where it is attained; `n` is a unit vector.
+// Returns a point of the body with that maximum; `n` is a unit vector.
 [[nodiscard]] glm::dvec3 support_point(const ConvexBody& body, const glm::dvec3& n);
-// The distance of the two planes across unit vector n that touch the body.
+// Returns the distance of the two planes that are perpendicular to the unit vector n and touch the body.
 [[nodiscard]] inline double breadth(const ConvexBody& body, const glm::dvec3& n) {
     return support(body, n) + support(body, -n);
 }

@@ -15,10 +15,11 @@ struct Diameter {
     Point from{0.0}, to{0.0};
 };
 
-// In the plane, by rotating calipers around the hull: O(n log n). In space, over pairs of the hull's corners, those far
-// from the middle first. It ends where two such distances cannot add up to more than what was found. O(h²) at worst,
-// for h corners on a sphere. Largest up to rounding (about 1e-15 of the length). One point: 0. Errors: no points; a
-// coordinate that is NaN, infinite or beyond kMaxCoordinate, by index.
+// Returns the diameter, up to rounding (about 1e-15 of the length); 0 for one point.
+//
+// In the plane it uses rotating calipers around the hull: O(n log n). In space it tests pairs of the hull's corners,
+// those far from the middle first, until two such distances cannot add up to more than the best so far: O(h²) at worst,
+// for h corners on a sphere. Errors: no points; a coordinate that is NaN, infinite or beyond kMaxCoordinate, by index.
 [[nodiscard]] Result<Diameter<glm::dvec2>> diameter(std::span<const glm::dvec2> points);
 [[nodiscard]] Result<Diameter<glm::dvec3>> diameter(std::span<const glm::dvec3> points);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A light field: global lines kept with the light along them, from which pictures are drawn without the scene.
+// A light field: global lines stored with the light along them, from which pictures are drawn without the scene.
 #pragma once
 #include <crofton/core/error.hpp>
 #include <crofton/core/executor.hpp>
@@ -12,15 +12,15 @@
 
 namespace crofton::study {
 
-// What leaves a triangle's front at a point of it, one value per colour channel, in all directions alike: surfaces are
-// diffuse. The unit normal points out of the front.
+// The light that leaves a triangle's front at a point, one value per colour channel. It is the same in all directions,
+// because surfaces are diffuse. The unit normal points out of the front.
 struct Leaving {
     glm::vec3 light{0.0f};
     glm::vec3 normal{0.0f};
 };
 using LightAt = FunctionRef<Leaving(std::uint32_t triangle, const glm::dvec3& point)>;
 
-// Row by row from the top. depths: distances from the eye, infinite where the sky is seen.
+// A picture, row by row from the top. `depths` are distances from the eye, infinite for the sky.
 struct LightPicture {
     std::uint32_t width = 0, height = 0;
     Vector<glm::vec3> pixels;
@@ -33,11 +33,11 @@ struct LightFieldOptions {
     glm::vec3 sky{0.0f};  // what comes along a line from beyond the scene
 };
 
-// Uniform lines (theory.md section 6) in bundles of parallel ones, with all their crossings: where, and the light
-// that leaves there along the line. It knows neither triangles nor patches any more.
+// Stores uniform lines (docs/theory.md, section 6) in bundles of parallel ones, with all their crossings: their places,
+// and the light that leaves there along the line. It stores neither triangles nor patches.
 class LightField {
   public:
-    // Errors: options out of range; a box that is flat in two directions. The same bits for any executor.
+    // Errors: options out of range; a box that is flat in two directions. The bits are the same for any executor.
     [[nodiscard]] static Result<LightField> record(const lines::LineTracer& scene, LightAt light,
                                                    const LightFieldOptions& options = {},
                                                    Executor& executor = serial_executor());
@@ -53,17 +53,19 @@ class LightField {
         double aperture = 0.0;      // radius of the sphere around the eye through which the lines used pass
         std::uint64_t samples = 0;  // points in the picture that they gave
     };
-    // The lines that pass near the eye see nearly what it sees. Where such a line first arrives, either way, is drawn
-    // at its true place in the picture. Pixels take the nearest of these points, hidden ones left out. The sphere is
-    // the least that gives the samples asked for, so with more lines it shrinks, and with it the error. Errors: as
-    // validate(Camera); an orthographic camera; a picture of no size or beyond 2^24 pixels; options out of range; no
-    // line near the eye, or nothing recorded.
+    // Draws a picture from lines that pass near the eye, which see nearly what it sees.
+    //
+    // The first crossing of such a line, in either direction, is drawn at its true place in the picture. Pixels take
+    // the nearest of these points, without hidden ones. The sphere around the eye is the smallest that gives the
+    // desired samples. With more lines it shrinks, and with it the error. Errors: as validate(Camera); an orthographic
+    // camera; a picture of no size or beyond 2^24 pixels; options out of range; no line near the eye, or nothing
+    // recorded.
     [[nodiscard]] Result<Drawn> draw(const Camera& camera, std::uint32_t width, std::uint32_t height,
                                      const DrawOptions& options) const;
 
-    // Where lines within `aperture` of the eye first arrive, to either side, and the distance at which they pass it.
-    // Arrivals at backs, and at fronts that face away from the eye, are left out; of parallel lines only the nearest
-    // arrives at the sky.
+    // The first crossing of a line within `aperture` of the eye, to either side, and the distance at which the line
+    // passes the eye. Crossings with backs, and with fronts that face away from the eye, are left out. Of parallel
+    // lines only the nearest reaches the sky.
     struct Arrival {
         glm::dvec3 point{0.0};  // relative to the eye; of what comes from the sky a unit direction
         glm::vec3 light{0.0f};
@@ -95,13 +97,13 @@ class LightField {
     Vector<Bundle> bundles_;
 };
 
-// The picture from the scene itself: one ray through each pixel's middle, no light from backs.
+// Draws the picture from the scene itself: one ray through the middle of each pixel, no light from backs.
 [[nodiscard]] Result<LightPicture> direct_picture(const lines::LineTracer& scene, LightAt light, const glm::vec3& sky,
                                                   const Camera& camera, std::uint32_t width, std::uint32_t height,
                                                   Executor& executor = serial_executor());
 
-// The mean absolute difference of all pixels and channels over the mean of `truth`; 0 for equal pictures. Requires
-// equal sizes.
+// Returns the mean absolute difference of all pixels and channels over the mean of `truth`; 0 for equal pictures.
+// Requires equal sizes.
 [[nodiscard]] double relative_difference(const LightPicture& picture, const LightPicture& truth);
 
 }  // namespace crofton::study

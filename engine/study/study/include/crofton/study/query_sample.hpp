@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A fixed sample of uniform queries, to count those that hit several boxes where no formula says how many (theory.md
+// A fixed sample of uniform queries, to count those that hit several boxes if there is no formula (docs/theory.md,
 // section 4).
 #pragma once
 #include <array>
@@ -17,34 +17,38 @@ class QuerySample {
   public:
     QuerySample() = default;  // no queries
 
-    // Quasi-random queries, by seed. They are planes and lines that hit the region, or frusta of this camera whose own
-    // box, grown by the region's radius, contains its centre. All frusta that hit anything inside the region are among
-    // these. At most 2^24. Errors: a radius that is not positive and finite; a count that is 0 or too large; as
-    // measure::intrinsic_volumes_of_frustum for the camera.
+    // Draw quasi-random queries by seed, at most 2^24.
+    //
+    // They are planes and lines that hit the region, or frusta of this camera whose own box, grown by the region's
+    // radius, contains its centre. These include all frusta that hit anything inside the region. Errors: a radius that
+    // is not positive and finite; a count that is 0 or too large; as measure::intrinsic_volumes_of_frustum for the
+    // camera.
     [[nodiscard]] static Result<QuerySample> planes(const Sphere& region, std::uint32_t count, std::uint64_t seed);
     [[nodiscard]] static Result<QuerySample> lines(const Sphere& region, std::uint32_t count, std::uint64_t seed);
     [[nodiscard]] static Result<QuerySample> frusta(const Camera& camera, const Sphere& region, std::uint32_t count,
                                                     std::uint64_t seed);
 
     [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(queries_.size()); }
-    // The measure of all queries sampled from, normalised as in theory.md (4), (5) and (1). A share of the queries
-    // times this is a measure.
+    // Returns the measure of the set that the queries are sampled from, normalised as in docs/theory.md (4), (5) and
+    // (1). A share of the queries times this is a measure.
     [[nodiscard]] double measure() const { return measure_; }
 
-    // Whether query i meets the box, decided in double: rounding decides where they touch.
+    // Tests whether query i meets the box, in double: if they touch, rounding decides.
     [[nodiscard]] bool hits(std::uint32_t i, const Obb& box) const;
 
-    // Whether query i meets the convex hull of points, by its triangles. If so, it meets every convex body around them:
-    // by a margin of 2^-46 of the distances from the origin. What only touches says no, and so do frusta that no edge
-    // of the hull enters. Planes need no triangles.
+    // Tests whether query i meets the convex hull of points, by its triangles, and so meets every convex body around
+    // them, by a margin of 2^-46 of the distances from the origin.
+    //
+    // Returns false for queries that only touch, and for frusta that no edge of the hull enters. Planes need no
+    // triangles.
     [[nodiscard]] bool surely_hits(std::uint32_t i, std::span<const glm::dvec3> points,
                                    std::span<const std::uint32_t> triangles) const;
 
-    // Whether it meets the box without containing it, so that a traversal must go on below it. Planes and lines contain
-    // nothing.
+    // Tests whether it meets the box without containing it, so that a traversal must descend below it. Planes and lines
+    // contain nothing.
     [[nodiscard]] bool straddles(std::uint32_t i, const Obb& box) const;
 
-    // The queries among `candidates` that hit the box, in order.
+    // Returns the queries among `candidates` that hit the box, in order.
     [[nodiscard]] Vector<std::uint32_t> hitting(std::span<const std::uint32_t> candidates, const Obb& box) const;
     [[nodiscard]] Vector<std::uint32_t> all() const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The sphere around an object that fewest planes hit together with all its ancestors' bounds, with a certified gap.
+// The sphere around an object that the fewest planes hit together with all its ancestors' bounds, with a proven gap.
 #pragma once
 #include <crofton/core/error.hpp>
 #include <crofton/geometry/shapes.hpp>
@@ -23,13 +23,15 @@ struct SphereGivenAncestors {
     std::uint64_t cells = 0;
 };
 
-// All measures are by the same 1,024 directions, a quadrature within about 1e-3 of (4); the certificate is for it. With
-// h the sphere's support and A the least of the ancestors', the measure is 4π × the mean of min(A, h) over directions.
-// That is so since all hold the object. Branch and bound over centres c = c₀ + δ. For any point p of the object the
-// radius is at least |p − c₀| + e·δ, e the unit vector from p to c₀. So h is at least a linear function of δ, the mean
-// of min(A, that) is concave, and over a cube least in a corner. Errors: no points; NaN or infinite ones (by index); as
-// validate_bodies for ancestors; an object that sticks out of them across one of these directions; options out of
-// range.
+// Finds the sphere, with a certificate.
+//
+// All measures use the same 1,024 directions, a quadrature within about 1e-3 of (4); the certificate holds for it. With
+// h the sphere's support and A the least of the ancestors', the measure is 4π × the mean of min(A, h) over directions,
+// because all contain the object. Branch and bound over centres c = c₀ + δ: for any point p of the object the radius is
+// at least |p − c₀| + e·δ, with e the unit vector from p to c₀. So h is at least a linear function of δ, the mean of
+// min(A, that) is concave, and over a cube it is smallest in a corner. Errors: no points; NaN or infinite ones (by
+// index); as validate_bodies for ancestors; an object that sticks out of them in one of these directions; options out
+// of range.
 [[nodiscard]] Result<SphereGivenAncestors> sphere_given_ancestors(std::span<const glm::dvec3> points,
                                                                   std::span<const ConvexBody> ancestors,
                                                                   const SphereOptions& options = {});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Lists of bounds: of any kind at rest, boxes that move.
+// Lists of bounds, and a list of moving boxes to use with a tree.
 #pragma once
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/core/error.hpp>
@@ -14,8 +14,7 @@
 
 namespace crofton::cull {
 
-// Flat lists of boxes, axis-aligned boxes or spheres, laid out for testing all of them against views at the speed of
-// memory.
+// Flat lists of boxes, axis-aligned boxes or spheres, laid out so that queries test all of them at the speed of memory.
 
 // Laid out for vector kernels (internal).
 struct RowBlock;
@@ -38,8 +37,8 @@ struct RecordOf<Sphere> {
     using Type = SphereRecord;
 };
 
-// 40 bytes a box (24 a sphere) beside the user's bounds, which queries ask for again: the few that floats cannot decide
-// are decided there.
+// A list of bounds. It takes 40 bytes a box (24 a sphere) in addition to your bounds. Pass these to queries again: the
+// few bounds that floats cannot decide are decided from them.
 template <class Bound>
 class BoundSet {
   public:
@@ -52,14 +51,14 @@ class BoundSet {
     BoundSet(BoundSet&&) noexcept;
     BoundSet& operator=(BoundSet&&) noexcept;
 
-    // Bounds that are not valid (not finite, beyond 1e30, an empty Aabb, a negative radius) may be among them: they are
-    // straddling.
+    // Sets all bounds. Bounds that are not valid (not finite, beyond 1e30, an empty Aabb, a negative radius) are
+    // allowed and are straddling.
     void assign(std::span<const Bound> bounds, Executor& executor = serial_executor());
-    // bounds[i] has changed, for each of `items`. Requires indices below size(). Bounds that move far from where they
-    // were cost their queries more; when many have, their chunk is laid out anew.
+    // Updates bounds[i] for each i of `items`. Requires indices below size(). Queries of bounds that have moved far
+    // cost more; once many have, their chunk is laid out again.
     void update(std::span<const std::uint32_t> items, std::span<const Bound> bounds);
-    // All may have changed, and be more or fewer than before. Returns the first that is not valid (see assign; a box
-    // must pass validate(Obb)), or size().
+    // Updates all bounds; there may be more or fewer than before. Returns the index of the first that is not valid (see
+    // assign; a box must pass validate(Obb)), or size().
     std::size_t update(std::span<const Bound> bounds, Executor& executor = serial_executor());
 
     [[nodiscard]] std::size_t size() const;
@@ -85,59 +84,66 @@ using BoxSet = BoundSet<Obb>;
 using AabbSet = BoundSet<Aabb>;
 using SphereSet = BoundSet<Sphere>;
 
-// The verdicts of classify(view.frustum, bounds[i], mode) for all bounds; `bounds` are those that the set was given.
-// The view's layers are not looked at. Allocates nothing once `verdicts` has been used for a set of this size.
+// Computes the verdicts of classify(view.frustum, bounds[i], mode) for all bounds. Pass the `bounds` that the set was
+// given. Ignores the view's layers. Allocates nothing once `verdicts` has been used for a set of this size.
 template <class Bound>
 void find_visible(const BoundSet<Bound>& set, std::type_identity_t<std::span<const Bound>> bounds, const View& view,
                   VerdictBits& verdicts, CullMode mode = CullMode::exact, Executor& executor = serial_executor());
 
-// As above, without what is not worth drawing: bounds[i] is item i of `limits`, in all layers of the view. Statistics
-// count what the view sees.
+// Does the same with draw limits: bounds[i] is item i of `limits`, in all layers of the view. Statistics count the
+// bounds that the view sees.
 template <class Bound>
 void find_visible(const BoundSet<Bound>& set, std::type_identity_t<std::span<const Bound>> bounds, const View& view,
                   const DrawLimits& limits, VerdictBits& verdicts, CullMode mode = CullMode::exact,
                   Executor& executor = serial_executor());
 
-// Up to 32 views in one pass: bit v of view_masks[i] says that views[v] sees bound i. Without layer masks everything is
-// in all layers; layers are looked at last, so that `statistics`, one per view or none, count all bounds. Requires one
-// view mask, and one layer mask or none, per bound. Allocates nothing.
+// Tests up to 32 views in one pass: bit v of view_masks[i] is set if views[v] sees bound i.
+//
+// Without layer masks every bound is in all layers. Layers are tested last, so `statistics`, one per view or none,
+// count all bounds. Requires one view mask, and one layer mask or none, per bound. Allocates nothing.
 template <class Bound>
 Result<void> find_visible(const BoundSet<Bound>& set, std::type_identity_t<std::span<const Bound>> bounds,
                           std::span<const std::uint32_t> layer_masks, std::span<const View> views,
                           std::span<std::uint32_t> view_masks, CullMode mode = CullMode::exact,
                           Executor& executor = serial_executor(), std::span<Statistics> statistics = {});
 
-// The indices of the bits that are set, ascending, into `ids`, which needs room for 16 more than there are; returns how
-// many.
+// Writes the indices of the set bits to `ids`, ascending, and returns their number. `ids` needs room for 16 more than
+// there are.
 std::size_t list_bits(std::span<const std::uint64_t> bits, std::span<ItemId> ids);
 
-// ---- Moving boxes: a list beside the tree ----
+// ---- Moving boxes: a list to use with a tree ----
 
-// The ids are the tree's. An item is taken out of the tree when it begins to move (BoxTree::detach). It is put back
-// when it comes to rest. The layers are the tree's too. 80 bytes an item beside the caller's boxes.
+// A list of moving boxes, used together with a tree. The ids and layers are the tree's.
+//
+// Take an item out of the tree when it begins to move (BoxTree::detach), and put it back when it comes to rest. The
+// list takes 80 bytes an item in addition to your boxes.
 class MovingBoxes {
   public:
-    // From now on these are the items that move, each once, and boxes[k] is that of items[k]. Both are the caller's and
-    // are not copied: they must stay as they are until the next update. It reads each box once, whatever has changed.
-    // Errors leave the list as it was: as many boxes as items are needed; an item that has not been detached; a box
-    // that fails validate(Obb), named by its item. Where it was overwritten in place, put it right before the next
-    // query.
+    // Sets the moving items, each once; boxes[k] is the box of items[k].
+    //
+    // Both arrays are yours and are not copied: they must stay unchanged until the next update. It reads each box once,
+    // whatever has changed. Errors leave the list unchanged: different numbers of boxes and items; an item that has not
+    // been detached; a box that fails validate(Obb), named by its item. If you have overwritten that box in place,
+    // correct it before the next query.
     [[nodiscard]] Result<void> update(const boxtree::BoxTree& tree, std::span<const ItemId> items,
                                       std::span<const Obb> boxes, Executor& executor = serial_executor());
 
-    // An update in pieces, for boxes that come from many places: each is read and checked once, and queries see none
-    // before finish(). The k-th box, `stride` bytes after the one before, is that of items()[entries[k]]; of several
-    // for one entry the last counts. Takes them up to the first that is not certainly valid, and returns how many.
+    // Stages part of an update, for boxes that come from many places. Each box is read and checked once, and queries
+    // see none before finish().
+    //
+    // The k-th box, `stride` bytes after the one before, belongs to items()[entries[k]]; of several boxes for one entry
+    // the last counts. Stops at the first box that is not certainly valid, and returns the number of staged boxes.
     // Requires entries below size().
     std::size_t stage(std::span<const std::uint32_t> entries, const Obb* first, std::size_t stride);
-    // What has been staged for the entry does not count: finish() reads its box. Any entry.
+    // Discards the staged box of any entry; finish() reads its box.
     void unstage(std::size_t entry) {
         if (entry / 64 < staged_.size()) staged_[entry / 64] &= ~(std::uint64_t{1} << entry % 64);
     }
-    // Nothing counts of what has been staged.
+    // Discards everything staged.
     void unstage_all() { staged_.clear(); }
-    // As update(), but without its checks: boxes[k] must be what has been staged for entry k, and is read where nothing
-    // has. Requires valid boxes, and detached items; there may be more of them or fewer than before.
+    // Finishes the update like update(), but without its checks. boxes[k] must be the box that was staged for entry k;
+    // it is read if none was staged. Requires valid boxes and detached items; there may be more or fewer of them than
+    // before.
     void finish(std::span<const ItemId> items, std::span<const Obb> boxes, Executor& executor = serial_executor());
 
     [[nodiscard]] std::span<const ItemId> items() const { return items_; }
@@ -156,13 +162,14 @@ class MovingBoxes {
     unsigned now_ = 0;
 };
 
-// As find_visible() with the tree alone, in every respect: what rests and what moves in one answer. In
-// ResultOrder::tree the items that move follow those that rest, inside and straddling apart. Requires the tree that
-// `moving` was updated with.
+// Finds static and moving items in one answer, in every respect as find_visible() of the tree alone.
+//
+// In ResultOrder::tree the moving items follow the static ones, separately for inside and straddling. Requires the tree
+// that `moving` was updated with.
 void find_visible(const boxtree::BoxTree& resting, const MovingBoxes& moving, const View& view, VisibleSet& visible,
                   const CullOptions& options = {}, Executor& executor = serial_executor());
 
-// Up to kMaxViews views in one pass, more are an error; the items that move come last.
+// Does the same for up to kMaxViews views in one pass; more are an error. Moving items come last.
 Result<void> find_visible(const boxtree::BoxTree& resting, const MovingBoxes& moving, std::span<const View> views,
                           MaskedVisibleSet& visible, CullMode mode = CullMode::exact,
                           const DrawLimits* limits = nullptr);

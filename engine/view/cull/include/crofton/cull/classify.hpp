@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One bound, or many, against a view: verdicts, limits of what is worth drawing, and what a query cost.
+// Tests of one bound or many against a view, draw limits, and statistics of queries.
 #pragma once
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/core/error.hpp>
@@ -30,27 +30,31 @@ enum class CullMode : std::uint8_t {
     exact,         // outside iff box and frustum are disjoint
 };
 
-// Exact for the boxes' and planes' stored numbers: `outside` as the mode says, `inside` iff the frustum contains the
-// box; touching from outside is straddling. A box or a frustum that is not finite, or beyond 1e30 (a plane's
-// offset: 1e50), is `straddling`: never lost. So is every bound where a plane's normal, which need not be of unit
-// length, has a component above 2 in magnitude: divide normal and offset by its length. Planes decide most boxes in
-// double with a proven error bound. The rest go through the separating-axis test (Gottschalk, Lin, Manocha 1996). Where
-// rounding could still matter, exact arithmetic decides.
+// Classifies a box against a frustum: `outside` by the mode's rule, `inside` iff the frustum contains the box, and
+// `straddling` otherwise. A box that touches from outside is straddling.
+//
+// Exact for the stored numbers of box and planes: planes decide most boxes in double with a proven error bound; the
+// rest go through the separating-axis test (Gottschalk, Lin, Manocha 1996), with exact arithmetic where rounding could
+// still matter. A box or a frustum that is not finite or beyond 1e30 (a plane's offset: 1e50) is `straddling`, so it is
+// never lost. So is every bound if a plane's normal has a component above 2 in magnitude; it need not have unit length,
+// but divide normal and offset by its length.
 [[nodiscard]] Verdict classify(const Frustum& frustum, const Obb& box, CullMode mode = CullMode::exact);
 
-// The same for axis-aligned boxes and for spheres. An empty Aabb and a negative radius are `straddling`, as is what is
-// not finite. `inside` and `outside` are exact for a sphere too, with two exceptions. Numbers of the sphere or the view
-// that are not 0 but below 1e-60 in magnitude may leave it `straddling` though an edge rejects it. So may a view whose
-// half-spaces have no point in common while each three of them do: a camera's always have.
+// Does the same for axis-aligned boxes and for spheres. An empty Aabb, a negative radius and a bound that is not finite
+// are `straddling`.
+//
+// `inside` and `outside` are exact for a sphere too, with two exceptions, in which it may be `straddling` though an
+// edge rejects it: the sphere or the view has nonzero numbers below 1e-60 in magnitude; or the view's half-spaces have
+// no point in common although each three of them do. A camera's always have one.
 [[nodiscard]] Verdict classify(const Frustum& frustum, const Aabb& box, CullMode mode = CullMode::exact);
 [[nodiscard]] Verdict classify(const Frustum& frustum, const Sphere& sphere, CullMode mode = CullMode::exact);
 
-// The same for a convex hull, as where k-DOPs or other bounds of the user's are kept, in the frustum's coordinates:
-// exact for its vertices. A microsecond where planes leave it open: for bounds that are tested once, not for lists.
+// Does the same for a convex hull in the frustum's coordinates, exactly for its vertices, as for k-DOPs or your own
+// bounds. If planes do not decide, it takes a microsecond: use it for bounds that are tested once, not for lists.
 [[nodiscard]] Verdict classify(const Frustum& frustum, const convex::Hull& hull, CullMode mode = CullMode::exact);
 
-// As above for many boxes: writes verdicts[i] for boxes[i]. Allocates nothing; may run on any thread.
-// Requires verdicts.size() == boxes.size().
+// Classifies many boxes: writes verdicts[i] for boxes[i]. Allocates nothing; may run on any thread. Requires
+// verdicts.size() == boxes.size().
 void classify(const Frustum& frustum, std::span<const Obb> boxes, std::span<Verdict> verdicts,
               CullMode mode = CullMode::exact);
 
@@ -62,8 +66,8 @@ inline constexpr bool kCountStatistics = false;  // every number below stays 0, 
 inline constexpr bool kCountStatistics = true;
 #endif
 
-// The same on every processor but for exact_tests: how many items are too near to call in floats depends on whether the
-// processor fuses products with sums.
+// Counts of a query. They are the same on every processor, except exact_tests: how many items are too close to call in
+// floats depends on whether the processor fuses products with sums.
 struct Statistics {
     std::uint64_t nodes_tested = 0;     // bounds of inner nodes and leaves against planes
     std::uint64_t boxes_tested = 0;     // items' boxes against planes
@@ -83,7 +87,7 @@ struct Statistics {
     }
 };
 
-// Bit i % 64 of word i / 64 is bound i's.
+// The verdicts of a list. Bit i % 64 of word i / 64 belongs to bound i.
 struct VerdictBits {
     Vector<std::uint64_t> visible;  // not outside
     Vector<std::uint64_t> inside;
@@ -99,11 +103,13 @@ struct VerdictBits {
 
 // ---- Draw limits: leave out what is too small or too far ----
 
-// An item's radius r is half its box's diagonal, √(h₀² + h₁² + h₂²) of its half extents; its distance d is that of its
-// box's centre from `eye`. The item is dropped if d > max_distance_in_radii · r, if d > item_distances[id], if r <
-// least_radius, or if d > layer_distances[l] for every layer l that it shares with the view. All of it exactly, for the
-// stored numbers taken as reals; on a limit it is kept. Limits that are not finite or beyond 1e30 do not count, nor do
-// any for a box or an eye that is not finite. Negative ones are 0.
+// Limits on the size and distance of items.
+//
+// An item's radius r is half the diagonal of its box, √(h₀² + h₁² + h₂²) of its half extents. Its distance d is that of
+// its box's centre from `eye`. The item is dropped if d > max_distance_in_radii · r, if d > item_distances[id], if r <
+// least_radius, or if d > layer_distances[l] for every layer l that it shares with the view. The tests are exact for
+// the stored numbers taken as reals; an item on a limit is kept. Limits that are not finite or beyond 1e30 are ignored;
+// so are all limits for a box or an eye that is not finite. Negative limits count as 0.
 struct DrawLimits {
     static constexpr double kNone = std::numeric_limits<double>::infinity();
     glm::dvec3 eye{0.0};  // of the camera whose picture counts: for its shadows' views too
@@ -111,24 +117,25 @@ struct DrawLimits {
     double least_radius = 0.0;
     std::span<const float> layer_distances = {};  // 32, or none
     std::span<const float> item_distances = {};   // one per item id, or none
-    // Hysteresis: for items whose bit is set (id % 64 of word id / 64; beyond the end none is) distances are
-    // `hysteresis` times as long and least_radius as much smaller. Give the last frame's visible items (to_bits), and
-    // what goes in and out at a limit flickers no more. Requires hysteresis ≥ 1.
+    // Hysteresis: for items whose bit is set (id % 64 of word id / 64; none beyond the end), distances are multiplied
+    // by `hysteresis` and least_radius is divided by it. Pass the visible items of the last frame (to_bits), so that
+    // items near a limit do not flicker. Requires hysteresis ≥ 1.
     std::span<const std::uint64_t> drawn_before = {};
     double hysteresis = 1.0;
 };
 
-// Drops what is below `pixels` in a picture `picture_height` pixels high. In perspective: items whose sphere of radius
-// r has a diameter of less than `pixels`. It is seen from its distance, in the middle of the picture. A sphere
-// elsewhere in the picture is drawn larger, but is judged as if in its middle. Orthographic: items whose 2 r is less.
-// Up to rounding of `max_distance_in_radii` or `least_radius` by 2^-50. Errors: as validate(Camera); a height or size
-// that is not positive and finite.
+// Returns limits that drop items smaller than `pixels` in a picture that is `picture_height` pixels high.
+//
+// Perspective: an item's sphere of radius r is drawn at its distance in the middle of the picture, and the item is
+// dropped if the diameter is less than `pixels`. Elsewhere in the picture a sphere is drawn larger, but is judged as in
+// the middle. Orthographic: an item is dropped if its 2 r is less. `max_distance_in_radii` or `least_radius` is rounded
+// by 2^-50. Errors: as validate(Camera); a height or size that is not positive and finite.
 [[nodiscard]] Result<DrawLimits> limits_of(const Camera& camera, double picture_height, double pixels);
 
-// The test of one item, in these layers of it that the view sees.
+// Tests one item against the limits. `common_layers` are the layers that the item shares with the view.
 [[nodiscard]] bool is_worth_drawing(const DrawLimits& limits, const Obb& box, boxtree::ItemId item,
                                     std::uint32_t common_layers = ~std::uint32_t{0});
-// An Aabb counts by its centre and half extents, rounded to double.
+// Does the same for an Aabb, by its centre and half extents rounded to double, and for a sphere.
 [[nodiscard]] bool is_worth_drawing(const DrawLimits& limits, const Aabb& box, boxtree::ItemId item,
                                     std::uint32_t common_layers = ~std::uint32_t{0});
 [[nodiscard]] bool is_worth_drawing(const DrawLimits& limits, const Sphere& sphere, boxtree::ItemId item,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Occluders: made by hand, or found in meshes; what each is worth.
+// Occluders that you place or that are found in meshes, and how much each hides.
 #pragma once
 #include <crofton/core/error.hpp>
 #include <crofton/core/memory.hpp>
@@ -19,14 +19,15 @@ namespace crofton::occlude {
 using ShapeId = std::uint32_t;
 using OccluderId = std::uint32_t;
 
-// From where a surface hides what is behind it: from the front only, or from either side. The front is where its
-// triangles are counter-clockwise, as a renderer that culls back faces draws it.
+// The sides from which a surface hides objects behind it: from the front only, or from either side. Triangles are
+// counter-clockwise seen from the front, as for a renderer that culls back faces.
 enum class Sides : std::uint8_t { front, both };
 
-// Shapes, each given once, and occluders: shapes in places. An occluder must lie within what is drawn, and must be
-// opaque: then what it hides is hidden in the picture. Of a body its front counts alone, as far as it lies beyond the
-// near plane: an eye inside of it sees through it. Const functions may run on any number of threads at once; the
-// others need the set for themselves.
+// A set of shapes, and of occluders, which are shapes at a transform.
+//
+// An occluder must be opaque and lie within what you draw; then the picture hides what the occluder hides. Of a body
+// only the front counts, as far as it lies beyond the near plane: an eye inside sees through it. Const functions may
+// run on any number of threads at once; the others need exclusive access to the set.
 class OccluderSet {
   public:
     OccluderSet();
@@ -34,32 +35,32 @@ class OccluderSet {
     OccluderSet(OccluderSet&&) noexcept;
     OccluderSet& operator=(OccluderSet&&) noexcept;
 
-    // Shapes, in their own coordinates. Errors leave the set as it was: non_finite and out_of_range (item: the point,
-    // or what validate(TriangleMesh) says); degenerate (flat, or no triangle with an area); invalid_argument (open:
-    // item is a triangle at the hole; inside out).
+    // These functions add shapes, in their own coordinates. Errors leave the set unchanged: non_finite and out_of_range
+    // (item: the point, or the item of validate(TriangleMesh)); degenerate (flat, or no triangle with an area);
+    // invalid_argument (open: item is a triangle at the hole; inside out).
 
-    // The convex hull of the points; flat sets are refused. Costs least to draw, beside boxes.
+    // Adds the convex hull of the points; flat sets are refused. Besides boxes, hulls cost least to draw.
     [[nodiscard]] Result<ShapeId> add_convex(std::span<const glm::vec3> points);
-    // A closed mesh: each edge has as many triangles that go along it as such that go against it, where equal positions
-    // are one vertex. Its volume is positive. Any number of closed pieces.
+    // Adds a closed mesh of positive volume, of any number of closed pieces. Closed means that each edge has as many
+    // triangles along it as against it, where equal positions count as one vertex.
     [[nodiscard]] Result<ShapeId> add_mesh(const TriangleMesh& mesh);
-    // Any triangles, open or not, none of which need be in one plane: a polygon as triangulated, a terrain, a wall.
-    // A T-junction is a gap to the rule for covered pixels: it costs a row of pixels there.
+    // Adds any triangles, such as a triangulated polygon, a terrain or a wall. They may be open and need not be in one
+    // plane. A T-junction counts as a gap, which costs a row of covered pixels.
     [[nodiscard]] Result<ShapeId> add_surface(const TriangleMesh& surface, Sides sides);
 
-    // Occluders. A box, as it is; errors: as validate(Obb), and degenerate for a half extent of 0.
+    // Adds a box as an occluder. Errors: as validate(Obb), and degenerate for a half extent of 0.
     [[nodiscard]] Result<OccluderId> place(const Obb& box);
-    // A shape in a place. Errors: as validate; a shape that is not there; degenerate for a linear part of
-    // determinant 0. A reflection turns no shape inside out.
+    // Adds a shape at a transform as an occluder. A reflection turns no shape inside out. Errors: as validate; a shape
+    // that does not exist; degenerate for a linear part of determinant 0.
     [[nodiscard]] Result<OccluderId> place(ShapeId shape, const Transform& transform);
-    // Moves an occluder. Errors as above leave it where it was; invalid_argument where it is of the other kind.
+    // Moves an occluder. Errors, which leave it unchanged: as above; invalid_argument if it is of the other kind.
     [[nodiscard]] Result<void> move(OccluderId occluder, const Obb& box);
     [[nodiscard]] Result<void> move(OccluderId occluder, const Transform& transform);
-    // An occluder that is off hides nothing. All are on at first.
+    // Enables or disables an occluder. A disabled one hides nothing. All are enabled at first.
     [[nodiscard]] Result<void> set_enabled(OccluderId occluder, bool enabled);
 
-    // Ids of what is removed are given out again, latest first. Errors: not in the set (out_of_range); a shape that
-    // occluders have (invalid_argument).
+    // Remove an occluder or a shape. Ids are reused, latest first. Errors: not in the set (out_of_range); a shape that
+    // occluders use (invalid_argument).
     [[nodiscard]] Result<void> remove(OccluderId occluder);
     [[nodiscard]] Result<void> remove_shape(ShapeId shape);
 
@@ -73,13 +74,14 @@ class OccluderSet {
     Owner<Data> data_;
 };
 
-// What of a mesh hides most per edge drawn: boxes and convex bodies inside it, and large flat parts of its surface.
+// Finding occluders in a mesh: boxes and convex bodies inside it, and large flat parts of its surface, that hide most
+// per edge drawn.
 
 enum class OccluderKind : std::uint8_t {
     box,     // inside a closed piece of the mesh
-    walled,  // a box behind walls of the mesh, that may be open on some sides
+    walled,  // a box behind walls of the mesh, which may be open on some sides
     convex,  // a closed piece of the mesh that is convex itself
-    patch,   // triangles of the mesh that hang together and are flat
+    patch,   // connected, flat triangles of the mesh
 };
 
 [[nodiscard]] inline Aabb everywhere() {
@@ -87,78 +89,89 @@ enum class OccluderKind : std::uint8_t {
     return {glm::dvec3(-kEndless), glm::dvec3(kEndless)};
 }
 
-// In the mesh's frame.
+// An occluder found in a mesh, in the mesh's frame.
 struct FoundOccluder {
     OccluderKind kind = OccluderKind::box;
     // Kinds box and walled only. Its shape is also in `surface`, with corners rounded to float; both are inside.
     Obb box;
-    // Convex bodies and patches: triangles of the mesh, as they are. Bodies: closed, counter-clockwise from outside.
+    // Convex bodies and patches: triangles of the mesh, unchanged. Those of a body are closed, counter-clockwise from
+    // outside.
     TriangleMesh surface;
-    Sides sides = Sides::both;  // of a patch: those of the mesh. Bodies hide from all around
-    // Boxes and convex bodies: the bounds of what the occluder lies in. From an eye in these bounds the occluder may
-    // hide what is inside and seen from there. Leave it out for such eyes, and for eyes that are nearer to the bounds
-    // than their near plane is to any point of it. Patches: empty.
+    Sides sides = Sides::both;  // of a patch: those of the mesh; bodies hide from all sides
+    // Boxes and convex bodies: the bounds of the piece that contains the occluder. From an eye inside these bounds, the
+    // occluder may hide objects that are inside and visible. Do not use it for such eyes, nor for eyes that are nearer
+    // to the bounds than their near plane is to any point of it. Patches: empty.
     Aabb piece_bounds;
-    // Eyes must be in here. Bounded for boxes behind walls that leave a side open, as houses without a floor do. No ray
-    // from within these bounds enters by that side.
+    // The eyes that may use the occluder. Bounded for boxes behind walls that leave a side open, such as houses without
+    // a floor. No ray from within these bounds enters by that side.
     Aabb eyes_within = everywhere();
-    double mean_shadow = 0.0;  // F/4 of a body; A/2 of a patch, A/4 where it hides from its front alone
-    double gain = 0.0;         // what it added to the mean shadow of those before it in the list; an estimate
-    std::uint32_t edges = 0;   // drawn: its cost. A box has 12, a patch those of its boundary
+    double mean_shadow = 0.0;  // F/4 of a body; A/2 of a patch, A/4 if it hides only from its front
+    double gain = 0.0;         // its addition to the mean shadow of those before it in the list; an estimate
+    std::uint32_t edges = 0;   // drawn edges, its cost: 12 for a box, those of its boundary for a patch
 };
 
 struct FindOptions {
-    Sides sides = Sides::front;           // that are drawn
+    Sides sides = Sides::front;           // the sides that you draw
     std::uint32_t max_occluders = 16;     // of the mesh
     std::uint32_t max_edges = 400;        // of all of them together
     std::uint32_t max_boxes_a_piece = 4;  // in a closed piece that is not convex
-    // Leaves out occluders that add less than this share of the mesh's mean shadow.
+    // Skips occluders that add less than this share of the mesh's mean shadow.
     double least_gain = 0.02;
-    // Patches: how far from the plane of their largest triangle vertices may lie, relative to the size of the mesh.
+    // Patches: the largest distance of a vertex from the plane of the largest triangle, relative to the size of the
+    // mesh.
     double flatness = 1e-4;
-    // A patch is drawn triangle by triangle, many times as slowly as a box. In a town those of more triangles take five
-    // times as long as all other occluders and hide 1 % of the triangles.
+    // Patches are drawn triangle by triangle, many times slower than a box. In a town, patches of more triangles take
+    // five times as long as all other occluders and hide 1 % of the triangles.
     std::uint32_t max_patch_triangles = 4;
-    // 0: a mesh of its own. Else a level made of many small pieces: all its triangles become surfaces of so many at
-    // most; 48 is a good number. They take the place of patches, are of that kind, and need not be flat. max_occluders
-    // and max_edges do not count them. Walls, floors and ceilings that are near each other are one surface: within it
-    // no pixel is lost where they meet. Triangles are cut where a vertex of another lies on one of their sides along an
-    // axis, which covers the same points exactly. There are up to four times as many then; the rest keep their seams.
-    // Each triangle is drawn: slower than boxes, for what has none.
+    // 0 for a single mesh. For a level made of many small pieces, the number of triangles per surface at most; 48 is a
+    // good number.
+    //
+    // All triangles of the level then become surfaces. They replace patches, are of that kind, and need not be flat.
+    // max_occluders and max_edges do not count them. Walls, floors and ceilings that are near each other form one
+    // surface, which loses no pixel where they meet. Triangles are cut where a vertex of another lies on one of their
+    // sides along an axis, which covers the same points exactly. This makes up to four times as many triangles; other
+    // junctions keep their seams. Each triangle is drawn, slower than boxes: use it for levels in which no boxes are
+    // found.
     std::uint32_t level_triangles = 0;
-    // Cells along each axis of the grid that boxes are looked for in, 4 to 32: finer is slower and finds larger boxes.
+    // Cells along each axis of the grid that is searched for boxes, 4 to 32: a finer grid is slower and finds larger
+    // boxes.
     std::uint32_t grid = 24;
 };
 
 struct FoundOccluders {
-    // In the order they were chosen: by gain per edge. Then surfaces of a level.
+    // In the order in which they were chosen, by gain per edge; then the surfaces of a level.
     Vector<FoundOccluder> occluders;
     double mean_shadow = 0.0;         // of the whole mesh; an estimate, as `covered`
     double covered = 0.0;             // of the occluders together
-    std::uint32_t pieces = 0;         // triangles that hang together by sides; vertices of equal position are one
+    std::uint32_t pieces = 0;         // sets of triangles connected by sides; vertices of equal position are one
     std::uint32_t closed_pieces = 0;  // that have an inside
     Vector<std::uint32_t> rejected;   // triangles, ascending: bad indices or coordinates
 
     [[nodiscard]] double share() const { return mean_shadow > 0.0 ? covered / mean_shadow : 0.0; }
 };
 
-// Boxes and convex bodies are proven to lie inside the solid that a closed piece bounds. No triangle of the piece meets
-// the open body, by separating axes with error bounds or exact predicates. Its centre is inside by an exact count of
-// crossings. Sides::front: a piece is closed where the sides of its triangles cancel. Its inside is where it winds
-// round at least once, so that every ray into it meets a front face. Sides::both: where every edge has an even number
-// of triangles, and its inside is where rays cross it an odd number of times. Walled boxes lie behind walls across the
-// mesh's own axes that no straight path passes, decided exactly. Recesses such as windows set back are included. Meshes
-// of more than 100,000 triangles get none. Patches are subsets of the mesh's triangles. So all that an occluder hides
-// is hidden by the mesh, from any eye that piece_bounds and eyes_within allow (docs/notes/occluder_finding.md). A
-// triangle with a vertex that is NaN, infinite or beyond 1e12, or an index out of range, is left out and listed in
-// rejected. The result depends on the mesh and the options alone; greedy, so not the best for the budget. Errors: an
-// index count that is no multiple of three; 2^28 triangles or more, 2^26 of a level; no valid triangle (empty); an
-// option out of its range.
+// Finds occluders in a mesh. All that an occluder hides is hidden by the mesh, from any eye that piece_bounds and
+// eyes_within allow (docs/notes/occluder_finding.md).
+//
+// Boxes and convex bodies are proved to lie inside the solid that a closed piece bounds: no triangle of the piece meets
+// the open body, by separating axes with error bounds or exact predicates, and its centre is inside by an exact count
+// of crossings. With Sides::front, a piece is closed if the sides of its triangles cancel, and its inside is where it
+// winds round at least once, so that every ray into it meets a front face. With Sides::both, it is closed if every edge
+// has an even number of triangles, and its inside is where rays cross it an odd number of times.
+//
+// Walled boxes lie behind walls across the mesh's own axes that no straight path passes, decided exactly, recesses such
+// as set-back windows included. Meshes of more than 100,000 triangles get none. Patches are subsets of the mesh's
+// triangles.
+//
+// A triangle with a vertex that is NaN, infinite or beyond 1e12, or with an index out of range, is left out and listed
+// in rejected. The result depends only on the mesh and the options. The choice is greedy, so it is not the best for the
+// budget. Errors: an index count that is not a multiple of three; 2^28 triangles or more, 2^26 of a level; no valid
+// triangle (empty); an option out of its range.
 [[nodiscard]] Result<FoundOccluders> find_occluders(const TriangleMesh& mesh, const FindOptions& options = {});
 
-// How much an occluder hides from a region of eyes: a measure to rank occluders by, before any view is known.
+// How much an occluder hides from a region of eyes: a measure to rank occluders by before any view is known.
 
-// From where one looks, and at what.
+// The eyes and the objects of a scene.
 struct SeenScene {
     Aabb eyes;                         // uniformly distributed in here; may be flat, a segment or a point
     double range = 100.0;              // how far from the eye objects lie
@@ -166,13 +179,15 @@ struct SeenScene {
     std::uint32_t samples = 64;        // of eyes; the same ones in every call
 };
 
-// The expected volume of the places in which an object is hidden as a whole by the convex hull of `points`. Times the
-// number of objects per volume it is the expected number of hidden objects. The shadow volume of a body K from an eye
-// is the union of the rays' parts from K on, up to `range`. It is convex: the hull of K and of K scaled from the eye.
-// An object of surface F' and mean curvature M' lies in a convex body (V, F, M) with kinematic measure V − F·M'/4π to
-// first order. That is what (1) in theory.md section 2 gives for "meets", with the sign of "contains". What is left out
-// is of second order in the object's size. An eye inside the hull sees nothing hidden: 0. Errors: as
-// measure::intrinsic_volumes_of_hull; eyes empty or not finite; a range that is not positive and finite; samples of 0.
+// Returns the expected volume of the places in which the convex hull of `points` hides an object entirely. Multiplied
+// by the number of objects per volume, it is the expected number of hidden objects.
+//
+// The shadow volume of a body K from an eye is the union of the rays' parts from K on, up to `range`. It is convex: the
+// hull of K and of K scaled from the eye. An object of surface F' and mean curvature M' lies in a convex body (V, F, M)
+// with kinematic measure V − F·M'/4π to first order. That is (1) in docs/theory.md, section 2, with the sign for
+// "contains" instead of "meets". The neglected terms are of second order in the object's size. An eye inside the hull
+// sees nothing hidden: 0. Errors: as measure::intrinsic_volumes_of_hull; eyes empty or not finite; a range that is not
+// positive and finite; samples of 0.
 [[nodiscard]] Result<double> occlusion_worth(std::span<const glm::dvec3> points, const SeenScene& scene);
 
 }  // namespace crofton::occlude
