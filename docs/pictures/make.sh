@@ -9,6 +9,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
 "$crofton" view --no-window --script verdicts.json --after 8 --screenshot verdicts.png
+"$crofton" view --no-window --size 960x540 --script clusters.json --after 8 --screenshot clusters.png
 "$crofton" frames town --camera orbit --frames 12 --size 960x540 --png "$work/town"
 cp "$work"/town/*0003.png town.png
 "$crofton" radiosity room --edge 0.1 --error 0.02 --out "$work/room.glb"

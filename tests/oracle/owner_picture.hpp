@@ -33,11 +33,12 @@ struct OwnerPicture {
 };
 
 // Reversed-Z matrices. `wobble`: by how many pixels, at most, a vertex is moved before it is snapped, differently at
-// each place; what renderers round by.
+// each place; what renderers round by. `bias`: the share of a triangle's steepest slope of depth, from one pixel to the
+// next, by which it is drawn farther away (the depth bias that the guide asks for is 1/256).
 class OwnerRenderer {
   public:
-    OwnerRenderer(OwnerPicture& picture, double wobble, std::uint64_t seed)
-        : picture_(picture), wobble_(wobble), seed_(seed) {}
+    OwnerRenderer(OwnerPicture& picture, double wobble, std::uint64_t seed, double bias = 0.0)
+        : picture_(picture), wobble_(wobble), bias_(bias), seed_(seed) {}
 
     void draw(const DrawnMesh& mesh, std::uint32_t number) {
         for (std::uint32_t t = 0; 3 * t + 2 < mesh.indices.size(); ++t) {
@@ -98,6 +99,7 @@ class OwnerRenderer {
         const std::int64_t x0 = from(least(x_of), picture_.width), x1 = from(most(x_of), picture_.width) + 2;
         const std::int64_t y0 = from(least(y_of), picture_.height), y1 = from(most(y_of), picture_.height) + 2;
         const double nearest = std::max({p[0].z, p[1].z, p[2].z});
+        const double moved_back = bias_ * steepest(p, double(area));
         for (std::int64_t y = y0; y <= std::min<std::int64_t>(y1, picture_.height - 1); ++y)
             for (std::int64_t x = x0; x <= std::min<std::int64_t>(x1, picture_.width - 1); ++x) {
                 const std::int64_t sx = 256 * x + 128, sy = 256 * y + 128;
@@ -111,7 +113,8 @@ class OwnerRenderer {
                     weights[k] = double(e) / double(area);
                 }
                 if (!inside) continue;
-                const double z = std::min(weights[0] * p[0].z + weights[1] * p[1].z + weights[2] * p[2].z, nearest);
+                const double z =
+                    std::min(weights[0] * p[0].z + weights[1] * p[1].z + weights[2] * p[2].z, nearest) - moved_back;
                 const std::size_t at = std::size_t(y) * picture_.width + std::size_t(x);
                 if (z < 0.0 || z <= picture_.depths[at]) continue;
                 picture_.depths[at] = z;
@@ -119,8 +122,16 @@ class OwnerRenderer {
             }
     }
 
+    // What the depth changes by from one pixel to the next.
+    static double steepest(const std::array<Point, 3>& p, double area) {
+        const double z1 = p[1].z - p[0].z, z2 = p[2].z - p[0].z;
+        const double across = z1 * double(p[2].y - p[0].y) - z2 * double(p[1].y - p[0].y);
+        const double up = z2 * double(p[1].x - p[0].x) - z1 * double(p[2].x - p[0].x);
+        return 256.0 * std::max(std::abs(across), std::abs(up)) / area;
+    }
+
     OwnerPicture& picture_;
-    double wobble_;
+    double wobble_, bias_;
     std::uint64_t seed_;
 };
 

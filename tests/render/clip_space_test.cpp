@@ -152,6 +152,22 @@ TEST_SUITE("geometry/clip_space") {
         CHECK(count(-std::nextafter(kLeast, 0.0f)) == 1);
         CHECK(count(kLeast) == 1);
     }
+    TEST_CASE("the parts of a mesh count as much as the whole") {
+        const Soup soup = random_soup(5, 3000, 3.0f, 4.0f, 0.5f);
+        ClipPredictor predictor;
+        for (const glm::mat4& matrix : {some_matrix(), some_matrix(Projection::orthographic), glm::mat4(1.0f)}) {
+            const std::uint64_t whole = predictor.count(soup.positions, soup.indices, matrix);
+            CHECK(whole > 100);
+            for (const std::size_t triangles : {1u, 7u, 1000u}) {
+                std::uint64_t sum = 0;
+                for (std::size_t begin = 0; begin < soup.indices.size(); begin += 3 * triangles) {
+                    const std::size_t count = std::min(3 * triangles, soup.indices.size() - begin);
+                    sum += predictor.count(soup.positions, std::span(soup.indices).subspan(begin, count), matrix);
+                }
+                CHECK(sum == whole);
+            }
+        }
+    }
     TEST_CASE("with bounds the count is the same, wherever the box lies: inside, outside, touching, huge, at 10⁷ m") {
         std::mt19937_64 random(11);
         std::uniform_real_distribution<double> unit(-1.0, 1.0);

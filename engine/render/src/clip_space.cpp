@@ -156,21 +156,28 @@ bool inside_clip_planes(const Aabb& bounds, const glm::mat4& model_to_clip) {
 std::uint64_t ClipPredictor::count(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices,
                                    const glm::mat4& model_to_clip) {
     CROFTON_ASSERT(indices.size() % 3 == 0, "three indices a triangle");
-    if (codes_.size() < positions.size()) codes_.resize(positions.size());
-    std::uint8_t any = 0, all = 0xff;
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-        codes_[i] = clip_code(to_clip(model_to_clip, positions[i]));
-        any |= codes_[i];
-        all &= codes_[i];
+    // Of a part of a mesh only the corners are looked at, not all positions.
+    const bool is_part = indices.size() < positions.size();
+    if (!is_part) {
+        if (codes_.size() < positions.size()) codes_.resize(positions.size());
+        std::uint8_t any = 0, all = 0xff;
+        for (std::size_t i = 0; i < positions.size(); ++i) {
+            codes_[i] = clip_code(to_clip(model_to_clip, positions[i]));
+            any |= codes_[i];
+            all &= codes_[i];
+        }
+        if (any == 0) return indices.size() / 3;
+        if (all != 0 && !positions.empty()) return 0;
     }
-    if (any == 0) return indices.size() / 3;
-    if (all != 0 && !positions.empty()) return 0;
+    const auto code_of = [&](std::uint32_t index) {
+        return is_part ? clip_code(to_clip(model_to_clip, positions[index])) : codes_[index];
+    };
     std::uint64_t total = 0;
     for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
         CROFTON_ASSERT(
             indices[i] < positions.size() && indices[i + 1] < positions.size() && indices[i + 2] < positions.size(),
             "indices refer to positions");
-        const std::uint8_t a = codes_[indices[i]], b = codes_[indices[i + 1]], c = codes_[indices[i + 2]];
+        const std::uint8_t a = code_of(indices[i]), b = code_of(indices[i + 1]), c = code_of(indices[i + 2]);
         if ((a | b | c) == 0) {
             ++total;
         } else if ((a & b & c) == 0) {

@@ -146,8 +146,10 @@ std::string table_means(const SceneFacts& scene, std::span<const FrameStatistics
         format("verified by brute force: %llu mismatches in %llu frames (%llu answers too close for double to check)\n",
                Whole{verification->mismatches()}, Whole{verification->frames}, Whole{verification->unclear});
     if (frames.front().occlusion && frames.front().gpu)
-        text += format("verified by drawing: %llu triangles hidden that own a pixel, %llu pictures changed\n",
-                       Whole{verification->hidden_but_seen}, Whole{verification->changed_pictures});
+        text +=
+            format("verified by drawing: %llu triangles hidden that own a pixel, %llu pictures changed (%llu pixels)\n",
+                   Whole{verification->hidden_but_seen}, Whole{verification->changed_pictures},
+                   Whole{verification->changed_pixels});
     return text;
 }
 

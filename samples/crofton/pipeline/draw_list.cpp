@@ -79,6 +79,7 @@ void DrawList::select(std::span<const depth::VisibleCluster> visible, const Came
             {visible[begin].object, is_one_sided(scene_, one_sided_, visible[begin].object), begin, end});
     }
     place(camera);
+    piece_of_range_.clear();
     for (std::size_t i = 0; i < selected_.size(); ++i) {
         const scene::MeshId mesh = scene_.mesh_of(selected_[i].instance);
         for (std::size_t k = selected_[i].begin; k < selected_[i].end; ++k) {
@@ -90,6 +91,7 @@ void DrawList::select(std::span<const depth::VisibleCluster> visible, const Came
                 const auto skipped = static_cast<std::uint32_t>(std::countr_zero(left));
                 const auto count = static_cast<std::uint32_t>(std::countr_one(left >> skipped));
                 add_range(i, parts_[mesh].first_index + 3 * (cluster.first_triangle + at + skipped), 3 * count, bounds);
+                piece_of_range_.push_back(k);
                 at += skipped + count;
                 left = skipped + count < 64 ? left >> (skipped + count) : 0;
             }

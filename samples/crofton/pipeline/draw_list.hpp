@@ -44,6 +44,9 @@ class DrawList {
         return selected_[ranges_[range].transform].instance;
     }
 
+    // The entry of the clusters given to select() that ranges()[i] belongs to.
+    [[nodiscard]] std::size_t piece_of(std::size_t range) const { return piece_of_range_[range]; }
+
     // Σ (vertices of the clipped polygon − 2) over the selection, as lavapipe will count it.
     [[nodiscard]] std::uint64_t predict_clipped();
 
@@ -74,6 +77,7 @@ class DrawList {
     std::vector<std::pair<std::uint64_t, std::uint32_t>> order_;  // scratch
     std::vector<Selected> selected_, unsorted_;                   // front to back; by instance
     std::vector<render::DrawRange> ranges_;
+    std::vector<std::size_t> piece_of_range_;
     std::vector<render::DrawTransform> transforms_;
     render::ClipPredictor predictor_;
 };

@@ -226,6 +226,7 @@ Json summary_json(std::span<const FrameStatistics> frames, const std::optional<V
         summary["wrong_counts"] = verification->wrong_counts;
         summary["hidden_but_seen"] = verification->hidden_but_seen;
         summary["changed_pictures"] = verification->changed_pictures;
+        summary["changed_pixels"] = verification->changed_pixels;
         summary["unclear"] = verification->unclear;
         summary["mismatch_messages"] = verification->messages;
     }

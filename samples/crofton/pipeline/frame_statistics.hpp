@@ -72,6 +72,7 @@ struct Verification {
     std::uint64_t wrong_counts = 0;
     std::uint64_t hidden_but_seen = 0;   // triangles that own a pixel and were culled as hidden
     std::uint64_t changed_pictures = 0;  // pictures that occlusion changes
+    std::uint64_t changed_pixels = 0;    // of those pictures
     std::uint64_t unclear = 0;           // answers that double arithmetic cannot check
     std::vector<std::string> messages;
 

@@ -180,6 +180,7 @@ void verify_occlusion(const scene::Scene& scene, const BothOwners& owners, std::
         report.report(verification.hidden_but_seen, "triangle " + std::to_string(owner.triangle) + " of instance " +
                                                         std::to_string(owner.instance) +
                                                         " owns a pixel with or without occlusion only");
+    verification.changed_pixels += changed_pixels;
     if (changed_pixels > 0)
         report.report(verification.changed_pictures, std::to_string(changed_pixels) + " pixels differ with occlusion");
     if (!std::includes(frame.visible_ids.begin(), frame.visible_ids.end(), result.visible_ids.begin(),

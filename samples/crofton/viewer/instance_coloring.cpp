@@ -44,6 +44,7 @@ void InstanceColoring::classify(const LoadedScene& loaded, const pipeline::Frame
     switch (coloring) {
         case Coloring::lit:
         case Coloring::shape:
+        case Coloring::clusters:
             break;
         case Coloring::verdict:
             count("inside", palette::kInside);
@@ -136,7 +137,27 @@ void InstanceColoring::classify_visible_set(const LoadedScene& loaded, const pip
     }
 }
 
-void InstanceColoring::paint(const pipeline::DrawList& list, bool wireframe) {
+// A transform for each colour that an instance shows. The list has the ranges of an instance side by side.
+void InstanceColoring::paint_clusters(const pipeline::DrawList& list, const ClusterColoring& clusters) {
+    constexpr std::uint32_t kNone = ~std::uint32_t{0};
+    const auto own = list.transforms();
+    for (std::size_t r = 0; r < ranges_.size(); ++r) {
+        const std::uint32_t instance_transform = list.ranges()[r].transform;
+        if (tint_of_[list.instance_of(r)] != kPlain) continue;
+        if (r == 0 || list.ranges()[r - 1].transform != instance_transform) transform_of_shade_.assign(256, kNone);
+        const std::size_t piece = list.piece_of(r);
+        std::uint32_t& transform = transform_of_shade_[clusters.shade_of_piece(piece)];
+        if (transform == kNone) {
+            transform = static_cast<std::uint32_t>(transforms_.size());
+            transforms_.push_back(own[instance_transform]);
+            render::set_tint(transforms_.back(), clusters.color_of_piece(piece));
+            transforms_.back().unlit = 0.0f;
+        }
+        ranges_[r].transform = transform;
+    }
+}
+
+void InstanceColoring::paint(const pipeline::DrawList& list, bool wireframe, const ClusterColoring* clusters) {
     const auto ranges = list.ranges();
     const auto transforms = list.transforms();
     ranges_.assign(ranges.begin(), ranges.end());
@@ -148,6 +169,7 @@ void InstanceColoring::paint(const pipeline::DrawList& list, bool wireframe) {
         render::set_tint(transforms_[ranges_[r].transform], counts_[tint].color);
         transforms_[ranges_[r].transform].unlit = 0.0f;
     }
+    if (clusters != nullptr) paint_clusters(list, *clusters);
     wires_.clear();
     if (!wireframe) return;
     const auto first_wire = static_cast<std::uint32_t>(transforms_.size());

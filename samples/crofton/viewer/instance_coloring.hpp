@@ -5,6 +5,7 @@
 #include <crofton/render/rasterizer.hpp>
 #include <vector>
 
+#include "cluster_coloring.hpp"
 #include "loaded_scene.hpp"
 #include "pipeline/draw_list.hpp"
 #include "pipeline/object_counts.hpp"
@@ -21,6 +22,9 @@ inline constexpr glm::vec3 kColliding{0.90f, 0.02f, 0.02f};
 inline constexpr glm::vec3 kCalm{0.32f, 0.34f, 0.36f};
 inline constexpr glm::vec3 kHidden{0.75f, 0.02f, 0.60f};
 inline constexpr glm::vec3 kHides{0.85f, 0.42f, 0.01f};
+inline constexpr glm::vec3 kFacesAway{0.03f, 0.08f, 0.45f};
+inline constexpr glm::vec3 kHiddenByDepth{0.30f, 0.015f, 0.22f};
+inline constexpr glm::vec3 kOutside{0.14f, 0.15f, 0.16f};
 inline constexpr glm::vec3 kUnseen{0.85f, 0.42f, 0.01f};
 inline constexpr glm::vec3 kHidesSelected{0.90f, 0.02f, 0.02f};
 inline constexpr glm::vec3 kSelected{0.05f, 0.45f, 0.95f};
@@ -35,7 +39,8 @@ class InstanceColoring {
     void classify(const LoadedScene& loaded, const pipeline::FrameStatistics& frame, Coloring coloring,
                   scene::InstanceId selected, std::span<const scene::NodeId> hiders);
     // Lays out the selection of `list`, which has been made for the camera that looks.
-    void paint(const pipeline::DrawList& list, bool wireframe);
+    // `clusters`: whose pieces it selects, where these have colours of their own; else null.
+    void paint(const pipeline::DrawList& list, bool wireframe, const ClusterColoring* clusters);
 
     [[nodiscard]] std::span<const render::DrawRange> ranges() const { return ranges_; }
     [[nodiscard]] std::span<const render::DrawRange> wire_ranges() const { return wires_; }
@@ -53,6 +58,7 @@ class InstanceColoring {
     // Those of the instances that are on one of the nodes. Returns how many.
     std::uint64_t tint_nodes(const scene::Scene& scene, std::span<const scene::InstanceId> instances,
                              std::span<const scene::NodeId> nodes, std::uint8_t tint);
+    void paint_clusters(const pipeline::DrawList& list, const ClusterColoring& clusters);
     void classify_visible_set(const LoadedScene& loaded, const pipeline::FrameStatistics& frame);
     void classify_occlusion(const LoadedScene& loaded, const pipeline::FrameStatistics& frame);
 
@@ -60,6 +66,7 @@ class InstanceColoring {
     std::vector<Count> counts_;
     std::vector<render::DrawRange> ranges_, wires_;
     std::vector<render::DrawTransform> transforms_;
+    std::vector<std::uint32_t> transform_of_shade_;  // of one instance
     pipeline::ObjectCounter counter_;
 };
 

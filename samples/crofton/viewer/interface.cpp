@@ -68,6 +68,7 @@ Result<void> Session::build_interface() {
                          other_ ? &other_frame_ : nullptr,
                          frame_history_,
                          instance_coloring_,
+                         cluster_coloring_,
                          overlay_,
                          cascades_,
                          pick_,

@@ -137,10 +137,25 @@ Result<void> Session::load(const SceneRequest& request) {
         culling_camera_ = controller_.camera;
         if (window_) window_->set_title("Crofton: " + loaded_->source().name + " (F1: help)");
     }
-    list_ = std::make_unique<pipeline::DrawList>(
-        loaded_->scene(),
-        pipeline::DrawList::Looks{loaded_->source().unlit, loaded_->source().one_sided, loaded_->source().flat});
+    clusters_.reset();
+    list_geometry();
     return upload_geometry();
+}
+
+void Session::list_geometry() {
+    const assets::SceneSource& source = loaded_->source();
+    list_ = std::make_unique<pipeline::DrawList>(
+        source.scene, pipeline::DrawList::Looks{source.unlit, source.one_sided, source.flat}, clusters_);
+}
+
+Result<void> Session::cut_clusters() {
+    if (settings_.coloring != Coloring::clusters || clusters_) return {};
+    auto cut = pipeline::cut_scene(loaded_->scene(), serial_executor());
+    if (!cut) return lasting(tl::unexpected(std::move(cut.error())));
+    clusters_ = std::make_shared<const pipeline::SceneClusters>(std::move(*cut));
+    list_geometry();
+    stale_geometry_ = true;
+    return {};
 }
 
 // A level is looked at from where much of it is seen; what has no inside stays framed as a whole.
@@ -187,6 +202,7 @@ Result<void> Session::follow_settings() {
     } else if (auto configured = other_->configure(settings_.other, settings_); !configured) {
         return lasting(std::move(configured));
     }
+    if (auto cut = cut_clusters(); !cut) return cut;
     if (stale_geometry_ || shape_uploaded_ != (settings_.coloring == Coloring::shape)) return upload_geometry();
     return {};
 }

@@ -72,6 +72,14 @@ void legend(const PanelInput& input) {
         sample(display_color(tint.color), 1.0f);
         ImGui::Text("%s: %s", tint.name, with_thousands(tint.instances).c_str());
     }
+    if (input.settings.coloring == Coloring::clusters) {
+        for (const ClusterColoring::Count& fate : input.cluster_coloring.counts()) {
+            sample(display_color(fate.color), 1.0f);
+            ImGui::Text("%s: %s (%s)", fate.name, with_thousands(fate.clusters).c_str(),
+                        with_thousands(fate.triangles).c_str());
+        }
+        ImGui::TextDisabled("clusters (triangles)");
+    }
     for (const LineMeaning& line : input.overlay.legend()) {
         sample(display_color(line.color), 0.2f);
         if (line.count)

@@ -53,6 +53,7 @@ struct PanelInput {
     const pipeline::FrameStatistics* other;  // of the comparison's B, or null
     const FrameHistory& frame_history;
     const InstanceColoring& instance_coloring;
+    const ClusterColoring& cluster_coloring;
     const Overlay& overlay;
     std::span<const Cascade> cascades;
     std::optional<Pick> pick;

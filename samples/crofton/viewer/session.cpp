@@ -148,7 +148,7 @@ void Session::advance(double seconds) {
         if (!settings_.paused) scene_time_ = path_.scene_frames[now];
     }
     controller_.advance(seconds);
-    if (!settings_.freeze) culling_camera_ = controller_.camera;
+    if (!settings_.freeze) culling_camera_ = controller_.camera, culling_size_ = drawn_size();
     const auto scene_frame = static_cast<std::uint32_t>(scene_time_);
     if (is_recording_) {
         recording_.cameras.push_back(controller_.camera);
@@ -184,7 +184,17 @@ Result<void> Session::cull() {
     sight_ = settings_.coloring == Coloring::visible_set ? look_up(loaded_->pvs(), frame_) : std::nullopt;
     instance_coloring_.classify(*loaded_, frame_, settings_.coloring, selected_, hiders_);
     find_contacts();
-    return {};
+    return color_clusters();
+}
+
+Result<void> Session::color_clusters() {
+    if (settings_.coloring != Coloring::clusters) return {};
+    std::vector<scene::InstanceId> in_view;
+    const auto verdicts = loaded_->pipeline().verdicts();
+    for (scene::InstanceId i = 0; i < verdicts.size(); ++i)
+        if (verdicts[i] != cull::Verdict::outside) in_view.push_back(i);
+    return cluster_coloring_.classify(loaded_->source(), *clusters_, in_view, culling_camera_,
+                                      {culling_size_.width, culling_size_.height});
 }
 
 // What is hidden is drawn where its colour is asked for: from elsewhere it is seen.
@@ -203,7 +213,10 @@ void Session::find_contacts() {
 }
 
 Result<void> Session::submit_view(const Camera& camera, std::uint32_t picture, bool show_frustum) {
-    list_->select(drawn_ids_, camera);
+    if (settings_.coloring == Coloring::clusters)
+        list_->select(cluster_coloring_.pieces(), camera);
+    else
+        list_->select(drawn_ids_, camera);
     lines_.clear(camera.position);
     overlay_.draw(lines_, settings_, *loaded_, frame_, contacts_, cascades_, selected_, show_frustum);
     if (settings_.hulls) overlay_.draw_hulls(lines_, loaded_->bodies(), loaded_->scene(), frame_, contacts_.hulls());
@@ -213,7 +226,8 @@ Result<void> Session::submit_view(const Camera& camera, std::uint32_t picture, b
 
 // What is selected, in its colours, and the lines.
 Result<void> Session::submit(const Camera& camera, std::uint32_t picture) {
-    instance_coloring_.paint(*list_, settings_.wireframe);
+    instance_coloring_.paint(*list_, settings_.wireframe,
+                             settings_.coloring == Coloring::clusters ? &cluster_coloring_ : nullptr);
     render::Frame frame;
     frame.camera = camera;
     frame.transforms = instance_coloring_.transforms();
@@ -282,17 +296,20 @@ Result<void> Session::finish_drawing() {
     return settings_.seen && wanted ? count_seen() : Result<void>{};
 }
 
+VkExtent2D Session::drawn_size() const {
+    const auto side = [&](std::uint32_t whole) {
+        return std::max(1u, static_cast<std::uint32_t>(std::lround(whole * drawn_resolution_)));
+    };
+    return {side(rasterizer_->width()), side(rasterizer_->height())};
+}
+
 // From the eye that culls, with as many pixels as are drawn.
 Result<void> Session::count_seen() {
-    const auto drawn_side = [&](std::uint32_t side) {
-        return std::max(1u, static_cast<std::uint32_t>(std::lround(side * drawn_resolution_)));
-    };
     // Pictures are made one after another.
     if (rasterizer_->native_image(kInset) == nullptr)
         if (auto made = rasterizer_->resize(16, 9, kInset); !made) return made;
-    if (auto sized = rasterizer_->resize(drawn_side(rasterizer_->width()), drawn_side(rasterizer_->height()), kOwners);
-        !sized)
-        return sized;
+    const VkExtent2D size = drawn_size();
+    if (auto sized = rasterizer_->resize(size.width, size.height, kOwners); !sized) return sized;
     list_->select(frame_.visible_ids, culling_camera_);
     auto counted = owner_picture_.draw(*rasterizer_, kOwners, *list_, culling_camera_);
     if (!counted) return counted.error().code == ErrorCode::unsupported ? Result<void>{} : counted;
@@ -333,6 +350,12 @@ Result<void> Session::save_screenshots() {
                              {"hulls", overlay_.hull_count()},
                              {"manifold_points", overlay_.manifold_point_count()},
                              {"lines", lines_.vertices().size() / 2}});
+        if (settings_.coloring == Coloring::clusters) {
+            Json fates = Json::array();
+            for (const ClusterColoring::Count& fate : cluster_coloring_.counts())
+                fates.push_back({{"name", fate.name}, {"clusters", fate.clusters}, {"triangles", fate.triangles}});
+            pictures_.back()["clusters"] = std::move(fates);
+        }
         if (other_) pictures_.back()["other"] = pipeline::to_json(other_frame_, false);
         if (loaded_->occlusion()) pictures_.back()["occlusion"] = to_json(loaded_->occlusion()->counts());
         if (other_ && other_->occlusion()) pictures_.back()["other_occlusion"] = to_json(other_->occlusion()->counts());

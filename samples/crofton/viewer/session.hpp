@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "camera_controller.hpp"
+#include "cluster_coloring.hpp"
 #include "depth_picture.hpp"
 #include "frame_history.hpp"
 #include "instance_coloring.hpp"
@@ -48,7 +49,9 @@ class Session {
     [[nodiscard]] Result<void> recover();
     [[nodiscard]] Result<void> load(const SceneRequest& request);
     void stand_inside();
+    void list_geometry();
     [[nodiscard]] Result<void> upload_geometry();
+    [[nodiscard]] Result<void> cut_clusters();
     [[nodiscard]] Result<void> follow_settings();
     [[nodiscard]] Result<void> load_replay();
 
@@ -78,6 +81,8 @@ class Session {
     [[nodiscard]] Result<void> cull();
     void find_contacts();
     void list_drawn();
+    [[nodiscard]] Result<void> color_clusters();
+    [[nodiscard]] VkExtent2D drawn_size() const;
     [[nodiscard]] Result<void> draw_other();
     [[nodiscard]] Result<void> start_drawing();
     [[nodiscard]] Result<void> finish_drawing();
@@ -120,6 +125,9 @@ class Session {
     std::vector<Cascade> cascades_;
     ViewResult cascade_visible_;
     InstanceColoring instance_coloring_;
+    std::shared_ptr<const pipeline::SceneClusters> clusters_;  // of the scene, once their colours have been asked for
+    ClusterColoring cluster_coloring_;
+    VkExtent2D culling_size_{};  // of the picture that the camera that culls takes
     Overlay overlay_;
     LineList lines_;
     FrameHistory frame_history_;

@@ -11,9 +11,19 @@
 
 namespace crofton::viewer {
 
-enum class Coloring : std::uint8_t { lit, verdict, improper, occlusion, visible_set, collision, depth, shape };
-inline constexpr const char* kColoringNames[] = {"lit",         "verdict",   "improper", "occlusion",
-                                                 "visible-set", "collision", "depth",    "shape"};
+enum class Coloring : std::uint8_t {
+    lit,
+    verdict,
+    improper,
+    occlusion,
+    visible_set,
+    clusters,
+    collision,
+    depth,
+    shape
+};
+inline constexpr const char* kColoringNames[] = {"lit",      "verdict",   "improper", "occlusion", "visible-set",
+                                                 "clusters", "collision", "depth",    "shape"};
 
 // How polygons and the planar patches of meshes are cut into triangles; `loaded`: as the scene came.
 enum class Triangulation : std::uint8_t { loaded, ear, delaunay, minimum_weight };

@@ -240,6 +240,7 @@ TEST_SUITE("pipeline/occlusion") {
         CHECK(check(*frame, more_owners, 0).hidden_but_seen == 1);
         CHECK(check(*frame, std::span(owners).first(1), 0).hidden_but_seen == 2);
         CHECK(check(*frame, owners, 7).changed_pictures == 1);
+        CHECK(check(*frame, owners, 7).changed_pixels == 7);
         FrameStatistics miscounted = *frame;
         ++miscounted.occlusion->triangles_submitted;
         CHECK(check(miscounted, owners, 0).wrong_counts == 1);

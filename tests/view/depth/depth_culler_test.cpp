@@ -50,9 +50,12 @@ Checked check(const Scene& scene, const Camera& camera, std::uint32_t width, std
             if (c.triangles >> k & 1)
                 listed[c.object][scene.objects[c.object].mesh->clusters.clusters()[c.cluster].first_triangle + k] = 1;
     for (const auto& l : listed) result.listed += static_cast<std::uint64_t>(std::count(l.begin(), l.end(), 1));
-    for (const double wobble : {0.0, 0.0006}) {
+    struct Rounding {
+        double wobble, bias;
+    };
+    for (const auto [wobble, bias] : {Rounding{0.0, 0.0}, Rounding{0.0006, 0.0}, Rounding{0.0006, 1.0 / 256.0}}) {
         oracle::OwnerPicture picture(width, height), hiding(width, height);
-        oracle::OwnerRenderer renderer(picture, wobble, seed), hiding_renderer(hiding, wobble, seed);
+        oracle::OwnerRenderer renderer(picture, wobble, seed, bias), hiding_renderer(hiding, wobble, seed, bias);
         for (std::uint32_t i = 0; i < objects.size(); ++i) {
             const PlacedMesh& o = scene.objects[i];
             const oracle::DrawnMesh drawn{o.mesh->mesh.positions, o.mesh->mesh.indices, objects[i].to_clip,

@@ -192,6 +192,7 @@ class PatchDrawer {
         r.up = (z2 * (x[1] - x[0]) - z1 * (x[2] - x[0])) * inverse;
         r.at_x = x[0], r.at_y = y[0], r.base = z[0];
         face.steps = 8.0f * move * (std::abs(r.across) + std::abs(r.up));
+        r.farthest -= face.steps;  // the bias moves the farthest vertex back as well
         // The plane's own rounding, which narrow triangles magnify.
         const float plane = 0x1p-19f * (nearest - farthest) * (1.0f + size * size * std::abs(inverse));
         r.below = rounding + plane;

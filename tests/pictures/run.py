@@ -1,0 +1,100 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Draws nine scenes with and without what is hidden by depth, at three sizes, and counts the pixels that differ.
+
+run.py [--crofton FILE] [--data FOLDER] [--scenes NAMES] [--sizes SIZES] [--cameras street,random] [--frames N] [--out FOLDER] [--report]
+
+Each run is `crofton frames SCENE --occlude --verify`. Its JSON is kept in the folder, and runs whose JSON is there are
+not made again: a run that was stopped goes on where it was. Prints a row a run. Exits with 1 if a pixel differs, if a
+triangle that owns a pixel is hidden, or if a run fails.
+"""
+import argparse
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SCENES = {  # name: arguments, where {data} is the folder with scenes that others made
+    "town": ["town"],
+    "office": ["office"],
+    "valley": ["valley"],
+    "hall": ["hall"],
+    "city": ["{data}/scenes/kaykit_city"],
+    "forest": ["{data}/scenes/stk_black_forest.glb"],
+    "dungeon": ["{data}/scenes/recast_dungeon.obj"],
+    "MAP01": ["{data}/scenes/freedoom2_maps.wad", "--map", "MAP01"],
+    "MAP07": ["{data}/scenes/freedoom2_maps.wad", "--map", "MAP07"],
+}
+SIZES = ["480x270", "1280x720", "1279x719"]
+
+
+def run(options, scene, size, camera, file):
+    arguments = [a.format(data=options.data) for a in SCENES[scene]]
+    part = file.with_suffix(".part")
+    command = [options.crofton, "frames", *arguments, "--camera", camera, "--size", size, "--frames",
+               str(options.frames), "--occlude", "--verify", "--json", str(part)]
+    started = time.monotonic()
+    done = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    if done.returncode not in (0, 1):
+        print(f"{' '.join(command)}: status {done.returncode}\n{done.stderr}", file=sys.stderr)
+        return False
+    summary = json.loads(part.read_text())["summary"]
+    summary["seconds"] = time.monotonic() - started
+    file.write_text(json.dumps(summary, indent=1))
+    part.unlink()
+    return True
+
+
+def report(files):
+    """Prints what is known; True if nothing is wrong."""
+    print("| scene | camera | size | frames | in view | listed | own a pixel | pixels changed | owners hidden |")
+    print("|---|---|---|---|---|---|---|---|---|")
+    frames = pixels = wrong = 0
+    for (scene, size, camera), file in files:
+        if not file.exists():
+            print(f"| {scene} | {camera} | {size} | not run | | | | | |")
+            continue
+        s = json.loads(file.read_text())
+        print(f"| {scene} | {camera} | {size} | {s['frames']} | {s['mean_triangles_passed']:,.0f} | "
+              f"{s['mean_occlusion_triangles_passed']:,.0f} | {s['mean_triangles_seen']:,.0f} | "
+              f"{s['changed_pixels']} | {s['hidden_but_seen']} |")
+        width, height = map(int, size.split("x"))
+        frames += s["frames"]
+        pixels += s["frames"] * width * height
+        wrong += s["changed_pixels"] + s["mismatches"]
+    print(f"{frames:,} frames, {pixels:,} pixels compared; {wrong:,} mismatches")
+    return wrong == 0
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--crofton", default=str(ROOT / "build/release/bin/crofton"))
+    parser.add_argument("--data", default=os.environ.get("CROFTON_SHARED_DATA", "/usr/share/crofton"),
+                        help="folder with scenes/ (default: CROFTON_SHARED_DATA)")
+    parser.add_argument("--scenes", default=",".join(SCENES))
+    parser.add_argument("--sizes", default=",".join(SIZES))
+    parser.add_argument("--cameras", default="street", help="as of `crofton frames`: street, random, orbit")
+    parser.add_argument("--frames", type=int, default=120)
+    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "build/pictures")
+    parser.add_argument("--report", action="store_true", help="print what is known and end")
+    options = parser.parse_args()
+    options.out.mkdir(parents=True, exist_ok=True)
+    keys = [(scene, size, camera) for size in options.sizes.split(",") for camera in options.cameras.split(",")
+            for scene in options.scenes.split(",")]
+    for scene, _, _ in keys:
+        if scene not in SCENES:
+            parser.error(f"no scene {scene}; there are {', '.join(SCENES)}")
+    files = [(key, options.out / f"{'_'.join(key)}_{options.frames}.json") for key in keys]
+    complete = True
+    for key, file in files:
+        if not options.report and not file.exists():
+            complete = run(options, *key, file) and complete
+            print(*key, f"{json.loads(file.read_text())['seconds']:.0f} s" if file.exists() else "failed", flush=True)
+    return 0 if report(files) and complete else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
