@@ -33,6 +33,13 @@ struct Row {
 constexpr Row kRows[] = {
     {"rest/ascending", "100,000 boxes rest, a view, ids ascending", crofton::bench::views_ascending, 100000, 0},
     {"rest/tree", "100,000 boxes rest, a view, tree order", crofton::bench::views_in_tree_order, 100000, 0},
+    {"rest/ascending_million", "1,000,000 boxes rest, a view, ids ascending", crofton::bench::views_ascending, 1000000,
+     0},
+    {"rest/tree_million", "1,000,000 boxes rest, a view, tree order", crofton::bench::views_in_tree_order, 1000000, 0},
+    {"near/ascending", "1,000,000 boxes rest, 230 seen, ids ascending", crofton::bench::near_views_ascending, 1000000,
+     0},
+    {"near/tree", "1,000,000 boxes rest, 230 seen, tree order", crofton::bench::near_views_in_tree_order, 1000000, 0},
+    {"all_move", "10,000 boxes all move, a view, ids ascending", crofton::bench::views_ascending, 10000, 10000},
     {"boxes", "100,000 boxes, 5,000 move, a view", crofton::bench::views_in_tree_order, 100000, 5000},
     {"kept", "the same, by hand too boxes kept and compared", crofton::bench::views_of_kept, 100000, 5000},
     {"structs", "the same, boxes in the game's structs", crofton::bench::views_of_structs, 100000, 5000},

@@ -134,9 +134,9 @@ constexpr WorldOptions kViewsOnly{.pairs = false, .rebuild_budget = 0};
 
 // Views of boxes of which some move; nothing collides.
 template <class Boxes, Keeping keeping = Keeping::none>
-FrameTimes views(std::size_t count, std::size_t moving_count, int frames, cull::ResultOrder order) {
+FrameTimes views(std::size_t count, std::size_t moving_count, int frames, cull::ResultOrder order, double share = 0.2) {
     const std::vector<Obb> all = crowd(count);
-    const cull::View view = view_of_share(all, 0.2);
+    const cull::View view = view_of_share(all, share);
     Boxes ours(all, moving_count), worlds(all, moving_count);
     Parts<keeping> parts(all, moving_count);
     Objects objects(all, kViewsOnly);
@@ -163,6 +163,13 @@ FrameTimes views_ascending(std::size_t count, std::size_t moving, int frames) {
 }
 FrameTimes views_in_tree_order(std::size_t count, std::size_t moving, int frames) {
     return views<Crowd>(count, moving, frames, cull::ResultOrder::tree);
+}
+// 230 boxes are seen.
+FrameTimes near_views_ascending(std::size_t count, std::size_t moving, int frames) {
+    return views<Crowd>(count, moving, frames, cull::ResultOrder::ascending, 230.0 / static_cast<double>(count));
+}
+FrameTimes near_views_in_tree_order(std::size_t count, std::size_t moving, int frames) {
+    return views<Crowd>(count, moving, frames, cull::ResultOrder::tree, 230.0 / static_cast<double>(count));
 }
 FrameTimes views_of_kept(std::size_t count, std::size_t moving, int frames) {
     return views<Crowd, Keeping::with_changes>(count, moving, frames, cull::ResultOrder::tree);

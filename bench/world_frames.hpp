@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What bench_world measures: the same frames by hand and in a World, in turns.
 #pragma once
+#include <time.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
@@ -15,12 +17,23 @@ struct FrameTimes {
     double by_hand = std::numeric_limits<double>::infinity(), world = std::numeric_limits<double>::infinity();
 };
 
+// Of the process's threads. Its own call takes a fraction of a microsecond.
+inline double processor_microseconds() {
+    timespec now{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return 1e6 * static_cast<double>(now.tv_sec) + 1e-3 * static_cast<double>(now.tv_nsec);
+}
+
+// The lesser of the time that passes and the processor's: other work on the machine lengthens the first, the clock's
+// own call the second. Requires work on one thread.
 template <class Work>
 double microseconds(Work work) {
     using Clock = std::chrono::steady_clock;
+    const double processor_start = processor_microseconds();
     const auto start = Clock::now();
     work();
-    return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+    const double passed = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+    return std::min(passed, processor_microseconds() - processor_start);
 }
 
 // In turns, so that both meet the same machine. Each is told which frame it is.
@@ -44,6 +57,8 @@ inline void require_ok(bool good, const char* what) {
 // World's objects are bounds (world_bounds.cpp).
 FrameTimes views_ascending(std::size_t count, std::size_t moving, int frames);
 FrameTimes views_in_tree_order(std::size_t count, std::size_t moving, int frames);
+FrameTimes near_views_ascending(std::size_t count, std::size_t moving, int frames);
+FrameTimes near_views_in_tree_order(std::size_t count, std::size_t moving, int frames);
 FrameTimes views_of_kept(std::size_t count, std::size_t moving, int frames);
 FrameTimes views_of_structs(std::size_t count, std::size_t moving, int frames);
 FrameTimes contacts(std::size_t count, std::size_t moving, int frames);

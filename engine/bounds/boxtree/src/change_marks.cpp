@@ -3,54 +3,62 @@
 
 #include <algorithm>
 #include <crofton/boxtree/items.hpp>
+#include <utility>
 
 namespace crofton::boxtree {
 
+void ChangeMarks::Marks::clear() {
+    for (const LeafId leaf : leaves) lanes[leaf] = 0;
+    leaves.clear();
+}
+
 void ChangeMarks::reset(std::size_t leaves) {
-    for (Vector<std::uint16_t>* lanes : {&dirty_lanes_, &moved_last_refit_, &moved_two_refits_ago_})
-        lanes->assign(leaves, 0);
+    for (Marks* marks : {&dirty_, &last_refit_, &two_refits_ago_}) {
+        marks->lanes.assign(leaves, 0);
+        marks->leaves.clear();
+    }
 }
 
 void ChangeMarks::add_leaf() {
-    for (Vector<std::uint16_t>* lanes : {&dirty_lanes_, &moved_last_refit_, &moved_two_refits_ago_}) {
-        make_room_for(*lanes, 1);
-        lanes->push_back(0);
+    for (Marks* marks : {&dirty_, &last_refit_, &two_refits_ago_}) {
+        make_room_for(marks->lanes, 1);
+        marks->lanes.push_back(0);
     }
 }
 
 // Neighbours in the list often share a leaf: their bits are collected and written once.
 void ChangeMarks::mark(std::span<const std::uint32_t> slots) {
-    std::uint16_t* dirty = dirty_lanes_.data();
-    LeafId leaf = 0;
+    if (slots.empty()) return;
+    LeafId leaf = slots[0] / kWidth;
     std::uint32_t lanes = 0;
     for (const std::uint32_t slot : slots) {
         if (slot / kWidth != leaf) {
-            dirty[leaf] = static_cast<std::uint16_t>(dirty[leaf] | lanes);
+            add(leaf, lanes);
             leaf = slot / kWidth;
             lanes = 0;
         }
         lanes |= 1u << slot % kWidth;
     }
-    if (lanes) dirty[leaf] = static_cast<std::uint16_t>(dirty[leaf] | lanes);
+    add(leaf, lanes);
 }
 
 void ChangeMarks::list_dirty_leaves(Vector<LeafId>& leaves) const {
-    constexpr std::size_t kAtOnce = 16;
+    constexpr std::size_t kFew = 32;  // one leaf in so many: sorting them costs less than looking at all
     leaves.clear();
-    for (std::size_t first = 0; first < dirty_lanes_.size(); first += kAtOnce) {
-        const std::size_t last = std::min(first + kAtOnce, dirty_lanes_.size());
-        std::uint32_t any = 0;
-        for (std::size_t l = first; l < last; ++l) any |= dirty_lanes_[l];
-        if (any == 0) continue;
-        for (std::size_t l = first; l < last; ++l)
-            if (dirty_lanes_[l]) leaves.push_back(static_cast<LeafId>(l));
+    if (dirty_.leaves.size() < dirty_.lanes.size() / kFew) {
+        leaves.assign(dirty_.leaves.begin(), dirty_.leaves.end());
+        std::sort(leaves.begin(), leaves.end());
+        return;
     }
+    if (dirty_.leaves.empty()) return;
+    for (LeafId leaf = 0; leaf < dirty_.lanes.size(); ++leaf)
+        if (dirty_.lanes[leaf] != 0) leaves.push_back(leaf);
 }
 
 void ChangeMarks::finish_refit() {
-    moved_two_refits_ago_.swap(moved_last_refit_);
-    moved_last_refit_.swap(dirty_lanes_);
-    std::fill(dirty_lanes_.begin(), dirty_lanes_.end(), std::uint16_t{0});
+    std::swap(two_refits_ago_, last_refit_);
+    std::swap(last_refit_, dirty_);
+    dirty_.clear();
 }
 
 }  // namespace crofton::boxtree

@@ -144,16 +144,33 @@ Children Splitter::divide(Range range, std::uint32_t unit, const Cost& cost) {
     }
 }
 
-Children divide(std::span<BuildItem> items, Range range, std::uint32_t unit, const Cost& cost) {
-    const std::span<BuildItem> part = items.subspan(range.begin, range.size());
-    Splitter splitter;
-    splitter.start(part);
-    Children children = splitter.divide({0, range.size()}, unit, cost);
-    const Vector<BuildItem> before(part.begin(), part.end());
-    for (std::size_t i = 0; i < part.size(); ++i) part[i] = before[splitter.order()[i]];
-    for (std::uint32_t i = 0; i < children.count; ++i)
-        children.ranges[i] = {range.begin + children.ranges[i].begin, range.begin + children.ranges[i].end};
-    return children;
+void halve(std::span<BuildItem, kWidth> items) {
+    // An item's rank is how many centres come before its own; equal ones keep their order.
+    std::uint32_t ranks[3][kWidth];
+    unsigned widest = 0;
+    float most = -1.0f;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        float centers[kWidth];
+        for (unsigned i = 0; i < kWidth; ++i) {
+            centers[i] = items[i].twice_center(axis);
+            ranks[axis][i] = 0;
+        }
+        for (unsigned j = 0; j < kWidth; ++j)
+            for (unsigned i = 0; i < kWidth; ++i)
+                ranks[axis][i] +=
+                    static_cast<std::uint32_t>(centers[j] < centers[i]) |
+                    (static_cast<std::uint32_t>(centers[j] == centers[i]) & static_cast<std::uint32_t>(j < i));
+        const auto [low, high] = std::minmax_element(centers, centers + kWidth);
+        if (*high - *low > most) most = *high - *low, widest = axis;
+    }
+    std::array<BuildItem, kWidth> along_x;
+    std::array<bool, kWidth> is_first;
+    for (unsigned i = 0; i < kWidth; ++i) {
+        along_x[ranks[0][i]] = items[i];
+        is_first[ranks[0][i]] = ranks[widest][i] < kWidth / 2;
+    }
+    unsigned first = 0, second = kWidth / 2;
+    for (unsigned i = 0; i < kWidth; ++i) items[is_first[i] ? first++ : second++] = along_x[i];
 }
 
 }  // namespace crofton::boxtree

@@ -97,7 +97,8 @@ class Splitter {
     Vector<Key> keys_, keys_next_;
 };
 
-// The same for items that are to be cut once: reorders items[range].
-[[nodiscard]] Children divide(std::span<BuildItem> items, Range range, std::uint32_t unit, const Cost& cost);
+// Cuts sixteen items in halves across the axis along which their centres spread farthest, and puts the first half
+// first. Each half is in the order of its centres along x.
+void halve(std::span<BuildItem, kWidth> items);
 
 }  // namespace crofton::boxtree

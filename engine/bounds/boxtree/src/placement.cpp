@@ -115,17 +115,15 @@ void Placement::split_leaf(LeafId l) {
         }
         items[lane].set_id(item);
     }
-    const Children halves = divide(items, {0, kWidth}, kWidth / 2, Cost(structure_.criterion_));
+    halve(items);
     const LeafId fresh = add_leaf();
     const NodeId parent = leaves_[l].parent;
     const std::uint32_t lane_in_parent = leaves_[l].lane_in_parent;
     const LeafId both[2] = {l, fresh};
     for (unsigned side = 0; side < 2; ++side) {
-        ItemId ids[kWidth];
-        std::uint32_t count = 0;
-        for (std::uint32_t i = halves.ranges[side].begin; i < halves.ranges[side].end; ++i)
-            ids[count++] = items[i].id();
-        make_leaf(both[side], std::span(ids).first(count), parent, lane_in_parent);
+        ItemId ids[kWidth / 2];
+        for (unsigned i = 0; i < kWidth / 2; ++i) ids[i] = items[side * kWidth / 2 + i].id();
+        make_leaf(both[side], ids, parent, lane_in_parent);
     }
     add_child(parent, fresh | kLeafBit);
     refresh_above(l | kLeafBit);
@@ -182,11 +180,11 @@ NodeId Placement::split_node(NodeId n) {
         }
         items[lane].set_id(lane);
     }
-    const Children halves = divide(items, {0, kWidth}, kWidth / 2, Cost(structure_.criterion_));
+    halve(items);
     std::array<std::uint32_t, kWidth> children;  // those of the first half, then the others
     for (unsigned i = 0; i < kWidth; ++i) children[i] = nodes_[n].child[items[i].id()];
     const auto half = [&](unsigned side) {
-        return std::span<const std::uint32_t>(children).subspan(halves.ranges[side].begin, halves.ranges[side].size());
+        return std::span<const std::uint32_t>(children).subspan(side * kWidth / 2, kWidth / 2);
     };
     const auto fresh = static_cast<NodeId>(nodes_.size());
     const std::uint32_t axes = nodes_[n].axes;

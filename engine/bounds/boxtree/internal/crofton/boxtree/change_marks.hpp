@@ -8,36 +8,44 @@
 
 namespace crofton::boxtree {
 
-// Bits of lanes, by leaf.
+// Bits of lanes, by leaf. The cost follows the leaves that change, not how many there are.
 class ChangeMarks {
   public:
     void reset(std::size_t leaves);  // nothing has changed
     void add_leaf();
 
-    void mark(std::uint32_t slot) {
-        dirty_lanes_[slot / kWidth] = static_cast<std::uint16_t>(dirty_lanes_[slot / kWidth] | 1u << slot % kWidth);
-    }
+    void mark(std::uint32_t slot) { add(slot / kWidth, 1u << slot % kWidth); }
     void mark(std::span<const std::uint32_t> slots);
 
     // A move writes up to so many changed boxes of a leaf into their lanes. Where more have changed, the next refit
     // writes them all.
     [[nodiscard]] bool has_few_changes(LeafId leaf) const {
-        unsigned lanes = dirty_lanes_[leaf];
+        unsigned lanes = dirty_.lanes[leaf];
         for (int few = 3; few > 0; --few) lanes &= lanes - 1;
         return lanes == 0;
     }
-    void list_dirty_leaves(Vector<LeafId>& leaves) const;
+    void list_dirty_leaves(Vector<LeafId>& leaves) const;  // ascending
 
     // Dirty lanes are clean, and remembered for two refits more.
     void finish_refit();
     // Changed before both of the last two refits.
     [[nodiscard]] bool moves_often(std::uint32_t slot) const {
-        const unsigned lanes = moved_last_refit_[slot / kWidth] & moved_two_refits_ago_[slot / kWidth];
+        const unsigned lanes = last_refit_.lanes[slot / kWidth] & two_refits_ago_.lanes[slot / kWidth];
         return (lanes >> slot % kWidth & 1) != 0;
     }
 
   private:
-    Vector<std::uint16_t> dirty_lanes_, moved_last_refit_, moved_two_refits_ago_;  // by leaf, one bit a lane
+    struct Marks {
+        Vector<std::uint16_t> lanes;  // by leaf, one bit a lane
+        Vector<LeafId> leaves;        // those with bits, in no order
+        void clear();
+    };
+    void add(LeafId leaf, std::uint32_t lanes) {
+        std::uint16_t& all = dirty_.lanes[leaf];
+        if (all == 0) dirty_.leaves.push_back(leaf);
+        all = static_cast<std::uint16_t>(all | lanes);
+    }
+    Marks dirty_, last_refit_, two_refits_ago_;
 };
 
 }  // namespace crofton::boxtree
