@@ -13,18 +13,12 @@ inline constexpr float kNothing = -std::numeric_limits<float>::infinity();
 inline constexpr std::uint32_t kTile = 8;
 inline constexpr std::uint32_t kTilePixels = kTile * kTile;
 
-enum class TileState : std::uint8_t {
-    unused,   // the pixels have not been written in this picture
-    current,  // `least` is the least of the pixels and the floor
-    changed,  // `least` may be less
-};
-
 // At a pixel the picture is at least as near as its number, and as the floor of its tile.
 struct Tiles {
     float* pixels;  // tile by tile, row by row
     float* least;   // at most the least nearness in the tile
     float* floors;
-    TileState* states;
+    std::uint8_t* written;        // 0: the pixels have not been written in this picture
     std::uint32_t columns, rows;  // of tiles
     std::uint32_t width, height;  // of pixels; those of tiles beyond count as infinitely near
 };

@@ -8,6 +8,8 @@
 // clang-format on
 #include <hwy/highway.h>
 
+#include "faces-inl.hpp"
+#include "near_faces-inl.hpp"
 #include "patch-inl.hpp"
 #include "projection-inl.hpp"
 #include "raster-inl.hpp"

@@ -76,7 +76,7 @@ struct Prepared {
 
 struct DepthCuller::State {
     Vector<float> pixels, least, floors;
-    Vector<TileState> tile_states;
+    Vector<std::uint8_t> written;
     PictureData picture{};
     bool perspective = true;
     Vector<Prepared> objects;
@@ -95,9 +95,9 @@ struct DepthCuller::State {
         if (pixels.size() < count * kTilePixels) pixels.resize(count * kTilePixels);
         least.assign(count + kTile, kNothing);  // kernels read and write a vector beyond the end
         floors.assign(count + kTile, kNothing);
-        tile_states.assign(count, TileState::unused);
+        written.assign(count, 0);
         tiles.pixels = pixels.data(), tiles.least = least.data(), tiles.floors = floors.data();
-        tiles.states = tile_states.data();
+        tiles.written = written.data();
         picture.half_width = 0.5f * static_cast<float>(view.width);
         picture.half_height = 0.5f * static_cast<float>(view.height);
         const bool reversed = view.depth == DepthRange::reversed_zero_to_one;
@@ -274,7 +274,7 @@ float DepthCuller::nearness(std::uint32_t x, std::uint32_t y) const {
     const Tiles& tiles = state_->picture.tiles;
     const std::size_t t = std::size_t{y / kTile} * tiles.columns + x / kTile;
     const float floor = tiles.floors[t];
-    if (tiles.states[t] == TileState::unused) return floor;
+    if (tiles.written[t] == 0) return floor;
     return std::max(floor, tiles.pixels[t * kTilePixels + y % kTile * kTile + x % kTile]);
 }
 

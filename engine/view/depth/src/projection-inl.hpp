@@ -35,6 +35,16 @@ HWY_INLINE std::int32_t last_sample(float high, float limit) {
     return static_cast<std::int32_t>(std::floor(std::min(std::max(high - 0.5f, -1.0f), limit - 1.0f)));
 }
 
+HWY_INLINE VF first_samples(VF low, VF limit) {
+    const DF d;
+    return hn::Ceil(hn::Min(hn::Max(hn::Sub(low, hn::Set(d, 0.5f)), hn::Zero(d)), limit));
+}
+HWY_INLINE VF last_samples(VF high, VF limit) {
+    const DF d;
+    const VF one = hn::Set(d, 1.0f);
+    return hn::Floor(hn::Min(hn::Max(hn::Sub(high, hn::Set(d, 0.5f)), hn::Neg(one)), hn::Sub(limit, one)));
+}
+
 HWY_INLINE Projection project(const PictureData& picture, const ObjectData& object, const Cluster& cluster) {
     const DF d;
     const float* const c = &cluster.center.x;

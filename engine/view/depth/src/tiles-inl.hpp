@@ -35,7 +35,7 @@ HWY_INLINE void begin_tile(const Tiles& tiles, std::uint32_t tx, std::uint32_t t
     const DF d;
     float* const pixels = tiles.pixels + t * kTilePixels;
     for (std::size_t i = 0; i < kTilePixels; i += hn::Lanes(d)) hn::Store(hn::Set(d, kNothing), d, pixels + i);
-    tiles.states[t] = TileState::current;
+    tiles.written[t] = 1;
     const std::uint32_t columns = std::min(kTile, tiles.width - tx * kTile);
     const std::uint32_t rows = std::min(kTile, tiles.height - ty * kTile);
     if (columns == kTile && rows == kTile) return;
@@ -43,21 +43,14 @@ HWY_INLINE void begin_tile(const Tiles& tiles, std::uint32_t tx, std::uint32_t t
         if (i % kTile >= columns || i / kTile >= rows) pixels[i] = std::numeric_limits<float>::infinity();
 }
 
-// At most the nearness of every pixel of the tile, as good as is known.
+// The least nearness in the tile.
 HWY_INLINE float least_of(const Tiles& tiles, std::size_t t) {
-    if (tiles.states[t] != TileState::changed) return tiles.least[t];
     const DF d;
     const float* const pixels = tiles.pixels + t * kTilePixels;
     VF least = hn::Load(d, pixels);
     for (std::size_t i = hn::Lanes(d); i < kTilePixels; i += hn::Lanes(d))
         least = hn::Min(least, hn::Load(d, pixels + i));
-    tiles.states[t] = TileState::current;
-    return tiles.least[t] = std::max(hn::GetLane(hn::MinOfLanes(d, least)), tiles.floors[t]);
-}
-
-// Every pixel of the tile is nearer.
-HWY_INLINE bool is_nearer(const Tiles& tiles, std::size_t t, float nearness) {
-    return tiles.least[t] > nearness || least_of(tiles, t) > nearness;
+    return std::max(hn::GetLane(hn::MinOfLanes(d, least)), tiles.floors[t]);
 }
 
 // A pixel of the rectangle is not nearer than `nearness`. The rectangle meets the tile.
@@ -82,8 +75,8 @@ HWY_INLINE bool hides(const Tiles& tiles, const Projection& p) {
     for (std::int32_t ty = p.y0 / 8; ty <= p.y1 / 8; ++ty)
         for (std::int32_t tx = p.x0 / 8; tx <= p.x1 / 8; ++tx) {
             const std::size_t t = static_cast<std::size_t>(ty) * tiles.columns + static_cast<std::size_t>(tx);
-            if (is_nearer(tiles, t, p.nearest)) continue;
-            if (tiles.states[t] == TileState::unused) return false;
+            if (tiles.least[t] > p.nearest) continue;
+            if (tiles.written[t] == 0) return false;
             if (p.x0 <= 8 * tx && p.y0 <= 8 * ty && p.x1 >= 8 * tx + 7 && p.y1 >= 8 * ty + 7) return false;
             if (shows_in_tile(tiles, p, tx, ty, t)) return false;
         }
