@@ -153,6 +153,8 @@ void choose_occluders(const OccluderCandidates& candidates, const OcclusionView&
 struct BufferSize {
     std::uint32_t width = 640, height = 360;  // pixels; 8 to 4096 each
 };
+// Errors: out_of_range.
+[[nodiscard]] Result<void> validate(const BufferSize& size);
 
 struct DrawStatistics {
     std::uint64_t pieces_drawn = 0;     // boxes, convex shapes, connected pieces of meshes, if the view meets them
@@ -164,7 +166,7 @@ struct DrawStatistics {
 // number of threads at once.
 class OcclusionBuffer {
   public:
-    // Errors: out_of_range.
+    // Errors: as validate(BufferSize).
     [[nodiscard]] static Result<OcclusionBuffer> create(const BufferSize& size = {});
     ~OcclusionBuffer();
     OcclusionBuffer(OcclusionBuffer&&) noexcept;
