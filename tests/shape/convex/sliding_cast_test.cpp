@@ -140,13 +140,14 @@ TEST_SUITE("convex/sliding_cast") {
         "what lands on a floor of flush parts has the floor's normal, however flat its way, at the plane's time") {
         RandomBodies random(9200);
         const Sliders sliders(random);
-        for (int round = 0; round < 240; ++round) {
+        // On a flat way a corner is within the tolerance for long, so that seams are often beside it.
+        for (int round = 0; round < 480; ++round) {
             const RigidTransform frame = any_frame(random, random.index(3));
             const Ground ground(random, round % 8, frame);
             for (const Body& mover : sliders.bodies) {
                 const glm::dmat3 turn = random.rotation();
-                // Ways flatter than 1e-4 may tell a normal up to 0.3 degrees off beside a seam: a known fault.
-                const double height = std::exp2(random.number(-12.0, 0.0)), when = random.number(0.05, 0.9);
+                const double steep = random.number(-12.0, 0.0), flat = random.number(-24.0, -12.0);
+                const double height = std::exp2(round / 8 % 2 == 0 ? flat : steep), when = random.number(0.05, 0.9);
                 glm::dvec3 place = any_place(random, false);
                 place.y = below(mover, turn) + height;
                 const RigidTransform from = placed_in(frame, {turn, place});
@@ -161,6 +162,8 @@ TEST_SUITE("convex/sliding_cast") {
                 CHECK(left >= -1e-9);
                 CHECK(left <= 1e-6);
                 CHECK(std::abs(hit.impact.distance - left) < 1e-8);
+                const glm::dvec3 between = hit.impact.on_b - hit.impact.on_a;
+                CHECK(std::abs(glm::length(between) - hit.impact.distance) < 1e-9);
             }
         }
     }

@@ -104,7 +104,7 @@ TEST_SUITE("world/flush_bodies") {
     TEST_CASE("a cast slides over tiles that are objects, lands on them and presses on them with the floor's normal") {
         RandomBodies random(9500);
         const Sliders sliders(random);
-        for (int round = 0; round < 40; ++round) {
+        for (int round = 0; round < 80; ++round) {
             CAPTURE(round);
             const Floor floor = round % 5 == 4 ? triangulated(random, 0.5f, false)
                                                : strips(random,
@@ -128,7 +128,7 @@ TEST_SUITE("world/flush_bodies") {
                 const std::array gaps{0.0, random.number(-1, 1) * 1e-9, random.number(-1, 1) * 1e-7,
                                       random.number(-8, 8) * 1e-7};
                 const double gap =
-                    lands ? std::exp2(random.number(-14.0, 0.0)) : gaps[static_cast<std::size_t>(random.index(4))];
+                    lands ? std::exp2(random.number(-24.0, 0.0)) : gaps[static_cast<std::size_t>(random.index(4))];
                 glm::dvec3 place(random.number(-1, 1), 0.0, random.number(-1, 1));
                 if (lattice) place = glm::round(place * 4.0) / 4.0;
                 place.y = below(mover, turn) + gap;

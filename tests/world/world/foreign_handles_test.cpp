@@ -43,8 +43,16 @@ TEST_SUITE("world/foreign_handles") {
         check_foreign(b.world.remove(a.node));
         check_foreign(b.world.set_transform(a.object, {}));
         check_foreign(b.world.set_transform(a.node, {}));
+        check_foreign(b.world.set_transforms(std::vector{a.object}, std::vector{Transform{}}));
+        check_foreign(b.world.set_transforms(std::vector{a.node}, std::vector{Transform{}}));
         check_foreign(b.world.set_bound(a.bound, box_at({})));
         check_foreign(b.world.set_bounds(std::vector{a.bound}, std::vector{box_at({})}));
+        check_foreign(b.world.set_mesh(a.object, b.mesh));
+        check_foreign(b.world.set_mesh(b.object, a.mesh));
+        check_foreign(b.world.set_hidden(a.object, true));
+        check_foreign(b.world.set_collides_with(a.object, 1));
+        check_foreign(b.world.replace_mesh(a.mesh, description_of(cuboid({2.0f, 2.0f, 2.0f}), true)));
+        check_foreign(b.world.set_vertices(a.mesh, cuboid({2.0f, 2.0f, 2.0f}).positions));
         check_foreign(b.world.set_layers(a.object, 1));
         check_foreign(b.world.set_layers(a.node, 1));
         check_foreign(b.world.set_parent(a.node, {}));
@@ -64,9 +72,28 @@ TEST_SUITE("world/foreign_handles") {
         CHECK_FALSE(b.world.contains(a.mesh));
         CHECK_FALSE(b.world.contains(a.node));
         CHECK(b.world.occluders_of(a.mesh).empty());
+        CHECK(b.world.clusters_of(a.mesh) == nullptr);
         CHECK(b.world.object_count() == 2);
         REQUIRE(b.world.update().has_value());
         CHECK(b.world.statistics().boxes_changed == 0);
+    }
+
+    TEST_CASE("of a list with a handle of another World the others are obeyed, and its place is told") {
+        Furnished a, b;
+        const ObjectHandle second = b.world.add({.bound = box_at({2.0, 0.0, -9.0})}).value();
+        REQUIRE(b.world.update().has_value());
+        const std::vector objects{b.bound, a.bound, second};
+        const std::vector boxes{box_at({0.0, 7.0, 0.0}), box_at({0.0, 8.0, 0.0}), box_at({0.0, 9.0, 0.0})};
+        const Result<void> moved = b.world.set_bounds(objects, boxes);
+        check_foreign(moved);
+        CHECK(moved.error().item == 1);
+        REQUIRE(b.world.update().has_value());
+        CHECK(b.world.box_of(b.bound).value().center.y == 7.0);
+        CHECK(b.world.box_of(second).value().center.y == 9.0);
+        const NodeHandle node = b.world.add_node().value();
+        const Result<void> turned = b.world.set_transforms(std::vector{a.node, node}, std::vector<Transform>(2));
+        check_foreign(turned);
+        CHECK(turned.error().item == 0);
     }
 
     TEST_CASE("an answer to a view of another World names no occluders") {
@@ -79,6 +106,8 @@ TEST_SUITE("world/foreign_handles") {
         CHECK(error_of(b.world.hidden_by(b.bound, visible, occluders)).code == ErrorCode::invalid_argument);
         CHECK(error_of(b.world.drawn_occluders(visible, occluders)).code == ErrorCode::invalid_argument);
         REQUIRE(a.world.hidden_by(a.bound, visible, occluders).has_value());
+        CHECK(occluders.size() == 1);
+        check_foreign(a.world.hidden_by(b.object, visible, occluders));
         CHECK(occluders.size() == 1);
     }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <crofton/crofton.hpp>
 #include <error_of.hpp>
+#include <limits>
 #include <ranges.hpp>
 #include <vector>
 
@@ -180,29 +181,79 @@ TEST_SUITE("world/view_options") {
         }
     }
 
-    TEST_CASE("a request that contradicts itself is refused by name, and the answer stays as it was") {
+    TEST_CASE("a request that cannot be obeyed is refused by name, and every answer stays as it was") {
         const Crowd crowd;
-        ViewResult visible;
-        REQUIRE(crowd.world.view(crowd.request(0, {}), visible).has_value());
-        const std::vector<std::uint32_t> before(visible.ids().begin(), visible.ids().end());
+        const double nan = std::numeric_limits<double>::quiet_NaN();
+        const ViewRequest plain = crowd.request(0, {});
         const Frustum volume = crowd.plain[0].frustum;
         const ViewMatrix matrix{world_to_clip(crowd.camera)};
-        Frustum many_planes = volume;
+        Frustum many_planes = volume, nan_plane = volume, endless_plane = volume, nan_origin = volume;
         many_planes.plane_count = 13;
+        nan_plane.planes[2].normal.y = nan;
+        endless_plane.planes[5].offset = std::numeric_limits<double>::infinity();
+        nan_origin.origin.z = nan;
         const OcclusionOptions occlusion;
-        for (const ViewRequest& wrong :
-             {ViewRequest{}, ViewRequest{.camera = crowd.camera, .matrix = matrix},
-              ViewRequest{.camera = crowd.camera, .volume = volume},
-              ViewRequest{.volume = volume, .occlusion = occlusion}, ViewRequest{.volume = many_planes},
-              ViewRequest{.camera = Camera{.fov_y = -1.0}}, ViewRequest{.matrix = ViewMatrix{glm::dmat4(0.0)}},
-              ViewRequest{.camera = crowd.camera, .occlusion = OcclusionOptions{.size = {4, 270}}}}) {
-            const Error error = error_of(crowd.world.view(wrong, visible));
-            CHECK(error.item == kNoItem);
-            CHECK_FALSE(error.message.empty());
-            CHECK(test::ranges::equal(visible.ids(), before));
-            const std::array<ViewRequest, 2> second{crowd.request(0, {}), wrong};
-            MultiViewResult many;
-            CHECK(error_of(crowd.world.view(second, many)).item == 1);
+        const depth::PictureView picture;
+        cull::DrawLimits shrinking = crowd.limits, undefined = crowd.limits, few_layers = crowd.limits;
+        shrinking.hysteresis = 0.5;
+        undefined.hysteresis = nan;
+        const std::array<float, 5> five_distances{};
+        few_layers.layer_distances = five_distances;
+        const std::vector<ViewRequest> wrong{
+            {},
+            {.camera = crowd.camera, .matrix = matrix},
+            {.camera = crowd.camera, .volume = volume},
+            {.volume = volume, .occlusion = occlusion},
+            {.volume = volume, .picture = picture},
+            {.volume = many_planes},
+            {.volume = nan_plane},
+            {.volume = endless_plane},
+            {.volume = nan_origin},
+            {.camera = crowd.camera, .volume = nan_plane, .occlusion = occlusion},
+            {.camera = Camera{.fov_y = -1.0}},
+            {.matrix = ViewMatrix{glm::dmat4(0.0)}},
+            {.camera = crowd.camera, .occlusion = OcclusionOptions{.size = {4, 270}}},
+            {.camera = crowd.camera, .occlusion = OcclusionOptions{.size = {480, 4097}}},
+            {.camera = crowd.camera, .occlusion = OcclusionOptions{.least_cover = static_cast<float>(nan)}},
+            {.camera = crowd.camera, .picture = depth::PictureView{.width = 0}},
+            {.camera = crowd.camera, .occlusion = occlusion, .picture = picture},
+            {.camera = crowd.camera, .limits = &shrinking},
+            {.camera = crowd.camera, .limits = &undefined},
+            {.camera = crowd.camera, .limits = &few_layers}};
+        for (int before = 0; before < 3; ++before) {
+            ViewRequest asked = plain;
+            if (before == 1) asked.occlusion = OcclusionOptions{.list_occluded = true};
+            if (before == 2) asked.picture = picture;
+            ViewResult visible, untouched;
+            MultiViewResult many, many_untouched;
+            const std::array<ViewRequest, 2> both{asked, crowd.request(1, {})};
+            REQUIRE(crowd.world.view(asked, visible).has_value());
+            REQUIRE(crowd.world.view(asked, untouched).has_value());
+            REQUIRE(crowd.world.view(both, many).has_value());
+            REQUIRE(crowd.world.view(both, many_untouched).has_value());
+            for (std::size_t w = 0; w < wrong.size(); ++w) {
+                CAPTURE(before);
+                CAPTURE(w);
+                const Error error = error_of(crowd.world.view(wrong[w], visible));
+                CHECK(error.item == kNoItem);
+                CHECK_FALSE(error.message.empty());
+                CHECK(test::ranges::equal(visible.ids(), untouched.ids()));
+                CHECK(test::ranges::equal(visible.verdicts(), untouched.verdicts()));
+                CHECK(visible.inside_count() == untouched.inside_count());
+                CHECK(visible.has_picture() == untouched.has_picture());
+                CHECK(visible.has_occlusion() == untouched.has_occlusion());
+                CHECK(test::ranges::equal(visible.occluded_ids(), untouched.occluded_ids()));
+                CHECK(visible.triangles().size() == untouched.triangles().size());
+                const std::array<ViewRequest, 2> second{asked, wrong[w]};
+                CHECK(error_of(crowd.world.view(second, many)).item == 1);
+                CHECK(test::ranges::equal(many.ids(), many_untouched.ids()));
+                for (std::size_t i = 0; i < many.size(); ++i) CHECK(many.view_mask(i) == many_untouched.view_mask(i));
+                CHECK(many.view_count() == 2);
+                for (std::size_t v = 0; v < 2; ++v) {
+                    CHECK((many.occlusion_buffer(v) == nullptr) == (many_untouched.occlusion_buffer(v) == nullptr));
+                    CHECK(many.triangles(v).size() == many_untouched.triangles(v).size());
+                }
+            }
         }
         std::array<ViewRequest, 2> orders{crowd.request(0, {}), crowd.request(1, {})};
         orders[1].order = cull::ResultOrder::tree;

@@ -109,7 +109,7 @@ Result<Impact> cast(const BodyAtPose& a, const Motion& motion_a, const BodyAtPos
     if (impact.result != CastResult::hit || impact.distance <= -options.tolerance) return impact;
     if (impact.time == 0.0) return start.deepest(impact, kAnyNormal).value_or(miss(options));
     if (options.ignore_initial_overlaps) return impact;
-    if (!is_nearer_elsewhere(mover_a, mover_b, impact, impact.distance - 1e-3 * options.tolerance)) return impact;
+    if (!is_nearer_elsewhere(mover_a, mover_b, impact, 1e-3 * options.tolerance)) return impact;
     // What it slides on may seem to come nearer, within rounding.
     const double least_cosine = start.slides() ? kSameSurface : kAnyNormal;
     return *ContactsAt(mover_a, mover_b, options, impact.time).deepest(impact, least_cosine);

@@ -12,7 +12,8 @@ namespace crofton::convex {
 namespace {
 
 constexpr double kSameNormal = 1e-9;
-constexpr double kShallowOverlap = 0.25;  // of the lesser body: deeper overlaps have no plain way out
+constexpr double kSameDirection = 1.0 - 1e-7;  // a cosine, of 0.03 degrees
+constexpr double kShallowOverlap = 0.25;       // of the lesser body: deeper overlaps have no plain way out
 
 using PairVisitor = FunctionRef<bool(const Part& a, const Part& b)>;
 
@@ -29,12 +30,14 @@ bool visit_pairs(const BodyAtPose& a, const BodyAtPose& b, double margin, PairVi
 
 }  // namespace
 
-bool is_nearer_elsewhere(const Mover& a, const Mover& b, const Impact& hit, double limit) {
+bool is_nearer_elsewhere(const Mover& a, const Mover& b, const Impact& hit, double margin) {
     Flight flight(a.body, a.motion, b.body, b.motion);
     flight.move_to(hit.time);
-    return visit_pairs(flight.a(), flight.b(), limit, [&](const Part& part_a, const Part& part_b) {
+    return visit_pairs(flight.a(), flight.b(), hit.distance, [&](const Part& part_a, const Part& part_b) {
         if (part_a.id == hit.part_a && part_b.id == hit.part_b) return false;
-        return near_distance({part_a.body, part_a.pose}, {part_b.body, part_b.pose}, limit).distance < limit;
+        const Distance d = near_distance({part_a.body, part_a.pose}, {part_b.body, part_b.pose}, hit.distance);
+        const bool other_way = glm::dot(d.normal, hit.normal) < kSameDirection;
+        return d.distance < (other_way ? hit.distance : hit.distance - margin);
     });
 }
 

@@ -16,8 +16,10 @@ struct Mover {
     std::span<const BodyAtPose> beside;  // bodies that move by the motion's velocity and do not turn
 };
 
-// Whether parts of the two bodies are nearer to each other at the time of a hit than `limit`, but for those that hit.
-[[nodiscard]] bool is_nearer_elsewhere(const Mover& a, const Mover& b, const Impact& hit, double limit);
+// Whether other parts of the two bodies are nearer to each other at the time of a hit than those that hit: by `margin`,
+// or along another normal by any amount. A corner that lands beside the edge of a tile is hardly farther from that edge
+// than from the tile under it.
+[[nodiscard]] bool is_nearer_elsewhere(const Mover& a, const Mover& b, const Impact& hit, double margin);
 
 // The contacts of two bodies at a time of their cast: of all pairs of parts of the two, and at the start also of either
 // with what is beside the other.

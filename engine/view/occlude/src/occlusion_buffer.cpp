@@ -139,10 +139,14 @@ OcclusionBuffer::~OcclusionBuffer() = default;
 OcclusionBuffer::OcclusionBuffer(OcclusionBuffer&&) noexcept = default;
 OcclusionBuffer& OcclusionBuffer::operator=(OcclusionBuffer&&) noexcept = default;
 
+Result<void> validate(const BufferSize& size) {
+    if (size.width >= 8 && size.height >= 8 && size.width <= 4096 && size.height <= 4096) return {};
+    return fail(ErrorCode::out_of_range, kNoItem,
+                {"occlusion buffer: width and height must be 8 to 4096, not ", size.width, " and ", size.height});
+}
+
 Result<OcclusionBuffer> OcclusionBuffer::create(const BufferSize& size) {
-    if (size.width < 8 || size.height < 8 || size.width > 4096 || size.height > 4096)
-        return fail(ErrorCode::out_of_range, kNoItem,
-                    {"occlusion buffer: width and height must be 8 to 4096, not ", size.width, " and ", size.height});
+    if (auto good = validate(size); !good) return tl::unexpected(good.error());
     OcclusionBuffer buffer;
     Data& data = *buffer.data_;
     data.size = size;

@@ -18,7 +18,8 @@
 namespace crofton {
 namespace {
 
-constexpr double kSameSurface = 0.996;  // normals within 5 degrees
+constexpr double kSameSurface = 0.996;         // normals within 5 degrees
+constexpr double kSameDirection = 1.0 - 1e-7;  // within 0.03 degrees
 
 // Around a body, and some more.
 Aabb bounds_of(const convex::Body& body, const RigidTransform& pose) {
@@ -52,14 +53,11 @@ Aabb swept_bounds(const convex::Body& body, const RigidTransform& pose, const co
 // Objects that a cast begins in contact with. Of very many the first are enough: the others have the same normals.
 class TouchedObjects {
   public:
-    void add(std::uint32_t id, const convex::Body& body, const RigidTransform& pose, double distance) {
-        nearest_ = std::min(nearest_, distance);
+    void add(std::uint32_t id, const convex::Body& body, const RigidTransform& pose) {
         if (count_ == kMost) return;
         const Touched& touched = touched_[count_].emplace(Touched{id, body, pose});
         new (placed_[count_++]) convex::BodyAtPose{touched.body, touched.pose};
     }
-    [[nodiscard]] bool has_any() const { return count_ > 0; }
-    [[nodiscard]] double nearest() const { return nearest_; }
     // Whether there are others than this.
     [[nodiscard]] bool has_others(std::uint32_t id) const {
         return count_ > 1 || (count_ == 1 && touched_[0]->id != id);
@@ -78,8 +76,23 @@ class TouchedObjects {
     std::array<std::optional<Touched>, kMost> touched_;
     alignas(convex::BodyAtPose) std::byte placed_[kMost][sizeof(convex::BodyAtPose)];
     std::size_t count_ = 0;
-    double nearest_ = HUGE_VAL;
 };
+
+// Whether a touch at a hit's time is nearer: by `margin`, or along another normal by any amount.
+bool is_nearer(const convex::Impact& touch, const BodyHit& hit, double margin) {
+    const bool other_way = glm::dot(touch.normal, hit.normal) < kSameDirection;
+    return touch.distance < (other_way ? hit.distance : hit.distance - margin);
+}
+
+// Whether what is touched is in the way: by the velocity of the point of touch, the body comes at least as far along
+// the normal in the time left as the gap is wide. Otherwise it slides along, or parts.
+bool is_in_the_way(const convex::Impact& touch, const convex::BodyAtPose& body, const convex::Motion& motion,
+                   double left) {
+    const glm::dvec3 arm = touch.on_a - (body.pose.rotation * motion.pivot + body.pose.translation);
+    const glm::dvec3 way = left * (motion.velocity + glm::cross(motion.spin, arm));
+    const double slack = 0x1p-40 * (body.body.core_radius() + body.body.radius() + glm::length(way));
+    return glm::dot(way, touch.normal) >= std::max(touch.distance, slack);
+}
 
 Result<void> check(const convex::Body& shape, const RigidTransform& pose) {
     if (!shape.is_bounded())
@@ -153,36 +166,35 @@ Result<std::optional<BodyHit>> World::cast(const convex::Body& shape, const Rigi
     if (auto good = convex::cast({shape, pose}, motion, {kPoint, far}, {}, options); !good)
         return tl::unexpected(good.error());
     const State& s = *state_;
-    const auto find_first = [&](const RigidTransform& from, double duration,
-                                std::span<const convex::BodyAtPose> touched, bool nearest) {
+    const auto hit_of = [&](std::uint32_t id, const convex::Impact& impact) {
+        return BodyHit{s.table.handle(id),
+                       s.table.names.users[id],
+                       impact.time,
+                       impact.normal,
+                       impact.on_b,
+                       impact.part_b.triangle,
+                       impact.result == convex::CastResult::hit,
+                       impact.distance};
+    };
+    const auto find_first = [&](std::span<const convex::BodyAtPose> touched) {
         std::optional<BodyHit> first;
         convex::CastOptions rest = options;
-        rest.duration = duration;
-        const Aabb swept = swept_bounds(shape, from, motion, duration, options.tolerance);
+        const Aabb swept = swept_bounds(shape, pose, motion, options.duration, options.tolerance);
         s.visit_near(swept, 0.0, layers, [&](std::uint32_t id) {
             const State::QueryShape stand = s.query_shape_of(id);
             if (!stand.pose) return 0.0;
-            const auto impact = convex::cast({shape, from}, motion, {stand.body, *stand.pose}, {}, rest, {{}, touched});
+            const auto impact = convex::cast({shape, pose}, motion, {stand.body, *stand.pose}, {}, rest, {{}, touched});
             if (!impact || impact->result == convex::CastResult::miss) return 0.0;
             if (first && impact->time > first->time) return 0.0;
-            if (first && impact->time == first->time &&
-                (nearest ? impact->distance >= first->distance : id > first->object.index))
-                return 0.0;
-            first = BodyHit{s.table.handle(id),
-                            s.table.names.users[id],
-                            impact->time,
-                            impact->normal,
-                            impact->on_b,
-                            impact->part_b.triangle,
-                            impact->result == convex::CastResult::hit,
-                            impact->distance};
+            if (first && impact->time == first->time && id > first->object.index) return 0.0;
+            first = hit_of(id, *impact);
             rest.early_out = impact->time;
             return 0.0;
         });
         return first;
     };
     // Objects that the body touches at one time are one surface, to slide on or to land on.
-    const auto list_touched = [&](const RigidTransform& there, TouchedObjects& touched) {
+    const auto visit_touched = [&](const RigidTransform& there, const auto& visit) {
         convex::CastOptions now = options;
         now.duration = 0.0;
         now.ignore_initial_overlaps = false;
@@ -190,26 +202,34 @@ Result<std::optional<BodyHit>> World::cast(const convex::Body& shape, const Rigi
             const State::QueryShape stand = s.query_shape_of(id);
             if (!stand.pose) return options.tolerance;
             const auto impact = convex::cast({shape, there}, {}, {stand.body, *stand.pose}, {}, now);
-            if (impact && impact->result == convex::CastResult::hit)
-                touched.add(id, stand.body, *stand.pose, impact->distance);
+            if (impact && impact->result == convex::CastResult::hit) visit(id, stand, *impact);
             return options.tolerance;
         });
     };
-    std::optional<BodyHit> first = find_first(pose, options.duration, {}, false);
+    std::optional<BodyHit> first = find_first({});
     const auto overlaps = [&] { return first->time == 0.0 && first->distance <= -options.tolerance; };
     if (!first || overlaps()) return first;
     TouchedObjects at_start;
-    list_touched(pose, at_start);
-    if (at_start.has_others(first->object.index)) first = find_first(pose, options.duration, at_start.placed(), false);
+    bool slides = false;
+    visit_touched(pose, [&](std::uint32_t id, const State::QueryShape& stand, const convex::Impact& touch) {
+        at_start.add(id, stand.body, *stand.pose);
+        slides |= !is_in_the_way(touch, {shape, pose}, motion, options.duration);
+    });
+    if (at_start.has_others(first->object.index)) first = find_first(at_start.placed());
     if (!first || first->time == 0.0 || !first->resolved || options.ignore_initial_overlaps) return first;
-    TouchedObjects at_end;
+    // The nearest of those that it touches then.
+    std::optional<BodyHit> nearest;
     const RigidTransform there = convex::moved(pose, motion, first->time);
-    list_touched(there, at_end);
-    if (!(at_end.nearest() < first->distance - 1e-3 * options.tolerance)) return first;
-    auto nearest = find_first(there, options.duration - first->time, at_end.placed(), true);
-    if (!nearest || nearest->time > 0.0) return first;
-    // What it slides on may seem to come nearer, within rounding.
-    if (at_start.has_any() && glm::dot(nearest->normal, first->normal) < kSameSurface) return first;
+    visit_touched(there, [&](std::uint32_t id, const State::QueryShape&, const convex::Impact& touch) {
+        if (!is_in_the_way(touch, {shape, there}, motion, options.duration - first->time)) return;
+        // What it slides on may seem to come nearer, within rounding.
+        if (slides && glm::dot(touch.normal, first->normal) < kSameSurface) return;
+        if (!is_nearer(touch, *first, 1e-3 * options.tolerance)) return;
+        if (nearest && touch.distance > nearest->distance) return;
+        if (nearest && touch.distance == nearest->distance && id > nearest->object.index) return;
+        nearest = hit_of(id, touch);
+    });
+    if (!nearest) return first;
     nearest->time = first->time;
     return nearest;
 }

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <bit>
-#include <crofton/core/error.hpp>
+#include <crofton/core/recovery.hpp>
 #include <crofton/cull/cull.hpp>
 
 namespace crofton {
@@ -18,12 +18,9 @@ void OccludedViewDeleter::operator()(OccludedView* view) const {
     Destroy<OccludedView>()(view);
 }
 
-Result<void> OccludedView::resize(const occlude::BufferSize& size) {
-    if (buffer && buffer->size().width == size.width && buffer->size().height == size.height) return {};
-    auto created = occlude::OcclusionBuffer::create(size);
-    if (!created) return tl::unexpected(created.error());
-    buffer = std::move(*created);
-    return {};
+void OccludedView::resize(const occlude::BufferSize& size) {
+    if (buffer && buffer->size().width == size.width && buffer->size().height == size.height) return;
+    buffer = detail::value_or_give_up(occlude::OcclusionBuffer::create(size));
 }
 
 void OccludedView::split(const cull::VisibleSet& in_frustum, std::size_t count) {

@@ -23,8 +23,8 @@ struct OccludedView {
     PictureView picture;
     Vector<std::uint64_t> bits;  // scratch
 
-    // A buffer of this size, new where it was another. Errors: as OcclusionBuffer::create.
-    [[nodiscard]] Result<void> resize(const occlude::BufferSize& size);
+    // A buffer of this size, new where it was another. Requires a valid size.
+    void resize(const occlude::BufferSize& size);
     // Tells those of the frustum's query that are visible, in their order there, from those that are not, ascending.
     // Objects are below `count`.
     void split(const cull::VisibleSet& in_frustum, std::size_t count);

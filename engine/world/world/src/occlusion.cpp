@@ -69,9 +69,9 @@ Result<void> World::State::check_viewed(const world::ObjectNames* viewed) const 
 }
 
 Result<void> World::hidden_by(ObjectHandle object, const ViewResult& visible, Vector<OccluderRef>& occluders) const {
-    occluders.clear();
     if (auto known = state_->check(object, object.index); !known) return known;
     if (auto own = state_->check_viewed(visible.names_); !own) return own;
+    occluders.clear();
     if (!visible.has_occlusion() || !state_->index.has_box(object.index)) return {};
     Vector<occlude::OccluderId> ids;
     visible.occluded_->buffer->hidden_by(state_->index.box(object.index), ids);
@@ -83,8 +83,8 @@ Result<void> World::hidden_by(ObjectHandle object, const ViewResult& visible, Ve
 }
 
 Result<void> World::drawn_occluders(const ViewResult& visible, Vector<OccluderRef>& occluders) const {
-    occluders.clear();
     if (auto own = state_->check_viewed(visible.names_); !own) return own;
+    occluders.clear();
     if (!visible.has_occlusion()) return {};
     for (const occlude::OccluderId id : visible.occluded_->choice.ids) {
         const ObjectRef ref = state_->table.ref(state_->occluders.object_of(id));

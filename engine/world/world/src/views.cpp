@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <crofton/core/error.hpp>
+#include <crofton/geometry/finite.hpp>
 #include <optional>
 
 #include "occluded_view.hpp"
@@ -20,13 +22,48 @@ struct Eye {
     occlude::OcclusionView occluding;  // if the request asks for occlusion
 };
 
+// An error of a request that is one of many names its place.
+Error at_item(Error error, std::uint64_t item) {
+    if (item != kNoItem) error.item = item;
+    return error;
+}
+
+Result<void> check_volume(const Frustum& volume, std::uint64_t item) {
+    if (volume.plane_count > Frustum::kMaxPlanes)
+        return fail(ErrorCode::out_of_range, item, "view: a volume has at most 12 planes");
+    if (!is_finite(volume.origin))
+        return fail(ErrorCode::non_finite, item, "view: the volume's origin is NaN or infinite");
+    for (std::size_t p = 0; p < volume.plane_count; ++p)
+        if (!is_finite(volume.planes[p].normal) || !std::isfinite(volume.planes[p].offset))
+            return fail(ErrorCode::non_finite, item, {"view: plane ", p, " of the volume is NaN or infinite"});
+    return {};
+}
+
+Result<void> check_limits(const cull::DrawLimits& limits, std::uint64_t item) {
+    if (!(limits.hysteresis >= 1.0))
+        return fail(ErrorCode::out_of_range, item, "view: `hysteresis` of the limits is less than 1 or NaN");
+    if (!limits.layer_distances.empty() && limits.layer_distances.size() != 32)
+        return fail(ErrorCode::invalid_argument, item, "view: limits have 32 `layer_distances` or none");
+    return {};
+}
+
+Result<void> check_occlusion(const OcclusionOptions& occlusion, std::uint64_t item) {
+    if (auto good = occlude::validate(occlusion.size); !good) return tl::unexpected(at_item(good.error(), item));
+    if (std::isnan(occlusion.least_cover))
+        return fail(ErrorCode::non_finite, item, "view: `least_cover` of the occlusion is NaN");
+    return {};
+}
+
+// After this, nothing of the request can be refused but its camera or matrix.
 Result<void> check(const ViewRequest& request, std::uint64_t item) {
     const auto refuse = [&](const char* why) { return fail(ErrorCode::invalid_argument, item, why); };
     const bool has_eye = request.camera || request.matrix;
     if (!has_eye && !request.volume) return refuse("view: set `camera`, `matrix` or `volume`");
     if (request.camera && request.matrix) return refuse("view: set `camera` or `matrix`, not both");
-    if (request.volume && request.volume->plane_count > Frustum::kMaxPlanes)
-        return fail(ErrorCode::out_of_range, item, "view: a volume has at most 12 planes");
+    if (request.volume)
+        if (auto good = check_volume(*request.volume, item); !good) return good;
+    if (request.limits != nullptr)
+        if (auto good = check_limits(*request.limits, item); !good) return good;
     if (auto good = world::check_picture(request, item); !good) return good;
     if (!request.occlusion) {
         if (has_eye && request.volume)
@@ -34,13 +71,7 @@ Result<void> check(const ViewRequest& request, std::uint64_t item) {
         return {};
     }
     if (!has_eye) return refuse("view: occlusion needs a `camera` or a `matrix`, because a volume has no eye");
-    return {};
-}
-
-// An error of a request that is one of many names its place.
-Error at_item(Error error, std::uint64_t item) {
-    if (item != kNoItem) error.item = item;
-    return error;
+    return check_occlusion(*request.occlusion, item);
 }
 
 Result<Eye> eye_of(const ViewRequest& request, std::uint64_t item) {
@@ -148,7 +179,7 @@ Result<void> World::view(const ViewRequest& request, ViewResult& visible, Execut
     if (!visible.occluded_) visible.occluded_ = world::make_occluded_view();
     world::OccludedView& result = *visible.occluded_;
     result.by_picture = false;
-    if (auto sized = result.resize(request.occlusion->size); !sized) return sized;
+    result.resize(request.occlusion->size);
     state_->draw_and_ask(eye->occluding, *request.occlusion, request.layers, how, executor, result);
     visible.names_ = &state_->table.names;
     visible.hides_ = true;
@@ -188,7 +219,7 @@ Result<void> World::view(std::span<const ViewRequest> requests, MultiViewResult&
         for (std::size_t i = 0; ascending && i < visible.set_.size(); ++i)
             visible.add(visible.set_.ids()[i], visible.set_.view_mask(i));
     } else {
-        if (auto answered = view_each(requests, visible, executor); !answered) return answered;
+        view_each(requests, visible, executor);
     }
     visible.names_ = &state_->table.names;
     visible.view_count_ = requests.size();
@@ -205,15 +236,13 @@ Result<void> World::view(std::span<const ViewRequest> requests, MultiViewResult&
     return {};
 }
 
-// Every request by itself. Buffers are made first, so that nothing can fail while threads share the requests.
-Result<void> World::view_each(std::span<const ViewRequest> requests, MultiViewResult& visible,
-                              Executor& executor) const {
+// Every request by itself. Buffers are made first, so that threads that share the requests make none.
+void World::view_each(std::span<const ViewRequest> requests, MultiViewResult& visible, Executor& executor) const {
     while (visible.each_.size() < requests.size()) visible.each_.emplace_back();
     for (std::size_t v = 0; v < requests.size(); ++v) {
         if (!requests[v].occlusion) continue;
         if (!visible.each_[v].occluded_) visible.each_[v].occluded_ = world::make_occluded_view();
-        if (auto sized = visible.each_[v].occluded_->resize(requests[v].occlusion->size); !sized)
-            return tl::unexpected(at_item(sized.error(), v));
+        visible.each_[v].occluded_->resize(requests[v].occlusion->size);
     }
     executor.parallel_for(requests.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t v = begin; v < end; ++v) {
@@ -225,7 +254,6 @@ Result<void> World::view_each(std::span<const ViewRequest> requests, MultiViewRe
     });
     for (std::size_t v = 0; v < requests.size(); ++v)
         for (const std::uint32_t id : visible.each_[v].ids()) visible.add(id, std::uint32_t{1} << v);
-    return {};
 }
 
 void MultiViewResult::forget_ids() {

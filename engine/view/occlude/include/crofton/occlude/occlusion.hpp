@@ -165,6 +165,8 @@ void choose_occluders(const OccluderCandidates& candidates, const OcclusionView&
 struct BufferSize {
     std::uint32_t width = 640, height = 360;  // pixels; 8 to 4096 each
 };
+// Errors: out_of_range.
+[[nodiscard]] Result<void> validate(const BufferSize& size);
 
 struct DrawStatistics {
     std::uint64_t pieces_drawn = 0;     // boxes, convex shapes, connected pieces of meshes, if the view meets them
@@ -177,7 +179,7 @@ struct DrawStatistics {
 // has the proof. Const functions may run on any number of threads at once.
 class OcclusionBuffer {
   public:
-    // Creates a buffer. Errors: out_of_range.
+    // Creates a buffer. Errors: as validate(BufferSize).
     [[nodiscard]] static Result<OcclusionBuffer> create(const BufferSize& size = {});
     ~OcclusionBuffer();
     OcclusionBuffer(OcclusionBuffer&&) noexcept;

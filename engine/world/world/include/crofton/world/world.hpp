@@ -163,8 +163,9 @@ class World {
     // May be called from any number of threads at once, each with its own `visible`. Gives the same bits for any
     // executor. Allocates nothing once `visible` has held as many objects. Tree order with occlusion costs a second
     // query. Errors name what cannot be obeyed: no camera, matrix or volume, or two that contradict each other; a
-    // camera or matrix that is not valid; a volume of more than 12 planes; occlusion without an eye; a depth buffer's
-    // size or a picture's out of its range; a picture beside occlusion, or without an eye.
+    // camera or matrix that is not valid; a volume of more than 12 planes, or with one that is not finite; limits with
+    // a hysteresis below 1, or neither 32 layer distances nor none; occlusion without an eye, or whose least cover is
+    // NaN; a depth buffer's size or a picture's out of its range; a picture beside occlusion, or without an eye.
     Result<void> view(const ViewRequest& request, ViewResult& visible, Executor& executor = serial_executor()) const;
     // The same for up to 32 views: each object once, with a mask of the views that see it.
     //
@@ -235,8 +236,7 @@ class World {
     [[nodiscard]] std::span<const BodyContact> body_contacts() const;
 
   private:
-    [[nodiscard]] Result<void> view_each(std::span<const ViewRequest> requests, MultiViewResult& visible,
-                                         Executor& executor) const;
+    void view_each(std::span<const ViewRequest> requests, MultiViewResult& visible, Executor& executor) const;
     struct State;
     Owner<State> state_;
 };
