@@ -17,11 +17,6 @@ using depth::DepthCuller;
 using depth::DepthObject;
 using depth::VisibleCluster;
 
-struct Scene {
-    std::deque<CutMesh> meshes;
-    std::vector<PlacedMesh> objects;
-};
-
 struct Checked {
     std::uint64_t lost = 0;    // samples whose owner is not listed
     std::uint64_t owners = 0;  // triangles that own a sample
@@ -77,49 +72,6 @@ Checked check(const Scene& scene, const Camera& camera, std::uint32_t width, std
         result.owners = static_cast<std::uint64_t>(std::unique(owners.begin(), owners.end()) - owners.begin());
     }
     return result;
-}
-
-Scene random_scene(oracle::NearMisses& random) {
-    Scene scene;
-    scene.meshes.emplace_back(cube_mesh());
-    scene.meshes.emplace_back(ball(8 + static_cast<std::uint32_t>(random.index(20)), random),
-                              static_cast<std::uint32_t>(1 + random.index(64)));
-    scene.meshes.emplace_back(
-        hills(10 + static_cast<std::uint32_t>(random.index(40)), 40.0f, float(random.number(0.5, 5.0)), random),
-        static_cast<std::uint32_t>(4 + random.index(61)));
-    if (random.index(3) != 0)
-        scene.objects.push_back({&scene.meshes[2], placed({0, -3, 0}, glm::dvec3(1), {0, 1, 0}, random.number(0, 6)),
-                                 random.index(2) == 0});
-    const std::size_t count = 5 + random.index(80);
-    for (std::size_t i = 0; i < count; ++i) {
-        const bool box = random.index(3) != 0;
-        glm::dvec3 scale(std::exp(random.number(-2.0, 1.0)), std::exp(random.number(-2.0, 1.5)),
-                         std::exp(random.number(-2.0, 1.0)));
-        if (box && random.index(3) == 0) scale = {random.number(2.0, 10.0), random.number(1.0, 6.0), 0.1};  // walls
-        glm::dvec3 axis = random.direction();
-        if (random.index(2) == 0) axis = {0, 1, 0};
-        scene.objects.push_back(
-            {&scene.meshes[box ? 0 : 1],
-             placed(glm::dvec3(random.number(-25, 25), random.number(-2, 4), random.number(-25, 25)), scale, axis,
-                    random.index(3) == 0 ? 0.0 : random.number(0, 6.2)),
-             random.index(2) == 0, random.index(8) != 0});
-    }
-    return scene;
-}
-
-Camera random_camera(oracle::NearMisses& random) {
-    Camera camera;
-    camera.position = {random.number(-25, 25), random.number(-1, 3), random.number(-25, 25)};
-    camera.forward = glm::dvec3(random.number(-1, 1), random.number(-0.3, 0.2), random.number(-1, 1));
-    if (random.index(4) == 0) camera.forward = {0, 0, -1};
-    camera.near_distance = random.index(3) == 0 ? 1.0 : 0.1;
-    camera.far_distance = random.index(2) == 0 ? std::numeric_limits<double>::infinity() : 200.0;
-    if (random.index(6) == 0) {
-        camera.projection = Projection::orthographic;
-        camera.height = random.number(3.0, 40.0);
-        camera.far_distance = 100.0;
-    }
-    return camera;
 }
 
 TEST_CASE("no triangle that owns a sample is left out, however the renderer rounds") {

@@ -1,0 +1,412 @@
+// SPDX-License-Identifier: MIT
+// Oracle: a proof in rationals that a triangle owns no sample of a picture, whichever renderer draws it.
+//
+// A renderer may put each vertex up to `move` pixels beside its place along each axis, the same for all triangles of a
+// mesh that have a vertex there; it may take a triangle's depth from the vertices as they are or as they were moved,
+// and move it back by the depth bias. Take the triangles of one mesh that face one way for certain and that are surely
+// nearer at a sample than the triangle in question, if they cover it. Their signed sum of edges is a closed chain. If
+// no edge of it can pass over the sample, and the chain winds round it, then one of these triangles covers the sample,
+// however the vertices are moved.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <oracle/owner_picture.hpp>
+#include <oracle/tracked.hpp>
+#include <span>
+#include <tuple>
+#include <vector>
+
+namespace crofton::oracle {
+
+class DepthCertificate {
+  public:
+    struct Body {
+        DrawnMesh mesh;
+        bool hides = true;
+    };
+    enum class Proof : std::uint8_t { outside, faces_away, no_sample, hidden, none };
+
+    // Reversed-Z matrices.
+    DepthCertificate(std::span<const Body> bodies, std::uint32_t width, std::uint32_t height)
+        : bodies_(bodies), size_{Rational(width), Rational(height)}, columns_((width + kTile - 1) / kTile) {
+        tiles_.resize(std::size_t{columns_} * ((height + kTile - 1) / kTile));
+        vertices_.resize(bodies.size());
+        for (std::uint32_t b = 0; b < bodies.size(); ++b) {
+            number_vertices(b);
+            if (!bodies[b].hides) continue;
+            for (std::uint32_t t = 0; 3 * t + 2 < bodies[b].mesh.indices.size(); ++t) file(b, t);
+        }
+    }
+
+    // Proves it at no more than `most` of the samples that the triangle may cover, evenly chosen.
+    [[nodiscard]] Proof prove(std::uint32_t body, std::uint32_t triangle, std::size_t most) const {
+        const std::array<Vertex, 3> corners = corners_of(body, triangle);
+        if (is_outside(corners)) return Proof::outside;
+        if (corners[0].key == corners[1].key || corners[1].key == corners[2].key || corners[2].key == corners[0].key)
+            return Proof::no_sample;
+        std::vector<Piece> pieces;
+        if (!cut(corners, pieces)) return Proof::none;
+        bool faces_away = bodies_[body].mesh.one_sided;
+        std::vector<std::pair<std::uint32_t, std::uint32_t>> samples;
+        for (const Piece& piece : pieces) {
+            faces_away = faces_away && piece.facing < 0;
+            list_samples(piece, samples);
+        }
+        if (faces_away) return Proof::faces_away;
+        if (samples.empty()) return Proof::no_sample;
+        const std::size_t step = (samples.size() + most - 1) / most;
+        for (std::size_t s = 0; s < samples.size(); s += step) {
+            const Point2 p = center_of(samples[s]);
+            bool first = true;
+            Rational nearest;
+            for (const Piece& piece : pieces) {
+                const Rational upper = upper_bound(piece, p);
+                if (first || upper > nearest) nearest = upper;
+                first = false;
+            }
+            if (!is_covered(samples[s], p, nearest)) return Proof::none;
+        }
+        return Proof::hidden;
+    }
+
+  private:
+    static constexpr std::uint32_t kTile = 8;
+    using Key = std::pair<std::uint32_t, std::uint32_t>;  // a vertex twice, or the ends of the edge that was cut
+    using Point2 = std::array<Rational, 2>;
+
+    struct Vertex {
+        std::array<Rational, 4> clip, error;
+        Key key;
+    };
+    struct Place {
+        Rational x, y, z;
+        Rational move, z_error;
+        Key key;
+    };
+    // A triangle in front of the near plane.
+    struct Piece {
+        std::array<Place, 3> at;
+        Rational area;        // twice; positive: counter-clockwise
+        int facing = 0;       // 0: not certain
+        Rational least_area;  // of its magnitude, however the vertices are moved
+        Rational across, up;  // slopes of the nearness
+        Rational bias;        // what it may be moved back by, and no more
+        Rational move, z_error, nearest, farthest;
+    };
+
+    void number_vertices(std::uint32_t body) {
+        const DrawnMesh& mesh = bodies_[body].mesh;
+        std::map<std::tuple<float, float, float>, std::uint32_t> known;
+        for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
+            const glm::vec3& p = mesh.positions[v];
+            vertices_[body].push_back(known.try_emplace({p.x, p.y, p.z}, v).first->second);
+        }
+    }
+
+    [[nodiscard]] Vertex vertex(std::uint32_t body, std::uint32_t index) const {
+        const DrawnMesh& mesh = bodies_[body].mesh;
+        const std::uint32_t own = vertices_[body][index];
+        Vertex v{{}, {}, {own, own}};
+        for (int i = 0; i < 4; ++i) {
+            auto k = static_cast<std::size_t>(i);
+            v.clip[k] = Rational(double(mesh.to_clip[3][i]));
+            v.error[k] = abs(v.clip[k]);
+            for (int c = 0; c < 3; ++c) {
+                const Rational term = Rational(double(mesh.to_clip[c][i])) * Rational(double(mesh.positions[own][c]));
+                v.clip[k] += term;
+                v.error[k] += abs(term);
+            }
+            v.error[k] *= power(-22);  // four roundings
+        }
+        return v;
+    }
+    [[nodiscard]] std::array<Vertex, 3> corners_of(std::uint32_t body, std::uint32_t triangle) const {
+        const auto index = [&](std::uint32_t k) { return bodies_[body].mesh.indices[3 * triangle + k]; };
+        return {vertex(body, index(0)), vertex(body, index(1)), vertex(body, index(2))};
+    }
+    static Rational power(int exponent) { return Rational(std::ldexp(1.0, exponent)); }
+
+    // Beyond one side of the frustum, by more than a pixel's share and what rounds.
+    [[nodiscard]] bool is_outside(const std::array<Vertex, 3>& corners) const {
+        for (std::size_t side = 0; side < 5; ++side) {
+            bool beyond = true;
+            for (const Vertex& v : corners) {
+                Rational value, error = v.error[3];
+                if (side == 4) {
+                    value = v.clip[3] - v.clip[2];
+                    error += v.error[2];
+                } else {
+                    const std::size_t axis = side / 2;
+                    value = v.clip[3] * (1 + power(-6) / size_[axis]) +
+                            (side % 2 == 0 ? v.clip[axis] : Rational(-v.clip[axis]));
+                    error += v.error[axis];
+                }
+                beyond = beyond && value < -error;
+            }
+            if (beyond) return true;
+        }
+        return false;
+    }
+
+    // What is in front of the near plane, as a fan. False where a vertex has no place.
+    [[nodiscard]] bool cut(const std::array<Vertex, 3>& corners, std::vector<Piece>& pieces) const {
+        std::vector<Vertex> polygon;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vertex &a = corners[k], &b = corners[(k + 1) % 3];
+            const Rational da = a.clip[3] - a.clip[2], db = b.clip[3] - b.clip[2];
+            if (da >= 0) polygon.push_back(a);
+            if ((da >= 0) == (db >= 0)) continue;
+            Vertex v{{}, {}, {std::min(a.key.first, b.key.first), std::max(a.key.first, b.key.first)}};
+            for (std::size_t i = 0; i < 4; ++i) {
+                v.clip[i] = (a.clip[i] * db - b.clip[i] * da) / (db - da);
+                v.error[i] = 4 * (a.error[i] + b.error[i]);
+            }
+            polygon.push_back(v);
+        }
+        std::vector<Place> places;
+        for (const Vertex& v : polygon) {
+            Place place;
+            if (!find_place(v, place)) return false;
+            places.push_back(place);
+        }
+        for (std::size_t k = 2; k < places.size(); ++k)
+            pieces.push_back(piece_of({places[0], places[k - 1], places[k]}));
+        return true;
+    }
+
+    [[nodiscard]] bool find_place(const Vertex& v, Place& place) const {
+        const Rational &w = v.clip[3], least_w = w - v.error[3];
+        if (least_w <= 0) return false;
+        Rational ratios[3], errors[3];
+        for (std::size_t i = 0; i < 3; ++i) {
+            ratios[i] = v.clip[i] / w;
+            errors[i] = (v.error[i] + abs(ratios[i]) * v.error[3]) / least_w;
+        }
+        place.x = (ratios[0] + 1) * size_[0] / 2;
+        place.y = (ratios[1] + 1) * size_[1] / 2;
+        place.z = ratios[2];
+        // Half a step of the grid; division, scaling and sum.
+        const Rational reach = std::max(Rational(abs(place.x)), Rational(abs(place.y))) + std::max(size_[0], size_[1]);
+        place.move = power(-9) + power(-22) * reach +
+                     std::max(Rational(errors[0] * size_[0]), Rational(errors[1] * size_[1])) / 2;
+        place.z_error = errors[2] + abs(place.z) * power(-22);
+        place.key = v.key;
+        return true;
+    }
+
+    [[nodiscard]] static Piece piece_of(const std::array<Place, 3>& at) {
+        Piece t{at, {}, 0, {}, {}, {}, {}, {}, {}, {}, {}};
+        const Rational x1 = at[1].x - at[0].x, y1 = at[1].y - at[0].y, z1 = at[1].z - at[0].z;
+        const Rational x2 = at[2].x - at[0].x, y2 = at[2].y - at[0].y, z2 = at[2].z - at[0].z;
+        t.area = x1 * y2 - x2 * y1;
+        for (const Place& p : at) {
+            if (p.move > t.move) t.move = p.move;
+            if (p.z_error > t.z_error) t.z_error = p.z_error;
+        }
+        t.nearest = std::max({at[0].z, at[1].z, at[2].z}) + t.z_error;
+        t.farthest = std::min({at[0].z, at[1].z, at[2].z}) - t.z_error;
+        const Rational change = 2 * t.move * (abs(x1) + abs(y1) + abs(x2) + abs(y2)) + 8 * t.move * t.move;
+        t.least_area = abs(t.area) - change;
+        if (t.least_area <= 0) return t;
+        t.facing = t.area > 0 ? 1 : -1;
+        const Rational across = z1 * y2 - z2 * y1, up = z2 * x1 - z1 * x2;
+        t.across = across / t.area, t.up = up / t.area;
+        const Rational steeper = 2 * t.move * (abs(z1) + abs(z2));
+        t.bias = (std::max(Rational(abs(across)), Rational(abs(up))) + steeper) / t.least_area / 256;
+        return t;
+    }
+
+    [[nodiscard]] static Rational plane_at(const Piece& t, const Point2& p) {
+        return t.at[0].z + t.across * (p[0] - t.at[0].x) + t.up * (p[1] - t.at[0].y);
+    }
+    [[nodiscard]] static Rational step_of(const Piece& t) { return t.move * (abs(t.across) + abs(t.up)); }
+    // Where it covers p, it is nowhere nearer, …
+    [[nodiscard]] static Rational upper_bound(const Piece& t, const Point2& p) {
+        if (t.facing == 0) return t.nearest;
+        return std::min(t.nearest, Rational(plane_at(t, p) + step_of(t) + t.z_error));
+    }
+    // … nor farther.
+    [[nodiscard]] static Rational lower_bound(const Piece& t, const Point2& p) {
+        const Rational plane = plane_at(t, p) - t.z_error;
+        const Rational moved = std::max(Rational(plane - step_of(t)), t.farthest);
+        return std::min({plane, moved, Rational(t.nearest - 2 * t.z_error)}) - t.bias;
+    }
+
+    [[nodiscard]] static Point2 center_of(const std::pair<std::uint32_t, std::uint32_t>& sample) {
+        return {Rational(2 * sample.first + 1) / 2, Rational(2 * sample.second + 1) / 2};
+    }
+    // Some displacement covers p: the triangle and the square around p meet.
+    [[nodiscard]] static bool may_cover(const Piece& t, const Point2& p) {
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            const auto at = [&](std::size_t k) -> const Rational& { return axis == 0 ? t.at[k].x : t.at[k].y; };
+            if (std::min({at(0), at(1), at(2)}) > p[axis] + t.move) return false;
+            if (std::max({at(0), at(1), at(2)}) < p[axis] - t.move) return false;
+        }
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Place &a = t.at[k], &b = t.at[(k + 1) % 3], &c = t.at[(k + 2) % 3];
+            const Rational nx = a.y - b.y, ny = b.x - a.x;
+            const Rational reach = t.move * (abs(nx) + abs(ny));
+            const Rational other = nx * (c.x - a.x) + ny * (c.y - a.y), mine = nx * (p[0] - a.x) + ny * (p[1] - a.y);
+            if (mine > std::max(other, Rational(0)) + reach || mine < std::min(other, Rational(0)) - reach)
+                return false;
+        }
+        return true;
+    }
+    void list_samples(const Piece& t, std::vector<std::pair<std::uint32_t, std::uint32_t>>& samples) const {
+        double low[2], high[2];
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            low[axis] = HUGE_VAL, high[axis] = -HUGE_VAL;
+            for (const Place& p : t.at) {
+                const double at = (axis == 0 ? p.x : p.y).get_d();
+                low[axis] = std::min(low[axis], at), high[axis] = std::max(high[axis], at);
+            }
+            const double reach = t.move.get_d() + 1.0, last = size_[axis].get_d() - 1.0;
+            low[axis] = std::floor(std::clamp(low[axis] - reach, 0.0, last + 1.0));
+            high[axis] = std::ceil(std::clamp(high[axis] + reach, -1.0, last));
+        }
+        for (double y = low[1]; y <= high[1]; y += 1.0)
+            for (double x = low[0]; x <= high[0]; x += 1.0) {
+                const std::pair sample{static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)};
+                if (may_cover(t, center_of(sample))) samples.push_back(sample);
+            }
+    }
+
+    // Into the tiles that it may touch, in double with a pixel to spare.
+    void file(std::uint32_t body, std::uint32_t triangle) {
+        const DrawnMesh& mesh = bodies_[body].mesh;
+        std::array<glm::dvec4, 3> clip;
+        for (std::size_t k = 0; k < 3; ++k)
+            clip[k] = glm::dmat4(mesh.to_clip) * glm::dvec4(mesh.positions[mesh.indices[3 * triangle + k]], 1.0);
+        double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+        const auto include = [&](const glm::dvec4& p) {
+            for (int axis = 0; axis < 2; ++axis) {
+                const double at = p.w > 1e-9 ? (p[axis] / p.w + 1.0) * 0.5 * size_[std::size_t(axis)].get_d() : 0.0;
+                low[axis] = std::min(low[axis], at), high[axis] = std::max(high[axis], at);
+            }
+        };
+        for (std::size_t k = 0; k < 3; ++k) {
+            const glm::dvec4 &a = clip[k], &b = clip[(k + 1) % 3];
+            const double da = a.w - a.z, db = b.w - b.z;
+            if (da >= 0.0) include(a);
+            if ((da >= 0.0) != (db >= 0.0)) include(a + (b - a) * (da / (da - db)));
+        }
+        const auto tile = [&](double at, std::size_t axis) {
+            return static_cast<std::uint32_t>(std::clamp(at, 0.0, size_[axis].get_d() - 1.0)) / kTile;
+        };
+        if (!(low[0] - 2.0 < size_[0].get_d() && high[0] > -2.0 && low[1] - 2.0 < size_[1].get_d() && high[1] > -2.0))
+            return;
+        for (std::uint32_t y = tile(low[1] - 2.0, 1); y <= tile(high[1] + 2.0, 1); ++y)
+            for (std::uint32_t x = tile(low[0] - 2.0, 0); x <= tile(high[0] + 2.0, 0); ++x)
+                tiles_[std::size_t{y} * columns_ + x].push_back({body, triangle});
+    }
+
+    // Triangles of one body cover the sample for certain, nearer than `nearness`.
+    [[nodiscard]] bool is_covered(const std::pair<std::uint32_t, std::uint32_t>& sample, const Point2& p,
+                                  const Rational& nearness) const {
+        const auto& tile = tiles_[std::size_t{sample.second / kTile} * columns_ + sample.first / kTile];
+        for (std::size_t begin = 0, end = 0; begin < tile.size(); begin = end) {
+            while (end < tile.size() && tile[end].first == tile[begin].first) ++end;
+            std::vector<Piece> front, back;
+            for (std::size_t i = begin; i < end; ++i) {
+                if (!is_close(tile[i], p, nearness)) continue;
+                std::vector<Piece> pieces;
+                if (!cut(corners_of(tile[i].first, tile[i].second), pieces)) continue;
+                for (const Piece& piece : pieces)
+                    if (piece.facing != 0 && may_cover(piece, p) && lower_bound(piece, p) > nearness)
+                        (piece.facing > 0 ? front : back).push_back(piece);
+            }
+            if (surely_cover(front, p)) return true;
+            if (!bodies_[tile[begin].first].mesh.one_sided && surely_cover(back, p)) return true;
+        }
+        return false;
+    }
+
+    // In double, with room to spare: whether a look in rationals is worth it.
+    [[nodiscard]] bool is_close(const std::pair<std::uint32_t, std::uint32_t>& at, const Point2& p,
+                                const Rational& nearness) const {
+        const DrawnMesh& mesh = bodies_[at.first].mesh;
+        double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL}, nearest = -HUGE_VAL;
+        for (std::uint32_t k = 0; k < 3; ++k) {
+            const glm::dvec4 clip =
+                glm::dmat4(mesh.to_clip) * glm::dvec4(mesh.positions[mesh.indices[3 * at.second + k]], 1.0);
+            if (clip.w - clip.z < 1e-3 * clip.w) return true;  // near the near plane
+            for (int axis = 0; axis < 2; ++axis) {
+                const double place = (clip[axis] / clip.w + 1.0) * 0.5 * size_[std::size_t(axis)].get_d();
+                low[axis] = std::min(low[axis], place), high[axis] = std::max(high[axis], place);
+            }
+            nearest = std::max(nearest, clip.z / clip.w);
+        }
+        for (std::size_t axis = 0; axis < 2; ++axis)
+            if (p[axis].get_d() < low[axis] - 1.0 || p[axis].get_d() > high[axis] + 1.0) return false;
+        return nearest > nearness.get_d() - 1e-9;
+    }
+
+    // By those that are left when each triangle with an end over p is taken away.
+    [[nodiscard]] static bool surely_cover(std::vector<Piece> pieces, const Point2& p) {
+        for (;;) {
+            std::map<std::pair<Key, Key>, int> chain;
+            const auto for_edges = [](const Piece& t, auto&& use) {
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const Place &a = t.at[k], &b = t.at[(k + 1) % 3];
+                    const bool forward = a.key < b.key;
+                    use(a, b, forward ? std::pair{a.key, b.key} : std::pair{b.key, a.key}, forward ? 1 : -1);
+                }
+            };
+            for (const Piece& t : pieces)
+                for_edges(t, [&](const Place&, const Place&, const auto& edge, int sign) { chain[edge] += sign; });
+            const auto ends_over = [&](const Piece& t) {
+                bool ends = false;
+                for_edges(t, [&](const Place& a, const Place& b, const auto& edge, int) {
+                    ends = ends || (chain[edge] != 0 && may_pass(a, b, p));
+                });
+                return ends;
+            };
+            if (std::erase_if(pieces, ends_over) == 0) break;
+        }
+        return std::any_of(pieces.begin(), pieces.end(), [&](const Piece& t) { return is_inside(t, p); });
+    }
+    // Of two triangles that share an edge one has the points on it.
+    [[nodiscard]] static bool is_inside(const Piece& t, const Point2& p) {
+        bool inside = true;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Place &a = t.at[k], &b = t.at[(k + 1) % 3];
+            Rational side = (b.x - a.x) * (p[1] - a.y) - (b.y - a.y) * (p[0] - a.x);
+            if (t.facing < 0) side = -side;
+            const bool up = b.y > a.y || (b.y == a.y && b.x > a.x);
+            inside = inside && (side > 0 || (side == 0 && (up == (t.facing > 0))));
+        }
+        return inside;
+    }
+
+    // Whether the edge between two moved vertices may pass over p.
+    [[nodiscard]] static bool may_pass(const Place& a, const Place& b, const Point2& p) {
+        Rational low = 0, high = 1;
+        // c + s · slope ≤ 0 for a place s of the edge.
+        const auto keep = [&](const Rational& c, const Rational& slope) {
+            if (slope > 0)
+                high = std::min(high, Rational(-c / slope));
+            else if (slope < 0)
+                low = std::max(low, Rational(-c / slope));
+            else if (c > 0)
+                high = -1;
+        };
+        const Rational turn = b.move - a.move;
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            const Rational from = (axis == 0 ? a.x : a.y) - p[axis], along = axis == 0 ? b.x - a.x : b.y - a.y;
+            keep(from - a.move, along - turn);
+            keep(-from - a.move, -along - turn);
+        }
+        return low <= high;
+    }
+
+    std::span<const Body> bodies_;
+    std::array<Rational, 2> size_;
+    std::uint32_t columns_;
+    std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> tiles_;  // bodies and triangles
+    std::vector<std::vector<std::uint32_t>> vertices_;                         // by body: the first at the same place
+};
+
+}  // namespace crofton::oracle
