@@ -116,8 +116,8 @@ struct FindOptions {
     double least_gain = 0.02;
     // Patches: how far from the plane of their largest triangle vertices may lie, relative to the size of the mesh.
     double flatness = 1e-4;
-    // A patch is drawn triangle by triangle, many times as slowly as a box. In a town those of more triangles take five
-    // times as long as all other occluders and hide 1 % of the triangles.
+    // A patch with a convex outline is drawn as fast as a box, any other triangle by triangle, many times as slowly. In a
+    // town those of more triangles take five times as long as all other occluders and hide 1 % of the triangles.
     std::uint32_t max_patch_triangles = 4;
     // 0: a mesh of its own. Else a level made of many small pieces: all its triangles become surfaces of so many at
     // most; 48 is a good number. They take the place of patches, are of that kind, and need not be flat. max_occluders
