@@ -44,7 +44,7 @@ struct Scene {
     std::vector<bool> meet[kFrames];
 };
 
-Scene make_scene(double gap, bool boxes) {
+Scene make_scene(double gap, bool boxes, int points = 32) {
     std::mt19937_64 random(7);
     const auto number = [&](double low, double high) {
         return std::uniform_real_distribution<double>(low, high)(random);
@@ -61,7 +61,7 @@ Scene make_scene(double gap, bool boxes) {
     Scene scene;
     for (int i = 0; i < 2 * kPairs; ++i) {
         std::vector<glm::vec3> p;
-        for (int k = 0; k < 32; ++k) p.emplace_back(direction());
+        for (int k = 0; k < points; ++k) p.emplace_back(direction());
         if (boxes) {
             p.clear();
             const glm::vec3 h(number(0.3, 1), number(0.3, 1), number(0.3, 1));
@@ -153,6 +153,18 @@ CROFTON_PAIRS("hull32 manifold 0.01", Ask::manifold, -0.01, false);
 CROFTON_PAIRS("hull32 manifold gap 0.01", Ask::manifold, 0.01, false);
 CROFTON_PAIRS("box manifold 0.01", Ask::manifold, -0.01, true);
 
+// Hulls of fewer points, warm.
+void few_points(benchmark::State& state) {
+    const Scene scene = make_scene(-0.01, false, static_cast<int>(state.range(0)));
+    std::vector<PairCache> cache(kPairs);
+    const auto place = [&](int f, int i) { return BodyAtPose{scene.bodies[i], scene.poses[f][i]}; };
+    frames(
+        state, scene,
+        [&](int f, int i) { return crofton_ask(Ask::manifold, place(f, 2 * i), place(f, 2 * i + 1), &cache[i]); },
+        [&](int f, int i) { return intersects(place(f, 2 * i), place(f, 2 * i + 1)); });
+}
+BENCHMARK(few_points)->Name("hull manifold 0.01, points/crofton")->Arg(8)->Arg(16)->Arg(32);
+
 // Cubes whose faces touch exactly: in one frame, as stacked crates are, or each turned about the normal.
 void touching_boxes(benchmark::State& state, Ask ask, bool turned) {
     const Body cube = Body::box(glm::vec3(0.5f)).value();
@@ -168,20 +180,24 @@ BENCHMARK_CAPTURE(touching_boxes, b, Ask::manifold, false)->Name("box touching m
 BENCHMARK_CAPTURE(touching_boxes, c, Ask::meet, true)->Name("box touching, turned, yes-no/crofton");
 BENCHMARK_CAPTURE(touching_boxes, d, Ask::manifold, true)->Name("box touching, turned, manifold/crofton");
 
-void crofton_cast(benchmark::State& state) {
-    const Scene scene = make_scene(0.5, false);
+// `spin` radians a second about an axis across the way.
+void crofton_cast(benchmark::State& state, int points, double spin) {
+    const Scene scene = make_scene(0.5, false, points);
     frames(
         state, scene,
         [&](int f, int i) {
             Motion motion;
             motion.velocity = -2.0 * scene.poses[f][2 * i + 1].translation;
+            motion.spin = spin * glm::normalize(glm::cross(motion.velocity, glm::dvec3(0.3, 0.5, 0.7)));
             return cast({scene.bodies[2 * i], scene.poses[f][2 * i]}, {},
                         {scene.bodies[2 * i + 1], scene.poses[f][2 * i + 1]}, motion)
                 ->time;
         },
         [](int, int) { return false; });
 }
-BENCHMARK(crofton_cast)->Name("hull32 cast translation/crofton");
+BENCHMARK_CAPTURE(crofton_cast, a, 32, 0.0)->Name("hull32 cast translation/crofton");
+BENCHMARK_CAPTURE(crofton_cast, b, 16, 0.0)->Name("hull16 cast translation/crofton");
+BENCHMARK_CAPTURE(crofton_cast, c, 16, 2.0)->Name("hull16 cast turning/crofton");
 
 #if defined(CROFTON_HAVE_FCL)
 struct FclScene {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <crofton/crofton.hpp>
 #include <crofton/occlude/occluder.hpp>
 #include <crofton/occlude/occlusion.hpp>
 #include <cstdio>
@@ -82,6 +83,83 @@ void choose_candidates(std::size_t count, bool all) {
                 1e6 * times[times.size() / 2], 1e6 * times[0]);
 }
 
+// World::view along the town's street, with occlusion and without: the least times, in turns.
+void view_street() {
+    auto source = *assets::make_town({});
+    source.scene.update();
+    const scene::Scene& scene = source.scene;
+    std::map<scene::NodeId, std::vector<scene::MeshId>> parts;
+    for (scene::InstanceId i = 0; i < scene.instance_count(); ++i) parts[scene.node_of(i)].push_back(scene.mesh_of(i));
+    World world{{.pairs = false, .updates_to_rest = 1}};
+    std::map<std::vector<scene::MeshId>, MeshHandle> meshes;
+    std::map<std::uint32_t, MeshHandle> mesh_of;  // by object
+    for (const auto& [node, ids] : parts) {
+        MeshHandle& mesh = meshes[ids];
+        if (mesh.is_null()) {
+            TriangleMesh all;
+            for (const scene::MeshId id : ids) append(all, scene.mesh(id));
+            mesh = *world.add_mesh(
+                {.positions = all.positions, .indices = all.indices, .triangles = false, .occluders = true});
+        }
+        mesh_of[world.add({.mesh = mesh, .transform = scene.world(node)})->index] = mesh;
+    }
+    for (int k = 0; k < 4; ++k) (void)world.update();
+    Camera camera;
+    camera.aspect = 16.0 / 9.0;
+    camera.fov_y = 1.0;
+    camera.near_distance = 0.1;
+    camera.far_distance = 2000.0;
+    double with = 0.0, without = 0.0, draw = 0.0, worst = 0.0;
+    std::size_t drawn = 0, patches = 0, triangles = 0, seen = 0, in_view = 0;
+    ViewResult visible, in_frustum;
+    Vector<OccluderRef> occluders;
+    const std::size_t legs = source.walk.size();
+    for (std::size_t leg = 0; leg < legs; ++leg) {
+        camera.position = 0.5 * (source.walk[leg] + source.walk[(leg + 1) % legs]);
+        camera.forward = source.walk[(leg + 1) % legs] - source.walk[leg];
+        double least[3] = {1e9, 1e9, 1e9};
+        for (int k = 0; k < 30; ++k) {
+            const auto timed = [&](double& to, const auto& work) {
+                const auto begin = std::chrono::steady_clock::now();
+                work();
+                to = std::min(to, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+            };
+            timed(least[0], [&] { (void)world.view({.camera = camera, .occlusion = OcclusionOptions{}}, visible); });
+            timed(least[1], [&] { (void)world.view({.camera = camera}, in_frustum); });
+        }
+        (void)world.drawn_occluders(visible, occluders);
+        occlude::OccluderSet set;
+        for (const OccluderRef& ref : occluders) {
+            const FoundOccluder& found = world.occluders_of(mesh_of[ref.object.index])[ref.place];
+            const bool patch = found.kind == OccluderKind::patch;
+            patches += patch;
+            const auto shape =
+                patch ? set.add_surface(found.surface, found.sides) : set.add_convex(found.surface.positions);
+            (void)set.place(*shape, *world.transform_of(ref.object));
+        }
+        auto buffer = *OcclusionBuffer::create(OcclusionOptions{}.size);
+        const auto view = *occlusion_view_of(camera);
+        for (int k = 0; k < 30; ++k) {
+            const auto begin = std::chrono::steady_clock::now();
+            buffer.draw(set, view);
+            least[2] =
+                std::min(least[2], std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+        }
+        with += least[0], without += least[1], draw += least[2];
+        worst = std::max(worst, least[0]);
+        drawn += occluders.size(), triangles += buffer.statistics().triangles_drawn;
+        seen += visible.size(), in_view += in_frustum.size();
+    }
+    const auto n = static_cast<double>(legs);
+    const auto mean = [n](std::size_t count) { return static_cast<double>(count) / n; };
+    std::printf(
+        "view: town, means of %zu places in the street: %.0f occluders drawn, %.0f of them patches, %.0f triangles one "
+        "by one; %.0f of %.0f objects seen; with occlusion %.1f us (worst place %.1f), without %.1f us, drawing %.1f "
+        "us\n",
+        legs, mean(drawn), mean(patches), mean(triangles), mean(seen), mean(in_view), 1e6 * with / n, 1e6 * worst,
+        1e6 * without / n, 1e6 * draw / n);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -90,5 +168,6 @@ int main(int argc, char** argv) {
     find_in_town();
     choose_candidates(10'000, false);
     choose_candidates(10'000, true);
+    view_street();
     return 0;
 }

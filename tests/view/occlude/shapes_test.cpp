@@ -59,6 +59,39 @@ TriangleMesh sheet(std::uint32_t side, Random& random, double rough) {
     return mesh;
 }
 
+// A convex polygon in triangles of one corner, or in a strip, that bulges by `rough` of its size.
+TriangleMesh polygon(Random& random, double rough) {
+    TriangleMesh mesh;
+    const std::size_t corners = 3 + pick(random, 9);
+    std::vector<double> angles;
+    for (std::size_t i = 0; i < corners; ++i) angles.push_back(6.283185307 * random.uniform());
+    std::sort(angles.begin(), angles.end());
+    for (const double angle : angles) {
+        const double z = rough * random.uniform(-1, 1);
+        mesh.positions.push_back(glm::vec3(std::cos(angle), std::sin(angle), z));
+    }
+    for (std::uint32_t k = 0; k + 2 < corners; ++k) {
+        const auto last = static_cast<std::uint32_t>(corners) - 1;
+        const std::uint32_t fan[3] = {0, k + 1, k + 2};
+        const std::uint32_t low = k / 2, high = last - k / 2;
+        const std::uint32_t strip[3] = {k % 2 ? low + 1 : low, k % 2 ? high - 1 : low + 1, high};
+        mesh.indices.insert(mesh.indices.end(), rough > 0.0 ? strip : fan, (rough > 0.0 ? strip : fan) + 3);
+    }
+    return mesh;
+}
+
+// Prisms, whose sides are two triangles in one plane exactly.
+std::vector<glm::vec3> prism(Random& random) {
+    std::vector<glm::vec3> points;
+    const std::size_t corners = 3 + pick(random, 6);
+    for (std::size_t i = 0; i < corners; ++i) {
+        const double angle = 6.283185307 * random.uniform();
+        const glm::vec2 p(std::round(64.0 * std::cos(angle)) / 64.0, std::round(64.0 * std::sin(angle)) / 64.0);
+        for (const float z : {-0.5f, 0.75f}) points.emplace_back(p, z);
+    }
+    return points;
+}
+
 Transform place_at(Random& random, const glm::dvec3& at) {
     Transform transform;
     const double scale = random.uniform(0.5, 4.0);
@@ -97,8 +130,16 @@ void add_random_shape(ShapeScene& scene, Random& random, const glm::dvec3& at, s
         const TriangleMesh mesh = sphere(24, 12, random, 0.2);
         CHECK(scene.set.place(*scene.set.add_mesh(mesh), transform));
         add_surface(scene, mesh.positions, mesh.indices, transform, false);
+    } else if (kind == 4) {
+        const std::vector<glm::vec3> points = prism(random);
+        const auto hull = *convex_hull(points);
+        if (hull.rank < 3) return;
+        CHECK(scene.set.place(*scene.set.add_convex(points), transform));
+        add_surface(scene, points, hull.triangles, transform, false);
     } else {
-        const TriangleMesh mesh = sheet(kind == 2 ? 8 : 2, random, kind == 2 ? 0.1 : 0.0);
+        constexpr double kRough[] = {0.0, 1e-7, 1e-5, 0.9e-3, 1.1e-3};  // to both sides of what counts as flat
+        const TriangleMesh mesh = kind == 5 ? polygon(random, kRough[pick(random, 5)])
+                                            : sheet(kind == 2 ? 8 : 2, random, kind == 2 ? 0.1 : 0.0);
         if (mesh.indices.empty()) return;
         const bool both = pick(random, 2) == 0;
         CHECK(scene.set.place(*scene.set.add_surface(mesh, both ? occlude::Sides::both : occlude::Sides::front),
@@ -125,13 +166,13 @@ bool meets_front(const oracle::WitnessRay& ray, const std::vector<Surface>& surf
 TEST_SUITE("occlude/shapes") {
     TEST_CASE("no ray passes a pixel that convex shapes, meshes or surfaces cover") {
         Random random(11);
-        std::size_t covered[4] = {}, rays = 0;
-        for (int trial = 0; trial < 60; ++trial) {
+        std::size_t covered[6] = {}, rays = 0;
+        for (int trial = 0; trial < 120; ++trial) {
             CAPTURE(trial);
             ShapeScene scene;
             scene.view.camera = camera_at(random, 0.0);
             scene.view.size = trial % 2 ? occlude::BufferSize{120, 72} : occlude::BufferSize{61, 47};
-            const std::size_t kind = static_cast<std::size_t>(trial) % 4;
+            const std::size_t kind = static_cast<std::size_t>(trial) % 6;
             for (std::size_t i = 0; i < 3; ++i)
                 add_random_shape(scene, random, point_in_view(random, scene.view.camera, 0.5 + 12.0 * random.uniform()),
                                  kind);
@@ -155,8 +196,41 @@ TEST_SUITE("occlude/shapes") {
             CHECK(passed == 0);
         }
         MESSAGE("covered by convex shapes " << covered[0] << ", meshes " << covered[1] << ", surfaces " << covered[2]
-                                            << ", polygons " << covered[3] << "; " << rays << " rays");
+                                            << ", squares " << covered[3] << ", prisms " << covered[4] << ", polygons "
+                                            << covered[5] << "; " << rays << " rays");
         for (const std::size_t count : covered) CHECK(count > 2'000);
+    }
+
+    // A speck beside the polygon makes two pieces of it, which are drawn triangle by triangle.
+    TEST_CASE("a convex polygon covers as many pixels as its triangles") {
+        Random random(12);
+        std::size_t as_one = 0, by_triangles = 0, not_as_one = 0;
+        for (int trial = 0; trial < 200; ++trial) {
+            OcclusionScene scene;
+            scene.camera = camera_at(random, 0.0);
+            scene.size = {160, 90};
+            const Transform transform = place_at(random, point_in_view(random, scene.camera, 6.0));
+            TriangleMesh mesh = polygon(random, 1e-5);
+            for (const bool speck : {false, true}) {
+                if (speck) {
+                    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+                    for (const float x : {0.0f, 1e-6f, 0.0f})
+                        mesh.positions.emplace_back(x, x == 0.0f ? 1e-6f * float(mesh.positions.size() - first) : 0.0f,
+                                                    -0.01f);
+                    for (std::uint32_t k = 0; k < 3; ++k) mesh.indices.push_back(first + k);
+                }
+                occlude::OccluderSet set;
+                REQUIRE(set.place(*set.add_surface(mesh, occlude::Sides::both), transform));
+                auto buffer = *occlude::OcclusionBuffer::create(scene.size);
+                buffer.draw(set, *occlude::occlusion_view_of(scene.camera));
+                (speck ? by_triangles : as_one) += buffer.count_covered();
+                not_as_one += !speck && buffer.statistics().triangles_drawn > 0;  // with slivers, or at the near plane
+            }
+        }
+        MESSAGE("covered as one polygon " << as_one << ", by triangles " << by_triangles);
+        CHECK(by_triangles > 50'000);
+        CHECK(not_as_one < 10);
+        CHECK(as_one * 1000 >= by_triangles * 995);
     }
 
     TEST_CASE("a mesh covers its inside without seams") {

@@ -27,6 +27,8 @@ using VF = hn::Vec<DF>;
 // The columns [begin, end) that a body covers, in each row of a tile row.
 struct Spans {
     alignas(32) std::int32_t begin[kTile], end[kTile];
+    std::int32_t first, last;                // of any row: columns [first, last)
+    std::int32_t common_first, common_last;  // of all rows
 };
 
 // No operation is contracted here: the bits are those of any target.
@@ -60,22 +62,19 @@ class BodyDrawer {
     void draw_tile_row(std::uint32_t row) {
         Spans spans;
         if (!find_spans(row, spans)) return;
-        std::int32_t begin = spans.begin[0], end = spans.end[0];
-        for (std::size_t r = 1; r < kTile; ++r) {
-            begin = std::min(begin, spans.begin[r]);
-            end = std::max(end, spans.end[r]);
-        }
-        if (begin >= end) return;
+        if (spans.first >= spans.last) return;
         const std::size_t at = std::size_t{row - target_.first_tile_row} * target_.tile_columns;
-        const auto last = static_cast<std::uint32_t>(end - 1) / kTile;
-        for (std::uint32_t column = static_cast<std::uint32_t>(begin) / kTile; column <= last; ++column) {
+        const auto last = static_cast<std::uint32_t>(spans.last - 1) / kTile;
+        for (std::uint32_t column = static_cast<std::uint32_t>(spans.first) / kTile; column <= last; ++column) {
             if (target_.least[at + column] >= body_.body->most_nearness) continue;
             const std::uint64_t mask = mask_of(spans, static_cast<std::int32_t>(column * kTile));
             if (mask == 0) continue;
             target_.covers[at + column].add(mask, body_.place);
             float* const pixels = target_.pixels + (at + column) * kTilePixels;
             set_bases(static_cast<float>(column * kTile), static_cast<float>(row * kTile));
-            target_.front[at + column] = std::max(target_.front[at + column], nearest());
+            const float front = nearest();
+            target_.front[at + column] = std::max(target_.front[at + column], front);
+            if (front <= target_.least[at + column]) continue;  // all that is there is nearer
             target_.least[at + column] = ~mask == 0 ? draw_whole(pixels) : draw_part(pixels, mask);
         }
     }
@@ -87,6 +86,7 @@ class BodyDrawer {
         const PreparedBody& b = *body_.body;
         const VF most = hn::Set(d, static_cast<float>(target_.width));
         bool any = false;
+        VF first = most, last = hn::Zero(d), common_first = last, common_last = most;
         for (std::size_t r = 0; r < kTile; r += hn::Lanes(d)) {
             const VF row = hn::Iota(d, static_cast<float>(tile_row * kTile + r));
             VF left = hn::Zero(d), right = most;
@@ -98,9 +98,19 @@ class BodyDrawer {
             right = hn::IfThenElse(outside, hn::Zero(d), hn::Max(right, hn::Zero(d)));
             left = hn::Min(left, most);
             any = any || !hn::AllTrue(d, hn::Ge(left, right));
-            hn::Store(hn::ConvertTo(di, hn::Ceil(left)), di, spans.begin + r);
-            hn::Store(hn::ConvertTo(di, hn::Floor(right)), di, spans.end + r);
+            left = hn::Ceil(left);
+            right = hn::Floor(right);
+            first = hn::Min(first, left);
+            last = hn::Max(last, right);
+            common_first = hn::Max(common_first, left);
+            common_last = hn::Min(common_last, right);
+            hn::Store(hn::ConvertTo(di, left), di, spans.begin + r);
+            hn::Store(hn::ConvertTo(di, right), di, spans.end + r);
         }
+        spans.first = static_cast<std::int32_t>(hn::GetLane(hn::MinOfLanes(d, first)));
+        spans.last = static_cast<std::int32_t>(hn::GetLane(hn::MaxOfLanes(d, last)));
+        spans.common_first = static_cast<std::int32_t>(hn::GetLane(hn::MaxOfLanes(d, common_first)));
+        spans.common_last = static_cast<std::int32_t>(hn::GetLane(hn::MinOfLanes(d, common_last)));
         return any;
     }
 
@@ -111,6 +121,7 @@ class BodyDrawer {
 
     // Bit 8 r + c for row r, column c.
     static HWY_INLINE std::uint64_t mask_of(const Spans& spans, std::int32_t column) {
+        if (spans.common_first <= column && spans.common_last >= column + 8) return ~std::uint64_t{0};
         std::uint64_t mask = 0;
         for (std::size_t r = 0; r < kTile; ++r) {
             const std::int32_t begin = std::clamp(spans.begin[r] - column, 0, 8);

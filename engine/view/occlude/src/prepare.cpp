@@ -86,7 +86,7 @@ class Preparation {
         out_.right.clear();
         bool any = false;
         for (std::size_t f = 0; f < body_.faces.size(); ++f) {
-            const BodyFace& face = body_.faces[f];
+            const ShapeFace& face = body_.faces[f];
             const MappedPoint& a = body_.points[face.a];
             const MappedPoint& b = body_.points[body_.mirrored ? face.c : face.b];
             const MappedPoint& c = body_.points[body_.mirrored ? face.b : face.c];
@@ -95,8 +95,9 @@ class Preparation {
             if (!find_plane(a, b, c, bounds_, plane)) continue;
             out_.seen[f] = 1;
             any = true;
-            if (!add_plane(plane.nearness, plane.error)) return false;
-            if (crossing_ && !cut_face(plane.nearness, plane.error)) return false;
+            const double error = plane.error + body_.behind;
+            if (!add_plane(plane.nearness, error)) return false;
+            if (crossing_ && !cut_face(plane.nearness, error)) return false;
         }
         return any;
     }

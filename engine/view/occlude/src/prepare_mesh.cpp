@@ -114,7 +114,7 @@ class MeshPreparation {
         const MappedPoint points[3] = {placed_.points[shape_.triangles[3 * t]],
                                        placed_.points[shape_.triangles[3 * t + 1]],
                                        placed_.points[shape_.triangles[3 * t + 2]]};
-        static constexpr BodyFace kFace[1] = {{0, 1, 2}};
+        static constexpr ShapeFace kFace[1] = {{0, 1, 2}};
         static constexpr ShapeEdge kEdges[3] = {{0, 1, 0, kNone}, {1, 2, 0, kNone}, {2, 0, 0, kNone}};
         PreparedBodies& out = out_;
         prepare(map_, {points, kFace, kEdges, placed_.sizes, mirrored_}, occluder_, out);
@@ -196,8 +196,12 @@ void prepare_mesh(const PixelMap& map, const Shape& shape, const Transform& tran
                   OccluderId occluder, PreparedBodies& out) {
     const PlacedPoints placed = map_points(map, shape, transform, out.points);
     const bool turned = mirrored != map.mirrored;
-    MeshPreparation(map, shape, placed, turned, occluder, out).run();
-    if (shape.sides == Sides::both) MeshPreparation(map, shape, placed, !turned, occluder, out).run();
+    const auto prepare_side = [&](bool side) {
+        if (!shape.outline.empty() && prepare_polygon(map, shape, placed, side, occluder, out)) return;
+        MeshPreparation(map, shape, placed, side, occluder, out).run();
+    };
+    prepare_side(turned);
+    if (shape.sides == Sides::both) prepare_side(!turned);
 }
 
 }  // namespace crofton::occlude

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Boxes and convex shapes as bodies.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "map_bounds.hpp"
 #include "prepared.hpp"
 
 namespace crofton::occlude {
@@ -14,8 +16,8 @@ namespace {
 constexpr std::uint32_t kFaceCorners[6][4] = {{1, 3, 7, 5}, {0, 4, 6, 2}, {2, 6, 7, 3},
                                               {0, 1, 5, 4}, {4, 5, 7, 6}, {0, 2, 3, 1}};
 
-constexpr std::array<BodyFace, 6> box_faces() {
-    std::array<BodyFace, 6> faces{};
+constexpr std::array<ShapeFace, 6> box_faces() {
+    std::array<ShapeFace, 6> faces{};
     for (std::size_t f = 0; f < 6; ++f) faces[f] = {kFaceCorners[f][0], kFaceCorners[f][1], kFaceCorners[f][2]};
     return faces;
 }
@@ -54,6 +56,30 @@ struct BoxForm {
                (corner & 4u ? edge[2] : -edge[2]);
     }
 };
+
+[[nodiscard]] bool is_beyond_cuts(const PixelMap& map, const MapSizes& sizes, const MappedPoint& p) {
+    bool beyond = p.form[2] >= map.least_w;
+    for (int c = 0; c < map.cut_count; ++c) beyond = beyond && p.cut[c] > kMapError * sizes.cut[c];
+    return beyond;
+}
+
+// How far points are behind a plane at most, in nearness: the largest of line(column, row) − z / w, rounded up. Between
+// the points it is no larger, as it is their mean then, weighted by w.
+[[nodiscard]] double most_behind(const PlacedPoints& placed, const Line& line) {
+    const auto& size = placed.sizes.form;
+    // The forms are off by kMapError; four products and three sums round, of terms within the same sizes.
+    const double error =
+        2.0 * kMapError *
+        (size[3] + std::fabs(line.x) * size[0] + std::fabs(line.y) * size[1] + std::fabs(line.w) * size[2]);
+    double most = 0.0;
+    for (const MappedPoint& p : placed.points) {
+        const double behind = line.x * p.form[0] + line.y * p.form[1] + line.w * p.form[2] - p.form[3] + error;
+        const double w = p.form[2] - 2.0 * kMapError * size[2];
+        if (!(w > 0.0)) return HUGE_VAL;
+        most = std::max(most, behind / w);
+    }
+    return most * (1.0 + 0x1p-50);
+}
 
 }  // namespace
 
@@ -113,9 +139,34 @@ PlacedPoints map_points(const PixelMap& map, const Shape& shape, const Transform
 void prepare_convex(const PixelMap& map, const Shape& shape, const Transform& transform, bool mirrored,
                     OccluderId occluder, PreparedBodies& out) {
     const PlacedPoints placed = map_points(map, shape, transform, out.points);
-    static_assert(sizeof(BodyFace) == 3 * sizeof(std::uint32_t));
-    const std::span faces(reinterpret_cast<const BodyFace*>(shape.triangles.data()), shape.triangle_count());
-    prepare(map, {placed.points, faces, shape.edges, placed.sizes, mirrored != map.mirrored}, occluder, out);
+    prepare(map, {placed.points, shape.faces, shape.edges, placed.sizes, mirrored != map.mirrored}, occluder, out);
+}
+
+bool prepare_polygon(const PixelMap& map, const Shape& shape, const PlacedPoints& placed, bool mirrored,
+                     OccluderId occluder, PreparedBodies& out) {
+    for (const MappedPoint& p : placed.points)
+        if (!is_beyond_cuts(map, placed.sizes, p)) return false;
+    Bounds bounds(map, placed.sizes);
+    bounds.nearness = 0.0;  // of errors, which are not asked for
+    std::size_t seen = 0;
+    Line widest{};
+    for (std::size_t t = 0; t < shape.triangle_count(); ++t) {
+        const auto corner = [&](std::size_t k) -> const MappedPoint& {
+            return placed.points[shape.triangles[3 * t + (mirrored ? (3 - k) % 3 : k)]];
+        };
+        FacePlane plane;
+        if (!find_plane(corner(0), corner(1), corner(2), bounds, plane)) continue;
+        if (t == 0) widest = plane.nearness;
+        ++seen;
+    }
+    if (seen == 0) return true;  // it shows its other side
+    if (seen < shape.triangle_count()) return false;
+    const std::uint32_t* const t = shape.triangles.data();
+    const ShapeFace face{t[0], t[1], t[2]};
+    Body body{placed.points, {&face, 1}, shape.outline, placed.sizes, mirrored};
+    body.behind = most_behind(placed, widest);
+    prepare(map, body, occluder, out);
+    return true;
 }
 
 }  // namespace crofton::occlude

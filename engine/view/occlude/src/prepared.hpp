@@ -103,16 +103,13 @@ struct MapSizes {
 // transform's (3 u and 3 u), sums of up to seven terms (7 u). In all 14 u < 2^-49.
 inline constexpr double kMapError = 0x1p-49;
 
-struct BodyFace {
-    std::uint32_t a, b, c;  // three of its corners, counter-clockwise
-};
-
 struct Body {
     std::span<const MappedPoint> points;
-    std::span<const BodyFace> faces;  // planar
+    std::span<const ShapeFace> faces;  // planar
     std::span<const ShapeEdge> edges;
     MapSizes sizes;
     bool mirrored;
+    double behind = 0.0;  // how far its faces may be behind their planes, in nearness
 };
 
 // Appends the body to `out`, if it covers anything: the faces that look towards the eye, within their common contour.
@@ -130,6 +127,11 @@ struct PlacedPoints {
                                       Vector<MappedPoint>& points);
 void prepare_convex(const PixelMap& map, const Shape& shape, const Transform& transform, bool mirrored,
                     OccluderId occluder, PreparedBodies& out);
+
+// A surface with an outline, as a body of one face. False where it must be drawn triangle by triangle: it crosses the
+// near plane, or not all of its triangles certainly show the same side.
+[[nodiscard]] bool prepare_polygon(const PixelMap& map, const Shape& shape, const PlacedPoints& placed, bool mirrored,
+                                   OccluderId occluder, PreparedBodies& out);
 
 // A mesh or a surface: what each connected piece of it covers, pixel by pixel, by the rule of contours. Triangles that
 // cross the near plane are bodies of their own.

@@ -5,10 +5,12 @@
 #include <cmath>
 #include <crofton/geometry/box.hpp>
 #include <crofton/geometry/mesh.hpp>
+#include <crofton/geometry/predicates.hpp>
 #include <glm/geometric.hpp>
 #include <numeric>
 #include <string>
 #include <tuple>
+#include <utility>
 
 namespace crofton::occlude {
 namespace {
@@ -130,13 +132,96 @@ void connect(Shape& shape) {
     divide(shape);
 }
 
+// Twice a triangle's area, along its normal.
+[[nodiscard]] glm::dvec3 area_vector_of(const Shape& shape, std::size_t t) {
+    const glm::dvec3 a(shape.points[shape.triangles[3 * t]]);
+    return glm::cross(glm::dvec3(shape.points[shape.triangles[3 * t + 1]]) - a,
+                      glm::dvec3(shape.points[shape.triangles[3 * t + 2]]) - a);
+}
+
+// Whether two triangles with a common edge lie in exactly one plane, side by side, and are no slivers.
+[[nodiscard]] bool are_coplanar(const Shape& shape, std::uint32_t first, std::uint32_t second) {
+    const auto point = [&](std::uint32_t t, std::size_t k) {
+        return glm::dvec3(shape.points[shape.triangles[3 * t + k]]);
+    };
+    const auto is_sliver = [&](std::uint32_t t) {
+        const double u = glm::length(point(t, 1) - point(t, 0)), v = glm::length(point(t, 2) - point(t, 0));
+        return !(glm::length(area_vector_of(shape, t)) > 1e-6 * u * v);
+    };
+    if (is_sliver(first) || is_sliver(second)) return false;
+    if (!(glm::dot(area_vector_of(shape, first), area_vector_of(shape, second)) > 0.0)) return false;
+    for (std::size_t k = 0; k < 3; ++k)
+        if (orientation(point(first, 0), point(first, 1), point(first, 2), point(second, k)) != 0) return false;
+    return true;
+}
+
+// Faces of a convex shape, each told by its widest triangle, and the edges between them.
+void find_faces(Shape& shape) {
+    Vector<std::uint32_t> parents(shape.triangle_count()), face_of(shape.triangle_count(), kNone);
+    std::iota(parents.begin(), parents.end(), 0u);
+    for (const ShapeEdge& edge : shape.edges)
+        if (edge.right != kNone && are_coplanar(shape, edge.left, edge.right))
+            parents[root_of(parents, edge.left)] = root_of(parents, edge.right);
+    Vector<double> widest;
+    for (std::uint32_t t = 0; t < shape.triangle_count(); ++t) {
+        std::uint32_t& face = face_of[root_of(parents, t)];
+        if (face == kNone) {
+            face = static_cast<std::uint32_t>(shape.faces.size());
+            shape.faces.push_back({});
+            widest.push_back(-1.0);
+        }
+        const glm::dvec3 area = area_vector_of(shape, t);
+        if (!(glm::dot(area, area) > widest[face])) continue;
+        widest[face] = glm::dot(area, area);
+        shape.faces[face] = {shape.triangles[3 * t], shape.triangles[3 * t + 1], shape.triangles[3 * t + 2]};
+    }
+    for (ShapeEdge& edge : shape.edges) {
+        edge.left = face_of[root_of(parents, edge.left)];
+        if (edge.right != kNone) edge.right = face_of[root_of(parents, edge.right)];
+    }
+    std::erase_if(shape.edges, [](const ShapeEdge& edge) { return edge.left == edge.right; });
+}
+
+// The edges of one triangle alone, as those of triangle 0.
+[[nodiscard]] Vector<ShapeEdge> boundary_of(const Shape& shape) {
+    Vector<ShapeEdge> boundary;
+    for (const ShapeEdge& edge : shape.edges)
+        if (edge.right == kNone) boundary.push_back({edge.a, edge.b, 0, kNone});
+    return boundary;
+}
+
+// Whether all points lie within shares of the extent of the plane of triangle 0 and to the left of the boundary, and
+// all triangles look to one side. What is drawn of such a piece lacks no more than these shares (prepare_polygon).
+[[nodiscard]] bool is_flat_and_convex(const Shape& shape, std::span<const ShapeEdge> boundary, double extent) {
+    constexpr double kFlatness = 0x1p-10, kConvexity = 0x1p-14;
+    const auto point = [&](std::uint32_t i) { return glm::dvec3(shape.points[i]); };
+    const glm::dvec3 normal = glm::normalize(area_vector_of(shape, 0)), origin = point(shape.triangles[0]);
+    for (std::size_t t = 0; t < shape.triangle_count(); ++t)
+        if (!(glm::dot(area_vector_of(shape, t), normal) > 0.0)) return false;
+    for (const glm::vec3& p : shape.points)
+        if (!(std::fabs(glm::dot(normal, glm::dvec3(p) - origin)) <= kFlatness * extent)) return false;
+    for (const ShapeEdge& edge : boundary) {
+        const glm::dvec3 from = point(edge.a), inward = glm::cross(normal, point(edge.b) - from);
+        const double least = -kConvexity * extent * glm::length(inward);
+        for (const glm::vec3& p : shape.points)
+            if (!(glm::dot(inward, glm::dvec3(p) - from) >= least)) return false;
+    }
+    return true;
+}
+
+[[nodiscard]] std::size_t widest_of(const Shape& shape) {
+    std::size_t widest = 0;
+    double most = -1.0;
+    for (std::size_t t = 0; t < shape.triangle_count(); ++t) {
+        const glm::dvec3 area = area_vector_of(shape, t);
+        if (const double area2 = glm::dot(area, area); area2 > most) most = area2, widest = t;
+    }
+    return widest;
+}
+
 [[nodiscard]] double area_of(const Shape& shape) {
     double area = 0.0;
-    for (std::size_t t = 0; t < shape.triangle_count(); ++t) {
-        const glm::dvec3 a(shape.points[shape.triangles[3 * t]]);
-        area += glm::length(glm::cross(glm::dvec3(shape.points[shape.triangles[3 * t + 1]]) - a,
-                                       glm::dvec3(shape.points[shape.triangles[3 * t + 2]]) - a));
-    }
+    for (std::size_t t = 0; t < shape.triangle_count(); ++t) area += glm::length(area_vector_of(shape, t));
     return 0.5 * area;
 }
 
@@ -155,6 +240,19 @@ void connect(Shape& shape) {
     Aabb bounds;
     for (const glm::vec3& p : shape.points) bounds.include(glm::dvec3(p));
     return glm::length(bounds.max - bounds.min);
+}
+
+// Finds the outline, where there is one.
+void find_outline(Shape& shape) {
+    constexpr std::size_t kMostTriangles = 32;
+    if (shape.pieces.size() != 1 || shape.triangle_count() > kMostTriangles) return;
+    const std::size_t widest = widest_of(shape);
+    for (std::size_t k = 0; k < 3; ++k) std::swap(shape.triangles[k], shape.triangles[3 * widest + k]);
+    for (ShapeEdge& edge : shape.edges)
+        for (std::uint32_t ShapeEdge::*side : {&ShapeEdge::left, &ShapeEdge::right})
+            if (edge.*side == 0 || edge.*side == widest) edge.*side = static_cast<std::uint32_t>(widest) - edge.*side;
+    Vector<ShapeEdge> boundary = boundary_of(shape);
+    if (is_flat_and_convex(shape, boundary, extent_of(shape))) shape.outline = std::move(boundary);
 }
 
 [[nodiscard]] Result<Shape> welded_shape(const TriangleMesh& mesh, Sides sides, Vector<std::uint32_t>& source) {
@@ -181,6 +279,7 @@ Result<Shape> convex_shape(std::span<const glm::vec3> points) {
     Vector<std::uint32_t> source;
     weld(points, hull->triangles, shape, source);
     connect(shape);
+    find_faces(shape);
     return shape;
 }
 
@@ -210,7 +309,9 @@ Result<Shape> closed_shape(const TriangleMesh& mesh) {
 Result<Shape> surface_shape(const TriangleMesh& surface, Sides sides) {
     Vector<std::uint32_t> source;
     Result<Shape> shape = welded_shape(surface, sides, source);
-    if (shape) connect(*shape);
+    if (!shape) return shape;
+    connect(*shape);
+    find_outline(*shape);
     return shape;
 }
 

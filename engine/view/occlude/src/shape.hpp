@@ -24,13 +24,23 @@ struct ShapePiece {
     std::uint32_t first_edge, end_edge;
 };
 
+// Three points of a face, counter-clockwise.
+struct ShapeFace {
+    std::uint32_t a, b, c;
+};
+
 struct Shape {
     Vector<glm::vec3> points;
     Vector<std::uint32_t> triangles;  // three points each, by pieces
-    Vector<ShapeEdge> edges;          // by pieces
+    // By pieces. Of a convex shape: `left` and `right` are faces, and no edge lies within a face.
+    Vector<ShapeEdge> edges;
+    Vector<ShapeFace> faces;  // of a convex shape: triangles in exactly one plane are one face
     Vector<ShapePiece> pieces;
     Sides sides = Sides::front;
     bool convex = false;
+    // A surface that is one piece, nearly flat, with a convex outline: the edges around it, each to the right of none.
+    // Empty otherwise. Its widest triangle comes first.
+    Vector<ShapeEdge> outline;
     float max_abs = 0.0f;  // ≥ |x|, |y|, |z| of every point
 
     [[nodiscard]] std::size_t triangle_count() const { return triangles.size() / 3; }
