@@ -240,7 +240,7 @@ namespace Crofton {
         [DllImport(Library)] internal static extern int crofton_criterion_for_rays(double length, out Criterion criterion);
         [DllImport(Library)] internal static extern int crofton_criterion_for_frustum(ref CameraData camera, out Criterion criterion);
         [DllImport(Library)] internal static extern int crofton_fit_points(float[] points, UIntPtr count, uint isDouble, ref FitOptionsData options, out Obb box);
-        [DllImport(Library, EntryPoint = "crofton_fit_points")] internal static extern int crofton_fit_doubles(double[] points, UIntPtr count, uint isDouble, ref FitOptionsData options, out Obb box);
+        [DllImport(Library)] internal static extern int crofton_fit_points(double[] points, UIntPtr count, uint isDouble, ref FitOptionsData options, out Obb box);
 
         [DllImport(Bake)] internal static extern int crofton_triangulator_create(out TriangulatorHandle triangulator);
         [DllImport(Bake)] internal static extern int crofton_triangulator_destroy(IntPtr triangulator);
@@ -270,7 +270,7 @@ namespace Crofton {
         [DllImport(Library)] internal static extern int crofton_view_result_create(out VisibleHandle visible);
         [DllImport(Library)] internal static extern int crofton_view_result_destroy(IntPtr visible);
         [DllImport(Library)] internal static extern int crofton_world_view(WorldHandle world, ref ViewRequestData request, UIntPtr count, IntPtr jobs, VisibleHandle visible);
-        [DllImport(Library, EntryPoint = "crofton_world_view")] internal static extern int crofton_world_view_many(WorldHandle world, [In] ViewRequestData[] requests, UIntPtr count, IntPtr jobs, VisibleHandle visible);
+        [DllImport(Library)] internal static extern int crofton_world_view(WorldHandle world, [In] ViewRequestData[] requests, UIntPtr count, IntPtr jobs, VisibleHandle visible);
         [DllImport(Library)] internal static extern int crofton_view_result_ids(VisibleHandle visible, out IntPtr ids, out UIntPtr count, IntPtr verdicts, IntPtr insideCount);
         [DllImport(Library)] internal static extern int crofton_view_result_list(VisibleHandle visible, WorldHandle world, UIntPtr first, [Out] ObjectRef[] objects, [Out] uint[] viewMasks, UIntPtr capacity);
         [DllImport(Library)] internal static extern int crofton_view_result_get_view(VisibleHandle visible, UIntPtr view, ref ViewInfo info);

@@ -241,7 +241,7 @@ namespace Crofton {
                     data[v] = memory.Of(requests[v]);
                 }
                 Read(() => {
-                    Library.Check(Native.crofton_world_view_many(Handle, data, (UIntPtr)data.Length, IntPtr.Zero, visible.Handle));
+                    Library.Check(Native.crofton_world_view(Handle, data, (UIntPtr)data.Length, IntPtr.Zero, visible.Handle));
                     return visible.Read(this);
                 });
             }

@@ -47,7 +47,7 @@ namespace Crofton {
         public static Obb Box(double[] points, Quality quality = Quality.Tight, Criterion? criterion = null) {
             var options = Options(points, quality, criterion);
             Obb box;
-            Library.Check(Native.crofton_fit_doubles(points, (UIntPtr)(points.Length / 3), 1, ref options, out box));
+            Library.Check(Native.crofton_fit_points(points, (UIntPtr)(points.Length / 3), 1, ref options, out box));
             return box;
         }
         static Native.FitOptionsData Options(Array points, Quality quality, Criterion? criterion) {
