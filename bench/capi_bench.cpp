@@ -2,7 +2,7 @@
 // What the C API adds to a query: the same small queries from C++ and through C, in one run.
 //   bench_capi --benchmark_min_time=0.5 --benchmark_repetitions=9 --benchmark_enable_random_interleaving=true
 #include <benchmark/benchmark.h>
-#include <crofton/capi/crofton.h>
+#include <crofton/capi/scene.h>
 #include <crofton/boxtree/box_tree.hpp>
 
 #include <crofton/collide/narrow_phase.hpp>
@@ -34,28 +34,26 @@ BENCHMARK(cull_cpp)->Arg(1)->Arg(16)->Arg(256);
 
 void cull_c(benchmark::State& state) {
     const auto boxes = make_boxes(state.range(0));
-    crofton_camera camera{};
-    camera.size = sizeof camera;
-    crofton_view view{};
-    view.size = sizeof view;
-    view.layer_mask = ~0u;
-    view.frustum.size = sizeof view.frustum;
+    const crofton_camera camera = crofton_default_camera();
+    crofton_frustum frustum{};
+    frustum.size = sizeof frustum;
+    crofton_view_request request = crofton_default_view_request();
+    request.volume = &frustum;
     crofton_tree* tree = nullptr;
-    crofton_visible_set* visible = nullptr;
-    if (crofton_camera_default(&camera) != CROFTON_OK ||
-        crofton_frustum_from_camera(&camera, &view.frustum) != CROFTON_OK ||
+    crofton_view_result* visible = nullptr;
+    if (crofton_frustum_from_camera(&camera, &frustum) != CROFTON_OK ||
         crofton_tree_create(reinterpret_cast<const crofton_box*>(boxes.data()), nullptr, boxes.size(), nullptr,
                             &tree) != CROFTON_OK ||
-        crofton_visible_set_create(&visible) != CROFTON_OK)
+        crofton_view_result_create(&visible) != CROFTON_OK)
         return state.SkipWithError(crofton_last_error());
     for (auto _ : state) {
         const uint32_t* ids = nullptr;
         size_t count = 0;
-        crofton_cull_tree(tree, &view, nullptr, nullptr, visible);
-        crofton_visible_set_items(visible, &ids, nullptr, &count);
+        crofton_tree_view(tree, &request, nullptr, visible);
+        crofton_view_result_ids(visible, &ids, &count, nullptr, nullptr);
         benchmark::DoNotOptimize(ids);
     }
-    crofton_visible_set_destroy(visible);
+    crofton_view_result_destroy(visible);
     crofton_tree_destroy(tree);
 }
 BENCHMARK(cull_c)->Arg(1)->Arg(16)->Arg(256);

@@ -15,7 +15,7 @@ const views = Array.from({ length: VIEWS }, (_, v) => {
     memory.doubles.set(own.subarray(1), handle + 16 >> 3);
     return frustum;
 });
-const tree = new crofton.Tree(boxes), visible = new crofton.VisibleSet();
+const tree = new crofton.Tree(boxes), visible = new crofton.ViewResult();
 const kinds = { tree: (view) => tree.cull(view, visible), list: (view) => crofton.cullBoxes(boxes, view, visible) };
 const least = { tree: Infinity, list: Infinity }, first = {};
 let seen;

@@ -31,13 +31,13 @@ OPTIMIZE, KERNELS = "-Os", "-O2;-finline-functions"
 MODULES = ["core", "geometry", "measure", "mesh", "boxtree", "convex", "collide", "scene", "fit", "cull", "occlude", "depth",
            "triangulate", "world", "capi", "bake_capi"]
 EXPORTED = """last_error status_name version_string set_log_hook log default_camera frustum_from_camera
-frustum_from_matrix boxes_validate tree_create tree_destroy tree_move tree_remove tree_refit visible_set_create
-visible_set_destroy visible_set_items visible_set_statistics cull_tree cull_boxes classify criterion_minimal_perimeter
-fit_floats fit_doubles triangulator_create triangulator_destroy triangulate world_create world_destroy world_add_mesh
-world_find_occluders world_set_occluders world_add world_remove world_set_hidden world_set_bound world_set_transforms
-world_contains world_object_count world_update default_world_options default_mesh_data
-default_object_description default_occlusion_options default_view_request world_view world_raycast view_result_create
-view_result_destroy view_result_ids view_result_occluded_ids web_error_item""".split()
+frustum_from_matrix boxes_validate tree_create tree_destroy tree_move tree_remove tree_refit tree_view view_boxes classify
+default_fit_options fit_points triangulator_create triangulator_destroy triangulate world_create world_destroy world_add_mesh
+world_get_mesh world_find_occluders world_set_occluders world_add world_remove world_set world_set_transforms
+world_get_object world_get_statistics world_update default_world_options default_mesh_data
+default_object_description default_occlusion_options default_view_matrix default_draw_limits default_picture_view
+default_view_request world_view world_raycast view_result_create view_result_destroy view_result_ids view_result_get_view
+web_error_item""".split()
 
 
 def do(command, log, **more):

@@ -51,15 +51,8 @@ export interface Frustum extends Owned {
     setMatrix(matrix: Vector, depth?: Depth, origin?: Vector): this;
     readonly planes: { origin: number[]; planes: { normal: number[]; offset: number }[] };
 }
-/** Views: valid until the next query or any growth of memory. */
-export interface VisibleSet extends Owned {
-    readonly length: number;
-    readonly ids: Uint32Array;
-    readonly verdicts: Uint8Array;
-    readonly statistics: Record<'nodesTested' | 'boxesTested' | 'acceptedWhole' | 'straddling' | 'exactTests' | 'falsePositives', number>;
-}
 export interface Tree extends Owned {
-    cull(frustum: Frustum, visible: VisibleSet, how?: CullOptions): VisibleSet;
+    cull(frustum: Frustum, visible: ViewResult, how?: CullOptions): ViewResult;
     move(items: ArrayLike<number>, boxes: Boxes): void;
     remove(item: number): void;
     refit(): void;
@@ -73,10 +66,36 @@ export interface ViewResult extends Owned {
     readonly ids: Uint32Array;
     readonly verdicts: Uint8Array;
     readonly occluded: Uint32Array;
+    /** Of a view with a picture: what to draw; bit k of `triangles` stands for triangle k of the cluster. */
+    readonly triangles: { object: number; cluster: number; triangles: bigint }[];
+    readonly statistics: Record<'nodesTested' | 'boxesTested' | 'acceptedWhole' | 'straddling' | 'exactTests' | 'falsePositives' |
+        'occludersDrawn', number>;
+}
+export type Bits = BigUint64Array | Uint32Array;
+export interface DrawLimits {
+    eye: Vector;
+    /** Leaves out what is farther than so many of its radii; infinite unless given. */
+    maxDistanceInRadii?: number;
+    leastRadius?: number;
+    /** 32 numbers; by object index. */
+    layerDistances?: Float32Array; itemDistances?: Float32Array;
+    /** What was drawn before has `hysteresis` times as long limits. */
+    drawnBefore?: Bits; hysteresis?: number;
+}
+export interface ViewRequest {
+    camera?: Camera; matrix?: Vector; depth?: Depth; origin?: Vector; volume?: Frustum; layers?: number;
+    occlusion?: { listOccluded?: boolean; width?: number; height?: number; maxOccluders?: number; leastCover?: number };
+    /** In place of occlusion; `depth` is that of the renderer's projection, 'reversed' unless given. */
+    picture?: { width?: number; height?: number; depth?: Depth };
+    limits?: DrawLimits;
+    /** Bit i: may object i be seen? Objects that are new or have moved may. */
+    candidates?: Bits;
+    treeOrder?: boolean; conservative?: boolean;
 }
 export interface World extends Owned {
     readonly count: number;
-    addMesh(positions: Float32Array, indices: Uint32Array | Uint16Array): MeshHandle;
+    addMesh(positions: Float32Array, indices: Uint32Array | Uint16Array, how?: { clusters?: boolean; oneSided?: boolean }): MeshHandle;
+    clustersOf(mesh: MeshHandle): { clusters: { firstTriangle: number; triangleCount: number }[]; triangleOrder: Uint32Array };
     findOccluders(mesh: MeshHandle): void;
     setConvexOccluder(mesh: MeshHandle, positions: Float32Array): void;
     /** `transform`: sixteen numbers by columns, the last row 0, 0, 0, 1. */
@@ -89,8 +108,7 @@ export interface World extends Owned {
     contains(object: ObjectHandle): boolean;
     update(): void;
     /** `camera` or `volume`, or both: then objects are tested against the volume, and hidden from the camera. */
-    view(request: { camera?: Camera; volume?: Frustum; layers?: number;
-        occlusion?: { listOccluded?: boolean; width?: number; height?: number; maxOccluders?: number } }, visible: ViewResult): ViewResult;
+    view(request: ViewRequest, visible: ViewResult): ViewResult;
     raycast(origin: Vector, direction: Vector, maxT?: number, layers?: number): Hit | null;
 }
 export interface Crofton {
@@ -99,11 +117,10 @@ export interface Crofton {
     readonly Boxes: new (count: number) => Boxes;
     readonly Frustum: new (from?: { camera?: Camera; matrix?: Vector; depth?: Depth; origin?: Vector; layers?: number }) => Frustum;
     readonly Tree: new (boxes: Boxes) => Tree;
-    readonly VisibleSet: new () => VisibleSet;
     readonly Triangulator: new () => Triangulator;
     readonly World: new () => World;
     readonly ViewResult: new () => ViewResult;
-    cullBoxes(boxes: Boxes, frustum: Frustum, visible: VisibleSet, how?: CullOptions): VisibleSet;
+    cullBoxes(boxes: Boxes, frustum: Frustum, visible: ViewResult, how?: CullOptions): ViewResult;
     /** A verdict a box: 0 outside, 1 straddling, 2 inside. */
     classify(boxes: Boxes, frustum: Frustum): Uint8Array;
     fitBox(points: Float32Array | Float64Array, how?: { quality?: 'fast' | 'tight' | 'exact';

@@ -37,14 +37,8 @@ static void add_tetrahedra(crofton_world* world) {
 }
 
 /* An object may be a bound alone. */
-static crofton_object add_sphere(crofton_world* world, double x) {
-    const crofton_bound bound = {.kind = CROFTON_BOUND_SPHERE, .center = {x, 0.2, -3.0}, .radius = 0.5};
-    crofton_object_description description = crofton_default_object_description();
-    description.user = 100;
-    description.bound = &bound;
-    crofton_object object;
-    check(crofton_world_add(world, &description, &object));
-    return object;
+static crofton_bound sphere_at(double x) {
+    return (crofton_bound){.kind = CROFTON_BOUND_SPHERE, .center = {x, 0.2, -3.0}, .radius = 0.5};
 }
 
 int main(void) {
@@ -56,29 +50,36 @@ int main(void) {
     const crofton_object_pair* pairs;
     const uint32_t* ids;
     const crofton_ray ray = {{-4.3, 0.2, 5.0}, {0.0, 0.0, -1.0}, 100.0};
-    size_t seen = 0, count = 0, pair_count = 0, contacts = 0;
+    const crofton_object_contact* contacts;
+    crofton_object object;
+    crofton_object_description sphere = crofton_default_object_description();
+    crofton_world_statistics statistics = {.size = sizeof statistics};
+    size_t seen = 0, pair_count = 0, contact_count = 0;
     if (crofton_api_version() != CROFTON_API_VERSION) return 1;
     request.camera = &camera;
     check(crofton_world_create(NULL, &world));
     check(crofton_view_result_create(&visible));
     add_tetrahedra(world);
-    const crofton_object sphere = add_sphere(world, -6.0);
+    crofton_bound bound = sphere_at(-6.0);
+    sphere.user = 100;
+    sphere.bound = &bound;
+    check(crofton_world_add(world, &sphere, &object));
     for (int frame = 0; frame < 10; ++frame) {
-        const crofton_bound moved = {
-            .kind = CROFTON_BOUND_SPHERE, .center = {0.5 * frame - 6.0, 0.2, -3.0}, .radius = 0.5};
-        check(crofton_world_set_bound(world, sphere, &moved));
+        bound = sphere_at(0.5 * frame - 6.0);
+        check(crofton_world_set(world, object, CROFTON_SET_BOUND, &sphere));
         check(crofton_world_update(world, NULL)); /* once a frame; then ask */
-        check(crofton_world_view(world, &request, NULL, visible));
+        check(crofton_world_view(world, &request, 1, NULL, visible));
         check(crofton_view_result_ids(visible, &ids, &seen, NULL, NULL));
-        check(crofton_world_contact_count(world, &contacts));
+        check(crofton_world_contacts(world, &contacts, &contact_count));
     }
-    check(crofton_world_object_count(world, &count));
+    check(crofton_world_get_statistics(world, &statistics));
     check(crofton_world_pairs(world, &pairs, &pair_count));
     check(crofton_world_raycast(world, &ray, 1, ~0u, &hit));
+    const size_t count = (size_t)statistics.object_count;
     printf("crofton %s: %zu of %zu objects in view, %zu pairs of bounds meet, %zu of them touch\n",
-           crofton_version_string(), seen, count, pair_count, contacts);
+           crofton_version_string(), seen, count, pair_count, contact_count);
     printf("the ray hits object %llu at %.2f\n", (unsigned long long)hit.user, hit.t);
     check(crofton_view_result_destroy(visible));
     check(crofton_world_destroy(world));
-    return seen > 0 && seen < count && pair_count > contacts && contacts > 0 && hit.user == 0 ? 0 : 1;
+    return seen > 0 && seen < count && pair_count > contact_count && contact_count > 0 && hit.user == 0 ? 0 : 1;
 }

@@ -25,7 +25,7 @@ export class CroftonCuller {
         const boxes = this.#boundsOf(this.#items.keys(), this.#items.length);
         this.#tree = new crofton.Tree(boxes);
         boxes.free();
-        this.#visible = new crofton.VisibleSet();
+        this.#visible = new crofton.ViewResult();
         this.#frustum = new crofton.Frustum();
     }
 

@@ -38,12 +38,12 @@ Scene row(int count) {
 
 std::vector<std::uint32_t> seen(const crofton_tree* tree, std::uint32_t layers) {
     const VisibleSet visible = make_visible_set();
-    crofton_view view = default_view();
+    View view = default_view();
     view.layer_mask = layers;
-    REQUIRE(crofton_cull_tree(tree, &view, nullptr, nullptr, visible.get()) == CROFTON_OK);
+    REQUIRE(cull_tree(tree, &view, nullptr, nullptr, visible.get()) == CROFTON_OK);
     const uint32_t* ids = nullptr;
     std::size_t count = 0;
-    REQUIRE(crofton_visible_set_items(visible.get(), &ids, nullptr, &count) == CROFTON_OK);
+    REQUIRE(visible_set_items(visible.get(), &ids, nullptr, &count) == CROFTON_OK);
     return {ids, ids + count};
 }
 
@@ -125,7 +125,7 @@ TEST_SUITE("capi/bake") {
         // The tree outlives the file and may change.
         baked.reset();
         REQUIRE(crofton_tree_remove(tree.get(), 7) == CROFTON_OK);
-        REQUIRE(crofton_tree_refit(tree.get()) == CROFTON_OK);
+        REQUIRE(crofton_tree_refit(tree.get(), 0) == CROFTON_OK);
         CHECK(seen(tree.get(), 3u).size() == 39);
     }
 

@@ -18,9 +18,9 @@ TEST_SUITE("capi/base") {
         CHECK(crofton_last_error_item() == CROFTON_NO_ITEM);
         CHECK(crofton_scene_destroy(nullptr) == CROFTON_BAD_HANDLE);
         CHECK(crofton_tree_destroy(nullptr) == CROFTON_BAD_HANDLE);
-        CHECK(crofton_visible_set_destroy(nullptr) == CROFTON_BAD_HANDLE);
+        CHECK(crofton_view_result_destroy(nullptr) == CROFTON_BAD_HANDLE);
         CHECK(crofton_broadphase_destroy(nullptr) == CROFTON_BAD_HANDLE);
-        CHECK(crofton_collider_destroy(nullptr) == CROFTON_BAD_HANDLE);
+        CHECK(crofton_body_destroy(nullptr) == CROFTON_BAD_HANDLE);
         CHECK(crofton_triangulator_destroy(nullptr) == CROFTON_BAD_HANDLE);
     }
 
@@ -33,7 +33,7 @@ TEST_SUITE("capi/base") {
 
     TEST_CASE("a place for the new handle that is NULL is refused") {
         CHECK(crofton_scene_create(nullptr) == CROFTON_INVALID_ARGUMENT);
-        CHECK(crofton_visible_set_create(nullptr) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_view_result_create(nullptr) == CROFTON_INVALID_ARGUMENT);
         CHECK(crofton_broadphase_create(nullptr) == CROFTON_INVALID_ARGUMENT);
         CHECK(crofton_triangulator_create(nullptr) == CROFTON_INVALID_ARGUMENT);
         CHECK(crofton_tree_create(nullptr, nullptr, 0, nullptr, nullptr) == CROFTON_INVALID_ARGUMENT);

@@ -80,21 +80,21 @@ TEST_SUITE("capi/bodies") {
 
     TEST_CASE("a hull's surface and mass: an octahedron") {
         const BodyHandle hull = hull_body();
-        const float* vertices = nullptr;
-        const std::uint16_t* indices = nullptr;
-        std::size_t vertex_count = 0, index_count = 0;
-        REQUIRE(crofton_body_hull_surface(hull.get(), &vertices, &vertex_count, &indices, &index_count) == CROFTON_OK);
-        CHECK(vertex_count == 6);
-        CHECK(index_count == 24);
-        for (std::size_t i = 0; i < index_count; ++i) CHECK(indices[i] < 6);
-        for (std::size_t i = 0; i < vertex_count; ++i)
-            CHECK(std::fabs(vertices[3 * i]) + std::fabs(vertices[3 * i + 1]) + std::fabs(vertices[3 * i + 2]) == 1.0f);
+        auto info = sized<crofton_body_info>();
+        REQUIRE(crofton_body_get_info(hull.get(), &info) == CROFTON_OK);
+        CHECK(info.vertex_count == 6);
+        CHECK(info.index_count == 24);
+        for (std::size_t i = 0; i < info.index_count; ++i) CHECK(info.indices[i] < 6);
+        for (std::size_t i = 0; i < info.vertex_count; ++i) {
+            const float* v = info.vertices + 3 * i;
+            CHECK(std::fabs(v[0]) + std::fabs(v[1]) + std::fabs(v[2]) == 1.0f);
+        }
         auto mass = sized<crofton_mass_properties>();
         REQUIRE(crofton_body_get_mass(hull.get(), &mass) == CROFTON_OK);
         CHECK(mass.volume == doctest::Approx(4.0 / 3.0));
         CHECK(mass.inertia[0] == doctest::Approx(4.0 / 15.0));
-        CHECK(crofton_body_hull_surface(box_body(1, 1, 1).get(), &vertices, &vertex_count, &indices, &index_count) ==
-              CROFTON_UNSUPPORTED);
+        REQUIRE(crofton_body_get_info(box_body(1, 1, 1).get(), &info) == CROFTON_OK);
+        CHECK((info.vertices == nullptr && info.indices == nullptr && info.index_count == 0));
     }
 
     TEST_CASE("answers are the bits of C++") {
@@ -166,8 +166,7 @@ TEST_SUITE("capi/bodies") {
         for (int step = 0; step < 5; ++step) {
             const crofton_transform place = translation(0.01 * step, 1.49, 0);
             const crofton_placed a{floor.get(), &ground}, b{crate.get(), &place};
-            REQUIRE(crofton_body_contacts_update(made, &a, &b, &options) == CROFTON_OK);
-            REQUIRE(crofton_body_contacts_points(made, &points, &count, &ended) == CROFTON_OK);
+            REQUIRE(crofton_body_contacts_update(made, &a, &b, &options, &points, &count, &ended) == CROFTON_OK);
             REQUIRE(count == 4);
             CHECK(ended == 0);
             for (std::size_t i = 0; i < 4; ++i) {
@@ -180,39 +179,48 @@ TEST_SUITE("capi/bodies") {
         }
         const crofton_transform high = translation(0, 3, 0);
         const crofton_placed a{floor.get(), &ground}, b{crate.get(), &high};
-        REQUIRE(crofton_body_contacts_update(made, &a, &b, &options) == CROFTON_OK);
-        REQUIRE(crofton_body_contacts_points(made, &points, &count, &ended) == CROFTON_OK);
+        REQUIRE(crofton_body_contacts_update(made, &a, &b, &options, &points, &count, &ended) == CROFTON_OK);
         CHECK(count == 0);
         CHECK(ended == 4);
     }
 
     TEST_CASE("bad bodies are refused by name, and leave the result alone") {
         crofton_body* none = nullptr;
-        CHECK(crofton_body_sphere(-1, &none) == CROFTON_INVALID_ARGUMENT);
-        CHECK(crofton_body_sphere(1, nullptr) == CROFTON_INVALID_ARGUMENT);
-        CHECK(crofton_body_capsule(kNaN, 1, &none) == CROFTON_NON_FINITE);
+        CHECK(body_sphere(-1, &none) == CROFTON_INVALID_ARGUMENT);
+        CHECK(body_sphere(1, nullptr) == CROFTON_INVALID_ARGUMENT);
+        CHECK(body_round(CROFTON_BODY_CAPSULE, kNaN, 1, &none) == CROFTON_NON_FINITE);
         const float inside_out[3] = {1, -1, 1};
-        CHECK(crofton_body_box(inside_out, &none) == CROFTON_INVALID_ARGUMENT);
+        CHECK(body_box(inside_out, &none) == CROFTON_INVALID_ARGUMENT);
         CHECK(crofton_last_error_item() == 1);
         const float flat[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
-        CHECK(crofton_body_hull(flat, 4, nullptr, &none) == CROFTON_DEGENERATE);
-        CHECK(crofton_body_hull(flat, 3, nullptr, &none) != CROFTON_OK);
-        CHECK(crofton_body_hull(nullptr, 4, nullptr, &none) == CROFTON_INVALID_ARGUMENT);
-        CHECK(crofton_body_hull(flat, SIZE_MAX / 4, nullptr, &none) == CROFTON_OUT_OF_RANGE);
-        auto hull_options = sized<crofton_hull_options>();
-        hull_options.max_vertices = 3;
+        CHECK(body_hull(flat, 4, &none) == CROFTON_DEGENERATE);
+        CHECK(body_hull(flat, 3, &none) != CROFTON_OK);
+        CHECK(body_hull(nullptr, 4, &none) == CROFTON_INVALID_ARGUMENT);
+        CHECK(body_hull(flat, SIZE_MAX / 4, &none) == CROFTON_OUT_OF_RANGE);
         const std::vector<float> points = octahedron();
-        CHECK(crofton_body_hull(points.data(), 7, &hull_options, &none) == CROFTON_INVALID_ARGUMENT);
+        CHECK(body_hull(points.data(), 7, &none, 3) == CROFTON_INVALID_ARGUMENT);
         auto field = sized<crofton_height_field>();
         field.columns = 4;
         field.rows = 1;
         field.heights = flat;
-        CHECK(crofton_body_height_field(&field, 0, &none) == CROFTON_OUT_OF_RANGE);
-        CHECK(crofton_body_compound(nullptr, nullptr, 0, &none) == CROFTON_EMPTY);
+        CHECK(body_height_field(&field, 0, &none) == CROFTON_OUT_OF_RANGE);
+        CHECK(body_compound(nullptr, nullptr, 0, &none) == CROFTON_EMPTY);
         const crofton_transform here = translation(0, 0, 0);
         const crofton_body* no_child = nullptr;
-        CHECK(crofton_body_compound(&no_child, &here, 1, &none) == CROFTON_BAD_HANDLE);
+        CHECK(body_compound(&no_child, &here, 1, &none) == CROFTON_BAD_HANDLE);
         CHECK(crofton_last_error_item() == 0);
+        auto description = crofton_default_body_description();
+        description.kind = CROFTON_BODY_ROUNDED + 1;
+        CHECK(crofton_body_create(&description, &none) == CROFTON_INVALID_ARGUMENT);
+        description.kind = CROFTON_BODY_ROUNDED;
+        CHECK(crofton_body_create(&description, &none) == CROFTON_BAD_HANDLE);
+        for (const std::uint32_t kind : {CROFTON_BODY_MESH, CROFTON_BODY_HEIGHT_FIELD}) {
+            description.kind = kind;
+            CHECK(crofton_body_create(&description, &none) == CROFTON_INVALID_ARGUMENT);
+        }
+        description.size += 8;
+        CHECK(crofton_body_create(&description, &none) == CROFTON_WRONG_SIZE);
+        CHECK(crofton_body_create(nullptr, &none) == CROFTON_INVALID_ARGUMENT);
         CHECK(none == nullptr);
     }
 
@@ -223,7 +231,7 @@ TEST_SUITE("capi/bodies") {
         for (int depth = 1; depth <= 1000; ++depth) {
             const crofton_body* child = nested.back().get();
             crofton_body* made = nullptr;
-            const crofton_status status = crofton_body_compound(&child, &here, 1, &made);
+            const crofton_status status = body_compound(&child, &here, 1, &made);
             REQUIRE(status == (depth <= 16 ? CROFTON_OK : CROFTON_OUT_OF_RANGE));
             if (depth > 16) break;
             nested.emplace_back(made);
@@ -264,9 +272,11 @@ TEST_SUITE("capi/bodies") {
         crofton_body_contacts* contacts = nullptr;
         REQUIRE(crofton_body_contacts_create(&contacts) == CROFTON_OK);
         const BodyContactsHandle owner(contacts);
-        CHECK(crofton_body_contacts_update(contacts, &placed, &placed, &manifold) == CROFTON_OUT_OF_RANGE);
+        CHECK(crofton_body_contacts_update(contacts, &placed, &placed, &manifold, nullptr, nullptr, nullptr) ==
+              CROFTON_OUT_OF_RANGE);
         manifold.max_points = 0;
         manifold.margin = -0.5;
-        CHECK(crofton_body_contacts_update(contacts, &placed, &placed, &manifold) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_body_contacts_update(contacts, &placed, &placed, &manifold, nullptr, nullptr, nullptr) ==
+              CROFTON_INVALID_ARGUMENT);
     }
 }

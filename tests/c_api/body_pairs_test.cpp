@@ -58,7 +58,7 @@ TEST_SUITE("capi/body_pairs") {
         const BodyContactsHandle contacts(made);
         const crofton_transform above = translation(3, 4.4, 5);
         const crofton_placed a{bodies[4].get(), &here}, b{bodies[4].get(), &above};
-        REQUIRE(crofton_body_contacts_update(made, &a, &b, nullptr) == CROFTON_OK);
+        REQUIRE(crofton_body_contacts_update(made, &a, &b, nullptr, nullptr, nullptr, nullptr) == CROFTON_OK);
         lines.clear();
         REQUIRE(crofton_body_contacts_outline(made, 0.25, keep_line, &lines) == CROFTON_OK);
         CHECK(lines.size() == 16);

@@ -199,13 +199,13 @@ inline void change(BothWorlds& both, oracle::NearMisses& random) {
         const auto node_place = random_transform(random);
         const auto c_place = same_bytes<crofton_transform>(node_place);
         const bool known = world.contains(both.object(o));
-        CHECK((crofton_world_set_hidden(c, object, i % 2) == CROFTON_OK) == known);
+        CHECK((world_set_hidden(c, object, i % 2) == CROFTON_OK) == known);
         CHECK(world.set_hidden(both.object(o), i % 2 != 0).has_value() == known);
-        CHECK((crofton_world_set_layers(c, object, layers) == CROFTON_OK) == known);
+        CHECK((world_set_layers(c, object, layers) == CROFTON_OK) == known);
         CHECK(world.set_layers(both.object(o), layers).has_value() == known);
-        CHECK((crofton_world_set_collides_with(c, object, ~layers) == CROFTON_OK) == known);
+        CHECK((world_set_collides_with(c, object, ~layers) == CROFTON_OK) == known);
         CHECK(world.set_collides_with(both.object(o), ~layers).has_value() == known);
-        CHECK((crofton_world_set_user(c, object, layers + 1000) == CROFTON_OK) == known);
+        CHECK((world_set_user(c, object, layers + 1000) == CROFTON_OK) == known);
         CHECK(world.set_user(both.object(o), layers + 1000).has_value() == known);
         CHECK(crofton_world_set_node_transforms(c, &both.nodes[n], 0, &c_place, 0, 1) == CROFTON_OK);
         CHECK(world.set_transform(both.node(n), node_place).has_value());

@@ -15,11 +15,30 @@ TEST_SUITE("capi/collide") {
         CHECK(crofton_boxes_meet(&good, &bad, &meet) != CROFTON_OK);
         CHECK(crofton_last_error_item() == 1);
         CHECK(meet == 7);
-        const Collider collider = make_collider();
+        const BodyHandle mesh = make_mesh_body();
+        auto relation = sized<crofton_mesh_relation>();
+        relation.meet = 7;
         const crofton_transform scaled{{2, 0, 0, 0, 2, 0, 0, 0, 2}, {0, 0, 0}};
-        CHECK(crofton_colliders_meet(collider.get(), collider.get(), &scaled, &meet) != CROFTON_OK);
-        CHECK(crofton_colliders_meet(collider.get(), collider.get(), nullptr, &meet) == CROFTON_INVALID_ARGUMENT);
-        CHECK(crofton_colliders_meet(collider.get(), nullptr, &scaled, &meet) == CROFTON_BAD_HANDLE);
+        const auto ask = [&](const crofton_body* other, const crofton_transform* pose, std::uint32_t which) {
+            return crofton_meshes_relate(mesh.get(), other, pose, which, &relation);
+        };
+        const crofton_transform here = translation(0, 0, 0);
+        CHECK(ask(mesh.get(), &scaled, CROFTON_MESHES_MEET) != CROFTON_OK);
+        CHECK(ask(mesh.get(), nullptr, CROFTON_MESHES_MEET) == CROFTON_INVALID_ARGUMENT);
+        CHECK(ask(nullptr, &here, CROFTON_MESHES_MEET) == CROFTON_BAD_HANDLE);
+        CHECK(ask(mesh.get(), &here, 16) == CROFTON_INVALID_ARGUMENT);
+        crofton_body* sphere = nullptr;
+        REQUIRE(body_sphere(1, &sphere) == CROFTON_OK);
+        const BodyHandle no_mesh(sphere);
+        CHECK(ask(sphere, &here, CROFTON_MESHES_MEET) == CROFTON_UNSUPPORTED);
+        CHECK(crofton_last_error_item() == 1);
+        CHECK(crofton_meshes_relate(sphere, mesh.get(), &here, CROFTON_MESHES_MEET, &relation) == CROFTON_UNSUPPORTED);
+        CHECK(crofton_last_error_item() == 0);
+        CHECK(crofton_meshes_relate(mesh.get(), mesh.get(), &here, CROFTON_MESHES_MEET, nullptr) ==
+              CROFTON_INVALID_ARGUMENT);
+        CHECK(relation.meet == 7);
+        relation.size += 8;
+        CHECK(ask(mesh.get(), &here, CROFTON_MESHES_MEET) == CROFTON_WRONG_SIZE);
         const Broadphase broadphase = make_broadphase();
         CHECK(crofton_broadphase_update(broadphase.get(), nullptr, nullptr, 2, nullptr) == CROFTON_INVALID_ARGUMENT);
         const crofton_pair* pairs = nullptr;
@@ -66,25 +85,28 @@ TEST_SUITE("capi/collide") {
     }
 
     TEST_CASE("meshes meet, and their distance is that of their nearest points") {
-        const Collider a = make_collider(), b = make_collider();
-        int meet = -1;
+        const BodyHandle a = make_mesh_body(), b = make_mesh_body();
+        crofton_mesh_relation relation{};
         crofton_transform pose = translation(0.25, 0.25, 0.0);
-        REQUIRE(crofton_colliders_meet(a.get(), b.get(), &pose, &meet) == CROFTON_OK);
-        CHECK(meet == 1);
-        crofton_pair pairs[2];
+        constexpr std::uint32_t kBoth = CROFTON_MESHES_MEET | CROFTON_MESHES_DISTANCE;
+        REQUIRE(relate(a.get(), b.get(), &pose, kBoth, &relation) == CROFTON_OK);
+        CHECK((relation.meet == 1 && relation.distance == 0.0));
+        crofton_mesh_contact contacts[2];
         std::size_t count = 0;
-        REQUIRE(crofton_colliders_triangle_pairs(a.get(), b.get(), &pose, pairs, 2, &count) == CROFTON_OK);
+        REQUIRE(crofton_meshes_contacts(a.get(), b.get(), &pose, contacts, 2, &count) == CROFTON_OK);
         CHECK(count > 2);
-        REQUIRE(crofton_colliders_triangle_pairs(a.get(), b.get(), &pose, nullptr, 0, &count) == CROFTON_OK);
+        CHECK((contacts[0].triangles.first < 4 && contacts[0].triangles.second < 4));
+        REQUIRE(crofton_meshes_contacts(a.get(), b.get(), &pose, nullptr, 0, &count) == CROFTON_OK);
         CHECK(count > 2);
         pose = translation(3.0, 0.0, 0.0);
-        REQUIRE(crofton_colliders_meet(a.get(), b.get(), &pose, &meet) == CROFTON_OK);
-        CHECK(meet == 0);
-        double distance = -1.0, on_a[3] = {}, on_b[3] = {};
-        REQUIRE(crofton_colliders_distance(a.get(), b.get(), &pose, &distance, on_a, on_b) == CROFTON_OK);
-        CHECK(distance == doctest::Approx(2.0));
-        CHECK(on_a[0] == doctest::Approx(1.0));
-        CHECK(on_b[0] == doctest::Approx(3.0));
-        REQUIRE(crofton_colliders_distance(a.get(), b.get(), &pose, &distance, nullptr, nullptr) == CROFTON_OK);
+        REQUIRE(relate(a.get(), b.get(), &pose, kBoth, &relation) == CROFTON_OK);
+        CHECK(relation.meet == 0);
+        CHECK(relation.distance == doctest::Approx(2.0));
+        CHECK(relation.on_a[0] == doctest::Approx(1.0));
+        CHECK(relation.on_b[0] == doctest::Approx(3.0));
+        CHECK((relation.depth == 0.0 && relation.containment == CROFTON_CONTAINS_NOTHING));
+        // What is not asked is 0.
+        REQUIRE(relate(a.get(), b.get(), &pose, 0, &relation) == CROFTON_OK);
+        CHECK((relation.distance == 0.0 && relation.on_b[0] == 0.0));
     }
 }

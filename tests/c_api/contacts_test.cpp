@@ -24,20 +24,19 @@ TEST_SUITE("capi/contacts") {
         CHECK(crofton_boxes_distance(&good, &good, nullptr, nullptr, nullptr) == CROFTON_INVALID_ARGUMENT);
         CHECK(distance == -7.0);
 
-        const Collider collider = make_collider();
+        const BodyHandle mesh = make_mesh_body();
         crofton_transform pose = translation(0, 0, 0);
         size_t count = 77;
-        CHECK(crofton_colliders_contacts(collider.get(), nullptr, &pose, nullptr, 0, &count) == CROFTON_BAD_HANDLE);
-        CHECK(crofton_colliders_contacts(collider.get(), collider.get(), &pose, nullptr, 3, &count) ==
-              CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_meshes_contacts(mesh.get(), nullptr, &pose, nullptr, 0, &count) == CROFTON_BAD_HANDLE);
+        CHECK(crofton_meshes_contacts(mesh.get(), mesh.get(), &pose, nullptr, 3, &count) == CROFTON_INVALID_ARGUMENT);
         pose.translation[0] = std::nan("");
-        CHECK(crofton_colliders_contacts(collider.get(), collider.get(), &pose, nullptr, 0, &count) ==
-              CROFTON_NON_FINITE);
-        CHECK(crofton_colliders_depth(collider.get(), collider.get(), &pose, &distance, nullptr) == CROFTON_NON_FINITE);
-        uint32_t containment = 77;
-        CHECK(crofton_colliders_containment(collider.get(), collider.get(), &pose, &containment) == CROFTON_NON_FINITE);
+        CHECK(crofton_meshes_contacts(mesh.get(), mesh.get(), &pose, nullptr, 0, &count) == CROFTON_NON_FINITE);
+        auto relation = sized<crofton_mesh_relation>();
+        relation.containment = 77;
+        for (const std::uint32_t which : {CROFTON_MESHES_DEPTH, CROFTON_MESHES_CONTAINMENT})
+            CHECK(crofton_meshes_relate(mesh.get(), mesh.get(), &pose, which, &relation) == CROFTON_NON_FINITE);
         CHECK(count == 77);
-        CHECK(containment == 77);
+        CHECK(relation.containment == 77);
     }
 
     TEST_CASE("a box on a box: four points, the depth, the way out") {
@@ -64,35 +63,32 @@ TEST_SUITE("capi/contacts") {
     }
 
     TEST_CASE("meshes: where they touch, how deep, and one inside the other") {
-        const Collider outer = make_collider(), inner = make_collider(0.125f);
+        const BodyHandle outer = make_mesh_body(), inner = make_mesh_body(0.125f);
         crofton_transform pose = translation(0.5, 0.125, 0.125);
         size_t count = 0;
         crofton_mesh_contact contacts[32];
-        REQUIRE(crofton_colliders_contacts(outer.get(), outer.get(), &pose, contacts, 32, &count) == CROFTON_OK);
+        REQUIRE(crofton_meshes_contacts(outer.get(), outer.get(), &pose, contacts, 32, &count) == CROFTON_OK);
         REQUIRE(count > 0);
         REQUIRE(count <= 32);
         for (size_t i = 0; i < count; ++i) {
             CHECK(contacts[i].begin[0] >= 0.5 - 1e-9);  // the corner of the moved one is at x = 0.5
             CHECK(contacts[i].begin[0] + contacts[i].begin[1] + contacts[i].begin[2] <= 1.0 + 1e-9);
         }
-        double depth = 0.0, direction[3];
-        REQUIRE(crofton_colliders_depth(outer.get(), outer.get(), &pose, &depth, direction) == CROFTON_OK);
+        crofton_mesh_relation relation{};
+        REQUIRE(relate(outer.get(), outer.get(), &pose, CROFTON_MESHES_DEPTH, &relation) == CROFTON_OK);
+        const double depth = relation.depth, *const direction = relation.direction;
         CHECK(depth > 0.0);
         CHECK(std::hypot(direction[0], direction[1], direction[2]) == doctest::Approx(1.0));
         for (int k = 0; k < 3; ++k) pose.translation[k] += 1.000001 * depth * direction[k];
-        int meet = -1;
-        REQUIRE(crofton_colliders_meet(outer.get(), outer.get(), &pose, &meet) == CROFTON_OK);
-        CHECK(meet == 0);
+        REQUIRE(relate(outer.get(), outer.get(), &pose, CROFTON_MESHES_MEET, &relation) == CROFTON_OK);
+        CHECK(relation.meet == 0);
 
-        pose = translation(0.125, 0.125, 0.125);
-        uint32_t containment = 77;
-        REQUIRE(crofton_colliders_containment(outer.get(), inner.get(), &pose, &containment) == CROFTON_OK);
-        CHECK(containment == CROFTON_B_INSIDE_A);
-        pose = translation(-0.125, -0.125, -0.125);
-        REQUIRE(crofton_colliders_containment(inner.get(), outer.get(), &pose, &containment) == CROFTON_OK);
-        CHECK(containment == CROFTON_A_INSIDE_B);
-        pose = translation(5, 0, 0);
-        REQUIRE(crofton_colliders_containment(outer.get(), inner.get(), &pose, &containment) == CROFTON_OK);
-        CHECK(containment == CROFTON_CONTAINS_NOTHING);
+        const auto containment = [&](const BodyHandle& a, const BodyHandle& b, const crofton_transform& at) {
+            REQUIRE(relate(a.get(), b.get(), &at, CROFTON_MESHES_CONTAINMENT, &relation) == CROFTON_OK);
+            return relation.containment;
+        };
+        CHECK(containment(outer, inner, translation(0.125, 0.125, 0.125)) == CROFTON_B_INSIDE_A);
+        CHECK(containment(inner, outer, translation(-0.125, -0.125, -0.125)) == CROFTON_A_INSIDE_B);
+        CHECK(containment(outer, inner, translation(5, 0, 0)) == CROFTON_CONTAINS_NOTHING);
     }
 }

@@ -30,28 +30,44 @@ TEST_SUITE("capi/cull") {
     TEST_CASE("wrong sizes, too many planes and bad boxes are refused") {
         auto boxes = random_boxes(3);
         const VisibleSet visible = make_visible_set();
-        crofton_view view = default_view();
+        View view = default_view();
         const auto cull = [&] {
-            return crofton_cull_boxes(boxes.data(), nullptr, boxes.size(), &view, nullptr, nullptr, visible.get());
+            return cull_boxes(boxes.data(), nullptr, boxes.size(), &view, nullptr, nullptr, visible.get());
         };
-        view.size = 8;
-        CHECK(cull() == CROFTON_WRONG_SIZE);
-        view = default_view();
         view.frustum.size = 0;
         CHECK(cull() == CROFTON_WRONG_SIZE);
         view = default_view();
         view.frustum.plane_count = CROFTON_MAX_PLANES + 1;
         CHECK(cull() == CROFTON_OUT_OF_RANGE);
-        crofton_cull_options options{};
         view = default_view();
-        CHECK(crofton_cull_boxes(boxes.data(), nullptr, 3, &view, &options, nullptr, visible.get()) ==
-              CROFTON_WRONG_SIZE);
-        CHECK(crofton_cull_boxes(nullptr, nullptr, 3, &view, nullptr, nullptr, visible.get()) ==
-              CROFTON_INVALID_ARGUMENT);
-        CHECK(crofton_cull_boxes(boxes.data(), nullptr, 3, &view, nullptr, nullptr, nullptr) == CROFTON_BAD_HANDLE);
-        CHECK(crofton_cull_tree(nullptr, &view, nullptr, nullptr, visible.get()) == CROFTON_BAD_HANDLE);
-        crofton_cull_statistics statistics{};
-        CHECK(crofton_visible_set_statistics(visible.get(), &statistics) == CROFTON_WRONG_SIZE);
+        crofton_view_request request = request_of(view);
+        const auto ask = [&] { return crofton_view_boxes(boxes.data(), nullptr, 3, &request, nullptr, visible.get()); };
+        const crofton_occlusion_options occlusion = crofton_default_occlusion_options();
+        const crofton_picture_view picture = crofton_default_picture_view();
+        const crofton_camera camera = crofton_default_camera();
+        CHECK(ask() == CROFTON_OK);
+        request.camera = &camera;
+        CHECK(ask() == CROFTON_INVALID_ARGUMENT);
+        request.volume = nullptr;
+        CHECK(ask() == CROFTON_OK);
+        request.occlusion = &occlusion;
+        CHECK(ask() == CROFTON_UNSUPPORTED);
+        CHECK(mentions(crofton_last_error(), "crofton_view_boxes: view: `occlusion`"));
+        request.occlusion = nullptr;
+        request.picture = &picture;
+        CHECK(ask() == CROFTON_UNSUPPORTED);
+        request.picture = nullptr;
+        request.camera = nullptr;
+        CHECK(ask() == CROFTON_INVALID_ARGUMENT);
+        request.size = 0;
+        CHECK(ask() == CROFTON_WRONG_SIZE);
+        CHECK(cull_boxes(nullptr, nullptr, 3, &view, nullptr, nullptr, visible.get()) == CROFTON_INVALID_ARGUMENT);
+        CHECK(cull_boxes(boxes.data(), nullptr, 3, &view, nullptr, nullptr, nullptr) == CROFTON_BAD_HANDLE);
+        CHECK(cull_tree(nullptr, &view, nullptr, nullptr, visible.get()) == CROFTON_BAD_HANDLE);
+        crofton_view_info info{};
+        CHECK(crofton_view_result_get_view(visible.get(), 0, &info) == CROFTON_WRONG_SIZE);
+        info.size = sizeof info;
+        CHECK(crofton_view_result_get_view(visible.get(), 1, &info) == CROFTON_OUT_OF_RANGE);
         boxes[1].center[0] = std::numeric_limits<double>::quiet_NaN();
         crofton_tree* tree = nullptr;
         CHECK(crofton_tree_create(boxes.data(), nullptr, 3, nullptr, &tree) == CROFTON_NON_FINITE);
@@ -64,11 +80,11 @@ TEST_SUITE("capi/cull") {
         REQUIRE(crofton_tree_create(nullptr, nullptr, 0, nullptr, &tree) == CROFTON_OK);
         const Tree owner(tree);
         const VisibleSet visible = make_visible_set();
-        const crofton_view view = default_view();
-        REQUIRE(crofton_cull_tree(tree, &view, nullptr, nullptr, visible.get()) == CROFTON_OK);
+        const View view = default_view();
+        REQUIRE(cull_tree(tree, &view, nullptr, nullptr, visible.get()) == CROFTON_OK);
         const uint32_t* ids = nullptr;
         std::size_t count = 1;
-        REQUIRE(crofton_visible_set_items(visible.get(), &ids, nullptr, &count) == CROFTON_OK);
+        REQUIRE(visible_set_items(visible.get(), &ids, nullptr, &count) == CROFTON_OK);
         CHECK(count == 0);
     }
 
@@ -76,7 +92,7 @@ TEST_SUITE("capi/cull") {
         const auto boxes = random_boxes(3000);
         std::vector<std::uint32_t> masks(boxes.size());
         for (std::size_t i = 0; i < masks.size(); ++i) masks[i] = 1u << (i % 3);
-        crofton_view view = default_view();
+        View view = default_view();
         view.layer_mask = 5;
         crofton::cull::View same;
         same.frustum = *crofton::frustum_of(crofton::Camera{});
@@ -91,13 +107,13 @@ TEST_SUITE("capi/cull") {
         REQUIRE(crofton_classify(&view.frustum, boxes.data(), boxes.size(), verdicts.data()) == CROFTON_OK);
         const VisibleSet visible = make_visible_set();
         for (const bool use_tree : {false, true}) {
-            REQUIRE((use_tree ? crofton_cull_tree(tree, &view, nullptr, nullptr, visible.get())
-                              : crofton_cull_boxes(boxes.data(), masks.data(), boxes.size(), &view, nullptr, nullptr,
-                                                   visible.get())) == CROFTON_OK);
+            REQUIRE((use_tree ? cull_tree(tree, &view, nullptr, nullptr, visible.get())
+                              : cull_boxes(boxes.data(), masks.data(), boxes.size(), &view, nullptr, nullptr,
+                                           visible.get())) == CROFTON_OK);
             const uint32_t* ids = nullptr;
             const uint8_t* kinds = nullptr;
             std::size_t count = 0;
-            REQUIRE(crofton_visible_set_items(visible.get(), &ids, &kinds, &count) == CROFTON_OK);
+            REQUIRE(visible_set_items(visible.get(), &ids, &kinds, &count) == CROFTON_OK);
             REQUIRE(count == expected.size());
             REQUIRE(count > 50);
             for (std::size_t i = 0; i < count; ++i) {
@@ -105,8 +121,9 @@ TEST_SUITE("capi/cull") {
                 CHECK(kinds[i] == verdicts[ids[i]]);
             }
         }
-        auto statistics = sized<crofton_cull_statistics>();
-        REQUIRE(crofton_visible_set_statistics(visible.get(), &statistics) == CROFTON_OK);
+        auto statistics = sized<crofton_view_info>();
+        REQUIRE(crofton_view_result_get_view(visible.get(), 0, &statistics) == CROFTON_OK);
+        CHECK((statistics.triangles == nullptr && statistics.occluded_ids == nullptr && statistics.depth_width == 0));
         if (crofton::cull::kCountStatistics) CHECK(statistics.nodes_tested > 0);
     }
 
@@ -130,7 +147,7 @@ TEST_SUITE("capi/cull") {
         same.drawn_before = drawn_before;
         same.hysteresis = 1.25;
 
-        const crofton_view view = default_view();
+        const View view = default_view();
         std::vector<uint8_t> verdicts(boxes.size());
         REQUIRE(crofton_classify(&view.frustum, boxes.data(), boxes.size(), verdicts.data()) == CROFTON_OK);
         std::vector<std::uint32_t> expected;
@@ -148,17 +165,16 @@ TEST_SUITE("capi/cull") {
         REQUIRE(crofton_tree_create(boxes.data(), nullptr, boxes.size(), nullptr, &tree) == CROFTON_OK);
         const Tree owner(tree);
         const VisibleSet visible = make_visible_set();
-        auto options = sized<crofton_cull_options>();
+        auto options = sized<crofton_view_request>();
         options.limits = &limits;
         const auto ask = [&](bool use_tree) {
-            return use_tree ? crofton_cull_tree(tree, &view, &options, nullptr, visible.get())
-                            : crofton_cull_boxes(boxes.data(), nullptr, boxes.size(), &view, &options, nullptr,
-                                                 visible.get());
+            return use_tree ? cull_tree(tree, &view, &options, nullptr, visible.get())
+                            : cull_boxes(boxes.data(), nullptr, boxes.size(), &view, &options, nullptr, visible.get());
         };
         const auto found = [&] {
             const uint32_t* ids = nullptr;
             std::size_t count = 0;
-            REQUIRE(crofton_visible_set_items(visible.get(), &ids, nullptr, &count) == CROFTON_OK);
+            REQUIRE(visible_set_items(visible.get(), &ids, nullptr, &count) == CROFTON_OK);
             return std::vector<std::uint32_t>(ids, ids + count);
         };
         for (const bool use_tree : {false, true}) {
@@ -168,7 +184,7 @@ TEST_SUITE("capi/cull") {
             REQUIRE(ask(use_tree) == CROFTON_OK);
             CHECK(found() == expected);
             // A caller's older struct lacks the limits.
-            options.size = offsetof(crofton_cull_options, limits);
+            options.size = offsetof(crofton_view_request, limits);
             REQUIRE(ask(use_tree) == CROFTON_OK);
             CHECK(found().size() == in_view);
             options.size = sizeof options;
@@ -189,7 +205,7 @@ TEST_SUITE("capi/cull") {
         const ViewResultHandle objects = make_view_result();
         crofton_view_request request = request_of(view);
         request.limits = options.limits;
-        REQUIRE(crofton_world_view(world.get(), &request, nullptr, objects.get()) == CROFTON_OK);
+        REQUIRE(crofton_world_view(world.get(), &request, 1, nullptr, objects.get()) == CROFTON_OK);
         const uint32_t* ids = nullptr;
         std::size_t count = 0;
         REQUIRE(crofton_view_result_ids(objects.get(), &ids, &count, nullptr, nullptr) == CROFTON_OK);
@@ -218,14 +234,13 @@ TEST_SUITE("capi/cull") {
         REQUIRE(crofton_tree_create(boxes.data(), nullptr, 2, nullptr, &tree) == CROFTON_OK);
         const Tree owner(tree);
         const VisibleSet visible = make_visible_set();
-        const crofton_view view = default_view();
+        const View view = default_view();
         const auto ids = [&] {
-            REQUIRE(crofton_tree_refit(tree) == CROFTON_OK);
-            REQUIRE(crofton_tree_rebuild_step(tree, 100) == CROFTON_OK);
-            REQUIRE(crofton_cull_tree(tree, &view, nullptr, nullptr, visible.get()) == CROFTON_OK);
+            REQUIRE(crofton_tree_refit(tree, 100) == CROFTON_OK);
+            REQUIRE(cull_tree(tree, &view, nullptr, nullptr, visible.get()) == CROFTON_OK);
             const uint32_t* found = nullptr;
             std::size_t count = 0;
-            REQUIRE(crofton_visible_set_items(visible.get(), &found, nullptr, &count) == CROFTON_OK);
+            REQUIRE(visible_set_items(visible.get(), &found, nullptr, &count) == CROFTON_OK);
             return std::vector<uint32_t>(found, found + count);
         };
         crofton_box bad = seen;
@@ -239,7 +254,7 @@ TEST_SUITE("capi/cull") {
         CHECK(crofton_tree_insert(tree, &bad, 1, &item) != CROFTON_OK);
         CHECK(crofton_tree_insert(tree, nullptr, 1, &item) == CROFTON_INVALID_ARGUMENT);
         CHECK(crofton_tree_remove(tree, 9) != CROFTON_OK);
-        CHECK(crofton_tree_refit(nullptr) == CROFTON_BAD_HANDLE);
+        CHECK(crofton_tree_refit(nullptr, 0) == CROFTON_BAD_HANDLE);
         CHECK(item == 77);
         CHECK(ids() == std::vector<uint32_t>{0});
         CHECK(crofton_tree_move(tree, &one, &seen, 1) == CROFTON_OK);

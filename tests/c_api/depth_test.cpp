@@ -48,19 +48,18 @@ ClusteredMesh cut(const TriangleMesh& mesh, std::uint32_t max_triangles = 0) {
     return ClusteredMesh(clustered);
 }
 
+crofton_clusters get(const ClusteredMesh& mesh) {
+    crofton_clusters clusters{};
+    REQUIRE(crofton_clustered_mesh_get(mesh.get(), &clusters) == CROFTON_OK);
+    return clusters;
+}
+
 std::span<const crofton_cluster> clusters_of(const ClusteredMesh& mesh) {
-    const crofton_cluster* clusters = nullptr;
-    std::size_t count = 0;
-    REQUIRE(crofton_clustered_mesh_clusters(mesh.get(), &clusters, &count) == CROFTON_OK);
-    return {clusters, count};
+    return {get(mesh).clusters, get(mesh).cluster_count};
 }
 
 std::vector<std::uint32_t> order_of(const ClusteredMesh& mesh) {
-    std::size_t count = 0;
-    REQUIRE(crofton_clustered_mesh_triangle_order(mesh.get(), nullptr, 0, &count) == CROFTON_OK);
-    std::vector<std::uint32_t> order(count);
-    REQUIRE(crofton_clustered_mesh_triangle_order(mesh.get(), order.data(), count, &count) == CROFTON_OK);
-    return order;
+    return {get(mesh).triangle_order, get(mesh).triangle_order + get(mesh).triangle_count};
 }
 
 // By the default camera, which looks along -z from the origin.
@@ -86,11 +85,12 @@ crofton_picture_view picture_of(std::uint32_t width, std::uint32_t height) {
 }
 
 std::span<const crofton_visible_cluster> find(const DepthCuller& culler, std::span<const crofton_depth_object> objects,
-                                              const crofton_picture_view& picture) {
+                                              const crofton_picture_view& picture,
+                                              crofton_depth_statistics* statistics = nullptr) {
     const crofton_visible_cluster* clusters = nullptr;
     std::size_t count = 0;
-    REQUIRE(crofton_depth_culler_find_visible(culler.get(), objects.data(), objects.size(), &picture, &clusters,
-                                              &count) == CROFTON_OK);
+    REQUIRE(crofton_depth_culler_find_visible(culler.get(), objects.data(), objects.size(), &picture, &clusters, &count,
+                                              statistics) == CROFTON_OK);
     return {clusters, count};
 }
 
@@ -114,8 +114,9 @@ TEST_SUITE("capi/depth") {
             REQUIRE(order.size() == 800);
             for (std::uint32_t t = 0; t < 800; ++t) CHECK(sorted[t] == t);
             std::vector<std::uint32_t> permuted(mesh.indices.size());
-            REQUIRE(crofton_clustered_mesh_permute(clustered.get(), mesh.indices.data(), mesh.indices.size(),
-                                                   permuted.data()) == CROFTON_OK);
+            const crofton_clusters all = get(clustered);
+            REQUIRE(crofton_permute_triangles(&all, mesh.indices.data(), mesh.indices.size(), permuted.data()) ==
+                    CROFTON_OK);
             std::uint32_t next = 0;
             for (const crofton_cluster& c : clusters_of(clustered)) {
                 CHECK(c.first_triangle == next);
@@ -134,13 +135,6 @@ TEST_SUITE("capi/depth") {
             }
             CHECK(next == 800);
         }
-        std::uint32_t first[2] = {77, 77};
-        std::size_t count = 0;
-        const ClusteredMesh clustered = cut(mesh);
-        REQUIRE(crofton_clustered_mesh_triangle_order(clustered.get(), first, 1, &count) == CROFTON_OK);
-        CHECK(count == 800);
-        CHECK(first[0] == order_of(clustered)[0]);
-        CHECK(first[1] == 77);
     }
 
     TEST_CASE("what C lists is what C++ lists, with every member of an object and in every depth range") {
@@ -185,13 +179,12 @@ TEST_SUITE("capi/depth") {
             }
             crofton_picture_view picture = picture_of(192, 108);
             picture.depth = static_cast<std::uint32_t>(depth);
-            const auto found = find(culler, objects, picture);
+            auto statistics = sized<crofton_depth_statistics>();
+            const auto found = find(culler, objects, picture, &statistics);
             const auto expected = same.find_visible(same_objects, {192, 108, depth}).value();
             REQUIRE(found.size() == expected.size());
             REQUIRE(found.size() > 20);
             CHECK(std::memcmp(found.data(), expected.data(), found.size_bytes()) == 0);
-            auto statistics = sized<crofton_depth_statistics>();
-            REQUIRE(crofton_depth_culler_get_statistics(culler.get(), &statistics) == CROFTON_OK);
             CHECK(statistics.objects_listed == same.statistics().objects_listed);
             CHECK(statistics.objects_asked == same.statistics().objects_asked);
             CHECK(statistics.clusters_asked == same.statistics().clusters_asked);
@@ -304,24 +297,25 @@ TEST_SUITE("capi/depth") {
     TEST_CASE("lists without a place for the answer, and indices of another mesh or in place, are refused") {
         const TriangleMesh mesh = crofton::testing::cube_mesh();
         const ClusteredMesh clustered = cut(mesh);
-        std::size_t count = 77;
-        std::uint32_t triangle = 0;
-        CHECK(crofton_clustered_mesh_triangle_order(clustered.get(), nullptr, 1, &count) == CROFTON_INVALID_ARGUMENT);
-        CHECK(crofton_clustered_mesh_triangle_order(clustered.get(), &triangle, 1, nullptr) ==
-              CROFTON_INVALID_ARGUMENT);
-        const crofton_cluster* clusters = nullptr;
-        CHECK(crofton_clustered_mesh_clusters(clustered.get(), nullptr, &count) == CROFTON_INVALID_ARGUMENT);
-        CHECK(crofton_clustered_mesh_clusters(clustered.get(), &clusters, nullptr) == CROFTON_INVALID_ARGUMENT);
-        CHECK(count == 77);
-        CHECK(clusters == nullptr);
+        CHECK(crofton_clustered_mesh_get(clustered.get(), nullptr) == CROFTON_INVALID_ARGUMENT);
+        crofton_clusters clusters = get(clustered);
         std::vector<std::uint32_t> indices(mesh.indices.begin(), mesh.indices.end()), permuted(36, 77);
         const auto permute = [&](const std::uint32_t* from, std::size_t n, std::uint32_t* to) {
-            return crofton_clustered_mesh_permute(clustered.get(), from, n, to);
+            return crofton_permute_triangles(&clusters, from, n, to);
         };
         CHECK(permute(nullptr, 36, permuted.data()) == CROFTON_INVALID_ARGUMENT);
         CHECK(permute(indices.data(), 36, nullptr) == CROFTON_INVALID_ARGUMENT);
         CHECK(permute(indices.data(), 33, permuted.data()) == CROFTON_INVALID_ARGUMENT);
         CHECK(permute(indices.data(), SIZE_MAX, permuted.data()) == CROFTON_OUT_OF_RANGE);
+        CHECK(crofton_permute_triangles(nullptr, indices.data(), 36, permuted.data()) == CROFTON_INVALID_ARGUMENT);
+        std::vector<std::uint32_t> wrong = order_of(clustered);
+        wrong.back() = 12;
+        clusters.triangle_order = wrong.data();
+        CHECK(permute(indices.data(), 36, permuted.data()) == CROFTON_OUT_OF_RANGE);
+        CHECK(crofton_last_error_item() == 11);
+        clusters.triangle_order = nullptr;
+        CHECK(permute(indices.data(), 36, permuted.data()) == CROFTON_INVALID_ARGUMENT);
+        clusters = get(clustered);
         CHECK(permuted == std::vector<std::uint32_t>(36, 77));
         indices.resize(72);
         for (const std::size_t shift : {0u, 1u, 35u})
@@ -346,7 +340,7 @@ TEST_SUITE("capi/depth") {
         std::size_t count = 77;
         const auto ask = [&] {
             return crofton_depth_culler_find_visible(culler.get(), objects.data(), objects.size(), &picture, &clusters,
-                                                     &count);
+                                                     &count, nullptr);
         };
         objects[1].mesh = nullptr;
         CHECK(ask() == CROFTON_BAD_HANDLE);
@@ -379,7 +373,7 @@ TEST_SUITE("capi/depth") {
         picture = picture_of(64, 36);
         const auto ask_with = [&](const crofton_depth_object* some, const crofton_picture_view* seen,
                                   const crofton_visible_cluster** answer, std::size_t* answer_count) {
-            return crofton_depth_culler_find_visible(culler.get(), some, 3, seen, answer, answer_count);
+            return crofton_depth_culler_find_visible(culler.get(), some, 3, seen, answer, answer_count, nullptr);
         };
         CHECK(ask_with(nullptr, &picture, &clusters, &count) == CROFTON_INVALID_ARGUMENT);
         CHECK(ask_with(objects.data(), nullptr, &clusters, &count) == CROFTON_INVALID_ARGUMENT);
@@ -391,11 +385,13 @@ TEST_SUITE("capi/depth") {
         CHECK(first[0].triangles == listed[0]);
         CHECK(first.back().triangles == listed[1]);
         auto statistics = sized<crofton_depth_statistics>();
-        REQUIRE(crofton_depth_culler_get_statistics(culler.get(), &statistics) == CROFTON_OK);
-        CHECK(statistics.objects_listed == 3);
         statistics.size = 4;
-        CHECK(crofton_depth_culler_get_statistics(culler.get(), &statistics) == CROFTON_WRONG_SIZE);
-        CHECK(crofton_depth_culler_get_statistics(culler.get(), nullptr) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_depth_culler_find_visible(culler.get(), objects.data(), 3, &picture, &clusters, &count,
+                                                &statistics) == CROFTON_WRONG_SIZE);
+        CHECK(count == 77);
+        statistics.size = sizeof statistics;
+        find(culler, objects, picture, &statistics);
+        CHECK(statistics.objects_listed == 3);
         CHECK(crofton_depth_culler_nearness(culler.get(), 64, 0, &nearness) == CROFTON_OUT_OF_RANGE);
         CHECK(crofton_depth_culler_nearness(culler.get(), 0, 36, &nearness) == CROFTON_OUT_OF_RANGE);
         CHECK(nearness == 7.0f);
@@ -425,16 +421,15 @@ TEST_SUITE("capi/depth") {
         picture.depth = 99;
         const crofton_visible_cluster* clusters = nullptr;
         std::size_t count = 0;
-        REQUIRE(crofton_depth_culler_find_visible(culler.get(),
-                                                  reinterpret_cast<const crofton_depth_object*>(packed.data()), 3,
-                                                  &picture, &clusters, &count) == CROFTON_OK);
-        REQUIRE(count == expected.size());
-        CHECK(std::memcmp(clusters, expected.data(), count * sizeof *clusters) == 0);
         crofton_depth_statistics statistics;
         std::memset(static_cast<void*>(&statistics), 0x5a, sizeof statistics);
         const std::uint64_t untouched = statistics.triangles_listed;
         statistics.size = offsetof(crofton_depth_statistics, triangles_listed);
-        REQUIRE(crofton_depth_culler_get_statistics(culler.get(), &statistics) == CROFTON_OK);
+        REQUIRE(crofton_depth_culler_find_visible(culler.get(),
+                                                  reinterpret_cast<const crofton_depth_object*>(packed.data()), 3,
+                                                  &picture, &clusters, &count, &statistics) == CROFTON_OK);
+        REQUIRE(count == expected.size());
+        CHECK(std::memcmp(clusters, expected.data(), count * sizeof *clusters) == 0);
         CHECK(statistics.objects_asked == 3);
         CHECK(statistics.triangles_listed == untouched);
     }

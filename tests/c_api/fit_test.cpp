@@ -9,19 +9,19 @@ using namespace crofton::capi_test;
 TEST_SUITE("capi/fit") {
     TEST_CASE("no points, bad points and bad options are refused") {
         crofton_box box = box_at(1, 2, 3);
-        CHECK(crofton_fit_floats(nullptr, 0, nullptr, &box) == CROFTON_EMPTY);
-        CHECK(crofton_fit_floats(nullptr, 4, nullptr, &box) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_fit_points(nullptr, 0, 0, nullptr, &box) == CROFTON_EMPTY);
+        CHECK(crofton_fit_points(nullptr, 4, 0, nullptr, &box) == CROFTON_INVALID_ARGUMENT);
         const float points[] = {0, 0, 0, 1, std::numeric_limits<float>::quiet_NaN(), 0};
-        CHECK(crofton_fit_floats(points, 2, nullptr, &box) == CROFTON_NON_FINITE);
+        CHECK(crofton_fit_points(points, 2, 0, nullptr, &box) == CROFTON_NON_FINITE);
         CHECK(crofton_last_error_item() == 1);
         crofton_fit_options options{};
-        CHECK(crofton_fit_floats(points, 1, &options, &box) == CROFTON_WRONG_SIZE);
+        CHECK(crofton_fit_points(points, 1, 0, &options, &box) == CROFTON_WRONG_SIZE);
         options.size = sizeof options;  // all weights zero
-        CHECK(crofton_fit_floats(points, 1, &options, &box) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_fit_points(points, 1, 0, &options, &box) == CROFTON_INVALID_ARGUMENT);
         options.criterion.area_weight = 1.0;
         options.quality = 3;
-        CHECK(crofton_fit_floats(points, 1, &options, &box) == CROFTON_INVALID_ARGUMENT);
-        CHECK(crofton_fit_floats(points, 1, nullptr, nullptr) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_fit_points(points, 1, 0, &options, &box) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_fit_points(points, 1, 0, nullptr, nullptr) == CROFTON_INVALID_ARGUMENT);
         CHECK(box.center[0] == 1.0);
         crofton_criterion criterion{};
         CHECK(crofton_criterion_for_rays(-1.0, &criterion) == CROFTON_OUT_OF_RANGE);
@@ -47,14 +47,13 @@ TEST_SUITE("capi/fit") {
                 floats.push_back(static_cast<float>(value));
                 doubles.push_back(value);
             }
-        auto options = sized<crofton_fit_options>();
-        REQUIRE(crofton_criterion_minimal_perimeter(&options.criterion) == CROFTON_OK);
+        crofton_fit_options options = crofton_default_fit_options();
         CHECK(options.criterion.mean_curvature_weight == doctest::Approx(1.0 / std::numbers::pi));
         options.quality = CROFTON_FIT_TIGHT;
         for (const bool as_floats : {false, true}) {
             crofton_box box{};
-            REQUIRE((as_floats ? crofton_fit_floats(floats.data(), 8, &options, &box)
-                               : crofton_fit_doubles(doubles.data(), 8, &options, &box)) == CROFTON_OK);
+            REQUIRE((as_floats ? crofton_fit_points(floats.data(), 8, 0, &options, &box)
+                               : crofton_fit_points(doubles.data(), 8, 1, &options, &box)) == CROFTON_OK);
             CHECK(box.half_extents[0] + box.half_extents[1] + box.half_extents[2] == doctest::Approx(6.0));
         }
     }

@@ -43,7 +43,7 @@ TEST_SUITE("capi/geometry") {
     }
 
     TEST_CASE("the default camera and its frustum are those of C++") {
-        const crofton_view view = default_view();
+        const View view = default_view();
         const auto frustum = crofton::frustum_of(crofton::Camera{});
         REQUIRE(frustum);
         REQUIRE(view.frustum.plane_count == frustum->plane_count);

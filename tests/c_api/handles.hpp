@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "shorthand.hpp"
+
 namespace crofton::capi_test {
 
 template <class Handle, crofton_status (*kDestroy)(Handle*)>
@@ -20,9 +22,8 @@ template <class Handle, crofton_status (*kDestroy)(Handle*)>
 using Owned = std::unique_ptr<Handle, Destroy<Handle, kDestroy>>;
 using Scene = Owned<crofton_scene, crofton_scene_destroy>;
 using Tree = Owned<crofton_tree, crofton_tree_destroy>;
-using VisibleSet = Owned<crofton_visible_set, crofton_visible_set_destroy>;
+using VisibleSet = Owned<crofton_view_result, crofton_view_result_destroy>;
 using Broadphase = Owned<crofton_broadphase, crofton_broadphase_destroy>;
-using Collider = Owned<crofton_collider, crofton_collider_destroy>;
 using Triangulator = Owned<crofton_triangulator, crofton_triangulator_destroy>;
 using WorldHandle = Owned<crofton_world, crofton_world_destroy>;
 using ViewResultHandle = Owned<crofton_view_result, crofton_view_result_destroy>;
@@ -42,7 +43,7 @@ inline Scene make_scene() {
     return make<Scene>(crofton_scene_create);
 }
 inline VisibleSet make_visible_set() {
-    return make<VisibleSet>(crofton_visible_set_create);
+    return make<VisibleSet>(crofton_view_result_create);
 }
 inline Broadphase make_broadphase() {
     return make<Broadphase>(crofton_broadphase_create);
@@ -97,38 +98,25 @@ inline crofton_picture_view sized() {
     return crofton_default_picture_view();
 }
 
-// What a view by a frustum asks; `view` must outlive the request.
-inline crofton_view_request request_of(const crofton_view& view) {
-    crofton_view_request request = crofton_default_view_request();
-    request.volume = &view.frustum;
-    request.layers = view.layer_mask;
-    return request;
-}
-inline crofton_view_request request_of(const crofton_camera& camera) {
-    crofton_view_request request = crofton_default_view_request();
-    request.camera = &camera;
-    return request;
-}
-template <class View>
-crofton_status look(const crofton_world* world, const View& view, crofton_view_result* result) {
+template <class Given>
+crofton_status look(const crofton_world* world, const Given& view, crofton_view_result* result) {
     const crofton_view_request request = request_of(view);
-    return crofton_world_view(world, &request, nullptr, result);
+    return crofton_world_view(world, &request, 1, nullptr, result);
 }
-inline crofton_status look_at_many(const crofton_world* world, std::span<const crofton_view> views,
+inline crofton_status look_at_many(const crofton_world* world, std::span<const View> views,
                                    crofton_view_result* result) {
     std::vector<crofton_view_request> requests;
-    for (const crofton_view& view : views) requests.push_back(request_of(view));
-    return crofton_world_view_many(world, requests.data(), requests.size(), nullptr, result);
+    for (const View& view : views) requests.push_back(request_of(view));
+    return crofton_world_view(world, requests.data(), requests.size(), nullptr, result);
 }
 
 inline crofton_box box_at(double x, double y, double z, float half = 0.5f) {
     return {{x, y, z}, {1, 0, 0, 0, 1, 0, 0, 0, 1}, {half, half, half}};
 }
 
-inline crofton_view default_view() {
+inline View default_view() {
     crofton_camera camera = crofton_default_camera();
-    auto view = sized<crofton_view>();
-    view.layer_mask = ~0u;
+    View view;
     view.frustum.size = sizeof view.frustum;
     REQUIRE(crofton_frustum_from_camera(&camera, &view.frustum) == CROFTON_OK);
     return view;
@@ -144,13 +132,13 @@ struct Tetrahedron {
     }
 };
 
-inline Collider make_collider(float size = 1.0f) {
+inline BodyHandle make_mesh_body(float size = 1.0f) {
     Tetrahedron tetrahedron;
     for (float& x : tetrahedron.positions) x *= size;
     const crofton_mesh mesh = tetrahedron.mesh();
-    crofton_collider* collider = nullptr;
-    REQUIRE(crofton_collider_create(&mesh, &collider) == CROFTON_OK);
-    return Collider(collider);
+    crofton_body* body = nullptr;
+    REQUIRE(body_mesh(&mesh, 0, &body) == CROFTON_OK);
+    return BodyHandle(body);
 }
 
 inline crofton_transform translation(double x, double y, double z) {

@@ -20,7 +20,7 @@ BodyHandle body_of(Make make) {
     return BodyHandle(body);
 }
 BodyHandle sphere(float radius) {
-    return body_of([&](crofton_body** body) { return crofton_body_sphere(radius, body); });
+    return body_of([&](crofton_body** body) { return body_sphere(radius, body); });
 }
 
 // A sphere of radius 0.25 moves from `from` by `velocity` in a time of 1.
@@ -123,10 +123,8 @@ TEST_SUITE("capi/members") {
         const float points[] = {-1, -1, -1, 1, -1, -1, -1, 1, -1, 1, 1, -1, -1,    -1,
                                 1,  1,  -1, 1, -1, 1,  1,  1, 1,  1, 0, 0,  1.001f};
         const auto faces = [&](float tolerance) {
-            auto options = sized<crofton_hull_options>();
-            options.face_tolerance = tolerance;
             const BodyHandle hull =
-                body_of([&](crofton_body** body) { return crofton_body_hull(points, 9, &options, body); });
+                body_of([&](crofton_body** body) { return body_hull(points, 9, body, 0, tolerance); });
             auto info = sized<crofton_body_info>();
             REQUIRE(crofton_body_get_info(hull.get(), &info) == CROFTON_OK);
             return info.face_count;
@@ -140,8 +138,7 @@ TEST_SUITE("capi/members") {
         const std::uint32_t indices[] = {0, 1, 2};  // seen from above, where z > 0
         const crofton_mesh mesh{sizeof mesh, positions, 3, indices, 3, nullptr};
         for (const std::uint32_t front : {0u, 1u}) {
-            const BodyHandle surface =
-                body_of([&](crofton_body** body) { return crofton_body_mesh(&mesh, front, body); });
+            const BodyHandle surface = body_of([&](crofton_body** body) { return body_mesh(&mesh, front, body); });
             CHECK(cast_at(surface, {0, 0, 2}, {0, 0, -4}).time == doctest::Approx(1.75 / 4).epsilon(1e-4));
             const crofton_impact behind = cast_at(surface, {0, 0, -2}, {0, 0, 4});
             CHECK(behind.result == (front ? CROFTON_CAST_MISS : CROFTON_CAST_HIT));
@@ -157,7 +154,7 @@ TEST_SUITE("capi/members") {
         field.spacing[1] = 3.0;
         for (const std::uint32_t both : {0u, 1u}) {
             const BodyHandle ground =
-                body_of([&](crofton_body** body) { return crofton_body_height_field(&field, both, body); });
+                body_of([&](crofton_body** body) { return body_height_field(&field, both, body); });
             auto info = sized<crofton_body_info>();
             REQUIRE(crofton_body_get_info(ground.get(), &info) == CROFTON_OK);
             CHECK(info.max[0] == doctest::Approx(4.0));
@@ -171,14 +168,14 @@ TEST_SUITE("capi/members") {
             crofton_height_field empty = field;
             empty.*side = 0;
             crofton_body* made = nullptr;
-            CHECK(crofton_body_height_field(&empty, 0, &made) == CROFTON_OUT_OF_RANGE);
+            CHECK(body_height_field(&empty, 0, &made) == CROFTON_OUT_OF_RANGE);
             CHECK(made == nullptr);
         }
     }
 
     TEST_CASE("a manifold has as many points as are wanted, and casts end at the tolerance and the steps given") {
         const float half[3] = {1, 1, 1};
-        const BodyHandle box = body_of([&](crofton_body** body) { return crofton_body_box(half, body); });
+        const BodyHandle box = body_of([&](crofton_body** body) { return body_box(half, body); });
         const crofton_transform below = translation(0, 0, 0), above = translation(0, 1.999, 0);
         const crofton_placed a{box.get(), &below}, b{box.get(), &above};
         crofton_body_contacts* made = nullptr;
@@ -189,15 +186,15 @@ TEST_SUITE("capi/members") {
         std::size_t count = 0;
         for (const std::uint32_t most : {0u, 1u, 2u}) {
             options.max_points = most;
-            REQUIRE(crofton_body_contacts_update(contacts.get(), &a, &b, &options) == CROFTON_OK);
-            REQUIRE(crofton_body_contacts_points(contacts.get(), &points, &count, nullptr) == CROFTON_OK);
+            REQUIRE(crofton_body_contacts_update(contacts.get(), &a, &b, &options, &points, &count, nullptr) ==
+                    CROFTON_OK);
             CHECK(count == (most ? most : 4));
         }
         for (const double margin : {kNotANumber, kNoLimit}) {
             options.margin = margin;
-            CHECK(crofton_body_contacts_update(contacts.get(), &a, &b, &options) == CROFTON_NON_FINITE);
+            CHECK(crofton_body_contacts_update(contacts.get(), &a, &b, &options, &points, &count, nullptr) ==
+                  CROFTON_NON_FINITE);
         }
-        REQUIRE(crofton_body_contacts_points(contacts.get(), &points, &count, nullptr) == CROFTON_OK);
         CHECK(count == 2);
 
         auto cast = sized<crofton_cast_options>();
@@ -235,7 +232,7 @@ TEST_SUITE("capi/members") {
 
     TEST_CASE("planes alone keep a box beside the frustum's edge, masks may be left out, and names of meshes") {
         const SmallWorld small;
-        const crofton_view view = default_view();
+        const View view = default_view();
         REQUIRE(look_at_many(small.world.get(), std::span(&view, 1), small.in_views.get()) == CROFTON_OK);
         crofton_object_ref listed[1] = {};
         REQUIRE(crofton_view_result_list(small.in_views.get(), small.world.get(), 0, listed, nullptr, 1) == CROFTON_OK);
@@ -247,13 +244,13 @@ TEST_SUITE("capi/members") {
         std::copy(axes, axes + 9, sliver.axes);
         sliver.half_extents[0] = 0.5f;
         const VisibleSet visible = make_visible_set();
-        auto options = sized<crofton_cull_options>();
+        auto options = sized<crofton_view_request>();
         const auto kept = [&](std::uint32_t conservative) {
             options.conservative = conservative;
-            REQUIRE(crofton_cull_boxes(&sliver, nullptr, 1, &view, &options, nullptr, visible.get()) == CROFTON_OK);
+            REQUIRE(cull_boxes(&sliver, nullptr, 1, &view, &options, nullptr, visible.get()) == CROFTON_OK);
             const std::uint32_t* ids = nullptr;
             std::size_t count = 0;
-            REQUIRE(crofton_visible_set_items(visible.get(), &ids, nullptr, &count) == CROFTON_OK);
+            REQUIRE(visible_set_items(visible.get(), &ids, nullptr, &count) == CROFTON_OK);
             return count;
         };
         CHECK(kept(1) == 1);

@@ -21,12 +21,11 @@ Tree tree_of_one_box() {
 TEST_SUITE("capi/misuse") {
     TEST_CASE("a count larger than any array is refused before anything is read") {
         const crofton_box box = box_at(0, 0, 0);
-        const crofton_view view = default_view();
+        const View view = default_view();
         const VisibleSet visible = make_visible_set();
         const Broadphase broadphase = make_broadphase();
         const Scene scene = make_scene();
         const Triangulator triangulator = make_triangulator();
-        const Collider collider = make_collider();
         const DepthCuller culler = make_depth_culler();
         crofton_tree* tree = nullptr;
         REQUIRE(crofton_tree_create(&box, nullptr, 1, nullptr, &tree) == CROFTON_OK);
@@ -44,15 +43,13 @@ TEST_SUITE("capi/misuse") {
             CHECK(crofton_tree_create(&box, nullptr, count, nullptr, &none) == CROFTON_OUT_OF_RANGE);
             CHECK(none == nullptr);
             CHECK(crofton_tree_move(tree, &id, &box, count) == CROFTON_OUT_OF_RANGE);
-            CHECK(crofton_cull_boxes(&box, nullptr, count, &view, nullptr, nullptr, visible.get()) ==
-                  CROFTON_OUT_OF_RANGE);
+            CHECK(cull_boxes(&box, nullptr, count, &view, nullptr, nullptr, visible.get()) == CROFTON_OUT_OF_RANGE);
             CHECK(crofton_classify(&view.frustum, &box, count, &verdict) == CROFTON_OUT_OF_RANGE);
             CHECK(crofton_broadphase_update(broadphase.get(), &box, nullptr, count, nullptr) == CROFTON_OUT_OF_RANGE);
             CHECK(crofton_boxes_validate(&box, count) == CROFTON_OUT_OF_RANGE);
-            CHECK(crofton_fit_floats(floats, count, nullptr, &result) == CROFTON_OUT_OF_RANGE);
-            CHECK(crofton_fit_doubles(doubles, count, nullptr, &result) == CROFTON_OUT_OF_RANGE);
+            CHECK(crofton_fit_points(floats, count, 0, nullptr, &result) == CROFTON_OUT_OF_RANGE);
+            CHECK(crofton_fit_points(doubles, count, 1, nullptr, &result) == CROFTON_OUT_OF_RANGE);
             CHECK(crofton_fit_boxes(&box, count, nullptr, &result) == CROFTON_OUT_OF_RANGE);
-            CHECK(crofton_collider_raycast(collider.get(), &ray, count, &hit) == CROFTON_OUT_OF_RANGE);
             CHECK(crofton_tree_raycast(tree, &ray, count, ~0u, &hit) == CROFTON_OUT_OF_RANGE);
             crofton_mesh mesh = tetrahedron.mesh();
             mesh.vertex_count = count;
@@ -67,8 +64,8 @@ TEST_SUITE("capi/misuse") {
             const crofton_picture_view picture = crofton_default_picture_view();
             const crofton_visible_cluster* clusters = nullptr;
             std::size_t found = 0;
-            CHECK(crofton_depth_culler_find_visible(culler.get(), &object, count, &picture, &clusters, &found) ==
-                  CROFTON_OUT_OF_RANGE);
+            CHECK(crofton_depth_culler_find_visible(culler.get(), &object, count, &picture, &clusters, &found,
+                                                    nullptr) == CROFTON_OUT_OF_RANGE);
             auto polygon = sized<crofton_polygon>();
             polygon.points = doubles;
             polygon.point_count = count;
@@ -76,7 +73,7 @@ TEST_SUITE("capi/misuse") {
             CHECK(crofton_triangulate(triangulator.get(), &polygon, 0, &triangles) == CROFTON_OUT_OF_RANGE);
         }
         // All is as before.
-        CHECK(crofton_cull_tree(tree, &view, nullptr, nullptr, visible.get()) == CROFTON_OK);
+        CHECK(cull_tree(tree, &view, nullptr, nullptr, visible.get()) == CROFTON_OK);
     }
 
     TEST_CASE("a message says which number is at fault, and why") {
@@ -85,12 +82,12 @@ TEST_SUITE("capi/misuse") {
         std::size_t found = 0;
         const double center[3] = {}, nan = std::nan(""), nowhere[3] = {0, 0, nan};
         const auto near = [&](const double* at, double radius) {
-            return crofton_tree_within_sphere(tree.get(), at, radius, ~0u, &id, 1, &found);
+            return tree_within_sphere(tree.get(), at, radius, ~0u, &id, 1, &found);
         };
         CHECK(near(center, nan) == CROFTON_NON_FINITE);
-        CHECK(mentions(crofton_last_error(), "crofton_tree_within_sphere: radius is NaN or infinite"));
+        CHECK(mentions(crofton_last_error(), "crofton_tree_overlap: radius is NaN or infinite"));
         CHECK(near(center, -1) == CROFTON_INVALID_ARGUMENT);
-        CHECK(mentions(crofton_last_error(), "crofton_tree_within_sphere: radius is negative"));
+        CHECK(mentions(crofton_last_error(), "crofton_tree_overlap: radius is negative"));
         CHECK(near(nowhere, 1) == CROFTON_NON_FINITE);
         CHECK(mentions(crofton_last_error(), "center is NaN or infinite"));
         auto options = sized<crofton_world_options>();
@@ -108,30 +105,30 @@ TEST_SUITE("capi/misuse") {
         std::uint32_t id = 0;
         std::size_t found = 77;
         const double far[3] = {1.5e308, 1.5e308, 0};
-        CHECK(crofton_tree_within_sphere(tree.get(), far, 1, ~0u, &id, 1, &found) == CROFTON_OK);
+        CHECK(tree_within_sphere(tree.get(), far, 1, ~0u, &id, 1, &found) == CROFTON_OK);
         CHECK(found == 0);
     }
 
     TEST_CASE("no arrays at all are empty input, not a crash") {
         const VisibleSet visible = make_visible_set();
         const Broadphase broadphase = make_broadphase();
-        const crofton_view view = default_view();
+        const View view = default_view();
         crofton_tree* tree = nullptr;
         REQUIRE(crofton_tree_create(nullptr, nullptr, 0, nullptr, &tree) == CROFTON_OK);
         const Tree owner(tree);
         std::uint32_t item = 0;
-        CHECK(crofton_cull_tree(tree, &view, nullptr, nullptr, visible.get()) == CROFTON_OK);
-        CHECK(crofton_cull_boxes(nullptr, nullptr, 0, &view, nullptr, nullptr, visible.get()) == CROFTON_OK);
+        CHECK(cull_tree(tree, &view, nullptr, nullptr, visible.get()) == CROFTON_OK);
+        CHECK(cull_boxes(nullptr, nullptr, 0, &view, nullptr, nullptr, visible.get()) == CROFTON_OK);
         CHECK(crofton_tree_move(tree, nullptr, nullptr, 0) == CROFTON_OK);
         CHECK(crofton_tree_remove(tree, 0) != CROFTON_OK);
-        CHECK(crofton_tree_refit(tree) == CROFTON_OK);
-        CHECK(crofton_tree_rebuild_step(tree, SIZE_MAX) == CROFTON_OK);
+        CHECK(crofton_tree_refit(tree, 0) == CROFTON_OK);
+        CHECK(crofton_tree_refit(tree, SIZE_MAX) == CROFTON_OK);
         CHECK(crofton_broadphase_update(broadphase.get(), nullptr, nullptr, 0, nullptr) == CROFTON_OK);
         crofton_box box = box_at(1, 2, 3);
-        CHECK(crofton_fit_floats(nullptr, 0, nullptr, &box) != CROFTON_OK);
+        CHECK(crofton_fit_points(nullptr, 0, 0, nullptr, &box) != CROFTON_OK);
         CHECK(crofton_fit_boxes(nullptr, 0, nullptr, &box) != CROFTON_OK);
         box = box_at(1, 2, 3);
         CHECK(crofton_tree_insert(tree, &box, ~0u, &item) == CROFTON_OK);
-        CHECK(crofton_tree_rebuild_step(tree, SIZE_MAX) == CROFTON_OK);
+        CHECK(crofton_tree_refit(tree, SIZE_MAX) == CROFTON_OK);
     }
 }

@@ -82,15 +82,15 @@ TEST_SUITE("capi/pvs") {
         crofton_camera camera = crofton_default_camera();
         for (int k = 0; k < 3; ++k) camera.position[k] = inside[k];
         crofton_view_request request = request_of(camera);
-        REQUIRE(crofton_world_view(world.get(), &request, nullptr, visible.get()) == CROFTON_OK);
+        REQUIRE(crofton_world_view(world.get(), &request, 1, nullptr, visible.get()) == CROFTON_OK);
         CHECK(ids_in_view(visible.get()) == std::vector<std::uint32_t>{0, 1, 2, 3});
         REQUIRE(crofton_pvs_visible(sets.get(), inside, CROFTON_PVS_STATISTICAL, &request.candidate_mask,
                                     &request.candidate_words) == CROFTON_OK);
-        REQUIRE(crofton_world_view(world.get(), &request, nullptr, visible.get()) == CROFTON_OK);
+        REQUIRE(crofton_world_view(world.get(), &request, 1, nullptr, visible.get()) == CROFTON_OK);
         CHECK(ids_in_view(visible.get()) == std::vector<std::uint32_t>{0, 1, 3});
         // A caller compiled before there were sets.
         request.size = offsetof(crofton_view_request, candidate_mask);
-        REQUIRE(crofton_world_view(world.get(), &request, nullptr, visible.get()) == CROFTON_OK);
+        REQUIRE(crofton_world_view(world.get(), &request, 1, nullptr, visible.get()) == CROFTON_OK);
         CHECK(ids_in_view(visible.get()).size() == 4);
         // Without a cell everything is drawn.
         request.size = sizeof request;
@@ -98,7 +98,7 @@ TEST_SUITE("capi/pvs") {
                                     &request.candidate_words) == CROFTON_OK);
         CHECK(request.candidate_mask == nullptr);
         CHECK(request.candidate_words == 0);
-        REQUIRE(crofton_world_view(world.get(), &request, nullptr, visible.get()) == CROFTON_OK);
+        REQUIRE(crofton_world_view(world.get(), &request, 1, nullptr, visible.get()) == CROFTON_OK);
         CHECK(ids_in_view(visible.get()).size() == 4);
     }
 
@@ -126,6 +126,6 @@ TEST_SUITE("capi/pvs") {
         crofton_camera camera = crofton_default_camera();
         crofton_view_request request = request_of(camera);
         request.candidate_words = 3;
-        CHECK(crofton_world_view(world.get(), &request, nullptr, visible.get()) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_world_view(world.get(), &request, 1, nullptr, visible.get()) == CROFTON_INVALID_ARGUMENT);
     }
 }

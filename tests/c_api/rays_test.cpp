@@ -18,7 +18,9 @@ crofton_ray ray(double x, double y, double z, double dx, double dy, double dz, d
 
 TEST_SUITE("capi/rays") {
     TEST_CASE("rays that are none are refused, named, and write nothing") {
-        const Collider collider = make_collider();
+        const BodyHandle mesh = make_mesh_body();
+        const crofton_transform here = translation(0, 0, 0);
+        const crofton_placed placed{mesh.get(), &here};
         const double nan = std::nan("");
         const crofton_ray good = ray(0.1, 0.1, 5, 0, 0, -1);
         const crofton_ray bad[] = {ray(nan, 0, 0, 0, 0, 1), ray(0, 0, 0, kInfinity, 0, 1), ray(0, 0, 0, 0, 0, 0),
@@ -26,24 +28,23 @@ TEST_SUITE("capi/rays") {
         const crofton_status expected[] = {CROFTON_NON_FINITE, CROFTON_NON_FINITE, CROFTON_DEGENERATE,
                                            CROFTON_INVALID_ARGUMENT, CROFTON_INVALID_ARGUMENT};
         for (int i = 0; i < 5; ++i) {
-            const crofton_ray rays[] = {good, bad[i]};
-            crofton_ray_hit hits[2] = {{-7.0, 7}, {-7.0, 7}};
-            CHECK(crofton_collider_raycast(collider.get(), rays, 2, hits) == expected[i]);
-            CHECK(crofton_last_error_item() == 1);
-            CHECK(hits[0].t == -7.0);
+            auto found = sized<crofton_body_ray_hit>();
+            found.t = -7.0;
+            CHECK(crofton_body_raycast(&placed, &bad[i], &found) == expected[i]);
+            CHECK(found.t == -7.0);
             int hit = 7;
-            CHECK(crofton_collider_hits_any(collider.get(), &bad[i], &hit) == expected[i]);
+            CHECK(crofton_body_raycast_any(&placed, &bad[i], &hit) == expected[i]);
             CHECK(hit == 7);
             const crofton_box box = box_at(0, 0, 0);
             double t = -7.0;
             CHECK(crofton_box_raycast(&box, &bad[i], &t) == expected[i]);
             CHECK(t == -7.0);
         }
-        crofton_ray_hit hit;
-        CHECK(crofton_collider_raycast(nullptr, &good, 1, &hit) == CROFTON_BAD_HANDLE);
-        CHECK(crofton_collider_raycast(collider.get(), nullptr, 1, &hit) == CROFTON_INVALID_ARGUMENT);
-        CHECK(crofton_collider_raycast(collider.get(), &good, 1, nullptr) == CROFTON_INVALID_ARGUMENT);
-        CHECK(crofton_collider_raycast(collider.get(), nullptr, 0, nullptr) == CROFTON_OK);
+        int hit = 7;
+        CHECK(crofton_body_raycast_any(nullptr, &good, &hit) == CROFTON_BAD_HANDLE);
+        CHECK(crofton_body_raycast_any(&placed, nullptr, &hit) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_body_raycast_any(&placed, &good, nullptr) == CROFTON_INVALID_ARGUMENT);
+        CHECK(hit == 7);
     }
 
     TEST_CASE("a ray enters a box at its face, starts inside it at 0, or misses") {
@@ -60,25 +61,50 @@ TEST_SUITE("capi/rays") {
     }
 
     TEST_CASE("the nearest triangle of a mesh") {
-        const Collider collider = make_collider();
+        const BodyHandle mesh = make_mesh_body();
+        const crofton_transform here = translation(0, 0, 0);
+        const crofton_placed placed{mesh.get(), &here};
         // Its triangle 0 is the right one at z = 0, triangle 3 the slanted one, x + y + z = 1.
         const crofton_ray rays[] = {ray(0.25, 0.25, 5, 0, 0, -1), ray(0.25, 0.25, -5, 0, 0, 1),
                                     ray(0.25, 0.25, 5, 0, 0, -1, 4.0), ray(2, 2, 5, 0, 0, -1)};
-        crofton_ray_hit hits[4];
-        REQUIRE(crofton_collider_raycast(collider.get(), rays, 4, hits) == CROFTON_OK);
-        CHECK(hits[0].t == doctest::Approx(4.5));
-        CHECK(hits[0].index == 3);
-        CHECK(hits[1].t == doctest::Approx(5.0));
-        CHECK(hits[1].index == 0);
-        for (const int missed : {2, 3}) {
-            CHECK(hits[missed].t == kInfinity);
-            CHECK(hits[missed].index == CROFTON_NONE);
-        }
-        for (int i = 0; i < 4; ++i) {
-            int hit = -1;
-            REQUIRE(crofton_collider_hits_any(collider.get(), &rays[i], &hit) == CROFTON_OK);
-            CHECK(hit == (i < 2 ? 1 : 0));
-        }
+        // The second pose turns a full circle by a matrix that is not the identity to the bit.
+        crofton_transform turned = here;
+        turned.linear[1] = 1e-12;
+        turned.linear[3] = -1e-12;
+        const crofton_placed other{mesh.get(), &turned};
+        for (const crofton_placed& at : {placed, other})
+            for (int i = 0; i < 4; ++i) {
+                CAPTURE(i);
+                auto hit = sized<crofton_body_ray_hit>();
+                REQUIRE(crofton_body_raycast(&at, &rays[i], &hit) == CROFTON_OK);
+                int any = -1;
+                REQUIRE(crofton_body_raycast_any(&at, &rays[i], &any) == CROFTON_OK);
+                CHECK(any == (i < 2 ? 1 : 0));
+                if (i >= 2) {
+                    CHECK(hit.t == kInfinity);
+                    continue;
+                }
+                CHECK(hit.t == doctest::Approx(i == 0 ? 4.5 : 5.0));
+                CHECK(hit.part.triangle == (i == 0 ? 3u : 0u));
+            }
+        // Of a one-sided surface, and of other bodies, any hit is one of crofton_body_raycast.
+        const Tetrahedron tetrahedron;
+        const crofton_mesh source = tetrahedron.mesh();
+        crofton_body* made = nullptr;
+        REQUIRE(body_mesh(&source, 1, &made) == CROFTON_OK);
+        const BodyHandle one_sided(made);
+        REQUIRE(body_sphere(0.5f, &made) == CROFTON_OK);
+        const BodyHandle sphere(made);
+        for (const crofton_body* body : {one_sided.get(), sphere.get()})
+            for (const crofton_ray& r : {ray(0.25, 0.25, 5, 0, 0, -1), ray(0.25, 0.25, 0.25, 0, 0, 1),
+                                         ray(0.1, 0.1, 0.1, 0, 0, 1, 0.05), ray(3, 0, 0, 0, 1, 0)}) {
+                const crofton_placed at{body, &here};
+                auto hit = sized<crofton_body_ray_hit>();
+                REQUIRE(crofton_body_raycast(&at, &r, &hit) == CROFTON_OK);
+                int any = -1;
+                REQUIRE(crofton_body_raycast_any(&at, &r, &any) == CROFTON_OK);
+                CHECK((any == 1) == std::isfinite(hit.t));
+            }
     }
 
     TEST_CASE("trees refuse what is no ray and no body, and answer for the others") {
@@ -90,14 +116,14 @@ TEST_SUITE("capi/rays") {
         std::uint32_t items[2] = {77, 77};
         std::size_t found = 77;
         const double nan = std::nan(""), center[] = {3, 0, 0}, nowhere[] = {0, nan, 0};
-        CHECK(crofton_tree_within_sphere(tree.get(), nowhere, 1.0, ~0u, items, 2, &found) == CROFTON_NON_FINITE);
-        CHECK(crofton_tree_within_sphere(tree.get(), center, -1.0, ~0u, items, 2, &found) == CROFTON_INVALID_ARGUMENT);
-        CHECK(crofton_tree_within_sphere(tree.get(), nullptr, 1.0, ~0u, items, 2, &found) == CROFTON_INVALID_ARGUMENT);
-        CHECK(crofton_tree_within_sphere(tree.get(), center, 1.0, ~0u, nullptr, 2, &found) == CROFTON_INVALID_ARGUMENT);
-        CHECK(crofton_tree_within_box(nullptr, boxes.data(), ~0u, items, 2, &found) == CROFTON_BAD_HANDLE);
+        CHECK(tree_within_sphere(tree.get(), nowhere, 1.0, ~0u, items, 2, &found) == CROFTON_NON_FINITE);
+        CHECK(tree_within_sphere(tree.get(), center, -1.0, ~0u, items, 2, &found) == CROFTON_INVALID_ARGUMENT);
+        CHECK(tree_within_sphere(tree.get(), nullptr, 1.0, ~0u, items, 2, &found) == CROFTON_INVALID_ARGUMENT);
+        CHECK(tree_within_sphere(tree.get(), center, 1.0, ~0u, nullptr, 2, &found) == CROFTON_INVALID_ARGUMENT);
+        CHECK(tree_within_box(nullptr, boxes.data(), ~0u, items, 2, &found) == CROFTON_BAD_HANDLE);
         crofton_box bad = boxes[0];
         bad.half_extents[0] = -1.0f;
-        CHECK(crofton_tree_within_box(tree.get(), &bad, ~0u, items, 2, &found) != CROFTON_OK);
+        CHECK(tree_within_box(tree.get(), &bad, ~0u, items, 2, &found) != CROFTON_OK);
         const crofton_ray rays[] = {ray(-5, 0, 0, 1, 0, 0), ray(9, 0, 0, -1, 0, 0), ray(0, 9, 0, 1, 0, 0),
                                     ray(0, 0, 0, nan, 0, 0)};
         crofton_ray_hit hits[3];
@@ -105,14 +131,14 @@ TEST_SUITE("capi/rays") {
         CHECK(items[0] == 77);
         CHECK(found == 77);
 
-        REQUIRE(crofton_tree_within_sphere(tree.get(), center, 2.5, ~0u, items, 2, &found) == CROFTON_OK);
+        REQUIRE(tree_within_sphere(tree.get(), center, 2.5, ~0u, items, 2, &found) == CROFTON_OK);
         CHECK(found == 3);  // two of them only touch
         CHECK(items[0] == 0);
         CHECK(items[1] == 1);
-        REQUIRE(crofton_tree_within_sphere(tree.get(), center, 2.499999, ~0u, nullptr, 0, &found) == CROFTON_OK);
+        REQUIRE(tree_within_sphere(tree.get(), center, 2.499999, ~0u, nullptr, 0, &found) == CROFTON_OK);
         CHECK(found == 1);
         const crofton_box large = box_at(3, 0, 0, 2.5f);
-        REQUIRE(crofton_tree_within_box(tree.get(), &large, 1u, items, 2, &found) == CROFTON_OK);
+        REQUIRE(tree_within_box(tree.get(), &large, 1u, items, 2, &found) == CROFTON_OK);
         CHECK(found == 2);
         CHECK(items[1] == 2);
         REQUIRE(crofton_tree_raycast(tree.get(), rays, 3, ~0u, hits) == CROFTON_OK);

@@ -31,17 +31,16 @@ void compare_objects(const BothWorlds& both) {
         crofton_transform transform{};
         std::uint64_t user = 0;
         int contains = 0;
-        REQUIRE(crofton_world_contains(both.c.get(), both.objects[i], &contains) == CROFTON_OK);
+        REQUIRE(world_contains(both.c.get(), both.objects[i], &contains) == CROFTON_OK);
         REQUIRE((contains == 1) == both.world.contains(both.object(i)));
         const auto expected = both.world.box_of(both.object(i));
-        REQUIRE((crofton_world_get_box(both.c.get(), both.objects[i], &box) == CROFTON_OK) == expected.has_value());
+        REQUIRE((world_get_box(both.c.get(), both.objects[i], &box) == CROFTON_OK) == expected.has_value());
         if (!contains) continue;
         if (expected) CHECK(std::memcmp(&box, &*expected, sizeof box) == 0);
-        REQUIRE(crofton_world_get_user(both.c.get(), both.objects[i], &user) == CROFTON_OK);
+        REQUIRE(world_get_user(both.c.get(), both.objects[i], &user) == CROFTON_OK);
         CHECK(user == both.world.user_of(both.object(i)).value());
         const auto place = both.world.transform_of(both.object(i));
-        REQUIRE((crofton_world_get_transform(both.c.get(), both.objects[i], &transform) == CROFTON_OK) ==
-                place.has_value());
+        REQUIRE((world_get_transform(both.c.get(), both.objects[i], &transform) == CROFTON_OK) == place.has_value());
         if (place) CHECK(std::memcmp(&transform, &*place, sizeof transform) == 0);
     }
 }
@@ -55,12 +54,12 @@ std::size_t compare_contacts(const BothWorlds& both) {
         CHECK(same_ref(both, pairs[i].first, both.world.pairs()[i].first));
         CHECK(same_ref(both, pairs[i].second, both.world.pairs()[i].second));
     }
-    REQUIRE(crofton_world_contact_count(both.c.get(), &count) == CROFTON_OK);
+    REQUIRE(world_contact_count(both.c.get(), &count) == CROFTON_OK);
     REQUIRE(count == both.world.contacts().size());
     for (std::size_t i = 0; i < count; ++i) {
         const Contact& expected = both.world.contacts()[i];
-        auto contact = sized<crofton_object_contact>();
-        REQUIRE(crofton_world_contact(both.c.get(), i, &contact) == CROFTON_OK);
+        crofton_object_contact contact{};
+        REQUIRE(world_contact(both.c.get(), i, &contact) == CROFTON_OK);
         CHECK(same_ref(both, contact.first, expected.first));
         CHECK(same_ref(both, contact.second, expected.second));
         CHECK(contact.phase == static_cast<std::uint32_t>(expected.phase));
@@ -101,8 +100,8 @@ void compare_visible(const BothWorlds& both, const crofton_view_result* c, const
         CHECK(same_ref(both, refs[i], expected[i]));
         if (verdicts) CHECK(verdicts[i] == static_cast<std::uint8_t>(expected.verdicts()[i]));
     }
-    auto statistics = sized<crofton_cull_statistics>();
-    REQUIRE(crofton_view_result_get_statistics(c, &statistics) == CROFTON_OK);
+    auto statistics = sized<crofton_view_info>();
+    REQUIRE(crofton_view_result_get_view(c, 0, &statistics) == CROFTON_OK);
     CHECK(statistics.boxes_tested == expected.statistics().boxes_tested);
     CHECK(statistics.straddling == expected.statistics().straddling);
 }
@@ -111,7 +110,7 @@ std::size_t compare_views(const BothWorlds& both, NearMisses& random) {
     const ViewResultHandle seen = make_view_result();
     ViewResult visible;
     std::array<cull::View, 3> views{};
-    std::array<crofton_view, 3> c_views{};
+    std::array<View, 3> c_views{};
     std::size_t total = 0;
     for (std::size_t v = 0; v < views.size(); ++v) {
         const Camera camera = random.camera();
@@ -128,18 +127,18 @@ std::size_t compare_views(const BothWorlds& both, NearMisses& random) {
         crofton_view_request request = request_of(c_camera);
         request.tree_order = v % 2;
         const cull::CullOptions cull_options{.order = v % 2 ? cull::ResultOrder::tree : cull::ResultOrder::ascending};
-        REQUIRE(crofton_world_view(both.c.get(), &request, &both.jobs, seen.get()) == CROFTON_OK);
+        REQUIRE(crofton_world_view(both.c.get(), &request, 1, &both.jobs, seen.get()) == CROFTON_OK);
         REQUIRE(both.world.view({.camera = camera, .order = cull_options.order}, visible).has_value());
         compare_visible(both, seen.get(), visible);
         total += visible.size();
         views[v] = {.frustum = frustum_of(camera).value(), .layer_mask = 1u << random.index(4) | 1u};
-        c_views[v] = sized<crofton_view>();
+        c_views[v] = View();
         c_views[v].layer_mask = views[v].layer_mask;
         c_views[v].frustum.size = sizeof(crofton_frustum);
         REQUIRE(crofton_frustum_from_camera(&c_camera, &c_views[v].frustum) == CROFTON_OK);
         request = request_of(c_views[v]);
         request.tree_order = v % 2;
-        REQUIRE(crofton_world_view(both.c.get(), &request, nullptr, seen.get()) == CROFTON_OK);
+        REQUIRE(crofton_world_view(both.c.get(), &request, 1, nullptr, seen.get()) == CROFTON_OK);
         REQUIRE(both.world.view(request_of(views[v], cull_options.order), visible).has_value());
         compare_visible(both, seen.get(), visible);
     }
@@ -228,22 +227,22 @@ void compare_shapes(const BothWorlds& both, NearMisses& random) {
     const std::uint32_t layers = random.index(15) + 1;
     const double limit = random.index(2) ? 1.0 : std::numeric_limits<double>::infinity();
     auto closest = sized<crofton_closest_object>();
-    REQUIRE(crofton_world_overlap_box(c, &c_box, layers, found.get()) == CROFTON_OK);
+    REQUIRE(world_overlap(c, &c_box, layers, found.get()) == CROFTON_OK);
     both.world.overlap(box, expected, layers);
     compare_found(both, found, expected);
-    REQUIRE(crofton_world_overlap_sphere(c, &sphere.center.x, sphere.radius, layers, found.get()) == CROFTON_OK);
+    REQUIRE(world_overlap_sphere(c, &sphere.center.x, sphere.radius, layers, found.get()) == CROFTON_OK);
     both.world.overlap(sphere, expected, layers);
     compare_found(both, found, expected);
-    REQUIRE(crofton_world_overlap_capsule(c, &capsule.begin.x, &capsule.end.x, capsule.radius, layers, found.get()) ==
+    REQUIRE(world_overlap_capsule(c, &capsule.begin.x, &capsule.end.x, capsule.radius, layers, found.get()) ==
             CROFTON_OK);
     both.world.overlap(capsule, expected, layers);
     compare_found(both, found, expected);
-    REQUIRE(crofton_world_closest_to_box(c, &c_box, limit, layers, &closest) == CROFTON_OK);
+    REQUIRE(world_closest(c, &c_box, limit, layers, &closest) == CROFTON_OK);
     compare_closest(both, closest, both.world.closest(box, limit, layers));
-    REQUIRE(crofton_world_closest_to_sphere(c, &sphere.center.x, sphere.radius, limit, layers, &closest) == CROFTON_OK);
+    REQUIRE(world_closest_to_sphere(c, &sphere.center.x, sphere.radius, limit, layers, &closest) == CROFTON_OK);
     compare_closest(both, closest, both.world.closest(sphere, limit, layers));
-    REQUIRE(crofton_world_closest_to_capsule(c, &capsule.begin.x, &capsule.end.x, capsule.radius, limit, layers,
-                                             &closest) == CROFTON_OK);
+    REQUIRE(world_closest_to_capsule(c, &capsule.begin.x, &capsule.end.x, capsule.radius, limit, layers, &closest) ==
+            CROFTON_OK);
     compare_closest(both, closest, both.world.closest(capsule, limit, layers));
 }
 
@@ -251,7 +250,7 @@ void compare_statistics(const BothWorlds& both) {
     auto c = sized<crofton_world_statistics>();
     std::size_t count = 0;
     REQUIRE(crofton_world_get_statistics(both.c.get(), &c) == CROFTON_OK);
-    REQUIRE(crofton_world_object_count(both.c.get(), &count) == CROFTON_OK);
+    REQUIRE(world_object_count(both.c.get(), &count) == CROFTON_OK);
     const WorldStatistics& expected = both.world.statistics();
     CHECK(count == both.world.object_count());
     CHECK(c.objects == expected.objects);
@@ -308,9 +307,9 @@ TEST_SUITE("capi/world agreement") {
                 Bound expected;
                 random_bound(random, bound, expected);
                 const crofton_world_mesh mesh = meshes[random.index(2)];
-                CHECK((crofton_world_set_bound(c, both.objects[o], &bound) == CROFTON_OK) == !both.has_mesh[o]);
+                CHECK((world_set_bound(c, both.objects[o], &bound) == CROFTON_OK) == !both.has_mesh[o]);
                 CHECK(both.world.set_bound(both.object(o), expected).has_value() == !both.has_mesh[o]);
-                CHECK((crofton_world_set_mesh(c, both.objects[o], mesh) == CROFTON_OK) == both.has_mesh[o]);
+                CHECK((world_set_mesh(c, both.objects[o], mesh) == CROFTON_OK) == both.has_mesh[o]);
                 CHECK(both.world.set_mesh(both.object(o), both.twin<MeshHandle>(mesh)).has_value() == both.has_mesh[o]);
             }
             std::vector<float> positions;
@@ -339,7 +338,7 @@ TEST_SUITE("capi/world agreement") {
         }
         CHECK(crofton_world_remove_mesh(c, meshes[0]) != CROFTON_OK);  // in use
         int contains = 0;
-        CHECK(crofton_world_contains_mesh(c, meshes[0], &contains) == CROFTON_OK);
+        CHECK(world_contains_mesh(c, meshes[0], &contains) == CROFTON_OK);
         CHECK(contains == 1);
         REQUIRE(crofton_world_remove_node(c, both.nodes[0]) == CROFTON_OK);
         REQUIRE(both.world.remove(both.node(0)).has_value());

@@ -12,7 +12,7 @@ namespace {
 BodyHandle crate_of(float half) {
     const float extents[3] = {half, half, half};
     crofton_body* body = nullptr;
-    REQUIRE(crofton_body_box(extents, &body) == CROFTON_OK);
+    REQUIRE(body_box(extents, &body) == CROFTON_OK);
     return BodyHandle(body);
 }
 
@@ -35,10 +35,10 @@ struct Resting {
         for (int i = 0; i < 8; ++i)
             for (int k = 0; k < 3; ++k) corners.push_back((k == 1 ? 1.0f : 9.0f) * ((i >> k & 1) != 0 ? 1.0f : -1.0f));
         crofton_body* hull = nullptr;
-        REQUIRE(crofton_body_hull(corners.data(), 8, nullptr, &hull) == CROFTON_OK);
+        REQUIRE(body_hull(corners.data(), 8, &hull) == CROFTON_OK);
         const BodyHandle owner(hull), box = crate_of(0.5f);
-        REQUIRE(crofton_world_set_body(world.get(), floor, hull) == CROFTON_OK);
-        REQUIRE(crofton_world_set_body(world.get(), crate, box.get()) == CROFTON_OK);
+        REQUIRE(world_set_body(world.get(), floor, hull) == CROFTON_OK);
+        REQUIRE(world_set_body(world.get(), crate, box.get()) == CROFTON_OK);
     }
     const crofton_body_contact* contacts(std::size_t expected) const {
         update(world);
@@ -66,11 +66,11 @@ TEST_SUITE("capi/world bodies") {
             contact->points[i].memory[3] = 2.5f;
         }
         crofton_bound moved = box_bound(box_at(0.01, 1.491, 0, 0.55f));
-        REQUIRE(crofton_world_set_bound(s.world.get(), s.crate, &moved) == CROFTON_OK);
+        REQUIRE(world_set_bound(s.world.get(), s.crate, &moved) == CROFTON_OK);
         contact = s.contacts(1);
         CHECK(contact->phase == CROFTON_CONTACT_STAYED);
         CHECK(contact->points[0].memory[3] == 2.5f);
-        REQUIRE(crofton_world_set_body(s.world.get(), s.crate, nullptr) == CROFTON_OK);
+        REQUIRE(world_set_body(s.world.get(), s.crate, nullptr) == CROFTON_OK);
         CHECK(s.contacts(1)->phase == CROFTON_CONTACT_ENDED);
         s.contacts(0);
     }
@@ -80,7 +80,7 @@ TEST_SUITE("capi/world bodies") {
         const crofton_body_contact* contact = s.contacts(1);
         const crofton_tracked_point before = contact->points[0];
         const BodyHandle small = crate_of(0.1f);
-        REQUIRE(crofton_world_set_body(s.world.get(), s.crate, small.get()) == CROFTON_OK);
+        REQUIRE(world_set_body(s.world.get(), s.crate, small.get()) == CROFTON_OK);
         CHECK(contact->point_count == 4);
         const crofton_tracked_point& after = contact->points[0];
         for (int k = 0; k < 3; ++k) {
@@ -116,7 +116,7 @@ TEST_SUITE("capi/world bodies") {
             description.bound = &bound;
             CHECK(crofton_world_add(world.get(), &description, &high) == CROFTON_INVALID_ARGUMENT);
         }
-        CHECK(crofton_world_set_body(world.get(), low, nullptr) == CROFTON_INVALID_ARGUMENT);
+        CHECK(world_set_body(world.get(), low, nullptr) == CROFTON_INVALID_ARGUMENT);
         for (const double height : {1.75, 1.5}) {
             const crofton_transform there{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, height, 0}};
             REQUIRE(crofton_world_set_transforms(world.get(), &high, 0, &there, 0, 1) == CROFTON_OK);
@@ -128,7 +128,7 @@ TEST_SUITE("capi/world bodies") {
             CHECK(contacts->point_count == 4);
             CHECK(contacts->points[0].depth == doctest::Approx(2.0 - height));
             crofton_box box{};
-            REQUIRE(crofton_world_get_box(world.get(), high, &box) == CROFTON_OK);
+            REQUIRE(world_get_box(world.get(), high, &box) == CROFTON_OK);
             CHECK(box.center[1] == doctest::Approx(height));
             for (const float half : box.half_extents) CHECK(half == doctest::Approx(1.0));
         }
@@ -143,20 +143,20 @@ TEST_SUITE("capi/world bodies") {
         const crofton_placed high{probe.get(), &above}, low{probe.get(), &beside};
         const crofton_object_ref* objects = nullptr;
         std::size_t count = 9;
-        REQUIRE(crofton_world_overlap_body(s.world.get(), &high, ~0u, found.get()) == CROFTON_OK);
+        REQUIRE(world_overlap(s.world.get(), &high, ~0u, found.get()) == CROFTON_OK);
         REQUIRE(crofton_found_objects(found.get(), &objects, &count) == CROFTON_OK);
         CHECK(count == 0);
         // It meets the slab and the crate's box, but not the crate's body.
-        REQUIRE(crofton_world_overlap_body(s.world.get(), &low, ~0u, found.get()) == CROFTON_OK);
+        REQUIRE(world_overlap(s.world.get(), &low, ~0u, found.get()) == CROFTON_OK);
         REQUIRE(crofton_found_objects(found.get(), &objects, &count) == CROFTON_OK);
         REQUIRE(count == 1);
         CHECK(objects[0].user == 5);
         auto closest = sized<crofton_closest_object>();
-        REQUIRE(crofton_world_closest_to_body(s.world.get(), &high, 9.0, ~0u, &closest) == CROFTON_OK);
+        REQUIRE(world_closest(s.world.get(), &high, 9.0, ~0u, &closest) == CROFTON_OK);
         CHECK(closest.user == 6);
         CHECK(closest.distance == doctest::Approx(5.0 - 0.25 - 1.99));
         CHECK(closest.on_object[1] == doctest::Approx(1.99));
-        REQUIRE(crofton_world_closest_to_body(s.world.get(), &high, 1.0, ~0u, &closest) == CROFTON_OK);
+        REQUIRE(world_closest(s.world.get(), &high, 1.0, ~0u, &closest) == CROFTON_OK);
         CHECK(closest.object.index == CROFTON_NONE);
         const crofton_motion fall{{0, -10, 0}, {0, 0, 0}, {0, 0, 0}};
         auto hit = sized<crofton_body_hit>();
@@ -178,8 +178,8 @@ TEST_SUITE("capi/world bodies") {
         const WorldHandle world = make_world();
         const crofton_plane plane{{0, 1, 0}, 0};
         crofton_body *half = nullptr, *sphere = nullptr;
-        REQUIRE(crofton_body_half_space(&plane, &half) == CROFTON_OK);
-        REQUIRE(crofton_body_sphere(1.0f, &sphere) == CROFTON_OK);
+        REQUIRE(body_half_space(&plane, &half) == CROFTON_OK);
+        REQUIRE(body_sphere(1.0f, &sphere) == CROFTON_OK);
         const BodyHandle level(half), large(sphere);
         const auto point = [&](double x, double y) {
             crofton_bound bound{};
@@ -190,8 +190,8 @@ TEST_SUITE("capi/world bodies") {
             return add_bound(world, bound);
         };
         const crofton_object ground = point(0, 0), resting = point(1e6, -0.75);
-        REQUIRE(crofton_world_set_body(world.get(), ground, level.get()) == CROFTON_OK);
-        REQUIRE(crofton_world_set_body(world.get(), resting, large.get()) == CROFTON_OK);
+        REQUIRE(world_set_body(world.get(), ground, level.get()) == CROFTON_OK);
+        REQUIRE(world_set_body(world.get(), resting, large.get()) == CROFTON_OK);
         update(world);
         const crofton_body_contact* contacts = nullptr;
         std::size_t count = 0;
@@ -218,20 +218,20 @@ TEST_SUITE("capi/world bodies") {
         update(s.world);
         const crofton_plane plane{{0, 1, 0}, 0};
         crofton_body* made = nullptr;
-        REQUIRE(crofton_body_half_space(&plane, &made) == CROFTON_OK);
+        REQUIRE(body_half_space(&plane, &made) == CROFTON_OK);
         const BodyHandle half(made);
         const crofton_transform here = translation(0, 0, 0);
         const crofton_placed placed{half.get(), &here};
         const Found found = make_found();
         auto hit = sized<crofton_body_hit>();
-        CHECK(crofton_world_overlap_body(s.world.get(), &placed, ~0u, found.get()) == CROFTON_UNSUPPORTED);
+        CHECK(world_overlap(s.world.get(), &placed, ~0u, found.get()) == CROFTON_UNSUPPORTED);
         CHECK(crofton_world_cast(s.world.get(), &placed, nullptr, nullptr, ~0u, &hit) == CROFTON_UNSUPPORTED);
         auto closest = sized<crofton_closest_object>();
-        CHECK(crofton_world_closest_to_body(s.world.get(), &placed, 1.0, ~0u, &closest) == CROFTON_UNSUPPORTED);
+        CHECK(world_closest(s.world.get(), &placed, 1.0, ~0u, &closest) == CROFTON_UNSUPPORTED);
         REQUIRE(crofton_world_remove(s.world.get(), s.crate) == CROFTON_OK);
         const BodyHandle box = crate_of(1);
-        CHECK(crofton_world_set_body(s.world.get(), s.crate, box.get()) == CROFTON_STALE_HANDLE);
-        CHECK(crofton_world_set_body(nullptr, s.crate, box.get()) == CROFTON_BAD_HANDLE);
+        CHECK(world_set_body(s.world.get(), s.crate, box.get()) == CROFTON_STALE_HANDLE);
+        CHECK(world_set_body(nullptr, s.crate, box.get()) == CROFTON_BAD_HANDLE);
         auto options = sized<crofton_world_options>();
         crofton_world* none = nullptr;
         for (const double margin : {kNotANumber, kNoLimit}) {

@@ -64,7 +64,7 @@ struct Walled {
     }
     std::vector<std::uint32_t> look() const {
         update(world);
-        REQUIRE(crofton_world_view(world.get(), &view, nullptr, visible.get()) == CROFTON_OK);
+        REQUIRE(crofton_world_view(world.get(), &view, 1, nullptr, visible.get()) == CROFTON_OK);
         const std::uint32_t* ids = nullptr;
         std::size_t count = 0;
         REQUIRE(crofton_view_result_ids(visible.get(), &ids, &count, nullptr, nullptr) == CROFTON_OK);
@@ -84,12 +84,12 @@ TEST_SUITE("capi/world occlusion") {
         const Walled s;
         CHECK_FALSE(s.hides());
         std::size_t count = 5;
-        REQUIRE(crofton_world_occluder_count(s.world.get(), s.mesh, &count) == CROFTON_OK);
+        REQUIRE(world_occluder_count(s.world.get(), s.mesh, &count) == CROFTON_OK);
         CHECK(count == 0);
         auto find = sized<crofton_find_options>();
         REQUIRE(crofton_world_find_occluders(s.world.get(), s.mesh, &find) == CROFTON_OK);
         CHECK(s.hides());
-        REQUIRE(crofton_world_occluder_count(s.world.get(), s.mesh, &count) == CROFTON_OK);
+        REQUIRE(world_occluder_count(s.world.get(), s.mesh, &count) == CROFTON_OK);
         REQUIRE(count == 1);
         auto occluder = sized<crofton_occluder>();
         REQUIRE(crofton_world_get_occluder(s.world.get(), s.mesh, 0, &occluder) == CROFTON_OK);
@@ -99,15 +99,15 @@ TEST_SUITE("capi/world occlusion") {
         CHECK(crofton_world_get_occluder(s.world.get(), s.mesh, 1, &occluder) == CROFTON_OUT_OF_RANGE);
 
         crofton_occluder_ref named[2] = {};
-        REQUIRE(crofton_world_hidden_by(s.world.get(), s.behind, s.visible.get(), named, 2, &count) == CROFTON_OK);
+        REQUIRE(world_hidden_by(s.world.get(), s.behind, s.visible.get(), named, 2, &count) == CROFTON_OK);
         REQUIRE(count == 1);
         CHECK(named[0].object.index == s.wall.index);
         CHECK(named[0].user == 7);
-        REQUIRE(crofton_world_hidden_by(s.world.get(), s.beside, s.visible.get(), nullptr, 0, &count) == CROFTON_OK);
+        REQUIRE(world_hidden_by(s.world.get(), s.beside, s.visible.get(), nullptr, 0, &count) == CROFTON_OK);
         CHECK(count == 0);
-        REQUIRE(crofton_world_drawn_occluders(s.world.get(), s.visible.get(), named, 1, &count) == CROFTON_OK);
+        REQUIRE(world_drawn_occluders(s.world.get(), s.visible.get(), named, 1, &count) == CROFTON_OK);
         CHECK(count == 1);
-        CHECK(crofton_world_hidden_by(s.world.get(), s.behind, s.visible.get(), nullptr, 1, &count) ==
+        CHECK(world_hidden_by(s.world.get(), s.behind, s.visible.get(), nullptr, 1, &count) ==
               CROFTON_INVALID_ARGUMENT);
 
         // Its arrays are the world's: what was read is copied before it is given back.
@@ -122,7 +122,7 @@ TEST_SUITE("capi/world occlusion") {
         // As a level: the body, and all six faces as a surface.
         find.level_triangles = 48;
         REQUIRE(crofton_world_find_occluders(s.world.get(), s.mesh, &find) == CROFTON_OK);
-        REQUIRE(crofton_world_occluder_count(s.world.get(), s.mesh, &count) == CROFTON_OK);
+        REQUIRE(world_occluder_count(s.world.get(), s.mesh, &count) == CROFTON_OK);
         CHECK(count == 2);
         REQUIRE(crofton_world_get_occluder(s.world.get(), s.mesh, 1, &occluder) == CROFTON_OK);
         CHECK(occluder.kind == CROFTON_OCCLUDER_PATCH);
@@ -134,7 +134,7 @@ TEST_SUITE("capi/world occlusion") {
         box.box.half_extents[2] = 0.25f;
         REQUIRE(crofton_world_set_occluders(s.world.get(), s.mesh, &box, 1) == CROFTON_OK);
         CHECK(s.hides());
-        REQUIRE(crofton_world_set_occludes(s.world.get(), s.wall, 0) == CROFTON_OK);
+        REQUIRE(world_set_occludes(s.world.get(), s.wall, 0) == CROFTON_OK);
         CHECK_FALSE(s.hides());
         (void)s.add_wall(0);
         CHECK_FALSE(s.hides());
@@ -151,23 +151,21 @@ TEST_SUITE("capi/world occlusion") {
         CHECK(s.look() == std::vector<std::uint32_t>{s.wall.index, s.beside.index});
         const std::uint32_t* ids = nullptr;
         std::size_t count = 0;
-        REQUIRE(crofton_view_result_occluded_ids(s.visible.get(), &ids, &count) == CROFTON_OK);
+        REQUIRE(view_result_occluded_ids(s.visible.get(), &ids, &count) == CROFTON_OK);
         REQUIRE(count == 1);
         CHECK(ids[0] == s.behind.index);
-        auto statistics = sized<crofton_occlusion_statistics>();
-        REQUIRE(crofton_view_result_get_occlusion_statistics(s.visible.get(), 0, &statistics) == CROFTON_OK);
+        auto statistics = sized<crofton_view_info>();
+        REQUIRE(crofton_view_result_get_view(s.visible.get(), 0, &statistics) == CROFTON_OK);
         CHECK(statistics.occluders_drawn == 1);
-        CHECK(statistics.pieces_drawn == 1);
-        CHECK(statistics.items_hidden >= 1);
-        std::uint32_t width = 0, height = 0;
-        REQUIRE(crofton_view_result_depth(s.visible.get(), 0, &width, &height, nullptr, 0) == CROFTON_OK);
-        CHECK(width == 160);
-        CHECK(height == 90);
+        CHECK(statistics.occluder_pieces_drawn == 1);
+        CHECK(statistics.occlusion_items_hidden >= 1);
+        CHECK(statistics.depth_width == 160);
+        CHECK(statistics.depth_height == 90);
+        CHECK((statistics.occluded_count == 1 && statistics.occluded_ids[0] == s.behind.index));
+        CHECK((statistics.triangles == nullptr && statistics.triangles_listed == 0));
         std::vector<float> pixels(160 * 90);
-        CHECK(crofton_view_result_depth(s.visible.get(), 0, &width, &height, pixels.data(), pixels.size() - 1) ==
-              CROFTON_OUT_OF_RANGE);
-        REQUIRE(crofton_view_result_depth(s.visible.get(), 0, &width, &height, pixels.data(), pixels.size()) ==
-                CROFTON_OK);
+        CHECK(crofton_view_result_depth(s.visible.get(), 0, pixels.data(), pixels.size() - 1) == CROFTON_OUT_OF_RANGE);
+        REQUIRE(crofton_view_result_depth(s.visible.get(), 0, pixels.data(), pixels.size()) == CROFTON_OK);
         CHECK(1.0 / double(pixels[45 * 160 + 80]) == doctest::Approx(9.5).epsilon(1e-3));
         CHECK(pixels[0] < -1e38f);
 
@@ -188,7 +186,7 @@ TEST_SUITE("capi/world occlusion") {
         CHECK(s.look().empty());
         s.view.layers = ~0u;
         // A volume beside the eye's: what is in it, unless it is hidden from the eye.
-        crofton_view around = default_view();
+        View around = default_view();
         s.view.volume = &around.frustum;
         CHECK(s.look() == std::vector<std::uint32_t>{s.wall.index, s.beside.index});
         s.view.volume = nullptr;
@@ -202,8 +200,8 @@ TEST_SUITE("capi/world occlusion") {
         s.view.limits = nullptr;
         s.view.occlusion = nullptr;
         CHECK(s.look().size() == 3);
-        CHECK(crofton_view_result_depth(s.visible.get(), 0, &width, &height, nullptr, 0) == CROFTON_EMPTY);
-        REQUIRE(crofton_view_result_get_occlusion_statistics(s.visible.get(), 0, &statistics) == CROFTON_OK);
+        CHECK(crofton_view_result_depth(s.visible.get(), 0, nullptr, 0) == CROFTON_EMPTY);
+        REQUIRE(crofton_view_result_get_view(s.visible.get(), 0, &statistics) == CROFTON_OK);
         CHECK(statistics.occluders_drawn == 0);
 
         // Many views: the second looks away.
@@ -214,29 +212,33 @@ TEST_SUITE("capi/world occlusion") {
         views[1].matrix = nullptr;
         views[1].camera = &away;
         const ViewResultHandle in_views = make_view_result();
-        REQUIRE(crofton_world_view_many(s.world.get(), views, 2, nullptr, in_views.get()) == CROFTON_OK);
+        REQUIRE(crofton_world_view(s.world.get(), views, 2, nullptr, in_views.get()) == CROFTON_OK);
         crofton_object_ref refs[3] = {};
         std::uint32_t masks[3] = {};
         REQUIRE(crofton_view_result_list(in_views.get(), s.world.get(), 0, refs, masks, 3) == CROFTON_OK);
         CHECK(masks[0] == 1);
         CHECK(masks[1] == 1);
         CHECK(masks[2] == 0);
-        REQUIRE(crofton_view_result_get_occlusion_statistics(in_views.get(), 1, &statistics) == CROFTON_OK);
+        REQUIRE(crofton_view_result_get_view(in_views.get(), 1, &statistics) == CROFTON_OK);
         CHECK(statistics.occluders_drawn == 0);
-        CHECK(crofton_view_result_get_occlusion_statistics(in_views.get(), 2, &statistics) == CROFTON_OUT_OF_RANGE);
-        CHECK(crofton_view_result_depth(in_views.get(), 0, &width, &height, nullptr, 0) == CROFTON_OK);
-        CHECK(crofton_view_result_depth(in_views.get(), 2, &width, &height, nullptr, 0) == CROFTON_OUT_OF_RANGE);
+        CHECK(crofton_view_result_get_view(in_views.get(), 2, &statistics) == CROFTON_OUT_OF_RANGE);
+        CHECK(crofton_view_result_depth(in_views.get(), 0, pixels.data(), pixels.size()) == CROFTON_OK);
+        CHECK(crofton_view_result_depth(in_views.get(), 0, nullptr, 0) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_view_result_depth(in_views.get(), 2, nullptr, 0) == CROFTON_OUT_OF_RANGE);
         // The same result holds one view or many, and what only one has is refused of many.
-        auto cull_statistics = sized<crofton_cull_statistics>();
-        CHECK(crofton_view_result_get_statistics(in_views.get(), &cull_statistics) == CROFTON_UNSUPPORTED);
-        CHECK(crofton_world_drawn_occluders(s.world.get(), in_views.get(), nullptr, 0, &count) == CROFTON_UNSUPPORTED);
-        REQUIRE(crofton_world_view(s.world.get(), &views[0], nullptr, in_views.get()) == CROFTON_OK);
-        CHECK(crofton_view_result_get_statistics(in_views.get(), &cull_statistics) == CROFTON_OK);
+        REQUIRE(crofton_view_result_get_view(in_views.get(), 0, &statistics) == CROFTON_OK);
+        CHECK((statistics.occluders_drawn == 1 && statistics.depth_height == 90));
+        CHECK((statistics.occluded_count == 1 && statistics.occluded_ids[0] == s.behind.index));
+        CHECK(world_drawn_occluders(s.world.get(), in_views.get(), nullptr, 0, &count) == CROFTON_UNSUPPORTED);
+        REQUIRE(crofton_world_view(s.world.get(), &views[0], 1, nullptr, in_views.get()) == CROFTON_OK);
+        REQUIRE(crofton_view_result_get_view(in_views.get(), 0, &statistics) == CROFTON_OK);
+        CHECK(statistics.occluders_drawn == 1);
+        CHECK(crofton_view_result_get_view(in_views.get(), 1, &statistics) == CROFTON_OUT_OF_RANGE);
         REQUIRE(crofton_view_result_list(in_views.get(), s.world.get(), 0, refs, masks, 3) == CROFTON_OK);
         CHECK(masks[1] == 1);
         views[0].occlusion = nullptr;
-        REQUIRE(crofton_world_view_many(s.world.get(), views, 1, nullptr, in_views.get()) == CROFTON_OK);
-        CHECK(crofton_view_result_depth(in_views.get(), 0, &width, &height, nullptr, 0) == CROFTON_EMPTY);
+        REQUIRE(crofton_world_view(s.world.get(), views, 1, nullptr, in_views.get()) == CROFTON_OK);
+        CHECK(crofton_view_result_depth(in_views.get(), 0, nullptr, 0) == CROFTON_EMPTY);
     }
 
     TEST_CASE("each view of many keeps its own limits, mask and occlusion") {
@@ -256,7 +258,7 @@ TEST_SUITE("capi/world occlusion") {
         views[4].candidate_mask = &mask;
         views[4].candidate_words = 1;
         const ViewResultHandle many = make_view_result();
-        REQUIRE(crofton_world_view_many(s.world.get(), views.data(), 5, nullptr, many.get()) == CROFTON_OK);
+        REQUIRE(crofton_world_view(s.world.get(), views.data(), 5, nullptr, many.get()) == CROFTON_OK);
         crofton_object_ref refs[3] = {};
         std::uint32_t masks[3] = {};
         REQUIRE(crofton_view_result_list(many.get(), s.world.get(), 0, refs, masks, 3) == CROFTON_OK);
@@ -265,7 +267,7 @@ TEST_SUITE("capi/world occlusion") {
         CHECK(masks[2] == 0b01111);  // beside it
         for (std::size_t v = 0; v < views.size(); ++v) {
             CAPTURE(v);
-            REQUIRE(crofton_world_view(s.world.get(), &views[v], nullptr, s.visible.get()) == CROFTON_OK);
+            REQUIRE(crofton_world_view(s.world.get(), &views[v], 1, nullptr, s.visible.get()) == CROFTON_OK);
             std::vector<crofton_object_ref> seen(3);
             const std::uint32_t* ids = nullptr;
             std::size_t count = 0, expected = 0;
@@ -313,16 +315,16 @@ TEST_SUITE("capi/world occlusion") {
         crofton_world_mesh stale = s.mesh;
         ++stale.generation;
         std::size_t count = 0;
-        CHECK(crofton_world_occluder_count(world, stale, &count) == CROFTON_STALE_HANDLE);
+        CHECK(world_occluder_count(world, stale, &count) == CROFTON_STALE_HANDLE);
         CHECK(crofton_world_get_occluder(world, stale, 0, &box) == CROFTON_STALE_HANDLE);
         CHECK(crofton_world_find_occluders(world, stale, nullptr) == CROFTON_STALE_HANDLE);
-        CHECK(crofton_world_set_occludes(world, s.behind, 0) == CROFTON_INVALID_ARGUMENT);
+        CHECK(world_set_occludes(world, s.behind, 0) == CROFTON_INVALID_ARGUMENT);
         auto find = sized<crofton_find_options>();
         find.grid = 99;
         CHECK(crofton_world_find_occluders(world, s.mesh, &find) == CROFTON_OUT_OF_RANGE);
 
         const auto view = [&](const crofton_view_request& asked) {
-            return crofton_world_view(world, &asked, nullptr, s.visible.get());
+            return crofton_world_view(world, &asked, 1, nullptr, s.visible.get());
         };
         CHECK(view(s.view) == CROFTON_OK);
         s.occlusion.width = 5;
@@ -368,18 +370,16 @@ TEST_SUITE("capi/world occlusion") {
         CHECK(view(zero) == CROFTON_WRONG_SIZE);
         CHECK(mentions(crofton_last_error(), "crofton_default_"));
         const WorldHandle other = make_world();
-        CHECK(crofton_world_hidden_by(other.get(), s.behind, s.visible.get(), nullptr, 0, &count) ==
-              CROFTON_INVALID_ARGUMENT);
+        CHECK(world_hidden_by(other.get(), s.behind, s.visible.get(), nullptr, 0, &count) == CROFTON_INVALID_ARGUMENT);
         const std::vector<crofton_view_request> many(33, s.view);
-        CHECK(crofton_world_view_many(world, many.data(), 33, nullptr, make_view_result().get()) ==
-              CROFTON_OUT_OF_RANGE);
+        CHECK(crofton_world_view(world, many.data(), 33, nullptr, make_view_result().get()) == CROFTON_OUT_OF_RANGE);
     }
 
     TEST_CASE("of no views at all, too, the jobs are looked at") {
         const Walled s;
         const ViewResultHandle visible = make_view_result();
         const auto look = [&](const crofton_jobs* jobs) {
-            return crofton_world_view_many(s.world.get(), nullptr, 0, jobs, visible.get());
+            return crofton_world_view(s.world.get(), nullptr, 0, jobs, visible.get());
         };
         const crofton_jobs no_jobs{}, no_function{sizeof no_jobs, nullptr, 1, nullptr};
         CHECK(look(nullptr) == CROFTON_OK);
@@ -391,7 +391,7 @@ TEST_SUITE("capi/world occlusion") {
         Walled s;
         crofton_view_request views[3] = {s.view, s.view, s.view};
         views[2].camera = nullptr;
-        CHECK(crofton_world_view_many(s.world.get(), views, 3, nullptr, make_view_result().get()) ==
+        CHECK(crofton_world_view(s.world.get(), views, 3, nullptr, make_view_result().get()) ==
               CROFTON_INVALID_ARGUMENT);
         CHECK(crofton_last_error_item() == 2);
     }

@@ -17,9 +17,11 @@ TEST_SUITE("capi/world structs") {
             auto statistics = sized<crofton_world_statistics>();
             auto description = sized<crofton_object_description>();
             auto closest = sized<crofton_closest_object>();
-            auto contact = sized<crofton_object_contact>();
+            auto info = sized<crofton_object_info>();
+            auto view = sized<crofton_view_info>();
             crofton_mesh_data data = data_of(tetrahedron);
-            options.size = statistics.size = description.size = closest.size = contact.size = data.size = size;
+            options.size = statistics.size = description.size = closest.size = info.size = data.size = size;
+            view.size = size;
             crofton_world* none = nullptr;
             crofton_object object{};
             crofton_world_mesh mesh{};
@@ -29,8 +31,10 @@ TEST_SUITE("capi/world structs") {
             CHECK(crofton_world_get_statistics(s.world.get(), &statistics) == CROFTON_WRONG_SIZE);
             CHECK(crofton_world_add(s.world.get(), &description, &object) == CROFTON_WRONG_SIZE);
             CHECK(crofton_world_add_mesh(s.world.get(), &data, &mesh) == CROFTON_WRONG_SIZE);
-            CHECK(crofton_world_closest_to_sphere(s.world.get(), center, 1, 1, ~0u, &closest) == CROFTON_WRONG_SIZE);
-            CHECK(crofton_world_contact(s.world.get(), 0, &contact) == CROFTON_WRONG_SIZE);
+            CHECK(world_closest_to_sphere(s.world.get(), center, 1, 1, ~0u, &closest) == CROFTON_WRONG_SIZE);
+            CHECK(crofton_world_get_object(s.world.get(), s.box, &info) == CROFTON_WRONG_SIZE);
+            CHECK(crofton_world_set(s.world.get(), s.box, CROFTON_SET_USER, &description) == CROFTON_WRONG_SIZE);
+            CHECK(crofton_view_result_get_view(s.visible.get(), 0, &view) == CROFTON_WRONG_SIZE);
         }
     }
 
@@ -77,7 +81,7 @@ TEST_SUITE("capi/world structs") {
         std::size_t count = 0;
         REQUIRE(crofton_world_pairs(world.get(), &pairs, &count) == CROFTON_OK);
         CHECK(count == 1);  // in all layers, and 2^24 pairs may be found
-        // Results that ended before `resting` and before `point_count`.
+        // Results that ended before `resting` and before `transform`.
         crofton_world_statistics statistics;
         std::memset(static_cast<void*>(&statistics), 0x5a, sizeof statistics);
         const crofton_world_statistics before = statistics;
@@ -87,12 +91,12 @@ TEST_SUITE("capi/world structs") {
         CHECK(statistics.objects == 2);
         CHECK(std::memcmp(&statistics.resting, &before.resting,
                           sizeof statistics - offsetof(crofton_world_statistics, resting)) == 0);
-        crofton_object_contact contact;
-        std::memset(static_cast<void*>(&contact), 0x5a, sizeof contact);
-        const std::size_t untouched = contact.point_count;
-        contact.size = offsetof(crofton_object_contact, point_count);
-        REQUIRE(crofton_world_contact(world.get(), 0, &contact) == CROFTON_OK);
-        CHECK(contact.first.user == 3);
-        CHECK(contact.point_count == untouched);
+        crofton_object_info info;
+        std::memset(static_cast<void*>(&info), 0x5a, sizeof info);
+        const crofton_object_info untouched = info;
+        info.size = offsetof(crofton_object_info, transform);
+        REQUIRE(crofton_world_get_object(world.get(), objects[0], &info) == CROFTON_OK);
+        CHECK((info.user == 3 && info.has_box == 1 && info.has_transform == 0 && info.box.center[2] == -5));
+        CHECK(std::memcmp(&info.transform, &untouched.transform, sizeof info.transform) == 0);
     }
 }

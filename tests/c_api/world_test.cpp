@@ -12,11 +12,11 @@ TEST_SUITE("capi/world") {
         const SmallWorld s;
         crofton_world* const world = s.world.get();
         const crofton_bound bound = sphere_bound(0, 0, 0, 1);
-        const crofton_view view = default_view();
+        const View view = default_view();
         const crofton_transform place = translation(0, 0, 0);
         const crofton_box box = box_at(0, 0, 0);
         const crofton_ray ray{{0, 0, 0}, {0, 0, -1}, kNoLimit};
-        const double center[3] = {};
+        auto closest = sized<crofton_closest_object>();
         crofton_object_hit hit{};
         crofton_object object{};
         crofton_object_ref refs[1];
@@ -28,29 +28,37 @@ TEST_SUITE("capi/world") {
         CHECK(crofton_world_add(world, nullptr, &object) == bad);
         CHECK(crofton_world_add_mesh(world, nullptr, nullptr) == bad);
         CHECK(crofton_world_add_node(world, nullptr, nullptr, ~0u, nullptr) == bad);
-        CHECK(crofton_world_set_bound(world, s.box, nullptr) == bad);
+        CHECK(world_set_bound(world, s.box, nullptr) == bad);
+        CHECK(crofton_world_set(world, s.box, CROFTON_SET_USER, nullptr) == bad);
+        const auto description = sized<crofton_object_description>();
+        for (const std::uint32_t members : {256u, ~0u, CROFTON_SET_BOUND | CROFTON_SET_BODY | 0u,
+                                            CROFTON_SET_MESH | CROFTON_SET_OCCLUDES | 0u, CROFTON_SET_MESH | 0u})
+            CHECK(crofton_world_set(world, s.box, members, &description) == bad);
         CHECK(crofton_world_set_boxes(world, nullptr, 0, &box, 0, 1) == bad);
         CHECK(crofton_world_set_boxes(world, &s.box, 0, nullptr, 0, 1) == bad);
         CHECK(crofton_world_set_transforms(world, nullptr, 0, &place, 0, 1) == bad);
         CHECK(crofton_world_set_node_transforms(world, &node, 0, nullptr, 0, 1) == bad);
         CHECK(crofton_world_get_statistics(world, nullptr) == bad);
-        CHECK(crofton_world_get_user(world, s.box, nullptr) == bad);
-        CHECK(crofton_world_get_box(world, s.box, nullptr) == bad);
-        CHECK(crofton_world_contains(world, s.box, nullptr) == bad);
-        CHECK(crofton_world_view(world, nullptr, nullptr, s.visible.get()) == bad);
-        CHECK(crofton_world_view_many(world, nullptr, 1, nullptr, s.in_views.get()) == bad);
+        CHECK(crofton_world_get_object(world, s.box, nullptr) == bad);
+        CHECK(crofton_world_get_mesh(world, {}, nullptr) == bad);
+        CHECK(crofton_world_contains_node(world, {}, nullptr) == bad);
+        CHECK(crofton_world_view(world, nullptr, 1, nullptr, s.visible.get()) == bad);
+        CHECK(crofton_world_view(world, nullptr, 1, nullptr, s.in_views.get()) == bad);
         CHECK(crofton_view_result_ids(s.visible.get(), nullptr, &count, nullptr, nullptr) == bad);
         CHECK(crofton_view_result_ids(s.in_views.get(), nullptr, &count, nullptr, nullptr) == bad);
         CHECK(crofton_world_raycast(world, nullptr, 1, ~0u, &hit) == bad);
         CHECK(crofton_world_raycast(world, &ray, 1, ~0u, nullptr) == bad);
         CHECK(crofton_world_raycast_any(world, &ray, ~0u, nullptr) == bad);
         CHECK(crofton_world_raycast_all(world, nullptr, ~0u, s.found.get()) == bad);
-        CHECK(crofton_world_overlap_box(world, nullptr, ~0u, s.found.get()) == bad);
-        CHECK(crofton_world_overlap_sphere(world, nullptr, 1.0, ~0u, s.found.get()) == bad);
-        CHECK(crofton_world_overlap_capsule(world, center, nullptr, 1.0, ~0u, s.found.get()) == bad);
-        CHECK(crofton_world_closest_to_box(world, &box, 1.0, ~0u, nullptr) == bad);
+        CHECK(crofton_world_overlap(world, nullptr, ~0u, s.found.get()) == bad);
+        crofton_shape no_shape{};
+        no_shape.kind = CROFTON_SHAPE_BODY + 1;
+        CHECK(crofton_world_overlap(world, &no_shape, ~0u, s.found.get()) == bad);
+        CHECK(crofton_world_closest(world, nullptr, 1.0, ~0u, &closest) == bad);
+        CHECK(crofton_world_closest(world, &no_shape, 1.0, ~0u, &closest) == bad);
+        CHECK(world_closest(world, &box, 1.0, ~0u, nullptr) == bad);
         CHECK(crofton_world_pairs(world, nullptr, &count) == bad);
-        CHECK(crofton_world_contact(world, 0, nullptr) == bad);
+        CHECK(crofton_world_contacts(world, nullptr, &count) == bad);
         CHECK(crofton_found_objects(s.found.get(), nullptr, &count) == bad);
         CHECK(crofton_found_hits(s.found.get(), nullptr, &count) == bad);
         const crofton_object_pair* pairs = nullptr;
@@ -62,15 +70,15 @@ TEST_SUITE("capi/world") {
         // No handle, or one of another kind.
         CHECK(crofton_world_update(nullptr, nullptr) == CROFTON_BAD_HANDLE);
         CHECK(crofton_world_destroy(reinterpret_cast<crofton_world*>(s.found.get())) == CROFTON_BAD_HANDLE);
-        CHECK(crofton_world_set_bound(nullptr, s.box, &bound) == CROFTON_BAD_HANDLE);
+        CHECK(world_set_bound(nullptr, s.box, &bound) == CROFTON_BAD_HANDLE);
         CHECK(look(world, view, nullptr) == CROFTON_BAD_HANDLE);
-        CHECK(crofton_world_overlap_box(world, &box, ~0u, nullptr) == CROFTON_BAD_HANDLE);
-        CHECK(crofton_world_contains(nullptr, s.box, &flag) == CROFTON_BAD_HANDLE);
+        CHECK(world_overlap(world, &box, ~0u, nullptr) == CROFTON_BAD_HANDLE);
+        CHECK(world_contains(nullptr, s.box, &flag) == CROFTON_BAD_HANDLE);
         // What was never viewed, lists no world's objects.
         CHECK(crofton_view_result_list(s.visible.get(), world, 0, refs, nullptr, 1) == bad);
         CHECK(crofton_world_set_boxes(world, nullptr, 0, nullptr, 0, 0) == CROFTON_OK);
         CHECK(crofton_world_raycast(world, nullptr, 0, ~0u, nullptr) == CROFTON_OK);
-        CHECK(crofton_world_view_many(world, nullptr, 0, nullptr, s.in_views.get()) == CROFTON_OK);
+        CHECK(crofton_world_view(world, nullptr, 0, nullptr, s.in_views.get()) == CROFTON_OK);
     }
 
     TEST_CASE("each option does what it says") {
@@ -82,7 +90,7 @@ TEST_SUITE("capi/world") {
             CHECK(crofton_world_update(world.get(), nullptr) == expected);
             const crofton_object_pair* list = nullptr;
             REQUIRE(crofton_world_pairs(world.get(), &list, &pairs) == CROFTON_OK);
-            REQUIRE(crofton_world_contact_count(world.get(), &contacts) == CROFTON_OK);
+            REQUIRE(world_contact_count(world.get(), &contacts) == CROFTON_OK);
         };
         auto options = sized<crofton_world_options>();
         std::size_t pairs = 0, contacts = 0;
@@ -138,7 +146,7 @@ TEST_SUITE("capi/world") {
         update(s.world);
         const crofton_object next = add_bound(s.world, bound);
         CHECK(next.index == s.box.index);
-        CHECK(crofton_world_set_user(world, next, 9) == CROFTON_OK);
+        CHECK(world_set_user(world, next, 9) == CROFTON_OK);
         CHECK(crofton_world_remove_mesh(world, add_tetrahedron(s.world)) == CROFTON_OK);
         crofton_node next_node{};
         REQUIRE(crofton_world_add_node(world, nullptr, nullptr, ~0u, &next_node) == CROFTON_OK);
@@ -157,16 +165,16 @@ TEST_SUITE("capi/world") {
             CHECK(crofton_world_set_transforms(world, &object, 0, &place, 0, 1) == stale);
             CHECK(crofton_world_set_boxes(world, &object, 0, &box, 0, 1) == stale);
             CHECK(crofton_last_error_item() == 0);
-            CHECK(crofton_world_set_bound(world, object, &bound) == stale);
-            CHECK(crofton_world_set_mesh(world, object, mesh) == stale);
-            CHECK(crofton_world_set_hidden(world, object, 1) == stale);
-            CHECK(crofton_world_set_layers(world, object, 1) == stale);
-            CHECK(crofton_world_set_collides_with(world, object, 1) == stale);
-            CHECK(crofton_world_set_user(world, object, 1) == stale);
-            CHECK(crofton_world_get_user(world, object, &user) == stale);
-            CHECK(crofton_world_get_box(world, object, &at) == stale);
-            CHECK(crofton_world_get_transform(world, object, &transform) == stale);
-            CHECK(crofton_world_contains(world, object, &contains) == CROFTON_OK);
+            CHECK(world_set_bound(world, object, &bound) == stale);
+            CHECK(world_set_mesh(world, object, mesh) == stale);
+            CHECK(world_set_hidden(world, object, 1) == stale);
+            CHECK(world_set_layers(world, object, 1) == stale);
+            CHECK(world_set_collides_with(world, object, 1) == stale);
+            CHECK(world_set_user(world, object, 1) == stale);
+            CHECK(world_get_user(world, object, &user) == stale);
+            CHECK(world_get_box(world, object, &at) == stale);
+            CHECK(world_get_transform(world, object, &transform) == stale);
+            CHECK(world_contains(world, object, &contains) == CROFTON_OK);
             CHECK(contains == 0);
         }
         crofton_node below{};
@@ -206,7 +214,7 @@ TEST_SUITE("capi/world") {
         crofton_object never{};
         CHECK(crofton_world_add(world.get(), &description, &never) == stale);
         int contains = 7;
-        CHECK(crofton_world_contains(world.get(), {}, &contains) == CROFTON_OK);
+        CHECK(world_contains(world.get(), {}, &contains) == CROFTON_OK);
         CHECK(contains == 0);
     }
 
@@ -219,10 +227,10 @@ TEST_SUITE("capi/world") {
         REQUIRE(object.index == own.index);
         CHECK(crofton_world_remove(second.get(), object) == CROFTON_STALE_HANDLE);
         CHECK(mentions(crofton_last_error(), "another World"));
-        CHECK(crofton_world_set_hidden(second.get(), object, 1) == CROFTON_STALE_HANDLE);
+        CHECK(world_set_hidden(second.get(), object, 1) == CROFTON_STALE_HANDLE);
         CHECK(crofton_world_remove_mesh(second.get(), mesh) == CROFTON_STALE_HANDLE);
         int contains = 7;
-        CHECK(crofton_world_contains(second.get(), object, &contains) == CROFTON_OK);
+        CHECK(world_contains(second.get(), object, &contains) == CROFTON_OK);
         CHECK(contains == 0);
         CHECK(crofton_world_remove(second.get(), own) == CROFTON_OK);
         CHECK(crofton_world_remove(first.get(), object) == CROFTON_OK);
@@ -249,24 +257,23 @@ TEST_SUITE("capi/world") {
             CHECK(crofton_world_raycast(world, rays, 2, ~0u, hits) == CROFTON_NON_FINITE);
             CHECK(crofton_last_error_item() == 1);
             CHECK(crofton_world_raycast_all(world, &rays[1], ~0u, s.found.get()) == CROFTON_NON_FINITE);
-            CHECK(crofton_world_overlap_box(world, &box, ~0u, s.found.get()) == CROFTON_NON_FINITE);
-            CHECK(crofton_world_overlap_sphere(world, box.center, 1, ~0u, s.found.get()) == CROFTON_NON_FINITE);
-            CHECK(crofton_world_overlap_capsule(world, place.linear, box.center, 1, ~0u, s.found.get()) ==
-                  CROFTON_NON_FINITE);
+            CHECK(world_overlap(world, &box, ~0u, s.found.get()) == CROFTON_NON_FINITE);
+            CHECK(world_overlap_sphere(world, box.center, 1, ~0u, s.found.get()) == CROFTON_NON_FINITE);
+            CHECK(world_overlap_capsule(world, place.linear, box.center, 1, ~0u, s.found.get()) == CROFTON_NON_FINITE);
             crofton_camera camera = crofton_default_camera();
             camera.position[0] = number;
             CHECK(look(world, camera, s.visible.get()) != CROFTON_OK);
         }
         const double center[3] = {};
         auto closest = sized<crofton_closest_object>();
-        CHECK(crofton_world_closest_to_sphere(world, center, 1, kNotANumber, ~0u, &closest) == CROFTON_NON_FINITE);
-        CHECK(crofton_world_closest_to_sphere(world, center, 1, -1, ~0u, &closest) == CROFTON_INVALID_ARGUMENT);
-        CHECK(crofton_world_closest_to_sphere(world, center, -1, 1, ~0u, &closest) == CROFTON_INVALID_ARGUMENT);
-        CHECK(crofton_world_closest_to_sphere(world, center, 1, kNoLimit, ~0u, &closest) == CROFTON_OK);
+        CHECK(world_closest_to_sphere(world, center, 1, kNotANumber, ~0u, &closest) == CROFTON_NON_FINITE);
+        CHECK(world_closest_to_sphere(world, center, 1, -1, ~0u, &closest) == CROFTON_INVALID_ARGUMENT);
+        CHECK(world_closest_to_sphere(world, center, -1, 1, ~0u, &closest) == CROFTON_INVALID_ARGUMENT);
+        CHECK(world_closest_to_sphere(world, center, 1, kNoLimit, ~0u, &closest) == CROFTON_OK);
         CHECK(closest.distance == doctest::Approx(3.5));  // the box's face is at z = −4.5
         CHECK(object.index == 77);
         std::size_t count = 0;
-        CHECK(crofton_world_object_count(world, &count) == CROFTON_OK);
+        CHECK(world_object_count(world, &count) == CROFTON_OK);
         CHECK(count == 1);
     }
 
@@ -300,10 +307,10 @@ TEST_SUITE("capi/world") {
         data.indices = reinterpret_cast<const char*>(tetrahedron.indices.data()) + 1;
         data.index_count = 3;
         CHECK(crofton_world_add_mesh(world, &data, &mesh) == CROFTON_INVALID_ARGUMENT);
-        const std::vector<crofton_view> views(33, default_view());
+        const std::vector<View> views(33, default_view());
         CHECK(look_at_many(world, views, s.in_views.get()) == CROFTON_OUT_OF_RANGE);
-        auto contact = sized<crofton_object_contact>();
-        CHECK(crofton_world_contact(world, 0, &contact) == CROFTON_OUT_OF_RANGE);
+        crofton_object_contact contact{};
+        CHECK(world_contact(world, 0, &contact) == CROFTON_OUT_OF_RANGE);
     }
 
     TEST_CASE("found lists what the last query into it has found, and nothing of the one before") {
@@ -323,7 +330,7 @@ TEST_SUITE("capi/world") {
             CHECK(object_count == 0);
             REQUIRE(hit_count == 1);
             CHECK(hits[0].t == doctest::Approx(4.5));
-            REQUIRE(crofton_world_overlap_box(s.world.get(), &box, ~0u, s.found.get()) == CROFTON_OK);
+            REQUIRE(world_overlap(s.world.get(), &box, ~0u, s.found.get()) == CROFTON_OK);
             count();
             CHECK(hit_count == 0);
             REQUIRE(object_count == 1);
@@ -333,7 +340,7 @@ TEST_SUITE("capi/world") {
 
     TEST_CASE("a result lists the objects of the world that was viewed, until its next update, and of no other") {
         SmallWorld s;
-        const crofton_view view = default_view();
+        const View view = default_view();
         crofton_object_ref refs[2] = {};
         REQUIRE(look(s.world.get(), view, s.visible.get()) == CROFTON_OK);
         REQUIRE(look_at_many(s.world.get(), std::span(&view, 1), s.in_views.get()) == CROFTON_OK);

@@ -8,6 +8,10 @@
 #include <limits>
 #include <vector>
 
+#include "../c_api/shorthand.hpp"
+
+using namespace crofton::capi_test;
+
 namespace {
 
 // Numbers that matter and numbers of any bits.
@@ -82,16 +86,16 @@ Struct sized() {
 struct World {
     crofton_tree* tree = nullptr;
     crofton_scene* scene = nullptr;
-    crofton_visible_set* visible = nullptr;
+    crofton_view_result* visible = nullptr;
     crofton_broadphase* broadphase = nullptr;
-    crofton_collider* colliders[2] = {};
+    crofton_body* meshes[2] = {};
     crofton_triangulator* triangulator = nullptr;
     crofton_clustered_mesh* clustered[2] = {};
     crofton_depth_culler* depth_culler = nullptr;
 
     World() {
         crofton_scene_create(&scene);
-        crofton_visible_set_create(&visible);
+        crofton_view_result_create(&visible);
         crofton_broadphase_create(&broadphase);
         crofton_triangulator_create(&triangulator);
         crofton_depth_culler_create(&depth_culler);
@@ -99,9 +103,9 @@ struct World {
     ~World() {
         crofton_tree_destroy(tree);
         crofton_scene_destroy(scene);
-        crofton_visible_set_destroy(visible);
+        crofton_view_result_destroy(visible);
         crofton_broadphase_destroy(broadphase);
-        for (crofton_collider* collider : colliders) crofton_collider_destroy(collider);
+        for (crofton_body* mesh : meshes) crofton_body_destroy(mesh);
         crofton_triangulator_destroy(triangulator);
         for (crofton_clustered_mesh* mesh : clustered) crofton_clustered_mesh_destroy(mesh);
         crofton_depth_culler_destroy(depth_culler);
@@ -147,21 +151,21 @@ crofton_frustum frustum(Input& in) {
 }
 
 void cull(World& world, Input& in) {
-    auto view = sized<crofton_view>();
+    View view;
     view.layer_mask = in.word();
     view.frustum = frustum(in);
-    auto options = sized<crofton_cull_options>();
+    crofton_view_request options = crofton_default_view_request();
     options.conservative = in.below(2);
     options.tree_order = in.below(2);
     const auto boxes = in.boxes();
     std::size_t count = boxes.size();
     if (in.flag())
-        crofton_cull_boxes(boxes.data(), nullptr, boxes.size(), &view, &options, nullptr, world.visible);
-    else if (crofton_cull_tree(world.tree, &view, &options, nullptr, world.visible) != CROFTON_OK)
+        cull_boxes(boxes.data(), nullptr, boxes.size(), &view, &options, nullptr, world.visible);
+    else if (cull_tree(world.tree, &view, &options, nullptr, world.visible) != CROFTON_OK)
         return;
     const std::uint32_t* ids = nullptr;
     const std::uint8_t* verdicts = nullptr;
-    if (crofton_visible_set_items(world.visible, &ids, &verdicts, &count) == CROFTON_OK)
+    if (visible_set_items(world.visible, &ids, &verdicts, &count) == CROFTON_OK)
         for (std::size_t i = 1; i < count && !options.tree_order; ++i) demand(ids[i - 1] < ids[i]);
     std::vector<std::uint8_t> classes(boxes.size());
     crofton_classify(&view.frustum, boxes.data(), boxes.size(), classes.data());
@@ -193,8 +197,7 @@ void change_tree(World& world, Input& in) {
         default:
             break;
     }
-    crofton_tree_refit(world.tree);
-    if (in.flag()) crofton_tree_rebuild_step(world.tree, in.word());
+    crofton_tree_refit(world.tree, in.flag() ? in.word() : 0);
 }
 
 void ask_tree(World& world, Input& in) {
@@ -204,8 +207,8 @@ void ask_tree(World& world, Input& in) {
     std::uint32_t items[8];
     std::size_t found = 0;
     crofton_tree_raycast(world.tree, &ray, 1, in.word(), &hit);
-    crofton_tree_within_box(world.tree, &box, in.word(), items, in.below(9), &found);
-    crofton_tree_within_sphere(world.tree, ray.origin, in.number(), in.word(), items, in.below(9), &found);
+    tree_within_box(world.tree, &box, in.word(), items, in.below(9), &found);
+    tree_within_sphere(world.tree, ray.origin, in.number(), in.word(), items, in.below(9), &found);
 }
 
 void pairs(World& world, Input& in) {
@@ -238,33 +241,30 @@ void two_boxes(Input& in) {
 }
 
 void meshes(World& world, Input& in) {
-    crofton_collider*& changed = world.colliders[in.below(2)];
+    crofton_body*& changed = world.meshes[in.below(2)];
     if (in.flag()) {
         const Mesh mesh(in);
-        crofton_collider_destroy(changed);
+        crofton_body_destroy(changed);
         changed = nullptr;
-        crofton_collider_create(&mesh.view, &changed);
+        body_mesh(&mesh.view, in.below(2), &changed);
     }
-    const crofton_collider *a = world.colliders[0], *b = world.colliders[1];
+    const crofton_body *a = world.meshes[0], *b = world.meshes[1];
     const crofton_transform pose = in.transform();
     const crofton_ray ray = in.ray();
     crofton_mesh_contact contacts[4];
-    crofton_pair pairs[4];
-    crofton_ray_hit hit{};
-    double distance = 0.0, on_a[3], on_b[3];
+    auto relation = sized<crofton_mesh_relation>();
+    auto hit = sized<crofton_body_ray_hit>();
     std::size_t count = 0;
-    std::uint32_t containment = 0;
-    int meet = 0, any = 0;
-    if (crofton_colliders_meet(a, b, &pose, &meet) == CROFTON_OK &&
-        crofton_colliders_triangle_pairs(a, b, &pose, pairs, 4, &count) == CROFTON_OK)
-        demand((count > 0) == (meet != 0));
-    crofton_colliders_distance(a, b, &pose, &distance, on_a, on_b);
-    crofton_colliders_contacts(a, b, &pose, contacts, in.below(5), &count);
-    crofton_colliders_depth(a, b, &pose, &distance, on_a);
-    crofton_colliders_containment(a, b, &pose, &containment);
-    if (crofton_collider_raycast(a, &ray, 1, &hit) == CROFTON_OK &&
-        crofton_collider_hits_any(a, &ray, &any) == CROFTON_OK)
-        demand((any != 0) == (hit.index != CROFTON_NONE));
+    int any = 0;
+    if (crofton_meshes_relate(a, b, &pose, CROFTON_MESHES_MEET, &relation) == CROFTON_OK &&
+        crofton_meshes_contacts(a, b, &pose, contacts, in.below(5), &count) == CROFTON_OK)
+        demand((count > 0) == (relation.meet != 0));
+    crofton_meshes_relate(a, b, &pose, in.below(17), &relation);
+    const crofton_transform identity{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
+    const crofton_placed placed{a, in.flag() ? &pose : &identity};
+    if (crofton_body_raycast(&placed, &ray, &hit) == CROFTON_OK &&
+        crofton_body_raycast_any(&placed, &ray, &any) == CROFTON_OK)
+        demand((any != 0) == (hit.t < std::numeric_limits<double>::infinity()));
 }
 
 void picture(World& world, Input& in) {
@@ -293,16 +293,16 @@ void picture(World& world, Input& in) {
     view.height = in.below(8) ? 1 + in.below(70) : in.word();
     view.depth = in.below(4);
     const crofton_visible_cluster* found = nullptr;
-    std::size_t count = 0, cluster_count = 0;
-    if (crofton_depth_culler_find_visible(world.depth_culler, objects.data(), objects.size(), &view, &found, &count) !=
-        CROFTON_OK)
+    std::size_t count = 0;
+    if (crofton_depth_culler_find_visible(world.depth_culler, objects.data(), objects.size(), &view, &found, &count,
+                                          nullptr) != CROFTON_OK)
         return;
     for (std::size_t i = 0; i < count; ++i) {
         demand(found[i].object < objects.size());
-        const crofton_cluster* clusters = nullptr;
-        demand(crofton_clustered_mesh_clusters(objects[found[i].object].mesh, &clusters, &cluster_count) == CROFTON_OK);
-        demand(found[i].cluster < cluster_count);
-        const std::uint32_t triangles = clusters[found[i].cluster].triangle_count;
+        crofton_clusters clusters{};
+        demand(crofton_clustered_mesh_get(objects[found[i].object].mesh, &clusters) == CROFTON_OK);
+        demand(found[i].cluster < clusters.cluster_count);
+        const std::uint32_t triangles = clusters.clusters[found[i].cluster].triangle_count;
         demand(found[i].triangles != 0 && (triangles == 64 || found[i].triangles >> triangles == 0));
     }
     float nearness = 0.0f;
@@ -357,9 +357,9 @@ void fit(Input& in) {
     options.criterion = {in.number(), in.number(), in.number()};
     if (in.flag()) options.criterion = {0.0, 1.0, 0.5};
     crofton_box box;
-    if (crofton_fit_floats(floats.data(), floats.size() / 3, &options, &box) == CROFTON_OK)
+    if (crofton_fit_points(floats.data(), floats.size() / 3, 0, &options, &box) == CROFTON_OK)
         demand(crofton_boxes_validate(&box, 1) == CROFTON_OK);
-    if (crofton_fit_doubles(doubles.data(), doubles.size() / 3, &options, &box) == CROFTON_OK)
+    if (crofton_fit_points(doubles.data(), doubles.size() / 3, 1, &options, &box) == CROFTON_OK)
         demand(crofton_boxes_validate(&box, 1) == CROFTON_OK);
     if (crofton_fit_boxes(boxes.data(), boxes.size(), &options.criterion, &box) == CROFTON_OK)
         demand(crofton_boxes_validate(&box, 1) == CROFTON_OK);

@@ -6,7 +6,10 @@
 #include <crofton/cull/classify.hpp>
 #include <map>
 
+#include "../c_api/shorthand.hpp"
 #include "shapes.hpp"
+
+using namespace crofton::capi_test;
 
 namespace {
 
@@ -69,15 +72,15 @@ class Sequence {
                 break;
             case 4:
                 object.layers = in_.layers();
-                demand(crofton_world_set_layers(world_, object.handle, object.layers) == CROFTON_OK, "set_layers");
+                demand(world_set_layers(world_, object.handle, object.layers) == CROFTON_OK, "set_layers");
                 break;
             case 5:
                 object.hidden = in_.flag();
-                demand(crofton_world_set_hidden(world_, object.handle, object.hidden) == CROFTON_OK, "set_hidden");
+                demand(world_set_hidden(world_, object.handle, object.hidden) == CROFTON_OK, "set_hidden");
                 break;
             case 6:
                 object.user = in_.word();
-                demand(crofton_world_set_user(world_, object.handle, object.user) == CROFTON_OK, "set_user");
+                demand(world_set_user(world_, object.handle, object.user) == CROFTON_OK, "set_user");
                 break;
             case 7:
                 wrong_calls(object);
@@ -96,23 +99,22 @@ class Sequence {
     void update() {
         demand(crofton_world_update(world_, nullptr) == CROFTON_OK, "update");
         std::size_t count = 0;
-        demand(crofton_world_object_count(world_, &count) == CROFTON_OK && count == objects_.size(), "object_count");
+        demand(world_object_count(world_, &count) == CROFTON_OK && count == objects_.size(), "object_count");
         for (auto& [index, object] : objects_) {
             object.updated = true;
             crofton_box box{};
             std::uint64_t user = 0;
             const crofton_box expected = c_box(object.box);
-            demand(crofton_world_get_box(world_, object.handle, &box) == CROFTON_OK &&
+            demand(world_get_box(world_, object.handle, &box) == CROFTON_OK &&
                        std::memcmp(&box, &expected, sizeof box) == 0,
                    "get_box");
-            demand(crofton_world_get_user(world_, object.handle, &user) == CROFTON_OK && user == object.user,
-                   "get_user");
+            demand(world_get_user(world_, object.handle, &user) == CROFTON_OK && user == object.user, "get_user");
         }
         for (const crofton_object handle : stale_) {
             int there = 1;
             std::uint64_t user = 0;
-            demand(crofton_world_contains(world_, handle, &there) == CROFTON_OK && there == 0, "contains what is gone");
-            demand(crofton_world_get_user(world_, handle, &user) == CROFTON_STALE_HANDLE, "a stale handle");
+            demand(world_contains(world_, handle, &there) == CROFTON_OK && there == 0, "contains what is gone");
+            demand(world_get_user(world_, handle, &user) == CROFTON_STALE_HANDLE, "a stale handle");
         }
         check_view();
         check_overlap();
@@ -145,20 +147,20 @@ class Sequence {
         box.half_extents[in_.below(3)] = -1.0f;
         demand(crofton_world_set_boxes(world_, &object.handle, sizeof object.handle, &box, sizeof box, 1) != CROFTON_OK,
                "a box that is none");
-        demand(crofton_world_set_layers(nullptr, object.handle, 0) != CROFTON_OK, "no world");
-        demand(crofton_world_view(world_, nullptr, nullptr, visible_) != CROFTON_OK, "no view");
+        demand(world_set_layers(nullptr, object.handle, 0) != CROFTON_OK, "no world");
+        demand(crofton_world_view(world_, nullptr, 1, nullptr, visible_) != CROFTON_OK, "no view");
         crofton_object_description description = crofton_default_object_description();
         description.size += 8 + in_.byte();
         crofton_object handle{};
         demand(crofton_world_add(world_, &description, &handle) == CROFTON_WRONG_SIZE, "a struct too large");
         if (stale_.empty()) return;
         const crofton_object stale = stale_[in_.byte() % stale_.size()];
-        demand(crofton_world_set_hidden(world_, stale, 1) == CROFTON_STALE_HANDLE, "a stale handle hidden");
+        demand(world_set_hidden(world_, stale, 1) == CROFTON_STALE_HANDLE, "a stale handle hidden");
         demand(crofton_world_remove(world_, stale) == CROFTON_STALE_HANDLE, "a stale handle removed");
     }
     void check_view() {
         const Frustum frustum = in_.frustum();
-        auto view = sized<crofton_view>();
+        View view;
         view.layer_mask = in_.layers();
         view.frustum = sized<crofton_frustum>();
         view.frustum.plane_count = frustum.plane_count;
@@ -175,7 +177,7 @@ class Sequence {
         crofton_view_request request = crofton_default_view_request();
         request.volume = &view.frustum;
         request.layers = view.layer_mask;
-        demand(crofton_world_view(world_, &request, nullptr, visible_) == CROFTON_OK, "a view");
+        demand(crofton_world_view(world_, &request, 1, nullptr, visible_) == CROFTON_OK, "a view");
         const std::uint32_t* ids = nullptr;
         std::size_t count = 0;
         demand(crofton_view_result_ids(visible_, &ids, &count, nullptr, nullptr) == CROFTON_OK, "ids of a view");
@@ -184,7 +186,7 @@ class Sequence {
     void check_overlap() {
         const crofton_box box = c_box(in_.box());
         const std::uint32_t layers = in_.layers();
-        demand(crofton_world_overlap_box(world_, &box, layers, found_) == CROFTON_OK, "an overlap");
+        demand(world_overlap(world_, &box, layers, found_) == CROFTON_OK, "an overlap");
         const crofton_object_ref* list = nullptr;
         std::size_t count = 0;
         demand(crofton_found_objects(found_, &list, &count) == CROFTON_OK, "what overlaps");

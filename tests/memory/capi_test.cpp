@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "../c_api/shorthand.hpp"
 #include "ending.hpp"
 #include "shapes.hpp"
 #include "sweep.hpp"
@@ -17,6 +18,7 @@
 namespace {
 
 using namespace crofton;
+using namespace capi_test;
 using testing::sweep_ending;
 
 struct CMemory {
@@ -65,11 +67,9 @@ std::vector<crofton_box> row_of_boxes(int count) {
     return result;
 }
 
-crofton_view default_view() {
+View default_view() {
     crofton_camera camera = crofton_default_camera();
-    crofton_view view{};
-    view.size = sizeof view;
-    view.layer_mask = ~0u;
+    View view;
     view.frustum.size = sizeof view.frustum;
     crofton_frustum_from_camera(&camera, &view.frustum);
     return view;
@@ -87,7 +87,6 @@ TEST_SUITE("memory/capi") {
     TEST_CASE("what creates a handle") {
         const CMemory memory;
         sweep_create<crofton_scene>("scene", crofton_scene_create, crofton_scene_destroy);
-        sweep_create<crofton_visible_set>("visible set", crofton_visible_set_create, crofton_visible_set_destroy);
         sweep_create<crofton_broadphase>("broadphase", crofton_broadphase_create, crofton_broadphase_destroy);
         sweep_create<crofton_triangulator>("triangulator", crofton_triangulator_create, crofton_triangulator_destroy);
         sweep_create<crofton_found>("found", crofton_found_create, crofton_found_destroy);
@@ -102,9 +101,9 @@ TEST_SUITE("memory/capi") {
             },
             crofton_tree_destroy);
         const Sail sail;
-        sweep_create<crofton_collider>(
-            "collider", [&](crofton_collider** collider) { return crofton_collider_create(&sail.mesh, collider); },
-            crofton_collider_destroy);
+        sweep_create<crofton_body>(
+            "body of a mesh", [&](crofton_body** body) { return body_mesh(&sail.mesh, 0, body); },
+            crofton_body_destroy);
         sweep_create<crofton_clustered_mesh>(
             "clustered mesh",
             [&](crofton_clustered_mesh** clustered) { return crofton_clustered_mesh_create(&sail.mesh, 0, clustered); },
@@ -116,8 +115,8 @@ TEST_SUITE("memory/capi") {
         const CMemory memory;
         const auto cloud = testing::points(100);
         crofton_box box{};
-        testing::sweep("fit_floats",
-                       [&] { return outcome_of(crofton_fit_floats(&cloud[0].x, cloud.size(), nullptr, &box)); });
+        testing::sweep("fit_points",
+                       [&] { return outcome_of(crofton_fit_points(&cloud[0].x, cloud.size(), 0, nullptr, &box)); });
         const auto boxes = row_of_boxes(20);
         testing::sweep("fit_boxes",
                        [&] { return outcome_of(crofton_fit_boxes(boxes.data(), boxes.size(), nullptr, &box)); });
@@ -162,31 +161,29 @@ TEST_SUITE("memory/capi") {
     TEST_CASE("calls that end the program") {
         const CMemory memory;
         const auto boxes = row_of_boxes(300);
-        const crofton_view view = default_view();
+        const View view = default_view();
         crofton_tree* tree = nullptr;
         REQUIRE(crofton_tree_create(boxes.data(), nullptr, boxes.size(), nullptr, &tree) == CROFTON_OK);
-        crofton_visible_set* visible = nullptr;
-        REQUIRE(crofton_visible_set_create(&visible) == CROFTON_OK);
+        crofton_view_result* visible = nullptr;
+        REQUIRE(crofton_view_result_create(&visible) == CROFTON_OK);
         sweep_ending("tree: cull, insert, move, refit, rebuild", [&] {
-            crofton_cull_tree(tree, &view, nullptr, nullptr, visible);
+            cull_tree(tree, &view, nullptr, nullptr, visible);
             for (std::uint32_t i = 0; i < 100; ++i) {
                 std::uint32_t item = 0;
                 crofton_tree_insert(tree, &boxes[i], ~0u, &item);
                 crofton_tree_move(tree, &item, &boxes[i + 1], 1);
             }
-            crofton_tree_refit(tree);
-            for (int i = 0; i < 20; ++i) crofton_tree_rebuild_step(tree, 5000);
+            for (int i = 0; i < 20; ++i) crofton_tree_refit(tree, 5000);
         });
         sweep_ending("tree: spheres and boxes", [&] {
             std::uint32_t items[8];
             std::size_t found = 0;
-            crofton_tree_within_box(tree, &boxes[0], ~0u, items, 8, &found);
+            tree_within_box(tree, &boxes[0], ~0u, items, 8, &found);
             const double center[3] = {0, 0, -4};
-            crofton_tree_within_sphere(tree, center, 2.0, ~0u, items, 8, &found);
+            tree_within_sphere(tree, center, 2.0, ~0u, items, 8, &found);
         });
-        sweep_ending("list of boxes", [&] {
-            crofton_cull_boxes(boxes.data(), nullptr, boxes.size(), &view, nullptr, nullptr, visible);
-        });
+        sweep_ending("list of boxes",
+                     [&] { cull_boxes(boxes.data(), nullptr, boxes.size(), &view, nullptr, nullptr, visible); });
         crofton_broadphase* broadphase = nullptr;
         REQUIRE(crofton_broadphase_create(&broadphase) == CROFTON_OK);
         sweep_ending("broadphase",
@@ -208,14 +205,14 @@ TEST_SUITE("memory/capi") {
             if (crofton_view_result_create(&seen) != CROFTON_OK) return;
             crofton_view_request request = crofton_default_view_request();
             request.volume = &view.frustum;
-            crofton_world_view(world, &request, nullptr, seen);
+            crofton_world_view(world, &request, 1, nullptr, seen);
             crofton_found* found = nullptr;
             if (crofton_found_create(&found) != CROFTON_OK) return;
-            crofton_world_overlap_box(world, &boxes[0], ~0u, found);
+            world_overlap(world, &boxes[0], ~0u, found);
         });
         CHECK(crofton_world_destroy(world) == CROFTON_OK);
         CHECK(crofton_broadphase_destroy(broadphase) == CROFTON_OK);
-        CHECK(crofton_visible_set_destroy(visible) == CROFTON_OK);
+        CHECK(crofton_view_result_destroy(visible) == CROFTON_OK);
         CHECK(crofton_tree_destroy(tree) == CROFTON_OK);
         MESSAGE(testing::failures_tried << " allocations failed with an Error, " << testing::endings_tried
                                         << " ended a process or went on");

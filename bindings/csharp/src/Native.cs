@@ -33,7 +33,7 @@ namespace Crofton {
             public UIntPtr PositionCount, PositionStride;
             public IntPtr Indices;
             public UIntPtr IndexCount;
-            public uint IsDouble, IsShort, Triangles;
+            public uint IsDouble, IsShort, Triangles, Clusters, OneSided;
         }
 
         [StructLayout(LayoutKind.Sequential)]
@@ -54,6 +54,47 @@ namespace Crofton {
             public NodeHandle Node;
             public uint Layers, CollidesWith, Occludes, OnlyOccludes;
             public IntPtr Body;
+            public uint Hidden;
+        }
+
+        // Members of crofton_world_set.
+        internal const uint SetUser = 1, SetLayers = 2, SetCollidesWith = 4, SetHidden = 8, SetOccludes = 16, SetMesh = 32, SetBound = 64;
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct ObjectInfo {
+            public UIntPtr Size;
+            public ulong User;
+            public uint HasBox, HasTransform;
+            public Obb Box;
+            public Transform Transform;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct MeshInfo {
+            public UIntPtr Size, OccluderCount;
+            public IntPtr Clusters;
+            public UIntPtr ClusterCount;
+            public IntPtr TriangleOrder;
+            public UIntPtr TriangleCount;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct WorldStatisticsData {
+            public UIntPtr Size;
+            public ulong Objects, Resting, Moving, BoxPairsTested, ContactPairsTested;
+            public uint BoxesChanged, NodesUpdated, OutOfRange, TreeBuilt;
+            public ulong ObjectCount;
+        }
+
+        internal const uint ShapeBox = 0, ShapeSphere = 1, ShapeCapsule = 2;
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct ShapeData {
+            public uint Kind;
+            public Obb Box;
+            public Vector3 Begin, End;
+            public double Radius;
+            public IntPtr Body, Pose;
         }
 
         [StructLayout(LayoutKind.Sequential)]
@@ -76,13 +117,14 @@ namespace Crofton {
 
         [StructLayout(LayoutKind.Sequential)]
         internal struct ContactData {
-            public UIntPtr Size;
             public ObjectRef First, Second;
-            public uint Phase, Inside;
+            public byte Phase, Inside;
             public Vector3 Normal;
             public double Depth;
-            public IntPtr Points, Triangles;
-            public UIntPtr PointCount, TriangleCount;
+            public IntPtr Points;
+            public UIntPtr PointCount;
+            public IntPtr Triangles;
+            public UIntPtr TriangleCount;
         }
 
         [StructLayout(LayoutKind.Sequential)]
@@ -100,6 +142,47 @@ namespace Crofton {
             public IntPtr Occlusion, Limits, CandidateMask;
             public UIntPtr CandidateWords;
             public uint Conservative, TreeOrder;
+            public IntPtr Picture;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct ViewMatrixData {
+            public UIntPtr Size;
+            public IntPtr Doubles, Floats;
+            public uint IsRowMajor, Depth;
+            public Vector3 Origin;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct DrawLimitsData {
+            public UIntPtr Size;
+            public Vector3 Eye;
+            public double MaxDistanceInRadii, LeastRadius;
+            public IntPtr LayerDistances, ItemDistances;
+            public UIntPtr ItemCount;
+            public IntPtr DrawnBefore;
+            public UIntPtr DrawnWordCount;
+            public double Hysteresis;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct PictureData {
+            public UIntPtr Size;
+            public uint Width, Height, Depth;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct ViewInfo {
+            public UIntPtr Size;
+            public ulong NodesTested, BoxesTested, AcceptedWhole, Straddling, ExactTests, FalsePositives;
+            public ulong OccludersDrawn, OccluderPiecesDrawn, OccluderTrianglesDrawn;
+            public ulong OcclusionNodesTested, OcclusionNodesOutside, OcclusionNodesHidden, OcclusionItemsTested, OcclusionItemsHidden;
+            public IntPtr OccludedIds;
+            public UIntPtr OccludedCount;
+            public uint DepthWidth, DepthHeight;
+            public IntPtr Triangles;
+            public UIntPtr TriangleClusterCount;
+            public ulong ObjectsListed, ObjectsAsked, ClustersAsked, ClustersDrawn, TrianglesDrawn, TrianglesListed;
         }
 
         [StructLayout(LayoutKind.Sequential)]
@@ -141,6 +224,10 @@ namespace Crofton {
         [DllImport(Library)] internal static extern ObjectData crofton_default_object_description();
         [DllImport(Library)] internal static extern OcclusionOptionsData crofton_default_occlusion_options();
         [DllImport(Library)] internal static extern ViewRequestData crofton_default_view_request();
+        [DllImport(Library)] internal static extern ViewMatrixData crofton_default_view_matrix();
+        [DllImport(Library)] internal static extern DrawLimitsData crofton_default_draw_limits();
+        [DllImport(Library)] internal static extern PictureData crofton_default_picture_view();
+        [DllImport(Library)] internal static extern FitOptionsData crofton_default_fit_options();
         [DllImport(Library)] internal static extern int crofton_frustum_from_camera(ref CameraData camera, ref FrustumData frustum);
         [DllImport(Library)] internal static extern int crofton_frustum_from_matrix(double[] toClip, uint depth, ref Vector3 origin, ref FrustumData frustum);
         [DllImport(Library)] internal static extern int crofton_boxes_validate(Obb[] boxes, UIntPtr count);
@@ -150,11 +237,10 @@ namespace Crofton {
         [DllImport(Library)] internal static extern int crofton_boxes_distance(ref Obb a, ref Obb b, out double distance, out Vector3 onA, out Vector3 onB);
         [DllImport(Library)] internal static extern int crofton_box_raycast(ref Obb box, ref Ray ray, out double t);
 
-        [DllImport(Library)] internal static extern int crofton_criterion_minimal_perimeter(out Criterion criterion);
         [DllImport(Library)] internal static extern int crofton_criterion_for_rays(double length, out Criterion criterion);
         [DllImport(Library)] internal static extern int crofton_criterion_for_frustum(ref CameraData camera, out Criterion criterion);
-        [DllImport(Library)] internal static extern int crofton_fit_floats(float[] points, UIntPtr count, ref FitOptionsData options, out Obb box);
-        [DllImport(Library)] internal static extern int crofton_fit_doubles(double[] points, UIntPtr count, ref FitOptionsData options, out Obb box);
+        [DllImport(Library)] internal static extern int crofton_fit_points(float[] points, UIntPtr count, uint isDouble, ref FitOptionsData options, out Obb box);
+        [DllImport(Library)] internal static extern int crofton_fit_points(double[] points, UIntPtr count, uint isDouble, ref FitOptionsData options, out Obb box);
 
         [DllImport(Bake)] internal static extern int crofton_triangulator_create(out TriangulatorHandle triangulator);
         [DllImport(Bake)] internal static extern int crofton_triangulator_destroy(IntPtr triangulator);
@@ -174,27 +260,20 @@ namespace Crofton {
         [DllImport(Library)] internal static extern int crofton_world_remove(WorldHandle world, ObjectHandle handle);
         [DllImport(Library)] internal static extern int crofton_world_set_transforms(WorldHandle world, ObjectHandle[] objects, UIntPtr stride, Transform[] transforms, UIntPtr transformStride, UIntPtr count);
         [DllImport(Library)] internal static extern int crofton_world_set_boxes(WorldHandle world, ObjectHandle[] objects, UIntPtr stride, Obb[] boxes, UIntPtr boxStride, UIntPtr count);
-        [DllImport(Library)] internal static extern int crofton_world_set_bound(WorldHandle world, ObjectHandle handle, ref BoundData bound);
-        [DllImport(Library)] internal static extern int crofton_world_set_mesh(WorldHandle world, ObjectHandle handle, MeshHandle mesh);
-        [DllImport(Library)] internal static extern int crofton_world_set_hidden(WorldHandle world, ObjectHandle handle, int hidden);
-        [DllImport(Library)] internal static extern int crofton_world_set_layers(WorldHandle world, ObjectHandle handle, uint layers);
-        [DllImport(Library)] internal static extern int crofton_world_set_collides_with(WorldHandle world, ObjectHandle handle, uint layers);
-        [DllImport(Library)] internal static extern int crofton_world_set_user(WorldHandle world, ObjectHandle handle, ulong user);
+        [DllImport(Library)] internal static extern int crofton_world_set(WorldHandle world, ObjectHandle handle, uint members, ref ObjectData description);
         [DllImport(Library)] internal static extern int crofton_world_update(WorldHandle world, IntPtr jobs);
-        [DllImport(Library)] internal static extern int crofton_world_object_count(WorldHandle world, out UIntPtr count);
-        [DllImport(Library)] internal static extern int crofton_world_contains(WorldHandle world, ObjectHandle handle, out int contains);
-        [DllImport(Library)] internal static extern int crofton_world_get_user(WorldHandle world, ObjectHandle handle, out ulong user);
-        [DllImport(Library)] internal static extern int crofton_world_get_box(WorldHandle world, ObjectHandle handle, out Obb box);
-        [DllImport(Library)] internal static extern int crofton_world_get_transform(WorldHandle world, ObjectHandle handle, out Transform transform);
+        [DllImport(Library)] internal static extern int crofton_world_get_statistics(WorldHandle world, ref WorldStatisticsData statistics);
+        [DllImport(Library)] internal static extern int crofton_world_get_object(WorldHandle world, ObjectHandle handle, ref ObjectInfo info);
+        [DllImport(Library)] internal static extern int crofton_world_get_mesh(WorldHandle world, MeshHandle mesh, ref MeshInfo info);
         [DllImport(Library)] internal static extern int crofton_world_find_occluders(WorldHandle world, MeshHandle mesh, IntPtr options);
-        [DllImport(Library)] internal static extern int crofton_world_occluder_count(WorldHandle world, MeshHandle mesh, out UIntPtr count);
-        [DllImport(Library)] internal static extern int crofton_world_set_occludes(WorldHandle world, ObjectHandle handle, int occludes);
 
         [DllImport(Library)] internal static extern int crofton_view_result_create(out VisibleHandle visible);
         [DllImport(Library)] internal static extern int crofton_view_result_destroy(IntPtr visible);
-        [DllImport(Library)] internal static extern int crofton_world_view(WorldHandle world, ref ViewRequestData request, IntPtr jobs, VisibleHandle visible);
+        [DllImport(Library)] internal static extern int crofton_world_view(WorldHandle world, ref ViewRequestData request, UIntPtr count, IntPtr jobs, VisibleHandle visible);
+        [DllImport(Library)] internal static extern int crofton_world_view(WorldHandle world, [In] ViewRequestData[] requests, UIntPtr count, IntPtr jobs, VisibleHandle visible);
         [DllImport(Library)] internal static extern int crofton_view_result_ids(VisibleHandle visible, out IntPtr ids, out UIntPtr count, IntPtr verdicts, IntPtr insideCount);
-        [DllImport(Library)] internal static extern int crofton_view_result_list(VisibleHandle visible, WorldHandle world, UIntPtr first, [Out] ObjectRef[] objects, IntPtr viewMasks, UIntPtr capacity);
+        [DllImport(Library)] internal static extern int crofton_view_result_list(VisibleHandle visible, WorldHandle world, UIntPtr first, [Out] ObjectRef[] objects, [Out] uint[] viewMasks, UIntPtr capacity);
+        [DllImport(Library)] internal static extern int crofton_view_result_get_view(VisibleHandle visible, UIntPtr view, ref ViewInfo info);
 
         [DllImport(Library)] internal static extern int crofton_found_create(out FoundHandle found);
         [DllImport(Library)] internal static extern int crofton_found_destroy(IntPtr found);
@@ -203,13 +282,10 @@ namespace Crofton {
         [DllImport(Library)] internal static extern int crofton_world_raycast(WorldHandle world, Ray[] rays, UIntPtr count, uint layers, [Out] Hit[] hits);
         [DllImport(Library)] internal static extern int crofton_world_raycast_any(WorldHandle world, ref Ray ray, uint layers, out int hit);
         [DllImport(Library)] internal static extern int crofton_world_raycast_all(WorldHandle world, ref Ray ray, uint layers, FoundHandle found);
-        [DllImport(Library)] internal static extern int crofton_world_overlap_box(WorldHandle world, ref Obb box, uint layers, FoundHandle found);
-        [DllImport(Library)] internal static extern int crofton_world_overlap_sphere(WorldHandle world, ref Vector3 center, double radius, uint layers, FoundHandle found);
-        [DllImport(Library)] internal static extern int crofton_world_overlap_capsule(WorldHandle world, ref Vector3 begin, ref Vector3 end, double radius, uint layers, FoundHandle found);
-        [DllImport(Library)] internal static extern int crofton_world_closest_to_sphere(WorldHandle world, ref Vector3 center, double radius, double maxDistance, uint layers, ref ClosestData closest);
+        [DllImport(Library)] internal static extern int crofton_world_overlap(WorldHandle world, ref ShapeData shape, uint layers, FoundHandle found);
+        [DllImport(Library)] internal static extern int crofton_world_closest(WorldHandle world, ref ShapeData shape, double maxDistance, uint layers, ref ClosestData closest);
         [DllImport(Library)] internal static extern int crofton_world_pairs(WorldHandle world, out IntPtr pairs, out UIntPtr count);
-        [DllImport(Library)] internal static extern int crofton_world_contact_count(WorldHandle world, out UIntPtr count);
-        [DllImport(Library)] internal static extern int crofton_world_contact(WorldHandle world, UIntPtr contact, ref ContactData result);
+        [DllImport(Library)] internal static extern int crofton_world_contacts(WorldHandle world, out IntPtr contacts, out UIntPtr count);
     }
 
     /// <summary>Owns something of the library; freed once, when nobody can use it any more.</summary>

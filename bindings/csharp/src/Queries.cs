@@ -7,6 +7,7 @@ namespace Crofton {
     public sealed class ViewResult : IDisposable {
         internal readonly VisibleHandle Handle;
         ObjectRef[] objects = new ObjectRef[0];
+        uint[] masks = new uint[0];
 
         public ViewResult() {
             Library.Load();
@@ -19,13 +20,33 @@ namespace Crofton {
         /// <summary>The objects and the caller's numbers, by index; only the first Count are of the last view.</summary>
         public ObjectRef[] Objects { get { return objects; } }
 
+        /// <summary>After a view of several requests: bit v of each says that view v sees the object.</summary>
+        public uint[] ViewMasks { get { return masks; } }
+        /// <summary>Indices of what is in the view's volume and hidden; none unless OcclusionOptions.ListOccluded asked.</summary>
+        public uint[] OccludedIds(int view = 0) {
+            Native.ViewInfo info = Info(view);
+            return Library.ToArray<uint>(info.OccludedIds, info.OccludedCount);
+        }
+        /// <summary>Of a view with a Picture: the triangles to draw, by object, then by cluster (World.ClustersOf).</summary>
+        public VisibleCluster[] Triangles(int view = 0) {
+            Native.ViewInfo info = Info(view);
+            return Library.ToArray<VisibleCluster>(info.Triangles, info.TriangleClusterCount);
+        }
+        Native.ViewInfo Info(int view) {
+            var info = new Native.ViewInfo { Size = Native.SizeOf<Native.ViewInfo>() };
+            Library.Check(Native.crofton_view_result_get_view(Handle, (UIntPtr)view, ref info));
+            return info;
+        }
+
         internal int Read(World world) {
             IntPtr ids;
             UIntPtr count;
             Library.Check(Native.crofton_view_result_ids(Handle, out ids, out count, IntPtr.Zero, IntPtr.Zero));
             var listed = objects.Length < (int)count ? new ObjectRef[(int)count + (int)count / 2] : objects;
-            Library.Check(Native.crofton_view_result_list(Handle, world.Handle, UIntPtr.Zero, listed, IntPtr.Zero, count));
+            var seenBy = masks.Length < listed.Length ? new uint[listed.Length] : masks;
+            Library.Check(Native.crofton_view_result_list(Handle, world.Handle, UIntPtr.Zero, listed, seenBy, count));
             objects = listed;
+            masks = seenBy;
             return Count = (int)count;
         }
     }
@@ -99,26 +120,97 @@ namespace Crofton {
         public uint Width = 480, Height = 270;
         /// <summary>Draws at most so many.</summary>
         public uint MaxOccluders = 256;
+        /// <summary>Does not draw what covers a smaller part of the sphere of directions.</summary>
+        public float LeastCover = 2e-5f;
+        /// <summary>Also lists what is hidden: ViewResult.OccludedIds.</summary>
+        public bool ListOccluded;
 
         internal Native.OcclusionOptionsData Data() {
             Native.OcclusionOptionsData data = Native.crofton_default_occlusion_options();
             data.Width = Width;
             data.Height = Height;
             data.MaxOccluders = MaxOccluders;
+            data.LeastCover = LeastCover;
+            data.ListOccluded = ListOccluded ? 1u : 0u;
             return data;
         }
+    }
+
+    /// <summary>An engine's own matrix, from positions relative to Origin to clip space, for column vectors.</summary>
+    public sealed class ViewMatrix {
+        /// <summary>Sixteen numbers, column by column unless IsRowMajor.</summary>
+        public double[] ToClip;
+        public bool IsRowMajor;
+        public DepthRange Depth;
+        public Vector3 Origin;
+    }
+
+    /// <summary>The picture that is drawn: one sample a pixel.</summary>
+    public sealed class PictureView {
+        public uint Width = 1280, Height = 720;
+        /// <summary>Of the renderer's projection; beside a ViewMatrix, the same as its.</summary>
+        public DepthRange Depth;
+    }
+
+    /// <summary>What is too small or too far to draw.</summary>
+    public sealed class DrawLimits {
+        /// <summary>Where distances are measured from.</summary>
+        public Vector3 Eye;
+        /// <summary>Leaves out what is farther than so many of its radii.</summary>
+        public double MaxDistanceInRadii = double.PositiveInfinity;
+        /// <summary>Leaves out what is smaller.</summary>
+        public double LeastRadius;
+        /// <summary>Leaves out what is farther than its layers' distances (32, or null), or its own, by index (or null).</summary>
+        public float[] LayerDistances, ItemDistances;
+        /// <summary>Bit i % 64 of word i / 64: was the object with index i drawn before? Its limits are Hysteresis times as long.</summary>
+        public ulong[] DrawnBefore;
+        public double Hysteresis = 1;
+    }
+
+    /// <summary>A cluster with triangles to draw: bit k of Triangles stands for triangle FirstTriangle + k of the cluster.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct VisibleCluster {
+        public uint Object, Cluster;
+        public ulong Triangles;
+    }
+
+    /// <summary>A group of neighbouring triangles, and a box around them: Center plus and minus each half edge.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct Cluster {
+        public uint FirstTriangle, TriangleCount;
+        [StructLayout(LayoutKind.Sequential)]
+        public struct Edge { public float X, Y, Z; }
+        public Edge Center, HalfEdge0, HalfEdge1, HalfEdge2;
+    }
+
+    /// <summary>How a mesh is cut. Permute the index buffer that you draw by TriangleOrder: each cluster is one range then.</summary>
+    public sealed class Clusters {
+        public Cluster[] All;
+        public uint[] TriangleOrder;
     }
 
     /// <summary>What a view asks: where it looks from, and what it lists.</summary>
     public sealed class ViewRequest {
         /// <summary>Set a camera,</summary>
         public Camera Camera;
+        /// <summary>an engine's own matrix,</summary>
+        public ViewMatrix Matrix;
         /// <summary>or any convex volume. For occlusion set a camera as well: objects are tested against the volume instead of its frustum.</summary>
         public Frustum Volume;
         /// <summary>Lists objects that share a layer with these.</summary>
         public uint Layers = World.AllLayers;
         /// <summary>If set, leaves out objects that others hide; never one that is seen.</summary>
         public OcclusionOptions Occlusion;
+        /// <summary>If set, lists the triangles without which this picture would change: ViewResult.Triangles. In place of Occlusion.</summary>
+        public PictureView Picture;
+        /// <summary>If set, leaves out what is too small or too far.</summary>
+        public DrawLimits Limits;
+        /// <summary>If set, bit i % 64 of word i / 64: may the object with index i be seen? Those that are new or have moved may.</summary>
+        public ulong[] CandidateMask;
+        /// <summary>By planes alone, which keeps some boxes near the volume's corners.</summary>
+        public bool Conservative;
+        /// <summary>As the tree lies in memory, which is quicker where much is seen, instead of by index.</summary>
+        public bool TreeOrder;
 
         public static implicit operator ViewRequest(Camera camera) { return camera == null ? null : new ViewRequest { Camera = camera }; }
         public static implicit operator ViewRequest(Frustum volume) { return volume == null ? null : new ViewRequest { Volume = volume }; }
@@ -130,24 +222,101 @@ namespace Crofton {
         public void View(ViewRequest request, ViewResult visible) {
             Library.NotNull(request, "request");
             Library.NotNull(visible, "visible");
-            Native.ViewRequestData data = Native.crofton_default_view_request();
-            data.Layers = request.Layers;
-            try {
-                if (request.Camera != null) data.Camera = Copied(request.Camera.Data());
-                if (request.Volume != null) data.Volume = Copied(request.Volume.Data);
-                if (request.Occlusion != null) data.Occlusion = Copied(request.Occlusion.Data());
+            using (var memory = new Copies()) {
+                Native.ViewRequestData data = memory.Of(request);
                 Read(() => {
-                    Library.Check(Native.crofton_world_view(Handle, ref data, IntPtr.Zero, visible.Handle));
+                    Library.Check(Native.crofton_world_view(Handle, ref data, (UIntPtr)1, IntPtr.Zero, visible.Handle));
                     return visible.Read(this);
                 });
-            } finally {
-                foreach (IntPtr memory in new[] { data.Camera, data.Volume, data.Occlusion }) Marshal.FreeHGlobal(memory);
             }
         }
-        static IntPtr Copied<T>(T data) where T : struct {
-            IntPtr memory = Marshal.AllocHGlobal(Marshal.SizeOf(typeof(T)));
-            Marshal.StructureToPtr(data, memory, false);
-            return memory;
+        /// <summary>What up to 32 views see, each object once, each view with its own options: ViewResult.ViewMasks.</summary>
+        public void View(ViewRequest[] requests, ViewResult visible) {
+            Library.NotNull(requests, "requests");
+            Library.NotNull(visible, "visible");
+            using (var memory = new Copies()) {
+                var data = new Native.ViewRequestData[requests.Length];
+                for (int v = 0; v < data.Length; ++v) {
+                    Library.NotNull(requests[v], "requests");
+                    data[v] = memory.Of(requests[v]);
+                }
+                Read(() => {
+                    Library.Check(Native.crofton_world_view(Handle, data, (UIntPtr)data.Length, IntPtr.Zero, visible.Handle));
+                    return visible.Read(this);
+                });
+            }
+        }
+        // What requests point to, while a call looks at it.
+        sealed class Copies : IDisposable {
+            readonly System.Collections.Generic.List<IntPtr> memory = new System.Collections.Generic.List<IntPtr>();
+            readonly System.Collections.Generic.List<GCHandle> pinned = new System.Collections.Generic.List<GCHandle>();
+
+            internal Native.ViewRequestData Of(ViewRequest request) {
+                Native.ViewRequestData data = Native.crofton_default_view_request();
+                data.Layers = request.Layers;
+                data.Conservative = request.Conservative ? 1u : 0u;
+                data.TreeOrder = request.TreeOrder ? 1u : 0u;
+                if (request.Camera != null) data.Camera = Copied(request.Camera.Data());
+                if (request.Matrix != null) data.Matrix = Copied(Of(request.Matrix));
+                if (request.Volume != null) data.Volume = Copied(request.Volume.Data);
+                if (request.Occlusion != null) data.Occlusion = Copied(request.Occlusion.Data());
+                if (request.Limits != null) data.Limits = Copied(Of(request.Limits));
+                if (request.Picture != null) {
+                    Native.PictureData picture = Native.crofton_default_picture_view();
+                    picture.Width = request.Picture.Width;
+                    picture.Height = request.Picture.Height;
+                    picture.Depth = (uint)request.Picture.Depth;
+                    data.Picture = Copied(picture);
+                }
+                if (request.CandidateMask != null) {
+                    data.CandidateMask = Pinned(request.CandidateMask);
+                    data.CandidateWords = (UIntPtr)request.CandidateMask.Length;
+                }
+                return data;
+            }
+            Native.ViewMatrixData Of(ViewMatrix matrix) {
+                if (matrix.ToClip == null || matrix.ToClip.Length != 16) throw new ArgumentException("a matrix has sixteen numbers", "Matrix");
+                Native.ViewMatrixData data = Native.crofton_default_view_matrix();
+                data.Doubles = Pinned(matrix.ToClip);
+                data.IsRowMajor = matrix.IsRowMajor ? 1u : 0u;
+                data.Depth = (uint)matrix.Depth;
+                data.Origin = matrix.Origin;
+                return data;
+            }
+            Native.DrawLimitsData Of(DrawLimits limits) {
+                if (limits.LayerDistances != null && limits.LayerDistances.Length != 32)
+                    throw new ArgumentException("there are 32 layers", "LayerDistances");
+                Native.DrawLimitsData data = Native.crofton_default_draw_limits();
+                data.Eye = limits.Eye;
+                if (!double.IsPositiveInfinity(limits.MaxDistanceInRadii)) data.MaxDistanceInRadii = limits.MaxDistanceInRadii;
+                data.LeastRadius = limits.LeastRadius;
+                data.Hysteresis = limits.Hysteresis;
+                if (limits.LayerDistances != null) data.LayerDistances = Pinned(limits.LayerDistances);
+                if (limits.ItemDistances != null) {
+                    data.ItemDistances = Pinned(limits.ItemDistances);
+                    data.ItemCount = (UIntPtr)limits.ItemDistances.Length;
+                }
+                if (limits.DrawnBefore != null) {
+                    data.DrawnBefore = Pinned(limits.DrawnBefore);
+                    data.DrawnWordCount = (UIntPtr)limits.DrawnBefore.Length;
+                }
+                return data;
+            }
+            IntPtr Copied<T>(T data) where T : struct {
+                IntPtr copy = Marshal.AllocHGlobal(Marshal.SizeOf(typeof(T)));
+                memory.Add(copy);
+                Marshal.StructureToPtr(data, copy, false);
+                return copy;
+            }
+            IntPtr Pinned(Array numbers) {
+                var handle = GCHandle.Alloc(numbers, GCHandleType.Pinned);
+                pinned.Add(handle);
+                return handle.AddrOfPinnedObject();
+            }
+            public void Dispose() {
+                foreach (IntPtr copy in memory) Marshal.FreeHGlobal(copy);
+                foreach (GCHandle handle in pinned) handle.Free();
+            }
         }
 
         /// <summary>The nearest hit of a ray: triangles of meshes, boxes and spheres.</summary>
@@ -178,20 +347,21 @@ namespace Crofton {
 
         /// <summary>Whose box or sphere meets a box, by index. A mesh's box stands for it.</summary>
         public ObjectRef[] Overlap(Obb box, uint layers = AllLayers) {
-            return Overlap(found => Native.crofton_world_overlap_box(Handle, ref box, layers, found));
+            return Overlap(new Native.ShapeData { Kind = Native.ShapeBox, Box = box }, layers);
         }
         /// <summary>Whose box or sphere meets a sphere.</summary>
         public ObjectRef[] OverlapSphere(Vector3 center, double radius, uint layers = AllLayers) {
-            return Overlap(found => Native.crofton_world_overlap_sphere(Handle, ref center, radius, layers, found));
+            return Overlap(new Native.ShapeData { Kind = Native.ShapeSphere, Begin = center, Radius = radius }, layers);
         }
         /// <summary>Whose box or sphere meets the points no farther than the radius from a segment.</summary>
         public ObjectRef[] OverlapCapsule(Vector3 begin, Vector3 end, double radius, uint layers = AllLayers) {
-            return Overlap(found => Native.crofton_world_overlap_capsule(Handle, ref begin, ref end, radius, layers, found));
+            return Overlap(new Native.ShapeData { Kind = Native.ShapeCapsule, Begin = begin, End = end, Radius = radius }, layers);
         }
         /// <summary>The box or sphere nearest to a sphere, no farther than a distance; null where there is none.</summary>
         public Closest? ClosestToSphere(Vector3 center, double radius, double maxDistance = double.PositiveInfinity, uint layers = AllLayers) {
             var data = new Native.ClosestData { Size = Native.SizeOf<Native.ClosestData>() };
-            Library.Check(Native.crofton_world_closest_to_sphere(Handle, ref center, radius, maxDistance, layers, ref data));
+            var shape = new Native.ShapeData { Kind = Native.ShapeSphere, Begin = center, Radius = radius };
+            Library.Check(Native.crofton_world_closest(Handle, ref shape, maxDistance, layers, ref data));
             if (data.Object.Index == uint.MaxValue) return null;
             return new Closest {
                 Object = data.Object, User = data.User, Distance = data.Distance, OnShape = data.OnShape, OnObject = data.OnObject
@@ -210,21 +380,16 @@ namespace Crofton {
         /// <summary>What touches, and what has ceased to, in the order of the pairs.</summary>
         public Contact[] Contacts() {
             return Read(() => {
+                IntPtr contacts;
                 UIntPtr count;
-                Library.Check(Native.crofton_world_contact_count(Handle, out count));
-                var result = new Contact[(int)count];
-                for (int i = 0; i < result.Length; ++i) result[i] = ContactAt(i);
-                return result;
+                Library.Check(Native.crofton_world_contacts(Handle, out contacts, out count));
+                Native.ContactData[] all = Library.ToArray<Native.ContactData>(contacts, count);
+                return Array.ConvertAll(all, c => new Contact {
+                    First = c.First, Second = c.Second, Phase = (Phase)c.Phase, Normal = c.Normal, Depth = c.Depth,
+                    Points = Library.ToArray<ContactPoint>(c.Points, c.PointCount),
+                    Triangles = Library.ToArray<MeshContact>(c.Triangles, c.TriangleCount)
+                });
             });
-        }
-        Contact ContactAt(int place) {
-            var c = new Native.ContactData { Size = Native.SizeOf<Native.ContactData>() };
-            Library.Check(Native.crofton_world_contact(Handle, (UIntPtr)place, ref c));
-            return new Contact {
-                First = c.First, Second = c.Second, Phase = (Phase)c.Phase, Normal = c.Normal, Depth = c.Depth,
-                Points = Library.ToArray<ContactPoint>(c.Points, c.PointCount),
-                Triangles = Library.ToArray<MeshContact>(c.Triangles, c.TriangleCount)
-            };
         }
 
         static FoundHandle Find() {
@@ -232,11 +397,11 @@ namespace Crofton {
             Library.Check(Native.crofton_found_create(out found));
             return found;
         }
-        static ObjectRef[] Overlap(Func<FoundHandle, int> call) {
+        ObjectRef[] Overlap(Native.ShapeData shape, uint layers) {
             using (var found = Find()) {
                 IntPtr objects;
                 UIntPtr count;
-                Library.Check(call(found));
+                Library.Check(Native.crofton_world_overlap(Handle, ref shape, layers, found));
                 Library.Check(Native.crofton_found_objects(found, out objects, out count));
                 return Library.ToArray<ObjectRef>(objects, count);
             }

@@ -12,9 +12,7 @@ namespace Crofton {
         /// <summary>The sum of the edges: for frusta that are large beside the objects.</summary>
         public static Criterion MinimalPerimeter() {
             Library.Load();
-            Criterion criterion;
-            Library.Check(Native.crofton_criterion_minimal_perimeter(out criterion));
-            return criterion;
+            return Native.crofton_default_fit_options().Criterion;
         }
         /// <summary>For rays and segments of this length.</summary>
         public static Criterion ForRays(double length) {
@@ -42,14 +40,14 @@ namespace Crofton {
         public static Obb Box(float[] points, Quality quality = Quality.Tight, Criterion? criterion = null) {
             var options = Options(points, quality, criterion);
             Obb box;
-            Library.Check(Native.crofton_fit_floats(points, (UIntPtr)(points.Length / 3), ref options, out box));
+            Library.Check(Native.crofton_fit_points(points, (UIntPtr)(points.Length / 3), 0, ref options, out box));
             return box;
         }
         /// <summary>The same for double precision.</summary>
         public static Obb Box(double[] points, Quality quality = Quality.Tight, Criterion? criterion = null) {
             var options = Options(points, quality, criterion);
             Obb box;
-            Library.Check(Native.crofton_fit_doubles(points, (UIntPtr)(points.Length / 3), ref options, out box));
+            Library.Check(Native.crofton_fit_points(points, (UIntPtr)(points.Length / 3), 1, ref options, out box));
             return box;
         }
         static Native.FitOptionsData Options(Array points, Quality quality, Criterion? criterion) {

@@ -81,9 +81,15 @@ namespace Crofton {
 
         /// <summary>Adds a mesh in its own frame: x, y, z of each vertex; three indices a triangle, counter-clockwise seen from
         /// outside, or null where three vertices are one. Both are copied.</summary>
-        public MeshHandle AddMesh(float[] positions, uint[] indices) {
+        public MeshHandle AddMesh(float[] positions, uint[] indices) { return AddMesh(positions, indices, false); }
+        /// <summary>The same; with clusters, views with a picture list its triangles. oneSided: back faces are not drawn.</summary>
+        public MeshHandle AddMesh(float[] positions, uint[] indices, bool clusters, bool oneSided = false) {
             MeshHandle mesh = default(MeshHandle);
-            WithMesh(positions, indices, data => Native.crofton_world_add_mesh(Handle, ref data, out mesh));
+            WithMesh(positions, indices, data => {
+                data.Clusters = Flag(clusters);
+                data.OneSided = Flag(oneSided);
+                return Native.crofton_world_add_mesh(Handle, ref data, out mesh);
+            });
             return mesh;
         }
         /// <summary>All objects with this mesh get the new one.</summary>
@@ -143,33 +149,43 @@ namespace Crofton {
         }
         /// <summary>Of an object that was added with a bound.</summary>
         public void SetBound(ObjectHandle handle, Bound bound) {
-            Library.Check(Native.crofton_world_set_bound(Handle, handle, ref bound.Data));
+            IntPtr memory = Marshal.AllocHGlobal(Marshal.SizeOf(typeof(Native.BoundData)));
+            try {
+                Marshal.StructureToPtr(bound.Data, memory, false);
+                Set(handle, Native.SetBound, (ref Native.ObjectData d) => d.Bound = memory);
+            } finally {
+                Marshal.FreeHGlobal(memory);
+            }
         }
         /// <summary>Of an object that has a mesh.</summary>
-        public void SetMesh(ObjectHandle handle, MeshHandle mesh) { Library.Check(Native.crofton_world_set_mesh(Handle, handle, mesh)); }
+        public void SetMesh(ObjectHandle handle, MeshHandle mesh) {
+            Set(handle, Native.SetMesh, (ref Native.ObjectData d) => { d.HasMesh = 1; d.Mesh = mesh; });
+        }
         /// <summary>A hidden object is in no answer until it is shown again.</summary>
         public void SetHidden(ObjectHandle handle, bool hidden) {
-            Library.Check(Native.crofton_world_set_hidden(Handle, handle, hidden ? 1 : 0));
+            Set(handle, Native.SetHidden, (ref Native.ObjectData d) => d.Hidden = Flag(hidden));
         }
         /// <summary>The layers that it is in.</summary>
-        public void SetLayers(ObjectHandle handle, uint layers) { Library.Check(Native.crofton_world_set_layers(Handle, handle, layers)); }
+        public void SetLayers(ObjectHandle handle, uint layers) {
+            Set(handle, Native.SetLayers, (ref Native.ObjectData d) => d.Layers = layers);
+        }
         /// <summary>The layers that it collides with.</summary>
         public void SetCollidesWith(ObjectHandle handle, uint layers) {
-            Library.Check(Native.crofton_world_set_collides_with(Handle, handle, layers));
+            Set(handle, Native.SetCollidesWith, (ref Native.ObjectData d) => d.CollidesWith = layers);
         }
         /// <summary>The number that answers give back.</summary>
-        public void SetUser(ObjectHandle handle, ulong user) { Library.Check(Native.crofton_world_set_user(Handle, handle, user)); }
+        public void SetUser(ObjectHandle handle, ulong user) {
+            Set(handle, Native.SetUser, (ref Native.ObjectData d) => d.User = user);
+        }
         /// <summary>Looks for occluders in a mesh: a second or more for 100,000 triangles. They count from the next update on.</summary>
         public void FindOccluders(MeshHandle mesh) { Library.Check(Native.crofton_world_find_occluders(Handle, mesh, IntPtr.Zero)); }
         /// <summary>How many occluders a mesh has.</summary>
         public int OccluderCount(MeshHandle mesh) {
-            UIntPtr count;
-            Library.Check(Native.crofton_world_occluder_count(Handle, mesh, out count));
-            return (int)count;
+            return (int)Info(mesh).OccluderCount;
         }
         /// <summary>Whether an object with a mesh hides others, as at first, or not, as where it is drawn transparent.</summary>
         public void SetOccludes(ObjectHandle handle, bool occludes) {
-            Library.Check(Native.crofton_world_set_occludes(Handle, handle, occludes ? 1 : 0));
+            Set(handle, Native.SetOccludes, (ref Native.ObjectData d) => d.Occludes = Flag(occludes));
         }
 
         /// <summary>Makes the changes take effect; once a frame. An exception: more than MaxPairs pairs; then there are none, and
@@ -179,34 +195,59 @@ namespace Crofton {
         /// <summary>How many objects there are.</summary>
         public int Count {
             get {
-                UIntPtr count;
-                Library.Check(Native.crofton_world_object_count(Handle, out count));
-                return (int)count;
+                var statistics = new Native.WorldStatisticsData { Size = Native.SizeOf<Native.WorldStatisticsData>() };
+                Library.Check(Native.crofton_world_get_statistics(Handle, ref statistics));
+                return (int)statistics.ObjectCount;
             }
         }
         /// <summary>Whether the handle is of an object that is still there.</summary>
         public bool Contains(ObjectHandle handle) {
-            int contains;
-            Library.Check(Native.crofton_world_contains(Handle, handle, out contains));
-            return contains != 0;
+            var info = new Native.ObjectInfo { Size = Native.SizeOf<Native.ObjectInfo>() };
+            int status = Native.crofton_world_get_object(Handle, handle, ref info);
+            if (status != (int)Status.StaleHandle) Library.Check(status);
+            return status == 0;
         }
         /// <summary>The caller's number.</summary>
-        public ulong User(ObjectHandle handle) {
-            ulong user;
-            Library.Check(Native.crofton_world_get_user(Handle, handle, out user));
-            return user;
-        }
+        public ulong User(ObjectHandle handle) { return Info(handle).User; }
         /// <summary>The object's box; an error before the first update after it was added.</summary>
         public Obb Box(ObjectHandle handle) {
-            Obb box;
-            Library.Check(Native.crofton_world_get_box(Handle, handle, out box));
-            return box;
+            Native.ObjectInfo info = Info(handle);
+            if (info.HasBox == 0) throw new CroftonException(Status.Empty, "the object has no box before the next update", handle.Index);
+            return info.Box;
         }
         /// <summary>Of an object with a mesh: to the world's coordinates.</summary>
         public Transform TransformOf(ObjectHandle handle) {
-            Transform transform;
-            Library.Check(Native.crofton_world_get_transform(Handle, handle, out transform));
-            return transform;
+            Native.ObjectInfo info = Info(handle);
+            if (info.HasTransform == 0)
+                throw new CroftonException(Status.Empty, "the object is a bound, or there was no update since it was added", handle.Index);
+            return info.Transform;
+        }
+        /// <summary>How a mesh with clusters is cut, as of the last update; null where it is not.</summary>
+        public Clusters ClustersOf(MeshHandle mesh) {
+            return Read(() => {
+                Native.MeshInfo info = Info(mesh);
+                if (info.ClusterCount == UIntPtr.Zero) return null;
+                return new Clusters {
+                    All = Library.ToArray<Cluster>(info.Clusters, info.ClusterCount),
+                    TriangleOrder = Library.ToArray<uint>(info.TriangleOrder, info.TriangleCount)
+                };
+            });
+        }
+        Native.ObjectInfo Info(ObjectHandle handle) {
+            var info = new Native.ObjectInfo { Size = Native.SizeOf<Native.ObjectInfo>() };
+            Library.Check(Native.crofton_world_get_object(Handle, handle, ref info));
+            return info;
+        }
+        Native.MeshInfo Info(MeshHandle mesh) {
+            var info = new Native.MeshInfo { Size = Native.SizeOf<Native.MeshInfo>() };
+            Library.Check(Native.crofton_world_get_mesh(Handle, mesh, ref info));
+            return info;
+        }
+        delegate void Fill(ref Native.ObjectData data);
+        void Set(ObjectHandle handle, uint member, Fill fill) {
+            Native.ObjectData data = Native.crofton_default_object_description();
+            fill(ref data);
+            Library.Check(Native.crofton_world_set(Handle, handle, member, ref data));
         }
 
         // What a view has found is looked up in the world, and pairs and contacts lie in its memory: no update and no end

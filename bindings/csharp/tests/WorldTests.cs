@@ -30,6 +30,72 @@ static class WorldTests {
             Expect.Equal(2, world.Count);
         }
     }
+    // A wall of two triangles in clusters, one behind it, one beside it; three units wide each, ten units and more away.
+    static World Walls(out ObjectHandle[] objects, out MeshHandle mesh) {
+        var world = new World();
+        mesh = world.AddMesh(new float[] { -3, -3, 0, 3, -3, 0, 3, 3, 0, -3, 3, 0 }, new uint[] { 0, 1, 2, 0, 2, 3 }, true);
+        var wall = mesh;
+        objects = new[] { Transform.At(0, 0, -10), Transform.At(0, 0, -40), Transform.At(20, 0, -40) }
+            .Select((at, i) => world.Add(wall, at, (ulong)i)).ToArray();
+        world.Update();
+        return world;
+    }
+    [Test] static void APictureListsTheTrianglesThatItNeeds() {
+        ObjectHandle[] o;
+        MeshHandle mesh;
+        using (var world = Walls(out o, out mesh))
+        using (var visible = new ViewResult()) {
+            var request = new ViewRequest { Camera = new Camera(), Picture = new PictureView { Width = 160, Height = 90 } };
+            world.View(request, visible);
+            Expect.Sequence(new[] { 0ul, 2ul }, Users(visible));
+            Expect.Sequence(new[] { o[0].Index, o[2].Index }, visible.Triangles().Select(t => t.Object).ToArray());
+            Expect.True(visible.Triangles().All(t => t.Cluster == 0 && t.Triangles == 3));
+            Clusters clusters = world.ClustersOf(mesh);
+            Expect.Equal(1, clusters.All.Length);
+            Expect.Equal(2u, clusters.All[0].TriangleCount);
+            Expect.Sequence(new[] { 0u, 1u }, clusters.TriangleOrder.OrderBy(t => t).ToArray());
+            Expect.True(world.ClustersOf(world.AddMesh(Tetrahedron, Faces)) == null);
+            request.Occlusion = new OcclusionOptions();
+            Expect.Fails(Status.InvalidArgument, () => world.View(request, visible));
+        }
+    }
+    [Test] static void EachOfManyViewsIsObeyed() {
+        ObjectHandle[] o;
+        MeshHandle mesh;
+        using (var world = Walls(out o, out mesh))
+        using (var visible = new ViewResult()) {
+            for (int i = 0; i < 40; ++i) world.Update(); // candidates say nothing about what may have moved since
+            var camera = new Camera();
+            double f = 1 / Math.Tan(camera.FovY / 2), near = camera.Near, far = camera.Far;
+            var rows = new[] { f / camera.Aspect, 0, 0, 0, 0, f, 0, 0, 0, 0, near / (far - near), far * near / (far - near), 0, 0, -1, 0 };
+            var requests = new[] {
+                new ViewRequest { Camera = camera },
+                new ViewRequest { Camera = camera, Picture = new PictureView { Width = 160, Height = 90 } },
+                new ViewRequest { Camera = camera, Limits = new DrawLimits { MaxDistanceInRadii = 5 } },
+                new ViewRequest { Camera = camera, Limits = new DrawLimits { ItemDistances = new[] { 1f, 100f, 1f } } },
+                new ViewRequest { Camera = camera, CandidateMask = new[] { 2ul } },
+                new ViewRequest { Matrix = new ViewMatrix { ToClip = rows, IsRowMajor = true } },
+                new ViewRequest { Camera = camera, Conservative = true },
+                new ViewRequest { Camera = camera, Layers = 0 }
+            };
+            var expected = new[] { "012", "02", "0", "1", "1", "012", "012", "" };
+            world.View(requests, visible);
+            Func<int, string> seen = v => string.Concat(Enumerable.Range(0, visible.Count)
+                .Where(i => (visible.ViewMasks[i] >> v & 1) != 0).Select(i => visible.Objects[i].User.ToString()));
+            for (int v = 0; v < requests.Length; ++v) Expect.Equal(expected[v], seen(v));
+            Expect.Equal(2, visible.Triangles(1).Length);
+            Expect.Equal(0, visible.Triangles(0).Length);
+            Expect.Fails(Status.OutOfRange, () => visible.Triangles(8));
+            for (int v = 0; v < requests.Length; ++v) {
+                world.View(requests[v], visible);
+                Expect.Equal(expected[v], string.Concat(Users(visible)));
+                requests[v].TreeOrder = true;
+                world.View(requests[v], visible);
+                Expect.Equal(expected[v], string.Concat(Users(visible).OrderBy(u => u)));
+            }
+            Expect.Fails(Status.InvalidArgument, () => world.View(new[] { requests[0], new ViewRequest() }, visible));
+        }
+    }
     [Test] static void AStaleHandleIsANamedError() {
         ObjectHandle[] o;
         using (var world = Row(1, out o)) {

@@ -122,6 +122,21 @@ extern template class Handles<ObjectHandle>;
 extern template class Handles<NodeHandle>;
 [[nodiscard]] py::array handles_of(std::span<const ObjectHandle> handles);
 
+// The C++ object of a Python object that is of class T itself, else nullptr: without the look-ups of a cast.
+template <class T>
+[[nodiscard]] T* exactly(PyObject* given) {
+    static PyTypeObject* const type = reinterpret_cast<PyTypeObject*>(py::type::of<T>().ptr());
+    if (Py_TYPE(given) != type) return nullptr;
+    auto* const instance = reinterpret_cast<py::detail::instance*>(given);
+    return instance->simple_layout ? static_cast<T*>(instance->simple_value_holder[0]) : nullptr;
+}
+// The same for derived classes as well.
+template <class T>
+[[nodiscard]] T* as(const py::handle& given) {
+    if (T* const found = exactly<T>(given.ptr())) return found;
+    return py::isinstance<T>(given) ? given.cast<T*>() : nullptr;
+}
+
 // One number. Raises TypeError for what is none, or does not fit.
 template <class T>
 [[nodiscard]] T number_of(const py::handle& given, const char* name) {

@@ -51,6 +51,7 @@ PYBIND11_MODULE(_crofton, module) {
     bind_cull(module);
     bind_depth(module);
     bind_collide(module);
+    bind_view_requests(module);
     bind_world(module);
     bind_pvs(module);
 }

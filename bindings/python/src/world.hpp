@@ -8,6 +8,7 @@
 #include <string>
 
 #include "convert.hpp"
+#include "views.hpp"
 
 namespace crofton::python {
 
@@ -31,9 +32,12 @@ class PyWorld {
         });
     }
 
+    [[nodiscard]] const std::shared_ptr<AnswerPools>& pools() const { return pools_; }
+
   private:
     World world_;
     mutable std::shared_mutex mutex_;
+    std::shared_ptr<AnswerPools> pools_ = std::make_shared<AnswerPools>();
 };
 
 // A short text, for __repr__.

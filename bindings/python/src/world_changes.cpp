@@ -146,16 +146,20 @@ void set_boxes(PyWorld& world, const py::handle& given, const py::handle& given_
 void bind_world_changes(py::class_<PyWorld>& type) {
     type.def(
             "add_mesh",
-            [](PyWorld& world, const py::handle& positions, const py::object& indices, bool triangles, bool occluders) {
+            [](PyWorld& world, const py::handle& positions, const py::object& indices, bool triangles, bool occluders,
+               bool clusters, bool one_sided) {
                 const MeshArrays arrays(positions, indices);
                 MeshDescription description = arrays.description();
                 description.triangles = triangles;
                 description.occluders = occluders;
+                description.clusters = clusters;
+                description.one_sided = one_sided;
                 return value_of(world.change([&](World& w) { return w.add_mesh(description); }));
             },
             py::arg("positions"), py::arg("indices") = py::none(), py::kw_only(), py::arg("triangles") = true,
-            py::arg("occluders") = false,
-            "A mesh of points (n, 3) and indices, three a triangle. With occluders it hides what is behind it.")
+            py::arg("occluders") = false, py::arg("clusters") = false, py::arg("one_sided") = false,
+            "A mesh of points (n, 3) and indices, three a triangle. With occluders it hides what is behind it. With "
+            "clusters, views with a picture list its triangles; `one_sided`: back faces are not drawn.")
         .def(
             "set_vertices",
             [](PyWorld& world, MeshHandle mesh, const py::handle& positions) {

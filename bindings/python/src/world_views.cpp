@@ -1,94 +1,314 @@
 // SPDX-License-Identifier: MIT
-// What a view of a World sees.
+// What views of a World see.
 #include <pybind11/stl.h>
 
-#include "view.hpp"
+#include <array>
+#include <utility>
+
+#include "views.hpp"
 #include "world.hpp"
 
 namespace crofton::python {
 namespace {
 
-// What a view saw. Its arrays are made when the view is, so that the World may change afterwards.
-struct Seen {
-    py::array_t<std::uint32_t> ids, occluded_ids;
-    py::array_t<std::uint64_t> users;
-    py::array_t<std::uint8_t> verdicts;
-    py::array handles;
-    py::object depth = py::none();
-    cull::Statistics statistics;
-    OcclusionStatistics occlusion;
-};
-
-Seen view(const PyWorld& python_world, const py::handle& given, std::uint32_t layers, bool conservative, bool occlusion,
-          std::pair<std::uint32_t, std::uint32_t> size) {
-    const bool is_camera = py::isinstance<Camera>(given);
-    if (occlusion && !is_camera) raise_type("view: with occlusion a Camera is expected");
-    ViewRequest request{.layers = layers, .mode = conservative ? cull::CullMode::conservative : cull::CullMode::exact};
-    if (occlusion) {
-        request.camera = given.cast<Camera>();
-        request.occlusion = OcclusionOptions{.size = {size.first, size.second}, .list_occluded = true};
-    } else {
-        request.volume = view_of(given, layers).frustum;
+// What a view saw, or several. The handles and user numbers were looked up with it, so that the World may change
+// afterwards; arrays are made when they are asked for, and keep this alive.
+template <class Result>
+class Seen {
+  public:
+    explicit Seen(std::shared_ptr<AnswerPools> pools, AnswerPool<Result>& pool)
+        : pools_(std::move(pools)), pool_(&pool), answer_(pool.take()) {}
+    Seen(Seen&&) noexcept = default;
+    Seen& operator=(Seen&&) = delete;
+    ~Seen() {
+        if (answer_) pool_->give_back(std::move(answer_));
     }
-    ViewResult visible;
-    std::vector<ObjectHandle> handles;
-    std::vector<std::uint64_t> users;
-    std::vector<float> nearness;
+    [[nodiscard]] Answer<Result>& answer() { return *answer_; }
+    [[nodiscard]] const Answer<Result>& answer() const { return *answer_; }
+    [[nodiscard]] const Result& found() const { return answer_->found; }
+
+    // While the World is locked.
+    void look_up() {
+        answer_->objects.clear();
+        for (std::size_t i = 0; i < found().size(); ++i) answer_->objects.push_back(found()[i]);
+    }
+
+  private:
+    std::shared_ptr<AnswerPools> pools_;
+    AnswerPool<Result>* pool_;
+    std::unique_ptr<Answer<Result>> answer_;
+};
+using SeenByOne = Seen<ViewResult>;
+using SeenByMany = Seen<MultiViewResult>;
+
+struct TriangleRecord {
+    std::uint32_t object, cluster;
+    std::uint64_t triangles;
+};
+static_assert(sizeof(TriangleRecord) == sizeof(depth::VisibleCluster));
+
+// An array over memory of `owner`.
+py::array array_in(const py::object& owner, const py::dtype& dtype, const void* first, std::size_t count,
+                   std::size_t stride) {
+    return py::array(dtype, py::array::ShapeContainer{static_cast<py::ssize_t>(count)},
+                     py::array::StridesContainer{static_cast<py::ssize_t>(stride)}, first, owner);
+}
+template <class T, class Values>
+py::array array_in(const py::object& owner, const Values& values) {
+    return array_in(owner, py::dtype::of<T>(), values.data(), values.size(), sizeof(T));
+}
+
+template <class Result>
+py::array ids_of(const py::object& self) {
+    return array_in<std::uint32_t>(self, self.cast<const Seen<Result>&>().found().ids());
+}
+template <class Result>
+py::array handles_seen(const py::object& self) {
+    const auto& objects = self.cast<const Seen<Result>&>().answer().objects;
+    static_assert(offsetof(ObjectRef, object) == 0);
+    return array_in(self, handle_dtype(), objects.data(), objects.size(), sizeof(ObjectRef));
+}
+template <class Result>
+py::array users_seen(const py::object& self) {
+    const auto& objects = self.cast<const Seen<Result>&>().answer().objects;
+    const void* const first = objects.empty() ? nullptr : &objects.data()->user;
+    return array_in(self, py::dtype::of<std::uint64_t>(), first, objects.size(), sizeof(ObjectRef));
+}
+
+py::object depth_of(const occlude::OcclusionBuffer* buffer) {
+    if (!buffer) return py::none();
+    py::array_t<float> result({py::ssize_t{buffer->size().height}, py::ssize_t{buffer->size().width}});
+    buffer->read({result.mutable_data(), static_cast<std::size_t>(result.size())});
+    return std::move(result);
+}
+
+void check_view(const SeenByMany& seen, std::size_t view) {
+    if (view >= seen.found().view_count()) raise({ErrorCode::out_of_range, view, "view: there are fewer views"});
+}
+
+py::dict statistics_of(const SeenByOne& seen) {
+    const cull::Statistics& s = seen.found().statistics();
+    const OcclusionStatistics o = seen.found().occlusion_statistics();
+    const depth::DepthStatistics p = seen.found().picture_statistics();
+    py::dict d;
+    d["nodes_tested"] = s.nodes_tested;
+    d["boxes_tested"] = s.boxes_tested;
+    d["straddling"] = s.straddling;
+    d["occluders_drawn"] = o.occluders_drawn;
+    d["triangles_drawn"] = p.triangles_drawn;
+    d["triangles_listed"] = p.triangles_listed;
+    return d;
+}
+
+SeenByOne view_one(const PyWorld& python_world, const ViewRequest& request) {
+    SeenByOne seen(python_world.pools(), python_world.pools()->one);
     const auto threads = executor();
     value_of(python_world.ask([&](const World& world) -> Result<void> {
-        if (auto found = world.view(request, visible, *threads); !found) return found;
-        if (occlusion) {
-            if (const auto* buffer = visible.occlusion_buffer()) {
-                nearness.resize(std::size_t{buffer->size().width} * buffer->size().height);
-                buffer->read(nearness);
-            }
-        }
-        for (std::size_t i = 0; i < visible.size(); ++i) {
-            handles.push_back(visible[i].object);
-            users.push_back(visible[i].user);
-        }
+        if (auto found = world.view(request, seen.answer().found, *threads); !found) return found;
+        seen.look_up();
         return {};
     }));
-    Seen result;
-    result.ids = array_of<std::uint32_t>(visible.ids());
-    result.occluded_ids = array_of<std::uint32_t>(visible.occluded_ids());
-    result.users = array_of<std::uint64_t>(users);
-    result.verdicts = array_of<std::uint8_t>(visible.verdicts());
-    result.handles = handles_of(handles);
-    result.statistics = visible.statistics();
-    result.occlusion = visible.occlusion_statistics();
-    if (!nearness.empty())
-        result.depth = array_of<float>(nearness).reshape({py::ssize_t{size.second}, py::ssize_t{size.first}});
-    return result;
+    return seen;
+}
+
+SeenByMany view_many(const PyWorld& python_world, const py::sequence& given) {
+    std::vector<std::shared_ptr<HeldRequest>> held;
+    std::vector<ViewRequest> requests;
+    for (const py::handle one : given) {
+        if (py::isinstance<HeldRequest>(one)) {
+            held.push_back(one.cast<std::shared_ptr<HeldRequest>>());
+        } else {
+            const py::none none;
+            held.push_back(std::make_shared<HeldRequest>());
+            read_request({one, none, none, none, none, none, none, none, none, none}, *held.back());
+        }
+        requests.push_back(held.back()->request);
+    }
+    SeenByMany seen(python_world.pools(), python_world.pools()->many);
+    const auto threads = executor();
+    value_of(python_world.ask([&](const World& world) -> Result<void> {
+        Answer<MultiViewResult>& answer = seen.answer();
+        if (auto found = world.view(std::span<const ViewRequest>(requests), answer.found, *threads); !found)
+            return found;
+        seen.look_up();
+        answer.view_masks.clear();
+        for (std::size_t i = 0; i < answer.found.size(); ++i) answer.view_masks.push_back(answer.found.view_mask(i));
+        return {};
+    }));
+    return seen;
+}
+
+py::object view(const PyWorld& world, const RequestArguments& given) {
+    PyObject* const camera = given.camera.ptr();
+    if (exactly<Camera>(camera) == nullptr) {  // the usual case
+        const bool is_list = PyList_Check(camera) || PyTuple_Check(camera);
+        const HeldRequest* const request = is_list ? nullptr : as<HeldRequest>(given.camera);
+        if (is_list || request)
+            if (const char* name = given.first_given())
+                raise_type(std::string(name) + ": a ViewRequest holds its own options; set it there");
+        if (is_list) return py::cast(view_many(world, py::reinterpret_borrow<py::sequence>(given.camera)));
+        if (request) return py::cast(view_one(world, request->request));
+    }
+    HeldRequest held;
+    read_request(given, held);
+    return py::cast(view_one(world, held.request));
+}
+
+constexpr std::array kArguments = {"camera",  "matrix", "volume",     "layers", "occlusion",
+                                   "picture", "limits", "candidates", "order",  "conservative"};
+
+// The first argument may come by place, the others by name.
+RequestArguments arguments_of(PyObject* const* values, Py_ssize_t count, PyObject* names) {
+    if (count > 1) raise_type("view: all arguments but the camera are given by name");
+    std::array<py::handle, kArguments.size()> all;
+    all.fill(Py_None);
+    if (count == 1) all[0] = values[0];
+    const Py_ssize_t named = names ? PyTuple_GET_SIZE(names) : 0;
+    for (Py_ssize_t i = 0; i < named; ++i) {
+        PyObject* const name = PyTuple_GET_ITEM(names, i);
+        std::size_t k = 0;
+        while (k < all.size() && PyUnicode_CompareWithASCIIString(name, kArguments[k]) != 0) ++k;
+        if (k == all.size()) raise_type("view: unknown argument " + py::cast<std::string>(py::handle(name)));
+        if (k == 0 && count == 1) raise_type("view: the camera is given twice");
+        all[k] = values[count + i];
+    }
+    return {all[0], all[1], all[2], all[3], all[4], all[5], all[6], all[7], all[8], all[9]};
+}
+
+// World.view as Python calls it: by vectorcall, as pybind11's dispatcher would take most of a small view's time.
+PyObject* view_method(PyObject* self, PyObject* const* values, Py_ssize_t count, PyObject* names) {
+    try {
+        const PyWorld* const world = as<PyWorld>(self);
+        if (!world) raise_type("view: a World is expected");
+        return view(*world, arguments_of(values, count, names)).release().ptr();
+    } catch (py::error_already_set& error) {
+        error.restore();
+    } catch (const py::builtin_exception& error) {
+        error.set_error();
+    } catch (const std::bad_alloc&) {
+        PyErr_NoMemory();
+    } catch (const std::exception& error) {
+        PyErr_SetString(PyExc_RuntimeError, error.what());
+    }
+    return nullptr;
+}
+
+constexpr const char* kViewText =
+    "view($self, camera=None, *, matrix=None, volume=None, layers=None, occlusion=None, picture=None, limits=None, "
+    "candidates=None, order=None, conservative=None)\n--\n\n"
+    "What a Camera, a ViewMatrix or any Frustum (`volume`) sees, in the `layers` that share a bit. With `occlusion`, "
+    "OcclusionOptions or True, leaves out what others hide. With `picture`, a PictureView, lists the triangles without "
+    "which that picture would change. `limits`, DrawLimits, leave out what is small or far; `candidates`, bools by "
+    "object index, what cannot be seen, though nothing that is new or has moved. `order` is 'ascending' or 'tree', "
+    "which is quicker. `conservative` tests planes only. Or give a ViewRequest alone, or a list of up to 32: a "
+    "MultiViewResult. What cannot be obeyed is refused.";
+
+void bind_one(py::module_& module) {
+    py::class_<SeenByOne>(module, "ViewResult", "What a view saw, as of the update before.")
+        .def_property_readonly("ids", &ids_of<ViewResult>, "the objects' indices, in the order that was asked for")
+        .def_property_readonly("handles", &handles_seen<ViewResult>, "their handles, an array of handle_dtype")
+        .def_property_readonly("users", &users_seen<ViewResult>, "their user numbers")
+        .def_property_readonly(
+            "verdicts",
+            [](const py::object& self) {
+                return array_in<std::uint8_t>(self, self.cast<const SeenByOne&>().found().verdicts());
+            },
+            "STRADDLING or INSIDE for each; empty in tree order")
+        .def_property_readonly(
+            "inside_count", [](const SeenByOne& seen) { return seen.found().inside_count(); },
+            "how many are INSIDE; in tree order they come first")
+        .def_property_readonly(
+            "occluded_ids",
+            [](const py::object& self) {
+                return array_in<std::uint32_t>(self, self.cast<const SeenByOne&>().found().occluded_ids());
+            },
+            "in the view's frustum, and hidden by others; with OcclusionOptions(list_occluded=True)")
+        .def_property_readonly(
+            "depth", [](const SeenByOne& seen) { return depth_of(seen.found().occlusion_buffer()); },
+            "the depth buffer, (height, width), the bottom row first, larger is nearer; None without occlusion")
+        .def_property_readonly(
+            "triangles",
+            [](const py::object& self) {
+                return array_in<TriangleRecord>(self, self.cast<const SeenByOne&>().found().triangles());
+            },
+            "of a view with a picture: what to draw, an array of records. Bit k of `triangles` stands for triangle "
+            "first_triangle + k of cluster `cluster` (World.clusters_of) of object index `object`")
+        .def_property_readonly("statistics", &statistics_of)
+        .def("__len__", [](const SeenByOne& seen) { return seen.found().size(); })
+        .def("__repr__", [](const SeenByOne& seen) {
+            return format("ViewResult(%d objects)", static_cast<int>(seen.found().size()));
+        });
+}
+
+void bind_many(py::module_& module) {
+    py::class_<SeenByMany>(module, "MultiViewResult", "What several views saw, each object once.")
+        .def_property_readonly("ids", &ids_of<MultiViewResult>, "the objects' indices")
+        .def_property_readonly("handles", &handles_seen<MultiViewResult>, "their handles, an array of handle_dtype")
+        .def_property_readonly("users", &users_seen<MultiViewResult>, "their user numbers")
+        .def_property_readonly(
+            "view_masks",
+            [](const py::object& self) {
+                return array_in<std::uint32_t>(self, self.cast<const SeenByMany&>().answer().view_masks);
+            },
+            "bit v of each: view v sees it")
+        .def_property_readonly("view_count", [](const SeenByMany& seen) { return seen.found().view_count(); })
+        .def(
+            "depth",
+            [](const SeenByMany& seen, std::size_t view) {
+                check_view(seen, view);
+                return depth_of(seen.found().occlusion_buffer(view));
+            },
+            py::arg("view"), "The depth buffer of one view; None without occlusion.")
+        .def(
+            "triangles",
+            [](const py::object& self, std::size_t view) {
+                const auto& seen = self.cast<const SeenByMany&>();
+                check_view(seen, view);
+                return array_in<TriangleRecord>(self, seen.found().triangles(view));
+            },
+            py::arg("view"), "The triangles to draw in one view, as ViewResult.triangles; empty without a picture.")
+        .def(
+            "occluded_ids",
+            [](const py::object& self, std::size_t view) {
+                const auto& seen = self.cast<const SeenByMany&>();
+                check_view(seen, view);
+                return array_in<std::uint32_t>(self, seen.found().occluded_ids(view));
+            },
+            py::arg("view"), "As ViewResult.occluded_ids, of one view.")
+        .def(
+            "occluders_drawn",
+            [](const SeenByMany& seen, std::size_t view) {
+                check_view(seen, view);
+                return seen.found().occlusion_statistics(view).occluders_drawn;
+            },
+            py::arg("view"), "How many occluders one view drew.")
+        .def("__len__", [](const SeenByMany& seen) { return seen.found().size(); })
+        .def("__repr__", [](const SeenByMany& seen) {
+            return format("MultiViewResult(%d objects, %d views)", static_cast<int>(seen.found().size()),
+                          static_cast<int>(seen.found().view_count()));
+        });
 }
 
 }  // namespace
 
 void bind_world_views(py::module_& module, py::class_<PyWorld>& type) {
-    py::class_<Seen>(module, "Visible", "What a view saw, as of the update before.")
-        .def_readonly("ids", &Seen::ids, "the objects' indices, ascending")
-        .def_readonly("handles", &Seen::handles, "their handles, an array of handle_dtype")
-        .def_readonly("users", &Seen::users, "their user numbers")
-        .def_readonly("verdicts", &Seen::verdicts, "STRADDLING or INSIDE for each")
-        .def_readonly("occluded_ids", &Seen::occluded_ids, "in the view's frustum, and hidden by others")
-        .def_readonly("depth", &Seen::depth,
-                      "the depth buffer, (height, width), the bottom row first, larger is nearer; or None")
-        .def_property_readonly("statistics",
-                               [](const Seen& s) {
-                                   py::dict d;
-                                   d["nodes_tested"] = s.statistics.nodes_tested;
-                                   d["boxes_tested"] = s.statistics.boxes_tested;
-                                   d["straddling"] = s.statistics.straddling;
-                                   d["occluders_drawn"] = s.occlusion.occluders_drawn;
-                                   return d;
-                               })
-        .def("__len__", [](const Seen& s) { return s.ids.size(); })
-        .def("__repr__", [](const Seen& s) { return format("Visible(%d objects)", static_cast<int>(s.ids.size())); });
-    type.def("view", &view, py::arg("view"), py::kw_only(), py::arg("layers") = ~0u, py::arg("conservative") = false,
-             py::arg("occlusion") = false, py::arg("size") = std::pair<std::uint32_t, std::uint32_t>(480, 270),
-             "What a Camera or a Frustum sees. With occlusion, what others hide is left out; `size` is that of its "
-             "depth "
-             "buffer, (width, height).");
+    PYBIND11_NUMPY_DTYPE(TriangleRecord, object, cluster, triangles);
+    bind_one(module);
+    bind_many(module);
+    static PyMethodDef method = {"view", reinterpret_cast<PyCFunction>(reinterpret_cast<void (*)()>(&view_method)),
+                                 METH_FASTCALL | METH_KEYWORDS, kViewText};
+    type.attr("view") =
+        py::reinterpret_steal<py::object>(PyDescr_NewMethod(reinterpret_cast<PyTypeObject*>(type.ptr()), &method));
+    type.def(
+        "clusters_of",
+        [](const PyWorld& world, MeshHandle mesh) {
+            return world.ask([&](const World& w) -> std::shared_ptr<depth::ClusteredMesh> {
+                const depth::ClusteredMesh* const cut = w.clusters_of(mesh);
+                return cut ? std::make_shared<depth::ClusteredMesh>(*cut) : nullptr;
+            });
+        },
+        py::arg("mesh"),
+        "How a mesh with clusters is cut, as of the last update: a ClusteredMesh, or None where it is not.");
 }
 
 }  // namespace crofton::python

@@ -35,7 +35,7 @@ def test_a_mesh_is_seen_hit_and_touched(world, cube):
     assert contact.phase == "began"
     assert repr(contact).startswith("Contact(7 and 8, began, depth=0.5")
     assert repr(hit) == "Hit(user=7, t=4, point=(0, 0, -4))"
-    assert repr(seen) == "Visible(2 objects)"
+    assert repr(seen) == "ViewResult(2 objects)"
     world.update()
     assert world.contacts[0].phase == "stayed"
     world.remove(far)
@@ -205,7 +205,7 @@ def test_what_hides_behind_a_wall_is_left_out(world, cube):
     behind = world.add(box=crofton.Box((0, 0, -20), (1, 1, 1)))
     beside = world.add(box=crofton.Box((-3, 0, -5), (1, 1, 1)))
     world.update()
-    seen = world.view(crofton.Camera(), occlusion=True, size=(320, 180))
+    seen = world.view(crofton.Camera(), occlusion=crofton.OcclusionOptions(size=(320, 180), list_occluded=True))
     assert seen.ids.tolist() == sorted([front.index, beside.index])
     assert seen.occluded_ids.tolist() == [behind.index]
     assert seen.depth.shape == (180, 320) and (seen.depth > 0).any()

@@ -5,7 +5,7 @@ use std::{mem::size_of, ptr};
 
 /// One mesh, ready for questions about it alone.
 pub struct Collider {
-    raw: *mut sys::Collider,
+    raw: *mut sys::Body,
 }
 
 unsafe impl Send for Collider {}
@@ -13,12 +13,11 @@ unsafe impl Sync for Collider {}
 
 impl Drop for Collider {
     fn drop(&mut self) {
-        unsafe { sys::crofton_collider_destroy(self.raw) };
+        unsafe { sys::crofton_body_destroy(self.raw) };
     }
 }
 
 /// Where a ray meets a mesh.
-#[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TriangleHit {
     /// The ray's.
@@ -39,31 +38,42 @@ impl Collider {
             name: ptr::null(),
         };
         let mut raw = ptr::null_mut();
-        check(unsafe { sys::crofton_collider_create(&mesh, &mut raw) })?;
+        let mut description = unsafe { sys::crofton_default_body_description() };
+        description.kind = sys::BODY_MESH;
+        description.mesh = &mesh;
+        check(unsafe { sys::crofton_body_create(&description, &mut raw) })?;
         Ok(Collider { raw })
+    }
+
+    fn relate(&self, other: &Collider, other_to_self: &Transform, which: u32) -> Result<sys::MeshRelation> {
+        let mut relation: sys::MeshRelation = unsafe { std::mem::zeroed() };
+        relation.size = size_of::<sys::MeshRelation>();
+        check(unsafe { sys::crofton_meshes_relate(self.raw, other.raw, other_to_self, which, &mut relation) })?;
+        Ok(relation)
     }
 
     /// Whether the surfaces share a point, exactly. `other_to_self` is a rotation and a translation.
     pub fn touches(&self, other: &Collider, other_to_self: &Transform) -> Result<bool> {
-        let mut meet = 0;
-        check(unsafe { sys::crofton_colliders_meet(self.raw, other.raw, other_to_self, &mut meet) })?;
-        Ok(meet != 0)
+        Ok(self.relate(other, other_to_self, sys::MESHES_MEET)?.meet != 0)
     }
 
     /// How far the surfaces are apart, in this mesh's frame.
     pub fn distance(&self, other: &Collider, other_to_self: &Transform) -> Result<Separation> {
-        let mut s = Separation { distance: 0.0, on_a: [0.0; 3], on_b: [0.0; 3] };
-        check(unsafe {
-            let (a, b) = (s.on_a.as_mut_ptr(), s.on_b.as_mut_ptr());
-            sys::crofton_colliders_distance(self.raw, other.raw, other_to_self, &mut s.distance, a, b)
-        })?;
-        Ok(s)
+        let found = self.relate(other, other_to_self, sys::MESHES_DISTANCE)?;
+        Ok(Separation { distance: found.distance, on_a: found.on_a, on_b: found.on_b })
     }
 
     /// The nearest triangle that each ray meets.
     pub fn raycasts(&self, rays: &[Ray]) -> Result<Vec<Option<TriangleHit>>> {
-        let mut hits = vec![TriangleHit { t: 0.0, triangle: u32::MAX }; rays.len()];
-        check(unsafe { sys::crofton_collider_raycast(self.raw, rays.as_ptr(), rays.len(), hits.as_mut_ptr()) })?;
-        Ok(hits.into_iter().map(|hit| (hit.triangle != u32::MAX).then_some(hit)).collect())
+        let here = Transform::default();
+        let placed = sys::Placed { body: self.raw, pose: &here };
+        rays.iter().map(|ray| raycast(&placed, ray)).collect()
     }
+}
+
+fn raycast(placed: &sys::Placed, ray: &Ray) -> Result<Option<TriangleHit>> {
+    let mut hit: sys::BodyRayHit = unsafe { std::mem::zeroed() };
+    hit.size = size_of::<sys::BodyRayHit>();
+    check(unsafe { sys::crofton_body_raycast(placed, ray, &mut hit) })?;
+    Ok(hit.t.is_finite().then_some(TriangleHit { t: hit.t, triangle: hit.triangle }))
 }

@@ -42,12 +42,17 @@ pub struct MeshData<'a> {
     pub indices: Indices<'a>,
     /// Rays and contacts ask the triangles; false: the mesh's box stands for it.
     pub triangles: bool,
+    /// Views with a picture list the triangles, in clusters: [`World::clusters_of`].
+    pub clusters: bool,
+    /// With clusters: back faces are not drawn, and not listed but of mirrored objects.
+    pub one_sided: bool,
 }
 
 impl<'a> MeshData<'a> {
     /// The usual kind.
     pub fn new(positions: &'a [[f32; 3]], indices: &'a [u32]) -> MeshData<'a> {
-        MeshData { vertices: Vertices::F32(positions), indices: Indices::U32(indices), triangles: true }
+        let (vertices, indices) = (Vertices::F32(positions), Indices::U32(indices));
+        MeshData { vertices, indices, triangles: true, clusters: false, one_sided: false }
     }
 
     pub(crate) fn raw(&self) -> Result<sys::MeshData> {
@@ -83,6 +88,8 @@ impl<'a> MeshData<'a> {
             is_double,
             is_short,
             triangles: self.triangles as u32,
+            clusters: self.clusters as u32,
+            one_sided: self.one_sided as u32,
         })
     }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 use crate::error::check;
 use crate::{sys, Camera, Obb, Result};
-use std::{mem::size_of, ptr};
+use std::{mem::size_of, os::raw::c_void, ptr};
 
 /// What a box is to have least of: volume_weight V + area_weight F + mean_curvature_weight M. Weights are at least 0
 /// and not all 0.
@@ -22,9 +22,7 @@ impl Criterion {
     }
     /// The sum of the edges: for frusta that are large beside the objects.
     pub fn minimal_perimeter() -> Criterion {
-        let mut criterion = Criterion::zero();
-        check(unsafe { sys::crofton_criterion_minimal_perimeter(&mut criterion) }).expect("it takes no input");
-        criterion
+        unsafe { sys::crofton_default_fit_options() }.criterion
     }
     /// Makes the camera's expected number of hits least; its far distance must be finite.
     pub fn for_frustum(camera: &Camera) -> Result<Criterion> {
@@ -65,12 +63,11 @@ pub fn fit(points: Points, quality: Quality, criterion: &Criterion) -> Result<Ob
     let options =
         sys::FitOptions { size: size_of::<sys::FitOptions>(), quality: quality as u32, criterion: *criterion };
     let mut result = Obb::aligned([0.0; 3], [0.0; 3]);
-    check(unsafe {
-        match points {
-            Points::F32(p) => sys::crofton_fit_floats(p.as_ptr() as *const f32, p.len(), &options, &mut result),
-            Points::F64(p) => sys::crofton_fit_doubles(p.as_ptr() as *const f64, p.len(), &options, &mut result),
-        }
-    })?;
+    let (numbers, count, is_double) = match points {
+        Points::F32(p) => (p.as_ptr() as *const c_void, p.len(), 0),
+        Points::F64(p) => (p.as_ptr() as *const c_void, p.len(), 1),
+    };
+    check(unsafe { sys::crofton_fit_points(numbers, count, is_double, &options, &mut result) })?;
     Ok(result)
 }
 

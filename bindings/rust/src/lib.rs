@@ -44,7 +44,8 @@ pub use jobs::{Executor, Threads};
 pub use occlusion::{FindOptions, OcclusionOptions, OcclusionStatistics};
 pub use queries::{Closest, Contact, Containment, Found, MeshContact, ObjectHit, ObjectPair, Phase, Shape};
 pub use triangulate::{Method, Triangulation, Triangulator};
-pub use views::{Seen, SeenByMany, ViewMatrix, ViewRequest, ViewResult};
+pub use views::{Cluster, Clusters, DrawLimits, PictureView, Seen, SeenByMany};
+pub use views::{ViewMatrix, ViewRequest, ViewResult, VisibleCluster};
 pub use world::{Mesh, Node, Object, ObjectRef, Statistics, World, WorldOptions};
 
 /// All 32 layers.

@@ -2,7 +2,6 @@
 //! Views that leave out what is hidden behind other objects.
 use crate::error::{check, slice};
 use crate::{sys, Mesh, Object, Result, Seen, World};
-use std::{mem::size_of, ptr};
 
 /// How occluders are looked for in a mesh; 0 stands for the library's default.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -24,6 +23,8 @@ pub struct OcclusionOptions {
     pub max_occluders: u32,
     /// [`Seen::occluded_ids`] lists what is hidden.
     pub list_occluded: bool,
+    /// What covers a smaller part of the sphere of directions is not drawn; 2e-5.
+    pub least_cover: f32,
 }
 
 /// What it took.
@@ -48,14 +49,12 @@ impl World {
 
     /// How many occluders a mesh has.
     pub fn occluder_count(&self, mesh: Mesh) -> Result<usize> {
-        let mut count = 0;
-        check(unsafe { sys::crofton_world_occluder_count(self.raw, mesh, &mut count) })?;
-        Ok(count)
+        Ok(self.mesh_info(mesh)?.occluder_count)
     }
 
     /// Whether an object with a mesh hides others, as at first, or not, as where it is drawn transparent.
     pub fn set_occludes(&mut self, object: Object, occludes: bool) -> Result<()> {
-        check(unsafe { sys::crofton_world_set_occludes(self.raw, object, occludes as i32) })
+        self.set(object, sys::SET_OCCLUDES, |d| d.occludes = occludes as u32)
     }
 }
 
@@ -70,29 +69,29 @@ pub(crate) fn raw_occlusion(options: &OcclusionOptions) -> sys::OcclusionOptions
     if options.max_occluders != 0 {
         raw.max_occluders = options.max_occluders;
     }
+    if options.least_cover != 0.0 {
+        raw.least_cover = options.least_cover;
+    }
     raw.list_occluded = options.list_occluded as u32;
     raw
+}
+
+pub(crate) fn statistics_of(info: &sys::ViewInfo) -> OcclusionStatistics {
+    OcclusionStatistics {
+        occluders_drawn: info.occluders_drawn,
+        items_tested: info.occlusion_items_tested,
+        items_hidden: info.occlusion_items_hidden,
+    }
 }
 
 impl<'a> Seen<'a> {
     /// Indices of what is in the frustum and hidden, ascending; none unless [`OcclusionOptions::list_occluded`] asked.
     pub fn occluded_ids(&self) -> &'a [u32] {
-        let (mut ids, mut count) = (ptr::null(), 0);
-        unsafe {
-            sys::crofton_view_result_occluded_ids(self.result.raw, &mut ids, &mut count);
-            slice(ids, count)
-        }
+        self.info().map_or(&[], |info| unsafe { slice(info.occluded_ids, info.occluded_count) })
     }
 
     /// All 0 after a view without occlusion.
     pub fn occlusion_statistics(&self) -> Result<OcclusionStatistics> {
-        let mut s: sys::OcclusionStatistics = unsafe { std::mem::zeroed() };
-        s.size = size_of::<sys::OcclusionStatistics>();
-        check(unsafe { sys::crofton_view_result_get_occlusion_statistics(self.result.raw, 0, &mut s) })?;
-        Ok(OcclusionStatistics {
-            occluders_drawn: s.occluders_drawn,
-            items_tested: s.items_tested,
-            items_hidden: s.items_hidden,
-        })
+        Ok(statistics_of(&self.info()?))
     }
 }

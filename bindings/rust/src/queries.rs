@@ -2,7 +2,7 @@
 //! What rays and shapes meet, and what touches.
 use crate::error::{check, slice};
 use crate::{sys, ContactPoint, Obb, Object, ObjectRef, Ray, Result, World};
-use std::{mem::size_of, os::raw::c_int, ptr};
+use std::{mem::size_of, ptr};
 
 const NONE: u32 = u32::MAX;
 
@@ -58,6 +58,30 @@ pub enum Shape {
         /// At least 0.
         radius: f64,
     },
+}
+
+impl Shape {
+    fn raw(&self) -> sys::Shape {
+        let mut raw: sys::Shape = unsafe { std::mem::zeroed() };
+        match *self {
+            Shape::Box(b) => {
+                raw.kind = sys::SHAPE_BOX;
+                raw.bounding_box = b;
+            }
+            Shape::Sphere { center, radius } => {
+                raw.kind = sys::SHAPE_SPHERE;
+                raw.begin = center;
+                raw.radius = radius;
+            }
+            Shape::Capsule { begin, end, radius } => {
+                raw.kind = sys::SHAPE_CAPSULE;
+                raw.begin = begin;
+                raw.end = end;
+                raw.radius = radius;
+            }
+        }
+        raw
+    }
 }
 
 /// The nearest object to a shape.
@@ -200,18 +224,7 @@ impl World {
 
     /// Whose box or sphere meets the shape, by index. A mesh's box stands for it.
     pub fn overlap<'a>(&self, shape: &Shape, layers: u32, found: &'a mut Found) -> Result<&'a [ObjectRef]> {
-        check(unsafe {
-            match shape {
-                Shape::Box(b) => sys::crofton_world_overlap_box(self.raw, b, layers, found.raw),
-                Shape::Sphere { center, radius } => {
-                    sys::crofton_world_overlap_sphere(self.raw, center.as_ptr(), *radius, layers, found.raw)
-                }
-                Shape::Capsule { begin, end, radius } => {
-                    let (b, e) = (begin.as_ptr(), end.as_ptr());
-                    sys::crofton_world_overlap_capsule(self.raw, b, e, *radius, layers, found.raw)
-                }
-            }
-        })?;
+        check(unsafe { sys::crofton_world_overlap(self.raw, &shape.raw(), layers, found.raw) })?;
         let (mut objects, mut count) = (ptr::null(), 0);
         check(unsafe { sys::crofton_found_objects(found.raw, &mut objects, &mut count) })?;
         Ok(unsafe { slice(objects, count) })
@@ -221,23 +234,7 @@ impl World {
     pub fn closest(&self, shape: &Shape, max_distance: f64, layers: u32) -> Result<Option<Closest>> {
         let mut c: sys::ClosestObject = unsafe { std::mem::zeroed() };
         c.size = size_of::<sys::ClosestObject>();
-        check(unsafe {
-            match shape {
-                Shape::Box(b) => sys::crofton_world_closest_to_box(self.raw, b, max_distance, layers, &mut c),
-                Shape::Sphere { center, radius } => sys::crofton_world_closest_to_sphere(
-                    self.raw,
-                    center.as_ptr(),
-                    *radius,
-                    max_distance,
-                    layers,
-                    &mut c,
-                ),
-                Shape::Capsule { begin, end, radius } => {
-                    let (b, e) = (begin.as_ptr(), end.as_ptr());
-                    sys::crofton_world_closest_to_capsule(self.raw, b, e, *radius, max_distance, layers, &mut c)
-                }
-            }
-        })?;
+        check(unsafe { sys::crofton_world_closest(self.raw, &shape.raw(), max_distance, layers, &mut c) })?;
         let (object, user, distance) = (c.object, c.user, c.distance);
         let closest = Closest { object, user, distance, on_shape: c.on_shape, on_object: c.on_object };
         Ok((object.index != NONE).then_some(closest))
@@ -259,30 +256,28 @@ impl World {
 
     /// What touches, and what has ceased to, in the order of the pairs.
     pub fn contacts(&self) -> Result<Vec<Contact<'_>>> {
-        let mut count = 0;
-        check(unsafe { sys::crofton_world_contact_count(self.raw, &mut count) })?;
-        (0..count).map(|i| self.contact(i)).collect()
+        let (mut contacts, mut count) = (ptr::null(), 0);
+        check(unsafe { sys::crofton_world_contacts(self.raw, &mut contacts, &mut count) })?;
+        Ok(unsafe { slice(contacts, count) }.iter().map(|c| contact(c)).collect())
     }
+}
 
-    fn contact(&self, place: usize) -> Result<Contact<'_>> {
-        let mut c: sys::ObjectContact = unsafe { std::mem::zeroed() };
-        c.size = size_of::<sys::ObjectContact>();
-        check(unsafe { sys::crofton_world_contact(self.raw, place, &mut c) })?;
-        Ok(Contact {
-            first: c.first,
-            second: c.second,
-            phase: [Phase::Began, Phase::Stayed, Phase::Ended][c.phase.min(2) as usize],
-            inside: match c.inside as c_int {
-                1 => Containment::FirstInside,
-                2 => Containment::SecondInside,
-                3 => Containment::Partly,
-                _ => Containment::Nothing,
-            },
-            normal: c.normal,
-            depth: c.depth,
-            points: unsafe { slice(c.points, c.point_count) },
-            triangles: unsafe { slice(c.triangles, c.triangle_count) },
-        })
+// The arrays are the world's: they live until its next change.
+fn contact<'a>(c: &sys::ObjectContact) -> Contact<'a> {
+    Contact {
+        first: c.first,
+        second: c.second,
+        phase: [Phase::Began, Phase::Stayed, Phase::Ended][c.phase.min(2) as usize],
+        inside: match c.inside {
+            1 => Containment::FirstInside,
+            2 => Containment::SecondInside,
+            3 => Containment::Partly,
+            _ => Containment::Nothing,
+        },
+        normal: c.normal,
+        depth: c.depth,
+        points: unsafe { slice(c.points, c.point_count) },
+        triangles: unsafe { slice(c.triangles, c.triangle_count) },
     }
 }
 

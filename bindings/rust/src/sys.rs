@@ -16,7 +16,7 @@ macro_rules! opaque {
         }
     )*};
 }
-opaque!(World, ViewResult, Found, Collider, Triangulator);
+opaque!(World, ViewResult, Found, Body, Triangulator);
 
 #[repr(C)]
 pub struct Jobs {
@@ -71,9 +71,11 @@ pub struct MeshData {
     pub is_double: u32,
     pub is_short: u32,
     pub triangles: u32,
+    pub clusters: u32,
+    pub one_sided: u32,
 }
 
-/// The triangles of a collider.
+/// The triangles of a body.
 #[repr(C)]
 pub struct Mesh {
     pub size: usize,
@@ -108,7 +110,111 @@ pub struct ObjectDescription {
     pub collides_with: u32,
     pub occludes: u32,
     pub only_occludes: u32,
-    pub body: *const c_void,
+    pub body: *const Body,
+    pub hidden: u32,
+}
+
+pub const SET_USER: u32 = 1;
+pub const SET_LAYERS: u32 = 2;
+pub const SET_COLLIDES_WITH: u32 = 4;
+pub const SET_HIDDEN: u32 = 8;
+pub const SET_OCCLUDES: u32 = 16;
+pub const SET_MESH: u32 = 32;
+pub const SET_BOUND: u32 = 64;
+
+#[repr(C)]
+pub struct ObjectInfo {
+    pub size: usize,
+    pub user: u64,
+    pub has_box: u32,
+    pub has_transform: u32,
+    pub bounding_box: crate::Obb,
+    pub transform: crate::Transform,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct Clusters {
+    pub clusters: *const crate::Cluster,
+    pub cluster_count: usize,
+    pub triangle_order: *const u32,
+    pub triangle_count: usize,
+}
+
+#[repr(C)]
+pub struct MeshInfo {
+    pub size: usize,
+    pub occluder_count: usize,
+    pub clusters: Clusters,
+}
+
+#[repr(C)]
+pub struct BodyDescription {
+    pub size: usize,
+    pub kind: u32,
+    pub radius: f32,
+    pub half_height: f32,
+    pub half_extents: [f32; 3],
+    pub corners: [f32; 9],
+    pub plane: Plane,
+    pub points: *const f32,
+    pub point_count: usize,
+    pub max_vertices: u32,
+    pub face_tolerance: f32,
+    pub mesh: *const Mesh,
+    pub height_field: *const c_void,
+    pub front_only: u32,
+    pub core: *const Body,
+    pub children: *const *const Body,
+    pub poses: *const crate::Transform,
+    pub child_count: usize,
+}
+pub const BODY_MESH: u32 = 8;
+
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct Placed {
+    pub body: *const Body,
+    pub pose: *const crate::Transform,
+}
+
+pub const SHAPE_BOX: u32 = 0;
+pub const SHAPE_SPHERE: u32 = 1;
+pub const SHAPE_CAPSULE: u32 = 2;
+
+#[repr(C)]
+pub struct Shape {
+    pub kind: u32,
+    pub bounding_box: crate::Obb,
+    pub begin: [f64; 3],
+    pub end: [f64; 3],
+    pub radius: f64,
+    pub body: Placed,
+}
+
+#[repr(C)]
+pub struct MeshRelation {
+    pub size: usize,
+    pub meet: u32,
+    pub containment: u32,
+    pub distance: f64,
+    pub on_a: [f64; 3],
+    pub on_b: [f64; 3],
+    pub depth: f64,
+    pub direction: [f64; 3],
+}
+pub const MESHES_MEET: u32 = 1;
+pub const MESHES_DISTANCE: u32 = 4;
+
+#[repr(C)]
+pub struct BodyRayHit {
+    pub size: usize,
+    pub t: f64,
+    pub point: [f64; 3],
+    pub normal: [f64; 3],
+    pub child: u32,
+    pub triangle: u32,
+    pub started_inside: u32,
 }
 
 #[repr(C)]
@@ -136,6 +242,7 @@ pub struct WorldStatistics {
     pub nodes_updated: u32,
     pub out_of_range: u32,
     pub tree_built: u32,
+    pub object_count: u64,
 }
 
 #[repr(C)]
@@ -150,16 +257,15 @@ pub struct ClosestObject {
 
 #[repr(C)]
 pub struct ObjectContact {
-    pub size: usize,
     pub first: crate::ObjectRef,
     pub second: crate::ObjectRef,
-    pub phase: u32,
-    pub inside: u32,
+    pub phase: u8,
+    pub inside: u8,
     pub normal: [f64; 3],
     pub depth: f64,
     pub points: *const crate::ContactPoint,
-    pub triangles: *const crate::MeshContact,
     pub point_count: usize,
+    pub triangles: *const crate::MeshContact,
     pub triangle_count: usize,
 }
 
@@ -224,19 +330,46 @@ pub struct ViewRequest {
     pub candidate_words: usize,
     pub conservative: u32,
     pub tree_order: u32,
+    pub picture: *const PictureView,
 }
 
 #[repr(C)]
-pub struct OcclusionStatistics {
+pub struct PictureView {
     pub size: usize,
-    pub occluders_drawn: u64,
-    pub pieces_drawn: u64,
-    pub triangles_drawn: u64,
+    pub width: u32,
+    pub height: u32,
+    pub depth: u32,
+}
+
+#[repr(C)]
+pub struct ViewInfo {
+    pub size: usize,
     pub nodes_tested: u64,
-    pub nodes_outside: u64,
-    pub nodes_hidden: u64,
-    pub items_tested: u64,
-    pub items_hidden: u64,
+    pub boxes_tested: u64,
+    pub accepted_whole: u64,
+    pub straddling: u64,
+    pub exact_tests: u64,
+    pub false_positives: u64,
+    pub occluders_drawn: u64,
+    pub occluder_pieces_drawn: u64,
+    pub occluder_triangles_drawn: u64,
+    pub occlusion_nodes_tested: u64,
+    pub occlusion_nodes_outside: u64,
+    pub occlusion_nodes_hidden: u64,
+    pub occlusion_items_tested: u64,
+    pub occlusion_items_hidden: u64,
+    pub occluded_ids: *const u32,
+    pub occluded_count: usize,
+    pub depth_width: u32,
+    pub depth_height: u32,
+    pub triangles: *const crate::VisibleCluster,
+    pub triangle_cluster_count: usize,
+    pub objects_listed: u64,
+    pub objects_asked: u64,
+    pub clusters_asked: u64,
+    pub clusters_drawn: u64,
+    pub triangles_drawn: u64,
+    pub triangles_listed: u64,
 }
 
 pub const MAX_MANIFOLD_POINTS: usize = 8;
@@ -289,6 +422,11 @@ extern "C" {
     pub fn crofton_default_view_matrix() -> ViewMatrix;
     pub fn crofton_default_occlusion_options() -> OcclusionOptions;
     pub fn crofton_default_find_options() -> FindOptions;
+    pub fn crofton_default_object_description() -> ObjectDescription;
+    pub fn crofton_default_picture_view() -> PictureView;
+    pub fn crofton_default_draw_limits() -> DrawLimits;
+    pub fn crofton_default_body_description() -> BodyDescription;
+    pub fn crofton_default_fit_options() -> FitOptions;
     pub fn crofton_frustum_from_camera(camera: *const Camera, frustum: *mut Frustum) -> Status;
     pub fn crofton_frustum_from_matrix(
         to_clip: *const f64, depth: u32, origin: *const f64, frustum: *mut Frustum,
@@ -307,27 +445,17 @@ extern "C" {
     ) -> Status;
     pub fn crofton_box_raycast(b: *const crate::Obb, ray: *const crate::Ray, t: *mut f64) -> Status;
 
-    pub fn crofton_collider_create(mesh: *const Mesh, collider: *mut *mut Collider) -> Status;
-    pub fn crofton_collider_destroy(collider: *mut Collider) -> Status;
-    pub fn crofton_colliders_meet(
-        a: *const Collider, b: *const Collider, b_to_a: *const crate::Transform, meet: *mut c_int,
-    ) -> Status;
-    pub fn crofton_colliders_distance(
-        a: *const Collider, b: *const Collider, b_to_a: *const crate::Transform, distance: *mut f64, on_a: *mut f64,
-        on_b: *mut f64,
-    ) -> Status;
-    pub fn crofton_collider_raycast(
-        collider: *const Collider, rays: *const crate::Ray, count: usize, hits: *mut crate::TriangleHit,
+    pub fn crofton_body_create(description: *const BodyDescription, body: *mut *mut Body) -> Status;
+    pub fn crofton_body_destroy(body: *mut Body) -> Status;
+    pub fn crofton_body_raycast(body: *const Placed, ray: *const crate::Ray, hit: *mut BodyRayHit) -> Status;
+    pub fn crofton_meshes_relate(
+        a: *const Body, b: *const Body, b_to_a: *const crate::Transform, which: u32, relation: *mut MeshRelation,
     ) -> Status;
 
-    pub fn crofton_criterion_minimal_perimeter(criterion: *mut crate::Criterion) -> Status;
     pub fn crofton_criterion_for_frustum(camera: *const Camera, criterion: *mut crate::Criterion) -> Status;
     pub fn crofton_criterion_for_rays(length: f64, criterion: *mut crate::Criterion) -> Status;
-    pub fn crofton_fit_floats(
-        points: *const f32, count: usize, options: *const FitOptions, b: *mut crate::Obb,
-    ) -> Status;
-    pub fn crofton_fit_doubles(
-        points: *const f64, count: usize, options: *const FitOptions, b: *mut crate::Obb,
+    pub fn crofton_fit_points(
+        points: *const c_void, count: usize, is_double: u32, options: *const FitOptions, b: *mut crate::Obb,
     ) -> Status;
     pub fn crofton_fit_boxes(
         boxes: *const crate::Obb, count: usize, criterion: *const crate::Criterion, b: *mut crate::Obb,
@@ -368,30 +496,18 @@ extern "C" {
         world: *mut World, objects: *const crate::Object, object_stride: usize, boxes: *const crate::Obb,
         box_stride: usize, count: usize,
     ) -> Status;
-    pub fn crofton_world_set_bound(world: *mut World, object: crate::Object, bound: *const Bound) -> Status;
-    pub fn crofton_world_set_mesh(world: *mut World, object: crate::Object, mesh: crate::Mesh) -> Status;
-    pub fn crofton_world_set_hidden(world: *mut World, object: crate::Object, hidden: c_int) -> Status;
-    pub fn crofton_world_set_layers(world: *mut World, object: crate::Object, layers: u32) -> Status;
-    pub fn crofton_world_set_collides_with(world: *mut World, object: crate::Object, layers: u32) -> Status;
-    pub fn crofton_world_set_user(world: *mut World, object: crate::Object, user: u64) -> Status;
+    pub fn crofton_world_set(
+        world: *mut World, object: crate::Object, members: u32, description: *const ObjectDescription,
+    ) -> Status;
     pub fn crofton_world_update(world: *mut World, jobs: *const Jobs) -> Status;
     pub fn crofton_world_get_statistics(world: *const World, statistics: *mut WorldStatistics) -> Status;
-    pub fn crofton_world_object_count(world: *const World, count: *mut usize) -> Status;
-    pub fn crofton_world_contains(world: *const World, object: crate::Object, contains: *mut c_int) -> Status;
     pub fn crofton_world_contains_node(world: *const World, node: crate::Node, contains: *mut c_int) -> Status;
-    pub fn crofton_world_contains_mesh(world: *const World, mesh: crate::Mesh, contains: *mut c_int) -> Status;
-    pub fn crofton_world_get_user(world: *const World, object: crate::Object, user: *mut u64) -> Status;
-    pub fn crofton_world_get_box(world: *const World, object: crate::Object, b: *mut crate::Obb) -> Status;
-    pub fn crofton_world_get_transform(
-        world: *const World, object: crate::Object, transform: *mut crate::Transform,
-    ) -> Status;
+    pub fn crofton_world_get_object(world: *const World, object: crate::Object, info: *mut ObjectInfo) -> Status;
+    pub fn crofton_world_get_mesh(world: *const World, mesh: crate::Mesh, info: *mut MeshInfo) -> Status;
 
     pub fn crofton_view_result_create(result: *mut *mut ViewResult) -> Status;
     pub fn crofton_view_result_destroy(result: *mut ViewResult) -> Status;
     pub fn crofton_world_view(
-        world: *const World, request: *const ViewRequest, jobs: *const Jobs, result: *mut ViewResult,
-    ) -> Status;
-    pub fn crofton_world_view_many(
         world: *const World, requests: *const ViewRequest, count: usize, jobs: *const Jobs, result: *mut ViewResult,
     ) -> Status;
     pub fn crofton_view_result_ids(
@@ -402,12 +518,7 @@ extern "C" {
         result: *const ViewResult, world: *const World, first: usize, objects: *mut crate::ObjectRef,
         view_masks: *mut u32, capacity: usize,
     ) -> Status;
-    pub fn crofton_view_result_occluded_ids(
-        result: *const ViewResult, ids: *mut *const u32, count: *mut usize,
-    ) -> Status;
-    pub fn crofton_view_result_get_occlusion_statistics(
-        result: *const ViewResult, view: usize, statistics: *mut OcclusionStatistics,
-    ) -> Status;
+    pub fn crofton_view_result_get_view(result: *const ViewResult, view: usize, info: *mut ViewInfo) -> Status;
 
     pub fn crofton_world_raycast(
         world: *const World, rays: *const crate::Ray, count: usize, layer_mask: u32, hits: *mut crate::ObjectHit,
@@ -424,31 +535,16 @@ extern "C" {
     pub fn crofton_world_raycast_all(
         world: *const World, ray: *const crate::Ray, layer_mask: u32, found: *mut Found,
     ) -> Status;
-    pub fn crofton_world_overlap_box(
-        world: *const World, b: *const crate::Obb, layer_mask: u32, found: *mut Found,
+    pub fn crofton_world_overlap(
+        world: *const World, shape: *const Shape, layer_mask: u32, found: *mut Found,
     ) -> Status;
-    pub fn crofton_world_overlap_sphere(
-        world: *const World, center: *const f64, radius: f64, layer_mask: u32, found: *mut Found,
-    ) -> Status;
-    pub fn crofton_world_overlap_capsule(
-        world: *const World, begin: *const f64, end: *const f64, radius: f64, layer_mask: u32, found: *mut Found,
-    ) -> Status;
-    pub fn crofton_world_closest_to_box(
-        world: *const World, b: *const crate::Obb, max_distance: f64, layer_mask: u32, closest: *mut ClosestObject,
-    ) -> Status;
-    pub fn crofton_world_closest_to_sphere(
-        world: *const World, center: *const f64, radius: f64, max_distance: f64, layer_mask: u32,
-        closest: *mut ClosestObject,
-    ) -> Status;
-    pub fn crofton_world_closest_to_capsule(
-        world: *const World, begin: *const f64, end: *const f64, radius: f64, max_distance: f64, layer_mask: u32,
-        closest: *mut ClosestObject,
+    pub fn crofton_world_closest(
+        world: *const World, shape: *const Shape, max_distance: f64, layer_mask: u32, closest: *mut ClosestObject,
     ) -> Status;
     pub fn crofton_world_pairs(world: *const World, pairs: *mut *const crate::ObjectPair, count: *mut usize) -> Status;
-    pub fn crofton_world_contact_count(world: *const World, count: *mut usize) -> Status;
-    pub fn crofton_world_contact(world: *const World, contact: usize, result: *mut ObjectContact) -> Status;
+    pub fn crofton_world_contacts(
+        world: *const World, contacts: *mut *const ObjectContact, count: *mut usize,
+    ) -> Status;
 
     pub fn crofton_world_find_occluders(world: *mut World, mesh: crate::Mesh, options: *const FindOptions) -> Status;
-    pub fn crofton_world_occluder_count(world: *const World, mesh: crate::Mesh, count: *mut usize) -> Status;
-    pub fn crofton_world_set_occludes(world: *mut World, object: crate::Object, occludes: c_int) -> Status;
 }

@@ -3,8 +3,9 @@
 use crate::error::{check, slice};
 use crate::geometry::to_verdict;
 use crate::jobs::with_jobs;
-use crate::occlusion::raw_occlusion;
-use crate::{sys, Camera, DepthRange, Executor, Frustum, Object, ObjectRef, OcclusionOptions, Result, Verdict, World};
+use crate::occlusion::{raw_occlusion, statistics_of};
+use crate::{sys, Camera, DepthRange, Executor, Frustum, Mesh, Object, ObjectRef};
+use crate::{OcclusionOptions, OcclusionStatistics, Result, Verdict, World};
 use std::{mem::size_of, ptr};
 
 /// An engine's own matrix, from positions relative to `origin` to clip space, for column vectors.
@@ -32,14 +33,130 @@ pub struct ViewRequest<'a> {
     pub layers: u32,
     /// If set, leaves out objects that others hide; never one that is seen.
     pub occlusion: Option<OcclusionOptions>,
-    /// If not empty, bit i % 64 of word i / 64: may the object with index i be seen?
+    /// If set, lists the triangles without which this picture would change: [`Seen::triangles`]. In place of
+    /// `occlusion`.
+    pub picture: Option<PictureView>,
+    /// If set, leaves out what is too small or too far.
+    pub limits: Option<&'a DrawLimits<'a>>,
+    /// If not empty, bit i % 64 of word i / 64: may the object with index i be seen? Objects that are new or have moved
+    /// may.
     pub candidate_mask: &'a [u64],
+    /// By planes alone, which keeps some boxes near the volume's corners.
+    pub conservative: bool,
+    /// As the tree lies in memory, which is quicker where much is seen, instead of ascending.
+    pub tree_order: bool,
+}
+
+/// The picture that is drawn: one sample a pixel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PictureView {
+    /// In pixels, 1 to 16,384.
+    pub width: u32,
+    /// Likewise.
+    pub height: u32,
+    /// Of the renderer's projection; beside a [`ViewMatrix`], the same as its.
+    pub depth: DepthRange,
+}
+
+/// What is too small or too far to draw.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DrawLimits<'a> {
+    /// Where distances are measured from.
+    pub eye: [f64; 3],
+    /// Leaves out what is farther than so many of its radii; infinite: nothing.
+    pub max_distance_in_radii: f64,
+    /// Leaves out what is smaller.
+    pub least_radius: f64,
+    /// By layer: leaves out what is farther than the distances of all its layers.
+    pub layer_distances: Option<&'a [f32; 32]>,
+    /// By object index: leaves out what is farther.
+    pub item_distances: &'a [f32],
+    /// Bit i % 64 of word i / 64: was the object with index i drawn before?
+    pub drawn_before: &'a [u64],
+    /// Times as long are the limits of what was drawn before; at least 1.
+    pub hysteresis: f64,
+}
+
+impl DrawLimits<'_> {
+    /// Leaves out nothing yet.
+    pub fn new(eye: [f64; 3]) -> Self {
+        DrawLimits {
+            eye,
+            max_distance_in_radii: f64::INFINITY,
+            least_radius: 0.0,
+            layer_distances: None,
+            item_distances: &[],
+            drawn_before: &[],
+            hysteresis: 1.0,
+        }
+    }
+    fn raw(&self) -> sys::DrawLimits {
+        let mut raw = unsafe { sys::crofton_default_draw_limits() };
+        raw.eye = self.eye;
+        if self.max_distance_in_radii.is_finite() {
+            raw.max_distance_in_radii = self.max_distance_in_radii;
+        }
+        raw.least_radius = self.least_radius;
+        raw.layer_distances = self.layer_distances.map_or(ptr::null(), |d| d.as_ptr());
+        raw.item_distances = self.item_distances.as_ptr();
+        raw.item_count = self.item_distances.len();
+        raw.drawn_before = self.drawn_before.as_ptr();
+        raw.drawn_word_count = self.drawn_before.len();
+        raw.hysteresis = self.hysteresis;
+        raw
+    }
+}
+
+/// A cluster with triangles to draw. Bit k of `triangles` stands for triangle `first_triangle + k` of the cluster.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct VisibleCluster {
+    /// The object's index.
+    pub object: u32,
+    /// Which of [`Clusters::clusters`].
+    pub cluster: u32,
+    /// At least one bit is set.
+    pub triangles: u64,
+}
+
+/// A group of neighbouring triangles, and a box in the mesh's coordinates that contains them.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cluster {
+    /// In [`Clusters::triangle_order`].
+    pub first_triangle: u32,
+    /// 1 to 64.
+    pub triangle_count: u32,
+    /// Of the box.
+    pub center: [f32; 3],
+    /// Center plus and minus each of the three gives the box's corners.
+    pub half_edges: [[f32; 3]; 3],
+}
+
+/// How a mesh is cut.
+#[derive(Debug, Clone, Copy)]
+pub struct Clusters<'a> {
+    /// One range each of the order.
+    pub clusters: &'a [Cluster],
+    /// Permute the index buffer that you draw by it: triangle `triangle_order[k]` of the mesh is number k.
+    pub triangle_order: &'a [u32],
 }
 
 impl Default for ViewRequest<'_> {
     /// All layers, no occlusion; where the view looks from is to be set.
     fn default() -> Self {
-        ViewRequest { camera: None, matrix: None, volume: None, layers: u32::MAX, occlusion: None, candidate_mask: &[] }
+        ViewRequest {
+            camera: None,
+            matrix: None,
+            volume: None,
+            layers: u32::MAX,
+            occlusion: None,
+            picture: None,
+            limits: None,
+            candidate_mask: &[],
+            conservative: false,
+            tree_order: false,
+        }
     }
 }
 impl From<Camera> for ViewRequest<'_> {
@@ -59,6 +176,8 @@ struct Asked<'a> {
     camera: Option<sys::Camera>,
     matrix: Option<sys::ViewMatrix>,
     occlusion: Option<sys::OcclusionOptions>,
+    picture: Option<sys::PictureView>,
+    limits: Option<sys::DrawLimits>,
 }
 
 impl<'a> Asked<'a> {
@@ -75,6 +194,13 @@ impl<'a> Asked<'a> {
                 origin: m.origin,
             }),
             occlusion: request.occlusion.as_ref().map(raw_occlusion),
+            picture: request.picture.map(|p| sys::PictureView {
+                size: size_of::<sys::PictureView>(),
+                width: p.width,
+                height: p.height,
+                depth: p.depth as u32,
+            }),
+            limits: request.limits.map(|l| l.raw()),
         }
     }
     fn raw(&self) -> sys::ViewRequest {
@@ -86,6 +212,10 @@ impl<'a> Asked<'a> {
         raw.occlusion = pointer(&self.occlusion);
         raw.candidate_mask = self.request.candidate_mask.as_ptr();
         raw.candidate_words = self.request.candidate_mask.len();
+        raw.picture = pointer(&self.picture);
+        raw.limits = pointer(&self.limits);
+        raw.conservative = self.request.conservative as u32;
+        raw.tree_order = self.request.tree_order as u32;
         raw
     }
 }
@@ -137,7 +267,15 @@ impl<'a> Seen<'a> {
             (slice(ids, count), (!verdicts.is_null()).then(|| slice(verdicts, count)))
         }
     }
-    /// The objects' indices, ascending.
+    pub(crate) fn info(&self) -> Result<sys::ViewInfo> {
+        view_info(self.result, 0)
+    }
+    /// Of a view with a picture: the triangles to draw, by object, then by cluster.
+    pub fn triangles(&self) -> Result<&'a [VisibleCluster]> {
+        let info = self.info()?;
+        Ok(unsafe { slice(info.triangles, info.triangle_cluster_count) })
+    }
+    /// The objects' indices, ascending unless asked otherwise.
     pub fn ids(&self) -> &'a [u32] {
         self.arrays().0
     }
@@ -160,7 +298,21 @@ pub struct SeenByMany<'a> {
     result: &'a ViewResult,
 }
 
-impl SeenByMany<'_> {
+impl<'a> SeenByMany<'a> {
+    /// The triangles to draw in one view, as [`Seen::triangles`].
+    pub fn triangles(&self, view: usize) -> Result<&'a [VisibleCluster]> {
+        let info = view_info(self.result, view)?;
+        Ok(unsafe { slice(info.triangles, info.triangle_cluster_count) })
+    }
+    /// As [`Seen::occluded_ids`], of one view.
+    pub fn occluded_ids(&self, view: usize) -> Result<&'a [u32]> {
+        let info = view_info(self.result, view)?;
+        Ok(unsafe { slice(info.occluded_ids, info.occluded_count) })
+    }
+    /// As [`Seen::occlusion_statistics`], of one view.
+    pub fn occlusion_statistics(&self, view: usize) -> Result<OcclusionStatistics> {
+        Ok(statistics_of(&view_info(self.result, view)?))
+    }
     /// Objects, and for each of them the views that see it: bit v for view v.
     pub fn objects(&self) -> Result<Vec<(ObjectRef, u32)>> {
         let (mut ids, mut count) = (ptr::null(), 0);
@@ -188,7 +340,7 @@ impl World {
     ) -> Result<Seen<'a>> {
         let raw = Asked::new(request);
         let raw = raw.raw();
-        check(with_jobs(executor, |jobs| unsafe { sys::crofton_world_view(self.raw, &raw, jobs, result.raw) }))?;
+        check(with_jobs(executor, |jobs| unsafe { sys::crofton_world_view(self.raw, &raw, 1, jobs, result.raw) }))?;
         Ok(Seen { world: self, result })
     }
 
@@ -199,10 +351,30 @@ impl World {
         let asked: Vec<Asked> = requests.iter().map(Asked::new).collect();
         let raw: Vec<sys::ViewRequest> = asked.iter().map(|a| a.raw()).collect();
         check(with_jobs(executor, |jobs| unsafe {
-            sys::crofton_world_view_many(self.raw, raw.as_ptr(), raw.len(), jobs, result.raw)
+            sys::crofton_world_view(self.raw, raw.as_ptr(), raw.len(), jobs, result.raw)
         }))?;
         Ok(SeenByMany { world: self, result })
     }
+}
+
+impl World {
+    /// How a mesh with [`MeshData::clusters`](crate::MeshData::clusters) is cut, as of the last update.
+    pub fn clusters_of(&self, mesh: Mesh) -> Result<Option<Clusters<'_>>> {
+        let raw = self.mesh_info(mesh)?.clusters;
+        Ok((raw.cluster_count > 0).then(|| unsafe {
+            Clusters {
+                clusters: slice(raw.clusters, raw.cluster_count),
+                triangle_order: slice(raw.triangle_order, raw.triangle_count),
+            }
+        }))
+    }
+}
+
+fn view_info(result: &ViewResult, view: usize) -> Result<sys::ViewInfo> {
+    let mut info: sys::ViewInfo = unsafe { std::mem::zeroed() };
+    info.size = size_of::<sys::ViewInfo>();
+    check(unsafe { sys::crofton_view_result_get_view(result.raw, view, &mut info) })?;
+    Ok(info)
 }
 
 fn pointer<T>(value: &Option<T>) -> *const T {

@@ -2,7 +2,7 @@
 //! An engine's objects, what they are and where.
 use crate::error::{check, wrong};
 use crate::jobs::with_jobs;
-use crate::{sys, Bound, Description, Executor, Indices, MeshData, Obb, Result, Transform, Vertices};
+use crate::{sys, Bound, Description, Error, Executor, Indices, MeshData, Obb, Result, Status, Transform, Vertices};
 use std::{mem::size_of, ptr};
 
 macro_rules! handle {
@@ -129,7 +129,7 @@ impl World {
     }
     /// For a mesh that deforms: as many vertices as before.
     pub fn set_vertices(&mut self, mesh: Mesh, vertices: Vertices) -> Result<()> {
-        let data = MeshData { vertices, indices: Indices::None, triangles: true };
+        let data = MeshData { vertices, indices: Indices::None, triangles: true, clusters: false, one_sided: false };
         check(unsafe { sys::crofton_world_set_vertices(self.raw, mesh, &data.raw()?) })
     }
     /// An error while objects use it.
@@ -181,7 +181,8 @@ impl World {
             collides_with: description.collides_with,
             occludes: description.occludes as u32,
             only_occludes: 0,
-            body: std::ptr::null(),
+            body: ptr::null(),
+            hidden: 0,
         };
         let mut object = Object { index: 0, generation: 0 };
         check(unsafe { sys::crofton_world_add(self.raw, &raw, &mut object) })?;
@@ -203,29 +204,38 @@ impl World {
         let (o, b) = (objects.as_ptr(), boxes.as_ptr());
         check(unsafe { sys::crofton_world_set_boxes(self.raw, o, 0, b, 0, objects.len()) })
     }
+    // Sets one member of an object.
+    pub(crate) fn set(
+        &mut self, object: Object, member: u32, fill: impl FnOnce(&mut sys::ObjectDescription),
+    ) -> Result<()> {
+        let mut description = unsafe { sys::crofton_default_object_description() };
+        fill(&mut description);
+        check(unsafe { sys::crofton_world_set(self.raw, object, member, &description) })
+    }
     /// Of an object that was added with a bound.
     pub fn set_bound(&mut self, object: Object, bound: Bound) -> Result<()> {
-        check(unsafe { sys::crofton_world_set_bound(self.raw, object, &bound.raw()) })
+        let raw = bound.raw();
+        self.set(object, sys::SET_BOUND, |d| d.bound = &raw)
     }
     /// Of an object that has a mesh.
     pub fn set_mesh(&mut self, object: Object, mesh: Mesh) -> Result<()> {
-        check(unsafe { sys::crofton_world_set_mesh(self.raw, object, mesh) })
+        self.set(object, sys::SET_MESH, |d| (d.has_mesh, d.mesh) = (1, mesh))
     }
     /// A hidden object is in no answer until it is shown again.
     pub fn set_hidden(&mut self, object: Object, hidden: bool) -> Result<()> {
-        check(unsafe { sys::crofton_world_set_hidden(self.raw, object, hidden as i32) })
+        self.set(object, sys::SET_HIDDEN, |d| d.hidden = hidden as u32)
     }
     /// The layers that it is in.
     pub fn set_layers(&mut self, object: Object, layers: u32) -> Result<()> {
-        check(unsafe { sys::crofton_world_set_layers(self.raw, object, layers) })
+        self.set(object, sys::SET_LAYERS, |d| d.layers = layers)
     }
     /// The layers that it collides with.
     pub fn set_collides_with(&mut self, object: Object, layers: u32) -> Result<()> {
-        check(unsafe { sys::crofton_world_set_collides_with(self.raw, object, layers) })
+        self.set(object, sys::SET_COLLIDES_WITH, |d| d.collides_with = layers)
     }
     /// The number that answers give back.
     pub fn set_user(&mut self, object: Object, user: u64) -> Result<()> {
-        check(unsafe { sys::crofton_world_set_user(self.raw, object, user) })
+        self.set(object, sys::SET_USER, |d| d.user = user)
     }
 
     /// Makes the changes take effect; once a frame. Error: more than [`WorldOptions::max_pairs`] pairs; then there are
@@ -239,9 +249,7 @@ impl World {
     }
     /// What the last update did.
     pub fn statistics(&self) -> Result<Statistics> {
-        let mut s: sys::WorldStatistics = unsafe { std::mem::zeroed() };
-        s.size = size_of::<sys::WorldStatistics>();
-        check(unsafe { sys::crofton_world_get_statistics(self.raw, &mut s) })?;
+        let s = self.raw_statistics()?;
         Ok(Statistics {
             objects: s.objects,
             resting: s.resting,
@@ -250,19 +258,32 @@ impl World {
             out_of_range: s.out_of_range,
         })
     }
+    fn raw_statistics(&self) -> Result<sys::WorldStatistics> {
+        let mut s: sys::WorldStatistics = unsafe { std::mem::zeroed() };
+        s.size = size_of::<sys::WorldStatistics>();
+        check(unsafe { sys::crofton_world_get_statistics(self.raw, &mut s) })?;
+        Ok(s)
+    }
 
     /// How many objects there are.
     pub fn object_count(&self) -> usize {
-        let mut count = 0;
-        match check(unsafe { sys::crofton_world_object_count(self.raw, &mut count) }) {
-            Ok(()) => count,
-            Err(_) => 0,
-        }
+        self.raw_statistics().map_or(0, |s| s.object_count as usize)
+    }
+    fn info(&self, object: Object) -> Result<sys::ObjectInfo> {
+        let mut info: sys::ObjectInfo = unsafe { std::mem::zeroed() };
+        info.size = size_of::<sys::ObjectInfo>();
+        check(unsafe { sys::crofton_world_get_object(self.raw, object, &mut info) })?;
+        Ok(info)
+    }
+    pub(crate) fn mesh_info(&self, mesh: Mesh) -> Result<sys::MeshInfo> {
+        let mut info: sys::MeshInfo = unsafe { std::mem::zeroed() };
+        info.size = size_of::<sys::MeshInfo>();
+        check(unsafe { sys::crofton_world_get_mesh(self.raw, mesh, &mut info) })?;
+        Ok(info)
     }
     /// Whether the handle is of an object that is still there.
     pub fn contains(&self, object: Object) -> bool {
-        let mut contains = 0;
-        unsafe { sys::crofton_world_contains(self.raw, object, &mut contains) == 0 && contains != 0 }
+        self.info(object).is_ok()
     }
     /// Whether the handle is of a node that is still there.
     pub fn contains_node(&self, node: Node) -> bool {
@@ -271,27 +292,32 @@ impl World {
     }
     /// Whether the handle is of a mesh that is still there.
     pub fn contains_mesh(&self, mesh: Mesh) -> bool {
-        let mut contains = 0;
-        unsafe { sys::crofton_world_contains_mesh(self.raw, mesh, &mut contains) == 0 && contains != 0 }
+        self.mesh_info(mesh).is_ok()
     }
     /// The caller's number.
     pub fn user(&self, object: Object) -> Result<u64> {
-        let mut user = 0;
-        check(unsafe { sys::crofton_world_get_user(self.raw, object, &mut user) })?;
-        Ok(user)
+        Ok(self.info(object)?.user)
     }
     /// The object's box; an error before the first update after it was added.
     pub fn obb(&self, object: Object) -> Result<Obb> {
-        let mut result = Obb::aligned([0.0; 3], [0.0; 3]);
-        check(unsafe { sys::crofton_world_get_box(self.raw, object, &mut result) })?;
-        Ok(result)
+        let info = self.info(object)?;
+        if info.has_box == 0 {
+            return Err(not_yet("the object has no box before the next update", object));
+        }
+        Ok(info.bounding_box)
     }
     /// Of an object with a mesh: to the world's coordinates.
     pub fn transform(&self, object: Object) -> Result<Transform> {
-        let mut result = Transform::default();
-        check(unsafe { sys::crofton_world_get_transform(self.raw, object, &mut result) })?;
-        Ok(result)
+        let info = self.info(object)?;
+        if info.has_transform == 0 {
+            return Err(not_yet("the object is a bound, or there was no update since it was added", object));
+        }
+        Ok(info.transform)
     }
+}
+
+fn not_yet(message: &str, object: Object) -> Error {
+    Error { status: Status::Empty, message: message.to_owned(), item: Some(object.index as u64) }
 }
 
 fn as_pointer<T>(value: &Option<T>) -> *const T {

@@ -168,7 +168,7 @@ fn every_declared_function_is_exported() {
     let exported: Vec<&str> = libraries.iter().flat_map(|symbols| symbols.split_whitespace()).collect();
     let source = include_str!("../src/sys.rs");
     let declared: Vec<&str> = source.split("pub fn ").skip(1).map(|rest| rest.split('(').next().unwrap()).collect();
-    assert!(declared.len() > 80);
+    assert!(declared.len() > 70);
     for name in &declared {
         assert!(exported.contains(name), "{name} is not exported");
         assert!(!LEFT_OUT.iter().any(|prefix| name.starts_with(prefix)), "{name}");

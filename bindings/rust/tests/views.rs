@@ -133,3 +133,79 @@ fn glass_hides_nothing() {
         .unwrap();
     assert_eq!(seen.ids().len(), 3);
 }
+
+// A wall of two triangles in clusters, one behind it, one beside it.
+fn walls() -> (World, Mesh, Vec<Object>) {
+    let mut world = World::new().unwrap();
+    let corners = [[-3.0, -3.0, 0.0], [3.0, -3.0, 0.0], [3.0, 3.0, 0.0], [-3.0, 3.0, 0.0]];
+    let mesh = world.add_mesh(&MeshData { clusters: true, ..MeshData::new(&corners, &[0, 1, 2, 0, 2, 3]) }).unwrap();
+    let places = [[0.0, 0.0, -10.0], [0.0, 0.0, -40.0], [20.0, 0.0, -40.0]];
+    let objects = places.map(|at| world.add(&Description::mesh(mesh).at(Transform::at(at))).unwrap());
+    for _ in 0..40 {
+        world.update().unwrap(); // candidates say nothing about what may have moved since
+    }
+    (world, mesh, objects.to_vec())
+}
+
+#[test]
+fn a_picture_lists_the_triangles_that_it_needs() {
+    let (mut world, mesh, objects) = walls();
+    let picture = Some(PictureView { width: 160, height: 90, depth: DepthRange::ReversedZeroToOne });
+    let mut visible = ViewResult::new().unwrap();
+    let request = ViewRequest { picture, ..Camera::default().into() };
+    let seen = world.view(&request, &mut visible).unwrap();
+    assert_eq!(seen.ids(), [objects[0].index, objects[2].index]);
+    let whole = |object: &Object| VisibleCluster { object: object.index, cluster: 0, triangles: 3 };
+    assert_eq!(seen.triangles().unwrap(), [whole(&objects[0]), whole(&objects[2])]);
+    let clusters = world.clusters_of(mesh).unwrap().unwrap();
+    assert_eq!((clusters.clusters.len(), clusters.clusters[0].triangle_count), (1, 2));
+    let mut order = clusters.triangle_order.to_vec();
+    order.sort();
+    assert_eq!(order, [0, 1]);
+    let both = ViewRequest { occlusion: Some(OcclusionOptions::default()), ..request };
+    assert_eq!(world.view(&both, &mut visible).err().unwrap().status, Status::InvalidArgument);
+    let plain = world.add_mesh(&MeshData::new(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[0, 1, 2])).unwrap();
+    assert!(world.clusters_of(plain).unwrap().is_none());
+}
+
+#[test]
+fn each_of_many_views_is_obeyed_as_it_is_alone() {
+    let (world, _, objects) = walls();
+    let camera = || ViewRequest::from(Camera::default());
+    let picture = Some(PictureView { width: 160, height: 90, depth: DepthRange::ReversedZeroToOne });
+    let near = DrawLimits { max_distance_in_radii: 5.0, ..DrawLimits::new([0.0; 3]) };
+    let distances = [1.0, 100.0, 1.0];
+    let by_item = DrawLimits { item_distances: &distances, ..DrawLimits::new([0.0; 3]) };
+    let drawn = [0b100u64];
+    let kept = DrawLimits { drawn_before: &drawn, hysteresis: 2.0, least_radius: 6.0, ..DrawLimits::new([0.0; 3]) };
+    let cases = [
+        (camera(), vec![0, 1, 2]),
+        (ViewRequest { picture, ..camera() }, vec![0, 2]),
+        (ViewRequest { limits: Some(&near), ..camera() }, vec![0]),
+        (ViewRequest { limits: Some(&by_item), ..camera() }, vec![1]),
+        (ViewRequest { limits: Some(&kept), ..camera() }, vec![2]),
+        (ViewRequest { candidate_mask: &[0b010], ..camera() }, vec![1]),
+        (ViewRequest { conservative: true, ..camera() }, vec![0, 1, 2]),
+        (ViewRequest { layers: 0, ..camera() }, vec![]),
+    ];
+    let index = |which: &Vec<usize>| which.iter().map(|&i| objects[i].index).collect::<Vec<_>>();
+    let mut visible = ViewResult::new().unwrap();
+    for (request, expected) in &cases {
+        assert_eq!(world.view(request, &mut visible).unwrap().ids(), index(expected));
+        let by_tree = ViewRequest { tree_order: true, ..request.clone() };
+        let mut ids = world.view(&by_tree, &mut visible).unwrap().ids().to_vec();
+        ids.sort();
+        assert_eq!(ids, index(expected));
+    }
+    let requests: Vec<ViewRequest> = cases.iter().map(|(request, _)| request.clone()).collect();
+    let seen = world.view_many(None, &requests, &mut visible).unwrap();
+    for (v, (_, expected)) in cases.iter().enumerate() {
+        let masks = seen.objects().unwrap();
+        let ids: Vec<u32> = masks.iter().filter(|(_, m)| m >> v & 1 == 1).map(|(o, _)| o.object.index).collect();
+        assert_eq!(ids, index(expected));
+        assert_eq!(seen.triangles(v).unwrap().len(), if v == 1 { 2 } else { 0 });
+        assert!(seen.occluded_ids(v).unwrap().is_empty());
+        assert_eq!(seen.occlusion_statistics(v).unwrap().occluders_drawn, 0);
+    }
+    assert_eq!(seen.triangles(cases.len()).unwrap_err().status, Status::OutOfRange);
+}

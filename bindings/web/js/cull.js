@@ -2,37 +2,14 @@
 import { failure } from './error.js';
 import { Owned, create, indicesOf } from './memory.js';
 
-/** The answer to a query, in memory that is kept. Its arrays are views: valid until its next query or any growth of memory. */
-export class VisibleSet extends Owned {
-    constructor(memory) { super(memory, 'VisibleSet', create(memory, 'visible_set'), '_crofton_visible_set_destroy'); }
-    #items() {
-        const at = this.memory.scratch(16);
-        this.memory.call('visible_set_items', this.handle, at, at + 4, at + 8);
-        return this.memory.words.subarray(at >> 2, (at >> 2) + 3);
-    }
-    get length() { return this.#items()[2]; }
-    get ids() {
-        const [ids, , count] = this.#items();
-        return this.memory.words.subarray(ids >> 2, (ids >> 2) + count);
-    }
-    /** 1: straddling, 2: inside, for each of `ids`. */
-    get verdicts() {
-        const [, verdicts, count] = this.#items();
-        return this.memory.bytes.subarray(verdicts, verdicts + count);
-    }
-    get statistics() {
-        const at = this.memory.scratch(56);
-        this.memory.words[at >> 2] = 56;
-        this.memory.call('visible_set_statistics', this.handle, at);
-        const names = ['nodesTested', 'boxesTested', 'acceptedWhole', 'straddling', 'exactTests', 'falsePositives'];
-        return Object.fromEntries(names.map((name, i) => [name, this.memory.words[(at >> 2) + 2 + 2 * i]]));
-    }
-}
-
-function writeOptions(memory, { conservative = false, treeOrder = false } = {}) {
-    if (!conservative && !treeOrder) return 0;
-    const at = memory.scratch(24);
-    memory.words.set([24, conservative ? 1 : 0, treeOrder ? 1 : 0], at >> 2);
+/** What a Frustum asks of boxes, in the scratch memory. */
+function writeRequest(memory, frustum, { conservative = false, treeOrder = false } = {}) {
+    const at = memory.scratch(48), { words } = memory, first = at >> 2;
+    memory.fill('default_view_request', at);
+    words[first + 3] = frustum.handle + 8;
+    words[first + 4] = words[(frustum.handle >> 2) + 1];
+    words[first + 9] = conservative ? 1 : 0;
+    words[first + 10] = treeOrder ? 1 : 0;
     return at;
 }
 
@@ -42,7 +19,7 @@ export class Tree extends Owned {
         super(memory, 'Tree', create(memory, 'tree', boxes.handle, 0, boxes.length, 0), '_crofton_tree_destroy');
     }
     cull(frustum, visible, how) {
-        this.memory.call('cull_tree', this.handle, frustum.handle, writeOptions(this.memory, how), 0, visible.handle);
+        this.memory.call('tree_view', this.handle, writeRequest(this.memory, frustum, how), 0, visible.handle);
         return visible;
     }
     /** `items`: ids; item items[i] becomes box i. Call refit before the next query. */
@@ -51,12 +28,12 @@ export class Tree extends Owned {
         this.memory.lend([indicesOf(items, 'items')], (at) => this.memory.call('tree_move', this.handle, at, boxes.handle, items.length));
     }
     remove(item) { this.memory.call('tree_remove', this.handle, indicesOf([item], 'item')[0]); }
-    refit() { this.memory.call('tree_refit', this.handle); }
+    refit() { this.memory.call('tree_refit', this.handle, 0); }
 }
 
 /** The same from a plain list of boxes, without a tree. */
 export function cullBoxes(memory, boxes, frustum, visible, how) {
-    memory.call('cull_boxes', boxes.handle, 0, boxes.length, frustum.handle, writeOptions(memory, how), 0, visible.handle);
+    memory.call('view_boxes', boxes.handle, 0, boxes.length, writeRequest(memory, frustum, how), 0, visible.handle);
     return visible;
 }
 

@@ -67,7 +67,7 @@ export class Boxes extends Owned {
     get bytes() { return this.memory.bytes.subarray(this.handle, this.handle + this.length * BOX); }
 }
 
-const DEPTH = { __proto__: null, reversed: 0, zeroToOne: 1, minusOneToOne: 2 };
+export const DEPTH = { __proto__: null, reversed: 0, zeroToOne: 1, minusOneToOne: 2 };
 
 /** A view volume: of a camera, or of a matrix and the range of its depths. Held as a view, ready for calls. */
 export class Frustum extends Owned {
@@ -109,9 +109,9 @@ export class Frustum extends Owned {
     }
 }
 
-/** Writes a camera into the scratch memory, and says where. */
-export function writeCamera(memory, camera) {
-    const at = memory.scratch(256), { words, doubles } = memory, first = at >> 3;
+/** Writes a camera to `at`, which unless told is the scratch memory, and says where. */
+export function writeCamera(memory, camera, at = memory.scratch(256)) {
+    const { words, doubles } = memory, first = at >> 3;
     memory.fill('default_camera', at);
     for (const [name, place] of [['position', 1], ['forward', 4], ['up', 7]])
         if (camera[name]) for (let k = 0; k < 3; ++k) doubles[first + place + k] = camera[name][k];

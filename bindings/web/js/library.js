@@ -3,7 +3,7 @@
 import { Memory } from './memory.js';
 import { loadModule } from './load.js';
 import { Boxes, Frustum } from './geometry.js';
-import { Tree, VisibleSet, cullBoxes, classify } from './cull.js';
+import { Tree, cullBoxes, classify } from './cull.js';
 import { fitBox } from './fit.js';
 import { Triangulator } from './triangulate.js';
 import { World, ViewResult } from './world.js';
@@ -18,7 +18,7 @@ export async function loadLibrary(build, options = {}) {
         version: memory.text(memory.module._crofton_version_string()),
         /** Bytes of the library's memory; it grows, and views of it are then detached. */
         get memoryBytes() { return memory.bytes.byteLength; },
-        Boxes: bind(Boxes), Frustum: bind(Frustum), Tree: bind(Tree), VisibleSet: bind(VisibleSet),
+        Boxes: bind(Boxes), Frustum: bind(Frustum), Tree: bind(Tree),
         Triangulator: bind(Triangulator), World: bind(World), ViewResult: bind(ViewResult),
         cullBoxes: (boxes, frustum, visible, how) => cullBoxes(memory, boxes, frustum, visible, how),
         classify: (boxes, frustum) => classify(memory, boxes, frustum),

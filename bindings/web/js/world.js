@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 import { failure } from './error.js';
 import { Owned, checkArray, checkGroups, create, numbersOf } from './memory.js';
-import { BOX, roundedUp, writeCamera } from './geometry.js';
+import { BOX, DEPTH, roundedUp, writeCamera } from './geometry.js';
 
 const ALL = 0xffffffff;
 
-/** What one view of a world sees, in memory that is kept; views of it are valid until its next view or growth of memory. */
+/** What a view of a world, a tree or a list of boxes sees, in memory that is kept; views of it are valid until its next view or growth of memory. */
 export class ViewResult extends Owned {
     constructor(memory) {
         super(memory, 'ViewResult', create(memory, 'view_result'), '_crofton_view_result_destroy');
@@ -26,13 +26,54 @@ export class ViewResult extends Owned {
         const [, count, verdicts] = this.#list();
         return this.memory.bytes.subarray(verdicts, verdicts + count);
     }
+    /** What is known of the view: a struct of 192 bytes, in words. */
+    #info() {
+        const at = this.memory.scratch(192);
+        this.memory.words[at >> 2] = 192;
+        this.memory.call('view_result_get_view', this.handle, 0, at);
+        return this.memory.words.subarray(at >> 2, (at >> 2) + 48);
+    }
     /** Indices of what is in the frustum and hidden, where `listOccluded` asked for it. */
     get occluded() {
-        const at = this.memory.scratch(16);
-        this.memory.call('view_result_occluded_ids', this.handle, at, at + 4);
-        const [ids, count] = this.memory.words.subarray(at >> 2, (at >> 2) + 2);
-        return this.memory.words.subarray(ids >> 2, (ids >> 2) + count);
+        const info = this.#info();
+        return this.memory.words.subarray(info[30] >> 2, (info[30] >> 2) + info[31]);
     }
+    /** Of a view with a picture: `{ object, cluster, triangles }`; bit k of the BigInt stands for triangle k of the cluster. */
+    get triangles() {
+        const info = this.#info(), { words } = this.memory;
+        return Array.from({ length: info[35] }, (_, i) => {
+            const [object, cluster, low, high] = words.subarray((info[34] >> 2) + 4 * i, (info[34] >> 2) + 4 * i + 4);
+            return { object, cluster, triangles: BigInt(low) + (BigInt(high) << 32n) };
+        });
+    }
+    get statistics() {
+        const info = this.#info();
+        const names = ['nodesTested', 'boxesTested', 'acceptedWhole', 'straddling', 'exactTests', 'falsePositives', 'occludersDrawn'];
+        return Object.fromEntries(names.map((name, i) => [name, info[2 + 2 * i]]));
+    }
+}
+
+/** Bits by object index, as the library takes them. */
+function bitsOf(words, what) {
+    checkArray(words, [BigUint64Array, Uint32Array], what);
+    if (words.byteLength % 8) throw failure(1, `${what}: an even number of 32-bit words is expected`);
+    return words;
+}
+
+/** Arrays that a request points to, and where their places and counts go in its struct or its limits'. */
+function arraysOf({ candidates, limits = {} }) {
+    const arrays = [];
+    if (candidates) arrays.push({ array: bitsOf(candidates, 'candidates'), of: 'request', place: 7, count: 8, unit: 8 });
+    const { layerDistances, itemDistances, drawnBefore } = limits;
+    if (layerDistances) {
+        checkArray(layerDistances, [Float32Array], 'layerDistances');
+        if (layerDistances.length !== 32) throw failure(1, 'layerDistances: 32 numbers are expected');
+        arrays.push({ array: layerDistances, of: 'limits', place: 12 });
+    }
+    if (itemDistances)
+        arrays.push({ array: checkArray(itemDistances, [Float32Array], 'itemDistances'), of: 'limits', place: 13, count: 14, unit: 4 });
+    if (drawnBefore) arrays.push({ array: bitsOf(drawnBefore, 'drawnBefore'), of: 'limits', place: 15, count: 16, unit: 8 });
+    return arrays;
 }
 
 /** Objects, what they are and where; changes take effect in `update`. An object is `{ index, generation }`. */
@@ -44,20 +85,34 @@ export class World extends Owned {
         super(memory, 'World', create(memory, 'world', at), '_crofton_world_destroy');
     }
 
-    /** `positions`: Float32Array, x y z; `indices`: Uint32Array or Uint16Array, three a triangle. Both are copied. */
-    addMesh(positions, indices) {
+    /**
+     * `positions`: Float32Array, x y z; `indices`: Uint32Array or Uint16Array, three a triangle. Both are copied. With `clusters`
+     * views with a picture list its triangles; `oneSided`: back faces are not drawn.
+     */
+    addMesh(positions, indices, { clusters = false, oneSided = false } = {}) {
         checkArray(positions, [Float32Array], 'positions');
         checkArray(indices, [Uint32Array, Uint16Array], 'indices');
         checkGroups(positions, 3, 'positions');
         if (indices.length === 0) throw failure(5, 'there are no indices, so there is no triangle');
         const { memory } = this, { handle } = this;
-        return memory.lend([positions, indices, new Uint8Array(48)], (places, corners, at) => {
+        return memory.lend([positions, indices, new Uint8Array(56)], (places, corners, at) => {
             const isShort = indices instanceof Uint16Array ? 1 : 0;
             memory.fill('default_mesh_data', at);
             memory.words.set([places, positions.length / 3, 0, corners, indices.length, 0, isShort], (at >> 2) + 1);
-            memory.call('world_add_mesh', handle, at, at + 40);
-            return this.#handleAt(at + 40, 'mesh');
+            memory.words.set([clusters ? 1 : 0, oneSided ? 1 : 0], (at >> 2) + 9);
+            memory.call('world_add_mesh', handle, at, at + 48);
+            return this.#handleAt(at + 48, 'mesh');
         });
+    }
+    /** How a mesh with clusters is cut, as of the last update: `{ clusters: [{ firstTriangle, triangleCount }], triangleOrder }`. */
+    clustersOf(mesh) {
+        const { memory } = this, at = this.#give(mesh, 'mesh', memory.scratch(32));
+        memory.words[at + 8 >> 2] = 24;
+        memory.call('world_get_mesh', this.handle, at, at + 8);
+        const { words } = memory, [clusters, count, order, triangles] = words.subarray(at + 16 >> 2, at + 32 >> 2);
+        return { triangleOrder: words.slice(order >> 2, (order >> 2) + triangles),
+            clusters: Array.from({ length: count }, (_, i) => ({
+                firstTriangle: words[(clusters >> 2) + 14 * i], triangleCount: words[(clusters >> 2) + 14 * i + 1] })) };
     }
     /** Takes boxes of `mesh` that hide what is behind them, where it is closed; needed before objects occlude. */
     findOccluders(mesh) {
@@ -78,28 +133,37 @@ export class World extends Owned {
     add({ box, sphere, mesh, transform, user = 0, layers = ALL, occludes = true }) {
         if ([box, sphere, mesh].filter(Boolean).length !== 1) throw failure(1, 'an object has one of box, sphere and mesh');
         if (!(Number.isInteger(user) && user >= 0 && user < 2 ** 53)) throw failure(1, 'user is a whole number below 2^53');
-        const { memory } = this, at = memory.scratch(80 + 160 + 96 + 16), { words } = memory, first = at >> 2;
+        const { memory } = this, at = memory.scratch(72 + 160 + 96 + 16), { words } = memory, first = at >> 2;
         memory.fill('default_object_description', at);
         words.set([user % 2 ** 32, Math.floor(user / 2 ** 32)], first + 2);
-        if (box || sphere) this.#writeBound(at + 80, box, sphere), words[first + 4] = at + 80;
-        if (transform) this.#writeTransform(at + 240, transform), words[first + 5] = at + 240;
+        if (box || sphere) this.#writeBound(at + 72, box, sphere), words[first + 4] = at + 72;
+        if (transform) this.#writeTransform(at + 232, transform), words[first + 5] = at + 232;
         if (mesh) {
             words[first + 6] = 1;
             this.#give(mesh, 'mesh', at + 32);
         }
         words[first + 12] = layers;
         words[first + 14] = occludes ? 1 : 0;
-        memory.call('world_add', this.handle, at, at + 336);
-        return this.#handleAt(at + 336, 'object');
+        memory.call('world_add', this.handle, at, at + 328);
+        return this.#handleAt(at + 328, 'object');
     }
     remove(object) { this.memory.call('world_remove', this.handle, this.#give(object, 'object', this.memory.scratch(16))); }
     setHidden(object, hidden) {
-        this.memory.call('world_set_hidden', this.handle, this.#give(object, 'object', this.memory.scratch(16)), hidden ? 1 : 0);
+        this.#set(object, 8, (words, first) => { words[first + 17] = hidden ? 1 : 0; });
     }
     setBox(object, box) {
-        const at = this.memory.scratch(176);
-        this.#writeBound(at, box);
-        this.memory.call('world_set_bound', this.handle, this.#give(object, 'object', at + 160), at);
+        this.#set(object, 64, (words, first) => {
+            this.#writeBound(4 * first + 72, box);
+            words[first + 4] = 4 * first + 72;
+        });
+    }
+    // Sets one member of an object by its description.
+    #set(object, member, fill) {
+        const { memory } = this, at = memory.scratch(72 + 160 + 16);
+        this.#give(object, 'object', at + 232);
+        memory.fill('default_object_description', at);
+        fill(memory.words, at >> 2);
+        memory.call('world_set', this.handle, at + 232, member, at);
     }
     setTransform(object, transform) {
         const at = this.memory.scratch(112);
@@ -107,38 +171,90 @@ export class World extends Owned {
         this.memory.call('world_set_transforms', this.handle, this.#give(object, 'object', at + 96), 0, at, 0, 1);
     }
     contains(object) {
-        const at = this.memory.scratch(16);
-        this.memory.call('world_contains', this.handle, this.#give(object, 'object', at), at + 8);
-        return this.memory.words[at + 8 >> 2] === 1;
+        const at = this.memory.scratch(208);
+        this.#give(object, 'object', at);
+        this.memory.words[at + 8 >> 2] = 192;
+        try {
+            this.memory.call('world_get_object', this.handle, at, at + 8);
+            return true;
+        } catch (error) {
+            if (error.status === 'stale handle') return false;
+            throw error;
+        }
     }
     get count() {
-        const at = this.memory.scratch(8);
-        this.memory.call('world_object_count', this.handle, at);
-        return this.memory.words[at >> 2];
+        const at = this.memory.scratch(72);
+        this.memory.words[at >> 2] = 72;
+        this.memory.call('world_get_statistics', this.handle, at);
+        return this.memory.words[at + 64 >> 2];
     }
     /** Once a frame; then ask. */
     update() { this.memory.call('world_update', this.handle, 0); }
 
     /**
-     * What a view sees: `{ camera }` or `{ volume }`, a Frustum, or both; `layers`; `occlusion`: leaves out what others hide,
-     * `{ listOccluded, width, height, maxOccluders }` with these options.
+     * What a view sees: `{ camera }`, `{ matrix, depth, origin }` (as of a Frustum) or `{ volume }`, a Frustum; for occlusion a
+     * volume beside one of the others. `layers`; `occlusion`: leaves out what others hide, `{ listOccluded, width, height,
+     * maxOccluders, leastCover }`; `picture`: `{ width, height, depth }`, lists the triangles without which it would change, in
+     * place of occlusion; `limits`: leaves out what is small or far; `candidates`: bits by object index, BigUint64Array or
+     * Uint32Array; `treeOrder`, `conservative`.
      */
-    view({ camera, volume, layers = ALL, occlusion }, visible) {
-        const { memory } = this, at = camera ? writeCamera(memory, camera) : memory.scratch(256);
-        const request = at + 128, options = at + 192, first = request >> 2, { words } = memory;
+    view(request, visible) {
+        const { memory } = this, arrays = arraysOf(request);
+        memory.lend(arrays.map(({ array }) => array), (...places) => this.#view(request, visible, arrays, places));
+        return visible;
+    }
+    #view({ camera, matrix, depth = 'minusOneToOne', origin, volume, layers = ALL, occlusion, picture, limits, treeOrder, conservative },
+        visible, arrays, places) {
+        const { memory } = this, at = memory.scratch(512), { words, doubles, floats } = memory;
+        const request = at + 128, first = request >> 2, word = (name) => {
+            if (!(name in DEPTH)) throw failure(1, `depth is one of ${Object.keys(DEPTH).join(', ')}`);
+            return DEPTH[name];
+        };
+        const structs = { request, limits: at + 176 };
         memory.fill('default_view_request', request);
-        if (camera) words[first + 1] = at;
+        if (camera) words[first + 1] = writeCamera(memory, camera, at);
+        if (matrix) {
+            if (matrix.length !== 16) throw failure(1, 'matrix must have 16 numbers');
+            const place = at + 256;
+            memory.fill('default_view_matrix', place);
+            words[(place >> 2) + 1] = place + 48;
+            words[(place >> 2) + 4] = word(depth);
+            if (origin) doubles.set(numbersOf(origin, 3, 'origin'), (place >> 3) + 3);
+            doubles.set(matrix, (place >> 3) + 6);
+            words[first + 2] = place;
+        }
         if (volume) words[first + 3] = volume.handle + 8;
         words[first + 4] = layers;
         if (occlusion) {
+            const options = at + 432;
             memory.fill('default_occlusion_options', options);
             for (const [name, place] of [['width', 1], ['height', 2], ['maxOccluders', 3]])
                 if (occlusion[name]) words[(options >> 2) + place] = occlusion[name];
             words[(options >> 2) + 4] = occlusion.listOccluded ? 1 : 0;
+            if (occlusion.leastCover) floats[(options >> 2) + 5] = occlusion.leastCover;
             words[first + 5] = options;
         }
-        memory.call('world_view', this.handle, request, 0, visible.handle);
-        return visible;
+        if (limits) {
+            const { eye, maxDistanceInRadii = Infinity, leastRadius = 0, hysteresis = 1 } = limits, place = structs.limits >> 3;
+            memory.fill('default_draw_limits', structs.limits);
+            doubles.set(numbersOf(eye, 3, 'eye'), place + 1);
+            doubles.set([maxDistanceInRadii === Infinity ? 0 : maxDistanceInRadii, leastRadius], place + 4);
+            doubles[place + 9] = hysteresis;
+            words[first + 6] = structs.limits;
+        }
+        if (picture) {
+            const { width = 1280, height = 720, depth: range = 'reversed' } = picture, place = at + 464;
+            memory.fill('default_picture_view', place);
+            words.set([width, height, word(range)], (place >> 2) + 1);
+            words[first + 11] = place;
+        }
+        words[first + 9] = conservative ? 1 : 0;
+        words[first + 10] = treeOrder ? 1 : 0;
+        arrays.forEach(({ array, of, place, count, unit }, i) => {
+            words[(structs[of] >> 2) + place] = places[i];
+            if (count) words[(structs[of] >> 2) + count] = array.byteLength / unit;
+        });
+        memory.call('world_view', this.handle, request, 1, 0, visible.handle);
     }
     /** The nearest hit of a ray, `{ object, user, t, point, triangle, normal, startedInside }`, or null. */
     raycast(origin, direction, maxT = Infinity, layers = ALL) {

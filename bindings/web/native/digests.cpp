@@ -37,7 +37,17 @@ std::vector<crofton_box> boxes_of(const std::vector<Obb>& from) {
     return boxes;
 }
 
-crofton_view view_of(const Camera& camera) {
+struct View {
+    crofton_frustum frustum;
+};
+
+crofton_view_request request_of(const View& view) {
+    crofton_view_request request = crofton_default_view_request();
+    request.volume = &view.frustum;
+    return request;
+}
+
+View view_of(const Camera& camera) {
     crofton_camera given{};
     given.size = sizeof given;
     for (int i = 0; i < 3; ++i) {
@@ -48,8 +58,8 @@ crofton_view view_of(const Camera& camera) {
     given.projection = camera.projection == Projection::orthographic ? 1 : 0;
     given.fov_y = camera.fov_y, given.height = camera.height, given.aspect = camera.aspect;
     given.near_distance = camera.near_distance, given.far_distance = camera.far_distance;
-    crofton_view view{};
-    view.size = sizeof view, view.layer_mask = ~0u, view.frustum.size = sizeof view.frustum;
+    View view{};
+    view.frustum.size = sizeof view.frustum;
     require_ok(crofton_frustum_from_camera(&given, &view.frustum));
     return view;
 }
@@ -59,12 +69,12 @@ std::uint64_t culled(double offset) {
     Random random(11);
     const std::vector<crofton_box> boxes = boxes_of(crowd(3000, offset, 12));
     crofton_tree* tree = nullptr;
-    crofton_visible_set* visible = nullptr;
+    crofton_view_result* visible = nullptr;
     require_ok(crofton_tree_create(boxes.data(), nullptr, boxes.size(), nullptr, &tree));
-    require_ok(crofton_visible_set_create(&visible));
+    require_ok(crofton_view_result_create(&visible));
     std::size_t seen = 0;
     for (int k = 0; k < 50; ++k) {
-        const crofton_view view = view_of(random_camera(random, offset));
+        const View view = view_of(random_camera(random, offset));
         for (const double x : view.frustum.origin) digest.add(x);
         for (const crofton_plane& plane : view.frustum.planes)
             for (const double x : {plane.normal[0], plane.normal[1], plane.normal[2], plane.offset}) digest.add(x);
@@ -72,17 +82,17 @@ std::uint64_t culled(double offset) {
         require_ok(crofton_classify(&view.frustum, boxes.data(), boxes.size(), verdicts.data()));
         digest.add(verdicts);
         for (const std::uint32_t tree_order : {0u, 1u}) {
-            crofton_cull_options options{};
-            options.size = sizeof options, options.tree_order = tree_order;
-            require_ok(crofton_cull_tree(tree, &view, &options, nullptr, visible));
+            crofton_view_request request = request_of(view);
+            request.tree_order = tree_order;
+            require_ok(crofton_tree_view(tree, &request, nullptr, visible));
             const std::uint32_t* ids = nullptr;
             std::size_t count = 0;
-            require_ok(crofton_visible_set_items(visible, &ids, nullptr, &count));
+            require_ok(crofton_view_result_ids(visible, &ids, &count, nullptr, nullptr));
             for (std::size_t i = 0; i < count; ++i) digest.add(ids[i]);
             seen += count;
         }
     }
-    require_ok(crofton_visible_set_destroy(visible));
+    require_ok(crofton_view_result_destroy(visible));
     require_ok(crofton_tree_destroy(tree));
     if (seen < 1000) std::printf("too little is seen: %zu\n", seen), std::exit(1);
     return digest.value();
@@ -99,9 +109,9 @@ std::uint64_t fitted() {
         }
         for (const std::uint32_t quality : {0u, 1u, 2u}) {
             crofton_fit_options options{sizeof options, quality, {0, 0, 0}};
-            require_ok(crofton_criterion_minimal_perimeter(&options.criterion));
+            options.criterion = crofton_default_fit_options().criterion;
             crofton_box box;
-            require_ok(crofton_fit_floats(points.data(), 300, &options, &box));
+            require_ok(crofton_fit_points(points.data(), 300, 0, &options, &box));
             for (const double x : box.center) digest.add(x);
             for (const float x : box.axes) digest.add(x);
             for (const float x : box.half_extents) digest.add(x);
@@ -147,11 +157,11 @@ std::uint64_t triangulated() {
 }
 
 // The boxes, then 52 doubles a view: how many planes, the origin, the planes.
-void write_questions(const char* path, const std::vector<crofton_box>& boxes, const std::vector<crofton_view>& views) {
+void write_questions(const char* path, const std::vector<crofton_box>& boxes, const std::vector<View>& views) {
     std::FILE* file = std::fopen(path, "wb");
     if (file == nullptr) std::printf("cannot write %s\n", path), std::exit(1);
     std::fwrite(boxes.data(), sizeof boxes[0], boxes.size(), file);
-    for (const crofton_view& view : views) {
+    for (const View& view : views) {
         std::vector<double> numbers{static_cast<double>(view.frustum.plane_count)};
         numbers.insert(numbers.end(), view.frustum.origin, view.frustum.origin + 3);
         for (const crofton_plane& plane : view.frustum.planes)
@@ -166,11 +176,11 @@ void write_questions(const char* path, const std::vector<crofton_box>& boxes, co
 void bench(const char* path) {
     const std::vector<crofton_box> boxes = boxes_of(crowd(100000, 0.0, 12));
     crofton_tree* tree = nullptr;
-    crofton_visible_set* visible = nullptr;
+    crofton_view_result* visible = nullptr;
     require_ok(crofton_tree_create(boxes.data(), nullptr, boxes.size(), nullptr, &tree));
-    require_ok(crofton_visible_set_create(&visible));
+    require_ok(crofton_view_result_create(&visible));
     Random random(5);
-    std::vector<crofton_view> views;
+    std::vector<View> views;
     for (int k = 0; k < 20; ++k) views.push_back(view_of(random_camera(random, 0.0)));
     if (path != nullptr) write_questions(path, boxes, views);
     double least[2] = {1e9, 1e9};
@@ -179,13 +189,14 @@ void bench(const char* path) {
         for (int kind = 0; kind < 2; ++kind) {
             seen = 0;
             const auto from = std::chrono::steady_clock::now();
-            for (const crofton_view& view : views) {
-                require_ok(kind == 0 ? crofton_cull_tree(tree, &view, nullptr, nullptr, visible)
-                                     : crofton_cull_boxes(boxes.data(), nullptr, boxes.size(), &view, nullptr, nullptr,
-                                                          visible));
+            for (const View& view : views) {
+                const crofton_view_request request = request_of(view);
+                require_ok(kind == 0
+                               ? crofton_tree_view(tree, &request, nullptr, visible)
+                               : crofton_view_boxes(boxes.data(), nullptr, boxes.size(), &request, nullptr, visible));
                 const std::uint32_t* ids = nullptr;
                 std::size_t count = 0;
-                require_ok(crofton_visible_set_items(visible, &ids, nullptr, &count));
+                require_ok(crofton_view_result_ids(visible, &ids, &count, nullptr, nullptr));
                 seen += count;
             }
             const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - from;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What native Crofton says of the page's town. For each camera: how many objects are outside, straddling, inside and
 // occluded, and a digest of all verdicts. Reads doubles, written by bindings/web/test/page.test.js.
-#include <crofton/capi/crofton.h>
+#include <crofton/capi/scene.h>
 
 #include <cstdint>
 #include <cstdio>
@@ -96,33 +96,30 @@ int main(int, char** arguments) {
     for (std::size_t i = 0; i < objects; ++i) boxes.push_back(read_box(in));
     crofton_tree* tree = nullptr;
     require_ok(crofton_tree_create(boxes.data(), nullptr, objects, nullptr, &tree));
-    crofton_visible_set* set = nullptr;
-    require_ok(crofton_visible_set_create(&set));
     crofton_view_result* seen = nullptr;
     require_ok(crofton_view_result_create(&seen));
     for (std::size_t cameras = in.count(); cameras > 0; --cameras) {
         const bool occlusion = in.next() != 0.0;
         const crofton_camera camera = read_camera(in);
-        crofton_view view{};
-        view.size = sizeof view, view.layer_mask = ~0u, view.frustum.size = sizeof view.frustum;
-        require_ok(crofton_frustum_from_camera(&camera, &view.frustum));
-        require_ok(crofton_cull_tree(tree, &view, nullptr, nullptr, set));
+        crofton_view_request request = crofton_default_view_request();
+        request.camera = &camera;
+        require_ok(crofton_tree_view(tree, &request, nullptr, seen));
         const std::uint32_t* ids = nullptr;
         const std::uint8_t* found = nullptr;
         std::size_t count = 0;
-        require_ok(crofton_visible_set_items(set, &ids, &found, &count));
+        require_ok(crofton_view_result_ids(seen, &ids, &count, &found, nullptr));
         std::vector<std::uint8_t> verdicts(objects);
         for (std::size_t i = 0; i < count; ++i) verdicts[ids[i]] = found[i];
         crofton_occlusion_options options = crofton_default_occlusion_options();
         options.list_occluded = 1;
-        crofton_view_request request = crofton_default_view_request();
-        request.camera = &camera;
         if (occlusion) request.occlusion = &options;
-        require_ok(crofton_world_view(world, &request, nullptr, seen));
+        require_ok(crofton_world_view(world, &request, 1, nullptr, seen));
         if (occlusion) {
-            require_ok(crofton_view_result_occluded_ids(seen, &ids, &count));
-            for (std::size_t i = 0; i < count; ++i)
-                if (verdicts[ids[i]] != 0) verdicts[ids[i]] = 3;
+            crofton_view_info info{};
+            info.size = sizeof info;
+            require_ok(crofton_view_result_get_view(seen, 0, &info));
+            for (std::size_t i = 0; i < info.occluded_count; ++i)
+                if (verdicts[info.occluded_ids[i]] != 0) verdicts[info.occluded_ids[i]] = 3;
         }
         std::size_t counts[4] = {};
         std::uint32_t digest = 2166136261u;

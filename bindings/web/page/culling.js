@@ -27,7 +27,7 @@ export class Culling {
     constructor(crofton, objects) {
         this.#crofton = crofton;
         this.#objects = objects;
-        this.#visible = new crofton.VisibleSet();
+        this.#visible = new crofton.ViewResult();
         this.#seen = new crofton.ViewResult();
         this.#frustum = new crofton.Frustum();
         this.#world = new crofton.World();

@@ -79,7 +79,7 @@ for (const build of BUILDS) {
             const { boxes, list, next } = crowd(crofton, 2000, 100 + trial);
             const frustum = new crofton.Frustum({ camera: { position: [20 * next(), 0, 0], forward: [next() - 0.5, next() - 0.5, next() - 0.5],
                 fovY: 0.4 + next(), far: 80 } });
-            const tree = new crofton.Tree(boxes), visible = new crofton.VisibleSet(), verdicts = crofton.classify(boxes, frustum);
+            const tree = new crofton.Tree(boxes), visible = new crofton.ViewResult(), verdicts = crofton.classify(boxes, frustum);
             const byTree = [...tree.cull(frustum, visible).ids], treeVerdicts = [...visible.verdicts];
             const byList = [...crofton.cullBoxes(boxes, frustum, visible).ids];
             assert.deepEqual(byTree, byList);
@@ -99,18 +99,18 @@ for (const build of BUILDS) {
         assert.ok(counts.out > 5000 && counts.in > 300 && counts.seen > 100 && counts.unsure < 400, JSON.stringify(counts));
     });
     here('conservative culling keeps at least what exact culling keeps', () => {
-        const { boxes } = crowd(crofton, 3000, 7), frustum = new crofton.Frustum({ camera: { far: 90 } }), visible = new crofton.VisibleSet();
+        const { boxes } = crowd(crofton, 3000, 7), frustum = new crofton.Frustum({ camera: { far: 90 } }), visible = new crofton.ViewResult();
         const exact = [...crofton.cullBoxes(boxes, frustum, visible).ids];
         const more = new Set(crofton.cullBoxes(boxes, frustum, visible, { conservative: true }).ids);
         assert.ok(exact.every((id) => more.has(id)));
     });
     here('tree order gives the same items', () => {
-        const { boxes } = crowd(crofton, 3000, 8), frustum = new crofton.Frustum(), visible = new crofton.VisibleSet();
+        const { boxes } = crowd(crofton, 3000, 8), frustum = new crofton.Frustum(), visible = new crofton.ViewResult();
         const tree = new crofton.Tree(boxes), sorted = [...tree.cull(frustum, visible).ids];
         assert.deepEqual([...tree.cull(frustum, visible, { treeOrder: true }).ids].sort((a, b) => a - b), sorted);
     });
     here('moved and removed items are where they were put', () => {
-        const { boxes } = crowd(crofton, 100, 9), tree = new crofton.Tree(boxes), visible = new crofton.VisibleSet();
+        const { boxes } = crowd(crofton, 100, 9), tree = new crofton.Tree(boxes), visible = new crofton.ViewResult();
         const frustum = new crofton.Frustum({ camera: { far: 10 } });
         tree.move([7], one());
         tree.refit();
@@ -120,7 +120,7 @@ for (const build of BUILDS) {
         assert.ok(!tree.cull(frustum, visible).ids.includes(7));
     });
     here('statistics count what was tested', () => {
-        const { boxes } = crowd(crofton, 1000, 10), visible = new crofton.VisibleSet();
+        const { boxes } = crowd(crofton, 1000, 10), visible = new crofton.ViewResult();
         new crofton.Tree(boxes).cull(new crofton.Frustum(), visible);
         assert.ok(visible.statistics.nodesTested > 0);
     });
@@ -176,16 +176,16 @@ for (const build of BUILDS) {
     here('a camera without a direction is refused', () => assert.throws(() => new crofton.Frustum({ camera: { forward: [0, 0, 0] } }), CroftonError));
 
     here('every freed handle is a clear error', () => {
-        const owned = [new crofton.Boxes(1), new crofton.Frustum(), new crofton.VisibleSet(), new crofton.Triangulator(),
-            new crofton.World(), new crofton.ViewResult(), new crofton.Tree(one())];
+        const owned = [new crofton.Boxes(1), new crofton.Frustum(), new crofton.ViewResult(), new crofton.Triangulator(),
+            new crofton.World(), new crofton.Tree(one())];
         for (const each of owned) each.free(), each.free();
-        const [boxes, frustum, visible, triangulator, world, objects, tree] = owned;
+        const [boxes, frustum, visible, triangulator, world, tree] = owned;
         for (const use of [() => boxes.get(0), () => frustum.planes, () => visible.ids, () => triangulator.triangulate(new Float64Array(6)),
-            () => world.update(), () => objects.ids, () => tree.refit()])
+            () => world.update(), () => tree.refit()])
             assert.throws(use, refused('bad handle'));
     });
     here('growth of memory detaches old views and no others', () => {
-        const boxes = one(), visible = crofton.cullBoxes(boxes, new crofton.Frustum(), new crofton.VisibleSet());
+        const boxes = one(), visible = crofton.cullBoxes(boxes, new crofton.Frustum(), new crofton.ViewResult());
         const before = visible.ids, bytes = crofton.memoryBytes;
         const big = new crofton.Boxes(Math.ceil(bytes / 72) + 1000);
         assert.ok(crofton.memoryBytes > bytes);
@@ -297,6 +297,51 @@ for (const build of BUILDS) {
         world.setTransform(wall, translation(50, 0, -5));
         world.update();
         assert.deepEqual([...world.view({ camera: {}, occlusion: {} }, visible).ids], [behind.index]);
+    });
+    here('each part of a request is obeyed, or refused by name', () => {
+        const world = new crofton.World(), visible = new crofton.ViewResult();
+        const cube = world.addMesh(CUBE.positions, CUBE.indices, { clusters: true });
+        const wall = world.add({ mesh: cube, transform: [5, 0, 0, 0, 0, 5, 0, 0, 0, 0, 0.5, 0, 0, 0, -10, 1] });
+        const behind = world.add({ mesh: cube, transform: translation(0, 0, -40) });
+        const beside = world.add({ mesh: cube, transform: translation(30, 0, -40), layers: 2 });
+        for (let i = 0; i < 40; ++i) world.update();  // candidates say nothing about what may have moved since
+        const f = 1 / Math.tan(Math.PI / 6), near = 0.1, far = 1000, camera = {};
+        const matrix = [f * 9 / 16, 0, 0, 0, 0, f, 0, 0, 0, 0, near / (far - near), -1, 0, 0, far * near / (far - near), 0];
+        const names = { [wall.index]: 'w', [behind.index]: 'b', [beside.index]: 's' };
+        const seen = (request) => [...world.view(request, visible).ids].map((id) => names[id]).sort().join('');
+        const bits = (...objects) => new Uint32Array([objects.reduce((sum, { index }) => sum | 1 << index, 0), 0]);
+        for (const [request, expected] of [
+            [{ camera }, 'bsw'], [{ matrix, depth: 'reversed' }, 'bsw'], [{ matrix, depth: 'reversed', origin: [0, 0, -50] }, ''],
+            [{ camera, layers: 2 }, 'bsw'], [{ camera, layers: 1 }, 'bw'], [{ camera, candidates: bits(behind, beside) }, 'bs'],
+            [{ camera, candidates: new BigUint64Array([1n << BigInt(wall.index)]) }, 'w'], [{ camera, conservative: true }, 'bsw'],
+            [{ camera, limits: { eye: [0, 0, 0], leastRadius: 3 } }, 'w'], [{ camera, limits: { eye: [0, 0, 0], maxDistanceInRadii: 10 } }, 'w'],
+            [{ camera, limits: { eye: [0, 0, 0], itemDistances: new Float32Array([20, 20, 20]) } }, 'w'],
+            [{ camera, limits: { eye: [0, 0, 0], layerDistances: new Float32Array(32).fill(20) } }, 'w'],
+            [{ camera, limits: { eye: [0, 0, 0], leastRadius: 3, drawnBefore: bits(beside), hysteresis: 2 } }, 'sw'],
+            [{ camera, picture: { width: 160, height: 90 } }, 'sw'], [{ matrix, depth: 'reversed', picture: {} }, 'sw']]) {
+            assert.equal(seen(request), expected);
+            assert.equal(seen({ ...request, treeOrder: true }), expected);
+            assert.equal(visible.triangles.length > 0, 'picture' in request);
+        }
+        world.view({ camera, picture: { width: 160, height: 90 } }, visible);
+        const { clusters, triangleOrder } = world.clustersOf(cube);
+        assert.deepEqual([...triangleOrder].sort((a, b) => a - b), [...Array(12).keys()]);
+        for (const { object, cluster, triangles } of visible.triangles) {
+            assert.ok(object === wall.index || object === beside.index);
+            assert.ok(triangles > 0n && triangles >> BigInt(clusters[cluster].triangleCount) === 0n);
+        }
+        assert.equal(world.clustersOf(world.addMesh(CUBE.positions, CUBE.indices)).clusters.length, 0);
+        const bad = (request, status) => assert.throws(() => world.view(request, visible), refused(status));
+        bad({}, 'invalid argument');
+        bad({ camera, matrix }, 'invalid argument');
+        bad({ camera, picture: {}, occlusion: {} }, 'invalid argument');
+        bad({ camera, picture: { width: 0 } }, 'out of range');
+        bad({ camera, picture: { depth: 'none' } }, 'invalid argument');
+        bad({ matrix: [1, 2] }, 'invalid argument');
+        bad({ camera, candidates: new Uint32Array(3) }, 'invalid argument');
+        bad({ camera, candidates: [true] }, 'invalid argument');
+        bad({ camera, limits: { eye: [0, 0] } }, 'invalid argument');
+        bad({ camera, limits: { eye: [0, 0, 0], hysteresis: 0.5 } }, 'out of range');
     });
     here('occluders are found in a closed mesh', () => {
         const world = new crofton.World(), visible = new crofton.ViewResult(), cube = world.addMesh(CUBE.positions, CUBE.indices);

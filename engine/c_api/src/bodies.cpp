@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Bodies: made, asked what they are, destroyed.
-#include "bodies.hpp"
+#include <crofton/capi/bodies.hpp>
 
 #include <algorithm>
 
-#include "mesh.hpp"
+#include <crofton/capi/mesh.hpp>
 
 using namespace crofton;
 using namespace crofton::capi;
@@ -14,10 +14,11 @@ static_assert(CROFTON_BODY_COMPOUND == static_cast<int>(convex::Kind::compound) 
 
 namespace {
 
+using Description = crofton_body_description;
+
 // `make` fills what the body is a view of, and returns the body.
 template <class Make>
 crofton_status create_body(crofton_body** body, const char* function, Make make) {
-    CROFTON_CHECK(check_pointer(body, function));
     return recover(function, [&] {
         const auto data = std::allocate_shared<BodyData>(Allocator<BodyData>());
         const Result<convex::Body> made = make(*data);
@@ -27,29 +28,112 @@ crofton_status create_body(crofton_body** body, const char* function, Make make)
     });
 }
 
-// Of a body that views nothing.
-template <class Make>
-crofton_status create_simple(crofton_body** body, const char* function, Make make) {
-    return create_body(body, function, [&](BodyData&) { return make(); });
-}
-
 glm::vec3 to_float_vector(const float* v) {
     return {v[0], v[1], v[2]};
 }
 
-crofton_status create_compound(crofton_body** body, const char* function, Vector<SharedBody> parts,
-                               const crofton_transform* poses) {
+// Of a body that views nothing.
+Result<convex::Body> make_simple(const Description& given) {
+    switch (given.kind) {
+        case CROFTON_BODY_SPHERE:
+            return convex::Body::sphere(given.radius);
+        case CROFTON_BODY_CAPSULE:
+            return convex::Body::capsule(given.half_height, given.radius);
+        case CROFTON_BODY_CYLINDER:
+            return convex::Body::cylinder(given.half_height, given.radius);
+        case CROFTON_BODY_CONE:
+            return convex::Body::cone(given.half_height, given.radius);
+        case CROFTON_BODY_BOX:
+            return convex::Body::box(to_float_vector(given.half_extents));
+        case CROFTON_BODY_TRIANGLE:
+            return convex::Body::triangle(to_float_vector(given.corners), to_float_vector(given.corners + 3),
+                                          to_float_vector(given.corners + 6));
+        default:
+            return convex::Body::half_space({to_vector(given.plane.normal), given.plane.offset});
+    }
+}
+
+crofton_status create_hull(const Description& given, crofton_body** body, const char* function) {
+    CROFTON_CHECK(check_array(given.points, given.point_count, function, 3));
+    convex::HullOptions wanted;
+    if (given.max_vertices != 0) wanted.max_vertices = static_cast<int>((std::min)(given.max_vertices, 1u << 20));
+    if (given.face_tolerance != 0.0f) wanted.face_tolerance = given.face_tolerance;
+    static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
     return create_body(body, function, [&](BodyData& data) -> Result<convex::Body> {
-        Vector<convex::CompoundChild> children;
-        children.reserve(parts.size());
-        for (std::size_t i = 0; i < parts.size(); ++i) {
-            const Transform pose = to_transform(poses[i]);
-            children.push_back({*parts[i]->body, {pose.linear, pose.translation}});
-        }
-        data.parts = std::move(parts);
-        auto built = convex::Compound::build(children);
+        auto hull = convex::Hull::build({reinterpret_cast<const glm::vec3*>(given.points), given.point_count}, wanted);
+        if (!hull) return tl::unexpected(hull.error());
+        return convex::Body::hull(data.hull.emplace(std::move(*hull)));
+    });
+}
+
+crofton_status create_rounded(const Description& given, crofton_body** body, const char* function) {
+    const SharedUse use(given.core, function);
+    if (use.failed()) return use.status();
+    return create_body(body, function, [&](BodyData& data) {
+        data.parts.push_back(given.core->data);
+        return convex::Body::rounded(*given.core->data->body, given.radius);
+    });
+}
+
+convex::Sides sides_of(const Description& given) {
+    return given.front_only != 0 ? convex::Sides::front : convex::Sides::both;
+}
+
+crofton_status create_mesh(const Description& given, crofton_body** body, const char* function) {
+    TriangleMesh copy;
+    CROFTON_CHECK(to_mesh(given.mesh, function, copy));
+    return create_body(body, function, [&](BodyData& data) -> Result<convex::Body> {
+        auto tree = mesh::MeshTree::build(copy, {.rays = true});
+        if (!tree) return tl::unexpected(tree.error());
+        return convex::Body::mesh(data.mesh.emplace(std::move(*tree)), sides_of(given));
+    });
+}
+
+crofton_status create_height_field(const Description& given, crofton_body** body, const char* function) {
+    crofton_height_field field{};
+    CROFTON_CHECK(read_growing(given.height_field, function, field));
+    const std::size_t corners = std::size_t{field.columns} * field.rows;
+    CROFTON_CHECK(check_array(field.heights, corners, function));
+    const bool has_cells = field.materials != nullptr && field.columns > 0 && field.rows > 0;
+    const std::size_t cells = has_cells ? std::size_t{field.columns - 1} * (field.rows - 1) : 0;
+    convex::HeightFieldDescription description;
+    description.columns = field.columns;
+    description.rows = field.rows;
+    description.heights = {field.heights, corners};
+    description.materials = {field.materials, cells};
+    for (int k = 0; k < 2; ++k)
+        if (field.spacing[k] != 0.0) description.spacing[k] = field.spacing[k];
+    return create_body(body, function, [&](BodyData& data) -> Result<convex::Body> {
+        auto built = convex::HeightField::build(description);
         if (!built) return tl::unexpected(built.error());
-        return convex::Body::compound(data.compound.emplace(std::move(*built)));
+        return convex::Body::height_field(data.field.emplace(std::move(*built)), sides_of(given));
+    });
+}
+
+crofton_status create_compound(const Description& given, crofton_body** body, const char* function) {
+    CROFTON_CHECK(check_array(given.children, given.child_count, function));
+    CROFTON_CHECK(check_array(given.poses, given.child_count, function));
+    return recover(function, [&] {
+        // Copied while they are held: another thread may destroy a child at any time.
+        Vector<SharedBody> parts;
+        parts.reserve(given.child_count);
+        for (std::size_t i = 0; i < given.child_count; ++i) {
+            const SharedUse use(given.children[i], function);
+            if (use.failed()) return of_item(use.status(), i);
+            parts.push_back(given.children[i]->data);
+        }
+        return create_body(body, function, [&](BodyData& data) -> Result<convex::Body> {
+            Vector<convex::CompoundChild> children;
+            children.reserve(parts.size());
+            for (std::size_t i = 0; i < parts.size(); ++i) {
+                const Transform pose = to_transform(given.poses[i]);
+                children.push_back({*parts[i]->body, {pose.linear, pose.translation}});
+            }
+            data.parts = std::move(parts);
+            auto built = convex::Compound::build(children);
+            if (!built) return tl::unexpected(built.error());
+            return convex::Body::compound(data.compound.emplace(std::move(*built)));
+        });
     });
 }
 
@@ -60,116 +144,26 @@ void give_bounds(const Aabb& bounds, crofton_body_info& info) {
 
 }  // namespace
 
-crofton_status crofton_body_sphere(float radius, crofton_body** body) {
-    return create_simple(body, __func__, [&] { return convex::Body::sphere(radius); });
-}
-
-crofton_status crofton_body_capsule(float half_height, float radius, crofton_body** body) {
-    return create_simple(body, __func__, [&] { return convex::Body::capsule(half_height, radius); });
-}
-
-crofton_status crofton_body_cylinder(float half_height, float radius, crofton_body** body) {
-    return create_simple(body, __func__, [&] { return convex::Body::cylinder(half_height, radius); });
-}
-
-crofton_status crofton_body_cone(float half_height, float radius, crofton_body** body) {
-    return create_simple(body, __func__, [&] { return convex::Body::cone(half_height, radius); });
-}
-
-crofton_status crofton_body_box(const float half_extents[3], crofton_body** body) {
-    CROFTON_CHECK(check_pointer(half_extents, __func__));
-    return create_simple(body, __func__, [&] { return convex::Body::box(to_float_vector(half_extents)); });
-}
-
-crofton_status crofton_body_triangle(const float corners[9], crofton_body** body) {
-    CROFTON_CHECK(check_pointer(corners, __func__));
-    return create_simple(body, __func__, [&] {
-        return convex::Body::triangle(to_float_vector(corners), to_float_vector(corners + 3),
-                                      to_float_vector(corners + 6));
-    });
-}
-
-crofton_status crofton_body_half_space(const crofton_plane* plane, crofton_body** body) {
-    CROFTON_CHECK(check_pointer(plane, __func__));
-    return create_simple(body, __func__, [&] {
-        return convex::Body::half_space({to_vector(plane->normal), plane->offset});
-    });
-}
-
-crofton_status crofton_body_hull(const float* points, size_t count, const crofton_hull_options* options,
-                                 crofton_body** body) {
-    CROFTON_CHECK(check_array(points, count, __func__, 3));
-    crofton_hull_options given{};
-    if (options) CROFTON_CHECK(read_growing(options, __func__, given));
-    convex::HullOptions wanted;
-    if (given.max_vertices != 0) wanted.max_vertices = static_cast<int>((std::min)(given.max_vertices, 1u << 20));
-    if (given.face_tolerance != 0.0f) wanted.face_tolerance = given.face_tolerance;
-    static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
-    return create_body(body, __func__, [&](BodyData& data) -> Result<convex::Body> {
-        auto hull = convex::Hull::build({reinterpret_cast<const glm::vec3*>(points), count}, wanted);
-        if (!hull) return tl::unexpected(hull.error());
-        return convex::Body::hull(data.hull.emplace(std::move(*hull)));
-    });
-}
-
-crofton_status crofton_body_rounded(const crofton_body* core, float radius, crofton_body** body) {
-    const SharedUse use(core, __func__);
-    if (use.failed()) return use.status();
-    return create_body(body, __func__, [&](BodyData& data) {
-        data.parts.push_back(core->data);
-        return convex::Body::rounded(*core->data->body, radius);
-    });
-}
-
-crofton_status crofton_body_mesh(const crofton_mesh* mesh, uint32_t front_only, crofton_body** body) {
-    TriangleMesh copy;
-    CROFTON_CHECK(to_mesh(mesh, __func__, copy));
-    return create_body(body, __func__, [&](BodyData& data) -> Result<convex::Body> {
-        auto tree = mesh::MeshTree::build(copy, {.rays = true});
-        if (!tree) return tl::unexpected(tree.error());
-        return convex::Body::mesh(data.mesh.emplace(std::move(*tree)),
-                                  front_only != 0 ? convex::Sides::front : convex::Sides::both);
-    });
-}
-
-crofton_status crofton_body_height_field(const crofton_height_field* field, uint32_t both_sides, crofton_body** body) {
-    crofton_height_field given{};
-    CROFTON_CHECK(read_growing(field, __func__, given));
-    const std::size_t corners = std::size_t{given.columns} * given.rows;
-    CROFTON_CHECK(check_array(given.heights, corners, __func__));
-    const bool has_cells = given.materials != nullptr && given.columns > 0 && given.rows > 0;
-    const std::size_t cells = has_cells ? std::size_t{given.columns - 1} * (given.rows - 1) : 0;
-    convex::HeightFieldDescription description;
-    description.columns = given.columns;
-    description.rows = given.rows;
-    description.heights = {given.heights, corners};
-    description.materials = {given.materials, cells};
-    for (int k = 0; k < 2; ++k)
-        if (given.spacing[k] != 0.0) description.spacing[k] = given.spacing[k];
-    return create_body(body, __func__, [&](BodyData& data) -> Result<convex::Body> {
-        auto built = convex::HeightField::build(description);
-        if (!built) return tl::unexpected(built.error());
-        return convex::Body::height_field(data.field.emplace(std::move(*built)),
-                                          both_sides != 0 ? convex::Sides::both : convex::Sides::front);
-    });
-}
-
-crofton_status crofton_body_compound(const crofton_body* const* children, const crofton_transform* poses, size_t count,
-                                     crofton_body** body) {
-    CROFTON_CHECK(check_array(children, count, __func__));
-    CROFTON_CHECK(check_array(poses, count, __func__));
-    const char* const function = __func__;
-    return recover(function, [&] {
-        // Copied while they are held: another thread may destroy a child at any time.
-        Vector<SharedBody> parts;
-        parts.reserve(count);
-        for (std::size_t i = 0; i < count; ++i) {
-            const SharedUse use(children[i], function);
-            if (use.failed()) return of_item(use.status(), i);
-            parts.push_back(children[i]->data);
-        }
-        return create_compound(body, function, std::move(parts), poses);
-    });
+crofton_status crofton_body_create(const crofton_body_description* description, crofton_body** body) {
+    CROFTON_CHECK(check_pointer(body, __func__));
+    Description given;
+    CROFTON_CHECK(read_growing(description, __func__, given));
+    switch (given.kind) {
+        case CROFTON_BODY_HULL:
+            return create_hull(given, body, __func__);
+        case CROFTON_BODY_MESH:
+            return create_mesh(given, body, __func__);
+        case CROFTON_BODY_HEIGHT_FIELD:
+            return create_height_field(given, body, __func__);
+        case CROFTON_BODY_COMPOUND:
+            return create_compound(given, body, __func__);
+        case CROFTON_BODY_ROUNDED:
+            return create_rounded(given, body, __func__);
+        default:
+            if (given.kind > CROFTON_BODY_ROUNDED)
+                return report(CROFTON_INVALID_ARGUMENT, __func__, "unknown kind of body");
+            return create_body(body, __func__, [&](BodyData&) { return make_simple(given); });
+    }
 }
 
 crofton_status crofton_body_destroy(crofton_body* body) {
@@ -189,6 +183,9 @@ crofton_status crofton_body_get_info(const crofton_body* body, crofton_body_info
         result.vertex_count = static_cast<std::uint32_t>(hull->vertices().size());
         result.face_count = static_cast<std::uint32_t>(hull->face_count());
         result.max_overshoot = hull->max_overshoot();
+        result.vertices = &hull->vertices().front().x;
+        result.indices = hull->triangles().data();
+        result.index_count = hull->triangles().size();
     }
     write_growing(result, info);
     return CROFTON_OK;
@@ -205,21 +202,5 @@ crofton_status crofton_body_get_mass(const crofton_body* body, crofton_mass_prop
     std::copy_n(&found->center.x, 3, result.center);
     std::copy_n(&found->inertia[0].x, 9, result.inertia);
     write_growing(result, mass);
-    return CROFTON_OK;
-}
-
-crofton_status crofton_body_hull_surface(const crofton_body* body, const float** vertices, size_t* vertex_count,
-                                         const uint16_t** indices, size_t* index_count) {
-    const SharedUse use(body, __func__);
-    if (use.failed()) return use.status();
-    for (const void* result : {static_cast<const void*>(vertices), static_cast<const void*>(vertex_count),
-                               static_cast<const void*>(indices), static_cast<const void*>(index_count)})
-        CROFTON_CHECK(check_pointer(result, __func__));
-    const convex::Hull* hull = body->data->body->hull();
-    if (!hull) return report(CROFTON_UNSUPPORTED, __func__, "the body is no hull");
-    *vertices = &hull->vertices().front().x;
-    *vertex_count = hull->vertices().size();
-    *indices = hull->triangles().data();
-    *index_count = hull->triangles().size();
     return CROFTON_OK;
 }

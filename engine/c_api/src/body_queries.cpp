@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Questions asked of two bodies, and the contacts of a pair that last.
 #include <algorithm>
+#include <crofton/mesh/mesh_query.hpp>
 #include <limits>
 
+#include <crofton/capi/bodies.hpp>
 #include <crofton/capi/numbers.hpp>
-#include "bodies.hpp"
-#include "queries.hpp"
+#include <crofton/capi/queries.hpp>
 
 using namespace crofton;
 using namespace crofton::capi;
@@ -16,7 +17,6 @@ struct crofton_body_contacts {
     convex::PairCache cache{};
     convex::Manifolds found{};
     Vector<convex::TrackedPoint> points{};
-    std::size_t ended = 0;
 };
 
 static_assert(CROFTON_CAST_UNRESOLVED == static_cast<int>(convex::CastResult::unresolved) &&
@@ -50,6 +50,10 @@ crofton_body_distance to_c_distance(const convex::Distance& answer) {
     result.upper = answer.upper;
     give_points(answer, result);
     return result;
+}
+
+bool is_identity(const RigidTransform& pose) {
+    return pose.rotation == glm::dmat3(1.0) && pose.translation == glm::dvec3(0.0);
 }
 
 // Lines for the caller's function.
@@ -175,6 +179,21 @@ crofton_status crofton_body_raycast(const crofton_placed* body, const crofton_ra
     return CROFTON_OK;
 }
 
+crofton_status crofton_body_raycast_any(const crofton_placed* body, const crofton_ray* ray, int* hit) {
+    CROFTON_CHECK(check_pointer(ray, __func__));
+    CROFTON_CHECK(check_pointer(hit, __func__));
+    Ray checked;
+    CROFTON_CHECK(to_ray(*ray, __func__, kNoItem, checked));
+    const PlacedBody placed(body, __func__);
+    CROFTON_CHECK(placed.status());
+    const auto& mesh = body->body->data->mesh;
+    const bool is_quick = mesh && placed.body().sides() == convex::Sides::both && is_identity(placed.pose());
+    const bool is_hit =
+        is_quick ? mesh::hits_any(checked, *mesh) : convex::raycast(placed.placed(), checked).has_value();
+    *hit = is_hit ? 1 : 0;
+    return CROFTON_OK;
+}
+
 crofton_status crofton_body_outline(const crofton_placed* body, crofton_line_visitor visit, void* user) {
     if (!visit) return report(CROFTON_INVALID_ARGUMENT, __func__, "the visitor is NULL");
     const PlacedBody placed(body, __func__);
@@ -246,7 +265,8 @@ crofton_status crofton_body_contacts_destroy(crofton_body_contacts* contacts) {
 }
 
 crofton_status crofton_body_contacts_update(crofton_body_contacts* contacts, const crofton_placed* a,
-                                            const crofton_placed* b, const crofton_manifold_options* options) {
+                                            const crofton_placed* b, const crofton_manifold_options* options,
+                                            crofton_tracked_point** points, size_t* count, size_t* ended) {
     const ExclusiveUse use(contacts, __func__);
     if (use.failed()) return use.status();
     const PlacedPair pair(a, b, __func__);
@@ -254,19 +274,10 @@ crofton_status crofton_body_contacts_update(crofton_body_contacts* contacts, con
     convex::ManifoldOptions wanted;
     CROFTON_CHECK(to_manifold_options(options, __func__, wanted));
     convex::contact_manifolds(pair.first(), pair.second(), wanted, contacts->found, &contacts->cache);
-    contacts->ended = convex::track(contacts->found.all(), contacts->points);
-    return CROFTON_OK;
-}
-
-crofton_status crofton_body_contacts_points(crofton_body_contacts* contacts, crofton_tracked_point** points,
-                                            size_t* count, size_t* ended) {
-    const ExclusiveUse use(contacts, __func__);
-    if (use.failed()) return use.status();
-    CROFTON_CHECK(check_pointer(points, __func__));
-    CROFTON_CHECK(check_pointer(count, __func__));
-    *points = reinterpret_cast<crofton_tracked_point*>(contacts->points.data());
-    *count = contacts->points.size();
-    if (ended) *ended = contacts->ended;
+    const std::size_t gone = convex::track(contacts->found.all(), contacts->points);
+    if (points) *points = reinterpret_cast<crofton_tracked_point*>(contacts->points.data());
+    if (count) *count = contacts->points.size();
+    if (ended) *ended = gone;
     return CROFTON_OK;
 }
 

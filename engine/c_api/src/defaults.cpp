@@ -74,10 +74,6 @@ crofton_find_options crofton_default_find_options(void) {
     return sized<crofton_find_options>();
 }
 
-crofton_cull_options crofton_default_cull_options(void) {
-    return sized<crofton_cull_options>();
-}
-
 crofton_draw_limits crofton_default_draw_limits(void) {
     return sized<crofton_draw_limits>();
 }
@@ -101,8 +97,8 @@ crofton_picture_view crofton_default_picture_view(void) {
     return result;
 }
 
-crofton_hull_options crofton_default_hull_options(void) {
-    return sized<crofton_hull_options>();
+crofton_body_description crofton_default_body_description(void) {
+    return sized<crofton_body_description>();
 }
 
 crofton_manifold_options crofton_default_manifold_options(void) {

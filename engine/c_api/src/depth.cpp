@@ -9,7 +9,9 @@
 #include <functional>
 
 #include <crofton/capi/call.hpp>
-#include "growing.hpp"
+#include <crofton/capi/growing.hpp>
+#include <crofton/capi/requests.hpp>
+#include "clusters.hpp"
 
 using namespace crofton;
 using namespace crofton::capi;
@@ -28,25 +30,7 @@ struct crofton_depth_culler {
     std::uint32_t width = 0, height = 0;  // of the last picture
 };
 
-static_assert(CROFTON_MAX_CLUSTER_TRIANGLES == depth::Cluster::kMaxTriangles);
-static_assert(sizeof(crofton_cluster) == sizeof(depth::Cluster) &&
-              offsetof(crofton_cluster, triangle_count) == offsetof(depth::Cluster, triangle_count) &&
-              offsetof(crofton_cluster, center) == offsetof(depth::Cluster, center) &&
-              offsetof(crofton_cluster, half_edges) == offsetof(depth::Cluster, half_edges));
-static_assert(sizeof(crofton_visible_cluster) == sizeof(depth::VisibleCluster) &&
-              offsetof(crofton_visible_cluster, cluster) == offsetof(depth::VisibleCluster, cluster) &&
-              offsetof(crofton_visible_cluster, triangles) == offsetof(depth::VisibleCluster, triangles));
-
 namespace {
-
-crofton_status read_picture(const crofton_picture_view* picture, const char* function, depth::PictureView& view) {
-    crofton_picture_view given;
-    CROFTON_CHECK(read_growing(picture, function, given));
-    if (given.depth > CROFTON_DEPTH_MINUS_ONE_TO_ONE)
-        return report(CROFTON_INVALID_ARGUMENT, function, "unknown depth range");
-    view = {given.width, given.height, static_cast<DepthRange>(given.depth)};
-    return CROFTON_OK;
-}
 
 crofton_status add_object(const crofton_depth_object& given, const char* function,
                           Vector<depth::DepthObject>& objects) {
@@ -79,41 +63,31 @@ crofton_status crofton_clustered_mesh_destroy(crofton_clustered_mesh* clustered)
     return destroy(clustered, __func__);
 }
 
-crofton_status crofton_clustered_mesh_triangle_order(const crofton_clustered_mesh* clustered, uint32_t* triangles,
-                                                     size_t capacity, size_t* count) {
+crofton_status crofton_clustered_mesh_get(const crofton_clustered_mesh* clustered, crofton_clusters* clusters) {
     const SharedUse use(clustered, __func__);
     if (use.failed()) return use.status();
-    CROFTON_CHECK(check_room(triangles, capacity, __func__));
-    CROFTON_CHECK(check_pointer(count, __func__));
-    const std::span<const std::uint32_t> order = clustered->mesh.triangle_order();
-    std::copy_n(order.begin(), std::min(capacity, order.size()), triangles);
-    *count = order.size();
+    CROFTON_CHECK(check_pointer(clusters, __func__));
+    *clusters = to_c_clusters(clustered->mesh);
     return CROFTON_OK;
 }
 
-crofton_status crofton_clustered_mesh_permute(const crofton_clustered_mesh* clustered, const uint32_t* indices,
-                                              size_t index_count, uint32_t* permuted) {
-    const SharedUse use(clustered, __func__);
-    if (use.failed()) return use.status();
+crofton_status crofton_permute_triangles(const crofton_clusters* clusters, const uint32_t* indices, size_t index_count,
+                                         uint32_t* permuted) {
+    CROFTON_CHECK(check_pointer(clusters, __func__));
+    CROFTON_CHECK(check_array(clusters->triangle_order, clusters->triangle_count, __func__));
     CROFTON_CHECK(check_array(indices, index_count, __func__));
-    CROFTON_CHECK(check_pointer(permuted, __func__));
-    if (index_count != 3 * clustered->mesh.triangle_order().size())
+    CROFTON_CHECK(check_room(permuted, index_count, __func__));
+    if (index_count % 3 != 0 || index_count / 3 != clusters->triangle_count)
         return report(CROFTON_INVALID_ARGUMENT, __func__, "index_count is not that of the mesh");
     const std::less<const std::uint32_t*> before;
     if (before(permuted, indices + index_count) && before(indices, permuted + index_count))
         return report(CROFTON_INVALID_ARGUMENT, __func__, "the arrays overlap");
-    clustered->mesh.permute({indices, index_count}, {permuted, index_count});
-    return CROFTON_OK;
-}
-
-crofton_status crofton_clustered_mesh_clusters(const crofton_clustered_mesh* clustered,
-                                               const crofton_cluster** clusters, size_t* count) {
-    const SharedUse use(clustered, __func__);
-    if (use.failed()) return use.status();
-    CROFTON_CHECK(check_pointer(clusters, __func__));
-    CROFTON_CHECK(check_pointer(count, __func__));
-    *clusters = reinterpret_cast<const crofton_cluster*>(clustered->mesh.clusters().data());
-    *count = clustered->mesh.clusters().size();
+    const std::span order(clusters->triangle_order, clusters->triangle_count);
+    for (std::size_t k = 0; k < order.size(); ++k)
+        if (order[k] >= order.size())
+            return report(CROFTON_OUT_OF_RANGE, __func__, "the order has a number that is no triangle", k);
+    for (std::size_t k = 0; k < order.size(); ++k)
+        std::copy_n(indices + std::size_t{3} * order[k], 3, permuted + 3 * k);
     return CROFTON_OK;
 }
 
@@ -128,12 +102,14 @@ crofton_status crofton_depth_culler_destroy(crofton_depth_culler* culler) {
 
 crofton_status crofton_depth_culler_find_visible(crofton_depth_culler* culler, const crofton_depth_object* objects,
                                                  size_t object_count, const crofton_picture_view* picture,
-                                                 const crofton_visible_cluster** clusters, size_t* count) {
+                                                 const crofton_visible_cluster** clusters, size_t* count,
+                                                 crofton_depth_statistics* statistics) {
     const ExclusiveUse use(culler, __func__);
     if (use.failed()) return use.status();
     CROFTON_CHECK(check_array(objects, object_count, __func__));
     CROFTON_CHECK(check_pointer(clusters, __func__));
     CROFTON_CHECK(check_pointer(count, __func__));
+    if (statistics) CROFTON_CHECK(check_growing(statistics, __func__));
     depth::PictureView view;
     CROFTON_CHECK(read_picture(picture, __func__, view));
     culler->objects.clear();
@@ -148,18 +124,11 @@ crofton_status crofton_depth_culler_find_visible(crofton_depth_culler* culler, c
     culler->height = view.height;
     *clusters = reinterpret_cast<const crofton_visible_cluster*>(found->data());
     *count = found->size();
-    return CROFTON_OK;
-}
-
-crofton_status crofton_depth_culler_get_statistics(const crofton_depth_culler* culler,
-                                                   crofton_depth_statistics* statistics) {
-    const SharedUse use(culler, __func__);
-    if (use.failed()) return use.status();
-    CROFTON_CHECK(check_growing(statistics, __func__));
     const depth::DepthStatistics& s = culler->culler.statistics();
-    write_growing({sizeof *statistics, s.objects_listed, s.objects_asked, s.clusters_asked, s.clusters_drawn,
-                   s.triangles_drawn, s.triangles_listed},
-                  statistics);
+    if (statistics)
+        write_growing({sizeof *statistics, s.objects_listed, s.objects_asked, s.clusters_asked, s.clusters_drawn,
+                       s.triangles_drawn, s.triangles_listed},
+                      statistics);
     return CROFTON_OK;
 }
 

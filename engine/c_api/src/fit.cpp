@@ -34,23 +34,12 @@ crofton_status give(const Result<Obb>& fitted, crofton_box* box, const char* fun
     return CROFTON_OK;
 }
 
-template <class Point, class Number>
-crofton_status fit_points(const Number* points, std::size_t count, const crofton_fit_options* options, crofton_box* box,
-                          const char* function) {
-    CROFTON_CHECK(check_array(points, count, function, 3));
-    CROFTON_CHECK(check_pointer(box, function));
-    fit::FitOptions choice;
-    CROFTON_CHECK(to_options(options, function, choice));
-    return give(fit::fit_obb(std::span(reinterpret_cast<const Point*>(points), count), choice), box, function);
+template <class Point>
+Result<Obb> fit_points(const void* points, std::size_t count, const fit::FitOptions& options) {
+    return fit::fit_obb(std::span(static_cast<const Point*>(points), count), options);
 }
 
 }  // namespace
-
-crofton_status crofton_criterion_minimal_perimeter(crofton_criterion* criterion) {
-    CROFTON_CHECK(check_pointer(criterion, __func__));
-    *criterion = to_c(measure::minimal_perimeter());
-    return CROFTON_OK;
-}
 
 crofton_status crofton_criterion_for_frustum(const crofton_camera* camera, crofton_criterion* criterion) {
     CROFTON_CHECK(check_camera(camera, __func__));
@@ -69,14 +58,16 @@ crofton_status crofton_criterion_for_rays(double length, crofton_criterion* crit
     return CROFTON_OK;
 }
 
-crofton_status crofton_fit_floats(const float* points, size_t point_count, const crofton_fit_options* options,
-                                  crofton_box* box) {
-    return fit_points<glm::vec3>(points, point_count, options, box, __func__);
-}
-
-crofton_status crofton_fit_doubles(const double* points, size_t point_count, const crofton_fit_options* options,
-                                   crofton_box* box) {
-    return fit_points<glm::dvec3>(points, point_count, options, box, __func__);
+crofton_status crofton_fit_points(const void* points, size_t point_count, uint32_t is_double,
+                                  const crofton_fit_options* options, crofton_box* box) {
+    CROFTON_CHECK(is_double ? check_array(static_cast<const double*>(points), point_count, __func__, 3)
+                            : check_array(static_cast<const float*>(points), point_count, __func__, 3));
+    CROFTON_CHECK(check_pointer(box, __func__));
+    fit::FitOptions choice;
+    CROFTON_CHECK(to_options(options, __func__, choice));
+    return give(is_double ? fit_points<glm::dvec3>(points, point_count, choice)
+                          : fit_points<glm::vec3>(points, point_count, choice),
+                box, __func__);
 }
 
 crofton_status crofton_fit_boxes(const crofton_box* boxes, size_t count, const crofton_criterion* criterion,

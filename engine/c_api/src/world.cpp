@@ -3,10 +3,11 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 
 #include <crofton/capi/convert.hpp>
+#include <crofton/capi/growing.hpp>
 #include <crofton/capi/numbers.hpp>
-#include "growing.hpp"
 #include "world.hpp"
 
 using namespace crofton;
@@ -117,6 +118,8 @@ crofton_status to_mesh_description(const crofton_mesh_data* given, const char* f
     CROFTON_CHECK(to_points(data, function, description.positions));
     CROFTON_CHECK(to_indices(data, function, description.indices));
     description.triangles = data.triangles != 0;
+    description.clusters = data.clusters != 0;
+    description.one_sided = data.one_sided != 0;
     return CROFTON_OK;
 }
 
@@ -151,6 +154,45 @@ crofton_status to_object_description(const crofton_object_description* argument,
     description.collides_with = given.collides_with;
     description.occludes = given.occludes != 0;
     description.only_occludes = given.only_occludes != 0;
+    return CROFTON_OK;
+}
+
+constexpr std::uint32_t kShapeMembers = CROFTON_SET_OCCLUDES | CROFTON_SET_MESH | CROFTON_SET_BOUND | CROFTON_SET_BODY;
+constexpr std::uint32_t kAllMembers = 2 * CROFTON_SET_BODY - 1;
+
+crofton_status check_members(std::uint32_t members, const char* function) {
+    if (members > kAllMembers) return report(CROFTON_INVALID_ARGUMENT, function, "unknown members of an object");
+    if (std::popcount(members & kShapeMembers) > 1)
+        return report(CROFTON_INVALID_ARGUMENT, function, "set mesh, bound, body and occludes one at a time");
+    return CROFTON_OK;
+}
+
+crofton_status set_body(crofton_world& world, crofton_object object, const crofton_body* body, const char* function) {
+    if (!body) return status_of(world.world.set_body(to_handle(object), nullptr), function);
+    const SharedUse use(body, function);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(status_of(world.world.set_body(to_handle(object), &*body->data->body), function));
+    world.keep(object.index, body->data);
+    return CROFTON_OK;
+}
+
+// At most one of the members that may be refused.
+crofton_status set_shape(crofton_world& world, crofton_object object, std::uint32_t members,
+                         const crofton_object_description& given, const char* function) {
+    World& w = world.world;
+    if (members & CROFTON_SET_OCCLUDES)
+        return status_of(w.set_occludes(to_handle(object), given.occludes != 0), function);
+    if (members & CROFTON_SET_MESH) {
+        if (!given.has_mesh) return report(CROFTON_INVALID_ARGUMENT, function, "the description has no mesh");
+        return status_of(w.set_mesh(to_handle(object), to_handle(given.mesh)), function);
+    }
+    if (members & CROFTON_SET_BOUND) {
+        CROFTON_CHECK(check_pointer(given.bound, function));
+        Bound bound;
+        CROFTON_CHECK(to_bound(*given.bound, function, bound));
+        return status_of(w.set_bound(to_handle(object), bound), function);
+    }
+    if (members & CROFTON_SET_BODY) return set_body(world, object, given.body, function);
     return CROFTON_OK;
 }
 
@@ -248,13 +290,16 @@ crofton_status crofton_world_add(crofton_world* world, const crofton_object_desc
     crofton_object_description given;
     ObjectDescription made;
     CROFTON_CHECK(to_object_description(description, __func__, given, made));
-    if (!given.body) return hand_out(world->world.add(made), object, __func__);
-    const SharedUse use_body(given.body, __func__);
-    if (use_body.failed()) return use_body.status();
-    made.body = &*given.body->data->body;
-    CROFTON_CHECK(hand_out(world->world.add(made), object, __func__));
-    world->keep(object->index, given.body->data);
-    return CROFTON_OK;
+    if (!given.body) {
+        CROFTON_CHECK(hand_out(world->world.add(made), object, __func__));
+    } else {
+        const SharedUse use_body(given.body, __func__);
+        if (use_body.failed()) return use_body.status();
+        made.body = &*given.body->data->body;
+        CROFTON_CHECK(hand_out(world->world.add(made), object, __func__));
+        world->keep(object->index, given.body->data);
+    }
+    return given.hidden ? status_of(world->world.set_hidden(to_handle(*object), true), __func__) : CROFTON_OK;
 }
 
 crofton_status crofton_world_remove(crofton_world* world, crofton_object object) {
@@ -276,33 +321,24 @@ crofton_status crofton_world_set_boxes(crofton_world* world, const crofton_objec
         [](World& w, Strided<ObjectHandle> o, Strided<Obb> b) { return w.set_bounds(o, b); });
 }
 
-crofton_status crofton_world_set_bound(crofton_world* world, crofton_object object, const crofton_bound* bound) {
+crofton_status crofton_world_set(crofton_world* world, crofton_object object, uint32_t members,
+                                 const crofton_object_description* description) {
     const ExclusiveUse use(world, __func__);
     if (use.failed()) return use.status();
-    CROFTON_CHECK(check_pointer(bound, __func__));
-    Bound given;
-    CROFTON_CHECK(to_bound(*bound, __func__, given));
-    return status_of(world->world.set_bound(to_handle(object), given), __func__);
-}
-
-crofton_status crofton_world_set_mesh(crofton_world* world, crofton_object object, crofton_world_mesh mesh) {
-    return change(world, __func__, [&](World& w) { return w.set_mesh(to_handle(object), to_handle(mesh)); });
-}
-
-crofton_status crofton_world_set_hidden(crofton_world* world, crofton_object object, int hidden) {
-    return change(world, __func__, [&](World& w) { return w.set_hidden(to_handle(object), hidden != 0); });
-}
-
-crofton_status crofton_world_set_layers(crofton_world* world, crofton_object object, uint32_t layers) {
-    return change(world, __func__, [&](World& w) { return w.set_layers(to_handle(object), layers); });
-}
-
-crofton_status crofton_world_set_collides_with(crofton_world* world, crofton_object object, uint32_t layers) {
-    return change(world, __func__, [&](World& w) { return w.set_collides_with(to_handle(object), layers); });
-}
-
-crofton_status crofton_world_set_user(crofton_world* world, crofton_object object, uint64_t user) {
-    return change(world, __func__, [&](World& w) { return w.set_user(to_handle(object), user); });
+    crofton_object_description given;
+    CROFTON_CHECK(read_growing(description, __func__, given));
+    CROFTON_CHECK(check_members(members, __func__));
+    // What may be refused comes first; what is left then only needs the object.
+    CROFTON_CHECK(set_shape(*world, object, members, given, __func__));
+    World& w = world->world;
+    const ObjectHandle handle = to_handle(object);
+    if (!w.contains(handle)) return status_of(w.set_user(handle, given.user), __func__);
+    if (members & CROFTON_SET_USER) CROFTON_CHECK(status_of(w.set_user(handle, given.user), __func__));
+    if (members & CROFTON_SET_LAYERS) CROFTON_CHECK(status_of(w.set_layers(handle, given.layers), __func__));
+    if (members & CROFTON_SET_COLLIDES_WITH)
+        CROFTON_CHECK(status_of(w.set_collides_with(handle, given.collides_with), __func__));
+    if (members & CROFTON_SET_HIDDEN) CROFTON_CHECK(status_of(w.set_hidden(handle, given.hidden != 0), __func__));
+    return CROFTON_OK;
 }
 
 crofton_status crofton_world_update(crofton_world* world, const crofton_jobs* jobs) {
@@ -319,8 +355,9 @@ crofton_status crofton_world_get_statistics(const crofton_world* world, crofton_
     if (use.failed()) return use.status();
     CROFTON_CHECK(check_growing(statistics, __func__));
     const WorldStatistics& s = world->world.statistics();
-    write_growing({sizeof *statistics, s.objects, s.resting, s.moving, s.box_pairs_tested, s.contact_pairs_tested,
-                   s.boxes_changed, s.nodes_updated, s.out_of_range, s.tree_built ? 1u : 0u},
-                  statistics);
+    write_growing(
+        {sizeof *statistics, s.objects, s.resting, s.moving, s.box_pairs_tested, s.contact_pairs_tested,
+         s.boxes_changed, s.nodes_updated, s.out_of_range, s.tree_built ? 1u : 0u, world->world.object_count()},
+        statistics);
     return CROFTON_OK;
 }

@@ -5,8 +5,8 @@
 
 #include <crofton/world/world.hpp>
 
+#include <crofton/capi/bodies.hpp>
 #include <crofton/capi/call.hpp>
-#include "bodies.hpp"
 
 struct crofton_world {
     static constexpr std::uint32_t kKind = 0x43724f08;
@@ -38,6 +38,12 @@ static_assert(offsetof(crofton_object, generation) == offsetof(ObjectHandle, gen
 }
 [[nodiscard]] inline crofton_object_ref to_c_ref(const ObjectRef& ref) {
     return {{ref.object.index, ref.object.generation}, ref.user};
+}
+
+[[nodiscard]] inline crofton_status check_mesh(const crofton_world& world, crofton_world_mesh mesh,
+                                               const char* function) {
+    if (world.world.contains(to_handle(mesh))) return CROFTON_OK;
+    return report(CROFTON_STALE_HANDLE, function, "the mesh has been removed, or never was in this world", mesh.index);
 }
 
 }  // namespace crofton::capi

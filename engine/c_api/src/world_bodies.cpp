@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Bodies of a World's objects: contacts that last, overlaps and casts.
+// Bodies of a World's objects: contacts that last, and casts.
 #include <crofton/capi/crofton.h>
 
 #include <cstddef>
 #include <limits>
 
-#include "bodies.hpp"
-#include "found.hpp"
+#include <crofton/capi/bodies.hpp>
 #include "world.hpp"
 
 using namespace crofton;
@@ -17,17 +16,6 @@ static_assert(sizeof(crofton_body_contact) == sizeof(BodyContact) &&
               offsetof(crofton_body_contact, points) == offsetof(BodyContact, points) &&
               offsetof(crofton_body_contact, point_count) == offsetof(BodyContact, point_count));
 
-crofton_status crofton_world_set_body(crofton_world* world, crofton_object object, const crofton_body* body) {
-    const ExclusiveUse use_world(world, __func__);
-    if (use_world.failed()) return use_world.status();
-    if (!body) return status_of(world->world.set_body(to_handle(object), nullptr), __func__);
-    const SharedUse use(body, __func__);
-    if (use.failed()) return use.status();
-    CROFTON_CHECK(status_of(world->world.set_body(to_handle(object), &*body->data->body), __func__));
-    world->keep(object.index, body->data);
-    return CROFTON_OK;
-}
-
 crofton_status crofton_world_body_contacts(const crofton_world* world, const crofton_body_contact** contacts,
                                            size_t* count) {
     const SharedUse use(world, __func__);
@@ -36,21 +24,6 @@ crofton_status crofton_world_body_contacts(const crofton_world* world, const cro
     CROFTON_CHECK(check_pointer(count, __func__));
     *contacts = reinterpret_cast<const crofton_body_contact*>(world->world.body_contacts().data());
     *count = world->world.body_contacts().size();
-    return CROFTON_OK;
-}
-
-crofton_status crofton_world_overlap_body(const crofton_world* world, const crofton_placed* shape, uint32_t layer_mask,
-                                          crofton_found* found) {
-    const SharedUse use_world(world, __func__);
-    if (use_world.failed()) return use_world.status();
-    const ExclusiveUse use(found, __func__);
-    if (use.failed()) return use.status();
-    const PlacedBody placed(shape, __func__);
-    CROFTON_CHECK(placed.status());
-    if (placed.body().kind() == convex::Kind::half_space)
-        return report(CROFTON_UNSUPPORTED, __func__, "a half-space meets nearly all; ask with a bounded body");
-    found->hits.clear();
-    world->world.overlap(placed.body(), placed.pose(), found->objects, layer_mask);
     return CROFTON_OK;
 }
 

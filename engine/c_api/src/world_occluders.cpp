@@ -4,7 +4,7 @@
 #include <crofton/occlude/occluder.hpp>
 
 #include <crofton/capi/convert.hpp>
-#include "growing.hpp"
+#include <crofton/capi/growing.hpp>
 #include "world.hpp"
 
 using namespace crofton;
@@ -66,11 +66,6 @@ occlude::FindOptions to_find_options(const crofton_find_options& given) {
     return options;
 }
 
-crofton_status check_mesh(const crofton_world& world, crofton_world_mesh mesh, const char* function) {
-    if (world.world.contains(to_handle(mesh))) return CROFTON_OK;
-    return report(CROFTON_STALE_HANDLE, function, "the mesh has been removed, or never was in this world", mesh.index);
-}
-
 }  // namespace
 
 crofton_status crofton_world_find_occluders(crofton_world* world, crofton_world_mesh mesh,
@@ -95,15 +90,6 @@ crofton_status crofton_world_set_occluders(crofton_world* world, crofton_world_m
         given.push_back(to_occluder(occluder));
     }
     return status_of(world->world.set_occluders(to_handle(mesh), given), __func__);
-}
-
-crofton_status crofton_world_occluder_count(const crofton_world* world, crofton_world_mesh mesh, size_t* count) {
-    const SharedUse use(world, __func__);
-    if (use.failed()) return use.status();
-    CROFTON_CHECK(check_pointer(count, __func__));
-    CROFTON_CHECK(check_mesh(*world, mesh, __func__));
-    *count = world->world.occluders_of(to_handle(mesh)).size();
-    return CROFTON_OK;
 }
 
 crofton_status crofton_world_get_occluder(const crofton_world* world, crofton_world_mesh mesh, size_t place,
@@ -132,10 +118,4 @@ crofton_status crofton_world_get_occluder(const crofton_world* world, crofton_wo
     result.gain = found.gain;
     write_growing(result, occluder);
     return CROFTON_OK;
-}
-
-crofton_status crofton_world_set_occludes(crofton_world* world, crofton_object object, int occludes) {
-    const ExclusiveUse use(world, __func__);
-    if (use.failed()) return use.status();
-    return status_of(world->world.set_occludes(to_handle(object), occludes != 0), __func__);
 }

@@ -6,12 +6,13 @@
 #include <array>
 #include <limits>
 
+#include <crofton/capi/bodies.hpp>
+#include <crofton/capi/growing.hpp>
 #include <crofton/capi/numbers.hpp>
-#include "bodies.hpp"
-#include "collider.hpp"
+#include <crofton/capi/queries.hpp>
+#include <crofton/capi/shapes.hpp>
+#include "clusters.hpp"
 #include "found.hpp"
-#include "growing.hpp"
-#include "queries.hpp"
 #include "world.hpp"
 
 using namespace crofton;
@@ -29,6 +30,14 @@ static_assert(sizeof(crofton_object_hit) == sizeof(ObjectHit) &&
               offsetof(crofton_object_hit, child) == offsetof(ObjectHit, child) &&
               offsetof(crofton_object_hit, normal) == offsetof(ObjectHit, normal) &&
               offsetof(crofton_object_hit, started_inside) == offsetof(ObjectHit, started_inside) && sizeof(bool) == 1);
+// A span is a pointer and a count, in that order: tests/c_api compares each member.
+static_assert(sizeof(crofton_object_contact) == sizeof(Contact) &&
+              offsetof(crofton_object_contact, phase) == offsetof(Contact, phase) &&
+              offsetof(crofton_object_contact, inside) == offsetof(Contact, inside) &&
+              offsetof(crofton_object_contact, normal) == offsetof(Contact, normal) &&
+              offsetof(crofton_object_contact, depth) == offsetof(Contact, depth) &&
+              offsetof(crofton_object_contact, points) == offsetof(Contact, points) &&
+              offsetof(crofton_object_contact, triangles) == offsetof(Contact, triangles));
 static_assert(sizeof(crofton_contact_point) == sizeof(collide::ContactPoint) &&
               offsetof(crofton_contact_point, depth) == offsetof(collide::ContactPoint, depth));
 static_assert(sizeof(crofton_mesh_contact) == sizeof(mesh::MeshContact) &&
@@ -53,109 +62,46 @@ crofton_object_hit to_c_hit(const std::optional<ObjectHit>& hit) {
             static_cast<std::uint8_t>(hit->started_inside ? 1 : 0)};
 }
 
-// Writes what is asked of a world as it is.
-template <class Value, class Ask>
-crofton_status ask(const crofton_world* world, Value* value, const char* function, Ask answer) {
-    const SharedUse use(world, function);
-    if (use.failed()) return use.status();
-    CROFTON_CHECK(check_pointer(value, function));
-    *value = answer(world->world);
-    return CROFTON_OK;
-}
-
-crofton_status to_capsule(const double* begin, const double* end, double radius, const char* function,
-                          collide::Capsule& capsule) {
-    Sphere at_begin, at_end;
-    CROFTON_CHECK(to_sphere(begin, radius, function, at_begin));
-    CROFTON_CHECK(to_sphere(end, radius, function, at_end));
-    capsule = {at_begin.center, at_end.center, radius};
-    return CROFTON_OK;
-}
-
-crofton_status to_shape(const crofton_box* box, const char* function, Obb& shape) {
-    CROFTON_CHECK(check_pointer(box, function));
-    shape = to_box(box);
-    return status_of(validate(shape), function);
-}
-
-template <class Shape>
-crofton_status overlap(const crofton_world* world, const Shape& shape, uint32_t layer_mask, crofton_found* found,
-                       const char* function) {
-    const SharedUse use_world(world, function);
-    if (use_world.failed()) return use_world.status();
-    const ExclusiveUse use(found, function);
-    if (use.failed()) return use.status();
-    found->hits.clear();
-    world->world.overlap(shape, found->objects, layer_mask);
-    return CROFTON_OK;
-}
-
-// The shape as arguments that World::closest takes: a shape, or a body and its pose.
-template <class... Shape>
-crofton_status find_closest(const crofton_world* world, double max_distance, uint32_t layer_mask,
-                            crofton_closest_object* closest, const char* function, const Shape&... shape) {
-    const SharedUse use(world, function);
-    if (use.failed()) return use.status();
-    CROFTON_CHECK(check_growing(closest, function));
-    CROFTON_CHECK(check_limit(max_distance, "max_distance", function));
-    crofton_closest_object result{0, {CROFTON_NONE, 0}, 0, kNoDistance, {}, {}};
-    if (const auto nearest = world->world.closest(shape..., max_distance, layer_mask)) {
-        result.object = {nearest->object.index, nearest->object.generation};
-        result.user = nearest->user;
-        result.distance = nearest->distance;
-        copy_vector(nearest->on_shape, result.on_shape);
-        copy_vector(nearest->on_object, result.on_object);
-    }
-    write_growing(result, closest);
-    return CROFTON_OK;
-}
-
 }  // namespace
 
-crofton_status crofton_world_object_count(const crofton_world* world, size_t* count) {
-    return ask(world, count, __func__, [](const World& w) { return w.object_count(); });
+crofton_status crofton_world_get_object(const crofton_world* world, crofton_object object, crofton_object_info* info) {
+    const SharedUse use(world, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_growing(info, __func__));
+    const auto user = world->world.user_of(to_handle(object));
+    if (!user) return report(user.error(), __func__);
+    crofton_object_info result{};
+    result.user = *user;
+    if (const auto box = world->world.box_of(to_handle(object))) {
+        result.has_box = 1;
+        result.box = *to_c(&*box);
+    }
+    if (const auto transform = world->world.transform_of(to_handle(object))) {
+        result.has_transform = 1;
+        std::memcpy(&result.transform, &*transform, sizeof result.transform);
+    }
+    write_growing(result, info);
+    return CROFTON_OK;
 }
 
-crofton_status crofton_world_contains(const crofton_world* world, crofton_object object, int* contains) {
-    return ask(world, contains, __func__, [&](const World& w) { return w.contains(to_handle(object)) ? 1 : 0; });
+crofton_status crofton_world_get_mesh(const crofton_world* world, crofton_world_mesh mesh, crofton_mesh_info* info) {
+    const SharedUse use(world, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_growing(info, __func__));
+    CROFTON_CHECK(check_mesh(*world, mesh, __func__));
+    crofton_mesh_info result{};
+    result.occluder_count = world->world.occluders_of(to_handle(mesh)).size();
+    if (const depth::ClusteredMesh* const cut = world->world.clusters_of(to_handle(mesh)))
+        result.clusters = to_c_clusters(*cut);
+    write_growing(result, info);
+    return CROFTON_OK;
 }
 
 crofton_status crofton_world_contains_node(const crofton_world* world, crofton_node node, int* contains) {
-    return ask(world, contains, __func__, [&](const World& w) { return w.contains(to_handle(node)) ? 1 : 0; });
-}
-
-crofton_status crofton_world_contains_mesh(const crofton_world* world, crofton_world_mesh mesh, int* contains) {
-    return ask(world, contains, __func__, [&](const World& w) { return w.contains(to_handle(mesh)) ? 1 : 0; });
-}
-
-crofton_status crofton_world_get_user(const crofton_world* world, crofton_object object, uint64_t* user) {
     const SharedUse use(world, __func__);
     if (use.failed()) return use.status();
-    CROFTON_CHECK(check_pointer(user, __func__));
-    const auto found = world->world.user_of(to_handle(object));
-    if (!found) return report(found.error(), __func__);
-    *user = *found;
-    return CROFTON_OK;
-}
-
-crofton_status crofton_world_get_box(const crofton_world* world, crofton_object object, crofton_box* box) {
-    const SharedUse use(world, __func__);
-    if (use.failed()) return use.status();
-    CROFTON_CHECK(check_pointer(box, __func__));
-    const auto found = world->world.box_of(to_handle(object));
-    if (!found) return report(found.error(), __func__);
-    *box = *to_c(&*found);
-    return CROFTON_OK;
-}
-
-crofton_status crofton_world_get_transform(const crofton_world* world, crofton_object object,
-                                           crofton_transform* transform) {
-    const SharedUse use(world, __func__);
-    if (use.failed()) return use.status();
-    CROFTON_CHECK(check_pointer(transform, __func__));
-    const auto found = world->world.transform_of(to_handle(object));
-    if (!found) return report(found.error(), __func__);
-    std::memcpy(transform, &*found, sizeof *transform);
+    CROFTON_CHECK(check_pointer(contains, __func__));
+    *contains = world->world.contains(to_handle(node)) ? 1 : 0;
     return CROFTON_OK;
 }
 
@@ -229,58 +175,37 @@ crofton_status crofton_world_raycast_all(const crofton_world* world, const croft
     return CROFTON_OK;
 }
 
-crofton_status crofton_world_overlap_box(const crofton_world* world, const crofton_box* box, uint32_t layer_mask,
-                                         crofton_found* found) {
-    Obb shape;
-    CROFTON_CHECK(to_shape(box, __func__, shape));
-    return overlap(world, shape, layer_mask, found, __func__);
+crofton_status crofton_world_overlap(const crofton_world* world, const crofton_shape* shape, uint32_t layer_mask,
+                                     crofton_found* found) {
+    const SharedUse use_world(world, __func__);
+    if (use_world.failed()) return use_world.status();
+    const ExclusiveUse use(found, __func__);
+    if (use.failed()) return use.status();
+    return visit_shape(shape, __func__, [&](const auto&... asked) {
+        found->hits.clear();
+        world->world.overlap(asked..., found->objects, layer_mask);
+        return CROFTON_OK;
+    });
 }
 
-crofton_status crofton_world_overlap_sphere(const crofton_world* world, const double center[3], double radius,
-                                            uint32_t layer_mask, crofton_found* found) {
-    Sphere shape;
-    CROFTON_CHECK(to_sphere(center, radius, __func__, shape));
-    return overlap(world, shape, layer_mask, found, __func__);
-}
-
-crofton_status crofton_world_overlap_capsule(const crofton_world* world, const double begin[3], const double end[3],
-                                             double radius, uint32_t layer_mask, crofton_found* found) {
-    collide::Capsule shape;
-    CROFTON_CHECK(to_capsule(begin, end, radius, __func__, shape));
-    return overlap(world, shape, layer_mask, found, __func__);
-}
-
-crofton_status crofton_world_closest_to_box(const crofton_world* world, const crofton_box* box, double max_distance,
-                                            uint32_t layer_mask, crofton_closest_object* closest) {
-    Obb shape;
-    CROFTON_CHECK(to_shape(box, __func__, shape));
-    return find_closest(world, max_distance, layer_mask, closest, __func__, shape);
-}
-
-crofton_status crofton_world_closest_to_sphere(const crofton_world* world, const double center[3], double radius,
-                                               double max_distance, uint32_t layer_mask,
-                                               crofton_closest_object* closest) {
-    Sphere shape;
-    CROFTON_CHECK(to_sphere(center, radius, __func__, shape));
-    return find_closest(world, max_distance, layer_mask, closest, __func__, shape);
-}
-
-crofton_status crofton_world_closest_to_capsule(const crofton_world* world, const double begin[3], const double end[3],
-                                                double radius, double max_distance, uint32_t layer_mask,
-                                                crofton_closest_object* closest) {
-    collide::Capsule shape;
-    CROFTON_CHECK(to_capsule(begin, end, radius, __func__, shape));
-    return find_closest(world, max_distance, layer_mask, closest, __func__, shape);
-}
-
-crofton_status crofton_world_closest_to_body(const crofton_world* world, const crofton_placed* shape,
-                                             double max_distance, uint32_t layer_mask,
-                                             crofton_closest_object* closest) {
-    const PlacedBody placed(shape, __func__);
-    CROFTON_CHECK(placed.status());
-    if (placed.body().kind() == convex::Kind::half_space)
-        return report(CROFTON_UNSUPPORTED, __func__, "a half-space is near nearly all; ask with a bounded body");
-    return find_closest(world, max_distance, layer_mask, closest, __func__, placed.body(), placed.pose());
+crofton_status crofton_world_closest(const crofton_world* world, const crofton_shape* shape, double max_distance,
+                                     uint32_t layer_mask, crofton_closest_object* closest) {
+    const SharedUse use(world, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_growing(closest, __func__));
+    CROFTON_CHECK(check_limit(max_distance, "max_distance", __func__));
+    return visit_shape(shape, __func__, [&](const auto&... asked) {
+        crofton_closest_object result{0, {CROFTON_NONE, 0}, 0, kNoDistance, {}, {}};
+        if (const auto nearest = world->world.closest(asked..., max_distance, layer_mask)) {
+            result.object = {nearest->object.index, nearest->object.generation};
+            result.user = nearest->user;
+            result.distance = nearest->distance;
+            std::memcpy(result.on_shape, &nearest->on_shape, sizeof result.on_shape);
+            std::memcpy(result.on_object, &nearest->on_object, sizeof result.on_object);
+        }
+        write_growing(result, closest);
+        return CROFTON_OK;
+    });
 }
 
 crofton_status crofton_world_pairs(const crofton_world* world, const crofton_object_pair** pairs, size_t* count) {
@@ -293,28 +218,13 @@ crofton_status crofton_world_pairs(const crofton_world* world, const crofton_obj
     return CROFTON_OK;
 }
 
-crofton_status crofton_world_contact_count(const crofton_world* world, size_t* count) {
-    return ask(world, count, __func__, [](const World& w) { return w.contacts().size(); });
-}
-
-crofton_status crofton_world_contact(const crofton_world* world, size_t contact, crofton_object_contact* result) {
+crofton_status crofton_world_contacts(const crofton_world* world, const crofton_object_contact** contacts,
+                                      size_t* count) {
     const SharedUse use(world, __func__);
     if (use.failed()) return use.status();
-    CROFTON_CHECK(check_growing(result, __func__));
-    if (contact >= world->world.contacts().size())
-        return report(CROFTON_OUT_OF_RANGE, __func__, "there are not so many contacts", contact);
-    const Contact& found = world->world.contacts()[contact];
-    crofton_object_contact written{};
-    written.first = to_c_ref(found.first);
-    written.second = to_c_ref(found.second);
-    written.phase = static_cast<std::uint32_t>(found.phase);
-    written.inside = static_cast<std::uint32_t>(found.inside);
-    copy_vector(found.normal, written.normal);
-    written.depth = found.depth;
-    written.points = reinterpret_cast<const crofton_contact_point*>(found.points.data());
-    written.triangles = reinterpret_cast<const crofton_mesh_contact*>(found.triangles.data());
-    written.point_count = found.points.size();
-    written.triangle_count = found.triangles.size();
-    write_growing(written, result);
+    CROFTON_CHECK(check_pointer(contacts, __func__));
+    CROFTON_CHECK(check_pointer(count, __func__));
+    *contacts = reinterpret_cast<const crofton_object_contact*>(world->world.contacts().data());
+    *count = world->world.contacts().size();
     return CROFTON_OK;
 }

@@ -3,7 +3,7 @@
 export async function run(load) {
     const crofton = await load(), boxes = new crofton.Boxes(100);
     for (let i = 0; i < boxes.length; ++i) boxes.set(i, [0, 0, 50 - i], [0.3, 0.3, 0.3]);
-    const visible = new crofton.VisibleSet();
+    const visible = new crofton.ViewResult();
     new crofton.Tree(boxes).cull(new crofton.Frustum({ camera: { fovY: 1, far: 1000 } }), visible);
     const world = new crofton.World();
     world.add({ sphere: { center: [0, 0, -5], radius: 1 } });

@@ -5,8 +5,8 @@
 
 #include <crofton/capi/call.hpp>
 #include <crofton/capi/convert.hpp>
-#include <crofton/capi/scene.hpp>
-#include <crofton/capi/tree.hpp>
+#include "scene.hpp"
+#include "tree.hpp"
 
 using namespace crofton;
 using namespace crofton::capi;

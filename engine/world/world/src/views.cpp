@@ -272,6 +272,14 @@ void MultiViewResult::list_ascending() {
             ids_.push_back(static_cast<std::uint32_t>(64 * w) + static_cast<std::uint32_t>(std::countr_zero(rest)));
 }
 
+std::span<const std::uint32_t> MultiViewResult::occluded_ids(std::size_t view) const {
+    return view < view_count_ && !one_walk_ ? each_[view].occluded_ids() : std::span<const std::uint32_t>();
+}
+
+depth::DepthStatistics MultiViewResult::picture_statistics(std::size_t view) const {
+    return view < view_count_ && !one_walk_ ? each_[view].picture_statistics() : depth::DepthStatistics();
+}
+
 std::span<const depth::VisibleCluster> MultiViewResult::triangles(std::size_t view) const {
     return view < view_count_ && !one_walk_ ? each_[view].triangles() : std::span<const depth::VisibleCluster>();
 }

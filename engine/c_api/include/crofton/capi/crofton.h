@@ -63,6 +63,7 @@ typedef struct crofton_world_statistics {
     uint32_t boxes_changed, nodes_updated;
     uint32_t out_of_range; /* objects that the product of transforms has put beyond it: hidden until they return */
     uint32_t tree_built;   /* 1: all at once, because much has come to rest, or come and gone */
+    uint64_t object_count; /* now: hidden ones count, removed ones do not */
 } crofton_world_statistics;
 
 /* A mesh in its own frame, in the caller's arrays; World copies what it needs. Three indices a triangle,
@@ -77,6 +78,8 @@ typedef struct crofton_mesh_data {
     uint32_t is_double; /* 1: positions are double, rounded to float; 0: float */
     uint32_t is_short;  /* 1: indices are uint16_t; 0: uint32_t */
     uint32_t triangles; /* 1: rays and contacts ask the triangles; 0: the mesh's box stands for it */
+    uint32_t clusters;  /* 0; 1: views with a picture list the triangles, in the clusters of crofton_world_get_mesh */
+    uint32_t one_sided; /* 0; 1, with clusters: back faces are not drawn, and not listed but of mirrored objects */
 } crofton_mesh_data;
 
 typedef enum crofton_bound_kind {
@@ -108,8 +111,26 @@ typedef struct crofton_object_description {
     uint32_t collides_with; /* all layers; 0: the object has no pairs */
     uint32_t occludes;      /* 1: an object with a mesh hides others; 0: it does not, as where it is transparent */
     uint32_t only_occludes; /* 0; 1: of an object with a mesh: it is in no answer, and hides what its occluders hide */
-    const crofton_body* body; /* or NULL: as crofton_world_set_body, kept alive likewise */
+    /* Or NULL. Destroy it at any time: the world keeps what it needs. It counts for pairs from the next update on, for
+     * queries at once. From the next update on the object's box also covers it. Half-spaces, and compounds that hold
+     * some, are ground without end. The object's transform scales the body; CROFTON_UNSUPPORTED: a transform that turns
+     * it into another kind of body, as an uneven scale does with a sphere. Calls that move objects and nodes refuse
+     * such transforms too. */
+    const crofton_body* body;
+    uint32_t hidden; /* 0; 1: the object is in no answer */
 } crofton_object_description;
+
+/* Which members crofton_world_set takes of a description. */
+typedef enum crofton_object_members {
+    CROFTON_SET_USER = 1,
+    CROFTON_SET_LAYERS = 2,
+    CROFTON_SET_COLLIDES_WITH = 4,
+    CROFTON_SET_HIDDEN = 8,
+    CROFTON_SET_OCCLUDES = 16, /* of an object with a mesh */
+    CROFTON_SET_MESH = 32,     /* of an object that has one */
+    CROFTON_SET_BOUND = 64,    /* of an object that was added with one */
+    CROFTON_SET_BODY = 128     /* NULL takes it away, but not from an object that was added by its body alone */
+} crofton_object_members;
 
 CROFTON_API crofton_world_options crofton_default_world_options(void);
 CROFTON_API crofton_mesh_data crofton_default_mesh_data(void);
@@ -159,24 +180,10 @@ CROFTON_API crofton_status crofton_world_set_transforms(crofton_world* world, co
 CROFTON_API crofton_status crofton_world_set_boxes(crofton_world* world, const crofton_object* objects,
                                                    size_t object_stride, const crofton_box* boxes, size_t box_stride,
                                                    size_t count);
-CROFTON_API crofton_status crofton_world_set_bound(crofton_world* world, crofton_object object,
-                                                   const crofton_bound* bound);
-/* Requires an object that has a mesh. */
-CROFTON_API crofton_status crofton_world_set_mesh(crofton_world* world, crofton_object object, crofton_world_mesh mesh);
-/* A hidden object (1) is in no answer until it is shown again (0). */
-CROFTON_API crofton_status crofton_world_set_hidden(crofton_world* world, crofton_object object, int hidden);
-CROFTON_API crofton_status crofton_world_set_layers(crofton_world* world, crofton_object object, uint32_t layers);
-CROFTON_API crofton_status crofton_world_set_collides_with(crofton_world* world, crofton_object object,
-                                                           uint32_t layers);
-CROFTON_API crofton_status crofton_world_set_user(crofton_world* world, crofton_object object, uint64_t user);
-/* Gives an object a body, or with NULL takes it away: for pairs from the next update on, for queries at once. Pairs of
- * objects that both have bodies are in crofton_world_body_contacts instead of crofton_world_contact. From the next
- * update on the object's box also covers the body. Half-spaces, and compounds that hold some, are ground without end.
- * An object that was added by its body alone keeps one: CROFTON_INVALID_ARGUMENT for NULL.
- * The object's transform scales the body. CROFTON_UNSUPPORTED: a transform that turns it into another kind of body, as
- * an uneven scale does with a sphere; calls that move objects and nodes refuse such transforms too. */
-CROFTON_API crofton_status crofton_world_set_body(crofton_world* world, crofton_object object,
-                                                  const crofton_body* body);
+/* Sets members of an object: `members` is a sum of crofton_object_members, at most one of the last four. An error
+ * changes nothing. */
+CROFTON_API crofton_status crofton_world_set(crofton_world* world, crofton_object object, uint32_t members,
+                                             const crofton_object_description* description);
 
 /* Makes the changes take effect; once a frame. `jobs` or NULL. CROFTON_BUDGET_EXCEEDED: more than max_pairs pairs;
  * then there are none, and all else is as it should be. */
@@ -186,8 +193,7 @@ CROFTON_API crofton_status crofton_world_get_statistics(const crofton_world* wor
 
 /* Queries, all as of the last update: what is seen, what rays and shapes meet, what touches. */
 
-typedef struct crofton_view_result crofton_view_result; /* what one view sees, or up to 32; its memory is kept */
-typedef struct crofton_found crofton_found;             /* a list of objects or of hits, likewise */
+typedef struct crofton_found crofton_found; /* a list of objects or of hits; its memory is kept */
 
 typedef struct crofton_object_ref {
     crofton_object object;
@@ -226,15 +232,15 @@ typedef enum crofton_contact_phase {
 /* Two objects that touch, or that did in the update before. Ended contacts carry only the two object handles, which are
  * stale where they have been removed. */
 typedef struct crofton_object_contact {
-    size_t size;
-    crofton_object_ref first, second;      /* ordered as in crofton_object_pair */
-    uint32_t phase;                        /* a crofton_contact_phase */
-    uint32_t inside;                       /* a crofton_containment of first (a) and second (b) */
-    double normal[3];                      /* unit, from first to second; 0 where no direction is known */
-    double depth;                          /* between meshes the deepest point's, unless options ask for a way out */
-    const crofton_contact_point* points;   /* at most four, in the world; valid until the next update */
+    crofton_object_ref first, second;    /* ordered as in crofton_object_pair */
+    uint8_t phase;                       /* a crofton_contact_phase */
+    uint8_t inside;                      /* a crofton_containment of first (a) and second (b) */
+    double normal[3];                    /* unit, from first to second; 0 where no direction is known */
+    double depth;                        /* between meshes the deepest point's, unless options ask for a way out */
+    const crofton_contact_point* points; /* at most four, in the world; valid until the next update */
+    size_t point_count;
     const crofton_mesh_contact* triangles; /* of two meshes, or a mesh and a box; likewise */
-    size_t point_count, triangle_count;
+    size_t triangle_count;
 } crofton_object_contact;
 
 /* Two objects with bodies that touch, or did in the update before. Ended contacts have no points. */
@@ -260,87 +266,37 @@ typedef struct crofton_body_hit {
     double distance;   /* gap at that time; negative: how deep they overlap, from the start */
 } crofton_body_hit;
 
-CROFTON_API crofton_status crofton_world_object_count(const crofton_world* world, size_t* count);
+/* What is known of an object; box and transform as of the last update. */
+typedef struct crofton_object_info {
+    size_t size;
+    uint64_t user;
+    uint32_t has_box;       /* 0 before the first update after the object was added: box is 0 */
+    uint32_t has_transform; /* 1 where the object has a mesh, and likewise */
+    crofton_box box;
+    crofton_transform transform; /* object to world */
+} crofton_object_info;
+
+typedef struct crofton_mesh_info {
+    size_t size;
+    size_t occluder_count;
+    crofton_clusters clusters; /* as of the last update, valid until the next; of a mesh without clusters all is 0 */
+} crofton_mesh_info;
+
+/* Fill a struct whose `size` is set. CROFTON_STALE_HANDLE: it is not in the world. */
+CROFTON_API crofton_status crofton_world_get_object(const crofton_world* world, crofton_object object,
+                                                    crofton_object_info* info);
+CROFTON_API crofton_status crofton_world_get_mesh(const crofton_world* world, crofton_world_mesh mesh,
+                                                  crofton_mesh_info* info);
 /* *contains is 1 or 0. */
-CROFTON_API crofton_status crofton_world_contains(const crofton_world* world, crofton_object object, int* contains);
 CROFTON_API crofton_status crofton_world_contains_node(const crofton_world* world, crofton_node node, int* contains);
-CROFTON_API crofton_status crofton_world_contains_mesh(const crofton_world* world, crofton_world_mesh mesh,
-                                                       int* contains);
-CROFTON_API crofton_status crofton_world_get_user(const crofton_world* world, crofton_object object, uint64_t* user);
-/* CROFTON_EMPTY before the first update after the object was added. */
-CROFTON_API crofton_status crofton_world_get_box(const crofton_world* world, crofton_object object, crofton_box* box);
-/* Object to world, of an object with a mesh. CROFTON_EMPTY as above. */
-CROFTON_API crofton_status crofton_world_get_transform(const crofton_world* world, crofton_object object,
-                                                       crofton_transform* transform);
 
-/* Views. docs/world.md and docs/occlude.md are the guides. */
-
-/* How a view leaves out what other objects hide. */
-typedef struct crofton_occlusion_options {
-    size_t size;
-    uint32_t width, height; /* of the depth buffer: 480 and 270; more pixels find more and cost more */
-    uint32_t max_occluders; /* 256: draws at most so many, those that are worth most to the view */
-    uint32_t list_occluded; /* 0; 1: also lists what is hidden, which costs a second query */
-    float least_cover;      /* 2e-5: does not draw what covers a smaller part of the sphere of directions */
-} crofton_occlusion_options;
-
-/* An engine's own matrix, from positions relative to `origin` to clip space, for column vectors. */
-typedef struct crofton_view_matrix {
-    size_t size;
-    const double* doubles; /* sixteen numbers, */
-    const float* floats;   /* or these: set one of the two */
-    uint32_t is_row_major; /* 0: column by column; 1: row by row */
-    uint32_t depth;        /* a crofton_depth_range; CROFTON_DEPTH_REVERSED_ZERO_TO_ONE */
-    double origin[3];      /* 0, 0, 0 */
-} crofton_view_matrix;
-
-/* What a view asks. All that is set counts, in every combination, or the call is refused by name. */
-typedef struct crofton_view_request {
-    size_t size;
-    const crofton_camera* camera;      /* set one of the three; NULL */
-    const crofton_view_matrix* matrix; /* NULL */
-    const crofton_frustum* volume;     /* NULL. Any convex volume. For occlusion set camera or matrix, too: objects are
-                                          tested against the volume instead of theirs */
-    uint32_t layers;                   /* all: lists objects that share a layer with these */
-    const crofton_occlusion_options* occlusion; /* NULL: lists what other objects hide, too */
-    const crofton_draw_limits* limits;          /* NULL: lists what is small or far, too */
-    const uint64_t* candidate_mask; /* NULL, or bit i % 64 of word i / 64: may object i be seen, as crofton_pvs_visible
-                                       gives it. Objects beyond the end may, and so may those that have moved since */
-    size_t candidate_words;
-    uint32_t conservative; /* 0: exact; 1: planes only, which keeps some boxes near the volume's corners */
-    uint32_t tree_order;   /* 0: indices ascend; 1: as the tree lies in memory, in half the time where much is seen */
-} crofton_view_request;
-
-typedef struct crofton_occlusion_statistics {
-    size_t size;
-    uint64_t occluders_drawn, pieces_drawn, triangles_drawn;
-    uint64_t nodes_tested, nodes_outside, nodes_hidden; /* of the tree; nothing below the latter was looked at */
-    uint64_t items_tested, items_hidden;
-} crofton_occlusion_statistics;
-
-CROFTON_API crofton_occlusion_options crofton_default_occlusion_options(void);
-CROFTON_API crofton_view_matrix crofton_default_view_matrix(void);
-CROFTON_API crofton_view_request crofton_default_view_request(void);
-
-CROFTON_API crofton_status crofton_view_result_create(crofton_view_result** result);
-CROFTON_API crofton_status crofton_view_result_destroy(crofton_view_result* result);
-
-/* Finds what a view sees, by the objects' boxes, and with occlusion by what is not hidden. `jobs` or NULL.
+/* Finds what `count` views see, 1 to 32, by the objects' boxes, and with occlusion by what is not hidden: each object
+ * once. Each view keeps its own options. `jobs` or NULL.
  *
- * Allocates nothing once `result` has grown to the largest answer. */
-CROFTON_API crofton_status crofton_world_view(const crofton_world* world, const crofton_view_request* request,
-                                              const crofton_jobs* jobs, crofton_view_result* result);
-/* The same for up to 32 views, each object once. Each view keeps its own options. All requests have the same `size` and
- * lie so far apart; crofton_last_error_item is the place of one that is refused. */
-CROFTON_API crofton_status crofton_world_view_many(const crofton_world* world, const crofton_view_request* requests,
-                                                   size_t count, const crofton_jobs* jobs, crofton_view_result* result);
-
-/* The objects' indices; valid until the result's next view.
- *
- * Of one view in tree order, the first *inside_count (or NULL) lie inside its volume. In ascending order *verdicts (or
- * NULL) are a crofton_verdict each. Otherwise they are 0 and NULL. */
-CROFTON_API crofton_status crofton_view_result_ids(const crofton_view_result* result, const uint32_t** ids,
-                                                   size_t* count, const uint8_t** verdicts, size_t* inside_count);
+ * All requests have the same `size` and lie so far apart; crofton_last_error_item is the place of one of several that
+ * is refused. Allocates nothing once `result` has grown to the largest answer. */
+CROFTON_API crofton_status crofton_world_view(const crofton_world* world, const crofton_view_request* requests,
+                                              size_t count, const crofton_jobs* jobs, crofton_view_result* result);
 /* Writes the objects from place `first` on, at most `capacity`; bit v of view_masks[i] (or NULL): view v sees
  * objects[i].
  *
@@ -348,21 +304,6 @@ CROFTON_API crofton_status crofton_view_result_ids(const crofton_view_result* re
 CROFTON_API crofton_status crofton_view_result_list(const crofton_view_result* result, const crofton_world* world,
                                                     size_t first, crofton_object_ref* objects, uint32_t* view_masks,
                                                     size_t capacity);
-/* Of one view; CROFTON_UNSUPPORTED after crofton_world_view_many. */
-CROFTON_API crofton_status crofton_view_result_get_statistics(const crofton_view_result* result,
-                                                              crofton_cull_statistics* statistics);
-/* Indices of what is in the view's volume and hidden, ascending. None unless list_occluded asked for it, nor after
- * crofton_world_view_many. */
-CROFTON_API crofton_status crofton_view_result_occluded_ids(const crofton_view_result* result, const uint32_t** ids,
-                                                            size_t* count);
-/* Of view number `view`; all 0 for a view without occlusion. CROFTON_OUT_OF_RANGE: there are fewer views. */
-CROFTON_API crofton_status crofton_view_result_get_occlusion_statistics(const crofton_view_result* result, size_t view,
-                                                                        crofton_occlusion_statistics* statistics);
-/* The depth buffer of view number `view`: its size, and the occluders' nearness where `nearness` is not NULL and has
- * room for width * height numbers. These are 1 / w (parallel views: minus the distance), row by row from the bottom;
- * below -1e38 where nothing is drawn. CROFTON_EMPTY: the view was without occlusion. */
-CROFTON_API crofton_status crofton_view_result_depth(const crofton_view_result* result, size_t view, uint32_t* width,
-                                                     uint32_t* height, float* nearness, size_t capacity);
 
 /* Rays meet bodies; of objects without one triangles of meshes, boxes and spheres. hits[i] is the nearest of rays[i].
  */
@@ -383,46 +324,27 @@ CROFTON_API crofton_status crofton_found_hits(const crofton_found* found, const 
 /* Finds the nearest hit of every object that the ray meets, by t, then by index: hits. */
 CROFTON_API crofton_status crofton_world_raycast_all(const crofton_world* world, const crofton_ray* ray,
                                                      uint32_t layer_mask, crofton_found* found);
-/* Find the objects whose box or sphere meets the shape, in order of index. A mesh counts as its box. */
-CROFTON_API crofton_status crofton_world_overlap_box(const crofton_world* world, const crofton_box* box,
-                                                     uint32_t layer_mask, crofton_found* found);
-CROFTON_API crofton_status crofton_world_overlap_sphere(const crofton_world* world, const double center[3],
-                                                        double radius, uint32_t layer_mask, crofton_found* found);
-CROFTON_API crofton_status crofton_world_overlap_capsule(const crofton_world* world, const double begin[3],
-                                                         const double end[3], double radius, uint32_t layer_mask,
-                                                         crofton_found* found);
-/* Fill a struct whose `size` is set: the box or sphere nearest to the shape, no farther than max_distance, which may be
- * infinite. Of several the lowest index. */
-CROFTON_API crofton_status crofton_world_closest_to_box(const crofton_world* world, const crofton_box* box,
-                                                        double max_distance, uint32_t layer_mask,
-                                                        crofton_closest_object* closest);
-CROFTON_API crofton_status crofton_world_closest_to_sphere(const crofton_world* world, const double center[3],
-                                                           double radius, double max_distance, uint32_t layer_mask,
-                                                           crofton_closest_object* closest);
-CROFTON_API crofton_status crofton_world_closest_to_capsule(const crofton_world* world, const double begin[3],
-                                                            const double end[3], double radius, double max_distance,
-                                                            uint32_t layer_mask, crofton_closest_object* closest);
+/* Finds the objects whose box or sphere meets the shape, in order of index; a mesh counts as its box. A body meets
+ * bodies of objects exactly; CROFTON_UNSUPPORTED: a half-space. */
+CROFTON_API crofton_status crofton_world_overlap(const crofton_world* world, const crofton_shape* shape,
+                                                 uint32_t layer_mask, crofton_found* found);
+/* Fills a struct whose `size` is set: the object nearest to the shape, as above, no farther than max_distance, which
+ * may be infinite. Of several the lowest index. */
+CROFTON_API crofton_status crofton_world_closest(const crofton_world* world, const crofton_shape* shape,
+                                                 double max_distance, uint32_t layer_mask,
+                                                 crofton_closest_object* closest);
 
 /* Objects whose boxes or spheres meet, in order; valid until the next update. */
 CROFTON_API crofton_status crofton_world_pairs(const crofton_world* world, const crofton_object_pair** pairs,
                                                size_t* count);
-CROFTON_API crofton_status crofton_world_contact_count(const crofton_world* world, size_t* count);
-/* Fills a struct whose `size` is set: contact number `contact`, in order of the pairs. */
-CROFTON_API crofton_status crofton_world_contact(const crofton_world* world, size_t contact,
-                                                 crofton_object_contact* result);
+/* In order of the pairs; valid until the next update. */
+CROFTON_API crofton_status crofton_world_contacts(const crofton_world* world, const crofton_object_contact** contacts,
+                                                  size_t* count);
 
 /* Of objects that both have bodies, in order; valid until the next update. Pairs of which neither has moved are not
  * computed again. */
 CROFTON_API crofton_status crofton_world_body_contacts(const crofton_world* world,
                                                        const crofton_body_contact** contacts, size_t* count);
-/* Finds the objects that a body meets, exactly, in order of index. Objects without bodies count as their boxes or
- * spheres. */
-CROFTON_API crofton_status crofton_world_overlap_body(const crofton_world* world, const crofton_placed* shape,
-                                                      uint32_t layer_mask, crofton_found* found);
-/* Fills a struct whose `size` is set: the object nearest to a body, as crofton_world_closest_to_box. */
-CROFTON_API crofton_status crofton_world_closest_to_body(const crofton_world* world, const crofton_placed* shape,
-                                                         double max_distance, uint32_t layer_mask,
-                                                         crofton_closest_object* closest);
 /* Fills a struct whose `size` is set: the first object that a moving body meets. `options` or NULL. */
 CROFTON_API crofton_status crofton_world_cast(const crofton_world* world, const crofton_placed* shape,
                                               const crofton_motion* motion, const crofton_cast_options* options,
@@ -480,23 +402,15 @@ CROFTON_API crofton_status crofton_world_find_occluders(crofton_world* world, cr
  * `size` and lie so far apart. crofton_last_error_item is the place of one that is refused; then all is as before. */
 CROFTON_API crofton_status crofton_world_set_occluders(crofton_world* world, crofton_world_mesh mesh,
                                                        const crofton_occluder* occluders, size_t count);
-CROFTON_API crofton_status crofton_world_occluder_count(const crofton_world* world, crofton_world_mesh mesh,
-                                                        size_t* count);
 /* Fills a struct whose `size` is set; its arrays are valid until the mesh's occluders change. */
 CROFTON_API crofton_status crofton_world_get_occluder(const crofton_world* world, crofton_world_mesh mesh, size_t place,
                                                       crofton_occluder* occluder);
-/* Whether an object with a mesh hides others (1, as at first) or not (0), as where it is drawn transparent. */
-CROFTON_API crofton_status crofton_world_set_occludes(crofton_world* world, crofton_object object, int occludes);
-
-/* Both write at most `capacity` occluders, and how many there are to *count. `world` is the one that was viewed; after
- * its next update it is CROFTON_INVALID_ARGUMENT. `result` is of one view. The first names those that hide an object,
- * none where it is not hidden, and is slow. */
-CROFTON_API crofton_status crofton_world_hidden_by(const crofton_world* world, crofton_object object,
-                                                   const crofton_view_result* result, crofton_occluder_ref* occluders,
-                                                   size_t capacity, size_t* count);
-CROFTON_API crofton_status crofton_world_drawn_occluders(const crofton_world* world, const crofton_view_result* result,
-                                                         crofton_occluder_ref* occluders, size_t capacity,
-                                                         size_t* count);
+/* Writes the occluders that hide an object, none where it is not hidden; `hidden` NULL: all that were drawn, those
+ * worth most first. At most `capacity`, and how many there are to *count. `world` is the one that was viewed; after its
+ * next update it is CROFTON_INVALID_ARGUMENT. `result` is of one view. To ask for one object is slow. */
+CROFTON_API crofton_status crofton_view_result_occluders(const crofton_view_result* result, const crofton_world* world,
+                                                         const crofton_object* hidden, crofton_occluder_ref* occluders,
+                                                         size_t capacity, size_t* count);
 
 #ifdef __cplusplus
 }

@@ -2,15 +2,11 @@
 /* The modules one by one, for engines that keep their own lists and trees. */
 #ifndef CROFTON_CAPI_MODULES_H
 #define CROFTON_CAPI_MODULES_H
-#include <crofton/capi/base.h>
+#include <crofton/capi/view.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-/* The scene graph: who is where, and how large. */
-
-typedef struct crofton_scene crofton_scene;
 
 /* Triangles of one mesh; copied by the calls that take it. */
 typedef struct crofton_mesh {
@@ -22,141 +18,11 @@ typedef struct crofton_mesh {
     const char* name; /* or NULL */
 } crofton_mesh;
 
-typedef struct crofton_update_statistics {
-    size_t size;
-    uint32_t nodes_updated, instances_updated, instances_invalid;
-} crofton_update_statistics;
-
-CROFTON_API crofton_status crofton_scene_create(crofton_scene** scene);
-CROFTON_API crofton_status crofton_scene_destroy(crofton_scene* scene);
-
-CROFTON_API crofton_status crofton_scene_add_mesh(crofton_scene* scene, const crofton_mesh* mesh, uint32_t* mesh_id);
-/* `parent` is a node or CROFTON_NONE; `local` or NULL: the identity. */
-CROFTON_API crofton_status crofton_scene_add_node(crofton_scene* scene, uint32_t parent, const crofton_transform* local,
-                                                  uint32_t layer_mask, uint32_t* node_id);
-CROFTON_API crofton_status crofton_scene_add_instance(crofton_scene* scene, uint32_t node, uint32_t mesh,
-                                                      uint32_t* instance_id);
-CROFTON_API crofton_status crofton_scene_set_local(crofton_scene* scene, uint32_t node, const crofton_transform* local);
-CROFTON_API crofton_status crofton_scene_set_layer_mask(crofton_scene* scene, uint32_t node, uint32_t layer_mask);
-/* Ids of others stay as they are; this one is given out again. */
-CROFTON_API crofton_status crofton_scene_remove_instance(crofton_scene* scene, uint32_t instance);
-
-/* Brings world transforms and boxes up to date; `jobs`, `statistics` or NULL. */
-CROFTON_API crofton_status crofton_scene_update(crofton_scene* scene, const crofton_jobs* jobs,
-                                                crofton_update_statistics* statistics);
-
-/* By instance id, removed ones included (their layer mask is 0); valid until the scene's next non-const call. */
-CROFTON_API crofton_status crofton_scene_boxes(const crofton_scene* scene, const crofton_box** boxes,
-                                               const uint32_t** layer_masks, size_t* count);
-/* Whose box or world transform changed in the last update, ascending; valid as above. */
-CROFTON_API crofton_status crofton_scene_moved(const crofton_scene* scene, const uint32_t** instances, size_t* count);
-
-/* What does a view see? */
-
-typedef struct crofton_tree crofton_tree;               /* a hierarchy over boxes */
-typedef struct crofton_visible_set crofton_visible_set; /* the answer to a query, in buffers that are kept */
-
-typedef enum crofton_verdict { CROFTON_OUTSIDE = 0, CROFTON_STRADDLING = 1, CROFTON_INSIDE = 2 } crofton_verdict;
-
-/* Sees the items whose layer mask shares a bit with its own. */
-typedef struct crofton_view {
-    size_t size;
-    uint32_t layer_mask;
-    crofton_frustum frustum;
-} crofton_view;
-
-/* What is not worth drawing: too small or too far; docs/lights.md. */
-typedef struct crofton_draw_limits {
-    size_t size;
-    double eye[3];
-    double max_distance_in_radii; /* farther than so many times its radius; 0: no limit */
-    double least_radius;          /* smaller than this */
-    const float* layer_distances; /* 32, or NULL */
-    const float* item_distances;  /* by item id or object index, or NULL */
-    size_t item_count;
-    const uint64_t* drawn_before; /* bit i % 64 of word i / 64 for item i, or NULL */
-    size_t drawn_word_count;
-    double hysteresis; /* times as long are the limits of what was drawn before; 0: 1 */
-} crofton_draw_limits;
-
-typedef struct crofton_cull_options {
-    size_t size;
-    uint32_t conservative; /* 0: exact; 1: planes only, which keeps some boxes near the frustum's corners */
-    uint32_t tree_order;   /* 0: ids ascending; 1: as the tree lies in memory, in half the time where much is seen */
-    /* NULL, or bit i % 64 of word i / 64: may item i be seen? Items beyond the end may. */
-    const uint64_t* candidate_mask;
-    size_t candidate_words;
-    const crofton_draw_limits* limits; /* or NULL: all is worth drawing */
-} crofton_cull_options;
-
-typedef struct crofton_cull_statistics {
-    size_t size;
-    uint64_t nodes_tested, boxes_tested, accepted_whole, straddling, exact_tests, false_positives;
-} crofton_cull_statistics;
-
-/* Item i is boxes[i], seen in the layers layer_masks[i] (or NULL: in all). Both are copied. */
-CROFTON_API crofton_status crofton_tree_create(const crofton_box* boxes, const uint32_t* layer_masks, size_t count,
-                                               const crofton_jobs* jobs, crofton_tree** tree);
-CROFTON_API crofton_status crofton_tree_destroy(crofton_tree* tree);
-
-/* Changes: all of a call's items, or none. After moves and removals call crofton_tree_refit before the next query. */
-CROFTON_API crofton_status crofton_tree_move(crofton_tree* tree, const uint32_t* items, const crofton_box* boxes,
-                                             size_t count);
-CROFTON_API crofton_status crofton_tree_insert(crofton_tree* tree, const crofton_box* box, uint32_t layer_mask,
-                                               uint32_t* item);
-/* The item's id is given to a later insert. */
-CROFTON_API crofton_status crofton_tree_remove(crofton_tree* tree, uint32_t item);
-CROFTON_API crofton_status crofton_tree_set_layer_mask(crofton_tree* tree, uint32_t item, uint32_t layer_mask);
-CROFTON_API crofton_status crofton_tree_refit(crofton_tree* tree);
-/* Rebuilds in the background, `budget` items' worth of work a call: once a frame, after refit, where items move for
- * long. */
-CROFTON_API crofton_status crofton_tree_rebuild_step(crofton_tree* tree, size_t budget);
-
-CROFTON_API crofton_cull_options crofton_default_cull_options(void);
-CROFTON_API crofton_draw_limits crofton_default_draw_limits(void);
-CROFTON_API crofton_status crofton_visible_set_create(crofton_visible_set** visible);
-CROFTON_API crofton_status crofton_visible_set_destroy(crofton_visible_set* visible);
-
-/* Finds what `view` sees of the tree; `options`, `jobs` or NULL. Allocates nothing once `visible` has grown to the
- * largest answer. */
-CROFTON_API crofton_status crofton_cull_tree(const crofton_tree* tree, const crofton_view* view,
-                                             const crofton_cull_options* options, const crofton_jobs* jobs,
-                                             crofton_visible_set* visible);
-/* The same from a plain list of boxes. */
-CROFTON_API crofton_status crofton_cull_boxes(const crofton_box* boxes, const uint32_t* layer_masks, size_t count,
-                                              const crofton_view* view, const crofton_cull_options* options,
-                                              const crofton_jobs* jobs, crofton_visible_set* visible);
-
-/* The items seen and their verdicts (or NULL; a crofton_verdict each), valid until the set's next query. */
-CROFTON_API crofton_status crofton_visible_set_items(const crofton_visible_set* visible, const uint32_t** ids,
-                                                     const uint8_t** verdicts, size_t* count);
-CROFTON_API crofton_status crofton_visible_set_statistics(const crofton_visible_set* visible,
-                                                          crofton_cull_statistics* statistics);
-
-/* Limits for a camera: nothing whose sphere is less than `pixels` wide in a picture so many pixels high. Each is judged
- * as if it were in the middle. Fills a struct whose `size` is set; all else is 0. */
-CROFTON_API crofton_status crofton_draw_limits_of_camera(const crofton_camera* camera, double picture_height,
-                                                         double pixels, crofton_draw_limits* limits);
-
-/* Writes verdicts[i] for boxes[i], exactly. */
-CROFTON_API crofton_status crofton_classify(const crofton_frustum* frustum, const crofton_box* boxes, size_t count,
-                                            uint8_t* verdicts);
-
 /* Which triangles does a picture need? Each is asked against the depth of those before, front to back. docs/depth.md is
  * the guide. */
 
 typedef struct crofton_clustered_mesh crofton_clustered_mesh; /* a mesh cut into clusters; it never changes */
 typedef struct crofton_depth_culler crofton_depth_culler;     /* the answer for one picture, in buffers that are kept */
-
-#define CROFTON_MAX_CLUSTER_TRIANGLES 64u
-
-/* The triangles [first_triangle, first_triangle + triangle_count) of the order, and a box in the mesh's coordinates
- * that contains them. */
-typedef struct crofton_cluster {
-    uint32_t first_triangle, triangle_count; /* 1 to CROFTON_MAX_CLUSTER_TRIANGLES */
-    float center[3];
-    float half_edges[9]; /* half_edges[3 k + i] is component i of edge k; center +- each edge gives the corners */
-} crofton_cluster;
 
 /* One mesh that is drawn. */
 typedef struct crofton_depth_object {
@@ -170,19 +36,6 @@ typedef struct crofton_depth_object {
                              to_clip times vertex. Negative or not finite: as of to_clip */
 } crofton_depth_object;
 
-/* The picture that is drawn: one sample a pixel, at its centre. */
-typedef struct crofton_picture_view {
-    size_t size;
-    uint32_t width, height; /* 1280 and 720; 1 to 16384 */
-    uint32_t depth;         /* a crofton_depth_range; CROFTON_DEPTH_REVERSED_ZERO_TO_ONE */
-} crofton_picture_view;
-
-/* Bit k of `triangles` stands for triangle first_triangle + k of the cluster; at least one is set. */
-typedef struct crofton_visible_cluster {
-    uint32_t object, cluster;
-    uint64_t triangles;
-} crofton_visible_cluster;
-
 typedef struct crofton_depth_statistics {
     size_t size;
     uint64_t objects_listed;  /* with at least one triangle */
@@ -194,7 +47,6 @@ typedef struct crofton_depth_statistics {
 } crofton_depth_statistics;
 
 CROFTON_API crofton_depth_object crofton_default_depth_object(void);
-CROFTON_API crofton_picture_view crofton_default_picture_view(void);
 
 /* Cuts a mesh, which is copied, into clusters of up to `max_triangles`, 0 to CROFTON_MAX_CLUSTER_TRIANGLES. 0 chooses:
  * 16 for meshes of up to 1,000 triangles, 64 for those of 10,000 and more, and between them in proportion. Errors name
@@ -202,18 +54,13 @@ CROFTON_API crofton_picture_view crofton_default_picture_view(void);
 CROFTON_API crofton_status crofton_clustered_mesh_create(const crofton_mesh* mesh, uint32_t max_triangles,
                                                          crofton_clustered_mesh** clustered);
 CROFTON_API crofton_status crofton_clustered_mesh_destroy(crofton_clustered_mesh* clustered);
-/* Writes the first `capacity` numbers of the order, and in *count how many there are: one a triangle. Triangle
- * triangles[k] of the mesh that was given is number k of the order. */
-CROFTON_API crofton_status crofton_clustered_mesh_triangle_order(const crofton_clustered_mesh* clustered,
-                                                                 uint32_t* triangles, size_t capacity, size_t* count);
-/* Writes the mesh's `index_count` indices to `permuted` in that order, so that each cluster is one range of an index
- * buffer. The arrays must not overlap. */
-CROFTON_API crofton_status crofton_clustered_mesh_permute(const crofton_clustered_mesh* clustered,
-                                                          const uint32_t* indices, size_t index_count,
-                                                          uint32_t* permuted);
 /* Valid while the clustered mesh lives. */
-CROFTON_API crofton_status crofton_clustered_mesh_clusters(const crofton_clustered_mesh* clustered,
-                                                           const crofton_cluster** clusters, size_t* count);
+CROFTON_API crofton_status crofton_clustered_mesh_get(const crofton_clustered_mesh* clustered,
+                                                      crofton_clusters* clusters);
+/* Writes a mesh's `index_count` indices to `permuted` in the order of its clusters, so that each cluster is one range
+ * of an index buffer. The arrays must not overlap. */
+CROFTON_API crofton_status crofton_permute_triangles(const crofton_clusters* clusters, const uint32_t* indices,
+                                                     size_t index_count, uint32_t* permuted);
 
 CROFTON_API crofton_status crofton_depth_culler_create(crofton_depth_culler** culler);
 CROFTON_API crofton_status crofton_depth_culler_destroy(crofton_depth_culler* culler);
@@ -221,14 +68,13 @@ CROFTON_API crofton_status crofton_depth_culler_destroy(crofton_depth_culler* cu
  * call of this. Draw them, or any set that contains them, in the order in which you would draw all, and the picture has
  * the same bits. It holds for opaque triangles with the depth test on, one sample a pixel and 32-bit float depth; the
  * guide says what else the renderer must do. Errors name the object. A call that fails leaves the last answer as it
- * was. Allocates nothing once it has grown to the largest answer. */
+ * was. Allocates nothing once it has grown to the largest answer. `statistics` or NULL: a struct whose `size` is set.
+ */
 CROFTON_API crofton_status crofton_depth_culler_find_visible(crofton_depth_culler* culler,
                                                              const crofton_depth_object* objects, size_t object_count,
                                                              const crofton_picture_view* picture,
-                                                             const crofton_visible_cluster** clusters, size_t* count);
-/* Of the last answer. Fills a struct whose `size` is set. */
-CROFTON_API crofton_status crofton_depth_culler_get_statistics(const crofton_depth_culler* culler,
-                                                               crofton_depth_statistics* statistics);
+                                                             const crofton_visible_cluster** clusters, size_t* count,
+                                                             crofton_depth_statistics* statistics);
 /* The nearness that the listed triangles surely have at a pixel of the last picture: its depth, negated unless
  * reversed; minus infinity where none surely covers it. Row 0 is at the bottom. CROFTON_OUT_OF_RANGE: not a pixel of
  * that picture, or there was none. */
@@ -238,7 +84,6 @@ CROFTON_API crofton_status crofton_depth_culler_nearness(const crofton_depth_cul
 /* What touches what? Exactly; touching counts. */
 
 typedef struct crofton_broadphase crofton_broadphase; /* all pairs of many moving boxes */
-typedef struct crofton_collider crofton_collider;     /* one mesh, ready for collisions */
 
 /* Two items are tested iff each one's layers meet what the other collides with. */
 typedef struct crofton_filter {
@@ -277,22 +122,7 @@ CROFTON_API crofton_status crofton_broadphase_pairs(const crofton_broadphase* br
 CROFTON_API crofton_status crofton_broadphase_get_statistics(const crofton_broadphase* broadphase,
                                                              crofton_broadphase_statistics* statistics);
 
-CROFTON_API crofton_status crofton_collider_create(const crofton_mesh* mesh, crofton_collider** collider);
-CROFTON_API crofton_status crofton_collider_destroy(crofton_collider* collider);
-
-/* `b_to_a` is a rotation and a translation: the pose of b in a's frame. */
-CROFTON_API crofton_status crofton_colliders_meet(const crofton_collider* a, const crofton_collider* b,
-                                                  const crofton_transform* b_to_a, int* meet);
-/* The smallest distance between the surfaces, 0 where they meet, and where it is, in a's frame (or NULL). */
-CROFTON_API crofton_status crofton_colliders_distance(const crofton_collider* a, const crofton_collider* b,
-                                                      const crofton_transform* b_to_a, double* distance, double* on_a,
-                                                      double* on_b);
-/* Writes the first `capacity` pairs of triangles that meet, in order, and in *count how many there are in all. */
-CROFTON_API crofton_status crofton_colliders_triangle_pairs(const crofton_collider* a, const crofton_collider* b,
-                                                            const crofton_transform* b_to_a, crofton_pair* pairs,
-                                                            size_t capacity, size_t* count);
-
-/* Where do boxes and meshes touch, how deep, and how far are they apart? */
+/* Where do boxes touch, how deep, and how far are they apart? */
 
 #define CROFTON_MAX_MANIFOLD_POINTS 8u
 
@@ -310,37 +140,12 @@ typedef struct crofton_manifold {
     crofton_contact_point points[CROFTON_MAX_MANIFOLD_POINTS];
 } crofton_manifold;
 
-/* Where two triangles meet, in a's frame: the ends of their common segment, and the unit normal of b's triangle. */
-typedef struct crofton_mesh_contact {
-    crofton_pair triangles; /* of a and of b */
-    double begin[3], end[3], normal[3];
-} crofton_mesh_contact;
-
-typedef enum crofton_containment {
-    CROFTON_CONTAINS_NOTHING = 0, /* or the surfaces meet */
-    CROFTON_A_INSIDE_B = 1,
-    CROFTON_B_INSIDE_A = 2,
-    CROFTON_PARTLY_INSIDE = 3 /* some pieces of a mesh, but not all */
-} crofton_containment;
-
 /* Fills a manifold whose `size` is set. */
 CROFTON_API crofton_status crofton_boxes_manifold(const crofton_box* a, const crofton_box* b,
                                                   crofton_manifold* manifold);
 /* 0 where they meet; nearest points, or NULL. */
 CROFTON_API crofton_status crofton_boxes_distance(const crofton_box* a, const crofton_box* b, double* distance,
                                                   double* on_a, double* on_b);
-
-/* Writes the first `capacity` contacts, in order of triangles, and in *count how many there are in all. */
-CROFTON_API crofton_status crofton_colliders_contacts(const crofton_collider* a, const crofton_collider* b,
-                                                      const crofton_transform* b_to_a, crofton_mesh_contact* contacts,
-                                                      size_t capacity, size_t* count);
-/* A motion of b by *depth along `direction` (a unit vector, or NULL) ends the contact. It is an upper bound of the
- * penetration depth, 0 where the meshes do not meet. */
-CROFTON_API crofton_status crofton_colliders_depth(const crofton_collider* a, const crofton_collider* b,
-                                                   const crofton_transform* b_to_a, double* depth, double* direction);
-/* Whether one mesh, without touching it, lies inside the other, which is to be closed: a crofton_containment. */
-CROFTON_API crofton_status crofton_colliders_containment(const crofton_collider* a, const crofton_collider* b,
-                                                         const crofton_transform* b_to_a, uint32_t* containment);
 
 /* Bodies, convex or made of convex parts: do they meet, how far, how deep, where, and when? docs/convex.md is the
  * guide. A pose is a rotation and a translation, without reflection. The structs of this part that begin with `size`
@@ -362,14 +167,9 @@ typedef enum crofton_body_kind {
     CROFTON_BODY_HALF_SPACE = 7, /* up to here convex */
     CROFTON_BODY_MESH = 8,
     CROFTON_BODY_HEIGHT_FIELD = 9,
-    CROFTON_BODY_COMPOUND = 10
+    CROFTON_BODY_COMPOUND = 10,
+    CROFTON_BODY_ROUNDED = 11 /* in descriptions alone */
 } crofton_body_kind;
-
-typedef struct crofton_hull_options {
-    size_t size;
-    uint32_t max_vertices; /* 4 to 256; 0: 256. A hull with more is replaced by one that contains it */
-    float face_tolerance;  /* triangles so close to a plane, relative to the hull's size, are one face; 0: 1e-5 */
-} crofton_hull_options;
 
 #define CROFTON_HOLE 255u /* as a cell's material: nothing is there */
 
@@ -382,6 +182,30 @@ typedef struct crofton_height_field {
     double spacing[2];        /* 0: 1 */
 } crofton_height_field;
 
+/* What a body is made of: `kind`, and the members that are named for it. Lengths are >= 0 and at most 1e15. Solids of
+ * revolution stand along y, with the origin half way up. Arrays are copied. */
+typedef struct crofton_body_description {
+    size_t size;
+    uint32_t kind;         /* a crofton_body_kind */
+    float radius;          /* spheres, capsules, cylinders, cones; of a rounded body: how far around its core */
+    float half_height;     /* capsules, without their caps; cylinders, cones */
+    float half_extents[3]; /* boxes */
+    float corners[9];      /* triangles: three corners, x y z each, counter-clockwise seen from the front */
+    crofton_plane plane;   /* half-spaces: the normal, of any length but 0, points into the solid */
+    const float* points;   /* hulls: x y z each */
+    size_t point_count;
+    uint32_t max_vertices;    /* hulls: 4 to 256; 0: 256. One with more is replaced by one that contains it */
+    float face_tolerance;     /* hulls: triangles so close to a plane, relative to the size, are one face; 0: 1e-5 */
+    const crofton_mesh* mesh; /* meshes: the triangles, as a surface */
+    const crofton_height_field* height_field;
+    uint32_t front_only; /* meshes, height fields; 1: contacts push to the front alone, of fields up, and casts from
+                            behind pass */
+    const crofton_body* core;            /* rounded: a convex body other than a half-space */
+    const crofton_body* const* children; /* compounds: children[i] stands at poses[i] in the compound's frame */
+    const crofton_transform* poses;
+    size_t child_count;
+} crofton_body_description;
+
 typedef struct crofton_body_info {
     size_t size;
     uint32_t kind;                     /* a crofton_body_kind */
@@ -389,6 +213,10 @@ typedef struct crofton_body_info {
     uint32_t part_count;               /* of a compound, else 1 */
     double min[3], max[3];             /* in its frame, rounded outward; infinite for half-spaces */
     double max_overshoot;              /* how far a hull reaches beyond that of its points at most */
+    /* Of a hull, for drawing: its vertices, x y z each, and its triangles; else NULL. Valid while the body lives. */
+    const float* vertices;
+    const uint16_t* indices;
+    size_t index_count;
 } crofton_body_info;
 
 /* Of a body of density 1, in its frame; the inertia about the center of mass, symmetric. */
@@ -402,6 +230,23 @@ typedef struct crofton_placed {
     const crofton_body* body;
     const crofton_transform* pose;
 } crofton_placed;
+
+typedef enum crofton_shape_kind {
+    CROFTON_SHAPE_BOX = 0,
+    CROFTON_SHAPE_SPHERE = 1,
+    CROFTON_SHAPE_CAPSULE = 2,
+    CROFTON_SHAPE_BODY = 3
+} crofton_shape_kind;
+
+/* What a query asks with. */
+typedef struct crofton_shape {
+    uint32_t kind;   /* a crofton_shape_kind: which members below count */
+    crofton_box box; /* of a box */
+    double begin[3]; /* of a capsule; of a sphere its center */
+    double end[3];   /* of a capsule */
+    double radius;   /* of a sphere or capsule */
+    crofton_placed body;
+} crofton_shape;
 
 /* What a pair remembers: all 0 for a new pair. It belongs to one pair in one order. It makes calls faster and changes
  * no yes or no. */
@@ -506,43 +351,19 @@ typedef struct crofton_impact {
     uint32_t steps;
 } crofton_impact;
 
-CROFTON_API crofton_hull_options crofton_default_hull_options(void);
+/* All 0 but for the size: a sphere of radius 0, seen from both sides where it is a surface. */
+CROFTON_API crofton_body_description crofton_default_body_description(void);
 CROFTON_API crofton_manifold_options crofton_default_manifold_options(void);
 CROFTON_API crofton_cast_options crofton_default_cast_options(void);
 
-/* Solids of revolution stand along y, with the origin half way up. Lengths are >= 0 and at most 1e15. */
-CROFTON_API crofton_status crofton_body_sphere(float radius, crofton_body** body);
-CROFTON_API crofton_status crofton_body_capsule(float half_height, float radius, crofton_body** body);
-CROFTON_API crofton_status crofton_body_cylinder(float half_height, float radius, crofton_body** body);
-CROFTON_API crofton_status crofton_body_cone(float half_height, float radius, crofton_body** body);
-CROFTON_API crofton_status crofton_body_box(const float half_extents[3], crofton_body** body);
-/* Three corners, x y z each, counter-clockwise seen from the front. */
-CROFTON_API crofton_status crofton_body_triangle(const float corners[9], crofton_body** body);
-/* The normal, of any length but 0, points into the solid. */
-CROFTON_API crofton_status crofton_body_half_space(const crofton_plane* plane, crofton_body** body);
-/* The hull of `count` points, x y z each; `options` or NULL. */
-CROFTON_API crofton_status crofton_body_hull(const float* points, size_t count, const crofton_hull_options* options,
-                                             crofton_body** body);
-/* All points within `radius` of a convex body other than a half-space. */
-CROFTON_API crofton_status crofton_body_rounded(const crofton_body* core, float radius, crofton_body** body);
-/* The triangles, as a surface; front_only 1: contacts push to the front, and casts from behind pass. */
-CROFTON_API crofton_status crofton_body_mesh(const crofton_mesh* mesh, uint32_t front_only, crofton_body** body);
-/* `both_sides` 0: contacts push up alone. */
-CROFTON_API crofton_status crofton_body_height_field(const crofton_height_field* field, uint32_t both_sides,
-                                                     crofton_body** body);
-/* children[i] stands at poses[i] in the compound's frame. */
-CROFTON_API crofton_status crofton_body_compound(const crofton_body* const* children, const crofton_transform* poses,
-                                                 size_t count, crofton_body** body);
+/* Errors are the kind's: crofton_last_error says which member, and crofton_last_error_item which point, index or child.
+ */
+CROFTON_API crofton_status crofton_body_create(const crofton_body_description* description, crofton_body** body);
 CROFTON_API crofton_status crofton_body_destroy(crofton_body* body);
 
 /* Both fill a struct whose `size` is set. Surfaces have no mass: CROFTON_UNSUPPORTED. */
 CROFTON_API crofton_status crofton_body_get_info(const crofton_body* body, crofton_body_info* info);
 CROFTON_API crofton_status crofton_body_get_mass(const crofton_body* body, crofton_mass_properties* mass);
-/* For drawing: a hull's vertices, x y z each, and its triangles; valid while the body lives. */
-CROFTON_API crofton_status crofton_body_hull_surface(const crofton_body* body, const float** vertices,
-                                                     size_t* vertex_count, const uint16_t** indices,
-                                                     size_t* index_count);
-
 /* Told of a line, in the world; `user` is what the caller gave. It must not throw, and may ask bodies, but not the
  * contacts that are drawn. */
 typedef void (*crofton_line_visitor)(void* user, const double from[3], const double to[3]);
@@ -576,13 +397,14 @@ CROFTON_API crofton_status crofton_bodies_cast(const crofton_placed* a, const cr
 
 CROFTON_API crofton_status crofton_body_contacts_create(crofton_body_contacts** contacts);
 CROFTON_API crofton_status crofton_body_contacts_destroy(crofton_body_contacts* contacts);
-/* Once a step, of one pair in one order: where it touches now. `options` or NULL. */
+/* Once a step, of one pair in one order: where it touches now. `options` or NULL.
+ *
+ * Gives the points, whose memory is yours to write, and how many have ended; `points`, `count`, `ended` or NULL. Valid
+ * until the next update. */
 CROFTON_API crofton_status crofton_body_contacts_update(crofton_body_contacts* contacts, const crofton_placed* a,
                                                         const crofton_placed* b,
-                                                        const crofton_manifold_options* options);
-/* The points, whose memory is yours to write, and how many have ended (or NULL); valid until the next update. */
-CROFTON_API crofton_status crofton_body_contacts_points(crofton_body_contacts* contacts, crofton_tracked_point** points,
-                                                        size_t* count, size_t* ended);
+                                                        const crofton_manifold_options* options,
+                                                        crofton_tracked_point** points, size_t* count, size_t* ended);
 /* For debug drawing: each point's normal, `length` >= 0 long, with a cross of that size across it. */
 CROFTON_API crofton_status crofton_body_contacts_outline(crofton_body_contacts* contacts, double length,
                                                          crofton_line_visitor visit, void* user);
@@ -594,11 +416,6 @@ typedef struct crofton_ray {
     double origin[3], direction[3];
     double max_t;
 } crofton_ray;
-
-typedef struct crofton_ray_hit {
-    double t;
-    uint32_t index; /* of a collider: the triangle; of a tree: the item; CROFTON_NONE: no hit, and t is infinite */
-} crofton_ray_hit;
 
 /* Where a ray first meets a body. */
 typedef struct crofton_body_ray_hit {
@@ -612,28 +429,57 @@ typedef struct crofton_body_ray_hit {
 
 /* *t is where the ray enters the box, 0 where it starts inside, infinite where it misses. */
 CROFTON_API crofton_status crofton_box_raycast(const crofton_box* box, const crofton_ray* ray, double* t);
-/* The nearest triangle. Nothing slips through between triangles that share an edge; a ray within the plane of a
- * triangle does not hit that triangle. */
-CROFTON_API crofton_status crofton_collider_raycast(const crofton_collider* collider, const crofton_ray* rays,
-                                                    size_t count, crofton_ray_hit* hits);
 /* Fills a struct whose `size` is set. A solid body that the ray begins in is hit at 0, without a normal; triangles,
  * meshes and height fields have no inside. */
 CROFTON_API crofton_status crofton_body_raycast(const crofton_placed* body, const crofton_ray* ray,
                                                 crofton_body_ray_hit* hit);
-/* *hit is 1 where the ray hits any triangle, else 0: quicker than which. */
-CROFTON_API crofton_status crofton_collider_hits_any(const crofton_collider* collider, const crofton_ray* ray,
-                                                     int* hit);
+/* *hit is 1 where the ray hits the body, else 0: quicker than where, of a mesh at the identity. */
+CROFTON_API crofton_status crofton_body_raycast_any(const crofton_placed* body, const crofton_ray* ray, int* hit);
 
-/* Of the items whose layers share a bit with `layer_mask`, the one whose box each ray enters first. */
-CROFTON_API crofton_status crofton_tree_raycast(const crofton_tree* tree, const crofton_ray* rays, size_t count,
-                                                uint32_t layer_mask, crofton_ray_hit* hits);
-/* Write the first `capacity` of the items that meet the body, ascending, and in *found how many there are in all. */
-CROFTON_API crofton_status crofton_tree_within_box(const crofton_tree* tree, const crofton_box* box,
-                                                   uint32_t layer_mask, uint32_t* items, size_t capacity,
-                                                   size_t* found);
-CROFTON_API crofton_status crofton_tree_within_sphere(const crofton_tree* tree, const double center[3], double radius,
-                                                      uint32_t layer_mask, uint32_t* items, size_t capacity,
-                                                      size_t* found);
+/* Two bodies of meshes, by their surfaces. `b_to_a` is a rotation and a translation: the pose of b in a's frame. */
+
+/* Where two triangles meet, in a's frame: the ends of their common segment, and the unit normal of b's triangle. */
+typedef struct crofton_mesh_contact {
+    crofton_pair triangles; /* of a and of b */
+    double begin[3], end[3], normal[3];
+} crofton_mesh_contact;
+
+typedef enum crofton_containment {
+    CROFTON_CONTAINS_NOTHING = 0, /* or the surfaces meet */
+    CROFTON_A_INSIDE_B = 1,
+    CROFTON_B_INSIDE_A = 2,
+    CROFTON_PARTLY_INSIDE = 3 /* some pieces of a mesh, but not all */
+} crofton_containment;
+
+/* How the surfaces of two meshes lie. */
+typedef struct crofton_mesh_relation {
+    size_t size;
+    uint32_t meet;           /* 1: they share a point, else 0 */
+    uint32_t containment;    /* a crofton_containment: of meshes that do not touch; the outer one is to be closed */
+    double distance;         /* the smallest between the surfaces, 0 where they meet */
+    double on_a[3], on_b[3]; /* where it is, in a's frame */
+    double depth; /* a motion of b by depth along `direction`, a unit vector, ends the contact; an upper bound
+                     of the penetration depth, 0 where the meshes do not meet */
+    double direction[3];
+} crofton_mesh_relation;
+
+/* What crofton_meshes_relate finds out; the other members are 0. */
+typedef enum crofton_mesh_relations {
+    CROFTON_MESHES_MEET = 1,
+    CROFTON_MESHES_CONTAINMENT = 2,
+    CROFTON_MESHES_DISTANCE = 4,
+    CROFTON_MESHES_DEPTH = 8
+} crofton_mesh_relations;
+
+/* Fills a struct whose `size` is set. `which` is a sum of crofton_mesh_relations: each costs its own search. */
+CROFTON_API crofton_status crofton_meshes_relate(const crofton_body* a, const crofton_body* b,
+                                                 const crofton_transform* b_to_a, uint32_t which,
+                                                 crofton_mesh_relation* relation);
+/* Writes the first `capacity` contacts, in order of triangles, and in *count how many there are in all: one for each
+ * pair of triangles that meet. */
+CROFTON_API crofton_status crofton_meshes_contacts(const crofton_body* a, const crofton_body* b,
+                                                   const crofton_transform* b_to_a, crofton_mesh_contact* contacts,
+                                                   size_t capacity, size_t* count);
 
 /* Boxes around points, best by the criterion that the queries imply. */
 
@@ -654,20 +500,17 @@ typedef struct crofton_fit_options {
     crofton_criterion criterion;
 } crofton_fit_options;
 
-/* Tight, minimal perimeter. */
+/* Tight, minimal perimeter: the sum of the edges, for frusta large beside the objects. */
 CROFTON_API crofton_fit_options crofton_default_fit_options(void);
-/* For frusta large beside the objects: the sum of the edges. */
-CROFTON_API crofton_status crofton_criterion_minimal_perimeter(crofton_criterion* criterion);
 /* The criterion that makes the camera's expected number of hits smallest; its far distance must be finite. */
 CROFTON_API crofton_status crofton_criterion_for_frustum(const crofton_camera* camera, crofton_criterion* criterion);
 /* For rays and segments of this length. */
 CROFTON_API crofton_status crofton_criterion_for_rays(double length, crofton_criterion* criterion);
 
-/* A box that contains every point, x y z each; `options` or NULL: tight, minimal perimeter. */
-CROFTON_API crofton_status crofton_fit_floats(const float* points, size_t point_count,
+/* A box that contains every point, x y z each: float, or double where `is_double` is 1. `options` or NULL: tight,
+ * minimal perimeter. */
+CROFTON_API crofton_status crofton_fit_points(const void* points, size_t point_count, uint32_t is_double,
                                               const crofton_fit_options* options, crofton_box* box);
-CROFTON_API crofton_status crofton_fit_doubles(const double* points, size_t point_count,
-                                               const crofton_fit_options* options, crofton_box* box);
 /* A box that contains all the boxes; `criterion` or NULL: minimal perimeter. */
 CROFTON_API crofton_status crofton_fit_boxes(const crofton_box* boxes, size_t count, const crofton_criterion* criterion,
                                              crofton_box* box);

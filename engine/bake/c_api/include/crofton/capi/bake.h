@@ -3,7 +3,7 @@
  * Link crofton_bake as well as crofton. */
 #ifndef CROFTON_CAPI_BAKE_H
 #define CROFTON_CAPI_BAKE_H
-#include <crofton/capi/modules.h>
+#include <crofton/capi/scene.h>
 
 #ifdef __cplusplus
 extern "C" {

@@ -115,8 +115,11 @@ class MultiViewResult {
     [[nodiscard]] OcclusionStatistics occlusion_statistics(std::size_t view) const;
     // A view's depth buffer, or nullptr for a view without occlusion.
     [[nodiscard]] const occlude::OcclusionBuffer* occlusion_buffer(std::size_t view) const;
+    // As ViewResult::occluded_ids, of one view.
+    [[nodiscard]] std::span<const std::uint32_t> occluded_ids(std::size_t view) const;
     // As ViewResult::triangles, of one view; empty for a view without a picture.
     [[nodiscard]] std::span<const depth::VisibleCluster> triangles(std::size_t view) const;
+    [[nodiscard]] depth::DepthStatistics picture_statistics(std::size_t view) const;
 
   private:
     friend class World;

@@ -1,20 +1,10 @@
 // SPDX-License-Identifier: MIT
-// What views of a World have found, as the functions of several files see it.
+// The result of a view of a World, whose objects are looked up in it.
 #pragma once
 #include <crofton/capi/crofton.h>
 
+#include <crofton/capi/view_result.hpp>
 #include "world.hpp"
-
-// Of one view or of many: the other of the two members is that of an earlier call. Objects are looked up in the world:
-// `serial` says in which, and after which update.
-struct crofton_view_result {
-    static constexpr std::uint32_t kKind = 0x43724f09;
-    crofton::capi::Header header;
-    crofton::ViewResult one{};
-    crofton::MultiViewResult many{};
-    bool is_many = false;
-    std::uint64_t serial = 0;
-};
 
 namespace crofton::capi {
 

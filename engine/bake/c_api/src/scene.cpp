@@ -1,28 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include <crofton/capi/modules.h>
+#include <crofton/capi/scene.h>
 
 #include <crofton/capi/convert.hpp>
-#include <crofton/capi/scene.hpp>
-#include "mesh.hpp"
+#include <crofton/capi/mesh.hpp>
+#include "scene.hpp"
 
 using namespace crofton;
 using namespace crofton::capi;
-
-namespace crofton::capi {
-
-crofton_status to_mesh(const crofton_mesh* mesh, const char* function, TriangleMesh& result) {
-    CROFTON_CHECK(check_struct(mesh, function));
-    CROFTON_CHECK(check_array(mesh->positions, mesh->vertex_count, function, 3));
-    CROFTON_CHECK(check_array(mesh->indices, mesh->index_count, function));
-    return recover(function, [&] {
-        const auto* positions = reinterpret_cast<const glm::vec3*>(mesh->positions);
-        result.positions.assign(positions, positions + mesh->vertex_count);
-        result.indices.assign(mesh->indices, mesh->indices + mesh->index_count);
-        return CROFTON_OK;
-    });
-}
-
-}  // namespace crofton::capi
 
 namespace {
 

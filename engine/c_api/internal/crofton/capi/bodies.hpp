@@ -10,7 +10,7 @@
 
 #include <crofton/capi/call.hpp>
 #include <crofton/capi/convert.hpp>
-#include "growing.hpp"
+#include <crofton/capi/growing.hpp>
 
 namespace crofton::capi {
 

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: MIT
+// What a view asks: requests and their parts.
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "module.hpp"
+#include "views.hpp"
+
+namespace crofton::python {
+namespace {
+
+// Bit i % 64 of word i / 64 from a one-dimensional array of bools.
+std::vector<std::uint64_t> bits_of(const py::handle& given, const char* name) {
+    const py::array array = py::array::ensure(given);
+    if (!array) PyErr_Clear();
+    if (!array || array.dtype().kind() != 'b' || array.ndim() != 1)
+        raise_type(std::string(name) + ": an array of bools, one an object index, is expected");
+    const py::array_t<bool, py::array::c_style | py::array::forcecast> values(array);
+    const auto count = static_cast<std::size_t>(values.size());
+    std::vector<std::uint64_t> bits((count + 63) / 64, 0);
+    for (std::size_t i = 0; i < count; ++i) bits[i / 64] |= std::uint64_t{values.data()[i]} << (i % 64);
+    // Indices beyond the end may be seen.
+    if (count % 64 != 0) bits.back() |= ~std::uint64_t{0} << (count % 64);
+    return bits;
+}
+
+std::vector<float> floats_of(const py::handle& given, const char* name) {
+    const auto values = py::array_t<float, py::array::c_style | py::array::forcecast>::ensure(given);
+    if (!values) PyErr_Clear();
+    if (!values || values.ndim() != 1) raise_type(std::string(name) + ": an array of numbers is expected");
+    return {values.data(), values.data() + values.size()};
+}
+
+std::pair<std::uint32_t, std::uint32_t> size_of(const py::handle& given, const char* name) {
+    if (!py::isinstance<py::sequence>(given) || py::isinstance<py::str>(given) || py::len(given) != 2)
+        raise_type(std::string(name) + ": (width, height) is expected");
+    const auto parts = py::reinterpret_borrow<py::sequence>(given);
+    return {number_of<std::uint32_t>(py::object(parts[0]), name), number_of<std::uint32_t>(py::object(parts[1]), name)};
+}
+
+bool flag_of(const py::handle& given, const char* name) {
+    if (!PyBool_Check(given.ptr())) raise_type(std::string(name) + ": True or False is expected");
+    return given.ptr() == Py_True;
+}
+
+OcclusionOptions make_occlusion(const py::handle& size, std::uint32_t max_occluders, float least_cover,
+                                bool list_occluded) {
+    const auto [width, height] = size_of(size, "size");
+    return {{width, height}, max_occluders, least_cover, list_occluded};
+}
+
+ViewMatrix make_matrix(const py::handle& to_clip, const std::string& depth, const py::handle& origin) {
+    return {projection_of(to_clip, "to_clip"), depth_range(depth), vector_of(origin, "origin")};
+}
+
+std::shared_ptr<HeldLimits> make_limits(const py::handle& eye, double max_distance_in_radii, double least_radius,
+                                        const py::handle& layer_distances, const py::handle& item_distances,
+                                        const py::handle& drawn_before, double hysteresis) {
+    auto held = std::make_shared<HeldLimits>();
+    cull::DrawLimits& limits = held->limits;
+    limits.eye = vector_of(eye, "eye");
+    limits.max_distance_in_radii = max_distance_in_radii;
+    limits.least_radius = least_radius;
+    if (!(hysteresis >= 1.0)) raise({ErrorCode::invalid_argument, kNoItem, "hysteresis: 1 or more is expected"});
+    limits.hysteresis = hysteresis;
+    if (!layer_distances.is_none()) {
+        held->layer_distances = floats_of(layer_distances, "layer_distances");
+        if (held->layer_distances.size() != 32)
+            raise({ErrorCode::invalid_argument, kNoItem, "layer_distances: 32 numbers are expected"});
+        limits.layer_distances = held->layer_distances;
+    }
+    if (!item_distances.is_none()) {
+        held->item_distances = floats_of(item_distances, "item_distances");
+        limits.item_distances = held->item_distances;
+    }
+    if (!drawn_before.is_none()) {
+        held->drawn_before = bits_of(drawn_before, "drawn_before");
+        // Indices beyond the end were not drawn.
+        const auto count = static_cast<std::size_t>(py::len(drawn_before));
+        if (count % 64 != 0) held->drawn_before.back() &= ~(~std::uint64_t{0} << (count % 64));
+        limits.drawn_before = held->drawn_before;
+    }
+    return held;
+}
+
+std::shared_ptr<HeldLimits> limits_of_camera(const Camera& camera, double picture_height, double pixels) {
+    auto held = std::make_shared<HeldLimits>();
+    held->limits = value_of(cull::limits_of(camera, picture_height, pixels));
+    return held;
+}
+
+cull::ResultOrder order_of(const py::handle& given) {
+    if (!py::isinstance<py::str>(given)) raise_type("order: 'ascending' or 'tree' is expected");
+    return choice_of<cull::ResultOrder>(
+        "order", given.cast<std::string>(),
+        {{"ascending", cull::ResultOrder::ascending}, {"tree", cull::ResultOrder::tree}});
+}
+
+std::optional<OcclusionOptions> occlusion_of(const py::handle& given) {
+    if (py::isinstance<OcclusionOptions>(given)) return given.cast<OcclusionOptions>();
+    if (!PyBool_Check(given.ptr()))
+        raise_type("occlusion: OcclusionOptions, or True for the default ones, is expected");
+    if (given.ptr() == Py_True) return OcclusionOptions{};
+    return {};
+}
+
+}  // namespace
+
+const char* RequestArguments::first_given() const {
+    const std::pair<const char*, py::handle> all[] = {
+        {"matrix", matrix},         {"volume", volume},   {"layers", layers},
+        {"occlusion", occlusion},   {"picture", picture}, {"limits", limits},
+        {"candidates", candidates}, {"order", order},     {"conservative", conservative}};
+    for (const auto& [name, value] : all)
+        if (!value.is_none()) return name;
+    return nullptr;
+}
+
+void read_request(const RequestArguments& given, HeldRequest& result) {
+    ViewRequest& request = result.request;
+    if (const Camera* camera = as<Camera>(given.camera))
+        request.camera = *camera;
+    else if (const Frustum* volume = as<Frustum>(given.camera))
+        request.volume = *volume;
+    else if (!given.camera.is_none())
+        raise_type("camera: a Camera, a Frustum, a ViewRequest or a list of these is expected");
+    if (!given.matrix.is_none())
+        request.matrix = py::isinstance<ViewMatrix>(given.matrix)
+                             ? given.matrix.cast<const ViewMatrix&>()
+                             : ViewMatrix{.to_clip = projection_of(given.matrix, "matrix")};
+    if (!given.volume.is_none()) {
+        if (!py::isinstance<Frustum>(given.volume)) raise_type("volume: a Frustum is expected");
+        if (request.volume) raise_type("volume: a Frustum is given twice");
+        request.volume = given.volume.cast<const Frustum&>();
+    }
+    if (!given.layers.is_none()) request.layers = number_of<std::uint32_t>(given.layers, "layers");
+    if (!given.occlusion.is_none()) request.occlusion = occlusion_of(given.occlusion);
+    if (!given.picture.is_none()) {
+        if (!py::isinstance<depth::PictureView>(given.picture)) raise_type("picture: a PictureView is expected");
+        request.picture = given.picture.cast<const depth::PictureView&>();
+    }
+    if (!given.limits.is_none()) {
+        if (!py::isinstance<HeldLimits>(given.limits)) raise_type("limits: DrawLimits are expected");
+        result.limits = given.limits.cast<std::shared_ptr<HeldLimits>>();
+        request.limits = &result.limits->limits;
+    }
+    if (!given.candidates.is_none()) {
+        result.candidates = bits_of(given.candidates, "candidates");
+        request.candidate_mask = result.candidates;
+    }
+    if (!given.order.is_none()) request.order = order_of(given.order);
+    if (!given.conservative.is_none() && flag_of(given.conservative, "conservative"))
+        request.mode = cull::CullMode::conservative;
+}
+
+void bind_view_requests(py::module_& module) {
+    py::class_<OcclusionOptions>(module, "OcclusionOptions", "How a view leaves out what other objects hide.")
+        .def(py::init(&make_occlusion), py::kw_only(), py::arg("size") = py::make_tuple(480, 270),
+             py::arg("max_occluders") = OcclusionOptions{}.max_occluders,
+             py::arg("least_cover") = OcclusionOptions{}.least_cover, py::arg("list_occluded") = false,
+             "`size` of the depth buffer, (width, height): more pixels find more and cost more. Draws at most "
+             "`max_occluders`, none that covers less than `least_cover` of the sphere of directions. `list_occluded` "
+             "also lists what is hidden, which costs a second query.");
+
+    py::class_<ViewMatrix>(module, "ViewMatrix", "An engine's own matrix to clip space, and its kind of depth.")
+        .def(py::init(&make_matrix), py::arg("to_clip"), py::kw_only(), py::arg("depth") = "reversed_zero_to_one",
+             py::arg("origin") = py::make_tuple(0.0, 0.0, 0.0),
+             "`to_clip`, (4, 4) as NumPy prints it, takes columns (x, y, z, 1) relative to `origin` to clip space.");
+
+    py::class_<depth::PictureView>(module, "PictureView", "The picture that is drawn: one sample a pixel.")
+        .def(py::init([](std::uint32_t width, std::uint32_t height, const std::string& depth) {
+                 return depth::PictureView{width, height, depth_range(depth)};
+             }),
+             py::arg("width") = depth::PictureView{}.width, py::arg("height") = depth::PictureView{}.height,
+             py::kw_only(), py::arg("depth") = "reversed_zero_to_one",
+             "`depth` is that of the renderer's projection; beside a ViewMatrix, the same as its.");
+
+    py::class_<HeldLimits, std::shared_ptr<HeldLimits>>(module, "DrawLimits", "What is too small or too far to draw.")
+        .def(py::init(&make_limits), py::arg("eye"), py::kw_only(),
+             py::arg("max_distance_in_radii") = cull::DrawLimits::kNone, py::arg("least_radius") = 0.0,
+             py::arg("layer_distances") = py::none(), py::arg("item_distances") = py::none(),
+             py::arg("drawn_before") = py::none(), py::arg("hysteresis") = 1.0,
+             "Leaves out what is farther from `eye` than so many of its radii, or smaller than `least_radius`, or "
+             "farther than its layer's (32 numbers) or its own distance (by object index). What was `drawn_before` "
+             "(bools by index) has `hysteresis` times as long limits. Arrays are copied.")
+        .def_static("of_camera", &limits_of_camera, py::arg("camera"), py::arg("picture_height"), py::arg("pixels"),
+                    "Leaves out what is less than so many pixels wide in the middle of the picture.");
+
+    py::class_<HeldRequest, std::shared_ptr<HeldRequest>>(
+        module, "ViewRequest", "What a view asks, made once for many calls of World.view. Arrays are copied.")
+        .def(py::init([](const py::object& camera, const py::object& matrix, const py::object& volume,
+                         const py::object& layers, const py::object& occlusion, const py::object& picture,
+                         const py::object& limits, const py::object& candidates, const py::object& order,
+                         const py::object& conservative) {
+                 auto held = std::make_shared<HeldRequest>();
+                 read_request(
+                     {camera, matrix, volume, layers, occlusion, picture, limits, candidates, order, conservative},
+                     *held);
+                 return held;
+             }),
+             py::arg("camera") = py::none(), py::kw_only(), py::arg("matrix") = py::none(),
+             py::arg("volume") = py::none(), py::arg("layers") = py::none(), py::arg("occlusion") = py::none(),
+             py::arg("picture") = py::none(), py::arg("limits") = py::none(), py::arg("candidates") = py::none(),
+             py::arg("order") = py::none(), py::arg("conservative") = py::none(), "The arguments of World.view.");
+}
+
+}  // namespace crofton::python

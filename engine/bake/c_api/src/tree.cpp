@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include <crofton/capi/scene.h>
+
+#include <algorithm>
+#include <crofton/collide/broadphase.hpp>
+#include <crofton/cull/cull.hpp>
+#include <limits>
+
+#include <crofton/capi/requests.hpp>
+#include <crofton/capi/shapes.hpp>
+#include "tree.hpp"
+
+using namespace crofton;
+using namespace crofton::capi;
+
+crofton_status crofton_tree_create(const crofton_box* boxes, const uint32_t* layer_masks, size_t count,
+                                   const crofton_jobs* jobs, crofton_tree** tree) {
+    CROFTON_CHECK(check_array(boxes, count, __func__));
+    CROFTON_CHECK(check_jobs(jobs, __func__));
+    CROFTON_CHECK(check_pointer(tree, __func__));
+    HostJobs executor(jobs);
+    auto built =
+        boxtree::BoxTree::build(to_boxes(boxes, count), std::span(layer_masks, layer_masks ? count : 0), {}, executor);
+    if (!built) return report(built.error(), __func__);
+    return create(tree, __func__, std::move(*built));
+}
+
+crofton_status crofton_tree_destroy(crofton_tree* tree) {
+    return destroy(tree, __func__);
+}
+
+crofton_status crofton_tree_move(crofton_tree* tree, const uint32_t* items, const crofton_box* boxes, size_t count) {
+    const ExclusiveUse use(tree, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_array(items, count, __func__));
+    CROFTON_CHECK(check_array(boxes, count, __func__));
+    return status_of(tree->tree.move(std::span(items, count), to_boxes(boxes, count)), __func__);
+}
+
+crofton_status crofton_tree_insert(crofton_tree* tree, const crofton_box* box, uint32_t layer_mask, uint32_t* item) {
+    const ExclusiveUse use(tree, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_pointer(box, __func__));
+    CROFTON_CHECK(check_pointer(item, __func__));
+    const auto inserted = tree->tree.insert(to_box(box), layer_mask);
+    if (!inserted) return report(inserted.error(), __func__);
+    *item = *inserted;
+    return CROFTON_OK;
+}
+
+crofton_status crofton_tree_remove(crofton_tree* tree, uint32_t item) {
+    const ExclusiveUse use(tree, __func__);
+    if (use.failed()) return use.status();
+    return status_of(tree->tree.remove(item), __func__);
+}
+
+crofton_status crofton_tree_set_layer_mask(crofton_tree* tree, uint32_t item, uint32_t layer_mask) {
+    const ExclusiveUse use(tree, __func__);
+    if (use.failed()) return use.status();
+    return status_of(tree->tree.set_layer_mask(item, layer_mask), __func__);
+}
+
+crofton_status crofton_tree_refit(crofton_tree* tree, size_t rebuild_budget) {
+    const ExclusiveUse use(tree, __func__);
+    if (use.failed()) return use.status();
+    tree->tree.refit();
+    if (rebuild_budget > 0) tree->tree.rebuild_step(rebuild_budget);
+    return CROFTON_OK;
+}
+
+crofton_status crofton_tree_view(const crofton_tree* tree, const crofton_view_request* request,
+                                 const crofton_jobs* jobs, crofton_view_result* result) {
+    const SharedUse use_tree(tree, __func__);
+    if (use_tree.failed()) return use_tree.status();
+    const ExclusiveUse use(result, __func__);
+    if (use.failed()) return use.status();
+    BoxQuery query;
+    CROFTON_CHECK(read_box_request(request, jobs, __func__, *result, query));
+    HostJobs executor(jobs);
+    cull::find_visible(tree->tree, result->view, result->boxes, query.options, executor);
+    return CROFTON_OK;
+}
+
+crofton_status crofton_tree_raycast(const crofton_tree* tree, const crofton_ray* rays, size_t count,
+                                    uint32_t layer_mask, crofton_ray_hit* hits) {
+    const SharedUse use(tree, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_array(rays, count, __func__));
+    CROFTON_CHECK(check_array(hits, count, __func__));
+    Ray ray;
+    for (std::size_t i = 0; i < count; ++i) CROFTON_CHECK(to_ray(rays[i], __func__, i, ray));
+    for (std::size_t i = 0; i < count; ++i) {
+        ray = {to_vector(rays[i].origin), to_vector(rays[i].direction), rays[i].max_t};
+        const auto hit = collide::raycast(ray, tree->tree, layer_mask);
+        hits[i] = hit ? crofton_ray_hit{hit->t, hit->item}
+                      : crofton_ray_hit{std::numeric_limits<double>::infinity(), CROFTON_NONE};
+    }
+    return CROFTON_OK;
+}
+
+crofton_status crofton_tree_overlap(const crofton_tree* tree, const crofton_shape* shape, uint32_t layer_mask,
+                                    uint32_t* items, size_t capacity, size_t* found) {
+    const SharedUse use(tree, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_room(items, capacity, __func__));
+    CROFTON_CHECK(check_pointer(found, __func__));
+    return visit_shape(shape, __func__, [&, function = __func__](const auto& asked, const auto&... pose) {
+        if constexpr (sizeof...(pose) == 0) {
+            Vector<boxtree::ItemId> all;
+            collide::overlapping(tree->tree, asked, all, layer_mask);
+            std::copy_n(all.data(), std::min(capacity, all.size()), items);
+            *found = all.size();
+            return CROFTON_OK;
+        } else {
+            return report(CROFTON_UNSUPPORTED, function, "a tree is asked with a box, sphere or capsule");
+        }
+    });
+}

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+// Clusters of meshes, as C has them.
+#pragma once
+#include <crofton/capi/view.h>
+
+#include <crofton/depth/clustered_mesh.hpp>
+#include <crofton/depth/depth_culler.hpp>
+#include <cstddef>
+
+namespace crofton::capi {
+
+static_assert(CROFTON_MAX_CLUSTER_TRIANGLES == depth::Cluster::kMaxTriangles);
+static_assert(sizeof(crofton_cluster) == sizeof(depth::Cluster) &&
+              offsetof(crofton_cluster, triangle_count) == offsetof(depth::Cluster, triangle_count) &&
+              offsetof(crofton_cluster, center) == offsetof(depth::Cluster, center) &&
+              offsetof(crofton_cluster, half_edges) == offsetof(depth::Cluster, half_edges));
+static_assert(sizeof(crofton_visible_cluster) == sizeof(depth::VisibleCluster) &&
+              offsetof(crofton_visible_cluster, cluster) == offsetof(depth::VisibleCluster, cluster) &&
+              offsetof(crofton_visible_cluster, triangles) == offsetof(depth::VisibleCluster, triangles));
+
+[[nodiscard]] inline crofton_clusters to_c_clusters(const depth::ClusteredMesh& mesh) {
+    return {reinterpret_cast<const crofton_cluster*>(mesh.clusters().data()), mesh.clusters().size(),
+            mesh.triangle_order().data(), mesh.triangle_order().size()};
+}
+
+}  // namespace crofton::capi
