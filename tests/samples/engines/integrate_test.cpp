@@ -184,7 +184,7 @@ TEST_SUITE("engines/integrate") {
         CHECK(touching == 1);
     }
 
-    TEST_CASE("what moves in every frame, beside the tree of what rests") {
+    TEST_CASE("moving objects are culled outside the tree of static ones") {
         using namespace crofton;
         std::vector<Obb> boxes(300);
         for (std::size_t i = 0; i < boxes.size(); ++i) {

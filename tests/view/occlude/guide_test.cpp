@@ -36,7 +36,7 @@ int show(const std::vector<crofton::Obb>& walls, const crofton::boxtree::BoxTree
 }  // namespace
 
 TEST_SUITE("occlude/guide") {
-    TEST_CASE("the guide's example draws what is before the wall and beside it") {
+    TEST_CASE("the guide's example draws the objects in front of the wall and next to it") {
         const auto box = [](double x, double z, float half) {
             crofton::Obb result;
             result.center = {x, 0.0, z};
