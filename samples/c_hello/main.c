@@ -67,7 +67,7 @@ int main(void) {
         const crofton_bound moved = {
             .kind = CROFTON_BOUND_SPHERE, .center = {0.5 * frame - 6.0, 0.2, -3.0}, .radius = 0.5};
         check(crofton_world_set_bound(world, sphere, &moved));
-        check(crofton_world_update(world, NULL)); /* once a frame; then ask */
+        check(crofton_world_update(world, NULL)); /* once a frame, before the queries */
         check(crofton_world_view(world, &request, NULL, visible));
         check(crofton_view_result_ids(visible, &ids, &seen, NULL, NULL));
         check(crofton_world_contact_count(world, &contacts));
