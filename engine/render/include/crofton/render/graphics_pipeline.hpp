@@ -10,9 +10,8 @@ namespace crofton::render {
 // One pass over a picture of kColorFormat. The picture ends in SHADER_READ_ONLY_OPTIMAL, visible to following transfers
 // and fragment shaders. A picture that is kept must be in that layout before.
 struct PassDescription {
-    bool keep_color = false;  // false: cleared
-    VkFormat depth_format =
-        VK_FORMAT_UNDEFINED;  // cleared, and discarded after the pass; UNDEFINED: the pass has no depth
+    bool keep_color = false;                      // false: cleared
+    VkFormat depth_format = VK_FORMAT_UNDEFINED;  // cleared, and discarded after the pass; UNDEFINED: no depth
 };
 [[nodiscard]] Result<VkRenderPass> create_render_pass(const VulkanContext& context, const PassDescription& description);
 
