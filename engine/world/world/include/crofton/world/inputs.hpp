@@ -188,11 +188,10 @@ struct ObjectDescription {
 
 // Controls how a view leaves out objects that other objects hide.
 struct OcclusionOptions {
-    occlude::BufferSize size = {480,
-                                270};   // pixels of the depth buffer; more find more hidden objects, but take longer
-    std::uint32_t max_occluders = 256;  // draws at most this many: those that hide most in this view
-    float least_cover = 2e-5f;          // smallest part of the sphere of directions that a drawn occluder covers
-    bool list_occluded = false;         // also lists hidden objects, which takes a second query
+    occlude::BufferSize size = {480, 270};  // pixels of the depth buffer; more find more, but take longer
+    std::uint32_t max_occluders = 256;      // draws at most this many: those that hide most in this view
+    float least_cover = 2e-5f;              // smallest part of the sphere of directions that a drawn occluder covers
+    bool list_occluded = false;             // also lists hidden objects, which takes a second query
 };
 
 // A view by your engine's own matrix, which takes world positions, relative to `origin`, to clip space. matrix_of
