@@ -67,7 +67,7 @@ int main(void) {
     for (int frame = 0; frame < 10; ++frame) {
         bound = sphere_at(0.5 * frame - 6.0);
         check(crofton_world_set(world, object, CROFTON_SET_BOUND, &sphere));
-        check(crofton_world_update(world, NULL)); /* once a frame; then ask */
+        check(crofton_world_update(world, NULL)); /* once a frame, before the queries */
         check(crofton_world_view(world, &request, 1, NULL, visible));
         check(crofton_view_result_ids(visible, &ids, &seen, NULL, NULL));
         check(crofton_world_contacts(world, &contacts, &contact_count));

@@ -73,7 +73,7 @@ TEST_SUITE("capi/bake") {
         CHECK(crofton_baked_scene_destroy(nullptr) == CROFTON_BAD_HANDLE);
     }
 
-    TEST_CASE("what is baked comes back: meshes, instances, nodes, and a tree that sees what a fresh one sees") {
+    TEST_CASE("a baked scene comes back: meshes, instances, nodes, and a tree that sees what a fresh one sees") {
         const Scene scene = row(40);
         const TemporaryFile file;
         REQUIRE(crofton_scene_bake(scene.get(), file.path.c_str(), nullptr) == CROFTON_OK);

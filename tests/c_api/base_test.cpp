@@ -71,7 +71,7 @@ TEST_SUITE("capi/base") {
         CHECK(names == expected);
     }
 
-    TEST_CASE("the library tells its versions") {
+    TEST_CASE("the library returns its versions") {
         CHECK(crofton_api_version() == CROFTON_API_VERSION);
         CHECK(std::string(crofton_version_string()) == crofton::version_string());
     }

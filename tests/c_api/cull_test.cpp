@@ -127,7 +127,7 @@ TEST_SUITE("capi/cull") {
         if (crofton::cull::kCountStatistics) CHECK(statistics.nodes_tested > 0);
     }
 
-    TEST_CASE("what is too small or too far is left out of trees and lists alike, and what was drawn stays longer") {
+    TEST_CASE("trees and lists leave out the same small and far items, and drawn ones stay longer") {
         const auto boxes = random_boxes(3000);
         const crofton_camera camera = default_camera();
         auto limits = sized<crofton_draw_limits>();

@@ -137,7 +137,7 @@ TEST_SUITE("capi/depth") {
         }
     }
 
-    TEST_CASE("what C lists is what C++ lists, with every member of an object and in every depth range") {
+    TEST_CASE("C lists the same clusters as C++, with every member of an object and in every depth range") {
         std::mt19937 random(9);
         const auto uniform = [&](double low, double high) {
             return low + (high - low) * (static_cast<double>(random()) / 4294967296.0);

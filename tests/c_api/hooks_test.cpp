@@ -189,7 +189,7 @@ TEST_SUITE("capi/hooks") {
         CHECK(seen(boxes, &jobs) == seen(boxes, nullptr));
     }
 
-    TEST_CASE("a concurrency that no machine has is refused, before memory is asked for") {
+    TEST_CASE("a concurrency that no machine has is refused before memory is allocated") {
         const auto boxes = row_of_boxes(2000);
         const Broadphase broadphase = make_broadphase();
         crofton::ThreadPool pool(2);

@@ -118,7 +118,7 @@ TEST_SUITE("capi/members") {
         CHECK(best.gap <= 1e-9);
     }
 
-    TEST_CASE("a hull's faces are told apart by the tolerance that is given") {
+    TEST_CASE("the given tolerance separates a hull's faces") {
         // A cube whose top has a point in its middle, higher by a thousandth.
         const float points[] = {-1, -1, -1, 1, -1, -1, -1, 1, -1, 1, 1, -1, -1,    -1,
                                 1,  1,  -1, 1, -1, 1,  1,  1, 1,  1, 0, 0,  1.001f};
@@ -133,7 +133,7 @@ TEST_SUITE("capi/members") {
         CHECK(faces(1e-2f) == 6);
     }
 
-    TEST_CASE("of a surface with one side casts from behind pass, a height field has spacing, holes and two sides") {
+    TEST_CASE("casts pass one-sided surfaces from behind, and a height field has spacing, holes and two sides") {
         const float positions[] = {-5, -5, 0, 5, -5, 0, 0, 5, 0};
         const std::uint32_t indices[] = {0, 1, 2};  // seen from above, where z > 0
         const crofton_mesh mesh{sizeof mesh, positions, 3, indices, 3, nullptr};
@@ -230,7 +230,7 @@ TEST_SUITE("capi/members") {
         CHECK(distance.distance == 42);
     }
 
-    TEST_CASE("planes alone keep a box beside the frustum's edge, masks may be left out, and names of meshes") {
+    TEST_CASE("planes alone keep a box near the frustum's edge, masks may be left out, and meshes have names") {
         const SmallWorld small;
         const View view = default_view();
         REQUIRE(look_at_many(small.world.get(), std::span(&view, 1), small.in_views.get()) == CROFTON_OK);

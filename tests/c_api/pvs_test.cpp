@@ -53,7 +53,7 @@ std::vector<std::uint32_t> ids_in_view(const crofton_view_result* visible) {
 }  // namespace
 
 TEST_SUITE("capi/pvs") {
-    TEST_CASE("a file of sets is opened, asked for an eye, and leaves out of a world's view what rests behind a wall") {
+    TEST_CASE("a file of sets is opened, queried for an eye, and removes static objects behind a wall from a view") {
         const std::string path = file_of_sets();
         crofton_pvs* opened = nullptr;
         REQUIRE(crofton_pvs_open(path.c_str(), &opened) == CROFTON_OK);

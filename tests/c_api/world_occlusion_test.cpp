@@ -375,7 +375,7 @@ TEST_SUITE("capi/world occlusion") {
         CHECK(crofton_world_view(world, many.data(), 33, nullptr, make_view_result().get()) == CROFTON_OUT_OF_RANGE);
     }
 
-    TEST_CASE("of no views at all, too, the jobs are looked at") {
+    TEST_CASE("jobs are checked also without any views") {
         const Walled s;
         const ViewResultHandle visible = make_view_result();
         const auto look = [&](const crofton_jobs* jobs) {
@@ -387,7 +387,7 @@ TEST_SUITE("capi/world occlusion") {
         CHECK(look(&no_function) == CROFTON_INVALID_ARGUMENT);
     }
 
-    TEST_CASE("of several views the one that is wrong is named") {
+    TEST_CASE("the error for several views names the wrong one") {
         Walled s;
         crofton_view_request views[3] = {s.view, s.view, s.view};
         views[2].camera = nullptr;

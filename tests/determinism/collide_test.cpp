@@ -93,7 +93,7 @@ TEST_SUITE("determinism/collide") {
         check_everywhere(0x504901b48e018866, [](Executor&) { return meshes(); });
     }
 
-    TEST_CASE("what was published are the pairs that rational arithmetic finds") {
+    TEST_CASE("the published pairs are those of rational arithmetic") {
         const std::vector<Obb> boxes = crowd(3000, 1e5, 41);
         collide::Broadphase broadphase;
         REQUIRE(broadphase.update(boxes).has_value());

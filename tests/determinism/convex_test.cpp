@@ -74,7 +74,7 @@ TEST_SUITE("determinism/convex") {
         check_everywhere(0xa874f07ae7d2ef94, [](Executor&) { return convex_pairs(); });
     }
 
-    TEST_CASE("what was published is what exact integers find") {
+    TEST_CASE("the published answer is that of exact integers") {
         const ConvexScene scene = convex_scene(51);
         for (std::size_t i = 2; i < 14; i += 2) {
             const convex::BodyAtPose a{scene.bodies[i - 2], scene.poses[i - 2]}, b{scene.bodies[i], scene.poses[i]};

@@ -78,7 +78,7 @@ TEST_SUITE("determinism/cull") {
         check_everywhere(0xa02ad4e8ef48c0cc, [scene = scene_at(0.0)](Executor& e) { return orders(scene, e); });
     }
 
-    TEST_CASE("what was published are the verdicts of rational arithmetic") {
+    TEST_CASE("the published verdicts are those of rational arithmetic") {
         for (const double offset : {0.0, 1e6}) {
             const Scene scene = scene_at(offset);
             for (std::size_t view = 0; view < scene.frusta.size(); ++view)

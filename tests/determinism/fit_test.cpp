@@ -90,7 +90,7 @@ TEST_SUITE("determinism/fit") {
         check_everywhere(0xbcbb9cae2e6bff02, [](Executor&) { return hulls(); });
     }
 
-    TEST_CASE("what was published contains its points, is proved best, and has no point outside its hull") {
+    TEST_CASE("the published sphere contains its points, is proved best, and the hull has no point outside") {
         for (const auto& cloud : clouds()) {
             for (const auto quality : {fit::Quality::fast, fit::Quality::tight, fit::Quality::exact}) {
                 const Obb box = *fit::fit_obb(cloud, {measure::minimal_perimeter(), quality});

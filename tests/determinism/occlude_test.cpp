@@ -136,7 +136,7 @@ TEST_SUITE("determinism/occlude") {
         check_everywhere(0x85a12723398ec9cd, [](Executor&) { return found_occluders(20); });
     }
 
-    TEST_CASE("what was published calls nothing hidden that a ray reaches, in rationals") {
+    TEST_CASE("the published answer hides nothing that a ray reaches, in rationals") {
         const HidingScene scene = hiding_scene(61);
         auto buffer = occlude::OcclusionBuffer::create({200, 120}).value();
         buffer.draw(scene.set, occlude::occlusion_view_of(scene.camera).value());

@@ -50,7 +50,7 @@ TEST_SUITE("determinism/scene") {
         check_everywhere(0x3a3033936e307449, [](Executor& e) { return baked(e); });
     }
 
-    TEST_CASE("what was published contains every vertex, but for rounding") {
+    TEST_CASE("the published box contains every vertex, up to rounding") {
         const scene::Scene scene = moving_scene(serial_executor());
         const TriangleMesh mesh = torus(12, 6, 0.2);
         for (scene::InstanceId i = 0; i < scene.instance_count(); ++i) {

@@ -87,7 +87,7 @@ TEST_SUITE("determinism/tree") {
         check_everywhere(0x601467dd2b572bb, [](Executor&) { return mesh_tree(); });
     }
 
-    TEST_CASE("what was published holds every item within all bounds above it") {
+    TEST_CASE("the published tree contains every item within all bounds above it") {
         CHECK(oracle::holds_all(*boxtree::BoxTree::build(crowd(5000, 1e6, 20))));
         CHECK(oracle::holds_all(lived_in_tree(serial_executor())));
     }

@@ -50,7 +50,7 @@ TEST_SUITE("determinism/triangulate") {
         check_everywhere(0xeb9f754b59f2359a, [](Executor&) { return triangulations(); });
     }
 
-    TEST_CASE("what was published are conforming triangulations, and the lightest is proved so") {
+    TEST_CASE("the published triangulations are conforming, and the lightest is proved") {
         for (const Polygon& polygon : polygons()) {
             double weight[3] = {};
             for (int m = 0; m < 3; ++m) {

@@ -84,7 +84,7 @@ struct Sail {
 }  // namespace
 
 TEST_SUITE("memory/capi") {
-    TEST_CASE("what creates a handle") {
+    TEST_CASE("functions that create a handle") {
         const CMemory memory;
         sweep_create<crofton_scene>("scene", crofton_scene_create, crofton_scene_destroy);
         sweep_create<crofton_broadphase>("broadphase", crofton_broadphase_create, crofton_broadphase_destroy);

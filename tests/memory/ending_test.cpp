@@ -114,7 +114,7 @@ TEST_SUITE("memory/ending") {
         CHECK(testing::endings_survived > 0);
     }
 
-    TEST_CASE("what a view sees, of trees, lists, what moves, lights") {
+    TEST_CASE("views of trees, lists, moving items, lights") {
         const testing::FailingMemory memory;
         const boxtree::BoxTree tree = tree_of(3000);
         const Vector<Obb> list = boxes(3000);

@@ -257,7 +257,7 @@ TEST_SUITE("memory/fault") {
             [&] { return scene.mesh(0).indices == other.indices; });
     }
 
-    TEST_CASE("what may be seen from where: lines, proofs, files") {
+    TEST_CASE("visible sets: lines, proofs, files") {
         const testing::FailingMemory memory;
         const pvs::BakeGeometry geometry = testing::random_geometry(1, 6);
         const auto cells = pvs::Cells::grid({{-5.0, 0.0, -5.0}, {5.0, 2.0, 5.0}}, {2, 1, 2}).value();

@@ -42,7 +42,7 @@ void sweep_refusal(const char* name, ErrorCode code, std::uint64_t item, const R
 }  // namespace
 
 TEST_SUITE("memory/messages") {
-    TEST_CASE("a refusal that names numbers is told while its text finds no memory") {
+    TEST_CASE("an error that contains numbers is returned even if its text finds no memory") {
         const testing::FailingMemory hooks;
         std::vector<glm::vec3> points(9, glm::vec3(1.0f));
         points[7].y = std::nanf("");

@@ -38,7 +38,7 @@ TEST_SUITE("render/device") {
         CHECK(error_of(device).code == ErrorCode::unavailable);
         CHECK(error_of(device).message.find("mesa-vulkan-drivers") != std::string::npos);
     }
-    TEST_CASE("an instance has the labels' extension where it is asked for or is validated, and not else") {
+    TEST_CASE("an instance has the labels' extension if it is requested or validated, and not otherwise") {
         // A function of an extension that is not enabled has no address.
         const auto has_labels = [](const DeviceOptions& options) {
             const auto device = Device::create(options);
@@ -87,7 +87,7 @@ TEST_SUITE("render/device") {
         CHECK(error_of(refused).code == ErrorCode::unsupported);
         CHECK(error_of(refused).message.find("VK_NO_such_extension") != std::string::npos);
     }
-    TEST_CASE("what Vulkan reports becomes an error of its kind that names the call") {
+    TEST_CASE("a Vulkan error becomes an error of its kind that names the call") {
         const auto code = [](VkResult result) { return vulkan_error(result, "vkQueueSubmit").code; };
         CHECK(code(VK_ERROR_DEVICE_LOST) == ErrorCode::unavailable);
         CHECK(code(VK_ERROR_SURFACE_LOST_KHR) == ErrorCode::unavailable);

@@ -170,7 +170,7 @@ TEST_SUITE("render/owners") {
         CHECK(owned > 30000);
         CHECK(device->validation_messages().empty());
     }
-    TEST_CASE("what owns no pixel can be left out: the others own the same pixels as before") {
+    TEST_CASE("triangles that own no pixel can be left out: the others own the same pixels") {
         CROFTON_REQUIRE_DEVICE(device);
         auto rasterizer = Rasterizer::create(*device, {kSide, kSide});
         REQUIRE(rasterizer);
@@ -262,7 +262,7 @@ TEST_SUITE("render/owners") {
         }
         CHECK(device->validation_messages().empty());
     }
-    TEST_CASE("of triangles at the same place the first one given owns the pixels, whatever faces are shown") {
+    TEST_CASE("the first of several triangles at the same place owns the pixels, whatever faces are shown") {
         CROFTON_REQUIRE_DEVICE(device);
         auto rasterizer = Rasterizer::create(*device, {kSide, kSide});
         REQUIRE(rasterizer);

@@ -111,7 +111,7 @@ TriangleMesh bumpy(std::uint32_t n) {
 }  // namespace
 
 TEST_SUITE("threads/const_queries") {
-    TEST_CASE("a tree that has been changed is asked for views, bodies, rays and its own bytes") {
+    TEST_CASE("a tree that has been changed answers for views, bodies and rays, and is stored") {
         oracle::Crowd crowd = oracle::random_crowd(3000, 0.0, 5);
         auto tree = *boxtree::BoxTree::build(crowd.boxes, crowd.layers);
         for (boxtree::ItemId i = 0; i < 500; ++i) REQUIRE(tree.move(i, box_of(static_cast<int>(i))).has_value());

@@ -56,7 +56,7 @@ Result<SceneSource> load_baked(const std::string& path, const LoadOptions& optio
     if (!baked)
         return fail(baked.error().code, baked.error().item,
                     std::string(baked.error().message) +
-                        " (a scene is what 'crofton bake' writes, or 'crofton pvs' with --with-scene)");
+                        " ('crofton bake' writes scenes, and so does 'crofton pvs' with --with-scene)");
     SceneSource source{file_name(path), scene::Scene({options.criterion}), {}, {}, {}, {}};
     std::uint64_t triangles = 0;
     for (scene::MeshId i = 0; i < baked->mesh_count(); ++i) triangles += baked->mesh(i).indices.size() / 3;

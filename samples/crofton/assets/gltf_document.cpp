@@ -77,7 +77,7 @@ Result<Json> parse_json(std::string_view text) {
         const SyntaxError error = syntax_error(text).value_or(SyntaxError{text.size()});
         const std::string place = "at byte " + std::to_string(error.position);
         if (error.number_too_large)
-            return fail(ErrorCode::out_of_range, kNoItem, "its JSON has a number beyond what a double holds, " + place);
+            return fail(ErrorCode::out_of_range, kNoItem, "its JSON has a number beyond the range of double, " + place);
         const bool is_cut = error.position == text.size();
         return fail(ErrorCode::parse, kNoItem,
                     "its JSON is damaged " + (is_cut ? "or cut off: it ends too early" : place));

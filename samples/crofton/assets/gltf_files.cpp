@@ -28,7 +28,7 @@ Result<std::string> bytes_of(const std::string& uri, const std::string& folder, 
     if (bytes)
         bytes_read += bytes->size();
     else if (bytes.error().code == ErrorCode::budget_exceeded)
-        return in_file(folder + name, "with what was read before", over_limit("bytes", limit).value());
+        return in_file(folder + name, "with the files read before", over_limit("bytes", limit).value());
     return bytes;
 }
 

@@ -92,7 +92,7 @@ class GltfReader {
         if (!source_.warnings.empty()) return source_.warnings.front();
         const Json* meshes = member(root_, "meshes");
         if (!meshes || !meshes->is_array() || meshes->empty()) return "it has no meshes";
-        if (hidden_) return "what has meshes is hidden by KHR_node_visibility";
+        if (hidden_) return "all nodes with meshes are hidden by KHR_node_visibility";
         return "none of its " + std::to_string(meshes->size()) + " meshes has triangles and is on a node of the scene";
     }
 

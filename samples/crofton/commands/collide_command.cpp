@@ -164,7 +164,7 @@ Json document_of(const Answer& answer) {
 // Of hulls, and casts of hulls or meshes.
 int run_bodies(const CollideRequest& request, const RigidTransform& pose) {
     if (request.mode == "contain") {
-        std::fputs("crofton: --mode contain asks meshes, without --hulls\n", stderr);
+        std::fputs("crofton: --mode contain tests meshes; leave out --hulls\n", stderr);
         return kBadInput;
     }
     const auto velocity = vector_of("--velocity", request.velocity), spin = vector_of("--spin", request.spin);

@@ -198,7 +198,7 @@ void add_fit_command(CommandLine& line) {
     const Option bounds = command
                               .option("--bounds", request->bounds,
                                       "Compare sphere, boxes and k-DOPs by the expected cost C_v + p C_p of a test and "
-                                      "of what passes it: all, or the best for each mesh")
+                                      "of the queries that pass it: all, or the best for each mesh")
                               .one_of({"all", "best"});
     command
         .option("--region", request->region,

@@ -300,7 +300,7 @@ class FramesRun {
     }
 
     [[nodiscard]] std::string occlusion_setting() const {
-        if (pipeline_options_.picture) return "by the depth of what is drawn";
+        if (pipeline_options_.picture) return "by the depth of drawn triangles";
         if (!pipeline_options_.occlusion) return "";
         const OcclusionOptions& o = *pipeline_options_.occlusion;
         return std::to_string(o.max_occluders) + " occluders at most, " + std::to_string(o.size.width) + "x" +

@@ -56,9 +56,8 @@ std::string means_with_occlusion(std::span<const FrameStatistics> frames) {
         mean_row("triangles that meet the frustum", " %9.0f", mean([](const auto& f) { return f.triangles_passed; }),
                  rest([](const auto& f) { return f.triangles_passed; }));
     const auto median = [&](auto value) { return median_of(frames, value); };
-    text +=
-        mean_row("ms to find what to draw, median", " %9.3f", median([](const auto& f) { return 1e-3 * f.cull_us; }),
-                 median([](const auto& f) { return 1e-3 * f.occlusion->occlude_us; }));
+    text += mean_row("ms to cull, median", " %9.3f", median([](const auto& f) { return 1e-3 * f.cull_us; }),
+                     median([](const auto& f) { return 1e-3 * f.occlusion->occlude_us; }));
     if (frames.front().gpu)
         text += mean_row("ms to draw it, median", " %9.2f", median([](const auto& f) { return 1e-3 * f.draw_us; }),
                          median([](const auto& f) { return 1e-3 * f.occlusion->draw_us; }));

@@ -104,7 +104,7 @@ std::string both_columns(const ReportContents& c) {
     html += row_of_both("triangles that meet the frustum", without([](const auto& f) { return f.triangles_passed; }),
                         with([](const auto& f) { return f.triangles_passed; }), "%.0f");
     const auto median = [&](auto value) { return median_of(c.frames, value); };
-    html += row_of_both("ms to find what to draw, median", median([](const auto& f) { return 1e-3 * f.cull_us; }),
+    html += row_of_both("ms to cull, median", median([](const auto& f) { return 1e-3 * f.cull_us; }),
                         median([](const auto& f) { return 1e-3 * f.occlusion->occlude_us; }), "%.2f");
     if (c.frames.front().gpu)
         html += row_of_both("ms to draw it, median", median([](const auto& f) { return 1e-3 * f.draw_us; }),
@@ -174,7 +174,7 @@ std::string occlusion_charts(std::span<const FrameStatistics> frames) {
            svg_chart(
                "chart-occlusion-frame", "The frame", "milliseconds",
                {series_of("without occlusion", frames, frame_ms), series_of("with", frames, frame_ms_with_occlusion),
-                series_of("of it to find what is hidden", frames,
+                series_of("of it occlusion culling", frames,
                           [](const auto& f) { return 1e-3 * f.occlusion->occlude_us; })}) +
            svg_chart("chart-occlusion-instances", "Instances drawn", "per frame",
                      {series_of("without occlusion", frames, [](const auto& f) { return f.visible; }),

@@ -140,7 +140,7 @@ Result<pvs::Cells> cells_of_rooms(const assets::SceneSource& source, const RoomO
     }
     if (cells.empty())
         return fail(ErrorCode::empty, kNoItem,
-                    "--cells rooms: no room is larger than twice the near radius; ask for a smaller one");
+                    "--cells rooms: no room is larger than twice the near radius; choose a smaller --near");
     return pvs::Cells::convex(cells);
 }
 

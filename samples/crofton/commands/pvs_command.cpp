@@ -198,7 +198,7 @@ Json to_json(const Views& views) {
 
 void print(const pipeline::PvsViewFigures& views) {
     std::printf(
-        "%u street views: wrong pixels, mean and worst; triangles a view, and over those of what owns a pixel\n",
+        "%u street views: wrong pixels, mean and worst; triangles a view, and over those of objects that own a pixel\n",
         views.views);
     const auto row = [&](const char* name, const pipeline::PvsModeFigures& mode) {
         std::printf("  %-26s %8.2g %8.2g %10.0f %7.2f\n", name, mode.wrong_mean, mode.wrong_worst, mode.triangles,
@@ -324,8 +324,8 @@ Result<int> run_pvs(const PvsRequest& options) {
         std::fprintf(stderr, "crofton: interrupted after %llu of %llu lines%s\n",
                      static_cast<unsigned long long>(bake->lines_done()),
                      static_cast<unsigned long long>(bake->lines_planned()),
-                     options.state.empty() ? "; with --state the next run would go on from here"
-                                           : ": the next run goes on from here");
+                     options.state.empty() ? "; with --state the next run would continue from here"
+                                           : ": the next run continues from here");
     const bool all_lines = !interrupted();
     const auto sets = finish_sets(*job, *bake, pool);
     if (!sets) return tl::unexpected(sets.error());

@@ -252,12 +252,12 @@ Result<int> run_radiosity(const RadiosityOptions& options) {
         {"visibility",
          {{"mean_crossings", seen.mean_crossings}, {"deviation", seen.deviation}, {"wasted", seen.wasted}}}};
     if (cut_short)
-        std::fprintf(stderr, "crofton: interrupted: what %llu runs found is written%s%s\n",
+        std::fprintf(stderr, "crofton: interrupted: the results of %llu runs are written%s%s\n",
                      static_cast<unsigned long long>(solver->runs()),
                      options.light_field.empty() && options.reference == 0
                          ? ""
                          : ", but no light field and no comparison with a reference",
-                     options.checkpoint.empty() ? "; with --checkpoint the next run would go on from here" : "");
+                     options.checkpoint.empty() ? "; with --checkpoint the next run would continue from here" : "");
     const int status = cut_short ? kInterrupted : kSuccess;
     if (!options.json.empty()) {
         if (auto written = write_json(options.json, report); !written) return tl::unexpected(written.error());
@@ -272,7 +272,7 @@ Result<int> run_radiosity(const RadiosityOptions& options) {
     std::printf("%s: %zu patches, %llu runs, %llu lines in %.1f s, relative error %.3f %%\n", source->name.c_str(),
                 lit->patches.count(), static_cast<unsigned long long>(solver->runs()),
                 static_cast<unsigned long long>(solver->lines_traced()), seconds, 100.0 * solver->relative_error());
-    std::printf("%.1f %% of patches are within 10 %% of their light, as the spread of runs tells\n",
+    std::printf("%.1f %% of patches are within 10 %% of their light, by the spread of the runs\n",
                 100.0 * solver->share_within(0.1));
     if (reference) print(*reference);
     if (field) print(*field);

@@ -313,7 +313,8 @@ Json to_json(const ReferenceReport& report) {
 
 void print(const ReferenceReport& report) {
     std::printf(
-        "beside %llu runs of another seed (%.2f %%): %.1f %% of patches within 10 %% of their light, %.1f %% off by "
+        "compared with %llu runs of another seed (%.2f %%): %.1f %% of patches within 10 %% of their light, %.1f %% "
+        "off by "
         "more than 25 %%; half within %.1f %%, 95 %% within %.1f %%\n",
         static_cast<unsigned long long>(report.runs), 100.0 * report.reference_error, 100.0 * report.within_10,
         100.0 * report.beyond_25, 100.0 * report.median, 100.0 * report.worst_of_95);

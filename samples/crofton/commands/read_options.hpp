@@ -18,7 +18,7 @@ struct ReadOptions {
 
 // For the help of sub-commands that show scenes: what is read of files.
 inline constexpr const char* kSceneFormats =
-    "Files, as they are before anything is animated (more in docs/files.md):\n"
+    "Files are read in their initial state, without animation (more in docs/files.md):\n"
     "  .glb, .gltf  meshes, EXT_mesh_gpu_instancing, KHR_node_visibility, morph weights, skins, quantized and\n"
     "               compressed (Draco, meshopt) geometry; other extensions give a warning or a reason to refuse\n"
     "  .obj         faces of any number of corners, concave ones and keyholes too; materials' colours\n"

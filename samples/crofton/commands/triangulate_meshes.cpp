@@ -227,7 +227,7 @@ Result<int> run_meshes(const MeshRun& run) {
         if (auto written = write_report(run, meshes, total); !written) return tl::unexpected(written.error());
     if (run.json != "-" && run.out != "-") print_table(meshes, total, outcomes);
     if (interrupted()) {
-        std::fprintf(stderr, "crofton: interrupted: what was not reached is written as it was\n");
+        std::fprintf(stderr, "crofton: interrupted: the remaining meshes are written unchanged\n");
         return kInterrupted;
     }
     return total.refused ? kBadInput : kSuccess;

@@ -128,7 +128,7 @@ VerifyRow casts_sampled(const VerifyOptions& options) {
     }
     return none_row(std::to_string(casts) + " casts of turning bodies, " + std::to_string(hits) + " hits, " +
                         std::to_string(unresolved) +
-                        " not told: at none of 10,000 moments before do they meet, and then they are within 1e-6",
+                        " undecided: they overlap at none of 10,000 earlier times, and are then within 1e-6",
                     "separating planes in exact numbers", samples, wrong);
 }
 

@@ -245,12 +245,12 @@ struct BadKind {
 };
 constexpr BadKind kBadKinds[] = {
     {"hulls of fewer than four points are refused by name", try_few_points, 1},
-    {"points on a plane or line are refused by name, and a bit beside it is a body", try_coplanar, 1},
+    {"points on a plane or line are refused by name, and points a bit off it are a body", try_coplanar, 1},
     {"points given twice do not change a hull", try_duplicates, 1},
     {"NaN and infinite numbers of bodies, poses and motions are refused by name and item", try_not_numbers, 1},
     {"bodies inside out and poses that mirror are refused by name", try_inside_out, 1},
     {"hulls of 100,000 points hold all of them with 256 corners", try_many_points, 100},
-    {"casts of no length, of a thousand turns, and beyond what is allowed", try_casts, 1},
+    {"casts of no length, of a thousand turns, and beyond the limits", try_casts, 1},
     {"height fields of one row, with too few heights or of holes alone are refused by name", try_height_fields, 1},
     {"compounds of compounds are refused beyond 16 deep, at each depth to 1,000", try_deep_compounds, 10},
     {"bodies changed or removed while their contacts are read: these stay until the next update", try_changes, 10},

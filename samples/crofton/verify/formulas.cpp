@@ -232,11 +232,10 @@ void information_rows(std::vector<VerifyRow>& rows) {
     counted.rays = {1000, 1000, 1000, 1000};
     counted.escaped = {0, 0, 0, 0};
     const auto found = study::mutual_information(counted);
-    if (!found) return rows.push_back(untried_row("what a ray's start tells of its end", source));
-    rows.push_back(computed_row("what a ray's start tells of its end: two pairs of patches", source,
+    if (!found) return rows.push_back(untried_row("mutual information of a ray's start and end", source));
+    rows.push_back(computed_row("mutual information of a ray's start and end: two pairs of patches", source,
                                 found->bits + found->bias, 1.5, 1e-9));
-    rows.push_back(
-        computed_row("what is to be told of four like patches: two bits", source, found->entropy_bits, 2.0, 1e-9));
+    rows.push_back(computed_row("entropy of four equal patches: two bits", source, found->entropy_bits, 2.0, 1e-9));
 }
 
 // A cuboid seen from within, lit alike everywhere.
@@ -268,7 +267,7 @@ void light_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     Camera camera;
     camera.position = {1.0, 1.5, 4.5};
     const auto drawn = field->draw(camera, 48, 32, {});
-    rows.push_back(computed_row("lines of a light field that meet the scene's box: as many as asked for", source,
+    rows.push_back(computed_row("lines of a light field that meet the scene's box: the requested number", source,
                                 static_cast<double>(lines), static_cast<double>(field->lines()),
                                 0.005 * static_cast<double>(lines)));
     rows.push_back(computed_row("each crosses a closed convex room twice, but for lines through its edges", source,
@@ -348,7 +347,7 @@ void camera_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     rows.push_back(measured_row("random cameras: mean |cosine| of where they look", source, 0.5, forward.value(),
                                 forward.standard_error()));
     rows.push_back(
-        measured_row("random cameras: mean |cosine| of what is up", source, 0.5, up.value(), up.standard_error()));
+        measured_row("random cameras: mean |cosine| of the up vector", source, 0.5, up.value(), up.standard_error()));
     rows.push_back(measured_row("random cameras: mean squared cosine", source, 1.0 / 3.0, square.value(),
                                 square.standard_error()));
     rows.push_back(measured_row("random cameras: the middle of their places", source, 3.5, position.value(),

@@ -159,12 +159,12 @@ VerifyRow wrong_pixels(const Baked& baked, const VerifyOptions& options) {
                                                 {.views = views, .seed = options.seed, .near_radius = 0.0});
     if (!looked) return computed_row("street views: " + looked.error().message, "docs/pvs.md", 1.0, 0.0, 0.0);
     char claim[300];
-    std::snprintf(claim, sizeof claim,
-                  "town: wrong pixels in %u street views, conservative (%.2f times the triangles of what owns a pixel; "
-                  "statistical at epsilon %.2g: %.2g in the mean, %.2g at worst, %.2f times the triangles)",
-                  views, looked->conservative.triangles / looked->owner_triangles, baked.epsilon,
-                  looked->statistical.wrong_mean, looked->statistical.wrong_worst,
-                  looked->statistical.triangles / looked->owner_triangles);
+    std::snprintf(
+        claim, sizeof claim,
+        "town: wrong pixels in %u street views, conservative (%.2f times the triangles of objects that own a pixel; "
+        "statistical at epsilon %.2g: %.2g in the mean, %.2g at worst, %.2f times the triangles)",
+        views, looked->conservative.triangles / looked->owner_triangles, baked.epsilon, looked->statistical.wrong_mean,
+        looked->statistical.wrong_worst, looked->statistical.triangles / looked->owner_triangles);
     VerifyRow row = computed_row(claim, "docs/pvs.md", 0.0, looked->conservative.wrong_worst, 0.0);
     row.cases = views;
     return row;

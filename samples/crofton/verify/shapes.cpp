@@ -74,8 +74,8 @@ void least_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     const auto exact = fit::fit_exact(points, fit::ExactOptions{.criterion = measure::minimal_volume()});
     rows.push_back(computed_row("the best box around a turned box's corners: its volume", source, 8.0,
                                 exact ? exact->value : std::nan(""), 8e-6));
-    rows.push_back(at_most_row("what is proved of it: a bound below its value", source,
-                               exact ? exact->value : std::nan(""), exact ? exact->lower_bound : HUGE_VAL, 0.0));
+    rows.push_back(at_most_row("its proof: a bound below its value", source, exact ? exact->value : std::nan(""),
+                               exact ? exact->lower_bound : HUGE_VAL, 0.0));
     std::vector<Obb> pair(2);
     pair[0].half_extents = pair[1].half_extents = glm::vec3(0.5f);
     pair[1].center.x = 2.0;
@@ -317,7 +317,7 @@ void number_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
         wrong += side != static_cast<int>(by);
         ++cases;
     }
-    rows.push_back(none_row("points told to be on another side of a circle", source, cases, wrong));
+    rows.push_back(none_row("points on the wrong side of a circle", source, cases, wrong));
     double volume_off = 0.0, area_off = 0.0, edges_off = 0.0, trs_off = 0.0;
     for (int i = 0; i < 200; ++i) {
         const Obb box = any_box(random, 5.0, 2.0);
@@ -340,8 +340,8 @@ void number_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     rows.push_back(computed_row("boxes' volumes: off the intrinsic ones", source, 0.0, volume_off, 1e-12));
     rows.push_back(computed_row("boxes' surfaces: off the intrinsic ones", source, 0.0, area_off, 1e-12));
     rows.push_back(computed_row("boxes' edges times pi: off the mean curvature", source, 0.0, edges_off, 1e-12));
-    rows.push_back(
-        computed_row("points scaled, turned and moved: off what is done by hand", source, 0.0, trs_off, 1e-12));
+    rows.push_back(computed_row("points scaled, rotated and moved: difference from the same by hand", source, 0.0,
+                                trs_off, 1e-12));
 }
 
 }  // namespace

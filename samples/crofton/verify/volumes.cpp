@@ -68,9 +68,9 @@ void kinematic(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
             const std::string pair = std::string(b.name) + " and " + k.name;
             rows.push_back(row("mean volume of the sum of " + pair, "theory.md (1)",
                                measure::kinematic_measure(b.volumes, k.volumes), mean));
-            rows.push_back(measured_row("criterion for " + pair + ": what that exceeds the volume of B by",
-                                        "theory.md (2)", measure::for_partner(b.volumes)(k.volumes),
-                                        mean.value() - first.volume, mean.standard_error()));
+            rows.push_back(measured_row("criterion for " + pair + ": its excess over the volume of B", "theory.md (2)",
+                                        measure::for_partner(b.volumes)(k.volumes), mean.value() - first.volume,
+                                        mean.standard_error()));
             sampling::Random random(options.seed, seed);
             for (int i = 0; i < 10; ++i) {
                 const glm::dmat3 turn = sampling::rotation(random.point<3>());

@@ -19,10 +19,10 @@ constexpr KeyHelp kMoving[] = {
 };
 constexpr KeyHelp kSeeing[] = {
     {"left click", "", "pick an instance; the sky: none"},
-    {"C", "C", "next colouring; what it means is said beside the statistics"},
-    {"B", "B", "bounds of what is visible, as boxes"},
+    {"C", "C", "next colouring; the legend is next to the statistics"},
+    {"B", "B", "bounds of visible objects, as boxes"},
     {"O", "O", "culled, as boxes: red outside, violet hidden"},
-    {"U", "U", "convex hulls of what is visible; of movers also contact points, normals, manifolds"},
+    {"U", "U", "convex hulls of visible objects; for movers also contact points, normals, manifolds"},
     {"T", "T", "bounds of the tree's nodes, level by level"},
     {"J", "J", "the occluders' depth buffer, as a picture"},
     {"X", "X", "triangles as wires"},
@@ -35,7 +35,7 @@ constexpr KeyHelp kCulling[] = {
     {"N", "N", "next kind of bounds"},
     {"M", "M", "next culling mode: none, flat, tree"},
     {"F4", "F4", "next axes of the tree's bounds: aligned, oriented, automatic"},
-    {"Z", "Z", "occlusion: what is hidden behind other things is left out"},
+    {"Z", "Z", "occlusion culling: objects hidden behind others are left out"},
     {"L", "L", "exact, or by planes only (conservative)"},
     {"V", "V", "number of views the depth range is split into"},
     {"Y", "Y", "next triangulation of polygons and flat patches"},

@@ -79,16 +79,16 @@ void Overlay::draw_bounds(LineList& lines, const Settings& settings, const Loade
     const auto verdicts = loaded.pipeline().verdicts();
     const auto boxes = loaded.pipeline().bounds().boxes();
     if (settings.outside) {
-        legend_.push_back({"bounds of what is culled", kOutside});
+        legend_.push_back({"bounds of culled objects", kOutside});
         for (scene::InstanceId i = 0; i < scene.instance_count(); ++i)
             if (!scene.is_removed(i) && verdicts[i] == cull::Verdict::outside) lines.box(boxes[i], kOutside);
     }
     if (settings.outside && loaded.occlusion() != nullptr) {
-        legend_.push_back({"bounds of what is hidden", kHiddenBound, loaded.occlusion()->hidden().size()});
+        legend_.push_back({"bounds of hidden objects", kHiddenBound, loaded.occlusion()->hidden().size()});
         for (const scene::InstanceId i : loaded.occlusion()->hidden()) lines.box(boxes[i], kHiddenBound);
     }
     if (settings.bounds) {
-        legend_.push_back({"bounds of what is visible", kBound});
+        legend_.push_back({"bounds of visible objects", kBound});
         for (const scene::InstanceId i : frame.visible_ids) lines.box(boxes[i], kBound);
     }
 }

@@ -61,7 +61,7 @@ Result<void> Session::run_frame() {
     if (turned || std::exchange(is_lasting_, false)) return turned;
     if (recoveries_++ == kMaxRecoveries) return turned;
     report(turned.error());
-    std::fprintf(stderr, "crofton: starting the device anew\n");
+    std::fprintf(stderr, "crofton: restarting the device\n");
     return recover();
 }
 

@@ -142,7 +142,7 @@ class Session {
     bool stale_geometry_ = false;  // what is on the device is of another scene, or nothing
     int recoveries_ = 0;
     std::vector<std::string> lost_messages_;  // validation's, of devices that are gone
-    std::uint32_t frame_index_ = 0, exports_ = 0;
+    std::uint32_t frame_index_ = 0;
     double scene_time_ = 0.0;  // in frames of 1/60 s
     double seconds_ = 0.0;     // that the session has run
     std::deque<Notice> notices_;

@@ -94,10 +94,10 @@ void sliders(const PanelInput& input) {
     if (ImGui::SliderInt("resolution", &percent, static_cast<int>(100.0 * kMinResolution), 100, "%d %%"))
         s.resolution = std::clamp(0.01 * percent, kMinResolution, 1.0);
     if (ImGui::IsItemHovered())
-        ImGui::SetTooltip("of what is drawn, each way, before it is enlarged: fewer pixels, more frames");
+        ImGui::SetTooltip("of the drawn picture, each way, before it is enlarged: fewer pixels, more frames");
     auto scale = static_cast<float>(s.time_scale);
     if (ImGui::SliderFloat("time (+ -)", &scale, 0.0f, 4.0f, "%.2fx")) s.time_scale = static_cast<double>(scale);
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("speed of what moves; + and -: %s", what_key_does("+"));
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("speed of moving objects; + and -: %s", what_key_does("+"));
 }
 
 }  // namespace

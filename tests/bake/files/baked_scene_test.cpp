@@ -128,7 +128,7 @@ TEST_SUITE("bake/baked_scene") {
         check_same(scene, *baked);
     }
 
-    TEST_CASE("what was baked comes back, from memory and from a file") {
+    TEST_CASE("a baked scene comes back unchanged, from memory and from a file") {
         const scene::Scene scene = sample_scene(200);
         const auto file = bake::bake(scene);
         REQUIRE(file);

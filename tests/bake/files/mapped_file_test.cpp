@@ -50,7 +50,7 @@ TEST_SUITE("bake/mapped_file") {
         CHECK(moved.bytes()[99'999] == std::byte{7});
     }
 
-    TEST_CASE("what is read into memory outlives the file being cut") {
+    TEST_CASE("a file read into memory outlives a cut of the file") {
         const std::vector<std::byte> contents(100'000, std::byte{7});
         const crofton::bake_test::TemporaryFile file(contents);
         auto read = MappedFile::open(file.path(), {.access = crofton::bake::FileAccess::read});

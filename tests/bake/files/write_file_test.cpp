@@ -154,7 +154,7 @@ TEST_SUITE("bake/write_file") {
         CHECK(folder.count() == 0);
     }
 
-    TEST_CASE("a write that the disk has no room for leaves the old file, and nothing beside it") {
+    TEST_CASE("a write to a full disk leaves the old file, and no other file") {
         const Folder folder;
         const std::string path = folder.file("scene");
         REQUIRE(write(path, "old"));
@@ -199,7 +199,7 @@ TEST_SUITE("bake/write_file") {
         MESSAGE(left_behind << " of " << testing::kill_count() << " kills left a .partial behind");
     }
 
-    TEST_CASE("a reader keeps what it has open or mapped when the file is written anew") {
+    TEST_CASE("a reader keeps the contents that it has open or mapped when the file is written again") {
         const Folder folder;
         const std::string path = folder.file("scene");
         REQUIRE(write(path, filled(1)));
@@ -315,7 +315,7 @@ TEST_SUITE("bake/write_file") {
         }
     }
 
-    TEST_CASE("a disk that fails is told and the old file stays, one that cannot flush a file is written to") {
+    TEST_CASE("a failing disk is an error and the old file stays, and a disk that cannot flush is written to") {
         const Folder folder;
         const std::string path = folder.file("scene");
         REQUIRE(write(path, "old"));

@@ -117,7 +117,7 @@ TEST_SUITE("pvs/bake") {
         }
     }
 
-    TEST_CASE("of lines through the box around a convex cell as many meet it as their surfaces say") {
+    TEST_CASE("as many lines of the box around a convex cell meet it as their surfaces say") {
         sampling::Random random(5);
         for (int i = 0; i < 20; ++i) {
             const ConvexCell cell = random_cell(random, {}, 1.0);
@@ -258,7 +258,7 @@ TEST_SUITE("pvs/bake") {
         CHECK(pairs_of(here, 128, 20) == pairs_of(there, 128, 20));
     }
 
-    TEST_CASE("cells in solids, in a closed room and in the open are told apart") {
+    TEST_CASE("cells in solids, in a closed room and in the open get different kinds") {
         BakeGeometry room;
         add_box(room, {{0.0, 0.0, 0.0}, {12.0, 4.0, 12.0}}, true);
         add_box(room, {{4.0, 0.0, 4.0}, {8.0, 4.0, 8.0}});  // a block as high as the room
@@ -285,7 +285,7 @@ TEST_SUITE("pvs/bake") {
         CHECK(leaking.visible_from(3, Mode::statistical)[0] == 3);
     }
 
-    TEST_CASE("what a wall parts is not seen, and a door lets lines through") {
+    TEST_CASE("objects behind a wall are not seen, and a door lets lines through") {
         const auto rooms = [](bool door) {
             BakeGeometry geometry;
             add_box(geometry, {{-6.0, 0.0, -3.0}, {6.0, 3.0, 3.0}}, true);

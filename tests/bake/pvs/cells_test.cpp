@@ -187,7 +187,7 @@ TEST_SUITE("pvs/cells") {
         CHECK(cells->find({0.5, 2.5, 0.5}) == kNoCell);
     }
 
-    TEST_CASE("of boxes that overlap the first holds the point") {
+    TEST_CASE("the first of overlapping boxes contains the point") {
         const std::vector<Aabb> boxes = {{{0.0, 0.0, 0.0}, {2.0, 2.0, 2.0}}, {{1.0, 0.0, 0.0}, {3.0, 2.0, 2.0}}};
         const Cells cells = Cells::boxes(boxes).value();
         CHECK(cells.find({1.5, 1.0, 1.0}) == 0);

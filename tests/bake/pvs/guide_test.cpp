@@ -31,7 +31,7 @@ int show(const crofton::Aabb& eyes, const crofton::scene::Scene& scene,
     const auto sets = pvs::Pvs::finish(*bake);
     if (!sets) return report(sets.error());
 
-    // Each frame: what the view sees among the set of the eye's cell. What moves is never left out.
+    // Each frame: the visible objects among the set of the eye's cell, and moving objects.
     world
         .view({.camera = camera, .candidate_mask = sets->visible_from(camera.position, pvs::Mode::statistical)},
               visible)

@@ -182,7 +182,7 @@ TEST_SUITE("pvs/hidden") {
         MESSAGE(hidden << " hidden, " << by_one << " by one body, " << by_halves << " by halves");
     }
 
-    TEST_CASE("of convex cells too: every segment of a hidden pair meets a body, and more is proved than of boxes") {
+    TEST_CASE("every segment of a hidden pair of a convex cell meets a body, and more is proved than with boxes") {
         std::uint64_t hidden = 0, hidden_of_boxes = 0;
         for (const double offset : {0.0, 1e7})
             for (std::uint64_t seed = 1; seed <= 2; ++seed) {

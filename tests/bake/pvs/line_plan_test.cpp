@@ -43,7 +43,7 @@ std::array<double, 4> coordinates(const Line& line, const Aabb& box, int axis) {
 }  // namespace
 
 TEST_SUITE("pvs/line_plan") {
-    TEST_CASE("rounds count for as many lines as the theory asks, and each face gets its share of each round") {
+    TEST_CASE("rounds count for as many lines as the theory requires, and each face gets its share of each round") {
         for (const double epsilon : {1e-2, 1e-3, 1e-4, 2e-5}) {
             const Aabb bounds{{-3.0, 1.0, 2.0}, {9.0, 3.5, 11.0}};
             const Planned job(bounds, {6, 1, 5}, epsilon);

@@ -55,7 +55,7 @@ void check_same(const Pvs& a, const Pvs& b) {
 }  // namespace
 
 TEST_SUITE("pvs/pvs") {
-    TEST_CASE("a file holds what was put in, in grids, boxes and convex cells, alone and beside a scene") {
+    TEST_CASE("a file returns the sets that were stored, of grids, boxes and convex cells, alone and with a scene") {
         for (std::uint64_t seed = 1; seed <= 4; ++seed) {
             BakeGeometry geometry = random_geometry(seed, 40 + static_cast<int>(seed) * 17);
             geometry.boxes.push_back(geometry.boxes[0]);  // one that moves
@@ -131,7 +131,7 @@ TEST_SUITE("pvs/pvs") {
         CHECK(Pvs::open("/no/such/file.crofton").error().message.find("/no/such/file") != std::string::npos);
     }
 
-    TEST_CASE("a small file that asks for very many pairs is refused before the memory is taken") {
+    TEST_CASE("a small file that demands very many pairs is refused before the memory is allocated") {
         const Pvs pvs = baked(random_geometry(1, 30), Cells::grid(kBounds, {4, 1, 4}).value());
         const auto file = pvs.to_file().value();
         const std::uint64_t all = pvs.cells().size() * pvs.object_count();

@@ -71,7 +71,7 @@ TEST_SUITE("pvs/shaft") {
         CHECK(open > 500);
     }
 
-    TEST_CASE("of 17 to 20 planes the last alone may decide") {
+    TEST_CASE("the last of 17 to 20 planes alone may decide") {
         sampling::Random random(72);
         const Corners eyes = pvs::corners_of({glm::dvec3(-0.1, -0.1, -3.1), glm::dvec3(0.1, 0.1, -2.9)}),
                       object = pvs::corners_of({glm::dvec3(-0.1, -0.1, 2.9), glm::dvec3(0.1, 0.1, 3.1)});

@@ -135,7 +135,7 @@ TEST_SUITE("pvs/surface") {
               PairState::hidden);
     }
 
-    TEST_CASE("what meets the cell, is near it, or touches the object proves nothing") {
+    TEST_CASE("triangles that meet the cell, are near it, or touch the object prove nothing") {
         for (int way = 0; way < 6; ++way) {
             CHECK(state_of({.walls = {wall(-2, 2, 0.2, 0.2)}, .way = way}) != PairState::hidden);  // through the cell
             CHECK(state_of({.walls = {wall(-2, 2, 0.55, 0.55)}, .way = way}) != PairState::hidden);

@@ -95,7 +95,7 @@ TEST_SUITE("pvs/view") {
         }
     }
 
-    TEST_CASE("what has moved since it came, however seldom, and what has another's index is not judged by the set") {
+    TEST_CASE("objects that have moved, and objects that reuse an index, are not judged by the set") {
         World world({.pairs = false});
         std::vector<ObjectHandle> objects;
         const auto sphere = [](double x) { return Sphere{{x, 0.0, -20.0}, 0.25}; };
@@ -143,7 +143,7 @@ TEST_SUITE("pvs/view") {
         CHECK(seen(heir));
     }
 
-    TEST_CASE("what moved before it ever rested is not judged by the set, also when it was hidden meanwhile") {
+    TEST_CASE("an object that moved before it first rested is not judged by the set, also if it was hidden meanwhile") {
         World world({.pairs = false});
         const auto sphere = [](double x) { return Sphere{{x, 0.0, -20.0}, 0.25}; };
         const auto moved = world.add({.bound = sphere(0.0)}).value(),
@@ -194,7 +194,7 @@ TEST_SUITE("pvs/view") {
         }
     }
 
-    TEST_CASE("a list of boxes is asked the same way") {
+    TEST_CASE("a list of boxes gives the same answers") {
         const Town town(9, 1000, 0.3);
         Camera camera;
         camera.position = {0.0, 3.0, 0.0};

@@ -66,7 +66,7 @@ Line random_line(sampling::Random& random, const Grid& grid) {
 }  // namespace
 
 TEST_SUITE("pvs/walk kernels") {
-    TEST_CASE("lines pass the voxels that they meet, in order, and none beside the grid, on every instruction set") {
+    TEST_CASE("lines pass the voxels that they meet, in order, and none outside the grid, on every instruction set") {
         constexpr double kRoom = 1e-9;
         int inside = 0, beside = 0, still_beside = 0;
         for (std::int64_t rest = hwy::SupportedTargets(); rest != 0; rest &= rest - 1) {

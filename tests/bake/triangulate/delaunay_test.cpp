@@ -98,7 +98,7 @@ TEST_SUITE("triangulate/delaunay") {
         }
     }
 
-    TEST_CASE("wherever a hole lies, the answer is that of a polygon whose rings share a point") {
+    TEST_CASE("a hole anywhere gives the answer of a polygon whose rings share a point") {
         // A point that two rings share makes the general search for the inside run, where the simple one would do.
         std::mt19937_64 random(23);
         std::uniform_real_distribution<double> unit(0.0, 1.0);

@@ -50,7 +50,7 @@ Polygon wavy(std::mt19937_64& random, int points, int count) {
 }  // namespace
 
 TEST_SUITE("triangulate/lower bound") {
-    TEST_CASE("where all diagonals are the shortest the bound is the minimum, and no more than that") {
+    TEST_CASE("if all diagonals are the shortest, the bound is the minimum and no more") {
         for (const int count : {2, 3, 7, 40, 300})
             for (const TriangulateOptions& options : {TriangulateOptions{.work = 0}, TriangulateOptions{.seconds = 0.0},
                                                       TriangulateOptions{.bytes = 100}}) {
@@ -63,7 +63,7 @@ TEST_SUITE("triangulate/lower bound") {
             }
     }
 
-    TEST_CASE("whatever work is granted, the bound is never above the minimum where it could just be") {
+    TEST_CASE("with any amount of work, the bound is never above the minimum") {
         for (const int count : {7, 40}) {
             const double minimum = 5.0 * (2.0 * count - 3.0);
             int tight = 0;
@@ -114,7 +114,7 @@ TEST_SUITE("triangulate/lower bound") {
         }
     }
 
-    TEST_CASE("where the boundary is finely divided, the bound is far above what the shortest diagonals give") {
+    TEST_CASE("for finely divided boundaries the bound is far above that of the shortest diagonals") {
         // A comb: slots 1 wide and 12 long, whose sides are divided finely.
         Polygon p;
         constexpr int kSlots = 12, kSteps = 120;

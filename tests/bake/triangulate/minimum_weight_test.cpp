@@ -59,7 +59,7 @@ TEST_SUITE("triangulate/minimum_weight") {
         }
     }
 
-    TEST_CASE("where Delaunay is not minimal: the flat kite of five points") {
+    TEST_CASE("minimum weight beats Delaunay on the flat kite of five points") {
         // Checked by hand: the pentagon has five triangulations, each two diagonals from one corner.
         const glm::dvec2 p[] = {{0, 0}, {10, 0}, {11, 3}, {5, 4}, {-1, 3}};
         double best = 1e9;
@@ -100,7 +100,7 @@ TEST_SUITE("triangulate/minimum_weight") {
         }
     }
 
-    TEST_CASE("vertices hidden behind walls kill nothing: an S whose arms have vertices beside the middle one") {
+    TEST_CASE("vertices hidden behind walls exclude nothing: an S with vertices on its outer arms") {
         // Every long diagonal of the middle arm has (10, 1) and (10, 3) in its diamond, behind the walls; one of them
         // is needed.
         const auto s = polygon({{{0, 0},

@@ -41,7 +41,7 @@ mpf_class excess_of(std::span<const glm::dvec2> ring, const triangulate::Triangu
 }  // namespace
 
 TEST_SUITE("triangulate/near_ties") {
-    TEST_CASE("of sums that differ by less than their rounding the lesser is found") {
+    TEST_CASE("the lesser of two sums that differ by less than their rounding is found") {
         std::mt19937_64 random(1);
         std::uniform_real_distribution<double> unit(0.0, 1.0);
         triangulate::Triangulator triangulator;

@@ -175,7 +175,7 @@ TEST_SUITE("triangulate/planar_patches") {
         for (const auto& patch : *broken) CHECK(std::count(patch.vertices.begin(), patch.vertices.end(), 4u) == 0);
     }
 
-    TEST_CASE("what is interpolated changes nowhere by more than twice the tolerance") {
+    TEST_CASE("interpolated values change nowhere by more than twice the tolerance") {
         TriangleMesh mesh = fan_of_rectangle(16.0f, 2.0f, 16);
         std::vector<float> values;
         constexpr double kTolerance = 0.01;

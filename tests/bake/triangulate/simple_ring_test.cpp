@@ -10,7 +10,7 @@ using namespace crofton;
 using namespace crofton::triangulate;
 
 TEST_SUITE("triangulate/simple_ring") {
-    TEST_CASE("of points whose boxes are beyond floats nothing behind the last one is read") {
+    TEST_CASE("memory behind the last point is not read, also if boxes are beyond floats") {
         // The fourth point is behind the ring's last; with it, edges would cross.
         const std::array<glm::dvec2, 5> points = {{{-1e50, -1e50}, {1e50, -1e50}, {1e50, 1e50}, {0, -2e50}, {1e50, 0}}};
         SimpleRing ring;

@@ -25,7 +25,7 @@ TEST_SUITE("triangulate/slits") {
         }
     }
 
-    TEST_CASE("where a ring runs along itself the minimum is not heavier than Delaunay") {
+    TEST_CASE("if a ring runs along itself, the minimum is not heavier than Delaunay") {
         const auto p = polygon({{{18, 0}, {31, 0}, {27, 0}, {10, 0}, {30, 2}, {20, 1}, {29, 2}, {34, 2}, {28, 0}}});
         const auto least = triangulate::triangulate(p);
         const auto delaunay = triangulate::triangulate(p, {.method = triangulate::Method::delaunay});
@@ -56,7 +56,7 @@ TEST_SUITE("triangulate/slits") {
             }
     }
 
-    TEST_CASE("of consecutive points at one position triangles name the first") {
+    TEST_CASE("triangles use the first of consecutive points at one position") {
         const auto p = polygon({{{0, 0}, {0, 0}, {4, 0}, {4, 4}, {4, 4}, {4, 4}, {0, 4}, {0, 0}}});
         for (const auto method :
              {triangulate::Method::ear, triangulate::Method::delaunay, triangulate::Method::minimum_weight}) {

@@ -89,12 +89,12 @@ TEST_SUITE("triangulate/triangulate") {
         CHECK(code(with({{6, 2}}, {{1, 1}, {8, 1}, {8, 4}})) == ErrorCode::degenerate);
     }
 
-    TEST_CASE("a hole outside is an error where no triangle beside it is left of the Delaunay triangulation") {
+    TEST_CASE("a hole outside is an error even if no triangle of the Delaunay triangulation is left next to it") {
         CHECK(code(polygon({{{3, 2}, {2, 2}, {6, 8}, {7, 4}}, {{0, 0}, {4, 0}, {7, 3}}})) == ErrorCode::degenerate);
         CHECK(code(polygon({{{0, 1}, {12, 1}, {16, 2}, {15, 2}}, {{2, 0}, {0, 0}, {13, 1}}})) == ErrorCode::degenerate);
     }
 
-    TEST_CASE("of nested holes an edge of the inner one is named, whichever point comes first") {
+    TEST_CASE("the error for nested holes names an edge of the inner one, whichever point comes first") {
         const std::vector<glm::dvec2> outer = {{1, 1}, {8, 1}, {8, 8}}, inner = {{4, 2}, {5, 2}, {5, 3}};
         for (std::size_t first = 0; first < 3; ++first)
             for (const bool outer_comes_first : {false, true}) {
@@ -145,7 +145,7 @@ TEST_SUITE("triangulate/triangulate") {
         }
     }
 
-    TEST_CASE("where rings touch at a point, each ring's own index is used") {
+    TEST_CASE("if rings touch at a point, triangles use each ring's own index") {
         const auto p = polygon({{{0, 0}, {9, 0}, {9, 9}, {0, 9}}, {{0, 0}, {2, 1}, {1, 2}}});
         for (const Method method : kMethods) {
             const auto result = triangulate::triangulate(p, {.method = method});

@@ -54,7 +54,7 @@ TEST_SUITE("core/recovery") {
         CHECK(result.error().code == ErrorCode::out_of_memory);
     }
 
-    TEST_CASE("bodies of a parallel operation that run out of memory are told of once all have returned") {
+    TEST_CASE("a parallel operation reports bodies that run out of memory once all have returned") {
         ThreadPool pool(3);
         std::atomic<int> ended{0};
         const auto result = detail::recover([&]() -> Result<int> {

@@ -7,7 +7,7 @@
 #include <vector>
 
 TEST_SUITE("core/select") {
-    TEST_CASE("what sorting puts at n lies there, less to its left, more to its right, nothing lost") {
+    TEST_CASE("sorting puts the n-th element at n, lesser ones to its left and greater ones to its right") {
         std::mt19937 random(7);
         for (int round = 0; round < 3000; ++round) {
             const std::size_t count = random() % (round % 10 == 0 ? 2000 : 40);

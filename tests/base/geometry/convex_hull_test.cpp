@@ -138,7 +138,7 @@ TEST_SUITE("geometry/convex_hull") {
         }
     }
 
-    TEST_CASE("of equal points the first is the corner, whatever their order, in the plane and in space") {
+    TEST_CASE("the first of equal points is the corner, in any order, in the plane and in space") {
         std::mt19937_64 random(41);
         for (const bool flat : {false, true})
             for (int trial = 0; trial < 50; ++trial) {

@@ -9,7 +9,7 @@
 using namespace crofton;
 
 TEST_SUITE("geometry/expansion") {
-    TEST_CASE("what cancels to zero has sign zero and no terms") {
+    TEST_CASE("a sum that cancels to zero has sign zero and no terms") {
         const auto zero = exact_product(0.1, 3.0) - exact_product(3.0, 0.1);
         CHECK(zero.sign() == 0);
         CHECK(zero.count == 0);

@@ -88,7 +88,7 @@ TEST_SUITE("geometry/frustum_triangle") {
         CHECK(intersects(frustum, a, b, c));
     }
 
-    TEST_CASE("a product that underflows beside coordinates of 1e200 decides nothing") {
+    TEST_CASE("a product that underflows next to coordinates of 1e200 decides nothing") {
         Frustum f;
         f.plane_count = 3;
         f.planes[0].normal = {0, -1, 0};

@@ -18,7 +18,7 @@ TriangleMesh triangle_at(float x) {
 }  // namespace
 
 TEST_SUITE("geometry/mesh") {
-    TEST_CASE("what is appended stands behind what was there, and its indices are moved on") {
+    TEST_CASE("appended parts follow the existing ones, and their indices are shifted") {
         TriangleMesh mesh = triangle_at(0.0f);
         append(mesh, triangle_at(5.0f));
         append(mesh, TriangleMesh{});
@@ -39,7 +39,7 @@ TEST_SUITE("geometry/mesh") {
         CHECK(error_of(validate(mesh)).item == 4);
     }
 
-    TEST_CASE("what lies in memory behind the indices is none of them") {
+    TEST_CASE("memory behind the indices is not read") {
         TriangleMesh mesh = triangle_at(0.0f);
         mesh.indices.push_back(1000);
         CHECK_FALSE(validate(mesh).has_value());

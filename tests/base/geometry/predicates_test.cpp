@@ -90,7 +90,7 @@ TEST_SUITE("geometry/predicates") {
         }
     }
 
-    TEST_CASE("points of 1e-65 that differ in their last places are told inside and outside of a circle") {
+    TEST_CASE("points of 1e-65 that differ in their last places are inside or outside of a circle") {
         const double place = std::nextafter(1e-65, 1.0) - 1e-65;
         const auto at = [&](int x, int y) { return glm::dvec2(1e-65 + x * place, 1e-65 + y * place); };
         CHECK(in_circle(at(0, 0), at(8, 0), at(0, 8), at(2, 2)) == 1);

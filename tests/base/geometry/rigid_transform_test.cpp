@@ -20,7 +20,7 @@ TEST_SUITE("geometry/rigid_transform") {
         CHECK(transform(kInner, kPoint) == glm::dvec3(5, -4, 8));
     }
 
-    TEST_CASE("of two poses the inner one applies first") {
+    TEST_CASE("the inner of two poses applies first") {
         CHECK(transform(kOuter * kInner, kPoint) == transform(kOuter, transform(kInner, kPoint)));
         CHECK(transform(kInner * kOuter, kPoint) == transform(kInner, transform(kOuter, kPoint)));
     }

@@ -21,7 +21,7 @@ bool near(double value, long double truth, long double scale) {
 }  // namespace
 
 TEST_SUITE("geometry/trigonometry") {
-    TEST_CASE("what is not a number or not finite has no sine, and no angle but along an axis") {
+    TEST_CASE("a number that is not finite has no sine, and an angle only along an axis") {
         for (const double bad : {std::nan(""), kEndless, -kEndless}) {
             CHECK(std::isnan(sine(bad)));
             CHECK(std::isnan(cosine(bad)));

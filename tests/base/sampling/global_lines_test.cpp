@@ -137,7 +137,7 @@ TEST_SUITE("sampling/global_lines") {
         CHECK(plausible(hits, kLines, 1.5 / (2.0 * pi * 4.0)));
     }
 
-    TEST_CASE("the wrong densities are told from the right ones") {
+    TEST_CASE("the wrong densities are distinguished from the right ones") {
         CHECK_FALSE(sees_every_place_alike(
             [](Random& r) { return study::wrong::line_from_sphere_uniform_direction(kSphere, r.point<4>()); }));
         const Aabb box{glm::dvec3(-1.0), glm::dvec3(1.0)};

@@ -74,7 +74,7 @@ TEST_SUITE("sampling/random") {
         CHECK(squares / n - 0.25 == doctest::Approx(1.0 / 12.0).epsilon(0.02));
     }
 
-    TEST_CASE("points by number do not depend on the order in which they are asked for") {
+    TEST_CASE("numbered points do not depend on the order of the calls") {
         for (const Sequence sequence : {Sequence::pseudo_random, Sequence::quasi_random}) {
             const UnitPoints points(9, sequence);
             const auto late = points.at<6>(1'000'000);

@@ -124,7 +124,7 @@ TEST_SUITE("boxtree/box_tree") {
     // A leaf of 16 items is 512 bytes, 64 are the items' ids, 11 its marks, count and radii; an item has 4 bytes for
     // its slot and 4 for its layers; a sixteenth of a node, of its range and of its radii come with each leaf. Leaves
     // are 97 % full at least.
-    TEST_CASE("an item costs at most 64 bytes beside its box, after moves too") {
+    TEST_CASE("an item costs at most 64 bytes in addition to its box, after moves too") {
         const testing::CountingMemory memory;
         const oracle::Crowd crowd = oracle::random_crowd(100000, 0.0, 21);
         BoxTree tree = *BoxTree::build(crowd.boxes);

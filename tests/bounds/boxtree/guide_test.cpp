@@ -33,7 +33,7 @@ int change_tree(const std::vector<Obb>& boxes, const std::vector<ItemId>& moved_
     Result<boxtree::BoxTree> tree = boxtree::BoxTree::build(boxes);  // item i is boxes[i]
     if (!tree) return report(tree.error());                          // which box is bad, and why
 
-    // Each frame: tell what has changed, then refit once.
+    // Each frame: pass the changes, then refit once.
     if (const auto moved = tree->move(moved_items, moved_boxes); !moved) return report(moved.error());
     const Result<boxtree::ItemId> added = tree->insert(new_box, kVehicles);
     if (!added) return report(added.error());

@@ -72,7 +72,7 @@ BoxTree tree_of(const oracle::Crowd& crowd, Orientation orientation) {
 }  // namespace
 
 TEST_SUITE("boxtree/oriented") {
-    TEST_CASE("where boxes are turned in groups, turned bounds have less perimeter and hold the boxes exactly") {
+    TEST_CASE("if boxes are rotated in groups, turned bounds have less perimeter and contain the boxes exactly") {
         for (const double offset : {0.0, 1e4, 1e7}) {
             const oracle::Crowd crowd = oracle::turned_crowd(3000, offset, 1);
             const BoxTree aligned = tree_of(crowd, Orientation::aligned);
@@ -86,14 +86,14 @@ TEST_SUITE("boxtree/oriented") {
         }
     }
 
-    TEST_CASE("where boxes are turned every way, nothing is gained and the automatic kind turns next to nothing") {
+    TEST_CASE("if each box is rotated differently, nothing is gained and the automatic kind turns almost nothing") {
         const oracle::Crowd crowd = oracle::random_crowd(5000, 0.0, 2);
         const BoxTree tree = tree_of(crowd, Orientation::automatic);
         CHECK(turned_nodes(tree) * 20 < tree.structure().nodes().size());
         check_sound(tree);
     }
 
-    TEST_CASE("of several axes that do better than the world's the best are taken, not the last") {
+    TEST_CASE("among several axes better than the world's the best are chosen, not the last") {
         // Needles at 45°, but for the one whose axes are tried last.
         const auto needle = [](double degrees) {
             const double angle = degrees * 0.017453292519943295;

@@ -147,7 +147,7 @@ TEST_SUITE("boxtree/stored") {
         CHECK(BoxTree::deserialise(sound.bytes()).has_value());
     }
 
-    TEST_CASE("what is taken apart and put together is the same tree") {
+    TEST_CASE("a tree that is stored and read again is the same tree") {
         Stored stored = good_tree();
         const auto back = BoxTree::deserialise(stored.bytes());
         REQUIRE(back.has_value());

@@ -101,7 +101,7 @@ TEST_SUITE("fit/exact") {
                 }
     }
 
-    TEST_CASE("whatever is thin or flat: but for the rounding of the axes to float, the gap is closed, by volume too") {
+    TEST_CASE("for thin and flat sets the gap is closed except for the rounding of axes to float, by volume too") {
         std::mt19937 random(9);
         std::uniform_real_distribution<double> unit(-1.0, 1.0);
         for (const double thin : {1e-2, 1e-4, 1e-6, 1e-8, 0.0})
@@ -262,7 +262,7 @@ TEST_SUITE("fit/exact") {
                    ->complete);
     }
 
-    TEST_CASE("of a flat set by volume the values told on the way are volumes: 0, not areas") {
+    TEST_CASE("progress of a flat set by volume reports volumes: 0, not areas") {
         std::mt19937 random(10);
         const glm::dmat3 turn = random_rotation(random);
         Points points;
@@ -303,7 +303,7 @@ TEST_SUITE("fit/exact") {
         }
     }
 
-    TEST_CASE("each bound that is told on the way is a bound: no box is found below it later") {
+    TEST_CASE("every lower bound in progress reports is a bound: no box is found below it later") {
         std::mt19937 random(7);
         int told = 0;
         for (int trial = 0; trial < 400; ++trial) {
@@ -385,7 +385,7 @@ TEST_SUITE("fit/exact") {
         }
     }
 
-    TEST_CASE("flat sets of any size by volume, faces and edges: proved to the gap asked for, or not complete") {
+    TEST_CASE("flat sets of any size by volume, faces and edges are proved to the gap, or not complete") {
         std::mt19937_64 random(81);
         std::uniform_real_distribution<double> uniform(-1.0, 1.0);
         int complete = 0, incomplete = 0;

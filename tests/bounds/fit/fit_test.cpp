@@ -293,7 +293,7 @@ TEST_SUITE("fit/fit") {
         CHECK(!fit::fit_oriented(view(std::vector<glm::dvec3>(1)), glm::mat3(2.0f)));
     }
 
-    TEST_CASE("where a half extent is about to become the next float, it is still the least that holds all points") {
+    TEST_CASE("half extents are the smallest floats that contain all points, also near the next float") {
         std::mt19937 random(14);
         std::normal_distribution<double> normal;
         for (int run = 0; run < 150; ++run) {

@@ -16,7 +16,7 @@ int fit_roof() {
     // clang-format off
     const std::vector<glm::vec3> points = {{0, 0, 0}, {4, 0, 0}, {4, 2, 0}, {0, 2, 0}, {2, 1, 1}};
 
-    // The box to cull with: default quality, default criterion.
+    // The box for culling: default quality, default criterion.
     const crofton::Result<crofton::Obb> box = crofton::fit::fit_obb(points);
     if (!box) return report(box.error());  // which point is bad, and why
 

@@ -183,7 +183,7 @@ std::string boxes_of(const Points& from, bool exact) {
 }  // namespace
 
 TEST_SUITE("fit/interior") {
-    TEST_CASE("what is told to be inside is, with a sphere around it") {
+    TEST_CASE("points that count as inside are inside, with a sphere around them") {
         Random random(61);
         int inside = 0, wrong = 0;
         for (int kind = 0; kind < 420; ++kind) {

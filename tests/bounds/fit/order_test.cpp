@@ -91,7 +91,7 @@ TEST_SUITE("fit/order") {
         }
     }
 
-    TEST_CASE("so have straight sets, thin ones, single points and full ones") {
+    TEST_CASE("straight sets, thin ones, single points and solid ones have the same bits in any order") {
         std::mt19937 random(42);
         const glm::dvec3 shapes[] = {{1, 0, 0}, {1, 1e-7, 0}, {1, 0.5, 1e-9}, {0, 0, 0}, {1, 0.8, 0.5}};
         for (int run = 0; run < 10; ++run)
@@ -139,7 +139,7 @@ TEST_SUITE("fit/order") {
         }
     }
 
-    TEST_CASE("nor do they where coordinates next to zero are lost beside the set's size: 100 points are 200") {
+    TEST_CASE("points listed twice change nothing, also with coordinates that are lost relative to the set's size") {
         std::mt19937 random(47);
         std::uniform_real_distribution<float> unit(-1.0f, 1.0f);
         for (int run = 0; run < 20; ++run) {

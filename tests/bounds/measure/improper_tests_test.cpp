@@ -65,7 +65,7 @@ TEST_SUITE("measure/improper_tests") {
         CHECK(planar == doctest::Approx(pi));  // the exact value: of a disc's places in a disc
     }
 
-    TEST_CASE("of spheres and discs the outer measure is the difference of two larger ones") {
+    TEST_CASE("the outer measure of spheres and discs is the difference of two larger ones") {
         const auto sphere = intrinsic_volumes_of_sphere;
         const auto disc = planar_measures_of_disc;
         CHECK(improper_outside(sphere(4.0), sphere(2.0), sphere(1.0)) ==

@@ -50,7 +50,7 @@ TEST_SUITE("measure/planar") {
               std::vector<glm::dvec2>{{0.0, 0.0}, {4.0, 0.0}, {4.0, 4.0}, {0.0, 4.0}});
     }
 
-    TEST_CASE("what lies behind a polygon's last corner is not read") {
+    TEST_CASE("memory behind a polygon's last corner is not read") {
         const std::vector<glm::dvec2> points = {{0.0, 0.0}, {2.0, 0.0}, {2.0, 3.0}, {0.0, 3.0}, {std::nan(""), 1e9}};
         CHECK(convex_hull(std::span(points).first(4)).value().size() == 4);
         const PlanarMeasures polygon = planar_measures_of_convex_polygon(std::span(points).first(4));

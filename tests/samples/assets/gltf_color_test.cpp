@@ -30,7 +30,7 @@ TEST_SUITE("assets/gltf_color") {
         CHECK(sheet.sample({0.5f, 0.5f}, kAll).x == doctest::Approx(0.25));
     }
 
-    TEST_CASE("of a large picture, too, the last column counts") {
+    TEST_CASE("the last column of a large picture counts") {
         std::string texels(2049, '0');
         texels.back() = '1';
         assets::TexturePyramid row;

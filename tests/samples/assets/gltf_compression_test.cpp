@@ -151,7 +151,7 @@ TEST_SUITE("assets/gltf_compression") {
         }
     }
 #endif
-    TEST_CASE("what is not decoded here is named") {
+    TEST_CASE("a file that requires an unknown extension is refused by its name") {
         CHECK_FALSE(assets::decodes("KHR_unknown_compression"));
         Asset asset = plain();
         asset.root["extensionsRequired"] = {"KHR_unknown_compression"};

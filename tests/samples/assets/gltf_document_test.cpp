@@ -88,7 +88,7 @@ TEST_SUITE("assets/gltf_document") {
         CHECK(says(message("a.gltf", asset.root.dump()), "no object"));
     }
 
-    TEST_CASE("what is written is what was read: members in their order, numbers, chunks of other kinds") {
+    TEST_CASE("a written file is the one that was read: members in order, numbers, chunks of other kinds") {
         Asset asset = strip_asset();
         asset.root["extras"] =
             Json::parse(R"({"z": 1, "a": [0.1, 1e-7, -0.0, 12345678901234567], "text": "ä\u0000\"" })");
@@ -121,7 +121,7 @@ TEST_SUITE("assets/gltf_document") {
         CHECK_FALSE(again->root["buffers"][0].contains("uri"));
     }
 
-    TEST_CASE("images in files beside are taken in once, those that cannot be keep their URI, with a warning") {
+    TEST_CASE("images in other files are embedded once, unreadable ones keep their URI, with a warning") {
         Asset asset = strip_asset();
         const TemporaryFile picture("picture.png", kPng), text("notes.txt", "hello");
         const auto name = [](const TemporaryFile& f) { return std::filesystem::path(f.path()).filename().string(); };

@@ -123,7 +123,7 @@ TEST_SUITE("assets/gltf_extensions") {
         CHECK(says(first_words(asset), "has the extension CESIUM_RTC (first on the asset)"));
     }
 
-    TEST_CASE("where a build lacks a decoder, it says which and what to install") {
+    TEST_CASE("if a build lacks a decoder, the message says which and what to install") {
         for (const auto& [name, package] :
              {std::pair<std::string, std::string>("KHR_draco_mesh_compression", "libdraco-dev"),
               {"EXT_meshopt_compression", "libmeshoptimizer-dev"},

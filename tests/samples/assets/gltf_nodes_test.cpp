@@ -207,7 +207,7 @@ TEST_SUITE("assets/gltf_nodes") {
         CHECK(says(test_files::message(load_asset(bad, options)), "--max-nodes"));
     }
 
-    TEST_CASE("a node that is not visible hides all below it, and nothing beside it") {
+    TEST_CASE("an invisible node hides all nodes below it, and no others") {
         std::mt19937 random(4619);
         for (int trial = 0; trial < 300; ++trial) {
             CAPTURE(trial);

@@ -124,7 +124,7 @@ TEST_SUITE("assets/hostile_files") {
         CHECK(says(obj->warnings[1], "leads out"));
     }
 
-    TEST_CASE("what a document takes in for its output is from its own folder only") {
+    TEST_CASE("a document embeds only files of its own folder") {
         const Place place;
         Asset asset = two_triangles();
         asset.root["images"] = {
@@ -194,7 +194,7 @@ TEST_SUITE("assets/hostile_files") {
         CHECK(says(test_files::message(assets::load_scene(place.root + "/asset/a.obj", options)), "--max-bytes"));
     }
 
-    TEST_CASE("images beside a document count as well, and are left out where they pass the limit of bytes") {
+    TEST_CASE("images in other files count towards the limit of bytes, and are left out beyond it") {
         Place place;
         // 1 x 1 pixel, in the Netpbm format.
         const std::string image = std::string("P6 1 1 255\n") + "abc";
@@ -219,7 +219,7 @@ TEST_SUITE("assets/hostile_files") {
         }
     }
 
-    TEST_CASE("a small file that asks for much is refused before the memory is taken") {
+    TEST_CASE("a small file that demands much memory is refused before it is allocated") {
         // Primitives that share one accessor: each would be a mesh of its own.
         Asset shared;
         const auto positions = shared.accessor(std::vector<float>(9000, 1.0f), "VEC3");

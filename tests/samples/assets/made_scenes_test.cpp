@@ -159,7 +159,7 @@ TEST_SUITE("assets/made scenes") {
             check(pipe, pi * 0.01 * 7.0, 1e-3);               // π r² length
         }
     }
-    TEST_CASE("office, valley and hall are as large as they should be, and have a way to walk") {
+    TEST_CASE("office, valley and hall have the intended size, and a path to walk") {
         const SceneSource office = made("office"), valley = made("valley"), hall = made("hall");
         CHECK(office.scene.instance_count() > 1500);
         CHECK(triangles_of(office.scene) > 700'000);

@@ -56,7 +56,7 @@ TEST_SUITE("assets/town") {
         }
     }
 
-    TEST_CASE("the smallest and larger towns have about the size asked for") {
+    TEST_CASE("the smallest and larger towns have about the requested size") {
         CHECK(town(1, 1).scene.instance_count() > 100);
         for (const std::uint32_t wanted : {1000u, 10'000u, 50'000u}) {
             const double made = static_cast<double>(town(1, wanted).scene.instance_count());

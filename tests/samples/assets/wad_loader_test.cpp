@@ -205,7 +205,7 @@ TEST_SUITE("assets/wad_loader") {
         CHECK_FALSE(source->rooms[0].has_ceiling);
     }
 
-    TEST_CASE("rings that touch in a point are told apart") {
+    TEST_CASE("rings that touch in a point are separate rings") {
         // A board whose diagonal cells are one sector: two outlines that touch in the middle.
         const auto diagonal = sector_polygons(board(2, {0, 1, 1, 0}));
         for (const std::size_t s : {0u, 1u}) {

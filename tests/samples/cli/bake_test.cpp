@@ -21,7 +21,7 @@ TEST_SUITE("cli/bake") {
         CHECK(run_cli("bake town --threads lots").status == 2);
     }
 
-    TEST_CASE("what was baked is loaded again, damage, a cut and another version are told apart") {
+    TEST_CASE("a baked file is loaded again, and damage, a cut and another version give different messages") {
         const std::string path = scratch().file("town.crofton"), bad = scratch().file("bad.crofton");
         const CliRun baked = run_cli("bake town --instances 400 -o " + path + " --json -");
         REQUIRE(baked.status == 0);
@@ -51,7 +51,7 @@ TEST_SUITE("cli/bake") {
         refused("not a file of ours at all, but long enough to have a header of its own", "not a .crofton file");
     }
 
-    TEST_CASE("what was baked can be shown and measured as the scene that it was made of") {
+    TEST_CASE("a baked file can be drawn and measured like the scene that it was made of") {
         const std::string baked = scratch().file("shown.crofton"), again = scratch().file("again.crofton");
         REQUIRE(run_cli("bake room -o " + baked).status == 0);
         const std::string frames = " --frames 4 --camera orbit --no-draw --verify --ids --json - ";

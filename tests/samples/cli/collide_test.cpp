@@ -34,7 +34,7 @@ json answer(const std::string& arguments) {
 }  // namespace
 
 TEST_SUITE("cli/collide") {
-    TEST_CASE("what cannot be read or understood ends with status 2 and is named") {
+    TEST_CASE("a file that cannot be read or understood ends with status 2 and is named") {
         const std::string cube = cube_file("cube.obj", 1.0), pose = scratch().file("bad_pose.txt");
         const auto refused = [](const std::string& arguments, const std::string& culprit) {
             const CliRun run = run_cli("collide " + arguments);

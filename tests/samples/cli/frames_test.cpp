@@ -216,7 +216,7 @@ TEST_SUITE("cli/frames") {
         CHECK(run_cli(kSmallTown + "--frames 1 --no-draw --json -").json()["frames"][0]["occlusion"].is_null());
     }
 
-    TEST_CASE("what is seen is counted in every frame that is drawn, and is the same with and without occlusion") {
+    TEST_CASE("owned pixels are counted in every drawn frame, and are the same with and without occlusion") {
         const std::string path = kSmallTown + "--frames 4 --camera street ";
         const json plain = run_cli(path + "--json -").json(), occluded = run_cli(path + "--occlude --json -").json();
         if (plain["summary"]["drawn"] == false) {

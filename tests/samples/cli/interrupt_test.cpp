@@ -98,7 +98,7 @@ std::string ring_file() {
 }  // namespace
 
 TEST_SUITE("cli/interrupt") {
-    TEST_CASE("whatever a command is at, SIGINT and SIGTERM end it, with status 130 and nothing half written") {
+    TEST_CASE("at any time SIGINT and SIGTERM end a command, with status 130 and nothing half written") {
         const std::string folder = fresh("half");
         const std::string out = folder + "/out";
         const std::vector<std::string> commands[] = {
@@ -169,7 +169,7 @@ TEST_SUITE("cli/interrupt") {
         check_ended(none);
     }
 
-    TEST_CASE("what takes longer than two seconds says how long it has been at it, on standard error") {
+    TEST_CASE("a command that takes longer than two seconds reports its progress on standard error") {
         const Ended ended =
             end_after({"study", "measure", "room", "--lines", "1000000000000"}, milliseconds(2600), SIGINT);
         CHECK(ended.err.find("crofton: measure: 2 s\n") == 0);

@@ -217,7 +217,7 @@ TEST_SUITE("cli/pvs") {
         }
     }
 
-    TEST_CASE("a level that leaks is told by its open cells, and its sets are right") {
+    TEST_CASE("a leaking level is reported by its open cells, and its sets are right") {
         const std::string closed = level(), path = scratch().file("level.obj");
         const auto open_cells = [&] {
             const CliRun run = run_cli("pvs " + closed + kSmall + "--views 40 --json -");

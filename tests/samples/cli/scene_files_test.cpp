@@ -56,7 +56,7 @@ TEST_SUITE("cli/scene_files") {
         }
     }
 
-    TEST_CASE("what installs by default has the decoders of compressed glTF") {
+    TEST_CASE("the default installation has the decoders of compressed glTF") {
         // Where apt-get is not found, it says what it would install.
         const auto script = std::filesystem::path(__FILE__).parent_path() / "../../third_party/install.sh";
         if (!std::filesystem::exists(script)) return;

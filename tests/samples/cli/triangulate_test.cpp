@@ -141,7 +141,7 @@ TEST_SUITE("cli/triangulate") {
             CHECK(run_cli(file + options).status == 2);
     }
 
-    TEST_CASE("what is not proven when time is over is said, with how heavy it can be") {
+    TEST_CASE("after a time limit, unproved polygons are reported with a bound of their weight") {
         std::string points;
         for (int i = 0; i < 2000; ++i)
             points += " " + std::to_string(i % 2 * 3 + i) + " " + std::to_string((i - 1000) * (i - 1000));
@@ -153,7 +153,7 @@ TEST_SUITE("cli/triangulate") {
         }
     }
 
-    TEST_CASE("a limit of time is the only one: work that was not asked to be limited is not") {
+    TEST_CASE("a time limit is the only limit, and work is not limited as well") {
         // A smooth ring that needs more than the work that is granted without limits.
         std::string points;
         constexpr int kPoints = 2400;

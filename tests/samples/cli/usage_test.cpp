@@ -39,7 +39,7 @@ TEST_SUITE("cli/usage") {
         CHECK(run_cli("frames town street").err.find("'street' is one argument too many") != std::string::npos);
     }
 
-    TEST_CASE("what needs another option says which one, and the exit status is 2") {
+    TEST_CASE("an option that needs another says which one, and the exit status is 2") {
         write_contents(scratch().file("square.poly"), "P square 1\n4 0 0 2 0 2 2 0 2\n");
         write_contents(scratch().file("tetra.obj"),
                        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
@@ -90,7 +90,7 @@ TEST_SUITE("cli/usage") {
         CHECK(run_cli("collide " + obj + " " + obj + " --mode cast --spin 0,1,0").status == 0);
     }
 
-    TEST_CASE("help is asked for in either way") {
+    TEST_CASE("help is printed for either form of the request") {
         CHECK(run_cli("help").out == run_cli("--help").out);
         CHECK(run_cli("help fit").out == run_cli("fit --help").out);
         CHECK(run_cli("help fit").status == 0);
@@ -190,7 +190,7 @@ TEST_SUITE("cli/usage") {
         }
     }
 
-    TEST_CASE("what is missing, and what --cells may be, is said") {
+    TEST_CASE("the message says what is missing, and what --cells may be") {
         CHECK(run_cli("fit").err.find("an argument is missing: files") != std::string::npos);
         CHECK(run_cli("collide a.obj").err.find("an argument is missing: B") != std::string::npos);
         const CliRun cells = run_cli("pvs room --cells 4x4 --out p.crofton");
@@ -250,7 +250,7 @@ TEST_SUITE("cli/usage") {
         }
     }
 
-    TEST_CASE("what is no plain file is written to and stays what it is, a full disk is an error") {
+    TEST_CASE("special files are written to and stay what they are, and a full disk is an error") {
         const std::string link = scratch().file("link.csv"), target = scratch().file("target.csv");
         write_contents(target, "old");
         std::filesystem::create_symlink(target, link);

@@ -155,7 +155,7 @@ TEST_SUITE("engines/integrate") {
         Camera camera;
         camera.position = {19.0, 1.5, 10.0};
         for (int frame = 0; frame < 3; ++frame) {
-            // 1. What moved: the scene says which boxes changed, the tree follows them, all at once.
+            // 1. Move: the scene lists the changed boxes, and the tree takes all of them at once.
             const auto place = from_trs({0.6 * frame, 0.0, 0.0}, glm::dquat(1, 0, 0, 0), glm::dvec3(1.0)).value();
             if (!scene.set_local(nodes[0], place)) std::abort();
             scene.update();
@@ -164,16 +164,16 @@ TEST_SUITE("engines/integrate") {
             if (!tree.move(scene.moved_instances(), moved_boxes)) std::abort();
             tree.refit();
 
-            // 2. What is seen.
+            // 2. Draw the visible objects.
             cull::find_visible(tree, {.frustum = frustum_of(camera).value()}, visible);
             for (const boxtree::ItemId id : visible.ids()) draw(scene.mesh_of(id), scene.world(scene.node_of(id)));
 
-            // 3. What touches what, and what has just stopped to.
+            // 3. Handle pairs that began or ended to touch.
             if (!broadphase.update(scene.world_boxes())) std::abort();
             for (const IdPair pair : broadphase.began()) on_touch(pair);
             for (const IdPair pair : broadphase.ended()) on_part(pair);
 
-            // 4. What it cost.
+            // 4. Print the cost.
             const cull::Statistics& cost = visible.statistics();
             std::printf("frame %d: %zu in view, %llu nodes and %llu boxes tested, %zu pairs\n", frame, visible.size(),
                         static_cast<unsigned long long>(cost.nodes_tested),
@@ -184,7 +184,7 @@ TEST_SUITE("engines/integrate") {
         CHECK(touching == 1);
     }
 
-    TEST_CASE("what moves in every frame, beside the tree of what rests") {
+    TEST_CASE("moving objects are culled outside the tree of static ones") {
         using namespace crofton;
         std::vector<Obb> boxes(300);
         for (std::size_t i = 0; i < boxes.size(); ++i) {
@@ -197,7 +197,7 @@ TEST_SUITE("engines/integrate") {
         cull::MovingBoxes movers;
         cull::VisibleSet visible, expected;
         const Camera camera;
-        // Once: what begins to move leaves the tree, and keeps its id and its layers.
+        // Once: objects that begin to move leave the tree, and keep their ids and layers.
         for (const boxtree::ItemId id : moving_ids)
             if (!tree.detach(id)) std::abort();
         tree.refit();
@@ -212,7 +212,7 @@ TEST_SUITE("engines/integrate") {
             cull::find_visible(boxes, {}, {.frustum = frustum_of(camera).value()}, expected);
             CHECK(test::ranges::equal(visible.ids(), expected.ids()));
         }
-        // What has come to rest goes back.
+        // Objects that have come to rest go back.
         if (!tree.attach(moving_ids.back(), moving_boxes.back())) std::abort();
         moving_ids.pop_back();
         moving_boxes.pop_back();
@@ -248,7 +248,7 @@ TEST_SUITE("engines/integrate") {
                 return std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
             },
             [](void*, void* memory, std::size_t, std::size_t) { std::free(memory); }, nullptr};
-        crofton::set_memory_hooks(hooks);  // before anything else of Crofton's
+        crofton::set_memory_hooks(hooks);  // before any other call
         crofton::set_log_handler([](void*, crofton::LogLevel,
                                     std::string_view message) { std::printf("%s\n", std::string(message).c_str()); },
                                  nullptr);

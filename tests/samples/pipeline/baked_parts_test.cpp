@@ -31,7 +31,7 @@ scene::Scene two_triangles(const glm::vec3& corner, bool swapped = false) {
 }  // namespace
 
 TEST_SUITE("pipeline/baked_parts") {
-    TEST_CASE("what belongs to a scene is another's if meshes, and the nodes that hold them, are the same") {
+    TEST_CASE("sets belong to a scene if its meshes and nodes are the same") {
         const scene::Scene scene = two_triangles({0, 2, 0});
         CHECK(pipeline::same_parts(scene, two_triangles({0, 2, 0})));
         CHECK_FALSE(pipeline::same_parts(scene, two_triangles({0, 3, 0})));

@@ -31,7 +31,7 @@ Obb box_at(const glm::dvec3& center, float half) {
 }  // namespace
 
 TEST_SUITE("pipeline/brute_force") {
-    TEST_CASE("what touches a plane is unclear, never a verdict") {
+    TEST_CASE("a triangle that touches a plane is unclear, never a verdict") {
         const glm::dvec3 touching[] = {{1.0, 0.0, 0.0}, {2.0, 0.5, 0.0}, {2.0, -0.5, 0.0}};
         CHECK(clip_polygon(cube(), touching).meets == Truth::unclear);
         CHECK(boxes_meet(box_at({0, 0, 0}, 1.0f), box_at({2, 0, 0}, 1.0f)) == Truth::unclear);
@@ -46,7 +46,7 @@ TEST_SUITE("pipeline/brute_force") {
         CHECK(clip_polygon(cube(), through).contained == Truth::no);
     }
 
-    TEST_CASE("a box around the whole frustum meets it, one inside is contained, one beside does neither") {
+    TEST_CASE("a box around the frustum meets it, one inside is contained, one outside does neither") {
         CHECK(clip_box(cube(), box_at({0, 0, 0}, 5.0f), {0, 0, 0}).meets == Truth::yes);
         CHECK(clip_box(cube(), box_at({0, 0, 0}, 5.0f), {0, 0, 0}).contained == Truth::no);
         CHECK(clip_box(cube(), box_at({0.2, 0, 0}, 0.5f), {0, 0, 0}).contained == Truth::yes);
@@ -60,7 +60,7 @@ TEST_SUITE("pipeline/brute_force") {
         CHECK(clip_sphere(cube(), {3.0, 0, 0}, 1.0).meets == Truth::no);
     }
 
-    TEST_CASE("boxes apart along an edge-edge axis are told apart") {
+    TEST_CASE("boxes separated only by an edge-edge axis do not overlap") {
         Obb a = box_at({0, 0, 0}, 1.0f), b = box_at({2.3, 2.3, 0}, 1.0f);
         const float s = 0.70710678f;
         b.axes = glm::mat3(glm::vec3(s, s, 0), glm::vec3(-s, s, 0), glm::vec3(0, 0, 1));

@@ -44,7 +44,7 @@ TEST_SUITE("pipeline/camera_path") {
         CHECK(std::isinf(again->far_distance));
     }
 
-    TEST_CASE("every built-in path gives as many valid cameras as asked, the same for the same seed") {
+    TEST_CASE("every built-in path gives the requested number of valid cameras, the same for the same seed") {
         for (const char* kind : {"orbit", "street", "random"})
             for (const Aabb& bounds : {Aabb{{-50, 0, -30}, {50, 20, 30}}, Aabb{{1e6, 5, 5}, {1e6, 5, 5}}}) {
                 const PathOptions options{.kind = kind, .frames = 37, .seed = 3};

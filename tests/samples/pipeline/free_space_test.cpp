@@ -87,7 +87,7 @@ TEST_SUITE("pipeline/free_space") {
         }
         CHECK(length_of(space->walk()) > 20.0);
     }
-    TEST_CASE("where there is no floor there is no place") {
+    TEST_CASE("without a floor there is no place to stand") {
         scene::Scene scene;
         add_floor(scene, 0.0, 1.0f);
         const auto space = FreeSpace::find(scene, Aabb{{-10, 0, -1}, {10, 3, 1}});

@@ -66,7 +66,7 @@ std::pair<Json, nlohmann::json> random_document(std::mt19937_64& random, int dep
 }  // namespace
 
 TEST_SUITE("pipeline/json") {
-    TEST_CASE("what is no JSON, or nested too deep, is refused and leaves the document as it was") {
+    TEST_CASE("text that is not JSON, or nested too deep, is refused and leaves the document unchanged") {
         for (const std::string& text : {std::string(""), std::string("{"), std::string("[1,]"), std::string("nul"),
                                         std::string("\"\xff\""), std::string(1'000'000, '[')}) {
             Json document = 7;
@@ -83,7 +83,7 @@ TEST_SUITE("pipeline/json") {
         CHECK(parse_json("\"" + nested(1000) + "\\\"[\"", document));  // brackets within a text nest nothing
     }
 
-    TEST_CASE("what a value is not reads as zero, empty or absent") {
+    TEST_CASE("a value read as another kind is zero, empty or absent") {
         const Json number = 3.5, text = "x", null;
         CHECK(number.text().empty());
         CHECK(number.find("a") == nullptr);

@@ -40,7 +40,7 @@ const PipelineOptions kWithOcclusion{.occlusion = OcclusionOptions{}};
 }  // namespace
 
 TEST_SUITE("pipeline/occlusion") {
-    TEST_CASE("what a wall hides is not listed, and is again once the wall has moved away or is hidden") {
+    TEST_CASE("an object behind a wall is not listed, and is again once the wall has moved away or is hidden") {
         for (const bool moves : {true, false}) {
             CAPTURE(moves);
             Yard yard;

@@ -66,7 +66,7 @@ struct Plain {
 }  // namespace
 
 TEST_SUITE("pipeline/pvs_views") {
-    TEST_CASE("where lines have seen the floor no pixel is wrong, and its two triangles are drawn alone") {
+    TEST_CASE("if lines have seen the floor no pixel is wrong, and only its two triangles are drawn") {
         const Plain plain;
         const auto seen = plain.look(plain.sets(false, false));
         REQUIRE_MESSAGE(seen.has_value(), error_of(seen).message);
@@ -108,7 +108,7 @@ TEST_SUITE("pipeline/pvs_views") {
         CHECK(looked->owner_triangles > 1.9);
     }
 
-    TEST_CASE("what a false proof hides is wrong in conservative mode too") {
+    TEST_CASE("an object hidden by a false proof is wrong in conservative mode too") {
         const Plain plain;
         const auto looked = plain.look(plain.sets(true, true));
         REQUIRE_MESSAGE(looked.has_value(), error_of(looked).message);

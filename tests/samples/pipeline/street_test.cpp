@@ -259,7 +259,7 @@ TEST_SUITE("pipeline/street") {
         for (const glm::dvec3& eye : walked.eyes) CHECK(eye.y == doctest::Approx(kEye).epsilon(1e-3));
     }
 
-    TEST_CASE("where no person fits in, the eye is a share of the size above the floor, and the street says so") {
+    TEST_CASE("if no person fits in, the eye is a share of the size above the floor, and the path reports it") {
         for (const float size : {0.5f}) {
             CAPTURE(size);
             Model room;

@@ -69,7 +69,7 @@ TEST_SUITE("pipeline/verify") {
         CHECK_FALSE(mismatches(elsewhere).messages.empty());
     }
 
-    TEST_CASE("what is hidden is no mismatch: scaled to nothing, or out of the range of coordinates") {
+    TEST_CASE("a hidden object is no mismatch: scaled to nothing, or out of the range of coordinates") {
         for (const CullMode mode : {CullMode::tree, CullMode::flat, CullMode::none})
             for (const BoundsKind kind : {BoundsKind::obb_perimeter, BoundsKind::aabb, BoundsKind::sphere}) {
                 CAPTURE(std::string(to_string(mode)));

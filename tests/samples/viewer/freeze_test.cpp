@@ -31,7 +31,7 @@ TEST_SUITE("viewer/freeze") {
         CHECK(Pixels(scratch().file("outside.png")).different(Pixels(scratch().file("frozen.png"))) > 500);
         CHECK(picture(result, "thawed.png")["statistics"]["camera"] == picture(result, "thawed.png")["eye"]);
     }
-    TEST_CASE("what is seen is counted for each picture, from the eye that culls, and not where that is switched off") {
+    TEST_CASE("owned pixels are counted for each picture, from the culling eye, unless switched off") {
         const ViewRun result = view({set(0, {{"panels", false}, {"paused", true}}),
                                      shot(1, "before.png"),
                                      {{"frame", 2}, {"key", "F"}},

@@ -76,7 +76,7 @@ double nearest_triangle(const scene::Scene& scene, std::span<const scene::Instan
 }  // namespace
 
 TEST_SUITE("viewer/picking") {
-    TEST_CASE("nothing is picked from an empty list, behind the camera or beside the square") {
+    TEST_CASE("a click on an empty list, behind the camera or outside the square picks nothing") {
         const scene::Scene scene = squares({-5.0, 5.0});
         Picker pick_at(scene);
         const Camera camera;
@@ -226,14 +226,14 @@ TEST_SUITE("viewer/instance_bodies") {
                 }
             }
     }
-    TEST_CASE("what is flat has no hull and meets nothing, its triangles are hit all the same") {
+    TEST_CASE("a flat object has no hull and no contacts, and its triangles are hit all the same") {
         const scene::Scene scene = squares({-5.0, -5.0});
         InstanceBodies bodies(scene);
         CHECK_FALSE(bodies.outline(0, [](const glm::dvec3&, const glm::dvec3&) {}));
         CHECK(bodies.hull_contacts(std::span(kAllPairs, 1)).empty());
         CHECK(bodies.raycast({{0.1, 0.2, 0}, {0, 0, -1}}, 1)->t == doctest::Approx(5.0));
     }
-    TEST_CASE("contacts are found anew when the scene has moved or other pairs meet, and forgotten when not wanted") {
+    TEST_CASE("contacts are found again when the scene has moved or other pairs meet, and dropped when not wanted") {
         scene::Scene scene = cubes(glm::dmat3(1.0), glm::dmat3(1.0));
         InstanceBodies bodies(scene);
         FoundContacts contacts;

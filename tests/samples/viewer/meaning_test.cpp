@@ -173,7 +173,7 @@ TEST_SUITE("viewer/meaning") {
         CHECK(moved("c.png", "d.png") == 0);
         CHECK(moved("d.png", "e.png") > 0);
     }
-    TEST_CASE("what is picked turns blue, gets a box with axes, and is told of in the scene panel") {
+    TEST_CASE("a picked object turns blue, gets a box with axes, and is described in the scene panel") {
         const ViewRun run =
             view({set(0, {{"panels", false}, {"paused", true}, {"coloring", "collision"}, {"collisions", false}}),
                   shot(1, "none.png"),

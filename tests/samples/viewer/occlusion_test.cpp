@@ -42,7 +42,7 @@ occlude::OcclusionBuffer draw_box(const glm::dvec3& center, const glm::vec3& hal
 }  // namespace
 
 TEST_SUITE("viewer/occlusion") {
-    TEST_CASE("what is hidden is not drawn, and the picture is the same bits") {
+    TEST_CASE("hidden objects are not drawn, and the picture has the same bits") {
         const ViewRun run = view({set(0, {{"panels", false}, {"paused", true}}),
                                   shot(1, "all.png"),
                                   {{"frame", 2}, {"key", "Z"}},
@@ -119,7 +119,7 @@ TEST_SUITE("viewer/occlusion") {
         CHECK_FALSE(picture(run, "off.png").contains("hidden_by"));
         CHECK(Pixels(scratch().file("off.png")).red() == 0);
     }
-    TEST_CASE("baked occluders hide what found ones hide, also after another bound was asked for") {
+    TEST_CASE("baked occluders hide what found ones hide, also after a change of bounds") {
         const std::string file = scratch().file("town.crofton");
         REQUIRE(run_cli("bake town --instances 400 -o " + file).status == 0);
         const json events{set(0, {{"panels", false}, {"paused", true}, {"occlude", true}}),

@@ -25,7 +25,7 @@ int cyan(const char* name) {
 }  // namespace
 
 TEST_SUITE("viewer/visible_set") {
-    TEST_CASE("what is proved hidden from the eye's cell is magenta, and seen from elsewhere alone") {
+    TEST_CASE("objects proved hidden from the eye's cell are magenta, and visible only from elsewhere") {
         const std::string scene = scratch().file("yard.obj"), cells = scratch().file("cells.txt"),
                           sets = scratch().file("sets.crofton");
         write_contents(scene, yard_obj());

@@ -47,7 +47,7 @@ bool are_same(const std::vector<T>& expected, const Range& given) {
 }  // namespace
 
 TEST_SUITE("collide/broadphase life") {
-    TEST_CASE("whatever moves, comes and goes, pairs are those of all boxes, asked for each time or now and then") {
+    TEST_CASE("if items move, come and go, pairs are those of all boxes, read each time or now and then") {
         std::mt19937_64 random(31);
         ThreadPool pool(3);
         for (const bool tested : {false, true})

@@ -272,7 +272,7 @@ TEST_SUITE("collide/broadphase") {
         CHECK(broadphase.statistics().rejected == 0);
     }
 
-    TEST_CASE("where nothing moves nothing is looked at, and moves that name no box are an error") {
+    TEST_CASE("an update without moves tests nothing, and moves that name no box are an error") {
         std::mt19937_64 random(9);
         const auto boxes = random_boxes(random, 300, 4.0);
         Broadphase broadphase;
@@ -352,7 +352,7 @@ TEST_SUITE("collide/broadphase") {
         }
     }
 
-    TEST_CASE("where too many pairs are an error, those of the update before have ended") {
+    TEST_CASE("after the error for too many pairs, the pairs of the last update have ended") {
         std::vector<Obb> boxes(64);
         for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i].center.x = 1.5 * static_cast<double>(i);
         for (Obb& box : boxes) box.half_extents = glm::vec3(1.0f);

@@ -25,7 +25,7 @@ int collide_boxes() {
     crofton::collide::Broadphase broadphase;
     if (auto result = broadphase.update(boxes); !result) return report(result.error());
 
-    // Next frame one box has moved.
+    // In the next frame one box has moved.
     boxes[2].center.x = 1.5;
     const std::uint32_t moved[] = {2};
     if (auto result = broadphase.update_moved(boxes, moved); !result) return report(result.error());

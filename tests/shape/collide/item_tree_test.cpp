@@ -150,7 +150,7 @@ TEST_SUITE("collide/item_tree") {
         }
     }
 
-    TEST_CASE("leaves stay a third full at least, and nearly as small as those of a tree made anew") {
+    TEST_CASE("leaves stay at least a third full, and nearly as small as those of a new tree") {
         std::mt19937_64 random(42);
         ItemTree tree;
         Items items;

@@ -13,7 +13,7 @@ using namespace crofton;
 using namespace crofton::collide;
 
 TEST_SUITE("collide/broadphase") {
-    TEST_CASE("of thousands of boxes on a grid each meets its two neighbours in its row, in any order") {
+    TEST_CASE("each of thousands of boxes on a grid overlaps its two neighbours in its row, in any order") {
         std::mt19937_64 random(60);
         for (const std::uint32_t n : {17u, 27u, 41u}) {
             std::vector<std::uint32_t> id(n * n * n);

@@ -204,7 +204,7 @@ TEST_SUITE("collide/obb_obb") {
         hwy::SetSupportedTargetsForTest(0);
     }
 
-    TEST_CASE("tells each of the fifteen axes apart, in either order of the boxes") {
+    TEST_CASE("separating_axis distinguishes the fifteen axes, in either order of the boxes") {
         std::mt19937_64 random(5);
         std::uint32_t seen = 0;
         for (int trial = 0; trial < 3000; ++trial) {

@@ -138,7 +138,7 @@ TEST_SUITE("collide/tree edges") {
         }
     }
 
-    TEST_CASE("boxes so small beside their leaf that its units lose them are near where they end") {
+    TEST_CASE("boxes that are tiny relative to their leaf's units stay near their true extent") {
         NearMisses random(74);
         for (int trial = 0; trial < 4000; ++trial) {
             const int axis = static_cast<int>(random.index(3));

@@ -215,7 +215,7 @@ TEST_SUITE("collide/tree_query") {
         }
     }
 
-    TEST_CASE("what is near is visited, whatever the visitor asks next, and a negative answer ends the visit") {
+    TEST_CASE("visit_near visits near items for every visitor, and a negative result ends the visit") {
         NearMisses random(7);
         const oracle::Crowd crowd = crowd_of(2000, 1e4, 7);
         const boxtree::BoxTree tree = tree_of(crowd);

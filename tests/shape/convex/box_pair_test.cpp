@@ -202,7 +202,7 @@ TEST_SUITE("convex/box_pair") {
     }
 
     // A face looks 2e-10 deep; an axis across two edges parts them, by less than a choice among axes tells.
-    TEST_CASE("a thin box 7e-10 m beside one of 1 km has no points") {
+    TEST_CASE("a thin box 7e-10 m from one of 1 km has no points") {
         const auto body = [](float x, float y, float z) { return Body::box({x, y, z}).value(); };
         const Body thin = body(0x1.065462p-2f, 0x1.0c426cp-12f, 0x1.410614p-12f),
                    large = body(0x1.c4ae06p+7f, 0x1.65cfdcp+8f, 0x1.a0a068p+8f);
@@ -301,7 +301,7 @@ TEST_SUITE("convex/box_pair") {
         CHECK(kept > 10);
     }
 
-    TEST_CASE("whatever face a cache names, it is taken only where no axis is less deep by 1e-4 of the size") {
+    TEST_CASE("a face that a cache names is used only if no axis is less deep by 1e-4 of the size") {
         RandomBodies random(29);
         int taken = 0, others = 0, meeting = 0;
         for (int i = 0; i < 8000; ++i) {

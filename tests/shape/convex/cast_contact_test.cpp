@@ -82,7 +82,7 @@ void check_hit(const BodyAtPose& a, const Motion& ma, const BodyAtPose& b, const
 }  // namespace
 
 TEST_SUITE("convex/cast_contact") {
-    TEST_CASE("of every kind against every kind, the points of touch lie on both bodies and the normal parts them") {
+    TEST_CASE("for all pairs of kinds, hit points lie on both bodies and the normal separates them") {
         RandomBodies random(71);
         int hits = 0, misses = 0;
         for (int round = 0; round < 200; ++round) {
@@ -138,7 +138,7 @@ TEST_SUITE("convex/cast_contact") {
         CHECK(misses > 2000);
     }
 
-    TEST_CASE("casts at half-spaces tell the point on the ground under the body, in either order") {
+    TEST_CASE("casts at half-spaces return the point on the ground under the body, in either order") {
         RandomBodies random(72);
         const Plane plane{{0.2, 1.0, -0.3}, 0.4};
         const Body half = Body::half_space(plane).value();
@@ -157,7 +157,7 @@ TEST_SUITE("convex/cast_contact") {
             }
     }
 
-    TEST_CASE("casts at bodies of parts tell the points, the normal and the part that is met first") {
+    TEST_CASE("casts at bodies of parts return the points, the normal and the first part") {
         RandomBodies random(73);
         int hits = 0;
         for (int round = 0; round < 60; ++round) {
@@ -240,7 +240,8 @@ TEST_SUITE("convex/cast_contact") {
         CHECK(casts > 5000);
     }
 
-    TEST_CASE("what stands on the ground may spin about the normal, roll along and lift off, and falls in at once") {
+    TEST_CASE(
+        "a body on the ground may spin about the normal, roll along and lift off, and hits at once if it falls in") {
         const Body slab = Body::box({50, 1, 50}).value(), half = Body::half_space({{0, -1, 0}, 0}).value();
         const RigidTransform low = at({0, -1, 0}), zero;
         const glm::dmat3 lying(glm::dvec3(0, 1, 0), glm::dvec3(1, 0, 0), glm::dvec3(0, 0, -1));
@@ -355,7 +356,8 @@ TEST_SUITE("convex/cast_contact") {
         CHECK(overlaps > 1000);
     }
 
-    TEST_CASE("of parts that overlap from the start the deepest is told, with the option the others are still met") {
+    TEST_CASE(
+        "if parts overlap from the start the deepest is the hit, and with the option the cast still hits others") {
         const Body tile = Body::box({0.5f, 0.5f, 0.5f}).value(), sphere = Body::sphere(0.5).value();
         const Compound row =
             Compound::build(
@@ -377,7 +379,7 @@ TEST_SUITE("convex/cast_contact") {
         CHECK(next.normal.x == doctest::Approx(1.0));
     }
 
-    TEST_CASE("early_out changes no hit up to it, and tells later ones as misses, bad ones are errors") {
+    TEST_CASE("early_out changes no hit up to it and turns later ones into misses, and bad values are errors") {
         RandomBodies random(77);
         const Body box = random.box(), sphere = Body::sphere(0.4).value();
         const RigidTransform zero;

@@ -34,7 +34,7 @@ TEST_SUITE("convex/cast") {
         CHECK(error_of(cast({box, there}, {}, {floor, here}, flying({}, {1, 0, 0}))).item == 1);
     }
 
-    TEST_CASE("a cast of zero length tells whether the bodies are within the tolerance now") {
+    TEST_CASE("a cast of zero length says whether the bodies are within the tolerance now") {
         const Body box = Body::box({1, 1, 1}).value();
         const RigidTransform here = at({}), near = at({2.0 + 1e-9, 0, 0}), far = at({2.1, 0, 0});
         CHECK(cast({box, here}, {}, {box, near}, {}).value().result == CastResult::hit);
@@ -189,7 +189,7 @@ TEST_SUITE("convex/cast") {
     }
 
     // Where a point on an arm that turns by about 200 radians is pushed back most by rounding, of 4,000,000 tried.
-    TEST_CASE("what rounding of an angle holds back is no miss: a turning point that grazes a box by 1e-14 hits it") {
+    TEST_CASE("rounding of an angle causes no miss: a turning point that grazes a box by 1e-14 hits it") {
         using Real = long double;
         struct Turn {
             glm::dvec3 spin, arm;
@@ -262,7 +262,7 @@ TEST_SUITE("convex/cast") {
         CHECK(hits == 200);
     }
 
-    TEST_CASE("a cone without width is not hit beside a needle that it has not reached") {
+    TEST_CASE("a cone without width does not hit a needle that it has not reached") {
         const glm::vec3 corners[] = {{-1.64845915e-12f, -1.64845915e-12f, -1.64845915e-12f},
                                      {-237568.0f, -0.124838918f, 0.0f},
                                      {-0.125f, -0.125f, -0.124838918f},

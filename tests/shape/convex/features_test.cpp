@@ -94,7 +94,7 @@ TEST_SUITE("convex/features") {
         CHECK(named[2][0] > 200);
     }
 
-    TEST_CASE("so do those of spheres and capsules on a surface's triangle") {
+    TEST_CASE("points of spheres and capsules on a surface's triangle lie on the features that they name") {
         RandomBodies random(9);
         int named[3] = {};
         for (int i = 0; i < 1500; ++i) {

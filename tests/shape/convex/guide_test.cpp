@@ -18,21 +18,21 @@ int drop(const std::vector<glm::vec3>& points) {
     // clang-format off
     using namespace crofton;
 
-    // Once: what the bodies are.
+    // Once: make the bodies.
     const Result<convex::Hull> rock = convex::Hull::build(points, {.max_vertices = 32});
     if (!rock) return report(rock.error());  // which point is bad, and why
     const convex::Body body = convex::Body::hull(*rock);  // a view: keep `rock`
     const convex::Body floor = convex::Body::box({10.0f, 1.0f, 10.0f}).value();
     const double mass = 2700.0 * rock->mass().volume;
 
-    // Each frame: where they stand, and what the pair remembers.
+    // Each frame: their poses, and the cache of the pair.
     RigidTransform place{glm::dmat3(1.0), {0.0, 1.99, 0.0}}, ground;
-    convex::PairCache cache;  // one a pair, kept from frame to frame
+    convex::PairCache cache;  // one per pair, kept from frame to frame
     const auto contact = convex::contact_manifold({floor, ground}, {body, place}, {.margin = 0.02}, &cache);
     for (int i = 0; i < contact.count; ++i)
         std::printf("%g deep, id %u/%u\n", contact.points[i].depth, contact.points[i].on_a.index, contact.points[i].on_b.index);
 
-    // A fast body: when does it touch?
+    // When does a fast body touch?
     const convex::Motion flight{.velocity = {0.0, -200.0, 0.0}, .spin = {0.0, 0.0, 30.0}};
     place.translation.y = 50.0;
     const auto impact = convex::cast({body, place}, flight, {floor, ground}, {});
@@ -49,7 +49,7 @@ int rest(const crofton::TriangleMesh& level, const std::vector<float>& heights,
     // clang-format off
     const Result<mesh::MeshTree> tree = mesh::MeshTree::build(level);
     if (!tree) return report(tree.error());
-    const auto walls = convex::Body::mesh(*tree, convex::Sides::front);  // pushes outward alone
+    const auto walls = convex::Body::mesh(*tree, convex::Sides::front);  // pushes outward only
     if (!walls) return report(walls.error());
 
     const Result<convex::HeightField> hills =

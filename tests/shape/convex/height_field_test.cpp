@@ -123,7 +123,8 @@ TEST_SUITE("convex/height_field") {
         CHECK(hits > 50);
     }
 
-    TEST_CASE("1025 x 1025: a small body is asked of few triangles, and slides over level ground without a bump") {
+    TEST_CASE(
+        "on a field of 1025 x 1025 a small body tests few triangles, and slides over level ground without a bump") {
         RandomBodies random(3);
         Heights h{1025, 1025, {}, {}, {0.5, 0.5}};
         for (int j = 0; j < 1025; ++j)

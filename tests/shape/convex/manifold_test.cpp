@@ -66,7 +66,7 @@ TEST_SUITE("convex/manifold") {
         CHECK(m.depth == doctest::Approx(0.01));
     }
 
-    TEST_CASE("of points that would do as well the first are kept, so that a body at rest keeps its points") {
+    TEST_CASE("among equally good points the first are kept, so that a body at rest keeps its points") {
         // An octagon on a floor: two squares of its corners span the same area.
         std::vector<glm::vec3> corners;
         for (const glm::vec2 p : {glm::vec2(2, 1), glm::vec2(1, 2), glm::vec2(-1, 2), glm::vec2(-2, 1),

@@ -118,7 +118,7 @@ TEST_SUITE("convex/mass") {
         CHECK(triangle.volume == doctest::Approx(0.5 + (2.0 + std::sqrt(2.0)) * kPi * 0.125 + kPi / 6).epsilon(1e-14));
     }
 
-    TEST_CASE("rounded hulls, cylinders and cones beside sums over a grid") {
+    TEST_CASE("mass of rounded hulls, cylinders and cones agrees with sums over a grid") {
         RandomBodies random(3);
         std::vector<Body> bodies{Body::cylinder(0.75f, 0.5f).value(), Body::cone(0.75f, 0.5f).value(),
                                  Body::triangle({0, 0, 0}, {1, 0.2f, 0}, {0.3f, 1, 0.5f}).value()};

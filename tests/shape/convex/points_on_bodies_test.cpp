@@ -190,7 +190,7 @@ TEST_SUITE("convex/points_on_bodies") {
         }
     }
 
-    TEST_CASE("deepest points are on both bodies, beside bodies that are up to 10^6 times as large") {
+    TEST_CASE("deepest points are on both bodies, even if one is 10^6 times as large") {
         RandomBodies random(43);
         int overlapping = 0;
         for (int i = 0; i < 4000; ++i) {

@@ -131,7 +131,7 @@ TEST_SUITE("convex/query") {
         CHECK(closest_point({box, at({})}, {4, 0, 0}).on_b.x == doctest::Approx(1.0));
     }
 
-    TEST_CASE("bodies apart by less than rounding tells have bounds that hold their distance") {
+    TEST_CASE("bodies apart by less than rounding have bounds that contain their distance") {
         // Found by fuzz_convex: the four corners seemed to contain the origin, and the bound stayed 0.
         const Body a = Body::box({0x1.fp+1f, 0x1p-3f, 0x1.8p-2f}).value();
         const Body b = Body::box({0x1.2p+0f, 0x1.8p+1f, 0x1.8p-2f}).value();
@@ -193,7 +193,8 @@ TEST_SUITE("convex/query") {
 
     // Points, segments and rectangles in the plane z = 0, turned by a Pythagorean angle. What is known by hand: one
     // side of the rectangle is x cos + y sin = 0.25 there, and the point moves across it.
-    TEST_CASE("bodies within one plane meet or not as exact arithmetic tells, and the oracle as is known by hand") {
+    TEST_CASE(
+        "bodies within one plane overlap or not as exact arithmetic says, and the oracle agrees with hand-made cases") {
         const Body plate = Body::box({4, 0.25f, 0}).value(), point = Body::box({0, 0, 0}).value(),
                    rod = Body::box({2, 0, 0}).value();
         RigidTransform turned = at({});

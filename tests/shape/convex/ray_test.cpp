@@ -297,7 +297,7 @@ TEST_SUITE("convex/ray") {
         CHECK(!raycast({sphere, at({0, 0, 0})}, {{-5, 0, 0}, x, 3.999}));
         CHECK(!raycast({sphere, at({0, 0, 0})}, {{5, 0, 0}, x}));
     }
-    TEST_CASE("what lies on a box's surface has started inside, as intersects tells") {
+    TEST_CASE("a ray that starts on a box's surface has started inside, as intersects says") {
         const Body box = *Body::box({1, 1, 1});
         const auto on = raycast({box, at({0, 0, 0})}, {{1, 0.5, 0.5}, {1, 0, 0}});
         REQUIRE(on.has_value());

@@ -11,7 +11,7 @@ using namespace crofton::convex;
 using namespace crofton::testing;
 
 TEST_SUITE("convex/segment_manifold") {
-    TEST_CASE("a capsule that lies across a box has a point above each of two edges, told once") {
+    TEST_CASE("a capsule that lies across a box has one point above each of two edges") {
         const Body box = Body::box({1, 1, 1}).value(), capsule = Body::capsule(3, 0.5f).value();
         for (const double shift : {0.0, 2.5, -3.0}) {
             CAPTURE(shift);

@@ -20,7 +20,7 @@ RigidTransform turned(double angle, const glm::dvec3& p) {
 }  // namespace
 
 TEST_SUITE("convex/surface_contact") {
-    TEST_CASE("of triangles that share nothing the manifolds are those of the triangles one by one") {
+    TEST_CASE("triangles that share nothing have the manifolds of single triangles") {
         RandomBodies random(1);
         int touching = 0;
         Manifolds found;
@@ -112,7 +112,7 @@ TEST_SUITE("convex/surface_contact") {
         }
     }
 
-    TEST_CASE("over flat and ridged meshes and fields, on a seam or beside it, all normals are those of the surface") {
+    TEST_CASE("normals over flat and ridged meshes and fields are those of the surface, on a seam or near it") {
         RandomBodies random(9600);
         const Sliders sliders(random);
         Manifolds found;
@@ -172,7 +172,7 @@ TEST_SUITE("convex/surface_contact") {
         CHECK(touching > 40000);
     }
 
-    TEST_CASE("what lies along a large triangle has a point at either end, as deep, from the front and from behind") {
+    TEST_CASE("a body along a large triangle has an equally deep point at either end, from the front and from behind") {
         Surface s;
         s.mesh.positions = {{-9, 0, -9}, {0, 0, 9}, {9, 0, -9}};
         s.mesh.indices = {0, 1, 2};

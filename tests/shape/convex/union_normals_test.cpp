@@ -144,7 +144,7 @@ CompoundChild block(const glm::dvec3& low, const glm::dvec3& high) {
 }  // namespace
 
 TEST_SUITE("convex/union_normals_of_edges") {
-    TEST_CASE("a wall on the floor pushes sideways, beside the floor that pushes up, whatever their frame") {
+    TEST_CASE("a wall on the floor pushes sideways, next to the floor that pushes up, in any frame") {
         RandomBodies random(63);
         Manifolds found;
         for (int i = 0; i < 2000; ++i) {

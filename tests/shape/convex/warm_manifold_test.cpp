@@ -29,7 +29,7 @@ double area(const Manifold& m) {
 }  // namespace
 
 TEST_SUITE("convex/warm_manifold") {
-    TEST_CASE("a warm call tells what a cold one does, up to ties, and ids stay while a body slides and rocks") {
+    TEST_CASE("a warm call returns what a cold one does, up to ties, and ids stay while a body slides and rocks") {
         RandomBodies random(2);
         int kept = 0, frames = 0;
         for (int i = 0; i < 60; ++i) {
@@ -165,7 +165,7 @@ TEST_SUITE("convex/warm_manifold") {
     }
 
     // Prisms on eight corners that stand on each other and sway: which corner is the deepest goes round.
-    TEST_CASE("of more points than are wanted those of the frame before stay while they serve as well") {
+    TEST_CASE("if there are more points than wanted, those of the last frame stay while they are as good") {
         std::vector<glm::vec3> corners;
         for (int k = 0; k < 8; ++k)
             for (const float y : {-0.5f, 0.5f}) {

@@ -44,7 +44,7 @@ TEST_SUITE("mesh/containment") {
         }
     }
 
-    TEST_CASE("of a mesh in several pieces each is asked, vertices that only coincide hold a piece together") {
+    TEST_CASE("containment tests each piece of a mesh, and vertices of equal position connect a piece") {
         const auto pieces = [](std::initializer_list<glm::vec3> places, float half) {
             TriangleMesh mesh;
             for (const glm::vec3& place : places) {
@@ -158,7 +158,7 @@ TEST_SUITE("mesh/containment") {
         CHECK(penetration(a, b, {glm::dmat3(1.0), {1.6, 0.1, 0.0}}, {}).depth == 0.0);
     }
 
-    TEST_CASE("points that coincide are parted by what their coordinates can tell") {
+    TEST_CASE("penetration separates coincident points by the rounding of their coordinates") {
         TriangleMesh point;
         point.positions.assign(3, glm::vec3(1.0f, 2.0f, 3.0f));
         point.indices = {0, 1, 2};

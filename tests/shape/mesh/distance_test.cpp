@@ -35,7 +35,7 @@ TEST_SUITE("mesh/distance") {
         }
     }
 
-    TEST_CASE("beside triangles larger than itself a mesh is not opened: few pairs of triangles are looked at") {
+    TEST_CASE("queries with triangles larger than the mesh test few pairs of triangles") {
         TriangleMesh small = wavy_torus(1.0, 0.3, 0.2, 96, 64);
         for (glm::vec3& p : small.positions) p *= 0.001f;
         const TriangleMesh large = wavy_torus(1.0, 0.3, 0.2, 10, 8);
@@ -88,7 +88,7 @@ TEST_SUITE("mesh/distance") {
         }
     }
 
-    TEST_CASE("far meshes are told apart along the way between them: few triangles are measured") {
+    TEST_CASE("distances of far meshes measure few triangles") {
         const auto ring = tree_of(wavy_torus(1.0, 0.3, 0.2, 96, 64));
         TriangleMesh large = wavy_torus(1.0, 0.3, 0.2, 96, 64);
         for (glm::vec3& p : large.positions) p *= 100.0f;

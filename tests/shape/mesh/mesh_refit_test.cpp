@@ -168,7 +168,7 @@ TEST_SUITE("mesh/mesh_refit") {
         }
     }
 
-    TEST_CASE("queries answer as on a tree built anew: pairs, distance, rays") {
+    TEST_CASE("queries after a refit answer as on a new tree: pairs, distance, rays") {
         const TriangleMesh mesh = wavy_torus(2.0, 0.7, 0.2, 50, 30);
         MeshTree tree = refittable(mesh);
         const MeshTree other = *MeshTree::build(wavy_torus(1.0, 0.4, 0.1));
@@ -248,7 +248,7 @@ TEST_SUITE("mesh/mesh_refit") {
         CHECK(tree.pieces()[0].closed);
     }
 
-    TEST_CASE("where a refit has parted a piece, each part is asked whether another mesh contains it") {
+    TEST_CASE("if a refit separates a piece, each part is tested for containment") {
         const TriangleMesh cube = cube_mesh(1.0f);
         const auto around = [&](float size) {
             TriangleMesh mesh = cube;

@@ -194,7 +194,7 @@ TEST_SUITE("mesh/mesh_tree") {
             }
     }
 
-    TEST_CASE("what is moved from is a tree of no triangles, and may be given another") {
+    TEST_CASE("a moved-from tree has no triangles, and may be assigned another") {
         const RigidTransform here;
         MeshTree first = tree_of(cube_mesh(1.0f)), second = std::move(first);
         CHECK(first.triangle_count() == 0);

@@ -17,7 +17,7 @@ using namespace crofton::testing;
 
 TEST_SUITE("mesh/ray_ends") {
     // t is rounded, so its rounding must not say where a ray ends.
-    TEST_CASE("rays that start or end at a surface, or an ulp beside it: as rational arithmetic says") {
+    TEST_CASE("rays that start or end on a surface, or an ulp away, are as in rational arithmetic") {
         std::mt19937_64 random(23);
         // Not an ulp of 0, whose products leave the range of exact arithmetic.
         const auto beside = [&](double x) {

@@ -127,7 +127,7 @@ TEST_SUITE("mesh/triangle_triangle") {
         }
     }
 
-    TEST_CASE("where triangles meet lies on both: nearly in one plane, touching with a corner, slivers, segments") {
+    TEST_CASE("contact segments lie on both triangles: nearly coplanar, touching with a corner, slivers, segments") {
         std::mt19937_64 random(71);
         std::uniform_real_distribution<double> uniform(-1.0, 1.0);
         const auto vector = [&] { return glm::dvec3(uniform(random), uniform(random), uniform(random)); };

@@ -22,13 +22,13 @@ int light_room(const crofton::TriangleMesh& room, const std::vector<crofton::rad
     // clang-format off
     using namespace crofton;
 
-    // Triangles, and what each of them emits and reflects.
+    // Triangles with their emission and reflectance.
     const Result<radiosity::Patches> patches = radiosity::make_patches(room, materials);
     if (!patches) return report(patches.error());  // which triangle, and why
     Result<radiosity::Solver> solver = radiosity::Solver::create(*patches, {.lines = 1 << 14});
     if (!solver) return report(solver.error());
 
-    // Better with every run; usable after the first.
+    // Usable after the first run, better with each.
     do solver->run(jobs);
     while (solver->runs() < 2 || (solver->relative_error() > 0.01 && solver->runs() < 32));
     const Vector<glm::vec3> colors = radiosity::corner_values(*patches, solver->radiosity());

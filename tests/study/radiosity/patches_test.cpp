@@ -115,7 +115,7 @@ TEST_SUITE("radiosity/patches") {
         CHECK(expected.size() == 3 * (9 + 8));
     }
 
-    TEST_CASE("a closed box whose sides meet at T-junctions is mended, and stays so when refined") {
+    TEST_CASE("T-junctions of a closed box are removed, and stay removed after refining") {
         // One face of a cube is cut into rows of unequal number on either side of its neighbours' whole sides.
         shapes::Shape box;
         box.room({0, 0, 0}, {1, 1, 1}, 0);

@@ -120,7 +120,7 @@ TEST_SUITE("radiosity/shadow edges") {
         }
     }
 
-    TEST_CASE("what faces away is dark and not cut, and where no shadow is there is no cut") {
+    TEST_CASE("triangles that face away are dark and not cut, and without a shadow there is no cut") {
         const TriangleMesh mesh = ground_and_plate();
         const auto below = refine_at_shadows(mesh, {0.0, -1.0, 0.0}, 5);
         REQUIRE(below.has_value());

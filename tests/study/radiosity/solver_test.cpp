@@ -233,7 +233,7 @@ TEST_SUITE("radiosity/solver") {
         CHECK(early / solver->relative_error() == doctest::Approx(2.0).epsilon(0.2));
     }
 
-    TEST_CASE("the share of patches within 10 % is told from the runs, and rather too small") {
+    TEST_CASE("share_within estimates the share of patches within 10 % from the runs, and tends to be too small") {
         const Box box = lit_box(4);
         const Patches patches = patches_of(box.shape, box.materials);
         SolverOptions options = quick();

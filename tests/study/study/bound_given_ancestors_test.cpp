@@ -124,7 +124,7 @@ TEST_SUITE("study/bound_given_ancestors") {
         }
     }
 
-    TEST_CASE("what surely hits a hull hits the box around it when the two barely touch") {
+    TEST_CASE("a query that surely hits a hull hits the box around it when the two barely touch") {
         sampling::Random random(7);
         Camera camera;
         camera.far_distance = 10.0;

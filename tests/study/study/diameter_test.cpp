@@ -86,7 +86,7 @@ TEST_SUITE("study/diameter") {
         }
     }
 
-    TEST_CASE("points a rounding beside a line") {
+    TEST_CASE("the diameter of points a rounding from a line") {
         for (int i = 0; i < 5000; ++i) {
             sampling::Random random(6, static_cast<std::uint64_t>(i));
             std::vector<glm::dvec2> points;

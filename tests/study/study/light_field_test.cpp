@@ -144,7 +144,7 @@ TEST_SUITE("study/light_field") {
         CHECK(before < 0.035);  // the column's edges are a pixel off
     }
 
-    TEST_CASE("what is beyond the scene is the sky, and the same bits come from any number of threads") {
+    TEST_CASE("beyond the scene is the sky, and the bits are the same for any number of threads") {
         TriangleMesh mesh;
         add_box(mesh, {-1, -1, -1}, {1, 1, 1}, false);
         const auto tracer = *lines::LineTracer::build(mesh);

@@ -86,7 +86,7 @@ TEST_SUITE("study/mutual_information") {
         CHECK(error_of(study::mutual_information(none)).code == ErrorCode::empty);
     }
 
-    TEST_CASE("two patches that see only each other tell one bit, three that see all alike tell nothing") {
+    TEST_CASE("two patches that see only each other have one bit, three that see all alike have none") {
         radiosity::FactorMatrix pair;
         pair.size = 2;
         pair.transfers = {0, 1000, 1000, 0};

@@ -189,7 +189,7 @@ TEST_SUITE("study/planar_bounds") {
         }
     }
 
-    TEST_CASE("corners a rounding beside a line: what is measured is the bound that is returned") {
+    TEST_CASE("for corners a rounding from a line, the returned bound is measured") {
         for (int trial = 0; trial < 400; ++trial) {
             Random random(12, static_cast<std::uint64_t>(trial));
             const glm::dmat2 turn = planar_rotation(trial % 4 == 0 ? 0.25 * (trial / 4 % 4) : random.uniform());

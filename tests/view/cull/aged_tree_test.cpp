@@ -129,7 +129,7 @@ TEST_SUITE("cull/aged trees") {
         }
     }
 
-    TEST_CASE("a great tree of which all is undecided is asked by several threads within the memory that they have") {
+    TEST_CASE("several threads query a large tree of undecided boxes within the memory that they have") {
         testing::GuardedMemory memory;
         {
             ThreadPool pool(3);
@@ -156,7 +156,7 @@ TEST_SUITE("cull/aged trees") {
         CHECK(memory.overrun() == 0);
     }
 
-    TEST_CASE("a tree that has doubled by insertions is asked by several threads within the memory that they have") {
+    TEST_CASE("several threads query a tree that has doubled by insertions within the memory that they have") {
         testing::GuardedMemory memory;
         {
             ThreadPool pool(3);

@@ -196,7 +196,7 @@ TEST_SUITE("cull/bound_set") {
         }
     }
 
-    TEST_CASE("a chunk whose boxes have all moved far away is laid out anew, one box moving to and fro is not") {
+    TEST_CASE("a chunk whose boxes have all moved far is laid out again, one with a box moving to and fro is not") {
         oracle::Crowd crowd = oracle::random_crowd(4096, 0.0, 8);
         BoxSet set;
         set.assign(crowd.boxes);
@@ -278,7 +278,7 @@ TEST_SUITE("cull/bound_set") {
         CHECK(inside > 5000);
     }
 
-    TEST_CASE("points nearer to the view's planes than a list's integers can tell get classify's verdicts") {
+    TEST_CASE("boxes nearer to the view's planes than a list's integers resolve get classify's verdicts") {
         for (const double offset : {0.0, 1e6}) {
             oracle::NearMisses random(16, offset);
             for (int trial = 0; trial < 12; ++trial) {

@@ -81,7 +81,7 @@ TEST_SUITE("cull/among") {
         }
     }
 
-    TEST_CASE("what moves is never left out, and comes in its order among what rests") {
+    TEST_CASE("moving items are always listed, and come in their order among the static ones") {
         const oracle::Crowd crowd = oracle::random_crowd(700, 0.0, 11);
         std::vector<cull::ItemId> items;
         std::vector<Obb> boxes;
@@ -109,7 +109,7 @@ TEST_SUITE("cull/among") {
         CHECK(moved > 1000);
     }
 
-    TEST_CASE("of two trees with the same items, each has its own slots") {
+    TEST_CASE("each of two trees with the same items has its own slots") {
         const oracle::Crowd crowd = oracle::random_crowd(600, 0.0, 3);
         const auto one = boxtree::BoxTree::build(crowd.boxes).value();
         const auto other = boxtree::BoxTree::build(crowd.boxes, {.criterion = measure::minimal_volume()}).value();

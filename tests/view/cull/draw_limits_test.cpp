@@ -40,7 +40,7 @@ TEST_SUITE("cull/draw_limits") {
         CHECK(!cull::limits_of(camera, 1000.0, 4.0).has_value());
     }
 
-    TEST_CASE("what is not finite drops nothing, and numbers without measure are taken as they are") {
+    TEST_CASE("limits that are not finite drop nothing, and numbers without a unit are used unchanged") {
         const Obb box{.center = {10.0, 0.0, 0.0}, .half_extents = glm::vec3(1.0f)};
         Obb unknown = box;
         unknown.center.y = std::nan("");
@@ -229,7 +229,7 @@ TEST_SUITE("cull/draw_limits") {
         CHECK(test::ranges::equal(visible.ids(), of.expected()));
     }
 
-    TEST_CASE("what is far is dropped by nodes, not item by item") {
+    TEST_CASE("far items are dropped by nodes, not item by item") {
         const oracle::Crowd crowd = oracle::random_crowd(20000, 0.0, 8);
         const boxtree::BoxTree tree = *boxtree::BoxTree::build(crowd.boxes);
         const std::vector<float> distances(32, 8.0f);
@@ -241,7 +241,7 @@ TEST_SUITE("cull/draw_limits") {
         if (cull::kCountStatistics) CHECK(visible.statistics().boxes_tested < 5000);
     }
 
-    TEST_CASE("what is small is dropped by nodes, and what is large is kept by them") {
+    TEST_CASE("small items are dropped by nodes, and large ones are kept by them") {
         const oracle::Crowd crowd = oracle::random_crowd(20000, 0.0, 9);
         std::vector<Obb> boxes = crowd.boxes;
         for (Obb& box : boxes) box.half_extents = glm::vec3(0.1f);

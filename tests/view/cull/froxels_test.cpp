@@ -331,7 +331,7 @@ TEST_SUITE("cull/froxels") {
                 }
     }
 
-    TEST_CASE("half spheres tilted by less than an axis in doubles can tell reach as deep as their rims do") {
+    TEST_CASE("half spheres tilted by less than a double can express reach as deep as their rims do") {
         const cull::FroxelGrid grid = unit_grid();
         oracle::NearMisses random(200);
         std::size_t deeper = 0;

@@ -50,21 +50,21 @@ int draw_row(std::vector<crofton::Obb> house_boxes, const crofton::Camera& camer
     // clang-format off
     using namespace crofton;
 
-    // What rests, in a tree; what changes in every frame, in a list.
+    // Static boxes in a tree, boxes that move every frame in a list.
     Result<boxtree::BoxTree> houses = boxtree::BoxTree::build(house_boxes);
     if (!houses) return report(houses.error());  // which box is bad, and why
     cull::SphereSet sparks;
     sparks.assign(spark_bounds);
 
-    // Each frame: one frustum, two questions.
+    // Each frame: one frustum, two queries.
     const Result<Frustum> frustum = frustum_of(camera);
     if (!frustum) return report(frustum.error());
     const cull::View view{.frustum = *frustum};
     cull::find_visible(*houses, view, visible);                      // visible.ids(), visible.verdicts()
-    cull::find_visible(sparks, spark_bounds, view, visible_sparks);  // a bit each
+    cull::find_visible(sparks, spark_bounds, view, visible_sparks);  // a bit per spark
     for (const boxtree::ItemId id : visible.ids()) draw_house(id);
 
-    // Two eyes in one pass: bit v of a mask says that views[v] sees the item.
+    // Two eyes in one pass: bit v of a mask is set if views[v] sees the item.
     const cull::View eyes[] = {view, right_eye};
     cull::find_visible(*houses, eyes, seen_by).value();
     for (std::size_t i = 0; i < seen_by.size(); ++i) draw_stereo(seen_by.ids()[i], seen_by.view_mask(i));
@@ -118,7 +118,7 @@ int light_row(const std::vector<crofton::Obb>& house_boxes, const crofton::Camer
     if (auto found = cull::find_lights(*grid, lamps, spots, lit); !found) return report(found.error());
     upload(lit.offsets(), lit.lights());  // froxel f: lights()[offsets()[f]] to before lights()[offsets()[f + 1]]
 
-    // Who could throw a shadow into the view, and onto something that is seen?
+    // Find the objects that may cast a shadow onto something visible.
     const Result<Frustum> volume = cull::shadow_volume(view.frustum, toward_sun);
     if (!volume) return report(volume.error());
     cull::find_visible(*houses, {.frustum = *volume}, candidates);
@@ -126,7 +126,7 @@ int light_row(const std::vector<crofton::Obb>& house_boxes, const crofton::Camer
     for (const boxtree::ItemId id : candidates.ids())
         if (receivers.wants(house_boxes[id])) draw_shadow(id);
 
-    // Nothing below 2 pixels, nothing of layer 3 beyond 50 metres; what was drawn stays a tenth longer.
+    // Nothing below 2 pixels, nothing of layer 3 beyond 50 metres; drawn objects stay a tenth longer.
     Result<cull::DrawLimits> limits = cull::limits_of(camera, 1080.0, 2.0);
     if (!limits) return report(limits.error());
     std::vector<float> distances(32, std::numeric_limits<float>::infinity());

@@ -45,7 +45,7 @@ TEST_SUITE("cull/many_views") {
         for (std::size_t i = 0; i < visible.size(); ++i) CHECK(expected.at(visible.ids()[i]) == visible.view_mask(i));
     }
 
-    TEST_CASE("where all is seen, leaves that lack an item list nothing in its place") {
+    TEST_CASE("if all is visible, leaves that lack an item list nothing in its place") {
         const oracle::Crowd crowd = oracle::random_crowd(4096, 0.0, 7);
         cull::View everything{*frustum_of(Camera{})};
         everything.frustum.planes[0] = {{0.0, 0.0, 1.0}, 1e6};

@@ -11,7 +11,7 @@ using namespace crofton;
 using cull::BoxSet;
 
 TEST_SUITE("cull/moved_from") {
-    TEST_CASE("what has been moved from is empty, and answers again once it is used") {
+    TEST_CASE("a moved-from answer is empty, and may be used again") {
         const oracle::Crowd crowd = oracle::random_crowd(300, 0.0, 5);
         BoxSet set;
         set.assign(crowd.boxes);

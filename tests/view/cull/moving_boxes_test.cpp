@@ -276,7 +276,7 @@ TEST_SUITE("cull/moving_boxes") {
             }
     }
 
-    TEST_CASE("what is no longer staged leaves nothing behind") {
+    TEST_CASE("an unstaged box leaves nothing behind") {
         Crowd crowd(oracle::random_crowd(5000, 0.0, 42), 1);
         oracle::NearMisses random(43);
         const std::vector<cull::View> views{view_near(random, 0), view_near(random, 1)};

@@ -35,7 +35,7 @@ void check_numbers(double a, double b, double c) {
 }  // namespace
 
 TEST_SUITE("oracle/quick") {
-    TEST_CASE("numbers with a bound of their error tell no wrong sign") {
+    TEST_CASE("numbers with an error bound never have a wrong sign") {
         std::mt19937 random(1);
         for (int i = 0; i < 20000; ++i) {
             const auto bytes = random_bytes(random);
@@ -47,7 +47,7 @@ TEST_SUITE("oracle/quick") {
             check_numbers<oracle::TrackedPair>(a, std::nextafter(-a, b), c);
         }
     }
-    TEST_CASE("overflow and NaN are told by no sign, and underflow is not taken for 0") {
+    TEST_CASE("overflow and NaN have no sign, and underflow does not count as 0") {
         CHECK(told(oracle::Tracked(1e300) * oracle::Tracked(1e300)) == oracle::kUnknown);
         CHECK(told(oracle::TrackedPair(1e300) * oracle::TrackedPair(1e300)) == oracle::kUnknown);
         CHECK(told(oracle::Tracked(std::nan(""))) == oracle::kUnknown);

@@ -104,7 +104,7 @@ TEST_SUITE("cull/rounding edges") {
         }
     }
 
-    TEST_CASE("aligned boxes of a few roundings, far from the world's origin and beside the view's") {
+    TEST_CASE("aligned boxes of a few roundings, far from the world's origin and close to the view's") {
         oracle::NearMisses random(43);
         for (int trial = 0; trial < 400; ++trial) {
             const glm::dvec3 place = 1e9 * random.direction();
@@ -232,7 +232,7 @@ TEST_SUITE("cull/rounding edges") {
         }
     }
 
-    TEST_CASE("a plane that cuts off a segment's end by less than rounding tells is not left out") {
+    TEST_CASE("a plane that cuts off a segment's end by less than rounding is not left out") {
         // Found by a search for products and sums that round to too much, nearly all of them by half a unit. The
         // second plane leaves the segment's end alone, and the first cuts it off, or just does not.
         struct Badly {

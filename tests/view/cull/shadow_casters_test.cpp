@@ -106,7 +106,7 @@ TEST_SUITE("cull/shadow_casters") {
         CHECK(!set.wants(box));
     }
 
-    TEST_CASE("above what is seen casts, beside, below and out of length does not") {
+    TEST_CASE("casters above visible receivers are wanted, those next to, below and out of reach are not") {
         // A floor at y = −1; the view looks along −z.
         const Frustum view =
             *frustum_of(Camera{.fov_y = 1.0, .aspect = 1.0, .near_distance = 1.0, .far_distance = 20.0});

@@ -187,7 +187,7 @@ TEST_CASE("matrices and meshes that cannot be placed are listed whole, and spoil
     CHECK(moved.find_visible(alone, {320, 180})->size() == 1);
 }
 
-TEST_CASE("what a wall hides is dropped as a whole, and what does not hide is only asked") {
+TEST_CASE("an object behind a wall is dropped as a whole, and one that may not hide is only tested") {
     const CutMesh cube(cube_mesh());
     const auto placed_at = [](double z, const glm::dvec3& scale) {
         return glm::mat4(world_to_clip(Camera{}) * glm::scale(glm::translate(glm::dmat4(1.0), {0, 0, z}), scale));

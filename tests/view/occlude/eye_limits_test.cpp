@@ -163,7 +163,7 @@ TEST_SUITE("occlude/eye_limits") {
         CHECK(kept_out > 4000);
     }
 
-    TEST_CASE("an occluder that a parallel view's near plane cuts by less than rounding tells is not used") {
+    TEST_CASE("an occluder that a parallel view's near plane may cut, within rounding, is not used") {
         // Chosen by a search for products that round to too much, all of them.
         const glm::dvec3 normal(0x1.002a2d8b69cc5p-1, 0x1.004245f308698p-1, -0x1.6a0902cbc084cp-1),
             nearest(0x1.000b1cf49f5e2p-1, 0x1.0019f24fbabe9p-1, 0x1.6a7030c10d109p-1);

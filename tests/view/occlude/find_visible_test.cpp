@@ -154,7 +154,7 @@ TEST_SUITE("occlude/find_visible") {
         CHECK(visible.size() == 0);
     }
 
-    TEST_CASE("of trees, lists and what moves: those in the layers and among the items that may be seen, no others") {
+    TEST_CASE("trees, lists and moving items return only items in the layers and the candidate mask") {
         Random random(8);
         const auto [scene, buffer, layers] = layered_crowd(random);
         // Whole leaves may not be seen, and of others some.

@@ -20,11 +20,11 @@ int show(const std::vector<crofton::Obb>& walls, const crofton::boxtree::BoxTree
 
     occlude::OccluderSet occluders;
     for (const Obb& wall : walls)
-        if (const auto placed = occluders.place(wall); !placed) return report(placed.error());  // which, and why
+        if (const auto placed = occluders.place(wall); !placed) return report(placed.error());  // which one, and why
     auto buffer = occlude::OcclusionBuffer::create({.width = 480, .height = 270});
     if (!buffer) return report(buffer.error());
 
-    // Each frame: draw, then ask.
+    // Each frame: draw, then query.
     const auto view = occlude::occlusion_view_of(camera);
     if (!view) return report(view.error());
     buffer->draw(occluders, *view);
@@ -36,7 +36,7 @@ int show(const std::vector<crofton::Obb>& walls, const crofton::boxtree::BoxTree
 }  // namespace
 
 TEST_SUITE("occlude/guide") {
-    TEST_CASE("the guide's example draws what is before the wall and beside it") {
+    TEST_CASE("the guide's example draws the objects in front of the wall and next to it") {
         const auto box = [](double x, double z, float half) {
             crofton::Obb result;
             result.center = {x, 0.0, z};

@@ -34,7 +34,7 @@ constexpr occlude::BufferSize kSizes[] = {{64, 36}, {320, 180}, {640, 360}, {100
 }  // namespace
 
 TEST_SUITE("occlude/hard cases") {
-    TEST_CASE("what shows through a gap between two occluders is seen, however narrow the gap") {
+    TEST_CASE("an object seen through a gap between two occluders stays visible, however narrow the gap") {
         for (const auto& size : kSizes)
             for (const double gap : {1e-6, 1e-4, 1e-2, 0.1}) {
                 const std::vector<Obb> walls = {box_of({-5.0 - 0.5 * gap, 0.0, -10.0}, {5.0f, 5.0f, 0.1f}),

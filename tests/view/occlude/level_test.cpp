@@ -137,7 +137,7 @@ TEST_SUITE("occlude/level") {
         }
     }
 
-    TEST_CASE("what the occluders of a level hide, the level hides from every ray of the eye") {
+    TEST_CASE("objects hidden by the occluders of a level are hidden by the level from every ray of the eye") {
         sampling::Random random(2);
         std::size_t hidden = 0;
         for (int trial = 0; trial < 30; ++trial) {
@@ -162,7 +162,7 @@ TEST_SUITE("occlude/level") {
         CHECK(hidden > 60);
     }
 
-    TEST_CASE("rays meet the occluders where they meet the level, in parts of the size asked for") {
+    TEST_CASE("rays hit the occluders where they hit the level, in parts of the requested size") {
         sampling::Random random(1);
         std::size_t hits = 0, cut = 0;
         for (int trial = 0; trial < 50; ++trial) {

@@ -63,7 +63,7 @@ TEST_SUITE("occlude/occluder") {
         CHECK(set.shape_count() == 3);
     }
 
-    TEST_CASE("a transform that flattens but for its rounding is told by its exact determinant") {
+    TEST_CASE("an exact determinant detects a transform that flattens up to rounding") {
         // a, b and a + b, which is exact: in double the determinant comes to 1e-17.
         const glm::dvec3 a(-0x1.4d223a689f2fcp-3, -0x1.003a374ea656cp-1, -0x1.aa42dc616b644p-2),
             b(0x1.3683951aabdc2p-1, -0x1.a0414d6c909ap-5, -0x1.d729f50de481ap-2);

@@ -86,7 +86,7 @@ TEST_SUITE("occlude/occlusion_buffer") {
         CHECK(!buffer.hides(box));
     }
 
-    TEST_CASE("a wall hides what is behind it, and neither what is before, beside nor across it") {
+    TEST_CASE("a wall hides the objects behind it, and none in front of, next to or across it") {
         OcclusionScene scene;
         scene.occluders.resize(1);
         scene.occluders[0].center = {0.0, 0.0, -10.0};

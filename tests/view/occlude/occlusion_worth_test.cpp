@@ -67,7 +67,7 @@ TEST_SUITE("occlude/occlusion_worth") {
         CHECK(error_of(occlusion_worth(points, scene)).code == ErrorCode::out_of_range);
     }
 
-    TEST_CASE("of points, from one eye: the pyramid behind a square, cut at the range") {
+    TEST_CASE("the shadow of points from one eye is the pyramid behind a square, cut at the range") {
         const std::vector<glm::dvec3> square{{-1, -1, -2}, {1, -1, -2}, {1, 1, -2}, {-1, 1, -2}};
         SeenScene scene;
         scene.eyes = {glm::dvec3(0), glm::dvec3(0)};

@@ -65,7 +65,7 @@ TEST_SUITE("occlude/warm") {
         CHECK(memory.bytes_in_use() == 0);
     }
 
-    TEST_CASE("what is removed hides nothing, and its id is given out again") {
+    TEST_CASE("a removed occluder hides nothing, and its id is reused") {
         occlude::OccluderSet set;
         const auto shape = set.add_mesh(testing::cube_mesh()).value();
         Obb small;

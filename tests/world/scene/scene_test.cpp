@@ -53,7 +53,7 @@ bool same_boxes(const Scene& a, const Scene& b) {
 }  // namespace
 
 TEST_SUITE("scene/scene") {
-    TEST_CASE("what is stretched by a hair along one axis has moved, though its box stays") {
+    TEST_CASE("an object that is stretched by a hair along one axis has moved, though its box stays") {
         TriangleMesh cube;
         for (int i = 0; i < 8; ++i)
             cube.positions.push_back({i & 1 ? 1.0f : -1.0f, i & 2 ? 1.0f : -1.0f, i & 4 ? 1.0f : -1.0f});

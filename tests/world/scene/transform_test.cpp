@@ -215,7 +215,7 @@ TEST_SUITE("scene/transform") {
         }
     }
 
-    TEST_CASE("a sheared cube gets the smallest box with two flush faces, by the criterion asked for") {
+    TEST_CASE("a sheared cube gets the smallest box with two flush faces, by the chosen criterion") {
         // x ↦ (x + y, y, z) makes the square |x|, |y| ≤ 1 a parallelogram with edges (2, 0) and (2, 2): flush with the
         // first, its rectangle is 4 × 2; flush with the second, of length 2√2, it is 3√2 × √2. Areas 8 and 6, edge sums
         // 6 and 4√2.

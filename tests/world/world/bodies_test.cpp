@@ -68,7 +68,7 @@ TEST_SUITE("world/bodies") {
         CHECK(world.closest(box, above, 1e9)->distance == 2.0 - radius);
     }
 
-    TEST_CASE("of a pair of which one has a body the bounds touch, as if there were no body") {
+    TEST_CASE("if only one of a pair has a body, their bounds touch, as if there were no body") {
         World world;
         const convex::Body crate = convex::Body::box({0.5f, 0.5f, 0.5f}).value();
         const ObjectHandle floor = world.add({.bound = Obb{{}, glm::mat3(1.0f), {9, 1, 9}}}).value();
@@ -309,7 +309,7 @@ TEST_SUITE("world/bodies") {
         CHECK(hits > 20);
     }
 
-    TEST_CASE("a body far from its own origin is told where it just touches a point") {
+    TEST_CASE("a body far from its own origin reports the point at which it just touches") {
         // A step of the last place of its coordinates wide; turned, and put back near the origin.
         std::mt19937_64 random(5);
         std::uniform_real_distribution<double> angle(0.0, 3.0), power(5.0, 22.0);

@@ -91,7 +91,7 @@ TEST_SUITE("world/body_cast") {
         CHECK(hits > 300);
     }
 
-    TEST_CASE("what overlaps from the start is told with its depth, or left out, so that the next object is met") {
+    TEST_CASE("an overlap at the start is returned with its depth, or skipped, so that the next object is hit") {
         World world;
         const convex::Body sphere = convex::Body::sphere(0.5).value();
         const ObjectHandle near = world.add({.bound = Obb{{0, 0, 0}, glm::mat3(1.0f), glm::vec3(1.0f)}}).value();

@@ -330,7 +330,7 @@ TEST_SUITE("world/body_extents") {
         CHECK(seen.size() == 0);
     }
 
-    TEST_CASE("an object needs nothing besides its body: its box is the least in the body's frame, whatever the body") {
+    TEST_CASE("an object needs only its body: its box is the smallest in the body's frame, for every body") {
         RandomBodies random(6100);
         std::vector<float> heights(20);
         for (float& h : heights) h = static_cast<float>(random.number(3.0, 4.0));
@@ -690,7 +690,7 @@ TEST_SUITE("world/body_extents") {
         }
     }
 
-    TEST_CASE("a half-space, or a compound that holds one, is ground without end for all that asks") {
+    TEST_CASE("a half-space, or a compound that contains one, is infinite ground for every query") {
         for (int round = 0; round < 24; ++round) {
             RandomBodies random(5900 + static_cast<std::uint64_t>(round));
             const double margin = round % 2 == 0 ? 0.0 : 0.2;
@@ -756,7 +756,7 @@ TEST_SUITE("world/body_extents") {
         }
     }
 
-    TEST_CASE("what has no body lies on the ground with its box, sphere or triangles, and leaves it") {
+    TEST_CASE("an object without a body lies on the ground with its box, sphere or triangles, and leaves it") {
         World world;
         const convex::Body level = convex::Body::half_space({{0, -1, 0}, 0.0}).value();
         const ObjectHandle ground = world.add({.bound = Obb{{0, 0, 0}, glm::mat3(1.0f), glm::vec3(0.0f)}}).value();

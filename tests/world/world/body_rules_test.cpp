@@ -151,7 +151,7 @@ TEST_SUITE("world/body_rules") {
         CHECK(ended > 30);
     }
 
-    TEST_CASE("overlaps, casts and nearest objects of bodies ask the layers asked for, whatever these collide with") {
+    TEST_CASE("overlaps, casts and nearest objects of bodies use the query's layers, whatever these collide with") {
         FilteredBodies bodies(2);
         int found_all = 0, left_out = 0, hits = 0;
         for (int step = 0; step < 300; ++step) {
@@ -245,7 +245,7 @@ TEST_SUITE("world/body_rules") {
                 }
     }
 
-    TEST_CASE("what slides over a floor of triangles keeps its speed: it meets no inner edge") {
+    TEST_CASE("a body that slides over a floor of triangles keeps its speed: it meets no inner edge") {
         RandomBodies random(4);
         const Surface s = ground(random, 40, 0.5, [](double, double) { return 0.0; });
         const convex::Body bodies[] = {

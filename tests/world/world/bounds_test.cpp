@@ -98,7 +98,7 @@ TEST_SUITE("world/bounds") {
         }
     }
 
-    TEST_CASE("of many boxes the bad ones are refused, the first is named, and the others move") {
+    TEST_CASE("set_bounds refuses bad boxes and names the first, and the others move") {
         World world;
         std::vector<ObjectHandle> objects;
         for (int i = 0; i < 6; ++i) objects.push_back(world.add({.bound = box_at({3.0 * i, 0.0, 0.0})}).value());
@@ -172,7 +172,7 @@ TEST_SUITE("world/bounds") {
         CHECK(world.add({.bound = box_at({})})->index == object.index);
     }
 
-    TEST_CASE("what moves in a row leaves the tree, and what has rested goes back") {
+    TEST_CASE("an object that moves repeatedly leaves the tree, and goes back when it has rested") {
         World world({.updates_to_rest = 5});
         std::vector<ObjectHandle> objects;
         for (int i = 0; i < 100; ++i) objects.push_back(world.add({.bound = box_at({3.0 * i, 0.0, 0.0})}).value());

@@ -111,7 +111,7 @@ TEST_SUITE("world/foreign_handles") {
         CHECK(occluders.size() == 1);
     }
 
-    TEST_CASE("a removed object's handle is told apart from one of another World, and a handle that was never set") {
+    TEST_CASE("handles of removed objects, of other Worlds and unset ones give different errors") {
         Furnished a;
         REQUIRE(a.world.remove(a.object).has_value());
         const Error removed = error_of(a.world.user_of(a.object));
@@ -124,7 +124,7 @@ TEST_SUITE("world/foreign_handles") {
         }
     }
 
-    TEST_CASE("of a thousand Worlds whose objects came and went, none takes another's handles") {
+    TEST_CASE("of a thousand Worlds whose objects came and went, none accepts another's handles") {
         std::set<std::pair<std::uint32_t, std::uint32_t>> given;
         for (int w = 0; w < 1000; ++w) {
             World world({.pairs = false});

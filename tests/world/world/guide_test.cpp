@@ -58,7 +58,7 @@ TEST_SUITE("world/guide") {
         crofton::Camera camera;
         crofton::ViewResult visible;
 
-        // Each frame: what the game has changed,
+        // Each frame: pass the game's changes,
         world
             .set_bounds({&enemies[0].object, enemies.size(), sizeof(Enemy)},
                         {&enemies[0].box, enemies.size(), sizeof(Enemy)})
@@ -66,9 +66,9 @@ TEST_SUITE("world/guide") {
         world.set_transform(ship, {glm::dmat3(1.0), {0.0, 1.0, -20.0}}).value();
         for (Enemy& enemy : enemies)
             if (enemy.dead) world.remove(enemy.object).value();
-        // once
+        // update once,
         world.update(jobs).value();
-        // and then whatever it wants to know.
+        // and then query.
         world.view({.camera = camera}, visible).value();
         for (std::size_t i = 0; i < visible.size(); ++i) draw(visible[i].user);
         for (const crofton::Contact& contact : world.contacts()) {
@@ -92,7 +92,7 @@ TEST_SUITE("world/guide") {
         if (!house) return fail_loading(house.error().message);
         world.add({.mesh = *house, .transform = crofton::Transform{glm::dmat3(1.0), {0.0, 0.0, -10.0}}}).value();
         world.update(jobs).value();
-        // Without what the house hides:
+        // Without the objects that the house hides:
         world.view({.camera = camera, .occlusion = crofton::OcclusionOptions{}}, visible).value();
 
         CHECK(visible.size() == 1);

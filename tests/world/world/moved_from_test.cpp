@@ -59,7 +59,7 @@ void move_around(Type first, Type second) {
 }  // namespace
 
 TEST_SUITE("world/moved_from") {
-    TEST_CASE("the answer to a view that has been moved from is empty, and may be asked for again") {
+    TEST_CASE("a moved-from ViewResult is empty, and may be used again") {
         const World world = one_box();
         ViewResult visible;
         REQUIRE(world.view(forward(), visible).has_value());
@@ -74,7 +74,7 @@ TEST_SUITE("world/moved_from") {
         CHECK(visible.size() == 1);
     }
 
-    TEST_CASE("the answer to many views that has been moved from is empty, and may be asked for again") {
+    TEST_CASE("a moved-from MultiViewResult is empty, and may be used again") {
         const World world = one_box();
         const ViewRequest views[2] = {forward(), forward()};
         MultiViewResult visible;
@@ -88,7 +88,7 @@ TEST_SUITE("world/moved_from") {
         CHECK(visible.size() == 1);
     }
 
-    TEST_CASE("what a depth buffer leaves visible, moved from, is nothing") {
+    TEST_CASE("a moved-from occlude::VisibleSet is empty") {
         const Obb boxes[1] = {box_at({0, 0, -5}, 1.0f)};
         auto buffer = *occlude::OcclusionBuffer::create();
         buffer.draw(occlude::OccluderSet(), *occlude::occlusion_view_of(Camera{}));

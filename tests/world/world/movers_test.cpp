@@ -115,7 +115,7 @@ TEST_SUITE("world/movers") {
         CHECK(bad_ones > 3);
     }
 
-    TEST_CASE("of several boxes that a mover is given before an update the last counts, read in the caller's structs") {
+    TEST_CASE("of several boxes for one mover before an update the last counts, read from the caller's structs") {
         struct Enemy {
             std::uint32_t health = 3;
             ObjectHandle object;
@@ -177,7 +177,7 @@ TEST_SUITE("world/movers") {
         CHECK(error_of(set()).item == 80);
     }
 
-    TEST_CASE("of many nodes the bad ones are refused, the first is named, and the others move") {
+    TEST_CASE("set_transforms refuses bad nodes and names the first, and the others move") {
         constexpr std::size_t kCount = 200;
         World world;
         std::vector<NodeHandle> nodes;
@@ -218,7 +218,7 @@ TEST_SUITE("world/movers") {
             if (i != 64) CHECK(world.transform_of(objects[i])->translation == places[i].translation);
     }
 
-    TEST_CASE("what is set to where it is comes to rest, also when the others go on") {
+    TEST_CASE("an object that is set to its present place comes to rest, also when others move on") {
         World world({.updates_to_rest = 3});
         std::vector<ObjectHandle> objects;
         std::vector<Obb> boxes(10);

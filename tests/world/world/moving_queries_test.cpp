@@ -158,7 +158,7 @@ TEST_SUITE("world/moving queries") {
         CHECK(hits > 200);
     }
 
-    TEST_CASE("many threads may ask after an update: each gets the answers of one that asks alone") {
+    TEST_CASE("many threads may query after an update, each with the answers of a single thread") {
         NearMisses random(63);
         World world({.pairs = false});
         std::vector<ObjectHandle> objects;

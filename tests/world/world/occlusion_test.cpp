@@ -83,7 +83,7 @@ TEST_SUITE("world/occlusion") {
         CHECK(s.visible.occlusion_buffer() == nullptr);
     }
 
-    TEST_CASE("what a view does not draw hides nothing in it") {
+    TEST_CASE("an object that a view does not draw hides nothing in it") {
         BehindAWall s;
         REQUIRE(s.hides());
         SUBCASE("hidden") {
@@ -232,7 +232,7 @@ TEST_SUITE("world/occlusion") {
                   .code != ErrorCode::out_of_memory);
     }
 
-    TEST_CASE("what only occludes is in no answer") {
+    TEST_CASE("an object that only occludes is in no answer") {
         World world;
         const auto mesh = world.add_mesh(description_of(cuboid({5.0f, 5.0f, 0.5f}), true)).value();
         const auto wall = world.add({.mesh = mesh, .transform = at(0.0, 0.0, -10.0), .only_occludes = true}).value();

@@ -268,7 +268,7 @@ TEST_SUITE("world/pairs life") {
         }
     }
 
-    TEST_CASE("where one object changes in a world of thousands, only what is near it is looked at") {
+    TEST_CASE("if one object changes in a world of thousands, only objects near it are tested") {
         World world;
         NearMisses random(53);
         std::vector<ObjectHandle> objects;

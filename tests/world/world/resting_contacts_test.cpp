@@ -107,7 +107,7 @@ class Heaps {
 }  // namespace
 
 TEST_SUITE("world/resting_contacts") {
-    TEST_CASE("while few crates of a heap move, come and go, all contacts are as if each were computed anew") {
+    TEST_CASE("while few crates of a heap move, come and go, all contacts are as if each were computed again") {
         std::size_t contacts = 0, computed_few = 0, computed_all = 0, ended = 0, deep = 0;
         std::size_t most_on_slab = 0;
         for (const std::uint64_t seed : {1u, 2u, 3u, 4u}) {

@@ -23,7 +23,7 @@ const double kInfinity = std::numeric_limits<double>::infinity();
 }  // namespace
 
 TEST_SUITE("world/shape_queries") {
-    TEST_CASE("shapes that touch a box or pass it by an ulp are told as of the box alone, wherever it is") {
+    TEST_CASE("shapes that touch a box or miss it by an ulp give the answer of the box alone, anywhere") {
         oracle::NearMisses random(31);
         int touches = 0;
         for (int i = 0; i < 600; ++i) {

@@ -108,7 +108,7 @@ Result<LinePlan> plan_lines(const Cells& cells, std::uint64_t pairs, const BakeO
     const double each = static_cast<double>(cells.size() * LinePlan::kBlock) * static_cast<double>(plan.per_cell);
     if (!((std::min)(whole, each) <= 0x1p44))
         return fail(ErrorCode::out_of_range, kNoItem,
-                    "pvs: this epsilon needs more than 2^44 lines: ask for a larger one, or for larger cells");
+                    "pvs: this epsilon needs more than 2^44 lines: choose a larger one, or larger cells");
     plan.whole = whole <= each;
     if (plan.whole)
         plan_rounds(plan, cells.bounds(), whole);

@@ -131,7 +131,7 @@ Result<ItemId> BoxTree::insert_detached(std::uint32_t layer_mask) {
 
 Result<void> BoxTree::attach(ItemId item, const Obb& box) {
     if (!items_->is_detached(item))
-        return fail(ErrorCode::out_of_range, item, "box tree: only what has been detached can attach");
+        return fail(ErrorCode::out_of_range, item, "box tree: attach needs a detached item");
     if (auto valid = crofton::validate(box, item); !valid) return valid;
     items_->set_detached(item, false);
     items_->set_box(item, box);

@@ -93,7 +93,7 @@ Result<void> validate_child(const Structure& structure, NodeId n, unsigned lane,
     if (parent != n || at != lane || child == 0) return broken(n, "a child does not know its parent");
     if (trust == Trust::contents) return {};
     if (!holds(nodes[n], structure.axes_of(nodes[n]), lane, structure.bounds_below(child, nodes[n].axes)))
-        return broken(n, "a bound does not contain what lies below it");
+        return broken(n, "a bound does not contain the boxes below it");
     Node layers;
     if (is_leaf)
         write_layers(layers, lane, leaves[id].layers, leaves[id].layers, leaves[id].count);

@@ -98,7 +98,8 @@ Result<Impact> cast(const BodyAtPose& a, const Motion& motion_a, const BodyAtPos
     if (a_turns || (is_unbounded(b) && motion_b.spin != glm::dvec3(0.0)))
         return fail(ErrorCode::unsupported, a_turns ? 0 : 1, "cast: a half-space cannot turn; turn the other");
     if (is_unbounded(a) && is_unbounded(b))
-        return fail(ErrorCode::unsupported, 1, "cast: two half-spaces; ask `distance` at the two times");
+        return fail(ErrorCode::unsupported, 1,
+                    "cast: two half-spaces are not supported; call `distance` at the two times");
     const Impact first = cast_once(a, motion_a, b, motion_b, options, cache, nullptr);
     const bool alone = a.body.is_convex() && b.body.is_convex() && beside.a.empty() && beside.b.empty();
     if (first.result == CastResult::miss || alone || rests(motion_a, motion_b) || options.duration == 0.0) return first;

@@ -18,7 +18,7 @@ class VisibleQuery {
   public:
     VisibleQuery(const OcclusionBuffer& buffer, VisibleSet& visible, const VisibleOptions& options)
         : buffer_(buffer), view_(query_view_of(buffer.data())), visible_(visible), options_(options) {
-        CROFTON_ASSERT(buffer.data().drawn, "draw the buffer before it is asked");
+        CROFTON_ASSERT(buffer.data().drawn, "draw the buffer before you query it");
         visible_.statistics_ = {};
         visible_.candidates_.clear();
         visible_.size_ = 0;

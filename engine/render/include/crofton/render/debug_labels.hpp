@@ -7,13 +7,13 @@
 
 namespace crofton::render {
 
-// VK_EXT_debug_utils of one device. All null, and every call does nothing, where the extension is off.
+// VK_EXT_debug_utils of one device. If the extension is off, all members are null and every call does nothing.
 struct DebugLabels {
     PFN_vkSetDebugUtilsObjectNameEXT set_name = nullptr;
     PFN_vkCmdBeginDebugUtilsLabelEXT begin = nullptr;
     PFN_vkCmdEndDebugUtilsLabelEXT end = nullptr;
 
-    // Null handles are left alone. Names are for people: a call that fails changes nothing and is not reported.
+    // Names an object; ignores null handles. A call that fails changes nothing and is not reported.
     template <class Handle>
     void name(VkDevice device, VkObjectType type, Handle handle, const char* text) const {
         if (set_name == nullptr || handle == Handle{}) return;
@@ -25,7 +25,7 @@ struct DebugLabels {
     }
 };
 
-// What is recorded in the life of the object has this label.
+// Labels all commands that are recorded during the life of this object.
 class LabelledCommands {
   public:
     LabelledCommands(const DebugLabels& labels, VkCommandBuffer commands, const char* text)

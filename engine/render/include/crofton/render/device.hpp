@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which Vulkan device draws, and what its validation had to say.
+// The Vulkan device, and the messages of its validation.
 #pragma once
 #include <crofton/core/error.hpp>
 #include <cstdint>
@@ -19,32 +19,33 @@ enum class DeviceKind : std::uint8_t {
 
 struct DeviceOptions {
     DeviceKind kind = DeviceKind::any;
-    // Part of the device's name, in any case of letters. If empty: the environment's CROFTON_DEVICE, if set ("cpu" asks
-    // for the kind); otherwise the best device of `kind`.
+    // Part of the device's name, ignoring case. If empty: the environment's CROFTON_DEVICE, if set ("cpu" selects the
+    // kind); otherwise the best device of `kind`.
     std::string name;
-    // Turns on VK_LAYER_KHRONOS_validation with synchronisation checks, and collects what it says.
+    // Turns on VK_LAYER_KHRONOS_validation with synchronisation checks, and collects its messages.
     bool validation = false;
-    // For windows: what the surface and the swapchain need. VK_EXT_debug_utils, which validation brings along, gives
-    // objects and passes their names in debuggers.
+    // For windows: the extensions of the surface and the swapchain. VK_EXT_debug_utils, which validation includes,
+    // gives objects and passes their names in debuggers.
     std::vector<std::string> instance_extensions;
     std::vector<std::string> device_extensions;
 };
 
-// A Vulkan 1.3 device with one graphics queue. Loads the driver at run time: without one, create() fails and the
-// program runs on. Not thread-safe: one device, one thread at a time.
+// A Vulkan 1.3 device with one graphics queue. It loads the driver at run time: without one, create() fails and the
+// program continues. Not thread-safe: use a device on one thread at a time.
 class Device {
   public:
-    // Errors: unavailable – no Vulkan loader, no driver, no device of that kind or name, or the validation layer is
-    // absent; unsupported – the device lacks Vulkan 1.3, a needed feature or extension.
+    // Creates a device. Errors: unavailable – no Vulkan loader, no driver, no device of that kind or name, or the
+    // validation layer is absent; unsupported – the device lacks Vulkan 1.3, a needed feature or extension.
     [[nodiscard]] static Result<Device> create(const DeviceOptions& options = {});
     ~Device();
     Device(Device&&) noexcept;
     Device& operator=(Device&&) noexcept;
 
     [[nodiscard]] const std::string& name() const;
-    // True for lavapipe: there `clipping_primitives` equals ClipPredictor's count. Other devices clip as they like.
+    // Returns true for lavapipe, where `clipping_primitives` equals ClipPredictor's count. Other devices clip
+    // differently.
     [[nodiscard]] bool counts_exactly() const;
-    // Every message of severity WARNING or above since creation; empty where validation is off.
+    // Returns all messages of severity WARNING or above since creation; empty if validation is off.
     [[nodiscard]] std::span<const std::string> validation_messages() const;
     [[nodiscard]] const VulkanContext& context() const;
 

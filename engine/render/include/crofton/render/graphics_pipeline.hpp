@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Passes and pipelines by what differs between them, for the rasterizer and for those who draw beside it.
+// Render passes and pipelines by their differences, for the rasterizer and for other drawing code.
 #pragma once
 #include <crofton/render/vulkan_context.hpp>
 #include <cstdint>
@@ -7,19 +7,19 @@
 
 namespace crofton::render {
 
-// One pass over a picture of kColorFormat. The picture ends in SHADER_READ_ONLY_OPTIMAL, visible to transfers and
-// fragment shaders that follow. One that is kept must be in that layout before.
+// One pass over a picture of kColorFormat. The picture ends in SHADER_READ_ONLY_OPTIMAL, visible to following transfers
+// and fragment shaders. A picture that is kept must be in that layout before.
 struct PassDescription {
     bool keep_color = false;                      // false: cleared
-    VkFormat depth_format = VK_FORMAT_UNDEFINED;  // cleared, and gone after the pass; UNDEFINED: the pass has no depth
+    VkFormat depth_format = VK_FORMAT_UNDEFINED;  // cleared, and discarded after the pass; UNDEFINED: no depth
 };
 [[nodiscard]] Result<VkRenderPass> create_render_pass(const VulkanContext& context, const PassDescription& description);
 
-// `views`: colour, then depth where the pass has one.
+// `views`: colour, then depth if the pass has one.
 [[nodiscard]] Result<VkFramebuffer> create_framebuffer(const VulkanContext& context, VkRenderPass pass,
                                                        std::span<const VkImageView> views, VkExtent2D extent);
 
-// A pipeline with one colour attachment, dynamic viewport and scissor, front faces counter-clockwise.
+// A pipeline with one colour attachment, dynamic viewport and scissor, and counter-clockwise front faces.
 struct PipelineDescription {
     std::span<const std::uint32_t> vertex_shader, fragment_shader;  // SPIR-V
     std::span<const VkVertexInputAttributeDescription> attributes;
@@ -27,7 +27,7 @@ struct PipelineDescription {
     VkPrimitiveTopology topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
     VkPolygonMode mode = VK_POLYGON_MODE_FILL;
     VkCullModeFlags cull = VK_CULL_MODE_NONE;
-    std::uint32_t variant = 0;                          // what the shaders read as constant_id 0
+    std::uint32_t variant = 0;                          // the shaders' constant_id 0
     VkCompareOp depth_compare = VK_COMPARE_OP_GREATER;  // reversed-Z; of no effect in a pass without depth
     bool depth_write = true;
     struct DepthBias {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Headless Vulkan rasterizer: draws index ranges and says how many triangles that cost.
+// A headless Vulkan rasterizer that draws index ranges and counts triangles.
 #pragma once
 #include <array>
 #include <crofton/core/error.hpp>
@@ -22,13 +22,13 @@ struct DrawRange {
     std::uint32_t first_index = 0;
     std::uint32_t index_count = 0;
     std::uint32_t transform = 0;
-    bool one_sided = false;  // back faces are not seen; they are counted all the same
-    // A promise that no vertex lies beyond a clip plane, as inside_clip_planes() finds. Back faces of one-sided ranges
-    // then go before they are rasterised; elsewhere lavapipe would not count them, so the fragment shader drops them.
+    bool one_sided = false;  // back faces are not drawn, but counted
+    // Set it if no vertex lies beyond a clip plane, as inside_clip_planes() finds. Back faces of one-sided ranges are
+    // then culled before rasterisation; elsewhere lavapipe would not count them, so the fragment shader drops them.
     bool unclipped = false;
 };
 
-// What the vertex shader reads for one draw; made by draw_transform().
+// The vertex shader's input for one draw; made by draw_transform().
 struct DrawTransform {
     glm::mat4 to_clip;                // as ModelToClip makes it
     std::array<glm::vec4, 3> normal;  // columns of the cofactor matrix of the linear part; .w holds the tint's r, g, b
@@ -38,11 +38,12 @@ struct DrawTransform {
 };
 static_assert(sizeof(DrawTransform) == 128, "the layout that the vertex shader's attributes are read by");
 
-// For a mesh placed by x ↦ linear · x + translation; `to_clip` is ModelToClip's matrix for the same.
+// Returns the input for a mesh placed by x ↦ linear · x + translation; `to_clip` is ModelToClip's matrix for the same
+// placement.
 [[nodiscard]] DrawTransform draw_transform(const glm::mat4& to_clip, const glm::dmat3& linear);
 void set_tint(DrawTransform& transform, const glm::vec3& linear_rgb, float share = 1.0f);
 
-// Ends of a line, relative to the camera, in the colour that appears (display RGBA, 0 to 255).
+// An end of a line, relative to the camera, in the displayed colour (RGBA, 0 to 255).
 struct LineVertex {
     glm::vec3 position;
     std::uint32_t rgba;  // R in the lowest byte
@@ -61,18 +62,17 @@ struct Environment {
     bool sky = true;               // otherwise the background is the horizon's colour
 };
 
-// One picture. The spans are read during draw() only. Only `ranges` are counted, not lines, wires or sky.
+// One picture. The spans are read only during draw(). Only `ranges` are counted, not lines, wires or sky.
 struct Frame {
     Camera camera;  // must be the one that made the transforms
     std::span<const DrawTransform> transforms;
     std::span<const DrawRange> ranges;
-    std::span<const DrawRange> wire_ranges{};  // their edges are drawn over the picture; ignored where unsupported
-    std::span<const LineVertex> lines{};       // two a line
+    std::span<const DrawRange> wire_ranges{};  // their edges are drawn over the picture; ignored if unsupported
+    std::span<const LineVertex> lines{};       // two per line
     Environment environment{};
 };
 
-// What the GPU counted over one frame (VkQueryPipelineStatisticFlagBits names; samples_passed is a precise occlusion
-// query).
+// The GPU's counts of one frame (VkQueryPipelineStatisticFlagBits names; samples_passed is a precise occlusion query).
 struct GpuCounters {
     std::uint64_t input_assembly_primitives = 0;
     std::uint64_t clipping_invocations = 0;
@@ -86,7 +86,7 @@ struct Image {
     Vector<std::uint8_t> rgba;
 };
 
-// In draw_owners()'s answer: a pixel that no triangle owns.
+// The number of a pixel that no triangle owns, in draw_owners().
 inline constexpr std::uint32_t kNoTriangle = 0xffffffffu;
 
 class ImageResource;  // native handles: see resources.hpp
@@ -96,11 +96,12 @@ struct RasterizerOptions {
     std::uint32_t height = 720;
 };
 
-// Draws into a BGRA8 + D32 target (on lavapipe any other pair may turn on a guard band, which changes the counts).
-// The device must outlive it. Depth is reversed-Z: cameras and matrices must use DepthRange::reversed_zero_to_one.
+// Draws into a BGRA8 + D32 target; on lavapipe any other pair may turn on a guard band, which changes the counts. The
+// device must outlive it. Depth is reversed-Z: cameras and matrices must use DepthRange::reversed_zero_to_one.
 class Rasterizer {
   public:
-    // Errors: size 0 or beyond the device's limit; unavailable, unsupported, internal from Vulkan.
+    // Creates a rasterizer. Errors: size 0 or beyond the device's limit; unavailable, unsupported, internal from
+    // Vulkan.
     [[nodiscard]] static Result<Rasterizer> create(Device& device, const RasterizerOptions& options = {});
     ~Rasterizer();
     Rasterizer(Rasterizer&&) noexcept;
@@ -110,44 +111,43 @@ class Rasterizer {
     // index).
     [[nodiscard]] Result<void> set_geometry(std::span<const Vertex> vertices, std::span<const std::uint32_t> indices);
 
-    // Pictures are numbered; 0 is made by create(), others by their first resize(), one after another. They share the
-    // geometry, so that one scene can be seen from several sides. Where `resolution` is less than 1 only that share of
-    // the pixels each way is drawn, and enlarged. Counts stay as they are, but for the samples passed. Errors: as
-    // create(); a resolution that is not above 0 and at most 1.
+    // Sets the size of a picture. Picture 0 is made by create(), the others by their first resize(), in order. They
+    // share the geometry, so that one scene can be seen from several sides.
+    //
+    // If `resolution` is less than 1, only that share of the pixels each way is drawn, and the picture is enlarged.
+    // Counts stay the same, except the samples passed. Errors: as create(); a resolution that is not above 0 and at
+    // most 1.
     [[nodiscard]] Result<void> resize(std::uint32_t width, std::uint32_t height, std::uint32_t picture = 0,
                                       float resolution = 1.0f);
 
-    // Draws and waits. Neighbouring ranges that continue each other with the same transform become one draw. Memory
-    // grows on first need only. Errors: a range beyond the indices or transforms, not whole triangles (item = range);
-    // Vulkan's.
+    // Draws and waits. Consecutive ranges with the same transform become one draw. Memory grows only when needed.
+    // Errors: a range beyond the indices or transforms, or not of whole triangles (item = range); Vulkan's.
     [[nodiscard]] Result<GpuCounters> draw(const Frame& frame, std::uint32_t picture = 0);
 
-    // draw() in two steps, so that the caller can work while the device draws. Frame and spans are done with once
-    // submit() returns; after it, finish() comes before any other call.
+    // draw() in two steps, so that the caller can work while the device draws. submit() has read frame and spans when
+    // it returns; call finish() next, before any other function.
     [[nodiscard]] Result<void> submit(const Frame& frame, std::uint32_t picture = 0);
     [[nodiscard]] Result<GpuCounters> finish();
 
-    // The picture's pixels as they are now. Errors: nothing drawn since its last change of size; Vulkan's.
+    // Reads the picture's pixels. Errors: nothing drawn since its last change of size; Vulkan's.
     [[nodiscard]] Result<void> read_pixels(Image& image, std::uint32_t picture = 0);
 
     // Writes which triangle owns each pixel, top row first: `owners` gets k for the k-th triangle of frame.ranges,
-    // counted through the ranges as they are given, or kNoTriangle. The owner is the triangle whose colour draw()
-    // leaves there.
+    // counted through the ranges in order, or kNoTriangle. The owner is the triangle whose colour draw() leaves there.
     //
-    // Draws the ranges into the picture, each triangle in its number; lines, wires and sky are left out. Draws and
-    // waits. Errors: `unsupported` where fragment shaders cannot read gl_PrimitiveID; a picture whose resolution is
-    // below 1; more than 2^32 - 2 triangles; as draw().
+    // Draws the ranges into the picture, each triangle in its number, without lines, wires and sky, and waits. Errors:
+    // `unsupported` if fragment shaders cannot read gl_PrimitiveID; a picture whose resolution is below 1; more than
+    // 2^32 - 2 triangles; as draw().
     [[nodiscard]] Result<void> draw_owners(const Frame& frame, Vector<std::uint32_t>& owners,
                                            std::uint32_t picture = 0);
 
-    // How many draws the last frame needed after merging.
+    // Returns the number of draws of the last frame after merging.
     [[nodiscard]] std::uint32_t draw_count() const;
     [[nodiscard]] std::uint32_t width(std::uint32_t picture = 0) const;
     [[nodiscard]] std::uint32_t height(std::uint32_t picture = 0) const;
 
-    // For a window: the picture between draws, of kColorFormat, in SHADER_READ_ONLY_OPTIMAL, usable as colour
-    // attachment, transfer source and sampled image. Must be left in that layout, idle. Null where there is no such
-    // picture.
+    // Returns the picture between draws, for a window: of kColorFormat, in SHADER_READ_ONLY_OPTIMAL, usable as colour
+    // attachment, transfer source and sampled image. Leave it in that layout, idle. Null if there is no such picture.
     [[nodiscard]] const ImageResource* native_image(std::uint32_t picture = 0) const;
 
   private:

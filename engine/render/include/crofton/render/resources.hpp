@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Native resources that free themselves, for those who draw beside the rasterizer: buffers, images, commands.
+// Native resources that free themselves, for drawing code besides the rasterizer: buffers, images, commands.
 #pragma once
 #include <crofton/render/vulkan_context.hpp>
 #include <cstddef>
@@ -7,7 +7,7 @@
 
 namespace crofton::render {
 
-// A buffer with its own memory; `mapped` is null where the host cannot see it. Movable, empty by default.
+// A buffer with its own memory; `mapped` is null if the host cannot access it. Movable, empty by default.
 class Buffer {
   public:
     Buffer() = default;
@@ -18,12 +18,12 @@ class Buffer {
     }
     ~Buffer();
 
-    // `wanted` first, `fallback` where no memory has all of it.
+    // Creates a buffer in memory with all of `wanted`, or with `fallback` if there is none.
     [[nodiscard]] static Result<Buffer> create(const VulkanContext& context, VkDeviceSize size,
                                                VkBufferUsageFlags usage, VkMemoryPropertyFlags wanted,
                                                VkMemoryPropertyFlags fallback);
 
-    // In debuggers, where the device has labels.
+    // Names the buffer for debuggers, if the device has labels.
     void name(const char* text) const {
         if (context_ != nullptr) context_->labels.name(context_->device, VK_OBJECT_TYPE_BUFFER, handle, text);
     }
@@ -44,17 +44,17 @@ class Buffer {
     VkDeviceMemory memory_ = VK_NULL_HANDLE;
 };
 
-// Memory that the host writes and the device reads (or the other way round), coherent.
+// Creates a buffer that the host writes and the device reads (or the other way round), coherent.
 [[nodiscard]] Result<Buffer> create_host_buffer(const VulkanContext& context, VkDeviceSize size,
                                                 VkBufferUsageFlags usage);
-// Makes a host buffer at least `size` bytes; what it held is lost where it grows.
+// Makes a host buffer at least `size` bytes; if it grows, its contents are lost.
 [[nodiscard]] Result<void> reserve_host_buffer(const VulkanContext& context, Buffer& buffer, VkDeviceSize size,
                                                VkBufferUsageFlags usage);
-// Memory that only the device touches, filled once through a staging copy.
+// Creates a buffer that only the device accesses, filled once through a staging copy.
 [[nodiscard]] Result<Buffer> create_static_buffer(const VulkanContext& context, const void* data, VkDeviceSize size,
                                                   VkBufferUsageFlags usage);
 
-// The order of colours that windows take, on X11 alone so: a picture goes there by a copy of its bytes.
+// The colour order of windows, the only one on X11: a picture is copied there byte by byte.
 inline constexpr VkFormat kColorFormat = VK_FORMAT_B8G8R8A8_UNORM;
 
 // A 2D image of one level with its memory and view.
@@ -71,7 +71,7 @@ class ImageResource {
     [[nodiscard]] static Result<ImageResource> create(const VulkanContext& context, VkExtent2D extent, VkFormat format,
                                                       VkImageUsageFlags usage, VkImageAspectFlags aspect);
 
-    // In debuggers, where the device has labels: the image and its view.
+    // Names the image and its view for debuggers, if the device has labels.
     void name(const char* text) const {
         if (context_ == nullptr) return;
         context_->labels.name(context_->device, VK_OBJECT_TYPE_IMAGE, handle, text);
@@ -92,7 +92,7 @@ class ImageResource {
     VkDeviceMemory memory_ = VK_NULL_HANDLE;
 };
 
-// Of a colour image's one level: `before` is made visible to `after`, in another layout.
+// Returns a barrier for a colour image of one level: it makes `before` visible to `after`, in another layout.
 [[nodiscard]] VkImageMemoryBarrier color_barrier(VkImage image, VkImageLayout from, VkImageLayout to,
                                                  VkAccessFlags before, VkAccessFlags after);
 
@@ -108,9 +108,9 @@ class Commands {
     ~Commands();
 
     [[nodiscard]] static Result<Commands> create(const VulkanContext& context);
-    // Also after a call that failed: what that one left is waited for and taken back first.
+    // Begins recording. After a failed call, it first waits for and resets what that call left.
     [[nodiscard]] Result<void> begin();
-    // Transfers wait for `wait`; `signal` tells that all is done. Either may be null.
+    // Submits the commands. Transfers wait for `wait`; `signal` is signalled at the end. Either may be null.
     [[nodiscard]] Result<void> submit(VkSemaphore wait = VK_NULL_HANDLE, VkSemaphore signal = VK_NULL_HANDLE);
     [[nodiscard]] Result<void> wait();  // once after each submit()
     [[nodiscard]] Result<void> submit_and_wait();
@@ -124,7 +124,7 @@ class Commands {
         std::swap(fence_, other.fence_);
         std::swap(left_, other.left_);
     }
-    // What has been begun, and would have to be ended before the commands can be used again.
+    // The unfinished state that must end before the commands can be used again.
     enum class Left : std::uint8_t { nothing, recording, pending, signalled };
     [[nodiscard]] Result<void> recover();
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the rasterizer's static buffer holds, and how meshes get there.
+// The vertices of the rasterizer's static buffer, and how to add meshes.
 #pragma once
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/mesh.hpp>
@@ -20,8 +20,10 @@ struct IndexRange {
 };
 
 // Appends a mesh's triangles, in order, with normals: faces that meet at a corner by less than `crease_angle_radians`
-// share an area-weighted one. Positions stay bit for bit, so triangle t of the mesh and triangle first_index / 3 + t of
-// the buffer clip alike. A mesh without colours gets `color`. Requires validate(mesh), and totals below 2^32.
+// share an area-weighted normal.
+//
+// Positions stay bit for bit, so triangle t of the mesh and triangle first_index / 3 + t of the buffer clip alike. A
+// mesh without colours gets `color`. Requires validate(mesh), and totals below 2^32.
 IndexRange append_mesh(const TriangleMesh& mesh, const glm::vec3& color, Vector<Vertex>& vertices,
                        Vector<std::uint32_t>& indices, float crease_angle_radians = 0.7f);
 

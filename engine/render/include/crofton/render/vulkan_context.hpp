@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Native Vulkan handles, for those who draw beside the rasterizer: a window's swapchain, a user interface.
+// Native Vulkan handles, for drawing code besides the rasterizer: a window's swapchain, a user interface.
 #pragma once
 #include <volk.h>
 
@@ -10,7 +10,7 @@
 
 namespace crofton::render {
 
-// Everything is owned by Device. Functions are called through `vk`, so several devices may live in one process.
+// Native handles, owned by Device. Functions are called through `vk`, so several devices may exist in one process.
 struct VulkanContext {
     VkInstance instance = VK_NULL_HANDLE;
     VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE;
@@ -23,7 +23,7 @@ struct VulkanContext {
     std::uint32_t queue_family = 0;
     VkQueue queue = VK_NULL_HANDLE;
     VkCommandPool command_pool = VK_NULL_HANDLE;
-    // 0 where the device has no VK_EXT_multi_draw.
+    // 0 if the device has no VK_EXT_multi_draw.
     std::uint32_t max_multi_draws = 0;
     bool multi_draw_indirect = false;
     bool pipeline_statistics = false;
@@ -38,12 +38,12 @@ struct VulkanContext {
     VulkanContext& operator=(const VulkanContext&) = delete;
     ~VulkanContext();
 
-    // The first memory type among `type_bits` that has all of `wanted`, or ~0u.
+    // Returns the first memory type among `type_bits` that has all of `wanted`, or ~0u.
     [[nodiscard]] std::uint32_t memory_type(std::uint32_t type_bits, VkMemoryPropertyFlags wanted) const;
 };
 
-// "what: VK_ERROR_…": `unavailable` for a lost device or a lost surface, `out_of_range` where memory is full,
-// `internal` for the rest.
+// Returns an error with the message "what: VK_ERROR_…": `unavailable` for a lost device or a lost surface,
+// `out_of_range` if memory is full, `internal` otherwise.
 [[nodiscard]] Error vulkan_error(VkResult result, const char* what);
 [[nodiscard]] inline tl::unexpected<Error> vulkan_failure(VkResult result, const char* what) {
     return tl::unexpected(vulkan_error(result, what));

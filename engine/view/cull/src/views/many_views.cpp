@@ -160,7 +160,7 @@ class ManyViewsQuery {
 Result<void> check_view_count(std::size_t views) {
     if (views <= kMaxViews) return {};
     return fail(ErrorCode::out_of_range, kMaxViews,
-                {"cull: ", views, " views; one pass takes at most ", kMaxViews, ": ask in several passes"});
+                {"cull: ", views, " views; one pass takes at most ", kMaxViews, ": split them into several passes"});
 }
 
 Result<void> find_visible(const boxtree::BoxTree& tree, std::span<const View> views, MaskedVisibleSet& visible,

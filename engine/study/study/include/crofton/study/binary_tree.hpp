@@ -67,7 +67,6 @@ class BinaryTree {
     bool remove(ItemId item);
 
     [[nodiscard]] std::size_t item_count() const { return item_count_; }
-    [[nodiscard]] std::size_t id_count() const { return leaf_of_.size(); }  // ids are below, removed ones included
     [[nodiscard]] std::uint32_t leaf(ItemId item) const { return leaf_of_[item]; }  // its node; kNone once removed
     [[nodiscard]] bool holds(ItemId item) const { return item < leaf_of_.size() && leaf_of_[item] != kNone; }
     [[nodiscard]] const Node* root() const { return root_ == kNone ? nullptr : &nodes_[root_]; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Finds the triangles that a picture needs, front to back, by the depth of the triangles it has already found.
+// Finds the triangles that a picture needs, from front to back: triangles behind those found before are left out.
 #pragma once
 #include <crofton/core/error.hpp>
 #include <crofton/core/memory.hpp>
@@ -11,21 +11,22 @@
 
 namespace crofton::depth {
 
-// One drawn mesh. `to_clip` takes model coordinates to clip coordinates, as the vertex shader does, in float.
+// One drawn mesh. `to_clip` takes model coordinates to clip coordinates: the float matrix of the vertex shader.
 struct DepthObject {
     const ClusteredMesh* mesh = nullptr;  // must outlive the call
     glm::mat4 to_clip{1.0f};
-    // Set it where the renderer drops back faces: those are never listed then, and hide nothing. Front faces are
-    // counter-clockwise seen with y up.
+    // Set it if the renderer drops back faces: they are then not listed and hide nothing. Front faces are
+    // counter-clockwise in clip coordinates with y up.
     bool one_sided = false;
-    // Clear it for alpha-tested and transparent things: they are culled, and hide nothing.
+    // Clear it for alpha-tested and transparent objects: they are culled, but hide nothing.
     bool hides = true;
-    // How far the drawn vertices may lie from the mesh's, in the model's units, beyond what the product `to_clip` ·
-    // vertex rounds: 0 unless the renderer uses other vertices (placed in the world beforehand, quantised).
+    // The largest distance of a drawn vertex from the mesh's vertex, in the model's units, in addition to the rounding
+    // of `to_clip` · vertex. 0 unless the renderer draws other vertices (transformed to the world beforehand,
+    // quantised).
     float position_error = 0.0f;
 };
 
-// The picture that is drawn: one sample a pixel, at its centre.
+// The picture that is drawn, with one sample per pixel, at its centre.
 struct PictureView {
     static constexpr std::uint32_t kMaxSize = 16'384;
 
@@ -34,8 +35,8 @@ struct PictureView {
     DepthRange depth = DepthRange::reversed_zero_to_one;
 };
 
-// A cluster with a triangle that may own a sample. Bit k of `triangles` stands for triangle
-// mesh.clusters()[cluster].first_triangle + k; at least one is set.
+// A cluster with at least one triangle that may be visible at a sample. If bit k of `triangles` is set, draw triangle
+// mesh.clusters()[cluster].first_triangle + k.
 struct VisibleCluster {
     std::uint32_t object = 0;
     std::uint32_t cluster = 0;
@@ -51,18 +52,18 @@ struct DepthStatistics {
     std::uint64_t triangles_listed = 0;
 };
 
-// Finds, for a picture of opaque triangles with the depth test on, the triangles without which it would change.
+// Finds the triangles without which a picture of opaque triangles, drawn with the depth test, would change.
 //
-// The promise: draw the listed triangles, or any set of triangles that contains them, in the order in which you would
-// draw all, and the picture has the same bits. It holds for this picture, at its samples (one a pixel): a larger
-// picture needs another call. It holds for renderers that
+// Draw the listed triangles, or any set that contains them, in the order in which you would draw all triangles: the
+// picture has the same bits. This holds only for the size given, with one sample per pixel; another size needs another
+// call. It holds for renderers that
 // - compute positions as to_clip · vertex in float, in any order of operations, and snap them to a grid of at most
 //   1/256 pixel (Vulkan's subPixelPrecisionBits ≥ 8),
 // - cover no sample twice and leave none out where two triangles share an edge,
 // - never give a sample a depth nearer than the triangle's nearest vertex, and write and compare depth as 32-bit
 // floats. docs/notes/depth.md derives the margins.
 //
-// Keeps its memory between calls: once warm it allocates nothing. One culler per thread.
+// Keeps its memory between calls and allocates only when it must grow. Use one culler per thread.
 class DepthCuller {
   public:
     DepthCuller();
@@ -70,18 +71,19 @@ class DepthCuller {
     DepthCuller(DepthCuller&&) noexcept;
     DepthCuller& operator=(DepthCuller&&) noexcept;
 
-    // Lists by object, then by cluster, both ascending. Objects wholly outside of the picture cost little, but are
-    // better left out (World::view). Valid until the next call.
+    // Returns visible clusters by object, then by cluster, both ascending; valid until the next call. Leave out objects
+    // outside the frustum (World::view): it is faster.
     //
-    // Errors: a size out of range; an object without a mesh (item = object). A matrix or an error that is not finite
-    // makes its object visible as a whole, and it hides nothing.
+    // Errors: a size out of range; an object without a mesh (item = object). If an object's matrix or position_error is
+    // not finite, all its triangles are listed and it hides nothing.
     [[nodiscard]] Result<std::span<const VisibleCluster>> find_visible(std::span<const DepthObject> objects,
                                                                        const PictureView& view);
 
     [[nodiscard]] const DepthStatistics& statistics() const;
 
-    // The nearness that the listed triangles surely have at a pixel, of the last call: depth, negated unless reversed;
-    // minus infinity where none surely covers it. Row 0 is at the bottom. Requires x < width, y < height.
+    // Returns a lower bound for the nearness of the listed triangles at a pixel, after the last call. Nearness is
+    // depth, negated unless the range is reversed; minus infinity where no triangle surely covers the pixel. Row 0 is
+    // at the bottom. Requires x < width, y < height.
     [[nodiscard]] float nearness(std::uint32_t x, std::uint32_t y) const;
 
   private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Answers of a World: results of views, hits, pairs, contacts.
+// Results of a World's queries: views, hits, pairs, contacts.
 #pragma once
 #include <crofton/collide/narrow_phase.hpp>
 #include <crofton/core/memory.hpp>
@@ -17,13 +17,13 @@ namespace convex {
 struct TrackedPoint;
 }
 namespace world {
-// By an object's index.
+// Indexed by an object's index.
 struct ObjectNames {
     Vector<std::uint32_t> generations;
     Vector<std::uint64_t> users;
 };
 
-struct OccludedView;  // a view's depth buffer, and what was found with it
+struct OccludedView;  // a view's depth buffer and the results of its tests
 struct OccludedViewDeleter {
     void operator()(OccludedView* view) const;
 };
@@ -35,7 +35,7 @@ struct ObjectRef {
     std::uint64_t user = 0;
 };
 
-// An occluder: the object that has it, and its place among those of the object's mesh (World::occluders_of).
+// Names an occluder: its object, and its place in World::occluders_of of the object's mesh.
 struct OccluderRef {
     ObjectHandle object;
     std::uint64_t user = 0;
@@ -48,36 +48,38 @@ struct OcclusionStatistics {
     occlude::VisibleStatistics asked;
 };
 
-// The result of one view. Keep it from frame to frame, and it allocates nothing once it is large enough.
+// The result of one view. Keep it from frame to frame: it allocates only when it must grow.
 //
-// Objects are looked up when you ask for them: ask before the World's next change, and while it lives. ids() and counts
-// stay.
+// operator[] and ref() look objects up in the World, so call them before the World changes or is destroyed. ids() and
+// counts stay valid.
 class ViewResult {
   public:
     [[nodiscard]] std::size_t size() const { return ids().size(); }
     [[nodiscard]] std::span<const std::uint32_t> ids() const { return hides_ ? seen_ids() : set_.ids(); }  // indices
     [[nodiscard]] ObjectRef operator[](std::size_t i) const { return ref(ids()[i]); }
-    // In CullOptions' tree order the first so many are inside the view, the others straddle its boundary; in ascending
-    // order verdicts() says it of each.
+    // In tree order, the first inside_count() objects are inside the view and the others straddle its boundary. In
+    // ascending order, verdicts() has one verdict for each object.
     [[nodiscard]] std::size_t inside_count() const { return hides_ ? seen_inside_count() : set_.inside_count(); }
     [[nodiscard]] std::span<const cull::Verdict> verdicts() const { return hides_ ? seen_verdicts() : set_.verdicts(); }
-    // Counts the query by the view volume. With occlusion there is one only for OcclusionOptions::list_occluded and for
-    // tree order.
+    // Returns the counts of the query by the view volume. With occlusion, such a query takes place only for
+    // OcclusionOptions::list_occluded and for tree order.
     [[nodiscard]] const cull::Statistics& statistics() const { return set_.statistics(); }
     [[nodiscard]] ObjectRef ref(std::uint32_t id) const { return {{id, names_->generations[id]}, names_->users[id]}; }
 
-    // Whether the last view was with occlusion. If not, the calls below return nothing.
+    // Tells whether the last view had occlusion. If not, the results of the following calls are empty.
     [[nodiscard]] bool has_occlusion() const { return hides_ && !has_picture(); }
-    // Indices, ascending: in the view's frustum, and hidden. Empty unless OcclusionOptions::list_occluded.
+    // Returns the indices of the objects in the view's frustum that are hidden, ascending. Requires
+    // OcclusionOptions::list_occluded; else empty.
     [[nodiscard]] std::span<const std::uint32_t> occluded_ids() const;
-    // With list_occluded; an index that is in neither list is outside, or not worth drawing.
+    // Requires list_occluded. An index in neither list is outside the view or beyond its limits.
     [[nodiscard]] occlude::Verdict verdict_of(std::uint32_t index) const;
     [[nodiscard]] OcclusionStatistics occlusion_statistics() const;
-    // The depth buffer as it was drawn, or nullptr.
+    // Returns the depth buffer with the drawn occluders, or nullptr without occlusion.
     [[nodiscard]] const occlude::OcclusionBuffer* occlusion_buffer() const;
 
-    // Of the last view with ViewRequest::picture: the triangles to draw, by object index, then by cluster of its mesh
-    // (World::clusters_of). ids() are the objects that have some, and those without clusters whose boxes may be seen.
+    // After a view with ViewRequest::picture: triangles() lists the triangles to draw, by object index, then by cluster
+    // of its mesh (World::clusters_of). ids() lists the objects with such triangles, and the objects without clusters
+    // whose boxes may be visible.
     [[nodiscard]] bool has_picture() const;
     [[nodiscard]] std::span<const depth::VisibleCluster> triangles() const;
     [[nodiscard]] depth::DepthStatistics picture_statistics() const;
@@ -94,11 +96,11 @@ class ViewResult {
     Vector<std::uint64_t> candidates_;  // CullOptions::candidate_mask and what has changed since
 };
 
-// The result of up to 32 views, each object once. Keep it from frame to frame.
+// The result of up to 32 views, with each object once. Keep it from frame to frame.
 class MultiViewResult {
   public:
     [[nodiscard]] std::size_t size() const { return ids().size(); }
-    // Indices: ascending, or by and large along the tree if the requests asked for tree order.
+    // Returns indices: ascending, or roughly in the order of the tree if the requests asked for tree order.
     [[nodiscard]] std::span<const std::uint32_t> ids() const {
         return listed_ ? std::span<const std::uint32_t>(ids_.data(), ids_.size()) : set_.ids();
     }
@@ -106,7 +108,7 @@ class MultiViewResult {
         const std::uint32_t id = ids()[i];
         return {{id, names_->generations[id]}, names_->users[id]};
     }
-    // Bit v: view v sees it.
+    // Bit v is set if view v sees object ids()[i].
     [[nodiscard]] std::uint32_t view_mask(std::size_t i) const { return listed_ ? masks_[ids_[i]] : set_.view_mask(i); }
 
     // How many views the last call asked for, and what the occlusion of one of them drew and asked; zeros for a view
@@ -140,10 +142,10 @@ inline constexpr std::uint32_t kNoTriangle = ~std::uint32_t{0};
 struct ObjectHit {
     ObjectHandle object;
     std::uint64_t user = 0;
-    double t = 0.0;  // the ray's
+    double t = 0.0;  // along the ray, in lengths of its direction
     glm::dvec3 point{0.0};
     std::uint32_t triangle = kNoTriangle;  // of the object's mesh, or of the body's surface
-    std::uint32_t child = 0;               // of a body that is a compound: which (convex::PartId)
+    std::uint32_t child = 0;               // which child, if the body is a compound (convex::PartId)
     glm::dvec3 normal{0.0};       // unit, of the surface, to the side that the ray comes from; 0 if it began inside
     bool started_inside = false;  // the ray began in the body, box or sphere: t is 0; meshes have no inside
 };
@@ -152,7 +154,7 @@ struct ClosestObject {
     ObjectHandle object;
     std::uint64_t user = 0;
     double distance = 0.0;
-    glm::dvec3 on_shape{0.0}, on_object{0.0};  // a nearest point of each; any where they meet
+    glm::dvec3 on_shape{0.0}, on_object{0.0};  // a nearest point of each; if they overlap, any common point
 };
 
 struct ObjectPair {
@@ -161,23 +163,24 @@ struct ObjectPair {
 
 enum class ContactPhase : std::uint8_t { began, stayed, ended };
 
-// Two objects that touch, or that did in the update before. Ended contacts carry only the two object handles, which are
-// stale if the objects have been removed.
+// Two objects that touch, or that touched in the update before. Ended contacts have only the two objects, whose handles
+// are stale if the objects were removed.
 struct Contact {
     ObjectRef first, second;  // ordered as in ObjectPair
     ContactPhase phase = ContactPhase::began;
     mesh::Containment inside = mesh::Containment::none;
     glm::dvec3 normal{0.0};  // unit, from the first to the second; zero where no direction is known
-    // Moving the second so far along the normal ends the contact. Between meshes that is so with
-    // WorldOptions::mesh_depth; without, it is the depth of the deepest point.
+    // The distance along the normal by which the second must move to end the contact. Between meshes this requires
+    // WorldOptions::mesh_depth; without it, `depth` is the depth of the deepest point.
     double depth = 0.0;
-    std::span<const collide::ContactPoint> points;  // in the world's frame; at most four; none of a mesh inside another
-    std::span<const mesh::MeshContact> triangles;   // of two meshes, or a mesh and a box
+    std::span<const collide::ContactPoint>
+        points;  // in world coordinates; at most four; none if a mesh is inside another
+    std::span<const mesh::MeshContact> triangles;  // of two meshes, or a mesh and a box
 };
 
-// Two objects with bodies that touch, or come within WorldOptions::contact_margin, or did in the update before. Ended
-// contacts have no points. Points keep their memory, which is the caller's to write, while their ids stay
-// (crofton/convex/query.hpp); valid until the next update.
+// Two objects with bodies that touch or come within WorldOptions::contact_margin, or did so in the update before. Ended
+// contacts have no points. A point keeps its `memory`, which you may write, while its id stays the same
+// (crofton/convex/query.hpp). Points are valid until the next update.
 struct BodyContact {
     ObjectRef first, second;  // ordered as in ObjectPair; the first is body a
     ContactPhase phase = ContactPhase::began;
@@ -186,7 +189,7 @@ struct BodyContact {
     std::uint32_t unused = 0;  // the same size as in C where numbers of 8 bytes are aligned to 4
 };
 
-// An object that a moving body meets, at that time.
+// The first object that a moving body meets.
 struct BodyHit {
     ObjectHandle object;
     std::uint64_t user = 0;
@@ -194,8 +197,8 @@ struct BodyHit {
     glm::dvec3 normal{0.0};      // unit, from the body to the object
     glm::dvec3 point{0.0};       // on the object's surface
     std::uint32_t triangle = 0;  // of a surface
-    bool resolved = true;        // false: up to `time` nothing is met; what comes later is not known
-    double distance = 0.0;       // gap at that time; negative: how deep they overlap, from the start
+    bool resolved = true;        // false: the body meets nothing up to `time`; later contacts are unknown
+    double distance = 0.0;       // the gap at `time`; negative: the depth by which they overlapped at the start
 };
 
 }  // namespace crofton

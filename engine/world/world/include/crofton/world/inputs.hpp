@@ -26,16 +26,18 @@ namespace convex {
 class Body;
 }  // namespace convex
 
-// Names of things in a World: an index that is used again, and a generation that tells its users apart.
+// Handles of objects, nodes and meshes: an index, which is reused, and a generation, which differs for each use.
 
 inline constexpr std::uint32_t kNoIndex = ~std::uint32_t{0};
 
-// Indices are dense: below the largest number of things that lived at once, so that they may index the caller's own
-// arrays. An object's index is free again after the next update; those removed since the last one count as well. Nodes
-// share their indices with the objects that have a transform or no node. A handle whose thing has been removed is
-// stale: calls that take it fail with ErrorCode::stale_handle. So do calls that are given a handle of another World:
-// generations begin elsewhere in each World of the process, 1 in the first. They are never 0, so {0, 0} is no one's
-// handle. Generations come back after 2^32 - 1 removals of one index; those of n Worlds lie at least 2^32 / 3 n apart.
+// Indices are dense, so you may use them to index your own arrays: they are less than the largest number that existed
+// at once, including objects removed since the last update. An object's index is reused after the next update. Nodes
+// share their indices with the objects that have a transform or no node.
+//
+// A handle is stale after its object, node or mesh was removed. Calls with a stale handle, or with a handle of another
+// World, fail with ErrorCode::stale_handle. Each World of the process starts with other generations, the first World
+// with 1. Generations are never 0, so {0, 0} is always invalid. A generation returns after 2^32 - 1 removals of one
+// index; the first generations of n Worlds are at least 2^32 / 3 n apart.
 template <class Tag>
 struct Handle {
     std::uint32_t index = kNoIndex;
@@ -51,7 +53,8 @@ using MeshHandle = Handle<struct MeshTag>;
 
 // ---- Views of the caller's memory ----
 
-// `size` values of type T in the caller's memory, `stride` bytes apart: a span, or a member of an array of structs.
+// Reads `size` values of type T in the caller's memory, `stride` bytes apart: a span, or a member of an array of
+// structs.
 template <class T>
 class Strided {
   public:
@@ -71,7 +74,7 @@ class Strided {
     std::size_t size_ = 0, stride_ = sizeof(T);
 };
 
-// Points of three floats or three doubles each, at any alignment.
+// Reads points of three floats or three doubles each, at any alignment.
 class PointsView {
   public:
     PointsView() = default;
@@ -100,7 +103,7 @@ class PointsView {
     bool is_double_ = false;
 };
 
-// Indices of 16 or 32 bits.
+// Reads indices of 16 or 32 bits.
 class IndicesView {
   public:
     IndicesView() = default;
@@ -122,27 +125,30 @@ class IndicesView {
     std::size_t size_ = 0;
 };
 
-// A mesh in its own frame; World copies what it needs. Three indices a triangle (a, b, c). Without any, three positions
-// are one. Outside is where cross(b − a, c − a) points: triangles are counter-clockwise seen from there
-// in right-handed coordinates, clockwise in left-handed ones.
+// A mesh in its own frame. World copies what it needs.
+//
+// A triangle has three indices (a, b, c); without indices, three consecutive positions are a triangle. Its outside is
+// the side to which cross(b − a, c − a) points. Seen from there, triangles are counter-clockwise in right-handed
+// coordinates and clockwise in left-handed ones.
 struct MeshDescription {
     PointsView positions = {};
     IndicesView indices = {};
-    // Rays and contacts ask the triangles. False spares memory and time: the mesh's box stands for it.
+    // True: rays and contacts test the triangles. False: they test the mesh's box, which saves memory and time.
     bool triangles = true;
-    // True: World::find_occluders, with its defaults, at once. What is found hides other objects; ask it of opaque
-    // meshes alone. A second or more for 100,000 triangles.
+    // True: calls World::find_occluders with default options. The occluders hide other objects, so set it for opaque
+    // meshes only. Takes a second or more for 100,000 triangles.
     bool occluders = false;
     // True: views that ask for a picture list the mesh's triangles, in clusters (World::clusters_of).
     bool clusters = false;
-    // With clusters: the renderer drops back faces, so they are not listed. Of mirrored objects both sides are.
+    // With clusters: set it if the renderer drops back faces; they are then not listed. Mirrored objects list both
+    // sides.
     bool one_sided = false;
 };
 
 struct NodeDescription {
     NodeHandle parent = {};      // null: none
     Transform transform = {};    // relative to the parent
-    std::uint32_t layers = ~0u;  // of all below: an object is in those that it and all nodes above it have
+    std::uint32_t layers = ~0u;  // an object is in the layers that it and all nodes above it share
 };
 
 enum class BoundKind : std::uint8_t { none, box, aligned_box, sphere };
@@ -150,74 +156,75 @@ enum class BoundKind : std::uint8_t { none, box, aligned_box, sphere };
 // A bound without a mesh.
 struct Bound {
     BoundKind kind = BoundKind::none;
-    Obb box;              // around the sphere, for a sphere
+    Obb box;              // for a sphere: the cube around it
     double radius = 0.0;  // of a sphere
 
     Bound() = default;
     Bound(const Obb& oriented) : kind(BoundKind::box), box(oriented) {}
-    Bound(const Aabb& aligned);  // rounded outward to an Obb; an empty one is refused
+    Bound(const Aabb& aligned);  // rounded outward to an Obb; World rejects an empty one
     Bound(const Sphere& sphere);
 };
 
-// A mesh or a body, which `transform` places under `node` or in the world; or a bound in the world's coordinates.
+// Describes an object: a mesh or a body, which `transform` places under `node` or in the world, or a bound in world
+// coordinates.
 struct ObjectDescription {
     MeshHandle mesh = {};
     NodeHandle node = {};
     std::optional<Transform> transform = {};  // none: the node's own
     Bound bound = {};
-    // As World::set_body. An object with neither mesh nor bound needs nothing else: its box is the body's, and
-    // set_transform moves it. The box of ground without end is a point then, so views seldom list it.
+    // As World::set_body. An object may have only a body: its box is the body's, and set_transform moves it. The box of
+    // infinite ground is then a point, so views seldom list it.
     const convex::Body* body = nullptr;
-    std::uint64_t user = 0;      // given back with every answer
+    std::uint64_t user = 0;      // returned with every answer
     std::uint32_t layers = ~0u;  // views and queries ask for layers
-    std::uint32_t collides_with =
-        ~0u;  // two objects may be a pair where each one's layers meet what the other's has here
-    // For an object with a mesh. False: it hides nothing, as where it is drawn transparent.
+    // Two objects can collide if each one's `layers` share a bit with the other's `collides_with`.
+    std::uint32_t collides_with = ~0u;
+    // For an object with a mesh. False: it hides nothing, for example because it is drawn transparent.
     bool occludes = true;
-    // For an object with a mesh. True: it is in no answer, and hides what its mesh's occluders hide. An engine whose
-    // objects are bounds adds its occluders so; they must lie within what it draws in the same layers.
+    // For an object with a mesh. True: the mesh's occluders hide other objects, but no answer contains this object. Use
+    // it if your objects are bounds. The occluders must lie within drawn surfaces of the same layers.
     bool only_occludes = false;
 };
 
-// How a view leaves out what other objects hide.
+// Controls how a view leaves out objects that other objects hide.
 struct OcclusionOptions {
-    occlude::BufferSize size = {480, 270};  // pixels of the depth buffer; more find more and cost more
-    std::uint32_t max_occluders = 256;      // at most so many are drawn: those that are worth most to the view
-    float least_cover = 2e-5f;              // of the sphere of directions: smaller occluders are not drawn
-    bool list_occluded = false;             // also list what is hidden, which costs a second query
+    occlude::BufferSize size = {480, 270};  // pixels of the depth buffer; more find more, but take longer
+    std::uint32_t max_occluders = 256;      // draws at most this many: those that hide most in this view
+    float least_cover = 2e-5f;              // smallest part of the sphere of directions that a drawn occluder covers
+    bool list_occluded = false;             // also lists hidden objects, which takes a second query
 };
 
-// An engine's own view: the matrix that takes world positions, relative to `origin`, to clip space. The engine's
-// numbers become a dmat4 by matrix_of (crofton/geometry/camera.hpp).
+// A view by your engine's own matrix, which takes world positions, relative to `origin`, to clip space. matrix_of
+// (crofton/geometry/camera.hpp) makes a dmat4 of the engine's sixteen numbers.
 struct ViewMatrix {
     glm::dmat4 to_clip{1.0};
     DepthRange depth = DepthRange::reversed_zero_to_one;
     glm::dvec3 origin{0.0};
 };
 
-// A view that World::view answers.
+// Describes a view for World::view.
 struct ViewRequest {
     // Where the view looks from: set a camera, a matrix or a volume.
     std::optional<Camera> camera = {};
     std::optional<ViewMatrix> matrix = {};
-    // Any convex volume, such as a shadow's. It has no eye: for occlusion set a camera or a matrix as well, and objects
-    // are tested against the volume instead of theirs.
+    // Any convex volume, such as that of a shadow. A volume has no eye. For occlusion, set a camera or a matrix as
+    // well; objects are then tested against the volume instead of the camera's frustum.
     std::optional<Frustum> volume = {};
 
     std::uint32_t layers = ~0u;  // lists objects that share a layer with these
-    // If set, objects that others hide are left out: never one that is seen (docs/occlude.md). An object hides with its
-    // mesh's occluders if the view draws it: shown, in one of `layers`, within `limits`.
+    // If set, leaves out objects that others hide, but never a visible one (docs/occlude.md). An object's occluders are
+    // used if the view draws the object: it is not hidden, is in one of `layers` and within `limits`.
     std::optional<OcclusionOptions> occlusion = {};
-    // If set, lists the triangles without which this picture would change, found by the depth of those before them
-    // (docs/depth.md). Of objects whose mesh has MeshDescription::clusters; objects that do not `occlude` hide nothing.
-    // Others are listed where their boxes may be seen. For a camera, `picture->depth` says how the renderer's
-    // projection gives depth. In place of `occlusion`.
+    // If set, lists the triangles without which this picture would change (docs/depth.md), for objects whose mesh has
+    // MeshDescription::clusters. Other objects are listed if their boxes may be visible. Objects whose `occludes` is
+    // false hide nothing. For a camera, `picture->depth` is the depth range of the renderer's projection. Cannot be
+    // combined with `occlusion`.
     std::optional<depth::PictureView> picture = {};
-    // Leaves out what is too small or too far. The caller's, alive for the call.
+    // Leaves out objects that are too small or too far. Must live until the call returns.
     const cull::DrawLimits* limits = nullptr;
-    // If not empty, bit i % 64 of word i / 64 says whether the object with index i may be seen at all: baked sets
-    // (docs/pvs.md). Objects beyond its end may be seen, and so may those that have moved since they were first updated
-    // or whose index another object had before.
+    // A baked visible set (docs/pvs.md). If not empty, the object with index i is listed only if bit i % 64 of word
+    // i / 64 is set. Objects beyond its end are tested as usual, and so are objects that have moved since their first
+    // update or that reuse the index of another object.
     std::span<const std::uint64_t> candidate_mask = {};
     cull::ResultOrder order = cull::ResultOrder::ascending;
     cull::CullMode mode = cull::CullMode::exact;
