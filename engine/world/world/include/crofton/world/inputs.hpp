@@ -217,7 +217,8 @@ struct ViewRequest {
     const cull::DrawLimits* limits = nullptr;
     // If not empty, bit i % 64 of word i / 64 says whether the object with index i may be seen at all: baked sets
     // (docs/pvs.md). Objects beyond its end may be seen, and so may those that have moved since they were first updated
-    // or whose index another object had before.
+    // or whose index another object had before. So may new ones until they count as resting, which those of a level
+    // that is loaded at once do from the first update on.
     std::span<const std::uint64_t> candidate_mask = {};
     cull::ResultOrder order = cull::ResultOrder::ascending;
     cull::CullMode mode = cull::CullMode::exact;
