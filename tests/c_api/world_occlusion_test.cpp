@@ -169,6 +169,15 @@ TEST_SUITE("capi/world occlusion") {
         CHECK(1.0 / double(pixels[45 * 160 + 80]) == doctest::Approx(9.5).epsilon(1e-3));
         CHECK(pixels[0] < -1e38f);
 
+        // The query that lists what is hidden went through the volume; without, nothing is counted, not even by an
+        // earlier view.
+        if (crofton::cull::kCountStatistics) CHECK(statistics.boxes_tested > 0);
+        s.occlusion.list_occluded = 0;
+        CHECK(s.look().size() == 2);
+        REQUIRE(crofton_view_result_get_view(s.visible.get(), 0, &statistics) == CROFTON_OK);
+        CHECK((statistics.nodes_tested == 0 && statistics.boxes_tested == 0 && statistics.occluded_count == 0));
+        s.occlusion.list_occluded = 1;
+
         // The same view by its matrix.
         const glm::dmat4 to_clip = crofton::world_to_clip(crofton::Camera());
         const glm::dmat4 by_rows = glm::transpose(to_clip);

@@ -199,7 +199,7 @@ TEST_SUITE("capi/world_picture") {
         CHECK(s.expected(0, 0).size() > s.expected(0, 1).size());
     }
 
-    TEST_CASE("a mesh tells its clusters: those of a mesh that is cut by itself; another has none") {
+    TEST_CASE("a mesh tells its clusters: those of a mesh that is cut by itself, and another has none") {
         const Walls s;
         const crofton_mesh mesh = s.large.mesh();
         crofton_clustered_mesh* made = nullptr;
@@ -270,7 +270,7 @@ TEST_SUITE("capi/world_picture") {
         CHECK((info_of(result).triangle_cluster_count == 0 && ids_of(result).size() == 4));
     }
 
-    TEST_CASE("an object that is added hidden is in no answer until it is shown; members are set together") {
+    TEST_CASE("an object that is added hidden is in no answer until it is shown, and members are set together") {
         Walls s;
         auto description = sized<crofton_object_description>();
         const crofton_bound bound = box_bound(box_at(0, 0, -3));

@@ -115,8 +115,10 @@ def calls():
     print("a call, µs")
     for text in ("box.volume", "len(world)", "crofton.penetration(box, box)", "crofton.intersects(box, box)",
                  "crofton.intersects(many, many)", "crofton.classify(camera, many)", "box.contains((0, 0, 0))",
-                 "world.raycast((5, 0, 0), (-1, 0, 0))", "world.overlap(box=box)", "world.view(camera)"):
-        names = {"box": box, "many": many, "world": world, "crofton": crofton, "camera": crofton.Camera()}
+                 "world.raycast((5, 0, 0), (-1, 0, 0))", "world.overlap(box=box)", "world.view(camera)",
+                 "world.view(request)"):
+        names = {"box": box, "many": many, "world": world, "crofton": crofton, "camera": crofton.Camera(),
+                 "request": crofton.ViewRequest(crofton.Camera())}
         print(f"  {text:40} {min(timeit.repeat(text, globals=names, number=5000, repeat=7)) / 5000 * 1e6:.2f}")
 
 

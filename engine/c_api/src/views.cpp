@@ -110,7 +110,7 @@ crofton_status crofton_view_result_get_view(const crofton_view_result* result, s
     if (result->of == Of::boxes) {
         give_culling(result->boxes.statistics(), found);
     } else if (result->of == Of::world) {
-        give_culling(result->one.statistics(), found);
+        if (result->is_counted) give_culling(result->one.statistics(), found);
         give_occlusion(result->one.occlusion_statistics(), result->one.occluded_ids(), buffer_of(*result, view), found);
         give_picture(result->one.picture_statistics(), result->one.triangles(), found);
     } else {

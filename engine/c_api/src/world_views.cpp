@@ -26,6 +26,7 @@ crofton_status view_one(const crofton_world& world, const crofton_view_request* 
     CROFTON_CHECK(read_request(given, function, asked, limits));
     CROFTON_CHECK(status_of(world.world.view(asked, result.one, executor), function));
     result.of = Of::world;
+    result.is_counted = !asked.occlusion || asked.occlusion->list_occluded || asked.order == cull::ResultOrder::tree;
     return CROFTON_OK;
 }
 

@@ -194,6 +194,53 @@ TEST_SUITE("world/picture_view") {
         CHECK(many.triangles(5).empty());
     }
 
+    TEST_CASE("each of many views tells its hidden objects and what its picture took, as it does alone") {
+        World world;
+        const TriangleMesh wall = box_mesh({-5, -5, -0.1f}, {5, 5, 0.1f});
+        const MeshHandle mesh =
+            world.add_mesh({.positions = wall.positions, .indices = wall.indices, .occluders = true, .clusters = true})
+                .value();
+        (void)world.add({.mesh = mesh, .transform = Transform{glm::dmat3(1.0), {0, 0, -10}}});
+        const ObjectHandle behind =
+            world.add({.mesh = mesh, .transform = Transform{glm::dmat3(0.1), {0, 0, -20}}}).value();
+        (void)world.update();
+        Camera away;
+        away.forward = {0, 0, 1};
+        const OcclusionOptions listing{.list_occluded = true};
+        const depth::PictureView picture{320, 180};
+        const ViewRequest requests[] = {{.camera = Camera{}, .occlusion = listing},
+                                        {.camera = Camera{}, .occlusion = OcclusionOptions{}},
+                                        {.camera = Camera{}, .picture = picture},
+                                        {.camera = away, .occlusion = listing},
+                                        {.camera = Camera{}}};
+        ThreadPool pool(2);
+        MultiViewResult many;
+        for (int round = 0; round < 2; ++round) {  // with the memory of other requests
+            for (std::size_t lead = 0; lead < 5; ++lead) {
+                std::vector<ViewRequest> rotated;
+                for (std::size_t v = 0; v < 5; ++v) rotated.push_back(requests[(v + lead) % 5]);
+                REQUIRE(world.view(rotated, many, pool));
+                for (std::size_t v = 0; v < 5; ++v) {
+                    const std::size_t which = (v + lead) % 5;
+                    CAPTURE(which);
+                    const auto hidden = many.occluded_ids(v);
+                    REQUIRE(hidden.size() == (which == 0 ? 1 : 0));
+                    if (which == 0) CHECK(hidden[0] == behind.index);
+                    ViewResult alone;
+                    REQUIRE(world.view(rotated[v], alone));
+                    CHECK(many.picture_statistics(v).triangles_listed == alone.picture_statistics().triangles_listed);
+                    CHECK(many.picture_statistics(v).clusters_asked == alone.picture_statistics().clusters_asked);
+                    CHECK((many.picture_statistics(v).triangles_listed > 0) == (which == 2));
+                }
+            }
+            CHECK(many.occluded_ids(5).empty());
+            CHECK(many.picture_statistics(5).objects_asked == 0);
+            REQUIRE(world.view(std::span(requests).last(1), many));
+            CHECK(many.occluded_ids(0).empty());
+            CHECK(many.picture_statistics(0).objects_asked == 0);
+        }
+    }
+
     TEST_CASE("objects without clusters are listed where their boxes may be seen, and hide nothing") {
         World world;
         const TriangleMesh wall = box_mesh({-5, -5, -0.1f}, {5, 5, 0.1f});

@@ -19,5 +19,6 @@ struct crofton_view_result {
     crofton::cull::VisibleSet boxes{};  // of a list or a tree
     crofton::cull::View view{};         // that they were asked with: planes that it does not use need no clearing
     Of of = Of::boxes;
+    bool is_counted = true;  // whether a World's view went through its volume, with statistics of that
     std::uint64_t serial = 0;
 };

@@ -111,8 +111,8 @@ CROFTON_API crofton_status crofton_pvs_destroy(crofton_pvs* pvs);
 CROFTON_API crofton_status crofton_pvs_counts(const crofton_pvs* pvs, size_t* cells, size_t* objects);
 /* The cell of an eye (three numbers), or CROFTON_PVS_NO_CELL where none holds it, or a solid one. */
 CROFTON_API crofton_status crofton_pvs_find_cell(const crofton_pvs* pvs, const double* eye, uint32_t* cell);
-/* What may be seen by an eye, for crofton_cull_options; `mode` is a crofton_pvs_mode. Without a cell *words is NULL and
- * *count 0: everything. Holds as long as `pvs` lives; nothing is allocated. */
+/* What may be seen by an eye, for the candidate_mask of a request; `mode` is a crofton_pvs_mode. Without a cell *words
+ * is NULL and *count 0: everything. Holds as long as `pvs` lives; nothing is allocated. */
 CROFTON_API crofton_status crofton_pvs_visible(const crofton_pvs* pvs, const double* eye, uint32_t mode,
                                                const uint64_t** words, size_t* count);
 
