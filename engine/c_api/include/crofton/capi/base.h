@@ -17,7 +17,7 @@
 extern "C" {
 #endif
 
-/* Counts breaking changes of these headers. Equal numbers: the binaries fit together. */
+/* Counts breaking changes of these headers. Binaries with equal numbers are compatible. */
 #define CROFTON_API_VERSION 3u
 #define CROFTON_NO_ITEM UINT64_MAX
 #define CROFTON_NONE UINT32_MAX /* no parent, no id */
@@ -28,34 +28,35 @@ typedef enum crofton_status {
     CROFTON_NON_FINITE = 2,       /* NaN or infinity where a finite number is needed */
     CROFTON_OUT_OF_RANGE = 3,     /* an index or a size beyond its limit */
     CROFTON_DEGENERATE = 4,       /* geometry without the extent or rank the operation needs */
-    CROFTON_EMPTY = 5,            /* nothing to work on */
-    CROFTON_UNSUPPORTED = 6,      /* well-formed, but not something we handle */
+    CROFTON_EMPTY = 5,            /* empty input */
+    CROFTON_UNSUPPORTED = 6,      /* well-formed, but not supported */
     CROFTON_IO = 7,               /* a file could not be read or written */
     CROFTON_PARSE = 8,            /* a file's contents are damaged or not of its format */
     CROFTON_CANCELLED = 9,        /* a callback asked to stop */
     CROFTON_BUDGET_EXCEEDED = 10, /* a time or memory budget ran out before any usable result */
     CROFTON_UNAVAILABLE = 11,     /* a device or driver is missing */
-    CROFTON_STALE_HANDLE = 12,    /* an id of something that has been removed */
-    CROFTON_INTERNAL = 13,        /* our mistake: please report it */
+    CROFTON_STALE_HANDLE = 12,    /* the id of something that was removed */
+    CROFTON_INTERNAL = 13,        /* a bug of Crofton: please report it */
     CROFTON_BAD_HANDLE = 14,      /* NULL, of another kind, or destroyed already */
     CROFTON_WRONG_SIZE = 15,      /* a struct's `size` is not what this library knows */
     CROFTON_BUSY = 16,            /* another thread is using the handle (with thread checks on) */
-    CROFTON_OUT_OF_MEMORY = 17    /* the memory hook had none; the call changed nothing */
+    CROFTON_OUT_OF_MEMORY = 17    /* the memory hook returned NULL; the call changed nothing */
 } crofton_status;
 
-/* What went wrong in this thread's last failed call, and which item of its input (CROFTON_NO_ITEM: none in particular).
- * The text stays valid until the thread's next failed call. */
+/* Return the message of this thread's last failed call, and the item of its input that caused the failure, or
+ * CROFTON_NO_ITEM. The text stays valid until the thread's next failed call. */
 CROFTON_API const char* crofton_last_error(void);
 CROFTON_API uint64_t crofton_last_error_item(void);
-CROFTON_API const char* crofton_status_name(int status); /* "unknown status" for numbers that are none */
+CROFTON_API const char* crofton_status_name(int status); /* "unknown status" for other numbers */
 
-/* Of the library that is linked, as opposed to the headers. */
+/* Return the version of the linked library, which may differ from that of the headers. */
 CROFTON_API uint32_t crofton_api_version(void);
 CROFTON_API const char* crofton_version_string(void); /* "major.minor.patch" */
 
 /* The host's allocator, job system, log and assert handler. */
 
-/* From any thread. `allocate` returns memory aligned to `alignment`, a power of two; NULL ends the program. */
+/* Called from any thread. `allocate` returns memory aligned to `alignment`, a power of two. If it returns NULL, the
+ * program ends. */
 typedef struct crofton_memory_hooks {
     size_t size;
     void* user;
@@ -63,15 +64,17 @@ typedef struct crofton_memory_hooks {
     void (*release)(void* user, void* memory, size_t bytes, size_t alignment);
 } crofton_memory_hooks;
 
-/* Call it before anything is created: memory is released through the hooks in force. NULL restores the default. */
+/* Sets the memory hooks. Call it before you create anything, because memory is released through the present hooks. NULL
+ * restores the default. */
 CROFTON_API crofton_status crofton_set_memory_hooks(const crofton_memory_hooks* hooks);
 
-/* Does the items [begin, end); `worker` < concurrency, and no two run at once for one worker. */
+/* Processes the items [begin, end). `worker` < concurrency; no two tasks with the same `worker` run at once. */
 typedef void (*crofton_range_task)(void* task_data, size_t begin, size_t end, uint32_t worker);
 
-/* The host's job system, given to each call that can use one (or NULL: on the calling thread alone). `parallel_for`
- * calls task(task_data, …) for the ranges [0, grain), [grain, 2 grain), … of [0, count), the last one cut short. They
- * may run in any order and on any threads. It returns when all are done. Results do not depend on it. */
+/* The host's job system, an argument of each call that can use one; NULL runs the call on the calling thread only.
+ * `parallel_for` calls task(task_data, …) for the ranges [0, grain), [grain, 2 grain), … of [0, count); the last one
+ * may be shorter. The ranges may run in any order and on any threads. It returns when all are done. Results do not
+ * depend on it. */
 typedef struct crofton_jobs {
     size_t size;
     void* user;
@@ -87,17 +90,18 @@ typedef enum crofton_log_level {
 } crofton_log_level;
 
 typedef void (*crofton_log_hook)(void* user, uint32_t level, const char* message);
-/* NULL restores the default: warnings and errors to stderr. */
+/* Sets the log hook. NULL restores the default: warnings and errors to stderr. */
 CROFTON_API crofton_status crofton_set_log_hook(crofton_log_hook hook, void* user);
-/* `level` is a crofton_log_level. Through the hook in force, as the library's own messages go. */
+/* Sends a message to the present log hook, as the library does. `level` is a crofton_log_level. */
 CROFTON_API crofton_status crofton_log(uint32_t level, const char* message);
 
 typedef void (*crofton_assert_hook)(const char* condition, const char* message, const char* file, int line);
-/* Called for callers' mistakes in builds with CROFTON_ASSERTS. NULL restores the default: print and abort. */
+/* Sets the hook that is called for a caller's mistake in builds with CROFTON_ASSERTS. NULL restores the default: print
+ * and abort. */
 CROFTON_API crofton_status crofton_set_assert_hook(crofton_assert_hook hook);
 
-/* With checks on, using a handle from two threads where that is forbidden gives CROFTON_BUSY. On by default in builds
- * with CROFTON_ASSERTS, off in others. Switch it while no other call is running. */
+/* Switches thread checks on or off. With checks, a forbidden use of a handle by two threads returns CROFTON_BUSY.
+ * Checks are on by default in builds with CROFTON_ASSERTS, else off. No other call may run at the same time. */
 CROFTON_API crofton_status crofton_set_thread_checks(int on);
 
 /* Boxes, cameras and frusta, with the conventions of docs/conventions.md. */
@@ -124,7 +128,8 @@ typedef enum crofton_depth_range {
     CROFTON_DEPTH_MINUS_ONE_TO_ONE = 2      /* OpenGL: -w <= z <= w, near at -w */
 } crofton_depth_range;
 
-/* Right-handed; radians; full height of the view volume for orthographic cameras. */
+/* A right-handed camera. Angles are in radians; `height` is the full height of the view volume of an orthographic
+ * camera. */
 typedef struct crofton_camera {
     size_t size;
     double position[3], forward[3], up[3];
@@ -133,14 +138,14 @@ typedef struct crofton_camera {
     double far_distance; /* infinity allowed for perspective */
 } crofton_camera;
 
-/* dot(normal, x) + offset >= 0 is the side that is kept. */
+/* The half-space dot(normal, x) + offset >= 0. */
 typedef struct crofton_plane {
     double normal[3];
     double offset;
 } crofton_plane;
 
 #define CROFTON_MAX_PLANES 12u
-/* Half-spaces relative to `origin`. */
+/* The intersection of half-spaces, relative to `origin`. */
 typedef struct crofton_frustum {
     size_t size;
     uint32_t plane_count; /* at most CROFTON_MAX_PLANES */
@@ -148,7 +153,7 @@ typedef struct crofton_frustum {
     crofton_plane planes[CROFTON_MAX_PLANES];
 } crofton_frustum;
 
-/* At the origin, looking along -z, 60 degrees, 16:9, from 0.1 to 1000. */
+/* Returns a camera at the origin that looks along -z: 60 degrees, 16:9, from 0.1 to 1000. */
 CROFTON_API crofton_camera crofton_default_camera(void);
 
 /* Both fill a frustum whose `size` is set. */
@@ -158,9 +163,9 @@ CROFTON_API crofton_status crofton_frustum_from_camera(const crofton_camera* cam
 CROFTON_API crofton_status crofton_frustum_from_matrix(const double to_clip[16], uint32_t depth, const double* origin,
                                                        crofton_frustum* frustum);
 
-/* CROFTON_OK iff all boxes are valid; crofton_last_error_item names the first that is not. */
+/* Returns CROFTON_OK if all boxes are valid. Else crofton_last_error_item is the first invalid one. */
 CROFTON_API crofton_status crofton_boxes_validate(const crofton_box* boxes, size_t count);
-/* A box around `box` under `transform`. */
+/* Computes a box that contains `box` under `transform`. */
 CROFTON_API crofton_status crofton_box_transform(const crofton_transform* transform, const crofton_box* box,
                                                  crofton_box* result);
 

@@ -118,9 +118,9 @@ struct MeshDistance {
 
 // Returns the t at which a ray hits a triangle.
 //
-// Whether it hits is exact, edges, corners and the ray's ends included, so that nothing slips through between triangles
-// that share an edge. t is rounded, but stays within 0 … max_t. It is returned for directions whose length is from
-// 1e-150 to 1e150. A ray within the plane of a triangle does not hit that triangle.
+// The decision is exact, also at edges, corners and the ray's ends, so no ray passes between triangles that share an
+// edge. t is rounded, but stays within 0 … max_t. It is returned for directions whose length is from 1e-150 to 1e150. A
+// ray within the plane of a triangle does not hit that triangle.
 [[nodiscard]] std::optional<double> raycast(const Ray& ray, const Triangle& triangle);
 
 struct RayHit {

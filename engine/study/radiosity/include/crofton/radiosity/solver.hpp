@@ -54,9 +54,9 @@ struct SolverOptions {
 // The result is the mean of the runs. Its error is their spread, which falls as 1/√runs. With quasi-random numbers the
 // true error is smaller than this estimate, because runs share a sequence and compensate each other.
 //
-// Where solids intersect, parts of patches lie inside: a ray from there meets a back first. Such rays do not count, so
-// a patch's light is that of its visible part. One step is not exact: a patch that gets no ray in a gathering gets four
-// local rays. unseen() is the share of patches that saw nothing even so, because they are buried.
+// If solids intersect, parts of patches lie inside a solid. A ray from such a part meets a back face first and is not
+// counted, so a patch's light is that of its visible part. One step is not exact: a patch that gets no ray in a
+// gathering gets four local rays. unseen() is the share of patches that saw nothing even then, because they are buried.
 class Solver {
   public:
     // The patches must outlive the solver. Errors: no light at all, neither emission, sky nor sun; numbers out of
