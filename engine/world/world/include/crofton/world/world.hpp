@@ -40,7 +40,8 @@ struct WorldOptions {
     bool mesh_depth = false;      // finds a way out of contacts between meshes, which costs more than finding them
     std::size_t max_pairs = std::size_t{1} << 24;  // more are an error, not an exhausted memory
     // Items' worth of background work on the tree an update (BoxTree::rebuild_step), beside what changes make
-    // necessary; kAutomatic: a 128th of the objects and 512. 0: none, and no allocation.
+    // necessary; kAutomatic: at least a 2048th of the objects and 128 while a rebuild is under way. 0: none, and no
+    // allocation.
     std::size_t rebuild_budget = kAutomatic;
     std::uint32_t updates_to_rest = 16;  // without moving, until an object counts as resting again
     boxtree::Orientation tree = boxtree::Orientation::aligned;  // of the tree of what rests
