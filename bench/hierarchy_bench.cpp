@@ -179,7 +179,7 @@ Tally tally(const World& world, const BinaryTree& tree) {
         std::fill(below.begin(), below.end(), Below{});
         for (boxtree::ItemId i = 0; i < world.boxes.size(); ++i) {
             const cull::Verdict verdict = cull::classify(frustum, world.boxes[i]);
-            for (std::uint32_t n = tree.leaf(i); n != boxtree::kNone; n = tree.node(n).parent) {
+            for (std::uint32_t n = tree.leaf(i); n != study::kNone; n = tree.node(n).parent) {
                 below[n].met += verdict != cull::Verdict::outside;
                 below[n].inside += verdict == cull::Verdict::inside;
                 ++below[n].all;

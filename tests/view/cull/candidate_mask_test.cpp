@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <crofton/core/executor.hpp>
 #include <crofton/cull/bound_set.hpp>
+#include <crofton/cull/classify.hpp>
 #include <crofton/cull/cull.hpp>
 #include <oracle/aged_tree.hpp>
 
@@ -107,6 +108,48 @@ TEST_SUITE("cull/among") {
         }
         CHECK(left_out > 1000);
         CHECK(moved > 1000);
+    }
+
+    TEST_CASE("a few visible items among many are listed by id, each with its own verdict") {
+        oracle::NearMisses random(17);
+        std::vector<Obb> boxes(40000);  // 625 words of bits: up to 19 ids are few
+        for (Obb& box : boxes) {
+            box.center = {random.number(-50, 50), random.number(-50, 50), random.number(-50, 50)};
+            box.half_extents = glm::vec3(static_cast<float>(random.number(0.1, 0.5)));
+        }
+        const auto tree = boxtree::BoxTree::build(boxes).value();
+        const auto set = random_set(random, boxes.size(), 0.7);
+        cull::VisibleSet seen;
+        std::size_t few = 0, straddling = 0;
+        for (int frame = 0; frame < 60; ++frame) {
+            Camera camera;
+            camera.position = {random.number(-40, 40), random.number(-40, 40), random.number(-40, 40)};
+            camera.forward = random.direction();
+            camera.near_distance = 0.1;
+            camera.far_distance = random.number(1.0, 9.0);
+            const Frustum frustum = *frustum_of(camera);
+            const bool among = random.index(2) != 0;
+            std::vector<cull::ItemId> ids;
+            std::vector<cull::Verdict> verdicts;
+            for (cull::ItemId i = 0; i < boxes.size(); ++i) {
+                const cull::Verdict verdict = cull::classify(frustum, boxes[i]);
+                if (verdict == cull::Verdict::outside || (among && !cull::is_candidate(set, i))) continue;
+                ids.push_back(i);
+                verdicts.push_back(verdict);
+                straddling += verdict == cull::Verdict::straddling;
+            }
+            cull::CullOptions options;
+            if (among) options.candidate_mask = set;
+            cull::find_visible(tree, cull::View{frustum}, seen, options);
+            REQUIRE(test::ranges::equal(seen.ids(), ids));
+            REQUIRE(test::ranges::equal(seen.verdicts(), verdicts));
+            REQUIRE(seen.inside_count() ==
+                    static_cast<std::size_t>(std::count(verdicts.begin(), verdicts.end(), cull::Verdict::inside)));
+            few += ids.size() > 1 && ids.size() < 19;
+        }
+        CHECK(few > 5);
+        CHECK(few < 50);
+        CHECK(straddling > 300);
     }
 
     TEST_CASE("each of two trees with the same items has its own slots") {

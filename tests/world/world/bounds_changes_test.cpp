@@ -296,7 +296,7 @@ TEST_SUITE("world/bounds changes") {
                 if (frame < updates / 5) first = std::max(first, memory.bytes_in_use());
                 most = std::max(most, memory.bytes_in_use());
             }
-            CHECK(built > updates / 20);
+            CHECK(built == 0);  // the work is spread over updates
             CHECK(most <= first + first / 5);
             std::uint32_t largest = 0;
             for (const ObjectHandle& handle : live) largest = std::max(largest, handle.index);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace crofton::boxtree {
 namespace {
@@ -211,38 +210,6 @@ Aabb bounds_of_lane(const Node& node, unsigned lane, const Axes& axes) {
         high[j] = double{node.unit} * high_of(node, lane, j);
     }
     return around(axes, node.origin, low, high, axes.rounding);
-}
-
-// As around(), for all lanes at once.
-void bounds_of_lanes(const Node& node, const Axes& axes, LaneBounds& bounds) {
-    double off[kWidth];
-    for (unsigned j = 0; j < 3; ++j) {
-        std::int32_t low[kWidth], high[kWidth];
-        for (unsigned lane = 0; lane < kWidth; ++lane) low[lane] = low_of(node, lane, j);
-        for (unsigned lane = 0; lane < kWidth; ++lane) high[lane] = high_of(node, lane, j);
-        for (unsigned lane = 0; lane < kWidth; ++lane) bounds.min[j][lane] = double{node.unit} * low[lane];
-        for (unsigned lane = 0; lane < kWidth; ++lane) bounds.max[j][lane] = double{node.unit} * high[lane];
-    }
-    const double origin_size = size_of(node.origin);
-    const auto& low = bounds.min;
-    const auto& high = bounds.max;
-    for (unsigned lane = 0; lane < kWidth; ++lane)
-        off[lane] = axes.rounding *
-                    (origin_size + (std::fabs(low[0][lane]) + std::fabs(low[1][lane]) + std::fabs(low[2][lane])) +
-                     (std::fabs(high[0][lane]) + std::fabs(high[1][lane]) + std::fabs(high[2][lane])));
-    for (unsigned j = 0; j < 3; ++j) {
-        const double middle = along(axes, j, node.origin), middle_size = std::fabs(middle);
-        for (unsigned lane = 0; lane < kWidth; ++lane) {
-            const double from = bounds.min[j][lane], to = bounds.max[j][lane];
-            const double error_bound = (middle_size + std::fabs(from) + std::fabs(to)) * 0x1p-52 + off[lane];
-            bounds.min[j][lane] = middle + from - error_bound;
-            bounds.max[j][lane] = middle + to + error_bound;
-        }
-    }
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    for (unsigned lane = 0; lane < kWidth; ++lane)
-        if (half_of(node, lane, 0) < 0)
-            for (unsigned j = 0; j < 3; ++j) bounds.min[j][lane] = kInfinity, bounds.max[j][lane] = -kInfinity;
 }
 
 Aabb bounds_of(const Node& node, const Axes& axes) {

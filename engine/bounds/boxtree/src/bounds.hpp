@@ -45,12 +45,6 @@ void write_layers(Node& node, unsigned lane, const std::uint32_t* any, const std
 [[nodiscard]] Aabb bounds_of(const Node& node, const Axes& axes);
 [[nodiscard]] Aabb bounds_of_lane(const Node& node, unsigned lane, const Axes& axes);
 
-// The same of all lanes; one that is empty has infinite ends the wrong way round, as an empty Aabb.
-struct LaneBounds {
-    double min[3][kWidth], max[3][kWidth];
-};
-void bounds_of_lanes(const Node& node, const Axes& axes, LaneBounds& bounds);
-
 // A box around a point of the world, from ends relative to it; moved outward by `rounding` times the sizes.
 [[nodiscard]] Aabb around(const Axes& axes, const double* origin, const double (&low)[3], const double (&high)[3],
                           double rounding);

@@ -8,7 +8,7 @@
 namespace crofton::boxtree {
 namespace {
 
-constexpr std::uint32_t kClusterItems = kWidth * kWidth * kWidth;
+constexpr std::uint32_t kClusterRow = kWidth * kWidth;  // items of a cluster, times the leaves of a node
 constexpr double kCells = 1u << 20;
 constexpr std::size_t kCrowd = 256;  // items; a cell with more of them is sorted by smaller cells
 
@@ -28,13 +28,18 @@ std::uint64_t z_order(const std::array<std::uint32_t, 3>& cell, unsigned shift) 
 
 }  // namespace
 
-Builder::Builder(const Aabb& scene, std::size_t items, const measure::Criterion& criterion, Orientation orientation)
-    : cost_(criterion), orientation_(orientation), middle_(scene.is_empty() ? glm::dvec3(0.0) : scene.center()) {
+Builder::Builder(const Aabb& scene, std::size_t items, const measure::Criterion& criterion, Orientation orientation,
+                 const BuildGrain& grain)
+    : cost_(criterion),
+      orientation_(orientation),
+      small_crowd_(grain.small_crowd),
+      middle_(scene.is_empty() ? glm::dvec3(0.0) : scene.center()) {
     if (!scene.is_empty())
         for (int j = 0; j < 3; ++j) half_size_ = std::max(half_size_, scene.half_extents()[j]);
     // One scale for all axes, so that cells are cubes.
     if (half_size_ > 1e-30) cells_per_unit_ = kCells / (2.0 * half_size_);
     cell_ = static_cast<float>(2.0 * half_size_ / cube_root(static_cast<double>(std::max<std::size_t>(items, 1))));
+    result_.node_leaves = grain.node_leaves;
     keys_.reserve(items);
     keys_next_.reserve(items);
 }
@@ -96,7 +101,7 @@ void Builder::build(std::size_t subtree, SubtreeBuilder& with, std::span<const O
 }
 
 bool Builder::prepare(std::size_t budget, std::span<const Obb> boxes, const Movers& movers) {
-    if (phase_ == Phase::sort && pass_ == 0 && next_ == 0 && keys_.size() <= kSmallCrowd) place_all();
+    if (phase_ == Phase::sort && pass_ == 0 && next_ == 0 && keys_.size() <= small_crowd_) place_all();
     while (phase_ != Phase::ready && budget > 0) budget -= std::min(budget, prepare_on(budget, boxes, movers));
     return phase_ == Phase::ready;
 }
@@ -191,10 +196,11 @@ std::size_t Builder::append_moving(std::size_t budget) {
 void Builder::start_clusters() {
     const auto end = static_cast<std::uint32_t>(result_.order.size());
     const auto resting = static_cast<std::uint32_t>(resting_count_);
-    for (std::uint32_t begin = 0; begin < resting; begin += kClusterItems)
-        cluster_ranges_.push_back({begin, std::min(begin + kClusterItems, resting)});
-    for (std::uint32_t begin = resting; begin < end; begin += kClusterItems)
-        cluster_ranges_.push_back({begin, std::min(begin + kClusterItems, end)});
+    const std::uint32_t size = kClusterRow * result_.node_leaves;
+    for (std::uint32_t begin = 0; begin < resting; begin += size)
+        cluster_ranges_.push_back({begin, std::min(begin + size, resting)});
+    for (std::uint32_t begin = resting; begin < end; begin += size)
+        cluster_ranges_.push_back({begin, std::min(begin + size, end)});
     clusters_.assign(cluster_ranges_.size(), kNothing);
     for (std::uint32_t c = 0; c < clusters_.size(); ++c) clusters_[c].set_id(c);
     next_ = 0;
@@ -203,7 +209,8 @@ void Builder::start_clusters() {
 
 // Notes each item's cluster, so that boxes can be read in the order in which they are stored.
 std::size_t Builder::label_items(std::size_t budget) {
-    const std::size_t first = next_, last = std::min(clusters_.size(), first + budget * 2 / kClusterItems + 1);
+    const std::size_t size = std::size_t{kClusterRow} * result_.node_leaves, first = next_,
+                      last = std::min(clusters_.size(), first + budget * 2 / size + 1);
     for (; next_ < last; ++next_) {
         const Range range = cluster_ranges_[next_];
         for (std::uint32_t i = range.begin; i < range.end; ++i)
@@ -213,7 +220,7 @@ std::size_t Builder::label_items(std::size_t budget) {
         next_ = 0;
         phase_ = Phase::bound;
     }
-    return (last - first) * kClusterItems / 2;
+    return (last - first) * size / 2;
 }
 
 std::size_t Builder::bound_clusters(std::size_t budget, std::span<const Obb> boxes) {
@@ -245,7 +252,7 @@ void Builder::place_clusters() {
         const Task task = tasks.back();
         tasks.pop_back();
         if (task.range.size() == 1) {
-            Subtree subtree(cluster_ranges_[splitter.order()[task.range.begin]]);
+            Subtree subtree(cluster_ranges_[splitter.order()[task.range.begin]], result_.node_leaves);
             subtree.parent = task.parent;
             subtree.lane_in_parent = task.lane;
             result_.height = std::max(result_.height, task.depth + (subtree.is_leaf() ? 0 : subtree.height));
@@ -270,7 +277,7 @@ void Builder::place_all() {
     result_.order.clear();
     result_.order.reserve(keys_.size());
     for (const std::uint64_t key : keys_) result_.order.push_back(item_of(key));
-    subtrees_.emplace_back(Range{0, static_cast<std::uint32_t>(keys_.size())});
+    subtrees_.emplace_back(Range{0, static_cast<std::uint32_t>(keys_.size())}, result_.node_leaves);
     result_.height = subtrees_[0].height;
     place_subtrees();
 }

@@ -20,14 +20,21 @@ struct Movers {
     const void* context = nullptr;
 };
 
+// Crowds of at most `small_crowd` items are split from the top: the best tree, at a cost that grows with n log n, of
+// which the first cut is one step. A node above leaves gets `node_leaves` of them.
+struct BuildGrain {
+    std::size_t small_crowd = 32768;
+    std::uint32_t node_leaves = kWidth;
+};
+
 // Makes the topology of a tree. Small crowds are split from the top by the criterion. Large ones are first sorted along
-// a space-filling curve into clusters of 4096 items, which all move or all rest. The clusters are split from the top,
-// and each cluster within itself, a subtree for each. The work per item is the same whatever their number.
+// a space-filling curve into clusters of sixteen such nodes, which all move or all rest. The clusters are split from
+// the top, and each cluster within itself, a subtree for each. The work per item is the same whatever their number.
 class Builder {
   public:
     // Coordinates are taken around `scene`'s middle. `items` is how many will be added.
     Builder(const Aabb& scene, std::size_t items, const measure::Criterion& criterion,
-            Orientation orientation = Orientation::aligned);
+            Orientation orientation = Orientation::aligned, const BuildGrain& grain = {});
 
     // Notes where the item is.
     void add(ItemId id, const Obb& box);
@@ -56,8 +63,6 @@ class Builder {
     // each axis are computed from the item's box where they are needed.
     static constexpr unsigned kItemBits = 30, kDigitBits = 12, kPasses = 3, kFineBits = 10;
     static constexpr std::size_t kDigits = std::size_t{1} << kDigitBits;
-    // Crowds of at most so many items are split from the top: the best tree, at a cost that grows with n log n.
-    static constexpr std::size_t kSmallCrowd = 32768;
 
     enum class Phase : std::uint8_t { sort, crowding, gather, append, label, bound, ready };
 
@@ -82,6 +87,7 @@ class Builder {
 
     Cost cost_;
     Orientation orientation_;
+    std::size_t small_crowd_;
     glm::dvec3 middle_;
     double half_size_ = 0.0, cells_per_unit_ = 0.0;
     float cell_ = 0.0f;

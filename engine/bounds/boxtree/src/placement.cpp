@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "placement.hpp"
 
+#include <algorithm>
 #include <array>
 #include <crofton/boxtree/radius_range.hpp>
 #include <cstring>
@@ -63,22 +64,38 @@ LeafId Placement::add_leaf() {
     return fresh;
 }
 
-// The lane for the box to go to: the one whose criterion grows least, and the smallest of those.
+// The lane for the box to go to: the one whose criterion grows least, and the smallest of those. `box` lies along the
+// node's axes. In the node's units and in float: a choice between lanes that grow alike is worth no more digits.
 unsigned Placement::best_lane(const Node& node, const Aabb& box) const {
+    constexpr double kFar = 1e9;  // units; a node reaches no farther than 2^16
+    const Axes& axes = structure_.axes_of(node);
+    const double unit = double{node.unit};
+    float box_low[3], box_high[3];
+    for (unsigned j = 0; j < 3; ++j) {
+        const double origin = node.axes == 0 ? node.origin[j] : along(axes, j, node.origin);
+        box_low[j] = static_cast<float>(std::clamp((box.min[static_cast<int>(j)] - origin) / unit, -kFar, kFar));
+        box_high[j] = static_cast<float>(std::clamp((box.max[static_cast<int>(j)] - origin) / unit, -kFar, kFar));
+    }
     const Cost cost(structure_.criterion_);
-    LaneBounds lanes;
-    bounds_of_lanes(node, structure_.axes_of(node), lanes);
-    double sizes[kWidth], growths[kWidth];
-    for (unsigned lane = 0; lane < kWidth; ++lane) {
-        double old[3], grown[3];
-        for (unsigned j = 0; j < 3; ++j) {
-            const double low = lanes.min[j][lane], high = lanes.max[j][lane];
-            const double box_low = box.min[static_cast<int>(j)], box_high = box.max[static_cast<int>(j)];
-            old[j] = high < low ? 0.0 : high - low;
-            grown[j] = (high < box_high ? box_high : high) - (box_low < low ? box_low : low);
+    const double volume = cost.volume * unit * unit, area = cost.area * unit,
+                 most = std::max({volume, area, cost.edges});
+    const auto of_volume = static_cast<float>(volume / most), of_area = static_cast<float>(area / most),
+               of_edges = static_cast<float>(cost.edges / most);
+    float old[3][kWidth], grown[3][kWidth], sizes[kWidth], growths[kWidth];
+    for (unsigned j = 0; j < 3; ++j)
+        for (unsigned lane = 0; lane < kWidth; ++lane) {
+            const auto low = static_cast<float>(low_of(node, lane, j)),
+                       high = static_cast<float>(high_of(node, lane, j));
+            old[j][lane] = high < low ? 0.0f : high - low;
+            grown[j][lane] = (high < box_high[j] ? box_high[j] : high) - (box_low[j] < low ? box_low[j] : low);
         }
-        sizes[lane] = cost.of(old[0], old[1], old[2]);
-        growths[lane] = cost.of(grown[0], grown[1], grown[2]) - sizes[lane];
+    const auto value = [&](const float(&size)[3][kWidth], unsigned lane) {
+        const float x = size[0][lane], y = size[1][lane], z = size[2][lane];
+        return of_volume * (x * y * z) + of_area * (x * y + y * z + z * x) + of_edges * (x + y + z);
+    };
+    for (unsigned lane = 0; lane < kWidth; ++lane) {
+        sizes[lane] = value(old, lane);
+        growths[lane] = value(grown, lane) - sizes[lane];
     }
     unsigned best = 0;
     for (unsigned lane = 1; lane < node.count; ++lane) {

@@ -18,6 +18,11 @@ namespace {
 constexpr std::size_t kSlotsPerItem = 16;  // slots cleared for the cost of one item added
 constexpr std::size_t kNodeLinked = 8, kLeafFilled = 32, kNodeBounded = 32;
 constexpr std::size_t kWordsPerItem = 16;
+// Where at least one item in so many has been inserted since the rebuild before, nodes leave room for more leaves: a
+// full leaf that gets an item is split, and where its node is full, that is split too, whose bounds views pay for.
+constexpr std::size_t kManyPlaced = 32;
+// Clusters then keep the steps short.
+constexpr BuildGrain kWithRoom{4096, 14};
 constexpr std::size_t kMostBudget = ~std::size_t{0} / 64;  // so that no multiple of it, added to an index, overflows
 constexpr std::size_t kItemMoved = 2, kItemPlaced = 64;    // of an item that is brought up to date
 
@@ -42,9 +47,9 @@ struct Rebuilder::Work {
     // The stages, in order. The last, `apply_changes`, brings into `next` what has changed during the others.
     enum class Stage : std::uint8_t { add, divide, clear_slots, link, fill, bound, apply_changes, done };
 
-    Work(const Structure& current, Items& all)
+    Work(const Structure& current, Items& all, const BuildGrain& grain)
         : items(all),
-          builder(scene_of(current), all.count_in_leaves(), current.criterion(), current.orientation()),
+          builder(scene_of(current), all.count_in_leaves(), current.criterion(), current.orientation(), grain),
           next(Owner<Structure>::make(all, current.criterion(), current.orientation())),
           changed((all.size() + 63) / 64, 0),
           placed(changed.size(), 0) {}
@@ -68,6 +73,7 @@ Rebuilder::Rebuilder() = default;
 Rebuilder::~Rebuilder() = default;
 
 void Rebuilder::note_change(ItemId item, bool placed) {
+    placed_ += placed;
     if (!work_) return;
     if (work_->changed.size() <= item / 64) {
         work_->changed.resize(item / 64 + 1, 0);
@@ -91,7 +97,9 @@ Owner<Structure> Rebuilder::step(const Structure& current, Items& items, std::si
     budget = std::min(budget, kMostBudget);
     if (!work_) {
         if (items.count_in_leaves() == 0) return {};
-        work_ = Owner<Work>::make(current, items);
+        const bool many_placed = std::exchange(placed_, 0) * kManyPlaced >= items.count_in_leaves();
+        const bool leaves_room = many_placed && current.orientation() == Orientation::aligned;
+        work_ = Owner<Work>::make(current, items, leaves_room ? kWithRoom : BuildGrain{});
     }
     if (work_->stage == Work::Stage::apply_changes) budget += work_->new_work;
     work_->new_work = 0;

@@ -13,13 +13,18 @@ struct Size {
     unsigned height = 0;
 };
 
+// What a node with so many items is cut into multiples of: leaves, or nodes above leaves.
+std::uint32_t unit_of(std::uint32_t items, std::uint32_t node_leaves) {
+    return items <= kWidth * node_leaves ? kWidth : kWidth * node_leaves;
+}
+
 // How many nodes and leaves hold so many items; the top node is counted.
-Size size_of_node(std::uint32_t items) {
+Size size_of_node(std::uint32_t items, std::uint32_t node_leaves) {
     if (items == 0) return {1, 0, 1};
-    const auto part = static_cast<std::uint32_t>(items_a_part(items, kWidth));
-    const auto size_of_child = [](std::uint32_t count) {
+    const auto part = static_cast<std::uint32_t>(items_a_part(items, unit_of(items, node_leaves)));
+    const auto size_of_child = [&](std::uint32_t count) {
         if (count == 0) return Size{};
-        return count <= kWidth ? Size{0, 1, 0} : size_of_node(count);
+        return count <= kWidth ? Size{0, 1, 0} : size_of_node(count, node_leaves);
     };
     const Size each = size_of_child(std::min(part, items)), last = size_of_child(items % part);
     const std::uint32_t parts = items / part;
@@ -41,8 +46,8 @@ BuildItem build_item(ItemId id, const Obb& box, const glm::dvec3& middle) {
     return item;
 }
 
-Subtree::Subtree(Range range) : items(range) {
-    const Size size = size_of_node(range.size());
+Subtree::Subtree(Range range, std::uint32_t node_leaves) : items(range) {
+    const Size size = size_of_node(range.size(), node_leaves);
     nodes = size.nodes, leaves = size.leaves, height = size.height;
 }
 
@@ -92,7 +97,7 @@ bool SubtreeBuilder::step(std::size_t& budget, const Cost& cost, Orientation ori
         record.axes = task.axes;
         record.leaves = {next_leaf_, (task.range.size() + kWidth - 1) / kWidth};
         if (task.parent != kNone) topology.nodes[task.parent].child[task.lane] = node;
-        const Children children = splitter_.divide(task.range, kWidth, cost);
+        const Children children = splitter_.divide(task.range, unit_of(task.range.size(), topology.node_leaves), cost);
         record.count = children.count;
         budget -= std::min(budget, 4 * size);
         // Last in, first out: leaves come out in the order of the lanes.

@@ -31,6 +31,7 @@ struct Topology {
     // The world's, and those of node n at n + 1 where it has others than its parent; empty where none is turned.
     Vector<Axes> axes;
     unsigned height = 1;
+    std::uint32_t node_leaves = kWidth;  // how many leaves a node above leaves gets: fewer leave room for others
 };
 
 // What a box is to the builder, around `middle`.
@@ -46,7 +47,7 @@ struct Subtree {
     std::uint32_t nodes = 0, leaves = 0;
     unsigned height = 1;
 
-    explicit Subtree(Range range);  // sizes; the places are still to be set
+    Subtree(Range range, std::uint32_t node_leaves);  // sizes; the places are still to be set
 
     // A child of another node with so few items that it is a leaf itself.
     [[nodiscard]] bool is_leaf() const { return parent != kNone && items.size() <= kWidth; }

@@ -19,24 +19,22 @@ constexpr std::uint32_t kUpdatesToEnter = 1;  // without moving, until a new ite
 constexpr std::uint8_t kYoungMarks = 8;
 constexpr std::uint32_t kYoungGoes = 4, kMostShortLived = 64, kManyShortLived = 16;
 constexpr std::size_t kShortList = 64;
-// Into the tree one at a time, at about a microsecond each; a part of the list where many wait.
-constexpr std::size_t kAttachedPerUpdate = 64, kAttachedPart = 16;
-// A tree that is small, or whose items come and go fast, is built anew in one go once such a part of them has come or
-// gone, or waits to enter. In the background they would change faster than they are built, and insertions wear it.
-constexpr std::size_t kSmallTree = 32768, kChangesToBuild = 32, kWaitingToBuild = 64, kAttachedBetweenBuilds = 16;
-// Fast: such a part within about as many updates.
-constexpr std::size_t kFastChanges = 32, kFastUpdates = 8;
-// Of a larger one that would be many milliseconds.
-constexpr std::size_t kLargestBuiltAtOnce = 131072;
+// Into the tree one at a time, so many in an update or such a part of those that wait.
+const std::size_t kAttachedPerUpdate = 64, kAttachedPart = 2;
 constexpr std::size_t kFewItems = 64;
-constexpr std::size_t kLeastBudget = 512, kBudgetPart = 128;
-// Work on the new tree for each change of the old one, so that it is done before much has changed again. Putting an
-// item into it is worth 64, another change 2, building it 10 an item (BoxTree::rebuild_step). Measured: docs/notes.
-constexpr std::size_t kBudgetPerMember = 32 * 64, kBudgetPerMove = 128;
+// The tree is rebuilt in the background, once such a part of its items has come or gone, a smaller one where nothing
+// comes or goes any more, or has moved within it: what moves stays in its leaf, whose bound grows, and wears the tree
+// more.
+constexpr std::size_t kMembersToRebuild = 16, kMembersToRebuildAtRest = 64, kMovesToRebuild = 64;
+// Work on the new tree for each change of the old one: the cost of an update follows its changes. Putting an item into
+// it is worth 64, another change 2, building it 10 an item (BoxTree::rebuild_step). Measured: docs/notes/world.md.
+constexpr std::size_t kBudgetPerMember = 320, kBudgetPerMove = 128;
+// Where less changes than before, an update still does such a part of the work of the update before,
+constexpr std::size_t kBudgetKept = 7, kBudgetKeptOf = 8;
+// and at least so much and a part of the items.
+constexpr std::size_t kLeastBudget = 128, kBudgetPart = 2048;
 // No more than this in one update: some milliseconds.
 constexpr std::size_t kMostExtraWork = std::size_t{1} << 19;
-// The tree is rebuilt once such a part of its items has changed.
-constexpr std::size_t kChangesToRebuild = 64, kChangesToRebuildSmallTree = 256;
 
 }  // namespace
 
@@ -93,9 +91,7 @@ void SpatialIndex::take(ItemId item) {
 
 void SpatialIndex::detach(ItemId item) {
     require_ok(tree_.detach(item));
-    ++tree_changes_;
-    ++came_or_went_;
-    ++recent_;
+    ++changed_in_tree_.members;
     wants_refit_ = true;
 }
 
@@ -192,12 +188,11 @@ SpatialIndex::Changes SpatialIndex::update(const Settings& settings, Executor& e
     Changes changes{static_cast<std::uint32_t>(moved_items_.size() + member_items_.size()), false};
     if (!moved_.empty()) {
         require_ok(tree_.move(moved_, moved_boxes_));
-        tree_changes_ += moved_.size();
+        changed_in_tree_.moves += moved_.size();
         wants_refit_ = true;
     }
     moved_.clear();
     moved_boxes_.clear();
-    recent_ -= (recent_ + kFastUpdates - 1) / kFastUpdates;
     enter(settings, changes, executor);
     bring_to_rest(settings, changes, executor);
     if (wants_refit_) tree_.refit();
@@ -219,32 +214,24 @@ const collide::MovingTree& SpatialIndex::mover_tree() const {
     return mover_tree_;
 }
 
-bool SpatialIndex::is_built_at_once() const {
-    const std::size_t items = tree_.item_count();
-    return items <= kSmallTree || (items <= kLargestBuiltAtOnce && recent_ * kFastChanges > items);
-}
-
-// Begins once enough has changed since the last rebuild began; not while items come and go for which bring_to_rest()
-// builds the tree anew.
+// Begins once enough has changed since the last rebuild began.
 void SpatialIndex::rebuild_step(std::size_t budget) {
-    const std::size_t fresh = tree_changes_ - std::exchange(changes_before_, tree_changes_);
-    const std::size_t members = came_or_went_ - std::exchange(came_or_went_before_, came_or_went_);
+    const Changed fresh = changed_in_tree_ - std::exchange(changed_before_, changed_in_tree_);
+    const std::size_t changes = kBudgetPerMember * fresh.members + kBudgetPerMove * fresh.moves;
+    rebuild_work_ = std::min(kMostExtraWork, std::max(changes, rebuild_work_ * kBudgetKept / kBudgetKeptOf));
     if (budget == 0) return;
-    if (budget == kAutomatic) budget = kLeastBudget + tree_.item_count() / kBudgetPart;
     if (!rebuilding_) {
-        const std::size_t part = tree_.item_count() <= kSmallTree ? kChangesToRebuildSmallTree : kChangesToRebuild;
-        if (tree_changes_ * part < tree_.item_count() || tree_changes_ == 0) return;
-        if (members > 0 && is_built_at_once()) return;
+        const std::size_t part = fresh.members > 0 ? kMembersToRebuild : kMembersToRebuildAtRest;
+        const std::size_t worn = changed_in_tree_.members * part + changed_in_tree_.moves * kMovesToRebuild;
+        if (worn < tree_.item_count() || worn == 0) return;
         rebuilding_ = true;
-        changes_at_start_ = tree_changes_;
+        changed_at_start_ = changed_in_tree_;
     }
-    const std::size_t moves = fresh - std::min(fresh, members);
-    const std::size_t extra = std::min(kMostExtraWork, kBudgetPerMember * members + kBudgetPerMove * moves);
-    if (!tree_.rebuild_step(budget + extra)) return;
+    const bool is_automatic = budget == kAutomatic;
+    const std::size_t least = kLeastBudget + tree_.item_count() / kBudgetPart;
+    if (!tree_.rebuild_step(is_automatic ? std::max(rebuild_work_, least) : rebuild_work_ + budget)) return;
     rebuilding_ = false;
-    tree_changes_ -= changes_at_start_;
-    changes_before_ = tree_changes_;
-    came_or_went_ = came_or_went_before_ = 0;
+    changed_in_tree_ = changed_before_ = changed_in_tree_ - changed_at_start_;
 }
 
 // What is new waits in the list until it is seen to rest: what moves from the beginning stays there. What has just been
@@ -257,7 +244,6 @@ void SpatialIndex::enter(const Settings& settings, Changes& changes, Executor& e
         changes.tree_built = true;
         return;
     }
-    recent_ += entering.items.size();
     const bool patient = short_lived_ >= kManyShortLived;
     while (!entering.items.empty()) {
         const ItemId item = entering.items.back();
@@ -277,24 +263,18 @@ void SpatialIndex::attach(ItemId item) {
     take(item);
     items_[item].place = Place::resting;
     require_ok(tree_.attach(item, last));
-    ++tree_changes_;
-    ++came_or_went_;
+    ++changed_in_tree_.members;
 }
 
 void SpatialIndex::bring_to_rest(const Settings& settings, Changes& changes, Executor& executor) {
     rested_.clear();
     moving_.list_rested(now_, settings.updates_to_rest, rested_);
-    const std::size_t items = tree_.item_count();
-    const bool at_once = settings.rebuild_budget != 0 && items > kFewItems && is_built_at_once();
-    const std::size_t most_waiting = std::max(kFewItems, at_once ? items / kWaitingToBuild : items);
-    if (rested_.size() > most_waiting || (at_once && came_or_went_ > items / kChangesToBuild)) {
+    if (rested_.size() > std::max(kFewItems, tree_.item_count())) {
         build_tree(rested_, executor);
         changes.tree_built = true;
         return;
     }
-    const std::size_t most =
-        at_once ? kAttachedBetweenBuilds : std::max(kAttachedPerUpdate, moving_.size() / kAttachedPart);
-    rested_.resize(std::min(rested_.size(), most));
+    rested_.resize(std::min(rested_.size(), std::max(kAttachedPerUpdate, rested_.size() / kAttachedPart)));
     for (const ItemId item : rested_) attach(item);
 }
 
@@ -321,7 +301,7 @@ void SpatialIndex::build_tree(std::span<const ItemId> fresh, Executor& executor)
     // The lowest ids are given first.
     for (std::size_t i = removed.size(); i-- > 0;) require_ok(built->remove(removed[i]));
     tree_ = std::move(*built);
-    tree_changes_ = changes_before_ = came_or_went_ = came_or_went_before_ = 0;
+    changed_in_tree_ = changed_before_ = {};
     rebuilding_ = false;
 }
 

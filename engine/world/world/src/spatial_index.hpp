@@ -117,6 +117,13 @@ class SpatialIndex {
         Vector<ItemId> items;
         Vector<Obb> boxes;
     };
+    // How many items came or went, and how many moved.
+    struct Changed {
+        std::size_t members = 0, moves = 0;
+        [[nodiscard]] Changed operator-(const Changed& other) const {
+            return {members - other.members, moves - other.moves};
+        }
+    };
     static constexpr std::uint32_t kUpdatesAMark = 8;
     [[nodiscard]] Group& group(Place place) { return groups_[static_cast<std::size_t>(place)]; }
     [[nodiscard]] const Group& group(Place place) const { return groups_[static_cast<std::size_t>(place)]; }
@@ -130,7 +137,6 @@ class SpatialIndex {
     void note_changed(ItemId item);
     void note_age_of_removed(const Item& item);
     [[nodiscard]] std::uint8_t age_mark() const { return static_cast<std::uint8_t>(now_ / kUpdatesAMark); }
-    [[nodiscard]] bool is_built_at_once() const;
     void rebuild_step(std::size_t budget);
     void attach(ItemId item);
     void enter(const Settings& settings, Changes& changes, Executor& executor);
@@ -159,11 +165,11 @@ class SpatialIndex {
     Vector<Obb> moved_boxes_;
     Vector<std::uint64_t> changed_;
     std::uint32_t now_ = 1;  // counts updates
-    // Since the last rebuild began; of them those before the last update, and those when the one under way began.
-    std::size_t tree_changes_ = 0, changes_before_ = 0, changes_at_start_ = 0;
-    std::size_t came_or_went_ = 0, came_or_went_before_ = 0;  // in the tree, since it was last built; before the update
+    // In the tree, since the last rebuild began; of them those before the last update, and those when the one under way
+    // began.
+    Changed changed_in_tree_, changed_before_, changed_at_start_;
+    std::size_t rebuild_work_ = 0;  // that the changes of the last updates make necessary
     std::uint32_t short_lived_ = 0;  // rises where items go that are young, falls where others do
-    std::size_t recent_ = 0;         // items that came, or went from the tree, in about the last eight updates
     bool rebuilding_ = false, wants_refit_ = false;
     // Over the list's boxes; made when someone asks.
     mutable std::mutex mover_tree_mutex_;

@@ -389,10 +389,33 @@ void Query::finish(std::size_t inside, std::size_t straddling, std::size_t items
     visible_.verdicts_.clear();
 }
 
+// Few ids among many items: comparing them costs less than a bit for each item. Returns how many there are.
+std::size_t Query::sort_few(std::size_t inside, std::size_t straddling) {
+    grow(visible_.verdicts_, inside + straddling);
+    ItemId* const ids = visible_.ids_.data();
+    const auto is_candidate = [&](ItemId id) {
+        const std::span<const std::uint64_t> mask = options_.candidate_mask;
+        return moving_ || by_slots_ || id / 64 >= mask.size() || (mask[id / 64] >> id % 64 & 1) != 0;
+    };
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < inside; ++i)
+        if (is_candidate(ids[i])) ids[count++] = 2 * ids[i];
+    for (std::size_t i = 0; i < straddling; ++i)
+        if (is_candidate(visible_.straddling_[i])) ids[count++] = 2 * visible_.straddling_[i] + 1;
+    std::sort(ids, ids + count);
+    for (std::size_t i = 0; i < count; ++i) {
+        visible_.verdicts_[i] = ids[i] % 2 != 0 ? Verdict::straddling : Verdict::inside;
+        ids[i] /= 2;
+    }
+    return count;
+}
+
 // Sorts by setting a bit for each id: they are distinct and below the number of items. Few straddle. The place of such
 // an id is found from how many ids lie in the words before its own. Returns how many there are.
 std::size_t Query::sort(std::size_t inside, std::size_t straddling, std::size_t items) {
+    constexpr std::size_t kFew = 32;           // one in so many words of bits
     const std::size_t words = items / 64 + 2;  // one more for the kernel
+    if ((inside + straddling) * kFew < words) return sort_few(inside, straddling);
     grow(visible_.bits_, 2 * words);
     grow(visible_.verdicts_, items + 64);
     std::uint64_t *const seen = visible_.bits_.data(), *const before = seen + words;

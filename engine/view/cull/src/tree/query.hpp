@@ -75,6 +75,7 @@ class Query {
     void finish(const std::uint64_t* seen, const std::uint64_t* marked, std::size_t words, std::size_t items);
     std::size_t list_marked(const std::uint64_t* seen, const std::uint64_t* marked, std::size_t words);
     [[nodiscard]] std::size_t sort(std::size_t inside, std::size_t straddling, std::size_t items);
+    [[nodiscard]] std::size_t sort_few(std::size_t inside, std::size_t straddling);
 
     const View& view_;
     VisibleSet& visible_;

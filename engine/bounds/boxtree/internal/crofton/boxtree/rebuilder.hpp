@@ -43,7 +43,8 @@ class Rebuilder {
     std::size_t apply_changes(const Structure& current, std::size_t budget);
     void sync_item(ItemId item, bool present, bool placed);
 
-    Owner<Work> work_;  // of the rebuild under way
+    Owner<Work> work_;        // of the rebuild under way
+    std::size_t placed_ = 0;  // items that were inserted or attached since the last rebuild began
     RebuildStep last_step_;
 };
 

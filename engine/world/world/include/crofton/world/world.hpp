@@ -40,7 +40,8 @@ struct WorldOptions {
     bool mesh_depth = false;      // computes depths of contacts between meshes; takes longer than finding them
     std::size_t max_pairs = std::size_t{1} << 24;  // update() fails if there are more, so that memory stays bounded
     // Items' worth of background work on the tree an update (BoxTree::rebuild_step), beside what changes make
-    // necessary; kAutomatic: a 128th of the objects and 512. 0: none, and no allocation.
+    // necessary; kAutomatic: at least a 2048th of the objects and 128 while a rebuild is under way. 0: none, and no
+    // allocation.
     std::size_t rebuild_budget = kAutomatic;
     std::uint32_t updates_to_rest = 16;  // updates without motion after which an object rests again
     boxtree::Orientation tree = boxtree::Orientation::aligned;  // of the tree of resting objects
