@@ -135,16 +135,14 @@ Result<ClusteredMesh> ClusteredMesh::cut(std::span<const glm::vec3> positions, s
         mesh.clusters_.push_back(cluster);
         begin = end;
     }
-    Vector<glm::vec3> used;
-    used.reserve(indices.size());
-    for (const std::uint32_t i : indices) {
-        used.push_back(positions[i]);
-        mesh.largest_ = (glm::max)(mesh.largest_, glm::abs(positions[i]));
-    }
+    for (const std::uint32_t i : indices) mesh.largest_ = (glm::max)(mesh.largest_, glm::abs(positions[i]));
     mesh.bound_ = {0, static_cast<std::uint32_t>(indices.size() / 3)};
-    set_aligned_bound(mesh.bound_, used);
+    set_aligned_bound(mesh.bound_, positions, indices);
     PatchBuilder builder(mesh, positions, indices);
     for (const Cluster& cluster : mesh.clusters_) builder.add(cluster);
+    mesh.clusters_.shrink_to_fit();
+    mesh.coordinates_.shrink_to_fit();
+    mesh.blocks_.shrink_to_fit();
     return mesh;
 }
 
