@@ -1,23 +1,47 @@
 // SPDX-License-Identifier: MIT
-// Which triangles of a mesh meet along an edge, by position.
+// Which triangles of a cluster meet along an edge.
 #pragma once
-#include <crofton/core/memory.hpp>
+#include <array>
+#include <crofton/depth/clustered_mesh.hpp>
 #include <cstdint>
-#include <glm/vec3.hpp>
-#include <span>
 
 namespace crofton::depth {
 
-struct Adjacency {
-    static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+// Numbers different keys in the order in which they come: at most as many as a cluster has corners.
+template <class Key>
+class SmallTable {
+  public:
+    void clear() { slots_.fill(kEmpty); }
 
-    Vector<std::uint32_t> corners;    // three a triangle; equal positions have equal numbers, below position count
-    Vector<std::uint32_t> neighbors;  // the triangle across edge (corner k, corner k + 1), or kNone
-    Vector<std::uint32_t> fans;       // by corner number: how many triangles with three different corners meet there
-    Vector<std::uint8_t> open;        // by corner number: 1 where one of their edges there has no neighbour
+    // The number of an equal key, or `next`, which the key has from now on.
+    std::uint8_t number_of(const Key& key, std::uint8_t next) {
+        for (std::uint32_t at = hash_of(key);; at = (at + 1) % kSlots) {
+            if (slots_[at] == kEmpty) {
+                slots_[at] = next;
+                keys_[next] = key;
+                return next;
+            }
+            if (keys_[slots_[at]] == key) return slots_[at];
+        }
+    }
+
+  private:
+    static constexpr std::uint32_t kSlots = 512;  // more than twice as many as keys
+    static constexpr std::uint8_t kEmpty = 0xff;
+
+    static std::uint32_t hash_of(const Key& key) {
+        std::uint32_t hash = 0;
+        for (const auto part : key) hash = (hash ^ part) * 0x9e3779b1u, hash ^= hash >> 15;
+        return hash % kSlots;
+    }
+
+    std::array<std::uint8_t, kSlots> slots_;
+    std::array<Key, 3 * Cluster::kMaxTriangles> keys_;
 };
 
-// Two triangles are neighbours where just these two share the edge, in opposite directions.
-[[nodiscard]] Adjacency find_adjacency(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices);
+// Writes for each edge (corner k to k + 1) of each triangle 4 · neighbour + the neighbour's edge, or
+// ClusteredMesh::kNone. Two triangles are neighbours where just these two of the cluster share the edge, in opposite
+// directions.
+void find_neighbors(const std::uint8_t* corners, std::uint32_t triangle_count, std::uint8_t* neighbors);
 
 }  // namespace crofton::depth

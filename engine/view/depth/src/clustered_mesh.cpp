@@ -2,6 +2,8 @@
 #include <crofton/depth/clustered_mesh.hpp>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <glm/common.hpp>
 #include <string>
@@ -49,94 +51,67 @@ Result<void> check(std::span<const glm::vec3> positions, std::span<const std::ui
 class PatchBuilder {
   public:
     PatchBuilder(ClusteredMesh& mesh, std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices)
-        : mesh_(mesh), positions_(positions), adjacency_(find_adjacency(positions, indices)) {
-        const std::size_t triangles = indices.size() / 3;
-        cluster_of_.resize(triangles);
-        for (std::uint32_t c = 0; c < mesh.clusters_.size(); ++c)
-            for (std::uint32_t k = 0; k < mesh.clusters_[c].triangle_count; ++k)
-                cluster_of_[mesh.order_[mesh.clusters_[c].first_triangle + k]] = c;
-        local_triangle_.assign(triangles, ClusteredMesh::kNone);
-        local_vertex_.assign(positions.size(), ClusteredMesh::kNone);
+        : mesh_(mesh), positions_(positions), indices_(indices) {
         mesh.patches_.reserve(mesh.clusters_.size());
     }
 
-    void add(std::uint32_t cluster) {
-        list_triangles(cluster);
-        list_vertices();
-        ClusteredMesh::Patch patch{static_cast<std::uint32_t>(mesh_.coordinates_.size()),
-                                   static_cast<std::uint32_t>(mesh_.corners_.size()),
-                                   static_cast<std::uint32_t>(mesh_.ring_clusters_.size()),
-                                   static_cast<std::uint32_t>(mesh_.enclosed_.size()),
-                                   static_cast<std::uint16_t>(vertices_.size()),
-                                   static_cast<std::uint16_t>(own_),
-                                   static_cast<std::uint16_t>(triangles_.size())};
-        mesh_.patches_.push_back(patch);
-        for (const std::uint32_t t : triangles_)
-            for (std::uint32_t k = 0; k < 3; ++k) {
-                mesh_.corners_.push_back(local_vertex_[adjacency_.corners[3 * t + k]]);
-                const std::uint32_t other = adjacency_.neighbors[3 * t + k];
-                mesh_.neighbors_.push_back(other == Adjacency::kNone ? ClusteredMesh::kNone : local_triangle_[other]);
-            }
-        for (std::size_t k = own_; k < triangles_.size(); ++k)
-            mesh_.ring_clusters_.push_back(cluster_of_[triangles_[k]]);
+    void add(const Cluster& cluster) {
+        weld(cluster);
+        mesh_.patches_.push_back(
+            {static_cast<std::uint32_t>(mesh_.coordinates_.size()), static_cast<std::uint32_t>(mesh_.blocks_.size()),
+             static_cast<std::uint8_t>(vertex_count_), static_cast<std::uint8_t>(cluster.triangle_count)});
+        find_neighbors(corners_.data(), cluster.triangle_count, neighbors_.data());
+        append_blocks(cluster.triangle_count);
         append_vertices();
-        for (const std::uint32_t t : triangles_) local_triangle_[t] = ClusteredMesh::kNone;
-        for (const std::uint32_t v : vertices_) local_vertex_[v] = ClusteredMesh::kNone;
     }
 
   private:
-    void list_triangles(std::uint32_t cluster) {
-        const Cluster& c = mesh_.clusters_[cluster];
-        triangles_.assign(mesh_.order_.begin() + c.first_triangle,
-                          mesh_.order_.begin() + c.first_triangle + c.triangle_count);
-        own_ = triangles_.size();
-        for (std::size_t k = 0; k < own_; ++k) local_triangle_[triangles_[k]] = static_cast<std::uint16_t>(k);
-        for (std::size_t k = 0; k < own_; ++k)
-            for (std::uint32_t e = 0; e < 3; ++e) {
-                const std::uint32_t other = adjacency_.neighbors[3 * triangles_[k] + e];
-                if (other == Adjacency::kNone || local_triangle_[other] != ClusteredMesh::kNone) continue;
-                local_triangle_[other] = static_cast<std::uint16_t>(triangles_.size());
-                triangles_.push_back(other);
+    static constexpr std::uint32_t kLanes = ClusteredMesh::kLanes;
+
+    // Numbers the cluster's vertices, equal positions alike.
+    void weld(const Cluster& cluster) {
+        vertices_.clear();
+        vertex_count_ = 0;
+        for (std::uint32_t k = 0; k < cluster.triangle_count; ++k)
+            for (std::uint32_t c = 0; c < 3; ++c) {
+                const glm::vec3& p =
+                    positions_[indices_[std::size_t{3} * mesh_.order_[cluster.first_triangle + k] + c]];
+                // + 0 makes −0 and 0 one number.
+                const std::array<float, 3> place = {p.x + 0.0f, p.y + 0.0f, p.z + 0.0f};
+                const std::uint8_t number = vertices_.number_of(std::bit_cast<std::array<std::uint32_t, 3>>(place),
+                                                                static_cast<std::uint8_t>(vertex_count_));
+                if (number == vertex_count_) places_[vertex_count_++] = place;
+                corners_[3 * k + c] = number;
             }
     }
 
-    void list_vertices() {
-        vertices_.clear();
-        own_fans_.clear();
-        for (std::size_t k = 0; k < triangles_.size(); ++k) {
-            const std::uint32_t* c = adjacency_.corners.data() + 3 * triangles_[k];
-            const bool counts = k < own_ && c[0] != c[1] && c[1] != c[2] && c[2] != c[0];
-            for (std::uint32_t e = 0; e < 3; ++e) {
-                std::uint16_t& local = local_vertex_[c[e]];
-                if (local == ClusteredMesh::kNone) {
-                    local = static_cast<std::uint16_t>(vertices_.size());
-                    vertices_.push_back(c[e]);
-                    own_fans_.push_back(0);
+    void append_blocks(std::uint32_t triangles) {
+        for (std::uint32_t first = 0; first < triangles; first += kLanes) {
+            ClusteredMesh::Block block{};
+            for (std::uint32_t i = 0; i < kLanes; ++i)
+                for (std::uint32_t k = 0; k < 3; ++k) {
+                    const bool within = first + i < triangles;
+                    block.corners[k][i] = within ? corners_[3 * (first + i) + k] : std::uint8_t{0};
+                    block.neighbors[k][i] = within ? neighbors_[3 * (first + i) + k] : ClusteredMesh::kNone;
                 }
-                own_fans_[local] += counts;
-            }
+            mesh_.blocks_.push_back(block);
         }
     }
 
     void append_vertices() {
-        const std::size_t padded =
-            (vertices_.size() + ClusteredMesh::kLanes - 1) / ClusteredMesh::kLanes * ClusteredMesh::kLanes;
-        for (glm::length_t axis = 0; axis < 3; ++axis)
-            for (std::size_t v = 0; v < padded; ++v)
-                mesh_.coordinates_.push_back(positions_[vertices_[std::min(v, vertices_.size() - 1)]][axis]);
-        for (std::size_t v = 0; v < vertices_.size(); ++v)
-            mesh_.enclosed_.push_back(adjacency_.open[vertices_[v]] == 0 &&
-                                      own_fans_[v] == adjacency_.fans[vertices_[v]]);
+        const std::uint32_t padded = (vertex_count_ + kLanes - 1) / kLanes * kLanes;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            for (std::uint32_t v = 0; v < padded; ++v)
+                mesh_.coordinates_.push_back(places_[std::min(v, vertex_count_ - 1)][axis]);
     }
 
     ClusteredMesh& mesh_;
     std::span<const glm::vec3> positions_;
-    Adjacency adjacency_;
-    Vector<std::uint32_t> cluster_of_;      // by triangle
-    Vector<std::uint16_t> local_triangle_;  // of the patch at hand
-    Vector<std::uint16_t> local_vertex_;
-    Vector<std::uint32_t> triangles_, vertices_, own_fans_;
-    std::size_t own_ = 0;
+    std::span<const std::uint32_t> indices_;
+    SmallTable<std::array<std::uint32_t, 3>> vertices_;
+    std::array<std::array<float, 3>, 3 * Cluster::kMaxTriangles> places_;
+    std::uint32_t vertex_count_ = 0;
+    std::array<std::uint8_t, 3 * Cluster::kMaxTriangles> corners_, neighbors_;
 };
 
 Result<ClusteredMesh> ClusteredMesh::cut(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices,
@@ -160,16 +135,14 @@ Result<ClusteredMesh> ClusteredMesh::cut(std::span<const glm::vec3> positions, s
         mesh.clusters_.push_back(cluster);
         begin = end;
     }
-    Vector<glm::vec3> used;
-    used.reserve(indices.size());
-    for (const std::uint32_t i : indices) {
-        used.push_back(positions[i]);
-        mesh.largest_ = (glm::max)(mesh.largest_, glm::abs(positions[i]));
-    }
+    for (const std::uint32_t i : indices) mesh.largest_ = (glm::max)(mesh.largest_, glm::abs(positions[i]));
     mesh.bound_ = {0, static_cast<std::uint32_t>(indices.size() / 3)};
-    set_aligned_bound(mesh.bound_, used);
+    set_aligned_bound(mesh.bound_, positions, indices);
     PatchBuilder builder(mesh, positions, indices);
-    for (std::uint32_t c = 0; c < mesh.clusters_.size(); ++c) builder.add(c);
+    for (const Cluster& cluster : mesh.clusters_) builder.add(cluster);
+    mesh.clusters_.shrink_to_fit();
+    mesh.coordinates_.shrink_to_fit();
+    mesh.blocks_.shrink_to_fit();
     return mesh;
 }
 
@@ -181,8 +154,7 @@ void ClusteredMesh::permute(std::span<const std::uint32_t> indices, std::span<st
 
 std::size_t ClusteredMesh::memory() const {
     const auto bytes = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
-    return sizeof(*this) + bytes(order_) + bytes(clusters_) + bytes(patches_) + bytes(coordinates_) + bytes(corners_) +
-           bytes(neighbors_) + bytes(ring_clusters_) + bytes(enclosed_);
+    return sizeof(*this) + bytes(order_) + bytes(clusters_) + bytes(patches_) + bytes(coordinates_) + bytes(blocks_);
 }
 
 }  // namespace crofton::depth

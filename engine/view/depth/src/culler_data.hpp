@@ -52,23 +52,16 @@ struct Projection {
     Coverage coverage;
 };
 
-enum class ClusterState : std::uint8_t { undecided, hidden, drawn };
-
 // A cluster to draw.
 struct PatchData {
     const float* coordinates;
-    const std::uint16_t* corners;
-    const std::uint16_t* neighbors;
-    const std::uint32_t* ring_clusters;
-    const std::uint8_t* enclosed;
-    std::uint32_t vertex_count, own_triangles, all_triangles;
-    const ClusterState* states;  // of the object's clusters
-    float least_w;               // of the cluster's bound
-    bool unclear;                // as its projection
+    const ClusteredMesh::Block* blocks;
+    std::uint32_t vertex_count, triangle_count;
+    float least_w;  // of the cluster's bound
+    bool unclear;   // as its projection
 };
 
-inline constexpr std::uint32_t kMaxPatchTriangles = Cluster::kMaxTriangles * 4;
-inline constexpr std::uint32_t kMaxPatchVertices = Cluster::kMaxTriangles * 6;
+inline constexpr std::uint32_t kMaxPatchVertices = Cluster::kMaxTriangles * 3;
 
 void project_bounds(const PictureData& picture, const ObjectData& object, const Cluster* clusters, std::size_t count,
                     Projection* to);

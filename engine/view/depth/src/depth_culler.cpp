@@ -69,7 +69,6 @@ class NearestFirst {
 struct Prepared {
     ObjectData data{};
     bool valid = false;
-    std::uint32_t first_state = kEnd;  // of its clusters, once it has been split into them
 };
 
 }  // namespace
@@ -80,7 +79,6 @@ struct DepthCuller::State {
     PictureData picture{};
     bool perspective = true;
     Vector<Prepared> objects;
-    Vector<ClusterState> states;
     Vector<Projection> projections;
     NearestFirst queue;
     Vector<VisibleCluster> found, sorted;
@@ -107,7 +105,6 @@ struct DepthCuller::State {
         picture.grid = 0x1p-9f + 0x1p-21f * static_cast<float>(std::max(view.width, view.height));
         statistics = {};
         queue.clear();
-        states.clear();
         found.clear();
     }
 
@@ -157,52 +154,31 @@ struct DepthCuller::State {
     void split(std::uint32_t object, const ClusteredMesh& mesh) {
         const std::span<const Cluster> clusters = mesh.clusters();
         statistics.clusters_asked += clusters.size();
-        objects[object].first_state = static_cast<std::uint32_t>(states.size());
-        states.resize(states.size() + clusters.size(), ClusterState::undecided);
         if (projections.size() < clusters.size()) projections.resize(clusters.size());
         project_bounds(picture, objects[object].data, clusters.data(), clusters.size(), projections.data());
         for (std::uint32_t c = 0; c < clusters.size(); ++c)
-            if (projections[c].coverage == Coverage::nothing)
-                states[objects[object].first_state + c] = ClusterState::hidden;
-            else
-                push(object, c, projections[c]);
+            if (projections[c].coverage != Coverage::nothing) push(object, c, projections[c]);
     }
 
     void draw(std::uint32_t object, std::uint32_t cluster, const ClusteredMesh& mesh, const Projection& projection) {
-        const Prepared& prepared = objects[object];
         const ClusteredMesh::Layout layout = mesh.layout();
         const ClusteredMesh::Patch& patch = layout.patches[cluster];
         const PatchData data{layout.coordinates.data() + patch.first_coordinate,
-                             layout.corners.data() + patch.first_corner,
-                             layout.neighbors.data() + patch.first_corner,
-                             layout.ring_clusters.data() + patch.first_ring,
-                             layout.enclosed.data() + patch.first_vertex,
+                             layout.blocks.data() + patch.first_block,
                              patch.vertex_count,
-                             patch.own_triangles,
-                             patch.all_triangles,
-                             states.data() + prepared.first_state,
+                             patch.triangle_count,
                              projection.least_w,
                              projection.coverage == Coverage::unclear};
-        const std::uint64_t triangles = draw_patch(picture, prepared.data, data);
-        states[prepared.first_state + cluster] = ClusterState::drawn;
+        const std::uint64_t triangles = draw_patch(picture, objects[object].data, data);
         ++statistics.clusters_drawn;
-        statistics.triangles_drawn += patch.own_triangles;
+        statistics.triangles_drawn += patch.triangle_count;
         if (triangles != 0) list({object, cluster, triangles});
     }
 
     void ask(const Item& item, const ClusteredMesh& mesh) {
-        const bool hidden = item.projection.coverage != Coverage::unclear && is_hidden(picture.tiles, item.projection);
-        if (item.cluster != kWholeObject) {
-            if (hidden)
-                states[objects[item.object].first_state + item.cluster] = ClusterState::hidden;
-            else
-                draw(item.object, item.cluster, mesh, item.projection);
-            return;
-        }
-        if (hidden) return;
+        if (item.projection.coverage != Coverage::unclear && is_hidden(picture.tiles, item.projection)) return;
+        if (item.cluster != kWholeObject) return draw(item.object, item.cluster, mesh, item.projection);
         if (mesh.clusters().size() > 1) return split(item.object, mesh);
-        objects[item.object].first_state = static_cast<std::uint32_t>(states.size());
-        states.push_back(ClusterState::undecided);
         ++statistics.clusters_asked;
         draw(item.object, 0, mesh, item.projection);
     }

@@ -23,7 +23,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 // A cluster's vertices: in pixels and nearness, or in clip coordinates where it reaches the near plane.
 struct PatchVertices {
     alignas(64) float x[kMaxPatchVertices], y[kMaxPatchVertices], z[kMaxPatchVertices], w[kMaxPatchVertices];
-    alignas(64) float usable[kMaxPatchVertices];  // 1 where the cluster's margins hold, 0 elsewhere
 };
 
 // A line through the picture's rows: a row's samples on it are at at_x + per_row · (y − at_y), where at_x is `low` for
@@ -46,9 +45,6 @@ struct Faces {
         always = 128,   // visible, whatever the tiles say
     };
     alignas(32) std::int32_t flags[kCount];
-
-    alignas(32) std::int32_t number[3][kCount];  // of the vertex at corner k
-    alignas(32) float x[3][kCount], y[3][kCount], z[3][kCount];
 
     // Edge k leads from corner k to k + 1. Two triangles that share an edge have the same line.
     alignas(32) float per_row[3][kCount], at_x[3][kCount], at_y[3][kCount];
@@ -77,13 +73,13 @@ inline constexpr float kFlattest = 0x1p-22f;
 class FaceSetup {
   public:
     // move: by how many pixels a vertex may lie elsewhere; depth_error: what its nearness may be off by.
-    FaceSetup(const PictureData& picture, const ObjectData& object, float move, float depth_error)
-        : picture_(picture), object_(object), move_(move), depth_error_(depth_error) {}
+    FaceSetup(const PictureData& picture, const ObjectData& object, const PatchVertices& vertices, float move,
+              float depth_error)
+        : picture_(picture), object_(object), vertices_(vertices), move_(move), depth_error_(depth_error) {}
 
-    // Requires corners, and flags that are `drawn` or 0.
-    HWY_INLINE void run(Faces& faces) const {
+    HWY_INLINE void run(const ClusteredMesh::Block& block, Faces& faces) const {
         const DF d;
-        for (std::size_t i = 0; i < Faces::kCount; i += hn::Lanes(d)) set(faces, i);
+        for (std::size_t i = 0; i < Faces::kCount; i += hn::Lanes(d)) set(block, faces, i);
     }
 
   private:
@@ -93,11 +89,17 @@ class FaceSetup {
 
     static HWY_INLINE VF l1(VF x, VF y) { return hn::Add(hn::Abs(x), hn::Abs(y)); }
 
-    HWY_INLINE void set(Faces& f, std::size_t i) const {
+    HWY_INLINE void set(const ClusteredMesh::Block& block, Faces& f, std::size_t i) const {
         const DF d;
-        const VF x[3] = {hn::Load(d, f.x[0] + i), hn::Load(d, f.x[1] + i), hn::Load(d, f.x[2] + i)};
-        const VF y[3] = {hn::Load(d, f.y[0] + i), hn::Load(d, f.y[1] + i), hn::Load(d, f.y[2] + i)};
-        const VF z[3] = {hn::Load(d, f.z[0] + i), hn::Load(d, f.z[1] + i), hn::Load(d, f.z[2] + i)};
+        const DI integers;
+        VI number[3];
+        VF x[3], y[3], z[3];
+        for (int k = 0; k < 3; ++k) {
+            number[k] = hn::PromoteTo(integers, hn::LoadU(hn::Rebind<std::uint8_t, DI>(), block.corners[k] + i));
+            x[k] = hn::GatherIndex(d, vertices_.x, number[k]);
+            y[k] = hn::GatherIndex(d, vertices_.y, number[k]);
+            z[k] = hn::GatherIndex(d, vertices_.z, number[k]);
+        }
         const VF low_x = hn::Min(hn::Min(x[0], x[1]), x[2]), high_x = hn::Max(hn::Max(x[0], x[1]), x[2]);
         const VF low_y = hn::Min(hn::Min(y[0], y[1]), y[2]), high_y = hn::Max(hn::Max(y[0], y[1]), y[2]);
         const VF size = hn::Add(hn::Sub(high_x, low_x), hn::Sub(high_y, low_y));
@@ -109,7 +111,9 @@ class FaceSetup {
         const VF thin =
             hn::Add(hn::Mul(hn::Mul(hn::Set(d, 4.0f), move), size), hn::Mul(hn::Mul(hn::Set(d, 16.0f), move), move));
         const Mask front = hn::Gt(area, thin), back = hn::Lt(area, hn::Neg(thin)), faced = hn::Or(front, back);
-        const Mask given = hn::Ne(hn::ConvertTo(d, hn::Load(DI(), f.flags + i)), hn::Zero(d));
+        const auto equal =
+            hn::Or(hn::Or(hn::Eq(number[0], number[1]), hn::Eq(number[1], number[2])), hn::Eq(number[2], number[0]));
+        const Mask given = hn::Not(hn::RebindMask(d, equal));
         const Mask drawn = object_.one_sided ? hn::AndNot(back, given) : given;
         const Mask solid = hn::And(drawn, faced);
 
@@ -122,7 +126,6 @@ class FaceSetup {
         const VF rounding = hn::Add(hn::Set(d, depth_error_),
                                     hn::Mul(hn::Set(d, 0x1p-19f), hn::Max(hn::Abs(nearest), hn::Abs(farthest))));
         hn::Store(hn::Add(nearest, rounding), d, f.nearest + i);
-        const VF least = hn::Sub(farthest, rounding);
 
         // Of triangles thinner than the grid only the rectangle is known, and the nearest corner.
         const VF inverse = hn::Div(hn::Set(d, 1.0f), area);
@@ -136,9 +139,10 @@ class FaceSetup {
         hn::Store(hn::IfThenElse(faced, z[0], nearest), d, f.base + i);
         const VF steps = hn::Mul(hn::Mul(hn::Set(d, 8.0f), move), l1(across, up));
         hn::Store(steps, d, f.steps + i);
-        const VF moved_back = hn::Sub(least, steps);  // the bias moves the farthest vertex back as well
-        hn::Store(moved_back, d, f.farthest + i);
-        hn::Store(moved_back, d, f.own_farthest + i);
+        // The bias moves the farthest vertex back as well.
+        const VF least = hn::Sub(hn::Sub(farthest, rounding), steps);
+        hn::Store(least, d, f.farthest + i);
+        hn::Store(least, d, f.own_farthest + i);
         // The plane's own rounding, which narrow triangles magnify.
         const VF narrow = hn::Add(hn::Set(d, 1.0f), hn::Mul(hn::Mul(size, size), hn::Abs(inverse)));
         const VF plane =
@@ -153,7 +157,7 @@ class FaceSetup {
                                hn::Mul(share, hn::Mul(lengths[1], lengths[0])),
                                hn::Mul(share, hn::Mul(lengths[2], lengths[1]))};
         for (int k = 0; k < 3; ++k) hn::Store(corners[k], d, f.corner[k] + i);
-        for (int k = 0; k < 3; ++k) set_edge(f, i, k, x, y, move, front, faced);
+        for (int k = 0; k < 3; ++k) set_edge(f, i, k, number, x, y, move, front, faced);
 
         const VF depth = hn::Max(hn::Sub(hn::Add(nearest, rounding), hn::Set(d, picture_.infinitely_far)),
                                  hn::Sub(hn::Set(d, picture_.infinitely_far), least));
@@ -199,13 +203,11 @@ class FaceSetup {
     }
 
     // From the vertex with the lower number to the other, so that both triangles of an edge have the same line.
-    HWY_INLINE void set_edge(Faces& f, std::size_t i, int k, const VF (&x)[3], const VF (&y)[3], VF move, Mask front,
-                             Mask faced) const {
+    HWY_INLINE void set_edge(Faces& f, std::size_t i, int k, const VI (&number)[3], const VF (&x)[3], const VF (&y)[3],
+                             VF move, Mask front, Mask faced) const {
         const DF d;
-        const DI integers;
         const int n = k == 2 ? 0 : k + 1;
-        const Mask forward =
-            hn::RebindMask(d, hn::Lt(hn::Load(integers, f.number[k] + i), hn::Load(integers, f.number[n] + i)));
+        const Mask forward = hn::RebindMask(d, hn::Lt(number[k], number[n]));
         const VF from_x = hn::IfThenElse(forward, x[k], x[n]), from_y = hn::IfThenElse(forward, y[k], y[n]);
         const VF dx = hn::Sub(hn::IfThenElse(forward, x[n], x[k]), from_x);
         const VF dy = hn::Sub(hn::IfThenElse(forward, y[n], y[k]), from_y);
@@ -231,6 +233,7 @@ class FaceSetup {
 
     const PictureData& picture_;
     const ObjectData& object_;
+    const PatchVertices& vertices_;
     float move_, depth_error_;
 };
 

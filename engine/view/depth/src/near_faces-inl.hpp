@@ -43,14 +43,14 @@ class NearFaceSetup {
     [[nodiscard]] float least_w() const { return least_w_; }
     [[nodiscard]] float move() const { return move_; }
 
-    // Requires corner numbers. `decided`: whether the triangle's cluster is.
-    void set(Faces& f, std::uint32_t i, const PatchVertices& vertices, bool decided, NearLimits& limits) const {
-        const std::int32_t c[3] = {f.number[0][i], f.number[1][i], f.number[2][i]};
+    void set(const ClusteredMesh::Block& block, std::uint32_t i, const PatchVertices& vertices, Faces& f,
+             NearLimits& limits) const {
+        const std::uint8_t c[3] = {block.corners[0][i], block.corners[1][i], block.corners[2][i]};
         f.flags[i] = 0;
         f.x0[i] = f.y0[i] = 0, f.x1[i] = f.y1[i] = -1;
         if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0] || is_outside(vertices, c)) return;
         f.flags[i] = Faces::drawn | Faces::always;
-        if (!object_.hides || !decided) return;
+        if (!object_.hides) return;
         Points p;
         for (int k = 0; k < 3; ++k) {
             const double w = vertices.w[c[k]];
@@ -71,7 +71,7 @@ class NearFaceSetup {
     };
 
     // Beyond a side of the picture or before the near plane, by more than products may be off.
-    [[nodiscard]] bool is_outside(const PatchVertices& v, const std::int32_t* c) const {
+    [[nodiscard]] bool is_outside(const PatchVertices& v, const std::uint8_t* c) const {
         const float side = 4.0f * (object_.errors[0] + object_.errors[1] + object_.errors[3]);
         const float front = 4.0f * (object_.errors[2] + object_.errors[3]);
         bool left = true, right = true, low = true, high = true, before = true;
@@ -87,7 +87,7 @@ class NearFaceSetup {
     }
 
     // True if it surely covers something.
-    bool set_planes(Faces& f, std::uint32_t i, const PatchVertices& vertices, const std::int32_t* c, const Points& p,
+    bool set_planes(Faces& f, std::uint32_t i, const PatchVertices& vertices, const std::uint8_t* c, const Points& p,
                     NearLimits& limits) const {
         // Lines through two corners each, from the corner with the lower number to the other.
         double lines[3][3];

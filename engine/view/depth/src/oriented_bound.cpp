@@ -83,13 +83,8 @@ void set_bound(Cluster& cluster, std::span<const glm::vec3> positions, std::span
     set(cluster, axes, extents);
 }
 
-void set_aligned_bound(Cluster& cluster, std::span<const glm::vec3> positions) {
-    Extents extents;
-    for (const glm::vec3& p : positions) {
-        extents.min = (glm::min)(extents.min, glm::dvec3(p));
-        extents.max = (glm::max)(extents.max, glm::dvec3(p));
-    }
-    set(cluster, kAligned, extents);
+void set_aligned_bound(Cluster& cluster, std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices) {
+    set(cluster, kAligned, along(kAligned, positions, indices));
 }
 
 }  // namespace crofton::depth

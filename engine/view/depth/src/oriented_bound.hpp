@@ -13,6 +13,6 @@ namespace crofton::depth {
 void set_bound(Cluster& cluster, std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices);
 
 // The aligned box alone.
-void set_aligned_bound(Cluster& cluster, std::span<const glm::vec3> positions);
+void set_aligned_bound(Cluster& cluster, std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices);
 
 }  // namespace crofton::depth

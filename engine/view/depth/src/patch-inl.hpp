@@ -43,28 +43,21 @@ class PatchDrawer {
             set_near_faces();
         else
             set_faces();
-        list_live();
         if (object_.hides) {
             close_edges();
             exclude_corners();
         }
         std::uint64_t visible = 0;
-        std::uint32_t i = 0;
-        for (; i < live_count_ && live_[i] < patch_.own_triangles; ++i)
-            if (draw_own(live_[i])) visible |= std::uint64_t{1} << live_[i];
-        for (; i < live_count_; ++i) draw_seam(live_[i]);
+        for (std::uint64_t left = drawn_; left != 0; left &= left - 1) {
+            const auto t = static_cast<std::uint32_t>(std::countr_zero(left));
+            if (draw(t)) visible |= std::uint64_t{1} << t;
+        }
         return visible;
     }
 
   private:
     [[nodiscard]] Faces& faces(std::uint32_t t) { return faces_[t / Faces::kCount]; }
-    [[nodiscard]] const Faces& faces(std::uint32_t t) const { return faces_[t / Faces::kCount]; }
     static std::uint32_t lane(std::uint32_t t) { return t % Faces::kCount; }
-    [[nodiscard]] std::int32_t flags(std::uint32_t t) const { return faces(t).flags[lane(t)]; }
-
-    [[nodiscard]] ClusterState state_of(std::uint32_t t) const {
-        return patch_.states[patch_.ring_clusters[t - patch_.own_triangles]];
-    }
 
     template <class Place>
     HWY_INLINE void transform(const Place& place) {
@@ -87,41 +80,18 @@ class PatchDrawer {
     HWY_INLINE void set_faces() {
         const DF d;
         const VF half_width = hn::Set(d, picture_.half_width), half_height = hn::Set(d, picture_.half_height);
-        // A triangle around the cluster is usable if no nearer than the cluster, whose margins hold for it then.
-        const VF least_w = hn::Set(d, patch_.least_w), near_share = hn::Set(d, picture_.near_share);
-        const VF front = hn::Set(d, 8.0f * (object_.errors[2] + object_.errors[3]));
         transform([&](const VF(&clip)[4], std::size_t i) {
             const VF inverse = hn::Div(hn::Set(d, 1.0f), clip[3]);
             hn::Store(hn::Add(hn::Mul(hn::Mul(clip[0], inverse), half_width), half_width), d, vertices_.x + i);
             hn::Store(hn::Add(hn::Mul(hn::Mul(clip[1], inverse), half_height), half_height), d, vertices_.y + i);
             hn::Store(hn::Mul(clip[2], inverse), d, vertices_.z + i);
-            const auto usable =
-                hn::And(hn::Ge(clip[3], least_w), hn::Gt(hn::Sub(hn::Mul(near_share, clip[3]), clip[2]), front));
-            hn::Store(hn::IfThenElseZero(usable, hn::Set(d, 1.0f)), d, vertices_.usable + i);
         });
         const float w = patch_.least_w - 8.0f * object_.errors[3];
-        move_ = picture_.grid + pixel_error(picture_, object_, w);
-        gather();
-        const FaceSetup setup(picture_, object_, move_, (object_.errors[2] + object_.errors[3]) / w);
-        for (std::uint32_t t = 0; t < patch_.all_triangles; t += Faces::kCount) setup.run(faces(t));
-    }
-
-    // The corners of the triangles that may be drawn.
-    void gather() {
-        const std::uint32_t padded = (patch_.all_triangles + Faces::kCount - 1) / Faces::kCount * Faces::kCount;
-        for (std::uint32_t t = 0; t < padded; ++t) {
-            Faces& f = faces(t);
-            const std::uint32_t i = lane(t);
-            const std::uint16_t* const c = patch_.corners + 3 * std::min(t, patch_.all_triangles - 1);
-            bool given = t < patch_.all_triangles && c[0] != c[1] && c[1] != c[2] && c[2] != c[0];
-            if (t >= patch_.own_triangles && given)
-                given = state_of(t) != ClusterState::undecided && vertices_.usable[c[0]] != 0.0f &&
-                        vertices_.usable[c[1]] != 0.0f && vertices_.usable[c[2]] != 0.0f;
-            f.flags[i] = given ? Faces::drawn : 0;
-            for (int k = 0; k < 3; ++k) {
-                f.number[k][i] = c[k];
-                f.x[k][i] = vertices_.x[c[k]], f.y[k][i] = vertices_.y[c[k]], f.z[k][i] = vertices_.z[c[k]];
-            }
+        const float move = picture_.grid + pixel_error(picture_, object_, w);
+        const FaceSetup setup(picture_, object_, vertices_, move, (object_.errors[2] + object_.errors[3]) / w);
+        for (std::uint32_t b = 0; b * Faces::kCount < patch_.triangle_count; ++b) {
+            setup.run(patch_.blocks[b], faces_[b]);
+            note(b);
         }
     }
 
@@ -134,129 +104,102 @@ class PatchDrawer {
             hn::Store(clip[3], d, vertices_.w + i);
         });
         const NearFaceSetup setup(picture_, object_);
-        move_ = setup.move();
-        for (std::uint32_t t = 0; t < patch_.all_triangles; ++t) {
-            const bool own = t < patch_.own_triangles;
-            for (std::uint32_t k = 0; k < 3; ++k) faces(t).number[k][lane(t)] = patch_.corners[3 * t + k];
-            setup.set(faces(t), lane(t), vertices_, own || state_of(t) != ClusterState::undecided, limits_[t]);
+        for (std::uint32_t b = 0; b * Faces::kCount < patch_.triangle_count; ++b) {
+            for (std::uint32_t i = 0; i < Faces::kCount; ++i)
+                setup.set(patch_.blocks[b], i, vertices_, faces_[b], limits_[b * Faces::kCount + i]);
+            note(b);
         }
     }
 
-    // Those that may ask or draw.
-    HWY_INLINE void list_live() {
-        for (std::uint32_t t = 0; t < patch_.all_triangles; ++t) {
-            const std::int32_t needed =
-                t < patch_.own_triangles ? Faces::drawn : std::int32_t{Faces::drawn} | Faces::solid;
-            live_[live_count_] = static_cast<std::uint16_t>(t);
-            live_count_ += (flags(t) & needed) == needed;
-        }
+    // Which triangles of a block are drawn, and which are solid.
+    HWY_INLINE void note(std::uint32_t block) {
+        const hn::RebindToSigned<DF> d;
+        const auto having = [&](std::int32_t flag) {
+            std::uint64_t bits = 0;
+            for (std::size_t i = 0; i < Faces::kCount; i += hn::Lanes(d)) {
+                const auto flags = hn::And(hn::Load(d, faces_[block].flags + i), hn::Set(d, flag));
+                std::uint8_t mask[8] = {};
+                hn::StoreMaskBits(d, hn::Eq(flags, hn::Set(d, flag)), mask);
+                bits |= std::uint64_t{mask[0]} << i;
+            }
+            return bits << block * Faces::kCount;
+        };
+        drawn_ |= having(Faces::drawn);
+        solid_ |= having(Faces::solid);
     }
 
     // True if it may own a sample.
-    HWY_INLINE bool draw_own(std::uint32_t t) {
-        const std::int32_t f = flags(t);
-        const bool always = (f & Faces::always) != 0, draws = object_.hides && (f & Faces::solid) != 0;
+    HWY_INLINE bool draw(std::uint32_t t) {
+        Faces& f = faces(t);
+        const bool always = (f.flags[lane(t)] & Faces::always) != 0;
+        const bool draws = object_.hides && (solid_ >> t & 1) != 0;
         if (always && !draws) return true;
-        Rasterizer raster(picture_.tiles, picture_.infinitely_far, faces(t), lane(t));
+        Rasterizer raster(picture_.tiles, picture_.infinitely_far, f, lane(t));
         if (raster.covers_nothing()) return always;
         if (!always && !raster.shows()) return false;
-        const NearLimits& limits = limits_[t];
-        if (draws) raster.draw(limits.lines, always ? limits.count : 0, excluded_);
+        if (draws) raster.draw(limits_[t].lines, always ? limits_[t].count : 0, excluded_);
         return true;
     }
 
-    // A triangle around the cluster has been drawn before, but for the seam between them: only that is left.
-    HWY_INLINE void draw_seam(std::uint32_t t) {
-        if (!object_.hides || state_of(t) != ClusterState::drawn) return;
-        const Faces& f = faces(t);
-        const std::uint32_t i = lane(t);
-        if (closed_[t] == 0) return;
-        Line lines[3];
-        std::uint32_t count = 0;
-        if ((flags(t) & Faces::always) != 0)
-            for (; count < limits_[t].count; ++count) lines[count] = limits_[t].lines[count];
-        if (std::has_single_bit(closed_[t])) {
-            const auto k = static_cast<std::uint32_t>(std::countr_zero(closed_[t]));
-            const float infinity = std::numeric_limits<float>::infinity();
-            const float at = f.at_x[k][i], width = 8.0f * move_ * (1.0f + std::abs(f.per_row[k][i]));
-            const bool right = f.high[k][i] == infinity;
-            lines[count++] = {f.per_row[k][i], f.at_y[k][i], right ? -infinity : at - width,
-                              right ? at + width : infinity};
-        }
-        Rasterizer raster(picture_.tiles, picture_.infinitely_far, f, i);
-        if (!raster.covers_nothing()) raster.draw(lines, count, excluded_);
-    }
-
     HWY_INLINE void close_edges() {
-        for (std::uint32_t i = 0; i < live_count_; ++i) {
-            closed_[live_[i]] = 0;
-            widest_[live_[i]] = faces(live_[i]).steps[lane(live_[i])];
-        }
-        for (std::uint32_t i = 0; i < live_count_ && live_[i] < patch_.own_triangles; ++i) {
-            const std::uint32_t t = live_[i];
-            const std::int32_t f = flags(t);
-            if ((f & 7 * Faces::closable) == 0) continue;
+        for (std::uint64_t left = solid_; left != 0; left &= left - 1) {
+            const auto t = static_cast<std::uint32_t>(std::countr_zero(left));
+            Faces& f = faces(t);
+            const std::int32_t flags = f.flags[lane(t)];
+            float widest = f.steps[lane(t)];
+            std::uint32_t closed = 0;
             for (std::uint32_t k = 0; k < 3; ++k) {
-                if ((f & Faces::closable << k) == 0) continue;
-                const std::uint32_t other = patch_.neighbors[3 * t + k];
-                if (other == ClusteredMesh::kNone || (other < t && other < patch_.own_triangles)) continue;
-                const std::int32_t g = flags(other);
-                if (((f ^ g) & (Faces::front | Faces::back)) != 0) continue;
-                const std::uint32_t back = edge_to(other, t);
-                if (back == 3 || (g & Faces::closable << back) == 0) continue;
-                close(t, k, other);
-                close(other, back, t);
+                const std::uint32_t across = patch_.blocks[t / Faces::kCount].neighbors[k][lane(t)];
+                if ((flags & Faces::closable << k) == 0 || across == ClusteredMesh::kNone) continue;
+                const Faces& g = faces(across / 4);
+                const std::uint32_t i = lane(across / 4);
+                if (((flags ^ g.flags[i]) & (Faces::front | Faces::back)) != 0) continue;
+                if ((g.flags[i] & Faces::closable << across % 4) == 0) continue;
+                closed |= 1u << k;
+                widest = std::max(widest, g.steps[i]);
+                f.farthest[lane(t)] = std::min(f.farthest[lane(t)], g.own_farthest[i]);
+                const bool right = f.high[k][lane(t)] == std::numeric_limits<float>::infinity();
+                (right ? f.low : f.high)[k][lane(t)] = f.at_x[k][lane(t)];
             }
-        }
-        for (std::uint32_t i = 0; i < live_count_; ++i) {
-            Faces& f = faces(live_[i]);
-            // Neighbours' are among them by now.
-            f.below[lane(live_[i])] += widest_[live_[i]];
+            closed_[t] = static_cast<std::uint8_t>(closed);
+            f.below[lane(t)] += widest;
         }
     }
 
-    HWY_INLINE void close(std::uint32_t t, std::uint32_t k, std::uint32_t other) {
-        Faces& f = faces(t);
-        const Faces& g = faces(other);
-        const std::uint32_t i = lane(t), j = lane(other);
-        closed_[t] = static_cast<std::uint8_t>(closed_[t] | 1u << k);
-        f.farthest[i] = std::min(f.farthest[i], g.own_farthest[j]);
-        widest_[t] = std::max(widest_[t], g.steps[j]);
-        const bool right = f.high[k][i] == std::numeric_limits<float>::infinity();
-        (right ? f.low : f.high)[k][i] = f.at_x[k][i];
-    }
-
-    [[nodiscard]] std::uint32_t edge_to(std::uint32_t t, std::uint32_t other) const {
-        for (std::uint32_t k = 0; k < 3; ++k)
-            if (patch_.neighbors[3 * t + k] == other) return k;
-        return 3;
-    }
-
-    // The samples at corners where the surface ends.
+    // The samples at corners where the surface ends: where an edge there is not closed.
     HWY_INLINE void exclude_corners() {
-        bool closes = false;
         std::fill_n(radius_, (patch_.vertex_count + 7) / 8 * 8, 0.0f);
-        for (std::uint32_t i = 0; i < live_count_; ++i) {
-            const std::uint32_t t = live_[i];
-            if (closed_[t] == 0) continue;  // all of its edges keep the distance
-            closes = true;
+        std::fill_n(ends_, patch_.vertex_count, std::uint8_t{0});
+        for (std::uint64_t left = solid_; left != 0; left &= left - 1) {
+            const auto t = static_cast<std::uint32_t>(std::countr_zero(left));
+            const ClusteredMesh::Block& block = patch_.blocks[t / Faces::kCount];
             const Faces& f = faces(t);
             for (std::uint32_t k = 0; k < 3; ++k) {
-                if ((closed_[t] & (1u << k | 1u << (k == 0 ? 2 : k - 1))) == 0) continue;
-                float& radius = radius_[f.number[k][lane(t)]];
-                radius = std::max(radius, f.corner[k][lane(t)]);
+                const std::uint8_t corner = block.corners[k][lane(t)];
+                const std::uint32_t closed = closed_[t] & (1u << k | 1u << (k == 0 ? 2 : k - 1));
+                // If none is closed, both keep the distance.
+                if (closed != 0) radius_[corner] = std::max(radius_[corner], f.corner[k][lane(t)]);
+                if (!std::has_single_bit(closed) && closed != 0) continue;
+                ends_[corner] = 1;
             }
         }
-        if (!closes) return;
-        std::fill_n(ends_, patch_.vertex_count, std::uint8_t{0});
-        for (std::uint32_t t = 0; t < patch_.own_triangles; ++t) {
-            const std::uint16_t* const c = patch_.corners + 3 * t;
-            const std::uint32_t closed = (flags(t) & Faces::drawn) != 0 ? closed_[t] : 0u;
-            for (std::uint32_t k = 0; k < 3; ++k)
-                if ((closed >> k & 1) == 0) ends_[c[k]] = ends_[c[k == 2 ? 0 : k + 1]] = 1;
-        }
-        for (std::uint32_t v = 0; v < patch_.vertex_count; ++v)
-            if (radius_[v] > 0.0f && (ends_[v] != 0 || patch_.enclosed[v] == 0)) exclude_near(v);
+        const DF d;
+        for (std::uint32_t v = 0; v < patch_.vertex_count; v += static_cast<std::uint32_t>(hn::Lanes(d)))
+            if (has_samples(v))
+                for (std::uint32_t i = v; i < std::min(v + hn::Lanes(d), std::size_t{patch_.vertex_count}); ++i)
+                    if (radius_[i] > 0.0f && ends_[i] != 0) exclude_near(i);
+    }
+
+    // False if no sample is within the radius of one of the vertices at `v`.
+    HWY_INLINE bool has_samples(std::uint32_t v) const {
+        if (patch_.unclear) return true;
+        const DF d;
+        const VF radius = hn::Min(hn::Load(d, radius_ + v), hn::Set(d, kMaxCorner)), half = hn::Set(d, 0.5f);
+        const auto near = [&](const float* at) {
+            const VF p = hn::Sub(hn::Load(d, at + v), half);
+            return hn::Ge(hn::Floor(hn::Add(p, radius)), hn::Sub(p, radius));
+        };
+        return !hn::AllFalse(d, hn::And(hn::Gt(radius, hn::Zero(d)), hn::And(near(vertices_.x), near(vertices_.y))));
     }
 
     HWY_INLINE void exclude_near(std::uint32_t v) {
@@ -279,23 +222,20 @@ class PatchDrawer {
                     excluded_.samples[excluded_.count++] = {static_cast<std::uint16_t>(i),
                                                             static_cast<std::uint16_t>(j)};
                 else
-                    for (std::uint32_t t = 0; t < patch_.all_triangles; ++t) faces(t).flags[lane(t)] &= ~Faces::solid;
+                    solid_ = 0;
     }
 
     const PictureData& picture_;
     const ObjectData& object_;
     const PatchData& patch_;
-    float move_ = 0.0f;
-    std::uint16_t live_[kMaxPatchTriangles + 1];
-    std::uint32_t live_count_ = 0;
-    std::uint8_t closed_[kMaxPatchTriangles];  // edges, one bit each
-    float widest_[kMaxPatchTriangles];         // of its steps and those beyond closed edges
+    std::uint64_t drawn_ = 0, solid_ = 0;          // triangles
+    std::uint8_t closed_[Cluster::kMaxTriangles];  // edges of solid ones, one bit each
     ExcludedSamples excluded_;
     PatchVertices vertices_;
-    alignas(32) float radius_[kMaxPatchVertices];
+    alignas(64) float radius_[kMaxPatchVertices];
     std::uint8_t ends_[kMaxPatchVertices];
-    Faces faces_[kMaxPatchTriangles / Faces::kCount];
-    NearLimits limits_[kMaxPatchTriangles];
+    Faces faces_[Cluster::kMaxTriangles / Faces::kCount];
+    NearLimits limits_[Cluster::kMaxTriangles];
 };
 
 }  // namespace crofton::depth::HWY_NAMESPACE

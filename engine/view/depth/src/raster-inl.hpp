@@ -93,6 +93,8 @@ class Rasterizer {
         const bool wide = x1_ / 8 - x0_ / 8 > kNarrow;
         for (std::int32_t ty = y0_ / 8; ty <= y1_ / 8; ++ty) {
             find_band(ty, lines, 3 + more_count);
+            at_row_ = plane_at_row(ty);
+            spares_ = excluded.count != 0 && excluded.in_tile_row(ty);
             Interval touched{x0_ / 8, x1_ / 8};
             if (!wide) {
                 for (std::int32_t tx = touched.first; tx <= touched.last; ++tx) draw_part(tx, ty, excluded);
@@ -101,7 +103,7 @@ class Rasterizer {
             touched = touched_tiles();
             if (touched.first > touched.last) continue;
             Interval whole{touched.last + 1, touched.last};
-            if (y0_ <= 8 * ty && y1_ >= 8 * ty + 7 && !excluded.in_tile_row(ty)) whole = whole_tiles(touched);
+            if (y0_ <= 8 * ty && y1_ >= 8 * ty + 7 && !spares_) whole = whole_tiles(touched);
             for (std::int32_t tx = touched.first; tx < whole.first; ++tx) draw_part(tx, ty, excluded);
             if (whole.first > whole.last) continue;
             draw_whole(whole, ty, excluded);
@@ -225,7 +227,7 @@ class Rasterizer {
     // Tiles that the triangle covers: where it is not steep, a floor is enough.
     HWY_INLINE void draw_whole(const Interval& whole, std::int32_t ty, const ExcludedSamples& excluded) {
         const DF d;
-        const VF up = hn::Set(d, plane_at_row(ty)), spread = hn::Set(d, spread_);
+        const VF up = hn::Set(d, at_row_), spread = hn::Set(d, spread_);
         const std::size_t row = static_cast<std::size_t>(ty) * tiles_.columns;
         for (std::int32_t tx = whole.first; tx <= whole.last; tx += static_cast<std::int32_t>(hn::Lanes(d))) {
             const auto count = std::min<std::size_t>(hn::Lanes(d), static_cast<std::size_t>(whole.last - tx) + 1);
@@ -251,10 +253,10 @@ class Rasterizer {
 
     HWY_INLINE void draw_part(std::int32_t tx, std::int32_t ty, const ExcludedSamples& excluded) {
         const std::size_t t = static_cast<std::size_t>(ty) * tiles_.columns + static_cast<std::size_t>(tx);
-        if (tiles_.least[t] > plane_at_column(plane_at_row(ty), tx) + spread_) return;  // nothing to raise
+        if (tiles_.least[t] > plane_at_column(at_row_, tx) + spread_) return;  // nothing to raise
         if (tiles_.written[t] == 0)
             begin_tile(tiles_, static_cast<std::uint32_t>(tx), static_cast<std::uint32_t>(ty), t);
-        if (excluded.count == 0) return write_tile(tx, t);
+        if (!spares_) return write_tile(tx, t);
         float before[ExcludedSamples::kMax];
         float* const pixels = tiles_.pixels + t * kTilePixels;
         for (std::uint32_t k = 0; k < excluded.count; ++k)
@@ -295,7 +297,9 @@ class Rasterizer {
     const Faces& f_;
     std::uint32_t i_;
     std::int32_t x0_, x1_, y0_, y1_;
-    float spread_;                                             // of the plane over half a tile
+    float at_row_ = 0.0f;  // the plane in the middle of the rows at hand, but for the column's share
+    bool spares_ = false;  // a sample of the rows at hand is excluded
+    float spread_;         // of the plane over half a tile
     alignas(32) float low_[kTile], high_[kTile], ups_[kTile];  // of the rows at hand
 };
 

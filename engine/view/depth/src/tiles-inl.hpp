@@ -39,8 +39,9 @@ HWY_INLINE void begin_tile(const Tiles& tiles, std::uint32_t tx, std::uint32_t t
     const std::uint32_t columns = std::min(kTile, tiles.width - tx * kTile);
     const std::uint32_t rows = std::min(kTile, tiles.height - ty * kTile);
     if (columns == kTile && rows == kTile) return;
-    for (std::uint32_t i = 0; i < kTilePixels; ++i)
-        if (i % kTile >= columns || i / kTile >= rows) pixels[i] = std::numeric_limits<float>::infinity();
+    for (std::uint32_t y = 0; y < kTile; ++y)
+        for (std::uint32_t x = y < rows ? columns : 0; x < kTile; ++x)
+            pixels[y * kTile + x] = std::numeric_limits<float>::infinity();
 }
 
 // The least nearness in the tile.
@@ -71,15 +72,31 @@ HWY_INLINE bool shows_in_tile(const Tiles& tiles, const Projection& p, std::int3
     return false;
 }
 
+// Whether a tile leaves the rectangle, which meets it, a chance to show.
+HWY_INLINE bool may_show_in_tile(const Tiles& tiles, const Projection& p, std::int32_t tx, std::int32_t ty,
+                                 std::size_t t) {
+    if (tiles.least[t] > p.nearest) return false;
+    if (tiles.written[t] == 0) return true;
+    if (p.x0 <= 8 * tx && p.y0 <= 8 * ty && p.x1 >= 8 * tx + 7 && p.y1 >= 8 * ty + 7) return true;
+    return shows_in_tile(tiles, p, tx, ty, t);
+}
+
 HWY_INLINE bool hides(const Tiles& tiles, const Projection& p) {
-    for (std::int32_t ty = p.y0 / 8; ty <= p.y1 / 8; ++ty)
-        for (std::int32_t tx = p.x0 / 8; tx <= p.x1 / 8; ++tx) {
-            const std::size_t t = static_cast<std::size_t>(ty) * tiles.columns + static_cast<std::size_t>(tx);
-            if (tiles.least[t] > p.nearest) continue;
-            if (tiles.written[t] == 0) return false;
-            if (p.x0 <= 8 * tx && p.y0 <= 8 * ty && p.x1 >= 8 * tx + 7 && p.y1 >= 8 * ty + 7) return false;
-            if (shows_in_tile(tiles, p, tx, ty, t)) return false;
+    const DF d;
+    const auto lanes = static_cast<std::int32_t>(hn::Lanes(d));
+    const VF nearest = hn::Set(d, p.nearest);
+    const std::int32_t first = p.x0 / 8, last = p.x1 / 8;
+    for (std::int32_t ty = p.y0 / 8; ty <= p.y1 / 8; ++ty) {
+        const std::size_t row = static_cast<std::size_t>(ty) * tiles.columns;
+        for (std::int32_t from = first; from <= last; from += lanes) {
+            const std::int32_t count = std::min(lanes, last - from + 1);
+            // The list is padded by a vector.
+            const auto nearer = hn::Gt(hn::LoadU(d, tiles.least + row + static_cast<std::size_t>(from)), nearest);
+            if (hn::AllFalse(d, hn::AndNot(nearer, hn::FirstN(d, static_cast<std::size_t>(count))))) continue;
+            for (std::int32_t tx = from; tx < from + count; ++tx)
+                if (may_show_in_tile(tiles, p, tx, ty, row + static_cast<std::size_t>(tx))) return false;
         }
+    }
     return true;
 }
 

@@ -55,30 +55,28 @@ class ClusteredMesh {
     // Bytes that this object holds.
     [[nodiscard]] std::size_t memory() const;
 
-    // A cluster with the triangles around it, laid out for DepthCuller.
+    // A cluster, laid out for DepthCuller.
     struct Patch {
         std::uint32_t first_coordinate;  // x of all vertices, then y, then z, each padded to whole vectors
-        std::uint32_t first_corner;      // three corners and three neighbours a triangle, own ones first
-        std::uint32_t first_ring;        // the clusters of the triangles around, one each
-        std::uint32_t first_vertex;      // into `enclosed`
-        std::uint16_t vertex_count;
-        std::uint16_t own_triangles, all_triangles;
+        std::uint32_t first_block;
+        std::uint8_t vertex_count;  // equal positions count as one
+        std::uint8_t triangle_count;
     };
+    static constexpr std::uint32_t kLanes = 8;
+    // Eight triangles of a patch; those beyond its last have three equal corners.
+    struct Block {
+        std::uint8_t corners[3][kLanes];  // vertices of the patch
+        // What lies across the edge from corner k to k + 1: 4 · triangle of the patch + its edge, or kNone.
+        std::uint8_t neighbors[3][kLanes];
+    };
+    static constexpr std::uint8_t kNone = 0xff;
     struct Layout {
         std::span<const Patch> patches;  // one a cluster
         std::span<const float> coordinates;
-        std::span<const std::uint16_t> corners;  // vertices of the patch
-        std::span<const std::uint16_t>
-            neighbors;  // across the edges corner k to k + 1: triangles of the patch, or kNone
-        std::span<const std::uint32_t> ring_clusters;
-        std::span<const std::uint8_t> enclosed;  // 1: all triangles around the vertex are the cluster's own
-        glm::vec3 largest;                       // absolute coordinates
+        std::span<const Block> blocks;
+        glm::vec3 largest;  // absolute coordinates
     };
-    static constexpr std::uint16_t kNone = 0xffff;
-    static constexpr std::uint32_t kLanes = 8;
-    [[nodiscard]] Layout layout() const {
-        return {patches_, coordinates_, corners_, neighbors_, ring_clusters_, enclosed_, largest_};
-    }
+    [[nodiscard]] Layout layout() const { return {patches_, coordinates_, blocks_, largest_}; }
 
   private:
     friend class PatchBuilder;
@@ -88,9 +86,7 @@ class ClusteredMesh {
     glm::vec3 largest_{0.0f};
     Vector<Patch> patches_;  // one a cluster
     Vector<float> coordinates_;
-    Vector<std::uint16_t> corners_, neighbors_;
-    Vector<std::uint32_t> ring_clusters_;
-    Vector<std::uint8_t> enclosed_;
+    Vector<Block> blocks_;
 };
 
 }  // namespace crofton::depth
