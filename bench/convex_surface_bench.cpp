@@ -176,24 +176,36 @@ BENCHMARK_CAPTURE(crofton_rest, c, true, false)->Name("box on heights 1025^2/cro
 BENCHMARK_CAPTURE(crofton_rest, f, true, false, true)->Name("box on a crest/crofton");
 BENCHMARK_CAPTURE(crofton_rest, d, true, true)->Name("capsule on heights 1025^2/crofton");
 
+// What is cast: the scene's box, a capsule or a ball of about its size.
+enum class Flying { box, capsule, ball };
+
+Body flying_body(Flying kind, float s) {
+    if (kind == Flying::capsule) return Body::capsule(0.6f * s, 0.5f * s).value();
+    return kind == Flying::ball ? Body::sphere(s).value() : Body::box({s, s, s}).value();
+}
+
 // Down onto the surface from twice the size above it.
-void crofton_drop(benchmark::State& state, bool field) {
+void crofton_drop(benchmark::State& state, bool field, Flying kind) {
     const SurfaceScene scene = make_scene(field, false);
     if (!field && scene.mesh.indices.empty()) return state.SkipWithError("no shared meshes");
     const OwnSurface own(scene, field);
-    const Body surface = own.body(Sides::both);
+    const Body surface = own.body(Sides::both), body = flying_body(kind, scene.size);
     const RigidTransform still;
     frames(state, scene.size, [&](int f, int i) {
         RigidTransform from = scene.poses[f][i];
         const glm::dvec3 n = from.rotation[1];
         from.translation += 2.0 * scene.size * n;
         const auto impact =
-            cast({scene.body, from}, {-4.0 * scene.size * n, {}, {}}, {surface, still}, {}, {.tolerance = 1e-4});
+            cast({body, from}, {-4.0 * scene.size * n, {}, {}}, {surface, still}, {}, {.tolerance = 1e-4});
         return Told{impact->result == CastResult::hit ? 1 : 0};
     });
 }
-BENCHMARK_CAPTURE(crofton_drop, a, false)->Name("cast of a box, bunny/crofton");
-BENCHMARK_CAPTURE(crofton_drop, b, true)->Name("cast of a box, heights 1025^2/crofton");
+BENCHMARK_CAPTURE(crofton_drop, a, false, Flying::box)->Name("cast of a box, bunny/crofton");
+BENCHMARK_CAPTURE(crofton_drop, c, false, Flying::capsule)->Name("cast of a capsule, bunny/crofton");
+BENCHMARK_CAPTURE(crofton_drop, e, false, Flying::ball)->Name("cast of a ball, bunny/crofton");
+BENCHMARK_CAPTURE(crofton_drop, b, true, Flying::box)->Name("cast of a box, heights 1025^2/crofton");
+BENCHMARK_CAPTURE(crofton_drop, d, true, Flying::capsule)->Name("cast of a capsule, heights 1025^2/crofton");
+BENCHMARK_CAPTURE(crofton_drop, f, true, Flying::ball)->Name("cast of a ball, heights 1025^2/crofton");
 
 #if defined(CROFTON_HAVE_BULLET)
 struct BulletSurface {

@@ -5,6 +5,7 @@
 
 #include "closing.hpp"
 #include "part_cast.hpp"
+#include "triangle_touch.hpp"
 
 namespace crofton::convex {
 namespace {
@@ -20,6 +21,36 @@ struct Contact {
 };
 Contact contact_of(const Distance& d) {
     return {d.distance, d.lower, d.normal, d.on_a, d.on_b};
+}
+
+// Of a triangle and a sphere, a capsule or a box in closed form. False where that leaves a doubt.
+bool triangle_contact(const BodyAtPose& triangle, const BodyAtPose& other, Contact& contact) {
+    const Kind kind = other.body.kind();
+    if (triangle.body.kind() != Kind::triangle || triangle.body.radius() > 0.0) return false;
+    if (kind != Kind::sphere && kind != Kind::capsule && kind != Kind::box) return false;
+    const glm::dvec3& origin = triangle.pose.translation;
+    const double reach = triangle.body.core_radius();
+    const Triangle corners{triangle.body.vertex(0), triangle.body.vertex(1), triangle.body.vertex(2)};
+    Touch touch;
+    const Warm warm =
+        kind == Kind::box
+            ? BoxTouch(other, origin, reach, HUGE_VAL).ask(placed_corners(corners, triangle.pose, origin), touch)
+            : SegmentTouch(other, origin, reach, HUGE_VAL).ask(placed_triangle(corners, triangle.pose, origin), touch);
+    if (warm != Warm::touching) return false;
+    const Pair pair(triangle, other);
+    contact.distance = -touch.depth;
+    contact.lower = std::max(0.0, -pair.extent(touch.normal) - pair.error - pair.rounding());
+    contact.normal = touch.normal;
+    contact.on_a = origin + touch.on_a;
+    contact.on_b = contact.on_a - touch.depth * touch.normal;
+    return true;
+}
+bool contact_in_closed_form(const BodyAtPose& a, const BodyAtPose& b, Contact& contact) {
+    if (triangle_contact(a, b, contact)) return true;
+    if (!triangle_contact(b, a, contact)) return false;
+    contact.normal = -contact.normal;
+    std::swap(contact.on_a, contact.on_b);
+    return true;
 }
 
 // How close the bounds of a distance are that is only stepped by, where the search for it takes long.
@@ -76,6 +107,8 @@ Impact Advancement::miss(int steps) const {
 // more is known.
 Contact Advancement::nearest(double near, bool& reached) {
     const BodyAtPose a = flight_.a(), b = flight_.b();
+    Contact closed;
+    if (contact_in_closed_form(a, b, closed)) return closed;
     if (is_half_space(a) || is_half_space(b)) {
         const Distance d = distance(a, b);
         reached = d.distance <= near;
@@ -107,6 +140,8 @@ void align(const BodyAtPose& a, const BodyAtPose& b, Contact& contact) {
 // As `distance` and `penetration` tell.
 Contact Advancement::contact() {
     const BodyAtPose a = flight_.a(), b = flight_.b();
+    Contact closed;
+    if (contact_in_closed_form(a, b, closed)) return closed;
     const Distance d = distance(a, b, &cache_);
     if (d.distance > 0.0) {
         Contact apart = contact_of(d);

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <glm/matrix.hpp>
 
+#include "body_maker.hpp"
 #include "part_cast.hpp"
 #include "part_manifold.hpp"
+#include "triangle_touch.hpp"
 #include "union_normals.hpp"
 
 namespace crofton::convex {
@@ -28,16 +30,54 @@ bool visit_pairs(const BodyAtPose& a, const BodyAtPose& b, double margin, PairVi
     return visit_parts_near(a, b, margin, with_a);
 }
 
+// Tests whether two bodies are nearer to each other than `limit`: by `margin`, or along another direction than `normal`.
+bool is_nearer_than(const BodyAtPose& a, const BodyAtPose& b, const glm::dvec3& normal, double limit, double margin) {
+    const Distance d = near_distance(a, b, limit);
+    const bool other_way = glm::dot(d.normal, normal) < kSameDirection;
+    return d.distance < (other_way ? limit : limit - margin);
+}
+
+// The same of all parts of a but one, and a convex b. Most lie behind the plane across `normal` that touches b's nearest
+// points.
+bool is_part_nearer(const BodyAtPose& a, const BodyAtPose& b, const glm::dvec3& normal, const PartId& but, double limit,
+                    double margin) {
+    const auto is_nearer = [&](const Part& part) {
+        return part.id != but && is_nearer_than({part.body, part.pose}, b, normal, limit, margin);
+    };
+    const bool is_segment = b.body.kind() == Kind::sphere || b.body.kind() == Kind::capsule;
+    const double depth = core_support(b.body, Pair::local(b.pose.rotation, -normal)).along + b.body.radius();
+    return visit_parts_near(
+        a, b, limit, is_nearer, [&](const PartSearch& of, const Triangle& corners, std::uint32_t t) {
+            const glm::dvec3 local = Pair::local(of.pose.rotation, normal),
+                             offset = b.pose.translation - of.pose.translation;
+            const double top = std::max(glm::dot(local, corners[0]),
+                                        std::max(glm::dot(local, corners[1]), glm::dot(local, corners[2])));
+            const double error = 0x1p-47 * (of.reach + b.body.core_radius() + b.body.radius() + glm::length(offset));
+            if (glm::dot(normal, offset) - depth - top - error >= limit) return false;
+            if (is_segment) {
+                const glm::dvec3& origin = of.pose.translation;
+                const SegmentTouch segment(b, origin, of.reach, std::max(limit, 0.0));
+                Touch touch;
+                const Warm warm = segment.ask(placed_triangle(corners, of.pose, origin), touch);
+                if (warm == Warm::apart) return false;
+            }
+            return is_nearer({BodyMaker::triangle(corners), of.pose, {of.child, t}, of.sides});
+        });
+}
+
 }  // namespace
 
 bool is_nearer_elsewhere(const Mover& a, const Mover& b, const Impact& hit, double margin) {
     Flight flight(a.body, a.motion, b.body, b.motion);
     flight.move_to(hit.time);
+    const bool bounded = !is_unbounded(a.body) && !is_unbounded(b.body);
+    if (bounded && b.body.body.is_convex())
+        return is_part_nearer(flight.a(), flight.b(), hit.normal, hit.part_a, hit.distance, margin);
+    if (bounded && a.body.body.is_convex())
+        return is_part_nearer(flight.b(), flight.a(), -hit.normal, hit.part_b, hit.distance, margin);
     return visit_pairs(flight.a(), flight.b(), hit.distance, [&](const Part& part_a, const Part& part_b) {
         if (part_a.id == hit.part_a && part_b.id == hit.part_b) return false;
-        const Distance d = near_distance({part_a.body, part_a.pose}, {part_b.body, part_b.pose}, hit.distance);
-        const bool other_way = glm::dot(d.normal, hit.normal) < kSameDirection;
-        return d.distance < (other_way ? hit.distance : hit.distance - margin);
+        return is_nearer_than({part_a.body, part_a.pose}, {part_b.body, part_b.pose}, hit.normal, hit.distance, margin);
     });
 }
 
@@ -122,13 +162,13 @@ std::optional<Impact> ContactsAt::touch(const Part& a, const Part& b) const {
 void ContactsAt::add(const Contact& contact) {
     slides_ |= contact.slides;
     for (std::size_t i = 0; i < count_; ++i) {
-        Contact& other = *contacts_[i];
+        Contact& other = at(i);
         if (other.slides != contact.slides || other.own != contact.own) continue;
         if (glm::distance(other.impact.normal, contact.impact.normal) > kSameNormal) continue;
         if (contact.impact.distance < other.impact.distance) other = contact;
         return;
     }
-    if (count_ < kMost) contacts_[count_++] = contact;
+    if (count_ < kMost) std::construct_at(&at(count_++), contact);
 }
 
 void ContactsAt::count_behind() {
@@ -137,7 +177,7 @@ void ContactsAt::count_behind() {
                         const BodyAtPose placed_a{a.body, a.pose}, placed_b{b.body, b.pose};
                         if (is_half_space(placed_a) || is_half_space(placed_b) || !touch(a, b)) return;
                         for (std::size_t i = 0; i < count_; ++i)
-                            contacts_[i]->behind += is_behind(placed_a, placed_b, *contacts_[i], 0.0);
+                            at(i).behind += is_behind(placed_a, placed_b, at(i), 0.0);
                     });
 }
 
@@ -156,7 +196,7 @@ bool ContactsAt::passes(const BodyAtPose& first, const Motion& motion_first, con
     const BodyAtPose &a = flipped ? second : first, &b = flipped ? first : second;
     const Motion &motion_a = flipped ? motion_second : motion_first, &motion_b = flipped ? motion_first : motion_second;
     for (std::size_t i = 0; i < count_; ++i) {
-        const Contact& contact = *contacts_[i];
+        const Contact& contact = at(i);
         if (!contact.slides || !is_behind(a, b, contact, 0.0)) continue;
         const Flight flight(a, motion_a, b, motion_b);
         if (is_behind(a, b, contact, flight.closing(contact.impact.normal)(options_.duration))) return true;
@@ -174,14 +214,14 @@ std::optional<Impact> ContactsAt::deepest(const Impact& hit, double least_cosine
     std::optional<Impact> best;
     bool others_tell = false;
     for (std::size_t i = 0; i < count_; ++i) {
-        const Contact& contact = *contacts_[i];
+        const Contact& contact = at(i);
         if (!contact.own || contact.slides) continue;
         if (glm::dot(contact.impact.normal, hit.normal) < least_cosine) continue;
         bool is_told = false;
         for (std::size_t k = 0; k < count_; ++k) {
-            if (!is_told_by(contact, *contacts_[k])) continue;
+            if (!is_told_by(contact, at(k))) continue;
             is_told = true;
-            others_tell |= !contacts_[k]->own;
+            others_tell |= !at(k).own;
         }
         if (!is_told && !(best && contact.impact.distance >= best->distance)) best = contact.impact;
     }

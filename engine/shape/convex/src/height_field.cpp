@@ -6,7 +6,7 @@
 #include <limits>
 #include <string>
 
-#include "parts.hpp"
+#include "passage.hpp"
 #include "ray.hpp"
 
 namespace crofton::convex {
@@ -212,17 +212,19 @@ bool search_field(const HeightField& field, const Aabb& box, const PartSearch& s
     return FieldSearch(field, box, search).run();
 }
 
-// The descent along a ray, the blocks it comes to first first.
-class FieldRay {
+// The descent along a way, the blocks that are come to first first.
+class FieldDescent {
   public:
-    FieldRay(const HeightField& field, Sides sides, const NearRay& ray)
-        : field_(field), sides_(sides), ray_(ray), rest_(ray) {}
+    // `passes`: whether the way passes a box in the field's frame, and from where on; `limit`: where it ends, for
+    // `meet` to lessen, which is called for cells.
+    FieldDescent(const HeightField& field, FunctionRef<bool(const Aabb& box, double& from)> passes, const double& limit,
+                 FunctionRef<void(std::uint32_t cell)> meet)
+        : field_(field), passes_box_(passes), limit_(limit), meet_(meet) {}
 
-    std::optional<NearHit> run() {
+    void run() const {
         const auto top = static_cast<std::uint32_t>(field_.levels_.size()) - 1;
         double from = 0.0;
         if (passes(top, 0, 0, from)) descend(top, 0, 0);
-        return best_;
     }
 
   private:
@@ -232,7 +234,8 @@ class FieldRay {
     };
 
     // The box of `width` cells from a corner on.
-    bool passes_cells(std::uint32_t i, std::uint32_t j, std::uint32_t width, float low, float high, double& from) {
+    bool passes_cells(std::uint32_t i, std::uint32_t j, std::uint32_t width, float low, float high,
+                      double& from) const {
         const auto end = [&](std::uint32_t k, std::uint32_t count) {
             return static_cast<double>(std::min(k + width, count - 1));
         };
@@ -240,9 +243,9 @@ class FieldRay {
         const Aabb box{
             {static_cast<double>(i) * spacing.x, static_cast<double>(low), static_cast<double>(j) * spacing.y},
             {end(i, field_.columns_) * spacing.x, static_cast<double>(high), end(j, field_.rows_) * spacing.y}};
-        return passes_box(rest_, box, ray_.error, from);
+        return passes_box_(box, from);
     }
-    bool passes(std::uint32_t level, std::uint32_t i, std::uint32_t j, double& from) {
+    bool passes(std::uint32_t level, std::uint32_t i, std::uint32_t j, double& from) const {
         const HeightField::Level& at = field_.levels_[level];
         const HeightField::Span& span = field_.spans_[at.first + std::size_t{j} * at.columns + i];
         if (span.low > span.high) return false;  // holes
@@ -250,7 +253,7 @@ class FieldRay {
         return passes_cells(i << shift, j << shift, 1u << shift, span.low, span.high, from);
     }
 
-    void descend(std::uint32_t level, std::uint32_t column, std::uint32_t row) {
+    void descend(std::uint32_t level, std::uint32_t column, std::uint32_t row) const {
         const bool to_cells = level == 0;
         const std::uint32_t columns = to_cells ? field_.columns_ - 1 : field_.levels_[level - 1].columns,
                             rows = to_cells ? field_.rows_ - 1 : field_.levels_[level - 1].rows;
@@ -265,40 +268,53 @@ class FieldRay {
                 child[place] = {i, j, from};
             }
         for (int k = 0; k < count; ++k) {
-            if (child[k].from > rest_.max_t) return;
+            if (child[k].from > limit_) return;
             if (to_cells)
-                meet_cell(child[k].column, child[k].row);
+                meet_(child[k].row * (field_.columns_ - 1) + child[k].column);
             else
                 descend(level - 1, child[k].column, child[k].row);
         }
     }
-    bool passes_cell(std::uint32_t i, std::uint32_t j, double& from) {
+    bool passes_cell(std::uint32_t i, std::uint32_t j, double& from) const {
         if (field_.material(j * (field_.columns_ - 1) + i) == kHole) return false;
         const float* const h = field_.heights_.data() + std::size_t{j} * field_.columns_ + i;
         const auto [low, high] = std::minmax({h[0], h[1], h[field_.columns_], h[field_.columns_ + 1]});
         return passes_cells(i, j, 1, low, high, from);
     }
-    void meet_cell(std::uint32_t i, std::uint32_t j) {
-        const std::uint32_t cell = j * (field_.columns_ - 1) + i;
-        for (std::uint32_t triangle = 2 * cell; triangle < 2 * cell + 2; ++triangle) {
-            auto hit = meet_triangle(field_.triangle(triangle), sides_, ray_);
-            if (!hit) continue;
-            hit->triangle = triangle;
-            if (best_ && (hit->t > best_->t || (hit->t == best_->t && triangle > best_->triangle))) continue;
-            best_ = hit;
-            rest_.max_t = hit->t;
-        }
-    }
 
     const HeightField& field_;
-    const Sides sides_;
-    const NearRay& ray_;
-    NearRay rest_;  // up to the best
-    std::optional<NearHit> best_;
+    FunctionRef<bool(const Aabb& box, double& from)> passes_box_;
+    const double& limit_;
+    FunctionRef<void(std::uint32_t cell)> meet_;
 };
 
 std::optional<NearHit> meet_field(const HeightField& field, Sides sides, const NearRay& ray) {
-    return FieldRay(field, sides, ray).run();
+    NearRay rest = ray;  // up to the best
+    std::optional<NearHit> best;
+    const auto passes = [&](const Aabb& box, double& from) { return passes_box(rest, box, ray.error, from); };
+    FieldDescent(field, passes, rest.max_t, [&](std::uint32_t cell) {
+        for (std::uint32_t triangle = 2 * cell; triangle < 2 * cell + 2; ++triangle) {
+            auto hit = meet_triangle(field.triangle(triangle), sides, ray);
+            if (!hit) continue;
+            hit->triangle = triangle;
+            if (best && (hit->t > best->t || (hit->t == best->t && triangle > best->triangle))) continue;
+            best = hit;
+            rest.max_t = hit->t;
+        }
+    }).run();
+    return best;
+}
+
+void Passage::visit_field(const HeightField& field, const double& until, TriangleInPath visit) const {
+    if (!(from_ <= to_)) return;
+    const auto passes = [&](const Aabb& box, double& from) {
+        from = entry(box, until);
+        return from <= until;
+    };
+    FieldDescent(field, passes, until, [&](std::uint32_t cell) {
+        for (std::uint32_t triangle = 2 * cell; triangle < 2 * cell + 2; ++triangle)
+            visit(field.triangle(triangle), triangle);
+    }).run();
 }
 
 }  // namespace crofton::convex

@@ -6,8 +6,10 @@
 #include <crofton/geometry/orthonormal_frame.hpp>
 #include <glm/matrix.hpp>
 
+#include "body_maker.hpp"
 #include "contacts_at.hpp"
 #include "core_query.hpp"
+#include "passage.hpp"
 
 namespace crofton::convex {
 namespace {
@@ -34,7 +36,48 @@ class PartCaster {
         apart_ = (arm_of(b.pose, motion_b) - arm_of(a.pose, motion_a)) + (b.pose.translation - a.pose.translation);
     }
 
-    void search(double from, double to, int halvings) {
+    void search(double from, double to) {
+        if (passes_straight() && to > from && is_surface(a_.body))
+            search_surface(from, to);
+        else
+            search_box(from, to, 0);
+    }
+
+    [[nodiscard]] const Impact& best() const { return best_; }
+
+  private:
+    [[nodiscard]] static bool is_surface(const Body& body) {
+        return body.kind() == Kind::mesh || body.kind() == Kind::height_field;
+    }
+    // Whether a convex b flies along a line, seen from a.
+    [[nodiscard]] bool passes_straight() const {
+        const glm::dvec3 velocity = motion_b_.velocity - motion_a_.velocity;
+        const double squared = glm::dot(velocity, velocity);
+        return !b_turns_ && motion_a_.spin == glm::dvec3(0.0) && squared > 1e-200 && squared < 1e200 &&
+               b_.body.is_convex() && !is_unbounded(b_);
+    }
+    [[nodiscard]] Passage passage_by(const BodyAtPose& surface, double from, double to) const {
+        const double rounding = 1e-13 * (around_ + surface.body.core_radius());
+        return {b_,   surface.pose, surface.body.bounds(),        motion_b_.velocity - motion_a_.velocity,
+                from, to,           options_.tolerance + rounding};
+    }
+
+    void search_surface(double from, double to) {
+        const Passage passage = passage_by(a_, from, std::min(to, best_.time));
+        const auto visit = [&](const Triangle& corners, std::uint32_t triangle) {
+            const Passage::Entry entry = passage.entry(corners, best_.time);
+            if (entry.time > best_.time) return;
+            cast_part({BodyMaker::triangle(corners), a_.pose, {0, triangle}, a_.body.sides()}, from,
+                      entry.is_apart ? std::max(entry.time, from) : from);
+        };
+        if (a_.body.kind() == Kind::mesh)
+            passage.visit_mesh(*a_.body.mesh(), best_.time, visit);
+        else
+            passage.visit_field(*a_.body.height_field(), best_.time, visit);
+    }
+
+    // Seeks between two times among the parts near the box that b sweeps.
+    void search_box(double from, double to, int halvings) {
         to = std::min(to, best_.time);
         if (from > best_.time || (from == best_.time && best_.result != CastResult::miss)) return;
         const RigidTransform pose = moved(a_.pose, motion_a_, from);
@@ -44,12 +87,12 @@ class PartCaster {
             visit(box, [&](const Part&) { return ++count > kManyParts; });
         if (count > kManyParts && way(from, to) > 0.5 * around_) {
             const double middle = 0.5 * (from + to);
-            search(from, middle, halvings + 1);
-            return search(middle, to, halvings + 1);
+            search_box(from, middle, halvings + 1);
+            return search_box(middle, to, halvings + 1);
         }
         const auto cast_all = [&](const QueryBox& within, bool stops) {
             visit(within, [&](const Part& part) {
-                cast_part(part, from);
+                cast_part(part, from, from);
                 return stops && hits_at(from);
             });
         };
@@ -58,9 +101,6 @@ class PartCaster {
         if (hits_at(from)) cast_all(swept_box(pose, from, from), false);
     }
 
-    [[nodiscard]] const Impact& best() const { return best_; }
-
-  private:
     [[nodiscard]] bool hits_at(double time) const { return best_.time <= time && best_.result != CastResult::miss; }
 
     // How far b's pivot may come from where it is half way between two times, seen from a: its own way, and what a
@@ -128,28 +168,33 @@ class PartCaster {
         visit_parts(a_, box, options_.tolerance + 1e-9 * (around_ + reach), visitor);
     }
 
-    void cast_part(const Part& part, double from) {
-        const RigidTransform& start = part.pose;
-        const Motion motion = a_.body.kind() == Kind::compound ? motion_of_part(a_, motion_a_, start) : motion_a_;
+    // `start`: from `from` up to there the part is surely not met. The first hit counts, whatever order the parts come
+    // in; of hits at `from` the deepest, and of hits alike that of the least part.
+    void cast_part(const Part& part, double from, double start) {
+        const Motion motion = a_.body.kind() == Kind::compound ? motion_of_part(a_, motion_a_, part.pose) : motion_a_;
         CastOptions options = options_;
-        // A part that is met at the same time is of use only if it is deeper, at the start.
-        const bool later = best_.result != CastResult::miss && best_.time > from;
-        options.early_out = later ? std::nextafter(best_.time, 0.0) : best_.time;
-        const BodyAtPose placed{part.body, start};
+        options.early_out = best_.time;
+        if (start > from) options.ignore_initial_overlaps = false;  // there are none
+        const BodyAtPose placed{part.body, part.pose};
         if (comes_later(placed)) return;
         const bool convex = b_.body.is_convex();
         if (convex && slide_ != nullptr && slide_->passes(placed, motion, b_, motion_b_, flipped_)) return;
-        Impact impact = convex ? advance(placed, motion, b_, motion_b_, options, from, nullptr)
-                               : reversed(cast_parts(b_, motion_b_, placed, motion, options, from, slide_, !flipped_));
-        if (impact.result == CastResult::miss || impact.time > best_.time) return;
-        if (impact.time == best_.time && best_.result != CastResult::miss && impact.distance >= best_.distance) return;
+        Impact impact = convex ? advance(placed, motion, b_, motion_b_, options, start, nullptr)
+                               : reversed(cast_parts(b_, motion_b_, placed, motion, options, start, slide_, !flipped_));
+        if (impact.result == CastResult::miss || !comes_first(impact, part.id, from)) return;
         if (part.sides == Sides::front) {
-            const RigidTransform then = moved(start, motion, impact.time),
+            const RigidTransform then = moved(part.pose, motion, impact.time),
                                  b_then = moved(b_.pose, motion_b_, impact.time);
             if (comes_from_behind({part.body, then}, {b_.body, b_then}, impact)) return;
         }
         best_ = impact;
         best_.part_a = part.id;
+    }
+
+    [[nodiscard]] bool comes_first(const Impact& impact, const PartId& part, double from) const {
+        if (best_.result == CastResult::miss || impact.time != best_.time) return impact.time <= best_.time;
+        if (impact.time == from && impact.distance != best_.distance) return impact.distance < best_.distance;
+        return part < best_.part_a;
     }
 
     // Whether neither turns, and along their way they are too far apart to touch by the time of the best.
@@ -187,7 +232,7 @@ class PartCaster {
 Impact cast_parts(const BodyAtPose& a, const Motion& motion_a, const BodyAtPose& b, const Motion& motion_b,
                   const CastOptions& options, double start, const ContactsAt* slide, bool flipped) {
     PartCaster caster(a, motion_a, b, motion_b, options, slide, flipped);
-    caster.search(start, options.duration, 0);
+    caster.search(start, options.duration);
     return caster.best();
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <crofton/mesh/mesh_parts.hpp>
 #include <crofton/mesh/near_triangles.hpp>
+#include <crofton/mesh/swept_triangles.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
 
@@ -14,7 +15,9 @@ namespace {
 
 constexpr double kWider = 1.0001;  // of a distance: frames are rigid to 1e-6 alone
 
-// A float box that holds the box, but for `error_bound`.
+constexpr double kSkewed = 1.00001;  // of a radius
+
+// A float box that holds the box and its radius, but for `error_bound`.
 struct FloatBox {
     mesh::MeshBox box{};
     float error_bound = 0.0f;
@@ -24,12 +27,23 @@ FloatBox to_floats(const QueryBox& box) {
     double size = 0.0;
     for (int k = 0; k < 3; ++k) {
         result.box.center[k] = static_cast<float>(box.center[k]);
-        result.box.half[k] = static_cast<float>(box.half[k]);
+        result.box.half[k] = static_cast<float>(box.half[k] + box.radius);
         for (int i = 0; i < 3; ++i) result.box.axes[k][i] = static_cast<float>(box.axes[k][i]);
-        size += std::abs(box.center[k]) + 50.0 * box.half[k];  // axes are orthonormal to 4e-6 alone
+        size += std::abs(box.center[k]) + 50.0 * (box.half[k] + box.radius);  // axes are orthonormal to 4e-6 alone
     }
     result.error_bound = static_cast<float>(0x1p-22 * size + kWider * box.rounding) + std::numeric_limits<float>::min();
     return result;
+}
+
+// The same without its radius, for a search with a margin.
+mesh::RoundedBox rounded(const QueryBox& box, float extent, double margin) {
+    QueryBox core = box;
+    core.radius = 0.0;
+    const FloatBox q = to_floats(core);
+    double size = static_cast<double>(extent);
+    for (int k = 0; k < 3; ++k) size += std::abs(box.center[k]) + box.half[k];
+    return {q.box, static_cast<float>(box.radius * kSkewed),
+            q.error_bound + static_cast<float>(margin + 0x1p-18 * size)};
 }
 
 // What a sum of these may be off by, turned or not.
@@ -45,7 +59,8 @@ QueryBox box_around(const BodyAtPose& placed, const RigidTransform& pose) {
     const glm::dmat3 back = glm::inverse(pose.rotation);
     QueryBox box;
     box.axes = back * placed.pose.rotation;
-    box.half = bounds.half_extents();
+    box.radius = placed.body.radius();
+    box.half = (glm::max)(bounds.half_extents() - box.radius, glm::dvec3(0.0));
     const glm::dvec3 offset = placed.pose.translation - pose.translation;
     box.center = back * (placed.pose.rotation * bounds.center() + offset);
     box.rounding = rounding_of(bounds.center(), offset);
@@ -54,14 +69,14 @@ QueryBox box_around(const BodyAtPose& placed, const RigidTransform& pose) {
 
 QueryBox seen_from(const QueryBox& box, const RigidTransform& pose) {
     const glm::dmat3 back = glm::inverse(pose.rotation);
-    return {back * (box.center - pose.translation), box.half, back * box.axes,
+    return {back * (box.center - pose.translation), box.half, box.radius, back * box.axes,
             box.rounding * kWider + rounding_of(box.center, pose.translation)};
 }
 
 Aabb bounds_of(const QueryBox& box) {
     glm::dvec3 half_size(0.0);
     for (int k = 0; k < 3; ++k) half_size += box.half[k] * glm::abs(box.axes[k]);
-    half_size = half_size * (1.0 + 1e-12) + 1e-12 * glm::abs(box.center) + kWider * box.rounding;
+    half_size = half_size * (1.0 + 1e-12) + 1e-12 * glm::abs(box.center) + kWider * box.rounding + kSkewed * box.radius;
     return {box.center - half_size, box.center + half_size};
 }
 
@@ -95,6 +110,10 @@ bool search_mesh(const mesh::MeshTree& mesh, const QueryBox& box, const PartSear
         return ended;
     }
     const double margin = (std::min)(search.limit * kWider, 1e18);
+    if (box.radius > 0.0 && margin < 1e18) {
+        mesh::visit_triangles_near(parts.nodes.data(), parts.leaves.data(), rounded(box, mesh.extent(), margin), offer);
+        return ended;
+    }
     mesh::visit_triangles_near(parts.nodes.data(), parts.leaves.data(), q.box,
                                q.error_bound + static_cast<float>(margin), offer);
     return ended;

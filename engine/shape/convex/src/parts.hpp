@@ -12,9 +12,11 @@ struct PartSearch;
 // Triangles of surfaces that need not be bodies; with the search that came upon them. True ends the search.
 using TriangleVisitor = FunctionRef<bool(const PartSearch& of, const Triangle& corners, std::uint32_t triangle)>;
 
-// A box in some frame: center ± half[k] · axes[k], where the axes are those of a pose seen from another.
+// A box in some frame: center ± half[k] · axes[k], where the axes are those of a pose seen from another, grown by a
+// radius.
 struct QueryBox {
     glm::dvec3 center{0.0}, half{0.0};
+    double radius = 0.0;
     glm::dmat3 axes{1.0};
     double rounding = 0.0;  // how far the center may be off
 };

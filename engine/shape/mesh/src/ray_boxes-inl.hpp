@@ -7,6 +7,7 @@
 #define CROFTON_MESH_RAY_BOXES
 #endif
 
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include "ray_leaf-inl.hpp"
@@ -63,6 +64,16 @@ class AlignedBoxes {
     std::size_t near_[3], far_[3];  // rows of BoxNode::bounds
 };
 
+// Asks the memory for all that a ray needs of a child, while its siblings are looked at: rays wait for memory most.
+template <class Node>
+HWY_INLINE void prefetch_child(const RayQuery& q, const Node* nodes, std::uint32_t child) {
+    const bool leaf = (child & mesh::kMeshLeaf) != 0;
+    const char* const at = leaf ? reinterpret_cast<const char*>(q.leaves + (child & ~mesh::kMeshLeaf))
+                                : reinterpret_cast<const char*>(nodes + child);
+    const std::size_t bytes = leaf ? sizeof(MeshLeaf::vertex) : sizeof(Node);
+    for (std::size_t byte = 0; byte < bytes; byte += 64) hwy::Prefetch(at + byte);
+}
+
 // A child, and where the ray comes to it.
 struct Step {
     std::uint32_t child;
@@ -71,15 +82,17 @@ struct Step {
 
 // The nearest of the children that are met; the others go to the stack, the nearest of them on top. Most nodes have one
 // or two: these take no loop, whose number of rounds could not be predicted.
-template <class Node>
-HWY_INLINE std::uint32_t descend(const Node& node, std::uint32_t lanes, const float* entry, Step*& top) {
+template <class Boxes>
+HWY_INLINE Step descend(const RayQuery& q, const Boxes& boxes, const typename Boxes::Node& node, std::uint32_t lanes,
+                        const float* entry, Step*& top) {
     const auto next = [&]() HWY_ATTR {
         const auto lane = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(lanes));
         lanes &= lanes - 1;
+        prefetch_child(q, &boxes.node(0), node.child[lane]);
         return Step{node.child[lane], entry[lane]};
     };
     const Step one = next();
-    if (lanes == 0) return one.child;
+    if (lanes == 0) return one;
     const Step two = next();
     const bool ordered = one.entry <= two.entry;
     Step nearest = ordered ? one : two;
@@ -92,7 +105,7 @@ HWY_INLINE std::uint32_t descend(const Node& node, std::uint32_t lanes, const fl
         for (; place > base && place[-1].entry < step.entry; --place) *place = place[-1];
         *place = step;
     }
-    return nearest.child;
+    return nearest;
 }
 
 // The nearest hit below `child`, if it comes before `answer`; else that.
@@ -100,18 +113,19 @@ template <class Boxes>
 HWY_INLINE RayAnswer trace_below(const RayQuery& q, std::uint32_t child, RayAnswer answer, ExactTest meets) {
     Step stack[8 * 64];  // BoxHierarchy::kWidth · kMaxDepth; a mesh tree's own needs 15 · 7
     Step* top = stack;
+    Step step{child, 0.0f};
     const Boxes boxes(q);
     float limit = limit_of(q, answer.t);
     for (;;) {
-        if (!(child & mesh::kMeshLeaf)) {
+        if (!(step.child & mesh::kMeshLeaf)) {
             HWY_ALIGN float entry[Boxes::kWidth];
-            const auto& node = boxes.node(child);
+            const auto& node = boxes.node(step.child);
             const std::uint32_t lanes = boxes.entries(node, limit, entry);
             if (lanes != 0) {
-                child = descend(node, lanes, entry, top);
+                step = descend(q, boxes, node, lanes, entry, top);
                 continue;
             }
-        } else if (trace_leaf(q, child & ~mesh::kMeshLeaf, limit, meets, answer)) {
+        } else if (trace_leaf(q, step.child & ~mesh::kMeshLeaf, step.entry, limit, meets, answer)) {
             if (q.any) return answer;
             limit = limit_of(q, answer.t);
         }
@@ -119,7 +133,7 @@ HWY_INLINE RayAnswer trace_below(const RayQuery& q, std::uint32_t child, RayAnsw
             if (top == stack) return answer;
             --top;
         } while (top->entry > limit);
-        child = top->child;
+        step = *top;
     }
 }
 

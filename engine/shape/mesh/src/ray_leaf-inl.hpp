@@ -24,15 +24,14 @@ HWY_INLINE float limit_of(const RayQuery& q, double t) {
 
 // Triangles that the ray may meet before `limit`, in float. In the plane coordinates the ray is the origin, and it
 // passes outside of a triangle if two of the edges have it on different sides (Woop, Benthin, Wald 2013). Positions are
-// taken from a point of the ray beside the leaf. Let e be the query's error bound: all roundings up to there, and of
-// the shear, are within 2 e. With m the largest plane coordinate, an edge's value is off by at most 8 m e + 8 e² +
-// 2^-21 m². No triangle is hit before its nearest vertex along the ray, whose parameter is off by less than e: 1 /
+// taken from the ray's point at `along`, beside the leaf. Let e be the query's error bound: all roundings up to there,
+// and of the shear, are within 2 e. With m the largest plane coordinate, an edge's value is off by at most 8 m e + 8 e²
+// + 2^-21 m². No triangle is hit before its nearest vertex along the ray, whose parameter is off by less than e: 1 /
 // direction_f[z] is at most 1.
-HWY_INLINE std::uint32_t candidates(const mesh::MeshLeaf& leaf, const RayQuery& q, float limit) {
+HWY_INLINE std::uint32_t candidates(const mesh::MeshLeaf& leaf, const RayQuery& q, float along, float limit) {
     const hn::CappedTag<float, mesh::kMeshLeafWidth> d;
     using VF = hn::Vec<decltype(d)>;
     const std::uint32_t x = q.axis[0], y = q.axis[1], z = q.axis[2];
-    const float along = (leaf.vertex[0][z][0] - q.start[z]) * q.inverse[z];
     float beside[3];
     for (int i = 0; i < 3; ++i) beside[i] = q.start[i] + along * q.direction_f[i];
     std::uint32_t lanes = 0;
@@ -157,10 +156,11 @@ HWY_INLINE std::uint32_t triangle_hits(const mesh::MeshLeaf& leaf, const RayQuer
     return hits;
 }
 
-// True if it has changed the answer.
-HWY_INLINE bool trace_leaf(const RayQuery& q, std::uint32_t index, float limit, ExactTest meets, RayAnswer& answer) {
+// True if it has changed the answer. `along`: where the ray comes to the leaf's box.
+HWY_INLINE bool trace_leaf(const RayQuery& q, std::uint32_t index, float along, float limit, ExactTest meets,
+                           RayAnswer& answer) {
     const mesh::MeshLeaf& leaf = q.leaves[index];
-    const std::uint32_t wanted = candidates(leaf, q, limit);
+    const std::uint32_t wanted = candidates(leaf, q, along, limit);
     if (wanted == 0) return false;
     HWY_ALIGN double t[mesh::kMeshLeafWidth];
     std::uint32_t open = 0;

@@ -180,7 +180,10 @@ class Packet {
             const auto r = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(rays));
             const RayQuery& q = queries_[r];
             const auto exact = [&](std::uint32_t l, std::uint32_t lane) { return meets_(r, l, lane); };
-            if (trace_leaf(q, step.child & ~kMeshLeaf, limit_of(q, answers_[r].t), exact, answers_[r])) set_limit(r);
+            const std::uint32_t index = step.child & ~kMeshLeaf, z = q.axis[2];
+            // The entry is the least of all rays: a vertex tells where this one is beside the leaf.
+            const float along = (q.leaves[index].vertex[0][z][0] - q.start[z]) * q.inverse[z];
+            if (trace_leaf(q, index, along, limit_of(q, answers_[r].t), exact, answers_[r])) set_limit(r);
         }
     }
 

@@ -268,7 +268,7 @@ class HeightField {
 
   private:
     friend class FieldSearch;
-    friend class FieldRay;
+    friend class FieldDescent;
     struct Span {
         float low, high;  // of heights; low > high where all cells are holes
     };
