@@ -143,9 +143,9 @@ TEST_SUITE("convex/surface_contact") {
                 if (lattice) at_x = glm::round(at_x * 4.0) / 4.0;
                 at_x.y = below(body, turn) - depth;
                 const RigidTransform pose = placed_in(frame, {turn, at_x});
-                // The least way out at the very end of a ridge's edge may turn along the edge where a cone's tip is on
-                // it.
-                if (slope < 0.0 && body.kind() == Kind::cone) continue;
+                // A known fault: where a cone stands on a corner of the mesh on a ridge, the least way out of a
+                // triangle may turn along the ridge, in 1 of 10,000 places.
+                if (slope < 0.0 && body.kind() == Kind::cone && lattice) continue;
                 const bool body_first = random.index(2) == 0;
                 if (body_first)
                     contact_manifolds({body, pose}, {floor, place}, {}, found);
