@@ -89,3 +89,14 @@ def test_no_indices_are_no_triangles(world, cube, indices):
     with pytest.raises(crofton.Error) as raised:
         world.add_mesh(cube[0][:6], indices)
     assert raised.value.code == "empty"
+
+
+def test_errors_name_what_python_has(world, cube):
+    positions, indices = cube
+    mesh = world.add_mesh(positions, indices)
+    with pytest.raises(crofton.Error) as error:
+        world.set_vertices(mesh, [(0, 0, 0)])
+    assert "add another mesh" in str(error.value) and "replace_mesh" not in str(error.value)
+    with pytest.raises(crofton.Error) as error:
+        crofton.IntrinsicVolumes.of_hull([(float("nan"), 0, 0)])
+    assert str(error.value).startswith("hull: point 0")

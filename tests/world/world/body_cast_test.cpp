@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // World::cast: the point, the normal and the distance of what is met first, and casts that begin in contact.
 #include <doctest/doctest.h>
+#include <cmath>
 #include <crofton/convex/query.hpp>
 #include <crofton/crofton.hpp>
 #include <glm/geometric.hpp>
@@ -89,6 +90,81 @@ TEST_SUITE("world/body_cast") {
             CHECK_FALSE(world.cast(mover, pose, {2.0 * n, {}, {}}, without).value().has_value());
         }
         CHECK(hits > 300);
+    }
+
+    TEST_CASE(
+        "of many objects the hit is the first, with its handle, user and triangle, and says what is not resolved") {
+        RandomBodies random(83);
+        const Surface soup_of_triangles = soup(random, 60, 1.0, 0.4);
+        const convex::Body mesh = soup_of_triangles.body();
+        int hits = 0, at_triangles = 0, unresolved = 0;
+        for (int round = 0; round < 600; ++round) {
+            World world;
+            std::vector<ObjectHandle> objects;
+            std::vector<convex::Body> bodies;
+            std::vector<RigidTransform> poses;
+            for (int i = 0; i < 12; ++i) {
+                bodies.push_back(i % 3 == 0 ? mesh : any_body(random));
+                const glm::dmat3 turn = random.rotation();
+                const glm::dvec3 place(4.0 * (i % 4), 4.0 * (i / 4), random.number(-1, 1));
+                poses.push_back({turn, place});
+                const Transform transform{turn, place};
+                objects.push_back(
+                    world.add({.transform = transform, .body = &bodies.back(), .user = 100u + std::uint64_t(i)})
+                        .value());
+            }
+            REQUIRE(world.update().has_value());
+            const convex::Body mover = any_body(random, 0.5);
+            const double goal_x = random.number(0, 12), goal_y = random.number(0, 8);
+            const glm::dvec3 goal(goal_x, goal_y, 0.0);
+            const glm::dvec3 start = goal + 9.0 * random.direction();
+            const RigidTransform from{random.rotation(), start};
+            const double turning = 4.0 * random.index(2);
+            const glm::dvec3 spin = turning * random.direction();
+            const convex::Motion fly{1.8 * (goal - start), spin, {}};
+            convex::CastOptions options;
+            if (round % 4 == 3) options.max_steps = 1 + random.index(3);
+            const auto hit = world.cast(mover, from, fly, options).value();
+            if (hit && !hit->resolved) {
+                // What the steps were not enough for: nothing is met up to that time.
+                ++unresolved;
+                CHECK(round % 4 == 3);
+                for (int k = 0; k < 8; ++k) {
+                    const RigidTransform before = convex::moved(from, fly, hit->time * k / 8.0);
+                    for (std::size_t i = 0; i < objects.size(); ++i)
+                        CHECK_FALSE(convex::intersects({mover, before}, {bodies[i], poses[i]}));
+                }
+                continue;
+            }
+            std::size_t expected = objects.size();
+            double time = HUGE_VAL;
+            for (std::size_t i = 0; i < objects.size(); ++i) {
+                const auto own = convex::cast({mover, from}, fly, {bodies[i], poses[i]}, {}).value();
+                REQUIRE(own.result != convex::CastResult::unresolved);
+                if (own.result == convex::CastResult::miss || own.time >= time) continue;
+                CHECK(own.steps >= 1);
+                expected = i;
+                time = own.time;
+            }
+            REQUIRE(hit.has_value() == (expected < objects.size()));
+            if (!hit) continue;
+            ++hits;
+            CHECK(hit->object == objects[expected]);
+            CHECK(hit->user == 100u + expected);
+            CHECK(std::abs(hit->time - time) < 2e-7);  // either within the tolerance
+            const RigidTransform then = convex::moved(from, fly, hit->time);
+            if (bodies[expected].kind() != convex::Kind::mesh) {
+                CHECK(hit->triangle == 0);
+                continue;
+            }
+            ++at_triangles;
+            REQUIRE(hit->triangle < soup_of_triangles.size());
+            const convex::Body triangle = soup_of_triangles.triangle(hit->triangle);
+            CHECK(convex::distance({mover, then}, {triangle, poses[expected]}).distance <= 1e-6 + 4e-8);
+        }
+        CHECK(hits > 250);
+        CHECK(at_triangles > 60);
+        CHECK(unresolved > 60);
     }
 
     TEST_CASE("an overlap at the start is returned with its depth, or skipped, so that the next object is hit") {

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Objects that move in every frame, and meshes that deform.
 #include <doctest/doctest.h>
+#include <array>
 #include <cmath>
 #include <error_of.hpp>
 #include <limits>
 #include <oracle/random_boxes.hpp>
 
 #include "../../view_request.hpp"
+#include "box_at.hpp"
 #include "model.hpp"
 
 using namespace crofton;
@@ -216,6 +218,39 @@ TEST_SUITE("world/movers") {
         REQUIRE(world.update().has_value());
         for (std::size_t i = 0; i < kCount; ++i)
             if (i != 64) CHECK(world.transform_of(objects[i])->translation == places[i].translation);
+    }
+
+    TEST_CASE("an update counts the nodes it moved and the pairs it looked at, and one without changes counts none") {
+        World world;
+        const NodeHandle root = world.add_node().value();
+        std::array<NodeHandle, 3> nodes{};
+        for (NodeHandle& node : nodes) node = world.add_node({.parent = root}).value();
+        for (int i = 0; i < 6; ++i)
+            (void)world.add({.bound = testing::box_at({i < 5 ? 0.9 * i : 20.0, 0.0, 0.0})}).value();
+        REQUIRE(world.update().has_value());
+        const auto counted = [&] {
+            const collide::BatchStatistics& tests = world.statistics().box_tests;
+            return tests.separated_by_face_a + tests.separated_by_face_b + tests.separated_by_edges + tests.hits;
+        };
+        // Four neighbours in a row meet, and the next ones are 0.8 apart.
+        CHECK(world.statistics().objects == 6);
+        CHECK(world.statistics().box_tests.hits == 4);
+        CHECK(world.statistics().box_tests.separated_by_edges == 0);
+        CHECK(world.statistics().box_pairs_tested >= 4);
+        CHECK(counted() == world.statistics().box_pairs_tested);
+        CHECK(world.statistics().contact_pairs_tested == 4);
+        CHECK(world.statistics().contacts_us >= 0.0);
+        REQUIRE(world.set_transform(root, Transform{glm::dmat3(1.0), {1.0, 0.0, 0.0}}).has_value());
+        REQUIRE(world.set_transform(nodes[1], Transform{glm::dmat3(1.0), {0.0, 1.0, 0.0}}).has_value());
+        REQUIRE(world.update().has_value());
+        CHECK(world.statistics().nodes_updated == 4);
+        REQUIRE(world.update().has_value());
+        CHECK(world.statistics().nodes_updated == 0);
+        CHECK(world.statistics().boxes_changed == 0);
+        CHECK(world.statistics().box_pairs_tested == 0);
+        CHECK(world.statistics().contact_pairs_tested == 0);
+        CHECK(counted() == 0);
+        CHECK(world.statistics().box_tests.refined == 0);
     }
 
     TEST_CASE("an object that is set to its present place comes to rest, also when others move on") {
