@@ -83,6 +83,34 @@ void choose_candidates(std::size_t count, bool all) {
                 1e6 * times[times.size() / 2], 1e6 * times[0]);
 }
 
+struct Thing {
+    ObjectHandle object;
+    MeshHandle mesh;
+};
+
+// An update in which all objects of the town that have occluders move.
+void move_all(World& world, const std::map<std::uint32_t, Thing>& things) {
+    std::vector<ObjectHandle> objects;
+    std::size_t occluders = 0;
+    for (const auto& [index, thing] : things) {
+        const std::size_t own = world.occluders_of(thing.mesh).size();
+        occluders += own;
+        if (own > 0) objects.push_back(thing.object);
+    }
+    double least = 1e9;
+    for (int k = 0; k < 30; ++k) {
+        for (const ObjectHandle object : objects) {
+            Transform transform = *world.transform_of(object);
+            transform.translation.y += k % 2 ? 0.01 : -0.01;
+            (void)world.set_transform(object, transform);
+        }
+        const auto begin = std::chrono::steady_clock::now();
+        (void)world.update();
+        least = std::min(least, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    }
+    std::printf("update: town, %zu objects with %zu occluders move: %.1f us\n", objects.size(), occluders, 1e6 * least);
+}
+
 // World::view along the town's street, with occlusion and without: the least times, in turns.
 void view_street() {
     auto source = *assets::make_town({});
@@ -92,7 +120,7 @@ void view_street() {
     for (scene::InstanceId i = 0; i < scene.instance_count(); ++i) parts[scene.node_of(i)].push_back(scene.mesh_of(i));
     World world{{.pairs = false, .updates_to_rest = 1}};
     std::map<std::vector<scene::MeshId>, MeshHandle> meshes;
-    std::map<std::uint32_t, MeshHandle> mesh_of;  // by object
+    std::map<std::uint32_t, Thing> things;  // by the object's index
     for (const auto& [node, ids] : parts) {
         MeshHandle& mesh = meshes[ids];
         if (mesh.is_null()) {
@@ -101,7 +129,8 @@ void view_street() {
             mesh = *world.add_mesh(
                 {.positions = all.positions, .indices = all.indices, .triangles = false, .occluders = true});
         }
-        mesh_of[world.add({.mesh = mesh, .transform = scene.world(node)})->index] = mesh;
+        const ObjectHandle object = *world.add({.mesh = mesh, .transform = scene.world(node)});
+        things[object.index] = {object, mesh};
     }
     for (int k = 0; k < 4; ++k) (void)world.update();
     Camera camera;
@@ -130,7 +159,7 @@ void view_street() {
         (void)world.drawn_occluders(visible, occluders);
         occlude::OccluderSet set;
         for (const OccluderRef& ref : occluders) {
-            const FoundOccluder& found = world.occluders_of(mesh_of[ref.object.index])[ref.place];
+            const FoundOccluder& found = world.occluders_of(things[ref.object.index].mesh)[ref.place];
             const bool patch = found.kind == OccluderKind::patch;
             patches += patch;
             const auto shape =
@@ -158,6 +187,7 @@ void view_street() {
         "us\n",
         legs, mean(drawn), mean(patches), mean(triangles), mean(seen), mean(in_view), 1e6 * with / n, 1e6 * worst,
         1e6 * without / n, 1e6 * draw / n);
+    move_all(world, things);
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
+#include <algorithm>
+#include <cmath>
 #include <crofton/convex/body.hpp>
 #include <crofton/geometry/predicates.hpp>
 #include <error_of.hpp>
@@ -15,6 +17,26 @@ using namespace crofton::convex;
 using namespace crofton::testing;
 
 namespace {
+
+// No vertex is farther along the normal than the one told, within rounding; narrow are faces of hardly any area.
+void check_face(const Hull& hull, int f) {
+    const auto at = [&](int v) { return glm::dvec3(hull.vertices()[static_cast<std::size_t>(v)]); };
+    const glm::dvec3 n = hull.face_normal(f);
+    double most = -HUGE_VAL;
+    for (std::size_t v = 0; v < hull.vertices().size(); ++v)
+        most = std::max(most, glm::dot(n, at(static_cast<int>(v))));
+    CHECK(glm::dot(n, at(hull.face_support(f))) >= most - 0x1p-50 * hull.radius());
+    const auto loop = hull.face_vertices(f);
+    double longest2 = 0.0;
+    glm::dvec3 area(0.0);
+    for (std::size_t i = 1; i < loop.size(); ++i) {
+        area += glm::cross(at(loop[i - 1]) - at(loop[0]), at(loop[i]) - at(loop[0]));
+        longest2 = std::max(longest2, glm::dot(at(loop[i]) - at(loop[0]), at(loop[i]) - at(loop[0])));
+        longest2 = std::max(longest2, glm::dot(at(loop[i]) - at(loop[i - 1]), at(loop[i]) - at(loop[i - 1])));
+    }
+    const double width = glm::length(area) / longest2;
+    if (width < 0.99e-6 || width > 1.01e-6) CHECK(hull.is_narrow_face(f) == (width < 1e-6));
+}
 
 // Every point lies on or below every triangle, exactly; every edge has two triangles; Euler's formula holds.
 void check_hull(const Hull& hull, std::span<const glm::vec3> points) {
@@ -38,6 +60,7 @@ void check_hull(const Hull& hull, std::span<const glm::vec3> points) {
         const auto edges = hull.face_edges(f);
         REQUIRE(edges.size() == loop.size());
         CHECK(loop.size() >= 3);
+        check_face(hull, f);
         for (std::size_t k = 0; k < loop.size(); ++k) {
             corners.insert(loop[k]);
             const HullEdge& edge = hull.edges()[edges[k]];

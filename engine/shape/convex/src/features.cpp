@@ -81,11 +81,11 @@ glm::dvec3 triangle_normal(const glm::dmat3& rotation, const Triangle& corners) 
     return n == glm::dvec3(0.0) ? n : turned_normal(rotation, n);
 }
 
-bool is_narrow(const Patch& polygon) {
-    glm::dvec3 area(0.0), before = polygon.point[1] - polygon.point[0];
+bool is_narrow(const glm::dvec3* points, int count) {
+    glm::dvec3 area(0.0), before = points[1] - points[0];
     double longest2 = glm::dot(before, before);
-    for (int k = 2; k < polygon.count; ++k) {
-        const glm::dvec3 way = polygon.point[k] - polygon.point[0], side = way - before;
+    for (int k = 2; k < count; ++k) {
+        const glm::dvec3 way = points[k] - points[0], side = way - before;
         area += glm::cross(before, way);
         longest2 = std::max({longest2, glm::dot(way, way), glm::dot(side, side)});
         before = way;
@@ -134,10 +134,10 @@ void patch_of_face(const BodyAtPose& placed, int face, const glm::dvec3& origin,
         patch.normal = turned_normal(place.rotation, body.hull()->face_normal(face));
         for (std::size_t k = 0; k < vertices.size(); ++k)
             add(patch, place(body.vertex(vertices[k])), vertices[k], edges[k]);
-        if (is_narrow(patch)) patch.normal = glm::dvec3(0.0);
+        if (body.hull()->is_narrow_face(face)) patch.normal = glm::dvec3(0.0);
     } else {
         for (int k = 0; k < 3; ++k) add(patch, place(body.vertex(k)), k, k);
-        patch.normal = is_narrow(patch)
+        patch.normal = is_narrow(patch.point, 3)
                            ? glm::dvec3(0.0)
                            : triangle_normal(place.rotation, {body.vertex(0), body.vertex(1), body.vertex(2)});
     }

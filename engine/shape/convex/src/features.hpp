@@ -50,7 +50,7 @@ inline constexpr std::uint8_t kBoxFaces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0,
 [[nodiscard]] glm::dvec3 turned_normal(const glm::dmat3& rotation, const glm::dvec3& normal);
 // Whether a polygon's sides are too nearly parallel to clip another patch by them: a millionth of its length wide.
 // Where they cross would be off along them by rounding over that angle. Its patch has the normal 0.
-[[nodiscard]] bool is_narrow(const Patch& polygon);
+[[nodiscard]] bool is_narrow(const glm::dvec3* points, int count);
 // Of a triangle's image, from its corners in the body's frame, which are floats: rounded world coordinates would tilt
 // that of a narrow one. 0 where the corners lie on a line.
 [[nodiscard]] glm::dvec3 triangle_normal(const glm::dmat3& rotation, const Triangle& corners);

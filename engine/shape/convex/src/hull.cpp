@@ -143,6 +143,7 @@ Result<Hull> Hull::build(std::span<const glm::vec3> points, const HullOptions& o
         hull.find_planes();
         hull.mass_ = mass_of_triangles(result->corners, result->hull.triangles);
         hull.normal_columns_ = side_by_side(hull.normals_);
+        hull.describe_faces();
         hull.inner_radius_ = inner_radius_of(*result, hull.mass_.center, hull.radius_);
         return hull;
     });

@@ -6,6 +6,9 @@
 #include <crofton/convex/body.hpp>
 #include <glm/geometric.hpp>
 
+#include "features.hpp"
+#include "support.hpp"
+
 namespace crofton::convex {
 namespace {
 
@@ -118,6 +121,17 @@ void Hull::find_faces(double tolerance) {
         face_vertices_.insert(face_vertices_.end(), loop.begin(), loop.end());
         face_first_.push_back(static_cast<std::uint16_t>(face_vertices_.size()));
         normals_.push_back(normal);
+    }
+}
+
+void Hull::describe_faces() {
+    for (int f = 0; f < face_count(); ++f) {
+        Vector<glm::dvec3> points;
+        for (const std::uint16_t v : face_vertices(f)) points.emplace_back(vertices_[v]);
+        face_is_narrow_.push_back(is_narrow(points.data(), static_cast<int>(points.size())) ? 1 : 0);
+        double along = 0.0;
+        const int farthest = farthest_of(column(0), column(1), column(2), padded_count(), face_normal(f), along);
+        face_support_.push_back(static_cast<std::uint16_t>(farthest));
     }
 }
 

@@ -24,7 +24,7 @@ void triangle_patch(const PlacedTriangle& t, const glm::dvec3& direction, Patch&
         patch.edge[k] = kEdge[behind ? 1 : 0][k];
         patch.point[k] = t.corner[patch.vertex[k]];
     }
-    if (is_narrow(patch)) patch.normal = glm::dvec3(0.0);
+    if (is_narrow(patch.point, patch.count)) patch.normal = glm::dvec3(0.0);
 }
 
 double deepest(const GatheredPoints& points) {

@@ -113,20 +113,20 @@ OccluderCandidate candidate_of(const Obb& box) {
     return result;
 }
 
-OccluderCandidate candidate_of(const FoundOccluder& found, const Transform& transform) {
-    OccluderCandidate result;
-    Aabb bounds;
-    const TriangleMesh& mesh = found.surface;
-    for (const glm::vec3& p : mesh.positions) bounds.include(transform * glm::dvec3(p));
-    result.center = bounds.is_empty() ? transform.translation : bounds.center();
-    double square = 0.0, area = 0.0;
-    for (const glm::vec3& p : mesh.positions) {
-        const glm::dvec3 offset = transform * glm::dvec3(p) - result.center;
-        square = std::max(square, glm::dot(offset, offset));
+namespace {
+
+void set_areas_of_box(const Obb& box, const Transform& transform, OccluderCandidate& result) {
+    for (int k = 0; k < 3; ++k) {
+        const int i = (k + 1) % 3, j = (k + 2) % 3;
+        const glm::dvec3 u = transform.linear * glm::dvec3(box.axes[i] * box.half_extents[i]),
+                         v = transform.linear * glm::dvec3(box.axes[j] * box.half_extents[j]);
+        result.areas[static_cast<std::size_t>(k)] = glm::vec3(4.0 * glm::cross(u, v));
     }
-    result.radius = std::sqrt(square);
-    if (!bounds.is_empty()) result.half_size = glm::vec3(0.5 * (bounds.max - bounds.min));
-    result.edges = found.edges;
+}
+
+void set_areas_of_surface(const FoundOccluder& found, const Transform& transform, OccluderCandidate& result) {
+    const TriangleMesh& mesh = found.surface;
+    double area = 0.0;
     glm::dvec3 normals(0.0), shadows(0.0);
     for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
         const glm::dvec3 a = transform.linear * glm::dvec3(mesh.positions[mesh.indices[i]]),
@@ -137,31 +137,43 @@ OccluderCandidate candidate_of(const FoundOccluder& found, const Transform& tran
         shadows += 0.5 * glm::abs(normal);
         area += glm::length(normal);
     }
+    if (found.kind == OccluderKind::convex) {
+        for (int k = 0; k < 3; ++k) result.areas[static_cast<std::size_t>(k)][k] = static_cast<float>(area / 6.0);
+        return;
+    }
     // A reflection turns the winding round, and what is drawn with it.
     if (sign_of_determinant(transform.linear) < 0) normals = -normals;
     const double mean = glm::length(normals);
-    if (found.kind == OccluderKind::patch && mean >= 0.9 * area) {
+    if (mean >= 0.9 * area) {
         result.areas[0] = glm::vec3(normals);
         // Parts that are turned away from the others are seen from behind them.
         result.front_only = found.sides == Sides::front && mean >= 0.999 * area;
-        return result;
+        return;
     }
-    if (found.kind == OccluderKind::patch) {
-        for (int k = 0; k < 3; ++k) result.areas[static_cast<std::size_t>(k)][k] = static_cast<float>(shadows[k]);
-        return result;
+    for (int k = 0; k < 3; ++k) result.areas[static_cast<std::size_t>(k)][k] = static_cast<float>(shadows[k]);
+}
+
+}  // namespace
+
+OccluderCandidate candidate_of(const FoundOccluder& found, const Transform& transform) {
+    OccluderCandidate result;
+    Aabb bounds;
+    const TriangleMesh& mesh = found.surface;
+    for (const glm::vec3& p : mesh.positions) bounds.include(transform * glm::dvec3(p));
+    result.center = bounds.is_empty() ? transform.translation : bounds.center();
+    double square = 0.0;
+    for (const glm::vec3& p : mesh.positions) {
+        const glm::dvec3 offset = transform * glm::dvec3(p) - result.center;
+        square = std::max(square, glm::dot(offset, offset));
     }
-    if (found.kind != OccluderKind::convex) {
-        for (int k = 0; k < 3; ++k) {
-            const glm::dvec3 u = transform.linear *
-                                 glm::dvec3(found.box.axes[(k + 1) % 3] * found.box.half_extents[(k + 1) % 3]),
-                             v = transform.linear *
-                                 glm::dvec3(found.box.axes[(k + 2) % 3] * found.box.half_extents[(k + 2) % 3]);
-            result.areas[static_cast<std::size_t>(k)] = glm::vec3(4.0 * glm::cross(u, v));
-        }
-    } else {
-        for (int k = 0; k < 3; ++k) result.areas[static_cast<std::size_t>(k)][k] = static_cast<float>(area / 6.0);
-    }
-    result.limits = limits_of(found, transform);
+    result.radius = std::sqrt(square);
+    if (!bounds.is_empty()) result.half_size = glm::vec3(0.5 * (bounds.max - bounds.min));
+    result.edges = found.edges;
+    if (found.kind != OccluderKind::patch) result.limits = limits_of(found, transform);
+    if (found.kind == OccluderKind::patch || found.kind == OccluderKind::convex)
+        set_areas_of_surface(found, transform, result);
+    else
+        set_areas_of_box(found.box, transform, result);
     return result;
 }
 

@@ -94,6 +94,9 @@ class Hull {
         return planes_.data() + planes_.size() / 4 * static_cast<std::size_t>(k);
     }
     [[nodiscard]] double plane_error() const { return plane_error_; }
+    // The vertex that is farthest along a face's normal, and whether the face is too narrow to tell its sides apart.
+    [[nodiscard]] int face_support(int face) const { return face_support_[static_cast<std::size_t>(face)]; }
+    [[nodiscard]] bool is_narrow_face(int face) const { return face_is_narrow_[static_cast<std::size_t>(face)] != 0; }
 
   private:
     [[nodiscard]] std::span<const std::uint16_t> loop(const Vector<std::uint16_t>& entries, int face) const {
@@ -107,9 +110,11 @@ class Hull {
     void find_faces(double tolerance);
     void index_edges();
     void find_planes();
+    void describe_faces();
 
     Vector<glm::vec3> vertices_;
-    Vector<std::uint16_t> triangles_, face_first_, face_vertices_, face_edges_;
+    Vector<std::uint16_t> triangles_, face_first_, face_vertices_, face_edges_, face_support_;
+    Vector<std::uint8_t> face_is_narrow_;
     Vector<glm::dvec3> normals_;
     Vector<HullEdge> edges_;
     Vector<double> columns_, normal_columns_, planes_;
