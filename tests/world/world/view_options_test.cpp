@@ -120,6 +120,42 @@ struct Crowd {
 }  // namespace
 
 TEST_SUITE("world/view_options") {
+    TEST_CASE("a candidate mask leaves out objects of small worlds and new objects, but none that has moved") {
+        World world;
+        std::vector<ObjectHandle> objects;
+        for (int i = 0; i < 20; ++i)
+            objects.push_back(world.add({.bound = Sphere{{0.5 * i - 5.0, 0.0, -12.0}, 0.1}}).value());
+        REQUIRE(world.update().has_value());
+        const std::array<std::uint64_t, 1> mask{0x0f0f0u};
+        const auto listed = [&](bool occluded) {
+            ViewRequest request{.camera = Camera{}, .candidate_mask = mask};
+            if (occluded) request.occlusion = OcclusionOptions{};
+            ViewResult visible;
+            REQUIRE(world.view(request, visible).has_value());
+            return std::vector<std::uint32_t>(visible.ids().begin(), visible.ids().end());
+        };
+        const std::vector<std::uint32_t> candidates{4, 5, 6, 7, 12, 13, 14, 15};
+        for (const bool occluded : {false, true}) CHECK(listed(occluded) == candidates);
+        REQUIRE(world.set_bound(objects[1], Sphere{{-4.0, 0.0, -12.0}, 0.1}).has_value());
+        REQUIRE(world.update().has_value());
+        std::vector<std::uint32_t> with_mover = candidates;
+        with_mover.insert(with_mover.begin(), 1);
+        for (const bool occluded : {false, true}) CHECK(listed(occluded) == with_mover);
+        // New objects among many that rest.
+        World large;
+        for (int i = 0; i < 900; ++i)
+            REQUIRE(large.add({.bound = Sphere{{0.02 * i - 9.0, 0.0, -12.0}, 0.01}}).has_value());
+        for (int frame = 0; frame < 8; ++frame) REQUIRE(large.update().has_value());
+        REQUIRE(large.add({.bound = Sphere{{0.0, 0.5, -12.0}, 0.1}}).has_value());
+        REQUIRE(large.update().has_value());
+        const std::vector<std::uint64_t> none(15, 0);
+        ViewResult visible;
+        REQUIRE(large.view({.camera = Camera{}, .candidate_mask = none}, visible).has_value());
+        CHECK(visible.size() == 0);
+        REQUIRE(large.view({.camera = Camera{}}, visible).has_value());
+        CHECK(visible.size() > 100);
+    }
+
     TEST_CASE("a view obeys mode, order, limits, candidates, layers and executor, with occlusion and without") {
         const Crowd crowd;
         ThreadPool pool(3);

@@ -30,15 +30,16 @@ bool visit_pairs(const BodyAtPose& a, const BodyAtPose& b, double margin, PairVi
     return visit_parts_near(a, b, margin, with_a);
 }
 
-// Tests whether two bodies are nearer to each other than `limit`: by `margin`, or along another direction than `normal`.
+// Tests whether two bodies are nearer to each other than `limit`: by `margin`, or along another direction than
+// `normal`.
 bool is_nearer_than(const BodyAtPose& a, const BodyAtPose& b, const glm::dvec3& normal, double limit, double margin) {
     const Distance d = near_distance(a, b, limit);
     const bool other_way = glm::dot(d.normal, normal) < kSameDirection;
     return d.distance < (other_way ? limit : limit - margin);
 }
 
-// The same of all parts of a but one, and a convex b. Most lie behind the plane across `normal` that touches b's nearest
-// points.
+// The same of all parts of a but one, and a convex b. Most lie behind the plane across `normal` that touches b's
+// nearest points.
 bool is_part_nearer(const BodyAtPose& a, const BodyAtPose& b, const glm::dvec3& normal, const PartId& but, double limit,
                     double margin) {
     const auto is_nearer = [&](const Part& part) {

@@ -49,6 +49,7 @@ class VisibleQuery {
                 const std::size_t place = first + static_cast<std::size_t>(std::countr_zero(rest));
                 const ItemId item = moving.items()[place];
                 if (!(tree.layer_masks()[item] & options_.layer_mask)) continue;
+                if (options_.mask_moving && !cull::is_candidate(options_.candidate_mask, item)) continue;
                 places[item] = static_cast<std::uint32_t>(place);
                 visible_.candidates_.push_back(item);
             }

@@ -152,9 +152,12 @@ void World::State::draw_and_ask(const occlude::OcclusionView& view, const Occlus
         result.buffer->draw(occluders.set(), ids, view, executor);
     }
     const world::TraceZone part(options.trace, "view: what is not hidden");
-    occlude::find_visible(
-        index.tree(), index.moving(), *result.buffer, result.visible,
-        {.layer_mask = layers, .mode = how.mode, .limits = how.limits, .candidate_mask = how.candidate_mask});
+    occlude::find_visible(index.tree(), index.moving(), *result.buffer, result.visible,
+                          {.layer_mask = layers,
+                           .mode = how.mode,
+                           .limits = how.limits,
+                           .candidate_mask = how.candidate_mask,
+                           .mask_moving = how.mask_moving});
     world::trace_count(options.trace, "objects not hidden", result.visible.size());
 }
 
@@ -163,6 +166,7 @@ Result<void> World::view(const ViewRequest& request, ViewResult& visible, Execut
     if (!eye) return tl::unexpected(eye.error());
     cull::CullOptions how{request.mode, request.order, request.limits, {}};
     how.candidate_mask = state_->candidates_and_changed(request.candidate_mask, visible.candidates_);
+    how.mask_moving = true;  // those that have moved are in the mask
     if (!request.occlusion) {
         const world::TraceZone zone(state_->options.trace, "World::view");
         visible.names_ = &state_->table.names;

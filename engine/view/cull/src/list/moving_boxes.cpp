@@ -50,13 +50,15 @@ void Query::append_moving(const boxtree::BoxTree& tree, std::span<const std::uin
     const boxtree::Items& known = tree.structure().items();
     std::uint32_t* listed = visible_.listed_.data();
     std::size_t found = list_bits(bits, visible_.listed_);
-    if (options_.limits) {
+    const bool masks = options_.mask_moving && !options_.candidate_mask.empty();
+    if (options_.limits || masks) {
         std::size_t kept = 0;
         for (std::size_t i = 0; i < found; ++i) {
             const std::uint32_t k = listed[i];
             const ItemId item = moving_->items()[k];
             listed[kept] = k;
-            kept += is_wanted(moving_->boxes()[k], item, known.layer_masks()[item]);
+            kept += (!masks || is_candidate(options_.candidate_mask, item)) &&
+                    (!options_.limits || is_wanted(moving_->boxes()[k], item, known.layer_masks()[item]));
         }
         found = kept;
     }

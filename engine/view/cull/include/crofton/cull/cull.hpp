@@ -84,8 +84,9 @@ struct CullOptions {
     const DrawLimits* limits = nullptr;
     // The items to consider: bit i % 64 of word i / 64 is item i. Items beyond the span are considered, and so are all
     // items if it is empty. pvs::Pvs::visible_from() returns such sets. In a query of static and moving items it
-    // applies only to the static ones.
+    // applies only to the static ones, unless `mask_moving` is true.
     std::span<const std::uint64_t> candidate_mask = {};
+    bool mask_moving = false;
 };
 
 // Tests whether a set such as CullOptions::candidate_mask contains the item.

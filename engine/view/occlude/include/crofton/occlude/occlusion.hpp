@@ -266,6 +266,7 @@ struct VisibleOptions {
     cull::CullMode mode = cull::CullMode::exact;
     const cull::DrawLimits* limits = nullptr;            // skips items that are too small or too far
     std::span<const std::uint64_t> candidate_mask = {};  // as cull::CullOptions::candidate_mask
+    bool mask_moving = false;                            // as cull::CullOptions::mask_moving
 };
 
 // Finds the items that cull::find_visible() finds in the buffer's view, without those that the buffer hides. An item is
