@@ -88,7 +88,7 @@ export interface ViewRequest {
     /** In place of occlusion; `depth` is that of the renderer's projection, 'reversed' unless given. */
     picture?: { width?: number; height?: number; depth?: Depth };
     limits?: DrawLimits;
-    /** Bit i: may object i be seen? Objects that are new or have moved may. */
+    /** Bit i: may object i be seen? Objects that have moved since their first update may. */
     candidates?: Bits;
     treeOrder?: boolean; conservative?: boolean;
 }

@@ -205,7 +205,7 @@ namespace Crofton {
         public PictureView Picture;
         /// <summary>If set, leaves out what is too small or too far.</summary>
         public DrawLimits Limits;
-        /// <summary>If set, bit i % 64 of word i / 64: may the object with index i be seen? Those that are new or have moved may.</summary>
+        /// <summary>If set, bit i % 64 of word i / 64: may the object with index i be seen? Those that have moved since their first update may.</summary>
         public ulong[] CandidateMask;
         /// <summary>By planes alone, which keeps some boxes near the volume's corners.</summary>
         public bool Conservative;

@@ -38,8 +38,8 @@ pub struct ViewRequest<'a> {
     pub picture: Option<PictureView>,
     /// If set, leaves out what is too small or too far.
     pub limits: Option<&'a DrawLimits<'a>>,
-    /// If not empty, bit i % 64 of word i / 64: may the object with index i be seen? Objects that are new or have moved
-    /// may.
+    /// If not empty, bit i % 64 of word i / 64: may the object with index i be seen? Objects that have moved since
+    /// their first update may.
     pub candidate_mask: &'a [u64],
     /// By planes alone, which keeps some boxes near the volume's corners.
     pub conservative: bool,

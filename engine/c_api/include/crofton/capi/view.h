@@ -87,7 +87,7 @@ typedef struct crofton_view_request {
     const crofton_draw_limits* limits;          /* NULL: lists what is small or far, too */
     const uint64_t* candidate_mask; /* NULL, or bit i % 64 of word i / 64: may object i be seen, as crofton_pvs_visible
                                        gives it. Objects beyond the end may, and so may those that have moved since
-                                       and those that are new: they count as moving until they have rested */
+                                       their first update or reuse an index */
     size_t candidate_words;
     uint32_t conservative; /* 0: exact; 1: planes only, which keeps some boxes near the volume's corners */
     uint32_t tree_order;   /* 0: indices ascend; 1: as the tree lies in memory, in half the time where much is seen */
