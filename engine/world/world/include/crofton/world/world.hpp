@@ -52,7 +52,7 @@ struct WorldOptions {
 struct WorldStatistics {
     std::size_t objects = 0, resting = 0, moving = 0;  // shown ones: in the tree, in the list
     std::uint32_t boxes_changed = 0;                   // in this update; also of meshes that moved within their boxes
-    bool tree_built = false;                           // all at once: much has come to rest, or come and gone
+    bool tree_built = false;                           // all at once: a scene was loaded, or much came to rest
     std::uint64_t box_pairs_tested = 0, contact_pairs_tested = 0;  // the second: pairs whose shapes were looked at
     std::uint64_t body_pairs_computed = 0;  // whose contacts of bodies were found anew; what rests has none
     collide::BatchStatistics box_tests;     // how the pairs of boxes were told apart
