@@ -34,16 +34,14 @@ BENCHMARK(cull_cpp)->Arg(1)->Arg(16)->Arg(256);
 
 void cull_c(benchmark::State& state) {
     const auto boxes = make_boxes(state.range(0));
-    crofton_camera camera{};
-    camera.size = sizeof camera;
+    const crofton_camera camera = crofton_default_camera();
     crofton_view view{};
     view.size = sizeof view;
     view.layer_mask = ~0u;
     view.frustum.size = sizeof view.frustum;
     crofton_tree* tree = nullptr;
     crofton_visible_set* visible = nullptr;
-    if (crofton_camera_default(&camera) != CROFTON_OK ||
-        crofton_frustum_from_camera(&camera, &view.frustum) != CROFTON_OK ||
+    if (crofton_frustum_from_camera(&camera, &view.frustum) != CROFTON_OK ||
         crofton_tree_create(reinterpret_cast<const crofton_box*>(boxes.data()), nullptr, boxes.size(), nullptr,
                             &tree) != CROFTON_OK ||
         crofton_visible_set_create(&visible) != CROFTON_OK)
