@@ -52,7 +52,7 @@ struct WorldOptions {
 struct WorldStatistics {
     std::size_t objects = 0, resting = 0, moving = 0;  // not hidden; resting in the tree, moving in the list
     std::uint32_t boxes_changed = 0;                   // in this update; includes meshes that moved within their boxes
-    bool tree_built = false;                           // this update built the tree anew, after many changes
+    bool tree_built = false;                           // built in one go: a scene was loaded, or much came to rest
     std::uint64_t box_pairs_tested = 0, contact_pairs_tested = 0;  // the second: pairs whose shapes were tested
     std::uint64_t body_pairs_computed = 0;                         // in this update; none for resting objects
     collide::BatchStatistics box_tests;                            // how the pairs of boxes were decided
