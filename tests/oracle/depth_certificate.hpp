@@ -72,6 +72,12 @@ class DepthCertificate {
         return Proof::hidden;
     }
 
+    // Proves that the picture is at least so near at a sample. Row 0 is at the bottom.
+    [[nodiscard]] bool is_at_least(std::uint32_t x, std::uint32_t y, double nearness) const {
+        // What is proved is strict.
+        return is_covered({x, y}, center_of({x, y}), Rational(nearness) - power(-200));
+    }
+
   private:
     static constexpr std::uint32_t kTile = 8;
     using Key = std::pair<std::uint32_t, std::uint32_t>;  // a vertex twice, or the ends of the edge that was cut
