@@ -168,7 +168,7 @@ class SpatialIndex {
     // In the tree, since the last rebuild began; of them those before the last update, and those when the one under way
     // began.
     Changed changed_in_tree_, changed_before_, changed_at_start_;
-    std::size_t rebuild_work_ = 0;  // that the changes of the last updates make necessary
+    std::size_t rebuild_work_ = 0;   // that the changes of the last updates make necessary
     std::uint32_t short_lived_ = 0;  // rises where items go that are young, falls where others do
     bool rebuilding_ = false, wants_refit_ = false;
     // Over the list's boxes; made when someone asks.

@@ -44,13 +44,14 @@ typedef struct crofton_world_mesh {
 
 typedef struct crofton_world_options {
     size_t size;
-    uint32_t pairs;          /* 1: look for pairs and contacts; 0: for neither */
-    uint32_t contacts;       /* 1; 0: pairs alone */
-    uint32_t containment;    /* 1: an object inside a closed mesh touches it */
-    uint32_t mesh_depth;     /* 0; 1: contacts between meshes have a way out, which costs more */
-    uint64_t max_pairs;      /* 2^24; more are an error */
-    uint64_t rebuild_budget; /* items' worth of background work on the tree an update; CROFTON_AUTOMATIC: while
-                                one is under way, at least a 2048th of the objects and 128. 0: none, and no allocation for it */
+    uint32_t pairs;           /* 1: look for pairs and contacts; 0: for neither */
+    uint32_t contacts;        /* 1; 0: pairs alone */
+    uint32_t containment;     /* 1: an object inside a closed mesh touches it */
+    uint32_t mesh_depth;      /* 0; 1: contacts between meshes have a way out, which costs more */
+    uint64_t max_pairs;       /* 2^24; more are an error */
+    uint64_t rebuild_budget;  /* items' worth of background work on the tree an update; CROFTON_AUTOMATIC: while
+                                 one is under way, at least a 2048th of the objects and 128. 0: none, and no allocation
+                                 for it */
     uint32_t updates_to_rest; /* 16: updates without motion until an object counts as resting */
     double contact_margin;    /* 0: gaps up to this between bodies are contacts */
 } crofton_world_options;

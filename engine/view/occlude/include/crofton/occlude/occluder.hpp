@@ -121,8 +121,8 @@ struct FindOptions {
     // mesh.
     double flatness = 1e-4;
     // The largest number of triangles of a patch. A patch with a convex outline is drawn as fast as a box, any other
-    // triangle by triangle, many times slower. In a town, patches of more triangles take five times as long as all other
-    // occluders and hide 1 % of the triangles.
+    // triangle by triangle, many times slower. In a town, patches of more triangles take five times as long as all
+    // other occluders and hide 1 % of the triangles.
     std::uint32_t max_patch_triangles = 4;
     // 0 for a single mesh. For a level made of many small pieces, the number of triangles per surface at most; 48 is a
     // good number.
