@@ -65,7 +65,7 @@ TEST_SUITE("assets/gltf_document") {
             CHECK(says(message("a.gltf", whole.substr(0, length)), "damaged or cut off: it ends too early"));
         CHECK(says(message("a.gltf", "{\"asset\": {\"version\": 2.x}}"), "damaged at byte 24"));
         CHECK(says(message("a.gltf", R"({"asset": {"version": "2.0"}, "extras": -1e309})"),
-                   "a number beyond what a double holds, at byte 45"));
+                   "a number beyond the range of double, at byte 45"));
         CHECK(says(message("a.gltf", "[]"), "asset.version"));
         CHECK(says(message("a.gltf", R"({"asset": {"version": "1.0"}})"), "version 1.0"));
         CHECK(says(message("a.gltf", R"({"asset": {"version": "2.0"}, "extras": )" + std::string(1'000'000, '[')),

@@ -239,7 +239,7 @@ TEST_SUITE("assets/gltf_nodes") {
         }
         Asset none = solid();
         none.root["nodes"][0]["extensions"]["KHR_node_visibility"]["visible"] = false;
-        CHECK(says(complaint(none), "nothing to draw: what has meshes is hidden by KHR_node_visibility"));
+        CHECK(says(complaint(none), "nothing to draw: all nodes with meshes are hidden by KHR_node_visibility"));
         none.root["nodes"][0]["extensions"]["KHR_node_visibility"]["visible"] = 0;
         CHECK(says(complaint(none), "node 0: KHR_node_visibility: visible is neither true nor false; it is shown"));
     }

@@ -45,6 +45,12 @@ Result<void> check(std::span<const glm::vec3> positions, std::span<const std::ui
     return {};
 }
 
+// Unlike shrink_to_fit, tells when memory ends.
+template <class T>
+void drop_spare(Vector<T>& list) {
+    if (list.size() != list.capacity()) list = Vector<T>(list.begin(), list.end());
+}
+
 }  // namespace
 
 // Lays out the patches of a mesh whose clusters are known.
@@ -140,9 +146,9 @@ Result<ClusteredMesh> ClusteredMesh::cut(std::span<const glm::vec3> positions, s
     set_aligned_bound(mesh.bound_, positions, indices);
     PatchBuilder builder(mesh, positions, indices);
     for (const Cluster& cluster : mesh.clusters_) builder.add(cluster);
-    mesh.clusters_.shrink_to_fit();
-    mesh.coordinates_.shrink_to_fit();
-    mesh.blocks_.shrink_to_fit();
+    drop_spare(mesh.clusters_);
+    drop_spare(mesh.coordinates_);
+    drop_spare(mesh.blocks_);
     return mesh;
 }
 

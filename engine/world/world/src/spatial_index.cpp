@@ -134,6 +134,14 @@ void SpatialIndex::note_changed(ItemId item) {
     changed_[item / 64] |= std::uint64_t{1} << item % 64;
 }
 
+void SpatialIndex::add_movers_that_moved(std::span<std::uint64_t> bits) const {
+    for (std::size_t entry = 0; entry < moving_.size(); ++entry) {
+        const ItemId item = moving_.item(entry);
+        if (item / 64 < bits.size() && moving_.last_moved(entry) != items_[item].last_moved)
+            bits[item / 64] |= std::uint64_t{1} << item % 64;
+    }
+}
+
 // Than in the list.
 void SpatialIndex::set_box_elsewhere(ItemId id, const Obb& box) {
     Item& item = items_[id];

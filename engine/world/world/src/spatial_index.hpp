@@ -81,6 +81,8 @@ class SpatialIndex {
 
     // A bit for each item that has ever had another box than at first, or whose id another item had before.
     [[nodiscard]] std::span<const std::uint64_t> changed() const { return changed_; }
+    // Sets the bits of items in the list that have moved since they entered it: changed() has them once they leave it.
+    void add_movers_that_moved(std::span<std::uint64_t> bits) const;
 
     [[nodiscard]] std::size_t size() const { return items_.size(); }  // ids are below it
     [[nodiscard]] bool is_placed(ItemId item) const {                 // in the tree or the list

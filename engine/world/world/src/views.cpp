@@ -112,10 +112,11 @@ bool fit_one_walk(std::span<const ViewRequest> requests) {
 
 std::span<const std::uint64_t> World::State::candidates_and_changed(std::span<const std::uint64_t> candidate_mask,
                                                                     Vector<std::uint64_t>& both) const {
-    const std::span<const std::uint64_t> changed = index.changed();
-    if (changed.empty()) return candidate_mask;
+    if (candidate_mask.empty()) return {};
     both.assign(candidate_mask.begin(), candidate_mask.end());
+    const std::span<const std::uint64_t> changed = index.changed();
     for (std::size_t w = 0; w < std::min(both.size(), changed.size()); ++w) both[w] |= changed[w];
+    index.add_movers_that_moved(both);
     return both;
 }
 

@@ -120,8 +120,7 @@ struct World::State {
     void update_ground_contacts();
     void update_occluders();
     [[nodiscard]] Result<void> set_found_occluders(scene::MeshId mesh, const occlude::FindOptions& how);
-    // CullOptions::candidate_mask with the bits of what has changed since such a set can have been made; in `both`, or
-    // as it is.
+    // CullOptions::candidate_mask, in `both`, with the bits of objects that have moved or reuse an index.
     [[nodiscard]] std::span<const std::uint64_t> candidates_and_changed(std::span<const std::uint64_t> candidate_mask,
                                                                         Vector<std::uint64_t>& both) const;
     void find_triangles(const ViewRequest& request, const cull::VisibleSet& in_frustum,
