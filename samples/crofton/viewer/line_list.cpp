@@ -28,10 +28,10 @@ void LineList::box(const Obb& box, std::uint32_t color) {
 }
 
 void LineList::axes(const Obb& box) {
-    constexpr std::array<std::uint32_t, 3> kColors{rgba(255, 60, 60), rgba(60, 255, 60), rgba(90, 120, 255)};
+    constexpr std::array<std::uint32_t, 3> kAxisColors{rgba(255, 60, 60), rgba(60, 255, 60), rgba(90, 120, 255)};
     for (int k = 0; k < 3; ++k) {
         const glm::dvec3 arm = glm::dvec3(box.axes[k]) * (1.3 * static_cast<double>(box.half_extents[k]));
-        segment(box.center - arm, box.center + arm, kColors[static_cast<std::size_t>(k)]);
+        segment(box.center - arm, box.center + arm, kAxisColors[static_cast<std::size_t>(k)]);
     }
 }
 
