@@ -176,7 +176,7 @@ BENCHMARK_CAPTURE(crofton_rest, c, true, false)->Name("box on heights 1025^2/cro
 BENCHMARK_CAPTURE(crofton_rest, f, true, false, true)->Name("box on a crest/crofton");
 BENCHMARK_CAPTURE(crofton_rest, d, true, true)->Name("capsule on heights 1025^2/crofton");
 
-// What is cast: the scene's box, a capsule or a ball of about its size.
+// The body that is cast: the scene's box, or a capsule or sphere of about its size.
 enum class Flying { box, capsule, ball };
 
 Body flying_body(Flying kind, float s) {

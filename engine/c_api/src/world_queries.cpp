@@ -109,15 +109,8 @@ crofton_status crofton_world_raycast(const crofton_world* world, const crofton_r
                                      uint32_t layer_mask, crofton_object_hit* hits) {
     const SharedUse use(world, __func__);
     if (use.failed()) return use.status();
-    CROFTON_CHECK(check_array(rays, count, __func__));
-    CROFTON_CHECK(check_array(hits, count, __func__));
-    Ray ray;
-    for (std::size_t i = 0; i < count; ++i) CROFTON_CHECK(to_ray(rays[i], __func__, i, ray));
-    for (std::size_t i = 0; i < count; ++i) {
-        ray = {to_vector(rays[i].origin), to_vector(rays[i].direction), rays[i].max_t};
-        hits[i] = to_c_hit(world->world.raycast(ray, layer_mask));
-    }
-    return CROFTON_OK;
+    return answer_rays(rays, count, hits, __func__,
+                       [&](const Ray& ray) { return to_c_hit(world->world.raycast(ray, layer_mask)); });
 }
 
 crofton_status crofton_world_raycast_any(const crofton_world* world, const crofton_ray* ray, uint32_t layer_mask,

@@ -85,17 +85,11 @@ crofton_status crofton_tree_raycast(const crofton_tree* tree, const crofton_ray*
                                     uint32_t layer_mask, crofton_ray_hit* hits) {
     const SharedUse use(tree, __func__);
     if (use.failed()) return use.status();
-    CROFTON_CHECK(check_array(rays, count, __func__));
-    CROFTON_CHECK(check_array(hits, count, __func__));
-    Ray ray;
-    for (std::size_t i = 0; i < count; ++i) CROFTON_CHECK(to_ray(rays[i], __func__, i, ray));
-    for (std::size_t i = 0; i < count; ++i) {
-        ray = {to_vector(rays[i].origin), to_vector(rays[i].direction), rays[i].max_t};
+    return answer_rays(rays, count, hits, __func__, [&](const Ray& ray) {
         const auto hit = collide::raycast(ray, tree->tree, layer_mask);
-        hits[i] = hit ? crofton_ray_hit{hit->t, hit->item}
-                      : crofton_ray_hit{std::numeric_limits<double>::infinity(), CROFTON_NONE};
-    }
-    return CROFTON_OK;
+        return hit ? crofton_ray_hit{hit->t, hit->item}
+                   : crofton_ray_hit{std::numeric_limits<double>::infinity(), CROFTON_NONE};
+    });
 }
 
 crofton_status crofton_tree_overlap(const crofton_tree* tree, const crofton_shape* shape, uint32_t layer_mask,

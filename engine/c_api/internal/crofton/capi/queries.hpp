@@ -55,6 +55,21 @@ namespace crofton::capi {
     return status_of(validate(result, item), function);
 }
 
+// Answers each ray. A bad ray is an error, and then no hit is written.
+template <class Hit, class Answer>
+[[nodiscard]] crofton_status answer_rays(const crofton_ray* rays, std::size_t count, Hit* hits, const char* function,
+                                         const Answer& answer) {
+    CROFTON_CHECK(check_array(rays, count, function));
+    CROFTON_CHECK(check_array(hits, count, function));
+    Ray ray;
+    for (std::size_t i = 0; i < count; ++i) CROFTON_CHECK(to_ray(rays[i], function, i, ray));
+    for (std::size_t i = 0; i < count; ++i) {
+        ray = {to_vector(rays[i].origin), to_vector(rays[i].direction), rays[i].max_t};
+        hits[i] = answer(ray);
+    }
+    return CROFTON_OK;
+}
+
 [[nodiscard]] inline crofton_status to_sphere(const double* center, double radius, const char* function,
                                               Sphere& result) {
     CROFTON_CHECK(check_place(center, "center", function));
