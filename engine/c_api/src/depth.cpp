@@ -85,7 +85,7 @@ crofton_status crofton_permute_triangles(const crofton_clusters* clusters, const
     const std::span order(clusters->triangle_order, clusters->triangle_count);
     for (std::size_t k = 0; k < order.size(); ++k)
         if (order[k] >= order.size())
-            return report(CROFTON_OUT_OF_RANGE, __func__, "the order has a number that is no triangle", k);
+            return report(CROFTON_OUT_OF_RANGE, __func__, "the order contains a number that is not a triangle", k);
     for (std::size_t k = 0; k < order.size(); ++k)
         std::copy_n(indices + std::size_t{3} * order[k], 3, permuted + 3 * k);
     return CROFTON_OK;

@@ -53,7 +53,7 @@ crofton_status crofton_criterion_for_frustum(const crofton_camera* camera, croft
 crofton_status crofton_criterion_for_rays(double length, crofton_criterion* criterion) {
     CROFTON_CHECK(check_pointer(criterion, __func__));
     if (!(length >= 0.0) || length > kMaxCoordinate)
-        return report(CROFTON_OUT_OF_RANGE, __func__, "the length is to be between 0 and 1e30");
+        return report(CROFTON_OUT_OF_RANGE, __func__, "the length must be in [0, 1e30]");
     *criterion = to_c(measure::for_rays(length));
     return CROFTON_OK;
 }

@@ -63,7 +63,7 @@ crofton_status check_jobs(const crofton_jobs* jobs, const char* function) {
         return report(CROFTON_INVALID_ARGUMENT, function, "jobs need a parallel_for and a concurrency of 1 or more");
     // Each worker may get memory of its own: a number that was never set would ask for all there is.
     if (jobs && jobs->concurrency > 65536)
-        return report(CROFTON_OUT_OF_RANGE, function, "jobs have a concurrency of more than 65536");
+        return report(CROFTON_OUT_OF_RANGE, function, "the concurrency of jobs is more than 65536");
     return CROFTON_OK;
 }
 

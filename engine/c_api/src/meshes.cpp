@@ -37,8 +37,8 @@ class PosedMeshes {
   private:
     crofton_status set(const crofton_body& a, const crofton_body& b, const crofton_transform* b_to_a,
                        const char* function) {
-        if (!a.data->mesh) return report(CROFTON_UNSUPPORTED, function, "the body is no mesh", 0);
-        if (!b.data->mesh) return report(CROFTON_UNSUPPORTED, function, "the body is no mesh", 1);
+        if (!a.data->mesh) return report(CROFTON_UNSUPPORTED, function, "the body is not a mesh", 0);
+        if (!b.data->mesh) return report(CROFTON_UNSUPPORTED, function, "the body is not a mesh", 1);
         CROFTON_CHECK(check_pointer(b_to_a, function));
         a_ = &*a.data->mesh;
         b_ = &*b.data->mesh;

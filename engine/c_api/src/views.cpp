@@ -128,7 +128,7 @@ crofton_status crofton_view_result_depth(const crofton_view_result* result, size
     if (use.failed()) return use.status();
     CROFTON_CHECK(check_view_number(*result, view, __func__));
     const occlude::OcclusionBuffer* const buffer = buffer_of(*result, view);
-    if (!buffer) return report(CROFTON_EMPTY, __func__, "the view was without occlusion", view);
+    if (!buffer) return report(CROFTON_EMPTY, __func__, "the view had no occlusion", view);
     CROFTON_CHECK(check_pointer(nearness, __func__));
     const std::size_t count = std::size_t{buffer->size().width} * buffer->size().height;
     if (capacity < count)

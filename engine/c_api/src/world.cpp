@@ -39,7 +39,7 @@ WorldOptions to_world_options(const crofton_world_options& given) {
 crofton_status check_stride(const void* first, std::size_t count, std::size_t bytes, std::size_t stride,
                             const char* function) {
     if (!first && count > 0) return report(CROFTON_INVALID_ARGUMENT, function, "an array is NULL");
-    if (stride < bytes) return report(CROFTON_INVALID_ARGUMENT, function, "a stride is smaller than what it strides");
+    if (stride < bytes) return report(CROFTON_INVALID_ARGUMENT, function, "a stride is smaller than its element");
     if (count > PTRDIFF_MAX / stride) return report(CROFTON_OUT_OF_RANGE, function, "a count is larger than any array");
     return CROFTON_OK;
 }
@@ -56,7 +56,7 @@ crofton_status to_strided(const Struct* first, std::size_t count, std::size_t st
     if (stride == 0) stride = sizeof(Struct);
     CROFTON_CHECK(check_stride(first, count, sizeof(Struct), stride, function));
     if (stride % alignof(Struct) != 0 || !is_aligned(first, alignof(Struct)))
-        return report(CROFTON_INVALID_ARGUMENT, function, "an array or its stride is not aligned as its type");
+        return report(CROFTON_INVALID_ARGUMENT, function, "an array or its stride is not aligned to its type");
     result = {reinterpret_cast<const Twin*>(first), count, stride};
     return CROFTON_OK;
 }
@@ -104,7 +104,7 @@ crofton_status to_indices(const crofton_mesh_data& data, const char* function, I
     const std::size_t bytes = data.is_short ? sizeof(std::uint16_t) : sizeof(std::uint32_t);
     CROFTON_CHECK(check_stride(data.indices, data.index_count, bytes, bytes, function));
     if (!is_aligned(data.indices, bytes))
-        return report(CROFTON_INVALID_ARGUMENT, function, "the indices are not aligned as their type");
+        return report(CROFTON_INVALID_ARGUMENT, function, "the indices are not aligned to their type");
     if (data.is_short)
         indices = {static_cast<const std::uint16_t*>(data.indices), data.index_count};
     else

@@ -106,7 +106,7 @@ crofton_status crofton_tree_overlap(const crofton_tree* tree, const crofton_shap
             *found = all.size();
             return CROFTON_OK;
         } else {
-            return report(CROFTON_UNSUPPORTED, function, "a tree is asked with a box, sphere or capsule");
+            return report(CROFTON_UNSUPPORTED, function, "trees support boxes, spheres and capsules");
         }
     });
 }

@@ -75,7 +75,7 @@ UpdateStatistics Scene::update(Executor& executor) {
     std::sort(s.removed.begin(), s.removed.end());
     if (statistics.instances_invalid > 0)
         log(LogLevel::warning, "scene: " + std::to_string(statistics.instances_invalid) +
-                                   " instances left the range of coordinates and are hidden until they return");
+                                   " instances are out of the range of coordinates and are hidden until they return");
     return statistics;
 }
 

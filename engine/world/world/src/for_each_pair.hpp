@@ -6,7 +6,7 @@
 namespace crofton {
 
 [[nodiscard]] inline Result<void> fail_sizes() {
-    return fail(ErrorCode::invalid_argument, kNoItem, "world: as many values as handles are needed");
+    return fail(ErrorCode::invalid_argument, kNoItem, "world: there must be as many values as handles");
 }
 
 // Calls change(handle, value, i) for all; returns the first error.

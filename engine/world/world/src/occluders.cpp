@@ -67,7 +67,7 @@ Result<void> complete(FoundOccluder& occluder, std::uint64_t place) {
     for (const Aabb& limits : {occluder.piece_bounds, occluder.eyes_within})
         for (int k = 0; k < 3; ++k)
             if (std::isnan(limits.min[k]) || std::isnan(limits.max[k]))
-                return fail(ErrorCode::non_finite, place, "world: where an eye may use the occluder is NaN");
+                return fail(ErrorCode::non_finite, place, "world: the occluder's range of eyes is NaN");
     auto done = complete_surface(occluder, place);
     if (done && occluder.edges == 0)
         occluder.edges = static_cast<std::uint32_t>(occluder.surface.triangle_count()) * 3 / 2;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Statuses, their text, and versions; the host's hooks; boxes, cameras and views. */
+/* Statuses and error messages, versions, the host's hooks, boxes, cameras, frusta. */
 #ifndef CROFTON_CAPI_BASE_H
 #define CROFTON_CAPI_BASE_H
 #include <stddef.h>
@@ -27,7 +27,7 @@ typedef enum crofton_status {
     CROFTON_INVALID_ARGUMENT = 1, /* a parameter outside its documented range, or NULL where that is not allowed */
     CROFTON_NON_FINITE = 2,       /* NaN or infinity where a finite number is needed */
     CROFTON_OUT_OF_RANGE = 3,     /* an index or a size beyond its limit */
-    CROFTON_DEGENERATE = 4,       /* geometry without the extent or rank the operation needs */
+    CROFTON_DEGENERATE = 4,       /* geometry without the extent or rank that the operation needs */
     CROFTON_EMPTY = 5,            /* empty input */
     CROFTON_UNSUPPORTED = 6,      /* well-formed, but not supported */
     CROFTON_IO = 7,               /* a file could not be read or written */

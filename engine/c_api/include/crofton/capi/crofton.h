@@ -1,14 +1,17 @@
 /* SPDX-License-Identifier: MIT */
-/* Crofton for C and for languages that call C. World comes first; modules.h has the parts that it is made of.
+/* Crofton for C and for languages that call C. This header has World; modules.h has its parts for engines that do
+ * without it.
  *
- * Every function that can fail returns a status; nothing throws. Results go to the last parameters, which stay
- * untouched on failure. Only a failed allocation may end the program. Parameters that may be NULL are marked "or NULL".
+ * Every function that can fail returns a status; nothing throws. Results are written to the last parameters, which a
+ * failed call leaves unchanged. Only a failed allocation may end the program. "or NULL" marks parameters that may be
+ * NULL.
  *
- * Structs that may grow begin with `size`. Fill descriptions and options by their crofton_default_...(), then change
- * what differs. Of the structs that a call fills, set `size` to sizeof(the struct).
+ * Structs that may grow begin with `size`. Get descriptions and options from their crofton_default_...(), then change
+ * members. Before a call that fills a struct, set its `size` to sizeof(the struct).
  *
- * Threads: calls on different handles are independent. On one handle, calls that take a pointer to const may run at the
- * same time; any other call needs the handle to itself. crofton_set_thread_checks makes a breach a status.
+ * Threads: calls on different handles are independent. Calls that take a pointer to const may run on one handle at the
+ * same time; no other call may run on a handle at the same time as any call. With crofton_set_thread_checks, a
+ * violation returns CROFTON_BUSY.
  */
 #ifndef CROFTON_CAPI_CROFTON_H
 #define CROFTON_CAPI_CROFTON_H
@@ -19,14 +22,14 @@
 extern "C" {
 #endif
 
-/* The front door: an engine's objects, what they are and where. docs/world.md is the guide. */
+/* World holds a game's objects and answers queries about them. Guide: docs/world.md. */
 
 /* Owns nodes, meshes and objects. Changes take effect in crofton_world_update. */
 typedef struct crofton_world crofton_world;
 
-/* An index that is used again and a generation that tells its users apart; index CROFTON_NONE: none. A call that takes
- * the handle of what has been removed, or one of another world, returns CROFTON_STALE_HANDLE. Generations begin
- * elsewhere in each world of the process and are never 0: so it does for {0, 0}. */
+/* Handles: an index, which is reused after removal, and a generation, which tells apart those that have used it. Index
+ * CROFTON_NONE is no handle. Calls return CROFTON_STALE_HANDLE for a handle whose object, node or mesh was removed, for
+ * one of another world, and for {0, 0}. */
 typedef struct crofton_object {
     uint32_t index, generation;
 } crofton_object;
@@ -37,50 +40,50 @@ typedef struct crofton_world_mesh {
     uint32_t index, generation;
 } crofton_world_mesh;
 
-/* A struct of this header that was compiled against an older version, and is smaller, is accepted: members that it
- * lacks have their defaults, and results are written as far as it goes. A larger one is CROFTON_WRONG_SIZE. */
+/* A smaller struct of this header, from an older version, is accepted: members that it lacks have their defaults, and
+ * results are written up to its size. A larger one is refused (CROFTON_WRONG_SIZE). */
 
 #define CROFTON_AUTOMATIC UINT64_MAX
 
 typedef struct crofton_world_options {
     size_t size;
-    uint32_t pairs;           /* 1: look for pairs and contacts; 0: for neither */
-    uint32_t contacts;        /* 1; 0: pairs alone */
-    uint32_t containment;     /* 1: an object inside a closed mesh touches it */
-    uint32_t mesh_depth;      /* 0; 1: contacts between meshes have a way out, which costs more */
-    uint64_t max_pairs;       /* 2^24; more are an error */
-    uint64_t rebuild_budget;  /* items' worth of background work on the tree an update; CROFTON_AUTOMATIC: while
-                                 one is under way, at least a 2048th of the objects and 128. 0: none, and no allocation
-                                 for it */
-    uint32_t updates_to_rest; /* 16: updates without motion until an object counts as resting */
+    uint32_t pairs;       /* 1: updates find pairs and contacts; 0: neither */
+    uint32_t contacts;    /* 1; 0: updates find pairs only */
+    uint32_t containment; /* 1: an object inside a closed mesh counts as a contact */
+    uint32_t mesh_depth;  /* 0; 1: computes depths of contacts between meshes; takes longer than finding them */
+    uint64_t max_pairs;   /* 2^24: an update with more fails */
+    /* Items' worth of background work on the tree in each update; 0: none, and no allocation. CROFTON_AUTOMATIC: at
+     * least a 2048th of the objects and 128 while a rebuild is under way. */
+    uint64_t rebuild_budget;
+    uint32_t updates_to_rest; /* 16: updates without motion after which an object rests again */
     double contact_margin;    /* 0: gaps up to this between bodies are contacts */
 } crofton_world_options;
 
 /* As of the last update. */
 typedef struct crofton_world_statistics {
     size_t size;
-    uint64_t objects, resting, moving; /* the latter two: shown ones */
+    uint64_t objects, resting, moving; /* not hidden */
     uint64_t box_pairs_tested, contact_pairs_tested;
     uint32_t boxes_changed, nodes_updated;
-    uint32_t out_of_range; /* objects that the product of transforms has put beyond it: hidden until they return */
-    uint32_t tree_built;   /* 1: all at once, because much has come to rest, or come and gone */
-    uint64_t object_count; /* now: hidden ones count, removed ones do not */
+    uint32_t out_of_range; /* objects whose product of transforms is out of range: hidden until it is valid */
+    uint32_t tree_built;   /* 1: in one go: a scene was loaded, or much came to rest */
+    uint64_t object_count; /* as of now, hidden ones included */
 } crofton_world_statistics;
 
-/* A mesh in its own frame, in the caller's arrays; World copies what it needs. Three indices a triangle,
- * counter-clockwise seen from outside; with an index_count of 0 three positions are one. */
+/* A mesh in its own frame, in your arrays; World copies what it needs. Each triangle has three indices,
+ * counter-clockwise seen from outside. With an index_count of 0, each three positions are a triangle. */
 typedef struct crofton_mesh_data {
     size_t size;
-    const void* positions; /* x y z; of any alignment */
+    const void* positions; /* x y z; need not be aligned */
     size_t position_count;
     size_t position_stride; /* in bytes; 0: packed */
     const void* indices;    /* packed */
     size_t index_count;
     uint32_t is_double; /* 1: positions are double, rounded to float; 0: float */
     uint32_t is_short;  /* 1: indices are uint16_t; 0: uint32_t */
-    uint32_t triangles; /* 1: rays and contacts ask the triangles; 0: the mesh's box stands for it */
-    uint32_t clusters;  /* 0; 1: views with a picture list the triangles, in the clusters of crofton_world_get_mesh */
-    uint32_t one_sided; /* 0; 1, with clusters: back faces are not drawn, and not listed but of mirrored objects */
+    uint32_t triangles; /* 1: queries test the triangles; 0: they test the mesh's box */
+    uint32_t clusters;  /* 0; 1: views with a picture list the triangles by clusters (crofton_world_get_mesh) */
+    uint32_t one_sided; /* 0; 1, with clusters: back faces are not drawn; they are listed for mirrored objects only */
 } crofton_mesh_data;
 
 typedef enum crofton_bound_kind {
@@ -90,54 +93,53 @@ typedef enum crofton_bound_kind {
     CROFTON_BOUND_SPHERE = 3
 } crofton_bound_kind;
 
-/* The shape of an object without a mesh, in the world's coordinates. */
+/* The bound of an object without a mesh, in world coordinates. */
 typedef struct crofton_bound {
-    uint32_t kind;            /* a crofton_bound_kind: which members below count */
+    uint32_t kind;            /* a crofton_bound_kind: says which members below are used */
     crofton_box box;          /* of a box */
     double min[3], max[3];    /* of an aligned box */
     double center[3], radius; /* of a sphere */
 } crofton_bound;
 
-/* A mesh or a body, which `transform` places under `node` or in the world; or a bound. An object with a body needs
- * neither mesh nor bound. */
+/* Give an object a mesh or a body, placed by `transform` under `node` or in the world, or a bound. */
 typedef struct crofton_object_description {
     size_t size;
-    uint64_t user;                      /* given back with every answer */
-    const crofton_bound* bound;         /* or NULL, of a mesh or a body alone */
-    const crofton_transform* transform; /* or NULL: the node's own */
-    uint32_t has_mesh, has_node;        /* 1: the next two count */
+    uint64_t user;                      /* returned with every answer */
+    const crofton_bound* bound;         /* or NULL, for an object with a mesh or only a body */
+    const crofton_transform* transform; /* or NULL: the identity */
+    uint32_t has_mesh, has_node;        /* 1: mesh, or node, is used */
     crofton_world_mesh mesh;
     crofton_node node;
-    uint32_t layers;        /* all: views and queries ask for layers */
-    uint32_t collides_with; /* all layers; 0: the object has no pairs */
-    uint32_t occludes;      /* 1: an object with a mesh hides others; 0: it does not, as where it is transparent */
-    uint32_t only_occludes; /* 0; 1: of an object with a mesh: it is in no answer, and hides what its occluders hide */
-    /* Or NULL. Destroy it at any time: the world keeps what it needs. It counts for pairs from the next update on, for
-     * queries at once. From the next update on the object's box also covers it. Half-spaces, and compounds that hold
-     * some, are ground without end. The object's transform scales the body; CROFTON_UNSUPPORTED: a transform that turns
-     * it into another kind of body, as an uneven scale does with a sphere. Calls that move objects and nodes refuse
-     * such transforms too. */
+    uint32_t layers;        /* all; a query finds objects that share a layer with its mask */
+    uint32_t collides_with; /* all layers; 0: the object forms no pairs */
+    uint32_t occludes;      /* 1: the object's mesh hides others; 0: it does not, for transparent objects */
+    uint32_t only_occludes; /* 0; 1, with a mesh: no answer contains the object, but its occluders hide others */
+    /* Or NULL. You may destroy the body at any time: the world keeps what it needs. Queries use it at once, pairs from
+     * the next update on. From the next update on, the object's box also contains it. Half-spaces, and compounds that
+     * contain some, are infinite ground. The object's transform scales the body. CROFTON_UNSUPPORTED: the transform
+     * would turn the body into another kind, as a non-uniform scale does with a sphere; calls that move objects and
+     * nodes return the same error. */
     const crofton_body* body;
-    uint32_t hidden; /* 0; 1: the object is in no answer */
+    uint32_t hidden; /* 0; 1: no answer contains the object */
 } crofton_object_description;
 
-/* Which members crofton_world_set takes of a description. */
+/* The members of a description that crofton_world_set sets. */
 typedef enum crofton_object_members {
     CROFTON_SET_USER = 1,
     CROFTON_SET_LAYERS = 2,
     CROFTON_SET_COLLIDES_WITH = 4,
     CROFTON_SET_HIDDEN = 8,
-    CROFTON_SET_OCCLUDES = 16, /* of an object with a mesh */
-    CROFTON_SET_MESH = 32,     /* of an object that has one */
-    CROFTON_SET_BOUND = 64,    /* of an object that was added with one */
-    CROFTON_SET_BODY = 128     /* NULL takes it away, but not from an object that was added by its body alone */
+    CROFTON_SET_OCCLUDES = 16, /* for an object with a mesh */
+    CROFTON_SET_MESH = 32,     /* for an object that has one */
+    CROFTON_SET_BOUND = 64,    /* for an object that was added with one */
+    CROFTON_SET_BODY = 128     /* NULL removes it; not for an object that was added with only a body */
 } crofton_object_members;
 
 CROFTON_API crofton_world_options crofton_default_world_options(void);
 CROFTON_API crofton_mesh_data crofton_default_mesh_data(void);
 CROFTON_API crofton_object_description crofton_default_object_description(void);
 
-/* `options` or NULL: all defaults. */
+/* `options` or NULL: the defaults. */
 CROFTON_API crofton_status crofton_world_create(const crofton_world_options* options, crofton_world** world);
 CROFTON_API crofton_status crofton_world_destroy(crofton_world* world);
 
@@ -145,26 +147,27 @@ CROFTON_API crofton_status crofton_world_add_mesh(crofton_world* world, const cr
                                                   crofton_world_mesh* mesh);
 CROFTON_API crofton_status crofton_world_replace_mesh(crofton_world* world, crofton_world_mesh mesh,
                                                       const crofton_mesh_data* data);
-/* For a mesh that deforms: as many positions as before. The other members of `data` are not looked at. */
+/* Moves the vertices of a mesh that deforms: as many positions as before. Ignores the other members of `data`. */
 CROFTON_API crofton_status crofton_world_set_vertices(crofton_world* world, crofton_world_mesh mesh,
                                                       const crofton_mesh_data* data);
-/* An error while objects use it. */
+/* Error: objects use the mesh. */
 CROFTON_API crofton_status crofton_world_remove_mesh(crofton_world* world, crofton_world_mesh mesh);
 
-/* `parent` or NULL: none; `transform` or NULL: the identity. `layers` limits those of all objects below. */
+/* `parent` or NULL: none; `transform` or NULL: the identity. Objects below have only those of their layers that are
+ * also in `layers`. */
 CROFTON_API crofton_status crofton_world_add_node(crofton_world* world, const crofton_node* parent,
                                                   const crofton_transform* transform, uint32_t layers,
                                                   crofton_node* node);
 /* Removes the node with all nodes and objects below it. */
 CROFTON_API crofton_status crofton_world_remove_node(crofton_world* world, crofton_node node);
-/* `parent` or NULL: none. CROFTON_INVALID_ARGUMENT: the node itself, or one below it. */
+/* `parent` or NULL: none. CROFTON_INVALID_ARGUMENT: the parent is the node itself or one below it. */
 CROFTON_API crofton_status crofton_world_set_parent(crofton_world* world, crofton_node node,
                                                     const crofton_node* parent);
 CROFTON_API crofton_status crofton_world_set_node_layers(crofton_world* world, crofton_node node, uint32_t layers);
 
-/* The calls with strides read members of the caller's structs: `stride` bytes apart, 0: packed. A stride is a multiple
- * of the type's alignment and no less than its size. Items that are refused stay as they are and all others change;
- * crofton_last_error_item is the place of the first that was refused. */
+/* Strides let calls read members of your own structs: elements are `stride` bytes apart; 0: packed. A stride must be a
+ * multiple of the type's alignment and at least its size. A call applies all valid items and leaves the others
+ * unchanged; crofton_last_error_item is the place of the first invalid one. */
 
 CROFTON_API crofton_status crofton_world_set_node_transforms(crofton_world* world, const crofton_node* nodes,
                                                              size_t node_stride, const crofton_transform* transforms,
@@ -177,24 +180,24 @@ CROFTON_API crofton_status crofton_world_remove(crofton_world* world, crofton_ob
 CROFTON_API crofton_status crofton_world_set_transforms(crofton_world* world, const crofton_object* objects,
                                                         size_t object_stride, const crofton_transform* transforms,
                                                         size_t transform_stride, size_t count);
-/* Requires objects that were added with a bound, which becomes a box. */
+/* Requires objects that were added with a bound; it becomes a box. */
 CROFTON_API crofton_status crofton_world_set_boxes(crofton_world* world, const crofton_object* objects,
                                                    size_t object_stride, const crofton_box* boxes, size_t box_stride,
                                                    size_t count);
-/* Sets members of an object: `members` is a sum of crofton_object_members, at most one of the last four. An error
+/* Sets members of an object. `members` is a sum of crofton_object_members, with at most one of the last four. An error
  * changes nothing. */
 CROFTON_API crofton_status crofton_world_set(crofton_world* world, crofton_object object, uint32_t members,
                                              const crofton_object_description* description);
 
-/* Makes the changes take effect; once a frame. `jobs` or NULL. CROFTON_BUDGET_EXCEEDED: more than max_pairs pairs;
- * then there are none, and all else is as it should be. */
+/* Applies the changes and finds pairs and contacts. Call it once a frame. `jobs` or NULL. CROFTON_BUDGET_EXCEEDED: more
+ * than max_pairs pairs; all pairs are dropped, everything else is up to date. */
 CROFTON_API crofton_status crofton_world_update(crofton_world* world, const crofton_jobs* jobs);
 CROFTON_API crofton_status crofton_world_get_statistics(const crofton_world* world,
                                                         crofton_world_statistics* statistics);
 
-/* Queries, all as of the last update: what is seen, what rays and shapes meet, what touches. */
+/* Queries. All answer as of the last update. */
 
-typedef struct crofton_found crofton_found; /* a list of objects or of hits; its memory is kept */
+typedef struct crofton_found crofton_found; /* a list of objects or hits, which keeps its memory from call to call */
 
 typedef struct crofton_object_ref {
     crofton_object object;
@@ -206,18 +209,18 @@ typedef struct crofton_object_hit {
     uint64_t user;
     double t; /* the ray's */
     double point[3];
-    uint32_t triangle;      /* of the object's mesh or of its body's surface, or CROFTON_NONE */
-    uint32_t child;         /* of a body that is a compound: which */
-    double normal[3];       /* unit, of the surface, to the side that the ray comes from; 0 if it began inside */
+    uint32_t triangle;      /* of the object's mesh or its body's surface, or CROFTON_NONE */
+    uint32_t child;         /* of a compound body; else 0 */
+    double normal[3];       /* of the surface, unit, towards the ray's origin; 0 if the ray began inside */
     uint8_t started_inside; /* 1: the ray began in the body, box or sphere, and t is 0; else 0 */
 } crofton_object_hit;
 
 typedef struct crofton_closest_object {
     size_t size;
-    crofton_object object; /* index CROFTON_NONE: none within the distance, which is infinite then */
+    crofton_object object; /* index CROFTON_NONE: none within max_distance; `distance` is then infinite */
     uint64_t user;
     double distance;
-    double on_shape[3], on_object[3]; /* a nearest point of each; any where they meet */
+    double on_shape[3], on_object[3]; /* nearest points; if they overlap, any common point */
 } crofton_closest_object;
 
 typedef struct crofton_object_pair {
@@ -230,26 +233,26 @@ typedef enum crofton_contact_phase {
     CROFTON_CONTACT_ENDED = 2
 } crofton_contact_phase;
 
-/* Two objects that touch, or that did in the update before. Ended contacts carry only the two object handles, which are
- * stale where they have been removed. */
+/* Two objects that touch, or that have ended touching in this update. Ended contacts carry only the two object handles;
+ * those of removed objects are stale. */
 typedef struct crofton_object_contact {
     crofton_object_ref first, second;    /* ordered as in crofton_object_pair */
     uint8_t phase;                       /* a crofton_contact_phase */
     uint8_t inside;                      /* a crofton_containment of first (a) and second (b) */
-    double normal[3];                    /* unit, from first to second; 0 where no direction is known */
-    double depth;                        /* between meshes the deepest point's, unless options ask for a way out */
+    double normal[3];                    /* unit, from first to second; 0 if no direction is known */
+    double depth;                        /* between meshes that of the deepest point, unless mesh_depth is set */
     const crofton_contact_point* points; /* at most four, in the world; valid until the next update */
     size_t point_count;
-    const crofton_mesh_contact* triangles; /* of two meshes, or a mesh and a box; likewise */
+    const crofton_mesh_contact* triangles; /* of two meshes, or of a mesh and a box; valid as long */
     size_t triangle_count;
 } crofton_object_contact;
 
-/* Two objects with bodies that touch, or did in the update before. Ended contacts have no points. */
+/* Two objects with bodies that touch, or that have ended touching in this update. Ended contacts have no points. */
 typedef struct crofton_body_contact {
     crofton_object_ref first, second; /* ordered as in crofton_object_pair; the first is body a */
     uint8_t phase;                    /* a crofton_contact_phase */
     uint8_t unused[sizeof(void*) - 1];
-    crofton_tracked_point* points; /* their memory is yours to write; valid until the next update */
+    crofton_tracked_point* points; /* you may write their `memory`; valid until the next update */
     uint32_t point_count;
     uint32_t unused_too;
 } crofton_body_contact;
@@ -257,22 +260,22 @@ typedef struct crofton_body_contact {
 /* The first object that a moving body meets. */
 typedef struct crofton_body_hit {
     size_t size;
-    crofton_object object; /* index CROFTON_NONE: nothing, and time is infinite */
+    crofton_object object; /* index CROFTON_NONE: none; `time` is then infinite */
     uint64_t user;
     double time;
     double normal[3];  /* unit, from the body to the object */
     double point[3];   /* on the object's surface */
     uint32_t triangle; /* of a surface */
-    uint32_t result;   /* a crofton_cast_result; unresolved: up to `time` nothing is met, later is not known */
+    uint32_t result;   /* a crofton_cast_result; unresolved: it meets nothing before `time` */
     double distance;   /* gap at that time; negative: how deep they overlap, from the start */
 } crofton_body_hit;
 
-/* What is known of an object; box and transform as of the last update. */
+/* An object's data; box and transform as of the last update. */
 typedef struct crofton_object_info {
     size_t size;
     uint64_t user;
-    uint32_t has_box;       /* 0 before the first update after the object was added: box is 0 */
-    uint32_t has_transform; /* 1 where the object has a mesh, and likewise */
+    uint32_t has_box;       /* 0 until the first update after the object was added; box is then 0 */
+    uint32_t has_transform; /* 1 if the object has a transform, from the first update on */
     crofton_box box;
     crofton_transform transform; /* object to world */
 } crofton_object_info;
@@ -280,49 +283,51 @@ typedef struct crofton_object_info {
 typedef struct crofton_mesh_info {
     size_t size;
     size_t occluder_count;
-    crofton_clusters clusters; /* as of the last update, valid until the next; of a mesh without clusters all is 0 */
+    crofton_clusters clusters; /* as of the last update, valid until the next; all 0 for a mesh without clusters */
 } crofton_mesh_info;
 
-/* Fill a struct whose `size` is set. CROFTON_STALE_HANDLE: it is not in the world. */
+/* Fill a struct whose `size` is set. CROFTON_STALE_HANDLE: the world does not contain it. */
 CROFTON_API crofton_status crofton_world_get_object(const crofton_world* world, crofton_object object,
                                                     crofton_object_info* info);
 CROFTON_API crofton_status crofton_world_get_mesh(const crofton_world* world, crofton_world_mesh mesh,
                                                   crofton_mesh_info* info);
-/* *contains is 1 or 0. */
+/* Sets *contains to 1 or 0. */
 CROFTON_API crofton_status crofton_world_contains_node(const crofton_world* world, crofton_node node, int* contains);
 
-/* Finds what `count` views see, 1 to 32, by the objects' boxes, and with occlusion by what is not hidden: each object
- * once. Each view keeps its own options. `jobs` or NULL.
+/* Lists the objects that `count` views see, 1 to 32: objects whose boxes they see and, with occlusion, that are not
+ * hidden. Each object is listed once. Each request has its own options. `jobs` or NULL.
  *
- * All requests have the same `size` and lie so far apart; crofton_last_error_item is the place of one of several that
- * is refused. Allocates nothing once `result` has grown to the largest answer. */
+ * All requests have the same `size` and are that many bytes apart. On an error, crofton_last_error_item is the place of
+ * the refused request. Allocates nothing once `result` has held as many objects. */
 CROFTON_API crofton_status crofton_world_view(const crofton_world* world, const crofton_view_request* requests,
                                               size_t count, const crofton_jobs* jobs, crofton_view_result* result);
-/* Writes the objects from place `first` on, at most `capacity`; bit v of view_masks[i] (or NULL): view v sees
- * objects[i].
+/* Writes the objects from place `first` on, at most `capacity`. Bit v of view_masks[i] says whether view v sees
+ * objects[i]; `view_masks` or NULL.
  *
- * `world` is the one that was viewed. After its next update it is CROFTON_INVALID_ARGUMENT. */
+ * `world` is the world of the view. CROFTON_INVALID_ARGUMENT: it was updated since. */
 CROFTON_API crofton_status crofton_view_result_list(const crofton_view_result* result, const crofton_world* world,
                                                     size_t first, crofton_object_ref* objects, uint32_t* view_masks,
                                                     size_t capacity);
 
-/* Rays meet bodies; of objects without one triangles of meshes, boxes and spheres. hits[i] is the nearest of rays[i].
+/* Sets hits[i] to the nearest hit of rays[i]. Tests an object's body, or if it has none, its mesh's triangles, its
+ * sphere or its box.
  */
 CROFTON_API crofton_status crofton_world_raycast(const crofton_world* world, const crofton_ray* rays, size_t count,
                                                  uint32_t layer_mask, crofton_object_hit* hits);
-/* *hit is 1 where the ray hits anything, else 0. */
+/* Sets *hit to 1 if the ray hits anything, else to 0. */
 CROFTON_API crofton_status crofton_world_raycast_any(const crofton_world* world, const crofton_ray* ray,
                                                      uint32_t layer_mask, int* hit);
 
 CROFTON_API crofton_status crofton_found_create(crofton_found** found);
 CROFTON_API crofton_status crofton_found_destroy(crofton_found* found);
-/* What the last query into `found` has found, of its kind; valid until the next. */
+/* Return what the last query with `found` has found; valid until the next. */
 CROFTON_API crofton_status crofton_found_objects(const crofton_found* found, const crofton_object_ref** objects,
                                                  size_t* count);
 CROFTON_API crofton_status crofton_found_hits(const crofton_found* found, const crofton_object_hit** hits,
                                               size_t* count);
 
-/* Finds the nearest hit of every object that the ray meets, by t, then by index: hits. */
+/* Lists the nearest hit of each object that the ray hits, in order of t, then of index. Read it by crofton_found_hits.
+ */
 CROFTON_API crofton_status crofton_world_raycast_all(const crofton_world* world, const crofton_ray* ray,
                                                      uint32_t layer_mask, crofton_found* found);
 /* Finds the objects whose box or sphere meets the shape, in order of index; a mesh counts as its box. A body meets
@@ -330,85 +335,86 @@ CROFTON_API crofton_status crofton_world_raycast_all(const crofton_world* world,
 CROFTON_API crofton_status crofton_world_overlap(const crofton_world* world, const crofton_shape* shape,
                                                  uint32_t layer_mask, crofton_found* found);
 /* Fills a struct whose `size` is set: the object nearest to the shape, as above, no farther than max_distance, which
- * may be infinite. Of several the lowest index. */
+ * may be infinite. If several are equally near, the one with the lowest index. */
 CROFTON_API crofton_status crofton_world_closest(const crofton_world* world, const crofton_shape* shape,
                                                  double max_distance, uint32_t layer_mask,
                                                  crofton_closest_object* closest);
 
-/* Objects whose boxes or spheres meet, in order; valid until the next update. */
+/* Returns the pairs of objects whose boxes or spheres overlap, in order; valid until the next update. */
 CROFTON_API crofton_status crofton_world_pairs(const crofton_world* world, const crofton_object_pair** pairs,
                                                size_t* count);
-/* In order of the pairs; valid until the next update. */
+/* Returns the pairs that touch, and those that have ended touching, in order; valid until the next update. */
 CROFTON_API crofton_status crofton_world_contacts(const crofton_world* world, const crofton_object_contact** contacts,
                                                   size_t* count);
 
-/* Of objects that both have bodies, in order; valid until the next update. Pairs of which neither has moved are not
- * computed again. */
+/* Returns the contacts of objects that both have bodies, in order; valid until the next update. If neither object of a
+ * pair has moved, the pair is not computed again. */
 CROFTON_API crofton_status crofton_world_body_contacts(const crofton_world* world,
                                                        const crofton_body_contact** contacts, size_t* count);
-/* Fills a struct whose `size` is set: the first object that a moving body meets. `options` or NULL. */
+/* Finds the first object that a moving body meets. Fills a struct whose `size` is set. `options` or NULL. */
 CROFTON_API crofton_status crofton_world_cast(const crofton_world* world, const crofton_placed* shape,
                                               const crofton_motion* motion, const crofton_cast_options* options,
                                               uint32_t layer_mask, crofton_body_hit* hit);
 
-/* Occluders: what the objects of a mesh hide others with. docs/occlude.md is the guide. */
+/* Occluders: geometry by which a mesh's objects hide others. Guide: docs/occlude.md. */
 
 typedef enum crofton_occluder_kind {
     CROFTON_OCCLUDER_BOX = 0,    /* inside a closed piece of the mesh */
-    CROFTON_OCCLUDER_WALLED = 1, /* a box behind walls of the mesh, that may be open on some sides */
+    CROFTON_OCCLUDER_WALLED = 1, /* a box behind walls of the mesh; it may be open on some sides */
     CROFTON_OCCLUDER_CONVEX = 2, /* the convex hull of the positions */
     CROFTON_OCCLUDER_PATCH = 3   /* any triangles */
 } crofton_occluder_kind;
 
-/* In the mesh's frame: within what is drawn of it, and opaque. */
+/* In the mesh's frame. Your own occluders must be opaque and lie within the drawn mesh. */
 typedef struct crofton_occluder {
     size_t size;
     uint32_t kind;          /* a crofton_occluder_kind */
-    uint32_t is_one_sided;  /* of a patch, 1: it hides only from where its triangles are counter-clockwise */
-    const float* positions; /* x y z, packed; of a box that is given they may be missing */
+    uint32_t is_one_sided;  /* 1: a patch that hides only from the side where its triangles are counter-clockwise */
+    const float* positions; /* x y z, packed; not needed for a box that you give */
     size_t position_count;
-    const uint32_t* indices; /* of a convex hull that is given they may be missing */
+    const uint32_t* indices; /* not needed for a convex hull that you give */
     size_t index_count;
     crofton_box box;                   /* of a box, walled or not */
-    uint32_t edges;                    /* what it costs; 0: estimated */
-    uint32_t has_piece, has_eyes;      /* 1: the next members count */
-    double piece_min[3], piece_max[3]; /* an eye in here does not use it */
-    double eyes_min[3], eyes_max[3];   /* an eye must be in here; may be infinite */
-    double mean_shadow, gain;          /* of what was found: how much it covers, and adds to those before it */
+    uint32_t edges;                    /* the cost of drawing it; 0: estimated */
+    uint32_t has_piece, has_eyes;      /* 1: the next members are used */
+    double piece_min[3], piece_max[3]; /* not used for an eye in here */
+    double eyes_min[3], eyes_max[3];   /* used only for an eye in here; may be infinite */
+    double mean_shadow, gain; /* of found occluders: how much it covers, and how much it adds to those before it */
 } crofton_occluder;
 
-/* 0: the default. */
+/* 0 in any member: the default. */
 typedef struct crofton_find_options {
     size_t size;
     uint32_t is_two_sided; /* 1: back faces are drawn as well */
     uint32_t max_occluders, max_edges, max_boxes_a_piece, grid;
     double least_gain, flatness;
     uint32_t max_patch_triangles;
-    uint32_t level_triangles; /* not 0: a level of many small pieces, as surfaces of so many triangles, say 48 */
+    uint32_t level_triangles; /* not 0: takes a level of many small pieces as surfaces of so many triangles, say 48 */
 } crofton_find_options;
 
 typedef struct crofton_occluder_ref {
     crofton_object object;
     uint64_t user;
-    uint32_t place; /* among the occluders of the object's mesh */
+    uint32_t place; /* in the list of the mesh's occluders */
     uint32_t unused;
 } crofton_occluder_ref;
 
 CROFTON_API crofton_find_options crofton_default_find_options(void);
-/* Looks for occluders in a mesh; `options` or NULL: defaults. They take effect in the next update. Takes a second or
- * more for 100,000 triangles. */
+/* Searches a mesh for occluders, which the next update applies. Takes a second or more for 100,000 triangles. `options`
+ * or NULL: the defaults. */
 CROFTON_API crofton_status crofton_world_find_occluders(crofton_world* world, crofton_world_mesh mesh,
                                                         const crofton_find_options* options);
-/* Gives a mesh its occluders: those stored of an earlier search, or the caller's own; none: count 0. All have the same
- * `size` and lie so far apart. crofton_last_error_item is the place of one that is refused; then all is as before. */
+/* Sets a mesh's occluders: those of an earlier search, or your own. A count of 0 removes them. All have the same `size`
+ * and are that many bytes apart. If one is refused, crofton_last_error_item is its place, and nothing changes. */
 CROFTON_API crofton_status crofton_world_set_occluders(crofton_world* world, crofton_world_mesh mesh,
                                                        const crofton_occluder* occluders, size_t count);
-/* Fills a struct whose `size` is set; its arrays are valid until the mesh's occluders change. */
+/* Fills a struct whose `size` is set. Its arrays are valid until the mesh's occluders change. */
 CROFTON_API crofton_status crofton_world_get_occluder(const crofton_world* world, crofton_world_mesh mesh, size_t place,
                                                       crofton_occluder* occluder);
-/* Writes the occluders that hide an object, none where it is not hidden; `hidden` NULL: all that were drawn, those
- * worth most first. At most `capacity`, and how many there are to *count. `world` is the one that was viewed; after its
- * next update it is CROFTON_INVALID_ARGUMENT. `result` is of one view. To ask for one object is slow. */
+/* Lists the occluders that hide an object, none if it is not hidden. With `hidden` NULL, lists all drawn occluders,
+ * those that hide most first. Writes at most `capacity`, and sets *count to how many there are. Draws all occluders
+ * again for one object, and allocates. `world` is the world of the view, which had one request.
+ * CROFTON_INVALID_ARGUMENT: the world was updated since. */
 CROFTON_API crofton_status crofton_view_result_occluders(const crofton_view_result* result, const crofton_world* world,
                                                          const crofton_object* hidden, crofton_occluder_ref* occluders,
                                                          size_t capacity, size_t* count);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What tools do before a game runs: triangulate polygons, bake scenes into files, open visible sets.
+/* For tools that prepare levels: triangulate polygons, bake scenes into files, open visible sets.
  * Link crofton_bake as well as crofton. */
 #ifndef CROFTON_CAPI_BAKE_H
 #define CROFTON_CAPI_BAKE_H
@@ -9,11 +9,12 @@
 extern "C" {
 #endif
 
-/* Polygons with holes to triangles of minimum weight. */
+/* Triangulate polygons with holes, at minimum weight. */
 
-typedef struct crofton_triangulator crofton_triangulator; /* memory kept from one polygon to the next */
+typedef struct crofton_triangulator crofton_triangulator; /* keeps its memory from one polygon to the next */
 
-/* Rings one after another; ring r is [ring_ends[r - 1], ring_ends[r]), the first is the outer one, the others holes. */
+/* The points of all rings, one ring after another. Ring r is [ring_ends[r - 1], ring_ends[r]). The first ring is the
+ * outer one, the others are holes. */
 typedef struct crofton_polygon {
     size_t size;
     const double* points; /* x y each */
@@ -33,8 +34,8 @@ typedef struct crofton_triangulation {
     const uint32_t* indices; /* three per triangle, counter-clockwise; valid until the triangulator's next call */
     size_t triangle_count;
     double weight;    /* total length of the diagonals */
-    double gap;       /* proven bound on (weight - minimum) / minimum; infinite when unknown */
-    uint32_t optimal; /* 1 where the weight is proven minimal */
+    double gap;       /* proved bound of (weight - minimum) / minimum; infinite if unknown */
+    uint32_t optimal; /* 1 if the weight is proved to be minimal */
 } crofton_triangulation;
 
 CROFTON_API crofton_status crofton_triangulator_create(crofton_triangulator** triangulator);
@@ -43,11 +44,11 @@ CROFTON_API crofton_status crofton_triangulator_destroy(crofton_triangulator* tr
 CROFTON_API crofton_status crofton_triangulate(crofton_triangulator* triangulator, const crofton_polygon* polygon,
                                                uint32_t method, crofton_triangulation* triangulation);
 
-/* Scenes made ready at build time: boxes, tree and meshes in one file that is used where it lies. */
+/* Baked scenes: boxes, tree and meshes in one file, which is mapped and used in place. */
 
 typedef struct crofton_baked_scene crofton_baked_scene;
 
-/* A mesh as it lies in the file. */
+/* A mesh in the file. */
 typedef struct crofton_baked_mesh {
     size_t size;
     const float* positions; /* x y z per vertex */
@@ -55,7 +56,7 @@ typedef struct crofton_baked_mesh {
     const float* colors; /* linear r g b per vertex, or NULL */
     const uint32_t* indices;
     size_t index_count;
-    const char* name; /* `name_length` characters, with no 0 behind them */
+    const char* name; /* `name_length` characters, not ended by a 0 */
     size_t name_length;
     crofton_box box; /* in the mesh's own frame */
 } crofton_baked_mesh;
@@ -70,21 +71,21 @@ typedef struct crofton_baked_node {
     uint32_t reserved;
 } crofton_baked_node;
 
-/* Writes the scene as of its last update into a file. Either all of it is written and flushed to the disk, or the old
- * file stays. Whoever has the old file open keeps its contents. `jobs` or NULL. */
+/* Writes the scene as of its last update to a file. The file is either complete and flushed to the disk, or an old file
+ * stays unchanged. A process that has the old file open keeps its contents. `jobs` or NULL. */
 CROFTON_API crofton_status crofton_scene_bake(const crofton_scene* scene, const char* path, const crofton_jobs* jobs);
 
-/* Maps a file and checks it whole. `tree` lies over the instances, item i being instance i; it is a handle of its own,
- * which may change and outlive `baked`. Do not shorten or change the file meanwhile: reading what was cut off ends the
+/* Maps a file and checks all of it. Item i of `tree` is instance i. The tree is a handle of its own: you may change it,
+ * and it may outlive `baked`. Do not shorten or change the file while it is mapped: reading what was cut off ends the
  * program (SIGBUS). Replacing it, as crofton_scene_bake does, is safe. `jobs` or NULL. */
 CROFTON_API crofton_status crofton_baked_scene_open(const char* path, const crofton_jobs* jobs,
                                                     crofton_baked_scene** baked, crofton_tree** tree);
-/* As crofton_baked_scene_open, with the file read into memory first: what then happens to the file does no harm. */
+/* Does the same, but reads the file into memory; later changes to the file do no harm. */
 CROFTON_API crofton_status crofton_baked_scene_read(const char* path, const crofton_jobs* jobs,
                                                     crofton_baked_scene** baked, crofton_tree** tree);
 CROFTON_API crofton_status crofton_baked_scene_destroy(crofton_baked_scene* baked);
 
-/* All pointers lead into the file, and hold as long as `baked` lives. */
+/* Pointers lead into the mapped file and are valid as long as `baked`. */
 CROFTON_API crofton_status crofton_baked_scene_mesh_count(const crofton_baked_scene* baked, size_t* count);
 CROFTON_API crofton_status crofton_baked_scene_mesh(const crofton_baked_scene* baked, uint32_t mesh_id,
                                                     crofton_baked_mesh* mesh);
@@ -93,26 +94,27 @@ CROFTON_API crofton_status crofton_baked_scene_instances(const crofton_baked_sce
 CROFTON_API crofton_status crofton_baked_scene_nodes(const crofton_baked_scene* baked, const crofton_baked_node** nodes,
                                                      size_t* count);
 
-/* Potentially visible sets, as `crofton pvs --out FILE` has baked them: docs/pvs.md. */
+/* Potentially visible sets, baked by `crofton pvs --out FILE`. Guide: docs/pvs.md. */
 
 typedef struct crofton_pvs crofton_pvs;
 
 typedef enum crofton_pvs_mode {
-    CROFTON_PVS_CONSERVATIVE = 0, /* all that is not proved hidden */
-    CROFTON_PVS_STATISTICAL = 1   /* what lines have seen */
+    CROFTON_PVS_CONSERVATIVE = 0, /* everything that is not proved to be hidden */
+    CROFTON_PVS_STATISTICAL = 1   /* what random lines have seen */
 } crofton_pvs_mode;
 
 #define CROFTON_PVS_NO_CELL 0xffffffffu
 
-/* More than 2^30 pairs of a cell and an object are refused (CROFTON_OUT_OF_RANGE): each takes a byte meanwhile. */
+/* CROFTON_OUT_OF_RANGE: the file has more than 2^30 pairs of a cell and an object, each of which takes a byte while it
+ * is opened. */
 CROFTON_API crofton_status crofton_pvs_open(const char* path, crofton_pvs** pvs);
 CROFTON_API crofton_status crofton_pvs_destroy(crofton_pvs* pvs);
-/* Numbers of cells and of objects; either may be NULL. */
+/* Returns the numbers of cells and of objects; either may be NULL. */
 CROFTON_API crofton_status crofton_pvs_counts(const crofton_pvs* pvs, size_t* cells, size_t* objects);
-/* The cell of an eye (three numbers), or CROFTON_PVS_NO_CELL where none holds it, or a solid one. */
+/* Finds the cell of an eye (three numbers), or CROFTON_PVS_NO_CELL if it is in none, or in a solid one. */
 CROFTON_API crofton_status crofton_pvs_find_cell(const crofton_pvs* pvs, const double* eye, uint32_t* cell);
-/* What may be seen by an eye, for the candidate_mask of a request; `mode` is a crofton_pvs_mode. Without a cell *words
- * is NULL and *count 0: everything. Holds as long as `pvs` lives; nothing is allocated. */
+/* Returns what an eye may see, for the candidate_mask of a request; `mode` is a crofton_pvs_mode. If the eye is in no
+ * cell, *words is NULL and *count 0, which stands for everything. Valid as long as `pvs`. Allocates nothing. */
 CROFTON_API crofton_status crofton_pvs_visible(const crofton_pvs* pvs, const double* eye, uint32_t mode,
                                                const uint64_t** words, size_t* count);
 
