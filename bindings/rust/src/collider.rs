@@ -3,7 +3,7 @@ use crate::error::check;
 use crate::{sys, Ray, Result, Separation, Transform};
 use std::{mem::size_of, ptr};
 
-/// One mesh, ready for questions about it alone.
+/// A mesh for queries without a World.
 pub struct Collider {
     raw: *mut sys::Body,
 }
@@ -17,17 +17,17 @@ impl Drop for Collider {
     }
 }
 
-/// Where a ray meets a mesh.
+/// Where a ray hits a mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TriangleHit {
-    /// The ray's.
+    /// The parameter along the ray.
     pub t: f64,
-    /// Its number.
+    /// The triangle's index.
     pub triangle: u32,
 }
 
 impl Collider {
-    /// Three indices a triangle; the arrays are copied.
+    /// Takes three indices per triangle; copies the arrays.
     pub fn new(positions: &[[f32; 3]], indices: &[u32]) -> Result<Collider> {
         let mesh = sys::Mesh {
             size: size_of::<sys::Mesh>(),
@@ -52,18 +52,18 @@ impl Collider {
         Ok(relation)
     }
 
-    /// Whether the surfaces share a point, exactly. `other_to_self` is a rotation and a translation.
+    /// Tests whether the surfaces share a point, exactly. `other_to_self` is a rotation and a translation.
     pub fn touches(&self, other: &Collider, other_to_self: &Transform) -> Result<bool> {
         Ok(self.relate(other, other_to_self, sys::MESHES_MEET)?.meet != 0)
     }
 
-    /// How far the surfaces are apart, in this mesh's frame.
+    /// Returns the distance of the surfaces, in this mesh's frame.
     pub fn distance(&self, other: &Collider, other_to_self: &Transform) -> Result<Separation> {
         let found = self.relate(other, other_to_self, sys::MESHES_DISTANCE)?;
         Ok(Separation { distance: found.distance, on_a: found.on_a, on_b: found.on_b })
     }
 
-    /// The nearest triangle that each ray meets.
+    /// Returns the nearest triangle that each ray hits.
     pub fn raycasts(&self, rays: &[Ray]) -> Result<Vec<Option<TriangleHit>>> {
         let here = Transform::default();
         let placed = sys::Placed { body: self.raw, pose: &here };

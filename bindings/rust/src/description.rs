@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: MIT
-//! What objects are made of: meshes, bounds, places.
+//! Descriptions of objects: meshes, bounds, transforms.
 use crate::error::wrong;
 #[cfg(doc)]
 use crate::World;
 use crate::{sys, Error, Mesh, Node, Obb, Result, Status, Transform};
 use std::{mem::size_of, os::raw::c_void, ptr};
 
-/// A mesh's positions, in the caller's memory.
+/// A mesh's positions, in your memory.
 #[derive(Debug, Clone, Copy)]
 pub enum Vertices<'a> {
-    /// x, y, z each.
+    /// x, y, z of each vertex.
     F32(&'a [[f32; 3]]),
     /// Rounded to `f32`.
     F64(&'a [[f64; 3]]),
-    /// Numbers of which x, y, z of each vertex are the first three of `stride`.
+    /// x, y, z of each vertex are the first three of `stride` numbers.
     Interleaved {
         /// All vertices, one after another.
         floats: &'a [f32],
-        /// Numbers a vertex, at least 3.
+        /// Numbers per vertex, at least 3.
         stride: usize,
     },
 }
@@ -25,7 +25,7 @@ pub enum Vertices<'a> {
 /// A mesh's triangles, three indices each, counter-clockwise seen from outside.
 #[derive(Debug, Clone, Copy)]
 pub enum Indices<'a> {
-    /// Three positions are one triangle.
+    /// Each three positions are a triangle.
     None,
     /// 32 bits each.
     U32(&'a [u32]),
@@ -36,20 +36,20 @@ pub enum Indices<'a> {
 /// A mesh in its own frame; [`World`] copies what it needs.
 #[derive(Debug, Clone, Copy)]
 pub struct MeshData<'a> {
-    /// Where its corners are.
+    /// The vertices.
     pub vertices: Vertices<'a>,
-    /// Which of them make a triangle.
+    /// The triangles.
     pub indices: Indices<'a>,
-    /// Rays and contacts ask the triangles; false: the mesh's box stands for it.
+    /// True: queries test the triangles; false: they test the mesh's box.
     pub triangles: bool,
-    /// Views with a picture list the triangles, in clusters: [`World::clusters_of`].
+    /// Views with a picture list the triangles by clusters: [`World::clusters_of`].
     pub clusters: bool,
-    /// With clusters: back faces are not drawn, and not listed but of mirrored objects.
+    /// With clusters: back faces are not drawn; they are listed for mirrored objects only.
     pub one_sided: bool,
 }
 
 impl<'a> MeshData<'a> {
-    /// The usual kind.
+    /// Describes a mesh with the default options.
     pub fn new(positions: &'a [[f32; 3]], indices: &'a [u32]) -> MeshData<'a> {
         let (vertices, indices) = (Vertices::F32(positions), Indices::U32(indices));
         MeshData { vertices, indices, triangles: true, clusters: false, one_sided: false }
@@ -94,21 +94,21 @@ impl<'a> MeshData<'a> {
     }
 }
 
-/// The shape of an object without a mesh, in the world's coordinates.
+/// The bound of an object without a mesh, in world coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Bound {
     /// An oriented box.
     Box(Obb),
     /// A box along the axes.
     Aligned {
-        /// Its least corner.
+        /// The minimum corner.
         min: [f64; 3],
-        /// Its greatest corner.
+        /// The maximum corner.
         max: [f64; 3],
     },
     /// A sphere.
     Sphere {
-        /// Its middle.
+        /// The center.
         center: [f64; 3],
         /// At least 0.
         radius: f64,
@@ -134,7 +134,7 @@ impl Bound {
     }
 }
 
-/// An object to be: a mesh that is placed under a node or in the world, or a bound.
+/// Describes an object to add: a mesh that is placed under a node or in the world, or a bound.
 #[derive(Debug, Clone, Copy)]
 pub struct Description {
     pub(crate) mesh: Option<Mesh>,
@@ -160,35 +160,35 @@ impl Description {
             occludes: true,
         }
     }
-    /// An object with a mesh.
+    /// Describes an object with a mesh.
     pub fn mesh(mesh: Mesh) -> Description {
         Description::new(Some(mesh), None)
     }
-    /// An object that is a bound alone.
+    /// Describes an object with only a bound.
     pub fn bound(bound: Bound) -> Description {
         Description::new(None, Some(bound))
     }
-    /// Moves with this node.
+    /// Places the object under this node.
     pub fn under(self, node: Node) -> Description {
         Description { node: Some(node), ..self }
     }
-    /// Where its mesh is, under its node or in the world.
+    /// Sets the transform of the mesh, to its node or to the world.
     pub fn at(self, transform: Transform) -> Description {
         Description { transform: Some(transform), ..self }
     }
-    /// A number that is given back with every answer.
+    /// Sets a number that is returned with every answer.
     pub fn user(self, user: u64) -> Description {
         Description { user, ..self }
     }
-    /// The layers that the object is in; all unless told.
+    /// Sets the layers that the object is in; the default is all.
     pub fn layers(self, layers: u32) -> Description {
         Description { layers, ..self }
     }
-    /// The layers that the object collides with; all unless told.
+    /// Sets the layers that the object collides with; the default is all.
     pub fn collides_with(self, layers: u32) -> Description {
         Description { collides_with: layers, ..self }
     }
-    /// Hides nothing.
+    /// Makes the object hide no others.
     pub fn transparent(self) -> Description {
         Description { occludes: false, ..self }
     }

@@ -2,18 +2,18 @@
 use crate::sys;
 use std::{ffi::CStr, fmt};
 
-/// What went wrong: the kind, a sentence that says what and why, and which item of the input.
+/// An error: its kind, a message, and the item of the input that caused it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Error {
     /// The kind of failure.
     pub status: Status,
-    /// What was wrong and what to do, in one sentence.
+    /// Says what is wrong and what to do.
     pub message: String,
-    /// The place of the first bad item in the call's input, if one item is to blame.
+    /// The index of the first invalid item of the input, if one item caused the error.
     pub item: Option<u64>,
 }
 
-/// What the functions of this crate return.
+/// The result of the functions of this crate.
 pub type Result<T> = std::result::Result<T, Error>;
 
 macro_rules! statuses {
@@ -64,7 +64,7 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
-/// Turns a status of the C API into a result, with the library's text.
+/// Turns a status of the C API into a result, with the library's message.
 pub(crate) fn check(status: sys::Status) -> Result<()> {
     if status == 0 {
         return Ok(());
@@ -83,10 +83,10 @@ pub(crate) fn wrong(message: &str) -> Error {
     Error { status: Status::InvalidArgument, message: message.to_owned(), item: None }
 }
 
-/// A slice of an answer; the library gives NULL for an empty one.
+/// Makes a slice of an answer; the library returns NULL for an empty one.
 ///
 /// # Safety
-/// `first` is NULL or leads to `count` values that live as long as `'a`.
+/// `first` is NULL or points to `count` values that live as long as `'a`.
 pub(crate) unsafe fn slice<'a, T>(first: *const T, count: usize) -> &'a [T] {
     if first.is_null() || count == 0 {
         return &[];

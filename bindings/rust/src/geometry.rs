@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-//! Boxes, cameras, frusta, rays; and the questions that need nothing else.
+//! Boxes, cameras, frusta and rays, and queries that need nothing else.
 use crate::error::{check, wrong};
 use crate::{sys, Result};
 use std::mem::size_of;
@@ -8,7 +8,7 @@ use std::mem::size_of;
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Obb {
-    /// In the world's coordinates.
+    /// In world coordinates.
     pub center: [f64; 3],
     /// Three unit vectors; `axes[3 * k + i]` is component `i` of axis `k`.
     pub axes: [f32; 9],
@@ -17,17 +17,17 @@ pub struct Obb {
 }
 
 impl Obb {
-    /// A box along the axes of the coordinates.
+    /// Returns a box along the coordinate axes.
     pub fn aligned(center: [f64; 3], half_extents: [f32; 3]) -> Obb {
         Obb { center, axes: [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0], half_extents }
     }
 
-    /// An error that says what is wrong with it.
+    /// Returns an error if the box is invalid.
     pub fn validate(&self) -> Result<()> {
         check(unsafe { sys::crofton_boxes_validate(self, 1) })
     }
 
-    /// A box around this one under `transform`.
+    /// Returns a box that contains this one under `transform`.
     pub fn transformed(&self, transform: &Transform) -> Result<Obb> {
         let mut result = *self;
         check(unsafe { sys::crofton_box_transform(transform, self, &mut result) })?;
@@ -39,14 +39,14 @@ impl Obb {
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Transform {
-    /// By columns: `linear[3 * c + r]` is row `r` of column `c`.
+    /// Column-major: `linear[3 * c + r]` is row `r` of column `c`.
     pub linear: [f64; 9],
-    /// In units of the target's coordinates.
+    /// In units of the target frame.
     pub translation: [f64; 3],
 }
 
 impl Transform {
-    /// Moves by `translation` and turns nothing.
+    /// Returns a translation.
     pub fn at(translation: [f64; 3]) -> Transform {
         Transform { linear: [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0], translation }
     }
@@ -62,48 +62,48 @@ impl Default for Transform {
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ray {
-    /// Where it starts.
+    /// The point at t = 0.
     pub origin: [f64; 3],
-    /// Of any length but 0.
+    /// Any length except 0.
     pub direction: [f64; 3],
     /// May be infinite.
     pub max_t: f64,
 }
 
 impl Ray {
-    /// A ray without an end.
+    /// Returns a ray without an end.
     pub fn new(origin: [f64; 3], direction: [f64; 3]) -> Ray {
         Ray { origin, direction, max_t: f64::INFINITY }
     }
 
-    /// The segment from `begin` to `end`.
+    /// Returns the segment from `begin` to `end`.
     pub fn segment(begin: [f64; 3], end: [f64; 3]) -> Ray {
         let direction = [end[0] - begin[0], end[1] - begin[1], end[2] - begin[2]];
         Ray { origin: begin, direction, max_t: 1.0 }
     }
 }
 
-/// What a camera shows of the depth of space.
+/// The projection of a camera.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Projection {
-    /// A pyramid; the full vertical angle in radians.
+    /// Perspective, by the full vertical angle in radians.
     Perspective {
         /// Between 0 and pi, exclusive.
         fov_y: f64,
     },
-    /// A block; its full height in units of the world.
+    /// Orthographic, by the full height in world units.
     Orthographic {
         /// More than 0.
         height: f64,
     },
 }
 
-/// Where an observer stands, where it looks, and how wide. Right-handed.
+/// A right-handed camera.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
-    /// In the world's coordinates.
+    /// In world coordinates.
     pub position: [f64; 3],
-    /// The direction of view, of any length but 0.
+    /// The direction of view; any length except 0.
     pub forward: [f64; 3],
     /// Not parallel to `forward`.
     pub up: [f64; 3],
@@ -118,7 +118,7 @@ pub struct Camera {
 }
 
 impl Default for Camera {
-    /// At the origin, looking along -z, 60 degrees, 16:9, from 0.1 to 1000.
+    /// Returns a camera at the origin that looks along -z: 60 degrees, 16:9, from 0.1 to 1000.
     fn default() -> Camera {
         let c = unsafe { sys::crofton_default_camera() };
         Camera {
@@ -153,7 +153,7 @@ impl Camera {
         }
     }
 
-    /// What this camera sees.
+    /// Returns the frustum of this camera.
     pub fn frustum(&self) -> Result<Frustum> {
         let mut frustum = Frustum::empty();
         check(unsafe { sys::crofton_frustum_from_camera(&self.raw(), &mut frustum.raw) })?;
@@ -161,7 +161,7 @@ impl Camera {
     }
 }
 
-/// Which depths a projection matrix gives to what is near and what is far.
+/// The depth range of a projection matrix.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DepthRange {
     /// Vulkan, Direct3D: near at 1, far at 0.
@@ -172,7 +172,7 @@ pub enum DepthRange {
     MinusOneToOne = 2,
 }
 
-/// A convex volume of view: up to twelve half-spaces.
+/// A convex volume: up to twelve half-spaces.
 #[derive(Clone, Copy)]
 pub struct Frustum {
     pub(crate) raw: sys::Frustum,
@@ -185,7 +185,8 @@ impl Frustum {
         Frustum { raw }
     }
 
-    /// `to_clip` is column-major and takes column vectors relative to `origin` to clip space.
+    /// Makes a frustum of a matrix. `to_clip` is column-major and takes column vectors relative to `origin` to clip
+    /// space.
     pub fn from_matrix(to_clip: &[f64; 16], depth: DepthRange, origin: [f64; 3]) -> Result<Frustum> {
         let mut frustum = Frustum::empty();
         check(unsafe {
@@ -194,7 +195,7 @@ impl Frustum {
         Ok(frustum)
     }
 
-    /// Half-spaces `dot(normal, x - origin) + offset >= 0`, normals of unit length.
+    /// Makes a frustum of half-spaces `dot(normal, x - origin) + offset >= 0` with unit normals.
     pub fn from_planes(origin: [f64; 3], planes: &[([f64; 3], f64)]) -> Result<Frustum> {
         if planes.len() > sys::MAX_PLANES {
             return Err(wrong("a frustum has at most twelve planes: give fewer"));
@@ -208,25 +209,25 @@ impl Frustum {
         Ok(frustum)
     }
 
-    /// Normals and offsets of its planes, relative to [`Frustum::origin`].
+    /// Returns normals and offsets of the planes, relative to [`Frustum::origin`].
     pub fn planes(&self) -> Vec<([f64; 3], f64)> {
         self.raw.planes[..self.raw.plane_count as usize].iter().map(|p| (p.normal, p.offset)).collect()
     }
 
-    /// What its planes are relative to.
+    /// Returns the point that the planes are relative to.
     pub fn origin(&self) -> [f64; 3] {
         self.raw.origin
     }
 }
 
-/// How a box lies to a frustum.
+/// How a box lies relative to a frustum.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
-    /// No point of the box is in it.
+    /// No point of the box is in the frustum.
     Outside,
-    /// Some are and some are not.
+    /// Some points are inside and some are outside.
     Straddling,
-    /// All are.
+    /// All points are inside.
     Inside,
 }
 
@@ -238,32 +239,32 @@ pub(crate) fn to_verdict(number: u8) -> Verdict {
     }
 }
 
-/// How each box lies to the frustum, exactly.
+/// Returns the exact verdict of each box.
 pub fn classify(frustum: &Frustum, boxes: &[Obb]) -> Result<Vec<Verdict>> {
     let mut verdicts = vec![0u8; boxes.len()];
     check(unsafe { sys::crofton_classify(&frustum.raw, boxes.as_ptr(), boxes.len(), verdicts.as_mut_ptr()) })?;
     Ok(verdicts.into_iter().map(to_verdict).collect())
 }
 
-/// Whether two boxes share a point, exactly; touching counts.
+/// Tests whether two boxes share a point, exactly; touching counts.
 pub fn touches(a: &Obb, b: &Obb) -> Result<bool> {
     let mut meet = 0;
     check(unsafe { sys::crofton_boxes_meet(a, b, &mut meet) })?;
     Ok(meet != 0)
 }
 
-/// How far two bodies are apart, and where.
+/// The distance of two shapes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Separation {
-    /// 0 where they meet.
+    /// 0 if they overlap.
     pub distance: f64,
-    /// A nearest point of the first.
+    /// The nearest point of the first.
     pub on_a: [f64; 3],
-    /// A nearest point of the second.
+    /// The nearest point of the second.
     pub on_b: [f64; 3],
 }
 
-/// How far two boxes are apart.
+/// Returns the distance of two boxes.
 pub fn distance(a: &Obb, b: &Obb) -> Result<Separation> {
     let mut result = Separation { distance: 0.0, on_a: [0.0; 3], on_b: [0.0; 3] };
     check(unsafe {
@@ -272,7 +273,7 @@ pub fn distance(a: &Obb, b: &Obb) -> Result<Separation> {
     Ok(result)
 }
 
-/// A point where two bodies touch.
+/// A contact point.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactPoint {
@@ -282,10 +283,10 @@ pub struct ContactPoint {
     pub depth: f64,
 }
 
-/// Where two boxes touch. Moving the second by `depth * normal` ends the contact.
+/// The contact points of two boxes. Moving the second by `depth * normal` ends the contact.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Manifold {
-    /// Of unit length, from the first to the second.
+    /// Unit, from the first to the second.
     pub normal: [f64; 3],
     /// At least 0.
     pub depth: f64,
@@ -293,7 +294,7 @@ pub struct Manifold {
     pub points: Vec<ContactPoint>,
 }
 
-/// Where two boxes touch; `None` where they do not.
+/// Returns where two boxes touch; `None` if they do not.
 pub fn manifold(a: &Obb, b: &Obb) -> Result<Option<Manifold>> {
     let mut m: sys::Manifold = unsafe { std::mem::zeroed() };
     m.size = size_of::<sys::Manifold>();
@@ -302,7 +303,7 @@ pub fn manifold(a: &Obb, b: &Obb) -> Result<Option<Manifold>> {
     Ok((!points.is_empty()).then_some(Manifold { normal: m.normal, depth: m.depth, points }))
 }
 
-/// Where the ray enters the box: the ray's t, 0 where it starts inside; `None` where it misses.
+/// Returns the t at which the ray enters the box: 0 if it begins inside, `None` if it misses.
 pub fn ray_enters(obb: &Obb, ray: &Ray) -> Result<Option<f64>> {
     let mut t = 0.0;
     check(unsafe { sys::crofton_box_raycast(obb, ray, &mut t) })?;

@@ -2,20 +2,21 @@
 use crate::sys;
 use std::{mem::size_of, os::raw::c_void, sync::atomic::AtomicUsize, sync::atomic::Ordering};
 
-/// The host's job system. Results do not depend on it: any executor gives the same bits.
+/// Your job system. Results do not depend on it: any executor gives the same bits.
 ///
 /// # Safety
 /// `parallel_for` calls `task(begin, end, worker)` once for each of the ranges `[0, grain)`, `[grain, 2 * grain)`, … of
-/// `[0, count)`, the last one cut short, and returns when all calls are done. `worker < concurrency()`, and no two calls
+/// `[0, count)`, the last one cut short, and returns when all calls are done. `worker < concurrency()`, and no two
+/// calls
 /// run at once with one `worker`. It must not panic: the library cannot be unwound, so a panic ends the program.
 pub unsafe trait Executor {
     /// At least 1.
     fn concurrency(&self) -> u32;
-    /// As the trait says.
+    /// Calls `task` for all ranges; see the trait's safety section.
     fn parallel_for(&self, count: usize, grain: usize, task: &(dyn Fn(usize, usize, u32) + Sync));
 }
 
-/// So many threads, started anew in each call; engines have something better.
+/// A number of threads, started in each call. A game should use its own job system.
 pub struct Threads(
     /// 0 counts as 1.
     pub u32,
@@ -47,7 +48,7 @@ unsafe impl Executor for Threads {
     }
 }
 
-/// Calls `function` with the executor as the C API takes it, or with NULL.
+/// Calls `function` with the executor as a C struct, or with NULL.
 pub(crate) fn with_jobs<T>(executor: Option<&dyn Executor>, function: impl FnOnce(*const sys::Jobs) -> T) -> T {
     match executor {
         None => function(std::ptr::null()),
@@ -59,7 +60,7 @@ pub(crate) fn with_jobs<T>(executor: Option<&dyn Executor>, function: impl FnOnc
     }
 }
 
-/// What the library's own function and data look like to other threads.
+/// Lets other threads use the library's task and its data.
 struct Task(sys::RangeTask, *mut c_void);
 unsafe impl Sync for Task {}
 

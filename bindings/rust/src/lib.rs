@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-//! Crofton for Rust: what a camera sees, what touches what, what a ray hits, exactly; and boxes and triangulations that
-//! are best by a stated measure. A thin crate over Crofton's C API: the library does the work, the compiler checks who
-//! owns what.
+//! Crofton for Rust: exact culling, collision detection and rays; and boxes and triangulations that
+//! are optimal by a stated measure. A thin crate over Crofton's C API: the library does the work, the compiler checks
+//! ownership.
 //!
 //! ```
 //! use crofton::{Bound, Camera, Description, ViewResult, World};
@@ -15,8 +15,8 @@
 //! # Ok(()) }
 //! ```
 //!
-//! Positions are `f64` in the world's coordinates, which are right-handed; angles are radians. Answers are as of the
-//! last [`World::update`]. A `&World` may be asked from many threads at once.
+//! Positions are `f64` in world coordinates, which are right-handed; angles are in radians. Queries answer as of the
+//! last [`World::update`]. Many threads may query a `&World` at once.
 #![warn(missing_docs)]
 mod collider;
 mod description;
@@ -51,13 +51,13 @@ pub use world::{Mesh, Node, Object, ObjectRef, Statistics, World, WorldOptions};
 /// All 32 layers.
 pub const ALL_LAYERS: u32 = u32::MAX;
 
-/// The library's version, "major.minor.patch".
+/// Returns the library's version, "major.minor.patch".
 pub fn version() -> &'static str {
     // The library returns a constant of plain ASCII.
     unsafe { std::ffi::CStr::from_ptr(sys::crofton_version_string()) }.to_str().unwrap_or("")
 }
 
-/// The programs of README.md are tests.
+/// Runs the programs of README.md as tests.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 pub struct Readme;

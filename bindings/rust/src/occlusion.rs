@@ -1,45 +1,45 @@
 // SPDX-License-Identifier: MIT
-//! Views that leave out what is hidden behind other objects.
+//! Views with occlusion culling.
 use crate::error::{check, slice};
 use crate::{sys, Mesh, Object, Result, Seen, World};
 
-/// How occluders are looked for in a mesh; 0 stands for the library's default.
+/// Options for finding occluders in a mesh; 0 stands for the library's default.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct FindOptions {
     /// Back faces are drawn as well.
     pub is_two_sided: bool,
-    /// At most so many.
+    /// The largest number of occluders.
     pub max_occluders: u32,
 }
 
-/// How hidden objects are found; 0 stands for the library's default.
+/// Options of occlusion culling; 0 stands for the library's default.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct OcclusionOptions {
-    /// Of the depth buffer, in pixels; 480.
+    /// The width of the depth buffer in pixels; 480.
     pub width: u32,
-    /// Of the depth buffer, in pixels; 270.
+    /// The height of the depth buffer in pixels; 270.
     pub height: u32,
-    /// Drawn into it; 256.
+    /// Draws at most this many occluders, those that hide most; 256.
     pub max_occluders: u32,
-    /// [`Seen::occluded_ids`] lists what is hidden.
+    /// Lists hidden objects in [`Seen::occluded_ids`].
     pub list_occluded: bool,
-    /// What covers a smaller part of the sphere of directions is not drawn; 2e-5.
+    /// Does not draw occluders that cover a smaller part of the sphere of directions; 2e-5.
     pub least_cover: f32,
 }
 
-/// What it took.
+/// Counts of a view with occlusion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct OcclusionStatistics {
     /// Occluders drawn into the depth buffer.
     pub occluders_drawn: u64,
-    /// Objects asked.
+    /// Objects tested.
     pub items_tested: u64,
-    /// Of them hidden; more are hidden with whole nodes of the tree.
+    /// Tested objects that are hidden; others are hidden with whole nodes of the tree.
     pub items_hidden: u64,
 }
 
 impl World {
-    /// Looks for occluders in a mesh, which takes a second or more for 100,000 triangles. They count from the next update on.
+    /// Searches a mesh for occluders, which the next update applies. Takes a second or more for 100,000 triangles.
     pub fn find_occluders(&mut self, mesh: Mesh, options: &FindOptions) -> Result<()> {
         let mut raw = unsafe { sys::crofton_default_find_options() };
         raw.is_two_sided = options.is_two_sided as u32;
@@ -47,12 +47,12 @@ impl World {
         check(unsafe { sys::crofton_world_find_occluders(self.raw, mesh, &raw) })
     }
 
-    /// How many occluders a mesh has.
+    /// Returns the number of a mesh's occluders.
     pub fn occluder_count(&self, mesh: Mesh) -> Result<usize> {
         Ok(self.mesh_info(mesh)?.occluder_count)
     }
 
-    /// Whether an object with a mesh hides others, as at first, or not, as where it is drawn transparent.
+    /// Sets whether an object with a mesh hides others. The default is true; use false for transparent objects.
     pub fn set_occludes(&mut self, object: Object, occludes: bool) -> Result<()> {
         self.set(object, sys::SET_OCCLUDES, |d| d.occludes = occludes as u32)
     }
@@ -85,12 +85,13 @@ pub(crate) fn statistics_of(info: &sys::ViewInfo) -> OcclusionStatistics {
 }
 
 impl<'a> Seen<'a> {
-    /// Indices of what is in the frustum and hidden, ascending; none unless [`OcclusionOptions::list_occluded`] asked.
+    /// Returns the indices of objects in the frustum that are hidden, ascending; empty without
+    /// [`OcclusionOptions::list_occluded`].
     pub fn occluded_ids(&self) -> &'a [u32] {
         self.info().map_or(&[], |info| unsafe { slice(info.occluded_ids, info.occluded_count) })
     }
 
-    /// All 0 after a view without occlusion.
+    /// Returns the counts; all 0 without occlusion.
     pub fn occlusion_statistics(&self) -> Result<OcclusionStatistics> {
         Ok(statistics_of(&self.info()?))
     }

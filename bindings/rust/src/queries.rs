@@ -1,50 +1,50 @@
 // SPDX-License-Identifier: MIT
-//! What rays and shapes meet, and what touches.
+//! Rays, shapes, pairs and contacts.
 use crate::error::{check, slice};
 use crate::{sys, ContactPoint, Obb, Object, ObjectRef, Ray, Result, World};
 use std::{mem::size_of, ptr};
 
 const NONE: u32 = u32::MAX;
 
-/// Where a ray meets an object.
+/// Where a ray hits an object.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ObjectHit {
-    /// Its handle.
+    /// The object.
     pub object: Object,
-    /// The caller's number.
+    /// The object's user number.
     pub user: u64,
-    /// The ray's.
+    /// The parameter along the ray.
     pub t: f64,
-    /// In the world's coordinates.
+    /// In world coordinates.
     pub point: [f64; 3],
     triangle: u32,
-    /// Of a body that is a compound: which.
+    /// The child of a compound body; else 0.
     pub child: u32,
-    /// Of unit length, of the surface, to the side that the ray comes from; 0 if it began inside.
+    /// The surface's unit normal, towards the ray's origin; 0 if the ray began inside.
     pub normal: [f64; 3],
     started_inside: u8,
 }
 
 impl ObjectHit {
-    /// Whether the ray began in the body, box or sphere: `t` is 0.
+    /// True if the ray began in the body, box or sphere; `t` is then 0.
     pub fn started_inside(&self) -> bool {
         self.started_inside != 0
     }
-    /// Of the object's mesh or its body's surface.
+    /// The triangle of the object's mesh or its body's surface.
     pub fn triangle(&self) -> Option<u32> {
         (self.triangle != NONE).then_some(self.triangle)
     }
 }
 
-/// A shape to ask with, in the world's coordinates.
+/// The shape of a query, in world coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Shape {
     /// An oriented box.
     Box(Obb),
     /// A sphere.
     Sphere {
-        /// Its middle.
+        /// The center.
         center: [f64; 3],
         /// At least 0.
         radius: f64,
@@ -53,7 +53,7 @@ pub enum Shape {
     Capsule {
         /// One end of the segment.
         begin: [f64; 3],
-        /// The other.
+        /// The other end.
         end: [f64; 3],
         /// At least 0.
         radius: f64,
@@ -84,22 +84,22 @@ impl Shape {
     }
 }
 
-/// The nearest object to a shape.
+/// The object nearest to a shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Closest {
-    /// Its handle.
+    /// The object.
     pub object: Object,
-    /// The caller's number.
+    /// The object's user number.
     pub user: u64,
-    /// 0 where they meet.
+    /// 0 if they overlap.
     pub distance: f64,
-    /// A nearest point of the shape.
+    /// The nearest point of the shape.
     pub on_shape: [f64; 3],
-    /// A nearest point of the object's box or sphere.
+    /// The nearest point of the object.
     pub on_object: [f64; 3],
 }
 
-/// Two objects whose boxes or spheres meet; `first` has the lower index.
+/// Two objects whose boxes or spheres overlap.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ObjectPair {
@@ -109,69 +109,69 @@ pub struct ObjectPair {
     pub second: ObjectRef,
 }
 
-/// Since when two objects touch.
+/// The phase of a contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Phase {
-    /// Since this update.
+    /// Began in this update.
     Began,
-    /// Since an earlier one.
+    /// Began in an earlier update.
     Stayed,
-    /// No longer; they did in the update before.
+    /// Ended in this update.
     Ended,
 }
 
-/// Which of two objects lies inside the other, where no surfaces meet.
+/// Which of two objects lies inside the other, if their surfaces do not overlap.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Containment {
-    /// Neither, or the surfaces meet.
+    /// Neither, or the surfaces overlap.
     Nothing,
     /// The first lies inside the second.
     FirstInside,
     /// The second lies inside the first.
     SecondInside,
-    /// Some pieces of a mesh do, but not all.
+    /// Some pieces of a mesh are inside, but not all.
     Partly,
 }
 
-/// Where two triangles meet.
+/// The contact of two triangles.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeshContact {
-    /// Of the first mesh.
+    /// The triangle of the first mesh.
     pub first_triangle: u32,
-    /// Of the second mesh.
+    /// The triangle of the second mesh.
     pub second_triangle: u32,
     /// One end of their common segment.
     pub begin: [f64; 3],
     /// The other end.
     pub end: [f64; 3],
-    /// Of the second mesh's triangle; unit.
+    /// The unit normal of the second mesh's triangle.
     pub normal: [f64; 3],
 }
 
-/// Two objects that touch, or that did in the update before.
+/// Two objects that touch, or that have ended touching in this update.
 #[derive(Debug, Clone, Copy)]
 pub struct Contact<'a> {
     /// The one with the lower index.
     pub first: ObjectRef,
     /// The other.
     pub second: ObjectRef,
-    /// Since when.
+    /// Whether the contact began, stayed or ended.
     pub phase: Phase,
-    /// Whether one holds the other.
+    /// Whether one object is inside the other.
     pub inside: Containment,
-    /// Unit, from first to second; 0 where no direction is known.
+    /// Unit, from first to second; 0 if no direction is known.
     pub normal: [f64; 3],
-    /// Moving the second by `depth * normal` parts them; between meshes the deepest point's depth
-    /// unless options ask for a way out.
+    /// Moving the second by `depth * normal` ends the contact; between meshes it is the deepest point's depth
+    /// unless [`WorldOptions::mesh_depth`](crate::WorldOptions) is set.
     pub depth: f64,
     /// At most four.
     pub points: &'a [ContactPoint],
-    /// Of two meshes, or a mesh and a box.
+    /// The contacts of triangles, for two meshes, or for a mesh and a box.
     pub triangles: &'a [MeshContact],
 }
 
-/// Memory for lists of objects or hits; keep it from frame to frame.
+/// A list of objects or hits that keeps its memory; reuse it from frame to frame.
 pub struct Found {
     raw: *mut sys::Found,
 }
@@ -180,7 +180,7 @@ unsafe impl Send for Found {}
 unsafe impl Sync for Found {}
 
 impl Found {
-    /// Room for nothing yet.
+    /// Returns an empty list.
     pub fn new() -> Result<Found> {
         let mut raw = ptr::null_mut();
         check(unsafe { sys::crofton_found_create(&mut raw) })?;
@@ -195,26 +195,26 @@ impl Drop for Found {
 }
 
 impl World {
-    /// The nearest hit among objects in any of `layers`: triangles of meshes, boxes and spheres.
+    /// Returns the nearest hit of objects in any of `layers`: triangles of meshes, boxes and spheres.
     pub fn raycast(&self, ray: &Ray, layers: u32) -> Result<Option<ObjectHit>> {
         Ok(self.raycasts(std::slice::from_ref(ray), layers)?.pop().flatten())
     }
 
-    /// The nearest hit of each ray.
+    /// Returns the nearest hit of each ray.
     pub fn raycasts(&self, rays: &[Ray], layers: u32) -> Result<Vec<Option<ObjectHit>>> {
         let mut hits = vec![no_hit(); rays.len()];
         check(unsafe { sys::crofton_world_raycast(self.raw, rays.as_ptr(), rays.len(), layers, hits.as_mut_ptr()) })?;
         Ok(hits.into_iter().map(|hit| (hit.object.index != NONE).then_some(hit)).collect())
     }
 
-    /// Whether the ray hits anything: quicker than what.
+    /// Tests whether the ray hits anything; faster than [`World::raycast`].
     pub fn raycast_any(&self, ray: &Ray, layers: u32) -> Result<bool> {
         let mut hit = 0;
         check(unsafe { sys::crofton_world_raycast_any(self.raw, ray, layers, &mut hit) })?;
         Ok(hit != 0)
     }
 
-    /// The nearest hit of every object that the ray meets, by t, then by index.
+    /// Lists the nearest hit of each object that the ray hits, in order of t, then of index.
     pub fn raycast_all<'a>(&self, ray: &Ray, layers: u32, found: &'a mut Found) -> Result<&'a [ObjectHit]> {
         let (mut hits, mut count) = (ptr::null(), 0);
         check(unsafe { sys::crofton_world_raycast_all(self.raw, ray, layers, found.raw) })?;
@@ -240,7 +240,7 @@ impl World {
         Ok((object.index != NONE).then_some(closest))
     }
 
-    /// Objects whose boxes or spheres meet, in order.
+    /// Returns the pairs of objects whose boxes or spheres overlap, in order.
     ///
     /// ```compile_fail
     /// # let mut world = crofton::World::new().unwrap();
@@ -254,7 +254,7 @@ impl World {
         Ok(unsafe { slice(pairs, count) })
     }
 
-    /// What touches, and what has ceased to, in the order of the pairs.
+    /// Returns the contacts, and those that have ended, in the order of the pairs.
     pub fn contacts(&self) -> Result<Vec<Contact<'_>>> {
         let (mut contacts, mut count) = (ptr::null(), 0);
         check(unsafe { sys::crofton_world_contacts(self.raw, &mut contacts, &mut count) })?;

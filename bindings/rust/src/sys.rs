@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-//! The C API as it is declared in `crofton/capi/crofton.h`: what the safe types of this crate stand on.
+//! The C API as declared in `crofton/capi/crofton.h`, used by the safe types of this crate.
 #![allow(non_camel_case_types)]
 use std::os::raw::{c_char, c_int, c_void};
 
 pub type Status = c_int;
 
-/// CROFTON_API_VERSION of the headers that this file was written from.
+/// CROFTON_API_VERSION of the headers that this file matches.
 pub const API_VERSION: u32 = 3;
 
 macro_rules! opaque {

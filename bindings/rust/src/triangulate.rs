@@ -3,7 +3,7 @@ use crate::error::{check, slice};
 use crate::{sys, Result};
 use std::{mem::size_of, ptr};
 
-/// Memory that is kept from one polygon to the next.
+/// Triangulates polygons; keeps its memory from one polygon to the next.
 pub struct Triangulator {
     raw: *mut sys::Triangulator,
 }
@@ -16,39 +16,40 @@ impl Drop for Triangulator {
     }
 }
 
-/// How a polygon is cut.
+/// The method of a triangulation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Method {
-    /// Quickest.
+    /// Ear clipping, the fastest.
     Ear = 0,
-    /// Angles as large as they can be.
+    /// Constrained Delaunay: maximises the smallest angles.
     Delaunay = 1,
-    /// Diagonals as short as they can be in all.
+    /// Minimum weight: minimises the total length of the diagonals.
     MinimumWeight = 2,
 }
 
-/// A polygon cut into triangles.
+/// A triangulated polygon.
 #[derive(Debug, Clone, Copy)]
 pub struct Triangulation<'a> {
-    /// Three places of points a triangle, counter-clockwise.
+    /// Three indices of points per triangle, counter-clockwise.
     pub indices: &'a [[u32; 3]],
     /// The total length of the diagonals.
     pub weight: f64,
-    /// A proven bound on (weight - minimum) / minimum; infinite where none is known.
+    /// A proved bound of (weight - minimum) / minimum; infinite if unknown.
     pub gap: f64,
-    /// The weight is proven to be the least.
+    /// True if the weight is proved to be minimal.
     pub is_optimal: bool,
 }
 
 impl Triangulator {
-    /// Room for nothing yet.
+    /// Returns a triangulator without memory.
     pub fn new() -> Result<Triangulator> {
         let mut raw = ptr::null_mut();
         check(unsafe { sys::crofton_triangulator_create(&mut raw) })?;
         Ok(Triangulator { raw })
     }
 
-    /// Ring r is `points[ring_ends[r - 1]..ring_ends[r]]`; the first is the outer one, the others are holes.
+    /// Triangulates a polygon. Ring r is `points[ring_ends[r - 1]..ring_ends[r]]`; the first is the outer one, the
+    /// others are holes.
     pub fn triangulate(&mut self, points: &[[f64; 2]], ring_ends: &[u32], method: Method) -> Result<Triangulation<'_>> {
         let polygon = sys::Polygon {
             size: size_of::<sys::Polygon>(),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-//! What views see of a [`World`].
+//! Views of a [`World`].
 use crate::error::{check, slice};
 use crate::geometry::to_verdict;
 use crate::jobs::with_jobs;
@@ -8,62 +8,63 @@ use crate::{sys, Camera, DepthRange, Executor, Frustum, Mesh, Object, ObjectRef}
 use crate::{OcclusionOptions, OcclusionStatistics, Result, Verdict, World};
 use std::{mem::size_of, ptr};
 
-/// An engine's own matrix, from positions relative to `origin` to clip space, for column vectors.
+/// Your engine's matrix, from positions relative to `origin` to clip space, for column vectors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ViewMatrix {
-    /// Column by column.
+    /// Column-major.
     pub to_clip: [f64; 16],
-    /// Which depths it gives.
+    /// The depth range of the matrix.
     pub depth: DepthRange,
-    /// What positions are relative to.
+    /// The point that positions are relative to.
     pub origin: [f64; 3],
 }
 
-/// What a view asks: where it looks from, and what it lists.
+/// The request of a view.
 #[derive(Clone)]
 pub struct ViewRequest<'a> {
     /// Set a camera,
     pub camera: Option<Camera>,
-    /// an engine's own matrix,
+    /// your engine's matrix,
     pub matrix: Option<ViewMatrix>,
-    /// or any convex volume. For occlusion set a camera or a matrix as well: objects are tested against the volume
-    /// instead of theirs.
+    /// or any convex volume. For occlusion also set a camera or a matrix; objects are then tested against the volume
+    /// instead of its frustum.
     pub volume: Option<Frustum>,
     /// Lists objects that share a layer with these.
     pub layers: u32,
-    /// If set, leaves out objects that others hide; never one that is seen.
+    /// If set, leaves out objects that others hide.
     pub occlusion: Option<OcclusionOptions>,
-    /// If set, lists the triangles without which this picture would change: [`Seen::triangles`]. In place of
+    /// If set, lists the triangles that this picture needs: [`Seen::triangles`]. Use it instead of
     /// `occlusion`.
     pub picture: Option<PictureView>,
-    /// If set, leaves out what is too small or too far.
+    /// If set, leaves out objects that are too small or too far away.
     pub limits: Option<&'a DrawLimits<'a>>,
-    /// If not empty, bit i % 64 of word i / 64: may the object with index i be seen? Objects that have moved since
-    /// their first update may.
+    /// If not empty, bit i % 64 of word i / 64 says whether the object with index i may be seen. Objects that have
+    /// moved since
+    /// their first update may always be seen.
     pub candidate_mask: &'a [u64],
-    /// By planes alone, which keeps some boxes near the volume's corners.
+    /// Tests planes only, which keeps some boxes near the volume's corners.
     pub conservative: bool,
-    /// As the tree lies in memory, which is quicker where much is seen, instead of ascending.
+    /// Lists objects in the order of the tree in memory instead of ascending; faster where much is seen.
     pub tree_order: bool,
 }
 
-/// The picture that is drawn: one sample a pixel.
+/// The picture that you draw, with one sample a pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PictureView {
     /// In pixels, 1 to 16,384.
     pub width: u32,
-    /// Likewise.
+    /// In pixels, 1 to 16,384.
     pub height: u32,
-    /// Of the renderer's projection; beside a [`ViewMatrix`], the same as its.
+    /// The depth range of the projection; with a [`ViewMatrix`], the same as its.
     pub depth: DepthRange,
 }
 
-/// What is too small or too far to draw.
+/// Limits that leave out objects that are too small or too far away.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DrawLimits<'a> {
-    /// Where distances are measured from.
+    /// The point that distances are measured from.
     pub eye: [f64; 3],
-    /// Leaves out what is farther than so many of its radii; infinite: nothing.
+    /// Leaves out what is farther than this times its radius; infinite: no limit.
     pub max_distance_in_radii: f64,
     /// Leaves out what is smaller.
     pub least_radius: f64,
@@ -71,14 +72,14 @@ pub struct DrawLimits<'a> {
     pub layer_distances: Option<&'a [f32; 32]>,
     /// By object index: leaves out what is farther.
     pub item_distances: &'a [f32],
-    /// Bit i % 64 of word i / 64: was the object with index i drawn before?
+    /// Bit i % 64 of word i / 64 says whether the object with index i was drawn before.
     pub drawn_before: &'a [u64],
-    /// Times as long are the limits of what was drawn before; at least 1.
+    /// Limits of objects that were drawn before are this many times as long; at least 1.
     pub hysteresis: f64,
 }
 
 impl DrawLimits<'_> {
-    /// Leaves out nothing yet.
+    /// Returns limits that leave out nothing.
     pub fn new(eye: [f64; 3]) -> Self {
         DrawLimits {
             eye,
@@ -113,7 +114,7 @@ impl DrawLimits<'_> {
 pub struct VisibleCluster {
     /// The object's index.
     pub object: u32,
-    /// Which of [`Clusters::clusters`].
+    /// The index in [`Clusters::clusters`].
     pub cluster: u32,
     /// At least one bit is set.
     pub triangles: u64,
@@ -123,27 +124,28 @@ pub struct VisibleCluster {
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cluster {
-    /// In [`Clusters::triangle_order`].
+    /// The first triangle in [`Clusters::triangle_order`].
     pub first_triangle: u32,
     /// 1 to 64.
     pub triangle_count: u32,
-    /// Of the box.
+    /// The center of the box.
     pub center: [f32; 3],
-    /// Center plus and minus each of the three gives the box's corners.
+    /// The corners of the box are the center plus or minus each of the three.
     pub half_edges: [[f32; 3]; 3],
 }
 
-/// How a mesh is cut.
+/// A mesh cut into clusters.
 #[derive(Debug, Clone, Copy)]
 pub struct Clusters<'a> {
-    /// One range each of the order.
+    /// Each is one range of the order.
     pub clusters: &'a [Cluster],
-    /// Permute the index buffer that you draw by it: triangle `triangle_order[k]` of the mesh is number k.
+    /// Permute the index buffer that you draw by this order: its k-th triangle is triangle `triangle_order[k]` of the
+    /// mesh.
     pub triangle_order: &'a [u32],
 }
 
 impl Default for ViewRequest<'_> {
-    /// All layers, no occlusion; where the view looks from is to be set.
+    /// Returns a request for all layers without occlusion; set camera, matrix or volume.
     fn default() -> Self {
         ViewRequest {
             camera: None,
@@ -220,7 +222,7 @@ impl<'a> Asked<'a> {
     }
 }
 
-/// Memory for the answer to one view or to many; keep it from frame to frame, and nothing is allocated once it is
+/// The answer to one view or many. Reuse it from frame to frame: nothing is allocated once it is
 /// large enough.
 pub struct ViewResult {
     pub(crate) raw: *mut sys::ViewResult,
@@ -230,7 +232,7 @@ unsafe impl Send for ViewResult {}
 unsafe impl Sync for ViewResult {}
 
 impl ViewResult {
-    /// Room for nothing yet.
+    /// Returns an empty answer.
     pub fn new() -> Result<ViewResult> {
         let mut raw = ptr::null_mut();
         check(unsafe { sys::crofton_view_result_create(&mut raw) })?;
@@ -244,7 +246,7 @@ impl Drop for ViewResult {
     }
 }
 
-/// What one view sees. Borrows the world, which cannot change meanwhile, and the memory of the answer.
+/// The answer of one view. It borrows the world and the memory of the result.
 ///
 /// ```compile_fail
 /// # use crofton::{Camera, ViewResult, World};
@@ -270,20 +272,20 @@ impl<'a> Seen<'a> {
     pub(crate) fn info(&self) -> Result<sys::ViewInfo> {
         view_info(self.result, 0)
     }
-    /// Of a view with a picture: the triangles to draw, by object, then by cluster.
+    /// Returns the triangles to draw, by object, then by cluster, for a view with a picture.
     pub fn triangles(&self) -> Result<&'a [VisibleCluster]> {
         let info = self.info()?;
         Ok(unsafe { slice(info.triangles, info.triangle_cluster_count) })
     }
-    /// The objects' indices, ascending unless asked otherwise.
+    /// Returns the objects' indices, ascending unless tree order was requested.
     pub fn ids(&self) -> &'a [u32] {
         self.arrays().0
     }
-    /// Straddling or inside, for each of [`Seen::ids`].
+    /// Returns a verdict, straddling or inside, for each of [`Seen::ids`].
     pub fn verdicts(&self) -> Vec<Verdict> {
         self.arrays().1.unwrap_or(&[]).iter().map(|&v| to_verdict(v)).collect()
     }
-    /// Handles and the caller's numbers, in the order of [`Seen::ids`].
+    /// Returns handles and user numbers in the order of [`Seen::ids`].
     pub fn objects(&self) -> Result<Vec<ObjectRef>> {
         let mut objects = vec![no_object(); self.ids().len()];
         let (o, masks, count) = (objects.as_mut_ptr(), ptr::null_mut(), objects.len());
@@ -292,28 +294,28 @@ impl<'a> Seen<'a> {
     }
 }
 
-/// What several views see, each object once.
+/// The answer of several views, each object once.
 pub struct SeenByMany<'a> {
     world: &'a World,
     result: &'a ViewResult,
 }
 
 impl<'a> SeenByMany<'a> {
-    /// The triangles to draw in one view, as [`Seen::triangles`].
+    /// Returns the triangles to draw in one view, as [`Seen::triangles`].
     pub fn triangles(&self, view: usize) -> Result<&'a [VisibleCluster]> {
         let info = view_info(self.result, view)?;
         Ok(unsafe { slice(info.triangles, info.triangle_cluster_count) })
     }
-    /// As [`Seen::occluded_ids`], of one view.
+    /// The same as [`Seen::occluded_ids`], of one view.
     pub fn occluded_ids(&self, view: usize) -> Result<&'a [u32]> {
         let info = view_info(self.result, view)?;
         Ok(unsafe { slice(info.occluded_ids, info.occluded_count) })
     }
-    /// As [`Seen::occlusion_statistics`], of one view.
+    /// The same as [`Seen::occlusion_statistics`], of one view.
     pub fn occlusion_statistics(&self, view: usize) -> Result<OcclusionStatistics> {
         Ok(statistics_of(&view_info(self.result, view)?))
     }
-    /// Objects, and for each of them the views that see it: bit v for view v.
+    /// Returns the objects, and for each the views that see it: bit v for view v.
     pub fn objects(&self) -> Result<Vec<(ObjectRef, u32)>> {
         let (mut ids, mut count) = (ptr::null(), 0);
         check(unsafe {
@@ -329,12 +331,12 @@ impl<'a> SeenByMany<'a> {
 }
 
 impl World {
-    /// What a view sees, by the objects' boxes, exactly: no visible box is left out.
+    /// Lists the objects whose boxes a view sees, exactly: no visible box is left out.
     pub fn view<'a>(&'a self, request: &ViewRequest, result: &'a mut ViewResult) -> Result<Seen<'a>> {
         self.view_on(None, request, result)
     }
 
-    /// The same on the executor's threads.
+    /// Does the same on the executor's threads.
     pub fn view_on<'a>(
         &'a self, executor: Option<&dyn Executor>, request: &ViewRequest, result: &'a mut ViewResult,
     ) -> Result<Seen<'a>> {
@@ -344,7 +346,7 @@ impl World {
         Ok(Seen { world: self, result })
     }
 
-    /// What up to 32 views see, each with its own options.
+    /// Answers up to 32 views, each with its own options.
     pub fn view_many<'a>(
         &'a self, executor: Option<&dyn Executor>, requests: &[ViewRequest], result: &'a mut ViewResult,
     ) -> Result<SeenByMany<'a>> {
@@ -358,7 +360,7 @@ impl World {
 }
 
 impl World {
-    /// How a mesh with [`MeshData::clusters`](crate::MeshData::clusters) is cut, as of the last update.
+    /// Returns the clusters of a mesh with [`MeshData::clusters`](crate::MeshData::clusters), as of the last update.
     pub fn clusters_of(&self, mesh: Mesh) -> Result<Option<Clusters<'_>>> {
         let raw = self.mesh_info(mesh)?.clusters;
         Ok((raw.cluster_count > 0).then(|| unsafe {

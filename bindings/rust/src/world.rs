@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-//! An engine's objects, what they are and where.
+//! World holds a game's objects and answers queries about them.
 use crate::error::{check, wrong};
 use crate::jobs::with_jobs;
 use crate::{sys, Bound, Description, Error, Executor, Indices, MeshData, Obb, Result, Status, Transform, Vertices};
@@ -9,14 +9,15 @@ macro_rules! handle {
     ($name:ident, $text:literal) => {
         #[doc = $text]
         ///
-        /// An index that is used again and a generation that tells its users apart. A call that takes the handle of
-        /// what has been removed fails with [`Status::StaleHandle`](crate::Status::StaleHandle).
+        /// An index, which is reused after removal, and a generation, which tells apart those that have used it. Calls
+        /// fail with
+        /// [`Status::StaleHandle`](crate::Status::StaleHandle) for a handle whose owner was removed.
         #[repr(C)]
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
         pub struct $name {
-            /// What views list.
+            /// The index that views list.
             pub index: u32,
-            /// How often the index had been given out before.
+            /// Tells apart the users of an index.
             pub generation: u32,
         }
     };
@@ -25,28 +26,28 @@ handle!(Object, "An object of a [`World`].");
 handle!(Node, "A node of a [`World`]: what moves it moves all below it.");
 handle!(Mesh, "A mesh of a [`World`].");
 
-/// An object and the number that the caller gave it.
+/// An object and its user number.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ObjectRef {
-    /// Its handle.
+    /// The object.
     pub object: Object,
-    /// The caller's own, from [`Description::user`].
+    /// Your number, from [`Description::user`].
     pub user: u64,
 }
 
-/// What a [`World`] looks for.
+/// Options of a [`World`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct WorldOptions {
-    /// True: looks for pairs and contacts; false: for neither.
+    /// True: updates find pairs and contacts; false: neither.
     pub pairs: bool,
-    /// True; false: pairs alone.
+    /// False: updates find pairs only.
     pub contacts: bool,
-    /// True: an object inside a closed mesh touches it.
+    /// True: an object inside a closed mesh counts as a contact.
     pub containment: bool,
-    /// False; true: contacts between meshes have a way out, which costs more.
+    /// True: computes depths of contacts between meshes; takes longer than finding them.
     pub mesh_depth: bool,
-    /// 2^24; more are an error.
+    /// 2^24; an update with more pairs fails.
     pub max_pairs: u64,
 }
 
@@ -66,19 +67,19 @@ impl Default for WorldOptions {
 /// As of the last update.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Statistics {
-    /// All of them.
+    /// All objects.
     pub objects: u64,
-    /// Shown ones that rest.
+    /// Resting objects, hidden ones not counted.
     pub resting: u64,
-    /// Shown ones that move.
+    /// Moving objects, hidden ones not counted.
     pub moving: u64,
     /// Boxes that the last update changed.
     pub boxes_changed: u32,
-    /// Hidden because the product of transforms has put them beyond the range, until they return.
+    /// Objects whose product of transforms is out of range: hidden until it is valid.
     pub out_of_range: u32,
 }
 
-/// Owns nodes, meshes and objects. Changes take effect in [`World::update`]; answers are as of the last one.
+/// Owns nodes, meshes and objects. Changes take effect in [`World::update`]; queries answer as of the last one.
 pub struct World {
     pub(crate) raw: *mut sys::World,
 }
@@ -94,12 +95,12 @@ impl Drop for World {
 }
 
 impl World {
-    /// An empty world.
+    /// Returns an empty world with the default options.
     pub fn new() -> Result<World> {
         World::with(WorldOptions::default())
     }
 
-    /// An empty world that does less, or more.
+    /// Returns an empty world.
     pub fn with(options: WorldOptions) -> Result<World> {
         if unsafe { sys::crofton_api_version() } != sys::API_VERSION {
             return Err(wrong(
@@ -117,52 +118,52 @@ impl World {
         Ok(World { raw })
     }
 
-    /// Copies what it needs of `data`.
+    /// Adds a mesh; copies what it needs of `data`.
     pub fn add_mesh(&mut self, data: &MeshData) -> Result<Mesh> {
         let mut mesh = Mesh { index: 0, generation: 0 };
         check(unsafe { sys::crofton_world_add_mesh(self.raw, &data.raw()?, &mut mesh) })?;
         Ok(mesh)
     }
-    /// All objects with this mesh get the new one.
+    /// Replaces a mesh in all objects that use it.
     pub fn replace_mesh(&mut self, mesh: Mesh, data: &MeshData) -> Result<()> {
         check(unsafe { sys::crofton_world_replace_mesh(self.raw, mesh, &data.raw()?) })
     }
-    /// For a mesh that deforms: as many vertices as before.
+    /// Moves the vertices of a mesh that deforms: as many as before.
     pub fn set_vertices(&mut self, mesh: Mesh, vertices: Vertices) -> Result<()> {
         let data = MeshData { vertices, indices: Indices::None, triangles: true, clusters: false, one_sided: false };
         check(unsafe { sys::crofton_world_set_vertices(self.raw, mesh, &data.raw()?) })
     }
-    /// An error while objects use it.
+    /// Removes a mesh. Error: objects use it.
     pub fn remove_mesh(&mut self, mesh: Mesh) -> Result<()> {
         check(unsafe { sys::crofton_world_remove_mesh(self.raw, mesh) })
     }
 
-    /// `layers` limits those of all objects below.
+    /// Adds a node. Objects below have only those of their layers that are also in `layers`.
     pub fn add_node(&mut self, parent: Option<Node>, transform: &Transform, layers: u32) -> Result<Node> {
         let mut node = Node { index: 0, generation: 0 };
         check(unsafe { sys::crofton_world_add_node(self.raw, as_pointer(&parent), transform, layers, &mut node) })?;
         Ok(node)
     }
-    /// With all nodes and objects below it.
+    /// Removes the node with all nodes and objects below it.
     pub fn remove_node(&mut self, node: Node) -> Result<()> {
         check(unsafe { sys::crofton_world_remove_node(self.raw, node) })
     }
-    /// An error where `parent` is the node itself or one below it.
+    /// Moves the node below another. Error: `parent` is the node itself or one below it.
     pub fn set_parent(&mut self, node: Node, parent: Option<Node>) -> Result<()> {
         check(unsafe { sys::crofton_world_set_parent(self.raw, node, as_pointer(&parent)) })
     }
-    /// Limits the layers of all objects below.
+    /// Sets the node's layers. Objects below have only those of their layers that are also in these.
     pub fn set_node_layers(&mut self, node: Node, layers: u32) -> Result<()> {
         check(unsafe { sys::crofton_world_set_node_layers(self.raw, node, layers) })
     }
-    /// Items that are refused stay as they are and all others change; the error names the first.
+    /// Applies all valid items and leaves the others unchanged; the error names the first invalid one.
     pub fn set_node_transforms(&mut self, nodes: &[Node], transforms: &[Transform]) -> Result<()> {
         same_length(nodes.len(), transforms.len())?;
         let (n, t) = (nodes.as_ptr(), transforms.as_ptr());
         check(unsafe { sys::crofton_world_set_node_transforms(self.raw, n, 0, t, 0, nodes.len()) })
     }
 
-    /// Adds an object; it is in answers from the next update on.
+    /// Adds an object; queries find it from the next update on.
     pub fn add(&mut self, description: &Description) -> Result<Object> {
         let bound = description.bound.map(|b| b.raw());
         let none = (u32::MAX, u32::MAX);
@@ -188,17 +189,17 @@ impl World {
         check(unsafe { sys::crofton_world_add(self.raw, &raw, &mut object) })?;
         Ok(object)
     }
-    /// Its handle is stale from now on.
+    /// Removes an object; its handle becomes stale.
     pub fn remove(&mut self, object: Object) -> Result<()> {
         check(unsafe { sys::crofton_world_remove(self.raw, object) })
     }
-    /// Of objects with a mesh. Items that are refused stay as they are; the error names the first.
+    /// Moves objects with meshes. Applies all valid items; the error names the first invalid one.
     pub fn set_transforms(&mut self, objects: &[Object], transforms: &[Transform]) -> Result<()> {
         same_length(objects.len(), transforms.len())?;
         let (o, t) = (objects.as_ptr(), transforms.as_ptr());
         check(unsafe { sys::crofton_world_set_transforms(self.raw, o, 0, t, 0, objects.len()) })
     }
-    /// Of objects that were added with a bound, which becomes a box. Refused items as in [`World::set_transforms`].
+    /// Moves objects that were added with a bound; it becomes a box. Errors as in [`World::set_transforms`].
     pub fn set_boxes(&mut self, objects: &[Object], boxes: &[Obb]) -> Result<()> {
         same_length(objects.len(), boxes.len())?;
         let (o, b) = (objects.as_ptr(), boxes.as_ptr());
@@ -212,42 +213,43 @@ impl World {
         fill(&mut description);
         check(unsafe { sys::crofton_world_set(self.raw, object, member, &description) })
     }
-    /// Of an object that was added with a bound.
+    /// Sets the bound of an object that was added with one.
     pub fn set_bound(&mut self, object: Object, bound: Bound) -> Result<()> {
         let raw = bound.raw();
         self.set(object, sys::SET_BOUND, |d| d.bound = &raw)
     }
-    /// Of an object that has a mesh.
+    /// Sets the mesh of an object that has one.
     pub fn set_mesh(&mut self, object: Object, mesh: Mesh) -> Result<()> {
         self.set(object, sys::SET_MESH, |d| (d.has_mesh, d.mesh) = (1, mesh))
     }
-    /// A hidden object is in no answer until it is shown again.
+    /// Hides or shows an object; no answer contains a hidden one.
     pub fn set_hidden(&mut self, object: Object, hidden: bool) -> Result<()> {
         self.set(object, sys::SET_HIDDEN, |d| d.hidden = hidden as u32)
     }
-    /// The layers that it is in.
+    /// Sets the layers that the object is in.
     pub fn set_layers(&mut self, object: Object, layers: u32) -> Result<()> {
         self.set(object, sys::SET_LAYERS, |d| d.layers = layers)
     }
-    /// The layers that it collides with.
+    /// Sets the layers that the object collides with.
     pub fn set_collides_with(&mut self, object: Object, layers: u32) -> Result<()> {
         self.set(object, sys::SET_COLLIDES_WITH, |d| d.collides_with = layers)
     }
-    /// The number that answers give back.
+    /// Sets the number that answers return with the object.
     pub fn set_user(&mut self, object: Object, user: u64) -> Result<()> {
         self.set(object, sys::SET_USER, |d| d.user = user)
     }
 
-    /// Makes the changes take effect; once a frame. Error: more than [`WorldOptions::max_pairs`] pairs; then there are
-    /// none, and all else is as it should be.
+    /// Applies the changes and finds pairs and contacts. Call it once a frame. Error: more than
+    /// [`WorldOptions::max_pairs`]
+    /// pairs; all pairs are dropped, everything else is up to date.
     pub fn update(&mut self) -> Result<()> {
         check(unsafe { sys::crofton_world_update(self.raw, ptr::null()) })
     }
-    /// The same on several threads, with the same result.
+    /// Does the same on several threads, with the same result.
     pub fn update_on(&mut self, executor: &dyn Executor) -> Result<()> {
         check(with_jobs(Some(executor), |jobs| unsafe { sys::crofton_world_update(self.raw, jobs) }))
     }
-    /// What the last update did.
+    /// Returns the statistics of the last update.
     pub fn statistics(&self) -> Result<Statistics> {
         let s = self.raw_statistics()?;
         Ok(Statistics {
@@ -265,7 +267,7 @@ impl World {
         Ok(s)
     }
 
-    /// How many objects there are.
+    /// Returns the number of objects.
     pub fn object_count(&self) -> usize {
         self.raw_statistics().map_or(0, |s| s.object_count as usize)
     }
@@ -281,24 +283,24 @@ impl World {
         check(unsafe { sys::crofton_world_get_mesh(self.raw, mesh, &mut info) })?;
         Ok(info)
     }
-    /// Whether the handle is of an object that is still there.
+    /// Tests whether the world contains the object.
     pub fn contains(&self, object: Object) -> bool {
         self.info(object).is_ok()
     }
-    /// Whether the handle is of a node that is still there.
+    /// Tests whether the world contains the node.
     pub fn contains_node(&self, node: Node) -> bool {
         let mut contains = 0;
         unsafe { sys::crofton_world_contains_node(self.raw, node, &mut contains) == 0 && contains != 0 }
     }
-    /// Whether the handle is of a mesh that is still there.
+    /// Tests whether the world contains the mesh.
     pub fn contains_mesh(&self, mesh: Mesh) -> bool {
         self.mesh_info(mesh).is_ok()
     }
-    /// The caller's number.
+    /// Returns the object's user number.
     pub fn user(&self, object: Object) -> Result<u64> {
         Ok(self.info(object)?.user)
     }
-    /// The object's box; an error before the first update after it was added.
+    /// Returns the object's box. Error: there was no update since the object was added.
     pub fn obb(&self, object: Object) -> Result<Obb> {
         let info = self.info(object)?;
         if info.has_box == 0 {
@@ -306,7 +308,7 @@ impl World {
         }
         Ok(info.bounding_box)
     }
-    /// Of an object with a mesh: to the world's coordinates.
+    /// Returns the transform of an object with a mesh, to the world.
     pub fn transform(&self, object: Object) -> Result<Transform> {
         let info = self.info(object)?;
         if info.has_transform == 0 {
