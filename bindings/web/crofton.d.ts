@@ -12,7 +12,7 @@ export interface Camera {
 }
 export type Depth = 'reversed' | 'zeroToOne' | 'minusOneToOne';
 export interface LoadOptions {
-    /** The bytes of the WebAssembly, where the page has them already; otherwise they are unpacked from the package. */
+    /** The bytes of the WebAssembly, if the page already has them; otherwise they are unpacked from the package. */
     wasmBinary?: ArrayBuffer | Uint8Array;
 }
 export interface CullOptions { conservative?: boolean; treeOrder?: boolean }
@@ -23,7 +23,7 @@ export interface Triangulation {
     indices: Uint32Array;
     /** Total length of the diagonals. */
     weight: number;
-    /** Proven bound on (weight - minimum) / minimum; infinite when unknown. */
+    /** Proved bound of (weight - minimum) / minimum; infinite if unknown. */
     gap: number;
     optimal: boolean;
 }
@@ -32,10 +32,10 @@ export type Status = 'invalid argument' | 'not finite' | 'out of range' | 'degen
     'cancelled' | 'budget exceeded' | 'unavailable' | 'stale handle' | 'internal' | 'bad handle' | 'wrong struct size' | 'busy' | 'out of memory';
 export class CroftonError extends Error {
     readonly status: Status;
-    /** Of the input; -1: none in particular. */
+    /** The item of the input; -1: no single item. */
     readonly item: number;
 }
-/** Holds memory of the library until `free`, or until the collector finds it. Any use after `free` throws. */
+/** Holds memory of the library until `free`, or until it is garbage-collected. Any use after `free` throws. */
 export interface Owned { free(): void }
 export interface Boxes extends Owned {
     readonly length: number;
@@ -66,7 +66,7 @@ export interface ViewResult extends Owned {
     readonly ids: Uint32Array;
     readonly verdicts: Uint8Array;
     readonly occluded: Uint32Array;
-    /** Of a view with a picture: what to draw; bit k of `triangles` stands for triangle k of the cluster. */
+    /** For a view with a picture: what to draw; bit k of `triangles` stands for triangle k of the cluster. */
     readonly triangles: { object: number; cluster: number; triangles: bigint }[];
     readonly statistics: Record<'nodesTested' | 'boxesTested' | 'acceptedWhole' | 'straddling' | 'exactTests' | 'falsePositives' |
         'occludersDrawn', number>;
@@ -74,21 +74,21 @@ export interface ViewResult extends Owned {
 export type Bits = BigUint64Array | Uint32Array;
 export interface DrawLimits {
     eye: Vector;
-    /** Leaves out what is farther than so many of its radii; infinite unless given. */
+    /** Leaves out what is farther than this times its radius; the default is infinite. */
     maxDistanceInRadii?: number;
     leastRadius?: number;
     /** 32 numbers; by object index. */
     layerDistances?: Float32Array; itemDistances?: Float32Array;
-    /** What was drawn before has `hysteresis` times as long limits. */
+    /** The limits of objects that were drawn before are `hysteresis` times as long. */
     drawnBefore?: Bits; hysteresis?: number;
 }
 export interface ViewRequest {
     camera?: Camera; matrix?: Vector; depth?: Depth; origin?: Vector; volume?: Frustum; layers?: number;
     occlusion?: { listOccluded?: boolean; width?: number; height?: number; maxOccluders?: number; leastCover?: number };
-    /** In place of occlusion; `depth` is that of the renderer's projection, 'reversed' unless given. */
+    /** Instead of occlusion; `depth` is the depth range of the projection, 'reversed' by default. */
     picture?: { width?: number; height?: number; depth?: Depth };
     limits?: DrawLimits;
-    /** Bit i: may object i be seen? Objects that have moved since their first update may. */
+    /** Bit i says whether object i may be seen. Objects that have moved since their first update may always be seen. */
     candidates?: Bits;
     treeOrder?: boolean; conservative?: boolean;
 }

@@ -11,11 +11,11 @@ namespace Crofton {
         Busy = 16, OutOfMemory = 17
     }
 
-    /// <summary>What went wrong: the kind, a sentence, and which item of the input.</summary>
+    /// <summary>An error: its kind, a message, and the item of the input that caused it.</summary>
     public sealed class CroftonException : Exception {
         /// <summary>The kind of failure.</summary>
         public Status Status { get; private set; }
-        /// <summary>The place of the first bad item in the call's input; null where no one item is to blame.</summary>
+        /// <summary>The index of the first invalid item of the input; null if no single item caused the error.</summary>
         public ulong? Item { get; private set; }
 
         internal CroftonException(Status status, string message, ulong? item)
@@ -25,7 +25,7 @@ namespace Crofton {
         }
     }
 
-    /// <summary>The library itself.</summary>
+    /// <summary>The native library.</summary>
     public static class Library {
         /// <summary>"major.minor.patch"</summary>
         public static string Version { get { return ToText(Native.crofton_version_string()); } }

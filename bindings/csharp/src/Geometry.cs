@@ -3,7 +3,7 @@ using System;
 using System.Runtime.InteropServices;
 
 namespace Crofton {
-    /// <summary>A point or a direction, in the world's right-handed coordinates.</summary>
+    /// <summary>A point or a direction, in right-handed world coordinates.</summary>
     [StructLayout(LayoutKind.Sequential)]
     public struct Vector3 : IEquatable<Vector3> {
         public double X, Y, Z;
@@ -30,40 +30,40 @@ namespace Crofton {
         /// <summary>At least 0.</summary>
         public Float3 HalfExtents;
 
-        /// <summary>A box along the axes of the coordinates.</summary>
+        /// <summary>Returns a box along the coordinate axes.</summary>
         public static Obb Aligned(Vector3 center, Float3 halfExtents) {
             return new Obb {
                 Center = center, Axis0 = new Float3(1, 0, 0), Axis1 = new Float3(0, 1, 0), Axis2 = new Float3(0, 0, 1),
                 HalfExtents = halfExtents
             };
         }
-        /// <summary>Throws what is wrong with it.</summary>
+        /// <summary>Throws if the box is invalid.</summary>
         public void Validate() {
             Library.Load();
             Library.Check(Native.crofton_boxes_validate(new[] { this }, (UIntPtr)1));
         }
-        /// <summary>A box around this one under a transform.</summary>
+        /// <summary>Returns a box that contains this one under a transform.</summary>
         public Obb Transformed(Transform transform) {
             Library.Load();
             Obb result;
             Library.Check(Native.crofton_box_transform(ref transform, ref this, out result));
             return result;
         }
-        /// <summary>Whether two boxes share a point, exactly; touching counts.</summary>
+        /// <summary>Tests whether two boxes share a point, exactly; touching counts.</summary>
         public static bool Touches(Obb a, Obb b) {
             Library.Load();
             int meet;
             Library.Check(Native.crofton_boxes_meet(ref a, ref b, out meet));
             return meet != 0;
         }
-        /// <summary>How far two boxes are apart: 0 where they meet.</summary>
+        /// <summary>Returns the distance of two boxes, 0 if they overlap.</summary>
         public static double Distance(Obb a, Obb b, out Vector3 onA, out Vector3 onB) {
             Library.Load();
             double distance;
             Library.Check(Native.crofton_boxes_distance(ref a, ref b, out distance, out onA, out onB));
             return distance;
         }
-        /// <summary>Where the ray enters: its t, 0 where it starts inside; null where it misses.</summary>
+        /// <summary>Returns the t at which the ray enters the box: 0 if it begins inside, null if it misses.</summary>
         public double? Enters(Ray ray) {
             Library.Load();
             double t;
@@ -76,13 +76,13 @@ namespace Crofton {
     [StructLayout(LayoutKind.Sequential)]
     public struct Transform {
         public Vector3 C0, C1, C2, Translation;
-        /// <summary>Moves and turns nothing.</summary>
+        /// <summary>Returns a translation.</summary>
         public static Transform At(double x, double y, double z) {
             return new Transform {
                 C0 = new Vector3(1, 0, 0), C1 = new Vector3(0, 1, 0), C2 = new Vector3(0, 0, 1), Translation = new Vector3(x, y, z)
             };
         }
-        /// <summary>Changes nothing.</summary>
+        /// <summary>The identity.</summary>
         public static readonly Transform Identity = At(0, 0, 0);
     }
 
@@ -98,17 +98,17 @@ namespace Crofton {
         }
     }
 
-    /// <summary>Where an observer stands, where it looks, and how wide. Angles in radians.</summary>
+    /// <summary>A right-handed camera. Angles are in radians.</summary>
     public sealed class Camera {
         public Vector3 Position, Forward, Up;
-        /// <summary>The full height of an orthographic camera's block; 0: a perspective camera.</summary>
+        /// <summary>The full height of the view volume of an orthographic camera; 0: a perspective camera.</summary>
         public double OrthographicHeight;
         /// <summary>The full vertical angle of a perspective camera.</summary>
         public double FovY;
-        /// <summary>Width over height; distances of the near and the far plane. The far one may be infinite in perspective.</summary>
+        /// <summary>Width over height; the distances of the near and far planes. The far distance may be infinite in perspective.</summary>
         public double Aspect, Near, Far;
 
-        /// <summary>At the origin, looking along -z, 60 degrees, 16:9, from 0.1 to 1000.</summary>
+        /// <summary>Returns a camera at the origin that looks along -z: 60 degrees, 16:9, from 0.1 to 1000.</summary>
         public Camera() {
             Library.Load();
             Native.CameraData c = Native.crofton_default_camera();
@@ -127,7 +127,7 @@ namespace Crofton {
                 Far = Far
             };
         }
-        /// <summary>What this camera sees.</summary>
+        /// <summary>Returns the frustum of this camera.</summary>
         public Frustum Frustum() {
             var data = Data();
             var frustum = new Frustum();
@@ -136,20 +136,20 @@ namespace Crofton {
         }
     }
 
-    /// <summary>Which depths a projection matrix gives to what is near and what is far.</summary>
+    /// <summary>The depth range of a projection matrix.</summary>
     public enum DepthRange { ReversedZeroToOne = 0, ZeroToOne = 1, MinusOneToOne = 2 }
 
-    /// <summary>How a box lies to a frustum.</summary>
+    /// <summary>How a box lies relative to a frustum.</summary>
     public enum Verdict : byte { Outside = 0, Straddling = 1, Inside = 2 }
 
-    /// <summary>A convex volume of view: up to twelve half-spaces.</summary>
+    /// <summary>A convex volume: up to twelve half-spaces.</summary>
     public sealed class Frustum {
         internal Native.FrustumData Data;
         internal Frustum() {
             Library.Load();
             Data = new Native.FrustumData { Size = Native.SizeOf<Native.FrustumData>(), Planes = new double[4 * Native.MaxPlanes] };
         }
-        /// <summary>From a column-major matrix that takes column vectors relative to the origin to clip space.</summary>
+        /// <summary>Makes a frustum of a column-major matrix that takes column vectors relative to the origin to clip space.</summary>
         public static Frustum FromMatrix(double[] toClip, DepthRange depth, Vector3 origin) {
             Library.NotNull(toClip, "toClip");
             if (toClip.Length != 16) throw new ArgumentException("a matrix has 16 numbers", "toClip");
@@ -157,7 +157,7 @@ namespace Crofton {
             Library.Check(Native.crofton_frustum_from_matrix(toClip, (uint)depth, ref origin, ref frustum.Data));
             return frustum;
         }
-        /// <summary>How each box lies to the frustum, exactly.</summary>
+        /// <summary>Returns the exact verdict of each box.</summary>
         public Verdict[] Classify(Obb[] boxes) {
             Library.NotNull(boxes, "boxes");
             var bytes = new byte[boxes.Length];

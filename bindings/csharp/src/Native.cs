@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The C API as it is declared in crofton/capi/crofton.h: what the classes stand on.
+// The C API as declared in crofton/capi/crofton.h, used by the classes.
 using System;
 using System.Runtime.InteropServices;
 
@@ -288,7 +288,7 @@ namespace Crofton {
         [DllImport(Library)] internal static extern int crofton_world_contacts(WorldHandle world, out IntPtr contacts, out UIntPtr count);
     }
 
-    /// <summary>Owns something of the library; freed once, when nobody can use it any more.</summary>
+    /// <summary>Owns a handle of the library; freed once, when nothing can use it any more.</summary>
     internal abstract class OwnedHandle : SafeHandle {
         protected OwnedHandle() : base(IntPtr.Zero, true) { }
         public override bool IsInvalid { get { return handle == IntPtr.Zero; } }

@@ -3,7 +3,7 @@ using System;
 using System.Runtime.InteropServices;
 
 namespace Crofton {
-    /// <summary>Memory for the answer to a view; keep it from frame to frame.</summary>
+    /// <summary>The answer to a view. Reuse it from frame to frame.</summary>
     public sealed class ViewResult : IDisposable {
         internal readonly VisibleHandle Handle;
         ObjectRef[] objects = new ObjectRef[0];
@@ -15,19 +15,19 @@ namespace Crofton {
         }
         public void Dispose() { Handle.Dispose(); }
 
-        /// <summary>How many objects the last view saw.</summary>
+        /// <summary>The number of objects that the last view saw.</summary>
         public int Count { get; private set; }
-        /// <summary>The objects and the caller's numbers, by index; only the first Count are of the last view.</summary>
+        /// <summary>The objects and their user numbers, by index; only the first Count are of the last view.</summary>
         public ObjectRef[] Objects { get { return objects; } }
 
-        /// <summary>After a view of several requests: bit v of each says that view v sees the object.</summary>
+        /// <summary>After a view of several requests: bit v of each is set if view v sees the object.</summary>
         public uint[] ViewMasks { get { return masks; } }
-        /// <summary>Indices of what is in the view's volume and hidden; none unless OcclusionOptions.ListOccluded asked.</summary>
+        /// <summary>Indices of objects in the view's volume that are hidden; empty without OcclusionOptions.ListOccluded.</summary>
         public uint[] OccludedIds(int view = 0) {
             Native.ViewInfo info = Info(view);
             return Library.ToArray<uint>(info.OccludedIds, info.OccludedCount);
         }
-        /// <summary>Of a view with a Picture: the triangles to draw, by object, then by cluster (World.ClustersOf).</summary>
+        /// <summary>For a view with a Picture: the triangles to draw, by object, then by cluster (World.ClustersOf).</summary>
         public VisibleCluster[] Triangles(int view = 0) {
             Native.ViewInfo info = Info(view);
             return Library.ToArray<VisibleCluster>(info.Triangles, info.TriangleClusterCount);
@@ -51,29 +51,29 @@ namespace Crofton {
         }
     }
 
-    /// <summary>Where a ray meets an object.</summary>
+    /// <summary>Where a ray hits an object.</summary>
     [StructLayout(LayoutKind.Sequential)]
     public struct Hit {
         public ObjectHandle Object;
         public ulong User;
-        /// <summary>The ray's.</summary>
+        /// <summary>The parameter along the ray.</summary>
         public double T;
         public Vector3 Point;
         uint triangle;
-        /// <summary>Of a body that is a compound: which.</summary>
+        /// <summary>The child of a compound body; else 0.</summary>
         public uint Child;
-        /// <summary>Of unit length, of the surface, to the side that the ray comes from; 0 if it began inside.</summary>
+        /// <summary>The surface's unit normal, towards the ray's origin; 0 if the ray began inside.</summary>
         public Vector3 Normal;
         byte startedInside;
-        /// <summary>Whether the ray began in the body, box or sphere: T is 0.</summary>
+        /// <summary>True if the ray began in the body, box or sphere; T is then 0.</summary>
         public bool StartedInside { get { return startedInside != 0; } }
-        /// <summary>Whether the ray meets anything; the other members count only then.</summary>
+        /// <summary>True if the ray hits anything; otherwise the other members are meaningless.</summary>
         public bool IsHit { get { return Object.Index != uint.MaxValue; } }
-        /// <summary>Of the object's mesh or its body's surface.</summary>
+        /// <summary>The triangle of the object's mesh or its body's surface.</summary>
         public uint? Triangle { get { return triangle == uint.MaxValue ? (uint?)null : triangle; } }
     }
 
-    /// <summary>The nearest object to a shape.</summary>
+    /// <summary>The object nearest to a shape.</summary>
     public struct Closest {
         public ObjectHandle Object;
         public ulong User;
@@ -81,48 +81,48 @@ namespace Crofton {
         public Vector3 OnShape, OnObject;
     }
 
-    /// <summary>Two objects whose boxes or spheres meet; First has the lower index.</summary>
+    /// <summary>Two objects whose boxes or spheres overlap; First has the lower index.</summary>
     [StructLayout(LayoutKind.Sequential)]
     public struct ObjectPair { public ObjectRef First, Second; }
 
-    /// <summary>Since when two objects touch: since this update, since an earlier one, or no longer.</summary>
+    /// <summary>The phase of a contact: it began in this update, began in an earlier one, or has ended.</summary>
     public enum Phase : uint { Began = 0, Stayed = 1, Ended = 2 }
 
-    /// <summary>A point where two bodies touch: midway between the surfaces, and how deep.</summary>
+    /// <summary>A contact point, midway between the surfaces, and its depth.</summary>
     [StructLayout(LayoutKind.Sequential)]
     public struct ContactPoint {
         public Vector3 Position;
         public double Depth;
     }
 
-    /// <summary>Where two triangles meet: the ends of their common segment, and the unit normal of the second's.</summary>
+    /// <summary>The contact of two triangles: the ends of their common segment, and the unit normal of the second.</summary>
     [StructLayout(LayoutKind.Sequential)]
     public struct MeshContact {
         public uint FirstTriangle, SecondTriangle;
         public Vector3 Begin, End, Normal;
     }
 
-    /// <summary>Two objects that touch, or that did in the update before.</summary>
+    /// <summary>Two objects that touch, or that have ended touching in this update.</summary>
     public sealed class Contact {
         public ObjectRef First, Second;
         public Phase Phase;
-        /// <summary>Unit, from first to second; 0 where no direction is known.</summary>
+        /// <summary>Unit, from first to second; 0 if no direction is known.</summary>
         public Vector3 Normal;
-        /// <summary>Moving the second by Depth * Normal parts them; between meshes the deepest point's depth unless options ask for a way out.</summary>
+        /// <summary>Moving the second by Depth * Normal ends the contact; between meshes it is the deepest point's depth unless MeshDepth is set.</summary>
         public double Depth;
         public ContactPoint[] Points;
         public MeshContact[] Triangles;
     }
 
-    /// <summary>How a view leaves out what other objects hide.</summary>
+    /// <summary>Options of occlusion culling.</summary>
     public sealed class OcclusionOptions {
-        /// <summary>Of the depth buffer, in pixels.</summary>
+        /// <summary>The size of the depth buffer in pixels.</summary>
         public uint Width = 480, Height = 270;
-        /// <summary>Draws at most so many.</summary>
+        /// <summary>Draws at most this many occluders, those that hide most.</summary>
         public uint MaxOccluders = 256;
-        /// <summary>Does not draw what covers a smaller part of the sphere of directions.</summary>
+        /// <summary>Does not draw occluders that cover a smaller part of the sphere of directions.</summary>
         public float LeastCover = 2e-5f;
-        /// <summary>Also lists what is hidden: ViewResult.OccludedIds.</summary>
+        /// <summary>Also lists hidden objects: ViewResult.OccludedIds.</summary>
         public bool ListOccluded;
 
         internal Native.OcclusionOptionsData Data() {
@@ -136,33 +136,33 @@ namespace Crofton {
         }
     }
 
-    /// <summary>An engine's own matrix, from positions relative to Origin to clip space, for column vectors.</summary>
+    /// <summary>Your engine's matrix, from positions relative to Origin to clip space, for column vectors.</summary>
     public sealed class ViewMatrix {
-        /// <summary>Sixteen numbers, column by column unless IsRowMajor.</summary>
+        /// <summary>Sixteen numbers, column by column unless IsRowMajor is set.</summary>
         public double[] ToClip;
         public bool IsRowMajor;
         public DepthRange Depth;
         public Vector3 Origin;
     }
 
-    /// <summary>The picture that is drawn: one sample a pixel.</summary>
+    /// <summary>The picture that you draw, with one sample a pixel.</summary>
     public sealed class PictureView {
         public uint Width = 1280, Height = 720;
-        /// <summary>Of the renderer's projection; beside a ViewMatrix, the same as its.</summary>
+        /// <summary>The depth range of the projection; with a ViewMatrix, the same as its.</summary>
         public DepthRange Depth;
     }
 
-    /// <summary>What is too small or too far to draw.</summary>
+    /// <summary>Limits that leave out objects that are too small or too far away.</summary>
     public sealed class DrawLimits {
-        /// <summary>Where distances are measured from.</summary>
+        /// <summary>The point that distances are measured from.</summary>
         public Vector3 Eye;
-        /// <summary>Leaves out what is farther than so many of its radii.</summary>
+        /// <summary>Leaves out what is farther than this times its radius.</summary>
         public double MaxDistanceInRadii = double.PositiveInfinity;
         /// <summary>Leaves out what is smaller.</summary>
         public double LeastRadius;
-        /// <summary>Leaves out what is farther than its layers' distances (32, or null), or its own, by index (or null).</summary>
+        /// <summary>Leaves out what is farther than its layers' distances (32, or null), or than its own, by index (or null).</summary>
         public float[] LayerDistances, ItemDistances;
-        /// <summary>Bit i % 64 of word i / 64: was the object with index i drawn before? Its limits are Hysteresis times as long.</summary>
+        /// <summary>Bit i % 64 of word i / 64 says whether the object with index i was drawn before; its limits are then Hysteresis times as long.</summary>
         public ulong[] DrawnBefore;
         public double Hysteresis = 1;
     }
@@ -183,33 +183,33 @@ namespace Crofton {
         public Edge Center, HalfEdge0, HalfEdge1, HalfEdge2;
     }
 
-    /// <summary>How a mesh is cut. Permute the index buffer that you draw by TriangleOrder: each cluster is one range then.</summary>
+    /// <summary>A mesh cut into clusters. Permute the index buffer that you draw by TriangleOrder: each cluster is then one range.</summary>
     public sealed class Clusters {
         public Cluster[] All;
         public uint[] TriangleOrder;
     }
 
-    /// <summary>What a view asks: where it looks from, and what it lists.</summary>
+    /// <summary>The request of a view.</summary>
     public sealed class ViewRequest {
         /// <summary>Set a camera,</summary>
         public Camera Camera;
-        /// <summary>an engine's own matrix,</summary>
+        /// <summary>your engine's matrix,</summary>
         public ViewMatrix Matrix;
-        /// <summary>or any convex volume. For occlusion set a camera as well: objects are tested against the volume instead of its frustum.</summary>
+        /// <summary>or any convex volume. For occlusion also set a camera; objects are then tested against the volume instead of its frustum.</summary>
         public Frustum Volume;
         /// <summary>Lists objects that share a layer with these.</summary>
         public uint Layers = World.AllLayers;
-        /// <summary>If set, leaves out objects that others hide; never one that is seen.</summary>
+        /// <summary>If set, leaves out objects that others hide.</summary>
         public OcclusionOptions Occlusion;
-        /// <summary>If set, lists the triangles without which this picture would change: ViewResult.Triangles. In place of Occlusion.</summary>
+        /// <summary>If set, lists the triangles that this picture needs: ViewResult.Triangles. Use it instead of Occlusion.</summary>
         public PictureView Picture;
-        /// <summary>If set, leaves out what is too small or too far.</summary>
+        /// <summary>If set, leaves out objects that are too small or too far away.</summary>
         public DrawLimits Limits;
-        /// <summary>If set, bit i % 64 of word i / 64: may the object with index i be seen? Those that have moved since their first update may.</summary>
+        /// <summary>If set, bit i % 64 of word i / 64 says whether the object with index i may be seen. Objects that have moved since their first update may always be seen.</summary>
         public ulong[] CandidateMask;
-        /// <summary>By planes alone, which keeps some boxes near the volume's corners.</summary>
+        /// <summary>Tests planes only, which keeps some boxes near the volume's corners.</summary>
         public bool Conservative;
-        /// <summary>As the tree lies in memory, which is quicker where much is seen, instead of by index.</summary>
+        /// <summary>Lists objects in the order of the tree in memory instead of by index; faster where much is seen.</summary>
         public bool TreeOrder;
 
         public static implicit operator ViewRequest(Camera camera) { return camera == null ? null : new ViewRequest { Camera = camera }; }
@@ -217,8 +217,8 @@ namespace Crofton {
     }
 
     public sealed partial class World {
-        /// <summary>What a view sees, by the objects' boxes, exactly: no visible box is left out. With Occlusion also without
-        /// what other objects hide. A Camera or a Frustum stands for a request with all layers.</summary>
+        /// <summary>Lists the objects whose boxes a view sees, exactly: no visible box is left out. With Occlusion, also leaves
+        /// out hidden objects. A Camera or a Frustum converts to a request for all layers.</summary>
         public void View(ViewRequest request, ViewResult visible) {
             Library.NotNull(request, "request");
             Library.NotNull(visible, "visible");
@@ -230,7 +230,7 @@ namespace Crofton {
                 });
             }
         }
-        /// <summary>What up to 32 views see, each object once, each view with its own options: ViewResult.ViewMasks.</summary>
+        /// <summary>Answers up to 32 views, each with its own options. Lists each object once; ViewResult.ViewMasks says which views see it.</summary>
         public void View(ViewRequest[] requests, ViewResult visible) {
             Library.NotNull(requests, "requests");
             Library.NotNull(visible, "visible");
@@ -246,7 +246,7 @@ namespace Crofton {
                 });
             }
         }
-        // What requests point to, while a call looks at it.
+        // Holds what requests point to during a call.
         sealed class Copies : IDisposable {
             readonly System.Collections.Generic.List<IntPtr> memory = new System.Collections.Generic.List<IntPtr>();
             readonly System.Collections.Generic.List<GCHandle> pinned = new System.Collections.Generic.List<GCHandle>();
@@ -319,22 +319,22 @@ namespace Crofton {
             }
         }
 
-        /// <summary>The nearest hit of a ray: triangles of meshes, boxes and spheres.</summary>
+        /// <summary>Returns the nearest hit of a ray with triangles of meshes, boxes and spheres.</summary>
         public Hit Raycast(Ray ray, uint layers = AllLayers) { return Raycast(new[] { ray }, layers)[0]; }
-        /// <summary>The nearest hit of each ray.</summary>
+        /// <summary>Returns the nearest hit of each ray.</summary>
         public Hit[] Raycast(Ray[] rays, uint layers = AllLayers) {
             Library.NotNull(rays, "rays");
             var hits = new Hit[rays.Length];
             Library.Check(Native.crofton_world_raycast(Handle, rays, (UIntPtr)rays.Length, layers, hits));
             return hits;
         }
-        /// <summary>Whether the ray hits anything: quicker than what.</summary>
+        /// <summary>Tests whether the ray hits anything; faster than Raycast.</summary>
         public bool RaycastAny(Ray ray, uint layers = AllLayers) {
             int hit;
             Library.Check(Native.crofton_world_raycast_any(Handle, ref ray, layers, out hit));
             return hit != 0;
         }
-        /// <summary>The nearest hit of every object that the ray meets, by T, then by index.</summary>
+        /// <summary>Lists the nearest hit of each object that the ray hits, in order of T, then of index.</summary>
         public Hit[] RaycastAll(Ray ray, uint layers = AllLayers) {
             using (var found = Find()) {
                 IntPtr hits;
@@ -368,7 +368,7 @@ namespace Crofton {
             };
         }
 
-        /// <summary>Objects whose boxes or spheres meet, in order.</summary>
+        /// <summary>Returns the pairs of objects whose boxes or spheres overlap, in order.</summary>
         public ObjectPair[] Pairs() {
             return Read(() => {
                 IntPtr pairs;
@@ -377,7 +377,7 @@ namespace Crofton {
                 return Library.ToArray<ObjectPair>(pairs, count);
             });
         }
-        /// <summary>What touches, and what has ceased to, in the order of the pairs.</summary>
+        /// <summary>Returns the contacts, and those that have ended, in the order of the pairs.</summary>
         public Contact[] Contacts() {
             return Read(() => {
                 IntPtr contacts;

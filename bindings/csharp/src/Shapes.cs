@@ -3,25 +3,25 @@ using System;
 using System.Runtime.InteropServices;
 
 namespace Crofton {
-    /// <summary>What a box is to have least of: VolumeWeight V + AreaWeight F + MeanCurvatureWeight M, weights at least 0 and
-    /// not all 0.</summary>
+    /// <summary>The quantity that a box minimises: VolumeWeight V + AreaWeight F + MeanCurvatureWeight M. Weights are at least 0
+    /// and not all 0.</summary>
     [StructLayout(LayoutKind.Sequential)]
     public struct Criterion {
         public double VolumeWeight, AreaWeight, MeanCurvatureWeight;
 
-        /// <summary>The sum of the edges: for frusta that are large beside the objects.</summary>
+        /// <summary>The sum of the edges: for frusta that are large compared with the objects.</summary>
         public static Criterion MinimalPerimeter() {
             Library.Load();
             return Native.crofton_default_fit_options().Criterion;
         }
-        /// <summary>For rays and segments of this length.</summary>
+        /// <summary>Minimises the expected number of hits by rays and segments of this length.</summary>
         public static Criterion ForRays(double length) {
             Library.Load();
             Criterion criterion;
             Library.Check(Native.crofton_criterion_for_rays(length, out criterion));
             return criterion;
         }
-        /// <summary>Makes the camera's expected number of hits least; its far distance must be finite.</summary>
+        /// <summary>Minimises the expected number of boxes in the camera's frustum; its far distance must be finite.</summary>
         public static Criterion ForFrustum(Camera camera) {
             Library.NotNull(camera, "camera");
             var data = camera.Data();
@@ -31,19 +31,19 @@ namespace Crofton {
         }
     }
 
-    /// <summary>How much work goes into a box: two passes over the points; convex hull and search; the global optimum.</summary>
+    /// <summary>The effort to fit a box: two passes over the points; convex hull and local search; the global optimum.</summary>
     public enum Quality : uint { Fast = 0, Tight = 1, Exact = 2 }
 
-    /// <summary>Boxes around points.</summary>
+    /// <summary>Fits boxes around points.</summary>
     public static class Fit {
-        /// <summary>A box that holds every point (x, y, z each), best by the criterion; minimal perimeter unless told.</summary>
+        /// <summary>Returns a box that contains every point (x, y, z each), the best by the criterion; null: the sum of the edges.</summary>
         public static Obb Box(float[] points, Quality quality = Quality.Tight, Criterion? criterion = null) {
             var options = Options(points, quality, criterion);
             Obb box;
             Library.Check(Native.crofton_fit_points(points, (UIntPtr)(points.Length / 3), 0, ref options, out box));
             return box;
         }
-        /// <summary>The same for double precision.</summary>
+        /// <summary>The same in double precision.</summary>
         public static Obb Box(double[] points, Quality quality = Quality.Tight, Criterion? criterion = null) {
             var options = Options(points, quality, criterion);
             Obb box;
@@ -60,22 +60,22 @@ namespace Crofton {
         }
     }
 
-    /// <summary>How a polygon is cut: quickest; angles as large as they can be; diagonals as short as they can be in all.</summary>
+    /// <summary>The method of a triangulation: ear clipping, the fastest; constrained Delaunay; minimum total length of the diagonals.</summary>
     public enum Method : uint { Ear = 0, Delaunay = 1, MinimumWeight = 2 }
 
-    /// <summary>A polygon cut into triangles.</summary>
+    /// <summary>A triangulated polygon.</summary>
     public sealed class Triangulation {
-        /// <summary>Three places of points a triangle, counter-clockwise.</summary>
+        /// <summary>Three indices of points per triangle, counter-clockwise.</summary>
         public int[] Indices;
         /// <summary>The total length of the diagonals.</summary>
         public double Weight;
-        /// <summary>A proven bound on (weight - minimum) / minimum; infinite where none is known.</summary>
+        /// <summary>A proved bound of (weight - minimum) / minimum; infinite if unknown.</summary>
         public double Gap;
-        /// <summary>The weight is proven to be the least.</summary>
+        /// <summary>True if the weight is proved to be minimal.</summary>
         public bool IsOptimal;
     }
 
-    /// <summary>Cuts polygons; keeps memory from one to the next. For one thread at a time.</summary>
+    /// <summary>Triangulates polygons; keeps its memory from one polygon to the next. Use it from one thread at a time.</summary>
     public sealed class Triangulator : IDisposable {
         readonly TriangulatorHandle handle;
         public Triangulator() {
@@ -84,7 +84,7 @@ namespace Crofton {
         }
         public void Dispose() { handle.Dispose(); }
 
-        /// <summary>Points are x, y each. Ring r is the points from ringEnds[r - 1] to before ringEnds[r]; the first ring is the
+        /// <summary>Triangulates a polygon. Points are x, y each. Ring r is the points from ringEnds[r - 1] to before ringEnds[r]; the first ring is the
         /// outer one, the others are holes; null: all points are one ring.</summary>
         public Triangulation Triangulate(double[] points, uint[] ringEnds = null, Method method = Method.MinimumWeight) {
             Library.NotNull(points, "points");

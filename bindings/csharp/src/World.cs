@@ -4,7 +4,7 @@ using System.Runtime.InteropServices;
 using System.Threading;
 
 namespace Crofton {
-    /// <summary>An object of a World: an index that is used again and a generation that tells its users apart.</summary>
+    /// <summary>An object of a World: an index, which is reused after removal, and a generation, which tells apart those that have used it.</summary>
     [StructLayout(LayoutKind.Sequential)]
     public struct ObjectHandle : IEquatable<ObjectHandle> {
         public uint Index, Generation;
@@ -13,26 +13,26 @@ namespace Crofton {
         public override int GetHashCode() { return (int)(Index ^ (Generation << 24)); }
         public override string ToString() { return Index + "." + Generation; }
     }
-    /// <summary>A node of a World: what moves it moves all below it.</summary>
+    /// <summary>A node of a World. Moving it moves all nodes and objects below it.</summary>
     [StructLayout(LayoutKind.Sequential)]
     public struct NodeHandle { public uint Index, Generation; }
     /// <summary>A mesh of a World.</summary>
     [StructLayout(LayoutKind.Sequential)]
     public struct MeshHandle { public uint Index, Generation; }
 
-    /// <summary>An object and the number that the caller gave it.</summary>
+    /// <summary>An object and its user number.</summary>
     [StructLayout(LayoutKind.Sequential)]
     public struct ObjectRef {
         public ObjectHandle Object;
         public ulong User;
     }
 
-    /// <summary>The shape of an object without a mesh, in the world's coordinates.</summary>
+    /// <summary>The bound of an object without a mesh, in world coordinates.</summary>
     public struct Bound {
         internal Native.BoundData Data;
         /// <summary>An oriented box.</summary>
         public static Bound Box(Obb box) { return new Bound { Data = new Native.BoundData { Kind = 1, Box = box } }; }
-        /// <summary>A box along the axes, by its least and greatest corners.</summary>
+        /// <summary>A box along the axes, by its minimum and maximum corners.</summary>
         public static Bound Aligned(Vector3 min, Vector3 max) {
             return new Bound { Data = new Native.BoundData { Kind = 2, Min = min, Max = max } };
         }
@@ -42,22 +42,22 @@ namespace Crofton {
         }
     }
 
-    /// <summary>What a World looks for.</summary>
+    /// <summary>Options of a World.</summary>
     public sealed class WorldOptions {
-        /// <summary>Looks for pairs and contacts; false: for neither.</summary>
+        /// <summary>Updates find pairs and contacts; false: neither.</summary>
         public bool Pairs = true;
-        /// <summary>False: pairs alone.</summary>
+        /// <summary>False: updates find pairs only.</summary>
         public bool Contacts = true;
-        /// <summary>An object inside a closed mesh touches it.</summary>
+        /// <summary>An object inside a closed mesh counts as a contact.</summary>
         public bool Containment = true;
-        /// <summary>Contacts between meshes have a way out, which costs more.</summary>
+        /// <summary>Computes depths of contacts between meshes; takes longer than finding them.</summary>
         public bool MeshDepth = false;
-        /// <summary>More are an error.</summary>
+        /// <summary>An update with more pairs fails.</summary>
         public ulong MaxPairs = 1ul << 24;
     }
 
-    /// <summary>An engine's objects, what they are and where. Changes take effect in Update, once a frame; answers are as of
-    /// the last one. Questions may come from many threads at once; a change at the same time is an error (Busy).</summary>
+    /// <summary>Holds a game's objects and answers queries about them. Changes take effect in Update, once a frame; queries answer as
+    /// of the last one. Many threads may query at once; a change at the same time is an error (Busy).</summary>
     public sealed partial class World : IDisposable {
         /// <summary>All 32 layers.</summary>
         public const uint AllLayers = uint.MaxValue;
@@ -76,13 +76,13 @@ namespace Crofton {
             data.MaxPairs = options.MaxPairs;
             Library.Check(Native.crofton_world_create(ref data, out Handle));
         }
-        /// <summary>Frees it; any later call throws ObjectDisposedException.</summary>
+        /// <summary>Frees the world; any later call throws ObjectDisposedException.</summary>
         public void Dispose() { Change(Handle.Dispose); }
 
-        /// <summary>Adds a mesh in its own frame: x, y, z of each vertex; three indices a triangle, counter-clockwise seen from
-        /// outside, or null where three vertices are one. Both are copied.</summary>
+        /// <summary>Adds a mesh in its own frame: x, y, z of each vertex; three indices per triangle, counter-clockwise seen
+        /// from outside, or null if each three vertices are a triangle. Copies both.</summary>
         public MeshHandle AddMesh(float[] positions, uint[] indices) { return AddMesh(positions, indices, false); }
-        /// <summary>The same; with clusters, views with a picture list its triangles. oneSided: back faces are not drawn.</summary>
+        /// <summary>The same; with clusters, views with a picture list the mesh's triangles. oneSided: back faces are not drawn.</summary>
         public MeshHandle AddMesh(float[] positions, uint[] indices, bool clusters, bool oneSided = false) {
             MeshHandle mesh = default(MeshHandle);
             WithMesh(positions, indices, data => {
@@ -92,36 +92,36 @@ namespace Crofton {
             });
             return mesh;
         }
-        /// <summary>All objects with this mesh get the new one.</summary>
+        /// <summary>Replaces a mesh in all objects that use it.</summary>
         public void ReplaceMesh(MeshHandle mesh, float[] positions, uint[] indices) {
             WithMesh(positions, indices, data => Native.crofton_world_replace_mesh(Handle, mesh, ref data));
         }
-        /// <summary>For a mesh that deforms: as many vertices as before.</summary>
+        /// <summary>Moves the vertices of a mesh that deforms: as many as before.</summary>
         public void SetVertices(MeshHandle mesh, float[] positions) {
             WithMesh(positions, null, data => Native.crofton_world_set_vertices(Handle, mesh, ref data));
         }
-        /// <summary>An error while objects use it.</summary>
+        /// <summary>Removes a mesh. Error: objects use it.</summary>
         public void RemoveMesh(MeshHandle mesh) { Library.Check(Native.crofton_world_remove_mesh(Handle, mesh)); }
 
-        /// <summary>Adds a node; the layers limit those of all objects below.</summary>
+        /// <summary>Adds a node. Objects below have only those of their layers that are also in its layers.</summary>
         public NodeHandle AddNode(NodeHandle? parent, Transform transform, uint layers = AllLayers) {
             NodeHandle node;
             Library.Check(Native.crofton_world_add_node(Handle, ToArray(parent), ref transform, layers, out node));
             return node;
         }
-        /// <summary>With all nodes and objects below it.</summary>
+        /// <summary>Removes the node with all nodes and objects below it.</summary>
         public void RemoveNode(NodeHandle node) { Library.Check(Native.crofton_world_remove_node(Handle, node)); }
-        /// <summary>An error where the parent is the node itself or one below it.</summary>
+        /// <summary>Moves the node below another. Error: the parent is the node itself or one below it.</summary>
         public void SetParent(NodeHandle node, NodeHandle? parent) {
             Library.Check(Native.crofton_world_set_parent(Handle, node, ToArray(parent)));
         }
-        /// <summary>Items that are refused stay as they are and all others change; the exception names the first.</summary>
+        /// <summary>Applies all valid items and leaves the others unchanged; the exception names the first invalid one.</summary>
         public void SetNodeTransforms(NodeHandle[] nodes, Transform[] transforms) {
             var count = Library.SameLength(nodes, transforms);
             Library.Check(Native.crofton_world_set_node_transforms(Handle, nodes, UIntPtr.Zero, transforms, UIntPtr.Zero, count));
         }
 
-        /// <summary>Adds an object with a mesh, under a node or in the world; `user` is given back with every answer.</summary>
+        /// <summary>Adds an object with a mesh, under a node or in the world; `user` is returned with every answer.</summary>
         public ObjectHandle Add(MeshHandle mesh, Transform transform, ulong user = 0, NodeHandle? node = null,
                                 uint layers = AllLayers, uint collidesWith = AllLayers) {
             var data = Describe(user, layers, collidesWith);
@@ -131,23 +131,23 @@ namespace Crofton {
             data.Node = node.GetValueOrDefault();
             return Add(data, transform, (ref Native.ObjectData d, IntPtr p) => d.Transform = p);
         }
-        /// <summary>Adds an object that is a bound alone.</summary>
+        /// <summary>Adds an object with only a bound.</summary>
         public ObjectHandle Add(Bound bound, ulong user = 0, uint layers = AllLayers, uint collidesWith = AllLayers) {
             return Add(Describe(user, layers, collidesWith), bound.Data, (ref Native.ObjectData d, IntPtr p) => d.Bound = p);
         }
-        /// <summary>Its handle is stale from now on.</summary>
+        /// <summary>Removes an object; its handle becomes stale.</summary>
         public void Remove(ObjectHandle handle) { Library.Check(Native.crofton_world_remove(Handle, handle)); }
-        /// <summary>Of objects with a mesh. Refused items stay as they are; the exception names the first.</summary>
+        /// <summary>Moves objects with meshes. Applies all valid items; the exception names the first invalid one.</summary>
         public void SetTransforms(ObjectHandle[] objects, Transform[] transforms) {
             var count = Library.SameLength(objects, transforms);
             Library.Check(Native.crofton_world_set_transforms(Handle, objects, UIntPtr.Zero, transforms, UIntPtr.Zero, count));
         }
-        /// <summary>Of objects that were added with a bound, which becomes a box. Refused items as in SetTransforms.</summary>
+        /// <summary>Moves objects that were added with a bound; it becomes a box. Errors as in SetTransforms.</summary>
         public void SetBoxes(ObjectHandle[] objects, Obb[] boxes) {
             var count = Library.SameLength(objects, boxes);
             Library.Check(Native.crofton_world_set_boxes(Handle, objects, UIntPtr.Zero, boxes, UIntPtr.Zero, count));
         }
-        /// <summary>Of an object that was added with a bound.</summary>
+        /// <summary>Sets the bound of an object that was added with one.</summary>
         public void SetBound(ObjectHandle handle, Bound bound) {
             IntPtr memory = Marshal.AllocHGlobal(Marshal.SizeOf(typeof(Native.BoundData)));
             try {
@@ -157,42 +157,42 @@ namespace Crofton {
                 Marshal.FreeHGlobal(memory);
             }
         }
-        /// <summary>Of an object that has a mesh.</summary>
+        /// <summary>Sets the mesh of an object that has one.</summary>
         public void SetMesh(ObjectHandle handle, MeshHandle mesh) {
             Set(handle, Native.SetMesh, (ref Native.ObjectData d) => { d.HasMesh = 1; d.Mesh = mesh; });
         }
-        /// <summary>A hidden object is in no answer until it is shown again.</summary>
+        /// <summary>Hides or shows an object; no answer contains a hidden one.</summary>
         public void SetHidden(ObjectHandle handle, bool hidden) {
             Set(handle, Native.SetHidden, (ref Native.ObjectData d) => d.Hidden = Flag(hidden));
         }
-        /// <summary>The layers that it is in.</summary>
+        /// <summary>Sets the layers that the object is in.</summary>
         public void SetLayers(ObjectHandle handle, uint layers) {
             Set(handle, Native.SetLayers, (ref Native.ObjectData d) => d.Layers = layers);
         }
-        /// <summary>The layers that it collides with.</summary>
+        /// <summary>Sets the layers that the object collides with.</summary>
         public void SetCollidesWith(ObjectHandle handle, uint layers) {
             Set(handle, Native.SetCollidesWith, (ref Native.ObjectData d) => d.CollidesWith = layers);
         }
-        /// <summary>The number that answers give back.</summary>
+        /// <summary>Sets the number that answers return with the object.</summary>
         public void SetUser(ObjectHandle handle, ulong user) {
             Set(handle, Native.SetUser, (ref Native.ObjectData d) => d.User = user);
         }
-        /// <summary>Looks for occluders in a mesh: a second or more for 100,000 triangles. They count from the next update on.</summary>
+        /// <summary>Searches a mesh for occluders, which the next update applies. Takes a second or more for 100,000 triangles.</summary>
         public void FindOccluders(MeshHandle mesh) { Library.Check(Native.crofton_world_find_occluders(Handle, mesh, IntPtr.Zero)); }
-        /// <summary>How many occluders a mesh has.</summary>
+        /// <summary>Returns the number of a mesh's occluders.</summary>
         public int OccluderCount(MeshHandle mesh) {
             return (int)Info(mesh).OccluderCount;
         }
-        /// <summary>Whether an object with a mesh hides others, as at first, or not, as where it is drawn transparent.</summary>
+        /// <summary>Sets whether an object with a mesh hides others. The default is true; use false for transparent objects.</summary>
         public void SetOccludes(ObjectHandle handle, bool occludes) {
             Set(handle, Native.SetOccludes, (ref Native.ObjectData d) => d.Occludes = Flag(occludes));
         }
 
-        /// <summary>Makes the changes take effect; once a frame. An exception: more than MaxPairs pairs; then there are none, and
-        /// all else is as it should be.</summary>
+        /// <summary>Applies the changes and finds pairs and contacts. Call it once a frame. Error: more than MaxPairs pairs; all
+        /// pairs are dropped, everything else is up to date.</summary>
         public void Update() { Change(() => Library.Check(Native.crofton_world_update(Handle, IntPtr.Zero))); }
 
-        /// <summary>How many objects there are.</summary>
+        /// <summary>The number of objects.</summary>
         public int Count {
             get {
                 var statistics = new Native.WorldStatisticsData { Size = Native.SizeOf<Native.WorldStatisticsData>() };
@@ -200,29 +200,29 @@ namespace Crofton {
                 return (int)statistics.ObjectCount;
             }
         }
-        /// <summary>Whether the handle is of an object that is still there.</summary>
+        /// <summary>Tests whether the world contains the object.</summary>
         public bool Contains(ObjectHandle handle) {
             var info = new Native.ObjectInfo { Size = Native.SizeOf<Native.ObjectInfo>() };
             int status = Native.crofton_world_get_object(Handle, handle, ref info);
             if (status != (int)Status.StaleHandle) Library.Check(status);
             return status == 0;
         }
-        /// <summary>The caller's number.</summary>
+        /// <summary>Returns the object's user number.</summary>
         public ulong User(ObjectHandle handle) { return Info(handle).User; }
-        /// <summary>The object's box; an error before the first update after it was added.</summary>
+        /// <summary>Returns the object's box. Error: there was no update since the object was added.</summary>
         public Obb Box(ObjectHandle handle) {
             Native.ObjectInfo info = Info(handle);
             if (info.HasBox == 0) throw new CroftonException(Status.Empty, "the object has no box before the next update", handle.Index);
             return info.Box;
         }
-        /// <summary>Of an object with a mesh: to the world's coordinates.</summary>
+        /// <summary>Returns the transform of an object with a mesh, to the world.</summary>
         public Transform TransformOf(ObjectHandle handle) {
             Native.ObjectInfo info = Info(handle);
             if (info.HasTransform == 0)
                 throw new CroftonException(Status.Empty, "the object is a bound, or there was no update since it was added", handle.Index);
             return info.Transform;
         }
-        /// <summary>How a mesh with clusters is cut, as of the last update; null where it is not.</summary>
+        /// <summary>Returns the clusters of a mesh, as of the last update; null if it has none.</summary>
         public Clusters ClustersOf(MeshHandle mesh) {
             return Read(() => {
                 Native.MeshInfo info = Info(mesh);
@@ -250,8 +250,8 @@ namespace Crofton {
             Library.Check(Native.crofton_world_set(Handle, handle, member, ref data));
         }
 
-        // What a view has found is looked up in the world, and pairs and contacts lie in its memory: no update and no end
-        // of the world between the two calls that read them.
+        // Reading a view's objects, pairs or contacts takes two calls on the world's memory. This lock keeps updates and
+        // the world's end from coming between them.
         T Read<T>(Func<T> read) {
             updating.EnterReadLock();
             try {

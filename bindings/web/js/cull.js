@@ -2,7 +2,7 @@
 import { failure } from './error.js';
 import { Owned, create, indicesOf } from './memory.js';
 
-/** What a Frustum asks of boxes, in the scratch memory. */
+/** Writes a request for a frustum to the scratch memory. */
 function writeRequest(memory, frustum, { conservative = false, treeOrder = false } = {}) {
     const at = memory.scratch(48), { words } = memory, first = at >> 2;
     memory.fill('default_view_request', at);
@@ -31,13 +31,13 @@ export class Tree extends Owned {
     refit() { this.memory.call('tree_refit', this.handle, 0); }
 }
 
-/** The same from a plain list of boxes, without a tree. */
+/** Does the same for a plain list of boxes, without a tree. */
 export function cullBoxes(memory, boxes, frustum, visible, how) {
     memory.call('view_boxes', boxes.handle, 0, boxes.length, writeRequest(memory, frustum, how), 0, visible.handle);
     return visible;
 }
 
-/** A verdict a box, exactly: 0 outside, 1 straddling, 2 inside. */
+/** Returns the exact verdict of each box: 0 outside, 1 straddling, 2 inside. */
 export function classify(memory, boxes, frustum) {
     const at = memory.allocate(boxes.length, 'verdicts');
     try {

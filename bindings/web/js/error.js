@@ -4,7 +4,7 @@ const NAMES = ['ok', 'invalid argument', 'not finite', 'out of range', 'degenera
     'cancelled', 'budget exceeded', 'unavailable', 'stale handle', 'internal', 'bad handle', 'wrong struct size', 'busy',
     'out of memory'];
 
-/** What went wrong: `status` in words, a sentence, and which item of the input (-1: none in particular). */
+/** An error: `status` in words, a message, and the item of the input that caused it (-1: no single item). */
 export class CroftonError extends Error {
     constructor(status, message, item = -1) {
         super(message);

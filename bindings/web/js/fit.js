@@ -4,7 +4,7 @@ import { checkArray, checkGroups } from './memory.js';
 
 const QUALITY = { __proto__: null, fast: 0, tight: 1, exact: 2 };
 
-/** A box around points, x y z each, best by the criterion: weights of volume, area and mean curvature. */
+/** Returns a box around points, x y z each, the best by the criterion: weights of volume, area and mean curvature. */
 export function fitBox(memory, points, { quality = 'tight', criterion } = {}) {
     checkArray(points, [Float32Array, Float64Array], 'points');
     if (!(quality in QUALITY)) throw failure(1, `quality is one of ${Object.keys(QUALITY).join(', ')}`);

@@ -5,7 +5,7 @@ import { Owned, checkArray, numbersOf } from './memory.js';
 export const BOX = 72;
 
 const float = new Float32Array(1), bits = new Int32Array(float.buffer);
-/** The least float that is not below a number: half extents are stored as floats, and a box must not lose what it holds. */
+/** Returns the least float that is not below a number. Half extents are stored as floats, and a box must not lose points. */
 export function roundedUp(value) {
     float[0] = value;
     if (float[0] < value) bits[0] += float[0] < 0 ? -1 : 1;
@@ -43,7 +43,7 @@ export class Boxes extends Owned {
         return { center: [...doubles.subarray(at >> 3, (at >> 3) + 3)], axes: [...floats.subarray((at >> 2) + 6, (at >> 2) + 15)],
             halfExtents: [...floats.subarray((at >> 2) + 15, (at >> 2) + 18)] };
     }
-    /** From packed arrays: centers 3 a box, halfExtents 3, axes 9 or none. One copy, no checks of what the numbers are. */
+    /** Copies packed arrays: 3 centers a box, 3 halfExtents, 9 axes or none. Does not check the numbers. */
     setAll(centers, halfExtents, axes) {
         checkArray(centers, [Float64Array, Float32Array], 'centers');
         checkArray(halfExtents, [Float64Array, Float32Array], 'halfExtents');
@@ -61,15 +61,15 @@ export class Boxes extends Owned {
             if (axes) for (let k = 0; k < 9; ++k) floats[(at >> 2) + 6 + k] = axes[9 * i + k];
         }
     }
-    /** Throws with the first box that is none: not finite, not orthogonal, negative extents. */
+    /** Throws for the first invalid box: not finite, not orthogonal, or with negative extents. */
     validate() { this.memory.call('boxes_validate', this.handle, this.length); }
-    /** The bytes themselves, for a loader; detached when the memory grows. */
+    /** The bytes of the boxes, for a loader; detached when the memory grows. */
     get bytes() { return this.memory.bytes.subarray(this.handle, this.handle + this.length * BOX); }
 }
 
 export const DEPTH = { __proto__: null, reversed: 0, zeroToOne: 1, minusOneToOne: 2 };
 
-/** A view volume: of a camera, or of a matrix and the range of its depths. Held as a view, ready for calls. */
+/** The volume of a view, from a camera, or from a matrix and its depth range. */
 export class Frustum extends Owned {
     constructor(memory, { camera, matrix, depth = 'minusOneToOne', origin, layers = 0xffffffff } = {}) {
         super(memory, 'Frustum', memory.allocate(424, 'a frustum'), '_free');
@@ -85,12 +85,12 @@ export class Frustum extends Owned {
             throw error;
         }
     }
-    /** What is left out is as of the default camera: at the origin, along -z, 60 degrees, 16:9, from 0.1 to 1000. */
+    /** Members that are left out have their defaults: at the origin, along -z, 60 degrees, 16:9, from 0.1 to 1000. */
     setCamera(camera) {
         this.memory.call('frustum_from_camera', writeCamera(this.memory, camera), this.handle + 8);
         return this;
     }
-    /** `matrix`: sixteen numbers by columns, world to clip, as of three.js and WebGL. */
+    /** `matrix`: sixteen numbers by columns, world to clip, as in three.js and WebGL. */
     setMatrix(matrix, depth = 'minusOneToOne', origin) {
         if (!(depth in DEPTH)) throw failure(1, `depth is one of ${Object.keys(DEPTH).join(', ')}`);
         if (matrix?.length !== 16) throw failure(1, 'matrix must have 16 numbers');
@@ -100,7 +100,7 @@ export class Frustum extends Owned {
         this.memory.call('frustum_from_matrix', at, DEPTH[depth], origin ? at + 128 : 0, this.handle + 8);
         return this;
     }
-    /** `{ origin, planes: [{ normal, offset }] }`; dot(normal, x - origin) + offset >= 0 is kept. */
+    /** `{ origin, planes: [{ normal, offset }] }`; the volume is dot(normal, x - origin) + offset >= 0. */
     get planes() {
         const { words, doubles } = this.memory, first = this.handle + 40 >> 3;
         return { origin: [...doubles.subarray(this.handle + 16 >> 3, first)],
@@ -109,7 +109,7 @@ export class Frustum extends Owned {
     }
 }
 
-/** Writes a camera to `at`, which unless told is the scratch memory, and says where. */
+/** Writes a camera to `at`, by default in the scratch memory, and returns where. */
 export function writeCamera(memory, camera, at = memory.scratch(256)) {
     const { words, doubles } = memory, first = at >> 3;
     memory.fill('default_camera', at);

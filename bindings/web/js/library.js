@@ -8,7 +8,7 @@ import { fitBox } from './fit.js';
 import { Triangulator } from './triangulate.js';
 import { World, ViewResult } from './world.js';
 
-/** Starts `build`; every class is a member of what it gives. */
+/** Starts `build`; every class is a member of the result. */
 export async function loadLibrary(build, options = {}) {
     const memory = new Memory(await loadModule(build, options));
     const bind = (Class) => class extends Class {
@@ -16,7 +16,7 @@ export async function loadLibrary(build, options = {}) {
     };
     const crofton = {
         version: memory.text(memory.module._crofton_version_string()),
-        /** Bytes of the library's memory; it grows, and views of it are then detached. */
+        /** The size of the library's memory in bytes. When it grows, views of it are detached. */
         get memoryBytes() { return memory.bytes.byteLength; },
         Boxes: bind(Boxes), Frustum: bind(Frustum), Tree: bind(Tree),
         Triangulator: bind(Triangulator), World: bind(World), ViewResult: bind(ViewResult),

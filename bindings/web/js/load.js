@@ -6,7 +6,7 @@ import { failure } from './error.js';
 const PROBE = new Uint8Array([0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15,
     253, 98, 11]);
 
-/** The package's build. Its WebAssembly is text in a module, compressed: nothing is fetched, so every bundler takes it. */
+/** The package's build. Its WebAssembly is compressed text in a module: nothing is fetched, so it works in every bundler. */
 export const packaged = {
     create: async () => (await import('../wasm/simd.js')).default,
     bytes: async () => unpack((await import('../wasm/simd.base64.js')).default),
@@ -19,7 +19,7 @@ async function unpack(base64) {
     return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-/** `build` has the functions `create` and `bytes`. Bytes that the caller has already go in as `wasmBinary`. */
+/** `build` has the functions `create` and `bytes`. Pass bytes that you already have as `wasmBinary`. */
 export async function loadModule(build, { wasmBinary } = {}) {
     if (typeof WebAssembly !== 'object')
         throw failure('unavailable', 'this JavaScript engine has no WebAssembly, which Crofton needs');

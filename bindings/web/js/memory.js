@@ -4,7 +4,7 @@ import { failure } from './error.js';
 
 const MOST = 0x7fff0000;
 
-/** Throws where `array` is of the wrong kind or its buffer has been transferred. */
+/** Throws if `array` is of the wrong type or its buffer was transferred. */
 export function checkArray(array, kinds, what) {
     if (!kinds.some((kind) => array instanceof kind))
         throw failure(1, `${what} must be a ${kinds.map((kind) => kind.name).join(' or ')}`);
@@ -18,19 +18,19 @@ export function checkArray(array, kinds, what) {
     return array;
 }
 
-/** A vector's numbers. Throws where there are more or fewer than `count`. */
+/** Returns a vector's numbers. Throws if their number is not `count`. */
 export function numbersOf(vector, count, what) {
     const numbers = Array.from(vector ?? []);
     if (numbers.length !== count) throw failure(1, `${what} must have ${count} numbers, and there are ${numbers.length}`);
     return numbers;
 }
 
-/** Throws where an array does not hold whole groups of so many numbers. */
+/** Throws if an array does not consist of whole groups of `count` numbers. */
 export function checkGroups(array, count, what) {
     if (array.length % count) throw failure(1, `${what} must have ${count} numbers each, and there are ${array.length}`);
 }
 
-/** Indices as the library takes them. Throws for what is no whole number of 32 bits. */
+/** Converts indices for the library. Throws for numbers that are not integers of 32 bits. */
 export function indicesOf(numbers, what) {
     const indices = Uint32Array.from(numbers);
     const bad = indices.findIndex((index, i) => index !== numbers[i]);
@@ -66,7 +66,7 @@ export class Memory {
     }
     free(place) { this.module._free(place); }
 
-    /** Memory for the structs of one call, zeroed; the next call uses it again. */
+    /** Returns zeroed memory for the structs of one call; the next call reuses it. */
     scratch(bytes) {
         if (bytes > this.#scratchBytes) {
             const place = this.allocate(bytes, 'a call');
@@ -95,7 +95,7 @@ export class Memory {
     /** Writes the struct that a function of the library returns. */
     fill(name, at) { this.module[`_crofton_${name}`](at); }
 
-    /** Calls a function of the library; a status that is not 0 becomes an error, as does what a callback threw. */
+    /** Calls a function of the library. Throws for a status that is not 0, and what a callback threw. */
     call(name, ...given) {
         let status;
         try {
@@ -119,7 +119,7 @@ export class Memory {
         return new TextDecoder().decode(bytes.slice(place, end));
     }
 
-    /** `logger(level, message)`. What it throws comes out of the call that logged, once that is done. */
+    /** `logger(level, message)`. The call that logged rethrows what it throws when it is done. */
     setLogger(logger) {
         if (logger && typeof logger !== 'function') throw failure(1, 'a logger is a function, or null');
         const hook = logger && this.module.addFunction((_user, level, message) => {
@@ -138,7 +138,7 @@ export class Memory {
     }
 }
 
-/** What the library owns until it is freed; a collector's run frees what was forgotten. */
+/** Something that the library owns until it is freed. The garbage collector frees what was forgotten. */
 const forgotten = new FinalizationRegistry(({ memory, place, release }) => memory.module[release](place));
 
 export class Owned {
@@ -149,7 +149,7 @@ export class Owned {
         forgotten.register(this, { memory, place, release }, this);
     }
     #release;
-    /** The handle; throws once it was freed. */
+    /** The handle; throws after free. */
     get handle() {
         if (!this.#place) throw failure(14, `this ${this.#name} was freed: make another`);
         return this.#place;

@@ -4,10 +4,10 @@ import { Owned, checkArray, checkGroups, create, indicesOf } from './memory.js';
 
 const METHOD = { __proto__: null, ear: 0, delaunay: 1, minimumWeight: 2 };
 
-/** Polygons with holes to triangles; keeps its memory from one polygon to the next. */
+/** Triangulates polygons with holes; keeps its memory from one polygon to the next. */
 export class Triangulator extends Owned {
     constructor(memory) { super(memory, 'Triangulator', create(memory, 'triangulator'), '_crofton_triangulator_destroy'); }
-    /** `points`: x y each; `ringEnds`: where each ring ends, the outer one first. `indices` is a copy, three a triangle. */
+    /** `points`: x y each; `ringEnds`: the end of each ring, the outer one first. `indices` is a copy, three per triangle. */
     triangulate(points, ringEnds = [points.length / 2], method = 'minimumWeight') {
         checkArray(points, [Float64Array], 'points');
         checkGroups(points, 2, 'points');

@@ -5,7 +5,7 @@ import { BOX, DEPTH, roundedUp, writeCamera } from './geometry.js';
 
 const ALL = 0xffffffff;
 
-/** What a view of a world, a tree or a list of boxes sees, in memory that is kept; views of it are valid until its next view or growth of memory. */
+/** The answer of a view of a world, a tree or a list of boxes. Its arrays are valid until its next view or growth of memory. */
 export class ViewResult extends Owned {
     constructor(memory) {
         super(memory, 'ViewResult', create(memory, 'view_result'), '_crofton_view_result_destroy');
@@ -26,19 +26,19 @@ export class ViewResult extends Owned {
         const [, count, verdicts] = this.#list();
         return this.memory.bytes.subarray(verdicts, verdicts + count);
     }
-    /** What is known of the view: a struct of 192 bytes, in words. */
+    /** Data of the view: a struct of 192 bytes, in words. */
     #info() {
         const at = this.memory.scratch(192);
         this.memory.words[at >> 2] = 192;
         this.memory.call('view_result_get_view', this.handle, 0, at);
         return this.memory.words.subarray(at >> 2, (at >> 2) + 48);
     }
-    /** Indices of what is in the frustum and hidden, where `listOccluded` asked for it. */
+    /** Indices of objects in the frustum that are hidden, with `listOccluded`. */
     get occluded() {
         const info = this.#info();
         return this.memory.words.subarray(info[30] >> 2, (info[30] >> 2) + info[31]);
     }
-    /** Of a view with a picture: `{ object, cluster, triangles }`; bit k of the BigInt stands for triangle k of the cluster. */
+    /** For a view with a picture: `{ object, cluster, triangles }`; bit k of the BigInt stands for triangle k of the cluster. */
     get triangles() {
         const info = this.#info(), { words } = this.memory;
         return Array.from({ length: info[35] }, (_, i) => {
@@ -53,14 +53,14 @@ export class ViewResult extends Owned {
     }
 }
 
-/** Bits by object index, as the library takes them. */
+/** Copies bits by object index for the library. */
 function bitsOf(words, what) {
     checkArray(words, [BigUint64Array, Uint32Array], what);
     if (words.byteLength % 8) throw failure(1, `${what}: an even number of 32-bit words is expected`);
     return words;
 }
 
-/** Arrays that a request points to, and where their places and counts go in its struct or its limits'. */
+/** Arrays that a request points to, and the places of their pointers and counts in its struct or in that of its limits. */
 function arraysOf({ candidates, limits = {} }) {
     const arrays = [];
     if (candidates) arrays.push({ array: bitsOf(candidates, 'candidates'), of: 'request', place: 7, count: 8, unit: 8 });
@@ -76,7 +76,7 @@ function arraysOf({ candidates, limits = {} }) {
     return arrays;
 }
 
-/** Objects, what they are and where; changes take effect in `update`. An object is `{ index, generation }`. */
+/** Holds objects and answers queries about them. Changes take effect in `update`. An object is `{ index, generation }`. */
 export class World extends Owned {
     constructor(memory) {
         const at = memory.scratch(56);
@@ -104,7 +104,7 @@ export class World extends Owned {
             return this.#handleAt(at + 48, 'mesh');
         });
     }
-    /** How a mesh with clusters is cut, as of the last update: `{ clusters: [{ firstTriangle, triangleCount }], triangleOrder }`. */
+    /** Returns the clusters of a mesh, as of the last update: `{ clusters: [{ firstTriangle, triangleCount }], triangleOrder }`. */
     clustersOf(mesh) {
         const { memory } = this, at = this.#give(mesh, 'mesh', memory.scratch(32));
         memory.words[at + 8 >> 2] = 24;
@@ -114,11 +114,11 @@ export class World extends Owned {
             clusters: Array.from({ length: count }, (_, i) => ({
                 firstTriangle: words[(clusters >> 2) + 14 * i], triangleCount: words[(clusters >> 2) + 14 * i + 1] })) };
     }
-    /** Takes boxes of `mesh` that hide what is behind them, where it is closed; needed before objects occlude. */
+    /** Finds boxes inside `mesh`, if it is closed, that hide what is behind them. Objects hide nothing before this call. */
     findOccluders(mesh) {
         this.memory.call('world_find_occluders', this.handle, this.#give(mesh, 'mesh', this.memory.scratch(16)), 0);
     }
-    /** One convex occluder of a mesh: the hull of `positions`, within what is drawn. */
+    /** Sets one convex occluder of a mesh: the hull of `positions`, within the drawn mesh. */
     setConvexOccluder(mesh, positions) {
         checkArray(positions, [Float32Array], 'positions');
         checkGroups(positions, 3, 'positions');
@@ -157,7 +157,7 @@ export class World extends Owned {
             words[first + 4] = 4 * first + 72;
         });
     }
-    // Sets one member of an object by its description.
+    // Sets one member of an object, by its description.
     #set(object, member, fill) {
         const { memory } = this, at = memory.scratch(72 + 160 + 16);
         this.#give(object, 'object', at + 232);
@@ -188,14 +188,14 @@ export class World extends Owned {
         this.memory.call('world_get_statistics', this.handle, at);
         return this.memory.words[at + 64 >> 2];
     }
-    /** Once a frame; then ask. */
+    /** Applies the changes. Call it once a frame, before queries. */
     update() { this.memory.call('world_update', this.handle, 0); }
 
     /**
-     * What a view sees: `{ camera }`, `{ matrix, depth, origin }` (as of a Frustum) or `{ volume }`, a Frustum; for occlusion a
-     * volume beside one of the others. `layers`; `occlusion`: leaves out what others hide, `{ listOccluded, width, height,
-     * maxOccluders, leastCover }`; `picture`: `{ width, height, depth }`, lists the triangles without which it would change, in
-     * place of occlusion; `limits`: leaves out what is small or far; `candidates`: bits by object index, BigUint64Array or
+     * Lists what a view sees. Set `camera`, `matrix` (with `depth` and `origin`, as in Frustum) or `volume`, a Frustum; with
+     * occlusion also a camera or matrix beside a volume. `layers`; `occlusion`: leaves out what others hide, `{ listOccluded, width, height,
+     * maxOccluders, leastCover }`; `picture`: `{ width, height, depth }`, lists the triangles that it needs, instead of
+     * occlusion; `limits`: leaves out what is small or far; `candidates`: bits by object index, BigUint64Array or
      * Uint32Array; `treeOrder`, `conservative`.
      */
     view(request, visible) {
@@ -256,7 +256,7 @@ export class World extends Owned {
         });
         memory.call('world_view', this.handle, request, 1, 0, visible.handle);
     }
-    /** The nearest hit of a ray, `{ object, user, t, point, triangle, normal, startedInside }`, or null. */
+    /** Returns the nearest hit of a ray, `{ object, user, t, point, triangle, normal, startedInside }`, or null. */
     raycast(origin, direction, maxT = Infinity, layers = ALL) {
         const { memory } = this, at = memory.scratch(144), hit = at + 56 >> 2;
         memory.doubles.set([...numbersOf(origin, 3, 'origin'), ...numbersOf(direction, 3, 'direction'), maxT], at >> 3);
@@ -268,7 +268,7 @@ export class World extends Owned {
             normal: [...doubles.subarray(at + 112 >> 3, at + 136 >> 3)], startedInside: (words[hit + 20] & 255) !== 0 };
     }
 
-    // Objects and meshes count from 0 each: `kind` tells a mesh from the object of the same number.
+    // Objects and meshes each count from 0; `kind` tells a mesh from the object of the same number.
     #give(handle, kind, at) {
         if (handle?.kind !== kind || !Number.isInteger(handle.index) || !Number.isInteger(handle.generation))
             throw failure(14, `this is no ${kind} of a world`);
