@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kMostCornersOfLightest = 256;
 // Some 10 ms at most a face.
 constexpr std::uint64_t kWorkPerFace = 1'000'000;
-// Of the squared size: what a turn must exceed to be one for certain, whatever the projection has rounded.
+// Turns above this are certain, whatever the projection has rounded. Relative to the squared size.
 constexpr double kLeastTurn = 1e-12;
 
 // Twice the area times the unit normal of the outline (Newell; Sutherland, Sproull and Schumacker 1974).

@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Of the binary container.
+// The binary container.
 constexpr std::string_view kMagic = "glTF", kJsonChunk = "JSON", kBinaryChunk{"BIN\0", 4};
 constexpr const char* kVersion1 = "is glTF version 1.0, where 2.0 is needed; convert it, for example by gltf-pipeline";
 
@@ -120,7 +120,7 @@ std::uint64_t count_of(const GltfDocument& document, const Json* accessor) {
     return *count <= most ? *count : 0;
 }
 
-// What all primitives together ask for: they may share accessors, so a small file may ask for much.
+// Checks the sum over all primitives: they may share accessors, so that a small file asks for much memory.
 Result<void> check_counts(const GltfDocument& document) {
     const Json& root = document.root;
     const ReadLimits& limits = document.limits;

@@ -29,8 +29,7 @@ struct DocumentOptions {
     bool images = true;
     // A buffer that is missing or too short is an error; without, a warning, and what there is of it is kept.
     bool whole_buffers = true;
-    // What is compressed and cannot be decoded is replaced by its uncompressed copy, where the file has one. Without,
-    // it stays as it is.
+    // Replaces compressed data that cannot be decoded by its uncompressed copy, if the file has one.
     bool plain_copies = false;
 };
 

@@ -16,7 +16,7 @@ constexpr std::array<std::string_view, 5> kRead = {"KHR_mesh_quantization", "EXT
                                                    "KHR_node_visibility", "KHR_materials_unlit",
                                                    "KHR_materials_emissive_strength"};
 
-// What any vendor's names go on with.
+// The parts of names, after the vendor's prefix, that stand for appearance only.
 constexpr std::array<std::string_view, 4> kAnyAppearance = {"texture_", "materials_", "lights_", "xmp"};
 // Beginnings of names.
 constexpr std::array<std::string_view, 26> kAppearance = {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which glTF extensions a scene can be shown without.
+// Extensions of glTF that can be ignored, and those that cannot.
 #pragma once
 #include <string>
 #include <string_view>
@@ -18,9 +18,9 @@ enum class ExtensionUse : std::uint8_t {
 };
 [[nodiscard]] ExtensionUse use_of(std::string_view extension);
 
-// What a scene lacks because extensions are not read, one warning an extension: those that the file requires but which
-// touch no geometry, and unknown ones on what has to do with geometry (scenes, nodes, meshes, skins, accessors),
-// wherever the file lists them. Errors: the file requires one that is unknown or has no decoder here, with its name.
+// Returns a warning for each extension that is not read: those that the file requires but that touch no geometry, and
+// unknown ones on geometry (scenes, nodes, meshes, skins, accessors), wherever the file lists them. Errors: the file
+// requires an extension that is unknown or has no decoder in this build.
 [[nodiscard]] Result<std::vector<std::string>> check_extensions(const GltfDocument& document);
 
 }  // namespace crofton::assets

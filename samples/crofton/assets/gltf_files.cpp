@@ -17,8 +17,8 @@ const std::string* uri_of(const Json& object) {
     return uri && uri->is_string() ? &uri->get_ref<const std::string&>() : nullptr;
 }
 
-// What a URI stands for. Its name comes from whoever made the asset: only files below its folder are opened. The bytes
-// of a file count, those of a data URI are part of the document's own file.
+// Returns the contents of a URI. The asset's author chose the name, so only files below the asset's folder are opened.
+// The bytes of files count towards the limit; those of data URIs are part of the document.
 Result<std::string> bytes_of(const std::string& uri, const std::string& folder, std::uint64_t limit,
                              std::uint64_t& bytes_read) {
     if (is_data_uri(uri)) return decode_data_uri(uri);
@@ -32,7 +32,7 @@ Result<std::string> bytes_of(const std::string& uri, const std::string& folder, 
     return bytes;
 }
 
-// What a document refers to in files beside it.
+// Collects the files that a document refers to.
 class FilesBeside {
   public:
     FilesBeside(std::string folder, GltfDocument& document) : folder_(std::move(folder)), document_(document) {}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a glTF asset keeps outside its JSON: buffers, in its binary chunk, in data URIs, in files beside it.
+// Data of a glTF asset outside its JSON: buffers in the binary chunk, in data URIs, and in other files.
 #pragma once
 #include <crofton/core/error.hpp>
 #include <optional>

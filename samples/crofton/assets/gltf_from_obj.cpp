@@ -21,7 +21,7 @@ struct HashCorner {
     }
 };
 
-// What all three corners of a triangle have.
+// Attributes that all three corners of a triangle have.
 enum Attributes : unsigned { kTexcoord = 1, kNormal = 2, kColor = 4 };
 
 // Triangles of one part whose corners have the same attributes.

@@ -112,7 +112,7 @@ class GltfReader {
         return result;
     }
 
-    // Of the default scene; without one the first; without any scene, the nodes that are nobody's child.
+    // Returns the roots of the default scene, or of the first; without any scene, the nodes that have no parent.
     std::vector<std::size_t> roots() {
         const auto wanted = whole_number(root_, "scene", 0);
         const Json* scene = wanted ? entry(root_, "scenes", *wanted) : nullptr;
@@ -183,7 +183,7 @@ class GltfReader {
         return id;
     }
 
-    // Of the node's mesh. What is wrong with them is left out.
+    // Adds the instances of the node's mesh. Leaves out invalid ones.
     Result<void> add_instances(const std::string& name, const Json& node, scene::NodeId id) {
         const auto shape = shape_of(node);
         if (!shape) {
@@ -204,7 +204,7 @@ class GltfReader {
         return add_placed({glm::dmat3(1.0), meshes.origin}, scene::kNone, id, meshes);
     }
 
-    // Which mesh of the file a node shows, and how it is bent.
+    // Finds the mesh that a node shows, with its skin and morph weights.
     Result<Shape> shape_of(const Json& node) const {
         const auto mesh = as_whole_number(*member(node, "mesh"));
         if (!mesh || !entry(root_, "meshes", *mesh)) return fail(ErrorCode::out_of_range, kNoItem, "does not exist");

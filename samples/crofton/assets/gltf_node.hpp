@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a glTF node says about places: its own transform, the instances of its mesh, whether it is seen.
+// Placement of a glTF node: its transform, the instances of its mesh, its visibility.
 #pragma once
 #include <crofton/geometry/transform.hpp>
 #include <string>

@@ -40,7 +40,7 @@ void append_index(std::string& bytes, std::uint32_t index, std::size_t size) {
     for (std::size_t b = 0; b < size; ++b) bytes.push_back(static_cast<char>(index >> (8 * b) & 0xFFu));
 }
 
-// Which accessors' bytes belong to no other accessor, and to no view that is used otherwise.
+// Finds the accessors whose bytes no other accessor and no view uses.
 class OwnBytes {
   public:
     explicit OwnBytes(const GltfDocument& document) : document_(document) {

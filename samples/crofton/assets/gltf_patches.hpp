@@ -19,7 +19,7 @@ struct PatchSettings {
     std::function<bool(std::size_t done, std::size_t of)> progress = {};
 };
 
-// What became of one primitive of a mesh.
+// The result for one primitive of a mesh.
 struct PrimitivePatches {
     std::size_t mesh = 0, primitive = 0;  // by number in the file
     std::string name;                     // of the mesh

@@ -260,7 +260,7 @@ void add_building(SceneMaker& maker) {
         for (const double z : {-6.5, 0.0, 6.5}) maker.place(lamps, {-x1 + kLength * k / 11.0, 10.3, z});
 }
 
-// What lies about: barrels, crates, workbenches, a rail around the engine.
+// Adds small things: barrels, crates, workbenches, a rail around the engine.
 void add_clutter(SceneMaker& maker) {
     auto& library = maker.library;
     MeshBuilder barrel;

@@ -29,7 +29,7 @@ struct Surface {
 };
 using Materials = std::map<std::string, Surface, std::less<>>;
 
-// What of a line of numbers is no comment.
+// Returns a line without its comment.
 std::string_view without_comment(std::string_view line) {
     return line.substr(0, line.find('#'));
 }
@@ -61,7 +61,7 @@ void read_materials(std::string_view text, Materials& materials) {
     }
 }
 
-// What is no text of bytes below 128 and UTF-8, said before a line of it makes no sense. Takes off a UTF-8 mark.
+// Refuses files that are not UTF-8 before a line of them makes no sense. Skips a byte order mark.
 Result<void> check_encoding(std::string_view& text) {
     const auto begins = [&](std::string_view mark) { return text.substr(0, mark.size()) == mark; };
     if (begins("\xFF\xFE") || begins("\xFE\xFF"))
@@ -168,7 +168,7 @@ class ObjReader {
         return {};
     }
 
-    // What is no finite number counts as 0: drawing lives without.
+    // Takes numbers that are not finite as 0: texture coordinates are not needed for drawing.
     void read_texcoord(std::string_view line) {
         glm::vec2 uv(0.0f);
         for (int i = 0; i < 2; ++i)
@@ -320,7 +320,7 @@ class ObjReader {
         return {};
     }
 
-    // What cannot be read is skipped, with a warning where `warn`.
+    // Skips a library that cannot be read, with a warning if `warn` is set.
     Result<void> load_library(std::string_view name, bool warn) {
         if (auto in_time = deadline_.check(); !in_time) return in_time;
         const std::uint64_t limit = options_.limits.bytes;

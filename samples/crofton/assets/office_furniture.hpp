@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What stands in the office, each at the origin on y = 0, its front toward +z.
+// Furniture of the office. Each piece is at the origin on y = 0 and faces +z.
 #pragma once
 #include "assets/town_library.hpp"
 

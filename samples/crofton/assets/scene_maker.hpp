@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the made scenes have in common: one root, things placed under it, and a first error that sticks.
+// Helper of the built-in scenes: one root, objects placed under it, and the first error.
 #pragma once
 #include <string>
 
@@ -16,7 +16,7 @@ class SceneMaker {
 
     town::Library library;
 
-    // Of all that is placed.
+    // Scales everything that is placed.
     void scale(double factor);
     scene::MeshId add(TriangleMesh mesh, const std::string& name);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which polygons, with holes, the lines around a sector enclose.
+// Finds the polygons, with holes, that the lines around a sector enclose.
 #pragma once
 #include <crofton/geometry/mesh.hpp>
 #include <string>

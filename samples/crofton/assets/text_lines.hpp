@@ -23,7 +23,7 @@ class TextLines {
 
     // False at the end of the text. `line` lives until the next call.
     [[nodiscard]] bool next(std::string_view& line);
-    // Of the line that next() gave, counted from 1; where it continues, of its first part.
+    // Returns the number of the line from next(), counted from 1; of a continued line, that of its first part.
     [[nodiscard]] std::size_t number() const { return number_; }
 
   private:

@@ -74,7 +74,7 @@ void Builder::add_row(double length, const Transform& frame) {
     while (length - x >= kLeastWidth) {
         const int left = static_cast<int>(std::lround(length - x));
         int width = std::min(left, kLeastWidth + library_.pick(kMostWidth - kLeastWidth + 1));
-        // What remains must hold a house, or nothing.
+        // The rest must hold a house, or be empty.
         while (left - width != 0 && left - width < kLeastWidth && width > kLeastWidth) --width;
         if (left <= kMostWidth) width = left;
         const auto& types = houses_[width];

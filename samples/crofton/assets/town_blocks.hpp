@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What fills the blocks between the streets.
+// Buildings and gardens in the blocks between the streets.
 #pragma once
 #include <map>
 #include <utility>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What stands and leans in streets, gardens and squares: much of it thin and slanted, so that axis-aligned bounds are
-// bad.
+// Furniture of streets, gardens and squares. Much of it is thin and slanted, so that axis-aligned bounds are bad.
 #include <array>
 #include <cmath>
 #include <numbers>

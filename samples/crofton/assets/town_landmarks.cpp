@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What one sees from afar: a church and a tower crane.
+// Landmarks: a church and a tower crane.
 #include <array>
 #include <cmath>
 #include <numbers>

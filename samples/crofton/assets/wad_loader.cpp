@@ -181,7 +181,7 @@ class LevelBuilder {
         add_wall_of_side(number, line.to, line.from, line.left, line.right);
     }
 
-    // What `side` shows to its own sector, which lies to the right of from → to.
+    // Adds the wall that `side` shows to its own sector, which is to the right of from → to.
     void add_wall_of_side(std::size_t number, std::uint32_t from, std::uint32_t to, std::uint32_t side,
                           std::uint32_t other) {
         const WadLevel::Sector* here = sector_of(side);

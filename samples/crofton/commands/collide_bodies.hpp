@@ -11,7 +11,7 @@
 
 namespace crofton::cli {
 
-// What a file is made into: the hull of its vertices, or its triangles.
+// A body made of a file: the hull of its vertices, or its triangles.
 struct FileBody {
     std::optional<convex::Hull> hull;
     std::optional<mesh::MeshTree> mesh;

@@ -161,7 +161,7 @@ Json document_of(const Answer& answer) {
     return document;
 }
 
-// Of hulls, and casts of hulls or meshes.
+// Runs queries of hulls, and casts of hulls or meshes.
 int run_bodies(const CollideRequest& request, const RigidTransform& pose) {
     if (request.mode == "contain") {
         std::fputs("crofton: --mode contain tests meshes; leave out --hulls\n", stderr);

@@ -34,8 +34,8 @@ std::size_t distance(const std::string& a, const std::string& b) {
     return d[a.size()][b.size()];
 }
 
-// Of `known`, the word that `typed` was most likely meant to be: at most two letters added, left out, replaced or
-// swapped, and fewer than half of them. Empty where there is none.
+// Returns the word of `known` that `typed` was most likely meant to be: at most two letters added, left out, replaced
+// or swapped, and fewer than half of them. Empty if there is none.
 std::string nearest_word(const std::string& typed, const std::vector<std::string>& known) {
     std::string best;
     std::size_t least = 3;
@@ -169,12 +169,12 @@ void demand_whole_numbers(CLI::App& app) {
 
 constexpr const char* kWritableFile = "FILE";  // the type of options that name a file to write
 
-// What a path leads to: two names of one file are one place.
+// Returns the file that a path leads to, so that two names of one file compare equal.
 std::string place_of(const std::string& path) {
     std::error_code error;
     const auto absolute = std::filesystem::absolute(path, error);
     if (error || path == "-") return path;
-    // Of a link to a file that is not there yet, where that will be.
+    // For a link to a file that does not exist yet, this is where the file will be.
     std::filesystem::path end = absolute;
     for (int links = 0; links < 40 && !std::filesystem::exists(end, error) && std::filesystem::is_symlink(end, error);
          ++links)

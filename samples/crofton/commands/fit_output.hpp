@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What `crofton fit` found, as JSON, as text and as a drawing.
+// Prints the results of `crofton fit` as JSON, text and a drawing.
 #pragma once
 #include <crofton/geometry/box.hpp>
 #include <cstdint>

@@ -67,8 +67,8 @@ class Faces {
     double area_ = 0.0;
 };
 
-// What the view's planes say of the hull of these corners, which may be many or flat. In double: a corner within 1e-9
-// of a plane (of its distance from the view's origin) is rejected by it no more than contained.
+// Classifies the hull of these corners, which may be many or flat, by the view's planes. Works in double: a plane
+// neither rejects nor contains a corner within 1e-9 of it, relative to the distance from the view's origin.
 cull::Verdict by_planes(const Frustum& frustum, std::span<const glm::dvec3> corners) {
     bool inside = true;
     for (const Plane& plane : frustum.view()) {

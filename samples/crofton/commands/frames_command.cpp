@@ -161,7 +161,7 @@ class FramesRun {
         return prepare_drawing(*size);
     }
 
-    // What is said of occluders asks for them.
+    // Options of occluders imply them.
     [[nodiscard]] bool by_occluders() const {
         if (!options_.occlusion.empty()) return options_.occlusion == "occluders";
         return options_.occluders || !options_.occlusion_size.empty() || !options_.baked.empty();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What `crofton frames` draws: each frame, the same without what is hidden, and what is seen in each pixel.
+// Drawing for `crofton frames`: each frame, the same frame without hidden objects, and the owner of each pixel.
 #pragma once
 #include <crofton/core/error.hpp>
 #include <crofton/render/device.hpp>
@@ -26,11 +26,11 @@ class FramesDrawing {
     // The picture of the last frame, without what is hidden.
     [[nodiscard]] Result<const render::Image*> picture();
 
-    // Of the last frame: fills `seen`, by what is shown, where the device can. Takes as long as draw() and is no part
-    // of its time.
+    // Fills `seen` of the last frame, by the colours of a picture, if the device supports it. Takes as long as draw()
+    // and is not part of its time.
     [[nodiscard]] Result<void> find_seen(pipeline::FrameStatistics& frame);
-    // Of the last frame, which has occlusion and has been through find_seen(): who owns a pixel; and how many pixels
-    // differ between the two pictures.
+    // Returns the owners of pixels of the last frame, and how many pixels differ between the two pictures. Requires
+    // occlusion, and a call of find_seen() before.
     [[nodiscard]] Result<pipeline::BothOwners> find_owners(const pipeline::FrameStatistics& frame);
     [[nodiscard]] Result<std::uint64_t> count_changed_pixels();
 

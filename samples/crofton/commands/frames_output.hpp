@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What `crofton frames` leaves behind: JSON, CSV, pictures, and a table for the person who waits.
+// Output of `crofton frames`: JSON, CSV, pictures, and a table on the terminal.
 #pragma once
 #include <crofton/core/error.hpp>
 #include <crofton/render/rasterizer.hpp>
@@ -37,7 +37,7 @@ struct SceneFacts {
 // FOLDER/frame_0000.png
 [[nodiscard]] Result<void> write_picture(const std::string& folder, std::uint32_t index, const render::Image& image);
 
-// What goes to stdout frame by frame, so that a run that is ended leaves what it has: the table, or the lines of CSV.
+// Writes to stdout frame by frame, the table or the CSV, so that an interrupted run leaves its frames.
 class FramesStream {
   public:
     FramesStream(const FramesOutput& output, const SceneFacts& scene, std::size_t count);

@@ -15,11 +15,11 @@ namespace crofton::cli {
 
 [[nodiscard]] std::string table_header(const SceneFacts& scene, bool occlusion);
 [[nodiscard]] std::string table_row(const pipeline::FrameStatistics& frame);
-// Of at least one frame.
+// Requires at least one frame.
 [[nodiscard]] std::string table_means(const SceneFacts& scene, std::span<const pipeline::FrameStatistics> frames,
                                       const std::optional<pipeline::Verification>& verification);
 
-// Of a whole frame, in milliseconds: updating, finding what to draw, colliding, drawing.
+// Returns the milliseconds of a frame: updating, finding what to draw, colliding, drawing.
 [[nodiscard]] double frame_ms(const pipeline::FrameStatistics& frame);
 [[nodiscard]] double frame_ms_with_occlusion(const pipeline::FrameStatistics& frame);
 

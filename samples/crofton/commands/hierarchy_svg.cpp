@@ -43,7 +43,7 @@ void draw(const Chain& chain, const glm::dvec2& corner, std::string& svg) {
     }
 }
 
-// What each colour stands for, in one line.
+// Draws a line with the meaning of each colour.
 void draw_legend(std::size_t levels, double y, std::string& svg) {
     svg_text(svg, kChainMargin, y, "", "filled: the object");
     for (std::size_t k = 0; k < levels; ++k)

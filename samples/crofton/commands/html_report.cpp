@@ -87,7 +87,7 @@ std::string row_of_both(const char* name, double without, double with, const cha
     return html + "<td>" + numbers[2] + "</td></tr>\n";
 }
 
-// What occlusion saves: each number without and with it.
+// The savings by occlusion: each number without and with it.
 std::string both_columns(const ReportContents& c) {
     if (!c.frames.front().occlusion) return {};
     const auto without = [&](auto value) { return mean_of(c.frames, value); };

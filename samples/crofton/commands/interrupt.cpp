@@ -54,7 +54,7 @@ void on_signal(int) {
     _exit(kInterrupted);
 }
 
-// What the attendant does until it is told goodbye.
+// The thread that waits for signals.
 class Watch {
   public:
     void run() {

@@ -27,7 +27,7 @@ int main(int argc, char** argv) {
     add_hierarchy_command(line);
     add_radiosity_command(line);
     const int status = line.run(argc, argv);
-    // What was printed may still be in the buffer, and a full disk is told only when it goes out.
+    // Output may still be in the buffer; a full disk shows only when it is flushed.
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
     std::fprintf(stderr, "crofton: standard output: cannot write: %s\n", std::strerror(errno));
     return kBadInput;

@@ -7,7 +7,7 @@
 
 namespace crofton::cli {
 
-// What is being done while it lives, in place of what was shown before. Any thread may set it.
+// Shows what is being done, as long as it lives. Any thread may set the text.
 class ProgressBar {
   public:
     explicit ProgressBar(std::string label, std::size_t total = 0);  // 0: nobody knows how much there is to do

@@ -67,7 +67,7 @@ constexpr double kThinnest = 0.01;  // metres
 
 using Ring = std::vector<glm::dvec2>;  // a convex polygon, (x, z)
 
-// What of a ring is where dot(normal, x) ≥ least.
+// Returns the part of a ring where dot(normal, x) ≥ least.
 Ring clipped(const Ring& ring, const glm::dvec2& normal, double least) {
     Ring kept;
     for (std::size_t i = 0; i < ring.size(); ++i) {
@@ -79,7 +79,7 @@ Ring clipped(const Ring& ring, const glm::dvec2& normal, double least) {
     return kept;
 }
 
-// What of a room is at least `inset` from its walls.
+// Returns the part of a room that is at least `inset` from its walls.
 Ring inner_ring(const assets::Room& room, double inset) {
     const bool is_triangle = room.corners[3] == room.corners[2];
     Ring ring(room.corners.begin(), room.corners.end() - (is_triangle ? 1 : 0));

@@ -26,7 +26,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr double kSaveEvery = 20.0;  // seconds
-// Of the near radius: walls of a room are far enough from its cell to prove.
+// Relative to the near radius: keeps the walls of a room far enough from its cell for proofs.
 constexpr double kInset = 1.01;
 constexpr std::uint32_t kByScene = ~std::uint32_t{0}, kStepsInLevels = 10000;
 
@@ -274,7 +274,7 @@ void print_figures(const Job& job, const pvs::Bake& bake, const pvs::Pvs& sets, 
                     8.0 * static_cast<double>(file_bytes) / pairs);
 }
 
-// What the lines have seen, and what is proved of the rest. Once interrupted nothing more is proved.
+// Returns what the lines have seen, and proofs for the rest. Proves nothing more once interrupted.
 Result<pvs::Pvs> finish_sets(Job& job, const pvs::Bake& bake, Executor& executor) {
     PartProgress progress("pvs: proofs");
     const auto start = Clock::now();

@@ -26,7 +26,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr double kSaveLightEvery = 20.0;  // seconds
-// What an error of e promises: so many patches are within twice e, as two deviations would be.
+// An error of e means that this part of the patches is within 2 e, as for two standard deviations.
 constexpr double kPatchesWithin = 0.95, kDeviations = 2.0;
 
 struct RadiosityOptions {
@@ -77,7 +77,7 @@ Result<void> save(const std::string& path, std::span<const std::byte> bytes) {
                         : write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
-// What an earlier run has left in the file of --checkpoint, if there is one.
+// Adds what an earlier run has left in the file of --checkpoint, if it exists.
 template <class Add>
 Result<void> load(const std::string& path, Add&& add) {
     if (path.empty() || !std::filesystem::exists(path)) return {};

@@ -49,7 +49,8 @@ struct SunEdges {
 [[nodiscard]] Result<void> write_lit_picture(const std::string& path, const TriangleMesh& mesh, const Camera& camera,
                                              std::uint32_t width, std::uint32_t height, float sky);
 
-// Of patches that the reference finds lit. A patch's error is that of all channels together, over its light.
+// Errors over patches that are lit in the reference. A patch's error is that of all channels together, relative to its
+// light.
 struct ReferenceReport {
     std::uint64_t runs = 0;
     double reference_error = 0.0;             // relative_error() of the reference

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What every sub-command says and writes the same way: messages to stderr, files whole or not at all.
+// Common output of all sub-commands: messages on stderr, files that are complete or not written.
 #pragma once
 #include <crofton/core/error.hpp>
 #include <string>

@@ -107,7 +107,7 @@ Json patch_json(const PrimitivePatches& p, std::size_t number, bool no_indices) 
     return entry;
 }
 
-// What stays as it was: whole primitives, or one patch of them by its first triangle.
+// Lists what stayed unchanged: whole primitives, or a patch by its first triangle.
 void add_reasons(const PrimitivePatches& p, Json& reasons) {
     if (!p.left_alone.empty()) reasons.push_back({{"primitive", p.primitive}, {"why", p.left_alone}});
     for (const auto& r : p.report.results)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a triangulation costs a frustum, a rasterizer and its pixels: predicted and measured.
+// Costs of a triangulation for a frustum, a rasterizer and its pixels: predicted and measured.
 #pragma once
 #include <crofton/core/error.hpp>
 #include <crofton/triangulate/triangulate.hpp>

@@ -70,7 +70,7 @@ class Json {
     [[nodiscard]] bool is_array() const { return kind_ == Kind::array; }
     [[nodiscard]] bool is_object() const { return kind_ == Kind::object; }
 
-    // What a value holds; zero, false and the empty text where it is of another kind.
+    // Return the value; zero, false or empty text if it is of another kind.
     [[nodiscard]] bool boolean() const { return is_boolean() && scalar_.boolean; }
     [[nodiscard]] double number() const;
     [[nodiscard]] std::int64_t integer() const;  // clamped
@@ -79,7 +79,7 @@ class Json {
 
     [[nodiscard]] std::size_t size() const;  // of an array or object; 0 otherwise
 
-    // Of an array: its elements. Of an object: its members, one for each key. Empty otherwise.
+    // Returns the elements of an array, or the members of an object, one for each key. Empty for other kinds.
     [[nodiscard]] std::span<const Json> elements() const;
     [[nodiscard]] std::span<const Member> members() const;
     [[nodiscard]] const Json* find(std::string_view key) const;  // nullptr where there is none

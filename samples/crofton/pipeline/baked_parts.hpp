@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What was baked for a scene beside the scene itself: its occluders, its potentially visible sets.
+// Baked data of a scene: its occluders and its potentially visible sets.
 #pragma once
 #include <crofton/pvs/pvs.hpp>
 #include <memory>
@@ -20,8 +20,8 @@ struct BakedParts {
     std::vector<Error> left_out;
 };
 
-// Of a file by `crofton bake` or `crofton pvs`. The scene has been updated. Errors name the file: what cannot be read
-// or is damaged; neither occluders nor sets in it.
+// Loads a file of `crofton bake` or `crofton pvs`. The scene must be updated. Errors, which name the file: it cannot be
+// read, is damaged, or has neither occluders nor sets.
 [[nodiscard]] Result<BakedParts> load_baked_parts(const std::string& path, const scene::Scene& scene,
                                                   const assets::ReadLimits& limits = {});
 

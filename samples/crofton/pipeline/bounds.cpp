@@ -42,7 +42,7 @@ double largest_stretch(const glm::dmat3& linear) {
     return std::sqrt(largest) * (1.0 + 16.0 * kRounding);
 }
 
-// Of a point's image: the sum of its terms' magnitudes along each axis, which cancel where the mesh lies far from its
+// Returns the sums of the magnitudes of a point's terms along each axis. The terms cancel if the mesh lies far from its
 // own origin.
 glm::dvec3 size_of_image(const Transform& world, const glm::dvec3& p) {
     return glm::abs(world.linear[0]) * std::abs(p.x) + glm::abs(world.linear[1]) * std::abs(p.y) +

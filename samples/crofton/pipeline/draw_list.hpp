@@ -34,7 +34,7 @@ class DrawList {
     void select(std::span<const scene::InstanceId> visible, const Camera& camera);
     // For these triangles alone, in the same order; objects are instances, ascending. Requires clusters.
     void select(std::span<const depth::VisibleCluster> visible, const Camera& camera);
-    // What the frame shows with occlusion: triangles, or whole instances, as it was found.
+    // Selects what a frame with occlusion draws: triangles or whole instances, in the order found.
     void select(const OccludedFrame& frame, const Camera& camera);
     [[nodiscard]] std::span<const render::DrawRange> ranges() const { return ranges_; }
     // One an instance.

@@ -212,7 +212,7 @@ Json summary_json(std::span<const FrameStatistics> frames, const std::optional<V
         summary["mean_" + std::string(column.name)] = sum / std::max(count, 1.0);
     }
     summary["drawn"] = drawn(frames);
-    // Of the means, not the mean of the frames' ratios.
+    // This is the ratio of the means, not the mean of the ratios.
     if (const auto seen = mean_seen(frames)) {
         summary["passed_per_seen"] = seen->passed_per_seen();
         if (frames.front().occlusion) summary["occlusion_passed_per_seen"] = seen->passed_per_seen_with_occlusion();

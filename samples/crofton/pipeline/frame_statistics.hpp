@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What one frame cost and found; the rows of `crofton frames` and of the viewer's panel.
+// Costs and results of a frame: the rows of `crofton frames` and of the viewer's panel.
 #pragma once
 #include <crofton/depth/depth_culler.hpp>
 #include <crofton/geometry/camera.hpp>
@@ -15,7 +15,7 @@
 
 namespace crofton::pipeline {
 
-// What owns a pixel of the picture: the least that could be drawn. Occlusion does not change it.
+// What owns a pixel of the picture: the least that could be drawn, with or without occlusion.
 struct Seen {
     std::uint64_t instances = 0, triangles = 0;
 };
@@ -63,7 +63,7 @@ struct FrameStatistics {
     std::optional<OccludedFrame> occlusion;
 };
 
-// What --verify found: mismatches by kind, with a line on each of the first few.
+// The result of --verify: mismatches by kind, and a line about each of the first few.
 struct Verification {
     std::uint64_t frames = 0;
     std::uint64_t culled_but_visible = 0;

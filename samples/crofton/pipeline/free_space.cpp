@@ -22,7 +22,7 @@ constexpr double kLongWay = 2.0, kPiece = 1.5, kSteepest = 0.8;
 constexpr int kMostPieces = 12;
 // Where a person walks columns are this far apart if there are not too many.
 constexpr double kPersonSpacing = 0.5;
-// What a place is worth: under a roof, under the sky, within a closed thing, on a closed thing with nothing around.
+// The value of a place: under a roof, under the sky, within a closed object, on a closed object with nothing around.
 constexpr float kUnderRoof = 4.0f, kUnderSky = 1.0f, kWithin = 0.05f, kOnBareRoof = 0.001f;
 // A roof is bare where fewer level lines meet something; within a thing most do.
 constexpr double kBare = 0.35, kClosed = 0.75;
@@ -36,9 +36,9 @@ constexpr std::size_t kLongestStraight = 24;
 // Directions that are tried from an eye, and eyes.
 constexpr std::uint32_t kDirections = 256, kMostStands = 300;
 constexpr int kHeadings = 24;
-// What tells a level from a thing that stands in the open, measured on those of shared/data: of the level lines from
-// all places 0.85 to 1 meet something in levels, 0.33 to 0.57 on things (1 within a horse that is inside out); of the
-// ways 0.39 to 0.92 are level in levels, 0.22 within the horse.
+// Tell a level from an object in the open, as measured on the scenes of shared/data. Of the horizontal lines from all
+// places, 0.85 to 1 hit something in levels, and 0.33 to 0.57 on objects (1 within a horse that is inside out). Of the
+// ways, 0.39 to 0.92 are level in levels, and 0.22 within the horse.
 constexpr double kSurrounded = 0.75, kLevel = 0.35, kLevelFloors = 0.3, kLevelSlope = 0.15;
 // Share of lines that may meet a back: more, and the eye is within something solid.
 constexpr double kMostBacks = 0.2;
@@ -82,7 +82,7 @@ std::optional<FreeSpace> FreeSpace::find(const scene::Scene& scene, const Aabb& 
     return space;
 }
 
-// What a vertical line meets, from above.
+// The hits of a vertical line, from above.
 struct FreeSpace::Column {
     std::uint32_t number;
     glm::dvec3 top;  // where the line begins

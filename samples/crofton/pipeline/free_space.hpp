@@ -74,7 +74,7 @@ class FreeSpace {
     [[nodiscard]] double distance_to_thing(const glm::dvec3& eye, const glm::dvec3& direction) const;
     // Whether places of a way may be left out: the straight way is free and as high.
     [[nodiscard]] bool is_straight(std::span<const std::uint32_t> way) const;
-    // What lines in all directions meet.
+    // The hits of lines in all directions.
     struct Sight {
         std::vector<lines::Hit> hits;          // by direction
         double surrounded = 0.0, backs = 0.0;  // shares: of level lines that meet something, of lines that meet a back

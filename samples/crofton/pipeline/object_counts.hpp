@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the bounds cannot say: how much of the objects themselves the frustum meets.
+// Counts the objects whose triangles meet the frustum, which bounds cannot tell.
 #pragma once
 #include <crofton/cull/classify.hpp>
 #include <crofton/depth/depth_culler.hpp>

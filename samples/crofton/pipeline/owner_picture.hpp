@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is seen in a picture: the triangles and instances that own a pixel of it.
+// The triangles and instances that own a pixel of a picture.
 #pragma once
 #include <crofton/core/error.hpp>
 #include <crofton/render/rasterizer.hpp>
@@ -24,7 +24,7 @@ class OwnerPicture {
     // geometry. Errors: the rasterizer's.
     [[nodiscard]] Result<void> draw(render::Rasterizer& rasterizer, std::uint32_t picture, const DrawList& list,
                                     const Camera& camera);
-    // What owns a pixel, ascending.
+    // Returns the instances that own a pixel, ascending.
     [[nodiscard]] std::span<const scene::InstanceId> instances() const { return instances_; }
     [[nodiscard]] std::span<const OwnerTriangle> triangles() const { return triangles_; }
 

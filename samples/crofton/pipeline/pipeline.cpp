@@ -192,7 +192,7 @@ struct Pipeline::State {
         bounds.update();
         for (const scene::InstanceId i : scene.relayered_instances()) {
             if (auto set = world.set_layers(objects[i], layers_of(i)); !set) return set;
-            // What is no longer drawn as a whole hides nothing more.
+            // An object that is not drawn whole any more hides nothing more.
             const ObjectHandle occluder = occluder_of(i);
             if (scene.layer_masks()[i] != 0 || occluder.is_null()) continue;
             if (auto set = world.set_hidden(occluder, true); !set) return set;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a bake of visible sets needs of a scene that does not say so itself.
+// Data for baking visible sets that the scene does not have itself.
 #pragma once
 #include <crofton/core/executor.hpp>
 #include <crofton/pvs/pvs.hpp>

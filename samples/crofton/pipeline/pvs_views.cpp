@@ -26,7 +26,7 @@ constexpr std::uint32_t kTile = 4;  // rays of a tile go through the tree togeth
 constexpr std::uint32_t kTries = 1000;
 constexpr double kFarthestNear = 0.1, kNearestNear = 1e-4;
 
-// What all views share.
+// Data shared by all views.
 struct Looked {
     const pvs::BakeGeometry& geometry;
     const pvs::Pvs& sets;
@@ -43,7 +43,7 @@ struct Looked {
 // Ways to choose what is drawn: the sets' modes, occlusion at run time, both.
 enum Way : std::size_t { kConservative, kStatistical, kOcclusion, kConservativeToo, kStatisticalToo, kWays };
 
-// Of one view.
+// Counts of one view.
 struct Counts {
     std::uint64_t frustum = 0, owners = 0;                  // triangles
     std::array<std::uint64_t, kWays> wrong{}, triangles{};  // pixels; triangles

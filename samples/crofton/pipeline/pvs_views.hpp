@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What visible sets cost in pictures: wrong pixels and triangles of views that the bake knew nothing of.
+// Measures visible sets in pictures: wrong pixels and triangles, in views that the bake did not know.
 #pragma once
 #include <crofton/core/executor.hpp>
 #include <crofton/pvs/pvs.hpp>
@@ -21,8 +21,8 @@ struct PvsViewOptions {
     void* user = nullptr;
 };
 
-// Of one way to draw. A pixel is wrong if its owner, the nearest triangle's object, is not drawn. It is then not in the
-// set of the eye's cell, or called occluded.
+// Figures of one way to draw. A pixel is wrong if the object of its nearest triangle is not drawn: it is not in the set
+// of the eye's cell, or it is called occluded.
 struct PvsModeFigures {
     double wrong_mean = 0.0, wrong_worst = 0.0;  // share of a view's pixels, sky and all
     double triangles = 0.0;                      // mean of a view: of objects in the frustum that are drawn

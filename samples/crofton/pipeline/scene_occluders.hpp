@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What hides other objects in a scene that does not say so itself.
+// Finds occluders in scenes that have none.
 #pragma once
 #include <crofton/bake/baked_scene.hpp>
 #include <crofton/core/executor.hpp>

@@ -18,7 +18,7 @@ namespace crofton::pipeline {
 void verify_frame(const scene::Scene& scene, const Pipeline& pipeline, const PipelineOptions& options,
                   const FrameStatistics& frame, bool gpu_counts_exactly, Verification& verification);
 
-// What owns a pixel, ascending: in the picture of all that is visible, and in that without what is hidden.
+// The owners of pixels, ascending: with all visible objects, and without hidden ones.
 struct BothOwners {
     std::span<const OwnerTriangle> of_all, of_shown;
 };

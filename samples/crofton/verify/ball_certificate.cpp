@@ -9,8 +9,8 @@
 namespace crofton::cli {
 namespace {
 
-// What double arithmetic on differences, products and fewer than forty additions can be off by, as a part of the sum of
-// all magnitudes.
+// Bounds the rounding in double of differences, products and fewer than forty additions, relative to the sum of all
+// magnitudes.
 constexpr double kBallRounding = 0x1p-46;
 
 // Points are relative to the frustum's origin.

@@ -29,7 +29,7 @@ void add_hull(const Points& points, BodyData& data) {
     data.hull_points.push_back(points);
 }
 
-// Of the triangles begin … end of `order`.
+// Adds the hulls of pieces of the triangles begin … end of `order`.
 void add_pieces(const TriangleMesh& mesh, std::uint32_t* begin, std::uint32_t* end, int cuts, BodyData& data) {
     Points points;
     Aabb middles;
@@ -109,7 +109,7 @@ std::vector<double> crossings(const Polygon& polygon, double y) {
 
 constexpr std::uint32_t kMapSide = 257;
 
-// Which polygon, counted from 1, lies over each corner of the grid; 0: none.
+// Returns the polygon over each corner of the grid, counted from 1; 0: none.
 std::vector<std::uint32_t> raster(const PolygonFile& file) {
     glm::dvec2 low(HUGE_VAL), high(-HUGE_VAL);
     for (const NamedPolygon& named : file.polygons)

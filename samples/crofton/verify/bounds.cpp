@@ -92,7 +92,7 @@ void box_optima(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
                             "large frusta: the box of least edge sum is hit less than that of least "};
     std::uint64_t seed = options.seed * 1000 + 440;
     for (std::size_t q = 0; q < 3; ++q) {
-        // What the query holds of itself counts nothing: the frustum's own volume.
+        // The frustum's own volume does not count.
         std::array<Mean, 3> measured;
         for (std::size_t b = 0; b < 3; ++b)
             measured[b] = mean_over_rotations(seed, effort(options, 256), [&](const glm::dmat3& turn) {

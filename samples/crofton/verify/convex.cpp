@@ -16,7 +16,7 @@ using convex::BodyAtPose;
 
 constexpr double kOffsets[] = {0.0, 1e3, 1e7};
 
-// Of one size, or each of its own.
+// All bodies of one size, or each of its own.
 enum class Sizes { one, any };
 
 // Whether a and b meet, as each question tells that has a yes or no: alone, and with what a neighbouring pose has left.
@@ -132,8 +132,8 @@ VerifyRow casts_sampled(const VerifyOptions& options) {
                     "separating planes in exact numbers", samples, wrong);
 }
 
-// Of translations: the first moment at which the bodies meet, by bisection between the impact and a moment when they
-// do. Places are not rounded.
+// Casts along translations. Finds the first contact by bisection between the impact and a time when the bodies overlap.
+// Poses are not rounded.
 VerifyRow casts_bisected(const VerifyOptions& options) {
     const std::uint64_t casts = std::max<std::uint64_t>(20, options.trials / 5000);
     ConvexPairs random(options.seed + 79);
@@ -169,8 +169,8 @@ double reach_along(const BodyAtPose& body, const glm::dvec3& direction) {
     return glm::dot(direction, body.pose.rotation * farthest + body.pose.translation);
 }
 
-// Of every pair of kinds: at the impact each point is in its body, and as far out along the normal as the body goes;
-// and the normal parts the bodies.
+// Casts of every pair of kinds. At the impact, each point is in its body, no point of the body is farther along the
+// normal, and the normal separates the bodies.
 VerifyRow casts_points(const VerifyOptions& options) {
     const convex::Body box = convex::Body::box({0.4f, 0.7f, 0.3f}).value();
     const std::array bodies{box,

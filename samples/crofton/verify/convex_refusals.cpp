@@ -151,7 +151,7 @@ void try_casts(Random& random, BodyTrial& trial) {
     const convex::Body box = *convex::Body::box(glm::vec3(0.5f));
     const double gap = random.uniform(0.5, 3.0);
     const RigidTransform near{glm::dmat3(1.0), {1.0 + gap, 0.0, 0.0}}, within{glm::dmat3(1.0), {0.7, 0.1, 0.0}};
-    // Of no time, and of no way: they miss what is apart, and hit what overlaps at once.
+    // Casts without duration or motion miss separate bodies, and hit overlapping ones at once.
     const convex::Motion forward{{9.0, 0.0, 0.0}, {}, {}};
     for (const convex::Motion& motion : {forward, convex::Motion{}}) {
         const convex::CastOptions no_time{.duration = motion.velocity.x > 0.0 ? 0.0 : 1.0};
@@ -160,7 +160,7 @@ void try_casts(Random& random, BodyTrial& trial) {
         const auto hit = convex::cast({box, {}}, motion, {box, within}, {}, no_time);
         trial.require(hit && hit->result == convex::CastResult::hit && hit->time == 0.0);
     }
-    // Of many turns: a box that turns about its own axis sweeps the sphere around it.
+    // With many turns, a box that turns about its own axis sweeps the sphere around it.
     const double turns = random.uniform(2.0, 1000.0);
     const convex::Motion spinning{{gap + 2.0, 0.0, 0.0}, {0.0, 0.0, turns * 6.283185307179586}, {}};
     const auto hit = convex::cast({box, {}}, spinning, {box, near}, {}, {.max_steps = 100'000});

@@ -49,7 +49,7 @@ bool is_flat(const ExactBody& body) {
     return body.points.size() == 3;
 }
 
-// Of a triangle without area none, so that the axes decide.
+// Returns false for a triangle without area, so that the axes decide.
 bool triangle_contains(const ExactBody& body, const ExactVector& x) {
     const ExactVector n = normal_of(body, body.triangles[0]);
     if ((n[0].sign() | n[1].sign() | n[2].sign()) == 0 || dot_of(n, x - body.points[0]).sign() != 0) return false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the sharp rows of `crofton verify` measure with: volumes, shadows and breadths from corners alone, averaged over
-// rotations or directions. No intrinsic volume, no kinematic formula.
+// Measures for `crofton verify`: volumes, shadows and widths from corners alone, averaged over rotations or directions,
+// without intrinsic volumes or kinematic formulas.
 #pragma once
 #include <cstdint>
 #include <functional>

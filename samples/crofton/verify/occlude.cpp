@@ -56,7 +56,7 @@ bool may_block(const WitnessRay& ray, const Obb& box) {
     return !(enter > leave + 2.0 * error || enter > 1.0 + error || enter < ray.t_near - error);
 }
 
-// What may block rays: boxes, and a sphere around each, a little larger, that most rays pass by.
+// Objects that may block rays: boxes, each with a slightly larger sphere around it that most rays miss.
 class Blockers {
   public:
     explicit Blockers(const std::vector<Obb>& boxes) : boxes_(&boxes) {

@@ -31,7 +31,7 @@ struct Stage {
     glm::dvec3 offset{0.0};
 };
 
-// What a node of many meshes hides: it is in no answer itself, its meshes are.
+// Adds a node of many meshes. The node itself is in no answer; its meshes are.
 Result<void> add_level(scene::Scene& scene, scene::NodeId node, const std::vector<scene::MeshId>& ids, Stage& stage) {
     TriangleMesh all;
     for (const scene::MeshId id : ids) append(all, scene.mesh(id));

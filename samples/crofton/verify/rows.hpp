@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What `crofton verify` is made of: one row a claim, with what was predicted, what was measured, and the verdict.
+// The rows of `crofton verify`: a claim, its prediction, the measurement, and the verdict.
 #pragma once
 #include <cstdint>
 #include <limits>
@@ -51,10 +51,10 @@ struct VerifyOptions {
 [[nodiscard]] VerifyRow wrong_row(std::string claim, std::string source, double predicted, double measured,
                                   double standard_error);
 
-// What must never happen: holds while `wrong` is 0. Where no case was tried it does not hold either.
+// A row for something that must never happen: it holds if `wrong` is 0 and at least one case was tried.
 [[nodiscard]] VerifyRow none_row(std::string claim, std::string source, std::uint64_t cases, std::uint64_t wrong);
 
-// What could not be tried, as the engine gave an error or nothing to count: a row that does not hold.
+// A row that could not be tried, because the engine returned an error or nothing to count. It does not hold.
 [[nodiscard]] VerifyRow untried_row(std::string claim, std::string source);
 
 // The share of `trials` that were hits, with its binomial standard error.

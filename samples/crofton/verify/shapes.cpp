@@ -230,7 +230,7 @@ void picture_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
         ++cases;
     }
     rows.push_back(none_row("balls that are dropped at another size than four pixels", source, cases, wrong));
-    // What may throw a shadow into the view: a point from which the way of the light meets it.
+    // A point may cast a shadow into the view if its ray along the light meets the view.
     const auto view = frustum_of(camera);
     const glm::dvec3 toward = glm::normalize(glm::dvec3(0.3, 0.8, -0.2)), lamp = camera.position + glm::dvec3(0, 20, 0);
     const auto sun = view ? cull::shadow_volume(*view, toward) : Result<Frustum>(tl::unexpected(Error{}));
@@ -259,7 +259,7 @@ void picture_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
         ++shadow_cases;
         const bool in_sun = meets(-toward, 1e9);
         if (in_sun ? !holds(*sun, p, -1e-9) : holds(*sun, p, 1e-9)) ++sun_wrong;
-        // Of a lamp: on a segment between it and the view.
+        // For a lamp, it must be on a segment between the lamp and the view.
         const bool in_hull = meets(p - lamp, 1e9);
         if (in_hull ? !holds(*hull, p, -1e-9) : holds(*hull, p, 1e-9)) ++lamp_wrong;
     }

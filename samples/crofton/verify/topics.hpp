@@ -22,7 +22,7 @@ namespace crofton::cli {
 [[nodiscard]] std::vector<VerifyRow> bound_rows(const VerifyOptions& options);
 [[nodiscard]] std::vector<VerifyRow> triangulation_rows(const VerifyOptions& options);
 [[nodiscard]] std::vector<VerifyRow> tree_rows(const VerifyOptions& options);
-// What no theorem's row calls, mostly without chance.
+// Formulas that no theorem's row calls, mostly without random numbers.
 [[nodiscard]] std::vector<VerifyRow> formula_rows(const VerifyOptions& options);
 // Likewise of shapes: least figures, masses, meshes, limits and shadows.
 [[nodiscard]] std::vector<VerifyRow> shape_rows(const VerifyOptions& options);

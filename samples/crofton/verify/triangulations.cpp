@@ -32,7 +32,7 @@ Polygon wall() {
                        {{4, 0.9}, {6, 1}, {6, 2.2}, {4, 2.1}}});
 }
 
-// Of all rings: boundary and area (outer ring less holes, whichever way they turn).
+// Measures all rings: boundary and area (outer ring minus holes, in either orientation).
 measure::TriangulationMeasures measures_of(const Polygon& polygon, const triangulate::Triangulation& result) {
     measure::TriangulationMeasures sums;
     sums.triangles = static_cast<double>(result.triangles.size());

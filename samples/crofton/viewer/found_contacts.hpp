@@ -10,7 +10,7 @@ namespace crofton::viewer {
 
 class FoundContacts {
   public:
-    // Of pairs whose boxes meet, in that frame of the scene's motion; only what is wanted.
+    // Finds contacts among pairs whose boxes overlap, in this frame of the scene's motion. Computes only what is shown.
     void update(InstanceBodies& bodies, std::uint32_t scene_frame, std::span<const InstancePair> pairs, bool triangles,
                 bool hulls);
     [[nodiscard]] std::span<const TriangleContacts> triangles() const { return triangles_.found; }

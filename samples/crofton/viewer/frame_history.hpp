@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What happened, frame by frame: for the plots, and for files to take away.
+// The history of frames, for plots and for export.
 #pragma once
 #include <array>
 #include <string>

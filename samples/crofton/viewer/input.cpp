@@ -20,9 +20,9 @@ void Session::handle_events() {
     for (const Event& event : window_->take_events()) {
         const bool key = event.kind == Event::Kind::key_down;
         const bool mouse = event.kind == Event::Kind::button_down || event.kind == Event::Kind::scroll;
-        // What the panels want is theirs; letting go is for both. Of keys they want those that write a text, no others:
-        // ImGui's wish for the keyboard lasts as long as a button is held down on any widget. ImGui knows the mouse of
-        // its last frame only: a click may come with the motion that led it onto a panel.
+        // Panels take the events that they want; releases go to both. Of keys, panels take only those that write text,
+        // because ImGui wants the keyboard as long as a button is held down on any widget. ImGui knows the mouse of its
+        // last frame only: a click may come with the motion that led it onto a panel.
         if (event.kind == Event::Kind::cursor) cursor_ = event.at;
         if (settings_.panels && ((key && io.WantTextInput) || (mouse && (io.WantCaptureMouse || on_panel(cursor_)))))
             continue;

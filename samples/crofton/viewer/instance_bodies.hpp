@@ -38,9 +38,9 @@ class InstanceBodies {
 
     // The nearest triangle of an instance. A transform without an inverse is not hit.
     [[nodiscard]] std::optional<mesh::RayHit> raycast(const Ray& ray, scene::InstanceId instance);
-    // Of those pairs whose triangles meet.
+    // Returns the pairs whose triangles overlap.
     [[nodiscard]] std::vector<TriangleContacts> triangle_contacts(std::span<const InstancePair> pairs);
-    // Of those pairs whose hulls meet. What is flat has no hull and meets nothing.
+    // Returns the pairs whose hulls overlap. Flat meshes have no hull and overlap nothing.
     [[nodiscard]] std::vector<HullContacts> hull_contacts(std::span<const InstancePair> pairs);
     // The hull's edges, in the world; false: it has none.
     bool outline(scene::InstanceId instance, convex::LineVisitor line);

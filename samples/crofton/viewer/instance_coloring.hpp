@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which colour each visible instance is drawn in.
+// Chooses the colour of each visible instance.
 #pragma once
 #include <crofton/geometry/camera.hpp>
 #include <crofton/render/rasterizer.hpp>

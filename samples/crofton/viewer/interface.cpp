@@ -12,7 +12,7 @@
 namespace crofton::viewer {
 namespace {
 
-// What this thread has computed: the time that drawing takes away from it meanwhile does not count.
+// Returns the processor time of this thread; time that drawing takes from it does not count.
 double computed_us() {
 #ifdef CLOCK_THREAD_CPUTIME_ID
     timespec now{};

@@ -100,7 +100,7 @@ Result<void> LoadedScene::take_baked(const SceneRequest& request, const Method& 
     } else if (!request.baked.empty()) {
         auto parts = pipeline::load_baked_parts(request.baked, source_.scene, request.limits);
         if (!parts) return tl::unexpected(std::move(parts.error()));
-        // What was baked is of the triangles as they were loaded; cut in another way they may be others.
+        // Baked data is for the triangles as they were loaded; other triangulations may have others.
         if (!parts->left_out.empty() && method.triangulation == Triangulation::loaded)
             return tl::unexpected(std::move(parts->left_out.front()));
         for (Error& error : parts->left_out) source_.warnings.push_back(std::move(error.message));

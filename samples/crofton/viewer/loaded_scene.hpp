@@ -44,7 +44,7 @@ class LoadedScene {
     [[nodiscard]] std::uint32_t scene_frame() const { return scene_frame_; }
     [[nodiscard]] Result<pipeline::FrameStatistics> run(const Camera& camera);
 
-    // What run() found hidden; nullptr where the method does not ask.
+    // Returns what run() found hidden; nullptr if the method has no occlusion.
     [[nodiscard]] const Occlusion* occlusion() const { return method_.occlude ? &occlusion_ : nullptr; }
     // Potentially visible sets that were baked of the scene; nullptr: none.
     [[nodiscard]] const pvs::Pvs* pvs() const { return baked_.pvs.get(); }

@@ -109,7 +109,7 @@ Result<void> Session::load(const SceneRequest& request) {
     const bool same_scene = loaded_ && request.source == request_.source && request.map == request_.map;
     auto loaded = LoadedScene::load(request, settings_.method, settings_, same_scene ? loaded_.get() : nullptr);
     if (!loaded) return tl::unexpected(std::move(loaded.error()));
-    // What refers to the old scene goes first.
+    // First drop everything that refers to the old scene.
     list_.reset();
     contacts_ = {};
     sight_.reset();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What keeps bodies apart that nearly touch; in world coordinates.
+// Separating planes of bodies that nearly touch, in world coordinates.
 #pragma once
 #include <crofton/geometry/box.hpp>
 #include <crofton/scene/scene.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What of a frame's visible instances is hidden behind others.
+// Finds the visible instances of a frame that others hide.
 #pragma once
 #include <crofton/crofton.hpp>
 #include <crofton/scene/scene.hpp>
@@ -35,9 +35,9 @@ class Occlusion {
     OcclusionCounts counts_;
 };
 
-// Of the last run() of a pipeline with occlusion. Nodes hide as a whole, with all their instances.
+// Results of the last run() of a pipeline with occlusion. Nodes hide as a whole, with all their instances.
 
-// Whose occluders were drawn; ascending.
+// Returns the nodes whose occluders were drawn, ascending.
 [[nodiscard]] std::vector<scene::NodeId> hiding_nodes(const pipeline::Pipeline& pipeline);
 // That hide an instance; ascending, empty where none does. Draws every occluder again.
 [[nodiscard]] std::vector<scene::NodeId> nodes_that_hide(const pipeline::Pipeline& pipeline,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is drawn over the scene as lines: bounds, frusta, contacts.
+// Lines drawn over the scene: bounds, frusta, contacts.
 #pragma once
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/crofton.hpp>
@@ -23,7 +23,7 @@ struct Cascade {
 // The camera's range [near, far or `range`] in `count` parts, halfway between even and geometric spacing.
 [[nodiscard]] std::vector<Cascade> split_view(const Camera& camera, int count, double range);
 
-// What a kind of line in the picture stands for.
+// The meaning of a kind of line.
 struct LineMeaning {
     const char* name;
     std::uint32_t color;
@@ -41,7 +41,7 @@ class Overlay {
                     const pipeline::FrameStatistics& frame, std::span<const HullContacts> contacts);
     // Likewise: the cell in which the eye is.
     void draw_cell(LineList& lines, const CellSight& sight);
-    // Of the lines last drawn.
+    // Returns the meanings of the lines last drawn.
     [[nodiscard]] std::span<const LineMeaning> legend() const { return legend_; }
     [[nodiscard]] std::uint64_t contact_count() const { return contacts_; }
     [[nodiscard]] std::uint64_t separation_count() const { return separations_; }

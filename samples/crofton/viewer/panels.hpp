@@ -41,7 +41,7 @@ struct Notice {
     double until = 0.0;
 };
 
-// What the panels show, and what they may change.
+// Data that panels show and may change.
 struct PanelInput {
     Settings& settings;
     CameraController& eye;
@@ -71,7 +71,7 @@ struct PanelInput {
     std::optional<bool> fold;  // where that leaves no room for a picture beside the panels, or room again
 };
 
-// What the user asked for with a button, and where the panels lie.
+// The user's requests by buttons, and the places of the panels.
 struct PanelWish {
     struct Area {
         float left, top, right, bottom;
@@ -87,7 +87,8 @@ void apply_style(float scale);
 [[nodiscard]] bool is_narrow(const ImVec2& display);
 [[nodiscard]] float main_panel_width();
 [[nodiscard]] float font_pixels(float scale);
-// Of each of two pictures beside the main panel, side by side, at most; `display` and `font` in pixels.
+// Returns the largest width of each of two pictures, side by side, beside the main panel. `display` and `font` are in
+// pixels.
 [[nodiscard]] float half_beside_main_panel(float display, float font);
 [[nodiscard]] PanelWish draw_panels(const PanelInput& input);
 

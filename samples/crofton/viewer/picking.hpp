@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What lies under the cursor.
+// Finds the object under the cursor.
 #pragma once
 #include <crofton/crofton.hpp>
 #include <crofton/scene/scene.hpp>

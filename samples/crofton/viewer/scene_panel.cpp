@@ -62,7 +62,7 @@ std::string name_of(const scene::Scene& scene, scene::NodeId node, std::span<con
     return "node " + std::to_string(node) + (name.empty() ? "" : ": " + name);
 }
 
-// What hides it: a click selects it.
+// Lists what hides the selected object; a click selects it.
 void show_hiders(const PanelInput& input, PanelWish& wish) {
     constexpr std::size_t kShown = 3;
     for (std::size_t i = 0; i < std::min(input.hiders.size(), kShown); ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What an unattended run does, and when: keys, cameras, switches, pictures.
+// Scripts for unattended runs: keys, cameras, switches and pictures by frame.
 #pragma once
 #include <crofton/geometry/camera.hpp>
 #include <string>

@@ -197,7 +197,7 @@ Result<void> Session::color_clusters() {
                                       {culling_size_.width, culling_size_.height});
 }
 
-// What is hidden is drawn where its colour is asked for: from elsewhere it is seen.
+// Hidden objects are drawn if their colouring is on: they can be seen from elsewhere.
 void Session::list_drawn() {
     drawn_ids_ = frame_.visible_ids;
     if (settings_.coloring != Coloring::occlusion || loaded_->occlusion() == nullptr) return;
@@ -224,7 +224,7 @@ Result<void> Session::submit_view(const Camera& camera, std::uint32_t picture, b
     return submit(camera, picture);
 }
 
-// What is selected, in its colours, and the lines.
+// Submits the frame, with the selection in its colours, and the lines.
 Result<void> Session::submit(const Camera& camera, std::uint32_t picture) {
     instance_coloring_.paint(*list_, settings_.wireframe,
                              settings_.coloring == Coloring::clusters ? &cluster_coloring_ : nullptr);
@@ -274,7 +274,7 @@ Result<void> Session::start_drawing() {
         const auto columns = static_cast<std::uint32_t>(std::max(width, 16.0));
         const auto rows = static_cast<std::uint32_t>(std::max(width / kInsetAspect, 9.0));
         if (auto sized = rasterizer_->resize(columns, rows, kInset); !sized) return sized;
-        // What most triangles are in; the far landscape would make it a speck.
+        // Use the extent of most triangles; with the far landscape the scene would be a speck.
         const double range = glm::length(loaded_->focus().half_extents());
         if (auto begun = submit_view(from_outside(culling_camera_, range), kInset, true); !begun) return begun;
         if (auto done = rasterizer_->finish(); !done) return tl::unexpected(std::move(done.error()));

@@ -29,7 +29,7 @@ inline constexpr const char* kColoringNames[] = {"lit",      "verdict",   "impro
 enum class Triangulation : std::uint8_t { loaded, ear, delaunay, minimum_weight };
 inline constexpr const char* kTriangulationNames[] = {"loaded", "ear", "delaunay", "minimum-weight"};
 
-// What a frame's work depends on; two of these can be compared side by side.
+// The settings that a frame's work depends on; two of these can be compared side by side.
 struct Method {
     pipeline::BoundsKind bounds = pipeline::BoundsKind::obb_perimeter;
     pipeline::CullMode cull = pipeline::CullMode::tree;

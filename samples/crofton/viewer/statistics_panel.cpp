@@ -72,7 +72,7 @@ void number(double value) {
     right_aligned(with_thousands(static_cast<std::uint64_t>(std::llround(value))));
 }
 
-// Of the last frame for which it was counted; nothing before.
+// Shows the number of the last frame for which it was counted; nothing before.
 void seen_number(const Frame* frame, const pipeline::StatisticsColumn& column) {
     if (frame == nullptr) return;
     if (std::string_view(column.name) != "passed_per_seen") return number(column.value(*frame));
@@ -90,7 +90,7 @@ bool is_counted_later(const std::string& column) {
     return column == "draw_us" || column == "triangles_clipped" || column.rfind("gpu_", 0) == 0;
 }
 
-// Of A, and of B or the mean; only where one of the two asks.
+// Shows occlusion of A, and of B or the mean, if one of the two has it.
 void occlusion_rows(const PanelInput& input) {
     using Count = double (*)(const OcclusionCounts&);
     struct Row {

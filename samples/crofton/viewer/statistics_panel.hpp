@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What frames cost and found, as numbers and plots.
+// Costs and results of frames, as numbers and plots.
 #pragma once
 #include "panels.hpp"
 

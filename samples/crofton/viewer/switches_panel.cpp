@@ -10,7 +10,7 @@
 namespace crofton::viewer {
 namespace {
 
-// What the key beside the last widget does.
+// Shows the key of the last widget.
 void hint(const char* key) {
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s: %s", key, what_key_does(key));
 }

@@ -25,7 +25,7 @@ class UiRenderer {
     // The picture to draw over; again after each change of its size.
     [[nodiscard]] Result<void> set_target(VkImageView picture, VkExtent2D extent);
 
-    // What an ImGui::Image shows: one picture beside the font, replaced by the next call.
+    // Registers a picture for ImGui::Image, one at a time besides the font; the next call replaces it.
     [[nodiscard]] ImTextureID show(VkImageView picture);
     // The same for pixels in memory, red in the lowest byte: one more picture. Errors: Vulkan's.
     [[nodiscard]] Result<ImTextureID> show_pixels(std::span<const std::uint32_t> rgba, VkExtent2D extent);

@@ -18,7 +18,7 @@ struct CellSight {
 };
 [[nodiscard]] Json to_json(const CellSight& sight);
 
-// Of the camera that culled the frame; nothing without sets, and where no cell holds it or a solid one.
+// Returns the cell of the camera that culled the frame; nothing without sets, in no cell, or in a solid one.
 [[nodiscard]] std::optional<CellSight> look_up(const pvs::Pvs* pvs, const pipeline::FrameStatistics& frame);
 
 }  // namespace crofton::viewer

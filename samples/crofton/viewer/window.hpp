@@ -11,8 +11,8 @@ struct GLFWwindow;
 
 namespace crofton::viewer {
 
-// What the user did, whether by hand or by script. Keys by name: "A", "1", "F5", "Space", "Ctrl+S" as a modifier
-// prefix.
+// An action of the user, by hand or by script. Keys are named "A", "1", "F5", "Space"; modifiers are prefixes:
+// "Ctrl+S".
 struct Event {
     enum class Kind { key_down, key_up, button_down, button_up, cursor, scroll, drop, scale } kind = Kind::key_down;
     std::string text;    // the key's name, or a dropped file
@@ -28,7 +28,7 @@ class Window {
     Window(const Window&) = delete;
     Window& operator=(const Window&) = delete;
 
-    // What the device must be created with so that attach() works.
+    // Returns the Vulkan extensions that attach() needs.
     [[nodiscard]] static std::vector<std::string> instance_extensions();
     [[nodiscard]] static std::vector<std::string> device_extensions();
     // Makes surface and swapchain. Errors: the device cannot present here; Vulkan's. The context must outlive the
