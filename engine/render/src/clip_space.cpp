@@ -156,7 +156,7 @@ bool inside_clip_planes(const Aabb& bounds, const glm::mat4& model_to_clip) {
 std::uint64_t ClipPredictor::count(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices,
                                    const glm::mat4& model_to_clip) {
     CROFTON_ASSERT(indices.size() % 3 == 0, "three indices a triangle");
-    // Of a part of a mesh only the corners are looked at, not all positions.
+    // For a part of a mesh, look at its corners only, not at all positions.
     const bool is_part = indices.size() < positions.size();
     if (!is_part) {
         if (codes_.size() < positions.size()) codes_.resize(positions.size());

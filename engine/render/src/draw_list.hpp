@@ -7,7 +7,7 @@
 
 namespace crofton::render {
 
-// Which faces are seen, and where the others are dropped. The values are the shaders' `faces`.
+// Says which faces are drawn, and where the others are dropped. The values are the shaders' `faces`.
 enum class Faces : std::uint32_t { both, front_by_shader, front_by_culling };
 inline constexpr std::array kAllFaces{Faces::both, Faces::front_by_shader, Faces::front_by_culling};
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which triangle owns which pixel: the frame's triangles drawn in their numbers, 1 for the first, 0 being nothing's.
+// Finds the triangle that owns each pixel: draws the frame's triangles in their numbers, from 1; 0 is the background.
 #include <cstring>
 
 #include "rasterizer_state.hpp"

@@ -18,7 +18,7 @@ static_assert(sizeof(PackedVertex) == 20);
 [[nodiscard]] inline PackedVertex packed(const Vertex& vertex) {
     PackedVertex result{vertex.position, 0, 0};
     for (int k = 0; k < 3; ++k) {
-        // What cannot be compared (NaN) becomes the lower end.
+        // NaN becomes the lower end.
         const float direction = std::min(std::max(-1.0f, vertex.normal[k]), 1.0f);
         const float shown = std::sqrt(std::min(std::max(0.0f, vertex.color[k]), 1.0f));
         const auto component = static_cast<std::int32_t>(std::lround(511.0f * direction));

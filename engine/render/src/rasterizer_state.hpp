@@ -29,7 +29,7 @@ struct Rasterizer::State {
     Vector<MergedDraw> draws;       // the counted ones, then the wires
     std::size_t counted_draws = 0;  // of `draws`
     Vector<VkMultiDrawIndexedInfoEXT> multi_draws;
-    // What draw_owners() draws: each range with a transform of its own, which carries its number.
+    // The ranges that draw_owners() draws, each with a transform of its own, which carries its number.
     Vector<DrawRange> numbered_ranges;
     Vector<DrawTransform> numbered_transforms;
 

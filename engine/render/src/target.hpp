@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is drawn into: RGBA8 + D32, with a way back to the host.
+// The render target: RGBA8 + D32, with a way back to the host.
 #pragma once
 #include <crofton/render/resources.hpp>
 

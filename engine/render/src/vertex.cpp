@@ -7,7 +7,7 @@
 namespace crofton::render {
 namespace {
 
-// Which triangle corners use each position: corners[begin[p] … begin[p + 1]).
+// The triangle corners that use each position: corners[begin[p] … begin[p + 1]).
 struct CornersOfPositions {
     Vector<std::uint32_t> begin, corners;
 };

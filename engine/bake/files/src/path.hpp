@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the system takes for a path.
+// Paths in the form that the operating system expects.
 #pragma once
 #include <crofton/core/error.hpp>
 #include <string>

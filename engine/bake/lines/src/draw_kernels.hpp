@@ -27,8 +27,8 @@ struct alignas(64) Projected {
 };
 void project(const DrawnTriangles* blocks, std::size_t count, const GridFrame& grid, Projected& out);
 
-// Which candidates (triangle of the chunk, cell) hold their cell's sample. Those are written, in order: cell, triangle
-// with kFront where the line comes from its front, t. Returns how many. `out_…` have room for count + 8.
+// Finds the candidates (triangle of the chunk, cell) that contain their cell's sample. Writes for each, in order: cell,
+// triangle with kFront if the line comes from its front, t. Returns their number. `out_…` have room for count + 8.
 std::size_t covered(const Projected& chunk, const std::uint32_t* triangles, const std::uint32_t* cells,
                     std::size_t count, const float* sample_x, const float* sample_y, std::uint32_t* out_cell,
                     std::uint32_t* out_triangle, float* out_t);

@@ -32,8 +32,8 @@ struct Spread {
     }
 };
 
-// Which children the line passes between t_low and t_high, and where it enters each. Each of the three steps of a
-// plane's parameter rounds by 2^-24; widening the interval by 2^-21 of its ends covers them.
+// Finds the children that the line passes between t_low and t_high, and where it enters each. Each of the three steps
+// of a plane's parameter rounds by 2^-24; widening the interval by 2^-21 of its ends covers them.
 HWY_INLINE unsigned children(D d, const mesh::BoxNode& node, const Spread& ray, float t_low, float t_high,
                              float* entry) {
     unsigned bits = 0;

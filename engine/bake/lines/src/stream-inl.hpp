@@ -60,8 +60,8 @@ HWY_INLINE void spread(D d, const StreamLine& line, std::size_t first, V* out) {
     for (std::size_t k = 0; k < 3; ++k) out[k] = hn::Set(d, line.values[first + k]);
 }
 
-// Which of a node's bounds lines come to first along each axis: rows of BoxNode::bounds, the lower and the upper one
-// where their directions differ.
+// The bounds of a node that lines reach first along each axis: rows of BoxNode::bounds, both the lower and the upper
+// one if the lines' directions differ.
 struct Rows {
     unsigned first[3] = {0, 1, 2}, second[3] = {3, 4, 5};
 };
@@ -99,7 +99,7 @@ HWY_INLINE unsigned passed_by(D d, const mesh::BoxNode& node, const Rows& rows, 
     return bits;
 }
 
-// Of a list as many lines are taken together as a vector has lanes, and eight at least.
+// Takes as many lines of a list together as a vector has lanes, and at least eight.
 using W = hn::CappedTag<float, 16>;
 using WV = hn::Vec<W>;
 constexpr std::size_t kGroup = hn::MaxLanes(W()) > 8 ? hn::MaxLanes(W()) : 8;

@@ -40,8 +40,8 @@ void set_bits(T& word, T bits) {
 #endif
 }
 
-// What is seen from one gap between crossings: the object at each of its ends. It is a bit of a cell's row, or none.
-// There is no struct for such a bit: g++ builds it on the stack, and waits to read it from there.
+// What is seen from one gap between crossings: the object at each of its ends, as a bit of a cell's row, or none. There
+// is no struct for such a bit: g++ builds it on the stack, and waits to read it from there.
 struct Gap {
     double end = 0.0;  // along the line
     std::uint64_t behind_bit = 0, ahead_bit = 0;
@@ -126,7 +126,7 @@ class BlockTracing {
             for (std::size_t g = 0; g <= count; ++g)
                 if (gaps[g].depth != kThin) gaps[g].flags |= gaps[g].depth == least ? kFree : kSolid;
         const std::uint32_t escapes = static_cast<std::uint32_t>(kFirstEscape) << line % kEscapeClasses;
-        // What is met on both sides has an object at both ends of all gaps but the outer ones.
+        // Objects that are hit from both sides are at both ends of all gaps but the outer ones.
         for (std::size_t g = 0; g <= count; g += both && count > 0 ? count : 1) add_escapes(gaps[g], escapes);
     }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a bake knows, and how parts of it are added up.
+// Data of a bake, and how parts of it are added up.
 #pragma once
 #include <crofton/core/memory.hpp>
 #include <crofton/lines/lines.hpp>
@@ -40,13 +40,13 @@ class BlockRanges {
     return {at(shard.index), at(std::uint64_t{shard.index} + 1)};
 }
 
-// What lines have found about a cell. Lines are dealt out to twelve classes by number, and those that leave the scene
-// set the bit of theirs. One or two may have slipped between two triangles; many have found a way out.
+// Results of lines about a cell. Lines are dealt out to twelve classes by number, and those that leave the scene set
+// the bit of their class. One or two may have slipped between two triangles; many have found a way out.
 enum CellFlag : std::uint16_t { kPassed = 1, kFree = 2, kSolid = 4, kFirstEscape = 16 };
 inline constexpr std::uint32_t kEscapeClasses = 12;
 inline constexpr int kEscapesOfOpen = 8;
 
-// What tells bakes apart: parts of one have the same.
+// Identifies a bake: all of its parts have the same.
 struct BakeName {
     std::uint64_t fingerprint = 0;  // of the geometry, the cells and the seed
     std::uint64_t cells = 0, blocks = 0;

@@ -7,9 +7,9 @@
 namespace crofton::pvs {
 namespace {
 
-// Of the extent: far above the rounding of a walk's steps.
+// Relative to the extent: far above the rounding of a walk's steps.
 constexpr double kRoom = 1e-9;
-// Of a box in lists, on average. With at most 2^24 boxes 32 bits count them all.
+// The average number of lists that a box is in, at most. With at most 2^24 boxes, 32 bits count them all.
 constexpr std::uint64_t kMostPlaces = 64;
 
 inline std::uint32_t voxel_of(double x, const Aabb& bounds, int k, std::uint32_t count) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which boxes are where: a grid of voxels with a list each.
+// Finds boxes by place: a grid of voxels with a list each.
 #pragma once
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/box.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which cells a line passes through, and where along it.
+// Finds the cells that a line passes through, and where along it.
 #pragma once
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/shapes.hpp>
@@ -54,14 +54,14 @@ class CellWalk {
     kernels::VoxelGrid grid_;
     Vector<Aabb> boxes_;               // empty: the voxels are the cells
     std::optional<BoxVoxels> voxels_;  // of the boxes
-    // Of convex cells: where all are at least 0.
+    // The planes of convex cells, which are where all are at least 0.
     Vector<Plane> planes_;
     Vector<std::uint32_t> plane_ends_;
 };
 
 // Where the line is in the box: begin ≤ end, or none.
 [[nodiscard]] bool clip(const Line& line, const Aabb& box, double& begin, double& end);
-// What of that lies within the planes.
+// Clips the interval to the planes.
 [[nodiscard]] bool clip(const Line& line, std::span<const Plane> planes, double& begin, double& end);
 
 }  // namespace crofton::pvs

@@ -25,8 +25,8 @@ struct Around {
     }
 };
 
-// Of points of one plane: twice the area of their hull, as the sum over its edges. An edge is a pair that has all other
-// points on its left, and none on it beyond its ends.
+// Returns twice the area of the hull of points in one plane, as the sum over its edges. An edge is a pair that has all
+// other points on its left, and none on its line beyond its ends.
 double doubled_area(std::span<const glm::dvec3> points, const glm::dvec3& normal, double tolerance) {
     double area = 0.0;
     for (std::size_t i = 0; i < points.size(); ++i)

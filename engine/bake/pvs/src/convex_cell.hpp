@@ -12,8 +12,9 @@ struct ConvexCellFaces {
     double surface = 0.0;  // area
 };
 
-// Of the hull of the corners. Corners within 1e-12 of the size of a plane lie on it. The plane is then moved inward
-// behind all of them: what lies within the planes lies within the hull, but for rounding. None where the hull is flat.
+// Returns the faces of the hull of the corners. Corners within 1e-12 of the size of a plane lie on it. The plane is
+// then moved inward behind all of them, so that what lies within the planes lies within the hull, but for rounding.
+// Returns none for a flat hull.
 [[nodiscard]] ConvexCellFaces faces_of(const ConvexCell& cell);
 
 }  // namespace crofton::pvs

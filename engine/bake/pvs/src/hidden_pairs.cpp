@@ -39,7 +39,7 @@ struct Part {
         return c;
     }
 
-    // Of a box the half axis, of a triangle the side: 0, 1 or 2.
+    // Returns the longest half axis of a box, or the longest side of a triangle: 0, 1 or 2.
     [[nodiscard]] std::size_t longest() const {
         std::size_t best = 0;
         for (std::size_t i = 1; i < 3; ++i)

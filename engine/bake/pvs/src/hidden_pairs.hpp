@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which pairs of a cell and an object are hidden behind opaque bodies: proofs, group by group.
+// Proves, group by group, which pairs of a cell and an object are hidden behind opaque bodies.
 #pragma once
 #include <crofton/core/executor.hpp>
 #include <crofton/pvs/pvs.hpp>

@@ -20,7 +20,7 @@ struct Interval {
     void shift() { low <<= 8, high = high << 8 | 0xffu; }
 };
 
-// Of a 1, in 1/65536: the share of ones so far, then of the last few hundred. Stays within [32, 65504].
+// The probability of a 1, in 1/65536: the share of ones so far, then of the last few hundred. Stays within [32, 65504].
 struct Probability {
     static constexpr std::uint16_t kSlowest = 250;
     std::uint16_t of_one = 32768, seen = 0;

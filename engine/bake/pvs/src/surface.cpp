@@ -12,7 +12,7 @@ namespace {
 
 using CornerNumbers = std::array<std::uint32_t, 3>;
 
-// Of equal positions the first in order.
+// Replaces equal positions by the first of them.
 void weld(const TriangleMesh& mesh, Vector<glm::vec3>& positions, Vector<CornerNumbers>& triangles) {
     Vector<std::uint32_t> order(mesh.positions.size()), place(mesh.positions.size());
     std::iota(order.begin(), order.end(), 0u);
@@ -60,7 +60,8 @@ void sort_around(Surface& surface, std::span<const SideOfFace> sides) {
         const glm::dvec3 r = surface.positions[surface.faces[side.face].corners[(side.corner + 2) % 3]] - a;
         placed.push_back({turn(glm::dot(x, r), glm::dot(y, r)), side});
     }
-    // Of faces that lie on each other, first those whose fronts are turned back: so pairs back to back enclose nothing.
+    // Of faces that lie on each other, the first are those that are turned backwards, so that pairs back to back
+    // enclose nothing.
     std::sort(placed.begin(), placed.end(), [](const Placed& p, const Placed& q) {
         if (p.turn != q.turn) return p.turn < q.turn;
         return p.side.along != q.side.along ? q.side.along : p.side.face < q.side.face;

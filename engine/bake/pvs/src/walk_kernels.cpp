@@ -15,7 +15,7 @@ using D = hn::CappedTag<double, kWalkLanes>;
 using V = hn::Vec<D>;
 using M = hn::Mask<D>;
 
-// Of two values that may be no numbers: as std::min and std::max have it.
+// Treats NaN as std::min and std::max do.
 HWY_INLINE V lesser(V a, V b) {
     return hn::IfThenElse(hn::Lt(b, a), b, a);
 }
@@ -39,7 +39,7 @@ HWY_INLINE LineVectors load(D d, const double* lines) {
     return loaded;
 }
 
-// Which lines meet the grid's bounds, and where.
+// Finds the lines that meet the grid's bounds, and where.
 HWY_INLINE M clip(D d, const VoxelGrid& grid, const LineVectors& line, V& begin, V& end) {
     begin = hn::Neg(hn::Inf(d)), end = hn::Inf(d);
     M meets = hn::Eq(end, end);

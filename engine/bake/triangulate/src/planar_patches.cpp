@@ -24,7 +24,7 @@ class ValueField {
         normal_ = glm::cross(u_, v_);
     }
 
-    // Of the three corners only what must be constant can fail.
+    // Of the three corners, only attributes that must be constant can differ.
     [[nodiscard]] bool agrees(std::uint32_t vertex) const {
         if (values_.empty()) return true;
         const glm::dvec3 d = glm::dvec3(mesh_.positions[vertex]) - glm::dvec3(mesh_.positions[corner_[0]]);
@@ -267,7 +267,7 @@ PatchResult describe(const PlanarPatch& patch, std::string refused, bool lighter
     r.weight_before = patch.weight;
     r.weight_after = lighter ? result.weight : patch.weight;
     r.optimal = usable && result.optimal;
-    // What stays as it was is as near to the minimum as its weight is to the bound that the new one gave.
+    // A patch that stays unchanged is as near to the minimum as its weight is to the bound of the new triangulation.
     const double factor = usable && result.weight > 0.0 ? r.weight_after / result.weight : 1.0;
     r.gap = usable ? (r.optimal ? 0.0 : std::max(0.0, (1.0 + result.gap) * factor - 1.0))
                    : std::numeric_limits<double>::infinity();

@@ -103,7 +103,7 @@ Result<void> Triangulator::triangulate(const Polygon& polygon, const Triangulate
         return {};
     });
     if (!done && done.error().code == ErrorCode::out_of_memory) {
-        // What was half built must not be met by the next call. An empty workspace has no memory of its own.
+        // Drop a half-built state before the next call. An empty workspace has no memory.
         std::destroy_at(workspace_.get());
         std::construct_at(workspace_.get());
         result.triangles.clear();

@@ -64,7 +64,7 @@ double tangent(double angle) {
 
 double arc_tangent(double y, double x) {
     const double a = std::fabs(y), b = std::fabs(x);
-    // Of the first octant, by its distance from π/4 where that is less.
+    // Reduce to the first octant, by the distance from π/4 if that is less.
     const double least = a < b ? a : b, most = a < b ? b : a;
     double angle = 0.0;
     if (std::isinf(most))

@@ -15,7 +15,7 @@ namespace crofton::boxtree {
 // In visits of a child; measured (docs/notes/boxtree.md).
 inline constexpr double kTurnCost = 0.35;
 
-// What a box is to the builder: its bound along `axes`, around `middle`.
+// Returns a box as the builder sees it: its bound along `axes`, around `middle`.
 [[nodiscard]] BuildItem build_item(ItemId id, const Obb& box, const glm::dvec3& middle, const Axes& axes);
 
 // Tries the axes that are at hand: the present ones, the world's, and those of some items. They are tried one at a

@@ -14,7 +14,7 @@
 
 namespace crofton::boxtree {
 
-// Which items move so often that they are to share leaves with each other rather than with those at rest.
+// Marks items that move so often that they should share leaves with each other, not with resting ones.
 struct Movers {
     bool (*contain)(const void* context, ItemId item) = [](const void*, ItemId) { return false; };
     const void* context = nullptr;

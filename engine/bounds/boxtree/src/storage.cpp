@@ -32,7 +32,7 @@ void find_detached(Items& items, const Structure& structure) {
 
 }  // namespace
 
-// What is stored, in order. Writing and reading share this list.
+// Lists the stored members, in order. Writing and reading share this list.
 struct TreeStorage {
     template <class ItemsOrConst, class StructureOrConst, class Visit>
     static void arrays(ItemsOrConst& items, StructureOrConst& structure, const Header& h, Visit&& visit) {

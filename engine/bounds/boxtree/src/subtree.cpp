@@ -13,7 +13,7 @@ struct Size {
     unsigned height = 0;
 };
 
-// What a node with so many items is cut into multiples of: leaves, or nodes above leaves.
+// Returns the unit that a node of so many items is cut into multiples of: a leaf, or a node above leaves.
 std::uint32_t unit_of(std::uint32_t items, std::uint32_t node_leaves) {
     return items <= kWidth * node_leaves ? kWidth : kWidth * node_leaves;
 }

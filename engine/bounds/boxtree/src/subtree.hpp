@@ -34,7 +34,7 @@ struct Topology {
     std::uint32_t node_leaves = kWidth;  // how many leaves a node above leaves gets: fewer leave room for others
 };
 
-// What a box is to the builder, around `middle`.
+// Returns a box as the builder sees it, around `middle`.
 [[nodiscard]] BuildItem build_item(ItemId id, const Obb& box, const glm::dvec3& middle);
 
 // A node and what is below it. How many nodes and leaves that takes depends on the number of items alone, so that

@@ -29,9 +29,9 @@ constexpr double kAxisTolerance = 1e-5;
 
 // A box whose thinnest edge is below this part of its longest is searched again in double: float is too coarse for it.
 constexpr double kThin = 1e-3;
-// Of a box's value, by storing its axes as floats.
+// The relative change of a box's value when its axes are stored as floats.
 constexpr double kRoundingThatCounts = 1e-6;
-// What ordinary sets' proofs leave out for the rounding of widths, relative to the value.
+// The part of the value by which proofs for ordinary sets allow for the rounding of widths.
 constexpr double kProofRounding = 1e-12;
 // A share of the value from which on the value is nothing but rounding.
 constexpr double kAllRounding = 0.999;
@@ -46,7 +46,7 @@ bool is_volume_alone(const Weights& weights) {
     return weights.pairs + weights.sum == 0.0;
 }
 
-// Of a flat set no box has a volume but by rounding: the area decides.
+// A box of a flat set has no volume but by rounding, so the area decides.
 const Obb& better_of(const Obb& first, const Obb& second, const measure::Criterion& criterion, bool flat) {
     const measure::Criterion by = flat ? measure::minimal_area() : criterion;
     return by(measure::intrinsic_volumes_of_box(second)) < by(measure::intrinsic_volumes_of_box(first)) ? second
@@ -190,7 +190,7 @@ Obb Fitter::fit_small_set_tight(const Weights& weights, const measure::Criterion
     };
     Obb best = box(found.tight, by);
     if (found.tight.axes != found.fast.axes) best = better_of(best, box(found.fast, by), criterion, flat);
-    // What a fast fit does not find to be flat, it fits by volume.
+    // A set that a fast fit does not find to be flat is fitted by volume.
     if (flat && fast_by_volume.value > kFlat) best = better_of(best, box(fast_by_volume, weights), criterion, false);
     return best;
 }

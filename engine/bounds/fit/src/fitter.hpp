@@ -35,7 +35,7 @@ class Fitter {
     void gather_extremes(std::size_t triples);
     // The best for subset_ of the frames that extreme points of subset_ span.
     [[nodiscard]] Candidate best_tetrahedral_frame(const Weights& weights);
-    // Of a box that is too thin for float, a better frame by a search in double.
+    // Returns a better frame of a box that is too thin for float, by a search in double.
     [[nodiscard]] SmallSetSearch::Found finished(const Weights& weights, const SmallSetSearch::Found& found);
     // A locally best frame for subset_, found from `near` or, if that is null, from all orientations.
     [[nodiscard]] SmallSetSearch::Found search_subset(const Weights& weights, const SmallSetEffort& effort,
@@ -46,7 +46,7 @@ class Fitter {
     [[nodiscard]] Obb fit_small_set_fast(const Weights& weights);
     [[nodiscard]] Obb fit_small_set_tight(const Weights& weights, const measure::Criterion& criterion);
     [[nodiscard]] Obb fit_large_set(const Weights& weights, const FitOptions& options);
-    // What a tight fit of a small set finds, and what a fast one does.
+    // The results of a tight and a fast fit of a small set.
     struct Pair {
         SmallSetSearch::Found fast, tight;
     };

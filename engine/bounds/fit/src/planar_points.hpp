@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What every fit in the plane asks of its points.
+// Checks and preparation of points, shared by all fits in the plane.
 #pragma once
 #include <crofton/core/error.hpp>
 #include <glm/vec2.hpp>

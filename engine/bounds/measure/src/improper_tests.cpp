@@ -17,7 +17,7 @@ double improper_outside(const PlanarMeasures& query, const PlanarMeasures& bound
 }
 namespace {
 
-// What is left of a length when another is taken away.
+// Returns the rest of a length after another is subtracted.
 double rest(double a, double b) {
     return std::max(0.0, a - b);
 }

@@ -15,7 +15,7 @@ struct ChainRange {
 [[nodiscard]] inline std::uint64_t chains_of(std::uint64_t runs) {
     return (runs + kRunsOfChain - 1) / kRunsOfChain;
 }
-// Of chains [begin, end) in a bake of `runs`: the last chain may be shorter.
+// Returns the runs of chains [begin, end) in a bake of `runs`; the last chain may be shorter.
 [[nodiscard]] inline std::uint64_t runs_within(ChainRange chains, std::uint64_t runs) {
     return (std::min)(chains.end * kRunsOfChain, runs) - (std::min)(chains.begin * kRunsOfChain, runs);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What arrives on every patch along one set of lines.
+// Gathers the light that arrives on every patch along one set of lines.
 #include <crofton/radiosity/patches.hpp>
 #include <crofton/radiosity/solver.hpp>
 #include <crofton/sampling/sampling.hpp>

@@ -10,7 +10,7 @@
 namespace crofton::radiosity {
 namespace {
 
-// What small triangles of one patch share: place, side of the cube that they face, label.
+// The key that small triangles of one patch share: place, side of the cube that they face, label.
 using Key = std::array<std::int64_t, 5>;
 
 Key key_of(const TriangleMesh& mesh, std::uint32_t t, std::uint32_t label, double size) {

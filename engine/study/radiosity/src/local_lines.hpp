@@ -11,7 +11,7 @@
 
 namespace crofton::radiosity {
 
-// Of red, green and blue.
+// Returns the sum of red, green and blue.
 [[nodiscard]] inline double total(const glm::dvec3& color) {
     return color.r + color.g + color.b;
 }

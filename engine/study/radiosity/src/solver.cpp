@@ -135,7 +135,7 @@ bool Solver::run(StopCallback should_stop, void* user, Executor& executor) {
     return false;
 }
 
-// What arrives on the patches in one more run; anything where it is stopped.
+// Returns the light that arrives on the patches in one more run; undefined if it is stopped.
 Solver::Light Solver::arriving_in_a_run(Executor& executor) {
     const Patches& p = *patches_;
     const std::size_t count = p.count();

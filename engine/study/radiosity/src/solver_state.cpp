@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a solver knows after some runs: means, errors, checkpoints.
+// The state of a solver after some runs: means, errors, checkpoints.
 #include <algorithm>
 #include <cmath>
 #include <crofton/radiosity/solver.hpp>

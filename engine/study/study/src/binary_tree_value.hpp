@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a node's box is worth.
+// The value of a node's box.
 #pragma once
 #include <crofton/geometry/box.hpp>
 #include <crofton/measure/measure.hpp>

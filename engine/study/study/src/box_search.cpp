@@ -113,9 +113,9 @@ BoxSearch::Supports BoxSearch::supports(const glm::dmat3& axes) const {
     return s;
 }
 
-// What a mean over the directions may lose by taking linear terms for dot(n, a) · dot(p, a) while a turns by up to
-// `angle`: half the square of the angle times the second derivative, of which each of its four parts is at most
-// |p| · |dot(n, u)| for some unit u; and by taking 2 tan(angle/2) for the angle.
+// Bounds what a mean over the directions may lose by taking linear terms for dot(n, a) · dot(p, a) while a turns by up
+// to `angle`: half the square of the angle times the second derivative, of which each of its four parts is at most |p|
+// · |dot(n, u)| for some unit u; and by taking 2 tan(angle/2) for the angle.
 double BoxSearch::remainder(const Supports& s, double longest, double angle) const {
     double sum = 0.0;
     for (std::size_t k = 0; k < 3; ++k) sum += std::max(glm::length(s.high[k]), glm::length(s.low[k]));

@@ -15,7 +15,7 @@ class BoxSearch {
   public:
     // Points relative to `origin`, which lies in their hull. The directions must outlive this.
     BoxSearch(Vector<glm::dvec3> points, const glm::dvec3& origin, const AncestorDirections& directions);
-    // Of the planes that hit all ancestors and the tight box with these axes.
+    // Returns the measure of the planes that hit all ancestors and the tight box with these axes.
     [[nodiscard]] double measure_of(const glm::dmat3& axes) const;
     // Below the measure of the tight box of every orientation in the cell (rotation_cells.hpp).
     [[nodiscard]] double bound(const glm::dvec3& center, double half) const;

@@ -74,7 +74,7 @@ CountProof prove_count(std::span<const glm::dvec3> points, std::span<const std::
                        const QuerySample& queries, std::span<const std::uint32_t> candidates, std::uint32_t known,
                        double tolerance, std::uint64_t max_cells,
                        FunctionRef<std::uint32_t(const glm::dmat3&)> consider) {
-    // What hits the hull hits every box.
+    // A plane that hits the hull hits every box.
     CountCell all{glm::dvec3(0.0), kHalfOfAllRotations, 0, {}};
     for (const std::uint32_t q : candidates)
         if (queries.surely_hits(q, points, triangles))

@@ -15,9 +15,9 @@ struct CountProof {
     std::uint64_t cells = 0;
 };
 
-// Of the candidates, how many hit every tight box around the points. `known` is a count that a box has;
-// `consider(axes)` is told of orientations that may have fewer, and returns the least count so far. `triangles` are
-// those of the points' hull.
+// Proves how many candidates hit every tight box around the points. `known` is the count of some box. `consider(axes)`
+// is called with orientations that may have fewer, and returns the least count so far. `triangles` are those of the
+// points' hull.
 [[nodiscard]] CountProof prove_count(std::span<const glm::dvec3> points, std::span<const std::uint32_t> triangles,
                                      const QuerySample& queries, std::span<const std::uint32_t> candidates,
                                      std::uint32_t known, double tolerance, std::uint64_t max_cells,

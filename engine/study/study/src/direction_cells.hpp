@@ -51,7 +51,7 @@ struct CellBounds {
     return 2.0 * arc_tangent(volume, 1.0 + glm::dot(t[0], t[1]) + glm::dot(t[1], t[2]) + glm::dot(t[2], t[0]));
 }
 
-// Of many terms far smaller than their sum, with what each addition rounds off.
+// A sum of many terms that are far smaller than it, with the rounding of each addition.
 struct LongSum {
     double high = 0.0, low = 0.0;
     void operator+=(double term) {

@@ -51,7 +51,7 @@ class Buckets {
             visit_ring(static_cast<int>(column), static_cast<int>(row), ring, found);
             if (found.size() < count) continue;
             std::sort(found.begin(), found.end());
-            // What lies beyond the rings seen so far is farther than this.
+            // Everything beyond the rings seen so far is farther away than this.
             if (found[count - 1].first <= (ring + 0.5) * (ring + 0.5)) return;
         }
         std::sort(found.begin(), found.end());

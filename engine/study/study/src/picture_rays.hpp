@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which ray a pixel looks along, and in which pixel a direction lies.
+// Maps pixels to rays and directions to pixels.
 #pragma once
 #include <cmath>
 #include <crofton/core/error.hpp>
@@ -35,7 +35,7 @@ class PictureRays {
         const glm::dvec3 view((2.0 * x / size_.x - 1.0) * half_.x, (1.0 - 2.0 * y / size_.y) * half_.y, -1.0);
         return glm::normalize(glm::transpose(to_view_) * view);
     }
-    // Of a point relative to the eye; none where it lies beside the picture.
+    // Returns the pixel of a point relative to the eye; nothing if it lies outside the picture.
     [[nodiscard]] std::optional<glm::dvec2> pixel_of(const glm::dvec3& point) const {
         const glm::dvec3 view = to_view_ * point;
         if (!(view.z < 0.0)) return {};

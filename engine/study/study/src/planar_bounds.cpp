@@ -29,8 +29,8 @@ struct Problem {
     double tolerance = 0.0;      // absolute
 };
 
-// What the integrals of both may miss by: about 1e-15 of the largest coordinate in each piece (planar_lines.hpp). A
-// piece of the minimum begins where one of theirs does, or at one of two crossings within such a stretch.
+// Bounds the error of both integrals: about 1e-15 of the largest coordinate in each piece (planar_lines.hpp). A piece
+// of the minimum begins where one of theirs does, or at one of two crossings within such a stretch.
 double rounding_of_integrals(const PlanarSupport& a, const PlanarSupport& b) {
     double largest = 0.0;
     for (const PlanarSupport* each : {&a, &b})

@@ -15,7 +15,7 @@ namespace {
 
 using std::numbers::pi;
 constexpr std::uint32_t kMaxQueries = 1u << 24;
-// Of the largest distances that enter: 128 roundings. What is sure is inside by more than the sums of this file err.
+// Relative to the largest distances: 128 roundings. What is surely inside is so by more than this file's sums err.
 constexpr double kSure = 0x1p-46;
 
 double sum_of(const glm::dvec3& v) {

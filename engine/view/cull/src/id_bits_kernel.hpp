@@ -20,7 +20,7 @@ std::size_t list_bits_kernel(const std::uint64_t* bits, std::size_t words, std::
 std::size_t list_placed_bits_kernel(const std::uint64_t* bits, std::size_t words, std::uint32_t* ids,
                                     std::uint64_t* before);
 
-// Of ids whose bits are set: the byte of each, among those listed, becomes `value`.
+// Sets to `value` the byte of each listed id whose bit is set.
 void mark_placed_kernel(const std::uint32_t* ids, std::size_t count, const std::uint64_t* bits,
                         const std::uint64_t* before, std::uint8_t value, std::uint8_t* bytes);
 

@@ -15,8 +15,8 @@ inline constexpr std::uint32_t kTile = 8;  // pixels a side
 inline constexpr std::uint32_t kTilePixels = kTile * kTile;
 inline constexpr float kUncovered = OcclusionBuffer::kUncovered;
 
-// Which bodies cover which pixels of a tile, whatever else is nearer there. A few of them: of more, those that cover
-// most.
+// The bodies that cover pixels of a tile, whether or not something is nearer there. Holds a few of them: those that
+// cover most.
 struct TileCovers {
     static constexpr std::size_t kCount = 4;
     std::uint64_t pixels[kCount];  // bit 8 r + c for row r, column c; none: 0, and so are all that follow

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which way transforms turn: signs and directions that rounding must not change.
+// Orientation of transforms: signs and directions that rounding must not change.
 #pragma once
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>

@@ -68,7 +68,7 @@ class VisibleQuery {
         }
     }
 
-    // Of an item that moves and is a candidate: its index in the list.
+    // Returns the index in the list of a mover that is a candidate.
     [[nodiscard]] std::uint32_t place_of(ItemId item) const { return visible_.places_[item]; }
 
     // box_of(item) and layers_of(item) are the item's; ids are below `items`.

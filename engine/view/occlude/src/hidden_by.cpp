@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which occluders hide a box: each is drawn again, alone, where the box is.
+// Finds the occluders that hide a box: draws each again, alone, where the box is.
 #include <algorithm>
 #include <cmath>
 #include <crofton/occlude/occlusion.hpp>
@@ -50,7 +50,7 @@ Window window_of(const PixelMap& map, const MappedBox& box) {
             pixel(*std::max_element(box.y, box.y + 8) + map.half_height, map.height)};
 }
 
-// Of the shadow's planes, the first `count`.
+// Tests the first `count` of the shadow's planes.
 bool is_within(const MappedBox& box, const BodyShadow& shadow, std::uint32_t count) {
     for (std::uint32_t p = 0; p < count; ++p) {
         const float* const rows = shadow.groups + p / kShadowLanes * 4 * kShadowLanes + p % kShadowLanes;

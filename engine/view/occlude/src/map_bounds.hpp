@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What rounding can do to lines and planes through mapped points (docs/notes/occlude.md derives the bounds).
+// Bounds the rounding of lines and planes through mapped points (derived in docs/notes/occlude.md).
 #pragma once
 #include "prepared.hpp"
 

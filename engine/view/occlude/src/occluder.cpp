@@ -85,7 +85,7 @@ Result<void> OccluderSet::Data::check_shape(ShapeId id) const {
     return {};
 }
 
-// What the next one gets, for the errors.
+// Returns the id of the next occluder, for error messages.
 std::uint64_t OccluderSet::Data::next_id() const {
     return free_occluders.empty() ? occluders.size() : free_occluders.back();
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What an OccluderSet holds, for those that draw it.
+// The data of an OccluderSet, for drawing it.
 #pragma once
 #include <crofton/occlude/occluder.hpp>
 

@@ -26,7 +26,7 @@ DrawBody draw_body_of(const OcclusionBuffer::Data& data, std::size_t place) {
             static_cast<std::uint32_t>(place)};
 }
 
-// Of the chosen ones; none: of all.
+// Prepares the chosen occluders, or all if none are chosen.
 void prepare_range(const PixelMap& map, const OccluderSet& set, const OccluderId* chosen, std::size_t begin,
                    std::size_t end, PreparedBodies& out) {
     out.clear();

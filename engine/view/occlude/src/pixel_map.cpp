@@ -10,7 +10,7 @@
 namespace crofton::occlude {
 namespace {
 
-// What the nearness of a point on the plane is at most in the window, the view's rim included.
+// Bounds from above the nearness of a point on the plane in the window, the view's rim included.
 double most_nearness_on(const CutPlane& cut, const PixelMap& map) {
     const double most = std::fabs(cut.column) * map.half_width + std::fabs(cut.row) * map.half_height + cut.constant;
     return most / -cut.nearness;

@@ -124,7 +124,7 @@ class Preparation {
         return true;
     }
 
-    // Of a body with many faces: no point of it is farther than its farthest corner.
+    // For a body with many faces: no point of it is farther than its farthest corner.
     bool limit_planes() {
         if (out_.planes.size() - result_.first_plane <= kMaxPlanes) return true;
         if (crossing_) return false;
@@ -138,7 +138,7 @@ class Preparation {
         return 2.0 * kMapError * (sizes.form[3] + bounds_.nearness * sizes.form[2]) / map_.least_w;
     }
 
-    // Of this face only what lies beyond the cuts covers anything.
+    // Only the part of this face beyond the cuts covers anything.
     bool cut_face(const Line& plane, double plane_error) {
         for (int c = 0; c < map_.cut_count; ++c) {
             if (!crosses_[c]) continue;

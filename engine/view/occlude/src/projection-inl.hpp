@@ -31,7 +31,7 @@ using VI = hn::Vec<DI>;
 // and sums of up to seven terms are. That is 10 u of the sum of the magnitudes, which itself is rounded; 2^-20 is 16 u.
 constexpr float kFormError = 0x1p-20f;
 
-// What is known of some lanes, a bit each. Lanes that are in none are visible.
+// Results for some lanes, a bit each. Lanes in none are visible.
 struct LaneBits {
     std::uint32_t hidden, outside_picture, open;
 
@@ -226,7 +226,7 @@ struct Projection {
         const auto hidden = hn::Gt(least, most);
         const std::uint32_t usable_bits = mask_bits(d, usable);
         std::uint32_t outside_bits = mask_bits(d, outside_picture) & usable_bits;
-        // What reaches behind the eye has no rectangle, but may be beside the view all the same.
+        // A box that reaches behind the eye has no rectangle, but may still be outside of the view.
         if (kPerspective && usable_bits != (1u << hn::Lanes(d)) - 1)
             outside_bits |= mask_bits(d, outside_of_sides(view, form, error, bounds)) & ~usable_bits;
         const std::uint32_t hidden_bits = mask_bits(d, hidden) & usable_bits & ~outside_bits;

@@ -101,7 +101,7 @@ class Batch {
 
     HWY_INLINE Projection& projection(std::size_t group) { return boxes_[group]; }
 
-    // Of a group that has been projected, and of whose boxes `present` are wanted.
+    // Adds a projected group, of which the boxes in `present` are wanted.
     HWY_INLINE void add(std::size_t group, const LaneBits& bits, std::uint32_t present) {
         hidden_ |= std::uint64_t{bits.hidden & present} << (kLanes * group);
         outside_picture_ |= std::uint64_t{bits.outside_picture & present} << (kLanes * group);

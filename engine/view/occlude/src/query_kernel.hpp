@@ -27,7 +27,7 @@ struct QueryView {
     const BodyShadow* shadows;
 };
 
-// Of 64 boxes or fewer, a bit each: hidden; wholly beside the picture (and then not hidden).
+// Results for up to 64 boxes, a bit each: hidden; wholly outside of the picture (and then not hidden).
 struct QueryBits {
     std::uint64_t hidden, outside_picture;
 };

@@ -33,7 +33,7 @@ Index ConstraintInserter::first_crossed(Index a, Index b, Index& through) const 
     const auto& points = mesh_.points;
     const auto& from = points[a];
     const auto& to = points[b];
-    // Of the two neighbours collinear with a and b only the one towards b counts.
+    // Of the two neighbours that are collinear with a and b, only the one towards b counts.
     const auto ahead = [&](Index v) {
         return from.x != to.x ? (points[v].x > from.x) == (to.x > from.x) : (points[v].y > from.y) == (to.y > from.y);
     };

@@ -3,7 +3,7 @@
 
 #include "domain/domain.hpp"
 
-// Which of the points at one position a triangle's corner is.
+// Finds which of the points at one position a triangle's corner is.
 
 namespace crofton::triangulate {
 
@@ -28,7 +28,7 @@ Index Domain::predecessor(Index input) const {
     return (input == begin ? polygon_->ring_ends[r] : input) - 1;
 }
 
-// Of consecutive points at one position the first: those at the ring's end and at its begin follow each other.
+// Returns the first of consecutive points at one position; the ring's last point precedes its first.
 Index Domain::first_of_equals(Index input) const {
     const Index r = ring_of(input), begin = r == 0 ? 0 : polygon_->ring_ends[r - 1], v = vertex_of_[input];
     Index last = input;

@@ -53,7 +53,7 @@ class Domain {
     struct Record {
         Index input, next;
     };
-    // Of a region that no constraint divides.
+    // The state of a region that no constraint divides.
     struct State {
         Index outer = 0;  // parity of the outer ring
         Index hole = 0;   // the hole that contains it, or 0

@@ -4,7 +4,7 @@
 
 #include "domain/domain.hpp"
 
-// Which triangles lie inside.
+// Finds the triangles that lie inside.
 
 namespace crofton::triangulate {
 namespace {
@@ -47,8 +47,8 @@ tl::unexpected<Error> Domain::overlap(Index mark, Index a, Index b) const {
                  " overlap or lie inside one another"});
 }
 
-// Of a ring that touches neither itself nor others: whether the polygon's inside, if it is valid, lies on its left.
-// Exact: the first vertex in lexicographic order is convex.
+// Decides whether the inside is on the left of a ring, if the polygon is valid. Requires a ring that touches neither
+// itself nor others. Exact: the first vertex in lexicographic order is convex.
 void Domain::find_side(Index begin, Index end) {
     const auto before = [&](Index i, Index j) {
         const auto &p = points_[vertex_of_[i]], &q = points_[vertex_of_[j]];

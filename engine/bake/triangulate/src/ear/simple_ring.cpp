@@ -46,14 +46,14 @@ void SimpleRing::build(std::span<const glm::dvec2> points) {
     }
 }
 
-// Of the edges in two blocks, or in one: none of the second meets one of the first that stands before it, its
-// neighbour left out.
+// Tests whether no edge of the second block meets an edge of the first that precedes it, its neighbours left out. The
+// blocks may be equal.
 bool SimpleRing::are_apart(std::span<const glm::dvec2> points, std::size_t a, std::size_t b) const {
     const Block &first = blocks_[a], &second = blocks_[b];
     const Box& bound = bounds_[b];
     const std::size_t count = points.size();
     const auto point = [&](std::size_t i) -> const glm::dvec2& { return points[i == count ? 0 : i]; };
-    // Of numbers beyond floats boxes are infinite, and meet those of unused edges.
+    // Boxes of numbers beyond floats are infinite, and meet those of unused edges.
     for (std::size_t k = 0; k < kWidth && a * kWidth + k < count; ++k) {
         const float low_x = first.low_x[k], high_x = first.high_x[k];
         const float low_y = first.low_y[k], high_y = first.high_y[k];
@@ -92,7 +92,7 @@ int SimpleRing::turn_of(std::span<const glm::dvec2> points) {
                 (p.low_x <= q.high_x) & (p.high_x >= q.low_x) & (p.low_y <= q.high_y) & (p.high_y >= q.low_y);
             if (meet && !are_apart(points, a, b)) return 0;
         }
-    // Of the corner that comes first both sides lead onwards, on different lines.
+    // Both sides of the first corner lead onwards, on different lines.
     return orientation(points[lowest == 0 ? count - 1 : lowest - 1], points[lowest],
                        points[lowest + 1 == count ? 0 : lowest + 1]);
 }

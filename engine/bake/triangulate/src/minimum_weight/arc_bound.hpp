@@ -38,7 +38,7 @@ class ArcBound {
     Vector<std::uint8_t> done_;
     Index stamp_of_arc_ = 0;
     double sum_ = 0.0;
-    // Of an arc: the length of the diagonal between two of its places, infinite where there is none, and of the
+    // For each arc: the length of the diagonal between two of its places, infinite if there is none, and of the
     // shortest one that leaves it from each.
     Vector<double> chord_, leaving_, enclosed_, bare_, reached_;
     // Points in cells, where distances are asked.

@@ -38,8 +38,8 @@ class CandidateFinder {
     [[nodiscard]] bool find(const Domain& domain, std::size_t limit, Watch& watch, CandidateGraph& graph);
 
   private:
-    // What is seen from a vertex through mesh half-edge `edge`, between the directions of two visible vertices. The two
-    // witnesses are visible vertices on or beyond these directions that may kill everything farther off.
+    // The view from a vertex through mesh half-edge `edge`, between the directions of two visible vertices. The two
+    // witnesses are visible vertices on or beyond these directions that may rule out everything farther away.
     struct View {
         Index edge, right, left, right_witness, left_witness;
     };

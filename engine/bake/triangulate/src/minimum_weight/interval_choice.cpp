@@ -12,7 +12,7 @@ namespace {
 // Per rounded operation on values to 100 bits, with room; a root errs by 2^-101 of it (double_double.hpp).
 constexpr double kFineError = 0x1p-101;
 
-// What equals for equal lengths along one axis: the difference's absolute value as its two terms.
+// Returns the absolute difference as two terms, which is equal for equal lengths along one axis.
 std::array<std::uint64_t, 2> exact_extent(double a, double b) {
     const auto d = detail::two_sum(a, -b);
     const double sign = d.high < 0.0 ? -1.0 : 1.0;

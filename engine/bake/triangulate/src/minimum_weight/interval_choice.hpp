@@ -13,8 +13,8 @@
 
 namespace crofton::triangulate {
 
-// What an interval programme knows of a face. Corner i's slots are [first[i], first[i + 1]): its out-going side, the
-// candidates inside, its in-coming side, counter-clockwise. Their targets ascend cyclically from i + 1 to i − 1.
+// A face, for the interval programme. Corner i's slots are [first[i], first[i + 1]): its outgoing side, the candidates
+// inside, its incoming side, counter-clockwise. Their targets ascend cyclically from i + 1 to i − 1.
 struct IntervalTable {
     std::span<const glm::dvec2> points;
     Vector<Index> vertices;  // corner → vertex

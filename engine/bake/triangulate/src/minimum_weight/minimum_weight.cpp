@@ -13,7 +13,7 @@ namespace {
 
 // Candidates, their twins, certificates, walks and programme slots, with the growth of their arrays.
 constexpr std::size_t kBytesPerHalfEdge = 96;
-// Of one operation of a sum, with room for the roots in it.
+// The rounding of one operation of a sum, with room for the roots in it.
 constexpr double kRounding = 0x1p-50;
 constexpr double kPruned = 0.55;  // the share of the work that is done when edges are pruned, as told to the caller
 constexpr std::size_t kLongRing = 3000, kFewCandidates = 40;

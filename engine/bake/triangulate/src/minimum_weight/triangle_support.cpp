@@ -69,7 +69,7 @@ void TriangleSupport::collect_sides(Index h) {
     const Index twin = g.twin[h];
     left_.clear();
     right_.clear();
-    // What the lower end admits is marked with the half-edge on whose left it lies.
+    // Marks what the lower end admits with the half-edge on whose left it lies.
     if (left_inside(h)) scan<+1>(h, [&](Index k) { admitted_[g.destination[k]] = h; });
     if (left_inside(twin)) scan<-1>(h, [&](Index k) { admitted_[g.destination[k]] = twin; });
     const auto joined = [&](Index k, Index side) {
@@ -102,7 +102,7 @@ void TriangleSupport::scan(Index h, Admit admit) const {
     const auto &at = points_[p], &to = points_[q];
     Index closest = kNone;
     for (Index k = h;;) {
-        // What lies between two neighbours is on the left of the right one; a dead one may end in another face.
+        // The part between two neighbours is on the left of the right one; a dead one may end in another face.
         if (kTurn > 0 && !left_inside(k)) return;
         k = kTurn > 0 ? (k + 1 == end ? begin : k + 1) : (k == begin ? end : k) - 1;
         if (kTurn < 0 && !left_inside(k)) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which triangles a minimum-weight triangulation may use: those whose neighbours support them on all sides.
+// Finds the triangles that a minimum-weight triangulation may use: those whose neighbours support them on all sides.
 #pragma once
 #include "minimum_weight/candidate_graph.hpp"
 #include "watch.hpp"

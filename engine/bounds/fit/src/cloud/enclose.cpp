@@ -155,7 +155,7 @@ glm::mat3 rounded(const glm::dmat3& axes, const glm::dvec3& edges, const Weights
     glm::mat3 result(axes);
     const double value = weights(edges.x, edges.y, edges.z);
     for (int i = 0; i < 3; ++i) {
-        // What the criterion gains by a tilt of axis i towards the others: edge i, times the tilt, widens them.
+        // Returns what the criterion gains by a tilt of axis i towards the others: edge i, times the tilt, widens them.
         const auto cost = [&](const glm::vec3& a) {
             double sum = 0.0;
             for (int k = 0; k < 3; ++k)

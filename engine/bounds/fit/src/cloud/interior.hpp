@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which points are certainly inside the hull of a few others, and so are no support points.
+// Finds points that are certainly inside the hull of a few others, and so are no support points.
 #pragma once
 #include <array>
 #include <cstddef>

@@ -32,7 +32,7 @@ struct Directions {
 };
 void find_extremes(const SmallSet& points, const Directions& directions, float* least, float* greatest);
 
-// Of `count` frames, a multiple of kLanes, the one of least value in each lane: frame i is in lane i % kLanes,
+// Finds the frame of least value in each lane, of `count` frames, a multiple of kLanes. Frame i is in lane i % kLanes;
 // component j of its axis k is frames[(3k + j) · count + i]. Writes values and i / kLanes, the first of equals.
 void best_frames(const SmallSet& points, const FloatWeights& weights, const float* frames, std::size_t count,
                  float* values, float* rows);

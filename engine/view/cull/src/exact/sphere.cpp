@@ -118,7 +118,7 @@ class BallTest {
     Number normal_[Frustum::kMaxPlanes][3], value_[Frustum::kMaxPlanes], square_;
 };
 
-// What exact arithmetic holds sixteen factors of.
+// Tests whether exact arithmetic can hold sixteen such factors.
 bool is_moderate(double value) {
     return value == 0.0 || std::fabs(value) >= 1e-60;
 }

@@ -223,7 +223,7 @@ class LightWalk {
         return {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last)};
     }
 
-    // What of columns or rows the sphere's part in the slab may reach.
+    // Returns the columns or rows that the sphere's part in the slab may reach.
     HWY_INLINE Range narrowed(unsigned axis, Range range) const {
         const float gap = std::max(0.0f, std::max(from_ - filter_.at[2], filter_.at[2] - to_));
         const float square = filter_.radius * filter_.radius * (1.0f + 0x1p-18f) - gap * gap * (1.0f - 0x1p-18f);

@@ -59,7 +59,7 @@ struct FroxelKernelInput {
     const FroxelKernelGrid* grid;
     const KernelLight* lights;
     std::uint32_t count, first;  // light n's number is first + n
-    // What no filter can decide.
+    // Decides what no filter can.
     bool (*decide)(void* context, std::uint32_t light, std::uint32_t froxel);
     void* context;
 };

@@ -62,7 +62,7 @@ struct Sector {
         across[1] = {b, hn::MulAdd(axis.v, hn::Mul(axis.v, a), sign), hn::Neg(axis.v)};
     }
 
-    // What is along the axis, and what is left of it.
+    // The part along the axis, and the rest.
     struct Split {
         V along, across;
         Vectors<D> rest;
@@ -140,9 +140,9 @@ HWY_INLINE Vectors<D> farthest(const FroxelLanes<D>& froxels, const Vectors<D>& 
     return Vectors<D>::pick(hn::Gt(low.dot(m), high.dot(m)), low, high);
 }
 
-// Of the light's middle the nearest point of the froxel: if it is well inside the light it proves one answer. From
-// there the direction m to the nearest point of the light. If the froxel is further along m than the light, that proves
-// the other. Both sides, along three axes, are off by less than 4 δ |m|, and η ≥ 8 δ.
+// Takes the point of the froxel nearest to the light's middle: if it is well inside the light, the two meet. From there
+// it takes the direction m to the nearest point of the light: if the froxel is farther along m than the light, they do
+// not meet. Both sides, along three axes, are off by less than 4 δ |m|, and η ≥ 8 δ.
 template <class D>
 HWY_INLINE Lit<D> test_spot(const FroxelLanes<D>& froxels, const LightLanes<D>& light) {
     using V = hn::Vec<D>;
@@ -206,7 +206,7 @@ class Portal {
     }
 
   private:
-    // Of the plane through v0, v1 and v2.
+    // Returns the normal of the plane through v0, v1 and v2.
     HWY_INLINE Vectors<D> side() const { return v_[1].minus(v_[0]).cross(v_[2].minus(v_[0])); }
 
     // The point of A farthest along m. If even that is before the origin, they are apart.

@@ -12,7 +12,8 @@ struct KernelLimits {
     float radii[2];
     float least_radius[2];
     bool has_layers, has_items;
-    // Of an item in these layers; of any item in some of them. NaN where floats cannot square it.
+    // Returns the squared distance of an item in these layers, or of any item in some of them. NaN if floats cannot
+    // square it.
     float (*layer_square)(const void* limits, std::uint32_t common_layers, bool least_of_all);
     const void* limits;
     float longer_square;

@@ -91,9 +91,9 @@ struct DirectLanes {
     }
 };
 
-// What a plane's value at the centre, with the box's extent along the normal added or taken away, may be off by for
-// each unit of |x| + |y| + |z| + Σ|edge components|. With u = 2^-24 these are local_plane's ten roundings of the
-// evaluation, one of the centre and one of each edge; 12 u < 20 u.
+// Bounds the error of a plane's value at the centre, plus or minus the box's extent along the normal, for each unit of
+// |x| + |y| + |z| + Σ|edge components|. With u = 2^-24 these are local_plane's ten roundings of the evaluation, one of
+// the centre and one of each edge; 12 u < 20 u.
 inline constexpr float kDirectError = 0x1.4p-20f;
 
 HWY_INLINE DirectLanes lanes_of_picked(const Picked<DirectBoxes>& picked) {
@@ -199,7 +199,7 @@ HWY_INLINE DirectBits test_planes(const DirectLanes& boxes, const DirectPlane* p
     return {out, in, exact ? cross & ~bits_of(meets) : 0, ~(out | in | cross)};
 }
 
-// Of fewer boxes than this most are near the view's surface, so that spheres around them would settle few.
+// Most of fewer boxes than this are near the view's surface, so that spheres around them would decide few.
 constexpr std::size_t kFew = 256;
 
 class DirectQuery {
@@ -281,7 +281,7 @@ class DirectQuery {
         return straddling;
     }
 
-    // What is known of 64 boxes.
+    // Results for 64 boxes.
     struct WordBits {
         std::uint64_t outside = 0, inside = 0, needs_edge_test = 0, undecided = 0;
 

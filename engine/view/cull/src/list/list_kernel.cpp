@@ -72,7 +72,7 @@ class ChunkQuery {
   private:
     static HWY_INLINE std::uint64_t bit(std::uint32_t i) { return std::uint64_t{1} << (i % 64); }
 
-    // Of so few bounds most are near the view's surface. Rows would decide few, for the price of planes in their units.
+    // Most of so few bounds are near the view's surface. Rows would decide few, for the cost of planes in their units.
     [[nodiscard]] HWY_INLINE bool is_few() const { return in_.count <= kFew; }
 
     HWY_INLINE void test_few(std::uint64_t present) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a chunk's rows leave open, asked of the records. Compiled once per instruction set (Highway).
+// Decides by records what a chunk's rows leave open. Compiled once per instruction set (Highway).
 #include <hwy/cache_control.h>
 #include <algorithm>
 #include <crofton/cull/list_layout.hpp>
@@ -103,8 +103,8 @@ class OpenRecords {
     static constexpr bool kOwnPlanes =
         !std::is_same_v<Record, SphereRecord> && !std::is_same_v<Record, AabbRecord> && PlaneTable::kEntries >= 8;
 
-    // Of each of `indices`; room for 16 more is needed there. `needs_edge_test` is for its own use and has room for all
-    // and 16 more.
+    // Tests each of `indices`, which needs room for 16 more. `needs_edge_test` is scratch with room for all and 16
+    // more.
     HWY_INLINE OpenCounts test(std::uint32_t* indices, std::size_t count, std::uint32_t* needs_edge_test) {
         if constexpr (kOwnPlanes)
             if (PlaneTable::takes(planes_)) return test_own(indices, count, needs_edge_test);

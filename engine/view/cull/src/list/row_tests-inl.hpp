@@ -29,7 +29,7 @@ struct RowLanes {
     }
 };
 
-// Which bounds are certainly outside, and which certainly inside: a mask for each block.
+// The bounds that are certainly outside, and those that are certainly inside: a mask for each block.
 struct RowTest {
     hn::Mask<DI> outside[4], inside[4];
 

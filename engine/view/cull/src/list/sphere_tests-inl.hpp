@@ -25,7 +25,7 @@ struct SphereLanes {
     }
 };
 
-// What a plane's value at the centre may be off by is its error bound; so it is at the centre + v, |v| ≤ radius.
+// A plane's value at the centre is off by its error bound at most; so it is at the centre + v, |v| ≤ radius.
 struct SphereRow {
     const KernelPlane* plane;
     VF base, error_bound;

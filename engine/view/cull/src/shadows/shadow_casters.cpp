@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Which casters may throw a shadow onto a receiver in view: pictures of the receivers' depths from the light.
+// Finds the casters that may throw a shadow onto a receiver in view, by pictures of the receivers' depths from the
+// light.
 #include <algorithm>
 #include <cmath>
 #include <crofton/cull/lights.hpp>

@@ -124,7 +124,7 @@ Statistics Query::ask(const ListChunks& list, std::size_t begin, std::size_t end
     return statistics;
 }
 
-// Which of the first 64 layer masks share a layer with the view.
+// Returns which of the first 64 layer masks share a layer with the view.
 std::uint64_t Query::layer_bits(std::span<const std::uint32_t> layer_masks) const {
     std::uint64_t bits = 0;
     for (std::size_t i = 0; i < std::min<std::size_t>(64, layer_masks.size()); ++i)
@@ -132,7 +132,7 @@ std::uint64_t Query::layer_bits(std::span<const std::uint32_t> layer_masks) cons
     return bits;
 }
 
-// Of up to 64 visible boxes, from `first` on, those that are worth drawing.
+// Returns which of up to 64 visible boxes, from `first` on, are within the draw limits.
 std::uint64_t Query::wanted_bits(std::uint64_t visible, std::span<const Obb> boxes,
                                  std::span<const std::uint32_t> layer_masks, std::size_t first) {
     std::uint64_t result = visible;
@@ -242,7 +242,7 @@ void Query::run_parallel(const boxtree::BoxTree& tree, const TreeKernelInput& in
                          Executor& executor) {
     constexpr std::size_t kGrain = kTreeGroup, kParts = Tasks::kMost / kGrain;
     const boxtree::Structure& structure = tree.structure();
-    // What each part can hold at most; 16 more for what vectors write past the end.
+    // Returns the largest size of each part; vectors write up to 16 past its end.
     const auto most = [&](std::uint64_t entry) {
         const auto child = static_cast<std::uint32_t>(entry >> 32);
         return boxtree::kWidth * (child & boxtree::kLeafBit ? 1 : most_leaves_below(structure, child));
@@ -361,8 +361,7 @@ void Query::append_decided(const TreeKernelOutput& output, std::size_t kept, std
     statistics.false_positives += output.false_positives;
 }
 
-// Of resting items, those that CullOptions::candidate_mask leaves out are dropped here, or by sort() where nothing
-// moves.
+// Resting items that CullOptions::candidate_mask leaves out are dropped here, or by sort() if nothing moves.
 void Query::finish(const boxtree::BoxTree& tree, std::size_t inside, std::size_t straddling, Executor& executor) {
     const std::span<const std::uint64_t> candidate_mask = options_.candidate_mask;
     if (!candidate_mask.empty() && !by_slots_) {

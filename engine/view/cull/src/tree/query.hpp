@@ -24,7 +24,7 @@ void leave_all_undecided(std::size_t count, ListKernelOutput& output);
 
 class Query {
   public:
-    // What moves, if there is any, is asked beside a BoxTree.
+    // Tests movers, if there are any, besides a BoxTree.
     Query(const View& view, VisibleSet& visible, const CullOptions& options, const MovingBoxes* moving = nullptr)
         : view_(view), visible_(visible), options_(options), moving_(moving) {}
 
@@ -63,7 +63,7 @@ class Query {
     void finish(const boxtree::BoxTree& tree, std::size_t inside, std::size_t straddling, Executor& executor);
     void finish(std::size_t inside, std::size_t straddling, std::size_t items);
     [[nodiscard]] std::uint64_t layer_bits(std::span<const std::uint32_t> layer_masks) const;
-    // What of a list is seen, a chunk at a time: bits of all boxes, and of those that straddle.
+    // The visible items of a list, a chunk at a time: bits of all boxes, and of those that straddle.
     struct ListChunks {
         std::span<const Obb> boxes;
         std::span<const std::uint32_t> layer_masks;

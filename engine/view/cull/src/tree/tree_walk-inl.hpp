@@ -238,7 +238,7 @@ class Walk {
         }
     }
 
-    // Of a vector's length of slots, those that are asked for.
+    // Returns which of a vector's length of slots are candidates.
     HWY_INLINE auto candidates(std::size_t slot) const {
         return mask_of(std::uint32_t{in_.leaves_with_candidates[slot / boxtree::kWidth]} >> slot % boxtree::kWidth);
     }

@@ -102,7 +102,7 @@ class ManyViewsQuery {
         }
     }
 
-    // Which of the views in `mask` keep the item. Those that share the same of its layers keep it together.
+    // Returns which of the views in `mask` keep the item. Views that share the same of its layers keep it together.
     [[nodiscard]] std::uint32_t within_limits(std::uint32_t mask, ItemId item, const Obb& box) const {
         if (!limits_) return mask;
         std::uint32_t kept = 0, common = 0;

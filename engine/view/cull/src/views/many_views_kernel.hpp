@@ -18,7 +18,7 @@ struct ManyViewsInput {
     const KernelView* views;
     std::uint32_t view_count;
     bool exact;
-    // What vectors cannot decide: does view v see the item in this slot?
+    // Decides what vectors cannot: does view v see the item in this slot?
     bool (*decide)(const void* context, std::uint32_t slot, std::uint32_t view);
     const void* context;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What candidates cover of a view, many at a time.
+// Estimates how much of a view candidates cover, many at a time.
 #pragma once
 #include <array>
 #include <cstddef>

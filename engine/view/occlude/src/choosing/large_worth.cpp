@@ -84,7 +84,7 @@ glm::dvec3 LargeWorth::project(const glm::dvec3& point) const {
     return {row(0), row(1), row(2)};
 }
 
-// Of what lies beyond the least w, within the window.
+// Returns the rectangle of the part beyond the least w, within the window.
 LargeWorth::Rectangle LargeWorth::rectangle_of(const Aabb& box) const {
     glm::dvec3 corners[8];
     for (unsigned i = 0; i < 8; ++i)

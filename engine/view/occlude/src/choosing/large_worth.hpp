@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What an occluder is worth that looks large, or whose middle has nothing behind it: several rays tell.
+// Estimates by several rays the worth of an occluder that looks large, or whose middle has nothing behind it.
 #pragma once
 #include <crofton/geometry/box.hpp>
 #include <crofton/occlude/occlusion.hpp>
@@ -22,7 +22,7 @@ class LargeWorth {
     struct Ray {
         glm::dvec3 start, along;  // relative to the view's origin; `along` is 1 deep
     };
-    // Of the window [−1, 1]².
+    // A rectangle of the window [−1, 1]².
     struct Rectangle {
         glm::dvec2 min{1e300}, max{-1e300};
         void include(const glm::dvec2& p);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What may become an occluder of a mesh: bodies in its closed pieces, flat parts of its surface.
+// Finds candidates for occluders of a mesh: bodies in its closed pieces, flat parts of its surface.
 #pragma once
 #include <crofton/core/memory.hpp>
 #include <crofton/occlude/occluder.hpp>
@@ -9,7 +9,7 @@
 
 namespace crofton::occlude {
 
-// What all searches need to know.
+// Data for all searches.
 struct Search {
     const PieceMesh& mesh;
     const FindOptions& options;

@@ -90,7 +90,7 @@ void choose(const Search& search, const ShadowCaster& caster, Vector<FoundOcclud
         if (chosen == candidates.size()) break;
         open[chosen] = 0;
         edges_left -= candidates[chosen].edges;
-        // What only some eyes may use takes nothing from the others: eyes elsewhere need them.
+        // An occluder that only some eyes may use does not replace others: eyes elsewhere need them.
         if (!has_eye_limits(candidates[chosen]))
             for (std::size_t r = 0; r < covered.rows.size(); ++r) covered.rows[r] |= shadows[chosen].rows[r];
         candidates[chosen].gain = best_gain;

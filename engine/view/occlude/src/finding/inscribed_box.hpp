@@ -35,7 +35,7 @@ struct FramedPiece {
     Vector<Triangle> positions;  // as they are
     glm::dvec3 low{0.0}, high{0.0};
 };
-// Of at least one triangle. The axes are orthonormal to float rounding.
+// Requires at least one triangle. The axes are orthonormal to float rounding.
 [[nodiscard]] FramedPiece frame_piece(Vector<Triangle> triangles, const glm::mat3& axes);
 
 // In a FramedPiece's frame.

@@ -21,14 +21,14 @@ struct ShadowBits {
     std::array<std::uint64_t, 2 * kShadowAxes * kShadowRows> rows{};
 };
 
-// Which triangles throw a shadow: those whose front is seen, or all.
+// Casts shadows of triangles: of those whose front is seen, or of all.
 class ShadowCaster {
   public:
     explicit ShadowCaster(const Aabb& bounds);  // of all that is drawn; not empty
 
     void draw(const Triangle& triangle, bool front_only, ShadowBits& bits) const;
     [[nodiscard]] double mean_area(const ShadowBits& bits) const;
-    // Of what `bits` has beyond `covered`.
+    // Returns the mean area that `bits` has beyond `covered`.
     [[nodiscard]] double mean_area_beyond(const ShadowBits& bits, const ShadowBits& covered) const;
 
   private:

@@ -93,7 +93,7 @@ class WallTest {
     template <class Visit>
     void for_each_part(const Visit& visit);
     [[nodiscard]] bool cancels(int sum) const { return sides_ == Sides::front ? sum == 0 : sum % 2 == 0; }
-    // Of the group's stretches.
+    // Returns the sum over the group's stretches.
     [[nodiscard]] int sum_of(std::uint32_t group, const Vector<Stretch>& over);
     [[nodiscard]] bool may_meet(const Stretch& s, float low, float high) const;
     [[nodiscard]] int degree();

@@ -7,7 +7,7 @@
 
 namespace crofton::bake {
 
-// What the section `occluder` holds; `first` and `count` are ranges of the sections `occpoint` and `occindex`.
+// A record of the section `occluder`; `first` and `count` are ranges of the sections `occpoint` and `occindex`.
 struct OccluderRecord {
     Obb box;
     Aabb piece_bounds, eyes_within;
@@ -17,7 +17,7 @@ struct OccluderRecord {
     std::uint8_t kind = 0, sides = 0;
     std::uint8_t reserved[2] = {};
 };
-// What `occkinds` holds: a range of `occluder`.
+// A record of the section `occkinds`: a range of `occluder`.
 struct OccluderKindRecord {
     std::uint32_t first = 0, count = 0;
 };

@@ -30,7 +30,7 @@ struct LinePlan {
     Vector<Part> parts;        // of `whole`: six of each round, by `first`
     Vector<double> rounds;     // of `whole`: lines that each round counts for
 
-    // Of a block: replaces `lines`, relative to `origin`.
+    // Replaces `lines` by those of a block, relative to `origin`.
     void draw(std::uint64_t block, const Cells& cells, const glm::dvec3& origin, Vector<Line>& lines) const;
 };
 

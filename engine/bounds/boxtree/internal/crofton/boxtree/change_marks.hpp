@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which lanes of a tree's leaves have changed since the last refit, and which had before it.
+// Marks the lanes of a tree's leaves that have changed since the last refit, and those that had changed before it.
 #pragma once
 #include <crofton/boxtree/layout.hpp>
 #include <crofton/core/memory.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a BoxTree knows of its items wherever they are: boxes, layers, which ids are free, which items are detached.
+// The items of a BoxTree, independent of their places: boxes, layers, free ids, detached items.
 #pragma once
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/core/error.hpp>

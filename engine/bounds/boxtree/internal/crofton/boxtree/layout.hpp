@@ -129,8 +129,7 @@ struct alignas(64) NodeRadii {
     RadiusRange below[kWidth];
 };
 
-// Which items are in which slots, and what is below each node: equal versions, equal places. No two structures share
-// one.
+// Versions the assignment of items to slots and nodes: equal versions, equal places. No two structures share one.
 struct SlotsVersion {
     std::uint64_t structure = 0, changes = 0;
     [[nodiscard]] constexpr bool operator==(const SlotsVersion&) const = default;

@@ -14,7 +14,7 @@ struct Topology;
 
 class Structure {
   public:
-    // Of the items that are placed in it, all of them among `items`.
+    // Builds a structure over placed items, all of them in `items`.
     Structure(Items& items, const measure::Criterion& criterion, Orientation orientation);
     Structure(const Structure&) = delete;
     Structure& operator=(const Structure&) = delete;
@@ -41,7 +41,7 @@ class Structure {
     [[nodiscard]] Aabb child_bounds(NodeId node, unsigned lane) const;
     // Around a node or leaf, as Node::child names it, along the axes of that index.
     [[nodiscard]] Aabb bounds_below(std::uint32_t child, std::uint32_t axes) const;
-    // Of a structure that is whole; while one is made it does not change.
+    // Returns the version of a complete structure; it does not change while one is built.
     [[nodiscard]] SlotsVersion slots_version() const { return slots_version_; }
     [[nodiscard]] const ChangeMarks& marks() const { return marks_; }
 

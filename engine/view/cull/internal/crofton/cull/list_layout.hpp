@@ -31,8 +31,8 @@ struct ListChunk {
     std::uint32_t out_of_frame_at_layout;  // how many there were when the frame was chosen
 };
 
-// What is asked for where the row cannot tell: the bound itself in floats, its centre relative to the chunk's origin.
-// The centre is off by its own rounding, 2^-23 of l1_radius at most.
+// For bounds that their row cannot decide: the bound itself in floats, its centre relative to the chunk's origin. The
+// centre is off by its own rounding, at most 2^-23 of l1_radius.
 
 struct alignas(32) BoxRecord {
     float center[3];
