@@ -2,9 +2,9 @@
 #include "part_query.hpp"
 
 #include <algorithm>
+#include <crofton/convex/body_maker.hpp>
 #include <limits>
 
-#include "body_maker.hpp"
 #include "core_query.hpp"
 #include "pair.hpp"
 #include "triangle_touch.hpp"
@@ -83,12 +83,15 @@ bool parts_meet(const BodyAtPose& a, const BodyAtPose& b) {
     });
 }
 
-Distance distance_of_parts(const BodyAtPose& a, const BodyAtPose& b) {
+Distance distance_of_parts(const BodyAtPose& a, const BodyAtPose& b, double limit) {
     Distance best;
-    best.distance = kInfinity;
+    best.distance = limit;
     double lower = kInfinity;
     search_nearest(a, b, best, lower);
-    if (!(best.distance < kInfinity)) return {};  // a pose with NaN
+    if (!(best.distance < limit)) {
+        if (limit < kInfinity) best.distance = kInfinity;
+        return limit < kInfinity ? best : Distance{};  // a pose with NaN
+    }
     best.lower = std::min(lower, best.distance);
     return best;
 }
