@@ -100,7 +100,7 @@ namespace Crofton {
         [StructLayout(LayoutKind.Sequential)]
         internal struct WorldOptionsData {
             public UIntPtr Size;
-            public uint Pairs, Contacts, Containment, MeshDepth;
+            public uint Pairs, Contacts, Containment, SeparatingMotion;
             public ulong MaxPairs, RebuildBudget;
             public uint UpdatesToRest;
             public double ContactMargin;

@@ -51,7 +51,7 @@ namespace Crofton {
         /// <summary>An object inside a closed mesh touches it.</summary>
         public bool Containment = true;
         /// <summary>Contacts between meshes have a way out, which costs more.</summary>
-        public bool MeshDepth = false;
+        public bool SeparatingMotion = false;
         /// <summary>More are an error.</summary>
         public ulong MaxPairs = 1ul << 24;
     }
@@ -72,7 +72,7 @@ namespace Crofton {
             data.Pairs = Flag(options.Pairs);
             data.Contacts = Flag(options.Contacts);
             data.Containment = Flag(options.Containment);
-            data.MeshDepth = Flag(options.MeshDepth);
+            data.SeparatingMotion = Flag(options.SeparatingMotion);
             data.MaxPairs = options.MaxPairs;
             Library.Check(Native.crofton_world_create(ref data, out Handle));
         }

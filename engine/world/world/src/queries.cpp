@@ -2,6 +2,7 @@
 // What is asked between updates.
 #include <algorithm>
 #include <cmath>
+#include <crofton/collide/bound_contacts.hpp>
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/collide/narrow_phase.hpp>
 #include <crofton/cull/cull.hpp>

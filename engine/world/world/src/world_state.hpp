@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What a World keeps.
 #pragma once
+#include <crofton/collide/bound_contacts.hpp>
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/world/world.hpp>
 
