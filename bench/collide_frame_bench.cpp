@@ -2,6 +2,7 @@
 // What a frame of a game asks of collide: few movers among many boxes, single pairs near touching, meshes that deform.
 #include <benchmark/benchmark.h>
 
+#include <crofton/collide/bound_contacts.hpp>
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/collide/narrow_phase.hpp>
 #include <crofton/mesh/mesh_query.hpp>

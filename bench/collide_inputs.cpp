@@ -2,6 +2,7 @@
 #include "collide_inputs.hpp"
 
 #include <cmath>
+#include <crofton/mesh/mesh_distance.hpp>
 #include <crofton/mesh/mesh_parts.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>

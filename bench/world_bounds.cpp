@@ -2,6 +2,7 @@
 // Frames of bench_world in which bounds move. By hand what moves is known beforehand.
 #include <cmath>
 #include <crofton/boxtree/box_tree.hpp>
+#include <crofton/collide/bound_contacts.hpp>
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/collide/narrow_phase.hpp>
 #include <crofton/crofton.hpp>

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // What touches what, in the same bits everywhere.
+#include <crofton/collide/bound_contacts.hpp>
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/collide/narrow_phase.hpp>
+#include <crofton/mesh/mesh_distance.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <oracle/exact_boxes.hpp>
@@ -66,7 +68,7 @@ std::uint64_t meshes() {
         const collide::Manifold manifold = collide::contact_manifold(a, b, pose, contacts);
         digest.add(manifold.normal);
         for (int k = 0; k < manifold.count; ++k) digest.add(manifold.points[k].position).add(manifold.points[k].depth);
-        const auto depth = mesh::penetration(a, b, pose, contacts);
+        const auto depth = mesh::separating_motion(a, b, pose, contacts);
         const auto distance = mesh::distance(a, b, pose);
         digest.add(depth.depth).add(depth.direction).add(distance.distance).add(distance.on_a).add(distance.on_b);
         digest.add(distance.triangles.first).add(distance.triangles.second);

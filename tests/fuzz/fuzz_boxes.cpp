@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Pairs of boxes that touch or nearly do, and boxes beside triangles and half-spaces: against exact integers and
 // rationals.
+#include <crofton/collide/bound_contacts.hpp>
 #include <crofton/collide/narrow_phase.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <oracle/exact_boxes.hpp>

@@ -4,6 +4,7 @@
 #include <crofton/collide/narrow_phase.hpp>
 #include <crofton/geometry/closest_points.hpp>
 #include <crofton/geometry/predicates.hpp>
+#include <crofton/mesh/mesh_distance.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 

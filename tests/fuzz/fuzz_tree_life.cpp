@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Trees that are changed in any order, and what queries of them answer: against a plain list, item by item.
 #include <algorithm>
+#include <crofton/collide/bound_contacts.hpp>
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/cull/cull.hpp>
 #include <crofton/mesh/mesh_query.hpp>

@@ -198,7 +198,7 @@ TEST_SUITE("memory/ending") {
             mesh::contacts(a, b, {}, found);
             Vector<mesh::TrianglePair> pairs;
             mesh::intersecting_triangles(a, b, {}, pairs);
-            (void)mesh::penetration(a, b, {}, found);
+            (void)mesh::separating_motion(a, b, {}, found);
         });
         sweep_ending("a mesh that deforms, is copied, gets rays", [&] {
             (void)a.refit(flat.positions);

@@ -7,6 +7,7 @@
 #include <crofton/convex/query.hpp>
 #include <crofton/crofton.hpp>
 #include <crofton/cull/bound_set.hpp>
+#include <crofton/mesh/mesh_distance.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <crofton/occlude/occlusion.hpp>

@@ -345,19 +345,19 @@ namespace Crofton {
             }
         }
 
-        /// <summary>Whose box or sphere meets a box, by index. A mesh's box stands for it.</summary>
+        /// <summary>The objects that overlap a box, by index: their bodies, triangles, spheres or boxes.</summary>
         public ObjectRef[] Overlap(Obb box, uint layers = AllLayers) {
             return Overlap(new Native.ShapeData { Kind = Native.ShapeBox, Box = box }, layers);
         }
-        /// <summary>Whose box or sphere meets a sphere.</summary>
+        /// <summary>The objects that overlap a sphere.</summary>
         public ObjectRef[] OverlapSphere(Vector3 center, double radius, uint layers = AllLayers) {
             return Overlap(new Native.ShapeData { Kind = Native.ShapeSphere, Begin = center, Radius = radius }, layers);
         }
-        /// <summary>Whose box or sphere meets the points no farther than the radius from a segment.</summary>
+        /// <summary>The objects that overlap a capsule: all points no farther than the radius from a segment.</summary>
         public ObjectRef[] OverlapCapsule(Vector3 begin, Vector3 end, double radius, uint layers = AllLayers) {
             return Overlap(new Native.ShapeData { Kind = Native.ShapeCapsule, Begin = begin, End = end, Radius = radius }, layers);
         }
-        /// <summary>The box or sphere nearest to a sphere, no farther than a distance; null where there is none.</summary>
+        /// <summary>The object nearest to a sphere, no farther than a distance; null where there is none.</summary>
         public Closest? ClosestToSphere(Vector3 center, double radius, double maxDistance = double.PositiveInfinity, uint layers = AllLayers) {
             var data = new Native.ClosestData { Size = Native.SizeOf<Native.ClosestData>() };
             var shape = new Native.ShapeData { Kind = Native.ShapeSphere, Begin = center, Radius = radius };

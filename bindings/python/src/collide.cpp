@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <crofton/collide/bound_contacts.hpp>
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/collide/narrow_phase.hpp>
 #include <mutex>

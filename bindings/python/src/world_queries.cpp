@@ -133,7 +133,7 @@ void bind_world_queries(py::module_& module, py::class_<PyWorld>& type) {
                 return handles_of(handles);
             },
             py::kw_only(), py::arg("box") = py::none(), py::arg("sphere") = py::none(), py::arg("capsule") = py::none(),
-            py::arg("layers") = ~0u, "The handles of the objects whose box or sphere meets the shape.")
+            py::arg("layers") = ~0u, "The handles of the objects that overlap the shape.")
         .def(
             "closest",
             [](const PyWorld& world, double max_distance, const py::object& box, const py::object& sphere,
@@ -145,7 +145,7 @@ void bind_world_queries(py::module_& module, py::class_<PyWorld>& type) {
                 });
             },
             py::arg("max_distance"), py::kw_only(), py::arg("box") = py::none(), py::arg("sphere") = py::none(),
-            py::arg("capsule") = py::none(), py::arg("layers") = ~0u, "The nearest box or sphere, or None.")
+            py::arg("capsule") = py::none(), py::arg("layers") = ~0u, "The nearest object, or None.")
         .def(
             "box_of",
             [](const PyWorld& world, ObjectHandle object) {

@@ -222,7 +222,7 @@ impl World {
         Ok(unsafe { slice(hits, count) })
     }
 
-    /// Whose box or sphere meets the shape, by index. A mesh's box stands for it.
+    /// The objects that overlap the shape, by index: their bodies, triangles, spheres or boxes.
     pub fn overlap<'a>(&self, shape: &Shape, layers: u32, found: &'a mut Found) -> Result<&'a [ObjectRef]> {
         check(unsafe { sys::crofton_world_overlap(self.raw, &shape.raw(), layers, found.raw) })?;
         let (mut objects, mut count) = (ptr::null(), 0);
@@ -230,7 +230,7 @@ impl World {
         Ok(unsafe { slice(objects, count) })
     }
 
-    /// The box or sphere nearest to the shape, no farther than `max_distance`, which may be infinite.
+    /// The object nearest to the shape, no farther than `max_distance`, which may be infinite.
     pub fn closest(&self, shape: &Shape, max_distance: f64, layers: u32) -> Result<Option<Closest>> {
         let mut c: sys::ClosestObject = unsafe { std::mem::zeroed() };
         c.size = size_of::<sys::ClosestObject>();

@@ -3,6 +3,7 @@
 #include <crofton/capi/modules.h>
 
 #include <algorithm>
+#include <crofton/collide/bound_contacts.hpp>
 #include <crofton/collide/narrow_phase.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <limits>

@@ -3,6 +3,7 @@
 #include <crofton/capi/modules.h>
 
 #include <algorithm>
+#include <crofton/mesh/mesh_distance.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 
 #include <crofton/capi/bodies.hpp>
@@ -74,7 +75,7 @@ crofton_status crofton_meshes_relate(const crofton_body* a, const crofton_body* 
     if (which & CROFTON_MESHES_DEPTH) {
         Vector<mesh::MeshContact> contacts;
         mesh::contacts(posed.a(), posed.b(), posed.pose(), contacts);
-        const mesh::MeshDepth found = mesh::penetration(posed.a(), posed.b(), posed.pose(), contacts);
+        const mesh::SeparatingMotion found = mesh::separating_motion(posed.a(), posed.b(), posed.pose(), contacts);
         result.depth = found.depth;
         copy_out(found.direction, result.direction);
     }

@@ -3,6 +3,7 @@
 #include <charconv>
 #include <chrono>
 #include <cmath>
+#include <crofton/mesh/mesh_distance.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <filesystem>
@@ -213,7 +214,8 @@ int run_collide(const CollideRequest& request) {
     const auto start = Clock::now();
     Answer answer = ask(request.mode, *a, *b, *pose);
     const double query = milliseconds_since(start);
-    if (answer.hit && request.mode == "all") answer.depth = mesh::penetration(*a, *b, *pose, answer.contacts).depth;
+    if (answer.hit && request.mode == "all")
+        answer.depth = mesh::separating_motion(*a, *b, *pose, answer.contacts).depth;
     if (request.json_path != "-") {
         std::printf("%s", answer.hit ? "hit" : "no hit");
         if (answer.contained != mesh::Containment::none || request.mode == "contain")

@@ -11,6 +11,7 @@
 #include <crofton/geometry/predicates.hpp>
 #include <crofton/geometry/transform.hpp>
 #include <crofton/measure/measure.hpp>
+#include <crofton/mesh/mesh_distance.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <crofton/sampling/sampling.hpp>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <algorithm>
+#include <crofton/collide/bound_contacts.hpp>
 #include <crofton/collide/narrow_phase.hpp>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -335,19 +336,5 @@ TEST_SUITE("collide/convex_query") {
         }
         CHECK(missed == 0);
         CHECK(invented == 0);
-    }
-
-    TEST_CASE("half-spaces: a box's corners below the ground, and how far to lift it") {
-        const Plane ground{{0.0, 0.0, -2.0}, 0.0};  // z ≤ 0 is solid
-        const Manifold m = contact_manifold(ground, cube_box({0.0, 0.0, 0.75}));
-        CHECK(m.count == 4);
-        CHECK(m.depth == doctest::Approx(0.25));
-        CHECK(m.normal.z == doctest::Approx(1.0));
-        CHECK(contact_manifold(ground, cube_box({0.0, 0.0, 1.5})).count == 0);
-        const Manifold resting = contact_manifold(ground, cube_box({0.0, 0.0, 1.0}));
-        CHECK(resting.count == 4);
-        CHECK(resting.depth == 0.0);
-        CHECK(penetration(ground, cube_box({0.0, 0.0, 0.5})).depth == doctest::Approx(0.5));
-        CHECK(penetration(ground, cube_box({0.0, 0.0, 1.5})).depth == doctest::Approx(-0.5));
     }
 }

@@ -3,7 +3,7 @@
 #include <doctest/doctest.h>
 #include <cmath>
 #include <crofton/collide/broadphase.hpp>
-#include <crofton/collide/narrow_phase.hpp>
+#include <crofton/convex/query.hpp>
 #include <cstdint>
 #include <cstdio>
 #include <vector>
@@ -30,8 +30,11 @@ int collide_boxes() {
     const std::uint32_t moved[] = {2};
     if (auto result = broadphase.update_moved(boxes, moved); !result) return report(result.error());
 
+    const auto shape = crofton::convex::Body::box({1.0f, 1.0f, 1.0f});
+    if (!shape) return report(shape.error());
+    const auto pose_of = [&](std::uint32_t box) { return crofton::RigidTransform{glm::dmat3(boxes[box].axes), boxes[box].center}; };
     for (const crofton::IdPair pair : broadphase.pairs()) {
-        const auto manifold = crofton::collide::contact_manifold(boxes[pair.first], boxes[pair.second]);
+        const auto manifold = crofton::convex::contact_manifold({*shape, pose_of(pair.first)}, {*shape, pose_of(pair.second)});
         for (int i = 0; i < manifold.count; ++i)
             std::printf("%u and %u touch %g deep\n", pair.first, pair.second, manifold.points[i].depth);
     }
@@ -41,7 +44,8 @@ int collide_boxes() {
     const double least[] = {0.1, 0.5, 0.1};
     for (std::size_t k = 0; k < 3; ++k) {
         const crofton::IdPair pair = broadphase.pairs()[k];
-        const auto manifold = crofton::collide::contact_manifold(boxes[pair.first], boxes[pair.second]);
+        const auto manifold =
+            crofton::convex::contact_manifold({*shape, pose_of(pair.first)}, {*shape, pose_of(pair.second)});
         if (manifold.count != 4) return 3;
         for (int i = 0; i < manifold.count; ++i)
             if (std::abs(manifold.points[i].depth - least[k]) > 1e-12) return 4;

@@ -2,7 +2,9 @@
 #include <doctest/doctest.h>
 #include <box_mesh.hpp>
 #include <cmath>
+#include <crofton/collide/bound_contacts.hpp>
 #include <crofton/collide/narrow_phase.hpp>
+#include <crofton/mesh/mesh_distance.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <glm/geometric.hpp>

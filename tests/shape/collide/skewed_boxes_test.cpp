@@ -2,6 +2,7 @@
 // Boxes whose axes are as far from orthonormal as they may be, touching to rounding: the share of the float filters'
 // error bounds that is for the axes. And axes that are no numbers.
 #include <doctest/doctest.h>
+#include <crofton/collide/bound_contacts.hpp>
 #include <crofton/collide/narrow_phase.hpp>
 #include <limits>
 #include <vector>

@@ -192,4 +192,18 @@ TEST_SUITE("convex/manifold") {
             CHECK(m.depth == doctest::Approx(0.01 + static_cast<double>(half.x)));
         }
     }
+
+    TEST_CASE("a box in a half-space touches it with the corners below, and is as deep as it has to be lifted") {
+        const Body ground = Body::half_space({{0.0, 0.0, -2.0}, 0.0}).value(), box = Body::box({1, 1, 1}).value();
+        const Manifold m = contact_manifold({ground, at({})}, {box, at({0.0, 0.0, 0.75})});
+        CHECK(m.count == 4);
+        CHECK(m.depth == doctest::Approx(0.25));
+        CHECK(m.normal.z == doctest::Approx(1.0));
+        CHECK(contact_manifold({ground, at({})}, {box, at({0.0, 0.0, 1.5})}).count == 0);
+        const Manifold resting = contact_manifold({ground, at({})}, {box, at({0.0, 0.0, 1.0})});
+        CHECK(resting.count == 4);
+        CHECK(resting.depth == 0.0);
+        CHECK(penetration({ground, at({})}, {box, at({0.0, 0.0, 0.5})}).depth == doctest::Approx(0.5));
+        CHECK(distance({ground, at({})}, {box, at({0.0, 0.0, 1.5})}).distance == doctest::Approx(0.5));
+    }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <box_mesh.hpp>
+#include <crofton/mesh/mesh_distance.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <limits>
 #include <utility>
@@ -151,11 +152,12 @@ TEST_SUITE("mesh/containment") {
 
     TEST_CASE("the depth is the shortest way out, of the directions tried") {
         const auto a = tree_of(cube_mesh(1.0f)), b = tree_of(cube_mesh(0.5f));
-        const MeshDepth side = penetration(a, b, {glm::dmat3(1.0), {1.3, 0.1, 0.0}}, {});
+        const SeparatingMotion side = separating_motion(a, b, {glm::dmat3(1.0), {1.3, 0.1, 0.0}}, {});
         CHECK(side.depth == doctest::Approx(0.2).epsilon(1e-4));
         CHECK(side.direction.x == doctest::Approx(1.0));
-        CHECK(penetration(a, b, {glm::dmat3(1.0), {0.1, 0.0, 0.0}}, {}).depth == doctest::Approx(1.4).epsilon(1e-4));
-        CHECK(penetration(a, b, {glm::dmat3(1.0), {1.6, 0.1, 0.0}}, {}).depth == 0.0);
+        CHECK(separating_motion(a, b, {glm::dmat3(1.0), {0.1, 0.0, 0.0}}, {}).depth ==
+              doctest::Approx(1.4).epsilon(1e-4));
+        CHECK(separating_motion(a, b, {glm::dmat3(1.0), {1.6, 0.1, 0.0}}, {}).depth == 0.0);
     }
 
     TEST_CASE("penetration separates coincident points by the rounding of their coordinates") {
@@ -163,7 +165,7 @@ TEST_SUITE("mesh/containment") {
         point.positions.assign(3, glm::vec3(1.0f, 2.0f, 3.0f));
         point.indices = {0, 1, 2};
         const auto a = tree_of(point);
-        const MeshDepth depth = penetration(a, a, {}, {});
+        const SeparatingMotion depth = separating_motion(a, a, {}, {});
         CHECK(glm::length(depth.direction) == doctest::Approx(1.0));
         CHECK(depth.depth < 1e-11);
         CHECK_FALSE(intersects(a, a, {glm::dmat3(1.0), depth.depth * depth.direction}));

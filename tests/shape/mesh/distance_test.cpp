@@ -3,8 +3,8 @@
 #include <box_mesh.hpp>
 #include <cmath>
 #include <crofton/geometry/closest_points.hpp>
+#include <crofton/mesh/mesh_distance.hpp>
 #include <crofton/mesh/mesh_query.hpp>
-#include <crofton/mesh/point_distance.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <random>

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <box_mesh.hpp>
 #include <cmath>
+#include <crofton/mesh/mesh_distance.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <error_of.hpp>
@@ -65,7 +66,7 @@ TEST_SUITE("mesh/mesh_mesh") {
             CHECK(std::isinf(distance(*a, *b, {}).distance));
             CHECK_FALSE(closer_than(*a, *b, {}, 10.0));
             CHECK(containment(*a, *b, {}) == Containment::none);
-            CHECK(penetration(*a, *b, {}, {}).depth == 0.0);
+            CHECK(separating_motion(*a, *b, {}, {}).depth == 0.0);
         }
         CHECK_FALSE(contains(none, glm::dvec3(0.0)));
     }

@@ -3,6 +3,7 @@
 #include <hwy/targets.h>
 #include <algorithm>
 #include <cmath>
+#include <crofton/mesh/mesh_distance.hpp>
 #include <crofton/mesh/mesh_parts.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>

@@ -2,6 +2,7 @@
 // Scanned and modelled meshes of the shared data, against brute force.
 #include <doctest/doctest.h>
 #include <algorithm>
+#include <crofton/mesh/mesh_distance.hpp>
 #include <crofton/mesh/mesh_parts.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>

@@ -2,6 +2,7 @@
 // Objects with bodies: contacts that last, overlaps and casts of bodies.
 #include <doctest/doctest.h>
 #include <algorithm>
+#include <crofton/collide/bound_contacts.hpp>
 #include <crofton/convex/query.hpp>
 #include <crofton/crofton.hpp>
 #include <error_of.hpp>

@@ -2,6 +2,7 @@
 // Rays at the triangles of meshes in a World, and what they touch.
 #include <doctest/doctest.h>
 #include <counting_memory.hpp>
+#include <crofton/mesh/mesh_distance.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <cstring>
 #include <glm/geometric.hpp>

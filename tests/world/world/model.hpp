@@ -3,6 +3,7 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <crofton/collide/bound_contacts.hpp>
 #include <crofton/collide/narrow_phase.hpp>
 #include <crofton/crofton.hpp>
 #include <crofton/mesh/mesh_query.hpp>

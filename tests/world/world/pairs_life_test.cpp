@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 #include <array>
 #include <counting_memory.hpp>
+#include <crofton/collide/bound_contacts.hpp>
 #include <crofton/convex/query.hpp>
 #include <map>
 #include <optional>

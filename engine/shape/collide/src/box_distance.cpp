@@ -3,7 +3,7 @@
 // keeps it from one, the features near the answer are tried one by one.
 #include <algorithm>
 #include <cmath>
-#include <crofton/collide/narrow_phase.hpp>
+#include <crofton/collide/bound_contacts.hpp>
 #include <crofton/geometry/closest_points.hpp>
 #include <glm/geometric.hpp>
 #include <initializer_list>

@@ -2,7 +2,7 @@
 // Where two boxes touch. Everything is reckoned about the centre of one of them.
 #include <algorithm>
 #include <cmath>
-#include <crofton/collide/narrow_phase.hpp>
+#include <crofton/collide/bound_contacts.hpp>
 #include <glm/geometric.hpp>
 
 #include "box_penetration.hpp"

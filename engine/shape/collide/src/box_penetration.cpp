@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "box_penetration.hpp"
 
-#include <crofton/collide/narrow_phase.hpp>
+#include <crofton/collide/bound_contacts.hpp>
 
 #include "float_pair.hpp"
 

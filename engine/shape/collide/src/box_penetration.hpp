@@ -2,7 +2,7 @@
 // The fifteen separating axes of two boxes in double: along which do they overlap least?
 #pragma once
 #include <cmath>
-#include <crofton/collide/narrow_phase.hpp>
+#include <crofton/collide/bound_contacts.hpp>
 #include <crofton/geometry/box.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <crofton/collide/narrow_phase.hpp>
+#include <crofton/collide/bound_contacts.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <optional>
@@ -85,32 +85,6 @@ Manifold contact_manifold(const Sphere& a, const Sphere& b) {
     const double length = glm::length(way), depth = a.radius + b.radius - length;
     if (!(depth >= 0.0)) return {};
     return touch_of_sphere(b, length > 0.0 ? way / length : glm::dvec3(0.0, 0.0, 1.0), depth);
-}
-
-Penetration penetration(const Plane& half_space, const Obb& box) {
-    const double length = glm::length(half_space.normal);
-    if (!(length > 0.0)) return {-std::numeric_limits<double>::infinity(), {}};
-    const glm::dvec3 inward = half_space.normal / length;
-    return {glm::dot(support_point(box, inward), inward) + half_space.offset / length, -inward};
-}
-
-Manifold contact_manifold(const Plane& half_space, const Obb& box, ManifoldPoints points) {
-    Manifold manifold;
-    const Penetration deepest = penetration(half_space, box);
-    if (!intersects(box, half_space)) return manifold;
-    manifold.normal = deepest.axis;
-    const double length = glm::length(half_space.normal);
-    for (const glm::dvec3& corner : corners(box)) {
-        const double depth = (glm::dot(half_space.normal, corner) + half_space.offset) / length;
-        if (depth >= 0.0) manifold.points[manifold.count++] = {corner + 0.5 * depth * deepest.axis, depth};
-    }
-    if (manifold.count == 0) {
-        const glm::dvec3 lowest = support_point(box, half_space.normal);
-        manifold.points[manifold.count++] = {lowest, 0.0};
-    }
-    if (points == ManifoldPoints::reduced) reduce(manifold);
-    set_depth(manifold);
-    return manifold;
 }
 
 }  // namespace crofton::collide

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The points of a manifold as they are gathered and thinned out.
 #pragma once
-#include <crofton/collide/narrow_phase.hpp>
+#include <crofton/collide/bound_contacts.hpp>
 
 namespace crofton::collide {
 

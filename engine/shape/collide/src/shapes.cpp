@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
-#include <crofton/collide/narrow_phase.hpp>
+#include <crofton/collide/bound_contacts.hpp>
 #include <crofton/geometry/finite.hpp>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

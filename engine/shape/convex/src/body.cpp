@@ -2,12 +2,12 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/convex/body.hpp>
+#include <crofton/convex/body_maker.hpp>
 #include <crofton/mesh/mesh_parts.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <string>
 
-#include "body_maker.hpp"
 #include "support.hpp"
 
 namespace crofton::convex {
@@ -66,8 +66,7 @@ Body BodyMaker::triangle(const Triangle& corners) {
     return body;
 }
 
-Result<Body> Body::sphere(double radius) {
-    if (Result<void> good = check_length(radius, "radius"); !good) return tl::unexpected(good.error());
+Body BodyMaker::sphere(double radius) {
     Body body;
     body.kind_ = Kind::sphere;
     body.radius_ = radius;
@@ -76,15 +75,54 @@ Result<Body> Body::sphere(double radius) {
     return body;
 }
 
-Result<Body> Body::capsule(float half_height, float radius) {
-    if (Result<void> good = check_lengths(half_height, radius); !good) return tl::unexpected(good.error());
+Body BodyMaker::box(const glm::dvec3& half_extents) {
+    Body body;
+    body.kind_ = Kind::box;
+    body.half_ = half_extents;
+    glm::dvec3 corners[8];
+    for (int i = 0; i < 8; ++i)
+        for (int k = 0; k < 3; ++k) corners[i][k] = (i >> k & 1) != 0 ? body.half_[k] : -body.half_[k];
+    body.set_corners(corners);
+    return body;
+}
+
+Body BodyMaker::capsule(double half_height, double radius) {
     Body body;
     body.kind_ = Kind::capsule;
-    body.radius_ = static_cast<double>(radius);
-    const double h = static_cast<double>(half_height);
-    const glm::dvec3 ends[2] = {{0.0, -h, 0.0}, {0.0, h, 0.0}};
+    body.radius_ = radius;
+    const glm::dvec3 ends[2] = {{0.0, -half_height, 0.0}, {0.0, half_height, 0.0}};
     body.set_corners(ends);
     return body;
+}
+
+Body BodyMaker::mesh(const mesh::MeshTree& mesh, const Aabb& bounds, const glm::dmat3* map) {
+    Body body;
+    body.kind_ = Kind::mesh;
+    body.mesh_ = &mesh;
+    body.map_ = map;
+    body.bounds_ = bounds;
+    if (map != nullptr) {
+        const glm::dvec3 center = bounds.center(), half = bounds.half_extents();
+        glm::dvec3 size(0.0), all(0.0);
+        for (int k = 0; k < 3; ++k) {
+            size += half[k] * glm::abs((*map)[k]);
+            all += (half[k] + std::abs(center[k])) * glm::abs((*map)[k]);
+        }
+        size += 1e-14 * all;
+        body.bounds_ = {*map * center - size, *map * center + size};
+    }
+    body.set_core_radius_of_bounds();
+    return body;
+}
+
+Result<Body> Body::sphere(double radius) {
+    if (Result<void> good = check_length(radius, "radius"); !good) return tl::unexpected(good.error());
+    return BodyMaker::sphere(radius);
+}
+
+Result<Body> Body::capsule(float half_height, float radius) {
+    if (Result<void> good = check_lengths(half_height, radius); !good) return tl::unexpected(good.error());
+    return BodyMaker::capsule(static_cast<double>(half_height), static_cast<double>(radius));
 }
 
 Result<Body> Body::cylinder(float half_height, float radius) {
@@ -109,14 +147,7 @@ Result<Body> Body::box(const glm::vec3& half_extents) {
                 check_length(static_cast<double>(half_extents[k]), "half extent", static_cast<std::uint64_t>(k));
             !good)
             return tl::unexpected(good.error());
-    Body body;
-    body.kind_ = Kind::box;
-    body.half_ = glm::dvec3(half_extents);
-    glm::dvec3 corners[8];
-    for (int i = 0; i < 8; ++i)
-        for (int k = 0; k < 3; ++k) corners[i][k] = (i >> k & 1) != 0 ? body.half_[k] : -body.half_[k];
-    body.set_corners(corners);
-    return body;
+    return BodyMaker::box(glm::dvec3(half_extents));
 }
 
 Result<Body> Body::triangle(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
@@ -129,10 +160,7 @@ Result<Body> Body::triangle(const glm::vec3& a, const glm::vec3& b, const glm::v
                 return tl::unexpected(good.error());
             wide[i] = glm::dvec3(corners[i]);
         }
-    Body body;
-    body.kind_ = Kind::triangle;
-    body.set_corners(wide);
-    return body;
+    return BodyMaker::triangle({wide[0], wide[1], wide[2]});
 }
 
 Body Body::hull(const Hull& hull) {
@@ -176,16 +204,8 @@ Result<Body> Body::rounded(const Body& core, double radius) {
 
 Result<Body> Body::mesh(const mesh::MeshTree& mesh, Sides sides) {
     if (mesh.triangle_count() == 0) return fail(ErrorCode::empty, kNoItem, "body: the mesh tree has no triangles");
-    Body body;
-    body.kind_ = Kind::mesh;
+    Body body = BodyMaker::mesh(mesh, mesh.parts().bounds(), nullptr);
     body.sides_ = sides;
-    body.mesh_ = &mesh;
-    for (const mesh::MeshLeaf& leaf : mesh.parts().leaves)
-        for (std::uint32_t lane = 0; lane < leaf.count; ++lane)
-            for (int v = 0; v < 3; ++v)
-                body.bounds_.include(
-                    glm::dvec3(glm::vec3(leaf.vertex[v][0][lane], leaf.vertex[v][1][lane], leaf.vertex[v][2][lane])));
-    body.set_core_radius_of_bounds();
     return body;
 }
 

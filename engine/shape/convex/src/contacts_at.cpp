@@ -2,9 +2,9 @@
 #include "contacts_at.hpp"
 
 #include <algorithm>
+#include <crofton/convex/body_maker.hpp>
 #include <glm/matrix.hpp>
 
-#include "body_maker.hpp"
 #include "part_cast.hpp"
 #include "part_manifold.hpp"
 #include "triangle_touch.hpp"

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <crofton/convex/body_maker.hpp>
 #include <crofton/geometry/orthonormal_frame.hpp>
 #include <glm/matrix.hpp>
 
-#include "body_maker.hpp"
 #include "contacts_at.hpp"
 #include "core_query.hpp"
 #include "passage.hpp"
@@ -47,7 +47,7 @@ class PartCaster {
 
   private:
     [[nodiscard]] static bool is_surface(const Body& body) {
-        return body.kind() == Kind::mesh || body.kind() == Kind::height_field;
+        return (body.kind() == Kind::mesh && BodyMaker::map_of(body) == nullptr) || body.kind() == Kind::height_field;
     }
     // Whether a convex b flies along a line, seen from a.
     [[nodiscard]] bool passes_straight() const {

@@ -2,9 +2,13 @@
 #include "part_query.hpp"
 
 #include <algorithm>
+#include <crofton/convex/body_maker.hpp>
+#include <crofton/mesh/mesh_distance.hpp>
+#include <crofton/mesh/mesh_parts.hpp>
+#include <glm/matrix.hpp>
 #include <limits>
+#include <optional>
 
-#include "body_maker.hpp"
 #include "core_query.hpp"
 #include "pair.hpp"
 #include "triangle_touch.hpp"
@@ -57,6 +61,56 @@ void search_nearest(const BodyAtPose& a, const BodyAtPose& b, Distance& best, do
         visit_nearest_parts(a, box_around(b, a.pose), limit, visit);
 }
 
+// Two meshes as the search through both of their trees sees them: the vertices of b are rounded to a's frame. It tells
+// meshes apart that are farther apart than that, and finds a pair of triangles for the others.
+struct MeshesInOneFrame {
+    RigidTransform b_to_a;
+    double error;        // of lengths there, at most
+    bool keeps_lengths;  // a's pose is a rotation up to rounding
+};
+std::optional<MeshesInOneFrame> meshes_in_one_frame(const BodyAtPose& a, const BodyAtPose& b) {
+    const auto is_plain_mesh = [](const Body& body) {
+        return body.kind() == Kind::mesh && BodyMaker::map_of(body) == nullptr;
+    };
+    if (!is_plain_mesh(a.body) || !is_plain_mesh(b.body)) return std::nullopt;
+    const glm::dmat3& rotation = a.pose.rotation;
+    const glm::dmat3 back = glm::inverse(rotation);
+    const RigidTransform b_to_a{back * b.pose.rotation, back * (b.pose.translation - a.pose.translation)};
+    if (!validate(b_to_a)) return std::nullopt;
+    const double size = a.body.core_radius() + b.body.core_radius() + glm::length(b_to_a.translation);
+    const glm::dmat3 gram = glm::transpose(rotation) * rotation;
+    double skew = 0.0;
+    for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k) skew = std::max(skew, std::abs(gram[i][k] - (i == k ? 1.0 : 0.0)));
+    return MeshesInOneFrame{b_to_a, 4e-12 * size, skew < 1e-13};
+}
+
+// The distance of one triangle of each mesh, as their bodies stand.
+Distance distance_of_triangles(const BodyAtPose& a, const BodyAtPose& b, const mesh::MeshDistance& pair) {
+    const Body of_a = BodyMaker::triangle(a.body.mesh()->parts().triangle(pair.places.a)),
+               of_b = BodyMaker::triangle(b.body.mesh()->parts().triangle(pair.places.b));
+    Distance d = distance({of_a, a.pose}, {of_b, b.pose});
+    d.part_a = {0, pair.triangles.first};
+    d.part_b = {0, pair.triangles.second};
+    return d;
+}
+
+// Whether two meshes meet; nothing if they are not two meshes, or touch by no more than rounding.
+std::optional<bool> meshes_meet(const BodyAtPose& a, const BodyAtPose& b) {
+    const auto frame = meshes_in_one_frame(a, b);
+    if (!frame) return std::nullopt;
+    const mesh::MeshTree &tree_a = *a.body.mesh(), &tree_b = *b.body.mesh();
+    mesh::PairOfPlaces pair;
+    if (mesh::intersects(tree_a, tree_b, frame->b_to_a, nullptr, &pair)) {
+        const Body of_a = BodyMaker::triangle(tree_a.parts().triangle(pair.a)),
+                   of_b = BodyMaker::triangle(tree_b.parts().triangle(pair.b));
+        if (intersects({of_a, a.pose}, {of_b, b.pose})) return true;
+        return std::nullopt;
+    }
+    if (!mesh::closer_than(tree_a, tree_b, frame->b_to_a, frame->error)) return false;
+    return std::nullopt;
+}
+
 }  // namespace
 
 bool visit_parts_near(const BodyAtPose& a, const BodyAtPose& b, double margin, PartVisitor visit) {
@@ -72,6 +126,7 @@ bool visit_parts_near(const BodyAtPose& a, const BodyAtPose& b, double margin, P
 
 // Most triangles near a sphere or a capsule are told in closed form.
 bool parts_meet(const BodyAtPose& a, const BodyAtPose& b) {
+    if (const auto meet = meshes_meet(a, b)) return *meet;
     const auto visit = [&](const Part& part) { return intersects({part.body, part.pose}, b); };
     if (b.body.kind() != Kind::sphere && b.body.kind() != Kind::capsule) return visit_parts_near(a, b, 0.0, visit);
     return visit_parts_near(a, b, 0.0, visit, [&](const PartSearch& of, const Triangle& corners, std::uint32_t) {
@@ -83,12 +138,31 @@ bool parts_meet(const BodyAtPose& a, const BodyAtPose& b) {
     });
 }
 
-Distance distance_of_parts(const BodyAtPose& a, const BodyAtPose& b) {
+Distance distance_of_parts(const BodyAtPose& a, const BodyAtPose& b, double limit) {
     Distance best;
-    best.distance = kInfinity;
+    best.distance = limit;
     double lower = kInfinity;
+    if (const auto frame = meshes_in_one_frame(a, b)) {
+        const mesh::MeshDistance pair =
+            mesh::distance(*a.body.mesh(), *b.body.mesh(), frame->b_to_a, limit * (1.0 + 1e-5) + frame->error);
+        if (!(pair.distance < kInfinity)) {
+            best.distance = kInfinity;
+            return best;
+        }
+        if (const Distance d = distance_of_triangles(a, b, pair); d.distance < best.distance) best = d;
+        lower = std::max(0.0, pair.distance - frame->error);
+        if (best.distance == 0.0 || (frame->keeps_lengths && lower > 0.0)) {
+            best.lower = std::min(best.lower, lower);
+            if (!(best.distance < limit)) best.distance = kInfinity;
+            return best;
+        }
+        lower = best.distance < limit ? best.lower : kInfinity;
+    }
     search_nearest(a, b, best, lower);
-    if (!(best.distance < kInfinity)) return {};  // a pose with NaN
+    if (!(best.distance < limit)) {
+        if (limit < kInfinity) best.distance = kInfinity;
+        return limit < kInfinity ? best : Distance{};  // a pose with NaN
+    }
     best.lower = std::min(lower, best.distance);
     return best;
 }

@@ -6,7 +6,8 @@
 namespace crofton::convex {
 
 [[nodiscard]] bool parts_meet(const BodyAtPose& a, const BodyAtPose& b);
-[[nodiscard]] Distance distance_of_parts(const BodyAtPose& a, const BodyAtPose& b);
+// Infinite if that is not less than `limit`.
+[[nodiscard]] Distance distance_of_parts(const BodyAtPose& a, const BodyAtPose& b, double limit);
 [[nodiscard]] Penetration penetration_of_parts(const BodyAtPose& a, const BodyAtPose& b);
 
 // `distance` of two convex bodies; above `far` any lower bound above it will do.

@@ -2,13 +2,12 @@
 #include "parts.hpp"
 
 #include <cmath>
+#include <crofton/convex/body_maker.hpp>
 #include <crofton/mesh/mesh_parts.hpp>
 #include <crofton/mesh/near_triangles.hpp>
 #include <crofton/mesh/swept_triangles.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
-
-#include "body_maker.hpp"
 
 namespace crofton::convex {
 namespace {
@@ -86,30 +85,87 @@ double distance_between(const Aabb& a, const Aabb& b) {
     return glm::length(gap) * (1.0 - 1e-4);
 }
 
+namespace {
+
+// A mesh's own frame, seen from the frame in which its map puts it.
+struct MapFrame {
+    explicit MapFrame(const glm::dmat3* of) : map(of) {
+        if (map == nullptr) return;
+        inverse = glm::inverse(*map);
+        glm::dmat3 rest = inverse * *map;
+        for (int k = 0; k < 3; ++k) rest[k][k] -= 1.0;
+        stretch = size_of(inverse);
+        // Half of it bounds |1 − inverse · map|, with the rounding of that product.
+        error = 2.0 * (size_of(rest) + 4e-15 * stretch * size_of(*map));
+    }
+    [[nodiscard]] static double size_of(const glm::dmat3& m) {
+        return std::sqrt(glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2]));
+    }
+    // A box around the other in the mesh's own frame.
+    [[nodiscard]] QueryBox box(const QueryBox& outer) const {
+        QueryBox own;
+        own.center = inverse * outer.center;
+        glm::dvec3 across(0.0);
+        for (int k = 0; k < 3; ++k) {
+            own.half += outer.half[k] * glm::abs(inverse * outer.axes[k]);
+            across += inverse[k] * inverse[k];
+        }
+        own.half = (own.half + outer.radius * glm::sqrt(across)) * (kSkewed + 2.0 * error);
+        const glm::dvec3 size = glm::abs(own.center) + own.half;
+        own.rounding = stretch * outer.rounding + 2.0 * error * (size.x + size.y + size.z);
+        return own;
+    }
+    // False for a map that flattens.
+    [[nodiscard]] bool is_usable() const { return error < 0.25; }
+
+    Triangle image(const Triangle& corners) const {
+        if (map == nullptr) return corners;
+        Triangle result{*map * corners[0], *map * corners[1], *map * corners[2]};
+        if (glm::determinant(*map) < 0.0) std::swap(result[1], result[2]);  // the front stays the front
+        return result;
+    }
+
+    const glm::dmat3* map;
+    glm::dmat3 inverse{1.0};
+    double stretch = 1.0, error = 0.0;  // of a length in the outer frame, at most
+};
+
+}  // namespace
+
 bool PartSearch::offer(const Triangle& corners, std::uint32_t triangle) const {
     if (on_triangle == nullptr) return visit({BodyMaker::triangle(corners), pose, {child, triangle}, sides});
     return (*on_triangle)(*this, corners, triangle);
 }
 
-bool search_mesh(const mesh::MeshTree& mesh, const QueryBox& box, const PartSearch& search) {
+bool search_mesh(const Body& body, const QueryBox& outer, const PartSearch& search) {
+    const mesh::MeshTree& mesh = *body.mesh();
     const mesh::MeshParts& parts = mesh.parts();
+    const MapFrame frame(BodyMaker::map_of(body));
+    const QueryBox box = frame.map != nullptr ? frame.box(outer) : outer;
+    const double wider = kWider * frame.stretch * (1.0 + 2.0 * frame.error);
     bool ended = false;
     const FloatBox q = to_floats(box);
-    double squared = kWider * kWider * search.limit * search.limit;
+    double squared = wider * wider * search.limit * search.limit;
     const auto offer = [&](const mesh::MeshLeaf& leaf, std::uint32_t lane) {
         Triangle corners;
         for (int v = 0; v < 3; ++v)
             corners[static_cast<std::size_t>(v)] =
                 glm::dvec3(glm::vec3(leaf.vertex[v][0][lane], leaf.vertex[v][1][lane], leaf.vertex[v][2][lane]));
-        ended = search.offer(corners, leaf.triangle[lane]);
-        squared = kWider * kWider * search.limit * search.limit;
+        ended = search.offer(frame.image(corners), leaf.triangle[lane]);
+        squared = wider * wider * search.limit * search.limit;
         return ended;
     };
+    if (!frame.is_usable()) {
+        for (const mesh::MeshLeaf& leaf : parts.leaves)
+            for (std::uint32_t lane = 0; lane < leaf.count; ++lane)
+                if (offer(leaf, lane)) return true;
+        return false;
+    }
     if (search.nearest_first) {
         mesh::visit_nearest_triangles(parts.nodes.data(), parts.leaves.data(), q.box, q.error_bound, squared, offer);
         return ended;
     }
-    const double margin = (std::min)(search.limit * kWider, 1e18);
+    const double margin = (std::min)(search.limit * wider, 1e18);
     if (box.radius > 0.0 && margin < 1e18) {
         mesh::visit_triangles_near(parts.nodes.data(), parts.leaves.data(), rounded(box, mesh.extent(), margin), offer);
         return ended;
@@ -122,7 +178,7 @@ bool search_mesh(const mesh::MeshTree& mesh, const QueryBox& box, const PartSear
 bool search_parts(const BodyAtPose& placed, const QueryBox& box, const PartSearch& search) {
     const Body& body = placed.body;
     if (body.is_convex()) return search.visit({body, placed.pose, {search.child, 0}, Sides::both});
-    if (body.kind() == Kind::mesh) return search_mesh(*body.mesh(), box, search);
+    if (body.kind() == Kind::mesh) return search_mesh(body, box, search);
     if (body.kind() == Kind::height_field) return search_field(*body.height_field(), bounds_of(box), search);
     return search_compound(*body.compound(), box, search);
 }

@@ -53,7 +53,7 @@ struct PartSearch {
     // Calls one of them for a triangle.
     bool offer(const Triangle& corners, std::uint32_t triangle) const;
 };
-bool search_mesh(const mesh::MeshTree& mesh, const QueryBox& box, const PartSearch& search);
+bool search_mesh(const Body& body, const QueryBox& box, const PartSearch& search);
 bool search_field(const HeightField& field, const Aabb& box, const PartSearch& search);
 bool search_compound(const Compound& compound, const QueryBox& box, const PartSearch& search);
 bool search_parts(const BodyAtPose& body, const QueryBox& box, const PartSearch& search);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
+#include <crofton/convex/distance_within.hpp>
 #include <crofton/convex/query.hpp>
 #include <crofton/geometry/finite.hpp>
 #include <glm/matrix.hpp>
@@ -102,8 +103,8 @@ bool intersects(const BodyAtPose& a, const BodyAtPose& b, PairCache* cache) {
 }
 
 Distance distance(const BodyAtPose& a, const BodyAtPose& b, PairCache* cache) {
-    if (!a.body.is_convex()) return distance_of_parts(a, b);
-    if (!b.body.is_convex()) return flipped(distance_of_parts(b, a));
+    if (!a.body.is_convex()) return distance_of_parts(a, b, kInfinity);
+    if (!b.body.is_convex()) return flipped(distance_of_parts(b, a, kInfinity));
     if (is_half_space(a)) return half_space_distance(a, b);
     if (is_half_space(b)) return flipped(half_space_distance(b, a));
     const Pair pair(a, b);
@@ -141,6 +142,13 @@ Distance near_distance(const BodyAtPose& a, const BodyAtPose& b, double far) {
     const Pair pair(a, b);
     if (!finite_pair(pair)) return {};
     return distance_of(pair, core_distance(pair, nullptr, 0.0, far + pair.rounding() + 1.5 * pair.doubt()));
+}
+
+// Parts are sought below a limit, so one that is as far as the limit needs a little more.
+Distance distance_within(const BodyAtPose& a, const BodyAtPose& b, double limit) {
+    if (a.body.is_convex() && b.body.is_convex()) return near_distance(a, b, limit);
+    const double above = limit * (1.0 + 1e-9) + std::numeric_limits<double>::min();
+    return a.body.is_convex() ? flipped(distance_of_parts(b, a, above)) : distance_of_parts(a, b, above);
 }
 
 Penetration penetration(const BodyAtPose& a, const BodyAtPose& b, PairCache* cache) {

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <crofton/convex/body_maker.hpp>
 
-#include "body_maker.hpp"
 #include "core_query.hpp"
 #include "parallel_edges.hpp"
 #include "part_manifold.hpp"

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <crofton/convex/body_maker.hpp>
 #include <glm/matrix.hpp>
 
-#include "body_maker.hpp"
 #include "core_query.hpp"
 #include "edge_rule.hpp"
 #include "part_manifold.hpp"

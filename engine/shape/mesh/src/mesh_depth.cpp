@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <crofton/mesh/mesh_distance.hpp>
 #include <crofton/mesh/mesh_parts.hpp>
-#include <crofton/mesh/mesh_query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <glm/geometric.hpp>
 
@@ -19,8 +19,8 @@ double size_of(const mesh::MeshBox& box) {
 
 }  // namespace
 
-MeshDepth penetration(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& b_to_a,
-                      std::span<const MeshContact> contacts) {
+SeparatingMotion separating_motion(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& b_to_a,
+                                   std::span<const MeshContact> contacts) {
     const auto meet_at = [&](const glm::dvec3& motion) {
         const RigidTransform pose{b_to_a.rotation, b_to_a.translation + motion};
         return intersects(a, b, pose) || containment_of_disjoint(a, b, pose) != Containment::none;
@@ -29,7 +29,7 @@ MeshDepth penetration(const mesh::MeshTree& a, const mesh::MeshTree& b, const Ri
     // Of points, what their coordinates can tell.
     const double extent = static_cast<double>(a.extent()) + static_cast<double>(b.extent());
     const double size = std::max(size_of(a.parts().root_box) + size_of(b.parts().root_box), 1e-12 * extent);
-    MeshDepth best{2.0 * size, glm::dvec3(0.0)};
+    SeparatingMotion best{2.0 * size, glm::dvec3(0.0)};
     const auto try_direction = [&](const glm::dvec3& direction) {
         const double length = glm::length(direction);
         if (!(length > 1e-12)) return;

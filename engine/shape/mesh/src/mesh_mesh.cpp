@@ -3,8 +3,8 @@
 #include <bit>
 #include <cmath>
 #include <crofton/core/error.hpp>
+#include <crofton/mesh/mesh_distance.hpp>
 #include <crofton/mesh/mesh_parts.hpp>
-#include <crofton/mesh/mesh_query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -65,6 +65,7 @@ MeshPair make_pair(const mesh::MeshTree& a, const mesh::MeshTree& b, const Rigid
 struct Hit {
     const mesh::MeshLeaf &in_a, &in_b;
     std::uint32_t lane_a, lane_b;
+    PairOfPlaces places;
     std::uint32_t edges;  // as PairVisitor's; 0: not known
 
     [[nodiscard]] TrianglePair indices() const { return {in_a.triangle[lane_a], in_b.triangle[lane_b]}; }
@@ -81,7 +82,8 @@ void for_each_hit(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidT
     if (is_empty(a) || is_empty(b)) return;
     std::uint64_t exact_tests = 0;
     const auto visit = [&](LeafTriangle of_a, LeafTriangle of_b, std::uint32_t edges) {
-        const Hit hit{a.parts().leaves[of_a.leaf], b.parts().leaves[of_b.leaf], of_a.lane, of_b.lane, edges};
+        const Hit hit{
+            a.parts().leaves[of_a.leaf], b.parts().leaves[of_b.leaf], of_a.lane, of_b.lane, {of_a, of_b}, edges};
         exact_tests += edges == 0;
         if (edges == 0 && !intersects(triangle_of(hit.in_a, hit.lane_a), triangle_of(hit.in_b, hit.lane_b, pose)))
             return false;
@@ -103,9 +105,12 @@ glm::dvec3 unit(const glm::dvec3& v) {
 }  // namespace
 
 bool intersects(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& b_to_a,
-                MeshStatistics* statistics) {
+                MeshStatistics* statistics, PairOfPlaces* where) {
     bool hit = false;
-    for_each_hit(a, b, b_to_a, true, statistics, [&](const Hit&) { return hit = true; });
+    for_each_hit(a, b, b_to_a, true, statistics, [&](const Hit& found) {
+        if (where != nullptr) *where = found.places;
+        return hit = true;
+    });
     return hit;
 }
 
@@ -171,14 +176,14 @@ MeshDistance distance(const mesh::MeshTree& a, const mesh::MeshTree& b, const Ri
         if (statistics != nullptr) ++statistics->exact_tests;
         if (intersects(first, second)) {
             const SegmentOfContact segment = contact_segment(first, second);
-            result = {0.0, segment.begin, segment.begin, indices};
+            result = {0.0, segment.begin, segment.begin, indices, {of_a, of_b}};
             return true;
         }
         const double before = best.squared;
         closest_of_triangles(first, second, best);
         best.squared = std::max(best.squared, kLeastSquaredDistance);  // they do not meet, though by less than rounding
         if (best.squared < before) {
-            result = {std::sqrt(best.squared), best.on_a, best.on_b, indices};
+            result = {std::sqrt(best.squared), best.on_a, best.on_b, indices, {of_a, of_b}};
             nearest = towards(best.on_a, best.on_b, best.squared);
         }
         return false;

@@ -36,9 +36,6 @@ struct LaneVerdict {
     }
 };
 
-struct LeafTriangle {
-    std::uint32_t leaf = 0, lane = 0;
-};
 // A triangle of a and one of b that meet. Bit e is set where edge e of a, or edge e − 3 of b, passes through the other.
 // Without a bit they may meet. True ends the traversal.
 using PairVisitor = FunctionRef<bool(LeafTriangle of_a, LeafTriangle of_b, std::uint32_t edges)>;

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/geometry/closest_points.hpp>
+#include <crofton/mesh/mesh_distance.hpp>
 #include <crofton/mesh/mesh_parts.hpp>
 #include <crofton/mesh/near_triangles.hpp>
-#include <crofton/mesh/point_distance.hpp>
 
 #include "exact_signs.hpp"
 #include "posed_mesh.hpp"

@@ -2,6 +2,7 @@
 #include "bodies.hpp"
 
 #include <cmath>
+#include <crofton/convex/body_maker.hpp>
 #include <crofton/core/error.hpp>
 #include <crofton/core/recovery.hpp>
 #include <crofton/mesh/mesh_parts.hpp>
@@ -84,13 +85,16 @@ void Bodies::set_mesh(scene::MeshId mesh, bool wants_triangles) {
 }
 
 void Bodies::update_tree(const TriangleMesh& triangles, Mesh& mesh) {
-    if (mesh.can_refit && mesh.tree.refit(triangles.positions) && spread_of(mesh.tree) <= kWornOut * mesh.spread)
+    if (mesh.can_refit && mesh.tree.refit(triangles.positions) && spread_of(mesh.tree) <= kWornOut * mesh.spread) {
+        mesh.bounds = mesh.tree.parts().bounds();
         return;
+    }
     auto built = mesh::MeshTree::build(triangles, {.refittable = mesh.deforms, .rays = true});
     detail::give_up_without_memory(built);
     mesh.is_usable = built.has_value();
     mesh.tree = built ? std::move(*built) : mesh::MeshTree();
     mesh.places = places_in(mesh.tree);
+    mesh.bounds = mesh.is_usable ? mesh.tree.parts().bounds() : Aabb{};
     mesh.can_refit = mesh.is_usable && mesh.deforms;
     if (mesh.can_refit) mesh.spread = spread_of(mesh.tree);
 }
@@ -113,6 +117,11 @@ bool Bodies::update(const scene::Scene& scene, Executor& executor) {
         for (std::size_t i = begin; i < end; ++i) update_tree(scene.mesh(to_build_[i]), meshes_[to_build_[i]]);
     });
     return changed;
+}
+
+convex::Body Bodies::body_of(const Object& object, const glm::dmat3* map) const {
+    const Mesh& mesh = meshes_[object.mesh];
+    return convex::BodyMaker::mesh(mesh.tree, mesh.bounds, map);
 }
 
 Triangle Bodies::triangle_of(const Object& object, std::uint32_t triangle) const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Objects as meshes: the trees over triangles that rays and contacts ask.
 #pragma once
+#include <crofton/convex/body.hpp>
 #include <crofton/geometry/shapes.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <crofton/scene/scene.hpp>
@@ -36,6 +37,10 @@ class Bodies {
         return has && meshes_[object.mesh].is_usable ? &meshes_[object.mesh].tree : nullptr;
     }
 
+    // Returns an object's mesh as a body, under a map that stays alive as long as the body; nullptr: no map. Requires
+    // that there is a tree.
+    [[nodiscard]] convex::Body body_of(const Object& object, const glm::dmat3* map) const;
+
     // A triangle of the tree of an object's mesh, in its frame. Requires that there is one.
     [[nodiscard]] Triangle triangle_of(const Object& object, std::uint32_t triangle) const;
 
@@ -53,6 +58,7 @@ class Bodies {
         mesh::MeshTree tree;
         Vector<std::uint32_t> places;  // of triangles in the tree's leaves, by index: leaf · kMeshLeafWidth + lane
         std::uint64_t revision = 0;
+        Aabb bounds;          // of the tree's vertices
         double spread = 0.0;  // of the tree's boxes when it was built
         bool wants_triangles = true, is_usable = false;
         bool deforms = false, can_refit = false;  // the second: the tree is refittable and of this mesh's triangles

@@ -8,7 +8,6 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
-#include <limits>
 #include <new>
 #include <optional>
 #include <span>
@@ -102,57 +101,24 @@ Result<void> check(const convex::Body& shape, const RigidTransform& pose) {
 
 }  // namespace
 
-World::State::QueryShape World::State::query_shape_of(std::uint32_t id) const {
-    const world::Object& object = table.objects[id];
-    const Obb& box = index.box(id);
-    if (object_bodies.has(id)) return {object_bodies.body(id), object_bodies.pose_of(id, object, box, scene)};
-    if (object.kind == BoundKind::sphere)
-        return {*convex::Body::sphere(std::min(object.radius, static_cast<double>(convex::kMaxExtent))),
-                RigidTransform{glm::dmat3(1.0), box.center}};
-    QueryShape stand{*convex::Body::box(glm::min(box.half_extents, glm::vec3(convex::kMaxExtent))), std::nullopt};
-    stand.pose = RigidTransform{glm::dmat3(box.axes), box.center};
-    glm::dmat3& axes = stand.pose->rotation;
-    if (glm::determinant(axes) < 0.0) axes[2] = -axes[2];  // the same box
-    if (convex::validate_pose(*stand.pose)) return stand;
-    // Axes that are farther from a rotation than poses may be: the box along the nearest axes around it.
-    axes[0] = glm::normalize(axes[0]);
-    axes[1] = glm::normalize(axes[1] - glm::dot(axes[0], axes[1]) * axes[0]);
-    axes[2] = glm::cross(axes[0], axes[1]);
-    glm::vec3 half(0.0f);
-    for (int k = 0; k < 3; ++k) {
-        double along = 0.0;
-        for (int j = 0; j < 3; ++j)
-            along += static_cast<double>(box.half_extents[j]) * std::abs(glm::dot(axes[k], glm::dvec3(box.axes[j])));
-        half[k] = static_cast<float>(std::min(along * (1.0 + 0x1p-22), static_cast<double>(convex::kMaxExtent)));
-    }
-    stand.body = *convex::Body::box(half);
-    return stand;
-}
-
 void World::overlap(const convex::Body& shape, const RigidTransform& pose, Vector<ObjectRef>& found,
                     std::uint32_t layers) const {
     found.clear();
     if (!check(shape, pose)) return;
     const State& s = *state_;
     s.visit_near(bounds_of(shape, pose), 0.0, layers, [&](std::uint32_t id) {
-        const State::QueryShape stand = s.query_shape_of(id);
-        if (stand.pose && convex::intersects({shape, pose}, {stand.body, *stand.pose}))
-            found.push_back(s.table.ref(id));
+        if (s.overlaps({shape, pose}, id)) found.push_back(s.table.ref(id));
         return 0.0;
     });
-    std::sort(found.begin(), found.end(),
-              [](const ObjectRef& a, const ObjectRef& b) { return a.object.index < b.object.index; });
+    world::sort_by_object(found);
 }
 
 std::optional<ClosestObject> World::closest(const convex::Body& shape, const RigidTransform& pose, double max_distance,
                                             std::uint32_t layers) const {
     if (!check(shape, pose)) return std::nullopt;
     const State& s = *state_;
-    return s.closest(bounds_of(shape, pose), max_distance, layers, [&](std::uint32_t id) {
-        const State::QueryShape stand = s.query_shape_of(id);
-        if (!stand.pose) return collide::Distance{std::numeric_limits<double>::infinity(), {}, {}};
-        const convex::Distance gap = convex::distance({shape, pose}, {stand.body, *stand.pose});
-        return collide::Distance{gap.distance, gap.on_a, gap.on_b};
+    return s.closest(bounds_of(shape, pose), max_distance, layers, [&](std::uint32_t id, double limit) {
+        return s.gap_to_shape({shape, pose}, id, limit);
     });
 }
 
@@ -181,7 +147,7 @@ Result<std::optional<BodyHit>> World::cast(const convex::Body& shape, const Rigi
         convex::CastOptions rest = options;
         const Aabb swept = swept_bounds(shape, pose, motion, options.duration, options.tolerance);
         s.visit_near(swept, 0.0, layers, [&](std::uint32_t id) {
-            const State::QueryShape stand = s.query_shape_of(id);
+            const world::QueryShape stand = s.query_shape_of(id);
             if (!stand.pose) return 0.0;
             const auto impact = convex::cast({shape, pose}, motion, {stand.body, *stand.pose}, {}, rest, {{}, touched});
             if (!impact || impact->result == convex::CastResult::miss) return 0.0;
@@ -199,7 +165,7 @@ Result<std::optional<BodyHit>> World::cast(const convex::Body& shape, const Rigi
         now.duration = 0.0;
         now.ignore_initial_overlaps = false;
         s.visit_near(bounds_of(shape, there), options.tolerance, layers, [&](std::uint32_t id) {
-            const State::QueryShape stand = s.query_shape_of(id);
+            const world::QueryShape stand = s.query_shape_of(id);
             if (!stand.pose) return options.tolerance;
             const auto impact = convex::cast({shape, there}, {}, {stand.body, *stand.pose}, {}, now);
             if (impact && impact->result == convex::CastResult::hit) visit(id, stand, *impact);
@@ -211,7 +177,7 @@ Result<std::optional<BodyHit>> World::cast(const convex::Body& shape, const Rigi
     if (!first || overlaps()) return first;
     TouchedObjects at_start;
     bool slides = false;
-    visit_touched(pose, [&](std::uint32_t id, const State::QueryShape& stand, const convex::Impact& touch) {
+    visit_touched(pose, [&](std::uint32_t id, const world::QueryShape& stand, const convex::Impact& touch) {
         at_start.add(id, stand.body, *stand.pose);
         slides |= !is_in_the_way(touch, {shape, pose}, motion, options.duration);
     });
@@ -220,7 +186,7 @@ Result<std::optional<BodyHit>> World::cast(const convex::Body& shape, const Rigi
     // The nearest of those that it touches then.
     std::optional<BodyHit> nearest;
     const RigidTransform there = convex::moved(pose, motion, first->time);
-    visit_touched(there, [&](std::uint32_t id, const State::QueryShape&, const convex::Impact& touch) {
+    visit_touched(there, [&](std::uint32_t id, const world::QueryShape&, const convex::Impact& touch) {
         if (!is_in_the_way(touch, {shape, there}, motion, options.duration - first->time)) return;
         // What it slides on may seem to come nearer, within rounding.
         if (slides && glm::dot(touch.normal, first->normal) < kSameSurface) return;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "contact_finder.hpp"
+#include <crofton/collide/bound_contacts.hpp>
+#include <crofton/mesh/mesh_distance.hpp>
 #include <crofton/mesh/mesh_query.hpp>
-#include <crofton/mesh/point_distance.hpp>
 
 #include <algorithm>
 #include <glm/geometric.hpp>
@@ -134,7 +135,7 @@ void ContactFinder::touch_triangles(const PosedTree& a, const PosedTree& b, Work
     touch.depth = manifold.depth;
     touch.normal = turned(a.pose, manifold.normal);
     if (!options_.mesh_depth) return;
-    const mesh::MeshDepth way_out = mesh::penetration(*a.tree, *b.tree, b_to_a, worker.found);
+    const mesh::SeparatingMotion way_out = mesh::separating_motion(*a.tree, *b.tree, b_to_a, worker.found);
     touch.depth = way_out.depth;
     touch.normal = turned(a.pose, way_out.direction);
 }

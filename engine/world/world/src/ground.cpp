@@ -29,14 +29,6 @@ Aabb bounds_of(const convex::Body& body, const RigidTransform& pose) {
     return {center - size, center + size};
 }
 
-// Keeps the nearer, told by how far the shape's nearest point is above the plane.
-void keep_nearer(collide::Distance& best, double height, const glm::dvec3& on_shape, const Plane& plane) {
-    const double distance = std::max(height, 0.0);
-    if (!(distance < best.distance)) return;
-    best = {distance, on_shape, on_shape - distance * -plane.normal};
-    if (height <= 0.0) best.on_b = on_shape;
-}
-
 }  // namespace
 
 void GroundShape::add(const convex::Body& body, const RigidTransform& pose) {
@@ -81,34 +73,6 @@ Aabb GroundShape::around(const Plane& plane) {
             bounds.min[k] = level - slack;
     }
     return bounds;
-}
-
-collide::Distance gap_to(const GroundShape& ground, const collide::Capsule& shape) {
-    collide::Distance best{HUGE_VAL, {}, {}};
-    for (const Plane& plane : ground.planes) {
-        const double begin = height_of(plane, shape.begin), end = height_of(plane, shape.end);
-        const glm::dvec3 deepest = (begin >= end ? shape.begin : shape.end) + shape.radius * plane.normal;
-        keep_nearer(best, -(std::max(begin, end) + shape.radius), deepest, plane);
-    }
-    if (ground.rest.min.x > ground.rest.max.x) return best;
-    collide::Distance gap = collide::distance(obb_of(ground.rest), shape);
-    std::swap(gap.on_a, gap.on_b);
-    return gap.distance < best.distance ? gap : best;
-}
-
-collide::Distance gap_to(const GroundShape& ground, const Obb& shape) {
-    collide::Distance best{HUGE_VAL, {}, {}};
-    for (const Plane& plane : ground.planes) {
-        glm::dvec3 deepest = shape.center;
-        for (int k = 0; k < 3; ++k) {
-            const glm::dvec3 side = static_cast<double>(shape.half_extents[k]) * glm::dvec3(shape.axes[k]);
-            deepest += glm::dot(plane.normal, side) >= 0.0 ? side : -side;
-        }
-        keep_nearer(best, -height_of(plane, deepest), deepest, plane);
-    }
-    if (ground.rest.min.x > ground.rest.max.x) return best;
-    const collide::Distance gap = collide::distance(shape, obb_of(ground.rest));
-    return gap.distance < best.distance ? gap : best;
 }
 
 void Ground::start() {
@@ -220,25 +184,10 @@ void World::State::update_ground_contacts() {
         if (object_bodies.has(a) && object_bodies.has(b)) continue;
         const bool swapped = object_bodies.has(b);
         const std::uint32_t base = swapped ? b : a, other = swapped ? a : b;
-        const QueryShape level = query_shape_of(base);
-        QueryShape thing = query_shape_of(other);
-        std::unique_ptr<world::ScaledBody> scaled;
-        const world::Object& object = table.objects[other];
-        if (const mesh::MeshTree* tree = bodies.mesh_tree_of(object)) {
-            const Transform& world = scene.world(scene.node_of(object.instance));
-            const world::SplitMap map = world::split(world.linear);
-            auto triangles = convex::Body::mesh(*tree);
-            auto made = triangles ? world::ScaledBody::make(*triangles, map, other)
-                                  : Result<std::unique_ptr<world::ScaledBody>>(nullptr);
-            if (made && *made) {
-                scaled = std::move(*made);
-                thing = {scaled->body(), RigidTransform{map.rotation, world.translation}};
-            }
-        }
+        const world::QueryShape level = query_shape_of(base), thing = query_shape_of(other);
         if (!level.pose || !thing.pose) continue;
-        const convex::BodyAtPose first{swapped ? thing.body : level.body, swapped ? *thing.pose : *level.pose},
-            second{swapped ? level.body : thing.body, swapped ? *level.pose : *thing.pose};
-        const convex::Manifold manifold = convex::contact_manifold(first, second);
+        const convex::Manifold manifold = swapped ? convex::contact_manifold(thing.placed(), level.placed())
+                                                  : convex::contact_manifold(level.placed(), thing.placed());
         if (manifold.count > 0) ground.add_contact(pair, manifold);
     }
     ground.merge_contacts(finder.contacts());

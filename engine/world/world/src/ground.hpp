@@ -20,10 +20,6 @@ struct GroundShape {
     static Aabb around(const Plane& plane);
 };
 
-// A sphere or capsule, or a box, from the nearest of the planes.
-[[nodiscard]] collide::Distance gap_to(const GroundShape& ground, const collide::Capsule& shape);
-[[nodiscard]] collide::Distance gap_to(const GroundShape& ground, const Obb& shape);
-
 // Pairs with ground, contacts of ground with what has no body, and all of the World's with these among them.
 class Ground {
   public:

@@ -2,6 +2,7 @@
 // What is asked between updates.
 #include <algorithm>
 #include <cmath>
+#include <crofton/collide/bound_contacts.hpp>
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/collide/narrow_phase.hpp>
 #include <crofton/cull/cull.hpp>
@@ -15,6 +16,7 @@
 
 #include "ray_normal.hpp"
 #include "ray_sphere.hpp"
+#include "rigid.hpp"
 #include "trace_zone.hpp"
 #include "world_state.hpp"
 
@@ -67,16 +69,6 @@ collide::Distance gap_to(const collide::Capsule& shape, const world::Object& obj
     return gap;
 }
 
-collide::Distance gap_to_ground(const world::GroundShape& ground, const Obb& shape) {
-    return world::gap_to(ground, shape);
-}
-collide::Distance gap_to_ground(const world::GroundShape& ground, const collide::Capsule& shape) {
-    return world::gap_to(ground, shape);
-}
-collide::Distance gap_to_ground(const world::GroundShape& ground, const Sphere& shape) {
-    return world::gap_to(ground, collide::Capsule{shape.center, shape.center, shape.radius});
-}
-
 // A ray whose direction is far from 1 in size, with one near 1: its parameters are the caller's times `per_t`, a power
 // of two. Others, and those that are none, stay as they are.
 struct EvenRay {
@@ -95,15 +87,6 @@ struct EvenRay {
         if (exponent != 0) hit.t = std::scalbn(hit.t, -exponent);
     }
 };
-
-// Whether a matrix can be inverted. A product of rotations and a flat scale may keep a determinant of rounding: 2^-52
-// of the product of its columns' lengths. The inverse of one that passes is off by a thousandth of the mesh's size at
-// most, and by rounding where nothing is nearly flat.
-bool is_invertible(const glm::dmat3& m) {
-    double sizes = 1.0;
-    for (int k = 0; k < 3; ++k) sizes *= std::abs(m[k].x) + std::abs(m[k].y) + std::abs(m[k].z);
-    return std::abs(glm::determinant(m)) > 1e-12 * sizes;
-}
 
 // No further than rounding tells: boxes apart by less are near. Axes deviate by 1e-4 each (kMaxAxisDeviation), which
 // lengthens a diagonal by 1.5e-4.
@@ -135,7 +118,7 @@ void World::State::visit_along(const Ray& ray, std::uint32_t layers, collide::Ra
 }
 
 std::optional<ObjectHit> World::State::body_hit(const Ray& ray, std::uint32_t id) const {
-    const QueryShape stand = query_shape_of(id);
+    const world::QueryShape stand = query_shape_of(id);
     if (!stand.pose) return std::nullopt;
     const auto met = convex::raycast({stand.body, *stand.pose}, ray);
     if (!met) return std::nullopt;
@@ -156,7 +139,7 @@ std::optional<ObjectHit> World::State::shape_hit(const Ray& ray, std::uint32_t i
     hit.normal = world::normal_of(ray, index.box(id), box_t);
     if (const mesh::MeshTree* tree = bodies.mesh_tree_of(object)) {
         const Transform& world = scene.world(scene.node_of(object.instance));
-        if (is_invertible(world.linear)) {
+        if (world::is_invertible(world.linear)) {
             const glm::dmat3 inverse = glm::inverse(world.linear);
             const auto on_mesh = mesh::raycast(
                 Ray{inverse * (ray.origin - world.translation), inverse * ray.direction, ray.max_t}, *tree);
@@ -242,20 +225,17 @@ template <class Shape>
 void World::State::overlap(const Shape& shape, Vector<ObjectRef>& found, std::uint32_t layers) const {
     found.clear();
     if (!is_valid(shape)) return;
+    const world::QueryShape asked = world::shape_of(shape);
     visit_near(bounds_of(shape), 0.0, layers, [&](std::uint32_t id) {
-        if (object_bodies.is_unbounded(id)) {
-            if (gap_to_ground(ground_shape(id), shape).distance <= 0.0) found.push_back(table.ref(id));
-            return 0.0;
-        }
         const world::Object& object = table.objects[id];
         const Obb& box = index.box(id);
-        const bool meets = object.kind == BoundKind::sphere ? meets_sphere(shape, Sphere{box.center, object.radius})
-                                                            : collide::intersects(box, shape);
+        const bool meets = has_shape(id)                      ? overlaps(asked.placed(), id)
+                           : object.kind == BoundKind::sphere ? meets_sphere(shape, Sphere{box.center, object.radius})
+                                                              : collide::intersects(box, shape);
         if (meets) found.push_back(table.ref(id));
         return 0.0;
     });
-    std::sort(found.begin(), found.end(),
-              [](const ObjectRef& a, const ObjectRef& b) { return a.object.index < b.object.index; });
+    world::sort_by_object(found);
 }
 
 void World::overlap(const Obb& shape, Vector<ObjectRef>& found, std::uint32_t layers) const {
@@ -280,7 +260,7 @@ std::optional<ClosestObject> World::State::closest(const Aabb& bounds, double ma
     for (double limit = max_distance * 0x1p-12;; limit = std::min(std::max(8.0 * limit, kLeastGrowth), max_distance)) {
         double rest = limit;
         visit_near(bounds, limit, layers, [&](std::uint32_t id) {
-            const collide::Distance gap = gap_to_object(id);
+            const collide::Distance gap = gap_to_object(id, rest);
             const bool nearer = !nearest || gap.distance < nearest->distance ||
                                 (gap.distance == nearest->distance && id < nearest->object.index);
             if (gap.distance > rest || !nearer) return rest;
@@ -295,9 +275,10 @@ template <class Shape>
 std::optional<ClosestObject> World::State::closest(const Shape& shape, double max_distance,
                                                    std::uint32_t layers) const {
     if (!is_valid(shape)) return std::nullopt;
-    return closest(bounds_of(shape), max_distance, layers, [&](std::uint32_t id) {
-        if (object_bodies.is_unbounded(id)) return gap_to_ground(ground_shape(id), shape);
-        return gap_to(shape, table.objects[id], index.box(id));
+    const world::QueryShape asked = world::shape_of(shape);
+    return closest(bounds_of(shape), max_distance, layers, [&](std::uint32_t id, double limit) {
+        return has_shape(id) ? gap_to_shape(asked.placed(), id, limit)
+                             : gap_to(shape, table.objects[id], index.box(id));
     });
 }
 

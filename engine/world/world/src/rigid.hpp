@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 
 namespace crofton::world {
 
@@ -15,6 +16,15 @@ namespace crofton::world {
         std::max({std::abs(glm::dot(x, x) - 1.0), std::abs(glm::dot(y, y) - 1.0), std::abs(glm::dot(z, z) - 1.0),
                   std::abs(glm::dot(x, y)), std::abs(glm::dot(y, z)), std::abs(glm::dot(z, x))});
     return most <= kClearly && glm::dot(glm::cross(x, y), z) > 0.0;
+}
+
+// Whether a matrix can be inverted. A product of rotations and a flat scale may keep a determinant of rounding: 2^-52
+// of the product of its columns' lengths. The inverse of one that passes is off by a thousandth of the mesh's size at
+// most, and by rounding where nothing is nearly flat.
+[[nodiscard]] inline bool is_invertible(const glm::dmat3& m) {
+    double sizes = 1.0;
+    for (int k = 0; k < 3; ++k) sizes *= std::abs(m[k].x) + std::abs(m[k].y) + std::abs(m[k].z);
+    return std::abs(glm::determinant(m)) > 1e-12 * sizes;
 }
 
 }  // namespace crofton::world

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What a World keeps.
 #pragma once
+#include <crofton/collide/bound_contacts.hpp>
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/world/world.hpp>
 
@@ -11,6 +12,7 @@
 #include "object_bodies.hpp"
 #include "object_table.hpp"
 #include "occluders.hpp"
+#include "query_shape.hpp"
 #include "spatial_index.hpp"
 
 namespace crofton {
@@ -129,12 +131,18 @@ struct World::State {
     void draw_and_ask(const occlude::OcclusionView& view, const OcclusionOptions& occlusion, std::uint32_t layers,
                       const cull::CullOptions& how, Executor& executor, world::OccludedView& result) const;
 
-    // An object's body, or what stands for it: a sphere or box. No pose: it meets nothing.
-    struct QueryShape {
-        convex::Body body;
-        std::optional<RigidTransform> pose;
-    };
-    [[nodiscard]] QueryShape query_shape_of(std::uint32_t object) const;
+    // Whether an object has a shape besides its sphere or box: a body, or a mesh that can be queried.
+    [[nodiscard]] bool has_shape(std::uint32_t object) const {
+        return object_bodies.has(object) || bodies.mesh_tree_of(table.objects[object]) != nullptr;
+    }
+    // Returns an object's body, or else its mesh, sphere or box.
+    [[nodiscard]] world::QueryShape query_shape_of(std::uint32_t object) const;
+    // Answer for an object by its shape, as overlap() and closest() say. The distance is infinite beyond `limit`.
+    [[nodiscard]] bool overlaps(const convex::BodyAtPose& shape, std::uint32_t object) const;
+    [[nodiscard]] collide::Distance gap_to_shape(const convex::BodyAtPose& shape, std::uint32_t object,
+                                                 double limit) const;
+    // Returns a point of the shape that lies inside an object's closed mesh, if contacts count that as touching.
+    [[nodiscard]] std::optional<glm::dvec3> point_inside(const convex::BodyAtPose& shape, std::uint32_t object) const;
 
     // How far along the ray an object's own shape is met, no farther than the ray goes; its box is met at `box_t`.
     [[nodiscard]] std::optional<ObjectHit> shape_hit(const Ray& ray, std::uint32_t object, double box_t) const;
@@ -148,7 +156,7 @@ struct World::State {
     template <class Shape>
     void overlap(const Shape& shape, Vector<ObjectRef>& found, std::uint32_t layers) const;
     // How far an object is, and the nearest points: first the shape's, then the object's.
-    using GapTo = FunctionRef<collide::Distance(std::uint32_t object)>;
+    using GapTo = FunctionRef<collide::Distance(std::uint32_t object, double limit)>;
     // `bounds` are around the shape.
     [[nodiscard]] std::optional<ClosestObject> closest(const Aabb& bounds, double max_distance, std::uint32_t layers,
                                                        GapTo gap_to_object) const;

@@ -330,8 +330,9 @@ CROFTON_API crofton_status crofton_found_hits(const crofton_found* found, const 
  */
 CROFTON_API crofton_status crofton_world_raycast_all(const crofton_world* world, const crofton_ray* ray,
                                                      uint32_t layer_mask, crofton_found* found);
-/* Finds the objects whose box or sphere meets the shape, in order of index; a mesh counts as its box. A body meets
- * bodies of objects exactly; CROFTON_UNSUPPORTED: a half-space. */
+/* Finds the objects that overlap the shape, in order of index: their bodies, or if they have none, their meshes'
+ * triangles, their spheres or boxes. A shape inside a closed mesh overlaps it if `containment` of the world's options is
+ * set. CROFTON_UNSUPPORTED: a half-space. */
 CROFTON_API crofton_status crofton_world_overlap(const crofton_world* world, const crofton_shape* shape,
                                                  uint32_t layer_mask, crofton_found* found);
 /* Fills a struct whose `size` is set: the object nearest to the shape, as above, no farther than max_distance, which
@@ -351,7 +352,8 @@ CROFTON_API crofton_status crofton_world_contacts(const crofton_world* world, co
  * pair has moved, the pair is not computed again. */
 CROFTON_API crofton_status crofton_world_body_contacts(const crofton_world* world,
                                                        const crofton_body_contact** contacts, size_t* count);
-/* Finds the first object that a moving body meets. Fills a struct whose `size` is set. `options` or NULL. */
+/* Finds the first object that a moving body meets, by the objects' shapes as for crofton_world_overlap; a body inside a
+ * closed mesh meets it from inside. Fills a struct whose `size` is set. `options` or NULL. */
 CROFTON_API crofton_status crofton_world_cast(const crofton_world* world, const crofton_placed* shape,
                                               const crofton_motion* motion, const crofton_cast_options* options,
                                               uint32_t layer_mask, crofton_body_hit* hit);

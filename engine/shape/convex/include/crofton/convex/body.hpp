@@ -226,6 +226,7 @@ class Body {
     Aabb bounds_;
     const Hull* hull_ = nullptr;
     const mesh::MeshTree* mesh_ = nullptr;
+    const glm::dmat3* map_ = nullptr;  // of the mesh; nullptr: none
     const HeightField* field_ = nullptr;
     const Compound* compound_ = nullptr;
     double corners_[3][8] = {};

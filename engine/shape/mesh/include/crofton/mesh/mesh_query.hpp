@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Queries of triangles and meshes: overlap, contacts, distance, depth, containment, rays.
+// Queries of triangles and meshes: overlapping triangles, contacts, containment, rays.
 #pragma once
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/box.hpp>
@@ -31,7 +31,9 @@ struct SegmentOfContact {
 // both.
 [[nodiscard]] SegmentOfContact contact_segment(const Triangle& a, const Triangle& b);
 
-// ---- Meshes against meshes: overlap, contacts, distance ----
+// ---- Meshes against meshes: triangles that overlap, contacts, containment ----
+
+// For overlap, distance, depth and casts of meshes see crofton/convex: a mesh is a body (Body::mesh).
 
 // All queries take the pose of b in a's frame, which must pass validate(RigidTransform).
 //
@@ -47,9 +49,6 @@ struct MeshStatistics {
 
 // Indices of triangles in mesh a (first) and mesh b (second).
 using TrianglePair = IdPair;
-
-[[nodiscard]] bool intersects(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& b_to_a,
-                              MeshStatistics* statistics = nullptr);
 
 // Replaces `pairs` by all pairs of triangles that overlap, sorted.
 void intersecting_triangles(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& b_to_a,
@@ -72,12 +71,12 @@ void contacts(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTrans
 // meshes' frames and boxes, the mean normal of the contacts, and the line of centres. If the meshes stay apart once
 // they are apart, as convex ones do, it is the shortest of these motions, to 1e-6 of the meshes' size. Others may
 // separate earlier, and overlap again.
-struct MeshDepth {
+struct SeparatingMotion {
     double depth = 0.0;
     glm::dvec3 direction{0.0};
 };
-[[nodiscard]] MeshDepth penetration(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& b_to_a,
-                                    std::span<const MeshContact> contacts);
+[[nodiscard]] SeparatingMotion separating_motion(const mesh::MeshTree& a, const mesh::MeshTree& b,
+                                                 const RigidTransform& b_to_a, std::span<const MeshContact> contacts);
 
 // The containment of meshes, tested for each piece of a mesh: `a_inside_b` means that all pieces of a lie in b;
 // `partly` means that some pieces do, but not all.
@@ -94,21 +93,6 @@ enum class Containment : std::uint8_t { none, a_inside_b, b_inside_a, partly };
 // Tests whether the point lies within the closed pieces of the mesh, surfaces included. Exact while its coordinates are
 // 0 or at least 1e-70 in magnitude. A point that is not finite lies in none.
 [[nodiscard]] bool contains(const mesh::MeshTree& mesh, const glm::dvec3& point);
-
-struct MeshDistance {
-    double distance = std::numeric_limits<double>::infinity();
-    glm::dvec3 on_a{0.0}, on_b{0.0};  // in a's frame
-    TrianglePair triangles{};
-};
-// Returns the smallest distance between the surfaces: exactly 0 if they meet and positive if they do not, and otherwise
-// within 1e-12 of the coordinates' size. If it is at least `limit`, it stops early, with `distance` infinite.
-[[nodiscard]] MeshDistance distance(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& b_to_a,
-                                    double limit = std::numeric_limits<double>::infinity(),
-                                    MeshStatistics* statistics = nullptr);
-
-// Tests whether some point of a is closer than `tolerance` ≥ 0 to some point of b, or the surfaces meet.
-[[nodiscard]] bool closer_than(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& b_to_a,
-                               double tolerance, MeshStatistics* statistics = nullptr);
 
 // ---- Rays and segments ----
 

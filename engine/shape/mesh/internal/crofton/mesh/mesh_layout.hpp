@@ -28,6 +28,11 @@ struct alignas(64) MeshLeaf {
     std::uint32_t count;
 };
 
+// Where a triangle is: a lane of a leaf.
+struct LeafTriangle {
+    std::uint32_t leaf = 0, lane = 0;
+};
+
 // Aligned boxes side by side, for rays and lines: a slab test of them has a third of the latency of an oriented box's.
 // Unused lanes are empty.
 inline constexpr std::uint32_t kBoxNodeWidth = 8;

@@ -2,6 +2,8 @@
 // The parts of a mesh tree: nodes and leaves that queries read, and what a refit needs.
 #pragma once
 #include <crofton/core/memory.hpp>
+#include <crofton/geometry/box.hpp>
+#include <crofton/geometry/shapes.hpp>
 #include <crofton/mesh/mesh_layout.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <cstdint>
@@ -44,6 +46,22 @@ struct MeshParts {
     Vector<glm::vec3> loose_points;
     std::size_t loose_count = 0;
 
+    [[nodiscard]] Triangle triangle(const LeafTriangle& at) const {
+        const MeshLeaf& leaf = leaves[at.leaf];
+        const auto vertex = [&](int v) {
+            return glm::dvec3(
+                glm::vec3(leaf.vertex[v][0][at.lane], leaf.vertex[v][1][at.lane], leaf.vertex[v][2][at.lane]));
+        };
+        return {vertex(0), vertex(1), vertex(2)};
+    }
+    [[nodiscard]] Aabb bounds() const {  // of all vertices
+        Aabb box;
+        for (const MeshLeaf& leaf : leaves)
+            for (std::uint32_t lane = 0; lane < leaf.count; ++lane)
+                for (const auto& vertex : leaf.vertex)
+                    box.include(glm::dvec3(glm::vec3(vertex[0][lane], vertex[1][lane], vertex[2][lane])));
+        return box;
+    }
     [[nodiscard]] std::span<const glm::vec3> loose() const { return {loose_points.data(), loose_count}; }
 
     void refit_ray_nodes();

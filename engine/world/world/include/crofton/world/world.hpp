@@ -198,39 +198,42 @@ class World {
     // Lists the nearest hit of each object that the ray hits, in order of t, then of index.
     void raycast_all(const Ray& ray, Vector<ObjectHit>& hits, std::uint32_t layers = ~0u) const;
 
-    // Lists the objects whose box or sphere overlaps the shape, in order of index. A mesh is tested by its box,
-    // infinite ground by its half-spaces and the box around the rest of its body.
+    // Lists the objects that overlap the shape, in order of index. Tests an object's body (as convex::intersects), or
+    // if it has none, its mesh's triangles, its sphere or its box.
+    //
+    // A mesh is a surface. A shape inside it overlaps it if the mesh is closed there and WorldOptions::containment is
+    // set, as for contacts; a body of a mesh is a surface only. Exact for boxes with boxes; otherwise as exact as
+    // convex::intersects. Beside a body or mesh, a box whose axes are off by more than 1e-6 counts as the smallest box
+    // around it along the nearest orthonormal axes. Vertices of meshes under a scale or shear are rounded to double.
     //
     // An invalid box, and a sphere or capsule with NaN or numbers beyond kMaxCoordinate, overlaps nothing; closest()
     // finds nothing for it.
     void overlap(const Obb& shape, Vector<ObjectRef>& found, std::uint32_t layers = ~0u) const;
     void overlap(const Sphere& shape, Vector<ObjectRef>& found, std::uint32_t layers = ~0u) const;
     void overlap(const collide::Capsule& shape, Vector<ObjectRef>& found, std::uint32_t layers = ~0u) const;
-    // The same for any body except a half-space, exactly. Objects that have bodies are tested by their bodies.
-    //
-    // Bounds beyond convex::kMaxExtent are cut off there. A box whose axes are off by more than 1e-6 is replaced by the
-    // smallest box around it along the nearest orthonormal axes. A body with an invalid pose overlaps nothing.
+    // The same for any body except a half-space. A body with an invalid pose overlaps nothing.
     void overlap(const convex::Body& shape, const RigidTransform& pose, Vector<ObjectRef>& found,
                  std::uint32_t layers = ~0u) const;
-    // Returns the first object that a moving body meets, by convex::cast against each object's body, sphere or box. The
-    // objects are at rest.
+    // Returns the first object that a moving body meets, by convex::cast against each object's body, or if it has none,
+    // its mesh's triangles, its sphere or its box. The objects are at rest.
     //
+    // A body that starts inside a closed mesh meets the mesh from inside, as a ray does.
     // A body that stands on an object can slide along it and move away from it. An object that overlaps the body at the
     // start is met at time 0; CastOptions::ignore_initial_overlaps leaves it out. Errors: as convex::cast; a
     // half-space; an invalid pose.
     [[nodiscard]] Result<std::optional<BodyHit>> cast(const convex::Body& shape, const RigidTransform& pose,
                                                       const convex::Motion& motion, const convex::CastOptions& options,
                                                       std::uint32_t layers = ~0u) const;
-    // Returns the object whose box or sphere is nearest to the shape, within max_distance; if several are equally near,
-    // the one with the lowest index.
+    // Returns the object that is nearest to the shape, within max_distance; if several are equally near, the one with
+    // the lowest index. Tests the same shapes as overlap(): the distance is 0 iff the shape overlaps the object.
     [[nodiscard]] std::optional<ClosestObject> closest(const Sphere& shape, double max_distance,
                                                        std::uint32_t layers = ~0u) const;
     [[nodiscard]] std::optional<ClosestObject> closest(const Obb& shape, double max_distance,
                                                        std::uint32_t layers = ~0u) const;
     [[nodiscard]] std::optional<ClosestObject> closest(const collide::Capsule& shape, double max_distance,
                                                        std::uint32_t layers = ~0u) const;
-    // The same for any body except a half-space, within the bounds that convex::distance proves. Objects that have
-    // bodies are tested by their bodies. Returns nothing for an invalid pose.
+    // The same for any body except a half-space, within the bounds that convex::distance proves. Returns nothing for an
+    // invalid pose.
     [[nodiscard]] std::optional<ClosestObject> closest(const convex::Body& shape, const RigidTransform& pose,
                                                        double max_distance, std::uint32_t layers = ~0u) const;
 

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// The shapes that queries ask with, and ask.
+#pragma once
+#include <algorithm>
+#include <crofton/collide/narrow_phase.hpp>
+#include <crofton/convex/query.hpp>
+#include <crofton/world/answers.hpp>
+#include <optional>
+
+namespace crofton::world {
+
+// A body and its pose. Without a pose it overlaps nothing.
+struct QueryShape {
+    convex::Body body;
+    std::optional<RigidTransform> pose;
+
+    // Requires a pose.
+    [[nodiscard]] convex::BodyAtPose placed() const { return {body, *pose}; }
+};
+
+// A box whose axes are off by more than poses may be is replaced by the smallest box around it along the nearest
+// orthonormal axes.
+[[nodiscard]] QueryShape shape_of(const Obb& box);
+[[nodiscard]] QueryShape shape_of(const Sphere& sphere);
+[[nodiscard]] QueryShape shape_of(const collide::Capsule& capsule);
+
+inline void sort_by_object(Vector<ObjectRef>& found) {
+    std::sort(found.begin(), found.end(),
+              [](const ObjectRef& a, const ObjectRef& b) { return a.object.index < b.object.index; });
+}
+
+}  // namespace crofton::world
