@@ -81,8 +81,9 @@ struct View {
 
 }  // namespace
 
-void EdgeRule::start(std::span<const NearTriangle> triangles) {
+void EdgeRule::start(std::span<const NearTriangle> triangles, const BodyAtPose& body) {
     triangles_ = triangles;
+    body_ = &body;
     listed_ = false;
 }
 
@@ -106,7 +107,14 @@ std::size_t EdgeRule::slot_of(const glm::dvec3& vertex) const {
     return static_cast<std::size_t>(hash >> 32) & (first_.size() - 1);
 }
 
-bool EdgeRule::points_into_neighbor(std::uint32_t index, const NearSurface& surface, const glm::dvec3& normal) {
+bool EdgeRule::is_in_box(const glm::dvec3& point) const {
+    const glm::dvec3 p = Pair::local(body_->pose.rotation, point - body_->pose.translation);
+    const Aabb& box = body_->body.bounds();
+    return p == (glm::clamp)(p, box.min, box.max);
+}
+
+bool EdgeRule::points_into_neighbor(std::uint32_t index, const NearSurface& surface, const glm::dvec3& normal,
+                                    const glm::dvec3& touch) {
     const NearTriangle& own = triangles_[index];
     const glm::dvec3 d = Pair::local(surface.pose.rotation, normal);
     const Stand stand{own.corners, farthest_along(own.corners, d), d};
@@ -117,7 +125,8 @@ bool EdgeRule::points_into_neighbor(std::uint32_t index, const NearSurface& surf
         const NearTriangle& other = triangles_[c / 3];
         if (other.surface == own.surface && rises_beside(other.corners)) return true;
     }
-    return any_around(surface, stand.vertex(), rises_beside);
+    const glm::dvec3 on = stand.on.count == 1 ? surface.pose.rotation * stand.vertex() : touch;
+    return !is_in_box(on + surface.pose.translation) && any_around(surface, stand.vertex(), rises_beside);
 }
 
 void EdgeRule::find_sides(std::uint32_t begin, std::uint32_t end, const glm::dvec3& point) {

@@ -239,7 +239,7 @@ class ManifoldFinder {
     void find(const BodyAtPose& a, const BodyAtPose& b, const PartId& of_b, bool flip) {
         list_near(a, b, of_b, flip);
         const ManifoldList::Mark before = scratch_.list.mark();
-        scratch_.rule.start(scratch_.triangles);
+        scratch_.rule.start(scratch_.triangles, b);
         const auto has_points = [&] { return scratch_.list.mark().points > before.points; };
         Answer answer = ask_triangles(b, Push::by_rule, of_b, flip);
         if (answer.opposite) {

@@ -78,7 +78,7 @@ void SurfaceContacts::ask(const NearTriangle& near, std::uint32_t index, EdgeRul
     const bool across_face = std::abs(along) >= 1.0 - 0.5 * kFlatSine * kFlatSine;
     const bool has_face = t.normal != glm::dvec3(0.0);
     if (allowed && (across_face || (push == Push::always && (!has_face || is_half_space(body_))) ||
-                    !rule.points_into_neighbor(index, surface_, normal))) {
+                    !rule.points_into_neighbor(index, surface_, normal, touch.on_a))) {
         if (found == Found::touch) gather(t, triangle ? &*triangle : nullptr, touch, contact);
         return;
     }
