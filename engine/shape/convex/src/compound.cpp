@@ -130,7 +130,7 @@ class CompoundSearch {
                                search_.nearest_first,
                                search_.limit,
                                search_.visit,
-                               child.body.core_radius(),
+                               &child.body,
                                search_.on_triangle};
         const QueryBox box = seen_from(box_, child.pose);
         if (child.body.is_bounded() && distance_between(child.body.bounds(), bounds_of(box)) > search_.limit)

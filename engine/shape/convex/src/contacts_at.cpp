@@ -53,11 +53,12 @@ bool is_part_nearer(const BodyAtPose& a, const BodyAtPose& b, const glm::dvec3& 
                              offset = b.pose.translation - of.pose.translation;
             const double top = std::max(glm::dot(local, corners[0]),
                                         std::max(glm::dot(local, corners[1]), glm::dot(local, corners[2])));
-            const double error = 0x1p-47 * (of.reach + b.body.core_radius() + b.body.radius() + glm::length(offset));
+            const double error =
+                0x1p-47 * (of.body->core_radius() + b.body.core_radius() + b.body.radius() + glm::length(offset));
             if (glm::dot(normal, offset) - depth - top - error >= limit) return false;
             if (is_segment) {
                 const glm::dvec3& origin = of.pose.translation;
-                const SegmentTouch segment(b, origin, of.reach, std::max(limit, 0.0));
+                const SegmentTouch segment(b, origin, of.body->core_radius(), std::max(limit, 0.0));
                 Touch touch;
                 const Warm warm = segment.ask(placed_triangle(corners, of.pose, origin), touch);
                 if (warm == Warm::apart) return false;

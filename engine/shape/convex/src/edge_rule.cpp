@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "edge_rule.hpp"
 
+#include <algorithm>
 #include <bit>
+#include <crofton/geometry/closest_points.hpp>
 
 #include "pair.hpp"
+#include "parts.hpp"
 
 namespace crofton::convex {
 namespace {
 
 constexpr std::uint32_t kNoCorner = ~std::uint32_t{0};
+constexpr std::int8_t kUnknownSide = 2;
 
 // The vertices of a triangle that are farthest along a direction.
 struct FarthestCorners {
@@ -30,10 +34,56 @@ FarthestCorners farthest_along(const Triangle& t, const glm::dvec3& d) {
     return result;
 }
 
+// The vertices of a triangle that are farthest along a direction, as a neighbor knows them.
+struct Stand {
+    const Triangle& own;
+    FarthestCorners on;
+    glm::dvec3 direction;
+
+    [[nodiscard]] const glm::dvec3& vertex() const { return own[on.corner[0]]; }
+    [[nodiscard]] bool is_shared_by(const Triangle& t) const {
+        for (int k = 0; k < on.count; ++k)
+            if (std::find(t.begin(), t.end(), own[on.corner[k]]) == t.end()) return false;
+        return true;
+    }
+    [[nodiscard]] bool is_below(const Triangle& t) const {
+        return std::any_of(t.begin(), t.end(),
+                           [&](const glm::dvec3& p) { return rises(direction, p - vertex(), kFlatSine); });
+    }
+};
+
+// Whether a triangle of the surface around the vertex is one of those.
+bool any_around(const NearSurface& surface, const glm::dvec3& vertex, FunctionRef<bool(const Triangle&)> is_one) {
+    QueryBox place;
+    place.center = vertex;
+    place.rounding = 1e-12 * surface.body->core_radius();
+    const auto triangle = [&](const PartSearch&, const Triangle& corners, std::uint32_t) { return is_one(corners); };
+    return visit_parts(
+        {*surface.body, surface.pose}, place, 0.0, [](const Part&) { return false; }, triangle);
+}
+
+// How a triangle sees a point. Of triangles that are equally near the one whose plane is farther tells the side.
+struct View {
+    double squared, height;  // of the distance; above the plane
+
+    View(const Triangle& t, const glm::dvec3& point) {
+        const glm::dvec3 way = point - closest_on_triangle(point, t);
+        const glm::dvec3 normal = triangle_normal(glm::dmat3(1.0), t);
+        squared = glm::dot(way, way);
+        height = glm::dot(normal, point - t[0]);
+    }
+    [[nodiscard]] bool tells_more(const View& other) const {
+        constexpr double kSame = 1e-9;
+        if (squared < other.squared * (1.0 - kSame)) return true;
+        return squared <= other.squared * (1.0 + kSame) && std::abs(height) > std::abs(other.height) * (1.0 + kSame);
+    }
+};
+
 }  // namespace
 
-void EdgeRule::start(std::span<const NearTriangle> triangles) {
+void EdgeRule::start(std::span<const NearTriangle> triangles, const BodyAtPose& body) {
     triangles_ = triangles;
+    body_ = &body;
     listed_ = false;
 }
 
@@ -57,25 +107,65 @@ std::size_t EdgeRule::slot_of(const glm::dvec3& vertex) const {
     return static_cast<std::size_t>(hash >> 32) & (first_.size() - 1);
 }
 
-bool EdgeRule::points_into_neighbor(std::uint32_t index, const RigidTransform& pose, const glm::dvec3& normal) {
+bool EdgeRule::is_in_box(const glm::dvec3& point) const {
+    const glm::dvec3 p = Pair::local(body_->pose.rotation, point - body_->pose.translation);
+    const Aabb& box = body_->body.bounds();
+    return p == (glm::clamp)(p, box.min, box.max);
+}
+
+bool EdgeRule::points_into_neighbor(std::uint32_t index, const NearSurface& surface, const glm::dvec3& normal,
+                                    const glm::dvec3& touch) {
     const NearTriangle& own = triangles_[index];
-    const glm::dvec3 d = Pair::local(pose.rotation, normal);
-    const FarthestCorners on = farthest_along(own.corners, d);
-    if (on.count == 3) return false;
+    const glm::dvec3 d = Pair::local(surface.pose.rotation, normal);
+    const Stand stand{own.corners, farthest_along(own.corners, d), d};
+    if (stand.on.count == 3) return false;
+    const auto rises_beside = [&](const Triangle& t) { return stand.is_shared_by(t) && stand.is_below(t); };
     if (!listed_) list_corners();
-    const glm::dvec3& vertex = own.corners[on.corner[0]];
-    for (std::uint32_t c = first_[slot_of(vertex)]; c != kNoCorner; c = next_[c]) {
+    for (std::uint32_t c = first_[slot_of(stand.vertex())]; c != kNoCorner; c = next_[c]) {
         const NearTriangle& other = triangles_[c / 3];
-        const Triangle& t = other.corners;
-        if (t[c % 3] != vertex || other.surface != own.surface) continue;
-        if (on.count == 2) {
-            const glm::dvec3& second = own.corners[on.corner[1]];
-            if (t[0] != second && t[1] != second && t[2] != second) continue;
-        }
-        for (const glm::dvec3& p : t)
-            if (rises(d, p - vertex, kFlatSine)) return true;
+        if (other.surface == own.surface && rises_beside(other.corners)) return true;
     }
-    return false;
+    const glm::dvec3 on = stand.on.count == 1 ? surface.pose.rotation * stand.vertex() : touch;
+    return !is_in_box(on + surface.pose.translation) && any_around(surface, stand.vertex(), rises_beside);
+}
+
+void EdgeRule::find_sides(std::uint32_t begin, std::uint32_t end, const glm::dvec3& point) {
+    if (!listed_) list_corners();
+    side_.resize(triangles_.size());
+    std::fill(side_.begin() + begin, side_.begin() + end, kUnknownSide);
+    for (std::uint32_t i = begin; i < end; ++i)
+        if (side_[i] == kUnknownSide) find_side_of_piece(i, point);
+}
+
+void EdgeRule::find_side_of_piece(std::uint32_t first, const glm::dvec3& point) {
+    side_[first] = 1;  // that of the first one's front, until the side is known
+    piece_.assign(1, first);
+    View nearest(triangles_[first].corners, point);
+    std::uint32_t teller = first;
+    for (std::size_t i = 0; i < piece_.size(); ++i) {
+        const View view(triangles_[piece_[i]].corners, point);
+        if (view.tells_more(nearest)) nearest = view, teller = piece_[i];
+        add_neighbors_to_piece(piece_[i]);
+    }
+    const int front = piece_.size() == 1 ? 0 : nearest.height >= 0.0 ? side_[teller] : -side_[teller];
+    for (const std::uint32_t i : piece_) side_[i] = static_cast<std::int8_t>(front * side_[i]);
+}
+
+// A neighbor that passes their edge in the same direction is wound the other way.
+void EdgeRule::add_neighbors_to_piece(std::uint32_t index) {
+    const NearTriangle& own = triangles_[index];
+    for (std::size_t k = 0; k < 3; ++k) {
+        const glm::dvec3 &from = own.corners[k], &to = own.corners[(k + 1) % 3];
+        for (std::uint32_t c = first_[slot_of(from)]; c != kNoCorner; c = next_[c]) {
+            const NearTriangle& other = triangles_[c / 3];
+            const Triangle& t = other.corners;
+            if (other.surface != own.surface || side_[c / 3] != kUnknownSide || t[c % 3] != from) continue;
+            const bool same_way = t[(c + 1) % 3] == to;
+            if (!same_way && t[(c + 2) % 3] != to) continue;
+            side_[c / 3] = static_cast<std::int8_t>(same_way ? -side_[index] : side_[index]);
+            piece_.push_back(c / 3);
+        }
+    }
 }
 
 }  // namespace crofton::convex

@@ -10,9 +10,8 @@ namespace crofton::convex {
 // A mesh or a height field, alone or within a compound.
 struct NearSurface {
     RigidTransform pose;
-    Sides sides;
+    const Body* body;  // the mesh or the field
     std::uint32_t child;
-    double reach;
 };
 struct NearTriangle {
     Triangle corners;
@@ -20,21 +19,37 @@ struct NearTriangle {
 };
 
 // The rule: a contact's normal belongs to the surface iff no triangle around the vertices on which it stands rises
-// above them. Triangles at a vertex are found by a hash of its place, made when first asked for.
+// above them. Triangles near the body that share a vertex are found by a hash of its place, made when first asked for.
+// A neighbor need not be near the body: where a body dips into a triangle beside one of its edges, the way out may lead
+// across the edge, though the body ends before it. So if no listed neighbor rises, and the point of touch is not within
+// the body's box, the surface is asked for all of them.
 class EdgeRule {
   public:
-    // For these triangles; they stay unchanged until the next call.
-    void start(std::span<const NearTriangle> triangles);
-    // Whether a triangle that shares the vertices of `index` that are farthest along the normal rises above them.
-    [[nodiscard]] bool points_into_neighbor(std::uint32_t index, const RigidTransform& pose, const glm::dvec3& normal);
+    // For these triangles, all that touch the body's box; both stay unchanged until the next call.
+    void start(std::span<const NearTriangle> triangles, const BodyAtPose& body);
+    // Whether a triangle that shares the vertices of `index` that are farthest along the normal rises above them. The
+    // point of touch lies on the triangle, around the surface's origin.
+    [[nodiscard]] bool points_into_neighbor(std::uint32_t index, const NearSurface& surface, const glm::dvec3& normal,
+                                            const glm::dvec3& touch);
+    // Finds the side of a surface on which a point lies, of triangles that are one surface. Of those that are connected
+    // over edges the nearest one tells.
+    void find_sides(std::uint32_t begin, std::uint32_t end, const glm::dvec3& point);
+    // 1: the point lies where the triangle's front is, -1: where its back is, 0: the triangle has no neighbors.
+    [[nodiscard]] int side(std::uint32_t index) const { return side_[index]; }
 
   private:
     void list_corners();
+    [[nodiscard]] bool is_in_box(const glm::dvec3& point) const;
+    void find_side_of_piece(std::uint32_t first, const glm::dvec3& point);
+    void add_neighbors_to_piece(std::uint32_t index);
     [[nodiscard]] std::size_t slot_of(const glm::dvec3& vertex) const;
 
     std::span<const NearTriangle> triangles_;
+    const BodyAtPose* body_ = nullptr;
     bool listed_ = false;
     Vector<std::uint32_t> first_, next_;  // chains of corners: triangle · 3 + corner
+    Vector<std::int8_t> side_;            // by triangle
+    Vector<std::uint32_t> piece_;         // triangles that are connected
 };
 
 // A direction is across an edge, and a neighbour not above a vertex, up to this sine.

@@ -18,6 +18,11 @@ void ManifoldList::clear() {
     points_.clear();
 }
 
+void ManifoldList::rewind(const Mark& mark) {
+    parts_.resize(mark.parts);
+    points_.resize(mark.points);
+}
+
 void ManifoldList::add(const glm::dvec3& normal, std::span<const ContactPoint> points) {
     if (points.empty()) return;
     double depth = points[0].depth;

@@ -10,7 +10,12 @@ class ManifoldList {
     void clear();
     // Points of one part along its normal.
     void add(const glm::dvec3& normal, std::span<const ContactPoint> points);
-    [[nodiscard]] std::size_t point_count() const { return points_.size(); }
+    // For `rewind`, which forgets what has been added since.
+    struct Mark {
+        std::size_t parts, points;
+    };
+    [[nodiscard]] Mark mark() const { return {parts_.size(), points_.size()}; }
+    void rewind(const Mark& mark);
     // Replaces `manifolds`: of each at most `most` points. Parts are taken deepest first. Each joins the manifold whose
     // normal agrees best with its own, within 5 degrees, else it begins a manifold with its normal. So a point's normal
     // is within 5 degrees of its manifold's, which is that of its deepest point, and no two manifolds agree as well.

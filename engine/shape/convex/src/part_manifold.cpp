@@ -35,6 +35,29 @@ Manifolds::~Manifolds() = default;
 Manifolds::Manifolds(Manifolds&&) noexcept = default;
 Manifolds& Manifolds::operator=(Manifolds&&) noexcept = default;
 
+namespace {
+
+// A box around unit vectors.
+class DirectionBox {
+  public:
+    void add(const glm::dvec3& d) {
+        low_ = (glm::min)(low_, d);
+        high_ = (glm::max)(high_, d);
+    }
+    // Whether two vectors of the box may be more than a right angle apart.
+    [[nodiscard]] bool may_oppose() const {
+        double least = 0.0;  // of their product
+        for (int k = 0; k < 3; ++k)
+            least += low_[k] > 0.0 ? low_[k] * low_[k] : high_[k] < 0.0 ? high_[k] * high_[k] : low_[k] * high_[k];
+        return least < 0.0 && low_.x <= high_.x;
+    }
+
+  private:
+    glm::dvec3 low_{2.0}, high_{-2.0};
+};
+
+}  // namespace
+
 class ManifoldFinder {
   public:
     ManifoldFinder(const ManifoldOptions& options, Manifolds& found)
@@ -210,32 +233,54 @@ class ManifoldFinder {
         front_ = placed_triangle(corners, part.pose, part.pose.translation).normal;
     }
 
-    // The contacts of a, which has parts, and b, which is convex; `of_b`: b's part. Where several triangles meet in a
-    // tip, each one's normal may point into the others: then the rule leaves no point, and does not hold.
+    // The contacts of a, which has parts, and b, which is convex; `of_b`: b's part. Across a ridge or a tip each
+    // triangle's normal may point into the others, and the rule leaves no point: then all push along their faces. Where
+    // triangles of two sides push to opposite sides, neighbors decide the side; if that leaves no point, they do not.
     void find(const BodyAtPose& a, const BodyAtPose& b, const PartId& of_b, bool flip) {
-        const std::size_t before = scratch_.list.point_count();
         list_near(a, b, of_b, flip);
-        scratch_.rule.start(scratch_.triangles);
-        const bool left_out = ask_triangles(b, &scratch_.rule, of_b, flip);
-        if (left_out && scratch_.list.point_count() == before) (void)ask_triangles(b, nullptr, of_b, flip);
+        const ManifoldList::Mark before = scratch_.list.mark();
+        scratch_.rule.start(scratch_.triangles, b);
+        const auto has_points = [&] { return scratch_.list.mark().points > before.points; };
+        Answer answer = ask_triangles(b, Push::by_rule, of_b, flip);
+        if (answer.opposite) {
+            scratch_.list.rewind(before);
+            (void)ask_triangles(b, Push::to_one_side, of_b, flip);
+            if (!has_points()) answer = ask_triangles(b, Push::by_rule, of_b, flip);
+        }
+        if (answer.left_out && !has_points()) (void)ask_triangles(b, Push::always, of_b, flip);
     }
 
-    // Whether the rule left out a triangle that the body meets.
-    bool ask_triangles(const BodyAtPose& b, EdgeRule* rule, const PartId& of_b, bool flip) {
-        bool left_out = false;
+    [[nodiscard]] std::uint32_t end_of_surface(std::uint32_t begin) const {
+        const auto& triangles = scratch_.triangles;
+        std::uint32_t end = begin;
+        while (end < triangles.size() && triangles[end].surface == triangles[begin].surface) ++end;
+        return end;
+    }
+    struct Answer {
+        bool left_out = false;  // the rule left out a triangle that the body meets
+        bool opposite = false;  // triangles of two sides may push to opposite sides
+    };
+    Answer ask_triangles(const BodyAtPose& b, Push push, const PartId& of_b, bool flip) {
+        Answer answer;
+        DirectionBox pushed;
         std::uint32_t i = 0;
         const auto count = static_cast<std::uint32_t>(scratch_.triangles.size());
         while (i < count) {
             const std::uint32_t at = scratch_.triangles[i].surface;
             const NearSurface& surface = scratch_.surfaces[at];
             const SurfaceContacts contacts(surface, b, options_.margin);
+            if (push == Push::to_one_side && surface.body->sides() == Sides::both)
+                scratch_.rule.find_sides(i, end_of_surface(i), contacts.middle());
             for (; i < count && scratch_.triangles[i].surface == at; ++i) {
-                contacts.ask(scratch_.triangles[i], i, rule, scratch_.contact);
-                left_out = left_out || scratch_.contact.left_out;
+                contacts.ask(scratch_.triangles[i], i, scratch_.rule, push, scratch_.contact);
+                answer.left_out = answer.left_out || scratch_.contact.left_out;
+                if (scratch_.contact.points.count > 0 && surface.body->sides() == Sides::both)
+                    pushed.add(scratch_.contact.normal);
                 add(scratch_.contact, {surface.child, scratch_.triangles[i].triangle}, of_b, flip);
             }
         }
-        return left_out;
+        answer.opposite = pushed.may_oppose();
+        return answer;
     }
 
     // Lists the triangles that may touch; convex parts are asked at once.
@@ -252,8 +297,7 @@ class ManifoldFinder {
             return false;
         };
         const auto triangle = [&](const PartSearch& of, const Triangle& corners, std::uint32_t index) {
-            if (surfaces.empty() || surfaces.back().child != of.child)
-                surfaces.push_back({of.pose, of.sides, of.child, of.reach});
+            if (surfaces.empty() || surfaces.back().child != of.child) surfaces.push_back({of.pose, of.body, of.child});
             scratch_.triangles.push_back({corners, index, static_cast<std::uint32_t>(surfaces.size() - 1)});
             return false;
         };

@@ -132,7 +132,8 @@ bool parts_meet(const BodyAtPose& a, const BodyAtPose& b) {
     return visit_parts_near(a, b, 0.0, visit, [&](const PartSearch& of, const Triangle& corners, std::uint32_t) {
         const glm::dvec3& origin = of.pose.translation;
         Touch touch;
-        const Warm warm = SegmentTouch(b, origin, of.reach, 0.0).ask(placed_triangle(corners, of.pose, origin), touch);
+        const Warm warm =
+            SegmentTouch(b, origin, of.body->core_radius(), 0.0).ask(placed_triangle(corners, of.pose, origin), touch);
         if (warm != Warm::unknown) return warm == Warm::touching;
         return intersects({BodyMaker::triangle(corners), of.pose}, b);
     });

@@ -184,20 +184,17 @@ bool search_parts(const BodyAtPose& placed, const QueryBox& box, const PartSearc
 }
 
 bool visit_parts(const BodyAtPose& placed, const QueryBox& box, double margin, PartVisitor visit) {
-    return search_parts(placed, box,
-                        {placed.pose, placed.body.sides(), 0, false, margin, visit, placed.body.core_radius()});
+    return search_parts(placed, box, {placed.pose, placed.body.sides(), 0, false, margin, visit, &placed.body});
 }
 
 bool visit_parts(const BodyAtPose& placed, const QueryBox& box, double margin, PartVisitor visit,
                  TriangleVisitor triangles) {
     const Body& body = placed.body;
-    return search_parts(placed, box,
-                        {placed.pose, body.sides(), 0, false, margin, visit, body.core_radius(), &triangles});
+    return search_parts(placed, box, {placed.pose, body.sides(), 0, false, margin, visit, &body, &triangles});
 }
 
 bool visit_nearest_parts(const BodyAtPose& placed, const QueryBox& box, const double& limit, PartVisitor visit) {
-    return search_parts(placed, box,
-                        {placed.pose, placed.body.sides(), 0, true, limit, visit, placed.body.core_radius()});
+    return search_parts(placed, box, {placed.pose, placed.body.sides(), 0, true, limit, visit, &placed.body});
 }
 
 }  // namespace crofton::convex

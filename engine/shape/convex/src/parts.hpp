@@ -47,7 +47,7 @@ struct PartSearch {
     bool nearest_first;   // else in the body's order
     const double& limit;  // distance
     PartVisitor visit;
-    double reach = 0.0;                            // of the surface that is searched
+    const Body* body = nullptr;                    // the surface that is searched
     const TriangleVisitor* on_triangle = nullptr;  // instead of visit
 
     // Calls one of them for a triangle.

@@ -7,6 +7,7 @@
 
 #include "core_query.hpp"
 #include "parallel_edges.hpp"
+#include "part_cast.hpp"
 #include "part_manifold.hpp"
 #include "support.hpp"
 
@@ -38,14 +39,15 @@ double deepest(const GatheredPoints& points) {
 SurfaceContacts::SurfaceContacts(const NearSurface& surface, const BodyAtPose& body, double margin)
     : surface_(surface), body_(body), gathering_{surface.pose.translation, 0.0, body.body.radius(), margin} {
     const glm::dvec3& origin = surface.pose.translation;
-    size_ = surface.reach + body.body.core_radius() + glm::length(body.pose.translation - origin);
+    size_ = surface.body->core_radius() + body.body.core_radius() + glm::length(body.pose.translation - origin);
     middle_ = middle_of(body, origin);
-    if (body.body.kind() == Kind::box) box_.emplace(body, origin, surface.reach, margin);
+    if (body.body.kind() == Kind::box) box_.emplace(body, origin, surface.body->core_radius(), margin);
     const bool round = body.body.kind() == Kind::sphere || body.body.kind() == Kind::capsule;
-    if (round) segment_.emplace(body, origin, surface.reach, margin);
+    if (round) segment_.emplace(body, origin, surface.body->core_radius(), margin);
 }
 
-void SurfaceContacts::ask(const NearTriangle& near, std::uint32_t index, EdgeRule* rule, Contact& contact) const {
+void SurfaceContacts::ask(const NearTriangle& near, std::uint32_t index, EdgeRule& rule, Push push,
+                          Contact& contact) const {
     contact.points.count = 0;
     contact.left_out = false;
     PlacedTriangle t = placed_corners(near.corners, surface_.pose, surface_.pose.translation);
@@ -65,20 +67,29 @@ void SurfaceContacts::ask(const NearTriangle& near, std::uint32_t index, EdgeRul
     }
     const glm::dvec3 normal = found == Found::points ? contact.normal : touch.normal;
     const double along = glm::dot(normal, t.normal);
-    const bool front_only = surface_.sides == Sides::front;
-    if (front_only && along <= 0.0 && !is_in_front(t, body_.body, middle_)) {
+    // 1: pushes to the front alone, -1: to the back alone.
+    const int only = surface_.body->sides() == Sides::front ? 1 : push == Push::to_one_side ? rule.side(index) : 0;
+    const bool in_front = is_in_front(t, body_.body, middle_);
+    const bool allowed = only == 0 || only * along > 0.0;
+    if (!allowed && in_front != (only > 0)) {
         contact.points.count = 0;
         return;
     }
-    const bool allowed = !front_only || along > 0.0;
     const bool across_face = std::abs(along) >= 1.0 - 0.5 * kFlatSine * kFlatSine;
-    if (allowed && (across_face || rule == nullptr || !rule->points_into_neighbor(index, surface_.pose, normal))) {
+    const bool has_face = t.normal != glm::dvec3(0.0);
+    if (allowed && (across_face || (push == Push::always && (!has_face || is_half_space(body_))) ||
+                    !rule.points_into_neighbor(index, surface_, normal, touch.on_a))) {
         if (found == Found::touch) gather(t, triangle ? &*triangle : nullptr, touch, contact);
         return;
     }
     const bool meets = found == Found::points ? deepest(contact.points) >= 0.0 : touch.depth >= 0.0;
     contact.points.count = 0;
-    if (t.normal != glm::dvec3(0.0)) gather_along_face(t, front_only || is_in_front(t, body_.body, middle_), contact);
+    if (has_face) {
+        const bool front = only == 0 ? in_front : only > 0;
+        gather_along_face(t, front, contact);
+        const bool none = contact.points.count == 0;
+        if (none && meets && push == Push::always) add_deepest_above(near, t, front, contact);
+    }
     contact.left_out = allowed && meets && contact.points.count == 0;
 }
 
@@ -160,6 +171,25 @@ void SurfaceContacts::gather_along_face(const PlacedTriangle& t, bool front, Con
     const Support lowest = core_support(body_.body, Pair::local(body_.pose.rotation, -touch.normal));
     const glm::dvec3 point = body_.pose.rotation * lowest.point + (body_.pose.translation - gathering_.origin);
     add_support(on_triangle, touch.normal, point, lowest.vertex, true, gatherer);
+}
+
+// Of a body that meets the triangle: where the body leaves it last when it moves along the face's normal. It is found
+// by the way back, from where the body is certainly beyond the face.
+void SurfaceContacts::add_deepest_above(const NearTriangle& near, const PlacedTriangle& t, bool front,
+                                        Contact& contact) const {
+    const glm::dvec3 normal = front ? t.normal : -t.normal;
+    const double way = 2.5 * (body_.body.core_radius() + body_.body.radius());
+    const Body triangle = BodyMaker::triangle(near.corners);
+    const RigidTransform above{body_.pose.rotation, body_.pose.translation + way * normal};
+    const Impact back = advance({triangle, surface_.pose}, {}, {body_.body, above}, {.velocity = -way * normal},
+                                {.tolerance = 1e-9 * size_}, 0.0, nullptr);
+    if (back.result == CastResult::miss) return;
+    const double depth = way * (1.0 - back.time);
+    Patch on_body;
+    patch_along(body_, -normal, gathering_.origin, on_body);
+    contact.normal = normal;
+    contact.points.count = 1;
+    contact.points.point[0] = {back.on_a - 0.5 * depth * normal, depth, {FeatureKind::face, 0}, on_body.self, {}, {}};
 }
 
 }  // namespace crofton::convex

@@ -9,6 +9,12 @@
 
 namespace crofton::convex {
 
+// Where a triangle pushes a body. By the rule: along the least deep direction, unless the rule for inner edges forbids
+// it; then along its face what lies above it. To one side: a triangle of two sides does so as if it had only the side
+// on which the body's middle is of the surface. Always: what merely meets it, too, is pushed
+// along its face.
+enum class Push : std::uint8_t { by_rule, to_one_side, always };
+
 // One surface and one convex body, asked triangle by triangle.
 class SurfaceContacts {
   public:
@@ -21,8 +27,11 @@ class SurfaceContacts {
         GatheredPoints points;
         bool left_out;
     };
-    // Without a rule: as if the triangle had no neighbours.
-    void ask(const NearTriangle& triangle, std::uint32_t index, EdgeRule* rule, Contact& contact) const;
+    // Push::to_one_side: where the rule has found the sides of the body's middle.
+    void ask(const NearTriangle& triangle, std::uint32_t index, EdgeRule& rule, Push push, Contact& contact) const;
+
+    // Of the body, in the surface's frame.
+    [[nodiscard]] glm::dvec3 middle() const { return Pair::local(surface_.pose.rotation, middle_); }
 
   private:
     // How the two touch along the least deep direction; false: they do not. Points that come with it go to `contact`.
@@ -33,6 +42,7 @@ class SurfaceContacts {
                               Patch& on_body) const;
     void gather(const PlacedTriangle& t, const Body* triangle, Touch& touch, Contact& contact) const;
     void gather_along_face(const PlacedTriangle& t, bool front, Contact& contact) const;
+    void add_deepest_above(const NearTriangle& near, const PlacedTriangle& t, bool front, Contact& contact) const;
 
     const NearSurface& surface_;
     const BodyAtPose& body_;

@@ -211,9 +211,10 @@ class Manifolds {
 //
 // On the edges and vertices of a surface the internal-edge rule holds: if a contact's normal would point into the
 // neighbouring surface, the triangle pushes along its face's normal. A body that slides over a floor of many triangles
-// therefore touches only the floor. The rule is not applied if it would leave a body that overlaps the surface without
-// any point. Between triangles of two surfaces the second surface's rule holds. Triangles of a body are neighbours if
-// they share vertices of equal position.
+// therefore touches only the floor. If this leaves a body that overlaps the surface without any point, each triangle
+// that it meets pushes along its face's normal, by as much as the body reaches below the triangle. Between triangles of
+// two surfaces the second surface's rule holds. Triangles of a body are neighbours if they share vertices of equal
+// position.
 //
 // Convex children of compounds that overlap or are flush, within 2^-22 of their size, touch as their union does: a
 // contact that its neighbours cover is replaced by one that separates the pair as well, or by the least deep face that
@@ -221,7 +222,12 @@ class Manifolds {
 // Deep within the parts, or if there is no other contact, the contact stays.
 //
 // Surfaces with Sides::front push to the front, and push only bodies whose center is there (the center of mass for
-// hulls; otherwise the middle of the bounds). The cache serves two convex bodies.
+// hulls; otherwise the middle of the bounds). A triangle with Sides::both pushes the shorter way out, so a thin body
+// that has sunk into it by more than half comes out on the other side. If triangles of such a surface would push a body
+// in directions more than a right angle apart, its center decides: all triangles that are connected over edges push to
+// the side of the surface where the triangle nearest to the center sees it. Winding does not matter.
+//
+// The cache serves two convex bodies.
 void contact_manifolds(const BodyAtPose& a, const BodyAtPose& b, const ManifoldOptions& options, Manifolds& found,
                        PairCache* cache = nullptr);
 
