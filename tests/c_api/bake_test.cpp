@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <unistd.h>
 
+#include <algorithm>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 
@@ -71,6 +73,38 @@ TEST_SUITE("capi/bake") {
         CHECK(baked == nullptr);
         CHECK(tree == nullptr);
         CHECK(crofton_baked_scene_destroy(nullptr) == CROFTON_BAD_HANDLE);
+    }
+
+    TEST_CASE("clusters of a baked mesh are those of the mesh cut anew, and outlive the scene") {
+        const Scene scene = row(3);
+        const TemporaryFile file;
+        REQUIRE(crofton_scene_bake(scene.get(), file.path.c_str(), nullptr) == CROFTON_OK);
+        crofton_baked_scene* opened = nullptr;
+        crofton_tree* opened_tree = nullptr;
+        REQUIRE(crofton_baked_scene_open(file.path.c_str(), nullptr, &opened, &opened_tree) == CROFTON_OK);
+        const Tree tree(opened_tree);
+        BakedScene baked(opened);
+        crofton_clustered_mesh* handle = nullptr;
+        CHECK(crofton_baked_scene_clusters(nullptr, 0, &handle) == CROFTON_BAD_HANDLE);
+        CHECK(crofton_baked_scene_clusters(baked.get(), 0, nullptr) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_baked_scene_clusters(baked.get(), 1, &handle) == CROFTON_OUT_OF_RANGE);
+        REQUIRE(crofton_baked_scene_clusters(baked.get(), 0, &handle) == CROFTON_OK);
+        const ClusteredMesh stored(handle);
+        auto mesh = sized<crofton_baked_mesh>();
+        REQUIRE(crofton_baked_scene_mesh(baked.get(), 0, &mesh) == CROFTON_OK);
+        CHECK(mesh.one_sided + mesh.flat + mesh.unlit == 0);
+        baked = BakedScene();
+        const Tetrahedron tetrahedron;
+        const crofton_mesh data = tetrahedron.mesh();
+        REQUIRE(crofton_clustered_mesh_create(&data, 0, &handle) == CROFTON_OK);
+        const ClusteredMesh cut(handle);
+        crofton_clusters a{}, b{};
+        REQUIRE(crofton_clustered_mesh_get(stored.get(), &a) == CROFTON_OK);
+        REQUIRE(crofton_clustered_mesh_get(cut.get(), &b) == CROFTON_OK);
+        REQUIRE(a.cluster_count == b.cluster_count);
+        REQUIRE(a.triangle_count == b.triangle_count);
+        CHECK(std::memcmp(a.clusters, b.clusters, a.cluster_count * sizeof *a.clusters) == 0);
+        CHECK(std::equal(a.triangle_order, a.triangle_order + a.triangle_count, b.triangle_order));
     }
 
     TEST_CASE("a baked scene comes back: meshes, instances, nodes, and a tree that sees what a fresh one sees") {

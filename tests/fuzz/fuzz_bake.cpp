@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Baked scenes whose checksums are right, whatever they hold: an adversary would have made them so, too.
 #include <crofton/bake/baked_scene.hpp>
+#include <crofton/depth/depth_culler.hpp>
 #include <cstring>
 
 #include "mend_checksums.hpp"
@@ -23,6 +24,13 @@ void read_all(const bake::BakedScene& scene) {
         read(mesh.colors);
         for (const std::uint32_t i : mesh.indices)
             if (i >= mesh.positions.size()) std::abort();
+        if (const depth::ClusteredMesh* const cut = scene.clusters(m)) {
+            Vector<std::uint32_t> permuted(mesh.indices.size());
+            cut->permute(mesh.indices, permuted);
+            const depth::DepthObject object{cut, glm::mat4(0.01f)};
+            depth::DepthCuller culler;
+            if (!culler.find_visible(std::span(&object, 1), {.width = 16, .height = 16})) std::abort();
+        }
         if (const auto polygon = scene.polygon(m)) {
             read(polygon->points);
             for (const std::uint32_t end : polygon->ring_ends)

@@ -52,9 +52,9 @@ CROFTON_FUZZ(in) {
     const auto orientation = static_cast<boxtree::Orientation>(in.below(3));
     for (int step = 0; step < 40 && in.more(); ++step) living.change(in);
     living.settle();
-    auto file = bake::bake(living.scene, serial_executor(), orientation);
+    auto file = bake::bake(living.scene, serial_executor(), {.tree = orientation});
     demand(file.has_value(), "bake");
-    const auto again = bake::bake(living.scene, serial_executor(), orientation);
+    const auto again = bake::bake(living.scene, serial_executor(), {.tree = orientation});
     demand(again.has_value() && same_bytes<std::byte>(*file, *again), "baking is deterministic");
     {
         const auto baked = bake::BakedScene::from_memory(*file);

@@ -9,18 +9,13 @@
 #include <functional>
 
 #include <crofton/capi/call.hpp>
+#include <crofton/capi/clustered_mesh.hpp>
 #include <crofton/capi/growing.hpp>
 #include <crofton/capi/requests.hpp>
 #include "clusters.hpp"
 
 using namespace crofton;
 using namespace crofton::capi;
-
-struct crofton_clustered_mesh {
-    static constexpr std::uint32_t kKind = 0x43724f0d;
-    Header header;
-    depth::ClusteredMesh mesh;
-};
 
 struct crofton_depth_culler {
     static constexpr std::uint32_t kKind = 0x43724f0e;

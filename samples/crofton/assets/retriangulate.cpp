@@ -94,6 +94,7 @@ Result<void> retriangulate(SceneSource& source, const LoadOptions& options, tria
     if (!made) return tl::unexpected(std::move(made.error()));
     source.scene = std::move(*made);
     source.emission.clear();
+    source.clusters.clear();
     return {};
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <crofton/core/error.hpp>
+#include <crofton/depth/clustered_mesh.hpp>
 #include <crofton/measure/measure.hpp>
 #include <crofton/scene/scene.hpp>
 #include <cstdint>
@@ -49,7 +50,9 @@ struct SceneSource {
     // By mesh, one radiosity per triangle: what its faces give off; nothing where a mesh is beyond the end or empty.
     std::vector<std::vector<glm::vec3>> emission = {};
     std::vector<Room> rooms = {};  // of a level
-    bool in_metres = true;         // false: the file's format does not say what its lengths are
+    // By mesh, where the meshes were cut when the scene was baked. Empty: not cut.
+    std::vector<depth::ClusteredMesh> clusters = {};
+    bool in_metres = true;  // false: the file's format does not say what its lengths are
 
     // Sets the transforms of frame `frame`, at 60 frames a second; the same for the same frame. update() is the
     // caller's.

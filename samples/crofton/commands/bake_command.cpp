@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 
+#include "assets/baked_source.hpp"
 #include "assets/scene_source.hpp"
 #include "commands.hpp"
 #include "json/json.hpp"
@@ -29,7 +30,7 @@ struct BakeOptions {
     std::uint32_t instances = 0;
     std::uint64_t seed = 1;
     unsigned threads = 1;
-    bool no_occluders = false;
+    bool no_occluders = false, no_clusters = false;
     ReadOptions read;
 };
 
@@ -46,6 +47,20 @@ std::uint64_t occluder_count(const bake::BakedScene& baked) {
     return count;
 }
 
+struct ClusterFigures {
+    std::uint64_t count = 0, bytes = 0;
+};
+
+ClusterFigures cluster_figures(const bake::BakedScene& baked) {
+    ClusterFigures figures;
+    for (scene::MeshId i = 0; i < baked.mesh_count(); ++i)
+        if (const depth::ClusteredMesh* const cut = baked.clusters(i)) {
+            figures.count += cut->clusters().size();
+            figures.bytes += cut->serialise().size();
+        }
+    return figures;
+}
+
 int show(const BakeOptions& options, const char* verb, const Times& times, const std::string& path,
          const bake::BakedScene& baked, std::uintmax_t bytes) {
     std::uint64_t triangles = 0, polygons = 0;
@@ -53,16 +68,18 @@ int show(const BakeOptions& options, const char* verb, const Times& times, const
         triangles += baked.mesh(i).indices.size() / 3;
         polygons += baked.polygon(i) ? 1 : 0;
     }
+    const ClusterFigures clusters = cluster_figures(baked);
     if (options.json != "-") {
         std::printf(
             "%s: %s in %.1f ms (%.1f ms of CPU); %zu instances of %zu meshes (%llu triangles, %llu triangulated "
             "polygons), %zu nodes, "
-            "a tree of height %u, %llu occluders on %zu nodes, %.1f MB",
+            "a tree of height %u, %llu occluders on %zu nodes, %llu clusters (%.1f MB), %.1f MB in all",
             path.c_str(), verb, times.milliseconds, times.cpu_milliseconds, baked.instances().size(),
             baked.mesh_count(), static_cast<unsigned long long>(triangles), static_cast<unsigned long long>(polygons),
             baked.nodes().size(), baked.tree().structure().height(),
             static_cast<unsigned long long>(occluder_count(baked)),
-            baked.occluders() ? baked.occluders()->nodes.size() : 0, static_cast<double>(bytes) / 1e6);
+            baked.occluders() ? baked.occluders()->nodes.size() : 0, static_cast<unsigned long long>(clusters.count),
+            static_cast<double>(clusters.bytes) / 1e6, static_cast<double>(bytes) / 1e6);
         if (times.occluder_milliseconds > 0.0)
             std::printf("; before that the occluders were found in %.1f ms", times.occluder_milliseconds);
         std::printf("\n");
@@ -79,6 +96,8 @@ int show(const BakeOptions& options, const char* verb, const Times& times, const
                                                    {"polygons", polygons},
                                                    {"nodes", baked.nodes().size()},
                                                    {"occluders", occluder_count(baked)},
+                                                   {"clusters", clusters.count},
+                                                   {"cluster_bytes", clusters.bytes},
                                                    {"occluder_milliseconds", times.occluder_milliseconds},
                                                    {"tree_height", baked.tree().structure().height()}});
     return written ? kSuccess : report_error("", written.error());
@@ -127,7 +146,9 @@ class BakeRun {
             finding_ms = finding.milliseconds();
         }
         const Stopwatch watch;
-        const auto file = bake::bake(source->scene, executor(), *tree, occluders ? &*occluders : nullptr);
+        const auto file = assets::bake_source(
+            *source, executor(),
+            {.tree = *tree, .occluders = occluders ? &*occluders : nullptr, .clusters = !options_.no_clusters});
         const Times times{watch.milliseconds(), watch.cpu_milliseconds(), finding_ms};
         if (!file) return report_error(options_.scene, file.error());
         const std::string_view bytes(reinterpret_cast<const char*>(file->data()), file->size());
@@ -148,7 +169,7 @@ class BakeRun {
 void add_bake_command(CommandLine& line) {
     auto options = std::make_shared<BakeOptions>();
     Command command =
-        line.command("bake", "Write a scene's boxes, tree, triangulations and occluders to a .crofton file");
+        line.command("bake", "Write a scene's boxes, tree, triangulations, clusters and occluders to a .crofton file");
     command
         .option("scene", options->scene,
                 "town, room, office, valley, hall, a folder of city parts, or a .glb, .gltf, .obj or .wad file to bake "
@@ -165,12 +186,17 @@ void add_bake_command(CommandLine& line) {
         .flag("--no-occluders", options->no_occluders,
               "Do not search for occluders, which takes a second or more for each mesh of 100,000 triangles")
         .needs(output);
+    command
+        .flag("--no-clusters", options->no_clusters,
+              "Do not cut meshes into clusters, which 'frames --occlude' then does whenever the file is opened")
+        .needs(output);
     command.option("--threads", options->threads, "Worker threads; 0: one per core")
         .whole_between(0, 256)
         .show_default();
     command.option("--json", options->json, "Write the figures as JSON; - for stdout").writable_file_or_stdout();
     command.footer(
-        "A .crofton file contains the whole scene; every sub-command that reads scenes reads it too.\n"
+        "A .crofton file contains the whole scene, as it stands when it has been read: the town's traffic does not\n"
+        "move. Every sub-command that reads scenes reads it too.\n"
         "Exit status: 0 done, 2 bad usage, a scene that cannot be read or a damaged .crofton file, 130 interrupted\n"
         "(nothing is written then).\n"
         "\n"

@@ -88,6 +88,7 @@ Result<measure::Criterion> parse_criterion(const std::string& text, const ReadOp
         if (v.empty()) return bad(text, "weights are three numbers, of volume, area and mean curvature");
         criterion = measure::Criterion{v[0], v[1], v[2]};
     } else if (name == "partner") {
+        if (rest.empty()) return bad(text, "a partner needs a mesh file: partner:FILE");
         criterion = partner(rest, options);
     }
     if (!criterion)

@@ -149,6 +149,7 @@ class FramesRun {
         path_ = std::move(*path);
         pipeline_options_ = {*bounds, *mode, true};
         pipeline_options_.one_sided = source_->one_sided;
+        pipeline_options_.clusters = pipeline::take_clusters(*source_);
         if (auto set = set_occlusion(*size); !set) return set;
         pipeline_options_.tree = *tree;
         if (trace_) pipeline_options_.trace = trace_->hooks();

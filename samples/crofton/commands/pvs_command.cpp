@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 #include <optional>
 
+#include "assets/baked_source.hpp"
 #include "commands.hpp"
 #include "interrupt.hpp"
 #include "pipeline/pvs_scene.hpp"
@@ -153,7 +154,7 @@ Result<void> write_outputs(const Job& job, const pvs::Pvs& sets, Executor& execu
     if (!options.out.empty()) {
         Vector<std::byte> scene_file;
         if (options.with_scene) {
-            auto baked = bake::bake(job.source.scene, executor);
+            auto baked = assets::bake_source(job.source, executor);
             if (!baked) return tl::unexpected(baked.error());
             scene_file = std::move(*baked);
         }

@@ -160,6 +160,8 @@ struct Pipeline::State {
 
     Result<void> add_clusters() {
         if (!options.picture || clusters) return {};
+        clusters = options.clusters;
+        if (clusters) return {};
         auto cut = cut_scene(scene, executor);
         if (!cut) return tl::unexpected(cut.error());
         clusters = std::make_shared<const SceneClusters>(std::move(*cut));

@@ -34,9 +34,10 @@ struct PipelineOptions {
     // first set, and kept.
     std::optional<OcclusionOptions> occlusion = {};
     // In place of `occlusion`: asks which triangles this picture needs, by the depth of those found before. Meshes are
-    // cut into clusters when this is first set, and kept.
+    // cut into clusters when this is first set, unless they are given, and kept.
     std::optional<depth::PictureView> picture = {};
-    std::span<const std::uint8_t> one_sided = {};  // by mesh, as DrawList::Looks; must live as long
+    std::shared_ptr<const SceneClusters> clusters = {};  // of this scene; nullptr: not known
+    std::span<const std::uint8_t> one_sided = {};        // by mesh, as DrawList::Looks; must live as long
     boxtree::Orientation tree = boxtree::Orientation::aligned;
     TraceHooks trace = {};
 };

@@ -3,6 +3,7 @@
 
 #include <crofton/render/clip_space.hpp>
 #include <glm/matrix.hpp>
+#include <utility>
 
 namespace crofton::pipeline {
 
@@ -10,6 +11,11 @@ std::size_t SceneClusters::memory() const {
     std::size_t sum = 0;
     for (const depth::ClusteredMesh& mesh : meshes) sum += mesh.memory();
     return sum;
+}
+
+std::shared_ptr<const SceneClusters> take_clusters(assets::SceneSource& source) {
+    if (source.clusters.empty()) return nullptr;
+    return std::make_shared<const SceneClusters>(SceneClusters{std::exchange(source.clusters, {})});
 }
 
 Result<SceneClusters> cut_scene(const scene::Scene& scene, Executor& executor) {

@@ -5,8 +5,11 @@
 #include <crofton/depth/depth_culler.hpp>
 #include <crofton/scene/scene.hpp>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
+
+#include "assets/scene_source.hpp"
 
 namespace crofton::pipeline {
 
@@ -16,6 +19,9 @@ struct SceneClusters {
     // Bytes that the clusters hold.
     [[nodiscard]] std::size_t memory() const;
 };
+
+// Those of the source's file, which the source then has no longer; nullptr where it had none.
+[[nodiscard]] std::shared_ptr<const SceneClusters> take_clusters(assets::SceneSource& source);
 
 // Errors: as ClusteredMesh::cut(), with the mesh's number as the item.
 [[nodiscard]] Result<SceneClusters> cut_scene(const scene::Scene& scene, Executor& executor);

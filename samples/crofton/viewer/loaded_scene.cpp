@@ -70,6 +70,7 @@ Result<std::unique_ptr<LoadedScene>> LoadedScene::load(const SceneRequest& reque
             return tl::unexpected(std::move(cut.error()));
     std::unique_ptr<LoadedScene> loaded(new LoadedScene(std::move(*source)));
     loaded->source_.scene.update();
+    loaded->clusters_ = pipeline::take_clusters(loaded->source_);
     const scene::Scene& scene = loaded->source_.scene;
     for (scene::InstanceId i = 0; i < scene.instance_count(); ++i) {
         if (scene.is_removed(i)) continue;

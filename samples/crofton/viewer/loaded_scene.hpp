@@ -48,6 +48,8 @@ class LoadedScene {
     [[nodiscard]] const Occlusion* occlusion() const { return method_.occlude ? &occlusion_ : nullptr; }
     // Potentially visible sets that were baked of the scene; nullptr: none.
     [[nodiscard]] const pvs::Pvs* pvs() const { return baked_.pvs.get(); }
+    // Clusters of the meshes that the scene's file had; nullptr: none.
+    [[nodiscard]] std::shared_ptr<const pipeline::SceneClusters> clusters() const { return clusters_; }
     [[nodiscard]] InstanceBodies& bodies() { return *bodies_; }
 
     [[nodiscard]] const assets::SceneSource& source() const { return source_; }
@@ -66,6 +68,7 @@ class LoadedScene {
     std::optional<pipeline::Pipeline> pipeline_;
     std::optional<InstanceBodies> bodies_;
     pipeline::BakedParts baked_;
+    std::shared_ptr<const pipeline::SceneClusters> clusters_;
     Occlusion occlusion_;
     Method method_;
     pipeline::PipelineOptions options_;

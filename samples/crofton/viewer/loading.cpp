@@ -150,9 +150,12 @@ void Session::list_geometry() {
 
 Result<void> Session::cut_clusters() {
     if (settings_.coloring != Coloring::clusters || clusters_) return {};
-    auto cut = pipeline::cut_scene(loaded_->scene(), serial_executor());
-    if (!cut) return lasting(tl::unexpected(std::move(cut.error())));
-    clusters_ = std::make_shared<const pipeline::SceneClusters>(std::move(*cut));
+    clusters_ = loaded_->clusters();
+    if (!clusters_) {
+        auto cut = pipeline::cut_scene(loaded_->scene(), serial_executor());
+        if (!cut) return lasting(tl::unexpected(std::move(cut.error())));
+        clusters_ = std::make_shared<const pipeline::SceneClusters>(std::move(*cut));
+    }
     list_geometry();
     stale_geometry_ = true;
     return {};

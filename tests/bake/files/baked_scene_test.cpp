@@ -146,6 +146,51 @@ TEST_SUITE("bake/baked_scene") {
         check_same(scene, *opened);
     }
 
+    TEST_CASE("looks and clusters of meshes are in the file, and a file without them says so") {
+        const scene::Scene scene = sample_scene(10);
+        const MeshLook looks[] = {{.one_sided = true, .unlit = true}, {.flat = true}};
+        ThreadPool pool(2);
+        const auto file = bake::bake(scene, pool, {.looks = looks});
+        REQUIRE(file);
+        const auto baked = BakedScene::from_memory(*file);
+        REQUIRE(baked);
+        check_same(scene, *baked);
+        for (scene::MeshId i = 0; i < 2; ++i) {
+            CHECK(baked->mesh(i).look == looks[i]);
+            const auto cut = depth::ClusteredMesh::cut(scene.mesh(i).positions, scene.mesh(i).indices);
+            REQUIRE(baked->clusters(i) != nullptr);
+            CHECK(baked->clusters(i)->serialise() == cut->serialise());
+        }
+        const auto plain = bake::bake(scene, serial_executor(), {.looks = std::span(looks, 1), .clusters = false});
+        REQUIRE(plain);
+        const auto without = BakedScene::from_memory(*plain);
+        REQUIRE(without);
+        CHECK(without->mesh(0).look == looks[0]);
+        CHECK(without->mesh(1).look == MeshLook{});
+        CHECK(without->clusters(0) == nullptr);
+        const std::array<MeshLook, 3> too_many{};
+        CHECK(error_of(bake::bake(scene, pool, {.looks = too_many})).code == ErrorCode::invalid_argument);
+    }
+
+    TEST_CASE("a mesh that cannot be cut is baked without clusters, beside others that have them") {
+        scene::Scene scene;
+        for (const float size : {1.0f, 1e16f, 2.0f}) {
+            TriangleMesh mesh;
+            mesh.positions = {{0, 0, 0}, {size, 0, 0}, {0, size, 0}};
+            mesh.indices = {0, 1, 2};
+            REQUIRE(scene.add_mesh(mesh, ""));
+        }
+        scene.update();
+        const auto file = bake::bake(scene);
+        REQUIRE(file);
+        const auto baked = BakedScene::from_memory(*file);
+        REQUIRE(baked);
+        CHECK(baked->clusters(0) != nullptr);
+        CHECK(baked->clusters(1) == nullptr);
+        REQUIRE(baked->clusters(2) != nullptr);
+        CHECK(baked->clusters(2)->bound().half_edges[0].x + baked->clusters(2)->bound().center.x >= 2.0f);
+    }
+
     TEST_CASE("the same scene gives the same bytes, with any number of threads") {
         ThreadPool pool(3);
         CHECK(*bake::bake(sample_scene(300)) == *bake::bake(sample_scene(300), pool));

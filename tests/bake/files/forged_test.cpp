@@ -83,7 +83,7 @@ Vector<std::byte> with_occluders(const BakedOccluders& occluders) {
     REQUIRE(scene.add_node(scene::kNone, {}, ~0u));
     REQUIRE(scene.add_node(scene::kNone, {}, ~0u));
     scene.update();
-    auto file = bake::bake(scene, serial_executor(), boxtree::Orientation::aligned, &occluders);
+    auto file = bake::bake(scene, serial_executor(), {.occluders = &occluders});
     REQUIRE(file);
     return std::move(*file);
 }
@@ -284,17 +284,52 @@ TEST_SUITE("bake/forged") {
         REQUIRE(scene.add_node(scene::kNone, {}, ~0u));
         REQUIRE(scene.add_node(scene::kNone, {}, ~0u));
         scene.update();
-        const auto refused = bake::bake(scene, serial_executor(), boxtree::Orientation::aligned, &twice);
+        const auto refused = bake::bake(scene, serial_executor(), {.occluders = &twice});
         REQUIRE_FALSE(refused);
         CHECK(error_of(refused).message.find("ascend") != std::string::npos);
         CHECK(error_of(refused).item == 1);
     }
 
+    TEST_CASE("clusters of another mesh or out of their place, and looks that are not known, are refused by mesh") {
+        scene::Scene scene;
+        TriangleMesh mesh;
+        mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
+        mesh.indices = {0, 1, 2};
+        REQUIRE(scene.add_mesh(mesh, "one triangle"));
+        mesh.indices = {0, 1, 2, 2, 1, 3};
+        REQUIRE(scene.add_mesh(mesh, "two triangles"));
+        scene.update();
+        const MeshLook looks[] = {{.one_sided = true}, {}};
+        const Vector<std::byte> file = *bake::bake(scene, serial_executor(), {.looks = looks});
+        const std::size_t first = BakedScene::from_memory(file)->clusters(0)->serialise().size() / 4;
+        const auto end = [&](std::size_t at, std::uint64_t value) {
+            return with_element<std::uint64_t>(file, "cluends", at, [&](std::uint64_t& e) { e = value; });
+        };
+        check_scene_refused(end(0, ~std::uint64_t{0}), "'cluends' does not ascend");
+        check_scene_refused(end(0, first - 1), "mesh 0");
+        check_scene_refused(end(0, 0), "mesh 1");
+        check_scene_refused(end(1, first), "does not end where");
+        const auto word = [&](std::size_t at, std::uint32_t value) {
+            return with_element<std::uint32_t>(file, "clusters", at, [&](std::uint32_t& w) { w = value; });
+        };
+        check_scene_refused(word(0, 2), "mesh 0: clusters: the bytes are not as many");
+        check_scene_refused(word(first + 1, 1), "mesh 1: clusters");
+        check_scene_refused(with_element<MeshRecord>(file, "meshes", 1, [](MeshRecord& m) { m.index_count = 3; }),
+                            "mesh 1 has another number of triangles");
+        check_scene_refused(with_element<std::uint8_t>(file, "looks", 1, [](std::uint8_t& bits) { bits = 8; }),
+                            "look that is not known");
+        const auto fewer = with_table(file, [&](const Header& header, Section* sections) {
+            for (Section& section : std::span(sections, header.section_count))
+                if (std::string_view(section.name, 5) == "looks") section.size = 1;
+        });
+        check_scene_refused(fewer, "not one for each mesh");
+    }
+
     TEST_CASE("a section that is missing or of other elements is refused by its name, occluders' too") {
         const Vector<std::byte> file = with_occluders(three_kinds());
-        const std::array<std::string, 16> names{"meshes",   "position", "colors",   "indices", "names", "polygons",
-                                                "points",   "rings",    "instance", "nodes",   "tree",  "occluder",
-                                                "occkinds", "occnodes", "occpoint", "occindex"};
+        const std::array<std::string, 18> names{"meshes",   "position", "colors",   "indices",  "names",    "polygons",
+                                                "points",   "rings",    "instance", "nodes",    "tree",     "occluder",
+                                                "occkinds", "occnodes", "occpoint", "occindex", "clusters", "cluends"};
         const auto with_section = [&](const std::string& name, auto change) {
             bool found = false;
             auto changed = with_table(file, [&](const Header& header, Section* sections) {
@@ -316,7 +351,7 @@ TEST_SUITE("bake/forged") {
             });
             check_scene_refused(other_elements, name);
             const auto missing = with_section(name, [](Section& s) { s.name[0] = 'X'; });
-            if (name == "occluder")  // no occluders at all
+            if (name == "occluder" || name == "clusters")  // none at all
                 CHECK(BakedScene::from_memory(missing).has_value());
             else
                 check_scene_refused(missing, name);
@@ -345,7 +380,7 @@ TEST_SUITE("bake/forged") {
         REQUIRE(scene.add_node(scene::kNone, {}, ~0u));
         REQUIRE(scene.add_node(scene::kNone, {}, ~0u));
         scene.update();
-        const auto refused = bake::bake(scene, serial_executor(), boxtree::Orientation::aligned, &occluders);
+        const auto refused = bake::bake(scene, serial_executor(), {.occluders = &occluders});
         REQUIRE_FALSE(refused);
         CHECK(error_of(refused).message.find("no mesh") != std::string::npos);
         CHECK(error_of(refused).item == 1);

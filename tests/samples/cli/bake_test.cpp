@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
 
 #include "run_cli.hpp"
@@ -27,7 +29,8 @@ TEST_SUITE("cli/bake") {
         REQUIRE(baked.status == 0);
         const CliRun loaded = run_cli("bake " + path + " --json -");
         REQUIRE(loaded.status == 0);
-        for (const char* key : {"bytes", "instances", "meshes", "triangles", "polygons", "nodes", "tree_height"})
+        for (const char* key : {"bytes", "instances", "meshes", "triangles", "polygons", "nodes", "tree_height",
+                                "clusters", "cluster_bytes"})
             CHECK(loaded.json()[key] == baked.json()[key]);
         CHECK(loaded.json()["instances"].get<int>() > 300);
         CHECK(std::filesystem::file_size(path) == loaded.json()["bytes"].get<std::size_t>());
@@ -79,6 +82,75 @@ TEST_SUITE("cli/bake") {
         const CliRun none = run_cli("frames --no-draw " + sets);
         CHECK(none.status == 2);
         CHECK_MESSAGE(none.err.find("--with-scene") != std::string::npos, none.err);
+    }
+
+    TEST_CASE("a baked glTF gives the pictures of the glTF: flat faces, back faces and light of its own are kept") {
+        // Two crossed triangles without normals, one of them seen from its front alone, and an unlit one.
+        const std::string triangle = "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAABAAIAAAA=";
+        write_contents(scratch().file("looks.gltf"),
+                       R"({"asset":{"version":"2.0"},"extensionsUsed":["KHR_materials_unlit"],"scene":0,
+            "scenes":[{"nodes":[0,1,2]}],"nodes":[{"mesh":0},{"mesh":1,"translation":[1.5,0,0]},
+            {"mesh":2,"translation":[0,1.5,0]}],"materials":[{"doubleSided":true},
+            {"doubleSided":true,"extensions":{"KHR_materials_unlit":{}},"pbrMetallicRoughness":{"baseColorFactor":[1,0,0,1]}}],
+            "meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]},
+            {"primitives":[{"attributes":{"POSITION":0},"indices":1,"material":0}]},
+            {"primitives":[{"attributes":{"POSITION":0},"indices":1,"material":1}]}],
+            "buffers":[{"byteLength":44,"uri":"data:application/octet-stream;base64,)" +
+                           triangle + R"("}],"bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":36},
+            {"buffer":0,"byteOffset":36,"byteLength":6}],"accessors":[
+            {"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},
+            {"bufferView":1,"componentType":5123,"count":3,"type":"SCALAR"}]})");
+        const std::string gltf = "'" + scratch().file("looks.gltf") + "'", baked = scratch().file("looks.crofton");
+        const CliRun bake = run_cli("bake " + gltf + " -o " + baked);
+        REQUIRE_MESSAGE(bake.status == 0, bake.err);
+        const std::string own = scratch().file("own"), shown = scratch().file("shown");
+        const std::string frames = " --frames 4 --size 96x64 --occlude --ids --json - --png ";
+        const CliRun a = run_cli("frames " + gltf + frames + own), b = run_cli("frames " + baked + frames + shown);
+        REQUIRE_MESSAGE(a.status == 0, a.err);
+        REQUIRE_MESSAGE(b.status == 0, b.err);
+        for (std::size_t i = 0; i < 4; ++i) {
+            const auto x = a.json()["frames"][i], y = b.json()["frames"][i];
+            for (const char* key : {"camera", "visible_ids", "triangles_passed", "triangles_seen"})
+                CHECK(x[key] == y[key]);
+            const std::string picture = "/frame_000" + std::to_string(i) + ".png";
+            CHECK(contents_of(own + picture) == contents_of(shown + picture));
+        }
+    }
+
+    TEST_CASE("clusters are baked and counted, and a baked scene passes the triangles that its own would") {
+        const std::string path = scratch().file("clusters.crofton"), bare = scratch().file("no_clusters.crofton");
+        const CliRun baked = run_cli("bake room -o " + path + " --json -"),
+                     without = run_cli("bake room --no-clusters -o " + bare + " --json -");
+        REQUIRE(baked.status == 0);
+        REQUIRE(without.status == 0);
+        CHECK(without.json()["clusters"] == 0);
+        CHECK(baked.json()["clusters"].get<int>() > 0);
+        // The bytes of the clusters are what the file is larger by: sections begin at multiples of 64.
+        const auto more = baked.json()["bytes"].get<double>() - without.json()["bytes"].get<double>();
+        CHECK(more >= baked.json()["cluster_bytes"].get<double>());
+        CHECK(more <= baked.json()["cluster_bytes"].get<double>() + 8.0 * baked.json()["meshes"].get<double>() + 256.0);
+        const std::string frames = " --frames 3 --camera street --no-draw --occlude --json -";
+        const CliRun own = run_cli("frames room" + frames);
+        for (const std::string& file : {path, bare}) {
+            const CliRun shown = run_cli("frames " + file + frames);
+            REQUIRE_MESSAGE(shown.status == 0, shown.err);
+            for (std::size_t i = 0; i < 3; ++i) {
+                const auto a = own.json()["frames"][i], b = shown.json()["frames"][i];
+                CHECK(a["camera"] == b["camera"]);
+                CHECK(a["occlusion"]["triangles_passed"] == b["occlusion"]["triangles_passed"]);
+            }
+        }
+        // A damaged section is named.
+        std::string damaged = contents_of(path);
+        const std::size_t entry = damaged.find("clusters");
+        std::uint64_t offset = 0;
+        REQUIRE(entry != std::string::npos);
+        std::memcpy(&offset, damaged.data() + entry + 8, 8);
+        damaged[offset + 100] ^= 1;
+        write_contents(path, damaged);
+        const CliRun refused = run_cli("frames " + path + frames);
+        CHECK(refused.status == 2);
+        CHECK_MESSAGE(refused.err.find("section 'clusters' is damaged") != std::string::npos, refused.err);
     }
 
     TEST_CASE("the same scene is baked to the same bytes, with any number of threads") {

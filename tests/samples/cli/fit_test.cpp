@@ -59,6 +59,8 @@ TEST_SUITE("cli/fit") {
                      {good + " --criterion weights:1,2", "three numbers"},
                      {good + " --criterion weights:0,0,0", "weights"},
                      {good + " --criterion weights:1,-1,0", "weights"},
+                     {good + " --criterion partner:", "a partner needs a mesh file: partner:FILE"},
+                     {good + " --criterion partner", "a partner needs a mesh file: partner:FILE"},
                      {good + " --criterion partner:/no/such/file.obj", "/no/such/file.obj"},
                      {good + " --quality best", "quality"},
                      {good + " --budget -1", "budget"},

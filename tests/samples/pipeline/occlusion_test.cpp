@@ -101,7 +101,7 @@ TEST_SUITE("pipeline/occlusion") {
             }
             CHECK(triangles == 36 + 11);  // each whole strip is cut on both sides, but for the first on its left
             const bake::BakedOccluders baked = to_baked(found);
-            const auto file = bake::bake(yard.scene, serial_executor(), boxtree::Orientation::aligned, &baked);
+            const auto file = bake::bake(yard.scene, serial_executor(), {.occluders = &baked});
             REQUIRE(file.has_value());
             const SceneOccluders back =
                 scene_occluders_from(yard.scene, *bake::BakedScene::from_memory(*file).value().occluders());
@@ -172,7 +172,7 @@ TEST_SUITE("pipeline/occlusion") {
         Yard yard;
         const SceneOccluders found = find_scene_occluders(yard.scene, serial_executor());
         const bake::BakedOccluders baked = to_baked(found);
-        const auto file = bake::bake(yard.scene, serial_executor(), boxtree::Orientation::aligned, &baked);
+        const auto file = bake::bake(yard.scene, serial_executor(), {.occluders = &baked});
         REQUIRE(file.has_value());
         const auto loaded = bake::BakedScene::from_memory(*file);
         REQUIRE(loaded.has_value());

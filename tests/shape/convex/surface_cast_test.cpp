@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 
+#include <ctime>
+
 #include "surfaces.hpp"
 
 using namespace crofton;
@@ -45,6 +47,66 @@ TEST_SUITE("convex/surface_cast") {
         }
         CHECK(hits > 40);
         CHECK(misses > 20);
+    }
+
+    TEST_CASE(
+        "two surfaces that turn first touch where the first two of their triangles do, from contact and from afar") {
+        RandomBodies random(31);
+        int hits = 0, misses = 0, at_start = 0;
+        for (int round = 0; round < 60; ++round) {
+            const Surface s = soup(random, 14, 1.5, 0.5), other = soup(random, 12, 1.5, 0.5);
+            const RigidTransform pose{random.rotation(), 10.0 * random.direction()};
+            const RigidTransform pose_b{random.rotation(),
+                                        pose.translation + random.number(0.0, 5.0) * random.direction()};
+            // Pivots far off, as a triangle of a mesh that turns has them.
+            const glm::dvec3 way = random.number(0.0, 3.0) * (pose.translation - pose_b.translation);
+            const glm::dvec3 spin_a = random.index(2) * random.number(0.0, 4.0) * random.direction(),
+                             spin_b = random.index(3) * random.number(0.0, 4.0) * random.direction(),
+                             pivot_a = 3.0 * random.direction(), pivot_b = 3.0 * random.direction();
+            const Motion motion_a{{}, spin_a, pivot_a}, motion_b{way, spin_b, pivot_b};
+            const CastOptions options{.tolerance = 1e-6, .max_steps = 5000};
+            Impact first;
+            first.time = 1.0;
+            for (std::size_t t = 0; t < s.size(); ++t)
+                for (std::size_t u = 0; u < other.size(); ++u) {
+                    const Impact i =
+                        cast({s.triangle(t), pose}, motion_a, {other.triangle(u), pose_b}, motion_b, options).value();
+                    if (i.result != CastResult::miss && i.time < first.time) first = i;
+                }
+            const Impact i = cast({s.body(), pose}, motion_a, {other.body(), pose_b}, motion_b, options).value();
+            const Impact back = cast({other.body(), pose_b}, motion_b, {s.body(), pose}, motion_a, options).value();
+            CHECK(i.result == first.result);
+            CHECK(back.result == first.result);
+            CHECK(std::abs(i.time - first.time) <= 2e-6);
+            CHECK(std::abs(back.time - first.time) <= 2e-6);
+            (first.result == CastResult::hit ? hits : misses) += 1;
+            at_start += first.result == CastResult::hit && first.time == 0.0 ? 1 : 0;
+            if (first.result != CastResult::hit) continue;
+            const RigidTransform then = moved(pose, motion_a, i.time), b_then = moved(pose_b, motion_b, i.time);
+            CHECK(
+                distance({s.triangle(i.part_a.triangle), then}, {other.triangle(i.part_b.triangle), b_then}).distance <=
+                1e-6 + 1e-9);
+        }
+        CHECK(hits > 20);
+        CHECK(misses > 5);
+        CHECK(at_start > 5);
+    }
+
+    TEST_CASE("equal surfaces at one pose touch at once, whether they fly or turn, at about the same cost") {
+        RandomBodies random(32);
+        const Surface s = ground(random, 30, 0.1, [](double x, double z) { return std::sin(3 * x + z); });
+        const Body body = s.body();
+        const auto seconds = [&](const Motion& motion) {
+            const std::clock_t start = std::clock();
+            const Impact i = cast({body, at({})}, {}, {body, at({})}, motion, {}).value();
+            CHECK(i.result == CastResult::hit);
+            CHECK(i.time == 0.0);
+            return double(std::clock() - start) / CLOCKS_PER_SEC;
+        };
+        const double flies = seconds({{1, 0, 0}, {}, {}});
+        // Every triangle was asked against every other: 60 times as long.
+        CHECK(seconds({{}, {0, 1, 0}, {}}) <= 10.0 * flies + 0.1);
+        CHECK(seconds({{1, 0, 0}, {0, 0, 1}, {5, 0, 0}}) <= 10.0 * flies + 0.1);
     }
 
     TEST_CASE("no floor is too thin, no way too long: a grain at 1e5 a second through 20,000 triangles") {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <crofton/depth/clustered_mesh.hpp>
+#include <crofton/depth/depth_culler.hpp>
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 
 #include "depth_scenes.hpp"
@@ -70,6 +72,64 @@ TEST_CASE("many equal, repeated and flat triangles are cut as others are") {
     std::uint32_t sum = 0;
     for (const Cluster& c : cut.clusters()) sum += c.triangle_count;
     CHECK(sum == 1000);
+}
+
+// Every array of both, bit by bit.
+bool same(const ClusteredMesh& a, const ClusteredMesh& b) {
+    const auto equal = [](auto x, auto y) {
+        return x.size() == y.size() && (x.empty() || std::memcmp(x.data(), y.data(), x.size_bytes()) == 0);
+    };
+    const auto equal_patches = [](const ClusteredMesh::Patch& x, const ClusteredMesh::Patch& y) {
+        return x.first_coordinate == y.first_coordinate && x.first_block == y.first_block &&
+               x.vertex_count == y.vertex_count && x.triangle_count == y.triangle_count;
+    };
+    const auto p = a.layout().patches, q = b.layout().patches;
+    return equal(a.clusters(), b.clusters()) && equal(a.triangle_order(), b.triangle_order()) &&
+           equal(std::span(&a.bound(), 1), std::span(&b.bound(), 1)) &&
+           equal(a.layout().coordinates, b.layout().coordinates) && equal(a.layout().blocks, b.layout().blocks) &&
+           a.layout().largest == b.layout().largest &&
+           std::equal(p.begin(), p.end(), q.begin(), q.end(), equal_patches);
+}
+
+TEST_CASE("clusters come back from their bytes as they were, whatever the size of mesh and cluster") {
+    oracle::NearMisses random(8);
+    for (const std::uint32_t most : {1u, 3u, 8u, 9u, 17u, 64u})
+        for (const std::uint32_t side : {1u, 2u, 5u, 30u}) {
+            const TriangleMesh mesh = hills(side, 50.0f, 5.0f, random);
+            const ClusteredMesh cut = ClusteredMesh::cut(mesh.positions, mesh.indices, {.max_triangles = most}).value();
+            const auto bytes = cut.serialise();
+            CHECK(bytes.size() % 4 == 0);
+            CHECK(same(cut, ClusteredMesh::deserialise(bytes).value()));
+        }
+}
+
+TEST_CASE("bytes of clusters that are cut off or changed are refused or harmless, never followed out of the mesh") {
+    oracle::NearMisses random(9);
+    const TriangleMesh mesh = hills(4, 50.0f, 5.0f, random);
+    const ClusteredMesh cut = ClusteredMesh::cut(mesh.positions, mesh.indices, {.max_triangles = 5}).value();
+    const auto bytes = cut.serialise();
+    for (std::size_t size = 0; size < bytes.size(); ++size)
+        CHECK(ClusteredMesh::deserialise(std::span(bytes).first(size)).error().code == ErrorCode::parse);
+    std::size_t refused = 0;
+    depth::DepthCuller culler;
+    for (std::size_t at = 0; at < bytes.size(); ++at)
+        for (const unsigned flip : {0x01u, 0x80u, 0xffu}) {
+            auto changed = bytes;
+            changed[at] ^= std::byte(flip);
+            const auto read = ClusteredMesh::deserialise(changed);
+            if (!read) {
+                CHECK(read.error().code == ErrorCode::parse);
+                ++refused;
+                continue;
+            }
+            // All that is in range may be drawn, though it be another picture.
+            const depth::DepthObject object{&*read, glm::mat4(0.01f)};
+            CHECK(culler.find_visible(std::span(&object, 1), {.width = 32, .height = 32}));
+            Vector<std::uint32_t> permuted(mesh.indices.size());
+            read->permute(mesh.indices, permuted);
+        }
+    // All of the header's counts, the clusters' ranges and the order.
+    CHECK(refused > 3 * (16 + 8 * cut.clusters().size() + 4 * cut.triangle_order().size()));
 }
 
 }  // namespace

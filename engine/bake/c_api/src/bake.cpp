@@ -4,6 +4,7 @@
 #include <crofton/bake/baked_scene.hpp>
 
 #include <crofton/capi/call.hpp>
+#include <crofton/capi/clustered_mesh.hpp>
 #include <crofton/capi/convert.hpp>
 #include "scene.hpp"
 #include "tree.hpp"
@@ -99,12 +100,32 @@ crofton_status crofton_baked_scene_mesh(const crofton_baked_scene* baked, uint32
     if (mesh_id >= baked->scene.mesh_count())
         return report(CROFTON_OUT_OF_RANGE, __func__, "there is no such mesh", mesh_id);
     const bake::MeshView view = baked->scene.mesh(mesh_id);
-    *mesh = {sizeof *mesh,          reinterpret_cast<const float*>(view.positions.data()),
-             view.positions.size(), view.colors.empty() ? nullptr : reinterpret_cast<const float*>(view.colors.data()),
-             view.indices.data(),   view.indices.size(),
-             view.name.data(),      view.name.size(),
-             *to_c(&view.box)};
+    *mesh = {sizeof *mesh,
+             reinterpret_cast<const float*>(view.positions.data()),
+             view.positions.size(),
+             view.colors.empty() ? nullptr : reinterpret_cast<const float*>(view.colors.data()),
+             view.indices.data(),
+             view.indices.size(),
+             view.name.data(),
+             view.name.size(),
+             *to_c(&view.box),
+             view.look.one_sided,
+             view.look.flat,
+             view.look.unlit,
+             0};
     return CROFTON_OK;
+}
+
+crofton_status crofton_baked_scene_clusters(const crofton_baked_scene* baked, uint32_t mesh_id,
+                                            crofton_clustered_mesh** clustered) {
+    const SharedUse use(baked, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_pointer(clustered, __func__));
+    if (mesh_id >= baked->scene.mesh_count())
+        return report(CROFTON_OUT_OF_RANGE, __func__, "there is no such mesh", mesh_id);
+    const depth::ClusteredMesh* const clusters = baked->scene.clusters(mesh_id);
+    if (clusters == nullptr) return report(CROFTON_EMPTY, __func__, "the mesh was baked without clusters", mesh_id);
+    return recover(__func__, [&, function = __func__] { return create(clustered, function, *clusters); });
 }
 
 crofton_status crofton_baked_scene_instances(const crofton_baked_scene* baked, const crofton_baked_instance** instances,

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include <crofton/bake/occluder_sections.hpp>
+#include "mesh_sections.hpp"
 #include "tree_section.hpp"
 
 namespace crofton::bake {
@@ -69,9 +70,10 @@ void add_arrays(const Arrays& arrays, Writer& writer) {
 
 }  // namespace
 
-Result<Vector<std::byte>> bake(const scene::Scene& scene, Executor& executor, boxtree::Orientation tree,
-                               const BakedOccluders* occluders) {
+Result<Vector<std::byte>> bake(const scene::Scene& scene, Executor& executor, const BakeOptions& options) {
     return detail::recover([&]() -> Result<Vector<std::byte>> {
+        if (options.looks.size() > scene.mesh_count())
+            return fail(ErrorCode::invalid_argument, scene.mesh_count(), "more looks than the scene has meshes");
         Arrays arrays;
         for (scene::MeshId mesh = 0; mesh < scene.mesh_count(); ++mesh) append_mesh(arrays, scene, mesh);
         if (arrays.names.size() > std::numeric_limits<std::uint32_t>::max())
@@ -86,10 +88,13 @@ Result<Vector<std::byte>> bake(const scene::Scene& scene, Executor& executor, bo
         for (scene::NodeId node = 0; node < scene.node_count(); ++node)
             nodes.push_back({scene.world(node), scene.parent_of(node)});
         writer.add("nodes", std::span<const NodeRecord>(nodes));
-        if (const auto added = add_tree(scene.world_boxes(), scene.layer_masks(), writer, executor, tree); !added)
+        if (const auto added = add_tree(scene.world_boxes(), scene.layer_masks(), writer, executor, options.tree);
+            !added)
             return tl::unexpected(added.error());
-        if (occluders != nullptr)
-            if (const auto added = add_occluders(*occluders, scene.node_count(), writer); !added)
+        if (!options.looks.empty()) add_looks(options.looks, scene.mesh_count(), writer);
+        if (options.clusters) add_clusters(scene, writer, executor);
+        if (options.occluders != nullptr)
+            if (const auto added = add_occluders(*options.occluders, scene.node_count(), writer); !added)
                 return tl::unexpected(added.error());
         return writer.finish();
     });

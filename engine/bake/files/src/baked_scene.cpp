@@ -5,6 +5,7 @@
 #include <string>
 
 #include <crofton/bake/occluder_sections.hpp>
+#include "mesh_sections.hpp"
 #include "tree_section.hpp"
 
 namespace crofton::bake {
@@ -103,6 +104,12 @@ Result<BakedScene> BakedScene::from_memory(std::span<const std::byte> file, Exec
         if (!tree) return tl::unexpected(tree.error());
         baked.tree_.emplace(std::move(*tree));
         if (const auto good = baked.check_instances(); !good) return tl::unexpected(good.error());
+        const auto looks = read_looks(*reader, baked.meshes_.size());
+        if (!looks) return tl::unexpected(looks.error());
+        baked.looks_ = *looks;
+        auto clusters = read_clusters(*reader, baked.meshes_);
+        if (!clusters) return tl::unexpected(clusters.error());
+        baked.clusters_ = std::move(*clusters);
         auto occluders = read_occluders(*reader, baked.nodes_.size());
         if (!occluders) return tl::unexpected(occluders.error());
         baked.occluders_ = std::move(*occluders);
@@ -123,9 +130,16 @@ Result<BakedScene> BakedScene::open(const std::string& path, Executor& executor,
 
 MeshView BakedScene::mesh(scene::MeshId id) const {
     const MeshRecord& mesh = meshes_[id];
-    return {std::string_view(names_.data() + mesh.first_name, mesh.name_size), mesh.box,
+    return {std::string_view(names_.data() + mesh.first_name, mesh.name_size),
+            mesh.box,
             positions_.subspan(mesh.first_position, mesh.position_count),
-            colors_.subspan(mesh.first_color, mesh.color_count), indices_.subspan(mesh.first_index, mesh.index_count)};
+            colors_.subspan(mesh.first_color, mesh.color_count),
+            indices_.subspan(mesh.first_index, mesh.index_count),
+            looks_.empty() ? MeshLook{} : look_of(looks_[id])};
+}
+
+const depth::ClusteredMesh* BakedScene::clusters(scene::MeshId id) const {
+    return clusters_.empty() || !clusters_[id] ? nullptr : &*clusters_[id];
 }
 
 std::optional<PolygonView> BakedScene::polygon(scene::MeshId id) const {

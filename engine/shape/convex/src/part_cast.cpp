@@ -17,7 +17,7 @@ namespace {
 constexpr int kManyParts = 24;  // in a stretch of time that is then halved
 constexpr int kMaxHalvings = 40;
 
-// Of the pivot, from the body's origin.
+// From the body's origin to its pivot.
 glm::dvec3 arm_of(const RigidTransform& pose, const Motion& motion) {
     return pose.rotation * motion.pivot;
 }
@@ -31,9 +31,10 @@ class PartCaster {
         : a_(a), b_(b), motion_a_(motion_a), motion_b_(motion_b), options_(options), slide_(slide), flipped_(flipped) {
         best_.time = std::min(options.early_out, options.duration);
         const Aabb& bounds = b.body.bounds();
-        around_ = glm::length(bounds.half_extents()) + glm::length(bounds.center() - motion_b.pivot);
         b_turns_ = motion_b.spin != glm::dvec3(0.0);
-        apart_ = (arm_of(b.pose, motion_b) - arm_of(a.pose, motion_a)) + (b.pose.translation - a.pose.translation);
+        pivot_ = b_turns_ || is_unbounded(b) ? motion_b.pivot : bounds.center();
+        around_ = glm::length(bounds.half_extents()) + glm::length(bounds.center() - pivot_);
+        apart_ = (b.pose.rotation * pivot_ - arm_of(a.pose, motion_a)) + (b.pose.translation - a.pose.translation);
     }
 
     void search(double from, double to) {
@@ -116,6 +117,7 @@ class PartCaster {
 
     // All that b passes between two times, in the frame in which a stands at the first of them.
     [[nodiscard]] QueryBox swept_box(const RigidTransform& pose, double from, double to) const {
+        if (to == from) return box_at(pose, from);
         const glm::dvec3 velocity = motion_b_.velocity - motion_a_.velocity;
         const double middle = 0.5 * (from + to), speed = glm::length(velocity);
         const bool a_turns = motion_a_.spin != glm::dvec3(0.0);
@@ -123,19 +125,47 @@ class PartCaster {
         // Where b's pivot would be from a's origin, if a kept the place it has at `from`.
         const glm::dvec3 center = apart_ + middle * velocity + arm_of(pose, motion_a_);
         QueryBox box;
-        if (b_turns_ || a_turns || speed == 0.0 || to == from) {
-            box.axes = glm::dmat3(1.0);
-            double grown = around_;
+        if (b_turns_ || a_turns || speed == 0.0) {
+            const Sphere sphere = around_b(middle, 0.5 * (to - from));
+            double grown = sphere.radius + 0.5 * (to - from) * speed;
             if (a_turns) grown += (to - from) * glm::length(motion_a_.spin) * distance_at(middle, way(from, to));
-            grown += 0.5 * (to - from) * speed;
+            box.axes = glm::dmat3(1.0);
             box.half = glm::dvec3(grown);
-            box.center = back * center;
-            box.rounding = rounding(to);
-            if (b_turns_ || a_turns || speed == 0.0) return box;
+            box.center = back * (center + sphere.center);
+        } else {
+            box = along_way(back, center, velocity / speed, 0.5 * (to - from) * speed);
         }
-        box = along_way(back, center, velocity / speed, 0.5 * (to - from) * speed);
         box.rounding = rounding(to);
         return box;
+    }
+
+    // b at one time alone, however it turns.
+    [[nodiscard]] QueryBox box_at(const RigidTransform& pose, double time) const {
+        const RigidTransform then = moved(b_.pose, motion_b_, time);
+        const Aabb& bounds = b_.body.bounds();
+        const glm::dvec3 half = bounds.half_extents();
+        QueryBox box;
+        for (int k = 0; k < 3; ++k) box.half += half[k] * glm::abs(then.rotation[k]);
+        box.half = box.half * 1.00001;  // a pose is orthonormal to 1e-6
+        box.axes = glm::inverse(pose.rotation);
+        box.center = box.axes * (then.rotation * bounds.center() + (then.translation - pose.translation));
+        box.rounding = rounding(time);
+        return box;
+    }
+
+    struct Sphere {
+        glm::dvec3 center;  // from b's pivot
+        double radius;
+    };
+    // Contains b while it turns, for half a stretch before and after a time: around its pivot, or around its own centre
+    // where that does not come far.
+    [[nodiscard]] Sphere around_b(double middle, double half_stretch) const {
+        const Aabb& bounds = b_.body.bounds();
+        const glm::dvec3 arm = bounds.center() - pivot_;
+        const double own = glm::length(bounds.half_extents()) * 1.00001 +
+                           half_stretch * glm::length(motion_b_.spin) * glm::length(arm);
+        if (!(own < around_)) return {glm::dvec3(0.0), around_};
+        return {moved(b_.pose, motion_b_, middle).rotation * arm, own};
     }
 
     // Of the bodies' places up to a time, as `moved` has them, from each other.
@@ -157,7 +187,7 @@ class PartCaster {
         box.half = box.half * 1.00001;  // a pose is orthonormal to 1e-6
         box.half.x += half_way;
         box.axes = back * axes;
-        box.center = back * (pivot + b_.pose.rotation * (bounds.center() - motion_b_.pivot));
+        box.center = back * (pivot + b_.pose.rotation * (bounds.center() - pivot_));
         return box;
     }
 
@@ -222,7 +252,8 @@ class PartCaster {
     const ContactsAt* const slide_;
     const bool flipped_;
     Impact best_;
-    double around_ = 0.0;  // radius of b around its pivot
+    glm::dvec3 pivot_{0.0};  // of b; its centre where it does not turn
+    double around_ = 0.0;    // radius of b around its pivot
     glm::dvec3 apart_{0.0};
     bool b_turns_ = false;
 };

@@ -59,6 +59,10 @@ typedef struct crofton_baked_mesh {
     const char* name; /* `name_length` characters, not ended by a 0 */
     size_t name_length;
     crofton_box box; /* in the mesh's own frame */
+    /* 1 or 0; 0 if the file does not say: back faces are not drawn; each face has its own normal; colours are not
+     * lit */
+    uint32_t one_sided, flat, unlit;
+    uint32_t reserved; /* 0 */
 } crofton_baked_mesh;
 
 typedef struct crofton_baked_instance {
@@ -71,8 +75,9 @@ typedef struct crofton_baked_node {
     uint32_t reserved;
 } crofton_baked_node;
 
-/* Writes the scene as of its last update to a file. The file is either complete and flushed to the disk, or an old file
- * stays unchanged. A process that has the old file open keeps its contents. `jobs` or NULL. */
+/* Writes the scene as of its last update, and its meshes' clusters, to a file. The file is either complete and flushed
+ * to the disk, or an old file stays unchanged. A process that has the old file open keeps its contents. `jobs` or
+ * NULL. */
 CROFTON_API crofton_status crofton_scene_bake(const crofton_scene* scene, const char* path, const crofton_jobs* jobs);
 
 /* Maps a file and checks all of it. Item i of `tree` is instance i. The tree is a handle of its own: you may change it,
@@ -89,6 +94,11 @@ CROFTON_API crofton_status crofton_baked_scene_destroy(crofton_baked_scene* bake
 CROFTON_API crofton_status crofton_baked_scene_mesh_count(const crofton_baked_scene* baked, size_t* count);
 CROFTON_API crofton_status crofton_baked_scene_mesh(const crofton_baked_scene* baked, uint32_t mesh_id,
                                                     crofton_baked_mesh* mesh);
+/* Makes a mesh's clusters for crofton_depth_object without cutting it anew: a handle of its own, which may outlive
+ * `baked`. Returns CROFTON_EMPTY if the mesh was baked without clusters (by an older version, or because it cannot be
+ * cut). */
+CROFTON_API crofton_status crofton_baked_scene_clusters(const crofton_baked_scene* baked, uint32_t mesh_id,
+                                                        crofton_clustered_mesh** clustered);
 CROFTON_API crofton_status crofton_baked_scene_instances(const crofton_baked_scene* baked,
                                                          const crofton_baked_instance** instances, size_t* count);
 CROFTON_API crofton_status crofton_baked_scene_nodes(const crofton_baked_scene* baked, const crofton_baked_node** nodes,

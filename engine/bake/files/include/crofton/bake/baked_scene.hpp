@@ -4,6 +4,7 @@
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/core/error.hpp>
 #include <crofton/core/executor.hpp>
+#include <crofton/depth/clustered_mesh.hpp>
 #include <crofton/occlude/occluder.hpp>
 #include <crofton/scene/scene.hpp>
 #include <cstddef>
@@ -86,19 +87,37 @@ struct BakedOccluders {
     Vector<OccludingNode> nodes;  // ascending, each once; others hide nothing
 };
 
-// Bakes the scene as of its last update(), and its occluders if given, into a file. Deterministic.
+// How a mesh is meant to be drawn, as far as its triangles do not say it.
+struct MeshLook {
+    bool one_sided = false;  // back faces are not seen
+    bool flat = false;       // each face has its own normal
+    bool unlit = false;      // its colours are light already
+    friend bool operator==(const MeshLook&, const MeshLook&) = default;
+};
+
+struct BakeOptions {
+    boxtree::Orientation tree = boxtree::Orientation::aligned;
+    const BakedOccluders* occluders = nullptr;  // nullptr: the file has none
+    std::span<const MeshLook> looks{};          // by mesh; meshes beyond the end have the default look
+    // Cuts each mesh into clusters (depth::ClusteredMesh), so that whoever opens the file need not. The file then has
+    // about as many bytes of clusters as of positions and indices.
+    bool clusters = true;
+};
+
+// Bakes the scene as of its last update() into a file. Deterministic. Meshes that ClusteredMesh::cut refuses are baked
+// without clusters.
 //
-// Errors: those of BoxTree::build; more than 2^32 − 1 name bytes; occluders that BakedScene would refuse (item: the
-// occluder, counted through all kinds).
+// Errors: those of BoxTree::build; more than 2^32 − 1 name bytes; more looks than meshes; occluders that BakedScene
+// would refuse (item: the occluder, counted through all kinds).
 [[nodiscard]] Result<Vector<std::byte>> bake(const scene::Scene& scene, Executor& executor = serial_executor(),
-                                             boxtree::Orientation tree = boxtree::Orientation::aligned,
-                                             const BakedOccluders* occluders = nullptr);
+                                             const BakeOptions& options = {});
 
 struct MeshView {
     std::string_view name;
     Obb box;
     std::span<const glm::vec3> positions, colors;
     std::span<const std::uint32_t> indices;
+    MeshLook look;  // the default where the file was baked without
 };
 // The rings around a mesh whose triangles are a triangulation. Triangle corners are indices into `points`.
 struct PolygonView {
@@ -128,6 +147,9 @@ class BakedScene {
     // Returns the occluders, or none if the file was baked without them; they can then be found again. Each number is
     // copied from the file and checked. Whoever baked the file must know that the occluders lie within the meshes.
     [[nodiscard]] const std::optional<BakedOccluders>& occluders() const { return occluders_; }
+    // Returns the mesh's clusters; nullptr if it was baked without. They are copied from the file and checked, except
+    // that their boxes are not compared with the triangles.
+    [[nodiscard]] const depth::ClusteredMesh* clusters(scene::MeshId mesh) const;
     // Returns the tree over the instances: item i is instance i, with its box and layer mask. You may change the tree.
     [[nodiscard]] boxtree::BoxTree& tree() { return *tree_; }
     [[nodiscard]] const boxtree::BoxTree& tree() const { return *tree_; }
@@ -144,6 +166,8 @@ class BakedScene {
     std::span<const std::uint32_t> indices_, rings_;
     std::span<const glm::dvec2> points_;
     std::span<const char> names_;
+    std::span<const std::uint8_t> looks_;
+    Vector<std::optional<depth::ClusteredMesh>> clusters_;  // by mesh; empty: none
     std::optional<BakedOccluders> occluders_;
     std::optional<boxtree::BoxTree> tree_;
 };

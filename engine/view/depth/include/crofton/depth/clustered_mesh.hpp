@@ -5,6 +5,7 @@
 #include <crofton/core/error.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/box.hpp>
+#include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <span>
@@ -55,6 +56,13 @@ class ClusteredMesh {
     // Bytes that this object holds.
     [[nodiscard]] std::size_t memory() const;
 
+    // Returns bytes from which deserialise() makes an equal object without cutting anew, on machines of the same byte
+    // order; their number is a multiple of 4.
+    [[nodiscard]] Vector<std::byte> serialise() const;
+    // Errors: bytes that are cut off, or whose numbers are out of range (parse; item = cluster). Whoever keeps the
+    // bytes must know that they are of this mesh and undamaged: boxes are not compared with the triangles.
+    [[nodiscard]] static Result<ClusteredMesh> deserialise(std::span<const std::byte> bytes);
+
     // A cluster, laid out for DepthCuller.
     struct Patch {
         std::uint32_t first_coordinate;  // x of all vertices, then y, then z, each padded to whole vectors
@@ -80,6 +88,7 @@ class ClusteredMesh {
 
   private:
     friend class PatchBuilder;
+    friend struct StoredMesh;
     Vector<std::uint32_t> order_;
     Vector<Cluster> clusters_;
     Cluster bound_;

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+// What the file says of meshes besides their arrays: how they look, and their clusters. Files may be without.
+#pragma once
+#include <crofton/bake/baked_scene.hpp>
+#include <crofton/bake/container.hpp>
+#include <optional>
+
+namespace crofton::bake {
+
+// Section `looks`: a byte a mesh, of these bits.
+[[nodiscard]] MeshLook look_of(std::uint8_t bits);
+// Requires at most mesh_count looks.
+void add_looks(std::span<const MeshLook> looks, std::size_t mesh_count, Writer& writer);
+// Empty where the file has none. Errors: not one a mesh; bits that are not known (item = mesh).
+[[nodiscard]] Result<std::span<const std::uint8_t>> read_looks(const Reader& reader, std::size_t mesh_count);
+
+// Section `clusters`: ClusteredMesh::serialise of one mesh after another, in words of 4 bytes; `cluends`: where each
+// ends. Nothing for a mesh that cannot be cut.
+void add_clusters(const scene::Scene& scene, Writer& writer, Executor& executor);
+// Empty where the file has none. Errors: as ClusteredMesh::deserialise; ends that do not ascend to the section's; other
+// triangle counts than the meshes' (item = mesh).
+[[nodiscard]] Result<Vector<std::optional<depth::ClusteredMesh>>> read_clusters(const Reader& reader,
+                                                                                std::span<const MeshRecord> meshes);
+
+}  // namespace crofton::bake
