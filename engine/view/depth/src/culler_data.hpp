@@ -31,11 +31,16 @@ struct PictureData {
     float grid;  // pixels by which a vertex may lie elsewhere along each axis: the grid's step, floats' rounding
 };
 
-// A matrix whose third row gives nearness, and what its products may be off by.
+// A matrix whose third row gives nearness.
 struct ObjectData {
     float columns[4][4];
-    float errors[4];
+    float moved[4];  // by how much DepthObject::position_error moves clip coordinates
     bool one_sided, hides;
+};
+
+// By how much the clip coordinates of a cluster's vertices may be off, here and in the renderer together.
+struct ClipErrors {
+    float x, y, z, w;
 };
 
 enum class Coverage : std::uint8_t {
@@ -50,6 +55,7 @@ struct Projection {
     float nearest;
     float least_w;
     Coverage coverage;
+    ClipErrors errors;
 };
 
 // A cluster to draw.
@@ -58,7 +64,8 @@ struct PatchData {
     const ClusteredMesh::Block* blocks;
     std::uint32_t vertex_count, triangle_count;
     float least_w;  // of the cluster's bound
-    bool unclear;   // as its projection
+    ClipErrors errors;
+    bool unclear;  // as its projection
 };
 
 inline constexpr std::uint32_t kMaxPatchVertices = Cluster::kMaxTriangles * 3;

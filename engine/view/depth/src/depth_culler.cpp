@@ -108,7 +108,6 @@ struct DepthCuller::State {
         found.clear();
     }
 
-    // |product computed − product of reals| ≤ 4 · 2^-24 · Σ |terms|, for the renderer as for us, in any order.
     void prepare(const DepthObject& object, bool reversed, Prepared& to) const {
         const glm::vec3 largest = object.mesh->layout().largest;
         to = {};
@@ -122,7 +121,7 @@ struct DepthCuller::State {
                 size += std::abs(object.to_clip[c][i]) * largest[c];
                 moved += std::abs(object.to_clip[c][i]);
             }
-            to.data.errors[i] = 0x1p-21f * size + moved * object.position_error;
+            to.data.moved[i] = moved * object.position_error;
             sum += size;
         }
         to.data.one_sided = object.one_sided;
@@ -168,6 +167,7 @@ struct DepthCuller::State {
                              patch.vertex_count,
                              patch.triangle_count,
                              projection.least_w,
+                             projection.errors,
                              projection.coverage == Coverage::unclear};
         const std::uint64_t triangles = draw_patch(picture, objects[object].data, data);
         ++statistics.clusters_drawn;

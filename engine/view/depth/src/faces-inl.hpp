@@ -72,10 +72,16 @@ inline constexpr float kFlattest = 0x1p-22f;
 // Sets up the triangles of a cluster that lies before the near plane.
 class FaceSetup {
   public:
-    // move: by how many pixels a vertex may lie elsewhere; depth_error: what its nearness may be off by.
+    // move: by how many pixels a vertex may lie elsewhere. Its nearness may be off by depth_error, and by depth_share
+    // of itself.
     FaceSetup(const PictureData& picture, const ObjectData& object, const PatchVertices& vertices, float move,
-              float depth_error)
-        : picture_(picture), object_(object), vertices_(vertices), move_(move), depth_error_(depth_error) {}
+              float depth_error, float depth_share)
+        : picture_(picture),
+          object_(object),
+          vertices_(vertices),
+          move_(move),
+          depth_error_(depth_error),
+          depth_share_(depth_share + 0x1p-19f) {}
 
     HWY_INLINE void run(const ClusteredMesh::Block& block, Faces& faces) const {
         const DF d;
@@ -124,7 +130,7 @@ class FaceSetup {
 
         const VF nearest = hn::Max(hn::Max(z[0], z[1]), z[2]), farthest = hn::Min(hn::Min(z[0], z[1]), z[2]);
         const VF rounding = hn::Add(hn::Set(d, depth_error_),
-                                    hn::Mul(hn::Set(d, 0x1p-19f), hn::Max(hn::Abs(nearest), hn::Abs(farthest))));
+                                    hn::Mul(hn::Set(d, depth_share_), hn::Max(hn::Abs(nearest), hn::Abs(farthest))));
         hn::Store(hn::Add(nearest, rounding), d, f.nearest + i);
 
         // Of triangles thinner than the grid only the rectangle is known, and the nearest corner.
@@ -234,7 +240,7 @@ class FaceSetup {
     const PictureData& picture_;
     const ObjectData& object_;
     const PatchVertices& vertices_;
-    float move_, depth_error_;
+    float move_, depth_error_, depth_share_;
 };
 
 }  // namespace crofton::depth::HWY_NAMESPACE

@@ -31,13 +31,14 @@ struct NearLimits {
 // Only what is farther than least_w() hides, since products move what is nearer by too many pixels.
 class NearFaceSetup {
   public:
-    NearFaceSetup(const PictureData& picture, const ObjectData& object) : picture_(picture), object_(object) {
+    NearFaceSetup(const PictureData& picture, const ObjectData& object, const ClipErrors& errors)
+        : picture_(picture), object_(object), errors_(errors) {
         constexpr float kError = 0x1p-6f;
-        least_w_ = std::max(pixel_error(picture_, object_, kError), 64.0f * object_.errors[3]);
+        least_w_ = std::max(pixel_error(picture_, errors_, kError), 64.0f * errors_.w);
         least_w_ = std::max(least_w_, 1e-30f);
         const auto size = static_cast<float>(std::max(picture.tiles.width, picture.tiles.height));
         move_ = picture_.grid + kError + 0x1p-20f * size;
-        depth_error_ = (object_.errors[2] + object_.errors[3]) / least_w_;
+        depth_error_ = (errors_.z + errors_.w) / least_w_;
     }
 
     [[nodiscard]] float least_w() const { return least_w_; }
@@ -72,13 +73,12 @@ class NearFaceSetup {
 
     // Beyond a side of the picture or before the near plane, by more than products may be off.
     [[nodiscard]] bool is_outside(const PatchVertices& v, const std::uint8_t* c) const {
-        const float side = 4.0f * (object_.errors[0] + object_.errors[1] + object_.errors[3]);
-        const float front = 4.0f * (object_.errors[2] + object_.errors[3]);
+        const float side = 4.0f * (errors_.x + errors_.y + errors_.w);
+        const float front = 4.0f * (errors_.z + errors_.w);
         bool left = true, right = true, low = true, high = true, before = true;
         for (int k = 0; k < 3; ++k) {
             const float x = v.x[c[k]], y = v.y[c[k]], z = v.z[c[k]], w = v.w[c[k]];
-            // A pixel's share, for the grid.
-            const float edge = 1.01f * std::abs(w) + side;
+            const float edge = kBeyondEdge * std::abs(w) + side;
             left = left && x < -edge, right = right && x > edge;
             low = low && y < -edge, high = high && y > edge;
             before = before && picture_.near_share * w - z < -front;
@@ -211,6 +211,7 @@ class NearFaceSetup {
 
     const PictureData& picture_;
     const ObjectData& object_;
+    const ClipErrors& errors_;
     float move_, depth_error_, least_w_;
 };
 

@@ -86,9 +86,10 @@ class PatchDrawer {
             hn::Store(hn::Add(hn::Mul(hn::Mul(clip[1], inverse), half_height), half_height), d, vertices_.y + i);
             hn::Store(hn::Mul(clip[2], inverse), d, vertices_.z + i);
         });
-        const float w = patch_.least_w - 8.0f * object_.errors[3];
-        const float move = picture_.grid + pixel_error(picture_, object_, w);
-        const FaceSetup setup(picture_, object_, vertices_, move, (object_.errors[2] + object_.errors[3]) / w);
+        const ClipErrors& errors = patch_.errors;
+        const float w = patch_.least_w - 2.0f * errors.w;
+        const float move = picture_.grid + pixel_error(picture_, errors, w);
+        const FaceSetup setup(picture_, object_, vertices_, move, errors.z / w, errors.w / w);
         for (std::uint32_t b = 0; b * Faces::kCount < patch_.triangle_count; ++b) {
             setup.run(patch_.blocks[b], faces_[b]);
             note(b);
@@ -103,7 +104,7 @@ class PatchDrawer {
             hn::Store(clip[2], d, vertices_.z + i);
             hn::Store(clip[3], d, vertices_.w + i);
         });
-        const NearFaceSetup setup(picture_, object_);
+        const NearFaceSetup setup(picture_, object_, patch_.errors);
         for (std::uint32_t b = 0; b * Faces::kCount < patch_.triangle_count; ++b) {
             for (std::uint32_t i = 0; i < Faces::kCount; ++i)
                 setup.set(patch_.blocks[b], i, vertices_, faces_[b], limits_[b * Faces::kCount + i]);
