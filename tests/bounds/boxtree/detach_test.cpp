@@ -45,6 +45,34 @@ TEST_SUITE("boxtree/detach") {
         CHECK(holds_all(tree));
     }
 
+    TEST_CASE("a box that is kept with an item in no leaf is told by boxes(), need not be valid, and changes nothing") {
+        const oracle::Crowd crowd = oracle::random_crowd(300, 0.0, 2);
+        BoxTree tree = *BoxTree::build(crowd.boxes, crowd.layers);
+        REQUIRE(tree.detach(7).has_value());
+        REQUIRE(tree.remove(9).has_value());
+        const Obb& kept = crowd.boxes[50];
+        Obb bad;
+        bad.center.x = std::nan("");
+        tree.keep_box(7, kept);
+        tree.keep_box(9, bad);
+        CHECK(tree.boxes()[7].center == kept.center);
+        CHECK(std::isnan(tree.boxes()[9].center.x));
+        CHECK(tree.item_count() == 298);
+        CHECK(tree.is_detached(7));
+        tree.refit();
+        while (!tree.rebuild_step(1000)) {
+        }
+        CHECK(tree.boxes()[7].center == kept.center);
+        CHECK(tree.validate().has_value());
+        CHECK(holds_all(tree));
+        CHECK(BoxTree::deserialise(tree.serialise()).has_value());
+        CHECK(tree.attach(7, crowd.boxes[7]).has_value());
+        CHECK(*tree.insert(crowd.boxes[9]) == 9);
+        CHECK(tree.boxes()[9].center == crowd.boxes[9].center);
+        CHECK(tree.validate().has_value());
+        CHECK(holds_all(tree));
+    }
+
     TEST_CASE(
         "a large tree built with items detached holds the others, and all once they are attached and it is rebuilt") {
         const oracle::Crowd crowd = oracle::random_crowd(40000, 0.0, 5);

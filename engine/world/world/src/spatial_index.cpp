@@ -5,8 +5,10 @@
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/core/error.hpp>
 #include <crofton/core/recovery.hpp>
+#include <limits>
 #include <utility>
 
+#include "object_table.hpp"
 #include "require_ok.hpp"
 
 namespace crofton::world {
@@ -38,6 +40,12 @@ constexpr std::size_t kMostExtraWork = std::size_t{1} << 19;
 
 }  // namespace
 
+Obb no_box() {
+    Obb box;
+    box.center = glm::dvec3(std::numeric_limits<double>::quiet_NaN());
+    return box;
+}
+
 SpatialIndex::SpatialIndex(boxtree::Orientation orientation)
     : tree_(detail::value_or_give_up(boxtree::BoxTree::build({}, {.orientation = orientation}))) {}
 
@@ -51,6 +59,7 @@ Result<ItemId> SpatialIndex::add(std::uint32_t layers) {
         note_changed(*item);
     }
     items_[*item] = {};
+    tree_.keep_box(*item, no_box());
     return item;
 }
 
@@ -212,6 +221,12 @@ SpatialIndex::Changes SpatialIndex::update(const Settings& settings, Executor& e
     return changes;
 }
 
+void SpatialIndex::release_scratch() {
+    Group& entering = group(Place::entering);
+    if (entering.items.empty()) release(entering.items, entering.boxes);
+    release(moved_items_, member_items_, relisted_, moved_, rested_, moved_boxes_);
+}
+
 // The first who asks after an update makes the tree: that costs less than looking at all boxes once.
 const collide::MovingTree& SpatialIndex::mover_tree() const {
     if (mover_tree_is_old_.load(std::memory_order_acquire)) {
@@ -300,6 +315,7 @@ void SpatialIndex::build_tree(std::span<const ItemId> fresh, Executor& executor)
         if (items_[item].place == Place::resting) continue;
         detached.push_back(item);
         if (!tree_.is_detached(item) && !tree_.contains(item)) removed.push_back(item);
+        boxes[item] = items_[item].place == Place::moving ? box(item) : Obb();  // valid ones, as building needs them
     }
     auto built = boxtree::BoxTree::build(
         boxes, tree_.layer_masks(), {.detached = detached, .orientation = tree_.structure().orientation()}, executor);
@@ -308,6 +324,8 @@ void SpatialIndex::build_tree(std::span<const ItemId> fresh, Executor& executor)
     if (!built) return;
     // The lowest ids are given first.
     for (std::size_t i = removed.size(); i-- > 0;) require_ok(built->remove(removed[i]));
+    for (const ItemId item : detached)
+        if (items_[item].place != Place::moving) built->keep_box(item, no_box());
     tree_ = std::move(*built);
     changed_in_tree_ = changed_before_ = {};
     rebuilding_ = false;
