@@ -175,6 +175,27 @@ TEST_SUITE("world/storage") {
         }
     }
 
+    TEST_CASE("the tree is right while many come and go and it is rebuilt in the background") {
+        for (const bool pairs : {false, true}) {
+            World world({.pairs = pairs});
+            NearMisses random(64);
+            std::vector<ObjectHandle> objects;
+            for (int i = 0; i < 6000; ++i)
+                objects.push_back(world.add({.bound = oracle::random_box(random, {}, 60.0)}).value());
+            for (int update = 0; update < 120; ++update) {
+                for (int changes = 0; changes < 150; ++changes) {
+                    ObjectHandle& object = objects[random.index(6000)];
+                    REQUIRE(world.remove(object).has_value());
+                    object = world.add({.bound = oracle::random_box(random, {}, 60.0)}).value();
+                }
+                REQUIRE(world.update().has_value());
+                const auto valid = world.tree().validate();
+                INFO((valid ? std::string() : valid.error().message));
+                REQUIRE(valid.has_value());
+            }
+        }
+    }
+
     TEST_CASE("pairs reach as far as the contact margin around bodies, also where a body comes late and then rests") {
         World world({.contact_margin = 0.5});
         const ObjectHandle ground = world.add({.bound = box_at({0.0, 0.0, 0.0})}).value();

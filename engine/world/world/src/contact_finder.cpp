@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <limits>
 #include <utility>
 
 #include "pair_order.hpp"
@@ -41,6 +42,13 @@ glm::dvec3 unit_or_zero(const glm::dvec3& v) {
 // Axes of boxes, and so poses, are orthonormal as far as floats are: a direction they turn needs its length again.
 glm::dvec3 turned(const RigidTransform& pose, const glm::dvec3& direction) {
     return unit_or_zero(pose.rotation * direction);
+}
+
+// The box of what is no collider: it is refused by validate(Obb).
+Obb no_box() {
+    Obb box;
+    box.center = glm::dvec3(std::numeric_limits<double>::quiet_NaN());
+    return box;
 }
 
 bool comes_before(const Contact& a, const IdPair& b) {
@@ -80,11 +88,12 @@ void ContactFinder::note_box(ItemId item, const Obb* box, SpatialIndex& index) {
         boxes_.assign(index.kept_boxes().begin(), index.kept_boxes().end());
         has_own_boxes_ = true;
     }
-    const Obb noted = box != nullptr ? *box : no_box();
     if (has_own_boxes_)
-        boxes_[item] = noted;
+        boxes_[item] = box != nullptr ? *box : no_box();
+    else if (box != nullptr)
+        index.keep_box(item, *box);
     else
-        index.keep_box(item, noted);
+        index.keep_no_box(item);
 }
 
 void ContactFinder::note_pairs(const ObjectTable& table, const PairChanges& changes) {

@@ -2,6 +2,7 @@
 #include "spatial_index.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/core/error.hpp>
 #include <crofton/core/recovery.hpp>
@@ -38,13 +39,14 @@ constexpr std::size_t kLeastBudget = 128, kBudgetPart = 2048;
 // No more than this in one update: some milliseconds.
 constexpr std::size_t kMostExtraWork = std::size_t{1} << 19;
 
-}  // namespace
-
-Obb no_box() {
-    Obb box;
-    box.center = glm::dvec3(std::numeric_limits<double>::quiet_NaN());
-    return box;
+// The box with a half extent that validate(Obb) refuses. A rebuild of the tree may still read it as the box.
+Obb refused(const Obb& box) {
+    Obb result = box;
+    result.half_extents.x = -std::max(std::abs(box.half_extents.x), std::numeric_limits<float>::min());
+    return result;
 }
+
+}  // namespace
 
 SpatialIndex::SpatialIndex(boxtree::Orientation orientation)
     : tree_(detail::value_or_give_up(boxtree::BoxTree::build({}, {.orientation = orientation}))) {}
@@ -59,8 +61,12 @@ Result<ItemId> SpatialIndex::add(std::uint32_t layers) {
         note_changed(*item);
     }
     items_[*item] = {};
-    tree_.keep_box(*item, no_box());
+    keep_no_box(*item);
     return item;
+}
+
+void SpatialIndex::keep_no_box(ItemId item) {
+    keep_box(item, refused(tree_.boxes()[item]));
 }
 
 void SpatialIndex::put(ItemId item, Place place, const Obb& box) {
@@ -325,7 +331,7 @@ void SpatialIndex::build_tree(std::span<const ItemId> fresh, Executor& executor)
     // The lowest ids are given first.
     for (std::size_t i = removed.size(); i-- > 0;) require_ok(built->remove(removed[i]));
     for (const ItemId item : detached)
-        if (items_[item].place != Place::moving) built->keep_box(item, no_box());
+        if (items_[item].place != Place::moving) built->keep_box(item, refused(built->boxes()[item]));
     tree_ = std::move(*built);
     changed_in_tree_ = changed_before_ = {};
     rebuilding_ = false;

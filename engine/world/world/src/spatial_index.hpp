@@ -15,9 +15,6 @@
 
 namespace crofton::world {
 
-// A box that validate(Obb) refuses.
-[[nodiscard]] Obb no_box();
-
 // Ids are the tree's. What is asked of the tree and of the list is as of the last update(). Boxes are valid.
 class SpatialIndex {
   public:
@@ -99,12 +96,13 @@ class SpatialIndex {
     [[nodiscard]] const Obb& box(ItemId item) const;  // of an item that has one
     [[nodiscard]] std::uint32_t layers(ItemId item) const { return tree_.structure().items().layer_masks()[item]; }
     [[nodiscard]] const boxtree::BoxTree& tree() const { return tree_; }
-    // Boxes by item, side by side: of items in the tree their own, of others what keep_box() was given last, and until
-    // then no_box().
+    // Boxes by item, side by side: of items in the tree their own, of others what keep_box() was given last. Until then,
+    // and after keep_no_box(), a box that validate(Obb) refuses.
     [[nodiscard]] std::span<const Obb> kept_boxes() const { return tree_.boxes(); }
     void keep_box(ItemId item, const Obb& box) {
         if (items_[item].place != Place::resting) tree_.keep_box(item, box);
     }
+    void keep_no_box(ItemId item);
     [[nodiscard]] const cull::MovingBoxes& moving() const { return moving_.boxes(); }
 
     // Calls visit(entry) for entries of moving(), in order, while it answers true: all whose boxes the ray may meet, or
