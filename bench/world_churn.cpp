@@ -1,36 +1,21 @@
 // SPDX-License-Identifier: MIT
 // What spawns and despawns leave behind in a World: memory, and the time of an update and of a view.
-#include <crofton/core/memory.hpp>
 #include <crofton/crofton.hpp>
 #include <random>
 #include <vector>
 
+#include "counted_memory.hpp"
 #include "cull_crowd.hpp"
 #include "world_frames.hpp"
 
 namespace crofton::bench {
 namespace {
 
-std::size_t bytes_in_use = 0, most_bytes_in_use = 0;
-
-void count_memory() {
-    set_memory_hooks({[](void*, std::size_t bytes, std::size_t alignment) {
-                          bytes_in_use += bytes;
-                          most_bytes_in_use = std::max(most_bytes_in_use, bytes_in_use);
-                          return std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
-                      },
-                      [](void*, void* memory, std::size_t bytes, std::size_t) {
-                          bytes_in_use -= bytes;
-                          std::free(memory);
-                      },
-                      nullptr});
-}
-
 // Objects of which some are removed and others added in each update; as many live at any time.
 class Churn {
   public:
-    Churn(std::size_t live_count, std::size_t part)
-        : boxes(crowd(live_count)), a_frame_(std::max(live_count / part, std::size_t{1})) {
+    Churn(CountedMemory& counted, std::size_t live_count, std::size_t part)
+        : memory(counted), boxes(crowd(live_count)), a_frame_(std::max(live_count / part, std::size_t{1})) {
         for (const Obb& box : boxes) live.push_back(world.add({.bound = box}).value());
         require_ok(world.update().has_value(), "loading");
     }
@@ -44,15 +29,16 @@ class Churn {
         rest();
     }
     void rest() {
-        most_bytes_in_use = bytes_in_use;
+        memory.most_in_use = memory.in_use;
         update_microseconds += microseconds([&] { require_ok(world.update().has_value(), "an update"); });
-        most_bytes = std::max(most_bytes, bytes_in_use);
-        most_within_bytes = std::max(most_within_bytes, most_bytes_in_use);
-        sum_of_bytes += static_cast<double>(bytes_in_use);
+        most_bytes = std::max(most_bytes, memory.in_use);
+        most_within_bytes = std::max(most_within_bytes, memory.most_in_use);
+        sum_of_bytes += static_cast<double>(memory.in_use);
         ++updates;
     }
     [[nodiscard]] std::size_t a_frame() const { return a_frame_; }
 
+    CountedMemory& memory;
     std::vector<Obb> boxes;
     World world{{.pairs = false}};
     std::vector<ObjectHandle> live;
@@ -71,13 +57,14 @@ struct AgainstFresh {
 
 // A view of the world against one that has just been loaded with the same objects.
 AgainstFresh against_fresh(const Churn& churn, const cull::View& view) {
-    const std::size_t before = most_bytes_in_use = bytes_in_use;
+    CountedMemory& memory = churn.memory;
+    const std::size_t before = memory.most_in_use = memory.in_use;
     World fresh({.pairs = false});
     for (const ObjectHandle object : churn.live)
         require_ok(fresh.add({.bound = churn.world.box_of(object).value()}).has_value(), "a copy");
     require_ok(fresh.update().has_value(), "loading");
-    const auto fresh_bytes = static_cast<double>(bytes_in_use - before),
-               fresh_within_bytes = static_cast<double>(most_bytes_in_use - before);
+    const auto fresh_bytes = static_cast<double>(memory.in_use - before),
+               fresh_within_bytes = static_cast<double>(memory.most_in_use - before);
     ViewResult seen, seen_fresh;
     const FrameTimes times = compare(
         50, [&](int) { (void)fresh.view({.volume = view.frustum, .order = cull::ResultOrder::tree}, seen_fresh); },
@@ -113,28 +100,25 @@ void print_row(const char* when, std::size_t spawns, Churn& churn, const cull::V
 }  // namespace
 
 void churn(std::size_t live_count, std::size_t part, std::size_t spawns) {
-    count_memory();
-    {
-        Churn churn(live_count, part);
-        const cull::View view = view_of_share(churn.boxes, 0.2);
-        std::printf("# objects: %zu live, %zu removed and as many added in an update\n", live_count, churn.a_frame());
-        std::printf(
-            "when,spawns,bytes an object,mean × fresh,most × fresh,most in an update × in loading,"
-            "view in µs,view × fresh,update in µs\n");
-        churn.rest();
-        print_row("loaded", 0, churn, view, false);
-        std::size_t done = 0;
-        for (std::size_t next = spawns / 1000; done < spawns; next *= 10) {
-            for (; done < std::min(next, spawns); done += churn.a_frame()) churn.update();
-            print_row("churning", done, churn, view, true);
-        }
-        for (int rest = 0; rest < 600; ++rest) churn.rest();
-        churn.sum_of_bytes = churn.update_microseconds = 0.0;
-        churn.most_bytes = churn.most_within_bytes = churn.updates = 0;
-        churn.rest();
-        print_row("600 updates later", done, churn, view, false);
+    CountedMemory memory;
+    Churn churn(memory, live_count, part);
+    const cull::View view = view_of_share(churn.boxes, 0.2);
+    std::printf("# objects: %zu live, %zu removed and as many added in an update\n", live_count, churn.a_frame());
+    std::printf(
+        "when,spawns,bytes an object,mean × fresh,most × fresh,most in an update × in loading,"
+        "view in µs,view × fresh,update in µs\n");
+    churn.rest();
+    print_row("loaded", 0, churn, view, false);
+    std::size_t done = 0;
+    for (std::size_t next = spawns / 1000; done < spawns; next *= 10) {
+        for (; done < std::min(next, spawns); done += churn.a_frame()) churn.update();
+        print_row("churning", done, churn, view, true);
     }
-    reset_memory_hooks();
+    for (int rest = 0; rest < 600; ++rest) churn.rest();
+    churn.sum_of_bytes = churn.update_microseconds = 0.0;
+    churn.most_bytes = churn.most_within_bytes = churn.updates = 0;
+    churn.rest();
+    print_row("600 updates later", done, churn, view, false);
 }
 
 }  // namespace crofton::bench

@@ -19,6 +19,27 @@ using boxtree::ItemId;
 using oracle::holds_all;
 
 TEST_SUITE("boxtree/box_tree changes") {
+    TEST_CASE("a tree that is never rebuilt uses its empty leaves again while items come and as many go") {
+        for (const std::size_t count : {500u, 3000u}) {
+            oracle::NearMisses random(71);
+            BoxTree tree = *BoxTree::build(oracle::random_crowd(count, 0.0, 71).boxes);
+            for (int frame = 0; frame < 30'000; ++frame) {
+                const auto item = static_cast<ItemId>(random.index(static_cast<unsigned>(count)));
+                REQUIRE(tree.remove(item).has_value());
+                REQUIRE(*tree.insert(oracle::random_box(random, {}, 40.0)) == item);
+                if (frame % 50 == 0) tree.refit();
+                if (frame % 1000 == 0) REQUIRE(tree.validate().has_value());
+            }
+            std::size_t empty = 0;
+            for (const boxtree::Leaf& leaf : tree.structure().leaves()) empty += leaf.count == 0;
+            CHECK(10 * empty < 3 * tree.structure().leaves().size());
+            CHECK(tree.structure().leaves().size() < 100 + count / 6);
+            tree.refit();
+            CHECK(tree.validate().has_value());
+            CHECK(holds_all(tree));
+        }
+    }
+
     TEST_CASE("bad boxes and unknown or removed items are refused, and the tree stays as it was") {
         BoxTree tree = *BoxTree::build(oracle::random_crowd(50, 0.0, 1).boxes);
         const Vector<std::byte> before = tree.serialise();

@@ -13,6 +13,17 @@ using boxtree::BoxTree;
 using boxtree::ItemId;
 using oracle::holds_all;
 
+namespace {
+
+// A box that validate(Obb) refuses.
+Obb refused(const Obb& box) {
+    Obb result = box;
+    result.half_extents.x = -box.half_extents.x;
+    return result;
+}
+
+}  // namespace
+
 TEST_SUITE("boxtree/detach") {
     TEST_CASE(
         "only what rests can be detached or moved, only what is detached can be attached, and a bad box changes "
@@ -41,6 +52,32 @@ TEST_SUITE("boxtree/detach") {
         CHECK(*tree.insert(Obb{}) == 100);  // 7 keeps its id
         CHECK(tree.attach(7, Obb{}).has_value());
         CHECK(tree.boxes()[7].half_extents == glm::vec3(0.0f));
+        CHECK(tree.validate().has_value());
+        CHECK(holds_all(tree));
+    }
+
+    TEST_CASE("a box that is kept with an item in no leaf is told by boxes(), may be refused, and changes nothing") {
+        const oracle::Crowd crowd = oracle::random_crowd(300, 0.0, 2);
+        BoxTree tree = *BoxTree::build(crowd.boxes, crowd.layers);
+        REQUIRE(tree.detach(7).has_value());
+        REQUIRE(tree.remove(9).has_value());
+        const Obb& kept = crowd.boxes[50];
+        tree.keep_box(7, kept);
+        tree.keep_box(9, refused(kept));
+        CHECK(tree.boxes()[7].center == kept.center);
+        CHECK(tree.boxes()[9].half_extents.x < 0.0f);
+        CHECK(tree.item_count() == 298);
+        CHECK(tree.is_detached(7));
+        tree.refit();
+        while (!tree.rebuild_step(1000)) {
+        }
+        CHECK(tree.boxes()[7].center == kept.center);
+        CHECK(tree.validate().has_value());
+        CHECK(holds_all(tree));
+        CHECK(BoxTree::deserialise(tree.serialise()).has_value());
+        CHECK(tree.attach(7, crowd.boxes[7]).has_value());
+        CHECK(*tree.insert(crowd.boxes[9]) == 9);
+        CHECK(tree.boxes()[9].center == crowd.boxes[9].center);
         CHECK(tree.validate().has_value());
         CHECK(holds_all(tree));
     }
@@ -115,9 +152,11 @@ TEST_SUITE("boxtree/detach") {
                             break;
                         case 5:
                             detached.insert(tree.insert_detached(1u << random.index(8)).value());
+                            tree.keep_box(*detached.rbegin(), refused(box));
                             break;
                         case 1:
                             CHECK(tree.remove(item).has_value() == (rests || detached.erase(item) > 0));
+                            tree.keep_box(item, refused(box));
                             break;
                         case 2:
                             CHECK(tree.set_layer_mask(item, 1u << random.index(8)).has_value() ==
@@ -126,6 +165,7 @@ TEST_SUITE("boxtree/detach") {
                         case 3:
                             CHECK(tree.detach(item).has_value() == rests);
                             if (rests) detached.insert(item);
+                            if (rests) tree.keep_box(item, random.index(2) ? box : refused(box));
                             break;
                         case 4:
                             CHECK(tree.attach(item, box).has_value() == (detached.erase(item) > 0));

@@ -140,6 +140,11 @@ Result<void> BoxTree::attach(ItemId item, const Obb& box) {
     return {};
 }
 
+void BoxTree::keep_box(ItemId item, const Obb& box) {
+    CROFTON_ASSERT(item < items_->size() && !contains(item), "keep_box needs an item in no leaf");
+    items_->set_box(item, box);
+}
+
 void BoxTree::refit() {
     Refit(*structure_).run();
 }

@@ -118,7 +118,32 @@ LeafId Placement::best_leaf(const Obb& box) const {
     }
 }
 
-// Half of a full leaf's items go to a new leaf beside it.
+// A leaf of the node that all items have left; kNone if there is none.
+LeafId Placement::empty_leaf_of(NodeId parent) const {
+    const Node& node = nodes_[parent];
+    for (unsigned lane = 0; lane < node.count; ++lane)
+        if ((node.child[lane] & kLeafBit) != 0 && leaves_[node.child[lane] & ~kLeafBit].count == 0)
+            return node.child[lane] & ~kLeafBit;
+    return kNone;
+}
+
+// A leaf in no node: one that all items have left, taken from its node, so that a tree whose items come and go does not
+// grow, or else a new one. Looks at a part of the leaves, the next part the next time.
+LeafId Placement::free_leaf() {
+    constexpr std::size_t kLooks = 1024;
+    const Vector<std::uint8_t>& counts = structure_.leaf_counts_;
+    const std::size_t begin = structure_.next_free_leaf_, end = std::min(begin + kLooks, counts.size());
+    const void* const empty = std::memchr(counts.data() + begin, 0, end - begin);
+    structure_.next_free_leaf_ = end < counts.size() ? end : 0;
+    if (empty == nullptr) return add_leaf();
+    const auto l = static_cast<LeafId>(static_cast<const std::uint8_t*>(empty) - counts.data());
+    structure_.next_free_leaf_ = (l + std::size_t{1}) % counts.size();
+    if (nodes_[leaves_[l].parent].count <= 2) return add_leaf();  // a node keeps two children
+    remove_child(leaves_[l].parent, leaves_[l].lane_in_parent);
+    return l;
+}
+
+// Half of a full leaf's items go to another leaf beside it.
 void Placement::split_leaf(LeafId l) {
     BuildItem items[kWidth];
     for (unsigned lane = 0; lane < kWidth; ++lane) {
@@ -133,18 +158,17 @@ void Placement::split_leaf(LeafId l) {
         items[lane].set_id(item);
     }
     halve(items);
-    const LeafId fresh = add_leaf();
     const NodeId parent = leaves_[l].parent;
-    const std::uint32_t lane_in_parent = leaves_[l].lane_in_parent;
-    const LeafId both[2] = {l, fresh};
+    const LeafId empty = empty_leaf_of(parent), other = empty != kNone ? empty : free_leaf();
+    const LeafId both[2] = {l, other};
     for (unsigned side = 0; side < 2; ++side) {
         ItemId ids[kWidth / 2];
         for (unsigned i = 0; i < kWidth / 2; ++i) ids[i] = items[side * kWidth / 2 + i].id();
-        make_leaf(both[side], ids, parent, lane_in_parent);
+        make_leaf(both[side], ids, parent, leaves_[both[side]].lane_in_parent);
     }
-    add_child(parent, fresh | kLeafBit);
+    if (empty == kNone) add_child(parent, other | kLeafBit);
     refresh_above(l | kLeafBit);
-    refresh_above(fresh | kLeafBit);
+    refresh_above(other | kLeafBit);
 }
 
 void Placement::make_leaf(LeafId l, std::span<const ItemId> items, NodeId parent, std::uint32_t lane_in_parent) {
@@ -183,6 +207,18 @@ void Placement::add_child(NodeId parent, std::uint32_t child) {
     link(parent, node.count - 1, child);
     // The new child's leaves lie elsewhere in memory, so those below here, and above, are no longer consecutive.
     for (NodeId n = parent; n != kNone; n = nodes_[n].parent) structure_.ranges_[n] = {};
+}
+
+// Requires more than two children, of which this one has no items.
+void Placement::remove_child(NodeId parent, unsigned lane) {
+    std::uint32_t children[kWidth];
+    unsigned count = 0;
+    for (unsigned i = 0; i < nodes_[parent].count; ++i)
+        if (i != lane) children[count++] = nodes_[parent].child[i];
+    make_node(parent, {children, count}, nodes_[parent].parent, nodes_[parent].lane_in_parent, nodes_[parent].axes);
+    structure_.refresh_node(parent);
+    for (NodeId n = parent; n != kNone; n = nodes_[n].parent) structure_.ranges_[n] = {};
+    refresh_above(parent);
 }
 
 // Half of a full node's children go to a new node; returns the one of the two that the caller may add to. Splitting the

@@ -26,9 +26,12 @@ class Placement {
     [[nodiscard]] unsigned best_lane(const Node& node, const Aabb& box) const;
     [[nodiscard]] LeafId best_leaf(const Obb& box) const;
     LeafId add_leaf();
+    [[nodiscard]] LeafId empty_leaf_of(NodeId parent) const;
+    [[nodiscard]] LeafId free_leaf();
     void split_leaf(LeafId l);
     void make_leaf(LeafId l, std::span<const ItemId> items, NodeId parent, std::uint32_t lane_in_parent);
     void add_child(NodeId parent, std::uint32_t child);
+    void remove_child(NodeId parent, unsigned lane);
     void link(NodeId parent, unsigned lane, std::uint32_t child);
     NodeId split_node(NodeId n);
     void make_node(NodeId n, std::span<const std::uint32_t> children, NodeId parent, unsigned lane_in_parent,

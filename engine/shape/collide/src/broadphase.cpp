@@ -251,6 +251,19 @@ Result<void> Broadphase::State::update_all(std::span<const Obb> boxes, std::span
     return {};
 }
 
+// What the lists for callers are made of stays.
+void Broadphase::State::release_scratch() {
+    order.release();
+    list.release();
+    const auto release = [](auto&... lists) { (std::exchange(lists, {}), ...); };
+    release(workers, previous, movers, partners, partners_begin, queries, query_movers, query_bounds, found_begin, now,
+            came, left, ended_entries);
+}
+
+void Broadphase::release_scratch() {
+    state_->release_scratch();
+}
+
 Result<void> Broadphase::State::update(std::span<const Obb> boxes, std::span<const CollisionFilter> filters,
                                        Executor& executor, const PairTest* test) {
     current = false;

@@ -75,6 +75,7 @@ struct Broadphase::State {
     [[nodiscard]] static Result<void> check(std::span<const Obb> boxes, std::span<const CollisionFilter> filters);
     [[nodiscard]] Result<void> update_all(std::span<const Obb> boxes, std::span<const CollisionFilter> filters,
                                           Executor& executor, const PairTest* test);
+    void release_scratch();
     void place_all(std::span<const Obb> boxes, Executor& executor);
     void sort(std::span<const Obb> boxes, Executor& executor);
     [[nodiscard]] bool grow(SlotPairs& slots, BroadphaseWorker& worker) const;

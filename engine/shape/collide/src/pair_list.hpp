@@ -17,6 +17,7 @@ class PairList {
     void place(Vector<IdPair>& sorted);
     void add(std::span<const std::uint32_t> first, std::span<const std::uint32_t> second, Vector<IdPair>& sorted);
     void finish(Vector<IdPair>& sorted) const;
+    void release() { *this = {}; }  // gives back all memory
 
   private:
     Vector<std::uint32_t> place_;  // by item: how many, then where the next goes

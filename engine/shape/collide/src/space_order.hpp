@@ -18,6 +18,8 @@ class SpaceOrder {
     // neighbours. Boxes whose numbers are not finite or out of range are left out.
     void sort(std::span<const Obb> boxes);
     [[nodiscard]] std::span<const std::uint32_t> items() const { return items_; }
+    // Gives back all memory; items() is empty then.
+    void release() { *this = {}; }
 
   private:
     struct Keyed {

@@ -342,6 +342,11 @@ void BodyContacts::write_contacts() {
     }
 }
 
+void BodyContacts::release_scratch() {
+    release(changed_, movers_, came_, joined_, parted_, dropped_, candidates_, ended_before_, all_, gone_, touches_,
+            added_, workers_);
+}
+
 void BodyContacts::stay() {
     computed_ = 0;
     touches_.clear();

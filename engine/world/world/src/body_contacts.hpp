@@ -25,6 +25,8 @@ class BodyContacts {
     // The object's body, or where it stands, has changed otherwise than by its box.
     void note(std::uint32_t object) { changed_.push_back(object); }
     void forget_changes() { changed_.clear(); }  // where contacts are not asked for
+    // After an update: gives back what many changes have taken.
+    void release_scratch();
 
     // False: the pairs do not matter to an update.
     [[nodiscard]] bool has_work(const ObjectBodies& bodies) const { return bodies.count() > 0 || !states_.empty(); }

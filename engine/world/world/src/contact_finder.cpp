@@ -61,11 +61,10 @@ bool comes_before(const Contact& a, const IdPair& b) {
 ContactFinder::ContactFinder(const WorldOptions& options)
     : options_(options), broadphase_({.exact_boxes = true, .max_pairs = options.max_pairs}) {}
 
-void ContactFinder::note_colliders(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene,
+void ContactFinder::note_colliders(const ObjectTable& table, SpatialIndex& index, const scene::Scene& scene,
                                    const ObjectBodies& bodies_of, const PairChanges& changes) {
-    const std::size_t count = table.objects.size();
-    resize(boxes_, count, no_box());
-    resize(filters_, count);
+    resize(filters_, index.size());
+    if (has_own_boxes_) resize(boxes_, index.size(), no_box());
     moved_.clear();
     for (const auto items : {index.moved_items(), index.member_items(), std::span<const ItemId>(changes.objects)})
         moved_.insert(moved_.end(), items.begin(), items.end());
@@ -74,10 +73,28 @@ void ContactFinder::note_colliders(const ObjectTable& table, const SpatialIndex&
         filters_[item] = {index.layers(item), object.collides_with};
         const bool collides = object.alive && object.collides_with != 0 && index.is_placed(item) &&
                               !bodies_of.is_unbounded(item) && filters_[item].layers != 0;
-        boxes_[item] = collides
-                           ? bodies_of.collider_box(item, object, index.box(item), scene, options_.contact_margin / 2.0)
-                           : no_box();
+        if (!collides) {
+            note_box(item, nullptr, index);
+            continue;
+        }
+        const Obb box = bodies_of.collider_box(item, object, index.box(item), scene, options_.contact_margin / 2.0);
+        note_box(item, &box, index);
     }
+}
+
+// nullptr: the object is no collider.
+void ContactFinder::note_box(ItemId item, const Obb* box, SpatialIndex& index) {
+    const bool is_index_box = box != nullptr && have_same_bits(*box, index.box(item));
+    if (!has_own_boxes_ && !is_index_box && index.is_placed(item)) {
+        boxes_.assign(index.kept_boxes().begin(), index.kept_boxes().end());
+        has_own_boxes_ = true;
+    }
+    if (has_own_boxes_)
+        boxes_[item] = box != nullptr ? *box : no_box();
+    else if (box != nullptr)
+        index.keep_box(item, *box);
+    else
+        index.keep_no_box(item);
 }
 
 void ContactFinder::note_pairs(const ObjectTable& table, const PairChanges& changes) {
@@ -297,7 +314,7 @@ void ContactFinder::replace_contacts(const ObjectTable& table, std::span<const I
     }
 }
 
-Result<void> ContactFinder::update(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene,
+Result<void> ContactFinder::update(const ObjectTable& table, SpatialIndex& index, const scene::Scene& scene,
                                    Bodies& bodies, const ObjectBodies& bodies_of, const PairChanges& changes,
                                    Executor& executor) {
     note_colliders(table, index, scene, bodies_of, changes);
@@ -309,7 +326,8 @@ Result<void> ContactFinder::update(const ObjectTable& table, const SpatialIndex&
         if (options_.contact_margin > 0.0 && (body_a || body_b) && !collide::intersects(box_a, box_b)) return false;
         return bounds_meet(table.objects[a], box_a, table.objects[b], box_b);
     };
-    Result<void> found = broadphase_.update_moved(boxes_, moved_, meet, filters_, executor);
+    const std::span<const Obb> boxes = has_own_boxes_ ? std::span<const Obb>(boxes_) : index.kept_boxes();
+    Result<void> found = broadphase_.update_moved(boxes, moved_, meet, filters_, executor);
     note_pairs(table, changes);
     if (!options_.contacts) return found;
     const auto touched = changes.all_contacts ? broadphase_.pairs() : broadphase_.tested();
@@ -317,6 +335,11 @@ Result<void> ContactFinder::update(const ObjectTable& table, const SpatialIndex&
     find_contacts(table, index, scene, bodies, bodies_of, executor);
     replace_contacts(table, broadphase_.ended());
     return found;
+}
+
+void ContactFinder::release_scratch() {
+    release(moved_, began_pairs_, ended_pairs_, touched_, touches_, workers_, ended_before_, added_);
+    broadphase_.release_scratch();
 }
 
 void ContactFinder::stay() {

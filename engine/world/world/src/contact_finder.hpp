@@ -46,10 +46,12 @@ class ContactFinder {
     // After the updates of these. Looks at the index's moved_items() and member_items() and at what `changes` tells of;
     // other pairs and contacts stay as they are. Pairs of two bodies are left to `bodies_of`. Error: as
     // Broadphase::update.
-    Result<void> update(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene, Bodies& bodies,
+    Result<void> update(const ObjectTable& table, SpatialIndex& index, const scene::Scene& scene, Bodies& bodies,
                         const ObjectBodies& bodies_of, const PairChanges& changes, Executor& executor);
     // Nothing has changed since the update before.
     void stay();
+    // After an update: gives back what looking at many pairs has taken. touched() is empty then.
+    void release_scratch();
 
     [[nodiscard]] std::span<const ObjectPair> pairs() const { return pairs_.get(); }  // any thread may ask
     [[nodiscard]] std::size_t pair_count() const { return broadphase_.statistics().box_pairs; }
@@ -74,8 +76,9 @@ class ContactFinder {
         std::span<mesh::MeshContact> triangles;
     };
 
-    void note_colliders(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene,
+    void note_colliders(const ObjectTable& table, SpatialIndex& index, const scene::Scene& scene,
                         const ObjectBodies& bodies_of, const PairChanges& changes);
+    void note_box(ItemId item, const Obb* box, SpatialIndex& index);
     void note_pairs(const ObjectTable& table, const PairChanges& changes);
     void find_contacts(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene, Bodies& bodies,
                        const ObjectBodies& bodies_of, Executor& executor);
@@ -93,7 +96,10 @@ class ContactFinder {
 
     WorldOptions options_;
     collide::Broadphase broadphase_;  // its items are the objects; those that are no colliders have no valid box
+    // The broadphase's boxes, once one is not the index's: that of an object that collides with nothing, or whose body
+    // needs a wider box. Until then the broadphase reads SpatialIndex::kept_boxes(), which saves the memory.
     Vector<Obb> boxes_;
+    bool has_own_boxes_ = false;
     Vector<collide::CollisionFilter> filters_;
     Vector<std::uint32_t> moved_;
     LazySortedList<ObjectPair, IsBefore> pairs_;

@@ -33,6 +33,12 @@ void resize(Vector<T>& items, std::size_t size, const T& value = T()) {
     items.resize(size, value);
 }
 
+// Empties lists and gives back their memory.
+template <class... Lists>
+void release(Lists&... lists) {
+    (Lists().swap(lists), ...);
+}
+
 // Where the generations of one more World begin. Each World of the process begins elsewhere, far from all others, so
 // that a handle of another World is no one's here. The first begins at 1.
 [[nodiscard]] std::uint32_t next_first_generation();
@@ -94,30 +100,37 @@ class MoverTable {
             if (handle.index >= keys_.size()) break;
             const Key& key = keys_[handle.index];
             if (key.generation != handle.generation || key.entry == kNoIndex) break;
-            if (key.least.x >= 0.0f && !covers(boxes[begin + count], key.least)) break;
+            if (key.entry < least_.size() && !covers(boxes[begin + count], least_[key.entry])) break;
             entries[count] = key.entry;
         }
         return count;
     }
-    // `least_half_extents` as ObjectBodies tells them.
+    // `least_half_extents` as ObjectBodies tells them. kNoIndex: the object is no such box.
     void set(ObjectHandle handle, std::uint32_t entry, const glm::vec3& least_half_extents) {
+        if (entry == kNoIndex) return forget(handle.index);
         if (handle.index >= keys_.size()) resize(keys_, handle.index + std::size_t{1});
-        keys_[handle.index] = {handle.generation, entry, least_half_extents};
+        keys_[handle.index] = {handle.generation, entry};
+        if (entry >= least_.size() && least_half_extents.x >= 0.0f)
+            resize(least_, entry + std::size_t{1}, kAnyHalfExtents);
+        if (entry < least_.size()) least_[entry] = least_half_extents;
     }
     void forget(std::uint32_t object) {
         if (object < keys_.size()) keys_[object].entry = kNoIndex;
     }
 
   private:
+    static constexpr glm::vec3 kAnyHalfExtents{-1.0f};
+
     [[nodiscard]] static bool covers(const Obb& box, const glm::vec3& least) {
+        if (least.x < 0.0f) return true;
         const glm::vec3& half = box.half_extents;
         return half.x >= least.x && half.y >= least.y && half.z >= least.z && is_clearly_rotation(glm::dmat3(box.axes));
     }
     struct Key {
         std::uint32_t generation = 0, entry = kNoIndex;
-        glm::vec3 least{-1.0f};
     };
-    Vector<Key> keys_;  // by object
+    Vector<Key> keys_;         // by object, up to the last that has moved
+    Vector<glm::vec3> least_;  // by entry, up to the last with a body
 };
 
 [[nodiscard]] inline Sphere sphere_of(const Object& object, const Obb& box) {

@@ -2,11 +2,14 @@
 #include "spatial_index.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/core/error.hpp>
 #include <crofton/core/recovery.hpp>
+#include <limits>
 #include <utility>
 
+#include "object_table.hpp"
 #include "require_ok.hpp"
 
 namespace crofton::world {
@@ -36,6 +39,13 @@ constexpr std::size_t kLeastBudget = 128, kBudgetPart = 2048;
 // No more than this in one update: some milliseconds.
 constexpr std::size_t kMostExtraWork = std::size_t{1} << 19;
 
+// The box with a half extent that validate(Obb) refuses. A rebuild of the tree may still read it as the box.
+Obb refused(const Obb& box) {
+    Obb result = box;
+    result.half_extents.x = -std::max(std::abs(box.half_extents.x), std::numeric_limits<float>::min());
+    return result;
+}
+
 }  // namespace
 
 SpatialIndex::SpatialIndex(boxtree::Orientation orientation)
@@ -51,7 +61,12 @@ Result<ItemId> SpatialIndex::add(std::uint32_t layers) {
         note_changed(*item);
     }
     items_[*item] = {};
+    keep_no_box(*item);
     return item;
+}
+
+void SpatialIndex::keep_no_box(ItemId item) {
+    keep_box(item, refused(tree_.boxes()[item]));
 }
 
 void SpatialIndex::put(ItemId item, Place place, const Obb& box) {
@@ -212,6 +227,12 @@ SpatialIndex::Changes SpatialIndex::update(const Settings& settings, Executor& e
     return changes;
 }
 
+void SpatialIndex::release_scratch() {
+    Group& entering = group(Place::entering);
+    if (entering.items.empty()) release(entering.items, entering.boxes);
+    release(moved_items_, member_items_, relisted_, moved_, rested_, moved_boxes_);
+}
+
 // The first who asks after an update makes the tree: that costs less than looking at all boxes once.
 const collide::MovingTree& SpatialIndex::mover_tree() const {
     if (mover_tree_is_old_.load(std::memory_order_acquire)) {
@@ -300,6 +321,7 @@ void SpatialIndex::build_tree(std::span<const ItemId> fresh, Executor& executor)
         if (items_[item].place == Place::resting) continue;
         detached.push_back(item);
         if (!tree_.is_detached(item) && !tree_.contains(item)) removed.push_back(item);
+        boxes[item] = items_[item].place == Place::moving ? box(item) : Obb();  // valid ones, as building needs them
     }
     auto built = boxtree::BoxTree::build(
         boxes, tree_.layer_masks(), {.detached = detached, .orientation = tree_.structure().orientation()}, executor);
@@ -308,6 +330,8 @@ void SpatialIndex::build_tree(std::span<const ItemId> fresh, Executor& executor)
     if (!built) return;
     // The lowest ids are given first.
     for (std::size_t i = removed.size(); i-- > 0;) require_ok(built->remove(removed[i]));
+    for (const ItemId item : detached)
+        if (items_[item].place != Place::moving) built->keep_box(item, refused(built->boxes()[item]));
     tree_ = std::move(*built);
     changed_in_tree_ = changed_before_ = {};
     rebuilding_ = false;

@@ -79,6 +79,10 @@ class SpatialIndex {
     // That have come into the list, left it or got another entry since the last commit(). One may be named twice.
     [[nodiscard]] std::span<const ItemId> relisted_items() const { return relisted_; }
 
+    // Gives back what loading many items has taken and updates of few do not need. The lists of this update are empty
+    // then.
+    void release_scratch();
+
     // A bit for each item that has ever had another box than at first, or whose id another item had before.
     [[nodiscard]] std::span<const std::uint64_t> changed() const { return changed_; }
     // Sets the bits of items in the list that have moved since they entered it: changed() has them once they leave it.
@@ -92,6 +96,13 @@ class SpatialIndex {
     [[nodiscard]] const Obb& box(ItemId item) const;  // of an item that has one
     [[nodiscard]] std::uint32_t layers(ItemId item) const { return tree_.structure().items().layer_masks()[item]; }
     [[nodiscard]] const boxtree::BoxTree& tree() const { return tree_; }
+    // Boxes by item, side by side: of items in the tree their own, of others what keep_box() was given last. Until then,
+    // and after keep_no_box(), a box that validate(Obb) refuses.
+    [[nodiscard]] std::span<const Obb> kept_boxes() const { return tree_.boxes(); }
+    void keep_box(ItemId item, const Obb& box) {
+        if (items_[item].place != Place::resting) tree_.keep_box(item, box);
+    }
+    void keep_no_box(ItemId item);
     [[nodiscard]] const cull::MovingBoxes& moving() const { return moving_.boxes(); }
 
     // Calls visit(entry) for entries of moving(), in order, while it answers true: all whose boxes the ray may meet, or

@@ -178,6 +178,14 @@ Result<void> World::State::apply_scene(Executor& executor) {
     return scaled;
 }
 
+// After the update in which many objects have come at once: the next ones bring few.
+void World::State::release_scratch() {
+    world::release(staged, removed, rebound, pair_changes.objects);
+    index.release_scratch();
+    finder.release_scratch();
+    body_contacts.release_scratch();
+}
+
 Result<void> World::update(Executor& executor) {
     State& s = *state_;
     const TraceHooks& trace = s.options.trace;
@@ -235,6 +243,7 @@ Result<void> World::update(Executor& executor) {
     if (changed) s.statistics.box_tests = s.finder.broadphase().boxes;
     s.statistics.body_pairs_computed = s.options.pairs && s.options.contacts ? s.body_contacts.computed() : 0;
     s.statistics.contact_pairs_tested = changed ? s.finder.tested_count() + ground_pairs : 0;
+    if (changes.tree_built) s.release_scratch();
     return found ? scaled : found;
 }
 

@@ -121,6 +121,7 @@ struct World::State {
     void update_ground();
     void update_ground_contacts();
     void update_occluders();
+    void release_scratch();
     [[nodiscard]] Result<void> set_found_occluders(scene::MeshId mesh, const occlude::FindOptions& how);
     // CullOptions::candidate_mask, in `both`, with the bits of objects that have moved or reuse an index.
     [[nodiscard]] std::span<const std::uint64_t> candidates_and_changed(std::span<const std::uint64_t> candidate_mask,

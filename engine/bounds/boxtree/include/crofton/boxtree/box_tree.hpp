@@ -74,6 +74,10 @@ class BoxTree {
     [[nodiscard]] Result<ItemId> insert_detached(std::uint32_t layer_mask = ~std::uint32_t{0});
     [[nodiscard]] Result<void> attach(ItemId item, const Obb& box);
     [[nodiscard]] bool is_detached(ItemId item) const;
+    // Makes `box` the item's entry in boxes(), for callers that look boxes up there; no query reads it. Requires an id
+    // below boxes().size() of an item that is in no leaf: detached or removed. Requires a box that passes validate(Obb)
+    // but for the signs of its half extents: a rebuild that has begun earlier may still read it.
+    void keep_box(ItemId item, const Obb& box);
 
     // Does one step of a rebuild in the background; returns true if it has just completed one. Call it once a frame,
     // after refit(), if items move for a long time.

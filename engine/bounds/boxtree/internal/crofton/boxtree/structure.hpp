@@ -113,6 +113,7 @@ class Structure {
     Vector<std::uint32_t> item_slots_;
     SlotsVersion slots_version_;
     unsigned height_ = 1;
+    std::size_t next_free_leaf_ = 0;  // where a Placement looks on for an empty leaf
     ChangeMarks marks_;
     // Whether layers or radii have changed since the last refit; otherwise it looks at bounds alone.
     bool contents_changed_ = false;
