@@ -23,111 +23,151 @@ struct BoxRange {
     std::uint32_t begin = 0, end = 0;
     int depth = 0;
     WideBox box, middles;
-    double area = 0.0;
     [[nodiscard]] std::uint32_t size() const { return end - begin; }
+    void include(const WideBox& item) {
+        const detail::Lanes4 middle = item.middle();
+        box.include(item);
+        middles.include(middle, middle);
+    }
 };
 
+// The border of a bin. Asks as the bins do, and so agrees with their counts.
 struct Plane {
     int axis = 0;
-    float at = 0.0f;
+    float low = 0.0f, scale = 0.0f, border = 0.0f;
+    std::uint32_t below = 0;   // items below it
+    WideBox boxes[2];          // of those below and of the others
+    double cost = 0.0;
+    [[nodiscard]] bool is_above(const WideBox& item) const { return (item.middle()[axis] - low) * scale >= border; }
 };
 
-class Builder {
+// A range of items. Its halves stand side by side, behind it.
+struct BinaryNode {
+    WideBox box;
+    std::uint32_t begin = 0, end = 0;
+    std::uint32_t halves = 0;  // 0: a leaf
+};
+
+// The least cost of a subtree that is handed to at most k lanes, k = 1 … 8, and how many of them its first half gets: 0
+// where one lane fewer is as good.
+struct LaneCosts {
+    std::array<double, kWidth + 1> cost{};
+    std::array<std::uint8_t, kWidth + 1> first{};
+};
+
+FloatBox narrow(const WideBox& box) {
+    return {{box.low[0], box.low[1], box.low[2]}, {box.high[0], box.high[1], box.high[2]}};
+}
+
+class Splitter {
   public:
-    Builder(std::span<const FloatBox> boxes, std::uint32_t leaf_size)
-        : leaf_size_(leaf_size), items_(boxes.size()), others_(boxes.size()), order_(boxes.size()) {
+    Splitter(std::span<const FloatBox> boxes, std::uint32_t leaf_size, std::uint32_t granule)
+        : leaf_size_(leaf_size),
+          granule_(granule),
+          items_(boxes.size()),
+          others_(boxes.size()),
+          order_(boxes.size()),
+          other_order_(boxes.size()) {
         std::iota(order_.begin(), order_.end(), 0u);
-        other_order_.resize(boxes.size());
         for (std::size_t i = 0; i < boxes.size(); ++i)
             for (int k = 0; k < 3; ++k) items_[i].low[k] = boxes[i].low[k], items_[i].high[k] = boxes[i].high[k];
     }
 
-    BoxHierarchy build() {
+    Vector<BinaryNode> split() {
         struct Todo {
             BoxRange range;
             std::uint32_t node;
         };
-        BoxHierarchy result;
+        Vector<BinaryNode> nodes;
+        nodes.reserve(2 * (order_.size() / std::max(granule_, (leaf_size_ + 1) / 2)) + 1);
         Vector<Todo> stack;
-        result.nodes.assign(1, {});
-        stack.push_back({whole(), 0});
+        const auto add = [&](const BoxRange& range) {
+            const auto node = static_cast<std::uint32_t>(nodes.size());
+            nodes.push_back({range.box, range.begin, range.end});
+            if (range.size() > leaf_size_) stack.push_back({range, node});
+        };
+        add(whole());
         while (!stack.empty()) {
             const Todo todo = stack.back();
             stack.pop_back();
-            std::array<BoxRange, kWidth> parts;
-            const std::size_t count = split_into_eight(todo.range, parts);
-            BoxNode node{};
-            node.count = static_cast<std::uint32_t>(count);
-            for (std::uint32_t lane = 0; lane < kWidth; ++lane)
-                set_bounds(node, lane, lane < count ? narrow(parts[lane].box) : FloatBox{});
-            for (std::size_t lane = 0; lane < count; ++lane) {
-                if (parts[lane].size() <= leaf_size_) {
-                    node.child[lane] = static_cast<std::uint32_t>(result.leaves.size()) | kMeshLeaf;
-                    result.leaves.push_back({parts[lane].begin, parts[lane].end});
-                } else {
-                    node.child[lane] = static_cast<std::uint32_t>(result.nodes.size());
-                    result.nodes.push_back({});
-                    stack.push_back({parts[lane], node.child[lane]});
-                }
-            }
-            result.nodes[todo.node] = node;
+            nodes[todo.node].halves = static_cast<std::uint32_t>(nodes.size());
+            BoxRange left, right;
+            split(todo.range, left, right);
+            add(left);
+            add(right);
         }
-        result.order = std::move(order_);
-        return result;
+        return nodes;
     }
+
+    Vector<std::uint32_t> take_order() { return std::move(order_); }
 
   private:
-    static FloatBox narrow(const WideBox& box) {
-        return {{box.low[0], box.low[1], box.low[2]}, {box.high[0], box.high[1], box.high[2]}};
-    }
-
-    BoxRange range_of(std::uint32_t begin, std::uint32_t end, int depth) const {
+    BoxRange whole() const {
         BoxRange range;
-        range.begin = begin, range.end = end, range.depth = depth;
-        for (std::uint32_t i = begin; i < end; ++i) {
-            const WideBox item = items_[i];
-            const detail::Lanes4 middle = item.middle();
-            range.box.include(item);
-            range.middles.include(middle, middle);
-        }
-        range.area = half_area(range.box);
+        range.end = static_cast<std::uint32_t>(order_.size());
+        for (const WideBox& item : items_) range.include(item);
         return range;
-    }
-
-    BoxRange whole() const { return range_of(0, static_cast<std::uint32_t>(order_.size()), 0); }
-
-    // Splits the part of most area that is still too large for a leaf, until there are eight.
-    std::size_t split_into_eight(const BoxRange& range, std::array<BoxRange, kWidth>& parts) {
-        parts[0] = range;
-        std::size_t count = 1;
-        while (count < kWidth) {
-            std::size_t widest = kWidth;
-            for (std::size_t i = 0; i < count; ++i)
-                if (parts[i].size() > leaf_size_ && (widest == kWidth || parts[i].area > parts[widest].area))
-                    widest = i;
-            if (widest == kWidth) break;
-            const BoxRange old = parts[widest];
-            split(old, parts[widest], parts[count]);
-            ++count;
-        }
-        return count;
     }
 
     // Within a range items ascend, before and after: so the tree does not depend on how a library sorts. Boxes move
     // with their items: what is split further lies side by side.
     void split(const BoxRange& range, BoxRange& left, BoxRange& right) {
-        std::uint32_t cut = range.begin;
+        left = right = BoxRange();
+        left.begin = range.begin, right.end = range.end;
+        left.depth = right.depth = range.depth + 1;
         Plane plane;
-        if (range.depth < kMaxUnevenDepth && best_plane(range, plane))
-            cut = part(range, [&](std::uint32_t i) { return items_[i].middle()[plane.axis] < plane.at; });
-        if (cut == range.begin || cut == range.end) cut = part_by_number(range);
-        left = range_of(range.begin, cut, range.depth + 1);
-        right = range_of(cut, range.end, range.depth + 1);
+        if (range.depth >= kMaxUnevenDepth) {
+            part_by_number(range, left, right);
+        } else if (granule_ > 1 && range.size() <= kMostFew) {
+            part_few(range, left, right);
+        } else if (best_plane(range, plane)) {
+            const std::uint32_t cut = whole_granules(range.size(), plane.below);
+            if (cut == plane.below || cost_of_moving(range, plane, cut) > kDearer * plane.cost)
+                part(range, left, right, [&](std::uint32_t i) { return !plane.is_above(items_[i]); });
+            else
+                part_at(range, left, right, plane.axis, near_.back());
+        } else {
+            part_by_number(range, left, right);
+        }
     }
 
-    // Those that are left first; returns where the others begin.
+    // The multiple of the granule that is nearest to `below`, with something on either side of it.
+    [[nodiscard]] std::uint32_t whole_granules(std::uint32_t size, std::uint32_t below) const {
+        const std::uint32_t nearest = (below + granule_ / 2) / granule_;
+        return std::clamp(nearest, 1u, (size - 1) / granule_) * granule_;
+    }
+
+    // An item's middle along an axis. No two are equal.
+    struct Middle {
+        float at;
+        std::uint32_t item, place;
+        friend bool operator<(const Middle& a, const Middle& b) {
+            return a.at < b.at || (a.at == b.at && a.item < b.item);
+        }
+    };
+
+    // What the split costs if not `plane.below` but `cut` items are to be below. Those that change sides are next to the
+    // plane: `near_`. The last of these is the last item below the cut, in the order along the axis.
+    double cost_of_moving(const BoxRange& range, const Plane& plane, std::uint32_t cut) {
+        const bool up = cut > plane.below;
+        near_.clear();
+        const std::size_t count = up ? cut - plane.below : plane.below - cut + 1;
+        for (std::uint32_t i = range.begin; i < range.end; ++i) {
+            if (plane.is_above(items_[i]) != up) continue;
+            const Middle middle{items_[i].middle()[plane.axis], order_[i], i};
+            const auto nearer = [up](const Middle& a, const Middle& b) { return up ? a < b : b < a; };
+            if (near_.size() == count && !nearer(middle, near_.back())) continue;
+            if (near_.size() == count) near_.pop_back();
+            near_.insert(std::upper_bound(near_.begin(), near_.end(), middle, nearer), middle);
+        }
+        WideBox below = plane.boxes[0], above = plane.boxes[1];
+        for (std::size_t i = 0; i < (up ? count : count - 1); ++i) (up ? below : above).include(items_[near_[i].place]);
+        return half_area(below) * granules(cut) + half_area(above) * granules(range.size() - cut);
+    }
+
+    // Those that are left first.
     template <class IsLeft>
-    std::uint32_t part(const BoxRange& range, const IsLeft& is_left) {
+    void part(const BoxRange& range, BoxRange& left, BoxRange& right, const IsLeft& is_left) {
         std::uint32_t cut = range.begin, others = 0;
         for (std::uint32_t i = range.begin; i < range.end; ++i) {
             const bool to_left = is_left(i);
@@ -140,24 +180,84 @@ class Builder {
         }
         std::copy_n(others_.begin(), others, items_.begin() + cut);
         std::copy_n(other_order_.begin(), others, order_.begin() + cut);
-        return cut;
+        left.end = right.begin = cut;
+        for (std::uint32_t i = left.begin; i < left.end; ++i) left.include(items_[i]);
+        for (std::uint32_t i = right.begin; i < right.end; ++i) right.include(items_[i]);
+    }
+
+    void part_at(const BoxRange& range, BoxRange& left, BoxRange& right, int axis, const Middle& last) {
+        part(range, left, right, [&](std::uint32_t i) { return !(last < Middle{items_[i].middle()[axis], order_[i], i}); });
     }
 
     // Halves along the longest side.
-    std::uint32_t part_by_number(const BoxRange& range) {
+    void part_by_number(const BoxRange& range, BoxRange& left, BoxRange& right) {
         const FloatBox box = narrow(range.box);
         const glm::vec3 d = box.high - box.low;
         const int axis = d.x >= d.y && d.x >= d.z ? 0 : (d.y >= d.z ? 1 : 2);
-        Vector<std::uint32_t> ranked(range.size());
-        std::iota(ranked.begin(), ranked.end(), range.begin);
-        const auto half = ranked.begin() + range.size() / 2;
-        std::nth_element(ranked.begin(), half, ranked.end(), [&](std::uint32_t a, std::uint32_t b) {
-            const float x = items_[a].middle()[axis], y = items_[b].middle()[axis];
-            return x != y ? x < y : a < b;
-        });
-        Vector<std::uint8_t> is_left(range.size(), 0);
-        for (auto i = ranked.begin(); i != half; ++i) is_left[*i - range.begin] = 1;
-        return part(range, [&](std::uint32_t i) { return is_left[i - range.begin] != 0; });
+        Vector<Middle> middles;
+        middles.reserve(range.size());
+        for (std::uint32_t i = range.begin; i < range.end; ++i)
+            middles.push_back({items_[i].middle()[axis], order_[i], i});
+        const auto last = middles.begin() + (whole_granules(range.size(), range.size() / 2) - 1);
+        std::nth_element(middles.begin(), last, middles.end());
+        part_at(range, left, right, axis, *last);
+    }
+
+    // The places of a few items in their order along an axis.
+    static void find_ranks(const float* at, std::uint32_t count, std::int32_t* ranks) {
+        std::fill(ranks, ranks + count, 0);
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const float here = at[i];
+            std::int32_t before = 0;
+            for (std::uint32_t j = i + 1; j < count; ++j) {
+                const std::int32_t lesser = at[j] < here ? 1 : 0;
+                before += lesser;
+                ranks[j] += 1 - lesser;
+            }
+            ranks[i] += before;
+        }
+    }
+
+    // The best of all cuts, by the boxes that they leave. A part that does not fill its granules costs as if it did.
+    void part_few(const BoxRange& range, BoxRange& left, BoxRange& right) {
+        const std::uint32_t count = range.size();
+        std::array<std::array<float, kMostFew>, 3> at;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const detail::Lanes4 middle = items_[range.begin + i].middle();
+            for (int axis = 0; axis < 3; ++axis) at[static_cast<std::size_t>(axis)][i] = middle[axis];
+        }
+        std::array<std::array<std::int32_t, kMostFew>, 3> ranks;
+        float best = std::numeric_limits<float>::infinity();
+        std::size_t best_axis = 0;
+        std::uint32_t best_cut = granule_;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            find_ranks(at[axis].data(), count, ranks[axis].data());
+            std::array<WideBox, kMostFew> boxes;
+            for (std::uint32_t i = 0; i < count; ++i)
+                boxes[static_cast<std::size_t>(ranks[axis][i])] = items_[range.begin + i];
+            std::array<float, kMostFew> cost;
+            WideBox below, above;
+            for (std::uint32_t cut = 1; cut < count; ++cut) {
+                below.include(boxes[cut - 1]);
+                cost[cut] = half_area_of(below) * static_cast<float>(granules(cut));
+            }
+            for (std::uint32_t cut = count - 1; cut > 0; --cut) {
+                above.include(boxes[cut]);
+                const float both = cost[cut] + half_area_of(above) * static_cast<float>(granules(count - cut));
+                if (both < best) best = both, best_axis = axis, best_cut = cut;
+            }
+        }
+        part(range, left, right,
+             [&](std::uint32_t i) { return ranks[best_axis][i - range.begin] < static_cast<std::int32_t>(best_cut); });
+    }
+
+    static float half_area_of(const WideBox& box) {
+        const detail::Lanes4 d = box.high - box.low, areas = d * detail::next(d);
+        return areas[0] + areas[1] + areas[2];
+    }
+
+    [[nodiscard]] std::uint32_t granules(std::uint32_t items) const {
+        return (items + granule_ - 1) >> std::countr_zero(granule_);
     }
 
     struct Bins {
@@ -197,11 +297,16 @@ class Builder {
         double best = std::numeric_limits<double>::infinity();
         for (int axis = 0; axis < 3; ++axis) {
             if (scale[axis] == 0.0f) continue;
-            const std::size_t border = best_border(bins_[static_cast<std::size_t>(axis)], best);
-            if (border == 0) continue;
-            plane = {axis, range.middles.low[axis] + static_cast<float>(border) / scale[axis]};
+            std::uint32_t below = 0;
+            const std::size_t border = best_border(bins_[static_cast<std::size_t>(axis)], best, below);
+            if (border != 0)
+                plane = {axis, range.middles.low[axis], scale[axis], static_cast<float>(border), below, {}, best};
         }
-        return best < std::numeric_limits<double>::infinity();
+        if (!(best < std::numeric_limits<double>::infinity())) return false;
+        const Bins& bins = bins_[static_cast<std::size_t>(plane.axis)];
+        for (std::size_t b = 0; b < kBins; ++b)
+            plane.boxes[static_cast<float>(b) < plane.border ? 0 : 1].include(bins.boxes[b]);
+        return true;
     }
 
     void fill_bins(const BoxRange& range, const detail::Lanes4& scale) {
@@ -229,7 +334,7 @@ class Builder {
 
     // The first bin behind the best border, 0 where none is better than `best`. Borders in front of an empty bin are as
     // good as the one behind it.
-    static std::size_t best_border(const Bins& bins, double& best) {
+    std::size_t best_border(const Bins& bins, double& best, std::uint32_t& below) const {
         std::array<double, kBins> right_cost;
         WideBox right, left;
         std::uint32_t right_count = 0, left_count = 0;
@@ -237,7 +342,7 @@ class Builder {
             const auto b = static_cast<std::size_t>(std::bit_width(rest)) - 1;
             rest ^= 1u << b;
             right.include(bins.boxes[b]);
-            right_cost[b] = half_area(right) * (right_count += bins.counts[b]);
+            right_cost[b] = half_area(right) * granules(right_count += bins.counts[b]);
         }
         std::size_t border = 0;
         for (std::uint32_t rest = bins.used; (rest & (rest - 1)) != 0;) {
@@ -246,19 +351,106 @@ class Builder {
             left.include(bins.boxes[b]);
             left_count += bins.counts[b];
             const double cost =
-                half_area(left) * left_count + right_cost[static_cast<std::size_t>(std::countr_zero(rest))];
-            if (cost < best) best = cost, border = b + 1;
+                half_area(left) * granules(left_count) + right_cost[static_cast<std::size_t>(std::countr_zero(rest))];
+            if (cost < best) best = cost, border = b + 1, below = left_count;
         }
         return border;
     }
 
-    std::uint32_t leaf_size_;
+    static constexpr std::uint32_t kMostFew = 32;
+    static constexpr double kDearer = 1.25;  // so much may whole granules cost
+    std::uint32_t leaf_size_, granule_;
     Vector<WideBox> items_, others_;  // their boxes, in order
     Vector<std::uint32_t> order_, other_order_;
+    Vector<Middle> near_;
     // By axis, twice: of many items the odd ones go to the second three. An item waits for the one before it in its
     // bin.
     static constexpr std::uint32_t kManyItems = 128;
     std::array<Bins, 6> bins_;
+};
+
+// Joins binary nodes to nodes of eight lanes, such that their areas sum up to the least: the nodes that a line is
+// expected to visit (the dynamic programme of Ylitie, Karras, Laine 2017).
+class Collapse {
+  public:
+    explicit Collapse(std::span<const BinaryNode> binary) : binary_(binary), costs_(binary.size()) {
+        for (std::size_t n = binary.size(); n-- > 0;)
+            if (binary[n].halves != 0) find_costs(n);
+    }
+
+    void run(BoxHierarchy& result) {
+        struct Todo {
+            std::uint32_t binary, node;
+        };
+        Vector<Todo> stack;
+        result.nodes.assign(1, {});
+        stack.push_back({0, 0});
+        while (!stack.empty()) {
+            const Todo todo = stack.back();
+            stack.pop_back();
+            BoxNode node{};
+            count_ = 0;
+            if (binary_[todo.binary].halves == 0)
+                lanes_[count_++] = todo.binary;
+            else
+                spread(todo.binary, kWidth);
+            node.count = count_;
+            for (std::uint32_t lane = 0; lane < kWidth; ++lane)
+                set_bounds(node, lane, lane < count_ ? narrow(binary_[lanes_[lane]].box) : FloatBox{});
+            for (std::uint32_t lane = 0; lane < count_; ++lane) {
+                const BinaryNode& child = binary_[lanes_[lane]];
+                if (child.halves == 0) {
+                    node.child[lane] = static_cast<std::uint32_t>(result.leaves.size()) | kMeshLeaf;
+                    result.leaves.push_back({child.begin, child.end});
+                } else {
+                    node.child[lane] = static_cast<std::uint32_t>(result.nodes.size());
+                    result.nodes.push_back({});
+                    stack.push_back({lanes_[lane], node.child[lane]});
+                }
+            }
+            result.nodes[todo.node] = node;
+        }
+    }
+
+  private:
+    void find_costs(std::size_t n) {
+        const LaneCosts &a = costs_[binary_[n].halves], &b = costs_[binary_[n].halves + 1];
+        LaneCosts& here = costs_[n];
+        std::array<double, kWidth + 1> spread;
+        for (std::size_t k = 2; k <= kWidth; ++k) {
+            spread[k] = std::numeric_limits<double>::infinity();
+            for (std::size_t first = 1; first < k; ++first)
+                if (const double cost = a.cost[first] + b.cost[k - first]; cost < spread[k])
+                    spread[k] = cost, here.first[k] = static_cast<std::uint8_t>(first);
+        }
+        here.first[1] = here.first[kWidth];
+        here.cost[1] = half_area(binary_[n].box) + spread[kWidth];
+        for (std::size_t k = 2; k <= kWidth; ++k) {
+            here.cost[k] = std::min(spread[k], here.cost[k - 1]);
+            if (!(spread[k] < here.cost[k - 1])) here.first[k] = 0;
+        }
+    }
+
+    // Gives the halves of a node their shares of `lanes`.
+    void spread(std::uint32_t n, std::size_t lanes) {
+        const std::uint32_t halves = binary_[n].halves;
+        const std::size_t first = costs_[n].first[lanes == kWidth ? 1 : lanes];
+        place(halves, first);
+        place(halves + 1, lanes - first);
+    }
+
+    void place(std::uint32_t n, std::size_t lanes) {
+        while (lanes > 1 && costs_[n].first[lanes] == 0) --lanes;
+        if (binary_[n].halves == 0 || lanes == 1)
+            lanes_[count_++] = n;
+        else
+            spread(n, lanes);
+    }
+
+    std::span<const BinaryNode> binary_;
+    Vector<LaneCosts> costs_;  // zeros of leaves
+    std::array<std::uint32_t, kWidth> lanes_{};
+    std::uint32_t count_ = 0;
 };
 
 }  // namespace
@@ -280,8 +472,13 @@ void set_bounds(BoxNode& node, std::uint32_t lane, const FloatBox& box) {
     }
 }
 
-BoxHierarchy build_box_hierarchy(std::span<const FloatBox> boxes, std::uint32_t leaf_size) {
-    return Builder(boxes, leaf_size).build();
+BoxHierarchy build_box_hierarchy(std::span<const FloatBox> boxes, std::uint32_t leaf_size, std::uint32_t granule) {
+    Splitter splitter(boxes, leaf_size, granule);
+    const Vector<BinaryNode> binary = splitter.split();
+    BoxHierarchy result;
+    Collapse(binary).run(result);
+    result.order = splitter.take_order();
+    return result;
 }
 
 }  // namespace crofton::mesh

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <crofton/core/recovery.hpp>
 #include <crofton/core/select.hpp>
+#include <crofton/mesh/box_hierarchy.hpp>
 #include <crofton/mesh/mesh_parts.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <glm/geometric.hpp>
@@ -16,16 +17,17 @@
 namespace crofton::mesh {
 namespace {
 
-struct Reference {
+// A leaf to be: triangles that lie side by side in the order of the splits by surface area.
+struct Bunch {
     glm::vec3 centroid;
-    std::uint32_t triangle;
+    std::uint32_t number;
     float key;
 };
 
+// Of bunches.
 struct Range {
     std::size_t begin, end;
     [[nodiscard]] std::size_t size() const { return end - begin; }
-    [[nodiscard]] std::size_t leaves() const { return (size() + kMeshLeafWidth - 1) / kMeshLeafWidth; }
 };
 
 // A range that is to become `count` children.
@@ -61,10 +63,15 @@ class MeshTreeBuilder {
   private:
     [[nodiscard]] MeshParts& made() { return *tree_.parts_; }
     void collect();
+    void bunch_triangles();
     void split_node(const Task& task);
     Part split(Part& part);
     MeshBox fit(const Range& range);
-    std::uint32_t add_leaf(const Range& range);
+    std::uint32_t add_leaf(std::uint32_t bunch);
+    [[nodiscard]] std::span<const std::uint32_t> triangles_of(std::uint32_t bunch) const {
+        const BoxHierarchy::Leaf& leaf = hierarchy_.leaves[bunch];
+        return std::span<const std::uint32_t>(hierarchy_.order).subspan(leaf.begin, leaf.end - leaf.begin);
+    }
     void set_pieces(std::span<const std::uint32_t> triangles);
     void set_leaf_ranges(std::uint32_t node);
     [[nodiscard]] const glm::vec3& vertex(std::uint32_t triangle, std::size_t v) const {
@@ -74,7 +81,10 @@ class MeshTreeBuilder {
     const TriangleMesh& mesh_;
     MeshTreeOptions options_;
     MeshTree tree_;
-    Vector<Reference> references_;
+    Vector<std::uint32_t> triangles_;  // the valid ones, ascending
+    BoxHierarchy hierarchy_;           // of triangles; its leaves are the bunches
+    Vector<Bunch> bunches_;
+    Vector<std::uint32_t> leaf_of_;  // by bunch
     Vector<Task> tasks_;
     MeshBoxFitter fitter_;
     Vector<std::uint32_t> piece_of_;  // by triangle
@@ -86,7 +96,7 @@ class MeshTreeBuilder {
 
 void MeshTreeBuilder::collect() {
     const std::size_t count = mesh_.triangle_count();
-    references_.reserve(count);
+    triangles_.reserve(count);
     for (std::size_t t = 0; t < count; ++t) {
         bool usable = true;
         for (std::size_t v = 0; v < 3; ++v) {
@@ -98,19 +108,38 @@ void MeshTreeBuilder::collect() {
             tree_.rejected_.push_back(triangle);
             continue;
         }
-        const glm::vec3 &a = vertex(triangle, 0), &b = vertex(triangle, 1), &c = vertex(triangle, 2);
-        references_.push_back({(a + b + c) * (1.0f / 3.0f), triangle, 0.0f});
-        for (const glm::vec3* p : {&a, &b, &c})
-            tree_.extent_ = std::max({tree_.extent_, std::abs(p->x), std::abs(p->y), std::abs(p->z)});
+        triangles_.push_back(triangle);
+        for (std::size_t v = 0; v < 3; ++v) {
+            const glm::vec3& p = vertex(triangle, v);
+            tree_.extent_ = std::max({tree_.extent_, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+        }
     }
+}
+
+// Triangles whose aligned boxes together are small make a leaf: rays, and whatever else comes from a direction that
+// nobody knows, meet it in proportion to its surface. All leaves are full but one.
+void MeshTreeBuilder::bunch_triangles() {
+    Vector<FloatBox> boxes(triangles_.size());
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+        for (std::size_t v = 0; v < 3; ++v) boxes[i].include(vertex(triangles_[i], v));
+    hierarchy_ = build_box_hierarchy(boxes, kMeshLeafWidth, kMeshLeafWidth);
+    for (std::uint32_t& item : hierarchy_.order) item = triangles_[item];
+    bunches_.reserve(hierarchy_.leaves.size());
+    for (std::uint32_t b = 0; b < hierarchy_.leaves.size(); ++b) {
+        glm::vec3 sum(0.0f);
+        const std::span<const std::uint32_t> triangles = triangles_of(b);
+        for (const std::uint32_t t : triangles) sum += (vertex(t, 0) + vertex(t, 1) + vertex(t, 2)) * (1.0f / 3.0f);
+        bunches_.push_back({sum * (1.0f / static_cast<float>(triangles.size())), b, 0.0f});
+    }
+    leaf_of_.resize(bunches_.size());
 }
 
 // Halves a part, in shares of its children, along the direction in which its centroids spread most; returns the upper
 // half.
 Part MeshTreeBuilder::split(Part& part) {
     const Range range = part.range;
-    const auto begin = references_.begin() + static_cast<std::ptrdiff_t>(range.begin);
-    const auto end = references_.begin() + static_cast<std::ptrdiff_t>(range.end);
+    const auto begin = bunches_.begin() + static_cast<std::ptrdiff_t>(range.begin);
+    const auto end = bunches_.begin() + static_cast<std::ptrdiff_t>(range.end);
     const glm::dmat3 covariance =
         covariance_of(range.size(), [&](std::size_t i) { return begin[static_cast<std::ptrdiff_t>(i)].centroid; });
     const glm::dmat3 frame = eigenvectors(covariance);
@@ -121,14 +150,12 @@ Part MeshTreeBuilder::split(Part& part) {
         if (along > spread) spread = along, longest = k;
     }
     const glm::vec3 direction(frame[longest]);
-    for (auto r = begin; r != end; ++r) r->key = glm::dot(r->centroid, direction);
-    // Whole leaves below: the cut is a multiple of the leaf's size, so that no lanes stay empty but in the last leaf.
+    for (auto bunch = begin; bunch != end; ++bunch) bunch->key = glm::dot(bunch->centroid, direction);
     const std::uint32_t below = part.count / 2;
-    const std::size_t cut = (range.leaves() * below + part.count / 2) / part.count * kMeshLeafWidth;
-    crofton::detail::select(begin, begin + static_cast<std::ptrdiff_t>(cut), end,
-                            [](const Reference& a, const Reference& b) {
-                                return a.key < b.key || (a.key == b.key && a.triangle < b.triangle);
-                            });
+    const std::size_t cut = (range.size() * below + part.count / 2) / part.count;
+    crofton::detail::select(begin, begin + static_cast<std::ptrdiff_t>(cut), end, [](const Bunch& a, const Bunch& b) {
+        return a.key < b.key || (a.key == b.key && a.number < b.number);
+    });
     const Part upper{{range.begin + cut, range.end}, part.count - below};
     part = {{range.begin, range.begin + cut}, below};
     return upper;
@@ -138,22 +165,24 @@ MeshBox MeshTreeBuilder::fit(const Range& range) {
     ++range_number_;
     points_.clear();
     point_vertices_.clear();
-    for (std::size_t r = range.begin; r < range.end; ++r)
-        for (std::size_t v = 0; v < 3; ++v) {
-            const std::uint32_t index = mesh_.indices[3 * std::size_t{references_[r].triangle} + v];
-            if (std::exchange(last_range_[index], range_number_) == range_number_) continue;
-            points_.push_back(mesh_.positions[index]);
-            point_vertices_.push_back(index);
-        }
+    for (std::size_t b = range.begin; b < range.end; ++b)
+        for (const std::uint32_t triangle : triangles_of(bunches_[b].number))
+            for (std::size_t v = 0; v < 3; ++v) {
+                const std::uint32_t index = mesh_.indices[3 * std::size_t{triangle} + v];
+                if (std::exchange(last_range_[index], range_number_) == range_number_) continue;
+                points_.push_back(mesh_.positions[index]);
+                point_vertices_.push_back(index);
+            }
     return fitter_.fit(points_, options_.boxes);
 }
 
-std::uint32_t MeshTreeBuilder::add_leaf(const Range& range) {
+std::uint32_t MeshTreeBuilder::add_leaf(std::uint32_t bunch) {
     MeshLeaf leaf{};
     LeafVertices vertices{};
-    leaf.count = static_cast<std::uint32_t>(range.size());
+    const std::span<const std::uint32_t> triangles = triangles_of(bunch);
+    leaf.count = static_cast<std::uint32_t>(triangles.size());
     for (std::size_t lane = 0; lane < kMeshLeafWidth; ++lane) {
-        const std::uint32_t triangle = references_[range.begin + std::min(lane, range.size() - 1)].triangle;
+        const std::uint32_t triangle = triangles[std::min(lane, triangles.size() - 1)];
         leaf.triangle[lane] = triangle;
         leaf.piece[lane] = piece_of_[triangle];
         for (std::size_t v = 0; v < 3; ++v) {
@@ -163,11 +192,11 @@ std::uint32_t MeshTreeBuilder::add_leaf(const Range& range) {
     }
     made().leaves.push_back(leaf);
     if (options_.refittable) made().refit.leaves.push_back(vertices);
-    return static_cast<std::uint32_t>(made().leaves.size() - 1);
+    return leaf_of_[bunch] = static_cast<std::uint32_t>(made().leaves.size() - 1);
 }
 
 void MeshTreeBuilder::split_node(const Task& task) {
-    Part parts[kMeshNodeWidth] = {{task.range, child_count(task.range.leaves())}};
+    Part parts[kMeshNodeWidth] = {{task.range, child_count(task.range.size())}};
     std::uint32_t count = 1;
     for (std::uint32_t i = 0; i < count; ++i)
         while (parts[i].count > 1) parts[count++] = split(parts[i]);
@@ -183,8 +212,8 @@ void MeshTreeBuilder::split_node(const Task& task) {
             for (int i = 0; i < 3; ++i) node.axes[k][i][lane] = box.axes[k][i];
         }
         if (options_.refittable) set_anchors(box, points_, point_vertices_, lane, anchors);
-        if (range.size() <= kMeshLeafWidth) {
-            node.child[lane] = kMeshLeaf | add_leaf(range);
+        if (range.size() == 1) {
+            node.child[lane] = kMeshLeaf | add_leaf(bunches_[range.begin].number);
         } else {
             node.child[lane] = static_cast<std::uint32_t>(made().nodes.size());
             made().nodes.emplace_back();
@@ -237,16 +266,13 @@ Result<MeshTree> MeshTreeBuilder::build() {
     if (mesh_.triangle_count() >= (std::size_t{1} << 28))
         return fail(ErrorCode::out_of_range, mesh_.triangle_count(), "mesh: 2^28 triangles or more");
     collect();
-    if (references_.empty()) return fail(ErrorCode::empty, kNoItem, "mesh: no valid triangle");
-    tree_.triangle_count_ = references_.size();
-    Vector<std::uint32_t> valid;
-    valid.reserve(references_.size());
-    for (const Reference& reference : references_) valid.push_back(reference.triangle);
-    set_pieces(valid);
-    const std::size_t leaf_estimate = references_.size() / kMeshLeafWidth + 1;
-    made().leaves.reserve(leaf_estimate);
-    made().nodes.reserve(leaf_estimate / 4 + 1);
-    const Range all{0, references_.size()};
+    if (triangles_.empty()) return fail(ErrorCode::empty, kNoItem, "mesh: no valid triangle");
+    tree_.triangle_count_ = triangles_.size();
+    set_pieces(triangles_);
+    bunch_triangles();
+    made().leaves.reserve(bunches_.size());
+    if (options_.refittable) made().refit.leaves.reserve(bunches_.size());
+    const Range all{0, bunches_.size()};
     made().root_box = fit(all);
     made().nodes.emplace_back();
     if (options_.refittable) {
@@ -264,8 +290,9 @@ Result<MeshTree> MeshTreeBuilder::build() {
         set_leaf_ranges(0);
         made().refit.root.end_leaf[0] = static_cast<std::uint32_t>(made().leaves.size());
     }
-    if (options_.rays)
-        if (auto prepared = tree_.prepare_rays(); !prepared) return tl::unexpected(prepared.error());
+    made().nodes.shrink_to_fit();
+    made().refit.nodes.shrink_to_fit();
+    if (options_.rays) made().take_ray_nodes(std::move(hierarchy_.nodes), leaf_of_);
     return std::move(tree_);
 }
 

@@ -39,13 +39,20 @@ Result<void> MeshTree::prepare_rays() {
         boxes.reserve(parts_->leaves.size());
         for (const MeshLeaf& leaf : parts_->leaves) boxes.push_back(bounds_of(leaf));
         BoxHierarchy tree = build_box_hierarchy(boxes, 1);
-        for (BoxNode& node : tree.nodes)
-            for (std::uint32_t lane = 0; lane < node.count; ++lane)
-                if (std::uint32_t& child = node.child[lane]; child & kMeshLeaf)
-                    child = tree.order[tree.leaves[child & ~kMeshLeaf].begin] | kMeshLeaf;
-        parts_->ray_nodes = std::move(tree.nodes);
+        Vector<std::uint32_t> leaf_of(boxes.size());
+        for (std::size_t i = 0; i < leaf_of.size(); ++i) leaf_of[i] = tree.order[tree.leaves[i].begin];
+        parts_->take_ray_nodes(std::move(tree.nodes), leaf_of);
         return {};
     });
+}
+
+void MeshParts::take_ray_nodes(Vector<BoxNode> hierarchy, std::span<const std::uint32_t> leaf_of) {
+    for (BoxNode& node : hierarchy)
+        for (std::uint32_t lane = 0; lane < node.count; ++lane)
+            if (std::uint32_t& child = node.child[lane]; child & kMeshLeaf)
+                child = leaf_of[child & ~kMeshLeaf] | kMeshLeaf;
+    hierarchy.shrink_to_fit();
+    ray_nodes = std::move(hierarchy);
 }
 
 // Children stand behind their parents.

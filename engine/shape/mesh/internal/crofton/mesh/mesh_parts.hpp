@@ -64,6 +64,8 @@ struct MeshParts {
     }
     [[nodiscard]] std::span<const glm::vec3> loose() const { return {loose_points.data(), loose_count}; }
 
+    // Takes over a hierarchy whose leaf i is the leaf leaf_of[i] here.
+    void take_ray_nodes(Vector<BoxNode> hierarchy, std::span<const std::uint32_t> leaf_of);
     void refit_ray_nodes();
 };
 
