@@ -103,8 +103,9 @@ Result<void> check(const convex::Body& shape, const RigidTransform& pose) {
 }  // namespace
 
 World::State::QueryShape World::State::query_shape_of(std::uint32_t id) const {
-    const world::Object& object = table.objects[id];
-    const Obb& box = index.box(id);
+    const bool of_region = world::is_region_index(id);
+    const world::Object object = of_region ? regions.object(id) : table.objects[id];
+    const Obb box = of_region ? regions.box(id) : index.box(id);
     if (object_bodies.has(id)) return {object_bodies.body(id), object_bodies.pose_of(id, object, box, scene)};
     if (object.kind == BoundKind::sphere)
         return {*convex::Body::sphere(std::min(object.radius, static_cast<double>(convex::kMaxExtent))),
@@ -136,8 +137,7 @@ void World::overlap(const convex::Body& shape, const RigidTransform& pose, Vecto
     const State& s = *state_;
     s.visit_near(bounds_of(shape, pose), 0.0, layers, [&](std::uint32_t id) {
         const State::QueryShape stand = s.query_shape_of(id);
-        if (stand.pose && convex::intersects({shape, pose}, {stand.body, *stand.pose}))
-            found.push_back(s.table.ref(id));
+        if (stand.pose && convex::intersects({shape, pose}, {stand.body, *stand.pose})) found.push_back(s.ref_of(id));
         return 0.0;
     });
     std::sort(found.begin(), found.end(),
@@ -167,8 +167,9 @@ Result<std::optional<BodyHit>> World::cast(const convex::Body& shape, const Rigi
         return tl::unexpected(good.error());
     const State& s = *state_;
     const auto hit_of = [&](std::uint32_t id, const convex::Impact& impact) {
-        return BodyHit{s.table.handle(id),
-                       s.table.names.users[id],
+        const ObjectRef ref = s.ref_of(id);
+        return BodyHit{ref.object,
+                       ref.user,
                        impact.time,
                        impact.normal,
                        impact.on_b,

@@ -11,6 +11,7 @@
 #include "object_bodies.hpp"
 #include "object_table.hpp"
 #include "occluders.hpp"
+#include "regions.hpp"
 #include "spatial_index.hpp"
 
 namespace crofton {
@@ -61,7 +62,10 @@ struct World::State {
           index(chosen.tree),
           finder(chosen),
           nodes(first_generation),
-          meshes(first_generation) {}
+          meshes(first_generation),
+          regions(first_generation) {
+        table.names.regions = &regions;
+    }
 
     WorldOptions options;
     WorldStatistics statistics;
@@ -78,6 +82,7 @@ struct World::State {
     Aabb object_bounds;  // about; where there are occluders
     scene::Scene scene;
     Generations nodes, meshes;
+    world::Regions regions;
     scene::MeshId point = scene::kNone;  // the mesh of objects that are added by their bodies alone; kNone: none is
     Vector<std::uint32_t> object_of_instance;
     Vector<glm::vec3> vertices;  // scratch
@@ -135,6 +140,8 @@ struct World::State {
         std::optional<RigidTransform> pose;
     };
     [[nodiscard]] QueryShape query_shape_of(std::uint32_t object) const;
+    // Of an index in an answer, of the World's own or of a region.
+    [[nodiscard]] ObjectRef ref_of(std::uint32_t object) const { return world::ref(table.names, object); }
 
     // How far along the ray an object's own shape is met, no farther than the ray goes; its box is met at `box_t`.
     [[nodiscard]] std::optional<ObjectHit> shape_hit(const Ray& ray, std::uint32_t object, double box_t) const;

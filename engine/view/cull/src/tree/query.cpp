@@ -75,6 +75,20 @@ void Query::start(std::size_t items) {
     grow(visible_.straddling_, items + kPadding);
 }
 
+// Before the tree's root. A moved tree is met by the view moved back, with wider error bounds: a plane's value is off
+// by |normal| ≤ 1.001 for each component times what the point is off by.
+KernelView Query::view_of(const boxtree::Structure& structure) const {
+    KernelView view = kernel_view_of(view_);
+    if (move_) {
+        const glm::dvec3 origin = move_->back(view_.frustum.origin);
+        for (int j = 0; j < 3; ++j) view.origin[j] = origin[j];
+    }
+    bring_before(structure.nodes()[0], view);
+    if (move_)
+        for (std::uint32_t i = 0; i < view.plane_count; ++i) view.far[i] += move_->rounding(view_.frustum.origin);
+    return view;
+}
+
 // Each chunk writes its own words, so that threads may share them.
 void Query::run(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks, Executor& executor) {
     visible_.statistics_ = {};
@@ -199,8 +213,7 @@ void Query::run(const boxtree::BoxTree& tree, Executor& executor) {
     start(tree.boxes().size() + (moving_ ? moving_->size() : 0));
     if (!is_usable(view_.frustum) || !has_unit_normals(view_.frustum)) return run_all(tree, executor);
     grow(visible_.undecided_, tree.boxes().size() + kPadding);
-    KernelView view = kernel_view_of(view_);
-    bring_before(structure.nodes()[0], view);
+    const KernelView view = view_of(structure);
     TreeKernelInput input{structure.nodes().data(),
                           structure.leaves().data(),
                           structure.leaf_ranges().data(),
@@ -312,7 +325,7 @@ void Query::run_all(const boxtree::BoxTree& tree, Executor& executor) {
             if (!(structure.leaves()[l].layers[lane] & view_.layer_mask)) continue;
             const ItemId item = structure.slot_items()[l * boxtree::kWidth + lane];
             if (!is_wanted(boxes[item], item, structure.leaves()[l].layers[lane])) continue;
-            const Verdict verdict = classify(view_.frustum, boxes[item], options_.mode);
+            const Verdict verdict = classify(view_.frustum, placed(boxes[item]), options_.mode);
             if (verdict == Verdict::inside) visible_.ids_[inside++] = item;
             if (verdict == Verdict::straddling) visible_.straddling_[straddling++] = item;
         }
@@ -331,7 +344,7 @@ std::size_t Query::decide(const boxtree::BoxTree& tree, TreeKernelOutput& output
         constexpr std::size_t kAhead = 8;
         if (i + kAhead < output.undecided_count) hwy::Prefetch(&boxes[slot_items[output.undecided[i + kAhead]]]);
         const ItemId item = slot_items[output.undecided[i]];
-        const Obb& box = boxes[item];
+        const Obb box = placed(boxes[item]);
         if (!is_wanted(box, item, layer_masks[item])) continue;
         const Verdict verdict = classify_usable(view_.frustum, box, options_.mode);
         if (verdict != Verdict::outside)

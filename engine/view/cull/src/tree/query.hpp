@@ -4,6 +4,7 @@
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/cull.hpp>
+#include <crofton/geometry/move.hpp>
 
 #include "limits/limits.hpp"
 #include "list/list_kernel.hpp"
@@ -24,15 +25,18 @@ void leave_all_undecided(std::size_t count, ListKernelOutput& output);
 
 class Query {
   public:
-    // What moves, if there is any, is asked beside a BoxTree.
-    Query(const View& view, VisibleSet& visible, const CullOptions& options, const MovingBoxes* moving = nullptr)
-        : view_(view), visible_(visible), options_(options), moving_(moving) {}
+    // What moves, if there is any, is asked beside a BoxTree. `move`: the tree's boxes are where it takes them.
+    Query(const View& view, VisibleSet& visible, const CullOptions& options, const MovingBoxes* moving = nullptr,
+          const Move* move = nullptr)
+        : view_(view), visible_(visible), options_(options), moving_(moving), move_(move) {}
 
     void run(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks, Executor& executor);
     void run(const boxtree::BoxTree& tree, Executor& executor);
 
   private:
     void start(std::size_t items);
+    [[nodiscard]] KernelView view_of(const boxtree::Structure& structure) const;
+    [[nodiscard]] Obb placed(const Obb& box) const { return move_ ? (*move_)(box) : box; }
     void run_all(const boxtree::BoxTree& tree, Executor& executor);
     // As far as limits go.
     [[nodiscard]] bool is_wanted(const Obb& box, ItemId item, std::uint32_t layers) {
@@ -81,6 +85,7 @@ class Query {
     VisibleSet& visible_;
     const CullOptions& options_;
     const MovingBoxes* moving_;
+    const Move* move_;
     LayerLimit layer_limit_;
     bool by_slots_ = false;  // what the options' set leaves out, the kernel has left out
 };
