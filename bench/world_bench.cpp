@@ -7,6 +7,7 @@
 //   bench_world --changes     what an update costs in which one object comes, goes, moves or changes, and queries
 //                             among what moves
 //   bench_world --stacks      what an update of a thousand stacked crates costs, as bodies and as boxes
+//   bench_world --regions     a World of a thousand regions beside one of a million objects
 //   --frames=N                instead of 200
 //   --target=AVX2             with this instruction set
 //   --benchmark_filter=REGEX, --benchmark_repetitions=N, --benchmark_out=FILE: as Google Benchmark's, for results.py
@@ -51,7 +52,7 @@ constexpr Row kRows[] = {
 
 struct Options {
     int frames = 200, repetitions = 1;
-    bool churn = false, changes = false, stacks = false;
+    bool churn = false, changes = false, stacks = false, regions = false;
     std::size_t spawns = 10'000'000, live = 20'000, part = 100;
     std::string out;
     std::regex filter{""};
@@ -69,6 +70,8 @@ bool parse(int argc, char** argv, Options& options) {
             options.churn = true, options.spawns = value.empty() ? options.spawns : std::stoul(value);
         else if (key == "--changes")
             options.changes = true;
+        else if (key == "--regions")
+            options.regions = true;
         else if (key == "--stacks")
             options.stacks = true;
         else if (key == "--live")
@@ -121,6 +124,11 @@ int main(int argc, char** argv) {
         std::printf("# command: bench_world --churn=%zu --live=%zu --part=%zu --target=%s\n", options.spawns,
                     options.live, options.part, target);
         crofton::bench::churn(options.live, options.part, options.spawns);
+        return 0;
+    }
+    if (options.regions) {
+        std::printf("instruction set: %s\n", target);
+        crofton::bench::regions(options.frames);
         return 0;
     }
     if (options.changes) {

@@ -4,7 +4,6 @@
 #include <crofton/core/error.hpp>
 #include <crofton/core/executor.hpp>
 #include <crofton/cull/cull.hpp>
-#include <crofton/cull/moved_tree.hpp>
 
 #include "tree/query.hpp"
 
@@ -13,12 +12,6 @@ namespace crofton::cull {
 void find_visible(const boxtree::BoxTree& tree, const View& view, VisibleSet& visible, const CullOptions& options,
                   Executor& executor) {
     Query(view, visible, options).run(tree, executor);
-}
-
-void find_visible(const boxtree::BoxTree& tree, const Move& move, const View& view, VisibleSet& visible,
-                  const CullOptions& options) {
-    CROFTON_ASSERT(options.limits == nullptr, "limits are relative to the eye, which is not moved");
-    Query(view, visible, options, nullptr, &move).run(tree, serial_executor());
 }
 
 void find_visible(const boxtree::BoxTree& tree, std::span<const View> views, std::span<VisibleSet> visible,

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/collide/moved_tree.hpp>
-#include <crofton/cull/moved_tree.hpp>
 #include <crofton/geometry/finite.hpp>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -50,26 +49,32 @@ void Regions::visit_near(const Aabb& bounds, double distance, std::uint32_t laye
     collide::visit_near(bounds, distance, tree_, visit_region, layers);
 }
 
-void RegionView::clear() {
+void WholeView::clear() {
     ids.clear();
     occluded.clear();
     verdicts.clear();
     straddling.clear();
     inside_count = 0;
     statistics = {};
-    asked = {};
+    occlusion = {};
 }
 
-void RegionView::add(std::uint32_t id, cull::Verdict verdict, cull::ResultOrder order_asked) {
+void WholeView::add(std::uint32_t id, cull::Verdict verdict, cull::ResultOrder order_asked) {
     const bool inside = verdict == cull::Verdict::inside;
     inside_count += inside ? 1 : 0;
-    if (order_asked == cull::ResultOrder::tree) {
-        (inside ? ids : straddling).push_back(id);
-        return;
-    }
-    ids.push_back(id);
-    verdicts.push_back(verdict);
+    if (order_asked == cull::ResultOrder::tree) return (inside ? ids : straddling).add(id);
+    ids.add(id);
+    verdicts.add(verdict);
 }
+
+namespace {
+
+void add_moved(AnswerList<std::uint32_t>& list, std::span<const std::uint32_t> items, std::uint32_t first) {
+    std::uint32_t* const to = list.extend(items.size());
+    for (std::size_t i = 0; i < items.size(); ++i) to[i] = first + items[i];
+}
+
+}  // namespace
 
 // No object is farther from the eye, in radii, or smaller, than the limits allow: as far as the bounds tell.
 bool Regions::may_be_within(const cull::DrawLimits& limits, const Attachment& region) const {
@@ -85,60 +90,49 @@ bool Regions::may_be_within(const cull::DrawLimits& limits, const Attachment& re
     return glm::length(gap) <= std::max(0.0, limits.max_distance_in_radii) * most;
 }
 
-void Regions::find_visible(const RegionQuery& query, RegionView& result) const {
-    result.clear();
-    if (tree_.item_count() == 0) return;
+void Regions::find_visible(const RegionQuery& query, WholeView& result) const {
     cull::find_visible(tree_, query.view, result.regions, {.mode = cull::CullMode::conservative});
-    result.statistics = result.regions.statistics();
-    result.statistics.straddling = 0;
-    // By their objects' indices, which are distinct and below 2^32: the place in the answer is 31 bits.
+    result.query.start(query.view);
+    // By their objects' indices, which are distinct.
     result.order.clear();
-    for (std::size_t i = 0; i < result.regions.size(); ++i) {
-        const std::uint32_t slot = slot_of_item_[result.regions.ids()[i]];
-        result.order.push_back(std::uint64_t{attachments_[slot].first} << 32 | i);
+    for (const boxtree::ItemId item : result.regions.ids()) {
+        const std::uint32_t slot = slot_of_item_[item];
+        result.order.push_back(std::uint64_t{attachments_[slot].first} << 32 | slot);
     }
     std::sort(result.order.begin(), result.order.end());
     for (const std::uint64_t entry : result.order) {
-        const auto place = static_cast<std::uint32_t>(entry);
-        const Attachment& region = attachments_[slot_of_item_[result.regions.ids()[place]]];
+        const Attachment& region = attachments_[static_cast<std::uint32_t>(entry)];
         if (query.limits != nullptr && !may_be_within(*query.limits, region)) continue;
         if (query.buffer != nullptr && !query.list_occluded && query.buffer->hides(region.bounds)) continue;
-        add_visible(region, result.regions.verdicts()[place] == cull::Verdict::inside, query, result);
+        add_visible(region, query, result);
     }
-    result.ids.insert(result.ids.end(), result.straddling.begin(), result.straddling.end());
+    result.ids.add(result.straddling.values());
 }
 
-// `inside`: all that it holds is inside the view.
-void Regions::add_visible(const Attachment& region, bool inside, const RegionQuery& query, RegionView& result) const {
+void Regions::add_visible(const Attachment& region, const RegionQuery& query, WholeView& result) const {
     const RegionData& data = region.data();
     const bool asks_each = query.limits != nullptr || query.buffer != nullptr;
     const bool by_tree = query.order == cull::ResultOrder::tree;
-    if (inside && region.shown.empty() && (data.common_layers & query.view.layer_mask) != 0 && !asks_each) {
-        const std::size_t before = result.ids.size();
-        result.ids.resize(before + data.items.size());
-        std::iota(result.ids.begin() + static_cast<std::ptrdiff_t>(before), result.ids.end(), region.first);
-        if (!by_tree) result.verdicts.resize(result.ids.size(), cull::Verdict::inside);
+    const std::uint32_t planes = result.query.planes_that_may_cut(region.bounds);
+    if (planes == 0 && region.shown.empty() && (data.common_layers & query.view.layer_mask) != 0 && !asks_each) {
+        std::uint32_t* const to = result.ids.extend(data.items.size());
+        std::iota(to, to + data.items.size(), region.first);
+        if (!by_tree) std::fill_n(result.verdicts.extend(data.items.size()), data.items.size(), cull::Verdict::inside);
         result.inside_count += data.items.size();
         if (cull::kCountStatistics) result.statistics.accepted_whole += data.items.size();
         return;
     }
     const cull::CullOptions how{query.mode, asks_each ? cull::ResultOrder::ascending : query.order, nullptr,
                                 region.shown};
-    cull::find_visible(data.tree, region.move, query.view, result.found, how);
+    result.query.find_visible(data.tree, region.move, planes, result.found, how);
     result.statistics += result.found.statistics();
     const std::span<const std::uint32_t> found = result.found.ids();
-    if (!asks_each && by_tree) {
-        for (std::size_t i = 0; i < found.size(); ++i)
-            (i < result.found.inside_count() ? result.ids : result.straddling).push_back(region.first + found[i]);
-        result.inside_count += result.found.inside_count();
-        return;
-    }
     if (!asks_each) {
-        const std::size_t before = result.ids.size();
-        result.ids.resize(before + found.size());
-        for (std::size_t i = 0; i < found.size(); ++i) result.ids[before + i] = region.first + found[i];
-        result.verdicts.insert(result.verdicts.end(), result.found.verdicts().begin(), result.found.verdicts().end());
-        result.inside_count += result.found.inside_count();
+        const std::size_t inside = result.found.inside_count();
+        result.inside_count += inside;
+        add_moved(result.ids, by_tree ? found.first(inside) : found, region.first);
+        if (by_tree) add_moved(result.straddling, found.subspan(inside), region.first);
+        result.verdicts.add(result.found.verdicts());
         return;
     }
     result.boxes.clear();
@@ -160,15 +154,15 @@ void Regions::add_visible(const Attachment& region, bool inside, const RegionQue
     }
     occlude::find_visible(result.boxes, {}, *query.buffer, result.not_hidden, {.mode = query.mode});
     const occlude::VisibleStatistics& asked = result.not_hidden.statistics();
-    result.asked.items_tested += asked.items_tested;
-    result.asked.items_hidden += asked.items_hidden;
+    result.occlusion.asked.items_tested += asked.items_tested;
+    result.occlusion.asked.items_hidden += asked.items_hidden;
     const std::span<const std::uint32_t> seen = result.not_hidden.ids();
     for (std::size_t i = 0, s = 0; i < result.kept.size(); ++i) {
         if (s < seen.size() && seen[s] == i) {
             result.add(result.kept[i], result.not_hidden.verdicts()[s], query.order);
             ++s;
         } else if (query.list_occluded) {
-            result.occluded.push_back(result.kept[i]);
+            result.occluded.add(result.kept[i]);
         }
     }
 }

@@ -13,7 +13,6 @@
 
 namespace crofton::world {
 
-struct RegionView;
 struct RegionQuery;
 
 [[nodiscard]] inline bool is_region_index(std::uint32_t index) {
@@ -77,7 +76,8 @@ class Regions {
     // for boxes that the ray meets.
     void visit_along(const Ray& ray, std::uint32_t layers, collide::RayVisitor visit) const;
     void visit_near(const Aabb& bounds, double distance, std::uint32_t layers, collide::NearVisitor visit) const;
-    void find_visible(const RegionQuery& query, RegionView& result) const;
+    // Adds what a view sees to an answer.
+    void find_visible(const RegionQuery& query, WholeView& result) const;
 
   private:
     static constexpr std::uint32_t kPage = 1024;  // indices are given away by pages
@@ -100,7 +100,7 @@ class Regions {
     void drop(std::uint32_t slot);
     void apply(const StagedHide& change);
     [[nodiscard]] bool may_be_within(const cull::DrawLimits& limits, const Attachment& region) const;
-    void add_visible(const Attachment& region, bool inside, const RegionQuery& query, RegionView& result) const;
+    void add_visible(const Attachment& region, const RegionQuery& query, WholeView& result) const;
 
     Vector<Attachment> attachments_;
     Vector<std::uint32_t> free_slots_;

@@ -209,15 +209,8 @@ Result<void> World::view(std::span<const ViewRequest> requests, MultiViewResult&
     visible.with_regions_ = false;
     if (state_->regions.is_empty()) return {};
     std::array<cull::View, cull::kMaxViews> views;
-    while (visible.each_.size() < requests.size()) visible.each_.emplace_back();
-    for (std::size_t v = 0; v < requests.size(); ++v) {
-        views[v] = eye_of(requests[v], v)->plain;
-        if (visible.one_walk_)
-            find_in_regions(requests[v], views[v], visible.each_[v]);
-        else
-            add_regions(requests[v], views[v], visible.each_[v]);
-    }
-    add_regions(std::span(views).first(requests.size()), visible);
+    for (std::size_t v = 0; v < requests.size(); ++v) views[v] = eye_of(requests[v], v)->plain;
+    add_regions(requests, std::span(views).first(requests.size()), visible);
     return {};
 }
 

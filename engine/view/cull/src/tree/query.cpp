@@ -57,8 +57,8 @@ void leave_all_undecided(std::size_t count, ListKernelOutput& output) {
 
 // A large tree is queried subtree by subtree, two levels down, with one thread as with many. So the answer comes in
 // the same order.
-Query::Tasks::Tasks(const TreeKernelInput& input, bool many) {
-    const std::uint64_t root = tree_entry(0, (1u << input.view->plane_count) - 1);
+Query::Tasks::Tasks(const TreeKernelInput& input, std::uint32_t planes, bool many) {
+    const std::uint64_t root = tree_entry(0, planes & ((1u << input.view->plane_count) - 1));
     std::uint64_t level[boxtree::kWidth];
     entries[0] = root;
     count = 1;
@@ -75,17 +75,23 @@ void Query::start(std::size_t items) {
     grow(visible_.straddling_, items + kPadding);
 }
 
+bool Query::is_for_kernels() const {
+    if (moved_) return moved_->view != nullptr;
+    return is_usable(view_.frustum) && has_unit_normals(view_.frustum);
+}
+
 // Before the tree's root. A moved tree is met by the view moved back, with wider error bounds: a plane's value is off
 // by |normal| ≤ 1.001 for each component times what the point is off by.
 KernelView Query::view_of(const boxtree::Structure& structure) const {
-    KernelView view = kernel_view_of(view_);
-    if (move_) {
-        const glm::dvec3 origin = move_->back(view_.frustum.origin);
+    KernelView view = moved_ ? *moved_->view : kernel_view_of(view_);
+    if (moved_) {
+        const glm::dvec3 origin = moved_->move.back(view_.frustum.origin);
         for (int j = 0; j < 3; ++j) view.origin[j] = origin[j];
     }
     bring_before(structure.nodes()[0], view);
-    if (move_)
-        for (std::uint32_t i = 0; i < view.plane_count; ++i) view.far[i] += move_->rounding(view_.frustum.origin);
+    if (!moved_) return view;
+    const double rounding = moved_->move.rounding(view_.frustum.origin);
+    for (std::uint32_t i = 0; i < view.plane_count; ++i) view.far[i] += rounding;
     return view;
 }
 
@@ -211,7 +217,7 @@ std::size_t Query::list_marked(const std::uint64_t* seen, const std::uint64_t* m
 void Query::run(const boxtree::BoxTree& tree, Executor& executor) {
     const boxtree::Structure& structure = tree.structure();
     start(tree.boxes().size() + (moving_ ? moving_->size() : 0));
-    if (!is_usable(view_.frustum) || !has_unit_normals(view_.frustum)) return run_all(tree, executor);
+    if (!is_for_kernels()) return run_all(tree, executor);
     grow(visible_.undecided_, tree.boxes().size() + kPadding);
     const KernelView view = view_of(structure);
     TreeKernelInput input{structure.nodes().data(),
@@ -222,7 +228,7 @@ void Query::run(const boxtree::BoxTree& tree, Executor& executor) {
                           structure.axes().data(),
                           &view,
                           options_.mode == CullMode::exact};
-    const Tasks tasks(input, tree.item_count() >= kParallelItems);
+    const Tasks tasks(input, moved_ ? moved_->planes : ~0u, tree.item_count() >= kParallelItems);
     if (executor.concurrency() > 1 && tasks.count > 1 && !options_.limits)
         return run_parallel(tree, input, tasks, executor);
     if (!options_.candidate_mask.empty() && !options_.limits && has_candidate_slots(structure)) {

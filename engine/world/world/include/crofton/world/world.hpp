@@ -274,7 +274,8 @@ class World {
     // Adds regions' objects to such an answer.
     void find_in_regions(const ViewRequest& request, const cull::View& view, ViewResult& visible) const;
     void add_regions(const ViewRequest& request, const cull::View& view, ViewResult& visible) const;
-    void add_regions(std::span<const cull::View> views, MultiViewResult& visible) const;
+    void add_regions(std::span<const ViewRequest> requests, std::span<const cull::View> views,
+                     MultiViewResult& visible) const;
     struct State;
     Owner<State> state_;
 };
