@@ -550,7 +550,7 @@ TEST_SUITE("world/regions") {
         CHECK(last >= 0.0);
     }
 
-    TEST_CASE("an empty region can be attached and detached; a region without objects has empty bounds") {
+    TEST_CASE("an empty region can be attached and detached, and has empty bounds") {
         World world;
         const Region empty = Region::prepare({}).value();
         CHECK(empty.bounds().is_empty());
