@@ -8,6 +8,7 @@
 //                             among what moves
 //   bench_world --bytes       bytes an object
 //   bench_world --stacks      what an update of a thousand stacked crates costs, as bodies and as boxes
+//   bench_world --regions     a World of a thousand regions beside one of a million objects
 //   --frames=N                instead of 200
 //   --target=AVX2             with this instruction set
 //   --benchmark_filter=REGEX, --benchmark_repetitions=N, --benchmark_out=FILE: as Google Benchmark's, for results.py
@@ -52,7 +53,7 @@ constexpr Row kRows[] = {
 
 struct Options {
     int frames = 200, repetitions = 1;
-    bool churn = false, changes = false, stacks = false, bytes = false;
+    bool churn = false, changes = false, stacks = false, bytes = false, regions = false;
     std::size_t spawns = 10'000'000, live = 20'000, part = 100;
     std::string out;
     std::regex filter{""};
@@ -72,6 +73,8 @@ bool parse(int argc, char** argv, Options& options) {
             options.changes = true;
         else if (key == "--bytes")
             options.bytes = true;
+        else if (key == "--regions")
+            options.regions = true;
         else if (key == "--stacks")
             options.stacks = true;
         else if (key == "--live")
@@ -128,6 +131,11 @@ int main(int argc, char** argv) {
     }
     if (options.bytes) {
         crofton::bench::bytes();
+        return 0;
+    }
+    if (options.regions) {
+        std::printf("instruction set: %s\n", target);
+        crofton::bench::regions(options.frames);
         return 0;
     }
     if (options.changes) {

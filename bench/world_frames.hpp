@@ -77,6 +77,9 @@ void bytes();
 // Updates in which one object changes, and queries while some move: a table to stdout (world_changes.cpp).
 void changes(int frames);
 
+// Worlds of regions: a table to stdout (world_regions.cpp).
+void regions(int frames);
+
 // Updates of stacked crates: a table to stdout (world_stacks.cpp).
 void stacks(int frames);
 

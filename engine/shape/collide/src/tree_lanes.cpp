@@ -66,7 +66,7 @@ constexpr float kRounding = 0x1p-20f;
 
 HWY_INLINE float size_of(const LaneRay& ray, float l1_radius) {
     const auto magnitude = [](float x) { return x < 0.0f ? -x : x; };
-    return magnitude(ray.origin[0]) + magnitude(ray.origin[1]) + magnitude(ray.origin[2]) + l1_radius;
+    return magnitude(ray.origin[0]) + magnitude(ray.origin[1]) + magnitude(ray.origin[2]) + l1_radius + ray.slack;
 }
 
 template <class Block>

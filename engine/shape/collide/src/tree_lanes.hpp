@@ -12,6 +12,7 @@ struct LaneRay {
     float origin[3];
     float inverse[3];  // of the unit direction's components; finite
     float limit;
+    float slack = 0.0f;  // 2^20 times what the position may be off by, along an axis, beside its rounding to float
 };
 
 // An axis-aligned box relative to a node's or leaf's origin.

@@ -6,6 +6,7 @@
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/boxtree/structure.hpp>
 #include <crofton/collide/broadphase.hpp>
+#include <crofton/collide/moved_tree.hpp>
 #include <crofton/collide/narrow_phase.hpp>
 #include <crofton/geometry/finite.hpp>
 #include <glm/common.hpp>
@@ -131,7 +132,10 @@ Aabb around(const glm::dvec3& center, const glm::dvec3& half_size) {
 // moves across before it leaves the filter's range is below the filter's error bound.
 class Traveller {
   public:
-    explicit Traveller(const Ray& ray) : origin_(ray.origin), unit_(unit_of(ray.direction)) {
+    explicit Traveller(const Ray& ray) : Traveller(ray, ray.origin, 0.0) {}
+    // From another origin, which is off by `slack` at most.
+    Traveller(const Ray& ray, const glm::dvec3& origin, double slack)
+        : origin_(origin), unit_(unit_of(ray.direction)), slack_(static_cast<float>(slack * 0x1.1p20)) {
         const glm::dvec3 direction = ray.direction / unit_;
         length_ = glm::length(direction);
         speed_ = direction / length_;
@@ -153,6 +157,7 @@ class Traveller {
             ray.inverse[k] = inverse_of(boxtree::along(axes, k, &speed_.x));
         }
         ray.limit = limit;
+        ray.slack = slack_;
         return ray;
     }
     template <class Block>
@@ -163,6 +168,7 @@ class Traveller {
             ray.inverse[k] = inverse_[static_cast<std::size_t>(k)];
         }
         ray.limit = limit;
+        ray.slack = slack_;
         return ray;
     }
 
@@ -181,6 +187,7 @@ class Traveller {
     double unit_, length_;  // of the direction; the length in units
     glm::dvec3 speed_;
     std::array<float, 3> inverse_;
+    float slack_;
 };
 
 struct RayStep {
@@ -237,13 +244,15 @@ void overlapping(const boxtree::BoxTree& tree, const Capsule& body, Vector<boxtr
     collect(tree, body, bounds, layers, items);
 }
 
-void visit_along(const Ray& ray, const boxtree::BoxTree& tree, RayVisitor visit, std::uint32_t layers) {
-    if (!validate(ray)) return;
-    const Traveller traveller(ray);
+namespace {
+
+// box_of(item) is the item's box where the ray meets it; the traveller sees the tree's own.
+template <class BoxOf>
+void visit_along(const Ray& ray, const Traveller& traveller, const boxtree::BoxTree& tree, const BoxOf& box_of,
+                 RayVisitor visit, std::uint32_t layers) {
     Ray rest = ray;
     float limit = traveller.distance(rest.max_t);
     const boxtree::Structure& structure = tree.structure();
-    const std::span<const Obb> boxes = tree.boxes();
     Stack<RayStep> stack(structure);
     stack.push({0.0f, 0});
     while (!stack.is_empty()) {
@@ -255,7 +264,7 @@ void visit_along(const Ray& ray, const boxtree::BoxTree& tree, RayVisitor visit,
             const boxtree::Leaf& leaf = structure.leaves()[id];
             const std::uint32_t lanes = lanes_along(leaf, traveller.seen_from(leaf, limit), entry.data());
             for_each_item(structure, id, lanes, layers, [&](boxtree::ItemId item) {
-                if (const auto t = mesh::entry_of(rest, boxes[item])) rest.max_t = visit(item, *t);
+                if (const auto t = mesh::entry_of(rest, box_of(item))) rest.max_t = visit(item, *t);
             });
             if (!(rest.max_t >= 0.0)) return;
             limit = traveller.distance(rest.max_t);
@@ -274,6 +283,24 @@ void visit_along(const Ray& ray, const boxtree::BoxTree& tree, RayVisitor visit,
                           stack[place] = {entry[lane], node.child[lane]};
                       });
     }
+}
+
+}  // namespace
+
+void visit_along(const Ray& ray, const boxtree::BoxTree& tree, RayVisitor visit, std::uint32_t layers) {
+    if (!validate(ray)) return;
+    const std::span<const Obb> boxes = tree.boxes();
+    visit_along(
+        ray, Traveller(ray), tree, [&](boxtree::ItemId item) -> const Obb& { return boxes[item]; }, visit, layers);
+}
+
+void visit_along(const Ray& ray, const boxtree::BoxTree& tree, const Move& move, RayVisitor visit,
+                 std::uint32_t layers) {
+    if (!validate(ray)) return;
+    const std::span<const Obb> boxes = tree.boxes();
+    visit_along(
+        ray, Traveller(ray, move.back(ray.origin), move.rounding(ray.origin)), tree,
+        [&](boxtree::ItemId item) { return move(boxes[item]); }, visit, layers);
 }
 
 std::optional<BoxHit> raycast(const Ray& ray, const boxtree::BoxTree& tree, std::uint32_t layers) {

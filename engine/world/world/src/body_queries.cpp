@@ -107,7 +107,7 @@ void World::overlap(const convex::Body& shape, const RigidTransform& pose, Vecto
     if (!check(shape, pose)) return;
     const State& s = *state_;
     s.visit_near(bounds_of(shape, pose), 0.0, layers, [&](std::uint32_t id) {
-        if (s.overlaps({shape, pose}, id)) found.push_back(s.table.ref(id));
+        if (s.overlaps({shape, pose}, id)) found.push_back(s.ref_of(id));
         return 0.0;
     });
     world::sort_by_object(found);
@@ -133,8 +133,9 @@ Result<std::optional<BodyHit>> World::cast(const convex::Body& shape, const Rigi
         return tl::unexpected(good.error());
     const State& s = *state_;
     const auto hit_of = [&](std::uint32_t id, const convex::Impact& impact) {
-        return BodyHit{s.table.handle(id),
-                       s.table.names.users[id],
+        const ObjectRef ref = s.ref_of(id);
+        return BodyHit{ref.object,
+                       ref.user,
                        impact.time,
                        impact.normal,
                        impact.on_b,

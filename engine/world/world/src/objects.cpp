@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "bound_rules.hpp"
 #include "for_each_pair.hpp"
 #include "require_ok.hpp"
 #include "world_state.hpp"
@@ -12,12 +13,7 @@ namespace crofton {
 namespace {
 
 Result<void> validate(const Bound& bound, std::uint64_t item) {
-    if (bound.kind == BoundKind::none)
-        return fail(ErrorCode::invalid_argument, item, "world: an object needs a mesh, a bound or a body");
-    if (bound.kind == BoundKind::sphere && !(bound.radius >= 0.0))
-        return fail(std::isnan(bound.radius) ? ErrorCode::non_finite : ErrorCode::invalid_argument, item,
-                    "sphere: the radius is negative or NaN");
-    return crofton::validate(bound.box, item);
+    return world::validate(bound, item, "world: an object needs a mesh, a bound or a body");
 }
 
 }  // namespace
@@ -33,6 +29,7 @@ Bound::Bound(const Sphere& sphere) : kind(BoundKind::sphere), radius(sphere.radi
 
 Result<void> World::State::check(ObjectHandle object, std::uint64_t item) const {
     if (table.contains(object)) return {};
+    if (world::is_region_index(object.index)) return regions.refuse_change(object, item);
     return world::refuse("object", object.index, object.generation, table.names.generations, table.first_generation,
                          item);
 }
@@ -245,6 +242,7 @@ Result<void> World::set_body(ObjectHandle object, const convex::Body* body) {
 }
 
 Result<void> World::set_hidden(ObjectHandle object, bool hidden) {
+    if (world::is_region_index(object.index)) return state_->regions.set_hidden(object, hidden);
     if (auto known = state_->check(object, object.index); !known) return known;
     state_->table.objects[object.index].shown = !hidden;
     state_->stage(object.index);

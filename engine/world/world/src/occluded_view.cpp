@@ -57,10 +57,12 @@ std::span<const cull::Verdict> ViewResult::seen_verdicts() const {
 }
 
 std::span<const std::uint32_t> ViewResult::occluded_ids() const {
+    if (with_regions_) return whole_occluded_ids();
     return has_occlusion() ? std::span<const std::uint32_t>(occluded_->occluded) : std::span<const std::uint32_t>();
 }
 
 occlude::Verdict ViewResult::verdict_of(std::uint32_t index) const {
+    if (index >= kFirstRegionIndex) return region_verdict_of(index);
     if (has_picture()) {
         const auto listed = std::find(ids().begin(), ids().end(), index);
         if (listed == ids().end()) return occlude::Verdict::outside;
@@ -79,6 +81,7 @@ occlude::Verdict ViewResult::verdict_of(std::uint32_t index) const {
 }
 
 OcclusionStatistics ViewResult::occlusion_statistics() const {
+    if (with_regions_) return whole_occlusion_statistics();
     return has_occlusion() ? occluded_->statistics() : OcclusionStatistics();
 }
 

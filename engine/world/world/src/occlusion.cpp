@@ -69,12 +69,14 @@ Result<void> World::State::check_viewed(const world::ObjectNames* viewed) const 
 }
 
 Result<void> World::hidden_by(ObjectHandle object, const ViewResult& visible, Vector<OccluderRef>& occluders) const {
-    if (auto known = state_->check(object, object.index); !known) return known;
+    const bool of_region = state_->regions.contains(object);
+    if (auto known = state_->check(object, object.index); !of_region && !known) return known;
     if (auto own = state_->check_viewed(visible.names_); !own) return own;
     occluders.clear();
-    if (!visible.has_occlusion() || !state_->index.has_box(object.index)) return {};
+    if (!visible.has_occlusion() || (!of_region && !state_->index.has_box(object.index))) return {};
     Vector<occlude::OccluderId> ids;
-    visible.occluded_->buffer->hidden_by(state_->index.box(object.index), ids);
+    const Obb box = of_region ? state_->regions.box(object.index) : state_->index.box(object.index);
+    visible.occluded_->buffer->hidden_by(box, ids);
     for (const occlude::OccluderId id : ids) {
         const ObjectRef ref = state_->table.ref(state_->occluders.object_of(id));
         occluders.push_back({ref.object, ref.user, state_->occluders.place_of(id)});

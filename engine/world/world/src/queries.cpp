@@ -115,6 +115,7 @@ void World::State::visit_along(const Ray& ray, std::uint32_t layers, collide::Ra
         if (const auto t = mesh::raycast(rest, moving.boxes()[i])) visit_living(moving.items()[i], *t);
         return true;
     });
+    regions.visit_along(rest, layers, visit);
 }
 
 std::optional<ObjectHit> World::State::body_hit(const Ray& ray, std::uint32_t id) const {
@@ -132,9 +133,32 @@ std::optional<ObjectHit> World::State::body_hit(const Ray& ray, std::uint32_t id
     return hit;
 }
 
+namespace {
+
+// Of an object with a bound, whose box the ray meets at `box_t`.
+std::optional<ObjectHit> bound_hit(const Ray& ray, const ObjectRef& ref, const world::Object& object, const Obb& box,
+                                   double box_t) {
+    ObjectHit hit{ref.object, ref.user, box_t};
+    hit.normal = world::normal_of(ray, box, box_t);
+    if (object.kind == BoundKind::sphere) {
+        const Sphere sphere = world::sphere_of(object, box);
+        const auto t = world::raycast(ray, sphere);
+        if (!t) return std::nullopt;
+        hit.t = *t;
+        hit.normal = world::normal_of(ray, sphere, *t);
+    }
+    hit.point = ray.origin + hit.t * ray.direction;
+    hit.started_inside = hit.normal == glm::dvec3(0.0);
+    return hit;
+}
+
+}  // namespace
+
 std::optional<ObjectHit> World::State::shape_hit(const Ray& ray, std::uint32_t id, double box_t) const {
+    if (world::is_region_index(id)) return bound_hit(ray, regions.ref(id), regions.object(id), regions.box(id), box_t);
     const world::Object& object = table.objects[id];
     if (object_bodies.has(id)) return body_hit(ray, id);
+    if (bodies.mesh_tree_of(object) == nullptr) return bound_hit(ray, table.ref(id), object, index.box(id), box_t);
     ObjectHit hit{table.handle(id), table.names.users[id], box_t};
     hit.normal = world::normal_of(ray, index.box(id), box_t);
     if (const mesh::MeshTree* tree = bodies.mesh_tree_of(object)) {
@@ -148,12 +172,6 @@ std::optional<ObjectHit> World::State::shape_hit(const Ray& ray, std::uint32_t i
             hit.triangle = on_mesh->triangle;
             hit.normal = world::normal_of(ray, bodies.triangle_of(object, on_mesh->triangle), world.linear);
         }
-    } else if (object.kind == BoundKind::sphere) {
-        const Sphere sphere = world::sphere_of(object, index.box(id));
-        const auto t = world::raycast(ray, sphere);
-        if (!t) return std::nullopt;
-        hit.t = *t;
-        hit.normal = world::normal_of(ray, sphere, *t);
     }
     hit.point = ray.origin + hit.t * ray.direction;
     hit.started_inside = hit.normal == glm::dvec3(0.0);
@@ -203,7 +221,9 @@ void World::State::visit_near(const Aabb& bounds, double distance, std::uint32_t
                               collide::NearVisitor visit) const {
     for (const std::uint32_t object : object_bodies.unbounded())
         if (is_ground(object, layers)) distance = visit(object);
-    visit_bounded_near(bounds, distance, layers, visit);
+    const auto visit_own = [&](std::uint32_t object) { return distance = visit(object); };
+    visit_bounded_near(bounds, distance, layers, visit_own);
+    regions.visit_near(bounds, distance, layers, visit);
 }
 
 void World::State::visit_bounded_near(const Aabb& bounds, double distance, std::uint32_t layers,
@@ -227,6 +247,14 @@ void World::State::overlap(const Shape& shape, Vector<ObjectRef>& found, std::ui
     if (!is_valid(shape)) return;
     const world::QueryShape asked = world::shape_of(shape);
     visit_near(bounds_of(shape), 0.0, layers, [&](std::uint32_t id) {
+        if (world::is_region_index(id)) {
+            const Obb of_region = regions.box(id);
+            const world::Object bound = regions.object(id);
+            if (bound.kind == BoundKind::sphere ? meets_sphere(shape, world::sphere_of(bound, of_region))
+                                                : collide::intersects(of_region, shape))
+                found.push_back(regions.ref(id));
+            return 0.0;
+        }
         const world::Object& object = table.objects[id];
         const Obb& box = index.box(id);
         const bool meets = has_shape(id)                      ? overlaps(asked.placed(), id)
@@ -264,7 +292,8 @@ std::optional<ClosestObject> World::State::closest(const Aabb& bounds, double ma
             const bool nearer = !nearest || gap.distance < nearest->distance ||
                                 (gap.distance == nearest->distance && id < nearest->object.index);
             if (gap.distance > rest || !nearer) return rest;
-            nearest = ClosestObject{table.handle(id), table.names.users[id], gap.distance, gap.on_a, gap.on_b};
+            const ObjectRef ref = ref_of(id);
+            nearest = ClosestObject{ref.object, ref.user, gap.distance, gap.on_a, gap.on_b};
             return rest = gap.distance;
         });
         if (nearest || limit == max_distance) return nearest;
@@ -277,6 +306,7 @@ std::optional<ClosestObject> World::State::closest(const Shape& shape, double ma
     if (!is_valid(shape)) return std::nullopt;
     const world::QueryShape asked = world::shape_of(shape);
     return closest(bounds_of(shape), max_distance, layers, [&](std::uint32_t id, double limit) {
+        if (world::is_region_index(id)) return gap_to(shape, regions.object(id), regions.box(id));
         return has_shape(id) ? gap_to_shape(asked.placed(), id, limit)
                              : gap_to(shape, table.objects[id], index.box(id));
     });

@@ -79,6 +79,11 @@ bool visit_parts(const convex::Body& body, const RigidTransform& pose, PointVisi
 }  // namespace world
 
 world::QueryShape World::State::query_shape_of(std::uint32_t id) const {
+    if (world::is_region_index(id)) {
+        const world::Object object = regions.object(id);
+        const Obb box = regions.box(id);
+        return object.kind == BoundKind::sphere ? world::shape_of(world::sphere_of(object, box)) : world::shape_of(box);
+    }
     const world::Object& object = table.objects[id];
     const Obb& box = index.box(id);
     if (object_bodies.has(id)) return {object_bodies.body(id), object_bodies.pose_of(id, object, box, scene)};
@@ -92,6 +97,7 @@ world::QueryShape World::State::query_shape_of(std::uint32_t id) const {
 }
 
 std::optional<glm::dvec3> World::State::point_inside(const convex::BodyAtPose& shape, std::uint32_t id) const {
+    if (world::is_region_index(id)) return std::nullopt;
     const world::Object& object = table.objects[id];
     const mesh::MeshTree* tree = bodies.mesh_tree_of(object);
     if (!options.containment || tree == nullptr || object_bodies.has(id)) return std::nullopt;

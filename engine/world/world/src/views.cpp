@@ -163,8 +163,15 @@ void World::State::draw_and_ask(const occlude::OcclusionView& view, const Occlus
 }
 
 Result<void> World::view(const ViewRequest& request, ViewResult& visible, Executor& executor) const {
+    if (auto own = view_own(request, visible, executor); !own) return own;
+    if (!state_->regions.is_empty()) add_regions(request, eye_of(request, kNoItem)->plain, visible);
+    return {};
+}
+
+Result<void> World::view_own(const ViewRequest& request, ViewResult& visible, Executor& executor) const {
     const auto eye = eye_of(request, kNoItem);
     if (!eye) return tl::unexpected(eye.error());
+    visible.with_regions_ = false;
     cull::CullOptions how{request.mode, request.order, request.limits, {}};
     how.candidate_mask = state_->candidates_and_changed(request.candidate_mask, visible.candidates_);
     how.mask_moving = true;  // those that have moved are in the mask
@@ -198,6 +205,17 @@ Result<void> World::view(const ViewRequest& request, ViewResult& visible, Execut
 }
 
 Result<void> World::view(std::span<const ViewRequest> requests, MultiViewResult& visible, Executor& executor) const {
+    if (auto own = view_own(requests, visible, executor); !own) return own;
+    visible.with_regions_ = false;
+    if (state_->regions.is_empty()) return {};
+    std::array<cull::View, cull::kMaxViews> views;
+    for (std::size_t v = 0; v < requests.size(); ++v) views[v] = eye_of(requests[v], v)->plain;
+    add_regions(requests, std::span(views).first(requests.size()), visible);
+    return {};
+}
+
+Result<void> World::view_own(std::span<const ViewRequest> requests, MultiViewResult& visible,
+                             Executor& executor) const {
     if (auto few = cull::check_view_count(requests.size()); !few) return few;
     std::array<cull::View, cull::kMaxViews> volumes;
     for (std::size_t v = 0; v < requests.size(); ++v) {
@@ -254,7 +272,7 @@ void World::view_each(std::span<const ViewRequest> requests, MultiViewResult& vi
             ViewRequest request = requests[v];
             request.order =
                 request.occlusion ? cull::ResultOrder::ascending : cull::ResultOrder::tree;  // the quicker one
-            world::require_ok(view(request, visible.each_[v]));
+            world::require_ok(view_own(request, visible.each_[v], serial_executor()));
         }
     });
     for (std::size_t v = 0; v < requests.size(); ++v)

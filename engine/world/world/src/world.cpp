@@ -14,6 +14,7 @@ World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
 
 bool World::contains(ObjectHandle object) const {
+    if (world::is_region_index(object.index)) return state_->regions.contains(object);
     return state_->table.contains(object);
 }
 bool World::contains(MeshHandle mesh) const {
@@ -23,7 +24,7 @@ bool World::contains(NodeHandle node) const {
     return state_->nodes.contains(node);
 }
 std::size_t World::object_count() const {
-    return state_->table.count;
+    return state_->table.count + state_->regions.object_count();
 }
 const WorldStatistics& World::statistics() const {
     return state_->statistics;
@@ -41,12 +42,40 @@ std::span<const BodyContact> World::body_contacts() const {
     return state_->body_contacts.contacts();
 }
 
+Result<RegionHandle> World::attach(const Region& region, const glm::dvec3& origin) {
+    return state_->regions.attach(region, origin);
+}
+Result<void> World::detach(RegionHandle region) {
+    return state_->regions.detach(region);
+}
+bool World::contains(RegionHandle region) const {
+    return state_->regions.contains(region);
+}
+
+Result<ObjectHandle> World::object_in(RegionHandle region, std::uint32_t place) const {
+    if (auto known = state_->regions.check(region); !known) return tl::unexpected(known.error());
+    const world::Attachment& attachment = state_->regions.at(region);
+    if (place >= attachment.size())
+        return fail(ErrorCode::out_of_range, place, {"world: the region has ", attachment.size(), " objects"});
+    return ObjectHandle{attachment.first + place, attachment.generation};
+}
+
+Result<RegionPlace> World::place_of(ObjectHandle object) const {
+    const world::Regions& regions = state_->regions;
+    if (regions.contains(object))
+        return RegionPlace{regions.handle_of(object.index), object.index - regions.of(object.index).first};
+    if (auto known = state_->check(object, object.index); !known) return tl::unexpected(known.error());
+    return fail(ErrorCode::invalid_argument, object.index, "world: the object is of no region: World::add added it");
+}
+
 Result<std::uint64_t> World::user_of(ObjectHandle object) const {
+    if (state_->regions.contains(object)) return state_->regions.ref(object.index).user;
     if (auto known = state_->check(object, object.index); !known) return tl::unexpected(known.error());
     return state_->table.names.users[object.index];
 }
 
 Result<Obb> World::box_of(ObjectHandle object) const {
+    if (state_->regions.contains(object)) return state_->regions.box(object.index);
     if (auto known = state_->check(object, object.index); !known) return tl::unexpected(known.error());
     if (!state_->index.has_box(object.index))
         return fail(ErrorCode::empty, object.index,
@@ -55,6 +84,8 @@ Result<Obb> World::box_of(ObjectHandle object) const {
 }
 
 Result<Transform> World::transform_of(ObjectHandle object) const {
+    if (state_->regions.contains(object))
+        return fail(ErrorCode::invalid_argument, object.index, "world: the object is a bound and has no transform");
     if (auto known = state_->check(object, object.index); !known) return tl::unexpected(known.error());
     const std::uint32_t instance = state_->table.objects[object.index].instance;
     if (instance == kNoIndex)
@@ -201,6 +232,7 @@ Result<void> World::update(Executor& executor) {
             {.rebuild_budget = s.options.rebuild_budget, .updates_to_rest = s.options.updates_to_rest}, executor);
     }();
     s.note_movers();
+    s.regions.update();
     {
         const world::TraceZone part(trace, "update: occluders");
         s.update_occluders();
@@ -234,7 +266,7 @@ Result<void> World::update(Executor& executor) {
     world::trace_count(trace, "boxes changed", changes.boxes);
     const std::size_t ground_pairs = s.ground.is_used() ? s.ground.own_pairs().size() : 0;
     world::trace_count(trace, "pairs", s.finder.pair_count() + ground_pairs);
-    s.statistics.objects = s.table.count;
+    s.statistics.objects = s.table.count + s.regions.object_count();
     s.statistics.resting = s.index.tree().item_count();
     s.statistics.moving = s.index.moving().size();
     s.statistics.boxes_changed = changes.boxes;

@@ -13,6 +13,7 @@
 #include "object_table.hpp"
 #include "occluders.hpp"
 #include "query_shape.hpp"
+#include "regions.hpp"
 #include "spatial_index.hpp"
 
 namespace crofton {
@@ -63,7 +64,10 @@ struct World::State {
           index(chosen.tree),
           finder(chosen),
           nodes(first_generation),
-          meshes(first_generation) {}
+          meshes(first_generation),
+          regions(first_generation) {
+        table.names.regions = &regions;
+    }
 
     WorldOptions options;
     WorldStatistics statistics;
@@ -80,6 +84,7 @@ struct World::State {
     Aabb object_bounds;  // about; where there are occluders
     scene::Scene scene;
     Generations nodes, meshes;
+    world::Regions regions;
     scene::MeshId point = scene::kNone;  // the mesh of objects that are added by their bodies alone; kNone: none is
     Vector<std::uint32_t> object_of_instance;
     Vector<glm::vec3> vertices;  // scratch
@@ -144,6 +149,8 @@ struct World::State {
                                                  double limit) const;
     // Returns a point of the shape that lies inside an object's closed mesh, if contacts count that as touching.
     [[nodiscard]] std::optional<glm::dvec3> point_inside(const convex::BodyAtPose& shape, std::uint32_t object) const;
+    // Returns the object of an index in an answer, the World's own or a region's.
+    [[nodiscard]] ObjectRef ref_of(std::uint32_t object) const { return world::ref(table.names, object); }
 
     // How far along the ray an object's own shape is met, no farther than the ray goes; its box is met at `box_t`.
     [[nodiscard]] std::optional<ObjectHit> shape_hit(const Ray& ray, std::uint32_t object, double box_t) const;

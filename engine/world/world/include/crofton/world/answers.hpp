@@ -17,10 +17,13 @@ namespace convex {
 struct TrackedPoint;
 }
 namespace world {
+class Regions;
+
 // Indexed by an object's index.
 struct ObjectNames {
     Vector<std::uint32_t> generations;
     Vector<std::uint64_t> users;
+    const Regions* regions = nullptr;  // which have the names of their objects
 };
 
 struct OccludedView;  // a view's depth buffer and the results of its tests
@@ -28,11 +31,37 @@ struct OccludedViewDeleter {
     void operator()(OccludedView* view) const;
 };
 using OccludedViewOwner = Owner<OccludedView, OccludedViewDeleter>;
+
+// The answer of a World with regions: of its own objects and of theirs.
+struct WholeView;
+struct WholeViewDeleter {
+    void operator()(WholeView* view) const;
+};
+using WholeViewOwner = Owner<WholeView, WholeViewDeleter>;
+struct WholeViews;
+struct WholeViewsDeleter {
+    void operator()(WholeViews* views) const;
+};
+using WholeViewsOwner = Owner<WholeViews, WholeViewsDeleter>;
 }  // namespace world
 
 struct ObjectRef {
     ObjectHandle object;
     std::uint64_t user = 0;
+};
+
+namespace world {
+[[nodiscard]] ObjectRef region_ref(const ObjectNames& names, std::uint32_t index);
+[[nodiscard]] inline ObjectRef ref(const ObjectNames& names, std::uint32_t index) {
+    if (index >= kFirstRegionIndex) return region_ref(names, index);
+    return {{index, names.generations[index]}, names.users[index]};
+}
+}  // namespace world
+
+// An object's region, and its place among the objects that the region was prepared from.
+struct RegionPlace {
+    RegionHandle region;
+    std::uint32_t index = 0;
 };
 
 // Names an occluder: its object, and its place in World::occluders_of of the object's mesh.
@@ -55,16 +84,25 @@ struct OcclusionStatistics {
 class ViewResult {
   public:
     [[nodiscard]] std::size_t size() const { return ids().size(); }
-    [[nodiscard]] std::span<const std::uint32_t> ids() const { return hides_ ? seen_ids() : set_.ids(); }  // indices
+    // Returns indices. In ascending order, objects of regions come last.
+    [[nodiscard]] std::span<const std::uint32_t> ids() const {
+        return with_regions_ ? whole_ids() : hides_ ? seen_ids() : set_.ids();
+    }
     [[nodiscard]] ObjectRef operator[](std::size_t i) const { return ref(ids()[i]); }
     // In tree order, the first inside_count() objects are inside the view and the others straddle its boundary. In
     // ascending order, verdicts() has one verdict for each object.
-    [[nodiscard]] std::size_t inside_count() const { return hides_ ? seen_inside_count() : set_.inside_count(); }
-    [[nodiscard]] std::span<const cull::Verdict> verdicts() const { return hides_ ? seen_verdicts() : set_.verdicts(); }
+    [[nodiscard]] std::size_t inside_count() const {
+        return with_regions_ ? whole_inside_count() : hides_ ? seen_inside_count() : set_.inside_count();
+    }
+    [[nodiscard]] std::span<const cull::Verdict> verdicts() const {
+        return with_regions_ ? whole_verdicts() : hides_ ? seen_verdicts() : set_.verdicts();
+    }
     // Returns the counts of the query by the view volume. With occlusion, such a query takes place only for
     // OcclusionOptions::list_occluded and for tree order.
-    [[nodiscard]] const cull::Statistics& statistics() const { return set_.statistics(); }
-    [[nodiscard]] ObjectRef ref(std::uint32_t id) const { return {{id, names_->generations[id]}, names_->users[id]}; }
+    [[nodiscard]] const cull::Statistics& statistics() const {
+        return with_regions_ ? whole_statistics() : set_.statistics();
+    }
+    [[nodiscard]] ObjectRef ref(std::uint32_t id) const { return world::ref(*names_, id); }
 
     // Tells whether the last view had occlusion. If not, the results of the following calls are empty.
     [[nodiscard]] bool has_occlusion() const { return hides_ && !has_picture(); }
@@ -89,9 +127,17 @@ class ViewResult {
     [[nodiscard]] std::span<const std::uint32_t> seen_ids() const;  // not hidden
     [[nodiscard]] std::size_t seen_inside_count() const;
     [[nodiscard]] std::span<const cull::Verdict> seen_verdicts() const;
+    [[nodiscard]] std::span<const std::uint32_t> whole_ids() const;  // of a World with regions
+    [[nodiscard]] std::size_t whole_inside_count() const;
+    [[nodiscard]] std::span<const cull::Verdict> whole_verdicts() const;
+    [[nodiscard]] std::span<const std::uint32_t> whole_occluded_ids() const;
+    [[nodiscard]] const cull::Statistics& whole_statistics() const;
+    [[nodiscard]] OcclusionStatistics whole_occlusion_statistics() const;
+    [[nodiscard]] occlude::Verdict region_verdict_of(std::uint32_t index) const;
     cull::VisibleSet set_;
     world::OccludedViewOwner occluded_;
-    ResetOnMove<bool> hides_;
+    world::WholeViewOwner whole_;
+    ResetOnMove<bool> hides_, with_regions_;
     const world::ObjectNames* names_ = nullptr;
     Vector<std::uint64_t> candidates_;  // CullOptions::candidate_mask and what has changed since
 };
@@ -101,15 +147,17 @@ class MultiViewResult {
   public:
     [[nodiscard]] std::size_t size() const { return ids().size(); }
     // Returns indices: ascending, or roughly in the order of the tree if the requests asked for tree order.
+    // Objects of regions come last.
     [[nodiscard]] std::span<const std::uint32_t> ids() const {
+        if (with_regions_) return whole_ids();
         return listed_ ? std::span<const std::uint32_t>(ids_.data(), ids_.size()) : set_.ids();
     }
-    [[nodiscard]] ObjectRef operator[](std::size_t i) const {
-        const std::uint32_t id = ids()[i];
-        return {{id, names_->generations[id]}, names_->users[id]};
-    }
+    [[nodiscard]] ObjectRef operator[](std::size_t i) const { return world::ref(*names_, ids()[i]); }
     // Bit v is set if view v sees object ids()[i].
-    [[nodiscard]] std::uint32_t view_mask(std::size_t i) const { return listed_ ? masks_[ids_[i]] : set_.view_mask(i); }
+    [[nodiscard]] std::uint32_t view_mask(std::size_t i) const {
+        if (with_regions_) return whole_mask(i);
+        return listed_ ? masks_[ids_[i]] : set_.view_mask(i);
+    }
 
     // How many views the last call asked for, and what the occlusion of one of them drew and asked; zeros for a view
     // without occlusion.
@@ -127,13 +175,16 @@ class MultiViewResult {
     friend class World;
     void forget_ids();
     void add(std::uint32_t id, std::uint32_t views);
-    void list_ascending();               // ids_ from bits_
+    void list_ascending();  // ids_ from bits_
+    [[nodiscard]] std::span<const std::uint32_t> whole_ids() const;
+    [[nodiscard]] std::uint32_t whole_mask(std::size_t i) const;
     cull::MaskedVisibleSet set_;         // of views that are answered in one walk
     Vector<ViewResult> each_;            // of views that are not: at least view_count_
     Vector<std::uint32_t> ids_, masks_;  // masks by object: 0 but for those in ids_
     Vector<std::uint64_t> bits_;         // by object, while ids are put in order
     ResetOnMove<std::size_t> view_count_;
-    ResetOnMove<bool> one_walk_, listed_;
+    world::WholeViewsOwner whole_;
+    ResetOnMove<bool> one_walk_, listed_, with_regions_;
     const world::ObjectNames* names_ = nullptr;
 };
 

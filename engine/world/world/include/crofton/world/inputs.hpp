@@ -29,10 +29,12 @@ class Body;
 // Handles of objects, nodes and meshes: an index, which is reused, and a generation, which differs for each use.
 
 inline constexpr std::uint32_t kNoIndex = ~std::uint32_t{0};
+// Indices of regions' objects (World::attach) begin here. They are consecutive within a region.
+inline constexpr std::uint32_t kFirstRegionIndex = 0x80000000u;
 
-// Indices are dense, so you may use them to index your own arrays: they are less than the largest number that existed
-// at once, including objects removed since the last update. An object's index is reused after the next update. Nodes
-// share their indices with the objects that have a transform or no node.
+// Indices of a World's own objects are dense, so you may use them to index your own arrays: they are less than the
+// largest number that existed at once, including objects removed since the last update. An object's index is reused
+// after the next update. Nodes share their indices with the objects that have a transform or no node.
 //
 // A handle is stale after its object, node or mesh was removed. Calls with a stale handle, or with a handle of another
 // World, fail with ErrorCode::stale_handle. Each World of the process starts with other generations, the first World
@@ -50,6 +52,7 @@ struct Handle {
 using ObjectHandle = Handle<struct ObjectTag>;
 using NodeHandle = Handle<struct NodeTag>;
 using MeshHandle = Handle<struct MeshTag>;
+using RegionHandle = Handle<struct RegionTag>;  // of a region at one origin
 
 // ---- Views of the caller's memory ----
 
@@ -220,7 +223,8 @@ struct ViewRequest {
     // false hide nothing. For a camera, `picture->depth` is the depth range of the renderer's projection. Cannot be
     // combined with `occlusion`.
     std::optional<depth::PictureView> picture = {};
-    // Leaves out objects that are too small or too far. Must live until the call returns.
+    // Leaves out objects that are too small or too far. Must live until the call returns. The limits by item and the
+    // hysteresis are for the World's own objects; regions' objects have neither.
     const cull::DrawLimits* limits = nullptr;
     // A baked visible set (docs/pvs.md). If not empty, the object with index i is listed only if bit i % 64 of word
     // i / 64 is set. Objects beyond its end are tested as usual, and so are objects that have moved since their first

@@ -9,6 +9,7 @@
 #include <crofton/geometry/shapes.hpp>
 #include <crofton/world/answers.hpp>
 #include <crofton/world/inputs.hpp>
+#include <crofton/world/region.hpp>
 #include <optional>
 #include <span>
 
@@ -146,10 +147,30 @@ class World {
     Result<void> set_parent(NodeHandle node, NodeHandle parent_or_null);  // error: the node itself or one below it
     Result<void> set_layers(NodeHandle node, std::uint32_t layers);
 
+    // Places a region in the world: coordinates of its objects are relative to `origin`. The same region may be
+    // attached at several origins. Takes constant time, and so does detach(), whatever the region holds.
+    //
+    // From the next update on, all answers contain the region's objects as if they had been added one by one, with
+    // boxes whose centers are the sums of their own and the origin, rounded once; exactness is that of other objects.
+    // The object at place i of the region has the index of object_in(region, 0) plus i. Such objects are at rest.
+    // set_hidden() works for them; other changes fail with `unsupported`: hide the object and add one of the World's
+    // own. pairs() and contacts do not contain them (docs/large_worlds.md).
+    //
+    // Detaching makes the handles of the region's objects stale. As for removed objects, rays and shapes no longer
+    // meet them, and other answers follow with the next update. Errors: an origin that is not finite, or puts the
+    // objects beyond 5e29; more than 2^31 objects in all regions; a stale handle.
+    Result<RegionHandle> attach(const Region& region, const glm::dvec3& origin);
+    Result<void> detach(RegionHandle region);
+    [[nodiscard]] bool contains(RegionHandle region) const;
+    // Error: no such place (out_of_range).
+    [[nodiscard]] Result<ObjectHandle> object_in(RegionHandle region, std::uint32_t place) const;
+    // Error: an object of the World's own (invalid_argument).
+    [[nodiscard]] Result<RegionPlace> place_of(ObjectHandle object) const;
+
     [[nodiscard]] bool contains(ObjectHandle object) const;
     [[nodiscard]] bool contains(MeshHandle mesh) const;
     [[nodiscard]] bool contains(NodeHandle node) const;
-    [[nodiscard]] std::size_t object_count() const;  // removed ones not counted
+    [[nodiscard]] std::size_t object_count() const;  // of regions too; removed and detached ones are not counted
     [[nodiscard]] Result<std::uint64_t> user_of(ObjectHandle object) const;
     // Returns the box of the last update. Error: there was no update since the object was added (empty).
     [[nodiscard]] Result<Obb> box_of(ObjectHandle object) const;
@@ -248,7 +269,16 @@ class World {
     [[nodiscard]] std::span<const BodyContact> body_contacts() const;
 
   private:
+    // Of the World's own objects.
+    [[nodiscard]] Result<void> view_own(const ViewRequest& request, ViewResult& visible, Executor& executor) const;
+    [[nodiscard]] Result<void> view_own(std::span<const ViewRequest> requests, MultiViewResult& visible,
+                                        Executor& executor) const;
     void view_each(std::span<const ViewRequest> requests, MultiViewResult& visible, Executor& executor) const;
+    // Adds regions' objects to such an answer.
+    void find_in_regions(const ViewRequest& request, const cull::View& view, ViewResult& visible) const;
+    void add_regions(const ViewRequest& request, const cull::View& view, ViewResult& visible) const;
+    void add_regions(std::span<const ViewRequest> requests, std::span<const cull::View> views,
+                     MultiViewResult& visible) const;
     struct State;
     Owner<State> state_;
 };

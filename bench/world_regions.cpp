@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+// Worlds of regions beside a World with each object by itself: views, rays, attaching, and a flight.
+#include <crofton/crofton.hpp>
+#include <glm/common.hpp>
+#include <random>
+#include <vector>
+
+#include "cull_crowd.hpp"
+#include "world_frames.hpp"
+
+namespace crofton::bench {
+namespace {
+
+constexpr int kCells = 10;  // along each axis
+
+// A crowd of a million objects, and the same by a thousand regions.
+struct Town {
+    std::vector<Obb> boxes = crowd(1'000'000);
+    World single{{.pairs = false}}, with{{.pairs = false}};
+    std::vector<Region> regions;
+    std::vector<glm::dvec3> origins;
+    std::vector<RegionHandle> handles;
+
+    Town() {
+        std::vector<std::vector<RegionObject>> cells(kCells * kCells * kCells);
+        const double side = 100.0 / kCells;
+        for (const Obb& box : boxes) {
+            const glm::dvec3 cell = glm::clamp(glm::floor(box.center / side), 0.0, kCells - 1.0);
+            const std::size_t which = static_cast<std::size_t>((cell.z * kCells + cell.y) * kCells + cell.x);
+            RegionObject object{.bound = box};
+            object.bound.box.center -= side * cell;
+            cells[which].push_back(object);
+        }
+        for (std::size_t c = 0; c < cells.size(); ++c) {
+            const glm::dvec3 cell(c % kCells, c / kCells % kCells, c / (kCells * kCells));
+            regions.push_back(Region::prepare(cells[c]).value());
+            origins.push_back(side * cell);
+        }
+        for (std::size_t c = 0; c < cells.size(); ++c) {
+            handles.push_back(with.attach(regions[c], origins[c]).value());
+            for (RegionObject& object : cells[c]) {
+                object.bound.box.center += origins[c];
+                require_ok(single.add({.bound = object.bound}).has_value(), "a single");
+            }
+        }
+        for (World* world : {&single, &with})
+            for (int update = 0; update < 40; ++update) require_ok(world->update().has_value(), "loading");
+    }
+};
+
+void views(const Town& town, int frames) {
+    std::printf("view,objects seen,one tree in µs,regions in µs,ratio\n");
+    for (const double share : {0.001, 0.01, 0.05, 0.2}) {
+        const cull::View view = view_of_share(town.boxes, share);
+        for (const auto order : {cull::ResultOrder::tree, cull::ResultOrder::ascending}) {
+            const ViewRequest request{.volume = view.frustum, .order = order};
+            ViewResult seen, seen_single;
+            const FrameTimes times = compare(
+                frames, [&](int) { (void)town.single.view(request, seen_single); },
+                [&](int) { (void)town.with.view(request, seen); });
+            require_ok(seen.size() == seen_single.size(), "the views differ");
+            std::printf("%s %g,%zu,%.1f,%.1f,%.3f\n", order == cull::ResultOrder::tree ? "tree order" : "ascending",
+                        share, seen.size(), times.by_hand, times.world, times.world / times.by_hand);
+        }
+    }
+}
+
+void rays(const Town& town, int frames) {
+    std::mt19937_64 random(5);
+    std::uniform_real_distribution<double> place(0.0, 100.0);
+    std::vector<Ray> rays(1000);
+    for (Ray& ray : rays) {
+        for (int k = 0; k < 3; ++k) ray.origin[k] = place(random);
+        for (int k = 0; k < 3; ++k) ray.direction[k] = place(random) - ray.origin[k];
+    }
+    double found = 0.0, found_single = 0.0;
+    const FrameTimes times = compare(
+        frames / 10 + 1,
+        [&](int) {
+            found_single = 0.0;
+            for (const Ray& ray : rays)
+                if (const auto hit = town.single.raycast(ray)) found_single += hit->t;
+        },
+        [&](int) {
+            found = 0.0;
+            for (const Ray& ray : rays)
+                if (const auto hit = town.with.raycast(ray)) found += hit->t;
+        });
+    require_ok(found == found_single, "the rays differ");
+    std::printf("nearest hit of a ray: one tree %.3f µs, regions %.3f µs, ratio %.3f\n", times.by_hand / 1000.0,
+                times.world / 1000.0, times.world / times.by_hand);
+}
+
+// A region comes and one goes every third frame: 20 a second of 60 frames.
+void flight(Town& town, int frames) {
+    const cull::View view = view_of_share(town.boxes, 0.01);
+    ViewResult seen;
+    std::vector<double> all, calm;
+    std::size_t next = 0;
+    for (int frame = 0; frame < frames * 10; ++frame) {
+        const bool streams = frame % 3 == 0;
+        const double passed = microseconds([&] {
+            if (streams) {
+                RegionHandle& handle = town.handles[next];
+                require_ok(town.with.detach(handle).has_value(), "detaching");
+                handle = town.with.attach(town.regions[next], town.origins[next]).value();
+                next = (next + 37) % town.handles.size();
+            }
+            require_ok(town.with.update().has_value(), "an update");
+            (void)town.with.view({.volume = view.frustum}, seen);
+        });
+        (streams ? all : calm).push_back(passed);
+    }
+    const auto mean = [](const std::vector<double>& times) {
+        double sum = 0.0;
+        for (const double time : times) sum += time;
+        return sum / static_cast<double>(times.size());
+    };
+    std::sort(all.begin(), all.end());
+    std::sort(calm.begin(), calm.end());
+    std::printf(
+        "a flight of %zu frames: mean %.1f µs, with a region that comes and one that goes %.1f µs, of these the "
+        "slowest "
+        "hundredth %.1f µs, the slowest %.1f µs\n",
+        all.size() + calm.size(), mean(calm), mean(all), all[all.size() * 99 / 100], all.back());
+}
+
+void attaching(int frames) {
+    std::printf("objects,prepare in ms,attach and update in µs,detach and update in µs,bytes an object\n");
+    for (const std::size_t count : {1'000u, 10'000u, 100'000u, 1'000'000u}) {
+        std::vector<RegionObject> objects;
+        for (const Obb& box : crowd(count)) objects.push_back({.bound = box});
+        Region region;
+        const double prepare = microseconds([&] { region = Region::prepare(objects).value(); });
+        World world({.pairs = false});
+        double attach = 1e30, detach = 1e30;
+        for (int frame = 0; frame < frames; ++frame) {
+            RegionHandle handle;
+            attach = std::min(attach, microseconds([&] {
+                                  handle = world.attach(region, glm::dvec3(frame)).value();
+                                  require_ok(world.update().has_value(), "an update");
+                              }));
+            detach = std::min(detach, microseconds([&] {
+                                  require_ok(world.detach(handle).has_value(), "detaching");
+                                  require_ok(world.update().has_value(), "an update");
+                              }));
+        }
+        std::printf("%zu,%.2f,%.2f,%.2f,%.0f\n", count, prepare / 1000.0, attach, detach,
+                    static_cast<double>(region.bytes()) / static_cast<double>(count));
+    }
+}
+
+}  // namespace
+
+void regions(int frames) {
+    attaching(frames);
+    Town town;
+    views(town, frames);
+    rays(town, frames);
+    flight(town, frames);
+}
+
+}  // namespace crofton::bench

@@ -1,0 +1,735 @@
+// SPDX-License-Identifier: MIT
+// Worlds of regions: as if each object had been added by itself.
+#include <doctest/doctest.h>
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <counting_memory.hpp>
+#include <crofton/convex/query.hpp>
+#include <crofton/crofton.hpp>
+#include <error_of.hpp>
+#include <map>
+#include <oracle/random_boxes.hpp>
+#include <thread>
+#include <tuple>
+#include <vector>
+
+#include "box_at.hpp"
+#include "occlusion_town.hpp"
+
+using namespace crofton;
+using oracle::NearMisses;
+using testing::box_at;
+
+namespace {
+
+// Two Worlds with the same objects: one has regions, the other has each object by itself, where the region puts it. An
+// object has the same number in both: its user data.
+struct TwoWorlds {
+    struct Attached {
+        RegionHandle handle;
+        std::vector<ObjectHandle> singles;
+        std::vector<std::uint64_t> numbers;
+        glm::dvec3 origin;
+    };
+    struct Own {
+        ObjectHandle with, single;
+    };
+    World with, single;
+    std::map<RegionHandle, Attached> attached;
+    std::vector<Own> own;
+    std::uint64_t next_number = 1;
+
+    explicit TwoWorlds(const WorldOptions& options = {.pairs = false}) : with(options), single(options) {}
+
+    RegionHandle attach(const Region& region, const std::vector<RegionObject>& objects, const glm::dvec3& origin) {
+        Attached added{with.attach(region, origin).value(), {}, {}, origin};
+        for (const RegionObject& object : objects) {
+            Bound bound = object.bound;
+            bound.box.center += origin;
+            added.numbers.push_back(next_number);
+            added.singles.push_back(single
+                                        .add({.bound = bound,
+                                              .user = next_number++,
+                                              .layers = object.layers,
+                                              .collides_with = object.collides_with})
+                                        .value());
+        }
+        const RegionHandle handle = added.handle;
+        attached.emplace(handle, std::move(added));
+        return handle;
+    }
+    void detach(RegionHandle region) {
+        with.detach(region).value();
+        for (const ObjectHandle object : attached.at(region).singles) single.remove(object).value();
+        attached.erase(region);
+    }
+    void add(const Bound& bound, std::uint32_t layers) {
+        const ObjectDescription description{.bound = bound, .user = next_number++, .layers = layers};
+        const ObjectHandle in_first = with.add(description).value(), in_second = single.add(description).value();
+        own.push_back({in_first, in_second});
+    }
+    void hide(RegionHandle region, std::size_t place, bool hidden) {
+        const ObjectHandle object = with.object_in(region, static_cast<std::uint32_t>(place)).value();
+        with.set_hidden(object, hidden).value();
+        single.set_hidden(attached.at(region).singles[place], hidden).value();
+    }
+    void update() {
+        with.update().value();
+        single.update().value();
+    }
+    // Of an answer of the World with regions.
+    [[nodiscard]] std::uint64_t number(const ObjectRef& ref) const {
+        if (ref.object.index < kFirstRegionIndex) return ref.user;
+        const RegionPlace place = with.place_of(ref.object).value();
+        CHECK(with.object_in(place.region, place.index).value() == ref.object);
+        return attached.at(place.region).numbers[place.index];
+    }
+};
+
+std::vector<std::uint64_t> numbers_of(const TwoWorlds& worlds, const Vector<ObjectRef>& found) {
+    std::vector<std::uint64_t> numbers;
+    for (const ObjectRef& ref : found) numbers.push_back(worlds.number(ref));
+    std::sort(numbers.begin(), numbers.end());
+    return numbers;
+}
+
+// Boxes and spheres on a grid, so that they touch each other and planes, and some off it.
+RegionObject random_object(NearMisses& random, double place) {
+    const auto number = [&] { return 0.5 * std::floor(random.number(-2.0 * place, 2.0 * place)); };
+    RegionObject object;
+    Obb box;
+    const double x = number(), y = number(), z = number();
+    box.center = {x, y, z};
+    const unsigned a = random.index(3), b = random.index(3), c = random.index(3);
+    box.half_extents = 0.5f * glm::vec3(a, b, c + 1);
+    object.bound = box;
+    const unsigned kind = random.index(6);
+    if (kind == 0) object.bound = Sphere{box.center, 0.5 * random.index(4)};
+    if (kind == 1) object.bound = oracle::random_box(random, box.center + random.number(-1.0, 1.0), 1.0);
+    if (kind == 2) object.bound = Aabb{box.center - 0.75, box.center + 0.25};
+    object.user = random.index(1000);
+    if (random.index(4) == 0) object.layers = 1u << random.index(3);
+    return object;
+}
+
+std::vector<RegionObject> random_objects(NearMisses& random, std::size_t count, double place) {
+    std::vector<RegionObject> objects;
+    for (std::size_t i = 0; i < count; ++i) objects.push_back(random_object(random, place));
+    return objects;
+}
+
+using Seen = std::vector<std::pair<std::uint64_t, occlude::Verdict>>;
+
+Seen seen_with(const TwoWorlds& worlds, const ViewResult& visible) {
+    Seen seen;
+    for (std::size_t i = 0; i < visible.size(); ++i) {
+        const auto verdict = !visible.verdicts().empty()  ? visible.verdicts()[i]
+                             : i < visible.inside_count() ? cull::Verdict::inside
+                                                          : cull::Verdict::straddling;
+        seen.emplace_back(worlds.number(visible[i]), static_cast<occlude::Verdict>(verdict));
+    }
+    std::sort(seen.begin(), seen.end());
+    return seen;
+}
+
+// Planes on the grid around a point.
+Frustum grid_volume(NearMisses& random, const glm::dvec3& near) {
+    Frustum volume;
+    volume.origin = near;
+    volume.plane_count = 6;
+    for (std::uint32_t p = 0; p < 6; ++p) {
+        glm::dvec3 normal(0.0);
+        normal[static_cast<int>(p / 2)] = p % 2 ? 1.0 : -1.0;
+        volume.planes[p] = {normal, 0.5 * random.index(14)};
+    }
+    return volume;
+}
+
+void check_views(const TwoWorlds& worlds, NearMisses& random, const glm::dvec3& near, ViewResult& with,
+                 MultiViewResult& many_with) {
+    Camera camera;
+    const double x = random.number(-9.0, 9.0), y = random.number(-9.0, 9.0), z = random.number(-9.0, 9.0);
+    camera.position = near + glm::dvec3(x, y, z);
+    camera.near_distance = 0.1;
+    camera.far_distance = 15.0;
+    camera.fov_y = random.number(0.3, 1.5);
+    const double yaw = random.number(-3.0, 3.0);
+    camera.forward = {std::sin(yaw), 0.0, std::cos(yaw)};
+    std::vector<ViewRequest> requests(4);
+    requests[0].camera = camera;
+    requests[1].volume = grid_volume(random, near);
+    requests[2].volume = grid_volume(random, near);
+    requests[2].layers = 1u << random.index(3);
+    requests[3].camera = camera;
+    requests[3].mode = cull::CullMode::conservative;
+    cull::DrawLimits limits;
+    limits.eye = camera.position;
+    limits.max_distance_in_radii = 12.0;
+    limits.least_radius = 0.5;
+    ViewResult single;
+    MultiViewResult many_single;
+    std::map<std::uint64_t, std::uint32_t> masks;
+    for (std::size_t v = 0; v < requests.size(); ++v) {
+        for (const bool tree_order : {false, true})
+            for (const bool limited : {false, true}) {
+                ViewRequest request = requests[v];
+                request.order = tree_order ? cull::ResultOrder::tree : cull::ResultOrder::ascending;
+                if (limited) request.limits = &limits;
+                worlds.with.view(request, with).value();
+                worlds.single.view(request, single).value();
+                const Seen expected = seen_with(worlds, single), found = seen_with(worlds, with);
+                REQUIRE(found == expected);
+                CHECK(with.inside_count() == single.inside_count());
+                CHECK(with.statistics().straddling ==
+                      (limited ? with.statistics().straddling : single.statistics().straddling));
+                if (!tree_order) CHECK(std::is_sorted(with.ids().begin(), with.ids().end()));
+                for (std::size_t i = 0; i < with.size(); ++i)
+                    if (!tree_order || with.ids()[i] >= kFirstRegionIndex)
+                        CHECK(with.verdict_of(with.ids()[i]) != occlude::Verdict::outside);
+                if (!limited && !tree_order)
+                    for (const auto& [number, verdict] : expected) masks[number] |= 1u << v;
+            }
+    }
+    // In one walk where modes are equal, each by itself otherwise.
+    for (const std::size_t count : {3u, 4u})
+        for (const bool tree_order : {false, true}) {
+            for (ViewRequest& request : requests)
+                request.order = tree_order ? cull::ResultOrder::tree : cull::ResultOrder::ascending;
+            worlds.with.view(std::span(requests).first(count), many_with).value();
+            worlds.single.view(std::span(requests).first(count), many_single).value();
+            REQUIRE(many_with.size() == many_single.size());
+            std::map<std::uint64_t, std::uint32_t> found, expected;
+            for (std::size_t i = 0; i < many_with.size(); ++i) {
+                found[worlds.number(many_with[i])] = many_with.view_mask(i);
+                expected[many_single[i].user] = many_single.view_mask(i);
+            }
+            REQUIRE(found == expected);
+            for (const auto& [number, mask] : found) CHECK(mask == (masks[number] & ((1u << count) - 1)));
+        }
+}
+
+void check_rays(const TwoWorlds& worlds, NearMisses& random, const glm::dvec3& near) {
+    const auto on_grid = [&] { return 0.5 * std::floor(random.number(-20.0, 20.0)); };
+    const bool off_grid = random.index(2) != 0;
+    const auto coordinate = [&] { return off_grid ? random.number(-10.0, 10.0) : on_grid(); };
+    const double x = coordinate(), y = coordinate(), z = coordinate();
+    const double u = coordinate(), v = coordinate(), w = coordinate();
+    Ray ray{near + glm::dvec3(x, y, z), {u, v, w}};
+    for (int i = 0; i < 3; ++i)
+        if (!off_grid && random.index(2) == 0) ray.direction[i] = 0.0;
+    if (ray.direction == glm::dvec3(0.0)) ray.direction.x = -1.0;
+    if (random.index(3) == 0) ray.max_t = random.number(0.0, 2.0);
+    if (random.index(8) == 0) ray.direction *= 1e-120;
+    const std::uint32_t layers = random.index(2) ? ~0u : 1u << random.index(3);
+    Vector<ObjectHit> found, expected;
+    worlds.with.raycast_all(ray, found, layers);
+    worlds.single.raycast_all(ray, expected, layers);
+    REQUIRE(found.size() == expected.size());
+    const auto fields = [](std::uint64_t number, const ObjectHit& hit) {
+        return std::tuple(hit.t, number, hit.point.x, hit.point.y, hit.point.z, hit.normal.x, hit.normal.y,
+                          hit.normal.z, hit.triangle, hit.child, hit.started_inside);
+    };
+    std::vector<decltype(fields(0, {}))> found_fields, expected_fields;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        CHECK(found[i].user == worlds.with.user_of(found[i].object).value());
+        found_fields.push_back(fields(worlds.number({found[i].object, found[i].user}), found[i]));
+        expected_fields.push_back(fields(expected[i].user, expected[i]));
+    }
+    CHECK(std::is_sorted(found.begin(), found.end(), [](const ObjectHit& a, const ObjectHit& b) {
+        return a.t != b.t ? a.t < b.t : a.object.index < b.object.index;
+    }));
+    std::sort(found_fields.begin(), found_fields.end());
+    std::sort(expected_fields.begin(), expected_fields.end());
+    CHECK(found_fields == expected_fields);
+    const auto nearest = worlds.with.raycast(ray, layers);
+    REQUIRE(nearest.has_value() == !found.empty());
+    if (nearest) {
+        CHECK(nearest->object == found[0].object);
+        CHECK(fields(0, *nearest) == fields(0, found[0]));
+    }
+    CHECK(worlds.with.raycast_any(ray, layers) == !found.empty());
+}
+
+// Of objects that are equally near, each World names that of its lowest index.
+void check_closest(const TwoWorlds& worlds, const std::optional<ClosestObject>& found,
+                   const std::optional<ClosestObject>& expected) {
+    REQUIRE(found.has_value() == expected.has_value());
+    if (!found) return;
+    CHECK(found->distance == expected->distance);
+    if (worlds.number({found->object, found->user}) != expected->user) return;
+    CHECK(found->on_shape == expected->on_shape);
+    CHECK(found->on_object == expected->on_object);
+}
+
+void check_shapes(const TwoWorlds& worlds, NearMisses& random, const glm::dvec3& near) {
+    RegionObject probe = random_object(random, 10.0);
+    probe.bound.box.center += near;
+    const Obb& box = probe.bound.box;
+    const Sphere sphere{box.center, 0.5 * random.index(6)};
+    const collide::Capsule capsule{box.center, box.center + glm::dvec3(1.0, 0.5, 0.0), 0.5 * random.index(3)};
+    const std::uint32_t layers = random.index(2) ? ~0u : 1u << random.index(3);
+    Vector<ObjectRef> found, expected;
+    const auto compare = [&](const auto& shape) {
+        worlds.with.overlap(shape, found, layers);
+        worlds.single.overlap(shape, expected, layers);
+        CHECK(numbers_of(worlds, found) == numbers_of(worlds, expected));
+        CHECK(std::is_sorted(found.begin(), found.end(),
+                             [](const ObjectRef& a, const ObjectRef& b) { return a.object.index < b.object.index; }));
+        for (const double limit : {0.5, 1e300})
+            check_closest(worlds, worlds.with.closest(shape, limit, layers),
+                          worlds.single.closest(shape, limit, layers));
+    };
+    compare(box);
+    compare(sphere);
+    compare(capsule);
+    const auto body = convex::Body::capsule(0.5f, 0.5f).value();
+    const RigidTransform pose{glm::dmat3(1.0), box.center};
+    worlds.with.overlap(body, pose, found, layers);
+    worlds.single.overlap(body, pose, expected, layers);
+    CHECK(numbers_of(worlds, found) == numbers_of(worlds, expected));
+    check_closest(worlds, worlds.with.closest(body, pose, 5.0, layers), worlds.single.closest(body, pose, 5.0, layers));
+    const double u = random.number(-4.0, 4.0), v = random.number(-4.0, 4.0), w = random.number(-4.0, 4.0);
+    const convex::Motion motion{.velocity = {u, v, w}};
+    const auto hit = worlds.with.cast(body, pose, motion, {}, layers).value(),
+               expected_hit = worlds.single.cast(body, pose, motion, {}, layers).value();
+    REQUIRE(hit.has_value() == expected_hit.has_value());
+    if (!hit) return;
+    CHECK(hit->time == expected_hit->time);
+    CHECK(hit->resolved == expected_hit->resolved);
+    if (worlds.number({hit->object, hit->user}) != expected_hit->user) return;
+    CHECK(hit->normal == expected_hit->normal);
+    CHECK(hit->point == expected_hit->point);
+    CHECK(hit->distance == expected_hit->distance);
+}
+
+void check_names(const TwoWorlds& worlds) {
+    std::size_t count = worlds.own.size();
+    for (const auto& [handle, region] : worlds.attached) {
+        CHECK(worlds.with.contains(handle));
+        count += region.singles.size();
+        for (std::uint32_t i = 0; i < region.singles.size(); i += 7) {
+            const ObjectHandle object = worlds.with.object_in(handle, i).value();
+            CHECK(worlds.with.contains(object));
+            const Obb box = worlds.with.box_of(object).value(),
+                      expected = worlds.single.box_of(region.singles[i]).value();
+            CHECK(box.center == expected.center);
+            CHECK(box.half_extents == expected.half_extents);
+            CHECK(box.axes == expected.axes);
+        }
+    }
+    CHECK(worlds.with.object_count() == count);
+    CHECK(worlds.with.statistics().objects == count);
+    CHECK(worlds.single.object_count() == count);
+}
+
+}  // namespace
+
+TEST_SUITE("world/regions") {
+    TEST_CASE("in a random life of regions and objects, every answer is that of a World with each object by itself") {
+        for (const glm::dvec3 far :
+             {glm::dvec3(0.0), glm::dvec3(1e7, -2e6, 0.25), glm::dvec3(1e7 + 0.1, 3e6 + 0.3, 0.7)}) {
+            NearMisses random(71);
+            TwoWorlds worlds;
+            std::vector<std::vector<RegionObject>> objects;
+            std::vector<Region> regions;
+            for (const std::size_t count : {0u, 1u, 3u, 17u, 40u, 300u, 1500u}) {
+                objects.push_back(random_objects(random, count, count > 1000 ? 20.0 : 6.0));
+                regions.push_back(Region::prepare(objects.back()).value());
+                CHECK(regions.back().object_count() == count);
+            }
+            ViewResult visible;
+            MultiViewResult many;
+            for (int step = 0; step < 60; ++step) {
+                const unsigned changes = random.index(4);
+                for (unsigned c = 0; c < changes; ++c) {
+                    const std::size_t which = random.index(static_cast<unsigned>(regions.size()));
+                    const double x = random.number(-8.0, 8.0), y = random.number(-8.0, 8.0),
+                                 z = random.number(-8.0, 8.0);
+                    glm::dvec3 origin = glm::dvec3(x, y, z);
+                    if (random.index(2) != 0) origin = 0.5 * glm::floor(2.0 * origin);
+                    const unsigned action = random.index(worlds.attached.size() > 8 ? 5 : 8);
+                    if (action >= 5) worlds.attach(regions[which], objects[which], far + origin);
+                    if (worlds.attached.empty()) continue;
+                    auto chosen = worlds.attached.begin();
+                    std::advance(chosen, random.index(static_cast<unsigned>(worlds.attached.size())));
+                    if (action <= 1) {
+                        worlds.detach(chosen->first);
+                    } else if (action <= 3 && !chosen->second.singles.empty()) {
+                        const unsigned place = random.index(static_cast<unsigned>(chosen->second.singles.size()));
+                        const bool hidden = random.index(3) != 0;
+                        worlds.hide(chosen->first, place, hidden);
+                    }
+                }
+                for (int i = 0; i < 3; ++i) {
+                    Bound bound = random_object(random, 8.0).bound;
+                    bound.box.center += far;
+                    if (worlds.own.size() < 40) {
+                        worlds.add(bound, random.index(2) ? ~0u : 2u);
+                    } else {
+                        const TwoWorlds::Own object = worlds.own[random.index(40)];
+                        worlds.with.set_bound(object.with, bound).value();
+                        worlds.single.set_bound(object.single, bound).value();
+                    }
+                }
+                worlds.update();
+                check_names(worlds);
+                check_views(worlds, random, far, visible, many);
+                for (int i = 0; i < 12; ++i) check_rays(worlds, random, far);
+                for (int i = 0; i < 3; ++i) check_shapes(worlds, random, far);
+            }
+        }
+    }
+
+    TEST_CASE("specks of a millimetre, ten thousand kilometres away, are seen and hit as if each were by itself") {
+        NearMisses random(77);
+        for (const double size : {1e-2, 1e-4, 1e-6}) {
+            TwoWorlds worlds;
+            const glm::dvec3 far(1e7 + 0.1, -9e6 - 0.3, 1e3 / 3.0);
+            std::vector<RegionObject> objects;
+            for (int i = 0; i < 200; ++i) {
+                const double x = random.number(-size, size), y = random.number(-size, size),
+                             z = random.number(-size, size);
+                objects.push_back({.bound = box_at({x, y, z}, static_cast<float>(0.1 * size))});
+            }
+            worlds.attach(Region::prepare(objects).value(), objects, far);
+            worlds.update();
+            ViewResult with, single;
+            Vector<ObjectHit> found, expected;
+            std::size_t hits = 0, seen = 0;
+            for (int i = 0; i < 400; ++i) {
+                const Obb target =
+                    worlds.single.box_of(worlds.attached.begin()->second.singles[random.index(200)]).value();
+                // Through a corner of a box, and planes through it.
+                const glm::dvec3 corner = corners(target)[random.index(8)];
+                const double u = random.number(-1.0, 1.0), v = random.number(-1.0, 1.0), w = random.number(-1.0, 1.0);
+                const double back = random.index(2) ? 0.5 * size : 1e3;
+                const Ray ray{corner - back * glm::dvec3(u, v, w), {u, v, w}};
+                worlds.with.raycast_all(ray, found);
+                worlds.single.raycast_all(ray, expected);
+                REQUIRE(found.size() == expected.size());
+                for (std::size_t h = 0; h < found.size(); ++h) CHECK(found[h].t == expected[h].t);
+                hits += found.size();
+                Frustum volume;
+                volume.origin = corner;
+                volume.plane_count = 1 + random.index(3);
+                for (std::uint32_t p = 0; p < volume.plane_count; ++p) {
+                    glm::dvec3 normal(0.0);
+                    normal[static_cast<int>(p)] = random.index(2) ? 1.0 : -1.0;
+                    volume.planes[p] = {normal, 0.0};
+                }
+                const ViewRequest request{.volume = volume};
+                worlds.with.view(request, with).value();
+                worlds.single.view(request, single).value();
+                CHECK(seen_with(worlds, with) == seen_with(worlds, single));
+                seen += with.size();
+            }
+            CHECK(hits > 400);
+            CHECK(seen > 400);
+        }
+    }
+
+    TEST_CASE("what is detached is met by no ray or shape at once, and is in views until the next update") {
+        World world({.pairs = false});
+        const std::vector<RegionObject> objects{{.bound = box_at(glm::dvec3(0.0)), .user = 5}};
+        const Region region = Region::prepare(objects).value();
+        const RegionHandle handle = world.attach(region, {0.0, 0.0, -10.0}).value();
+        const Ray ray{{0.0, 0.0, 0.0}, {0.0, 0.0, -1.0}};
+        ViewResult visible;
+        const ViewRequest request{.camera = Camera{}};
+        CHECK(!world.raycast(ray));  // not before the update
+        world.view(request, visible).value();
+        CHECK(visible.size() == 0);
+        const ObjectHandle object = world.object_in(handle, 0).value();
+        CHECK(world.contains(object));
+        world.update().value();
+        CHECK(world.raycast(ray)->object == object);
+        CHECK(world.raycast(ray)->user == 5);
+        world.view(request, visible).value();
+        CHECK(visible.size() == 1);
+        world.detach(handle).value();
+        CHECK(!world.contains(handle));
+        CHECK(!world.contains(object));
+        CHECK(!world.raycast(ray));
+        Vector<ObjectRef> found;
+        world.overlap(Sphere{{0.0, 0.0, -10.0}, 1.0}, found);
+        CHECK(found.empty());
+        world.view(request, visible).value();
+        CHECK(visible.size() == 1);
+        world.update().value();
+        world.view(request, visible).value();
+        CHECK(visible.size() == 0);
+        CHECK(world.object_count() == 0);
+    }
+
+    TEST_CASE("handles of a detached region are stale, also after its indices are another's") {
+        World world({.pairs = false});
+        const std::vector<RegionObject> objects(3, RegionObject{.bound = box_at(glm::dvec3(0.0))});
+        const Region region = Region::prepare(objects).value();
+        const RegionHandle old_region = world.attach(region, glm::dvec3(0.0)).value();
+        const ObjectHandle old_object = world.object_in(old_region, 1).value();
+        world.update().value();
+        world.detach(old_region).value();
+        world.update().value();
+        const RegionHandle new_region = world.attach(region, glm::dvec3(1.0)).value();
+        CHECK(world.object_in(new_region, 1).value().index == old_object.index);
+        CHECK(error_of(world.detach(old_region)).code == ErrorCode::stale_handle);
+        CHECK(error_of(world.object_in(old_region, 0)).code == ErrorCode::stale_handle);
+        CHECK(error_of(world.place_of(old_object)).code == ErrorCode::stale_handle);
+        CHECK(error_of(world.set_hidden(old_object, true)).code == ErrorCode::stale_handle);
+        CHECK(error_of(world.user_of(old_object)).code == ErrorCode::stale_handle);
+        CHECK(error_of(world.box_of(old_object)).code == ErrorCode::stale_handle);
+        CHECK(error_of(world.detach({})).code == ErrorCode::stale_handle);
+        World other;
+        CHECK(error_of(other.detach(new_region)).code == ErrorCode::stale_handle);
+        CHECK(!other.contains(world.object_in(new_region, 0).value()));
+        CHECK(error_of(world.object_in(new_region, 3)).code == ErrorCode::out_of_range);
+    }
+
+    TEST_CASE(
+        "a region's object says what cannot be changed, and an object of the World's own that it is of no region") {
+        World world;
+        const std::vector<RegionObject> objects{{.bound = box_at(glm::dvec3(0.0))}};
+        const RegionHandle region = world.attach(Region::prepare(objects).value(), glm::dvec3(0.0)).value();
+        world.update().value();
+        const ObjectHandle object = world.object_in(region, 0).value();
+        const Obb box = box_at(glm::dvec3(1.0));
+        CHECK(error_of(world.remove(object)).code == ErrorCode::unsupported);
+        CHECK(error_of(world.set_transform(object, {})).code == ErrorCode::unsupported);
+        CHECK(error_of(world.set_bound(object, box)).code == ErrorCode::unsupported);
+        CHECK(error_of(world.set_bounds(std::span(&object, 1), std::span(&box, 1))).code == ErrorCode::unsupported);
+        CHECK(error_of(world.set_layers(object, 1)).code == ErrorCode::unsupported);
+        CHECK(error_of(world.set_collides_with(object, 1)).code == ErrorCode::unsupported);
+        CHECK(error_of(world.set_user(object, 1)).code == ErrorCode::unsupported);
+        CHECK(error_of(world.set_body(object, nullptr)).code == ErrorCode::unsupported);
+        CHECK(error_of(world.set_occludes(object, true)).code == ErrorCode::unsupported);
+        CHECK(error_of(world.transform_of(object)).code == ErrorCode::invalid_argument);
+        const ObjectHandle own = world.add({.bound = box}).value();
+        CHECK(error_of(world.place_of(own)).code == ErrorCode::invalid_argument);
+    }
+
+    TEST_CASE(
+        "bad objects are refused when a region is prepared, by their places, and bad origins when it is attached") {
+        std::vector<RegionObject> objects(5, RegionObject{.bound = box_at(glm::dvec3(0.0))});
+        const auto refused = [&](const Bound& bound, ErrorCode code) {
+            objects[3].bound = bound;
+            const Error error = error_of(Region::prepare(objects));
+            CHECK(error.code == code);
+            CHECK(error.item == 3);
+        };
+        refused(Bound(), ErrorCode::invalid_argument);
+        refused(box_at(glm::dvec3(std::numeric_limits<double>::quiet_NaN())), ErrorCode::non_finite);
+        refused(Sphere{{0.0, 0.0, 0.0}, -1.0}, ErrorCode::invalid_argument);
+        refused(box_at(glm::dvec3(1e31)), ErrorCode::out_of_range);
+        refused(Aabb(), ErrorCode::non_finite);
+        objects[3].bound = box_at(glm::dvec3(1.0));
+        CHECK(error_of(Region::prepare(objects, {.max_objects = 4})).code == ErrorCode::out_of_range);
+        World world;
+        const Region region = Region::prepare(objects).value();
+        CHECK(error_of(world.attach(region, glm::dvec3(NAN))).code == ErrorCode::non_finite);
+        CHECK(error_of(world.attach(region, glm::dvec3(1e30))).code == ErrorCode::out_of_range);
+        CHECK(world.object_count() == 0);
+    }
+
+    TEST_CASE("preparing stops when the callback says so") {
+        const std::vector<RegionObject> objects(10000, RegionObject{.bound = box_at(glm::dvec3(0.0))});
+        int asked = 0;
+        RegionOptions options;
+        options.stop_user = &asked;
+        options.should_stop = [](void* user, double) { return ++*static_cast<int*>(user) == 1; };
+        CHECK(error_of(Region::prepare(objects, options)).code == ErrorCode::cancelled);
+        CHECK(asked == 1);
+        double last = -1.0;
+        options.stop_user = &last;
+        options.should_stop = [](void* user, double share) {
+            CHECK(share >= *static_cast<double*>(user));
+            *static_cast<double*>(user) = share;
+            return false;
+        };
+        CHECK(Region::prepare(objects, options)->object_count() == 10000);
+        CHECK(last >= 0.0);
+    }
+
+    TEST_CASE("an empty region can be attached and detached, and has empty bounds") {
+        World world;
+        const Region empty = Region::prepare({}).value();
+        CHECK(empty.bounds().is_empty());
+        CHECK(empty.bytes() == 0);
+        const RegionHandle a = world.attach(empty, glm::dvec3(1.0)).value(), b = world.attach(Region(), {}).value();
+        CHECK(a != b);
+        world.update().value();
+        CHECK(world.contains(a));
+        CHECK(error_of(world.object_in(a, 0)).code == ErrorCode::out_of_range);
+        world.detach(a).value();
+        world.update().value();
+        CHECK(!world.contains(a));
+        CHECK(world.contains(b));
+    }
+
+    TEST_CASE("ten thousand regions of one object, of which half go again, answer as singles") {
+        NearMisses random(72);
+        TwoWorlds worlds;
+        const std::vector<RegionObject> objects{{.bound = box_at(glm::dvec3(0.0))}};
+        const Region region = Region::prepare(objects).value();
+        std::vector<RegionHandle> handles;
+        for (int i = 0; i < 10000; ++i) {
+            const glm::dvec3 origin(i % 100 - 50, (i / 100) % 10, i / 1000 - 5);
+            handles.push_back(worlds.attach(region, objects, origin));
+        }
+        worlds.update();
+        ViewResult visible;
+        MultiViewResult many;
+        check_views(worlds, random, glm::dvec3(0.0), visible, many);
+        for (std::size_t i = 0; i < handles.size(); i += 2) worlds.detach(handles[i]);
+        worlds.update();
+        check_names(worlds);
+        check_views(worlds, random, glm::dvec3(0.0), visible, many);
+        for (int i = 0; i < 50; ++i) check_rays(worlds, random, glm::dvec3(0.0));
+        for (int i = 0; i < 10; ++i) check_shapes(worlds, random, glm::dvec3(0.0));
+    }
+
+    TEST_CASE("views with occlusion leave out of a region what the World's occluders hide, and list it if asked") {
+        World with({.pairs = false}), single({.pairs = false});
+        NearMisses random(73);
+        const TriangleMesh wall = testing::cuboid({6.0f, 6.0f, 0.5f});
+        for (World* world : {&with, &single}) {
+            const auto mesh = world->add_mesh(testing::description_of(wall, true)).value();
+            world->add({.mesh = mesh, .transform = testing::at(0.0, 0.0, -10.0), .user = 5000}).value();
+        }
+        std::vector<RegionObject> objects;
+        for (int i = 0; i < 600; ++i) {
+            const double x = random.number(-20.0, 20.0), y = random.number(-8.0, 8.0), z = random.number(-30.0, 5.0);
+            objects.push_back({.bound = box_at({x, y, z}, 0.3f), .user = static_cast<std::uint64_t>(i)});
+        }
+        const glm::dvec3 origin(0.125, 0.0, -0.1);
+        with.attach(Region::prepare(objects).value(), origin).value();
+        for (RegionObject& object : objects) {
+            object.bound.box.center += origin;
+            single.add({.bound = object.bound, .user = object.user}).value();
+        }
+        with.update().value();
+        single.update().value();
+        Camera camera;
+        camera.far_distance = 60.0;
+        for (const bool list_occluded : {false, true})
+            for (const auto order : {cull::ResultOrder::ascending, cull::ResultOrder::tree}) {
+                const ViewRequest request{
+                    .camera = camera, .occlusion = OcclusionOptions{.list_occluded = list_occluded}, .order = order};
+                ViewResult found, expected;
+                with.view(request, found).value();
+                single.view(request, expected).value();
+                const auto users = [](const ViewResult& visible, std::span<const std::uint32_t> ids) {
+                    std::vector<std::uint64_t> result;
+                    for (const std::uint32_t id : ids) result.push_back(visible.ref(id).user);
+                    std::sort(result.begin(), result.end());
+                    return result;
+                };
+                CHECK(users(found, found.ids()) == users(expected, expected.ids()));
+                CHECK(users(found, found.occluded_ids()) == users(expected, expected.occluded_ids()));
+                CHECK(found.occluded_ids().empty() == !list_occluded);
+                CHECK(found.inside_count() == expected.inside_count());
+                if (!list_occluded) continue;
+                for (const std::uint32_t id : found.occluded_ids())
+                    CHECK(found.verdict_of(id) == occlude::Verdict::occluded);
+                Vector<OccluderRef> occluders;
+                with.hidden_by(found.ref(found.occluded_ids()[0]).object, found, occluders).value();
+                REQUIRE(!occluders.empty());
+                CHECK(occluders[0].user == 5000);
+                MultiViewResult many;
+                const ViewRequest both[] = {request, {.camera = camera, .order = order}};
+                with.view(both, many).value();
+                CHECK(many.occluded_ids(0).size() == found.occluded_ids().size());
+                std::size_t in_first = 0;
+                for (std::size_t i = 0; i < many.size(); ++i) in_first += many.view_mask(i) & 1u;
+                CHECK(in_first == found.size());
+            }
+    }
+
+    TEST_CASE("warm queries of regions allocate nothing") {
+        testing::CountingMemory memory;
+        NearMisses random(74);
+        TwoWorlds worlds;
+        const auto objects = random_objects(random, 2000, 20.0);
+        const Region region = Region::prepare(objects).value();
+        const RegionHandle first = worlds.attach(region, objects, glm::dvec3(0.0));
+        worlds.attach(region, objects, glm::dvec3(30.0, 0.0, 0.0));
+        worlds.update();
+        worlds.hide(first, 3, true);
+        worlds.update();
+        Camera camera;
+        camera.far_distance = 100.0;
+        const ViewRequest request{.camera = camera};
+        const ViewRequest both[] = {request, request};
+        ViewResult visible;
+        MultiViewResult many;
+        Vector<ObjectHit> hits;
+        Vector<ObjectRef> found;
+        std::size_t before = 0;
+        for (int round = 0; round < 3; ++round) {
+            if (round == 2) before = memory.allocations();
+            worlds.with.view(request, visible).value();
+            worlds.with.view(both, many).value();
+            worlds.with.raycast_all({{0.0, 0.0, 0.0}, {1.0, 0.1, 0.0}}, hits);
+            worlds.with.overlap(Sphere{{0.0, 0.0, 0.0}, 5.0}, found);
+            CHECK(worlds.with.closest(Sphere{{0.0, 0.0, 0.0}, 0.1}, 10.0).has_value());
+        }
+        CHECK(visible.size() > 0);
+        CHECK(!hits.empty());
+        CHECK(memory.allocations() == before);
+    }
+
+    TEST_CASE(
+        "memory does not grow with the number of times that regions come and go, and a region outlives its World") {
+        testing::CountingMemory memory;
+        {
+            NearMisses random(75);
+            Region region;
+            {
+                World world({.pairs = false});
+                const auto objects = random_objects(random, 100, 20.0);
+                region = Region::prepare(objects).value();
+                std::vector<RegionHandle> handles;
+                std::size_t in_use = 0;
+                for (int i = 0; i < 20000; ++i) {
+                    handles.push_back(world.attach(region, glm::dvec3(i % 1000, 0.0, 0.0)).value());
+                    if (handles.size() > 50) {
+                        const std::size_t which = random.index(50);
+                        world.detach(handles[which]).value();
+                        handles.erase(handles.begin() + static_cast<std::ptrdiff_t>(which));
+                    }
+                    world.update().value();
+                    if (i == 5000) in_use = memory.bytes_in_use();
+                }
+                CHECK(static_cast<double>(memory.bytes_in_use()) <= 1.05 * static_cast<double>(in_use));
+            }
+            CHECK(region.object_count() == 100);
+            CHECK(region.bytes() > 100 * sizeof(Obb));
+            const Region copy = region;
+            region = Region();
+            CHECK(copy.object_count() == 100);
+        }
+        CHECK(memory.bytes_in_use() == 0);
+    }
+
+    TEST_CASE("regions are prepared on another thread while the World is updated and queried") {
+        World world({.pairs = false});
+        NearMisses random(76);
+        const auto objects = random_objects(random, 3000, 20.0);
+        std::vector<Region> prepared(4);
+        std::thread loader([&] {
+            for (Region& region : prepared) region = Region::prepare(objects).value();
+        });
+        const Region mine = Region::prepare(objects).value();
+        ViewResult visible;
+        for (int i = 0; i < 50; ++i) {
+            const RegionHandle region = world.attach(mine, glm::dvec3(i)).value();
+            world.update().value();
+            world.view({.camera = Camera{}}, visible).value();
+            world.detach(region).value();
+        }
+        loader.join();
+        for (const Region& region : prepared) world.attach(region, glm::dvec3(0.0)).value();
+        world.update().value();
+        CHECK(world.object_count() == 4 * objects.size());
+    }
+}
