@@ -15,7 +15,7 @@ import tarfile
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 FRONT = ["bindings/python/pyproject.toml", "bindings/python/setup.py", "bindings/python/README.md", "bindings/python/crofton"]
 BEHIND = ["CMakeLists.txt", "LICENSE", "cmake", "engine", "third_party", "bindings/python/CMakeLists.txt", "bindings/python/src",
-          "bindings/python/crofton"]
+          "bindings/python/crofton", "samples/crofton/assets"]
 
 
 def committed(paths):

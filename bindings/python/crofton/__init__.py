@@ -4,7 +4,9 @@ import numpy as _np
 
 from . import _svg
 from ._crofton import *  # noqa: F401,F403
-from ._crofton import Pvs, Triangulation, __version__, box_dtype, handle_dtype  # noqa: F401
+from ._crofton import Mesh, Pvs, Triangulation, __version__, box_dtype, handle_dtype  # noqa: F401
+from ._load import load, load_all, merge  # noqa: F401
+from ._show import Picture
 
 
 def boxes(center, half_extents, axes=None):
@@ -55,6 +57,9 @@ class Chart:
     def _repr_svg_(self):
         return self.to_svg()
 
+    def __repr__(self):
+        return f"Chart({', '.join(self.series)}; {len(self.x)} places)"
+
 
 def _pvs_chart(self):
     """How many objects are seen from how many cells: a Chart of the share of all, cells in ascending order."""
@@ -67,5 +72,11 @@ def _pvs_chart(self):
     return Chart(share, series, "cells, %", "objects that may be seen, %")
 
 
+def _mesh_show(self, *others):
+    """A Picture of the mesh and other meshes or boxes, which a notebook shows."""
+    return Picture([self, *others], title=self.name)
+
+
+Mesh.show = _mesh_show
 Pvs.chart = _pvs_chart
 Pvs._repr_svg_ = lambda self: self.chart().to_svg()

@@ -141,6 +141,10 @@ void bind_collide(py::module_& module) {
                "Where two boxes touch: `normal` from a to b, `points` of shape (n, 3), n ≤ 4, and their `depths`.");
     py::class_<Pairs>(module, "Broadphase", "All pairs of boxes that meet, kept from frame to frame.")
         .def(py::init<bool>(), py::kw_only(), py::arg("exact_boxes") = true)
+        .def("__repr__",
+             [](Pairs& p) {
+                 return format("Broadphase(%zd pairs)", p.read([](auto& b) { return b.pairs(); }).shape(0));
+             })
         .def(
             "update", &Pairs::update, py::arg("boxes"), py::arg("moved") = py::none(),
             "boxes[i] is the same item as before. With `moved`, only these items have changed. A box that is not valid "

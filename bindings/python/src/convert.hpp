@@ -12,6 +12,7 @@
 #include <crofton/measure/measure.hpp>
 #include <crofton/world/inputs.hpp>
 #include <cstdint>
+#include <cstdio>
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -34,6 +35,14 @@ template <class T>
 T value_of(Result<T>&& result) {
     if (!result) raise(result.error());
     if constexpr (!std::is_void_v<T>) return std::move(*result);
+}
+
+// A short text, for __repr__.
+template <class... Values>
+std::string format(const char* text, Values... values) {
+    char line[200];
+    std::snprintf(line, sizeof line, text, values...);
+    return line;
 }
 
 // The threads of set_threads(). Held while a call uses it.

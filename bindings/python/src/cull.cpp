@@ -97,6 +97,7 @@ void bind_cull(py::module_& module) {
     py::class_<BoxList>(module, "BoxList", "Boxes at rest, laid out once for many views.")
         .def(py::init<const py::handle&>(), py::arg("boxes"))
         .def("__len__", &BoxList::size)
+        .def("__repr__", [](const BoxList& list) { return format("BoxList(%zu boxes)", list.size()); })
         .def_property_readonly("boxes", &BoxList::boxes)
         .def("find_visible", &BoxList::find_visible, py::arg("view"), py::kw_only(), py::arg("conservative") = false,
              "The indices, ascending, of the boxes that a view sees.");

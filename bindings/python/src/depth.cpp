@@ -176,7 +176,11 @@ void bind_depth(py::module_& module) {
             "clusters", &clusters_of,
             "an array of records: `first_triangle` and `triangle_count` in that order, and a box around "
             "them, `center` ± each of the three `half_edges`")
-        .def("__len__", [](const ClusteredMesh& mesh) { return mesh.clusters().size(); });
+        .def("__len__", [](const ClusteredMesh& mesh) { return mesh.clusters().size(); })
+        .def("__repr__", [](const ClusteredMesh& mesh) {
+            return format("ClusteredMesh(%zu clusters, %zu triangles)", mesh.clusters().size(),
+                          mesh.triangle_order().size());
+        });
 
     py::class_<DrawnMesh>(module, "DepthObject", "A mesh that a picture draws, for DepthCuller.")
         .def(py::init(&drawn_mesh), py::arg("mesh"), py::arg("to_clip"), py::kw_only(), py::arg("one_sided") = false,
@@ -192,12 +196,21 @@ void bind_depth(py::module_& module) {
         .def_readwrite("one_sided", &DrawnMesh::one_sided,
                        "back faces are not drawn; front faces are counter-clockwise seen with y up")
         .def_readwrite("hides", &DrawnMesh::hides, "False for what is alpha-tested or transparent: it hides nothing")
-        .def_readwrite("position_error", &DrawnMesh::position_error);
+        .def_readwrite("position_error", &DrawnMesh::position_error)
+        .def("__repr__", [](const DrawnMesh& m) {
+            return format("DepthObject(%zu triangles%s%s)", m.mesh->triangle_order().size(),
+                          m.one_sided ? ", one_sided" : "", m.hides ? "" : ", hides nothing");
+        });
 
     py::class_<Culler>(module, "DepthCuller",
                        "Finds the triangles without which a picture would change, front to back, by the depth of those "
                        "that it has found. It keeps its memory between calls.")
         .def(py::init<>())
+        .def("__repr__",
+             [](Culler& culler) {
+                 return "DepthCuller(triangles_listed=" +
+                        std::string(py::str(culler.statistics()["triangles_listed"])) + ")";
+             })
         .def("find_visible", &Culler::find_visible, py::arg("objects"), py::arg("width"), py::arg("height"),
              py::kw_only(), py::arg("depth") = "reversed_zero_to_one",
              "(object, cluster, triangles): arrays with one item for each cluster that is listed, by object, then by "

@@ -113,7 +113,10 @@ void bind_fit(py::module_& module) {
         .def_readonly("lower_bound", &fit::ExactFit::lower_bound, "no box around the points has less")
         .def_readonly("gap", &fit::ExactFit::gap, "(value − lower_bound) / value")
         .def_readonly("complete", &fit::ExactFit::complete, "the search ended by itself")
-        .def_readonly("cells", &fit::ExactFit::cells, "sets of orientations looked at");
+        .def_readonly("cells", &fit::ExactFit::cells, "sets of orientations looked at")
+        .def("__repr__", [](const fit::ExactFit& f) {
+            return format("ExactFit(value=%g, gap=%g, %s)", f.value, f.gap, f.complete ? "complete" : "not complete");
+        });
 
     module.def(
         "fit_obb", &fit_obb, py::arg("points"), py::arg("criterion") = "perimeter", py::arg("quality") = "tight",

@@ -95,6 +95,19 @@ void bind_geometry(py::module_& module) {
         .def_property_readonly("center", [](const Obb& b) { return py::array_t<double>(3, &b.center[0]); })
         .def_property_readonly("axes", &axes_of, "axes[k] is the direction of axis k")
         .def_property_readonly("half_extents", [](const Obb& b) { return py::array_t<float>(3, &b.half_extents[0]); })
+        .def_property_readonly(
+            "extents",
+            [](const Obb& b) {
+                const glm::vec3 edges = 2.0f * b.half_extents;
+                return py::array_t<float>(3, &edges[0]);
+            },
+            "the three edges")
+        .def_property_readonly(
+            "matrix",
+            [](const Obb& b) {
+                return matrix_of({glm::dmat3(b.axes), b.center});
+            },
+            "shape (4, 4): takes the box's own coordinates to the world's; its columns are the axes and the center")
         .def_property_readonly("corners", &corners_of,
                                "shape (8, 3); bit k of a corner's index says which side along axis k")
         .def_property_readonly("volume", [](const Obb& b) { return volume(b); })
@@ -122,13 +135,25 @@ void bind_geometry(py::module_& module) {
              "Perspective with the full vertical angle `fov_y`; with `height`, orthographic.")
         .def_property_readonly("position", [](const Camera& c) { return tuple_of(c.position); })
         .def_property_readonly("forward", [](const Camera& c) { return tuple_of(c.forward); })
-        .def_property_readonly("frustum", [](const Camera& c) { return value_of(frustum_of(c)); });
+        .def_property_readonly("frustum", [](const Camera& c) { return value_of(frustum_of(c)); })
+        .def("__repr__", [](const Camera& c) {
+            const std::string wide =
+                c.projection == Projection::perspective ? format("fov_y=%g", c.fov_y) : format("height=%g", c.height);
+            return format("Camera(position=(%g, %g, %g), forward=(%g, %g, %g), %s, near=%g, far=%g)", c.position.x,
+                          c.position.y, c.position.z, c.forward.x, c.forward.y, c.forward.z, wide.c_str(),
+                          c.near_distance, c.far_distance);
+        });
 
     py::class_<Frustum>(module, "Frustum", "A view volume: the points on the inner side of all planes.")
         .def_static("from_matrix", &frustum_from, py::arg("matrix"), py::arg("depth") = "reversed_zero_to_one",
                     py::arg("origin") = py::make_tuple(0.0, 0.0, 0.0),
                     "From a matrix that takes columns (x, y, z, 1), relative to `origin`, to clip space.")
         .def_property_readonly("origin", [](const Frustum& f) { return tuple_of(f.origin); })
+        .def("__repr__",
+             [](const Frustum& f) {
+                 return format("Frustum(%u planes, origin=(%g, %g, %g))", static_cast<unsigned>(f.plane_count),
+                               f.origin.x, f.origin.y, f.origin.z);
+             })
         .def_property_readonly("planes", &planes_of, "shape (n, 4): normal · (x − origin) + offset ≥ 0 inside")
         .def(
             "shadow_volume",

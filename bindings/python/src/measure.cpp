@@ -75,6 +75,11 @@ void bind_measure(py::module_& module) {
         .def_static(
             "for_frustum", [](const Camera& camera) { return value_of(measure::for_frustum(camera)); },
             py::arg("camera"), "Against the view volume of a camera that moves uniformly.")
+        .def("__repr__",
+             [](const Criterion& c) {
+                 return format("Criterion(volume=%g, area=%g, mean_curvature=%g)", c.volume_weight, c.area_weight,
+                               c.mean_curvature_weight);
+             })
         .def("__call__", [](const Criterion& criterion, const IntrinsicVolumes& v) { return criterion(v); })
         .def("__call__", [](const Criterion& criterion, const Obb& box) {
             return criterion(measure::intrinsic_volumes_of_box(box));

@@ -99,6 +99,11 @@ py::tuple retriangulate(const py::handle& positions, const py::handle& indices, 
 
 void bind_triangulate(py::module_& module) {
     py::class_<PolygonTriangles>(module, "Triangulation", "A polygon with holes, cut into triangles.")
+        .def("__repr__",
+             [](const PolygonTriangles& t) {
+                 return format("Triangulation(%zu triangles, weight=%g%s)", t.found.triangles.size(), t.found.weight,
+                               t.found.optimal ? ", optimal" : "");
+             })
         .def_property_readonly(
             "points", [](const PolygonTriangles& t) { return array_of<double>(t.polygon.points, 2); },
             "all rings' points one after another, shape (n, 2)")

@@ -106,6 +106,36 @@ std::optional<OcclusionOptions> occlusion_of(const py::handle& given) {
     return {};
 }
 
+const char* depth_name(DepthRange depth) {
+    switch (depth) {
+        case DepthRange::zero_to_one:
+            return "zero_to_one";
+        case DepthRange::minus_one_to_one:
+            return "minus_one_to_one";
+        default:
+            return "reversed_zero_to_one";
+    }
+}
+
+// The names of what a request asks.
+std::string show(const HeldRequest& held) {
+    const ViewRequest& r = held.request;
+    const std::pair<const char*, bool> all[] = {{"camera", r.camera.has_value()},
+                                                {"matrix", r.matrix.has_value()},
+                                                {"volume", r.volume.has_value()},
+                                                {"layers", r.layers != ~0u},
+                                                {"occlusion", r.occlusion.has_value()},
+                                                {"picture", r.picture.has_value()},
+                                                {"limits", r.limits != nullptr},
+                                                {"candidates", !r.candidate_mask.empty()},
+                                                {"order='tree'", r.order == cull::ResultOrder::tree},
+                                                {"conservative", r.mode == cull::CullMode::conservative}};
+    std::string text;
+    for (const auto& [name, is_given] : all)
+        if (is_given) text += (text.empty() ? "" : ", ") + std::string(name);
+    return "ViewRequest(" + text + ")";
+}
+
 }  // namespace
 
 const char* RequestArguments::first_given() const {
@@ -162,12 +192,21 @@ void bind_view_requests(py::module_& module) {
              py::arg("least_cover") = OcclusionOptions{}.least_cover, py::arg("list_occluded") = false,
              "`size` of the depth buffer, (width, height): more pixels find more and cost more. Draws at most "
              "`max_occluders`, none that covers less than `least_cover` of the sphere of directions. `list_occluded` "
-             "also lists what is hidden, which costs a second query.");
+             "also lists what is hidden, which costs a second query.")
+        .def("__repr__", [](const OcclusionOptions& o) {
+            return format("OcclusionOptions(size=(%u, %u), max_occluders=%u, least_cover=%g)",
+                          static_cast<unsigned>(o.size.width), static_cast<unsigned>(o.size.height), o.max_occluders,
+                          double{o.least_cover});
+        });
 
     py::class_<ViewMatrix>(module, "ViewMatrix", "An engine's own matrix to clip space, and its kind of depth.")
         .def(py::init(&make_matrix), py::arg("to_clip"), py::kw_only(), py::arg("depth") = "reversed_zero_to_one",
              py::arg("origin") = py::make_tuple(0.0, 0.0, 0.0),
-             "`to_clip`, (4, 4) as NumPy prints it, takes columns (x, y, z, 1) relative to `origin` to clip space.");
+             "`to_clip`, (4, 4) as NumPy prints it, takes columns (x, y, z, 1) relative to `origin` to clip space.")
+        .def("__repr__", [](const ViewMatrix& m) {
+            return format("ViewMatrix(depth='%s', origin=(%g, %g, %g))", depth_name(m.depth), m.origin.x, m.origin.y,
+                          m.origin.z);
+        });
 
     py::class_<depth::PictureView>(module, "PictureView", "The picture that is drawn: one sample a pixel.")
         .def(py::init([](std::uint32_t width, std::uint32_t height, const std::string& depth) {
@@ -175,7 +214,10 @@ void bind_view_requests(py::module_& module) {
              }),
              py::arg("width") = depth::PictureView{}.width, py::arg("height") = depth::PictureView{}.height,
              py::kw_only(), py::arg("depth") = "reversed_zero_to_one",
-             "`depth` is that of the renderer's projection; beside a ViewMatrix, the same as its.");
+             "`depth` is that of the renderer's projection; beside a ViewMatrix, the same as its.")
+        .def("__repr__", [](const depth::PictureView& p) {
+            return format("PictureView(%u, %u, depth='%s')", p.width, p.height, depth_name(p.depth));
+        });
 
     py::class_<HeldLimits, std::shared_ptr<HeldLimits>>(module, "DrawLimits", "What is too small or too far to draw.")
         .def(py::init(&make_limits), py::arg("eye"), py::kw_only(),
@@ -186,7 +228,12 @@ void bind_view_requests(py::module_& module) {
              "farther than its layer's (32 numbers) or its own distance (by object index). What was `drawn_before` "
              "(bools by index) has `hysteresis` times as long limits. Arrays are copied.")
         .def_static("of_camera", &limits_of_camera, py::arg("camera"), py::arg("picture_height"), py::arg("pixels"),
-                    "Leaves out what is less than so many pixels wide in the middle of the picture.");
+                    "Leaves out what is less than so many pixels wide in the middle of the picture.")
+        .def("__repr__", [](const HeldLimits& held) {
+            const cull::DrawLimits& l = held.limits;
+            return format("DrawLimits(eye=(%g, %g, %g), max_distance_in_radii=%g, least_radius=%g)", l.eye.x, l.eye.y,
+                          l.eye.z, l.max_distance_in_radii, l.least_radius);
+        });
 
     py::class_<HeldRequest, std::shared_ptr<HeldRequest>>(
         module, "ViewRequest", "What a view asks, made once for many calls of World.view. Arrays are copied.")
@@ -203,7 +250,8 @@ void bind_view_requests(py::module_& module) {
              py::arg("camera") = py::none(), py::kw_only(), py::arg("matrix") = py::none(),
              py::arg("volume") = py::none(), py::arg("layers") = py::none(), py::arg("occlusion") = py::none(),
              py::arg("picture") = py::none(), py::arg("limits") = py::none(), py::arg("candidates") = py::none(),
-             py::arg("order") = py::none(), py::arg("conservative") = py::none(), "The arguments of World.view.");
+             py::arg("order") = py::none(), py::arg("conservative") = py::none(), "The arguments of World.view.")
+        .def("__repr__", &show);
 }
 
 }  // namespace crofton::python

@@ -56,6 +56,9 @@ void bind_world(py::module_& module) {
              py::kw_only(), py::arg("pairs") = true, py::arg("contacts") = true, py::arg("containment") = true,
              py::arg("max_pairs") = WorldOptions{}.max_pairs, py::arg("updates_to_rest") = 16,
              py::arg("tree") = "aligned");
+    type.def("__repr__", [](const PyWorld& world) {
+        return format("World(%zu objects)", world.ask([](const World& w) { return w.object_count(); }));
+    });
     bind_world_changes(type);
     bind_world_views(module, type);
     bind_world_queries(module, type);

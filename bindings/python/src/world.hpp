@@ -2,12 +2,13 @@
 // A World as Python has it, and the parts of its class.
 #pragma once
 #include <crofton/crofton.hpp>
-#include <cstdio>
 #include <mutex>
 #include <shared_mutex>
 #include <string>
+#include <vector>
 
 #include "convert.hpp"
+#include "mesh.hpp"
 #include "views.hpp"
 
 namespace crofton::python {
@@ -32,21 +33,27 @@ class PyWorld {
         });
     }
 
+    // Keeps an object's body alive while the World refers to it. Called within change().
+    void keep(ObjectHandle object, std::shared_ptr<const PyBody> body) {
+        if (object.index >= bodies_.size()) {
+            if (!body) return;
+            bodies_.resize(object.index + 1);
+        }
+        bodies_[object.index].swap(body);
+        if (body) replaced_.push_back(std::move(body));
+    }
+    // After an update: bodies that were replaced are not referred to any more.
+    void forget_replaced() { replaced_.clear(); }
+
     [[nodiscard]] const std::shared_ptr<AnswerPools>& pools() const { return pools_; }
 
   private:
+    std::vector<std::shared_ptr<const PyBody>> bodies_;  // by the object's index; outlive the World
+    std::vector<std::shared_ptr<const PyBody>> replaced_;
     World world_;
     mutable std::shared_mutex mutex_;
     std::shared_ptr<AnswerPools> pools_ = std::make_shared<AnswerPools>();
 };
-
-// A short text, for __repr__.
-template <class... Values>
-std::string format(const char* text, Values... values) {
-    char line[200];
-    std::snprintf(line, sizeof line, text, values...);
-    return line;
-}
 
 // Each adds to the class what it is named after, and to the module the types of its answers.
 void bind_world_changes(py::class_<PyWorld>& type);

@@ -36,6 +36,12 @@ struct MeshArrays {
     }
 };
 
+MeshDescription description_of(const PyMesh& mesh) {
+    const TriangleMesh& triangles = mesh.triangles();
+    return {.positions = std::span<const glm::vec3>(triangles.positions),
+            .indices = std::span<const std::uint32_t>(triangles.indices)};
+}
+
 template <class H>
 H handle_or_null(const py::object& given, const char* name) {
     if (given.is_none()) return {};
@@ -73,9 +79,10 @@ py::array add_all(PyWorld& to, std::size_t count, const py::object& users, F&& d
 }
 
 ObjectHandle add(PyWorld& to, const py::object& mesh, const py::object& node, const py::object& transform,
-                 const py::object& box, const py::object& sphere, const py::object& aligned, std::uint64_t user,
-                 std::uint32_t layers, std::uint32_t collides_with, bool occludes) {
+                 const py::object& box, const py::object& sphere, const py::object& aligned, const SharedBody& body,
+                 std::uint64_t user, std::uint32_t layers, std::uint32_t collides_with, bool occludes) {
     ObjectDescription description;
+    if (body) description.body = &*body->body;
     description.mesh = handle_or_null<MeshHandle>(mesh, "mesh");
     description.node = handle_or_null<NodeHandle>(node, "node");
     if (!transform.is_none()) description.transform = transform_of(transform, "transform");
@@ -84,7 +91,19 @@ ObjectHandle add(PyWorld& to, const py::object& mesh, const py::object& node, co
     description.layers = layers;
     description.collides_with = collides_with;
     description.occludes = occludes;
-    return value_of(to.change([&](World& world) { return world.add(description); }));
+    return value_of(to.change([&](World& world) {
+        auto added = world.add(description);
+        if (added) to.keep(*added, body);
+        return added;
+    }));
+}
+
+void set_body(PyWorld& to, ObjectHandle object, const SharedBody& body) {
+    value_of(to.change([&](World& world) {
+        auto done = world.set_body(object, body ? &*body->body : nullptr);
+        if (done) to.keep(object, body);
+        return done;
+    }));
 }
 
 py::array add_boxes(PyWorld& to, const py::handle& given, const py::object& users, std::uint32_t layers,
@@ -148,8 +167,11 @@ void bind_world_changes(py::class_<PyWorld>& type) {
             "add_mesh",
             [](PyWorld& world, const py::handle& positions, const py::object& indices, bool triangles, bool occluders,
                bool clusters, bool one_sided) {
-                const MeshArrays arrays(positions, indices);
-                MeshDescription description = arrays.description();
+                const PyMesh* const mesh = as<PyMesh>(positions);
+                if (mesh != nullptr && !indices.is_none()) raise_type("indices: a Mesh has its own");
+                std::optional<MeshArrays> arrays;
+                if (mesh == nullptr) arrays.emplace(positions, indices);
+                MeshDescription description = mesh != nullptr ? description_of(*mesh) : arrays->description();
                 description.triangles = triangles;
                 description.occluders = occluders;
                 description.clusters = clusters;
@@ -158,7 +180,7 @@ void bind_world_changes(py::class_<PyWorld>& type) {
             },
             py::arg("positions"), py::arg("indices") = py::none(), py::kw_only(), py::arg("triangles") = true,
             py::arg("occluders") = false, py::arg("clusters") = false, py::arg("one_sided") = false,
-            "A mesh of points (n, 3) and indices, three a triangle. With occluders it hides what is behind it. With "
+            "A Mesh, or points (n, 3) and indices, three a triangle. With occluders it hides what is behind it. With "
             "clusters, views with a picture list its triangles; `one_sided`: back faces are not drawn.")
         .def(
             "set_vertices",
@@ -179,10 +201,12 @@ void bind_world_changes(py::class_<PyWorld>& type) {
             py::arg("parent") = py::none(), py::arg("transform") = py::none(), py::arg("layers") = ~0u)
         .def("add", &add, py::kw_only(), py::arg("mesh") = py::none(), py::arg("node") = py::none(),
              py::arg("transform") = py::none(), py::arg("box") = py::none(), py::arg("sphere") = py::none(),
-             py::arg("aligned") = py::none(), py::arg("user") = 0, py::arg("layers") = ~0u,
-             py::arg("collides_with") = ~0u, py::arg("occludes") = true,
+             py::arg("aligned") = py::none(), py::arg("body") = py::none(), py::arg("user") = 0,
+             py::arg("layers") = ~0u, py::arg("collides_with") = ~0u, py::arg("occludes") = true,
              "An object: a mesh, placed by `transform` under `node` or in the world; or a bound: a Box, a sphere "
-             "(center, radius) or an aligned box (low, high).")
+             "(center, radius) or an aligned box (low, high); or a Body, alone or beside one of them.")
+        .def("set_body", &set_body, py::arg("object"), py::arg("body"),
+             "Gives an object a Body, which touches and is hit in its place; None takes it away.")
         .def("add_boxes", &add_boxes, py::arg("boxes"), py::kw_only(), py::arg("users") = py::none(),
              py::arg("layers") = ~0u, py::arg("collides_with") = ~0u,
              "One object a box. Returns an array of handle_dtype. All or none.")
@@ -229,7 +253,11 @@ void bind_world_changes(py::class_<PyWorld>& type) {
             "update",
             [](PyWorld& world) {
                 const auto threads = executor();
-                value_of(world.change([&](World& w) { return w.update(*threads); }));
+                value_of(world.change([&](World& w) {
+                    auto done = w.update(*threads);
+                    world.forget_replaced();
+                    return done;
+                }));
             },
             "Makes all changes since the last call count. Once a frame. Error: more than `max_pairs` pairs; then there "
             "are none, and all else is as it should be.")

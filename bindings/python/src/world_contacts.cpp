@@ -2,6 +2,9 @@
 // What touches in a World.
 #include <pybind11/stl.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "world.hpp"
 
 namespace crofton::python {
@@ -16,11 +19,31 @@ struct ContactCopy {
     std::vector<collide::ContactPoint> points;
 };
 
+ContactCopy copy_of(const Contact& c) {
+    return {c.first, c.second, c.phase, c.normal, c.depth, {c.points.begin(), c.points.end()}};
+}
+
+// Its normal and depth are those of the deepest point.
+ContactCopy copy_of(const BodyContact& c) {
+    ContactCopy result{c.first, c.second, c.phase, glm::dvec3(0.0), 0.0, {}};
+    for (std::uint32_t i = 0; i < c.point_count; ++i) {
+        const convex::TrackedPoint& point = c.points[i];
+        result.points.push_back({point.contact.position, point.contact.depth});
+        if (i > 0 && point.contact.depth <= result.depth) continue;
+        result.depth = point.contact.depth;
+        result.normal = point.normal;
+    }
+    return result;
+}
+
 std::vector<ContactCopy> contacts_of(const PyWorld& world) {
     return world.ask([](const World& w) {
         std::vector<ContactCopy> result;
-        for (const Contact& c : w.contacts())
-            result.push_back({c.first, c.second, c.phase, c.normal, c.depth, {c.points.begin(), c.points.end()}});
+        for (const Contact& c : w.contacts()) result.push_back(copy_of(c));
+        for (const BodyContact& c : w.body_contacts()) result.push_back(copy_of(c));
+        const auto order = [](const ContactCopy& c) { return std::pair(c.first.object.index, c.second.object.index); };
+        std::stable_sort(result.begin(), result.end(),
+                         [&](const ContactCopy& a, const ContactCopy& b) { return order(a) < order(b); });
         return result;
     });
 }
@@ -52,6 +75,14 @@ void bind_world_contacts(py::module_& module, py::class_<PyWorld>& type) {
         .def_property_readonly(
             "normal", [](const ContactCopy& c) { return tuple_of(c.normal); }, "unit, from the first to the second")
         .def_readonly("depth", &ContactCopy::depth)
+        .def_property_readonly(
+            "depths",
+            [](const ContactCopy& c) {
+                std::vector<double> depths;
+                for (const auto& point : c.points) depths.push_back(point.depth);
+                return array_of<double>(depths);
+            },
+            "of `points`; negative: a gap")
         .def("__repr__",
              [](const ContactCopy& c) {
                  return format("Contact(%llu and %llu, %s, depth=%g, %d points)",
