@@ -299,7 +299,7 @@ TEST_SUITE("world/shape of objects") {
                     CHECK((**hit).distance <= 0.0);
                     continue;
                 }
-                for (int step = 0; step < 16; ++step) CHECK(least_at(end * step / 16.0) > 0.0);
+                for (int step = 0; step < 10; ++step) CHECK(least_at(end * step / 10.0) > 0.0);
                 misses += !*hit;
                 if (!*hit) continue;
                 ++hits;

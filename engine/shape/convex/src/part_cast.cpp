@@ -48,7 +48,7 @@ class PartCaster {
 
   private:
     [[nodiscard]] static bool is_surface(const Body& body) {
-        return (body.kind() == Kind::mesh && BodyMaker::map_of(body) == nullptr) || body.kind() == Kind::height_field;
+        return body.kind() == Kind::mesh || body.kind() == Kind::height_field;
     }
     // Whether a convex b flies along a line, seen from a.
     [[nodiscard]] bool passes_straight() const {
@@ -72,7 +72,7 @@ class PartCaster {
                       entry.is_apart ? std::max(entry.time, from) : from);
         };
         if (a_.body.kind() == Kind::mesh)
-            passage.visit_mesh(*a_.body.mesh(), best_.time, visit);
+            passage.visit_mesh(a_.body, best_.time, visit);
         else
             passage.visit_field(*a_.body.height_field(), best_.time, visit);
     }

@@ -9,12 +9,12 @@
 #include <glm/matrix.hpp>
 #include <limits>
 
+#include "map_frame.hpp"
+
 namespace crofton::convex {
 namespace {
 
 constexpr double kWider = 1.0001;  // of a distance: frames are rigid to 1e-6 alone
-
-constexpr double kSkewed = 1.00001;  // of a radius
 
 // A float box that holds the box and its radius, but for `error_bound`.
 struct FloatBox {
@@ -87,48 +87,25 @@ double distance_between(const Aabb& a, const Aabb& b) {
 
 namespace {
 
-// A mesh's own frame, seen from the frame in which its map puts it.
-struct MapFrame {
-    explicit MapFrame(const glm::dmat3* of) : map(of) {
-        if (map == nullptr) return;
-        inverse = glm::inverse(*map);
-        glm::dmat3 rest = inverse * *map;
-        for (int k = 0; k < 3; ++k) rest[k][k] -= 1.0;
-        stretch = size_of(inverse);
-        // Half of it bounds |1 − inverse · map|, with the rounding of that product.
-        error = 2.0 * (size_of(rest) + 4e-15 * stretch * size_of(*map));
+// Whether the triangle is surely farther than `margin` from the box: by the spheres around them, or along one of the
+// box's axes.
+bool is_apart(const QueryBox& box, const Triangle& corners, double margin) {
+    const glm::dvec3 offset[3] = {corners[0] - box.center, corners[1] - box.center, corners[2] - box.center};
+    const double more = kWider * (margin + box.rounding) + kSkewed * box.radius;
+    const glm::dvec3 middle = (offset[0] + offset[1] + offset[2]) / 3.0;
+    double around = 0.0;
+    for (const glm::dvec3& corner : offset) around = (std::max)(around, glm::distance(corner, middle));
+    if (glm::length(middle) > (more + around + glm::length(box.half)) * kWider) return true;
+    for (const glm::dvec3 axis : {box.axes[0], box.axes[1], box.axes[2]}) {
+        double reach = more;
+        for (int k = 0; k < 3; ++k) reach += box.half[k] * std::abs(glm::dot(axis, box.axes[k]));
+        const double at[3] = {glm::dot(axis, offset[0]), glm::dot(axis, offset[1]), glm::dot(axis, offset[2])};
+        const double low = (std::min)({at[0], at[1], at[2]}), high = (std::max)({at[0], at[1], at[2]});
+        reach = reach * kWider + 1e-12 * (std::abs(low) + std::abs(high));
+        if (low > reach || high < -reach) return true;
     }
-    [[nodiscard]] static double size_of(const glm::dmat3& m) {
-        return std::sqrt(glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2]));
-    }
-    // A box around the other in the mesh's own frame.
-    [[nodiscard]] QueryBox box(const QueryBox& outer) const {
-        QueryBox own;
-        own.center = inverse * outer.center;
-        glm::dvec3 across(0.0);
-        for (int k = 0; k < 3; ++k) {
-            own.half += outer.half[k] * glm::abs(inverse * outer.axes[k]);
-            across += inverse[k] * inverse[k];
-        }
-        own.half = (own.half + outer.radius * glm::sqrt(across)) * (kSkewed + 2.0 * error);
-        const glm::dvec3 size = glm::abs(own.center) + own.half;
-        own.rounding = stretch * outer.rounding + 2.0 * error * (size.x + size.y + size.z);
-        return own;
-    }
-    // False for a map that flattens.
-    [[nodiscard]] bool is_usable() const { return error < 0.25; }
-
-    Triangle image(const Triangle& corners) const {
-        if (map == nullptr) return corners;
-        Triangle result{*map * corners[0], *map * corners[1], *map * corners[2]};
-        if (glm::determinant(*map) < 0.0) std::swap(result[1], result[2]);  // the front stays the front
-        return result;
-    }
-
-    const glm::dmat3* map;
-    glm::dmat3 inverse{1.0};
-    double stretch = 1.0, error = 0.0;  // of a length in the outer frame, at most
-};
+    return false;
+}
 
 }  // namespace
 
@@ -151,7 +128,11 @@ bool search_mesh(const Body& body, const QueryBox& outer, const PartSearch& sear
         for (int v = 0; v < 3; ++v)
             corners[static_cast<std::size_t>(v)] =
                 glm::dvec3(glm::vec3(leaf.vertex[v][0][lane], leaf.vertex[v][1][lane], leaf.vertex[v][2][lane]));
-        ended = search.offer(frame.image(corners), leaf.triangle[lane]);
+        if (frame.map != nullptr) {
+            corners = frame.image(corners);
+            if (is_apart(outer, corners, search.limit)) return false;
+        }
+        ended = search.offer(corners, leaf.triangle[lane]);
         squared = wider * wider * search.limit * search.limit;
         return ended;
     };

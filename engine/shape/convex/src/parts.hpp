@@ -12,6 +12,8 @@ struct PartSearch;
 // Triangles of surfaces that need not be bodies; with the search that came upon them. True ends the search.
 using TriangleVisitor = FunctionRef<bool(const PartSearch& of, const Triangle& corners, std::uint32_t triangle)>;
 
+inline constexpr double kSkewed = 1.00001;  // of a radius: axes and frames are orthonormal to 4e-6 alone
+
 // A box in some frame: center ± half[k] · axes[k], where the axes are those of a pose seen from another, grown by a
 // radius.
 struct QueryBox {

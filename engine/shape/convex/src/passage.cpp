@@ -8,6 +8,8 @@
 #include <glm/matrix.hpp>
 #include <limits>
 
+#include "map_frame.hpp"
+
 namespace crofton::convex {
 namespace {
 
@@ -149,39 +151,61 @@ double Passage::entry(const Aabb& box, double until) const {
     return met.first <= met.last ? std::max(from_, met.first + middle_) : kNever;
 }
 
-void Passage::visit_mesh(const mesh::MeshTree& mesh, const double& until, TriangleInPath visit) const {
+void Passage::visit_mesh(const Body& body, const double& until, TriangleInPath visit) const {
     if (!(from_ <= to_)) return;
-    const glm::dvec3 way = velocity_ / speed_;
+    const mesh::MeshTree& mesh = *body.mesh();
+    const mesh::MeshParts& parts = mesh.parts();
+    const MapFrame frame(BodyMaker::map_of(body));
+    const auto offer = [&](const mesh::MeshLeaf& leaf, std::uint32_t lane) {
+        Triangle corners;
+        for (int v = 0; v < 3; ++v)
+            corners[static_cast<std::size_t>(v)] =
+                glm::dvec3(glm::vec3(leaf.vertex[v][0][lane], leaf.vertex[v][1][lane], leaf.vertex[v][2][lane]));
+        visit(frame.image(corners), leaf.triangle[lane]);
+    };
+    if (!frame.is_usable()) {
+        for (const mesh::MeshLeaf& leaf : parts.leaves)
+            for (std::uint32_t lane = 0; lane < leaf.count; ++lane) offer(leaf, lane);
+        return;
+    }
+    QueryBox core = box_;
+    glm::dvec3 velocity = velocity_;
+    double speed = speed_, radius = radius_, left = left_;
+    if (frame.map != nullptr) {
+        core.radius = radius_;
+        core = frame.box(core);
+        velocity = frame.inverse * velocity_;
+        speed = glm::length(velocity);
+        radius = 0.0;
+        left = left_ * frame.stretch * (1.0 + 2.0 * frame.error) + core.rounding;
+    }
+    const glm::dvec3 way = velocity / speed;
     mesh::SweptBox swept{};
     double size = static_cast<double>(mesh.extent());
     for (int k = 0; k < 3; ++k) {
-        swept.box.core.center[k] = static_cast<float>(box_.center[k]);
-        swept.box.core.half[k] = static_cast<float>(box_.half[k]);
-        for (int i = 0; i < 3; ++i) swept.box.core.axes[k][i] = static_cast<float>(box_.axes[k][i]);
+        swept.box.core.center[k] = static_cast<float>(core.center[k]);
+        swept.box.core.half[k] = static_cast<float>(core.half[k]);
+        for (int i = 0; i < 3; ++i) swept.box.core.axes[k][i] = static_cast<float>(core.axes[k][i]);
         swept.way[k] = static_cast<float>(way[k]);
-        size += std::abs(box_.center[k]) + 50.0 * box_.half[k];  // axes are orthonormal to 4e-6 alone
+        size += std::abs(core.center[k]) + 50.0 * core.half[k];  // axes are orthonormal to 4e-6 alone
     }
-    const auto on_way = [&](double time) { return (time - middle_) * speed_; };
+    const auto on_way = [&](double time) { return (time - middle_) * speed; };
     const double longest = std::max(std::abs(on_way(from_)), std::abs(on_way(to_)));
     const double doubt = 0x1p-19 * longest;
-    swept.box.radius = static_cast<float>(radius_ * 1.00001);
-    swept.box.error = static_cast<float>(left_ + 0x1p-18 * (size + longest)) + std::numeric_limits<float>::min();
+    swept.box.radius = static_cast<float>(radius * 1.00001);
+    swept.box.error = static_cast<float>(left + 0x1p-18 * (size + longest) + 2.0 * frame.error * longest) +
+                      std::numeric_limits<float>::min();
     swept.from = static_cast<float>(on_way(from_) - doubt);
     swept.to = static_cast<float>(on_way(to_) + doubt);
     float limit = swept.to;
     const auto lessen = [&] { limit = std::min(limit, static_cast<float>(on_way(until) + doubt)); };
     lessen();
-    const mesh::MeshParts& parts = mesh.parts();
-    mesh::visit_swept_triangles(
-        parts.nodes.data(), parts.leaves.data(), swept, limit, [&](const mesh::MeshLeaf& leaf, std::uint32_t lane) {
-            Triangle corners;
-            for (int v = 0; v < 3; ++v)
-                corners[static_cast<std::size_t>(v)] =
-                    glm::dvec3(glm::vec3(leaf.vertex[v][0][lane], leaf.vertex[v][1][lane], leaf.vertex[v][2][lane]));
-            visit(corners, leaf.triangle[lane]);
-            lessen();
-            return false;
-        });
+    mesh::visit_swept_triangles(parts.nodes.data(), parts.leaves.data(), swept, limit,
+                                [&](const mesh::MeshLeaf& leaf, std::uint32_t lane) {
+                                    offer(leaf, lane);
+                                    lessen();
+                                    return false;
+                                });
 }
 
 }  // namespace crofton::convex

@@ -30,7 +30,7 @@ class Passage {
     // Call `visit` for triangles of the surface that the body may be near up to `until`, which the visitor may lessen;
     // about the first first, in an order that depends on the machine.
     using TriangleInPath = FunctionRef<void(const Triangle& corners, std::uint32_t triangle)>;
-    void visit_mesh(const mesh::MeshTree& mesh, const double& until, TriangleInPath visit) const;
+    void visit_mesh(const Body& body, const double& until, TriangleInPath visit) const;
     void visit_field(const HeightField& field, const double& until, TriangleInPath visit) const;
 
   private:

@@ -96,6 +96,11 @@ double gap_between(const Aabb& a, const Obb& box) {
     return std::max({gap.x, gap.y, gap.z});
 }
 
+// Of two points of the boxes, at most.
+double farthest(const Aabb& a, const Aabb& b) {
+    return glm::length(glm::max(glm::abs(a.max - b.min), glm::abs(b.max - a.min))) * (1.0 + 1e-9);
+}
+
 }  // namespace
 
 void World::State::visit_along(const Ray& ray, std::uint32_t layers, collide::RayVisitor visit) const {
@@ -279,23 +284,37 @@ void World::overlap(const collide::Capsule& shape, Vector<ObjectRef>& found, std
 // A limit that is rounded to 0 grows too; one without end is beyond all that boxes and shapes may be.
 constexpr double kLeastGrowth = 1e-300, kFarthest = 1e300;
 
-// Within a small distance first: the tree is entered in no order of nearness.
+// Within a small distance first: the tree is entered in no order of nearness. Meshes take long, so they are asked last,
+// within a distance that one of their boxes keeps to.
 std::optional<ClosestObject> World::State::closest(const Aabb& bounds, double max_distance, std::uint32_t layers,
                                                    GapTo gap_to_object) const {
     std::optional<ClosestObject> nearest;
     if (!(max_distance >= 0.0)) return nearest;
     max_distance = std::min(max_distance, kFarthest);
+    double rest = 0.0;
+    const auto look_at = [&](std::uint32_t id) {
+        const collide::Distance gap = gap_to_object(id, rest);
+        const bool nearer = !nearest || gap.distance < nearest->distance ||
+                            (gap.distance == nearest->distance && id < nearest->object.index);
+        if (gap.distance > rest || !nearer) return rest;
+        const ObjectRef ref = ref_of(id);
+        nearest = ClosestObject{ref.object, ref.user, gap.distance, gap.on_a, gap.on_b};
+        return rest = gap.distance;
+    };
+    const auto is_mesh = [&](std::uint32_t id) {
+        return !world::is_region_index(id) && bodies.mesh_tree_of(table.objects[id]) != nullptr &&
+               !object_bodies.has(id);
+    };
     for (double limit = max_distance * 0x1p-12;; limit = std::min(std::max(8.0 * limit, kLeastGrowth), max_distance)) {
-        double rest = limit;
+        rest = limit;
+        bool has_meshes = false;
         visit_near(bounds, limit, layers, [&](std::uint32_t id) {
-            const collide::Distance gap = gap_to_object(id, rest);
-            const bool nearer = !nearest || gap.distance < nearest->distance ||
-                                (gap.distance == nearest->distance && id < nearest->object.index);
-            if (gap.distance > rest || !nearer) return rest;
-            const ObjectRef ref = ref_of(id);
-            nearest = ClosestObject{ref.object, ref.user, gap.distance, gap.on_a, gap.on_b};
-            return rest = gap.distance;
+            if (!is_mesh(id)) return look_at(id);
+            has_meshes = true;
+            return rest = std::min(rest, farthest(bounds, aabb_of(index.box(id))));
         });
+        if (has_meshes)
+            visit_near(bounds, rest, layers, [&](std::uint32_t id) { return is_mesh(id) ? look_at(id) : rest; });
         if (nearest || limit == max_distance) return nearest;
     }
 }
