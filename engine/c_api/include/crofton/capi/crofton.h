@@ -231,28 +231,21 @@ typedef enum crofton_contact_phase {
 } crofton_contact_phase;
 
 /* Two objects that touch, or that did in the update before. Ended contacts carry only the two object handles, which are
- * stale where they have been removed. */
+ * stale where they have been removed. Two bodies also touch up to the contact margin; their points keep their memory
+ * while their ids stay, and a pair of which neither has moved is not computed again. */
 typedef struct crofton_object_contact {
     crofton_object_ref first, second;    /* ordered as in crofton_object_pair */
     uint8_t phase;                       /* a crofton_contact_phase */
     uint8_t inside;                      /* a crofton_containment of first (a) and second (b) */
     double normal[3];                    /* unit, from first to second; 0 where no direction is known */
-    double depth;                        /* between meshes the deepest point's, unless options ask for a way out */
-    const crofton_contact_point* points; /* at most four, in the world; valid until the next update */
+    double depth; /* of the deepest point between bodies, and between meshes unless options ask for a way out */
+    const crofton_contact_point* points; /* at most four, in the world, none of two bodies; valid until the next update */
     size_t point_count;
     const crofton_mesh_contact* triangles; /* of two meshes, or a mesh and a box; likewise */
     size_t triangle_count;
+    crofton_tracked_point* body_points; /* of two bodies; their memory is yours to write; likewise */
+    size_t body_point_count;
 } crofton_object_contact;
-
-/* Two objects with bodies that touch, or did in the update before. Ended contacts have no points. */
-typedef struct crofton_body_contact {
-    crofton_object_ref first, second; /* ordered as in crofton_object_pair; the first is body a */
-    uint8_t phase;                    /* a crofton_contact_phase */
-    uint8_t unused[sizeof(void*) - 1];
-    crofton_tracked_point* points; /* their memory is yours to write; valid until the next update */
-    uint32_t point_count;
-    uint32_t unused_too;
-} crofton_body_contact;
 
 /* The first object that a moving body meets. */
 typedef struct crofton_body_hit {
@@ -342,10 +335,6 @@ CROFTON_API crofton_status crofton_world_pairs(const crofton_world* world, const
 CROFTON_API crofton_status crofton_world_contacts(const crofton_world* world, const crofton_object_contact** contacts,
                                                   size_t* count);
 
-/* Of objects that both have bodies, in order; valid until the next update. Pairs of which neither has moved are not
- * computed again. */
-CROFTON_API crofton_status crofton_world_body_contacts(const crofton_world* world,
-                                                       const crofton_body_contact** contacts, size_t* count);
 /* Fills a struct whose `size` is set: the first object that a moving body meets. `options` or NULL. */
 CROFTON_API crofton_status crofton_world_cast(const crofton_world* world, const crofton_placed* shape,
                                               const crofton_motion* motion, const crofton_cast_options* options,
