@@ -40,11 +40,11 @@ struct Resting {
         REQUIRE(world_set_body(world.get(), floor, hull) == CROFTON_OK);
         REQUIRE(world_set_body(world.get(), crate, box.get()) == CROFTON_OK);
     }
-    const crofton_body_contact* contacts(std::size_t expected) const {
+    const crofton_object_contact* contacts(std::size_t expected) const {
         update(world);
-        const crofton_body_contact* found = nullptr;
+        const crofton_object_contact* found = nullptr;
         std::size_t count = 0;
-        REQUIRE(crofton_world_body_contacts(world.get(), &found, &count) == CROFTON_OK);
+        REQUIRE(crofton_world_contacts(world.get(), &found, &count) == CROFTON_OK);
         REQUIRE(count == expected);
         return found;
     }
@@ -55,34 +55,46 @@ struct Resting {
 TEST_SUITE("capi/world bodies") {
     TEST_CASE("a crate on a slab: began, stayed with the caller's numbers, ended") {
         const Resting s;
-        const crofton_body_contact* contact = s.contacts(1);
+        const crofton_object_contact* contact = s.contacts(1);
         CHECK(contact->first.user == 5);
         CHECK(contact->second.user == 6);
         CHECK(contact->phase == CROFTON_CONTACT_BEGAN);
-        REQUIRE(contact->point_count == 4);
+        CHECK(contact->normal[1] == doctest::Approx(1.0));
+        CHECK(contact->depth == doctest::Approx(0.01));
+        CHECK(contact->point_count == 0);
+        REQUIRE(contact->body_point_count == 4);
         for (int i = 0; i < 4; ++i) {
-            CHECK(contact->points[i].normal[1] == doctest::Approx(1.0));
-            CHECK(contact->points[i].depth == doctest::Approx(0.01));
-            contact->points[i].memory[3] = 2.5f;
+            CHECK(contact->body_points[i].normal[1] == doctest::Approx(1.0));
+            CHECK(contact->body_points[i].depth == doctest::Approx(0.01));
+            contact->body_points[i].memory[3] = 2.5f;
         }
         crofton_bound moved = box_bound(box_at(0.01, 1.491, 0, 0.55f));
         REQUIRE(world_set_bound(s.world.get(), s.crate, &moved) == CROFTON_OK);
         contact = s.contacts(1);
         CHECK(contact->phase == CROFTON_CONTACT_STAYED);
-        CHECK(contact->points[0].memory[3] == 2.5f);
+        CHECK(contact->body_points[0].memory[3] == 2.5f);
         REQUIRE(world_set_body(s.world.get(), s.crate, nullptr) == CROFTON_OK);
-        CHECK(s.contacts(1)->phase == CROFTON_CONTACT_ENDED);
-        s.contacts(0);
+        // Without its body the crate's box touches: what has ended comes first.
+        contact = s.contacts(2);
+        CHECK(contact[0].phase == CROFTON_CONTACT_ENDED);
+        CHECK(contact[0].body_point_count == 0);
+        CHECK(contact[1].phase == CROFTON_CONTACT_BEGAN);
+        CHECK(contact[1].second.user == 6);
+        CHECK(contact[1].body_point_count == 0);
+        CHECK(contact[1].point_count == 4);
+        contact = s.contacts(1);
+        CHECK(contact->phase == CROFTON_CONTACT_STAYED);
+        CHECK(contact->point_count == 4);
     }
 
     TEST_CASE("a body may be changed while contacts are read: they hold until the next update") {
         const Resting s;
-        const crofton_body_contact* contact = s.contacts(1);
-        const crofton_tracked_point before = contact->points[0];
+        const crofton_object_contact* contact = s.contacts(1);
+        const crofton_tracked_point before = contact->body_points[0];
         const BodyHandle small = crate_of(0.1f);
         REQUIRE(world_set_body(s.world.get(), s.crate, small.get()) == CROFTON_OK);
-        CHECK(contact->point_count == 4);
-        const crofton_tracked_point& after = contact->points[0];
+        CHECK(contact->body_point_count == 4);
+        const crofton_tracked_point& after = contact->body_points[0];
         for (int k = 0; k < 3; ++k) {
             CHECK(after.position[k] == before.position[k]);
             CHECK(after.normal[k] == before.normal[k]);
@@ -121,12 +133,12 @@ TEST_SUITE("capi/world bodies") {
             const crofton_transform there{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, height, 0}};
             REQUIRE(crofton_world_set_transforms(world.get(), &high, 0, &there, 0, 1) == CROFTON_OK);
             update(world);
-            const crofton_body_contact* contacts = nullptr;
+            const crofton_object_contact* contacts = nullptr;
             std::size_t count = 0;
-            REQUIRE(crofton_world_body_contacts(world.get(), &contacts, &count) == CROFTON_OK);
+            REQUIRE(crofton_world_contacts(world.get(), &contacts, &count) == CROFTON_OK);
             REQUIRE(count == 1);
-            CHECK(contacts->point_count == 4);
-            CHECK(contacts->points[0].depth == doctest::Approx(2.0 - height));
+            CHECK(contacts->body_point_count == 4);
+            CHECK(contacts->body_points[0].depth == doctest::Approx(2.0 - height));
             crofton_box box{};
             REQUIRE(world_get_box(world.get(), high, &box) == CROFTON_OK);
             CHECK(box.center[1] == doctest::Approx(height));
@@ -193,9 +205,9 @@ TEST_SUITE("capi/world bodies") {
         REQUIRE(world_set_body(world.get(), ground, level.get()) == CROFTON_OK);
         REQUIRE(world_set_body(world.get(), resting, large.get()) == CROFTON_OK);
         update(world);
-        const crofton_body_contact* contacts = nullptr;
+        const crofton_object_contact* contacts = nullptr;
         std::size_t count = 0;
-        REQUIRE(crofton_world_body_contacts(world.get(), &contacts, &count) == CROFTON_OK);
+        REQUIRE(crofton_world_contacts(world.get(), &contacts, &count) == CROFTON_OK);
         CHECK(count == 1);
         const crofton_ray rays[3] = {{{5, -4, 0}, {0, 2, 0}, kNoLimit},
                                      {{1e6, -4, 0}, {0, 2, 0}, kNoLimit},

@@ -43,7 +43,6 @@ void refuse_world_queries(Table& table) {
     CROFTON_REFUSE(crofton_world_closest);
     CROFTON_REFUSE(crofton_world_pairs);
     CROFTON_REFUSE(crofton_world_contacts);
-    CROFTON_REFUSE(crofton_world_body_contacts);
     CROFTON_REFUSE(crofton_world_cast);
     CROFTON_REFUSE(crofton_world_find_occluders);
     CROFTON_REFUSE(crofton_world_set_occluders);

@@ -125,6 +125,8 @@ namespace Crofton {
             public UIntPtr PointCount;
             public IntPtr Triangles;
             public UIntPtr TriangleCount;
+            public IntPtr BodyPoints;
+            public UIntPtr BodyPointCount;
         }
 
         [StructLayout(LayoutKind.Sequential)]

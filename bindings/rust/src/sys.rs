@@ -267,6 +267,8 @@ pub struct ObjectContact {
     pub point_count: usize,
     pub triangles: *const crate::MeshContact,
     pub triangle_count: usize,
+    pub body_points: *mut c_void,
+    pub body_point_count: usize,
 }
 
 #[repr(C)]

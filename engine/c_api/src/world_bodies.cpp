@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Bodies of a World's objects: contacts that last, and casts.
+// Casts of bodies in a World.
 #include <crofton/capi/crofton.h>
 
-#include <cstddef>
 #include <limits>
 
 #include <crofton/capi/bodies.hpp>
@@ -10,22 +9,6 @@
 
 using namespace crofton;
 using namespace crofton::capi;
-
-static_assert(sizeof(crofton_body_contact) == sizeof(BodyContact) &&
-              offsetof(crofton_body_contact, phase) == offsetof(BodyContact, phase) &&
-              offsetof(crofton_body_contact, points) == offsetof(BodyContact, points) &&
-              offsetof(crofton_body_contact, point_count) == offsetof(BodyContact, point_count));
-
-crofton_status crofton_world_body_contacts(const crofton_world* world, const crofton_body_contact** contacts,
-                                           size_t* count) {
-    const SharedUse use(world, __func__);
-    if (use.failed()) return use.status();
-    CROFTON_CHECK(check_pointer(contacts, __func__));
-    CROFTON_CHECK(check_pointer(count, __func__));
-    *contacts = reinterpret_cast<const crofton_body_contact*>(world->world.body_contacts().data());
-    *count = world->world.body_contacts().size();
-    return CROFTON_OK;
-}
 
 crofton_status crofton_world_cast(const crofton_world* world, const crofton_placed* shape, const crofton_motion* motion,
                                   const crofton_cast_options* options, uint32_t layer_mask, crofton_body_hit* hit) {

@@ -37,7 +37,8 @@ static_assert(sizeof(crofton_object_contact) == sizeof(Contact) &&
               offsetof(crofton_object_contact, normal) == offsetof(Contact, normal) &&
               offsetof(crofton_object_contact, depth) == offsetof(Contact, depth) &&
               offsetof(crofton_object_contact, points) == offsetof(Contact, points) &&
-              offsetof(crofton_object_contact, triangles) == offsetof(Contact, triangles));
+              offsetof(crofton_object_contact, triangles) == offsetof(Contact, triangles) &&
+              offsetof(crofton_object_contact, body_points) == offsetof(Contact, body_points));
 static_assert(sizeof(crofton_contact_point) == sizeof(collide::ContactPoint) &&
               offsetof(crofton_contact_point, depth) == offsetof(collide::ContactPoint, depth));
 static_assert(sizeof(crofton_mesh_contact) == sizeof(mesh::MeshContact) &&

@@ -46,7 +46,7 @@ TEST_SUITE("world/bodies") {
         const ObjectHandle object = world.add({.bound = Sphere{{}, 1.0}}).value();
         REQUIRE(world.set_body(object, nullptr).has_value());
         REQUIRE(world.update().has_value());
-        CHECK(world.body_contacts().empty());
+        CHECK(world.contacts().empty());
         CHECK(error_of(world.cast(half, {}, {}, {})).code == ErrorCode::unsupported);
         CHECK(error_of(world.cast(box, {}, {{NAN, 0, 0}, {}, {}}, {})).code == ErrorCode::non_finite);
         RigidTransform bad;
@@ -78,8 +78,8 @@ TEST_SUITE("world/bodies") {
             REQUIRE(world.set_body(floor, with_body == floor ? &crate : nullptr).has_value());
             REQUIRE(world.set_body(box, with_body == box ? &crate : nullptr).has_value());
             REQUIRE(world.update().has_value());
-            CHECK(world.body_contacts().empty());
             REQUIRE(world.contacts().size() == 1);
+            CHECK(world.contacts()[0].body_points.empty());
             CHECK(world.contacts()[0].points.size() == 4);
             CHECK(world.contacts()[0].depth == doctest::Approx(0.25));
         }
@@ -117,24 +117,26 @@ TEST_SUITE("world/bodies") {
         REQUIRE(world.set_body(floor, &slab).has_value());
         REQUIRE(world.set_body(box, &crate).has_value());
         REQUIRE(world.update().has_value());
-        REQUIRE(world.body_contacts().size() == 1);
-        CHECK(world.contacts().empty());
-        const BodyContact first = world.body_contacts()[0];
+        REQUIRE(world.contacts().size() == 1);
+        CHECK(world.contacts()[0].points.empty());
+        CHECK(world.contacts()[0].normal.y == doctest::Approx(1.0));
+        CHECK(world.contacts()[0].depth == doctest::Approx(0.01));
+        const Contact first = world.contacts()[0];
         CHECK(first.phase == ContactPhase::began);
-        REQUIRE(first.point_count == 4);
-        CHECK(first.points[0].normal.y == doctest::Approx(1.0));
-        CHECK(first.points[0].contact.depth == doctest::Approx(0.01));
-        for (std::uint32_t i = 0; i < 4; ++i) first.points[i].memory[1] = 7.0f + static_cast<float>(i);
+        REQUIRE(first.body_points.size() == 4);
+        CHECK(first.body_points[0].normal.y == doctest::Approx(1.0));
+        CHECK(first.body_points[0].contact.depth == doctest::Approx(0.01));
+        for (std::uint32_t i = 0; i < 4; ++i) first.body_points[i].memory[1] = 7.0f + static_cast<float>(i);
         for (int frame = 0; frame < 30; ++frame) {
             if (frame < 5) REQUIRE(world.set_bound(box, at_height(1.49 + 1e-4 * frame)).has_value());
             REQUIRE(world.update().has_value());
-            REQUIRE(world.body_contacts().size() == 1);
-            const BodyContact now = world.body_contacts()[0];
+            REQUIRE(world.contacts().size() == 1);
+            const Contact now = world.contacts()[0];
             CHECK(now.phase == ContactPhase::stayed);
-            REQUIRE(now.point_count == 4);
+            REQUIRE(now.body_points.size() == 4);
             for (std::uint32_t i = 0; i < 4; ++i) {
-                CHECK(now.points[i].memory[1] == 7.0f + static_cast<float>(i));
-                CHECK_FALSE(now.points[i].began);
+                CHECK(now.body_points[i].memory[1] == 7.0f + static_cast<float>(i));
+                CHECK_FALSE(now.body_points[i].began);
             }
         }
         // Another object moves: the pair that rests is kept as it is.
@@ -142,23 +144,23 @@ TEST_SUITE("world/bodies") {
         for (int frame = 0; frame < 4; ++frame) {
             REQUIRE(world.set_bound(other, Sphere{{50.0 + frame, 0, 0}, 1.0}).has_value());
             REQUIRE(world.update().has_value());
-            REQUIRE(world.body_contacts().size() == 1);
-            CHECK(world.body_contacts()[0].points[3].memory[1] == 10.0f);
+            REQUIRE(world.contacts().size() == 1);
+            CHECK(world.contacts()[0].body_points[3].memory[1] == 10.0f);
         }
         REQUIRE(world.set_bound(box, at_height(9.0)).has_value());
         REQUIRE(world.update().has_value());
-        REQUIRE(world.body_contacts().size() == 1);
-        CHECK(world.body_contacts()[0].phase == ContactPhase::ended);
-        CHECK(world.body_contacts()[0].point_count == 0);
+        REQUIRE(world.contacts().size() == 1);
+        CHECK(world.contacts()[0].phase == ContactPhase::ended);
+        CHECK(world.contacts()[0].body_points.size() == 0);
         REQUIRE(world.update().has_value());
-        CHECK(world.body_contacts().empty());
+        CHECK(world.contacts().empty());
         REQUIRE(world.set_bound(box, at_height(1.49)).has_value());
         REQUIRE(world.update().has_value());
-        CHECK(world.body_contacts()[0].phase == ContactPhase::began);
+        CHECK(world.contacts()[0].phase == ContactPhase::began);
         REQUIRE(world.remove(box).has_value());
         REQUIRE(world.update().has_value());
-        REQUIRE(world.body_contacts().size() == 1);
-        CHECK(world.body_contacts()[0].phase == ContactPhase::ended);
+        REQUIRE(world.contacts().size() == 1);
+        CHECK(world.contacts()[0].phase == ContactPhase::ended);
     }
 
     TEST_CASE("pairs that rest cost nothing: only those of what moves are computed") {
@@ -173,7 +175,7 @@ TEST_SUITE("world/bodies") {
             REQUIRE(world.set_body(objects.back(), &crate).has_value());
         }
         REQUIRE(world.update().has_value());
-        CHECK(world.body_contacts().size() == 1000);
+        CHECK(world.contacts().size() == 1000);
         CHECK(world.statistics().body_pairs_computed == 1000);
         REQUIRE(world.update().has_value());
         CHECK(world.statistics().body_pairs_computed == 0);
@@ -185,11 +187,11 @@ TEST_SUITE("world/bodies") {
             }
             REQUIRE(world.update().has_value());
             CHECK(world.statistics().body_pairs_computed == 2);
-            CHECK(world.body_contacts().size() == 1000);
+            CHECK(world.contacts().size() == 1000);
         }
         REQUIRE(world.update().has_value());
         CHECK(world.statistics().body_pairs_computed == 0);
-        CHECK(world.body_contacts().size() == 1000);
+        CHECK(world.contacts().size() == 1000);
         // One that comes, one that goes, one with another body.
         const ObjectHandle more = world.add({.bound = place(2000)}).value();
         REQUIRE(world.update().has_value());
@@ -201,26 +203,26 @@ TEST_SUITE("world/bodies") {
         REQUIRE(world.update().has_value());
         // With the pair below it, whose bodies have a neighbour now: normals at a seam ask for it.
         CHECK(world.statistics().body_pairs_computed == 2);
-        CHECK(world.body_contacts().size() == 1001);
+        CHECK(world.contacts().size() == 1001);
         REQUIRE(world.remove(more).has_value());
         REQUIRE(world.update().has_value());
         CHECK(world.statistics().body_pairs_computed == 1);
-        CHECK(world.body_contacts().size() == 1001);  // one has ended
+        CHECK(world.contacts().size() == 1001);  // one has ended
         const convex::Body small = convex::Body::box({0.25f, 0.25f, 0.25f}).value();
         REQUIRE(world.set_body(objects[0], &small).has_value());
         REQUIRE(world.set_user(objects[4], 7).has_value());
         REQUIRE(world.update().has_value());
         CHECK(world.statistics().body_pairs_computed == 1);
-        CHECK(world.body_contacts()[0].phase == ContactPhase::ended);
+        CHECK(world.contacts()[0].phase == ContactPhase::ended);
         REQUIRE(world.update().has_value());
-        CHECK(world.body_contacts().size() == 999);
+        CHECK(world.contacts().size() == 999);
     }
 
     TEST_CASE("contacts, overlaps and casts are those of all objects one by one, while they move, come and go") {
         RandomBodies random(1);
         World world;
         std::vector<Thing> things;
-        std::set<std::pair<std::uint32_t, std::uint32_t>> before;
+        std::set<std::pair<std::uint32_t, std::uint32_t>> before, bounds_before;
         int contacts = 0, overlaps = 0, hits = 0, kept = 0;
         const auto make = [&] {
             Thing thing{any_body(random, 0.7), {}, {}, random.index(5) != 0};
@@ -251,11 +253,16 @@ TEST_SUITE("world/bodies") {
                         convex::contact_manifold({a.body, pose_of(a.box)}, {b.body, pose_of(b.box)});
                     if (m.count > 0) touching[{a.object.index, b.object.index}] = m.depth;
                 }
-            std::set<std::pair<std::uint32_t, std::uint32_t>> now;
-            for (const BodyContact& contact : world.body_contacts()) {
+            std::set<std::pair<std::uint32_t, std::uint32_t>> now, bounds_now;
+            for (const Contact& contact : world.contacts()) {
                 const auto pair = std::pair(contact.first.object.index, contact.second.object.index);
                 if (contact.phase == ContactPhase::ended) {
-                    CHECK(before.count(pair) == 1);
+                    CHECK(before.count(pair) + bounds_before.count(pair) == 1);
+                    continue;
+                }
+                if (contact.body_points.empty()) {
+                    CHECK(touching.count(pair) == 0);
+                    bounds_now.insert(pair);
                     continue;
                 }
                 now.insert(pair);
@@ -263,12 +270,14 @@ TEST_SUITE("world/bodies") {
                 CHECK((contact.phase == ContactPhase::stayed || frame % 5 == 4 || before.count(pair) == 0));
                 REQUIRE(touching.count(pair) == 1);
                 double deepest = -1.0;
-                for (std::uint32_t i = 0; i < contact.point_count; ++i)
-                    deepest = std::max(deepest, contact.points[i].contact.depth);
+                for (const convex::TrackedPoint& point : contact.body_points)
+                    deepest = std::max(deepest, point.contact.depth);
+                CHECK(contact.depth == deepest);
                 CHECK(deepest == doctest::Approx(touching[pair]).epsilon(1e-3));
             }
             CHECK(now.size() == touching.size());
             before = now;
+            bounds_before = bounds_now;
             contacts += static_cast<int>(now.size());
 
             const convex::Body probe = any_body(random);

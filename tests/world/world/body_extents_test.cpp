@@ -82,10 +82,10 @@ void require_contacts(const World& world, const std::vector<Thing>& things, doub
         }
     for (const ObjectPair& pair : world.pairs()) paired.insert({pair.first.object.index, pair.second.object.index});
     REQUIRE(paired.size() == world.pairs().size());
-    for (const BodyContact& contact : world.body_contacts()) {
+    for (const Contact& contact : world.contacts()) {
         const IndexPair pair{contact.first.object.index, contact.second.object.index};
         REQUIRE(paired.count(pair) == (contact.phase == ContactPhase::ended ? paired.count(pair) : 1));
-        if (contact.phase != ContactPhase::ended) now.insert(pair);
+        if (!contact.body_points.empty()) now.insert(pair);
     }
     REQUIRE(now == expected);
 }
@@ -411,8 +411,8 @@ TEST_SUITE("world/body_extents") {
         CHECK(error_of(world.set_transform(below, {})).code == ErrorCode::invalid_argument);
         REQUIRE(world.set_transform(own, {glm::dmat3(1.0), {1.9, 0, 0}}).has_value());
         REQUIRE(world.update().has_value());
-        REQUIRE(world.body_contacts().size() == 1);
-        CHECK(world.body_contacts()[0].points[0].contact.depth == doctest::Approx(0.1));
+        REQUIRE(world.contacts().size() == 1);
+        CHECK(world.contacts()[0].body_points[0].contact.depth == doctest::Approx(0.1));
         REQUIRE(world.set_body(own, &box).has_value());
         REQUIRE(world.set_transform(node, uneven).has_value());  // boxes take it
         REQUIRE(world.update().has_value());
@@ -443,8 +443,8 @@ TEST_SUITE("world/body_extents") {
             REQUIRE(world.set_body(a, &box).has_value());
             REQUIRE(world.set_body(b, &box).has_value());
             REQUIRE(world.update().has_value());
-            REQUIRE(world.body_contacts().size() == 1);
-            CHECK(world.body_contacts()[0].points[0].contact.depth == doctest::Approx(0.1).epsilon(1e-3));
+            REQUIRE(world.contacts().size() == 1);
+            CHECK(world.contacts()[0].body_points[0].contact.depth == doctest::Approx(0.1).epsilon(1e-3));
         }
     }
 
@@ -464,7 +464,7 @@ TEST_SUITE("world/body_extents") {
             REQUIRE(world.update().has_value());
             const bool touches = glm::length(place) <= 3.5;
             std::size_t touching = 0;
-            for (const BodyContact& c : world.body_contacts()) touching += c.phase != ContactPhase::ended;
+            for (const Contact& c : world.contacts()) touching += c.phase != ContactPhase::ended;
             CHECK(touching == (touches ? 1u : 0u));
         }
     }
@@ -683,8 +683,8 @@ TEST_SUITE("world/body_extents") {
             const double depth = s + 1.0 - glm::length(center);
             if (std::abs(depth) < 1e-9) continue;
             double found = -1.0;
-            for (const BodyContact& c : world.body_contacts())
-                if (c.phase != ContactPhase::ended) found = c.points[0].contact.depth;
+            for (const Contact& c : world.contacts())
+                if (c.phase != ContactPhase::ended) found = c.body_points[0].contact.depth;
             CHECK((found >= 0.0) == (depth > 0.0));
             if (depth > 0.0) CHECK(found == doctest::Approx(depth).epsilon(1e-9));
         }
@@ -785,7 +785,7 @@ TEST_SUITE("world/body_extents") {
             CHECK(depths.at(box.index) == doctest::Approx(0.25));
             CHECK(depths.at(mesh.index) == doctest::Approx(0.5));
             CHECK(depths.count(high.index) == 0);
-            CHECK(world.body_contacts().empty());
+            for (const Contact& contact : world.contacts()) CHECK(contact.body_points.empty());
         }
     }
 

@@ -96,14 +96,14 @@ class Slide {
             REQUIRE(world_.update().has_value());
             velocity -= 0.16 * normal_;
             double depth = 0.0;
-            for (const BodyContact& contact : world_.body_contacts()) {
+            for (const Contact& contact : world_.contacts()) {
                 CHECK((contact.phase == ContactPhase::stayed || step == 0));
-                CHECK(contact.point_count > 0);
-                for (std::uint32_t i = 0; i < contact.point_count; ++i) {
-                    const glm::dvec3& n = contact.points[i].normal;
+                CHECK(!contact.body_points.empty());
+                for (const convex::TrackedPoint& point : contact.body_points) {
+                    const glm::dvec3& n = point.normal;
                     CHECK(glm::dot(n, normal_) > 1.0 - 1e-9);
                     velocity -= std::min(glm::dot(velocity, n), 0.0) * n;
-                    depth = std::max(depth, contact.points[i].contact.depth);
+                    depth = std::max(depth, point.contact.depth);
                 }
             }
             box_.center += velocity / 60.0 + std::max(0.0, depth - 0.001) * normal_;
@@ -132,7 +132,7 @@ TEST_SUITE("world/body_rules") {
             REQUIRE(bodies.world.update().has_value());
             const std::set<IndexPair> expected = bodies.touching(refused);
             std::set<IndexPair> now;
-            for (const BodyContact& contact : bodies.world.body_contacts()) {
+            for (const Contact& contact : bodies.world.contacts()) {
                 const IndexPair pair{contact.first.object.index, contact.second.object.index};
                 if (contact.phase == ContactPhase::ended) {
                     CHECK(before.count(pair) == 1);
@@ -218,15 +218,15 @@ TEST_SUITE("world/body_rules") {
                     const ObjectHandle object = world.add({.bound = crate(0.1)}).value();
                     REQUIRE(world.set_body(object, &sphere).has_value());
                     REQUIRE(world.update().has_value());
-                    REQUIRE(world.body_contacts().size() == 1);
-                    CHECK(world.body_contacts()[0].points[0].normal.y == doctest::Approx(1.0));
-                    CHECK(world.body_contacts()[0].points[0].contact.depth == doctest::Approx(0.4));
+                    REQUIRE(world.contacts().size() == 1);
+                    CHECK(world.contacts()[0].body_points[0].normal.y == doctest::Approx(1.0));
+                    CHECK(world.contacts()[0].body_points[0].contact.depth == doctest::Approx(0.4));
                     REQUIRE(world.set_bound(object, crate(-0.4)).has_value());
                     REQUIRE(world.update().has_value());
-                    REQUIRE(world.body_contacts().size() == 1);
-                    const BodyContact below = world.body_contacts()[0];
+                    REQUIRE(world.contacts().size() == 1);
+                    const Contact below = world.contacts()[0];
                     CHECK((below.phase == ContactPhase::ended) == (sides == convex::Sides::front));
-                    if (below.point_count > 0) CHECK(below.points[0].normal.y == doctest::Approx(-1.0));
+                    if (!below.body_points.empty()) CHECK(below.body_points[0].normal.y == doctest::Approx(-1.0));
                     // Casts, past the crate's side.
                     const glm::dvec3 aside = above + glm::dvec3(2, 0, 2);
                     const auto hit = [&](double from, double to) {

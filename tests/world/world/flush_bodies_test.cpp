@@ -77,14 +77,13 @@ TEST_SUITE("world/flush_bodies") {
                 for (std::size_t i = 0; i < movers.size(); ++i) {
                     double deepest = -1.0;
                     int pairs = 0;
-                    for (const BodyContact& contact : world.body_contacts()) {
+                    for (const Contact& contact : world.contacts()) {
                         if (contact.first.object != movers[i] && contact.second.object != movers[i]) continue;
                         if (contact.phase == ContactPhase::ended) continue;
                         const double side = contact.second.object == movers[i] ? 1.0 : -1.0;
                         ++pairs;
-                        for (std::uint32_t k = 0; k < contact.point_count; ++k) {
+                        for (const convex::TrackedPoint& p : contact.body_points) {
                             CAPTURE(i);
-                            const convex::TrackedPoint& p = contact.points[k];
                             CHECK(glm::distance(side * p.normal, glm::normalize(frame.rotation[1])) <= 2e-3);
                             const glm::dvec3 on_floor = p.contact.position + side * 0.5 * p.contact.depth * p.normal;
                             CHECK(std::abs(glm::dot(on_floor - frame.translation, frame.rotation[1])) <= 1e-4);
@@ -167,10 +166,10 @@ TEST_SUITE("world/flush_bodies") {
         const ObjectHandle mover = add(world, crate, at({0.75, 0.245, 0}), 2, 1);
         const auto normals = [&] {
             std::vector<glm::dvec3> result;
-            for (const BodyContact& contact : world.body_contacts())
-                for (std::uint32_t k = 0; k < contact.point_count; ++k)
+            for (const Contact& contact : world.contacts())
+                for (const convex::TrackedPoint& point : contact.body_points)
                     if (contact.phase != ContactPhase::ended) {
-                        const glm::dvec3 n = (contact.second.object == mover ? 1.0 : -1.0) * contact.points[k].normal;
+                        const glm::dvec3 n = (contact.second.object == mover ? 1.0 : -1.0) * point.normal;
                         if (std::none_of(result.begin(), result.end(),
                                          [&](const glm::dvec3& m) { return glm::distance(m, n) < 1e-6; }))
                             result.push_back(n);

@@ -114,7 +114,7 @@ TEST_SUITE("world/guide") {
         const auto floor = world.add({.bound = crofton::Obb{{}, glm::mat3(1.0f), {5.0f, 0.2f, 5.0f}}}).value();
         world.set_body(floor, &slab).value();
         std::size_t pushed = 0;
-        const auto push = [&](const crofton::BodyContact& contact, const glm::dvec3& position, const glm::dvec3& normal,
+        const auto push = [&](const crofton::Contact& contact, const glm::dvec3& position, const glm::dvec3& normal,
                               double depth, float* memory) {
             ++pushed;
             CHECK(contact.second.user == 7);
@@ -128,11 +128,9 @@ TEST_SUITE("world/guide") {
         const crofton::Transform standing{glm::dmat3(1.0), {0.0, 1.0, 0.0}};
         const auto hero = world.add({.transform = standing, .body = &capsule, .user = 7}).value();
         world.update(jobs).value();
-        for (const crofton::BodyContact& contact : world.body_contacts())
-            for (std::uint32_t i = 0; i < contact.point_count; ++i) {
-                crofton::convex::TrackedPoint& point = contact.points[i];
+        for (const crofton::Contact& contact : world.contacts())
+            for (crofton::convex::TrackedPoint& point : contact.body_points)
                 push(contact, point.contact.position, point.normal, point.contact.depth, point.memory);  // and keep the impulses
-            }
         const crofton::RigidTransform from{glm::dmat3(1.0), {0.0, 9.0, 0.0}};
         const auto hit = world.cast(capsule, from, {.velocity = {0.0, -9.0, 0.0}}, {});  // where would it land?
         if (hit && *hit) std::printf("after %g s on object %u\n", (*hit)->time, (*hit)->object.index);

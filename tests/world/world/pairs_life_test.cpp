@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The life of a world for thousands of updates: pairs and contacts against all pairs of objects, one after the other.
 #include <doctest/doctest.h>
+#include <algorithm>
 #include <array>
 #include <counting_memory.hpp>
 #include <crofton/collide/bound_contacts.hpp>
@@ -8,6 +9,7 @@
 #include <map>
 #include <optional>
 #include <oracle/random_boxes.hpp>
+#include <tuple>
 #include <vector>
 
 #include "../../ranges.hpp"
@@ -216,11 +218,26 @@ TEST_SUITE("world/pairs life") {
                 const auto have_bodies = [&](const Key& pair) {
                     return life.bodies.contains(pair.first) && life.bodies.contains(pair.second);
                 };
-                CHECK(check_phases(
-                    life.serial.contacts(), model, pairs, [&](const Key& pair) { return !have_bodies(pair); },
-                    before.contacts));
-                bool good = true;
+                // One list in order; of the same two objects what has ended comes before what has begun.
+                std::vector<Contact> of_bounds, of_bodies;
                 for (const Contact& contact : life.serial.contacts()) {
+                    const Key key{contact.first.object.index, contact.second.object.index};
+                    const bool was_of_bodies = before.body_contacts.contains(key);
+                    const bool has_ended = contact.phase == ContactPhase::ended;
+                    (has_ended ? was_of_bodies : !contact.body_points.empty()) ? of_bodies.push_back(contact)
+                                                                               : of_bounds.push_back(contact);
+                }
+                const auto all = life.serial.contacts();
+                CHECK(std::is_sorted(all.begin(), all.end(), [](const Contact& a, const Contact& b) {
+                    const auto key = [](const Contact& c) {
+                        return std::tuple(c.first.object.index, c.second.object.index, c.phase != ContactPhase::ended);
+                    };
+                    return key(a) < key(b);
+                }));
+                CHECK(check_phases(
+                    of_bounds, model, pairs, [&](const Key& pair) { return !have_bodies(pair); }, before.contacts));
+                bool good = true;
+                for (const Contact& contact : of_bounds) {
                     ++contacts;
                     if (contact.phase == ContactPhase::ended) {
                         ++ended;
@@ -235,21 +252,31 @@ TEST_SUITE("world/pairs life") {
                             are_equal(contact.points, {expected.points, static_cast<std::size_t>(expected.count)}) &&
                             contact.triangles.empty();
                 }
+                for (const Contact& contact : of_bodies) {
+                    double deepest = -HUGE_VAL;
+                    glm::dvec3 normal(0.0);
+                    for (const convex::TrackedPoint& point : contact.body_points)
+                        if (point.contact.depth > deepest) deepest = point.contact.depth, normal = point.normal;
+                    const bool has_ended = contact.phase == ContactPhase::ended;
+                    good &= contact.points.empty() && contact.triangles.empty();
+                    good &= contact.depth == (has_ended ? 0.0 : deepest) && contact.normal == normal;
+                }
                 CHECK(good);
                 for (const World* other : {&life.parallel, &life.seldom_asked})
                     CHECK(test::ranges::equal(
                         life.serial.contacts(), other->contacts(), [](const Contact& a, const Contact& b) {
                             return are_same(a.first, b.first) && are_same(a.second, b.second) && a.phase == b.phase &&
-                                   a.normal == b.normal && a.depth == b.depth && are_equal(a.points, b.points);
+                                   a.normal == b.normal && a.depth == b.depth && are_equal(a.points, b.points) &&
+                                   a.body_points.size() == b.body_points.size();
                         }));
                 // Boxes as bodies.
                 std::map<Key, bool> bodies_meet;
-                for (const BodyContact& contact : life.serial.body_contacts())
+                for (const Contact& contact : of_bodies)
                     if (contact.phase != ContactPhase::ended)
                         bodies_meet[{contact.first.object.index, contact.second.object.index}] = true;
                 CHECK(check_phases(
-                    life.serial.body_contacts(), model, pairs,
-                    [&](const Key& pair) { return have_bodies(pair) && bodies_meet[pair]; }, before.body_contacts));
+                    of_bodies, model, pairs, [&](const Key& pair) { return have_bodies(pair) && bodies_meet[pair]; },
+                    before.body_contacts));
                 const auto pose_of = [&](std::uint32_t id) {
                     const Bound& bound = model.objects.at(id).bound;
                     const bool sphere = bound.kind == BoundKind::sphere;

@@ -18,11 +18,11 @@ IdPair ids_of(const ObjectRef& first, const ObjectRef& second) {
 constexpr auto is_state_before = [](const auto& state, const IdPair& pair) {
     return ids_of(state.pair.first, state.pair.second) < pair;
 };
-constexpr auto is_contact_before = [](const BodyContact& contact, const IdPair& pair) {
+constexpr auto is_contact_before = [](const Contact& contact, const IdPair& pair) {
     return ids_of(contact.first, contact.second) < pair;
 };
 
-bool is_at(const Vector<BodyContact>& contacts, std::size_t place, const IdPair& pair) {
+bool is_at(const Vector<Contact>& contacts, std::size_t place, const IdPair& pair) {
     return place < contacts.size() && ids_of(contacts[place].first, contacts[place].second) == pair;
 }
 
@@ -281,6 +281,16 @@ void BodyContacts::write(PairState& state, const Touch& touch) {
     std::copy_n(workers_[touch.worker].points.begin() + touch.first_point, touch.point_count, state.points.begin());
 }
 
+// With the normal and depth of its deepest point.
+void BodyContacts::show(const PairState& state, Contact& contact) {
+    contact.body_points = state.points.first(state.point_count);
+    const auto deepest = std::max_element(
+        contact.body_points.begin(), contact.body_points.end(),
+        [](const convex::TrackedPoint& a, const convex::TrackedPoint& b) { return a.contact.depth < b.contact.depth; });
+    contact.normal = deepest->normal;
+    contact.depth = deepest->contact.depth;
+}
+
 // Goes through the pairs that were computed, those that touched and are gone, and the contacts that ended in the update
 // before; all are in order. Two contacts of objects of the same indices are one that ended and one of new objects.
 void BodyContacts::write_contacts() {
@@ -303,10 +313,12 @@ void BodyContacts::write_contacts() {
             ++e;
         }
         const bool was_touching = is_at(contacts_, at, ids);
-        const auto end = [&](BodyContact& contact) {
-            contact.phase = ContactPhase::ended;
-            contact.points = nullptr;
-            contact.point_count = 0;
+        const auto end = [&](Contact& contact) {
+            Contact ended;
+            ended.first = contact.first;
+            ended.second = contact.second;
+            ended.phase = ContactPhase::ended;
+            contact = ended;
             ended_.push_back(ids);
         };
         if (is_dropped) {
@@ -323,8 +335,7 @@ void BodyContacts::write_contacts() {
                 if (!stays) began_.push_back(ids);
             }
             if (stays && touch.point_count > 0) {
-                contacts_[at].points = state.points.data();
-                contacts_[at].point_count = state.point_count;
+                show(state, contacts_[at]);
             } else if (stays) {
                 end(contacts_[at]);
             } else if (touch.point_count > 0) {
@@ -337,8 +348,11 @@ void BodyContacts::write_contacts() {
     edits_.apply(contacts_);
     for (std::size_t n = 0; n < added_.size(); ++n) {
         const PairState& state = states_[touches_[added_[n]].state];
-        contacts_[edits_.places()[n]] = {state.pair.first, state.pair.second, ContactPhase::began, state.points.data(),
-                                         state.point_count};
+        Contact& contact = contacts_[edits_.places()[n]];
+        contact = {};
+        contact.first = state.pair.first;
+        contact.second = state.pair.second;
+        show(state, contact);
     }
 }
 

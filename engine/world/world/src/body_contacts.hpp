@@ -38,7 +38,7 @@ class BodyContacts {
     void update_all(std::span<const ObjectPair> pairs, const ObjectBodies& bodies, const ObjectTable& table,
                     const SpatialIndex& index, const scene::Scene& scene, double margin, Executor& executor);
     void stay();  // nothing has changed
-    [[nodiscard]] std::span<const BodyContact> contacts() const { return contacts_; }
+    [[nodiscard]] std::span<const Contact> contacts() const { return contacts_; }
     [[nodiscard]] std::size_t computed() const { return computed_; }  // pairs, in the last update or stay
 
   private:
@@ -87,6 +87,7 @@ class BodyContacts {
     void age();
     void write_contacts();
     void write(PairState& state, const Touch& touch);
+    static void show(const PairState& state, Contact& contact);
 
     std::size_t computed_ = 0;
     Vector<std::uint32_t> changed_;  // noted since the last update
@@ -94,7 +95,7 @@ class BodyContacts {
     Vector<std::uint32_t> movers_;   // of these
     PairNeighbors neighbors_;
     Vector<PairState> states_;      // in order
-    Vector<BodyContact> contacts_;  // in order
+    Vector<Contact> contacts_;      // in order
     Vector<IdPair> began_, ended_;  // contacts that have in the last update
     Vector<IdPair> fresh_;          // pairs whose points were computed in the last update
     BlockPool<convex::TrackedPoint> points_;

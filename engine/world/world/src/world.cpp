@@ -36,10 +36,9 @@ std::span<const ObjectPair> World::pairs() const {
     return state_->ground.is_used() ? state_->ground.pairs() : state_->finder.pairs();
 }
 std::span<const Contact> World::contacts() const {
-    return state_->ground.is_used() ? state_->ground.contacts() : state_->finder.contacts();
-}
-std::span<const BodyContact> World::body_contacts() const {
-    return state_->body_contacts.contacts();
+    const State& s = *state_;
+    return s.contact_list.get(s.ground.is_used() ? s.ground.contacts() : s.finder.contacts(),
+                              s.body_contacts.contacts());
 }
 
 Result<RegionHandle> World::attach(const Region& region, const glm::dvec3& origin) {
@@ -259,6 +258,7 @@ Result<void> World::update(Executor& executor) {
     if (!changed) s.finder.stay();
     if (!changed) s.ground.stay();
     if (!changed) s.body_contacts.stay();
+    s.contact_list.note_update(changed);
     s.statistics.contacts_us =
         std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
     s.pair_changes.clear();

@@ -7,6 +7,7 @@
 
 #include "body_contacts.hpp"
 #include "contact_finder.hpp"
+#include "contact_list.hpp"
 #include "ground.hpp"
 #include "mesh_clusters.hpp"
 #include "object_bodies.hpp"
@@ -78,6 +79,7 @@ struct World::State {
     world::ContactFinder finder;
     world::ObjectBodies object_bodies;
     world::BodyContacts body_contacts;
+    world::ContactList contact_list;
     world::Ground ground;
     world::Occluders occluders;
     world::MeshClusters mesh_clusters;

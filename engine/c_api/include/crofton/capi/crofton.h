@@ -234,28 +234,22 @@ typedef enum crofton_contact_phase {
 } crofton_contact_phase;
 
 /* Two objects that touch, or that have ended touching in this update. Ended contacts carry only the two object handles;
- * those of removed objects are stale. */
+ * those of removed objects are stale. Two bodies also touch up to the contact margin. If neither object of a pair has
+ * moved, the pair is not computed again. */
 typedef struct crofton_object_contact {
-    crofton_object_ref first, second;    /* ordered as in crofton_object_pair */
-    uint8_t phase;                       /* a crofton_contact_phase */
-    uint8_t inside;                      /* a crofton_containment of first (a) and second (b) */
-    double normal[3];                    /* unit, from first to second; 0 if no direction is known */
-    double depth;                        /* between meshes that of the deepest point, unless mesh_depth is set */
-    const crofton_contact_point* points; /* at most four, in the world; valid until the next update */
+    crofton_object_ref first, second; /* ordered as in crofton_object_pair */
+    uint8_t phase;                    /* a crofton_contact_phase */
+    uint8_t inside;                   /* a crofton_containment of first (a) and second (b) */
+    double normal[3];                 /* unit, from first to second; 0 if no direction is known */
+    double depth; /* of the deepest point; between meshes as a motion that separates them, if mesh_depth is set */
+    const crofton_contact_point*
+        points; /* at most four, in the world; none for two bodies; valid until the next update */
     size_t point_count;
     const crofton_mesh_contact* triangles; /* of two meshes, or of a mesh and a box; valid as long */
     size_t triangle_count;
+    crofton_tracked_point* body_points; /* of two bodies; you may write their `memory`; valid as long */
+    size_t body_point_count;
 } crofton_object_contact;
-
-/* Two objects with bodies that touch, or that have ended touching in this update. Ended contacts have no points. */
-typedef struct crofton_body_contact {
-    crofton_object_ref first, second; /* ordered as in crofton_object_pair; the first is body a */
-    uint8_t phase;                    /* a crofton_contact_phase */
-    uint8_t unused[sizeof(void*) - 1];
-    crofton_tracked_point* points; /* you may write their `memory`; valid until the next update */
-    uint32_t point_count;
-    uint32_t unused_too;
-} crofton_body_contact;
 
 /* The first object that a moving body meets. */
 typedef struct crofton_body_hit {
@@ -331,8 +325,8 @@ CROFTON_API crofton_status crofton_found_hits(const crofton_found* found, const 
 CROFTON_API crofton_status crofton_world_raycast_all(const crofton_world* world, const crofton_ray* ray,
                                                      uint32_t layer_mask, crofton_found* found);
 /* Finds the objects that overlap the shape, in order of index: their bodies, or if they have none, their meshes'
- * triangles, their spheres or boxes. A shape inside a closed mesh overlaps it if `containment` of the world's options is
- * set. CROFTON_UNSUPPORTED: a half-space. */
+ * triangles, their spheres or boxes. A shape inside a closed mesh overlaps it if `containment` of the world's options
+ * is set. CROFTON_UNSUPPORTED: a half-space. */
 CROFTON_API crofton_status crofton_world_overlap(const crofton_world* world, const crofton_shape* shape,
                                                  uint32_t layer_mask, crofton_found* found);
 /* Fills a struct whose `size` is set: the object nearest to the shape, as above, no farther than max_distance, which
@@ -348,10 +342,6 @@ CROFTON_API crofton_status crofton_world_pairs(const crofton_world* world, const
 CROFTON_API crofton_status crofton_world_contacts(const crofton_world* world, const crofton_object_contact** contacts,
                                                   size_t* count);
 
-/* Returns the contacts of objects that both have bodies, in order; valid until the next update. If neither object of a
- * pair has moved, the pair is not computed again. */
-CROFTON_API crofton_status crofton_world_body_contacts(const crofton_world* world,
-                                                       const crofton_body_contact** contacts, size_t* count);
 /* Finds the first object that a moving body meets, by the objects' shapes as for crofton_world_overlap; a body inside a
  * closed mesh meets it from inside. Fills a struct whose `size` is set. `options` or NULL. */
 CROFTON_API crofton_status crofton_world_cast(const crofton_world* world, const crofton_placed* shape,

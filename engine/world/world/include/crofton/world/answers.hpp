@@ -216,28 +216,23 @@ enum class ContactPhase : std::uint8_t { began, stayed, ended };
 
 // Two objects that touch, or that touched in the update before. Ended contacts have only the two objects, whose handles
 // are stale if the objects were removed.
+//
+// Two objects with bodies also touch if they come within WorldOptions::contact_margin. Their points persist from update
+// to update: a point keeps its `memory`, which you may write, while its id stays the same (crofton/convex/query.hpp).
+// If neither object has moved, the pair is not computed again. All points are valid until the next update.
 struct Contact {
-    ObjectRef first, second;  // ordered as in ObjectPair
+    ObjectRef first, second;  // ordered as in ObjectPair; the first is body a
     ContactPhase phase = ContactPhase::began;
     mesh::Containment inside = mesh::Containment::none;
     glm::dvec3 normal{0.0};  // unit, from the first to the second; zero where no direction is known
     // The distance along the normal by which the second must move to end the contact. Between meshes this requires
-    // WorldOptions::mesh_depth; without it, `depth` is the depth of the deepest point.
+    // WorldOptions::mesh_depth; without it, `depth` is the depth of the deepest point. So it is between bodies, which
+    // have a normal for each point; negative: the gap.
     double depth = 0.0;
     std::span<const collide::ContactPoint>
-        points;  // in world coordinates; at most four; none if a mesh is inside another
-    std::span<const mesh::MeshContact> triangles;  // of two meshes, or a mesh and a box
-};
-
-// Two objects with bodies that touch or come within WorldOptions::contact_margin, or did so in the update before. Ended
-// contacts have no points. A point keeps its `memory`, which you may write, while its id stays the same
-// (crofton/convex/query.hpp). Points are valid until the next update.
-struct BodyContact {
-    ObjectRef first, second;  // ordered as in ObjectPair; the first is body a
-    ContactPhase phase = ContactPhase::began;
-    convex::TrackedPoint* points = nullptr;
-    std::uint32_t point_count = 0;
-    std::uint32_t unused = 0;  // the same size as in C where numbers of 8 bytes are aligned to 4
+        points;  // in world coordinates; at most four; none if a mesh is inside another, or of two bodies
+    std::span<const mesh::MeshContact> triangles;      // of two meshes, or a mesh and a box
+    std::span<convex::TrackedPoint> body_points = {};  // of two bodies
 };
 
 // The first object that a moving body meets.

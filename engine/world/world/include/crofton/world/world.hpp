@@ -94,7 +94,7 @@ class World {
 
     // Gives an object a body, or takes it away (nullptr). Pairs change with the next update, queries at once.
     //
-    // Pairs of objects that both have bodies are in body_contacts() instead of contacts(). Data that the body refers to
+    // Contacts of two objects that both have bodies have Contact::body_points. Data that the body refers to
     // must stay alive and unchanged; to change it, set the body again. The object's transform, or the frame of its box
     // or sphere, places the body; axes that are left-handed or off by more than 1e-6 are replaced by the nearest
     // rotation.
@@ -259,14 +259,11 @@ class World {
                                                        double max_distance, std::uint32_t layers = ~0u) const;
 
     // pairs() returns the pairs of objects whose boxes or spheres overlap, in order. contacts() returns the pairs that
-    // touch, and those that have ended touching. Both are of the last update.
+    // touch, and those that have ended touching, in order. Both are of the last update.
     //
     // With a contact margin, pairs of two bodies are listed up to that gap; on infinite ground, within rounding.
     [[nodiscard]] std::span<const ObjectPair> pairs() const;
     [[nodiscard]] std::span<const Contact> contacts() const;
-    // Returns the contacts of two objects that both have bodies, in order. If neither object of a pair has moved, the
-    // pair is not computed again.
-    [[nodiscard]] std::span<const BodyContact> body_contacts() const;
 
   private:
     // Of the World's own objects.
