@@ -39,7 +39,7 @@ typedef struct crofton_depth_object {
 typedef struct crofton_depth_statistics {
     size_t size;
     uint64_t objects_listed;  /* with at least one triangle */
-    uint64_t objects_asked;   /* whose bounds cover a sample of the picture */
+    uint64_t objects_asked;   /* whose bounds may cover a sample; also all behind the near plane */
     uint64_t clusters_asked;  /* of the objects that were not hidden as a whole */
     uint64_t clusters_drawn;  /* that were not hidden as a whole */
     uint64_t triangles_drawn; /* of those clusters */
