@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <crofton/triangulate/triangulate.hpp>
 #include <error_of.hpp>
@@ -51,6 +52,38 @@ TEST_SUITE("triangulate/planar_patches") {
         CHECK(find_planar_patches(mesh)->empty());
         mesh.indices = {0, 1, 2, 0, 2, 3, 2, 0, 3};
         CHECK(find_planar_patches(mesh)->empty());
+    }
+
+    TEST_CASE("the result of a patch tells its vertices, holes, triangles and time") {
+        // A plate of 7 × 3 with `holes` square holes in a row, cut by ears.
+        for (const std::size_t holes : {0u, 1u, 3u}) {
+            const double length = 2.0 * static_cast<double>(holes) + 1.0;
+            Polygon plate{{{0, 0}, {length, 0}, {length, 3}, {0, 3}}, {4}};
+            for (std::size_t h = 0; h < holes; ++h) {
+                const double x = 2.0 * static_cast<double>(h) + 1.0;
+                for (const glm::dvec2& corner : {glm::dvec2(x, 1), {x, 2}, {x + 1, 2}, {x + 1, 1}})
+                    plate.points.push_back(corner);
+                plate.ring_ends.push_back(static_cast<std::uint32_t>(plate.points.size()));
+            }
+            triangulate::Triangulator triangulator;
+            triangulate::Triangulation ears;
+            REQUIRE(triangulator.triangulate(plate, {.method = triangulate::Method::ear}, ears));
+            TriangleMesh mesh;
+            for (const glm::dvec2& p : plate.points) mesh.positions.emplace_back(glm::vec2(p), 0.0f);
+            for (const auto& t : ears.triangles) mesh.indices.insert(mesh.indices.end(), t.begin(), t.end());
+            const auto start = std::chrono::steady_clock::now();
+            const auto report = retriangulate_planar_patches(mesh);
+            const std::chrono::duration<double, std::micro> elapsed = std::chrono::steady_clock::now() - start;
+            REQUIRE(report);
+            REQUIRE(report->results.size() == 1);
+            const triangulate::PatchResult& result = report->results[0];
+            CHECK(result.refused.empty());
+            CHECK(result.holes == holes);
+            CHECK(result.vertices == 4 + 4 * holes);
+            CHECK(result.triangles.size() == 4 + 4 * holes + 2 * holes - 2);  // Euler
+            CHECK(result.microseconds > 0.0);
+            CHECK(result.microseconds <= elapsed.count());
+        }
     }
 
     TEST_CASE("a cube has six patches of two triangles, a folded quad none") {

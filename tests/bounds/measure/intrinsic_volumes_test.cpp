@@ -191,6 +191,36 @@ TEST_SUITE("measure/intrinsic_volumes") {
         CHECK(body(cube) / body(plate) == doctest::Approx(cube.mean_curvature / plate.mean_curvature));
     }
 
+    TEST_CASE("triangles met: any fan's triangles one by one add up to what its boundary, weight and area give") {
+        Random random(71);
+        for (int round = 0; round < 100; ++round) {
+            std::vector<glm::dvec2> ring;
+            const int n = 3 + round % 9;
+            for (int k = 0; k < n; ++k) {
+                const double angle = 2.0 * pi * (k + 0.9 * random.uniform()) / n;
+                ring.emplace_back(3.0 * std::cos(angle), 1.3 * std::sin(angle));
+            }
+            TriangulationMeasures fan;
+            std::vector<IntrinsicVolumes> triangles;
+            for (int k = 0; k < n; ++k) fan.boundary += glm::distance(ring[k], ring[(k + 1) % n]);
+            for (int k = 1; k + 1 < n; ++k) {
+                const glm::dvec2 u = ring[k] - ring[0], v = ring[k + 1] - ring[0];
+                const double area = 0.5 * std::abs(u.x * v.y - u.y * v.x);
+                fan.triangles += 1.0;
+                fan.area += area;
+                if (k > 1) fan.weight += glm::length(u);
+                triangles.push_back(intrinsic_volumes_of_flat_polygon(
+                    area, glm::length(u) + glm::length(v) + glm::distance(ring[k], ring[k + 1])));
+            }
+            for (const IntrinsicVolumes& b : {intrinsic_volumes_of_box(1.0, 2.0, 0.5), intrinsic_volumes_of_sphere(0.7),
+                                              intrinsic_volumes_of_segment(3.0)}) {
+                double sum = 0.0;
+                for (const IntrinsicVolumes& t : triangles) sum += kinematic_measure(b, t);
+                CHECK(triangles_met(b, fan) == doctest::Approx(sum).epsilon(1e-12));
+            }
+        }
+    }
+
     TEST_CASE("triangles met: the kinematic measures of a rectangle's two halves add up to formula (6)") {
         const IntrinsicVolumes half = intrinsic_volumes_of_flat_polygon(6.0, 12.0);  // sides 3, 4, 5
         for (const IntrinsicVolumes& b : {intrinsic_volumes_of_box(1.0, 2.0, 0.5), intrinsic_volumes_of_sphere(0.7),

@@ -61,6 +61,37 @@ bool same(std::span<const IdPair> a, std::span<const IdPair> b) {
 }  // namespace
 
 TEST_SUITE("collide/broadphase") {
+    TEST_CASE(
+        "`rebuilt` tells that the order of the items was made anew: at first, and when many came or went, else not") {
+        std::mt19937_64 random(91);
+        std::vector<Obb> boxes = random_boxes(random, 2000, 20.0);
+        Broadphase broadphase;
+        REQUIRE(broadphase.update(boxes));
+        CHECK(broadphase.statistics().rebuilt);
+        for (int frame = 0; frame < 5; ++frame) {
+            for (Obb& box : boxes) box.center.x += 0.01;
+            REQUIRE(broadphase.update(boxes));
+            CHECK_FALSE(broadphase.statistics().rebuilt);
+        }
+        boxes.push_back(random_box(random, 20.0));
+        REQUIRE(broadphase.update(boxes));
+        CHECK_FALSE(broadphase.statistics().rebuilt);
+        const std::uint32_t moved = 7;
+        boxes[moved].center.y += 0.5;
+        REQUIRE(broadphase.update_moved(boxes, std::span(&moved, 1)));
+        CHECK_FALSE(broadphase.statistics().rebuilt);
+        const std::vector<Obb> more = random_boxes(random, 2001, 20.0);
+        boxes.insert(boxes.end(), more.begin(), more.end());
+        REQUIRE(broadphase.update(boxes));
+        CHECK(broadphase.statistics().rebuilt);
+        boxes.resize(1500);
+        REQUIRE(broadphase.update(boxes));
+        CHECK(broadphase.statistics().rebuilt);
+        REQUIRE(broadphase.update(boxes));
+        CHECK_FALSE(broadphase.statistics().rebuilt);
+        CHECK(std::equal(broadphase.pairs().begin(), broadphase.pairs().end(), brute_force(boxes).begin()));
+    }
+
     TEST_CASE("no boxes and one box make no pairs") {
         Broadphase broadphase;
         CHECK(broadphase.update({}).has_value());

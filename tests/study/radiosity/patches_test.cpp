@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <algorithm>
+#include <cmath>
 #include <crofton/radiosity/patches.hpp>
 #include <error_of.hpp>
+#include <glm/geometric.hpp>
 #include <limits>
 
 #include "shapes.hpp"
@@ -25,6 +27,37 @@ double area_of(const TriangleMesh& mesh) {
 }  // namespace
 
 TEST_SUITE("radiosity/patches") {
+    TEST_CASE("patches keep which triangle is whose, and each triangle's area; a patch's area is their sum") {
+        shapes::Shape room;
+        room.room({1, 2, 3}, {4, 4, 9}, 0);
+        const std::vector<Material> materials(6);
+        const auto patches = make_patches(room.mesh, room.patches, materials);
+        REQUIRE(patches.has_value());
+        REQUIRE(std::equal(room.patches.begin(), room.patches.end(), patches->patch_of_triangle.begin(),
+                           patches->patch_of_triangle.end()));
+        REQUIRE(patches->triangle_areas.size() == 12);
+        std::vector<double> sums(6, 0.0);
+        for (std::size_t t = 0; t < 12; ++t) {
+            const auto at = [&](std::size_t k) {
+                return glm::dvec3(room.mesh.positions[room.mesh.indices[3 * t + k]]);
+            };
+            const double a = glm::distance(at(0), at(1)), b = glm::distance(at(1), at(2)),
+                         c = glm::distance(at(2), at(0)), s = 0.5 * (a + b + c);
+            CHECK(patches->triangle_areas[t] == doctest::Approx(std::sqrt(s * (s - a) * (s - b) * (s - c))));  // Heron
+            sums[room.patches[t]] += patches->triangle_areas[t];
+        }
+        for (std::size_t p = 0; p < 6; ++p) CHECK(patches->areas[p] == doctest::Approx(sums[p]));
+        // 3 × 2 × 6: two sides each of 12, 6 and 18.
+        std::sort(sums.begin(), sums.end());
+        CHECK(sums == std::vector<double>{6, 6, 12, 12, 18, 18});
+        const auto single = make_patches(room.mesh, std::vector<Material>(12));
+        REQUIRE(single.has_value());
+        for (std::uint32_t t = 0; t < 12; ++t) {
+            CHECK(single->patch_of_triangle[t] == t);
+            CHECK(single->areas[t] == single->triangle_areas[t]);
+        }
+    }
+
     TEST_CASE("bad materials, patch numbers and triangles are named") {
         shapes::Shape room;
         room.room({0, 0, 0}, {1, 1, 1}, 0);

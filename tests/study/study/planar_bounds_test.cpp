@@ -54,6 +54,33 @@ bool holds(const Disc& disc, const std::vector<glm::dvec2>& points) {
 }  // namespace
 
 TEST_SUITE("study/planar_bounds") {
+    TEST_CASE(
+        "evaluations count the bounds that were measured: none for a point, one for the box, more where more is "
+        "asked") {
+        const PlanarSupport around(Disc{{0.1, 0.0}, 2.0});
+        const std::vector<glm::dvec2> point = {{0.3, 0.2}};
+        CHECK(optimal_disc(point, around)->evaluations == 0);
+        CHECK(optimal_disc(point, around)->measure == 0.0);
+        Random random(41);
+        for (int round = 0; round < 10; ++round) {
+            const std::vector<glm::dvec2> points = cloud(random, 20);
+            const auto ancestors = ancestors_of(random, points, 4);
+            const PlanarSupport envelope = lower_envelope(ancestors);
+            CHECK(optimal_box(points, envelope)->evaluations == 1);
+            std::uint64_t discs = 0, rectangles = 0;
+            for (const double tolerance : {1e-2, 1e-4, 1e-7}) {
+                const auto disc = optimal_disc(points, envelope, {.tolerance = tolerance});
+                const auto rectangle = optimal_rectangle(points, envelope, {.tolerance = tolerance});
+                REQUIRE(disc.has_value());
+                REQUIRE(rectangle.has_value());
+                // The search halves: what a coarser one measured, a finer one measures as well.
+                CHECK(disc->evaluations >= std::max<std::uint64_t>(discs, 1));
+                CHECK(rectangle->evaluations >= std::max<std::uint64_t>(rectangles, 1));
+                discs = disc->evaluations, rectangles = rectangle->evaluations;
+            }
+        }
+    }
+
     TEST_CASE("no points, NaN and ancestors that do not contain the object are refused") {
         const PlanarSupport ancestor(Disc{{0.0, 0.0}, 1.0});
         CHECK(error_of(optimal_disc({}, ancestor)).code == ErrorCode::empty);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <algorithm>
+#include <cmath>
 #include <crofton/boxtree/box_tree.hpp>
+#include <crofton/boxtree/structure.hpp>
 #include <crofton/occlude/occlusion.hpp>
 
 #include "scenes.hpp"
@@ -65,6 +67,76 @@ Judgement judge(Random& random, const OcclusionScene& scene, const occlude::Occl
 }  // namespace
 
 TEST_SUITE("occlude/find_visible") {
+    TEST_CASE(
+        "what a query counts: every node and item of a crowd in the picture, the root's children of one beside it") {
+        Random random(77);
+        Camera camera;
+        std::vector<Obb> boxes(3000);
+        std::vector<std::uint32_t> layers(boxes.size());
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            boxes[i].center = {random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-11.0, -9.0)};
+            boxes[i].half_extents = glm::vec3(0.01f);
+            layers[i] = 1u << i % 3;
+        }
+        auto buffer = *occlude::OcclusionBuffer::create({160, 90});
+        buffer.draw(occlude::OccluderSet(), *occlude::occlusion_view_of(camera));
+        occlude::VisibleSet visible;
+        const auto count = [&](const boxtree::BoxTree& tree, const occlude::VisibleOptions& options) {
+            occlude::find_visible(tree, buffer, visible, options);
+            return visible.statistics();
+        };
+        const auto tree = *boxtree::BoxTree::build(boxes, layers);
+        const std::size_t below_root = tree.structure().nodes().size() + tree.structure().leaves().size() - 1;
+        const occlude::VisibleStatistics all = count(tree, {});
+        CHECK(all.items_tested == boxes.size());
+        CHECK(all.nodes_tested == below_root);
+        CHECK(all.nodes_outside == 0);
+        CHECK(all.nodes_hidden + all.items_hidden == 0);
+        const occlude::VisibleStatistics one_layer = count(tree, {.layer_mask = 2});
+        CHECK(one_layer.items_tested == 1000);
+        CHECK(one_layer.nodes_outside == 0);
+        for (const glm::dvec3& aside : {glm::dvec3(500, 0, 0), {0, -500, 0}, {0, 0, 500}}) {
+            std::vector<Obb> beside = boxes;
+            for (Obb& box : beside) box.center += aside;
+            const auto other = *boxtree::BoxTree::build(beside, layers);
+            const occlude::VisibleStatistics none = count(other, {});
+            CHECK(visible.size() == 0);
+            CHECK(none.items_tested == 0);
+            CHECK(none.nodes_tested > 0);
+            CHECK(none.nodes_outside == none.nodes_tested);
+            CHECK(none.nodes_tested <= boxtree::kWidth);  // the root's children
+        }
+    }
+
+    TEST_CASE("w of every point in a view is above its least_w, which is no less than half of w on the near plane") {
+        Random random(78);
+        for (int round = 0; round < 200; ++round) {
+            Camera camera;
+            camera.near_distance = std::exp(random.uniform(-5.0, 3.0));
+            camera.far_distance = camera.near_distance * std::exp(random.uniform(0.5, 9.0));
+            camera.fov_y = random.uniform(0.1, 2.5);
+            camera.aspect = random.uniform(0.3, 3.0);
+            camera.position = 1e3 * glm::dvec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+            const auto by_camera = *occlude::occlusion_view_of(camera);
+            const auto by_matrix = *occlude::occlusion_view_of(world_to_clip(camera), DepthRange::reversed_zero_to_one);
+            for (const occlude::OcclusionView& view : {by_camera, by_matrix}) {
+                double least = 1e300;
+                for (int k = 0; k < 100; ++k) {
+                    const glm::dvec3 point = point_in_view(
+                        random, camera,
+                        std::exp(random.uniform(std::log(camera.near_distance), std::log(camera.far_distance))));
+                    if (!is_in_view(view.frustum, point)) continue;
+                    const glm::dvec3 p = point - view.origin;
+                    const auto& row = view.rows[2];
+                    least = std::min(least, row[0] * p.x + row[1] * p.y + row[2] * p.z + row[3]);
+                }
+                CHECK(view.least_w < least);
+                CHECK(view.least_w >= (0.5 - 1e-6) * camera.near_distance);
+                CHECK(view.least_w <= camera.near_distance);
+            }
+        }
+    }
+
     TEST_CASE("trees, lists and what moves leave out only what is hidden") {
         Random random(5);
         std::size_t missing = 0, not_alone = 0;

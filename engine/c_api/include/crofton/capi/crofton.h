@@ -242,8 +242,7 @@ typedef struct crofton_object_contact {
     uint8_t inside;                   /* a crofton_containment of first (a) and second (b) */
     double normal[3];                 /* unit, from first to second; 0 if no direction is known */
     double depth; /* of the deepest point; between meshes as a motion that separates them, if mesh_depth is set */
-    const crofton_contact_point*
-        points; /* at most four, in the world; none for two bodies; valid until the next update */
+    const crofton_contact_point* points; /* at most four, in the world, none for two bodies; until the next update */
     size_t point_count;
     const crofton_mesh_contact* triangles; /* of two meshes, or of a mesh and a box; valid as long */
     size_t triangle_count;
