@@ -74,8 +74,24 @@ TEST_SUITE("mesh/box_hierarchy") {
                     boxes.push_back(around({unit(random), unit(random), unit(random)}));
                     boxes.back().include({unit(random), unit(random), unit(random)});
                 }
-                CHECK(check(build_box_hierarchy(boxes, leaf_size), boxes, leaf_size) <= 8);
+                for (const std::uint32_t granule : {1u, leaf_size})
+                    CHECK(check(build_box_hierarchy(boxes, leaf_size, granule), boxes, leaf_size) <= 8);
             }
+    }
+
+    TEST_CASE("leaves of a surface are full, and nodes nearly so") {
+        std::mt19937_64 random(7);
+        std::uniform_real_distribution<float> unit(0.0f, 1.0f);
+        std::vector<FloatBox> boxes;
+        for (int i = 0; i < 20000; ++i) {
+            const float x = 100.0f * unit(random), y = 100.0f * unit(random);
+            boxes.push_back(around({x, y, 0.01f * x * y}));
+            boxes.back().include({x + unit(random), y + unit(random), 0.01f * x * y + unit(random)});
+        }
+        const BoxHierarchy tree = build_box_hierarchy(boxes, 8, 8);
+        CHECK(check(tree, boxes, 8) <= 8);
+        CHECK(tree.leaves.size() < 20000 / 8 * 1.05);
+        CHECK(tree.nodes.size() < tree.leaves.size() / 4);  // each node less the root takes a lane: 5 lanes and more
     }
 
     TEST_CASE("two crowds of unequal number are parted between them, in whatever order they come") {
@@ -101,12 +117,15 @@ TEST_SUITE("mesh/box_hierarchy") {
     TEST_CASE("boxes in one place, and a geometric series of places, make no deep tree") {
         const std::vector<FloatBox> same(100000, around(glm::vec3(1.0f)));
         CHECK(check(build_box_hierarchy(same, 1), same, 1) <= 20);
+        CHECK(build_box_hierarchy(same, 8, 8).leaves.size() == same.size() / 8);
         std::vector<FloatBox> closest;  // so close that the width has no finite reciprocal
         for (int i = 0; i < 100; ++i) closest.push_back(around(glm::vec3(static_cast<float>(i % 3) * 1.5e-45f)));
         CHECK(check(build_box_hierarchy(closest, 1), closest, 1) <= 10);
+        CHECK(check(build_box_hierarchy(closest, 8, 8), closest, 8) <= 10);
         std::vector<FloatBox> series;
         for (float x = 1e-37f; x < 1e37f; x *= 1.001f) series.push_back(around(glm::vec3(x, 0.0f, -x)));
         CHECK(series.size() > 100000);
         CHECK(check(build_box_hierarchy(series, 1), series, 1) <= BoxHierarchy::kMaxDepth);
+        CHECK(check(build_box_hierarchy(series, 8, 8), series, 8) <= BoxHierarchy::kMaxDepth);
     }
 }

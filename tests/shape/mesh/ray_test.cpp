@@ -157,6 +157,19 @@ TEST_SUITE("mesh/ray") {
         CHECK(mesh::MeshTree().prepare_rays().has_value());  // of no triangles
     }
 
+    // A leaf has 384 bytes, a node of oriented boxes 1,088, one of aligned boxes 256.
+    TEST_CASE("a mesh that is prepared for rays takes 70 bytes a triangle") {
+        const TriangleMesh mesh = wavy_torus(1.0, 0.4, 0.2, 300, 200);
+        const auto tree = mesh::MeshTree::build(mesh, {.rays = true});
+        REQUIRE(tree.has_value());
+        const MeshParts& parts = tree->parts();
+        const auto bytes = [](const auto& vector) {
+            return static_cast<double>(vector.capacity() * sizeof(vector[0]));
+        };
+        const double all = bytes(parts.leaves) + bytes(parts.nodes) + bytes(parts.ray_nodes);
+        CHECK(all <= 70.0 * static_cast<double>(mesh.triangle_count()));
+    }
+
     // Rays of one place: into a narrow cone, a wider one, everywhere; and each from elsewhere.
     TEST_CASE("many rays at once are answered as one by one, whether they lie together or not") {
         std::mt19937_64 random(31);

@@ -35,10 +35,11 @@ struct BoxRange {
 struct Plane {
     int axis = 0;
     float low = 0.0f, scale = 0.0f, border = 0.0f;
-    std::uint32_t below = 0;   // items below it
-    WideBox boxes[2];          // of those below and of the others
+    std::uint32_t below = 0;  // items below it
+    WideBox boxes[2];         // of those below and of the others
     double cost = 0.0;
-    [[nodiscard]] bool is_above(const WideBox& item) const { return (item.middle()[axis] - low) * scale >= border; }
+    [[nodiscard]] float bin_of(const WideBox& item) const { return (item.middle(axis) - low) * scale; }
+    [[nodiscard]] bool is_above(const WideBox& item) const { return bin_of(item) >= border; }
 };
 
 // A range of items. Its halves stand side by side, behind it.
@@ -146,15 +147,18 @@ class Splitter {
         }
     };
 
-    // What the split costs if not `plane.below` but `cut` items are to be below. Those that change sides are next to the
-    // plane: `near_`. The last of these is the last item below the cut, in the order along the axis.
+    // What the split costs if not `plane.below` but `cut` items are to be below. Those that change sides are next to
+    // the plane: `near_`. The last of these is the last item below the cut, in the order along the axis.
     double cost_of_moving(const BoxRange& range, const Plane& plane, std::uint32_t cut) {
         const bool up = cut > plane.below;
         near_.clear();
         const std::size_t count = up ? cut - plane.below : plane.below - cut + 1;
+        const float farthest = farthest_bin(plane, up, count);
         for (std::uint32_t i = range.begin; i < range.end; ++i) {
-            if (plane.is_above(items_[i]) != up) continue;
-            const Middle middle{items_[i].middle()[plane.axis], order_[i], i};
+            const float bin = plane.bin_of(items_[i]);
+            const bool too_far = up ? bin >= farthest + 1.0f : bin < farthest;
+            if (((bin >= plane.border) != up) | too_far) continue;
+            const Middle middle{items_[i].middle(plane.axis), order_[i], i};
             const auto nearer = [up](const Middle& a, const Middle& b) { return up ? a < b : b < a; };
             if (near_.size() == count && !nearer(middle, near_.back())) continue;
             if (near_.size() == count) near_.pop_back();
@@ -163,6 +167,16 @@ class Splitter {
         WideBox below = plane.boxes[0], above = plane.boxes[1];
         for (std::size_t i = 0; i < (up ? count : count - 1); ++i) (up ? below : above).include(items_[near_[i].place]);
         return half_area(below) * granules(cut) + half_area(above) * granules(range.size() - cut);
+    }
+
+    // The bins from the plane to this one hold `count` items, or nothing lies beyond.
+    [[nodiscard]] float farthest_bin(const Plane& plane, bool up, std::size_t count) const {
+        const Bins& bins = bins_[static_cast<std::size_t>(plane.axis)];
+        std::size_t bin = static_cast<std::size_t>(plane.border) - (up ? 0 : 1), found = bins.counts[bin];
+        while (found < count && bin != (up ? kBins - 1 : 0)) found += bins.counts[up ? ++bin : --bin];
+        // The outermost bins hold whatever lies beyond them: nothing is farther than NaN.
+        const bool outermost = bin == 0 || bin == kBins - 1;
+        return outermost ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(bin);
     }
 
     // Those that are left first.
@@ -186,7 +200,9 @@ class Splitter {
     }
 
     void part_at(const BoxRange& range, BoxRange& left, BoxRange& right, int axis, const Middle& last) {
-        part(range, left, right, [&](std::uint32_t i) { return !(last < Middle{items_[i].middle()[axis], order_[i], i}); });
+        part(range, left, right, [&](std::uint32_t i) {
+            return !(last < Middle{items_[i].middle(axis), order_[i], i});
+        });
     }
 
     // Halves along the longest side.
@@ -197,41 +213,46 @@ class Splitter {
         Vector<Middle> middles;
         middles.reserve(range.size());
         for (std::uint32_t i = range.begin; i < range.end; ++i)
-            middles.push_back({items_[i].middle()[axis], order_[i], i});
+            middles.push_back({items_[i].middle(axis), order_[i], i});
         const auto last = middles.begin() + (whole_granules(range.size(), range.size() / 2) - 1);
         std::nth_element(middles.begin(), last, middles.end());
         part_at(range, left, right, axis, *last);
     }
 
-    // The places of a few items in their order along an axis.
-    static void find_ranks(const float* at, std::uint32_t count, std::int32_t* ranks) {
-        std::fill(ranks, ranks + count, 0);
+    // A number that orders as `at` does to 18 bits of its fraction, and then as `place`: no two are equal.
+    static std::int32_t rough_order(float at, std::uint32_t place) {
+        constexpr std::int32_t kMagnitude = 0x7fffffff, kPlaces = kMostFew - 1;
+        const auto bits = std::bit_cast<std::int32_t>(at);
+        return ((bits < 0 ? bits ^ kMagnitude : bits) & ~kPlaces) | static_cast<std::int32_t>(place);
+    }
+
+    // How many of `count` numbers are less than each. Loops of fixed length become vectors.
+    static void find_ranks(const std::int32_t* order, std::uint32_t count, std::int32_t* ranks) {
+        std::fill(ranks, ranks + kMostFew, 0);
         for (std::uint32_t i = 0; i < count; ++i) {
-            const float here = at[i];
-            std::int32_t before = 0;
-            for (std::uint32_t j = i + 1; j < count; ++j) {
-                const std::int32_t lesser = at[j] < here ? 1 : 0;
-                before += lesser;
-                ranks[j] += 1 - lesser;
-            }
-            ranks[i] += before;
+            const std::int32_t here = order[i];
+            if (count <= kMostFew / 2)
+                for (std::uint32_t j = 0; j < kMostFew / 2; ++j) ranks[j] += here < order[j] ? 1 : 0;
+            else
+                for (std::uint32_t j = 0; j < kMostFew; ++j) ranks[j] += here < order[j] ? 1 : 0;
         }
     }
 
     // The best of all cuts, by the boxes that they leave. A part that does not fill its granules costs as if it did.
     void part_few(const BoxRange& range, BoxRange& left, BoxRange& right) {
         const std::uint32_t count = range.size();
-        std::array<std::array<float, kMostFew>, 3> at;
+        std::array<std::array<std::int32_t, kMostFew>, 3> order{};
         for (std::uint32_t i = 0; i < count; ++i) {
             const detail::Lanes4 middle = items_[range.begin + i].middle();
-            for (int axis = 0; axis < 3; ++axis) at[static_cast<std::size_t>(axis)][i] = middle[axis];
+            for (int axis = 0; axis < 3; ++axis)
+                order[static_cast<std::size_t>(axis)][i] = rough_order(middle[axis], i);
         }
         std::array<std::array<std::int32_t, kMostFew>, 3> ranks;
         float best = std::numeric_limits<float>::infinity();
         std::size_t best_axis = 0;
         std::uint32_t best_cut = granule_;
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            find_ranks(at[axis].data(), count, ranks[axis].data());
+            find_ranks(order[axis].data(), count, ranks[axis].data());
             std::array<WideBox, kMostFew> boxes;
             for (std::uint32_t i = 0; i < count; ++i)
                 boxes[static_cast<std::size_t>(ranks[axis][i])] = items_[range.begin + i];
@@ -247,6 +268,7 @@ class Splitter {
                 if (both < best) best = both, best_axis = axis, best_cut = cut;
             }
         }
+        if (best == 0.0f) return part_by_number(range, left, right);  // all along one line
         part(range, left, right,
              [&](std::uint32_t i) { return ranks[best_axis][i - range.begin] < static_cast<std::int32_t>(best_cut); });
     }

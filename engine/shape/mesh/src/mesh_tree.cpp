@@ -78,6 +78,11 @@ class MeshTreeBuilder {
         return mesh_.positions[mesh_.indices[3 * std::size_t{triangle} + v]];
     }
 
+    // Whether the vertex is met for the first time in the present range.
+    [[nodiscard]] bool is_new(std::uint32_t index) {
+        return std::exchange(last_range_[index], range_number_) != range_number_;
+    }
+
     const TriangleMesh& mesh_;
     MeshTreeOptions options_;
     MeshTree tree_;
@@ -85,6 +90,8 @@ class MeshTreeBuilder {
     BoxHierarchy hierarchy_;           // of triangles; its leaves are the bunches
     Vector<Bunch> bunches_;
     Vector<std::uint32_t> leaf_of_;  // by bunch
+    // The vertices of each bunch, one after the other, each once in its bunch; where those of a bunch begin.
+    Vector<std::uint32_t> bunch_vertices_, first_vertex_;
     Vector<Task> tasks_;
     MeshBoxFitter fitter_;
     Vector<std::uint32_t> piece_of_;  // by triangle
@@ -125,12 +132,21 @@ void MeshTreeBuilder::bunch_triangles() {
     hierarchy_ = build_box_hierarchy(boxes, kMeshLeafWidth, kMeshLeafWidth);
     for (std::uint32_t& item : hierarchy_.order) item = triangles_[item];
     bunches_.reserve(hierarchy_.leaves.size());
+    first_vertex_.reserve(hierarchy_.leaves.size() + 1);
+    bunch_vertices_.reserve(2 * mesh_.positions.size());
     for (std::uint32_t b = 0; b < hierarchy_.leaves.size(); ++b) {
         glm::vec3 sum(0.0f);
         const std::span<const std::uint32_t> triangles = triangles_of(b);
         for (const std::uint32_t t : triangles) sum += (vertex(t, 0) + vertex(t, 1) + vertex(t, 2)) * (1.0f / 3.0f);
         bunches_.push_back({sum * (1.0f / static_cast<float>(triangles.size())), b, 0.0f});
+        first_vertex_.push_back(static_cast<std::uint32_t>(bunch_vertices_.size()));
+        ++range_number_;
+        for (const std::uint32_t t : triangles)
+            for (std::size_t v = 0; v < 3; ++v)
+                if (const std::uint32_t index = mesh_.indices[3 * std::size_t{t} + v]; is_new(index))
+                    bunch_vertices_.push_back(index);
     }
+    first_vertex_.push_back(static_cast<std::uint32_t>(bunch_vertices_.size()));
     leaf_of_.resize(bunches_.size());
 }
 
@@ -166,10 +182,8 @@ MeshBox MeshTreeBuilder::fit(const Range& range) {
     points_.clear();
     point_vertices_.clear();
     for (std::size_t b = range.begin; b < range.end; ++b)
-        for (const std::uint32_t triangle : triangles_of(bunches_[b].number))
-            for (std::size_t v = 0; v < 3; ++v) {
-                const std::uint32_t index = mesh_.indices[3 * std::size_t{triangle} + v];
-                if (std::exchange(last_range_[index], range_number_) == range_number_) continue;
+        for (std::uint32_t i = first_vertex_[bunches_[b].number]; i < first_vertex_[bunches_[b].number + 1]; ++i)
+            if (const std::uint32_t index = bunch_vertices_[i]; is_new(index)) {
                 points_.push_back(mesh_.positions[index]);
                 point_vertices_.push_back(index);
             }

@@ -10,6 +10,8 @@
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
+#include <algorithm>
+
 #include "ray_leaf-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -19,7 +21,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 // The hierarchy of aligned boxes, grown by `error_bound`. Of each axis: where the ray meets the nearer face and the
 // farther one, seen from its start. The parameter is a fused or plain product less one made beforehand. Let u be
 // 2^-24 of the start's and the mesh's largest coordinates together. The roundings of the start, the reciprocals and the
-// products move a face by less than 8 u. `error_bound` is 67 u.
+// products move a face by less than 8 u. `error_bound` is 12.5 u.
 class AlignedBoxes {
   public:
     using Node = BoxNode;
@@ -33,8 +35,8 @@ class AlignedBoxes {
             near_start_[i] = hn::Set(d, (q.start[i] + error_bound) * q.inverse[i]);
             far_start_[i] = hn::Set(d, (q.start[i] - error_bound) * q.inverse[i]);
             inverse_[i] = hn::Set(d, q.inverse[i]);
-            near_[i] = static_cast<std::size_t>(i) + (backward ? 3 : 0);
-            far_[i] = static_cast<std::size_t>(i) + (backward ? 0 : 3);
+            near_[i] = (static_cast<std::size_t>(i) + (backward ? 3 : 0)) * kWidth;
+            far_[i] = (static_cast<std::size_t>(i) + (backward ? 0 : 3)) * kWidth;
         }
     }
     HWY_INLINE const Node& node(std::uint32_t index) const { return nodes_[index]; }
@@ -42,11 +44,12 @@ class AlignedBoxes {
     // The lanes that are met before `limit`, and where.
     HWY_INLINE std::uint32_t entries(const Node& node, float limit, float* entry) const {
         const D d;
+        const float* const bounds = node.bounds[0];
         std::uint32_t lanes = 0;
         for (std::size_t l = 0; l < kWidth; l += hn::Lanes(d)) {
             V first = hn::Zero(d), last = hn::Set(d, limit);
             for (int i = 0; i < 3; ++i) {
-                const V near = hn::Load(d, node.bounds[near_[i]] + l), far = hn::Load(d, node.bounds[far_[i]] + l);
+                const V near = hn::Load(d, bounds + near_[i] + l), far = hn::Load(d, bounds + far_[i] + l);
                 first = hn::Max(first, hn::MulSub(near, inverse_[i], near_start_[i]));
                 last = hn::Min(last, hn::MulSub(far, inverse_[i], far_start_[i]));
             }
@@ -61,20 +64,27 @@ class AlignedBoxes {
     using V = hn::Vec<D>;
     const Node* nodes_;
     V near_start_[3], far_start_[3], inverse_[3];
-    std::size_t near_[3], far_[3];  // rows of BoxNode::bounds
+    std::size_t near_[3], far_[3];  // where rows of BoxNode::bounds begin
 };
 
 // Asks the memory for all that a ray needs of a child, while its siblings are looked at: rays wait for memory most.
 template <class Node>
 HWY_INLINE void prefetch_child(const RayQuery& q, const Node* nodes, std::uint32_t child) {
     const bool leaf = (child & mesh::kMeshLeaf) != 0;
-    const char* const at = leaf ? reinterpret_cast<const char*>(q.leaves + (child & ~mesh::kMeshLeaf))
-                                : reinterpret_cast<const char*>(nodes + child);
-    const std::size_t bytes = leaf ? sizeof(MeshLeaf::vertex) : sizeof(Node);
-    for (std::size_t byte = 0; byte < bytes; byte += 64) hwy::Prefetch(at + byte);
+    const char* const base = leaf ? reinterpret_cast<const char*>(q.leaves) : reinterpret_cast<const char*>(nodes);
+    const char* const at = base + std::size_t{child & ~mesh::kMeshLeaf} * (leaf ? sizeof(MeshLeaf) : sizeof(Node));
+    // Without a branch, which could not be predicted: the last line of a leaf is another than that of a node.
+    constexpr std::size_t kLine = 64, kNode = (sizeof(Node) - 1) / kLine,
+                          kLeaf = (sizeof(MeshLeaf::vertex) - 1) / kLine;
+    for (std::size_t line = 0; line < std::min(kNode, kLeaf); ++line) hwy::Prefetch(at + line * kLine);
+    if constexpr (kNode <= kLeaf)
+        hwy::Prefetch(at + (leaf ? kLeaf : kNode) * kLine);
+    else
+        for (std::size_t line = kLeaf; line <= kNode; ++line) hwy::Prefetch(at + line * kLine);
 }
 
-// A child, and where the ray comes to it.
+// A child, and where the ray comes to it, or kFirst.
+constexpr float kFirst = -1.0f;
 struct Step {
     std::uint32_t child;
     float entry;
@@ -88,8 +98,10 @@ HWY_INLINE Step descend(const RayQuery& q, const Boxes& boxes, const typename Bo
     const auto next = [&]() HWY_ATTR {
         const auto lane = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(lanes));
         lanes &= lanes - 1;
-        prefetch_child(q, &boxes.node(0), node.child[lane]);
-        return Step{node.child[lane], entry[lane]};
+        const std::uint32_t child = node.child[lane];
+        prefetch_child(q, &boxes.node(0), child);
+        // Where any hit will do, leaves come first: large triangles are in those near the root.
+        return Step{child, q.any && (child & mesh::kMeshLeaf) != 0 ? kFirst : entry[lane]};
     };
     const Step one = next();
     if (lanes == 0) return one;
@@ -125,7 +137,7 @@ HWY_INLINE RayAnswer trace_below(const RayQuery& q, std::uint32_t child, RayAnsw
                 step = descend(q, boxes, node, lanes, entry, top);
                 continue;
             }
-        } else if (trace_leaf(q, step.child & ~mesh::kMeshLeaf, step.entry, limit, meets, answer)) {
+        } else if (trace_leaf(q, step.child & ~mesh::kMeshLeaf, std::max(step.entry, 0.0f), limit, meets, answer)) {
             if (q.any) return answer;
             limit = limit_of(q, answer.t);
         }

@@ -24,8 +24,12 @@ HWY_INLINE float limit_of(const RayQuery& q, double t) {
 
 // Triangles that the ray may meet before `limit`, in float. In the plane coordinates the ray is the origin, and it
 // passes outside of a triangle if two of the edges have it on different sides (Woop, Benthin, Wald 2013). Positions are
-// taken from the ray's point at `along`, beside the leaf. Let e be the query's error bound: all roundings up to there,
-// and of the shear, are within 2 e. With m the largest plane coordinate, an edge's value is off by at most 8 m e + 8 e²
+// taken from the ray's point at `along`, beside the leaf. Let u be 2^-24 of the start's and the mesh's largest
+// coordinates together. That point is off the ray by 3 u in each coordinate: by the roundings of the start, of the way
+// to it and of their sum. This counts twice, as 6 u, as the shear is at most 1. A difference from it is rounded by 2 u,
+// again twice. The shear has four roundings, of differences up to 2 of these coordinates: 8 u. The last product and sum
+// add 4 u. These 22 u are within 2 e, with e the query's error bound, at least 12.5 u. With m the largest plane
+// coordinate, an edge's value is off by at most 8 m e + 8 e²
 // + 2^-21 m². No triangle is hit before its nearest vertex along the ray, whose parameter is off by less than e: 1 /
 // direction_f[z] is at most 1.
 HWY_INLINE std::uint32_t candidates(const mesh::MeshLeaf& leaf, const RayQuery& q, float along, float limit) {

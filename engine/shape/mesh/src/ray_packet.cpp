@@ -49,7 +49,8 @@ class PacketBoxes {
     }
 
     // The lanes that some ray may meet before `limit`, of rays that lie together. The reciprocals of an axis have one
-    // sign, so a product is least or greatest at one of their ends.
+    // sign, so a product is least or greatest at one of their ends. In the u of AlignedBoxes, 1 is for the start, 3 for
+    // the shifted face, 6 for a product with a reciprocal.
     HWY_INLINE std::uint32_t lanes(const BoxNode& node, float limit) const {
         const hn::CappedTag<float, kBoxNodeWidth> d;
         std::uint32_t found = 0;

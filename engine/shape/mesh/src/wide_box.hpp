@@ -18,6 +18,8 @@ struct WideBox {
     [[nodiscard]] detail::Lanes4 middle() const {
         return detail::all_lanes(0.5f) * low + detail::all_lanes(0.5f) * high;
     }
+    // The same bits, of one lane.
+    [[nodiscard]] float middle(int axis) const { return 0.5f * low[axis] + 0.5f * high[axis]; }
 };
 
 // 0 of an empty box.
