@@ -2,6 +2,7 @@
 #include <chrono>
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/core/memory.hpp>
+#include <utility>
 
 #include "trace_zone.hpp"
 #include "world_state.hpp"
@@ -33,10 +34,10 @@ const boxtree::BoxTree& World::tree() const {
     return state_->index.tree();
 }
 std::span<const ObjectPair> World::pairs() const {
-    return state_->ground.is_used() ? state_->ground.pairs() : state_->finder.pairs();
+    return state_->region_pairs.is_used() ? state_->region_pairs.pairs() : state_->own_pairs();
 }
 std::span<const Contact> World::contacts() const {
-    return state_->ground.is_used() ? state_->ground.contacts() : state_->finder.contacts();
+    return state_->region_pairs.is_used() ? state_->region_pairs.contacts() : state_->own_contacts();
 }
 std::span<const BodyContact> World::body_contacts() const {
     return state_->body_contacts.contacts();
@@ -224,13 +225,13 @@ Result<void> World::update(Executor& executor) {
             {.rebuild_budget = s.options.rebuild_budget, .updates_to_rest = s.options.updates_to_rest}, executor);
     }();
     s.note_movers();
-    s.regions.update();
+    const bool regions_changed = s.regions.update();
     {
         const world::TraceZone part(trace, "update: occluders");
         s.update_occluders();
     }
     Result<void> found;
-    const bool changed = changes.boxes > 0 || s.pair_changes.any();
+    const bool changed = changes.boxes > 0 || s.pair_changes.any() || regions_changed;
     const auto start = std::chrono::steady_clock::now();
     if (s.options.pairs && changed) {
         const world::TraceZone part(trace, "update: pairs and contacts");
@@ -240,17 +241,20 @@ Result<void> World::update(Executor& executor) {
         if (s.options.contacts) {
             if (s.ground.is_used()) s.update_ground_contacts();
             if (s.ground.is_or_was_used())
-                s.body_contacts.update_all(pairs(), s.object_bodies, s.table, s.index, s.scene,
+                s.body_contacts.update_all(s.own_pairs(), s.object_bodies, s.table, s.index, s.scene,
                                            s.options.contact_margin, executor);
             else
                 s.body_contacts.update({s.finder.touched(), s.finder.ended()}, s.object_bodies, s.table, s.index,
                                        s.scene, s.options.contact_margin, executor);
         }
     }
+    if (s.options.pairs && changed) found = s.update_region_pairs(std::move(found));
     if (!s.options.pairs || !s.options.contacts) s.body_contacts.forget_changes();
     if (!changed) s.finder.stay();
     if (!changed) s.ground.stay();
     if (!changed) s.body_contacts.stay();
+    if (!changed) s.region_pairs.stay();
+    if (s.region_pairs.is_used()) s.region_pairs.merge(s.own_pairs(), s.own_contacts());
     s.statistics.contacts_us =
         std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
     s.pair_changes.clear();
