@@ -560,7 +560,7 @@ TEST_SUITE("world/regions") {
         const std::vector<RegionObject> objects(11, RegionObject{.bound = box_at(glm::dvec3(0.0))});
         const RegionHandle region = world.attach(Region::prepare(objects).value(), glm::dvec3(0.0)).value();
         world.add({.bound = box_at(glm::dvec3(0.5))}).value();
-        CHECK(error_of(world.update()).code == ErrorCode::out_of_range);
+        CHECK(error_of(world.update()).code == ErrorCode::budget_exceeded);
         CHECK(world.pairs().empty());
         world.set_hidden(world.object_in(region, 4).value(), true).value();
         world.update().value();

@@ -185,7 +185,7 @@ Result<void> World::State::update_region_pairs(Result<void> others) {
     if (region_pairs.lost) region_pairs.begin();
     region_pairs.end(options.contacts);
     if (!region_pairs.lost) return {};
-    return fail(ErrorCode::out_of_range, kNoItem,
+    return fail(ErrorCode::budget_exceeded, kNoItem,
                 {"world: ", count, " pairs with objects of regions are more than max_pairs"});
 }
 

@@ -186,6 +186,54 @@ CROFTON_API crofton_status crofton_world_set_boxes(crofton_world* world, const c
 CROFTON_API crofton_status crofton_world_set(crofton_world* world, crofton_object object, uint32_t members,
                                              const crofton_object_description* description);
 
+/* Regions: parts of a large world, prepared on any thread and attached in constant time (docs/large_worlds.md). */
+
+/* Many objects that do not move. It does not change, and any thread may use it. */
+typedef struct crofton_region crofton_region;
+/* A region at one origin. */
+typedef struct crofton_attached_region {
+    uint32_t index, generation;
+} crofton_attached_region;
+
+#define CROFTON_FIRST_REGION_INDEX 0x80000000u /* indices of regions' objects begin here, consecutive in each */
+
+/* Begin with crofton_default_region_object(). */
+typedef struct crofton_region_object {
+    crofton_bound bound; /* relative to the region's origin */
+    uint64_t user;
+    uint32_t layers, collides_with; /* all */
+} crofton_region_object;
+
+typedef struct crofton_region_options {
+    size_t size;
+    uint64_t max_objects; /* 2^24; more are an error */
+    /* Or NULL. Return 1 to stop: CROFTON_CANCELLED. It is not asked while the tree is built. */
+    int (*should_stop)(void* user, double share_done);
+    void* stop_user;
+} crofton_region_options;
+
+CROFTON_API crofton_region_object crofton_default_region_object(void);
+CROFTON_API crofton_region_options crofton_default_region_options(void);
+/* Call it on any thread. `options`, `jobs` or NULL. crofton_last_error_item is the place of an object that is
+ * refused. */
+CROFTON_API crofton_status crofton_region_prepare(const crofton_region_object* objects, size_t count,
+                                                  const crofton_region_options* options, const crofton_jobs* jobs,
+                                                  crofton_region** region);
+/* At any time: a world keeps what it needs. */
+CROFTON_API crofton_status crofton_region_destroy(crofton_region* region);
+/* From the next update on, answers contain the region's objects; their centers are moved by `origin`. */
+CROFTON_API crofton_status crofton_world_attach(crofton_world* world, const crofton_region* region,
+                                                const double origin[3], crofton_attached_region* attached);
+/* Handles of its objects are stale at once; views follow with the next update. */
+CROFTON_API crofton_status crofton_world_detach(crofton_world* world, crofton_attached_region region);
+/* The object at `place` of those that the region was prepared from. crofton_world_set hides it; other changes are
+ * CROFTON_UNSUPPORTED. */
+CROFTON_API crofton_status crofton_world_object_in(const crofton_world* world, crofton_attached_region region,
+                                                   uint32_t place, crofton_object* object);
+/* The reverse. CROFTON_INVALID_ARGUMENT: an object that crofton_world_add has added. */
+CROFTON_API crofton_status crofton_world_place_of(const crofton_world* world, crofton_object object,
+                                                  crofton_attached_region* region, uint32_t* place);
+
 /* Makes the changes take effect; once a frame. `jobs` or NULL. CROFTON_BUDGET_EXCEEDED: more than max_pairs pairs;
  * then there are none, and all else is as it should be. */
 CROFTON_API crofton_status crofton_world_update(crofton_world* world, const crofton_jobs* jobs);
