@@ -31,6 +31,7 @@ using BodyHandle = Owned<crofton_body, crofton_body_destroy>;
 using BodyContactsHandle = Owned<crofton_body_contacts, crofton_body_contacts_destroy>;
 using Found = Owned<crofton_found, crofton_found_destroy>;
 using ClusteredMesh = Owned<crofton_clustered_mesh, crofton_clustered_mesh_destroy>;
+using RegionOwner = Owned<crofton_region, crofton_region_destroy>;
 using DepthCuller = Owned<crofton_depth_culler, crofton_depth_culler_destroy>;
 
 template <class OwnedHandle, class... Arguments>

@@ -19,7 +19,7 @@ template <class P>
 inline constexpr bool kIsHandle = std::is_pointer_v<P>&&
     kIsOneOf<Pointee<P>, crofton_scene, crofton_tree, crofton_broadphase, crofton_triangulator, crofton_world,
              crofton_view_result, crofton_body, crofton_body_contacts, crofton_found, crofton_baked_scene, crofton_pvs,
-             crofton_clustered_mesh, crofton_depth_culler>;
+             crofton_clustered_mesh, crofton_depth_culler, crofton_region>;
 
 constexpr unsigned char kUntouched = 0xA5;
 
@@ -49,6 +49,11 @@ struct Sound {
         REQUIRE(body_sphere(1.0f, &made) == CROFTON_OK);
         return BodyHandle(made);
     }();
+    RegionOwner region = [] {
+        crofton_region* made = nullptr;
+        REQUIRE(crofton_region_prepare(nullptr, 0, nullptr, nullptr, &made) == CROFTON_OK);
+        return RegionOwner(made);
+    }();
     crofton_box box = box_at(0, 0, -5);
     crofton_transform pose = translation(0, 0, 0);
     crofton_placed placed{body.get(), &pose};
@@ -68,6 +73,8 @@ struct Sound {
             return tree.get();
         else if constexpr (std::is_same_v<T, crofton_body>)
             return body.get();
+        else if constexpr (std::is_same_v<T, crofton_region>)
+            return region.get();
         else
             return nullptr;  // never beside another
     }

@@ -28,6 +28,11 @@ void refuse_world_changes(Table& table) {
     CROFTON_REFUSE(crofton_world_set_boxes);
     CROFTON_REFUSE(crofton_world_set);
     CROFTON_REFUSE(crofton_world_update);
+    CROFTON_REFUSE(crofton_region_destroy);
+    CROFTON_REFUSE(crofton_world_attach);
+    CROFTON_REFUSE(crofton_world_detach);
+    CROFTON_REFUSE(crofton_world_object_in);
+    CROFTON_REFUSE(crofton_world_place_of);
     CROFTON_REFUSE(crofton_world_get_statistics);
     CROFTON_REFUSE(crofton_world_contains_node);
     CROFTON_REFUSE(crofton_world_get_object);
@@ -159,6 +164,8 @@ const std::set<std::string> kWithoutHandle = {
     "default_object_description",
     "default_occlusion_options",
     "default_picture_view",
+    "default_region_object",
+    "default_region_options",
     "default_view_matrix",
     "default_view_request",
     "default_world_options",
@@ -174,6 +181,7 @@ const std::set<std::string> kWithoutHandle = {
     "log",
     "permute_triangles",
     "pvs_open",
+    "region_prepare",
     "scene_create",
     "set_assert_hook",
     "set_log_hook",

@@ -49,6 +49,20 @@ crofton_object_description crofton_default_object_description(void) {
     return result;
 }
 
+crofton_region_object crofton_default_region_object(void) {
+    const RegionObject object;
+    crofton_region_object result{};
+    result.layers = object.layers;
+    result.collides_with = object.collides_with;
+    return result;
+}
+
+crofton_region_options crofton_default_region_options(void) {
+    auto result = sized<crofton_region_options>();
+    result.max_objects = RegionOptions().max_objects;
+    return result;
+}
+
 crofton_occlusion_options crofton_default_occlusion_options(void) {
     const OcclusionOptions options;
     auto result = sized<crofton_occlusion_options>();

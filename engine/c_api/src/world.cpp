@@ -123,7 +123,9 @@ crofton_status to_mesh_description(const crofton_mesh_data* given, const char* f
     return CROFTON_OK;
 }
 
-crofton_status to_bound(const crofton_bound& given, const char* function, Bound& bound) {
+}  // namespace
+
+crofton_status capi::to_bound(const crofton_bound& given, const char* function, Bound& bound) {
     switch (given.kind) {
         case CROFTON_BOUND_NONE:
             bound = Bound();
@@ -141,6 +143,8 @@ crofton_status to_bound(const crofton_bound& given, const char* function, Bound&
             return report(CROFTON_INVALID_ARGUMENT, function, "unknown kind of bound");
     }
 }
+
+namespace {
 
 crofton_status to_object_description(const crofton_object_description* argument, const char* function,
                                      crofton_object_description& given, ObjectDescription& description) {

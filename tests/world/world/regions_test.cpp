@@ -37,6 +37,7 @@ struct TwoWorlds {
     };
     World with, single;
     std::map<RegionHandle, Attached> attached;
+    std::map<ObjectHandle, std::uint64_t> numbers;  // of regions' objects, also of those that are gone
     std::vector<Own> own;
     std::uint64_t next_number = 1;
 
@@ -48,6 +49,8 @@ struct TwoWorlds {
             Bound bound = object.bound;
             bound.box.center += origin;
             added.numbers.push_back(next_number);
+            const auto place = static_cast<std::uint32_t>(added.singles.size());
+            numbers[with.object_in(added.handle, place).value()] = next_number;
             added.singles.push_back(single
                                         .add({.bound = bound,
                                               .user = next_number++,
@@ -81,6 +84,7 @@ struct TwoWorlds {
     // Of an answer of the World with regions.
     [[nodiscard]] std::uint64_t number(const ObjectRef& ref) const {
         if (ref.object.index < kFirstRegionIndex) return ref.user;
+        if (!with.contains(ref.object)) return numbers.at(ref.object);
         const RegionPlace place = with.place_of(ref.object).value();
         CHECK(with.object_in(place.region, place.index).value() == ref.object);
         return attached.at(place.region).numbers[place.index];
@@ -427,6 +431,145 @@ TEST_SUITE("world/regions") {
             CHECK(hits > 400);
             CHECK(seen > 400);
         }
+    }
+
+    TEST_CASE("pairs and contacts of moving objects with regions are those of single objects, with their phases") {
+        for (const bool deep : {false, true}) {
+            NearMisses random(deep ? 78 : 79);
+            TwoWorlds worlds({.contact_margin = deep ? 0.25 : 0.0, .mesh_depth = deep, .updates_to_rest = 3});
+            const TriangleMesh crate = testing::cuboid({0.75f, 0.5f, 1.0f});
+            MeshHandle meshes[2];
+            for (int w = 0; w < 2; ++w)
+                meshes[w] =
+                    (w == 0 ? worlds.with : worlds.single).add_mesh(testing::description_of(crate, false)).value();
+            const auto capsule = convex::Body::capsule(0.5f, 0.25f).value();
+            const auto place = [&] {
+                const double x = 0.25 * random.index(40), y = 0.25 * random.index(40), z = 0.25 * random.index(40);
+                return glm::dvec3(x, y, z) - 5.0;
+            };
+            const auto transform = [&] {
+                Transform result{glm::dmat3(1.0), place()};
+                if (random.index(2) != 0) result.linear = glm::dmat3(oracle::random_box(random, {}, 1.0).axes);
+                if (random.index(3) == 0) result.linear[0] *= -1.5;
+                return result;
+            };
+            for (int i = 0; i < 36; ++i) {
+                ObjectDescription description{.user = worlds.next_number++, .layers = 2, .collides_with = 3};
+                if (i % 3 == 0) description.bound = random_object(random, 5.0).bound;
+                if (i % 3 == 1) description.transform = transform();
+                if (i % 3 == 2) description.bound = box_at(place(), 1.0f), description.body = &capsule;
+                ObjectHandle made[2];
+                for (int w = 0; w < 2; ++w) {
+                    if (i % 3 == 1) description.mesh = meshes[w];
+                    made[w] = (w == 0 ? worlds.with : worlds.single).add(description).value();
+                }
+                worlds.own.push_back({made[0], made[1]});
+            }
+            std::vector<RegionObject> objects = random_objects(random, 120, 5.0);
+            for (RegionObject& object : objects) {
+                object.layers = random.index(4) != 0 ? 1u : 5u;
+                object.collides_with = random.index(8) != 0 ? 2u : 8u;
+            }
+            const Region region = Region::prepare(objects).value();
+            using Touching = std::tuple<std::uint64_t, std::uint64_t, ContactPhase, mesh::Containment, double, double,
+                                        double, double, std::vector<double>, std::size_t>;
+            std::size_t touched = 0, with_triangles = 0, ended = 0;
+            const auto contacts_of = [&](const World& world) {
+                std::vector<Touching> result;
+                for (const Contact& contact : world.contacts()) {
+                    std::vector<double> points;
+                    for (const collide::ContactPoint& point : contact.points) {
+                        for (int k = 0; k < 3; ++k) points.push_back(point.position[k]);
+                        points.push_back(point.depth);
+                    }
+                    const std::uint64_t a = worlds.number(contact.first), b = worlds.number(contact.second);
+                    result.emplace_back(a, b, contact.phase, contact.inside, contact.normal.x, contact.normal.y,
+                                        contact.normal.z, contact.depth, points, contact.triangles.size());
+                    touched += b > 36;
+                    with_triangles += b > 36 && !contact.triangles.empty();
+                    ended += b > 36 && contact.phase == ContactPhase::ended;
+                }
+                std::sort(result.begin(), result.end());
+                return result;
+            };
+            for (int step = 0; step < 60; ++step) {
+                if (step % 4 == 0 && worlds.attached.size() < 3) {
+                    const glm::dvec3 origin = 0.2 * place();
+                    worlds.attach(region, objects, origin);
+                }
+                if (step % 11 == 10) worlds.detach(worlds.attached.begin()->first);
+                if (!worlds.attached.empty() && random.index(2) != 0) {
+                    const unsigned which = random.index(120);
+                    const bool hidden = random.index(2) != 0;
+                    worlds.hide(worlds.attached.begin()->first, which, hidden);
+                }
+                const unsigned moves = step % 5 == 4 ? 0 : random.index(8);
+                for (unsigned m = 0; m < moves; ++m) {
+                    const std::size_t i = random.index(36);
+                    const Transform moved = transform();
+                    const Bound bound = i % 3 == 2 ? Bound(box_at(place(), 1.0f)) : random_object(random, 5.0).bound;
+                    const bool hidden = random.index(4) == 0;
+                    for (int w = 0; w < 2; ++w) {
+                        World& world = w == 0 ? worlds.with : worlds.single;
+                        const ObjectHandle object = w == 0 ? worlds.own[i].with : worlds.own[i].single;
+                        if (i % 3 == 1)
+                            world.set_transform(object, moved).value();
+                        else
+                            world.set_bound(object, bound).value();
+                        world.set_hidden(object, hidden).value();
+                    }
+                }
+                worlds.update();
+                std::vector<std::pair<std::uint64_t, std::uint64_t>> found, expected;
+                for (const ObjectPair& pair : worlds.with.pairs()) {
+                    found.emplace_back(worlds.number(pair.first), worlds.number(pair.second));
+                    CHECK(pair.first.object.index < pair.second.object.index);
+                }
+                for (const ObjectPair& pair : worlds.single.pairs())
+                    expected.emplace_back(pair.first.user, pair.second.user);
+                CHECK(std::is_sorted(worlds.with.pairs().begin(), worlds.with.pairs().end(),
+                                     [](const ObjectPair& a, const ObjectPair& b) {
+                                         return std::pair(a.first.object.index, a.second.object.index) <
+                                                std::pair(b.first.object.index, b.second.object.index);
+                                     }));
+                std::sort(found.begin(), found.end());
+                std::sort(expected.begin(), expected.end());
+                REQUIRE(found == expected);
+                const auto contacts = contacts_of(worlds.with);
+                REQUIRE(contacts == contacts_of(worlds.single));
+                CHECK(worlds.with.body_contacts().size() == worlds.single.body_contacts().size());
+            }
+            CHECK(touched > 1000);
+            CHECK(with_triangles > 100);
+            CHECK(ended > 100);
+            // An object that is removed ends its contacts; more pairs than allowed are an error, and then found again.
+            for (const TwoWorlds::Own& object : worlds.own) {
+                worlds.with.remove(object.with).value();
+                worlds.single.remove(object.single).value();
+            }
+            worlds.update();
+            CHECK(contacts_of(worlds.with) == contacts_of(worlds.single));
+            CHECK(worlds.with.pairs().empty());
+            worlds.update();
+            CHECK(worlds.with.contacts().empty());
+        }
+    }
+
+    TEST_CASE("more pairs with regions than allowed are an error, and all are found once there are few enough") {
+        World world({.max_pairs = 10});
+        const std::vector<RegionObject> objects(11, RegionObject{.bound = box_at(glm::dvec3(0.0))});
+        const RegionHandle region = world.attach(Region::prepare(objects).value(), glm::dvec3(0.0)).value();
+        world.add({.bound = box_at(glm::dvec3(0.5))}).value();
+        CHECK(error_of(world.update()).code == ErrorCode::budget_exceeded);
+        CHECK(world.pairs().empty());
+        world.set_hidden(world.object_in(region, 4).value(), true).value();
+        world.update().value();
+        CHECK(world.pairs().size() == 10);
+        CHECK(world.contacts().size() == 10);
+        world.detach(region).value();
+        world.update().value();
+        CHECK(world.pairs().empty());
+        CHECK(world.contacts().size() == 10);  // which have ended
     }
 
     TEST_CASE("what is detached is met by no ray or shape at once, and is in views until the next update") {

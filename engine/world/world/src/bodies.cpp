@@ -213,6 +213,17 @@ PosedTree Bodies::posed_tree(const ObjectTable& table, const SpatialIndex& index
     return {own(), {glm::dmat3(1.0), world.translation}};
 }
 
+PosedTree Bodies::posed_box(const Obb& box, const scene::Scene& scene, mesh::MeshTree& tree) const {
+    const glm::dmat3 axes(box.axes);
+    Own own;
+    if (!is_rotation(axes)) own.linear = axes;
+    own.half_extents = box.half_extents;
+    build_own(scene, own);
+    if (!own.is_usable) return {};
+    tree = std::move(own.tree);
+    return {&tree, {is_rotation(axes) ? axes : glm::dmat3(1.0), box.center}};
+}
+
 void Bodies::forget(std::uint32_t object) {
     if (object >= own_of_object_.size() || own_of_object_[object] == kNoIndex) return;
     own_[own_of_object_[object]] = {};

@@ -52,6 +52,8 @@ class Bodies {
     [[nodiscard]] PosedTree posed_tree(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene,
                                        std::uint32_t object) const;
     void forget(std::uint32_t object);  // it is gone, or another
+    // Of a box that is no object: its triangles, in `tree`.
+    [[nodiscard]] PosedTree posed_box(const Obb& box, const scene::Scene& scene, mesh::MeshTree& tree) const;
 
   private:
     struct Mesh {

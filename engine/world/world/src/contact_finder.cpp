@@ -221,6 +221,38 @@ void ContactFinder::find_contacts(const ObjectTable& table, const SpatialIndex& 
     });
 }
 
+bool ContactFinder::meet(const Object& a, const Obb& box_a, const Object& b, const Obb& box_b) {
+    return bounds_meet(a, box_a, b, box_b);
+}
+
+void ContactFinder::touch_bounds(const Object& a, const Obb& box_a, const Object& b, const Obb& box_b,
+                                 BoundTouch& touch) const {
+    const collide::Manifold manifold = touch_of_bounds(a, box_a, b, box_b);
+    touch.hit = true;
+    touch.normal = manifold.normal;
+    touch.depth = manifold.depth;
+    touch.points.assign(manifold.points, manifold.points + manifold.count);
+}
+
+void ContactFinder::touch_bound(const PosedTree& mesh, const Object& bound, const Obb& box, const Bodies& bodies,
+                                const scene::Scene& scene, BoundTouch& touch) {
+    Touch found;
+    bound_worker_.points.clear();
+    bound_worker_.triangles.clear();
+    mesh::MeshTree tree;
+    if (bound.kind == BoundKind::sphere) {
+        touch_sphere(mesh, {nullptr, {glm::dmat3(1.0), box.center}}, bound.radius, bound_worker_, found);
+    } else if (const PosedTree of_box = bodies.posed_box(box, scene, tree); of_box.tree != nullptr) {
+        touch_triangles(mesh, of_box, bound_worker_, found);
+    }
+    touch.hit = found.hit;
+    touch.inside = found.inside;
+    touch.normal = found.normal;
+    touch.depth = found.depth;
+    std::swap(touch.points, bound_worker_.points);
+    std::swap(touch.triangles, bound_worker_.triangles);
+}
+
 void ContactFinder::give_back(ContactMemory& memory) {
     points_.give_back(memory.points);
     triangles_.give_back(memory.triangles);

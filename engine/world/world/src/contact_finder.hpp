@@ -25,6 +25,25 @@ struct Touch {
     std::uint32_t first_triangle = 0, triangle_count = 0;
 };
 
+// What the shapes of a pair gave, of which the second is a bound that stands in no table.
+struct BoundTouch {
+    bool hit = false;
+    mesh::Containment inside = mesh::Containment::none;
+    glm::dvec3 normal{0.0};  // from the first to the second
+    double depth = 0.0;
+    Vector<collide::ContactPoint> points;
+    Vector<mesh::MeshContact> triangles;
+
+    void clear() {
+        hit = false;
+        inside = mesh::Containment::none;
+        normal = glm::dvec3(0.0);
+        depth = 0.0;
+        points.clear();
+        triangles.clear();
+    }
+};
+
 // What may change pairs and contacts beside the items that the spatial index tells of. Since the update before.
 struct PairChanges {
     Vector<std::uint32_t> objects;  // whose kind, radius, mesh, body, user data or layers to collide with have changed
@@ -60,6 +79,15 @@ class ContactFinder {
     // Of the last update(), where contacts are asked for: pairs that were looked at, and those that ended; in order.
     [[nodiscard]] std::span<const IdPair> touched() const { return touched_; }
     [[nodiscard]] std::span<const IdPair> ended() const { return broadphase_.ended(); }
+    // Objects whose pairs the last update() has found again; they may be named more than once.
+    [[nodiscard]] std::span<const std::uint32_t> moved() const { return moved_; }
+
+    // Whether two bounds meet whose boxes do; then how they touch. Of a bound against an object's triangles as well.
+    [[nodiscard]] static bool meet(const Object& a, const Obb& box_a, const Object& b, const Obb& box_b);
+    void touch_bounds(const Object& a, const Obb& box_a, const Object& b, const Obb& box_b, BoundTouch& touch) const;
+    void touch_bound(const PosedTree& mesh, const Object& bound, const Obb& box, const Bodies& bodies,
+                     const scene::Scene& scene, BoundTouch& touch);
+
     [[nodiscard]] const collide::BroadphaseStatistics& broadphase() const { return broadphase_.statistics(); }
 
   private:
@@ -107,6 +135,7 @@ class ContactFinder {
     Vector<IdPair> touched_;  // pairs whose shapes are looked at in this update, in order
     Vector<Touch> touches_;   // of these
     Vector<Worker> workers_;
+    Worker bound_worker_;           // of touch_bound()
     Vector<Contact> contacts_;      // in order
     Vector<ContactMemory> memory_;  // of each
     Vector<IdPair> began_, ended_;  // contacts that have in the last update

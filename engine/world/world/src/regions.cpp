@@ -155,6 +155,7 @@ void Regions::place(std::uint32_t slot) {
     attachment.placed = true;
     if (slot_of_item_.size() <= attachment.item) slot_of_item_.resize(attachment.item + std::size_t{1}, kNoIndex);
     slot_of_item_[attachment.item] = slot;
+    changed_.push_back(slot);
 }
 
 void Regions::drop(std::uint32_t slot) {
@@ -174,11 +175,13 @@ void Regions::apply(const StagedHide& change) {
     region.shown[item / 64] ^= std::uint64_t{1} << item % 64;
     region.hidden_count += change.hidden ? 1 : std::size_t(-1);
     if (region.hidden_count == 0) region.shown = {};
+    changed_.push_back(slot_of(change.object.index));
 }
 
 bool Regions::update() {
     constexpr std::size_t kRebuildBudget = 256;
     const bool members = !attached_.empty() || !detached_.empty(), changed = members || !hides_.empty();
+    changed_.clear();
     for (const std::uint32_t slot : detached_) drop(slot);
     for (const std::uint32_t slot : attached_) place(slot);
     for (const StagedHide& hide : hides_) apply(hide);

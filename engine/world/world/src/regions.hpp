@@ -50,6 +50,9 @@ class Regions {
     [[nodiscard]] Result<void> set_hidden(ObjectHandle object, bool hidden);
     // Applies what has been called for. Returns whether anything has.
     bool update();
+    // Slots of regions that the last update() has placed, or of which it has hidden or shown objects.
+    [[nodiscard]] std::span<const std::uint32_t> changed() const { return changed_; }
+    [[nodiscard]] const Attachment& at_slot(std::uint32_t slot) const { return attachments_[slot]; }
 
     // None was attached in the last update, and none was before it.
     [[nodiscard]] bool is_empty() const { return tree_.item_count() == 0; }
@@ -108,6 +111,7 @@ class Regions {
     Vector<Pages> free_pages_;                   // ascending, never two that adjoin
     Vector<std::uint32_t> attached_, detached_;  // slots, since the last update
     Vector<StagedHide> hides_;
+    Vector<std::uint32_t> changed_;
     boxtree::BoxTree tree_;               // of bounds
     Vector<std::uint32_t> slot_of_item_;  // of the tree's items
     std::uint32_t next_generation_;

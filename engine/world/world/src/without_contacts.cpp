@@ -3,6 +3,8 @@
 // rays, in less code. To ask it for pairs is an error.
 #include "body_contacts.hpp"
 #include "contact_finder.hpp"
+#include "region_pairs.hpp"
+#include "world_state.hpp"
 
 namespace crofton::world {
 
@@ -15,6 +17,9 @@ Result<void> ContactFinder::update(const ObjectTable&, const SpatialIndex&, cons
 }
 void ContactFinder::stay() {}
 
+void RegionPairs::stay() {}
+void RegionPairs::merge(std::span<const ObjectPair>, std::span<const Contact>) {}
+
 void BodyContacts::update(const ChangedPairs&, const ObjectBodies&, const ObjectTable&, const SpatialIndex&,
                           const scene::Scene&, double, Executor&) {}
 void BodyContacts::update_all(std::span<const ObjectPair>, const ObjectBodies&, const ObjectTable&, const SpatialIndex&,
@@ -22,3 +27,9 @@ void BodyContacts::update_all(std::span<const ObjectPair>, const ObjectBodies&, 
 void BodyContacts::stay() {}
 
 }  // namespace crofton::world
+
+namespace crofton {
+Result<void> World::State::update_region_pairs(Result<void> others) {
+    return others;
+}
+}  // namespace crofton

@@ -2,6 +2,7 @@
 #include <chrono>
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/core/memory.hpp>
+#include <utility>
 
 #include "trace_zone.hpp"
 #include "world_state.hpp"
@@ -33,11 +34,11 @@ const boxtree::BoxTree& World::tree() const {
     return state_->index.tree();
 }
 std::span<const ObjectPair> World::pairs() const {
-    return state_->ground.is_used() ? state_->ground.pairs() : state_->finder.pairs();
+    return state_->region_pairs.is_used() ? state_->region_pairs.pairs() : state_->own_pairs();
 }
 std::span<const Contact> World::contacts() const {
     const State& s = *state_;
-    return s.contact_list.get(s.ground.is_used() ? s.ground.contacts() : s.finder.contacts(),
+    return s.contact_list.get(s.region_pairs.is_used() ? s.region_pairs.contacts() : s.own_contacts(),
                               s.body_contacts.contacts());
 }
 
@@ -231,13 +232,13 @@ Result<void> World::update(Executor& executor) {
             {.rebuild_budget = s.options.rebuild_budget, .updates_to_rest = s.options.updates_to_rest}, executor);
     }();
     s.note_movers();
-    s.regions.update();
+    const bool regions_changed = s.regions.update();
     {
         const world::TraceZone part(trace, "update: occluders");
         s.update_occluders();
     }
     Result<void> found;
-    const bool changed = changes.boxes > 0 || s.pair_changes.any();
+    const bool changed = changes.boxes > 0 || s.pair_changes.any() || regions_changed;
     const auto start = std::chrono::steady_clock::now();
     if (s.options.pairs && changed) {
         const world::TraceZone part(trace, "update: pairs and contacts");
@@ -247,17 +248,20 @@ Result<void> World::update(Executor& executor) {
         if (s.options.contacts) {
             if (s.ground.is_used()) s.update_ground_contacts();
             if (s.ground.is_or_was_used())
-                s.body_contacts.update_all(pairs(), s.object_bodies, s.table, s.index, s.scene,
+                s.body_contacts.update_all(s.own_pairs(), s.object_bodies, s.table, s.index, s.scene,
                                            s.options.contact_margin, executor);
             else
                 s.body_contacts.update({s.finder.touched(), s.finder.ended()}, s.object_bodies, s.table, s.index,
                                        s.scene, s.options.contact_margin, executor);
         }
     }
+    if (s.options.pairs && changed) found = s.update_region_pairs(std::move(found));
     if (!s.options.pairs || !s.options.contacts) s.body_contacts.forget_changes();
     if (!changed) s.finder.stay();
     if (!changed) s.ground.stay();
     if (!changed) s.body_contacts.stay();
+    if (!changed) s.region_pairs.stay();
+    if (s.region_pairs.is_used()) s.region_pairs.merge(s.own_pairs(), s.own_contacts());
     s.contact_list.note_update(changed);
     s.statistics.contacts_us =
         std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();

@@ -14,6 +14,7 @@
 #include "object_table.hpp"
 #include "occluders.hpp"
 #include "query_shape.hpp"
+#include "region_pairs.hpp"
 #include "regions.hpp"
 #include "spatial_index.hpp"
 
@@ -87,7 +88,9 @@ struct World::State {
     scene::Scene scene;
     Generations nodes, meshes;
     world::Regions regions;
-    scene::MeshId point = scene::kNone;  // the mesh of objects that are added by their bodies alone; kNone: none is
+    world::RegionPairs region_pairs;
+    Vector<std::uint32_t> region_pairs_met;  // scratch
+    scene::MeshId point = scene::kNone;      // the mesh of objects that are added by their bodies alone; kNone: none is
     Vector<std::uint32_t> object_of_instance;
     Vector<glm::vec3> vertices;  // scratch
     Vector<StagedChange> staged;
@@ -127,6 +130,17 @@ struct World::State {
     [[nodiscard]] bool is_ground(std::uint32_t object, std::uint32_t layers) const;
     void update_ground();
     void update_ground_contacts();
+    // Pairs and contacts with objects of regions, after all others; none if these have failed. Errors: theirs; more
+    // than max_pairs.
+    Result<void> update_region_pairs(Result<void> others);
+    void list_changed_near_regions();
+    void add_region_pairs_of(std::uint32_t object);
+    [[nodiscard]] std::span<const ObjectPair> own_pairs() const {
+        return ground.is_used() ? ground.pairs() : finder.pairs();
+    }
+    [[nodiscard]] std::span<const Contact> own_contacts() const {
+        return ground.is_used() ? ground.contacts() : finder.contacts();
+    }
     void update_occluders();
     void release_scratch();
     [[nodiscard]] Result<void> set_found_occluders(scene::MeshId mesh, const occlude::FindOptions& how);

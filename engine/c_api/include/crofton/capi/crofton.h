@@ -189,6 +189,55 @@ CROFTON_API crofton_status crofton_world_set_boxes(crofton_world* world, const c
 CROFTON_API crofton_status crofton_world_set(crofton_world* world, crofton_object object, uint32_t members,
                                              const crofton_object_description* description);
 
+/* Regions: parts of a large world, prepared on any thread and attached in constant time. Guide: docs/large_worlds.md.
+ */
+
+/* Many objects that do not move. A region never changes; any thread may use it. */
+typedef struct crofton_region crofton_region;
+/* A region that is attached at an origin. */
+typedef struct crofton_attached_region {
+    uint32_t index, generation;
+} crofton_attached_region;
+
+#define CROFTON_FIRST_REGION_INDEX 0x80000000u /* objects of regions have indices from here on, consecutive in each */
+
+/* An object of a region. Get it from crofton_default_region_object(). */
+typedef struct crofton_region_object {
+    crofton_bound bound; /* relative to the region's origin */
+    uint64_t user;
+    uint32_t layers, collides_with; /* all */
+} crofton_region_object;
+
+typedef struct crofton_region_options {
+    size_t size;
+    uint64_t max_objects; /* 2^24; a region with more is refused */
+    /* Or NULL. Return 1 to stop (CROFTON_CANCELLED). It is not called while the tree is built. */
+    int (*should_stop)(void* user, double share_done);
+    void* stop_user;
+} crofton_region_options;
+
+CROFTON_API crofton_region_object crofton_default_region_object(void);
+CROFTON_API crofton_region_options crofton_default_region_options(void);
+/* Prepares a region; call it on any thread. `options`, `jobs` or NULL. If an object is refused, crofton_last_error_item
+ * is its place. */
+CROFTON_API crofton_status crofton_region_prepare(const crofton_region_object* objects, size_t count,
+                                                  const crofton_region_options* options, const crofton_jobs* jobs,
+                                                  crofton_region** region);
+/* You may destroy a region at any time: a world keeps what it needs. */
+CROFTON_API crofton_status crofton_region_destroy(crofton_region* region);
+/* Attaches a region: from the next update on, answers contain its objects, moved by `origin`. */
+CROFTON_API crofton_status crofton_world_attach(crofton_world* world, const crofton_region* region,
+                                                const double origin[3], crofton_attached_region* attached);
+/* Detaches a region. Handles of its objects are stale at once; views follow with the next update. */
+CROFTON_API crofton_status crofton_world_detach(crofton_world* world, crofton_attached_region region);
+/* Returns the object at `place` in the array that the region was prepared from. crofton_world_set can hide it; other
+ * changes are CROFTON_UNSUPPORTED. */
+CROFTON_API crofton_status crofton_world_object_in(const crofton_world* world, crofton_attached_region region,
+                                                   uint32_t place, crofton_object* object);
+/* Returns the region and place of an object. CROFTON_INVALID_ARGUMENT: the object was added by crofton_world_add. */
+CROFTON_API crofton_status crofton_world_place_of(const crofton_world* world, crofton_object object,
+                                                  crofton_attached_region* region, uint32_t* place);
+
 /* Applies the changes and finds pairs and contacts. Call it once a frame. `jobs` or NULL. CROFTON_BUDGET_EXCEEDED: more
  * than max_pairs pairs; all pairs are dropped, everything else is up to date. */
 CROFTON_API crofton_status crofton_world_update(crofton_world* world, const crofton_jobs* jobs);

@@ -41,6 +41,10 @@ template <>
     return crofton_default_object_description();
 }
 template <>
+[[nodiscard]] inline crofton_region_options default_of<crofton_region_options>() {
+    return crofton_default_region_options();
+}
+template <>
 [[nodiscard]] inline crofton_view_request default_of<crofton_view_request>() {
     return crofton_default_view_request();
 }

@@ -19,7 +19,7 @@ struct RegionObject {
     Bound bound;
     std::uint64_t user = 0;             // returned with every answer
     std::uint32_t layers = ~0u;         // as ObjectDescription
-    std::uint32_t collides_with = ~0u;  // as ObjectDescription; regions' objects do not collide with each other
+    std::uint32_t collides_with = ~0u;  // as ObjectDescription; regions' objects form no pairs with each other
 };
 
 struct RegionOptions {

@@ -154,7 +154,8 @@ class World {
     // boxes whose centers are the sums of their own and the origin, rounded once; exactness is that of other objects.
     // The object at place i of the region has the index of object_in(region, 0) plus i. Such objects are at rest.
     // set_hidden() works for them; other changes fail with `unsupported`: hide the object and add one of the World's
-    // own. pairs() and contacts do not contain them (docs/large_worlds.md).
+    // own. pairs() and contacts() contain pairs of one of the World's own objects and one of a region
+    // (docs/large_worlds.md).
     //
     // Detaching makes the handles of the region's objects stale. As for removed objects, rays and shapes no longer
     // meet them, and other answers follow with the next update. Errors: an origin that is not finite, or puts the

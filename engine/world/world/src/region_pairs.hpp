@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// Pairs and contacts of the World's own objects with objects of regions.
+#pragma once
+#include <crofton/collide/narrow_phase.hpp>
+#include <crofton/core/memory.hpp>
+#include <crofton/mesh/mesh_query.hpp>
+#include <crofton/world/answers.hpp>
+#include <span>
+
+#include "contact_finder.hpp"
+
+namespace crofton::world {
+
+// The World's own object is the first of each pair, since its index is lower.
+class RegionPairs {
+  public:
+    // Pairs in order: those of objects that have not changed are kept, others are found again.
+    void begin();
+    void keep(const ObjectPair& old);
+    void add(const ObjectPair& pair, const BoundTouch& touch);
+    void end(bool finds_contacts);
+
+    struct Entry {
+        ObjectPair pair;
+        bool hit = false;
+        mesh::Containment inside = mesh::Containment::none;
+        glm::dvec3 normal{0.0};
+        double depth = 0.0;
+        std::size_t first_point = 0, point_count = 0, first_triangle = 0, triangle_count = 0;
+    };
+    [[nodiscard]] std::span<const Entry> entries() const { return entries_; }  // as of the last end()
+    [[nodiscard]] std::size_t added_count() const { return next_.size(); }     // since begin()
+
+    void stay();  // nothing has changed
+    // With all others of the World.
+    void merge(std::span<const ObjectPair> pairs, std::span<const Contact> contacts);
+    [[nodiscard]] bool is_used() const { return !entries_.empty() || !contacts_.empty(); }
+    [[nodiscard]] std::span<const ObjectPair> pairs() const { return all_pairs_; }
+    [[nodiscard]] std::span<const Contact> contacts() const { return all_contacts_; }
+
+    Vector<std::uint32_t> changed;  // scratch: own objects whose pairs are found again
+    BoundTouch touch;               // scratch
+    bool lost = false;              // the update before found too many pairs
+
+  private:
+    [[nodiscard]] Contact contact_of(const Entry& entry, ContactPhase phase) const;
+
+    Vector<Entry> entries_, next_;
+    Vector<collide::ContactPoint> points_, next_points_;  // of the entries
+    Vector<mesh::MeshContact> triangles_, next_triangles_;
+    Vector<Contact> contacts_;  // of these pairs
+    Vector<ObjectPair> all_pairs_;
+    Vector<Contact> all_contacts_;
+    std::size_t kept_ = 0;  // entries before it have been looked at since begin()
+};
+
+}  // namespace crofton::world
