@@ -29,6 +29,17 @@ if(TARGET crofton_cli)
     install(FILES ${PROJECT_SOURCE_DIR}/packaging/crofton.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
             RENAME crofton COMPONENT tools)
     install(FILES ${PROJECT_SOURCE_DIR}/packaging/_crofton DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions COMPONENT tools)
+    # The manual pages are the texts of --help: made when they are installed.
+    find_program(CROFTON_HELP2MAN help2man)
+    if(CROFTON_HELP2MAN AND NOT CMAKE_CROSSCOMPILING)
+        install(CODE "execute_process(
+            COMMAND ${CMAKE_COMMAND} -E env \"LD_LIBRARY_PATH=$<TARGET_FILE_DIR:crofton>:$ENV{LD_LIBRARY_PATH}\"
+                    ${PROJECT_SOURCE_DIR}/packaging/manual_pages.sh $<TARGET_FILE:crofton_cli>
+                    \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_MANDIR}/man1\"
+            COMMAND_ERROR_IS_FATAL ANY)" COMPONENT tools)
+    else()
+        message(STATUS "No manual pages are installed: help2man is not here")
+    endif()
     install(FILES ${PROJECT_SOURCE_DIR}/packaging/crofton.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT tools)
 endif()
 

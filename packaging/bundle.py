@@ -15,7 +15,7 @@ import sys
 
 OUTSIDE = re.compile(r"(lib(c|m|dl|rt|pthread|stdc\+\+|gcc_s)|ld-linux[\w-]*)\.so\.\d+$")
 LICENCES = {"libhwy": "libhwy1", "libqhull_r": "libqhull-r8.0", "libdraco": "libdraco7",
-            "libmeshoptimizer": "libmeshoptimizer2d"}  # Debian's packages
+            "libmeshoptimizer": "libmeshoptimizer2d", "libstb": "libstb0"}  # Debian's packages
 
 
 def output(*command):

@@ -11,6 +11,7 @@ package must not use a library of the system that they bring themselves. Exit st
 import os
 import pathlib
 import re
+import resource
 import shutil
 import subprocess
 import sys
@@ -18,7 +19,7 @@ import tempfile
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-BROUGHT = r"lib(hwy|qhull|draco|meshoptimizer)"  # what the packages bring
+BROUGHT = r"lib(hwy|qhull|draco|meshoptimizer|stb)"  # what the packages bring
 
 
 class Missing(Exception):
@@ -45,16 +46,23 @@ def run(command, folder, **environment):
     return done.stdout.strip().splitlines()
 
 
+def processor_time():
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
 class Steps:
     """What a user types, one after another."""
 
     def __init__(self, folder):
-        self.folder, self.commands, self.seconds, self.output = folder, [], 0.0, []
+        self.folder, self.commands, self.output = folder, [], []
+        self.seconds = self.processor = 0.0
 
     def type(self, command, shown=None, **environment):
-        start = time.monotonic()
+        start, used = time.monotonic(), processor_time()
         self.output = run(command, self.folder, **environment)
         self.seconds += time.monotonic() - start
+        self.processor += processor_time() - used
         self.commands.append(shown or command)
 
 
@@ -148,18 +156,18 @@ def attempt(name):
     pattern, install = PRODUCTS[name]
     found = sorted(FOLDER.glob(pattern))
     if not found:
-        return f"| {name} | not there | | | |", False
+        return f"| {name} | not there | | | | |", False
     with tempfile.TemporaryDirectory() as folder:
         steps = Steps(pathlib.Path(folder))
         try:
             install(found[-1], steps)
         except Missing as missing:
-            return f"| {name} | {size_of(found[-1])} | not tried: {missing} | | |", False
+            return f"| {name} | {size_of(found[-1])} | not tried: {missing} | | | |", False
         except RuntimeError as error:
             print(error, file=sys.stderr)
-            return f"| {name} | {size_of(found[-1])} | **failed** | | |", None
+            return f"| {name} | {size_of(found[-1])} | **failed** | | | |", None
         shown = ", ".join(f"`{command}`" for command in steps.commands)
-        return f"| {name} | {size_of(found[-1])} | {shown} | {steps.seconds:.1f} s | `{(steps.output or [''])[-1][:60]}` |", True
+        return f"| {name} | {size_of(found[-1])} | {shown} | {steps.seconds:.1f} s | {steps.processor:.1f} s | `{(steps.output or [''])[-1][:60]}` |", True
 
 
 def main():
@@ -167,7 +175,7 @@ def main():
     if unknown := [name for name in named if name not in PRODUCTS]:
         sys.exit(f"test_release: {', '.join(unknown)}: not one of {', '.join(PRODUCTS)}")
     failed = False
-    print("| product | size | commands | from nothing to a first result | it says |\n|---|---|---|---|---|", flush=True)
+    print("| product | size | commands | from nothing to a first result | processor | it says |\n|---|---|---|---|---|---|", flush=True)
     for name in named or PRODUCTS:
         row, well = attempt(name)
         print(row, flush=True)

@@ -17,6 +17,7 @@
 #include "hierarchy_svg.hpp"
 #include "json/json.hpp"
 #include "polygon_files.hpp"
+#include "progress_bar.hpp"
 #include "report.hpp"
 #include "verify/rows.hpp"
 
@@ -137,6 +138,7 @@ Result<int> run_hierarchy(const HierarchyOptions& options) {
     std::vector<VerifyRow> rows;
     std::vector<Chain> chains;
     Json list = Json::array();
+    ProgressBar bar("hierarchy", 3 * objects->size());
     for (const Object& object : *objects)
         for (const auto& [name, kind] : {std::pair("circles", Kind::circles), std::pair("rectangles", Kind::rectangles),
                                          std::pair("boxes", Kind::boxes)}) {
@@ -153,6 +155,7 @@ Result<int> run_hierarchy(const HierarchyOptions& options) {
                      {"gap", level.gap}});
             list.push_back({{"chain", chain->name}, {"levels", std::move(levels)}});
             chains.push_back(std::move(*chain));
+            bar.set(chains.size());
         }
     if (options.json != "-" && options.svg != "-") {
         std::printf("Lines that hit all bounds down to a level and miss the object: improper tests.\n\n");

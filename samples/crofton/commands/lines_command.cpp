@@ -11,6 +11,7 @@
 #include "commands.hpp"
 #include "json/json.hpp"
 #include "lines_factors.hpp"
+#include "progress_bar.hpp"
 #include "read_options.hpp"
 #include "report.hpp"
 
@@ -70,7 +71,7 @@ Seen by_bundles(const lines::BundleTracer& tracer, double cell_area, double box_
 // Efficiency is the reciprocal of error² · time, so it does not depend on how many lines were spent.
 template <class Look>
 Json compare(const char* method, sampling::Sequence sequence, double surface, const LinesOptions& options,
-             Look&& look) {
+             ProgressBar& bar, Look&& look) {
     double squares = 0.0;
     Seen all;
     const auto start = std::chrono::steady_clock::now();
@@ -81,6 +82,7 @@ Json compare(const char* method, sampling::Sequence sequence, double surface, co
         all.crossings += seen.crossings;
         all.squares += seen.squares;
         all.met += seen.met;
+        bar.add(1);
     }
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const double error = std::sqrt(squares / options.repeats), mean = all.crossings / all.lines;
@@ -112,12 +114,13 @@ Result<void> run_lines(const LinesOptions& options) {
     const double box_area = lines::LineSource(tracer->bounds(), LineMethod::walls, 1).surface_area();
     const double cell_area = surface / static_cast<double>(mesh.triangle_count());
     Json rows = Json::array();
+    ProgressBar bar("lines", std::size_t{8} * options.repeats);
     for (const sampling::Sequence sequence : {sampling::Sequence::pseudo_random, sampling::Sequence::quasi_random}) {
         for (const LineMethod method : {LineMethod::sphere_points, LineMethod::disc, LineMethod::walls})
-            rows.push_back(compare(lines::to_string(method), sequence, surface, options, [&](std::uint64_t seed) {
+            rows.push_back(compare(lines::to_string(method), sequence, surface, options, bar, [&](std::uint64_t seed) {
                 return by_lines(*tracer, lines::LineSource(tracer->bounds(), method, seed, sequence), options);
             }));
-        rows.push_back(compare("bundles", sequence, surface, options, [&](std::uint64_t seed) {
+        rows.push_back(compare("bundles", sequence, surface, options, bar, [&](std::uint64_t seed) {
             return by_bundles(*bundles, cell_area, box_area, seed, sequence, options);
         }));
     }

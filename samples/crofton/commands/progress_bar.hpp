@@ -16,6 +16,7 @@ class ProgressBar {
     ProgressBar& operator=(const ProgressBar&) = delete;
 
     void set(std::size_t done);
+    void add(std::size_t more);
 
   private:
     std::size_t total_ = 0;

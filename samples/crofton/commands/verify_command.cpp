@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 // crofton verify: is what Crofton is built on true? One row a claim.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <memory>
 
 #include "commands.hpp"
 #include "json/json.hpp"
+#include "progress_bar.hpp"
 #include "report.hpp"
 #include "verify/collide.hpp"
 #include "verify/convex.hpp"
@@ -45,15 +48,24 @@ int run_verify(const VerifyRequest& request) {
         return kBadInput;
     }
     std::vector<VerifyRow> rows;
-    for (const Topic& topic : kTopics)
-        if (request.scenes.empty() && (request.topic.empty() ? !topic.part : request.topic == topic.name))
-            for (VerifyRow& row : topic.rows(request.options)) rows.push_back(std::move(row));
+    const auto is_asked = [&](const Topic& topic) {
+        return request.scenes.empty() && (request.topic.empty() ? !topic.part : request.topic == topic.name);
+    };
+    const auto topics = static_cast<std::size_t>(std::count_if(std::begin(kTopics), std::end(kTopics), is_asked));
+    ProgressBar bar("verify", topics + request.scenes.size());
+    std::size_t done = 0;
+    for (const Topic& topic : kTopics) {
+        if (!is_asked(topic)) continue;
+        for (VerifyRow& row : topic.rows(request.options)) rows.push_back(std::move(row));
+        bar.set(++done);
+    }
     for (const std::string& scene : request.scenes) {
         const assets::LoadOptions which{.map = request.map, .instances = scene == "town" ? request.instances : 0};
         auto found = request.topic == "collide" ? verify_collided_scene(scene, which, request.options)
                                                 : verify_occluded_scene(scene, which, request.options);
         if (!found) return report_error(scene, found.error());
         for (VerifyRow& row : *found) rows.push_back(std::move(row));
+        bar.set(++done);
     }
     if (request.json_path != "-") std::fputs(table_of(rows).c_str(), stdout);
     if (!request.json_path.empty())

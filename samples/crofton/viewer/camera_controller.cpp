@@ -6,10 +6,13 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "pipeline/free_space.hpp"
+
 namespace crofton::viewer {
 namespace {
 
 constexpr double kRadiansPerPixel = 0.004;
+constexpr double kWalkingSpeed = 1.4;  // metres a second, of a person
 constexpr glm::dvec3 kUp{0.0, 1.0, 0.0};
 
 glm::dvec3 direction(double yaw, double pitch) {
@@ -53,13 +56,14 @@ void CameraController::frame_all(const Aabb& focus, const Aabb& extent) {
     speed = radius / 6.0;
 }
 
-void CameraController::stand(const glm::dvec3& place, const glm::dvec3& next) {
+void CameraController::stand(const glm::dvec3& place, const glm::dvec3& next, double eye_height) {
     const glm::dvec3 along(next.x - place.x, 0.0, next.z - place.z);
     if (!(glm::length(along) > 0.0)) return;
     camera.position = place;
     camera.forward = glm::normalize(along);
     camera.up = kUp;
     target_ = place + camera.forward * distance_;
+    speed = kWalkingSpeed * eye_height / pipeline::FreeSpace::kPersonEye;
 }
 
 bool CameraController::recall_bookmark(int slot) {

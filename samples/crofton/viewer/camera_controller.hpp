@@ -17,8 +17,8 @@ class CameraController {
   public:
     // Looks at `focus` from a corner above, as far as `extent` reaches; takes the speed from the focus.
     void frame_all(const Aabb& focus, const Aabb& extent);
-    // Stands at `place` and looks towards `next`, horizontally.
-    void stand(const glm::dvec3& place, const glm::dvec3& next);
+    // Stands at `place` and looks towards `next`, horizontally; takes a walker's speed from the eye's height.
+    void stand(const glm::dvec3& place, const glm::dvec3& next, double eye_height);
     void look(const Camera& camera);
 
     // Mouse and held keys. `scale` is pixels to radians.

@@ -131,12 +131,14 @@ Result<void> Session::load(const SceneRequest& request) {
         controller_.frame_all(loaded_->focus(), loaded_->extent());
         const std::vector<glm::dvec3>& walk = loaded_->source().walk;
         if (walk.size() > 1)
-            controller_.stand(walk[0], walk[1]);
+            controller_.stand(walk[0], walk[1], pipeline::FreeSpace::kPersonEye);
         else
             stand_inside();
         culling_camera_ = controller_.camera;
         if (window_) window_->set_title("Crofton: " + loaded_->source().name + " (F1: help)");
     }
+    if (!same_scene && window_)
+        note("W A S D: walk; Q E: down, up; drag with the right button: look; wheel: speed; F1: all keys", 20.0);
     clusters_.reset();
     list_geometry();
     return upload_geometry();
@@ -166,7 +168,7 @@ void Session::stand_inside() {
     const auto space =
         pipeline::FreeSpace::find(loaded_->scene(), loaded_->focus(), {.in_metres = loaded_->source().in_metres});
     const auto stand = space ? space->best_stand() : std::nullopt;
-    if (stand) controller_.stand(stand->eye, stand->eye + stand->forward);
+    if (stand) controller_.stand(stand->eye, stand->eye + stand->forward, space->eye_height());
 }
 
 Result<void> Session::upload_geometry() {

@@ -24,7 +24,7 @@ constexpr std::uint32_t kSeenEvery = 30;
 // A driver that loses its device again and again is given up on.
 constexpr int kMaxRecoveries = 5;
 // How long a message stays.
-constexpr double kErrorSeconds = 12.0, kNoteSeconds = 4.0;
+constexpr double kErrorSeconds = 12.0;
 
 double microseconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
@@ -374,8 +374,8 @@ void Session::report(const Error& error) {
     notices_.push_back({error.message, true, seconds_ + kErrorSeconds});
 }
 
-void Session::note(const std::string& text) {
-    notices_.push_back({text, false, seconds_ + kNoteSeconds});
+void Session::note(const std::string& text, double seconds) {
+    notices_.push_back({text, false, seconds_ + seconds});
 }
 
 }  // namespace crofton::viewer

@@ -96,7 +96,7 @@ class Session {
     // To stderr and into the window.
     void report(const Error& error);
     // Into the window.
-    void note(const std::string& text);
+    void note(const std::string& text, double seconds = 4.0);
 
     ViewerOptions options_;
     Settings settings_;

@@ -156,6 +156,19 @@ TEST_SUITE("viewer/shape_colors") {
 }
 
 TEST_SUITE("viewer/eye") {
+    TEST_CASE("who stands on a floor walks at 1.4 m/s, a smaller eye slower in proportion") {
+        CameraController eye;
+        eye.stand({0, 1.7, 0}, {0, 1.7, -5}, 1.7);
+        CHECK(eye.speed == doctest::Approx(1.4));
+        eye.handle({Event::Kind::key_down, "W", 0, {}});
+        eye.advance(2.0);
+        CHECK(glm::distance(eye.camera.position, glm::dvec3(0, 1.7, -2.8)) < 1e-9);
+        eye.stand({0, 0.17, 0}, {0, 0.17, -5}, 0.17);
+        CHECK(eye.speed == doctest::Approx(0.14));
+        const Aabb box{{-60, -60, -60}, {60, 60, 60}};
+        eye.frame_all(box, box);
+        CHECK(eye.speed == doctest::Approx(std::sqrt(3.0) * 10.0));
+    }
     TEST_CASE("frame-all sees the whole focus, and keys move the camera by speed times time") {
         CameraController eye;
         eye.frame_all({}, {});  // empty: nothing happens
