@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What touches in a World.
+// Pairs and contacts of a World.
 #include <pybind11/stl.h>
-
-#include <algorithm>
-#include <utility>
 
 #include "world.hpp"
 
@@ -20,19 +17,9 @@ struct ContactCopy {
 };
 
 ContactCopy copy_of(const Contact& c) {
-    return {c.first, c.second, c.phase, c.normal, c.depth, {c.points.begin(), c.points.end()}};
-}
-
-// Its normal and depth are those of the deepest point.
-ContactCopy copy_of(const BodyContact& c) {
-    ContactCopy result{c.first, c.second, c.phase, glm::dvec3(0.0), 0.0, {}};
-    for (std::uint32_t i = 0; i < c.point_count; ++i) {
-        const convex::TrackedPoint& point = c.points[i];
+    ContactCopy result{c.first, c.second, c.phase, c.normal, c.depth, {c.points.begin(), c.points.end()}};
+    for (const convex::TrackedPoint& point : c.body_points)
         result.points.push_back({point.contact.position, point.contact.depth});
-        if (i > 0 && point.contact.depth <= result.depth) continue;
-        result.depth = point.contact.depth;
-        result.normal = point.normal;
-    }
     return result;
 }
 
@@ -40,10 +27,6 @@ std::vector<ContactCopy> contacts_of(const PyWorld& world) {
     return world.ask([](const World& w) {
         std::vector<ContactCopy> result;
         for (const Contact& c : w.contacts()) result.push_back(copy_of(c));
-        for (const BodyContact& c : w.body_contacts()) result.push_back(copy_of(c));
-        const auto order = [](const ContactCopy& c) { return std::pair(c.first.object.index, c.second.object.index); };
-        std::stable_sort(result.begin(), result.end(),
-                         [&](const ContactCopy& a, const ContactCopy& b) { return order(a) < order(b); });
         return result;
     });
 }
@@ -67,7 +50,7 @@ py::array pairs_of(const PyWorld& world) {
 }  // namespace
 
 void bind_world_contacts(py::module_& module, py::class_<PyWorld>& type) {
-    py::class_<ContactCopy>(module, "Contact", "Two objects that touch, or that did in the update before.")
+    py::class_<ContactCopy>(module, "Contact", "Two objects that touch, or that have ended touching in this update.")
         .def_property_readonly("first", [](const ContactCopy& c) { return c.first; })
         .def_property_readonly("second", [](const ContactCopy& c) { return c.second; })
         .def_property_readonly(
