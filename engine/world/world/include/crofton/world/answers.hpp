@@ -224,13 +224,12 @@ struct Contact {
     ObjectRef first, second;  // ordered as in ObjectPair; the first is body a
     ContactPhase phase = ContactPhase::began;
     mesh::Containment inside = mesh::Containment::none;
-    glm::dvec3 normal{0.0};  // unit, from the first to the second; zero where no direction is known
-    // The distance along the normal by which the second must move to end the contact. Between meshes this requires
-    // WorldOptions::mesh_depth; without it, `depth` is the depth of the deepest point. So it is between bodies, which
-    // have a normal for each point; negative: the gap.
+    glm::dvec3 normal{0.0};  // unit, from the first to the second; zero if no direction is known
+    // The depth of the deepest point; negative: a gap between bodies. With WorldOptions::mesh_depth, between meshes the
+    // distance along the normal by which the second must move to end the contact.
     double depth = 0.0;
-    std::span<const collide::ContactPoint>
-        points;  // in world coordinates; at most four; none if a mesh is inside another, or of two bodies
+    // In world coordinates, at most four. None if a mesh is inside another, or for two bodies, which have body_points.
+    std::span<const collide::ContactPoint> points;
     std::span<const mesh::MeshContact> triangles;      // of two meshes, or a mesh and a box
     std::span<convex::TrackedPoint> body_points = {};  // of two bodies
 };
