@@ -6,7 +6,7 @@
 //     --live=N, --part=N      among so many objects, of which an Nth changes in an update; 20,000 and 100
 //   bench_world --changes     what an update costs in which one object comes, goes, moves or changes, and queries
 //                             among what moves
-//   bench_world --bytes       bytes an object
+//   bench_world --bytes       bytes an object, as CSV
 //   bench_world --stacks      what an update of a thousand stacked crates costs, as bodies and as boxes
 //   bench_world --regions     a World of a thousand regions beside one of a million objects
 //   --frames=N                instead of 200
@@ -130,6 +130,7 @@ int main(int argc, char** argv) {
         return 0;
     }
     if (options.bytes) {
+        std::printf("# command: bench_world --bytes --target=%s\n", target);
         crofton::bench::bytes();
         return 0;
     }

@@ -68,12 +68,13 @@ double bytes_after(std::size_t count, const WorldOptions& options, Work work) {
 }  // namespace
 
 void bytes() {
-    std::printf("bytes an object\n%8s  %-28s %10s %10s %10s\n", "objects", "", "at rest", "all move", "churning");
+    std::printf(
+        "# bytes an object: cubes that rest; that all move; of which a hundredth is replaced in each of 100 updates\n");
+    std::printf("objects,finds,at rest,all move,churning\n");
     for (const std::size_t count : {std::size_t{1000}, std::size_t{10000}, std::size_t{100000}, std::size_t{1000000}})
         for (const bool pairs : {false, true}) {
             const WorldOptions options{.pairs = pairs};
-            std::printf("%8zu  %-28s %10.1f %10.1f %10.1f\n", count,
-                        pairs ? "pairs and contacts" : "neither pairs nor contacts",
+            std::printf("%zu,%s,%.0f,%.0f,%.0f\n", count, pairs ? "pairs and contacts" : "neither",
                         bytes_after(count, options, [](Cubes& cubes) { cubes.update(30); }),
                         bytes_after(count, options, [](Cubes& cubes) { cubes.move_all(6); }),
                         bytes_after(count, options, [](Cubes& cubes) { cubes.replace_some(100, 100); }));
