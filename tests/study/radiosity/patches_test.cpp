@@ -27,7 +27,7 @@ double area_of(const TriangleMesh& mesh) {
 }  // namespace
 
 TEST_SUITE("radiosity/patches") {
-    TEST_CASE("patches keep which triangle is whose, and each triangle's area; a patch's area is their sum") {
+    TEST_CASE("patches keep which triangle is whose, and each triangle's area, which add up to a patch's") {
         shapes::Shape room;
         room.room({1, 2, 3}, {4, 4, 9}, 0);
         const std::vector<Material> materials(6);
