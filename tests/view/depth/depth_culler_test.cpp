@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <crofton/sampling/sampling.hpp>
 #include <limits>
 #include <set>
@@ -267,6 +268,68 @@ TEST_CASE("ground that reaches behind the eye hides no more than it covers") {
         camera.near_distance = random.index(2) == 0 ? 0.1 : 2.0;
         camera.aspect = 160.0 / 90.0;
         const Checked c = check(scene, camera, 160, 90, seed, culler);
+        CHECK(c.lost == 0);
+        CHECK(c.too_near == 0);
+    }
+}
+
+// Hills whose coordinates lie far from 0 beside hills near 0, before the eye. What is drawn differs from what was cut
+// by `move`.
+template <class Move>
+Checked check_moved_hills(std::uint64_t seed, DepthCuller& culler, float position_error, Move move) {
+    oracle::NearMisses random(seed);
+    Scene scene;
+    for (int i = 0; i < 2; ++i) {
+        const double reach = i == 0 ? 0.0 : std::exp2(random.number(4.0, 13.0));
+        const glm::vec3 offset(reach * random.number(-1, 1), reach * random.number(-0.1, 0.1),
+                               reach * random.number(-1, 1));
+        const auto squares = static_cast<std::uint32_t>(3 + random.index(20));
+        TriangleMesh mesh = hills(squares, 12.0f, float(random.number(0.5, 4.0)), random);
+        for (glm::vec3& p : mesh.positions) p += offset;
+        CutMesh& cut = scene.meshes.emplace_back(std::move(mesh), static_cast<std::uint32_t>(1 + random.index(16)));
+        for (glm::vec3& p : cut.mesh.positions) move(p, random);
+        scene.objects.push_back({&cut, glm::translate(glm::dmat4(1.0), -glm::dvec3(offset)), random.index(2) == 0});
+        scene.objects.back().position_error = position_error;
+    }
+    Camera camera;
+    camera.position = {random.number(-12, 12), random.number(0.0, 6.0), random.number(-12, 12)};
+    camera.forward = glm::dvec3(random.number(-1, 1), random.number(-0.9, 0.1), random.number(-1, 1));
+    camera.near_distance = 0.1;
+    camera.aspect = 160.0 / 90.0;
+    return check(scene, camera, 160, 90, seed, culler);
+}
+
+TEST_CASE("renderers that round products of large coordinates lose nothing") {
+    DepthCuller culler;
+    Checked sum;
+    for (std::uint64_t seed = 1; seed <= 150; ++seed) {
+        CAPTURE(seed);
+        // Two units in the last place are at most 4 · 2^-24 of each product, which is what a renderer may be off by.
+        const Checked c = check_moved_hills(seed, culler, 0.0f, [](glm::vec3& p, oracle::NearMisses& random) {
+            for (glm::length_t k = 0; k < 3; ++k) {
+                const float toward = random.index(2) == 0 ? HUGE_VALF : -HUGE_VALF;
+                if (p[k] != 0.0f) p[k] = std::nextafter(std::nextafter(p[k], toward), toward);
+            }
+        });
+        CHECK(c.lost == 0);
+        CHECK(c.too_near == 0);
+        sum.listed += c.listed, sum.owners += c.owners;
+    }
+    // And the bound is not so wide that everything is listed.
+    CHECK(sum.listed < 3 * sum.owners);
+}
+
+TEST_CASE("vertices that are drawn elsewhere by no more than position_error lose nothing") {
+    DepthCuller culler;
+    for (std::uint64_t seed = 1; seed <= 150; ++seed) {
+        CAPTURE(seed);
+        const float error = 0.001f * static_cast<float>(1 + seed % 20);
+        const Checked c = check_moved_hills(seed, culler, error, [&](glm::vec3& p, oracle::NearMisses& random) {
+            const glm::dvec3 way(random.number(-1, 1), random.number(-1, 1), random.number(-1, 1));
+            // The sum rounds, by less than a thousandth where coordinates are below 2^13.
+            const double length = std::max(0.0, double{error} - 0.001);
+            p = glm::vec3(glm::dvec3(p) + length / std::max(glm::length(way), 1e-3) * way);
+        });
         CHECK(c.lost == 0);
         CHECK(c.too_near == 0);
     }

@@ -112,6 +112,7 @@ struct PlacedMesh {
     const CutMesh* mesh;
     glm::dmat4 world;
     bool one_sided = false, hides = true;
+    float position_error = 0.0f;
 };
 
 inline glm::dmat4 placed(const glm::dvec3& at, const glm::dvec3& scale, const glm::dvec3& axis, double angle) {

@@ -24,7 +24,7 @@ inline Checked check(const Scene& scene, const Camera& camera, std::uint32_t wid
     const glm::dmat4 to_clip = world_to_clip(camera);
     std::vector<depth::DepthObject> objects;
     for (const PlacedMesh& o : scene.objects)
-        objects.push_back({&o.mesh->clusters, glm::mat4(to_clip * o.world), o.one_sided, o.hides, 0.0f});
+        objects.push_back({&o.mesh->clusters, glm::mat4(to_clip * o.world), o.one_sided, o.hides, o.position_error});
     const auto found = culler.find_visible(objects, {width, height});
     REQUIRE(found);
     std::vector<std::vector<char>> listed;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <crofton/depth/depth_culler.hpp>
 
+#include <hwy/cache_control.h>
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -49,6 +50,7 @@ class NearestFirst {
             if (++at_ == kBins) return at_ = kBins - 1, false;
         item = items_[first_[at_]];
         first_[at_] = item.next;
+        if (item.next != kEnd) hwy::Prefetch(&items_[item.next]);
         return true;
     }
 

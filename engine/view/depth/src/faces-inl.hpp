@@ -121,6 +121,7 @@ class FaceSetup {
             hn::Or(hn::Or(hn::Eq(number[0], number[1]), hn::Eq(number[1], number[2])), hn::Eq(number[2], number[0]));
         const Mask given = hn::Not(hn::RebindMask(d, equal));
         const Mask drawn = object_.one_sided ? hn::AndNot(back, given) : given;
+        if (hn::AllFalse(d, drawn)) return hn::Store(hn::Zero(integers), integers, f.flags + i);
         const Mask solid = hn::And(drawn, faced);
 
         set_rectangle(f, i, hn::Sub(low_x, move), hn::Add(high_x, move), hn::Sub(low_y, move), hn::Add(high_y, move));

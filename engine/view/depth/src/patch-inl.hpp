@@ -43,10 +43,6 @@ class PatchDrawer {
             set_near_faces();
         else
             set_faces();
-        if (object_.hides) {
-            close_edges();
-            exclude_corners();
-        }
         std::uint64_t visible = 0;
         for (std::uint64_t left = drawn_; left != 0; left &= left - 1) {
             const auto t = static_cast<std::uint32_t>(std::countr_zero(left));
@@ -133,13 +129,24 @@ class PatchDrawer {
     HWY_INLINE bool draw(std::uint32_t t) {
         Faces& f = faces(t);
         const bool always = (f.flags[lane(t)] & Faces::always) != 0;
-        const bool draws = object_.hides && (solid_ >> t & 1) != 0;
-        if (always && !draws) return true;
+        if (always && !hides(t)) return true;
         Rasterizer raster(picture_.tiles, picture_.infinitely_far, f, lane(t));
         if (raster.covers_nothing()) return always;
         if (!always && !raster.shows()) return false;
-        if (draws) raster.draw(limits_[t].lines, always ? limits_[t].count : 0, excluded_);
+        if (!hides(t)) return true;
+        close_surface();
+        if (hides(t)) raster.draw(limits_[t].lines, always ? limits_[t].count : 0, excluded_);
         return true;
+    }
+
+    [[nodiscard]] bool hides(std::uint32_t t) const { return object_.hides && (solid_ >> t & 1) != 0; }
+
+    // Before the first triangle is drawn; clusters of which none shows do without.
+    void close_surface() {
+        if (surface_is_closed_) return;
+        surface_is_closed_ = true;
+        close_edges();
+        exclude_corners();
     }
 
     HWY_INLINE void close_edges() {
@@ -220,8 +227,7 @@ class PatchDrawer {
         for (std::int32_t j = first_sample(y - r, height); j <= y1; ++j)
             for (std::int32_t i = x0; i <= x1; ++i)
                 if (excluded_.count < ExcludedSamples::kMax)
-                    excluded_.samples[excluded_.count++] = {static_cast<std::uint16_t>(i),
-                                                            static_cast<std::uint16_t>(j)};
+                    excluded_.add(i, j);
                 else
                     solid_ = 0;
     }
@@ -231,6 +237,7 @@ class PatchDrawer {
     const PatchData& patch_;
     std::uint64_t drawn_ = 0, solid_ = 0;          // triangles
     std::uint8_t closed_[Cluster::kMaxTriangles];  // edges of solid ones, one bit each
+    bool surface_is_closed_ = false;
     ExcludedSamples excluded_;
     PatchVertices vertices_;
     alignas(64) float radius_[kMaxPatchVertices];

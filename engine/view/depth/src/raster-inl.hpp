@@ -3,6 +3,7 @@
 // instruction set (Highway).
 #include <hwy/highway.h>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -33,11 +34,18 @@ struct ExcludedSamples {
     Sample samples[kMax];
     std::uint32_t count = 0;
 
-    [[nodiscard]] bool in_tile_row(std::int32_t ty) const {
-        for (std::uint32_t i = 0; i < count; ++i)
-            if (samples[i].y / 8 == ty) return true;
-        return false;
+    void add(std::int32_t x, std::int32_t y) {
+        samples[count++] = {static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
+        columns_ |= bit_of(x / 8), rows_ |= bit_of(y / 8);
     }
+    // False only if there is none in the tiles of that column or row.
+    [[nodiscard]] bool may_be_in_column(std::int32_t tx) const { return (columns_ & bit_of(tx)) != 0; }
+    [[nodiscard]] bool may_be_in_row(std::int32_t ty) const { return (rows_ & bit_of(ty)) != 0; }
+
+  private:
+    static std::uint64_t bit_of(std::int32_t tile) { return std::uint64_t{1} << (tile & 63); }
+
+    std::uint64_t columns_ = 0, rows_ = 0;
 };
 
 class Rasterizer {
@@ -94,7 +102,7 @@ class Rasterizer {
         for (std::int32_t ty = y0_ / 8; ty <= y1_ / 8; ++ty) {
             find_band(ty, lines, 3 + more_count);
             at_row_ = plane_at_row(ty);
-            spares_ = excluded.count != 0 && excluded.in_tile_row(ty);
+            spares_ = excluded.may_be_in_row(ty);
             Interval touched{x0_ / 8, x1_ / 8};
             if (!wide) {
                 for (std::int32_t tx = touched.first; tx <= touched.last; ++tx) draw_part(tx, ty, excluded);
@@ -254,14 +262,21 @@ class Rasterizer {
     HWY_INLINE void draw_part(std::int32_t tx, std::int32_t ty, const ExcludedSamples& excluded) {
         const std::size_t t = static_cast<std::size_t>(ty) * tiles_.columns + static_cast<std::size_t>(tx);
         if (tiles_.least[t] > plane_at_column(at_row_, tx) + spread_) return;  // nothing to raise
-        if (tiles_.written[t] == 0)
+        if (!meets_tile(tx)) return;
+        const bool spares = spares_ && excluded.may_be_in_column(tx);
+        if (tiles_.written[t] == 0) {
+            if (!spares && is_whole(tx, ty)) {
+                tiles_.written[t] = 1;
+                return write_tile<true>(tx, t);
+            }
             begin_tile(tiles_, static_cast<std::uint32_t>(tx), static_cast<std::uint32_t>(ty), t);
-        if (!spares_) return write_tile(tx, t);
+        }
+        if (!spares) return write_tile<false>(tx, t);
         float before[ExcludedSamples::kMax];
         float* const pixels = tiles_.pixels + t * kTilePixels;
         for (std::uint32_t k = 0; k < excluded.count; ++k)
             before[k] = pixels[excluded.samples[k].y % 8 * 8 + excluded.samples[k].x % 8];
-        write_tile(tx, t);
+        write_tile<false>(tx, t);
         bool restored = false;
         for (std::uint32_t k = 0; k < excluded.count; ++k) {
             if (excluded.samples[k].y / 8 != ty || excluded.samples[k].x / 8 != tx) continue;
@@ -271,6 +286,25 @@ class Rasterizer {
         if (restored) tiles_.least[t] = least_of(tiles_, t);
     }
 
+    // True if a sample of the tile lies between the lines.
+    [[nodiscard]] HWY_INLINE bool meets_tile(std::int32_t tx) const {
+        const DF d;
+        const VF first = hn::Set(d, static_cast<float>(8 * tx) + 0.5f);
+        const VF last = hn::Set(d, static_cast<float>(8 * tx) + 7.5f);
+        auto meets = hn::FirstN(d, 0);
+        for (std::size_t i = 0; i < kTile; i += hn::Lanes(d))
+            meets = hn::Or(meets, hn::And(hn::Le(hn::Load(d, low_ + i), last), hn::Ge(hn::Load(d, high_ + i), first)));
+        return !hn::AllFalse(d, meets);
+    }
+
+    // All of it is in the picture.
+    [[nodiscard]] HWY_INLINE bool is_whole(std::int32_t tx, std::int32_t ty) const {
+        return static_cast<std::uint32_t>(8 * tx + 8) <= tiles_.width &&
+               static_cast<std::uint32_t>(8 * ty + 8) <= tiles_.height;
+    }
+
+    // kFirst: nothing has been written there.
+    template <bool kFirst>
     HWY_INLINE void write_tile(std::int32_t tx, std::size_t t) {
         const DF d;
         float* const pixels = tiles_.pixels + t * kTilePixels;
@@ -281,7 +315,7 @@ class Rasterizer {
             const VF depth = hn::Sub(plane_at(x), below);
             for (std::size_t row = 0; row < kTile; ++row) {
                 float* const pixel = pixels + row * kTile + i;
-                const VF before = hn::Load(d, pixel);
+                const VF before = kFirst ? hn::Set(d, kNothing) : hn::Load(d, pixel);
                 const VF lower = hn::Max(hn::Add(depth, hn::Set(d, ups_[row])), farthest);
                 const auto within = hn::And(hn::Ge(x, hn::Set(d, low_[row])), hn::Le(x, hn::Set(d, high_[row])));
                 const VF after = hn::IfThenElse(within, hn::Max(before, lower), before);
