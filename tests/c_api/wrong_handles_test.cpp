@@ -108,6 +108,7 @@ void refuse_modules_queries(Table& table) {
     CROFTON_REFUSE(crofton_baked_scene_destroy);
     CROFTON_REFUSE(crofton_baked_scene_mesh_count);
     CROFTON_REFUSE(crofton_baked_scene_mesh);
+    CROFTON_REFUSE(crofton_baked_scene_clusters);
     CROFTON_REFUSE(crofton_baked_scene_instances);
     CROFTON_REFUSE(crofton_baked_scene_nodes);
     CROFTON_REFUSE(crofton_pvs_destroy);

@@ -118,7 +118,7 @@ TEST_SUITE("scene/scene") {
             &warnings);
         CHECK(scene.update().instances_invalid == 1);
         REQUIRE(warnings.size() == 1);
-        CHECK(warnings[0].find("1 instances left the range") != std::string::npos);
+        CHECK(warnings[0].find("1 instances are out of the range") != std::string::npos);
         CHECK(scene.layer_masks()[lost] == 0);
         CHECK(scene.layer_masks()[fine] == ~0u);
         CHECK(validate(scene.world_boxes()[lost]).has_value());
