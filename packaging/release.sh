@@ -48,3 +48,5 @@ for part in "${parts[@]}"; do
 done
 rm -f "$folder/.log"
 (cd "$folder" && sha256sum -- * >SHA256SUMS.new && grep -v SHA256SUMS SHA256SUMS.new >SHA256SUMS && rm SHA256SUMS.new && ls -sh)
+# With nothing but what has been made, in blank folders.
+packaging/test_release.py "$folder"
