@@ -332,6 +332,25 @@ TEST_SUITE("world/view_options") {
         CHECK(hidden > 100);
     }
 
+    TEST_CASE("an object's verdict does not depend on the order in which a view lists objects") {
+        const Crowd crowd;
+        ViewResult tree, ascending;
+        REQUIRE(crowd.world.view({.camera = crowd.camera, .order = cull::ResultOrder::tree}, tree).has_value());
+        REQUIRE(crowd.world.view({.camera = crowd.camera}, ascending).has_value());
+        REQUIRE(ascending.size() > 10);
+        REQUIRE(ascending.size() < crowd.objects.size());
+        for (const ObjectHandle object : crowd.objects) {
+            const auto listed = std::find(ascending.ids().begin(), ascending.ids().end(), object.index);
+            const auto expected =
+                listed == ascending.ids().end()
+                    ? occlude::Verdict::outside
+                    : static_cast<occlude::Verdict>(
+                          ascending.verdicts()[static_cast<std::size_t>(listed - ascending.ids().begin())]);
+            CHECK(ascending.verdict_of(object.index) == expected);
+            CHECK(tree.verdict_of(object.index) == expected);
+        }
+    }
+
     TEST_CASE("many views in ascending order are shared among the executor's threads") {
         const Crowd crowd;
         std::array<ViewRequest, 3> requests;

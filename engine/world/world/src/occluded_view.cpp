@@ -61,20 +61,19 @@ std::span<const std::uint32_t> ViewResult::occluded_ids() const {
     return has_occlusion() ? std::span<const std::uint32_t>(occluded_->occluded) : std::span<const std::uint32_t>();
 }
 
+// Searches lists in tree order one by one.
 occlude::Verdict ViewResult::verdict_of(std::uint32_t index) const {
     if (index >= kFirstRegionIndex) return region_verdict_of(index);
-    if (has_picture()) {
-        const auto listed = std::find(ids().begin(), ids().end(), index);
-        if (listed == ids().end()) return occlude::Verdict::outside;
-        const auto at = static_cast<std::size_t>(listed - ids().begin());
-        if (!verdicts().empty()) return static_cast<occlude::Verdict>(verdicts()[at]);
+    const bool by_occluders = has_occlusion();
+    const auto listed = by_occluders ? occluded_->visible.ids() : ids(), hidden = occluded_ids();
+    const auto seen = by_occluders ? occluded_->visible.verdicts() : verdicts();
+    const bool ascending = by_occluders || (!seen.empty() && !has_picture());
+    const auto place = ascending ? std::lower_bound(listed.begin(), listed.end(), index)
+                                 : std::find(listed.begin(), listed.end(), index);
+    if (place != listed.end() && *place == index) {
+        const auto at = static_cast<std::size_t>(place - listed.begin());
+        if (!seen.empty()) return static_cast<occlude::Verdict>(seen[at]);
         return at < inside_count() ? occlude::Verdict::inside : occlude::Verdict::straddling;
-    }
-    const auto ascending = hides_ ? occluded_->visible.ids() : ids(), hidden = occluded_ids();
-    const auto at = std::lower_bound(ascending.begin(), ascending.end(), index);
-    if (at != ascending.end() && *at == index) {
-        const auto seen = hides_ ? occluded_->visible.verdicts() : verdicts();
-        return static_cast<occlude::Verdict>(seen[static_cast<std::size_t>(at - ascending.begin())]);
     }
     return std::binary_search(hidden.begin(), hidden.end(), index) ? occlude::Verdict::occluded
                                                                    : occlude::Verdict::outside;
