@@ -81,7 +81,8 @@ crofton_status crofton_view_result_list(const crofton_view_result* result, const
     CROFTON_CHECK(check_viewed(*result, *world, __func__));
     const bool is_many = result->of == Of::many_of_world;
     const std::size_t size = is_many ? result->many.size() : result->one.size();
-    if (first > size) return report(CROFTON_OUT_OF_RANGE, __func__, "`first` is beyond the number of visible objects", first);
+    if (first > size)
+        return report(CROFTON_OUT_OF_RANGE, __func__, "`first` is beyond the number of visible objects", first);
     for (std::size_t i = 0; i < std::min(capacity, size - first); ++i) {
         objects[i] = to_c_ref(is_many ? result->many[first + i] : result->one[first + i]);
         if (view_masks) view_masks[i] = is_many ? result->many.view_mask(first + i) : 1u;

@@ -95,7 +95,8 @@ bool is_in_the_way(const convex::Impact& touch, const convex::BodyAtPose& body, 
 
 Result<void> check(const convex::Body& shape, const RigidTransform& pose) {
     if (!shape.is_bounded())
-        return fail(ErrorCode::unsupported, kNoItem, "world: a half-space overlaps nearly everything; use a bounded body");
+        return fail(ErrorCode::unsupported, kNoItem,
+                    "world: a half-space overlaps nearly everything; use a bounded body");
     return convex::validate_pose(pose);
 }
 

@@ -101,7 +101,8 @@ Result<ObjectHandle> World::add(const ObjectDescription& description) {
         return fail(ErrorCode::invalid_argument, kNoItem,
                     "world: a bound is given in the world's coordinates, without node and transform");
     if (!has_mesh && description.only_occludes)
-        return fail(ErrorCode::invalid_argument, kNoItem, "world: an object that only occludes needs a mesh with occluders");
+        return fail(ErrorCode::invalid_argument, kNoItem,
+                    "world: an object that only occludes needs a mesh with occluders");
     const auto item = s.index.add(description.layers);
     if (!item) return tl::unexpected(item.error());
     if (auto valid = hangs ? s.attach_mesh(object, description) : validate(description.bound, kNoItem); !valid) {

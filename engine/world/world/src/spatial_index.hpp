@@ -96,8 +96,8 @@ class SpatialIndex {
     [[nodiscard]] const Obb& box(ItemId item) const;  // of an item that has one
     [[nodiscard]] std::uint32_t layers(ItemId item) const { return tree_.structure().items().layer_masks()[item]; }
     [[nodiscard]] const boxtree::BoxTree& tree() const { return tree_; }
-    // Boxes by item, side by side: of items in the tree their own, of others what keep_box() was given last. Until then,
-    // and after keep_no_box(), a box that validate(Obb) refuses.
+    // Boxes by item, side by side: of items in the tree their own, of others what keep_box() was given last. Until
+    // then, and after keep_no_box(), a box that validate(Obb) refuses.
     [[nodiscard]] std::span<const Obb> kept_boxes() const { return tree_.boxes(); }
     void keep_box(ItemId item, const Obb& box) {
         if (items_[item].place != Place::resting) tree_.keep_box(item, box);

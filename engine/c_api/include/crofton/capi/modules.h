@@ -41,7 +41,7 @@ typedef struct crofton_depth_object {
 typedef struct crofton_depth_statistics {
     size_t size;
     uint64_t objects_listed;  /* with at least one triangle */
-    uint64_t objects_asked;   /* their bounds may cover a sample, or lie behind the near plane */
+    uint64_t objects_asked;   /* their bounds may cover a sample of the picture */
     uint64_t clusters_asked;  /* those of objects that were not hidden as a whole */
     uint64_t clusters_drawn;  /* not hidden as a whole */
     uint64_t triangles_drawn; /* those of the drawn clusters */

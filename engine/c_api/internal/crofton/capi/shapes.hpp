@@ -33,7 +33,8 @@ template <class Visit>
             const PlacedBody placed(&shape->body, function);
             CROFTON_CHECK(placed.status());
             if (placed.body().kind() == convex::Kind::half_space)
-                return report(CROFTON_UNSUPPORTED, function, "a half-space overlaps nearly everything; use a bounded body");
+                return report(CROFTON_UNSUPPORTED, function,
+                              "a half-space overlaps nearly everything; use a bounded body");
             return visit(placed.body(), placed.pose());
         }
         default:

@@ -13,8 +13,8 @@ struct BodyMaker {
     // A capsule along y. Requires 0 ≤ half_height and 0 ≤ radius, both finite.
     [[nodiscard]] static Body capsule(double half_height, double radius);
     // The triangles of a mesh under a linear map: each vertex is multiplied by `*map`, in double. nullptr: no map.
-    // `bounds` are around the mesh's own vertices. The map must stay alive, as the mesh must. Under a map that flattens,
-    // each query visits all triangles.
+    // `bounds` are around the mesh's own vertices. The map must stay alive, as the mesh must. Under a map that
+    // flattens, each query visits all triangles.
     //
     // Serves overlap, distance, depth, manifolds and casts; rays need the mesh's own frame.
     [[nodiscard]] static Body mesh(const mesh::MeshTree& mesh, const Aabb& bounds, const glm::dmat3* map);

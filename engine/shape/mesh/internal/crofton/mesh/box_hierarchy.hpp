@@ -30,7 +30,8 @@ struct BoxHierarchy {
 
 // Splits by surface area in sixteen bins. The chance that a uniform line meets a box inside another is exactly the
 // ratio of their surface areas (theory.md, section 2). So this is the one criterion that fits, also for which of the
-// splits share a node. Leaves hold up to `leaf_size` items; they mostly hold a multiple of `granule`, a power of two up to
+// splits share a node. Leaves hold up to `leaf_size` items; they mostly hold a multiple of `granule`, a power of two up
+// to
 // 16. The same hierarchy on every machine. Requires 1 to 2^30 boxes, none of them empty.
 [[nodiscard]] BoxHierarchy build_box_hierarchy(std::span<const FloatBox> boxes, std::uint32_t leaf_size,
                                                std::uint32_t granule = 1);

@@ -45,7 +45,7 @@ struct VisibleCluster {
 
 struct DepthStatistics {
     std::uint64_t objects_listed = 0;   // with at least one triangle
-    std::uint64_t objects_asked = 0;    // whose bounds may cover a sample; also all behind the near plane
+    std::uint64_t objects_asked = 0;    // their bounds may cover a sample of the picture
     std::uint64_t clusters_asked = 0;   // of the objects that were not hidden as a whole
     std::uint64_t clusters_drawn = 0;   // that were not hidden as a whole
     std::uint64_t triangles_drawn = 0;  // of those clusters
