@@ -61,11 +61,13 @@ TEST_SUITE("engines/documentation") {
                                       lines_of("samples/hello_frame/main.cpp"),
                                       lines_of("samples/c_hello/main.c"),
                                       lines_of("samples/executors/tbb_executor.hpp")};
-        // The pages take their examples from tests/<room>/<module>/guide_test.cpp.
+        // The pages take their examples from tests/<room>/<module>/guide_test.cpp and …_guide_test.cpp.
         for (const auto& file : std::filesystem::recursive_directory_iterator(CROFTON_SOURCE_DIR "/tests")) {
-            if (file.path().filename() != "guide_test.cpp") continue;
+            const std::string name = file.path().filename().string();
+            if (!name.ends_with("guide_test.cpp")) continue;
             sources.push_back(lines_of(file.path().lexically_relative(CROFTON_SOURCE_DIR).string()));
-            pages.push_back({"docs/" + file.path().parent_path().filename().string() + ".md", 1});
+            if (name == "guide_test.cpp")
+                pages.push_back({"docs/" + file.path().parent_path().filename().string() + ".md", 1});
         }
         for (const auto& file : std::filesystem::directory_iterator(CROFTON_SOURCE_DIR "/docs"))
             if (file.path().extension() == ".md") pages.push_back({"docs/" + file.path().filename().string(), 0});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <crofton/core/drop_spare.hpp>
 #include <crofton/core/recovery.hpp>
 #include <crofton/core/select.hpp>
 #include <crofton/mesh/box_hierarchy.hpp>
@@ -304,8 +305,8 @@ Result<MeshTree> MeshTreeBuilder::build() {
         set_leaf_ranges(0);
         made().refit.root.end_leaf[0] = static_cast<std::uint32_t>(made().leaves.size());
     }
-    made().nodes.shrink_to_fit();
-    made().refit.nodes.shrink_to_fit();
+    crofton::detail::drop_spare(made().nodes);
+    crofton::detail::drop_spare(made().refit.nodes);
     if (options_.rays) made().take_ray_nodes(std::move(hierarchy_.nodes), leaf_of_);
     return std::move(tree_);
 }

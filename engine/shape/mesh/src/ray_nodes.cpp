@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The hierarchy of aligned boxes over a mesh tree's leaves, for rays.
 #include <algorithm>
+#include <crofton/core/drop_spare.hpp>
 #include <crofton/core/recovery.hpp>
 #include <crofton/mesh/box_hierarchy.hpp>
 #include <crofton/mesh/mesh_parts.hpp>
@@ -51,7 +52,7 @@ void MeshParts::take_ray_nodes(Vector<BoxNode> hierarchy, std::span<const std::u
         for (std::uint32_t lane = 0; lane < node.count; ++lane)
             if (std::uint32_t& child = node.child[lane]; child & kMeshLeaf)
                 child = leaf_of[child & ~kMeshLeaf] | kMeshLeaf;
-    hierarchy.shrink_to_fit();
+    crofton::detail::drop_spare(hierarchy);
     ray_nodes = std::move(hierarchy);
 }
 

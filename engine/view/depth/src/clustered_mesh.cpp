@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <crofton/core/drop_spare.hpp>
 #include <glm/common.hpp>
 #include <string>
 
@@ -43,12 +44,6 @@ Result<void> check(std::span<const glm::vec3> positions, std::span<const std::ui
         if (indices[i] >= positions.size())
             return fail(ErrorCode::out_of_range, i, "clusters: an index is out of range");
     return {};
-}
-
-// Unlike shrink_to_fit, tells when memory ends.
-template <class T>
-void drop_spare(Vector<T>& list) {
-    if (list.size() != list.capacity()) list = Vector<T>(list.begin(), list.end());
 }
 
 }  // namespace
@@ -146,9 +141,9 @@ Result<ClusteredMesh> ClusteredMesh::cut(std::span<const glm::vec3> positions, s
     set_aligned_bound(mesh.bound_, positions, indices);
     PatchBuilder builder(mesh, positions, indices);
     for (const Cluster& cluster : mesh.clusters_) builder.add(cluster);
-    drop_spare(mesh.clusters_);
-    drop_spare(mesh.coordinates_);
-    drop_spare(mesh.blocks_);
+    crofton::detail::drop_spare(mesh.clusters_);
+    crofton::detail::drop_spare(mesh.coordinates_);
+    crofton::detail::drop_spare(mesh.blocks_);
     return mesh;
 }
 

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <crofton/core/memory.hpp>
+#include <iterator>
+
+namespace crofton::detail {
+
+// Gives back the memory that a list does not use. Unlike shrink_to_fit, it fails as other allocations do.
+template <class T>
+void drop_spare(Vector<T>& list) {
+    if (list.size() != list.capacity())
+        list = Vector<T>(std::make_move_iterator(list.begin()), std::make_move_iterator(list.end()));
+}
+
+}  // namespace crofton::detail
