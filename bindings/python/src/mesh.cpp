@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <crofton/fit/fit.hpp>
+#include <crofton/mesh/mesh_distance.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <glm/geometric.hpp>
 #include <limits>

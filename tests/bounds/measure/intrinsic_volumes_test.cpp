@@ -195,15 +195,16 @@ TEST_SUITE("measure/intrinsic_volumes") {
         Random random(71);
         for (int round = 0; round < 100; ++round) {
             std::vector<glm::dvec2> ring;
-            const int n = 3 + round % 9;
-            for (int k = 0; k < n; ++k) {
-                const double angle = 2.0 * pi * (k + 0.9 * random.uniform()) / n;
+            const std::size_t n = 3 + static_cast<std::size_t>(round) % 9;
+            for (std::size_t k = 0; k < n; ++k) {
+                const double angle =
+                    2.0 * pi * (static_cast<double>(k) + 0.9 * random.uniform()) / static_cast<double>(n);
                 ring.emplace_back(3.0 * std::cos(angle), 1.3 * std::sin(angle));
             }
             TriangulationMeasures fan;
             std::vector<IntrinsicVolumes> triangles;
-            for (int k = 0; k < n; ++k) fan.boundary += glm::distance(ring[k], ring[(k + 1) % n]);
-            for (int k = 1; k + 1 < n; ++k) {
+            for (std::size_t k = 0; k < n; ++k) fan.boundary += glm::distance(ring[k], ring[(k + 1) % n]);
+            for (std::size_t k = 1; k + 1 < n; ++k) {
                 const glm::dvec2 u = ring[k] - ring[0], v = ring[k + 1] - ring[0];
                 const double area = 0.5 * std::abs(u.x * v.y - u.y * v.x);
                 fan.triangles += 1.0;
