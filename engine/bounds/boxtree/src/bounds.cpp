@@ -59,9 +59,10 @@ void clear_lane(Node& node, unsigned lane) {
     node.layers_any[lane] = node.layers_all[lane] = 0;
 }
 
+// A rebuild may still read a box that keep_box() was given, whose half extents have other signs.
 double longest_edge(const Obb& box) {
     double longest = 0.0;
-    for (int k = 0; k < 3; ++k) longest = std::max(longest, double{box.half_extents[k]});
+    for (int k = 0; k < 3; ++k) longest = std::max(longest, std::abs(double{box.half_extents[k]}));
     return longest * (1.0 + kMaxAxisDeviation);
 }
 
