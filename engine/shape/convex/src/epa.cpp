@@ -26,7 +26,8 @@ class Polytope {
 
     // False if the difference body is flat: `result` then has an upper bound near 0.
     bool start(const Simplex& s);
-    void grow();
+    // Grows until the depth is known, or is above `enough`.
+    void grow(double enough = std::numeric_limits<double>::infinity());
     [[nodiscard]] const Depth& result() const { return result_; }
 
   private:
@@ -175,13 +176,14 @@ bool Polytope::insert(int seen_from) {
     return true;
 }
 
-void Polytope::grow() {
+void Polytope::grow(double enough) {
     for (;;) {
         const int f = nearest_face();
         if (f < 0) return;
         double along = 0.0;
         corner_[corners_] = support(face_[f].normal, along);
         finish(f);
+        if (result_.lower > enough) return;
         const Corner& next = corner_[corners_];
         bool known = along - face_[f].distance <= 4.0 * pair_.error;
         for (int i = 0; i < corners_ && !known; ++i)
@@ -230,6 +232,13 @@ Depth expand(const Pair& pair, const Simplex& start) {
         depth.has_face = true;
     }
     return depth;
+}
+
+bool is_deeper(const Pair& pair, const Simplex& start, double limit) {
+    Polytope polytope(pair);
+    if (!polytope.start(start)) return false;
+    polytope.grow(limit);
+    return polytope.result().lower > limit;
 }
 
 }  // namespace crofton::convex

@@ -14,6 +14,8 @@ struct Depth {
 
 // Expanding polytope from the simplex in which the origin was found. The cores meet.
 [[nodiscard]] Depth expand(const Pair& pair, const Simplex& start);
+// Tests whether the cores, which meet, are proved to overlap by more than `limit`. Stops as soon as that is known.
+[[nodiscard]] bool is_deeper(const Pair& pair, const Simplex& start, double limit);
 
 // All separating axes of two polytopes: normals of triangles and products of edges. Slow; for what `expand` leaves.
 [[nodiscard]] Depth depth_by_axes(const Pair& pair, const Depth& known);

@@ -60,6 +60,16 @@ glm::dvec3 face_normal(const BodyAtPose& placed, int face) {
     return local == glm::dvec3(0.0) ? local : turned_normal(rotation, local);
 }
 
+// Returns how far a point is beyond the plane of the hull's surface that it is farthest beyond; negative inside.
+double beyond_planes(const Hull& hull, const glm::dvec3& point) {
+    const double *x = hull.plane_column(0), *y = hull.plane_column(1), *z = hull.plane_column(2),
+                 *level = hull.plane_column(3);
+    double most = -HUGE_VAL;
+    for (std::size_t i = 0; i < hull.triangles().size() / 3; ++i)
+        most = std::max(most, x[i] * point.x + y[i] * point.y + z[i] * point.z - level[i]);
+    return most;
+}
+
 double depth_of(const UnionNormals::Contact& contact) {
     double depth = -HUGE_VAL;
     for (int i = 0; i < contact.count; ++i) depth = std::max(depth, contact.points[i].depth);
@@ -151,9 +161,17 @@ bool UnionNormals::Neighbor::holds(const glm::dvec3& point) const {
         const glm::dvec3 p = glm::abs(to_local * (point - body.pose.translation)), &half = body.body.half_extents();
         return p.x <= half.x + tolerance && p.y <= half.y + tolerance && p.z <= half.z + tolerance;
     }
+    const double within = body.body.radius() + tolerance;
+    if (const Hull* hull = body.body.hull()) {
+        // Frames are rigid to 1e-6, planes to their error.
+        const glm::dvec3 offset = point - body.pose.translation;
+        const double slack = (1e-5 + 2.0 * hull->plane_error()) * (reach + glm::length(offset));
+        const double beyond = beyond_planes(*hull, glm::transpose(body.pose.rotation) * offset);
+        if (beyond > within + slack) return false;
+        if (beyond < -slack) return true;
+    }
     static const Body kPoint = *Body::sphere(0.0);
     const RigidTransform at{glm::dmat3(1.0), point};
-    const double within = body.body.radius() + tolerance;
     return !(nearest_points(Pair({kPoint, at}, body), nullptr, 0.5 * within, within).lower > within);
 }
 
