@@ -21,6 +21,20 @@ struct TemporaryFile {
     ~TemporaryFile() { std::filesystem::remove(path); }
 };
 
+// A baked scene and its tree.
+struct Opened {
+    BakedScene baked;
+    Tree tree;
+};
+
+template <class Open>
+Opened opened(const TemporaryFile& file, Open open) {
+    crofton_baked_scene* baked = nullptr;
+    crofton_tree* tree = nullptr;
+    REQUIRE(open(file.path.c_str(), nullptr, &baked, &tree) == CROFTON_OK);
+    return {BakedScene(baked), Tree(tree)};
+}
+
 // A row of tetrahedra along −z, every second in a layer of its own.
 Scene row(int count) {
     Scene scene = make_scene();
@@ -79,11 +93,7 @@ TEST_SUITE("capi/bake") {
         const Scene scene = row(3);
         const TemporaryFile file;
         REQUIRE(crofton_scene_bake(scene.get(), file.path.c_str(), nullptr) == CROFTON_OK);
-        crofton_baked_scene* opened = nullptr;
-        crofton_tree* opened_tree = nullptr;
-        REQUIRE(crofton_baked_scene_open(file.path.c_str(), nullptr, &opened, &opened_tree) == CROFTON_OK);
-        const Tree tree(opened_tree);
-        BakedScene baked(opened);
+        auto [baked, tree] = opened(file, crofton_baked_scene_open);
         crofton_clustered_mesh* handle = nullptr;
         CHECK(crofton_baked_scene_clusters(nullptr, 0, &handle) == CROFTON_BAD_HANDLE);
         CHECK(crofton_baked_scene_clusters(baked.get(), 0, nullptr) == CROFTON_INVALID_ARGUMENT);
@@ -111,11 +121,7 @@ TEST_SUITE("capi/bake") {
         const Scene scene = row(40);
         const TemporaryFile file;
         REQUIRE(crofton_scene_bake(scene.get(), file.path.c_str(), nullptr) == CROFTON_OK);
-        crofton_baked_scene* opened = nullptr;
-        crofton_tree* opened_tree = nullptr;
-        REQUIRE(crofton_baked_scene_open(file.path.c_str(), nullptr, &opened, &opened_tree) == CROFTON_OK);
-        BakedScene baked(opened);
-        const Tree tree(opened_tree);
+        auto [baked, tree] = opened(file, crofton_baked_scene_open);
 
         std::size_t count = 0;
         REQUIRE(crofton_baked_scene_mesh_count(baked.get(), &count) == CROFTON_OK);
@@ -167,11 +173,7 @@ TEST_SUITE("capi/bake") {
         const TemporaryFile file;
         const Scene large = row(4000), small = row(1);
         REQUIRE(crofton_scene_bake(large.get(), file.path.c_str(), nullptr) == CROFTON_OK);
-        crofton_baked_scene* opened = nullptr;
-        crofton_tree* opened_tree = nullptr;
-        REQUIRE(crofton_baked_scene_open(file.path.c_str(), nullptr, &opened, &opened_tree) == CROFTON_OK);
-        const BakedScene baked(opened);
-        const Tree tree(opened_tree);
+        const auto [baked, tree] = opened(file, crofton_baked_scene_open);
         REQUIRE(crofton_scene_bake(small.get(), file.path.c_str(), nullptr) == CROFTON_OK);
         const crofton_baked_node* nodes = nullptr;
         std::size_t count = 0;
@@ -190,11 +192,7 @@ TEST_SUITE("capi/bake") {
                 return crofton_scene_bake(scenes[round % 2].get(), file.path.c_str(), nullptr) == CROFTON_OK;
             };
             CHECK(crofton::testing::kill_while_writing(bake, static_cast<std::uint64_t>(i), 10'000));
-            crofton_baked_scene* opened = nullptr;
-            crofton_tree* opened_tree = nullptr;
-            REQUIRE(crofton_baked_scene_read(file.path.c_str(), nullptr, &opened, &opened_tree) == CROFTON_OK);
-            const BakedScene baked(opened);
-            const Tree tree(opened_tree);
+            const auto [baked, tree] = opened(file, crofton_baked_scene_read);
         }
         REQUIRE(crofton_scene_bake(scenes[0].get(), file.path.c_str(), nullptr) == CROFTON_OK);
         CHECK_FALSE(std::filesystem::exists(file.path + ".partial"));
@@ -204,11 +202,7 @@ TEST_SUITE("capi/bake") {
         const TemporaryFile file;
         const Scene scene = row(4000);
         REQUIRE(crofton_scene_bake(scene.get(), file.path.c_str(), nullptr) == CROFTON_OK);
-        crofton_baked_scene* opened = nullptr;
-        crofton_tree* opened_tree = nullptr;
-        REQUIRE(crofton_baked_scene_read(file.path.c_str(), nullptr, &opened, &opened_tree) == CROFTON_OK);
-        const BakedScene baked(opened);
-        const Tree tree(opened_tree);
+        const auto [baked, tree] = opened(file, crofton_baked_scene_read);
         std::filesystem::resize_file(file.path, 100);
         const crofton_baked_node* nodes = nullptr;
         std::size_t count = 0;

@@ -246,6 +246,17 @@ void World::State::visit_bounded_near(const Aabb& bounds, double distance, std::
     });
 }
 
+namespace {
+
+// Whether a shape overlaps an object's sphere or box.
+template <class Shape>
+bool meets_bound(const Shape& shape, const world::Object& object, const Obb& box) {
+    return object.kind == BoundKind::sphere ? meets_sphere(shape, world::sphere_of(object, box))
+                                            : collide::intersects(box, shape);
+}
+
+}  // namespace
+
 template <class Shape>
 void World::State::overlap(const Shape& shape, Vector<ObjectRef>& found, std::uint32_t layers) const {
     found.clear();
@@ -253,18 +264,11 @@ void World::State::overlap(const Shape& shape, Vector<ObjectRef>& found, std::ui
     const world::QueryShape asked = world::shape_of(shape);
     visit_near(bounds_of(shape), 0.0, layers, [&](std::uint32_t id) {
         if (world::is_region_index(id)) {
-            const Obb of_region = regions.box(id);
-            const world::Object bound = regions.object(id);
-            if (bound.kind == BoundKind::sphere ? meets_sphere(shape, world::sphere_of(bound, of_region))
-                                                : collide::intersects(of_region, shape))
-                found.push_back(regions.ref(id));
+            if (meets_bound(shape, regions.object(id), regions.box(id))) found.push_back(regions.ref(id));
             return 0.0;
         }
-        const world::Object& object = table.objects[id];
-        const Obb& box = index.box(id);
-        const bool meets = has_shape(id)                      ? overlaps(asked.placed(), id)
-                           : object.kind == BoundKind::sphere ? meets_sphere(shape, Sphere{box.center, object.radius})
-                                                              : collide::intersects(box, shape);
+        const bool meets =
+            has_shape(id) ? overlaps(asked.placed(), id) : meets_bound(shape, table.objects[id], index.box(id));
         if (meets) found.push_back(table.ref(id));
         return 0.0;
     });

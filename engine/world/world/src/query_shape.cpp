@@ -46,6 +46,11 @@ QueryShape shape_of(const collide::Capsule& capsule) {
 
 namespace {
 
+// Returns an object's sphere or box.
+QueryShape shape_of_bound(const Object& object, const Obb& box) {
+    return object.kind == BoundKind::sphere ? shape_of(sphere_of(object, box)) : shape_of(box);
+}
+
 using PointVisitor = FunctionRef<bool(const glm::dvec3& point)>;
 
 // Calls `visit` with a point of each connected part of a body, until it returns true. Of a height field it takes one
@@ -79,11 +84,7 @@ bool visit_parts(const convex::Body& body, const RigidTransform& pose, PointVisi
 }  // namespace world
 
 world::QueryShape World::State::query_shape_of(std::uint32_t id) const {
-    if (world::is_region_index(id)) {
-        const world::Object object = regions.object(id);
-        const Obb box = regions.box(id);
-        return object.kind == BoundKind::sphere ? world::shape_of(world::sphere_of(object, box)) : world::shape_of(box);
-    }
+    if (world::is_region_index(id)) return world::shape_of_bound(regions.object(id), regions.box(id));
     const world::Object& object = table.objects[id];
     const Obb& box = index.box(id);
     if (object_bodies.has(id)) return {object_bodies.body(id), object_bodies.pose_of(id, object, box, scene)};
@@ -93,7 +94,7 @@ world::QueryShape World::State::query_shape_of(std::uint32_t id) const {
             return {bodies.body_of(object, nullptr), RigidTransform{world.linear, world.translation}};
         return {bodies.body_of(object, &world.linear), RigidTransform{glm::dmat3(1.0), world.translation}};
     }
-    return object.kind == BoundKind::sphere ? world::shape_of(Sphere{box.center, object.radius}) : world::shape_of(box);
+    return world::shape_of_bound(object, box);
 }
 
 std::optional<glm::dvec3> World::State::point_inside(const convex::BodyAtPose& shape, std::uint32_t id) const {

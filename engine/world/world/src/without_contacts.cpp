@@ -11,11 +11,12 @@ namespace crofton::world {
 ContactFinder::ContactFinder(const WorldOptions& options)
     : options_(options), broadphase_({.exact_boxes = true, .max_pairs = options.max_pairs}) {}
 
-Result<void> ContactFinder::update(const ObjectTable&, const SpatialIndex&, const scene::Scene&, Bodies&,
-                                   const ObjectBodies&, const PairChanges&, Executor&) {
+Result<void> ContactFinder::update(const ObjectTable&, SpatialIndex&, const scene::Scene&, Bodies&, const ObjectBodies&,
+                                   const PairChanges&, Executor&) {
     return fail(ErrorCode::unsupported, kNoItem, "World::update: this build of the library finds no pairs");
 }
 void ContactFinder::stay() {}
+void ContactFinder::release_scratch() {}
 
 void RegionPairs::stay() {}
 void RegionPairs::merge(std::span<const ObjectPair>, std::span<const Contact>) {}
@@ -25,6 +26,7 @@ void BodyContacts::update(const ChangedPairs&, const ObjectBodies&, const Object
 void BodyContacts::update_all(std::span<const ObjectPair>, const ObjectBodies&, const ObjectTable&, const SpatialIndex&,
                               const scene::Scene&, double, Executor&) {}
 void BodyContacts::stay() {}
+void BodyContacts::release_scratch() {}
 
 }  // namespace crofton::world
 
