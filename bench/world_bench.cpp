@@ -8,7 +8,7 @@
 //                             among what moves
 //   bench_world --bytes       bytes an object, as CSV
 //   bench_world --stacks      what an update of a thousand stacked crates costs, as bodies and as boxes
-//   bench_world --regions     a World of a thousand regions beside one of a million objects
+//   bench_world --regions     a World of a thousand regions compared with one of a million objects
 //   --frames=N                instead of 200
 //   --target=AVX2             with this instruction set
 //   --benchmark_filter=REGEX, --benchmark_repetitions=N, --benchmark_out=FILE: as Google Benchmark's, for results.py

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Worlds of regions beside a World with each object by itself: views, rays, attaching, and a flight.
+// Compares Worlds of regions with a World that has each object singly: views, rays, attaching, and a flight.
 #include <crofton/crofton.hpp>
 #include <glm/common.hpp>
 #include <random>
