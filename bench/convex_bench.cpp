@@ -39,7 +39,7 @@ constexpr int kFrames = 16, kPairs = 256;
 struct Scene {
     std::vector<std::unique_ptr<Hull>> hulls;
     std::vector<std::vector<glm::vec3>> points;
-    std::vector<Body> bodies;                    // 2 a pair
+    std::vector<Shape> shapes;                   // 2 a pair
     std::vector<RigidTransform> poses[kFrames];  // likewise
     std::vector<bool> meet[kFrames];
 };
@@ -66,15 +66,15 @@ Scene make_scene(double gap, bool boxes, int points = 32) {
             p.clear();
             const glm::vec3 h(number(0.3, 1), number(0.3, 1), number(0.3, 1));
             for (int k = 0; k < 8; ++k) p.emplace_back(k & 1 ? h.x : -h.x, k & 2 ? h.y : -h.y, k & 4 ? h.z : -h.z);
-            scene.bodies.push_back(Body::box(h).value());
+            scene.shapes.push_back(Shape::box(h).value());
         } else {
             scene.hulls.push_back(std::make_unique<Hull>(Hull::build(p).value()));
-            scene.bodies.push_back(Body::hull(*scene.hulls.back()));
+            scene.shapes.push_back(Shape::hull(*scene.hulls.back()));
         }
         scene.points.push_back(p);
     }
     for (int i = 0; i < kPairs; ++i) {
-        const Body &a = scene.bodies[2 * i], &b = scene.bodies[2 * i + 1];
+        const Shape &a = scene.shapes[2 * i], &b = scene.shapes[2 * i + 1];
         const glm::dmat3 ra = turn(number(0, 6)), rb = boxes ? ra : turn(number(0, 6));
         // Resting: along a face's normal of a.
         const glm::dvec3 local = boxes ? glm::dvec3(0, 1, 0) : a.hull()->face_normal(0);
@@ -95,8 +95,8 @@ Scene make_scene(double gap, bool boxes, int points = 32) {
     }
     for (int f = 0; f < kFrames; ++f)
         for (int i = 0; i < kPairs; ++i)
-            scene.meet[f].push_back(intersects({scene.bodies[2 * i], scene.poses[f][2 * i]},
-                                               {scene.bodies[2 * i + 1], scene.poses[f][2 * i + 1]}));
+            scene.meet[f].push_back(intersects({scene.shapes[2 * i], scene.poses[f][2 * i]},
+                                               {scene.shapes[2 * i + 1], scene.poses[f][2 * i + 1]}));
     return scene;
 }
 
@@ -118,7 +118,7 @@ void frames(benchmark::State& state, const Scene& scene, Run run, Answer answer)
 
 enum class Ask { meet, distance, penetration, manifold, cast };
 
-double crofton_ask(Ask ask, const BodyAtPose& a, const BodyAtPose& b, PairCache* cache) {
+double crofton_ask(Ask ask, const ShapeAtPose& a, const ShapeAtPose& b, PairCache* cache) {
     switch (ask) {
         case Ask::meet:
             return intersects(a, b, cache);
@@ -134,7 +134,7 @@ double crofton_ask(Ask ask, const BodyAtPose& a, const BodyAtPose& b, PairCache*
 void crofton_pairs(benchmark::State& state, Ask ask, double gap, bool boxes, bool warm) {
     const Scene scene = make_scene(gap, boxes);
     std::vector<PairCache> cache(kPairs);
-    const auto place = [&](int f, int i) { return BodyAtPose{scene.bodies[i], scene.poses[f][i]}; };
+    const auto place = [&](int f, int i) { return ShapeAtPose{scene.shapes[i], scene.poses[f][i]}; };
     frames(
         state, scene,
         [&](int f, int i) {
@@ -157,7 +157,7 @@ CROFTON_PAIRS("box manifold 0.01", Ask::manifold, -0.01, true);
 void few_points(benchmark::State& state) {
     const Scene scene = make_scene(-0.01, false, static_cast<int>(state.range(0)));
     std::vector<PairCache> cache(kPairs);
-    const auto place = [&](int f, int i) { return BodyAtPose{scene.bodies[i], scene.poses[f][i]}; };
+    const auto place = [&](int f, int i) { return ShapeAtPose{scene.shapes[i], scene.poses[f][i]}; };
     frames(
         state, scene,
         [&](int f, int i) { return crofton_ask(Ask::manifold, place(f, 2 * i), place(f, 2 * i + 1), &cache[i]); },
@@ -167,7 +167,7 @@ BENCHMARK(few_points)->Name("hull manifold 0.01, points/crofton")->Arg(8)->Arg(1
 
 // Cubes whose faces touch exactly: in one frame, as stacked crates are, or each turned about the normal.
 void touching_boxes(benchmark::State& state, Ask ask, bool turned) {
-    const Body cube = Body::box(glm::vec3(0.5f)).value();
+    const Shape cube = Shape::box(glm::vec3(0.5f)).value();
     const auto yaw = [turned](double angle) {
         const double c = std::cos(angle), s = std::sin(angle);
         return turned ? glm::dmat3(c, 0, -s, 0, 1, 0, s, 0, c) : glm::dmat3(1.0);
@@ -189,8 +189,8 @@ void crofton_cast(benchmark::State& state, int points, double spin) {
             Motion motion;
             motion.velocity = -2.0 * scene.poses[f][2 * i + 1].translation;
             motion.spin = spin * glm::normalize(glm::cross(motion.velocity, glm::dvec3(0.3, 0.5, 0.7)));
-            return cast({scene.bodies[2 * i], scene.poses[f][2 * i]}, {},
-                        {scene.bodies[2 * i + 1], scene.poses[f][2 * i + 1]}, motion)
+            return cast({scene.shapes[2 * i], scene.poses[f][2 * i]}, {},
+                        {scene.shapes[2 * i + 1], scene.poses[f][2 * i + 1]}, motion)
                 ->time;
         },
         [](int, int) { return false; });
@@ -203,8 +203,8 @@ BENCHMARK_CAPTURE(crofton_cast, c, 16, 2.0)->Name("hull16 cast turning/crofton")
 struct FclScene {
     explicit FclScene(const Scene& scene) {
         for (int i = 0; i < 2 * kPairs; ++i) {
-            if (scene.bodies[i].kind() == Kind::box) {
-                const glm::dvec3 h = scene.bodies[i].half_extents();
+            if (scene.shapes[i].kind() == Kind::box) {
+                const glm::dvec3 h = scene.shapes[i].half_extents();
                 shapes.push_back(std::make_shared<fcl::Boxd>(2 * h.x, 2 * h.y, 2 * h.z));
                 continue;
             }
@@ -265,8 +265,8 @@ BENCHMARK_CAPTURE(fcl_pairs, e, Ask::manifold, -0.01, true)->Name("box manifold 
 struct BulletScene {
     explicit BulletScene(const Scene& scene) : dispatcher(&configuration) {
         for (int i = 0; i < 2 * kPairs; ++i) {
-            if (scene.bodies[i].kind() == Kind::box) {
-                const glm::dvec3 h = scene.bodies[i].half_extents();
+            if (scene.shapes[i].kind() == Kind::box) {
+                const glm::dvec3 h = scene.shapes[i].half_extents();
                 shapes.push_back(std::make_unique<btBoxShape>(btVector3(btScalar(h.x), btScalar(h.y), btScalar(h.z))));
             } else {
                 auto hull = std::make_unique<btConvexHullShape>();
@@ -368,12 +368,12 @@ struct OdeScene {
         dInitODE();
         data.resize(2 * kPairs);
         for (int i = 0; i < 2 * kPairs; ++i) {
-            if (scene.bodies[i].kind() == Kind::box) {
-                const glm::dvec3 h = scene.bodies[i].half_extents();
+            if (scene.shapes[i].kind() == Kind::box) {
+                const glm::dvec3 h = scene.shapes[i].half_extents();
                 geoms.push_back(dCreateBox(nullptr, dReal(2 * h.x), dReal(2 * h.y), dReal(2 * h.z)));
                 continue;
             }
-            Shape& shape = data[i];
+            NamedShape& shape = data[i];
             const Hull& hull = *scene.hulls[i];
             for (const glm::vec3& v : hull.vertices()) shape.points.insert(shape.points.end(), {v.x, v.y, v.z});
             for (int f = 0; f < hull.face_count(); ++f) {
@@ -403,11 +403,11 @@ struct OdeScene {
         dContactGeom contact[8];
         return dCollide(geoms[2 * i], geoms[2 * i + 1], 8, contact, sizeof(dContactGeom));
     }
-    struct Shape {
+    struct NamedShape {
         std::vector<dReal> points, planes;
         std::vector<unsigned> polygons;
     };
-    std::vector<Shape> data;
+    std::vector<NamedShape> data;
     std::vector<dGeomID> geoms;
 };
 void ode_pairs(benchmark::State& state, double gap, bool boxes) {

@@ -16,7 +16,7 @@
 
 #include "convex_peers.hpp"
 #include "verify/convex_pairs.hpp"
-#include "verify/exact_bodies.hpp"
+#include "verify/exact_shapes.hpp"
 
 #if defined(CROFTON_HAVE_ODE)
 #include <ode/ode.h>
@@ -25,20 +25,20 @@
 namespace crofton::bench {
 namespace {
 
-using convex::BodyAtPose;
+using convex::ShapeAtPose;
 
-bool crofton_meets(const BodyAtPose& a, const BodyAtPose& b) {
+bool crofton_meets(const ShapeAtPose& a, const ShapeAtPose& b) {
     return convex::intersects(a, b);
 }
 
 struct Library {
     const char* name;
-    bool (*meets)(const BodyAtPose&, const BodyAtPose&);
+    bool (*meets)(const ShapeAtPose&, const ShapeAtPose&);
     std::string wrong;  // the row's cells
     int wrong_here = 0;
 };
 
-bool answers_wrong(const Library& library, const BodyAtPose& a, const BodyAtPose& b, bool truth) {
+bool answers_wrong(const Library& library, const ShapeAtPose& a, const ShapeAtPose& b, bool truth) {
     try {
         return library.meets(a, b) != truth;
     } catch (const std::exception&) {
@@ -50,9 +50,9 @@ bool has_triangle(const cli::ConvexPairs::Pair& pair) {
     return pair.a.kind() == convex::Kind::triangle || pair.b.kind() == convex::Kind::triangle;
 }
 
-// Whether the gap of two bodies, or their depth, is proven to lie between a tenth of `most` and `most`. A pair that was
+// Whether the gap of two shapes, or their depth, is proven to lie between a tenth of `most` and `most`. A pair that was
 // pushed together by so much may slide along an edge instead and touch within rounding, or meet more deeply.
-bool lies_in_decade(const BodyAtPose& a, const BodyAtPose& b, bool meet, double most) {
+bool lies_in_decade(const ShapeAtPose& a, const ShapeAtPose& b, bool meet, double most) {
     double lower = 0.0, upper = 0.0;
     if (meet) {
         const convex::Penetration p = convex::penetration(a, b);
@@ -72,7 +72,7 @@ void count(std::vector<Library>& libraries, int decade, double offset, int pairs
         const double gap = std::pow(10.0, -decade) * random.number(0.1, 1.0) * (random.bits() % 2 == 0 ? 1.0 : -1.0);
         const cli::ConvexPairs::Pair pair = random.next(32, gap, offset);
         if (has_triangle(pair)) continue;
-        const BodyAtPose a = pair.placed_a(), b = pair.placed_b();
+        const ShapeAtPose a = pair.placed_a(), b = pair.placed_b();
         const bool truth = cli::meet_exactly(a, b, pair.normal, by_axes);
         if (!lies_in_decade(a, b, truth, std::pow(10.0, -decade))) continue;
         ++i;

@@ -10,7 +10,7 @@
 namespace crofton::bench {
 namespace {
 
-std::vector<b3Vec3> box3d_points(const convex::Body& body) {
+std::vector<b3Vec3> box3d_points(const convex::Shape& body) {
     std::vector<b3Vec3> points;
     if (body.kind() == convex::Kind::box) {
         const glm::vec3 h(body.half_extents());
@@ -23,8 +23,8 @@ std::vector<b3Vec3> box3d_points(const convex::Body& body) {
 
 }  // namespace
 
-bool box3d_meets(const convex::BodyAtPose& a, const convex::BodyAtPose& b) {
-    const std::vector<b3Vec3> points_a = box3d_points(a.body), points_b = box3d_points(b.body);
+bool box3d_meets(const convex::ShapeAtPose& a, const convex::ShapeAtPose& b) {
+    const std::vector<b3Vec3> points_a = box3d_points(a.shape), points_b = box3d_points(b.shape);
     const glm::dmat3 to_a = glm::transpose(a.pose.rotation);
     const glm::vec3 p(to_a * (b.pose.translation - a.pose.translation));
     const glm::quat q(glm::quat_cast(to_a * b.pose.rotation));

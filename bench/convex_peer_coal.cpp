@@ -11,7 +11,7 @@
 namespace crofton::bench {
 namespace {
 
-std::unique_ptr<coal::ShapeBase> coal_shape(const convex::Body& body) {
+std::unique_ptr<coal::ShapeBase> coal_shape(const convex::Shape& body) {
     if (body.kind() == convex::Kind::box) {
         const glm::dvec3 h = body.half_extents();
         return std::make_unique<coal::Box>(2 * h.x, 2 * h.y, 2 * h.z);
@@ -34,8 +34,8 @@ coal::Transform3s coal_pose(const RigidTransform& pose) {
 
 }  // namespace
 
-bool coal_meets(const convex::BodyAtPose& a, const convex::BodyAtPose& b) {
-    const auto shape_a = coal_shape(a.body), shape_b = coal_shape(b.body);
+bool coal_meets(const convex::ShapeAtPose& a, const convex::ShapeAtPose& b) {
+    const auto shape_a = coal_shape(a.shape), shape_b = coal_shape(b.shape);
     coal::CollisionRequest request;
     request.gjk_tolerance = request.epa_tolerance = 1e-14;  // its own are 1e-6
     coal::CollisionResult result;

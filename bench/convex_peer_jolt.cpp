@@ -17,7 +17,7 @@
 namespace crofton::bench {
 namespace {
 
-JPH::RefConst<JPH::Shape> jolt_shape(const convex::Body& body) {
+JPH::RefConst<JPH::Shape> jolt_shape(const convex::Shape& body) {
     if (body.kind() == convex::Kind::box) {
         const glm::vec3 h(body.half_extents());
         return new JPH::BoxShape({h.x, h.y, h.z}, 0.0f);
@@ -57,9 +57,9 @@ void start_jolt() {
 
 }  // namespace
 
-bool jolt_meets(const convex::BodyAtPose& a, const convex::BodyAtPose& b) {
+bool jolt_meets(const convex::ShapeAtPose& a, const convex::ShapeAtPose& b) {
     start_jolt();
-    const JPH::RefConst<JPH::Shape> shape_a = jolt_shape(a.body), shape_b = jolt_shape(b.body);
+    const JPH::RefConst<JPH::Shape> shape_a = jolt_shape(a.shape), shape_b = jolt_shape(b.shape);
     const glm::dvec3 origin = a.pose.translation;
     JPH::AnyHitCollisionCollector<JPH::CollideShapeCollector> hit;
     JPH::CollisionDispatch::sCollideShapeVsShape(shape_a, shape_b, JPH::Vec3::sOne(), JPH::Vec3::sOne(),

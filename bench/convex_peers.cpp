@@ -21,8 +21,8 @@
 
 namespace crofton::bench {
 
-using convex::Body;
-using convex::BodyAtPose;
+using convex::Shape;
+using convex::ShapeAtPose;
 
 #if defined(CROFTON_HAVE_FCL)
 namespace {
@@ -50,11 +50,11 @@ fcl::Transform3d fcl_pose(const RigidTransform& pose) {
 }
 }  // namespace
 
-bool fcl_meets(const BodyAtPose& a, const BodyAtPose& b) {
+bool fcl_meets(const ShapeAtPose& a, const ShapeAtPose& b) {
     fcl::CollisionRequestd request(1, false);
     request.gjk_solver_type = fcl::GST_LIBCCD;
     fcl::CollisionResultd result;
-    const auto shape_a = fcl_shape(a.body), shape_b = fcl_shape(b.body);
+    const auto shape_a = fcl_shape(a.shape), shape_b = fcl_shape(b.shape);
     return fcl::collide(shape_a.get(), fcl_pose(a.pose), shape_b.get(), fcl_pose(b.pose), request, result) > 0;
 }
 #endif
@@ -85,8 +85,8 @@ btTransform bullet_pose(const RigidTransform& pose) {
 }
 }  // namespace
 
-bool bullet_meets(const BodyAtPose& a, const BodyAtPose& b) {
-    const auto shape_a = bullet_shape(a.body), shape_b = bullet_shape(b.body);
+bool bullet_meets(const ShapeAtPose& a, const ShapeAtPose& b) {
+    const auto shape_a = bullet_shape(a.shape), shape_b = bullet_shape(b.shape);
     btVoronoiSimplexSolver solver;
     btGjkEpaPenetrationDepthSolver epa;
     btGjkPairDetector detector(shape_a.get(), shape_b.get(), &solver, &epa);
@@ -104,14 +104,14 @@ namespace {
 
 class OdeGeom {
   public:
-    explicit OdeGeom(const BodyAtPose& placed) {
+    explicit OdeGeom(const ShapeAtPose& placed) {
         glm::dvec3 middle(0.0);
-        if (placed.body.kind() == convex::Kind::box) {
-            const glm::dvec3 h = placed.body.half_extents();
+        if (placed.shape.kind() == convex::Kind::box) {
+            const glm::dvec3 h = placed.shape.half_extents();
             geom_ = dCreateBox(nullptr, dReal(2 * h.x), dReal(2 * h.y), dReal(2 * h.z));
         } else {
             // ODE asks for a body around its frame's origin.
-            const convex::Hull& hull = *placed.body.hull();
+            const convex::Hull& hull = *placed.shape.hull();
             middle = hull.mass().center;
             for (const glm::vec3& v : hull.vertices()) {
                 const glm::dvec3 p = glm::dvec3(v) - middle;
@@ -146,7 +146,7 @@ class OdeGeom {
 };
 }  // namespace
 
-bool ode_meets(const BodyAtPose& a, const BodyAtPose& b) {
+bool ode_meets(const ShapeAtPose& a, const ShapeAtPose& b) {
     const OdeGeom geom_a(a), geom_b(b);
     dContactGeom contact[8];
     return dCollide(geom_a.id(), geom_b.id(), 8, contact, sizeof(dContactGeom)) > 0;

@@ -6,12 +6,12 @@
 
 namespace crofton::bench {
 
-bool fcl_meets(const convex::BodyAtPose& a, const convex::BodyAtPose& b);
-bool bullet_meets(const convex::BodyAtPose& a, const convex::BodyAtPose& b);
-bool ode_meets(const convex::BodyAtPose& a, const convex::BodyAtPose& b);  // between dInitODE2 and dCloseODE
-bool coal_meets(const convex::BodyAtPose& a, const convex::BodyAtPose& b);
+bool fcl_meets(const convex::ShapeAtPose& a, const convex::ShapeAtPose& b);
+bool bullet_meets(const convex::ShapeAtPose& a, const convex::ShapeAtPose& b);
+bool ode_meets(const convex::ShapeAtPose& a, const convex::ShapeAtPose& b);  // between dInitODE2 and dCloseODE
+bool coal_meets(const convex::ShapeAtPose& a, const convex::ShapeAtPose& b);
 // Float, relative to a: so its worlds do it when they count in double.
-bool jolt_meets(const convex::BodyAtPose& a, const convex::BodyAtPose& b);
-bool box3d_meets(const convex::BodyAtPose& a, const convex::BodyAtPose& b);
+bool jolt_meets(const convex::ShapeAtPose& a, const convex::ShapeAtPose& b);
+bool box3d_meets(const convex::ShapeAtPose& a, const convex::ShapeAtPose& b);
 
 }  // namespace crofton::bench

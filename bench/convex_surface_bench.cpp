@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Bodies that rest on surfaces, beside Bullet and ODE: boxes and capsules on the bunny, boxes on a height field of
 // 1025 x 1025 corners. Manifolds are asked for, frame after frame, with poses that tremble. `depth` is the mean of the
-// deepest point, in sizes of the body. ODE stops at as many contacts as its caller has room for: 64, or `all`.
+// deepest point, in sizes of the shape. ODE stops at as many contacts as its caller has room for: 64, or `all`.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -32,11 +32,11 @@ using namespace crofton::convex;
 constexpr int kFrames = 8, kBodies = 1000;
 constexpr std::uint32_t kSide = 1025;
 
-// Where a body stands on a surface, sunk in by 1 % of its size.
+// Where a shape stands on a surface, sunk in by 1 % of its size.
 struct SurfaceScene {
     TriangleMesh mesh;  // empty: the field
     std::vector<float> heights;
-    Body body = Body::sphere(1).value();
+    Shape shape = Shape::sphere(1).value();
     float size = 0.0f;
     bool capsule = false;
     std::vector<RigidTransform> poses[kFrames];
@@ -50,7 +50,7 @@ float height(double x, double z) {
 SurfaceScene make_crests() {
     SurfaceScene scene;
     scene.size = 0.4f;
-    scene.body = Body::box(glm::vec3(scene.size)).value();
+    scene.shape = Shape::box(glm::vec3(scene.size)).value();
     scene.heights.assign(std::size_t{kSide} * kSide, -1.0f);
     for (int i = 0; i < kBodies; ++i) {
         const std::size_t x = 10 + 30 * static_cast<std::size_t>(i % 33),
@@ -83,7 +83,7 @@ SurfaceScene make_scene(bool field, bool capsule, bool crests = false) {
         scene.size = 0.03f * glm::length(high - low);
     }
     const float s = scene.size;
-    scene.body = capsule ? Body::capsule(0.6f * s, 0.5f * s).value() : Body::box({s, s, s}).value();
+    scene.shape = capsule ? Shape::capsule(0.6f * s, 0.5f * s).value() : Shape::box({s, s, s}).value();
     for (int i = 0; i < kBodies; ++i) {
         glm::dvec3 on, n;
         if (field) {
@@ -143,8 +143,8 @@ class OwnSurface {
             tree_ = mesh::MeshTree::build(scene.mesh).value();
     }
     // Of a mesh these sides; a field is asked for its front.
-    [[nodiscard]] Body body(Sides sides) const {
-        return is_field_ ? Body::height_field(heights_) : Body::mesh(tree_, sides).value();
+    [[nodiscard]] Shape shape(Sides sides) const {
+        return is_field_ ? Shape::height_field(heights_) : Shape::mesh(tree_, sides).value();
     }
 
   private:
@@ -157,11 +157,11 @@ void crofton_rest(benchmark::State& state, bool field, bool capsule, bool crests
     const SurfaceScene scene = make_scene(field, capsule, crests);
     if (!field && scene.mesh.indices.empty()) return state.SkipWithError("no shared meshes");
     const OwnSurface own(scene, field);
-    const Body surface = own.body(Sides::front);
+    const Shape surface = own.shape(Sides::front);
     const RigidTransform still;
     Manifolds found;
     frames(state, scene.size, [&](int f, int i) {
-        contact_manifolds({surface, still}, {scene.body, scene.poses[f][i]}, {.margin = 0.02 * scene.size}, found);
+        contact_manifolds({surface, still}, {scene.shape, scene.poses[f][i]}, {.margin = 0.02 * scene.size}, found);
         Told told{0, -HUGE_VAL};
         for (const Manifold& m : found.all()) {
             told.points += m.count;
@@ -176,12 +176,12 @@ BENCHMARK_CAPTURE(crofton_rest, c, true, false)->Name("box on heights 1025^2/cro
 BENCHMARK_CAPTURE(crofton_rest, f, true, false, true)->Name("box on a crest/crofton");
 BENCHMARK_CAPTURE(crofton_rest, d, true, true)->Name("capsule on heights 1025^2/crofton");
 
-// The body that is cast: the scene's box, or a capsule or sphere of about its size.
+// The shape that is cast: the scene's box, or a capsule or sphere of about its size.
 enum class Flying { box, capsule, ball };
 
-Body flying_body(Flying kind, float s) {
-    if (kind == Flying::capsule) return Body::capsule(0.6f * s, 0.5f * s).value();
-    return kind == Flying::ball ? Body::sphere(s).value() : Body::box({s, s, s}).value();
+Shape flying_body(Flying kind, float s) {
+    if (kind == Flying::capsule) return Shape::capsule(0.6f * s, 0.5f * s).value();
+    return kind == Flying::ball ? Shape::sphere(s).value() : Shape::box({s, s, s}).value();
 }
 
 // Down onto the surface from twice the size above it.
@@ -189,14 +189,14 @@ void crofton_drop(benchmark::State& state, bool field, Flying kind) {
     const SurfaceScene scene = make_scene(field, false);
     if (!field && scene.mesh.indices.empty()) return state.SkipWithError("no shared meshes");
     const OwnSurface own(scene, field);
-    const Body surface = own.body(Sides::both), body = flying_body(kind, scene.size);
+    const Shape surface = own.shape(Sides::both), shape = flying_body(kind, scene.size);
     const RigidTransform still;
     frames(state, scene.size, [&](int f, int i) {
         RigidTransform from = scene.poses[f][i];
         const glm::dvec3 n = from.rotation[1];
         from.translation += 2.0 * scene.size * n;
         const auto impact =
-            cast({body, from}, {-4.0 * scene.size * n, {}, {}}, {surface, still}, {}, {.tolerance = 1e-4});
+            cast({shape, from}, {-4.0 * scene.size * n, {}, {}}, {surface, still}, {}, {.tolerance = 1e-4});
         return Told{impact->result == CastResult::hit ? 1 : 0};
     });
 }
@@ -231,12 +231,12 @@ struct BulletSurface {
         object.setCollisionShape(surface.get());
         object.setWorldTransform(place);
         if (scene.capsule)
-            shape = std::make_unique<btCapsuleShape>(0.5f * s, 1.2f * s);
+            probe = std::make_unique<btCapsuleShape>(0.5f * s, 1.2f * s);
         else
-            shape = std::make_unique<btBoxShape>(btVector3(s, s, s));
+            probe = std::make_unique<btBoxShape>(btVector3(s, s, s));
         for (int i = 0; i < kBodies; ++i) {
             objects.push_back(std::make_unique<btCollisionObject>());
-            objects.back()->setCollisionShape(shape.get());
+            objects.back()->setCollisionShape(probe.get());
         }
         algorithms.resize(kBodies);
     }
@@ -251,7 +251,7 @@ struct BulletSurface {
     Told manifold(const SurfaceScene& scene, int f, int i) {
         const btTransform t = transform_of(scene.poses[f][i]);
         objects[i]->setWorldTransform(t);
-        btCollisionObjectWrapper a(nullptr, shape.get(), objects[i].get(), t, -1, -1);
+        btCollisionObjectWrapper a(nullptr, probe.get(), objects[i].get(), t, -1, -1);
         btCollisionObjectWrapper b(nullptr, surface.get(), &object, place, -1, -1);
         if (!algorithms[i]) algorithms[i] = dispatcher.findAlgorithm(&a, &b, nullptr, BT_CONTACT_POINT_ALGORITHMS);
         btManifoldResult result(&a, &b);
@@ -270,7 +270,7 @@ struct BulletSurface {
     btTriangleIndexVertexArray triangles;
     btTransform place = btTransform::getIdentity();
     std::unique_ptr<btCollisionShape> surface;
-    std::unique_ptr<btConvexShape> shape;
+    std::unique_ptr<btConvexShape> probe;
     btCollisionObject object;
     std::vector<std::unique_ptr<btCollisionObject>> objects;
     std::vector<btCollisionAlgorithm*> algorithms;

@@ -7,7 +7,7 @@
 //   bench_world --changes     what an update costs in which one object comes, goes, moves or changes, and queries
 //                             among what moves
 //   bench_world --bytes       bytes an object, as CSV
-//   bench_world --stacks      what an update of a thousand stacked crates costs, as bodies and as boxes
+//   bench_world --stacks      what an update of a thousand stacked crates costs, as shapes and as boxes
 //   bench_world --regions     a World of a thousand regions compared with one of a million objects
 //   --frames=N                instead of 200
 //   --target=AVX2             with this instruction set

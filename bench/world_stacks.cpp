@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Times updates of stacked crates, as bodies and as boxes: at rest, one that moves, and all.
+// Times updates of stacked crates, as shapes and as boxes: at rest, one that moves, and all.
 #include <algorithm>
 #include <crofton/convex/query.hpp>
 #include <crofton/crofton.hpp>
@@ -34,16 +34,16 @@ constexpr MotionRow kMotions[] = {{"nothing is set", Motion::none},
 // A thousand cubes of side 1 on a slab: ten by ten towers of ten, which touch their neighbours where `apart` is 1.
 class Crates {
   public:
-    Crates(double apart, bool bodies) {
+    Crates(double apart, bool shapes) {
         Obb slab;
         slab.center = {0.0, -0.5, 0.0};
         slab.half_extents = {50.0f, 0.5f, 50.0f};
-        add(slab, bodies ? &slab_ : nullptr);
+        add(slab, shapes ? &slab_ : nullptr);
         for (int i = 0; i < 1000; ++i) {
             Obb box;
             box.half_extents = glm::vec3(0.5f);
             box.center = {apart * (i / 100) - 5.0, 0.5 + i % 10, apart * (i / 10 % 10) - 5.0};
-            add(box, bodies ? &crate_ : nullptr);
+            add(box, shapes ? &crate_ : nullptr);
         }
         for (int update = 0; update < 5; ++update) expect(world_.update().has_value(), "loading");
     }
@@ -64,14 +64,14 @@ class Crates {
     [[nodiscard]] std::size_t pairs() const { return world_.pairs().size(); }
 
   private:
-    void add(const Obb& box, const convex::Body* body) {
+    void add(const Obb& box, const convex::Shape* shape) {
         boxes_.push_back(box);
         objects_.push_back(world_.add({.bound = box}).value());
-        if (body != nullptr) expect(world_.set_body(objects_.back(), body).has_value(), "a body");
+        if (shape != nullptr) expect(world_.set_shape(objects_.back(), shape).has_value(), "a shape");
     }
 
-    convex::Body crate_ = convex::Body::box(glm::vec3(0.5f)).value(),
-                 slab_ = convex::Body::box({50.0f, 0.5f, 50.0f}).value();
+    convex::Shape crate_ = convex::Shape::box(glm::vec3(0.5f)).value(),
+                  slab_ = convex::Shape::box({50.0f, 0.5f, 50.0f}).value();
     World world_;
     std::vector<ObjectHandle> objects_;
     std::vector<Obb> boxes_;
@@ -84,14 +84,14 @@ void stacks(int frames) {
     std::printf("%-28s %-28s %8s %10s %10s %10s\n", "1,000 crates", "µs of an update", "pairs", "least", "median",
                 "worst");
     for (const bool touch : {false, true})
-        for (const bool bodies : {false, true})
+        for (const bool shapes : {false, true})
             for (const MotionRow& row : kMotions) {
-                Crates crates(touch ? 1.0 : 1.5, bodies);
+                Crates crates(touch ? 1.0 : 1.5, shapes);
                 std::vector<double> times;
                 for (int number = 0; number < frames; ++number) times.push_back(crates.frame(row.motion, number));
                 std::sort(times.begin(), times.end());
-                const char* const name = touch ? (bodies ? "a wall, bodies" : "a wall, boxes")
-                                               : (bodies ? "towers, bodies" : "towers, boxes");
+                const char* const name = touch ? (shapes ? "a wall, shapes" : "a wall, boxes")
+                                               : (shapes ? "towers, shapes" : "towers, boxes");
                 std::printf("%-28s %-28s %8zu %10.2f %10.2f %10.2f\n", name, row.name, crates.pairs(), times.front(),
                             times[times.size() / 2], times.back());
                 std::fflush(stdout);

@@ -40,12 +40,12 @@ constexpr double kLeastGap = 1e-3;
 class Contacts final : public btActivatingCollisionAlgorithm {
   public:
     Contacts(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,
-             const btCollisionObjectWrapper* b, std::shared_ptr<const ShapeBody> body_a,
-             std::shared_ptr<const ShapeBody> body_b, PointCounts& counts)
+             const btCollisionObjectWrapper* b, std::shared_ptr<const KeptShape> shape_a,
+             std::shared_ptr<const KeptShape> shape_b, PointCounts& counts)
         : btActivatingCollisionAlgorithm(info, a, b),
           manifold_(info.m_manifold),
-          body_a_(std::move(body_a)),
-          body_b_(std::move(body_b)),
+          shape_a_(std::move(shape_a)),
+          shape_b_(std::move(shape_b)),
           counts_(counts) {
         is_own_ = manifold_ == nullptr;
         if (is_own_) manifold_ = m_dispatcher->getNewManifold(a->getCollisionObject(), b->getCollisionObject());
@@ -61,8 +61,8 @@ class Contacts final : public btActivatingCollisionAlgorithm {
         const RigidTransform pose_a = to_pose(a->getWorldTransform()), pose_b = to_pose(b->getWorldTransform());
         // Points begin with a touch: only those that are there may have a gap.
         const double margin = fills_ && count_ == 0 ? kLeastGap : static_cast<double>(threshold_);
-        convex::Manifold found =
-            convex::contact_manifold({*body_a_->body, pose_a}, {*body_b_->body, pose_b}, {.margin = margin}, &cache_);
+        convex::Manifold found = convex::contact_manifold({*shape_a_->shape, pose_a}, {*shape_b_->shape, pose_b},
+                                                          {.margin = margin}, &cache_);
         // Pairs that do not touch are many: their manifolds are not even looked at.
         if (fills_ && found.count == 0 && count_ == 0) return;
         result->setPersistentManifold(manifold_);
@@ -195,7 +195,7 @@ class Contacts final : public btActivatingCollisionAlgorithm {
     bool is_own_ = false, fills_ = false;
     int count_ = 0;  // of the manifold's points, where this fills them
     btScalar threshold_ = 0;
-    std::shared_ptr<const ShapeBody> body_a_, body_b_;
+    std::shared_ptr<const KeptShape> shape_a_, shape_b_;
     PointCounts& counts_;
     convex::PairCache cache_;
     std::uint64_t ids_[4] = {};
@@ -204,18 +204,18 @@ class Contacts final : public btActivatingCollisionAlgorithm {
 }  // namespace
 
 struct Configuration::Create final : btCollisionAlgorithmCreateFunc {
-    Create(ShapeBodies& all, PointCounts& points) : bodies(all), counts(points) {}
+    Create(KeptShapes& all, PointCounts& points) : shapes(all), counts(points) {}
 
     btCollisionAlgorithm* CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
                                                    const btCollisionObjectWrapper* a,
                                                    const btCollisionObjectWrapper* b) override {
-        auto body_a = bodies.get(*a->getCollisionShape()), body_b = bodies.get(*b->getCollisionShape());
-        if (!body_a || !body_b) return fallback->CreateCollisionAlgorithm(info, a, b);
+        auto shape_a = shapes.get(*a->getCollisionShape()), shape_b = shapes.get(*b->getCollisionShape());
+        if (!shape_a || !shape_b) return fallback->CreateCollisionAlgorithm(info, a, b);
         void* memory = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(Contacts));
-        return new (memory) Contacts(info, a, b, std::move(body_a), std::move(body_b), counts);
+        return new (memory) Contacts(info, a, b, std::move(shape_a), std::move(shape_b), counts);
     }
 
-    ShapeBodies& bodies;
+    KeptShapes& shapes;
     PointCounts& counts;
     btCollisionAlgorithmCreateFunc* fallback = nullptr;  // for hulls of points in one plane: Bullet's own
 };
@@ -229,14 +229,14 @@ btDefaultCollisionConstructionInfo with_room_for_contacts() {
 }  // namespace
 
 Configuration::Configuration()
-    : btDefaultCollisionConfiguration(with_room_for_contacts()), create_(std::make_unique<Create>(bodies_, counts_)) {
+    : btDefaultCollisionConfiguration(with_room_for_contacts()), create_(std::make_unique<Create>(shapes_, counts_)) {
     create_->fallback = m_convexConvexCreateFunc;
 }
 
 Configuration::~Configuration() = default;
 
 btCollisionAlgorithmCreateFunc* Configuration::getCollisionAlgorithmCreateFunc(int type_a, int type_b) {
-    if (has_body(type_a) && has_body(type_b)) return create_.get();
+    if (has_shape(type_a) && has_shape(type_b)) return create_.get();
     return btDefaultCollisionConfiguration::getCollisionAlgorithmCreateFunc(type_a, type_b);
 }
 

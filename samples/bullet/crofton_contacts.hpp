@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "shape_bodies.hpp"
+#include "kept_shapes.hpp"
 
 namespace crofton::bullet {
 
@@ -25,7 +25,7 @@ class Configuration final : public btDefaultCollisionConfiguration {
 
   private:
     struct Create;
-    ShapeBodies bodies_;
+    KeptShapes shapes_;
     PointCounts counts_;
     std::unique_ptr<Create> create_;
 };

@@ -11,7 +11,7 @@ constexpr glm::dvec3 kUp(0.0, 1.0, 0.0);
 
 Character::Character(const glm::dvec3& position, const CharacterOptions& options)
     : options_(options),
-      body_(convex::Body::capsule(options.half_height, options.radius).value()),
+      shape_(convex::Shape::capsule(options.half_height, options.radius).value()),
       position_(position) {}
 
 double Character::feet() const {
@@ -25,7 +25,7 @@ std::optional<Character::Hit> Character::sweep(const World& world, const glm::dv
     // The time is the share of the way.
     const double length = glm::length(way), duration = 1.0 + 4.0 * options_.skin / length;
     const convex::CastOptions cast_options{.duration = duration, .tolerance = 0.01 * options_.skin};
-    const auto found = world.cast(body_, pose, {.velocity = way}, cast_options, options_.layers);
+    const auto found = world.cast(shape_, pose, {.velocity = way}, cast_options, options_.layers);
     if (!found) return Hit{0.0, glm::dvec3(0.0)};
     if (!*found) {
         position_ += way;

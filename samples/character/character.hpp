@@ -37,7 +37,7 @@ class Character {
     void step(const World& world, const glm::dvec3& start, const glm::dvec3& across);
 
     CharacterOptions options_;
-    convex::Body body_;
+    convex::Shape shape_;
     glm::dvec3 position_;
     bool on_ground_ = false;
 };

@@ -24,8 +24,8 @@ void check(bool good, const char* what, const sample::Character& character) {
 void add_box(World& world, const glm::dvec3& center, const glm::vec3& half, std::uint32_t layers = kSolid,
              const glm::dmat3& turn = glm::dmat3(1.0)) {
     const ObjectHandle object = world.add({.bound = Obb{center, glm::mat3(turn), half}, .layers = layers}).value();
-    const convex::Body body = convex::Body::box(half).value();
-    (void)world.set_body(object, &body);
+    const convex::Shape shape = convex::Shape::box(half).value();
+    (void)world.set_shape(object, &shape);
 }
 
 void walk(sample::Character& character, const World& world, const glm::dvec3& velocity, int frames) {

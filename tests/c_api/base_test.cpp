@@ -20,7 +20,7 @@ TEST_SUITE("capi/base") {
         CHECK(crofton_tree_destroy(nullptr) == CROFTON_BAD_HANDLE);
         CHECK(crofton_view_result_destroy(nullptr) == CROFTON_BAD_HANDLE);
         CHECK(crofton_broadphase_destroy(nullptr) == CROFTON_BAD_HANDLE);
-        CHECK(crofton_body_destroy(nullptr) == CROFTON_BAD_HANDLE);
+        CHECK(crofton_shape_destroy(nullptr) == CROFTON_BAD_HANDLE);
         CHECK(crofton_triangulator_destroy(nullptr) == CROFTON_BAD_HANDLE);
     }
 

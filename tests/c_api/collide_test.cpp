@@ -15,11 +15,11 @@ TEST_SUITE("capi/collide") {
         CHECK(crofton_boxes_meet(&good, &bad, &meet) != CROFTON_OK);
         CHECK(crofton_last_error_item() == 1);
         CHECK(meet == 7);
-        const BodyHandle mesh = make_mesh_body();
+        const ShapeHandle mesh = make_mesh_shape();
         auto relation = sized<crofton_mesh_relation>();
         relation.meet = 7;
         const crofton_transform scaled{{2, 0, 0, 0, 2, 0, 0, 0, 2}, {0, 0, 0}};
-        const auto ask = [&](const crofton_body* other, const crofton_transform* pose, std::uint32_t which) {
+        const auto ask = [&](const crofton_shape* other, const crofton_transform* pose, std::uint32_t which) {
             return crofton_meshes_relate(mesh.get(), other, pose, which, &relation);
         };
         const crofton_transform here = translation(0, 0, 0);
@@ -27,9 +27,9 @@ TEST_SUITE("capi/collide") {
         CHECK(ask(mesh.get(), nullptr, CROFTON_MESHES_MEET) == CROFTON_INVALID_ARGUMENT);
         CHECK(ask(nullptr, &here, CROFTON_MESHES_MEET) == CROFTON_BAD_HANDLE);
         CHECK(ask(mesh.get(), &here, 16) == CROFTON_INVALID_ARGUMENT);
-        crofton_body* sphere = nullptr;
-        REQUIRE(body_sphere(1, &sphere) == CROFTON_OK);
-        const BodyHandle no_mesh(sphere);
+        crofton_shape* sphere = nullptr;
+        REQUIRE(shape_sphere(1, &sphere) == CROFTON_OK);
+        const ShapeHandle no_mesh(sphere);
         CHECK(ask(sphere, &here, CROFTON_MESHES_MEET) == CROFTON_UNSUPPORTED);
         CHECK(crofton_last_error_item() == 1);
         CHECK(crofton_meshes_relate(sphere, mesh.get(), &here, CROFTON_MESHES_MEET, &relation) == CROFTON_UNSUPPORTED);
@@ -85,7 +85,7 @@ TEST_SUITE("capi/collide") {
     }
 
     TEST_CASE("meshes meet, and their distance is that of their nearest points") {
-        const BodyHandle a = make_mesh_body(), b = make_mesh_body();
+        const ShapeHandle a = make_mesh_shape(), b = make_mesh_shape();
         crofton_mesh_relation relation{};
         crofton_transform pose = translation(0.25, 0.25, 0.0);
         constexpr std::uint32_t kBoth = CROFTON_MESHES_MEET | CROFTON_MESHES_DISTANCE;

@@ -24,7 +24,7 @@ TEST_SUITE("capi/contacts") {
         CHECK(crofton_boxes_distance(&good, &good, nullptr, nullptr, nullptr) == CROFTON_INVALID_ARGUMENT);
         CHECK(distance == -7.0);
 
-        const BodyHandle mesh = make_mesh_body();
+        const ShapeHandle mesh = make_mesh_shape();
         crofton_transform pose = translation(0, 0, 0);
         size_t count = 77;
         CHECK(crofton_meshes_contacts(mesh.get(), nullptr, &pose, nullptr, 0, &count) == CROFTON_BAD_HANDLE);
@@ -63,7 +63,7 @@ TEST_SUITE("capi/contacts") {
     }
 
     TEST_CASE("meshes: where they touch, how deep, and one inside the other") {
-        const BodyHandle outer = make_mesh_body(), inner = make_mesh_body(0.125f);
+        const ShapeHandle outer = make_mesh_shape(), inner = make_mesh_shape(0.125f);
         crofton_transform pose = translation(0.5, 0.125, 0.125);
         size_t count = 0;
         crofton_mesh_contact contacts[32];
@@ -83,7 +83,7 @@ TEST_SUITE("capi/contacts") {
         REQUIRE(relate(outer.get(), outer.get(), &pose, CROFTON_MESHES_MEET, &relation) == CROFTON_OK);
         CHECK(relation.meet == 0);
 
-        const auto containment = [&](const BodyHandle& a, const BodyHandle& b, const crofton_transform& at) {
+        const auto containment = [&](const ShapeHandle& a, const ShapeHandle& b, const crofton_transform& at) {
             REQUIRE(relate(a.get(), b.get(), &at, CROFTON_MESHES_CONTAINMENT, &relation) == CROFTON_OK);
             return relation.containment;
         };

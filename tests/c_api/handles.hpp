@@ -27,8 +27,8 @@ using Broadphase = Owned<crofton_broadphase, crofton_broadphase_destroy>;
 using Triangulator = Owned<crofton_triangulator, crofton_triangulator_destroy>;
 using WorldHandle = Owned<crofton_world, crofton_world_destroy>;
 using ViewResultHandle = Owned<crofton_view_result, crofton_view_result_destroy>;
-using BodyHandle = Owned<crofton_body, crofton_body_destroy>;
-using BodyContactsHandle = Owned<crofton_body_contacts, crofton_body_contacts_destroy>;
+using ShapeHandle = Owned<crofton_shape, crofton_shape_destroy>;
+using ShapeContactsHandle = Owned<crofton_shape_contacts, crofton_shape_contacts_destroy>;
 using Found = Owned<crofton_found, crofton_found_destroy>;
 using ClusteredMesh = Owned<crofton_clustered_mesh, crofton_clustered_mesh_destroy>;
 using RegionOwner = Owned<crofton_region, crofton_region_destroy>;
@@ -133,13 +133,13 @@ struct Tetrahedron {
     }
 };
 
-inline BodyHandle make_mesh_body(float size = 1.0f) {
+inline ShapeHandle make_mesh_shape(float size = 1.0f) {
     Tetrahedron tetrahedron;
     for (float& x : tetrahedron.positions) x *= size;
     const crofton_mesh mesh = tetrahedron.mesh();
-    crofton_body* body = nullptr;
-    REQUIRE(body_mesh(&mesh, 0, &body) == CROFTON_OK);
-    return BodyHandle(body);
+    crofton_shape* shape = nullptr;
+    REQUIRE(shape_mesh(&mesh, 0, &shape) == CROFTON_OK);
+    return ShapeHandle(shape);
 }
 
 inline crofton_transform translation(double x, double y, double z) {

@@ -14,25 +14,25 @@ using namespace crofton::capi_test;
 namespace {
 
 template <class Make>
-BodyHandle body_of(Make make) {
-    crofton_body* body = nullptr;
-    REQUIRE(make(&body) == CROFTON_OK);
-    return BodyHandle(body);
+ShapeHandle shape_of(Make make) {
+    crofton_shape* shape = nullptr;
+    REQUIRE(make(&shape) == CROFTON_OK);
+    return ShapeHandle(shape);
 }
-BodyHandle sphere(float radius) {
-    return body_of([&](crofton_body** body) { return body_sphere(radius, body); });
+ShapeHandle sphere(float radius) {
+    return shape_of([&](crofton_shape** shape) { return shape_sphere(radius, shape); });
 }
 
 // A sphere of radius 0.25 moves from `from` by `velocity` in a time of 1.
-crofton_impact cast_at(const BodyHandle& target, std::array<double, 3> from, std::array<double, 3> velocity,
+crofton_impact cast_at(const ShapeHandle& target, std::array<double, 3> from, std::array<double, 3> velocity,
                        const crofton_cast_options* options = nullptr) {
-    const BodyHandle moving = sphere(0.25f);
+    const ShapeHandle moving = sphere(0.25f);
     const crofton_transform start = translation(from[0], from[1], from[2]), origin = translation(0, 0, 0);
     const crofton_placed a{moving.get(), &start}, b{target.get(), &origin};
     crofton_motion motion{};
     std::copy(velocity.begin(), velocity.end(), motion.velocity);
     auto impact = sized<crofton_impact>();
-    REQUIRE(crofton_bodies_cast(&a, &motion, &b, nullptr, options, &impact) == CROFTON_OK);
+    REQUIRE(crofton_shapes_cast(&a, &motion, &b, nullptr, options, &impact) == CROFTON_OK);
     return impact;
 }
 
@@ -123,10 +123,10 @@ TEST_SUITE("capi/members") {
         const float points[] = {-1, -1, -1, 1, -1, -1, -1, 1, -1, 1, 1, -1, -1,    -1,
                                 1,  1,  -1, 1, -1, 1,  1,  1, 1,  1, 0, 0,  1.001f};
         const auto faces = [&](float tolerance) {
-            const BodyHandle hull =
-                body_of([&](crofton_body** body) { return body_hull(points, 9, body, 0, tolerance); });
-            auto info = sized<crofton_body_info>();
-            REQUIRE(crofton_body_get_info(hull.get(), &info) == CROFTON_OK);
+            const ShapeHandle hull =
+                shape_of([&](crofton_shape** shape) { return shape_hull(points, 9, shape, 0, tolerance); });
+            auto info = sized<crofton_shape_info>();
+            REQUIRE(crofton_shape_get_info(hull.get(), &info) == CROFTON_OK);
             return info.face_count;
         };
         CHECK(faces(0.0f) == 9);
@@ -138,7 +138,8 @@ TEST_SUITE("capi/members") {
         const std::uint32_t indices[] = {0, 1, 2};  // seen from above, where z > 0
         const crofton_mesh mesh{sizeof mesh, positions, 3, indices, 3, nullptr};
         for (const std::uint32_t front : {0u, 1u}) {
-            const BodyHandle surface = body_of([&](crofton_body** body) { return body_mesh(&mesh, front, body); });
+            const ShapeHandle surface =
+                shape_of([&](crofton_shape** shape) { return shape_mesh(&mesh, front, shape); });
             CHECK(cast_at(surface, {0, 0, 2}, {0, 0, -4}).time == doctest::Approx(1.75 / 4).epsilon(1e-4));
             const crofton_impact behind = cast_at(surface, {0, 0, -2}, {0, 0, 4});
             CHECK(behind.result == (front ? CROFTON_CAST_MISS : CROFTON_CAST_HIT));
@@ -153,10 +154,10 @@ TEST_SUITE("capi/members") {
         field.spacing[0] = 2.0;
         field.spacing[1] = 3.0;
         for (const std::uint32_t both : {0u, 1u}) {
-            const BodyHandle ground =
-                body_of([&](crofton_body** body) { return body_height_field(&field, both, body); });
-            auto info = sized<crofton_body_info>();
-            REQUIRE(crofton_body_get_info(ground.get(), &info) == CROFTON_OK);
+            const ShapeHandle ground =
+                shape_of([&](crofton_shape** shape) { return shape_height_field(&field, both, shape); });
+            auto info = sized<crofton_shape_info>();
+            REQUIRE(crofton_shape_get_info(ground.get(), &info) == CROFTON_OK);
             CHECK(info.max[0] == doctest::Approx(4.0));
             CHECK(info.max[2] == doctest::Approx(3.0));
             CHECK(cast_at(ground, {1, 2, 1.5}, {0, -4, 0}).result == CROFTON_CAST_MISS);
@@ -167,32 +168,32 @@ TEST_SUITE("capi/members") {
              {&crofton_height_field::columns, &crofton_height_field::rows}) {
             crofton_height_field empty = field;
             empty.*side = 0;
-            crofton_body* made = nullptr;
-            CHECK(body_height_field(&empty, 0, &made) == CROFTON_OUT_OF_RANGE);
+            crofton_shape* made = nullptr;
+            CHECK(shape_height_field(&empty, 0, &made) == CROFTON_OUT_OF_RANGE);
             CHECK(made == nullptr);
         }
     }
 
     TEST_CASE("a manifold has as many points as are wanted, and casts end at the tolerance and the steps given") {
         const float half[3] = {1, 1, 1};
-        const BodyHandle box = body_of([&](crofton_body** body) { return body_box(half, body); });
+        const ShapeHandle box = shape_of([&](crofton_shape** shape) { return shape_box(half, shape); });
         const crofton_transform below = translation(0, 0, 0), above = translation(0, 1.999, 0);
         const crofton_placed a{box.get(), &below}, b{box.get(), &above};
-        crofton_body_contacts* made = nullptr;
-        REQUIRE(crofton_body_contacts_create(&made) == CROFTON_OK);
-        const BodyContactsHandle contacts(made);
+        crofton_shape_contacts* made = nullptr;
+        REQUIRE(crofton_shape_contacts_create(&made) == CROFTON_OK);
+        const ShapeContactsHandle contacts(made);
         auto options = sized<crofton_manifold_options>();
         crofton_tracked_point* points = nullptr;
         std::size_t count = 0;
         for (const std::uint32_t most : {0u, 1u, 2u}) {
             options.max_points = most;
-            REQUIRE(crofton_body_contacts_update(contacts.get(), &a, &b, &options, &points, &count, nullptr) ==
+            REQUIRE(crofton_shape_contacts_update(contacts.get(), &a, &b, &options, &points, &count, nullptr) ==
                     CROFTON_OK);
             CHECK(count == (most ? most : 4));
         }
         for (const double margin : {kNotANumber, kNoLimit}) {
             options.margin = margin;
-            CHECK(crofton_body_contacts_update(contacts.get(), &a, &b, &options, &points, &count, nullptr) ==
+            CHECK(crofton_shape_contacts_update(contacts.get(), &a, &b, &options, &points, &count, nullptr) ==
                   CROFTON_NON_FINITE);
         }
         CHECK(count == 2);
@@ -213,19 +214,19 @@ TEST_SUITE("capi/members") {
         auto impact = sized<crofton_impact>();
         for (const std::uint32_t most : {0u, 1u}) {
             cast.max_steps = most;
-            REQUIRE(crofton_bodies_cast(&turning, &turn, &a, nullptr, &cast, &impact) == CROFTON_OK);
+            REQUIRE(crofton_shapes_cast(&turning, &turn, &a, nullptr, &cast, &impact) == CROFTON_OK);
             CHECK((impact.result == CROFTON_CAST_UNRESOLVED) == (most == 1));
         }
         cast.max_steps = 1u << 31;
         impact.time = 42;
-        CHECK(crofton_bodies_cast(&a, nullptr, &b, nullptr, &cast, &impact) == CROFTON_OUT_OF_RANGE);
+        CHECK(crofton_shapes_cast(&a, nullptr, &b, nullptr, &cast, &impact) == CROFTON_OUT_OF_RANGE);
         CHECK(impact.time == 42);
-        auto distance = sized<crofton_body_distance>();
+        auto distance = sized<crofton_shape_distance>();
         distance.distance = 42;
         for (std::size_t k = 0; k < 3; ++k) {
             double point[3] = {5, 5, 5};
             point[k] = kNotANumber;
-            CHECK(crofton_body_closest_point(&a, point, &distance) == CROFTON_NON_FINITE);
+            CHECK(crofton_shape_closest_point(&a, point, &distance) == CROFTON_NON_FINITE);
         }
         CHECK(distance.distance == 42);
     }

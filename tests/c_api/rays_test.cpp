@@ -18,7 +18,7 @@ crofton_ray ray(double x, double y, double z, double dx, double dy, double dz, d
 
 TEST_SUITE("capi/rays") {
     TEST_CASE("rays that are none are refused, named, and write nothing") {
-        const BodyHandle mesh = make_mesh_body();
+        const ShapeHandle mesh = make_mesh_shape();
         const crofton_transform here = translation(0, 0, 0);
         const crofton_placed placed{mesh.get(), &here};
         const double nan = std::nan("");
@@ -28,12 +28,12 @@ TEST_SUITE("capi/rays") {
         const crofton_status expected[] = {CROFTON_NON_FINITE, CROFTON_NON_FINITE, CROFTON_DEGENERATE,
                                            CROFTON_INVALID_ARGUMENT, CROFTON_INVALID_ARGUMENT};
         for (int i = 0; i < 5; ++i) {
-            auto found = sized<crofton_body_ray_hit>();
+            auto found = sized<crofton_shape_ray_hit>();
             found.t = -7.0;
-            CHECK(crofton_body_raycast(&placed, &bad[i], &found) == expected[i]);
+            CHECK(crofton_shape_raycast(&placed, &bad[i], &found) == expected[i]);
             CHECK(found.t == -7.0);
             int hit = 7;
-            CHECK(crofton_body_raycast_any(&placed, &bad[i], &hit) == expected[i]);
+            CHECK(crofton_shape_raycast_any(&placed, &bad[i], &hit) == expected[i]);
             CHECK(hit == 7);
             const crofton_box box = box_at(0, 0, 0);
             double t = -7.0;
@@ -41,9 +41,9 @@ TEST_SUITE("capi/rays") {
             CHECK(t == -7.0);
         }
         int hit = 7;
-        CHECK(crofton_body_raycast_any(nullptr, &good, &hit) == CROFTON_BAD_HANDLE);
-        CHECK(crofton_body_raycast_any(&placed, nullptr, &hit) == CROFTON_INVALID_ARGUMENT);
-        CHECK(crofton_body_raycast_any(&placed, &good, nullptr) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_shape_raycast_any(nullptr, &good, &hit) == CROFTON_BAD_HANDLE);
+        CHECK(crofton_shape_raycast_any(&placed, nullptr, &hit) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_shape_raycast_any(&placed, &good, nullptr) == CROFTON_INVALID_ARGUMENT);
         CHECK(hit == 7);
     }
 
@@ -61,7 +61,7 @@ TEST_SUITE("capi/rays") {
     }
 
     TEST_CASE("the nearest triangle of a mesh") {
-        const BodyHandle mesh = make_mesh_body();
+        const ShapeHandle mesh = make_mesh_shape();
         const crofton_transform here = translation(0, 0, 0);
         const crofton_placed placed{mesh.get(), &here};
         // Its triangle 0 is the right one at z = 0, triangle 3 the slanted one, x + y + z = 1.
@@ -75,10 +75,10 @@ TEST_SUITE("capi/rays") {
         for (const crofton_placed& at : {placed, other})
             for (int i = 0; i < 4; ++i) {
                 CAPTURE(i);
-                auto hit = sized<crofton_body_ray_hit>();
-                REQUIRE(crofton_body_raycast(&at, &rays[i], &hit) == CROFTON_OK);
+                auto hit = sized<crofton_shape_ray_hit>();
+                REQUIRE(crofton_shape_raycast(&at, &rays[i], &hit) == CROFTON_OK);
                 int any = -1;
-                REQUIRE(crofton_body_raycast_any(&at, &rays[i], &any) == CROFTON_OK);
+                REQUIRE(crofton_shape_raycast_any(&at, &rays[i], &any) == CROFTON_OK);
                 CHECK(any == (i < 2 ? 1 : 0));
                 if (i >= 2) {
                     CHECK(hit.t == kInfinity);
@@ -87,27 +87,27 @@ TEST_SUITE("capi/rays") {
                 CHECK(hit.t == doctest::Approx(i == 0 ? 4.5 : 5.0));
                 CHECK(hit.part.triangle == (i == 0 ? 3u : 0u));
             }
-        // Of a one-sided surface, and of other bodies, any hit is one of crofton_body_raycast.
+        // Of a one-sided surface, and of other shapes, any hit is one of crofton_shape_raycast.
         const Tetrahedron tetrahedron;
         const crofton_mesh source = tetrahedron.mesh();
-        crofton_body* made = nullptr;
-        REQUIRE(body_mesh(&source, 1, &made) == CROFTON_OK);
-        const BodyHandle one_sided(made);
-        REQUIRE(body_sphere(0.5f, &made) == CROFTON_OK);
-        const BodyHandle sphere(made);
-        for (const crofton_body* body : {one_sided.get(), sphere.get()})
+        crofton_shape* made = nullptr;
+        REQUIRE(shape_mesh(&source, 1, &made) == CROFTON_OK);
+        const ShapeHandle one_sided(made);
+        REQUIRE(shape_sphere(0.5f, &made) == CROFTON_OK);
+        const ShapeHandle sphere(made);
+        for (const crofton_shape* shape : {one_sided.get(), sphere.get()})
             for (const crofton_ray& r : {ray(0.25, 0.25, 5, 0, 0, -1), ray(0.25, 0.25, 0.25, 0, 0, 1),
                                          ray(0.1, 0.1, 0.1, 0, 0, 1, 0.05), ray(3, 0, 0, 0, 1, 0)}) {
-                const crofton_placed at{body, &here};
-                auto hit = sized<crofton_body_ray_hit>();
-                REQUIRE(crofton_body_raycast(&at, &r, &hit) == CROFTON_OK);
+                const crofton_placed at{shape, &here};
+                auto hit = sized<crofton_shape_ray_hit>();
+                REQUIRE(crofton_shape_raycast(&at, &r, &hit) == CROFTON_OK);
                 int any = -1;
-                REQUIRE(crofton_body_raycast_any(&at, &r, &any) == CROFTON_OK);
+                REQUIRE(crofton_shape_raycast_any(&at, &r, &any) == CROFTON_OK);
                 CHECK((any == 1) == std::isfinite(hit.t));
             }
     }
 
-    TEST_CASE("trees refuse what is no ray and no body, and answer for the others") {
+    TEST_CASE("trees refuse what is no ray and no shape, and answer for the others") {
         const std::vector<crofton_box> boxes{box_at(0, 0, 0), box_at(3, 0, 0), box_at(6, 0, 0), box_at(6, 5, 0)};
         const std::vector<std::uint32_t> layers{1, 2, 1, 1};
         crofton_tree* handle = nullptr;

@@ -8,64 +8,64 @@
 
 namespace crofton::capi_test {
 
-// ---- Bodies ----
+// ---- Shapes ----
 
 template <class Fill>
-crofton_status body_of_kind(std::uint32_t kind, crofton_body** body, Fill fill) {
-    crofton_body_description description = crofton_default_body_description();
+crofton_status shape_of_kind(std::uint32_t kind, crofton_shape** shape, Fill fill) {
+    crofton_shape_description description = crofton_default_shape_description();
     description.kind = kind;
     fill(description);
-    return crofton_body_create(&description, body);
+    return crofton_shape_create(&description, shape);
 }
-inline crofton_status body_sphere(float radius, crofton_body** body) {
-    return body_of_kind(CROFTON_BODY_SPHERE, body, [&](auto& d) { d.radius = radius; });
+inline crofton_status shape_sphere(float radius, crofton_shape** shape) {
+    return shape_of_kind(CROFTON_SHAPE_SPHERE, shape, [&](auto& d) { d.radius = radius; });
 }
-inline crofton_status body_round(std::uint32_t kind, float half_height, float radius, crofton_body** body) {
-    return body_of_kind(kind, body, [&](auto& d) {
+inline crofton_status shape_round(std::uint32_t kind, float half_height, float radius, crofton_shape** shape) {
+    return shape_of_kind(kind, shape, [&](auto& d) {
         d.half_height = half_height;
         d.radius = radius;
     });
 }
-inline crofton_status body_box(const float half[3], crofton_body** body) {
-    return body_of_kind(CROFTON_BODY_BOX, body, [&](auto& d) { std::copy_n(half, 3, d.half_extents); });
+inline crofton_status shape_box(const float half[3], crofton_shape** shape) {
+    return shape_of_kind(CROFTON_SHAPE_BOX, shape, [&](auto& d) { std::copy_n(half, 3, d.half_extents); });
 }
-inline crofton_status body_triangle(const float corners[9], crofton_body** body) {
-    return body_of_kind(CROFTON_BODY_TRIANGLE, body, [&](auto& d) { std::copy_n(corners, 9, d.corners); });
+inline crofton_status shape_triangle(const float corners[9], crofton_shape** shape) {
+    return shape_of_kind(CROFTON_SHAPE_TRIANGLE, shape, [&](auto& d) { std::copy_n(corners, 9, d.corners); });
 }
-inline crofton_status body_half_space(const crofton_plane* plane, crofton_body** body) {
-    return body_of_kind(CROFTON_BODY_HALF_SPACE, body, [&](auto& d) { d.plane = *plane; });
+inline crofton_status shape_half_space(const crofton_plane* plane, crofton_shape** shape) {
+    return shape_of_kind(CROFTON_SHAPE_HALF_SPACE, shape, [&](auto& d) { d.plane = *plane; });
 }
-inline crofton_status body_hull(const float* points, std::size_t count, crofton_body** body,
-                                std::uint32_t max_vertices = 0, float face_tolerance = 0.0f) {
-    return body_of_kind(CROFTON_BODY_HULL, body, [&](auto& d) {
+inline crofton_status shape_hull(const float* points, std::size_t count, crofton_shape** shape,
+                                 std::uint32_t max_vertices = 0, float face_tolerance = 0.0f) {
+    return shape_of_kind(CROFTON_SHAPE_HULL, shape, [&](auto& d) {
         d.points = points;
         d.point_count = count;
         d.max_vertices = max_vertices;
         d.face_tolerance = face_tolerance;
     });
 }
-inline crofton_status body_rounded(const crofton_body* core, float radius, crofton_body** body) {
-    return body_of_kind(CROFTON_BODY_ROUNDED, body, [&](auto& d) {
+inline crofton_status shape_rounded(const crofton_shape* core, float radius, crofton_shape** shape) {
+    return shape_of_kind(CROFTON_SHAPE_ROUNDED, shape, [&](auto& d) {
         d.core = core;
         d.radius = radius;
     });
 }
-inline crofton_status body_mesh(const crofton_mesh* mesh, std::uint32_t front_only, crofton_body** body) {
-    return body_of_kind(CROFTON_BODY_MESH, body, [&](auto& d) {
+inline crofton_status shape_mesh(const crofton_mesh* mesh, std::uint32_t front_only, crofton_shape** shape) {
+    return shape_of_kind(CROFTON_SHAPE_MESH, shape, [&](auto& d) {
         d.mesh = mesh;
         d.front_only = front_only;
     });
 }
-inline crofton_status body_height_field(const crofton_height_field* field, std::uint32_t both_sides,
-                                        crofton_body** body) {
-    return body_of_kind(CROFTON_BODY_HEIGHT_FIELD, body, [&](auto& d) {
+inline crofton_status shape_height_field(const crofton_height_field* field, std::uint32_t both_sides,
+                                         crofton_shape** shape) {
+    return shape_of_kind(CROFTON_SHAPE_HEIGHT_FIELD, shape, [&](auto& d) {
         d.height_field = field;
         d.front_only = both_sides ? 0 : 1;
     });
 }
-inline crofton_status body_compound(const crofton_body* const* children, const crofton_transform* poses,
-                                    std::size_t count, crofton_body** body) {
-    return body_of_kind(CROFTON_BODY_COMPOUND, body, [&](auto& d) {
+inline crofton_status shape_compound(const crofton_shape* const* children, const crofton_transform* poses,
+                                     std::size_t count, crofton_shape** shape) {
+    return shape_of_kind(CROFTON_SHAPE_COMPOUND, shape, [&](auto& d) {
         d.children = children;
         d.poses = poses;
         d.child_count = count;
@@ -74,81 +74,81 @@ inline crofton_status body_compound(const crofton_body* const* children, const c
 
 // ---- Shapes that World and trees are asked with ----
 
-inline crofton_shape shape_of(const crofton_box& box) {
-    crofton_shape shape{};
-    shape.kind = CROFTON_SHAPE_BOX;
-    shape.box = box;
-    return shape;
+inline crofton_query_shape shape_of(const crofton_box& box) {
+    crofton_query_shape probe{};
+    probe.kind = CROFTON_QUERY_SHAPE_BOX;
+    probe.box = box;
+    return probe;
 }
-inline crofton_shape shape_of(const crofton_placed& body) {
-    crofton_shape shape{};
-    shape.kind = CROFTON_SHAPE_BODY;
-    shape.body = body;
-    return shape;
+inline crofton_query_shape shape_of(const crofton_placed& shape) {
+    crofton_query_shape probe{};
+    probe.kind = CROFTON_QUERY_SHAPE_SHAPE;
+    probe.shape = shape;
+    return probe;
 }
-inline crofton_shape sphere_shape(const double center[3], double radius) {
-    crofton_shape shape{};
-    shape.kind = CROFTON_SHAPE_SPHERE;
-    std::copy_n(center, 3, shape.begin);
-    shape.radius = radius;
-    return shape;
+inline crofton_query_shape sphere_shape(const double center[3], double radius) {
+    crofton_query_shape probe{};
+    probe.kind = CROFTON_QUERY_SHAPE_SPHERE;
+    std::copy_n(center, 3, probe.begin);
+    probe.radius = radius;
+    return probe;
 }
-inline crofton_shape capsule_shape(const double begin[3], const double end[3], double radius) {
-    crofton_shape shape = sphere_shape(begin, radius);
-    shape.kind = CROFTON_SHAPE_CAPSULE;
-    std::copy_n(end, 3, shape.end);
-    return shape;
+inline crofton_query_shape capsule_shape(const double begin[3], const double end[3], double radius) {
+    crofton_query_shape probe = sphere_shape(begin, radius);
+    probe.kind = CROFTON_QUERY_SHAPE_CAPSULE;
+    std::copy_n(end, 3, probe.end);
+    return probe;
 }
 template <class Given>
 crofton_status world_overlap(const crofton_world* world, const Given* given, std::uint32_t layers,
                              crofton_found* found) {
-    const crofton_shape shape = given ? shape_of(*given) : crofton_shape{};
-    return crofton_world_overlap(world, given ? &shape : nullptr, layers, found);
+    const crofton_query_shape probe = given ? shape_of(*given) : crofton_query_shape{};
+    return crofton_world_overlap(world, given ? &probe : nullptr, layers, found);
 }
 inline crofton_status world_overlap_sphere(const crofton_world* world, const double center[3], double radius,
                                            std::uint32_t layers, crofton_found* found) {
-    const crofton_shape shape = sphere_shape(center, radius);
-    return crofton_world_overlap(world, &shape, layers, found);
+    const crofton_query_shape probe = sphere_shape(center, radius);
+    return crofton_world_overlap(world, &probe, layers, found);
 }
 inline crofton_status world_overlap_capsule(const crofton_world* world, const double begin[3], const double end[3],
                                             double radius, std::uint32_t layers, crofton_found* found) {
-    const crofton_shape shape = capsule_shape(begin, end, radius);
-    return crofton_world_overlap(world, &shape, layers, found);
+    const crofton_query_shape probe = capsule_shape(begin, end, radius);
+    return crofton_world_overlap(world, &probe, layers, found);
 }
 template <class Given>
 crofton_status world_closest(const crofton_world* world, const Given* given, double most, std::uint32_t layers,
                              crofton_closest_object* closest) {
-    const crofton_shape shape = given ? shape_of(*given) : crofton_shape{};
-    return crofton_world_closest(world, given ? &shape : nullptr, most, layers, closest);
+    const crofton_query_shape probe = given ? shape_of(*given) : crofton_query_shape{};
+    return crofton_world_closest(world, given ? &probe : nullptr, most, layers, closest);
 }
 inline crofton_status world_closest_to_sphere(const crofton_world* world, const double center[3], double radius,
                                               double most, std::uint32_t layers, crofton_closest_object* closest) {
-    const crofton_shape shape = sphere_shape(center, radius);
-    return crofton_world_closest(world, &shape, most, layers, closest);
+    const crofton_query_shape probe = sphere_shape(center, radius);
+    return crofton_world_closest(world, &probe, most, layers, closest);
 }
 inline crofton_status world_closest_to_capsule(const crofton_world* world, const double begin[3], const double end[3],
                                                double radius, double most, std::uint32_t layers,
                                                crofton_closest_object* closest) {
-    const crofton_shape shape = capsule_shape(begin, end, radius);
-    return crofton_world_closest(world, &shape, most, layers, closest);
+    const crofton_query_shape probe = capsule_shape(begin, end, radius);
+    return crofton_world_closest(world, &probe, most, layers, closest);
 }
 
 inline crofton_status tree_within_box(const crofton_tree* tree, const crofton_box* box, std::uint32_t layers,
                                       std::uint32_t* items, std::size_t capacity, std::size_t* found) {
-    const crofton_shape shape = shape_of(*box);
-    return crofton_tree_overlap(tree, &shape, layers, items, capacity, found);
+    const crofton_query_shape probe = shape_of(*box);
+    return crofton_tree_overlap(tree, &probe, layers, items, capacity, found);
 }
 inline crofton_status tree_within_sphere(const crofton_tree* tree, const double* center, double radius,
                                          std::uint32_t layers, std::uint32_t* items, std::size_t capacity,
                                          std::size_t* found) {
-    const crofton_shape shape = center ? sphere_shape(center, radius) : crofton_shape{};
-    return crofton_tree_overlap(tree, center ? &shape : nullptr, layers, items, capacity, found);
+    const crofton_query_shape probe = center ? sphere_shape(center, radius) : crofton_query_shape{};
+    return crofton_tree_overlap(tree, center ? &probe : nullptr, layers, items, capacity, found);
 }
 
 // ---- Meshes ----
 
 // One question of crofton_meshes_relate.
-inline crofton_status relate(const crofton_body* a, const crofton_body* b, const crofton_transform* pose,
+inline crofton_status relate(const crofton_shape* a, const crofton_shape* b, const crofton_transform* pose,
                              std::uint32_t which, crofton_mesh_relation* relation) {
     relation->size = sizeof *relation;
     return crofton_meshes_relate(a, b, pose, which, relation);
@@ -186,8 +186,8 @@ inline crofton_status world_set_mesh(crofton_world* world, crofton_object object
 inline crofton_status world_set_bound(crofton_world* world, crofton_object object, const crofton_bound* bound) {
     return world_set(world, object, CROFTON_SET_BOUND, [&](auto& d) { d.bound = bound; });
 }
-inline crofton_status world_set_body(crofton_world* world, crofton_object object, const crofton_body* body) {
-    return world_set(world, object, CROFTON_SET_BODY, [&](auto& d) { d.body = body; });
+inline crofton_status world_set_shape(crofton_world* world, crofton_object object, const crofton_shape* shape) {
+    return world_set(world, object, CROFTON_SET_SHAPE, [&](auto& d) { d.shape = shape; });
 }
 
 template <class Info>

@@ -119,7 +119,7 @@ TEST_SUITE("capi/world occlusion") {
         CHECK_FALSE(s.hides());
         REQUIRE(crofton_world_set_occluders(s.world.get(), s.mesh, &occluder, 1) == CROFTON_OK);
         CHECK(s.hides());
-        // As a level: the body, and all six faces as a surface.
+        // As a level: the shape, and all six faces as a surface.
         find.level_triangles = 48;
         REQUIRE(crofton_world_find_occluders(s.world.get(), s.mesh, &find) == CROFTON_OK);
         REQUIRE(world_occluder_count(s.world.get(), s.mesh, &count) == CROFTON_OK);

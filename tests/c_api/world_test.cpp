@@ -31,7 +31,7 @@ TEST_SUITE("capi/world") {
         CHECK(world_set_bound(world, s.box, nullptr) == bad);
         CHECK(crofton_world_set(world, s.box, CROFTON_SET_USER, nullptr) == bad);
         const auto description = sized<crofton_object_description>();
-        for (const std::uint32_t members : {256u, ~0u, CROFTON_SET_BOUND | CROFTON_SET_BODY | 0u,
+        for (const std::uint32_t members : {256u, ~0u, CROFTON_SET_BOUND | CROFTON_SET_SHAPE | 0u,
                                             CROFTON_SET_MESH | CROFTON_SET_OCCLUDES | 0u, CROFTON_SET_MESH | 0u})
             CHECK(crofton_world_set(world, s.box, members, &description) == bad);
         CHECK(crofton_world_set_boxes(world, nullptr, 0, &box, 0, 1) == bad);
@@ -51,8 +51,8 @@ TEST_SUITE("capi/world") {
         CHECK(crofton_world_raycast_any(world, &ray, ~0u, nullptr) == bad);
         CHECK(crofton_world_raycast_all(world, nullptr, ~0u, s.found.get()) == bad);
         CHECK(crofton_world_overlap(world, nullptr, ~0u, s.found.get()) == bad);
-        crofton_shape no_shape{};
-        no_shape.kind = CROFTON_SHAPE_BODY + 1;
+        crofton_query_shape no_shape{};
+        no_shape.kind = CROFTON_QUERY_SHAPE_SHAPE + 1;
         CHECK(crofton_world_overlap(world, &no_shape, ~0u, s.found.get()) == bad);
         CHECK(crofton_world_closest(world, nullptr, 1.0, ~0u, &closest) == bad);
         CHECK(crofton_world_closest(world, &no_shape, 1.0, ~0u, &closest) == bad);

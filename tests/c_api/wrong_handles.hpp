@@ -18,8 +18,8 @@ using Pointee = std::remove_const_t<std::remove_pointer_t<P>>;
 template <class P>
 inline constexpr bool kIsHandle = std::is_pointer_v<P>&&
     kIsOneOf<Pointee<P>, crofton_scene, crofton_tree, crofton_broadphase, crofton_triangulator, crofton_world,
-             crofton_view_result, crofton_body, crofton_body_contacts, crofton_found, crofton_baked_scene, crofton_pvs,
-             crofton_clustered_mesh, crofton_depth_culler, crofton_region>;
+             crofton_view_result, crofton_shape, crofton_shape_contacts, crofton_found, crofton_baked_scene,
+             crofton_pvs, crofton_clustered_mesh, crofton_depth_culler, crofton_region>;
 
 constexpr unsigned char kUntouched = 0xA5;
 
@@ -44,10 +44,10 @@ struct Sound {
         return Tree(made);
     }();
     VisibleSet visible_set = make_visible_set();
-    BodyHandle body = [] {
-        crofton_body* made = nullptr;
-        REQUIRE(body_sphere(1.0f, &made) == CROFTON_OK);
-        return BodyHandle(made);
+    ShapeHandle shape = [] {
+        crofton_shape* made = nullptr;
+        REQUIRE(shape_sphere(1.0f, &made) == CROFTON_OK);
+        return ShapeHandle(made);
     }();
     RegionOwner region = [] {
         crofton_region* made = nullptr;
@@ -56,7 +56,7 @@ struct Sound {
     }();
     crofton_box box = box_at(0, 0, -5);
     crofton_transform pose = translation(0, 0, 0);
-    crofton_placed placed{body.get(), &pose};
+    crofton_placed placed{shape.get(), &pose};
     View view = default_view();
     crofton_object_description description = sized<crofton_object_description>();
 
@@ -71,8 +71,8 @@ struct Sound {
             return small.found.get();
         else if constexpr (std::is_same_v<T, crofton_tree>)
             return tree.get();
-        else if constexpr (std::is_same_v<T, crofton_body>)
-            return body.get();
+        else if constexpr (std::is_same_v<T, crofton_shape>)
+            return shape.get();
         else if constexpr (std::is_same_v<T, crofton_region>)
             return region.get();
         else

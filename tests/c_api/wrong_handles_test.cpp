@@ -91,12 +91,12 @@ void refuse_modules_changes(Table& table) {
 }
 
 void refuse_modules_queries(Table& table) {
-    CROFTON_REFUSE(crofton_body_destroy);
-    CROFTON_REFUSE(crofton_body_get_info);
-    CROFTON_REFUSE(crofton_body_get_mass);
-    CROFTON_REFUSE(crofton_body_contacts_destroy);
-    CROFTON_REFUSE(crofton_body_contacts_update);
-    CROFTON_REFUSE(crofton_body_contacts_outline);
+    CROFTON_REFUSE(crofton_shape_destroy);
+    CROFTON_REFUSE(crofton_shape_get_info);
+    CROFTON_REFUSE(crofton_shape_get_mass);
+    CROFTON_REFUSE(crofton_shape_contacts_destroy);
+    CROFTON_REFUSE(crofton_shape_contacts_update);
+    CROFTON_REFUSE(crofton_shape_contacts_outline);
     CROFTON_REFUSE(crofton_meshes_relate);
     CROFTON_REFUSE(crofton_meshes_contacts);
     CROFTON_REFUSE(crofton_tree_view);
@@ -130,18 +130,18 @@ const std::set<std::string> kWithoutHandle = {
     "api_version",
     "baked_scene_open",
     "baked_scene_read",
-    "bodies_cast",
-    "bodies_distance",
-    "bodies_manifold",
-    "bodies_meet",
-    "bodies_penetration",
-    "body_closest_point",
-    "body_contacts_create",
-    "body_create",
-    "body_outline",
-    "body_parts_near",
-    "body_raycast",
-    "body_raycast_any",
+    "shapes_cast",
+    "shapes_distance",
+    "shapes_manifold",
+    "shapes_meet",
+    "shapes_penetration",
+    "shape_closest_point",
+    "shape_contacts_create",
+    "shape_create",
+    "shape_outline",
+    "shape_parts_near",
+    "shape_raycast",
+    "shape_raycast_any",
     "box_raycast",
     "box_transform",
     "boxes_distance",
@@ -153,7 +153,7 @@ const std::set<std::string> kWithoutHandle = {
     "clustered_mesh_create",
     "criterion_for_frustum",
     "criterion_for_rays",
-    "default_body_description",
+    "default_shape_description",
     "default_camera",
     "default_cast_options",
     "default_depth_object",
@@ -226,14 +226,14 @@ TEST_SUITE("capi/wrong handles") {
         CHECK(calls == table.names().size() + kWithoutHandle.size());
     }
 
-    TEST_CASE("bodies that stand nowhere, are none, or are of another kind are refused") {
+    TEST_CASE("shapes that stand nowhere, are none, or are of another kind are refused") {
         Sound sound;
-        auto distance = sized<crofton_body_distance>();
+        auto distance = sized<crofton_shape_distance>();
         distance.distance = 42.0;
-        const crofton_placed nowhere{sound.body.get(), nullptr}, none{nullptr, &sound.pose},
-            other{reinterpret_cast<const crofton_body*>(sound.scene.get()), &sound.pose};
+        const crofton_placed nowhere{sound.shape.get(), nullptr}, none{nullptr, &sound.pose},
+            other{reinterpret_cast<const crofton_shape*>(sound.scene.get()), &sound.pose};
         const auto ask = [&](const crofton_placed* a, const crofton_placed* b) {
-            return crofton_bodies_distance(a, b, nullptr, &distance);
+            return crofton_shapes_distance(a, b, nullptr, &distance);
         };
         for (const auto& [wrong, status] :
              {std::pair(&nowhere, CROFTON_INVALID_ARGUMENT), std::pair(&none, CROFTON_BAD_HANDLE),
@@ -246,10 +246,10 @@ TEST_SUITE("capi/wrong handles") {
         CHECK(ask(&sound.placed, &sound.placed) == CROFTON_OK);
         CHECK(distance.distance == 0.0);
 
-        crofton_body* made = nullptr;
-        const std::array<const crofton_body*, 2> children{sound.body.get(), nullptr};
+        crofton_shape* made = nullptr;
+        const std::array<const crofton_shape*, 2> children{sound.shape.get(), nullptr};
         const std::array<crofton_transform, 2> poses{sound.pose, sound.pose};
-        CHECK(body_compound(children.data(), poses.data(), 2, &made) == CROFTON_BAD_HANDLE);
+        CHECK(shape_compound(children.data(), poses.data(), 2, &made) == CROFTON_BAD_HANDLE);
         CHECK(crofton_last_error_item() == 1);
         CHECK(made == nullptr);
     }

@@ -14,7 +14,7 @@ namespace {
 
 struct ConvexScene {
     std::vector<convex::Hull> hulls;
-    std::vector<convex::Body> bodies;
+    std::vector<convex::Shape> shapes;
     std::vector<RigidTransform> poses;
 };
 
@@ -30,11 +30,11 @@ ConvexScene convex_scene(std::uint64_t seed) {
     }
     for (int i = 0; i < 80; ++i) {
         const float size = static_cast<float>(0.5 + random.uniform());
-        scene.bodies.push_back(i % 2 == 0   ? convex::Body::hull(scene.hulls[static_cast<std::size_t>(i / 2)])
-                               : i % 8 == 1 ? convex::Body::box({size, 0.5f, 1.0f}).value()
-                               : i % 8 == 3 ? convex::Body::capsule(size, 0.25f).value()
-                               : i % 8 == 5 ? convex::Body::cylinder(size, 0.5f).value()
-                                            : convex::Body::cone(size, 0.5f).value());
+        scene.shapes.push_back(i % 2 == 0   ? convex::Shape::hull(scene.hulls[static_cast<std::size_t>(i / 2)])
+                               : i % 8 == 1 ? convex::Shape::box({size, 0.5f, 1.0f}).value()
+                               : i % 8 == 3 ? convex::Shape::capsule(size, 0.25f).value()
+                               : i % 8 == 5 ? convex::Shape::cylinder(size, 0.5f).value()
+                                            : convex::Shape::cone(size, 0.5f).value());
         // One draw a statement: compilers order the operands of an expression as they like.
         const glm::dmat3 turn = sampling::rotation(random.point<3>());
         const double way = random.uniform(0.5, 1.2);
@@ -51,8 +51,8 @@ std::uint64_t convex_pairs() {
         for (const std::uint16_t i : hull.triangles()) digest.add(std::uint32_t{i});
         digest.add(hull.mass().volume).add(hull.mass().center);
     }
-    for (std::size_t i = 1; i < scene.bodies.size(); ++i) {
-        const convex::BodyAtPose a{scene.bodies[i - 1], scene.poses[i - 1]}, b{scene.bodies[i], scene.poses[i]};
+    for (std::size_t i = 1; i < scene.shapes.size(); ++i) {
+        const convex::ShapeAtPose a{scene.shapes[i - 1], scene.poses[i - 1]}, b{scene.shapes[i], scene.poses[i]};
         convex::PairCache cache;
         const auto apart = convex::distance(a, b, &cache);
         const auto depth = convex::penetration(a, b, &cache);
@@ -62,7 +62,7 @@ std::uint64_t convex_pairs() {
         const convex::Motion motion{{-3, 0.5, 0.25}, {0.5, 2.0, -1.0}, {}};
         RigidTransform away = scene.poses[i];
         away.translation.x += 4.0;
-        digest.add(convex::cast(a, {}, {b.body, away}, motion)->time);
+        digest.add(convex::cast(a, {}, {b.shape, away}, motion)->time);
     }
     return digest.value();
 }
@@ -77,7 +77,7 @@ TEST_SUITE("determinism/convex") {
     TEST_CASE("the published answer is that of exact integers") {
         const ConvexScene scene = convex_scene(51);
         for (std::size_t i = 2; i < 14; i += 2) {
-            const convex::BodyAtPose a{scene.bodies[i - 2], scene.poses[i - 2]}, b{scene.bodies[i], scene.poses[i]};
+            const convex::ShapeAtPose a{scene.shapes[i - 2], scene.poses[i - 2]}, b{scene.shapes[i], scene.poses[i]};
             const auto exact_a = oracle::exact_polytope(a), exact_b = oracle::exact_polytope(b);
             CHECK(convex::intersects(a, b) == oracle::meet_by_axes(exact_a, exact_b));
         }

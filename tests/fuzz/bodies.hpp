@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Convex bodies from the fuzzer's bytes, and poses in which two of them nearly touch.
+// Convex shapes from the fuzzer's bytes, and poses in which two of them nearly touch.
 #pragma once
-#include <crofton/convex/body.hpp>
+#include <crofton/convex/shape.hpp>
 #include <memory>
 
 #include "shapes.hpp"
@@ -12,30 +12,30 @@ class Bodies {
   public:
     explicit Bodies(Shapes& in) : in_(in) {}
 
-    convex::Body body() {
-        using convex::Body;
+    convex::Shape shape() {
+        using convex::Shape;
         const unsigned kind = in_.below(8);
         if (kind == 0) return round();
         if (kind == 1) {
             glm::vec3 corners[3];
             for (glm::vec3& p : corners) p = glm::vec3(in_.point());
-            return *Body::triangle(corners[0], corners[1], corners[2]);
+            return *Shape::triangle(corners[0], corners[1], corners[2]);
         }
         if (kind < 4) {
             glm::vec3 half;
             for (int k = 0; k < 3; ++k) half[k] = in_.extent();
-            return *Body::box(half);
+            return *Shape::box(half);
         }
         std::vector<glm::vec3> points(4 + in_.below(6));
         for (glm::vec3& p : points) p = glm::vec3(in_.point());
         auto hull = convex::Hull::build(points);
-        if (!hull) return *Body::box(glm::vec3(1.0f));
+        if (!hull) return *Shape::box(glm::vec3(1.0f));
         hulls_.push_back(std::make_unique<convex::Hull>(std::move(*hull)));
-        return Body::hull(*hulls_.back());
+        return Shape::hull(*hulls_.back());
     }
 
     // Of b, beside a where that stands.
-    RigidTransform touching(const convex::Body& a, const RigidTransform& pose_a, const convex::Body& b) {
+    RigidTransform touching(const convex::Shape& a, const RigidTransform& pose_a, const convex::Shape& b) {
         RigidTransform pose;
         pose.rotation = in_.flag() ? pose_a.rotation : in_.rotation();
         glm::dvec3 normal = in_.direction();
@@ -48,20 +48,20 @@ class Bodies {
     }
 
   private:
-    convex::Body round() {
-        using convex::Body;
+    convex::Shape round() {
+        using convex::Shape;
         const float radius = in_.extent(), height = in_.extent();
         switch (in_.below(5)) {
             case 0:
-                return *Body::sphere(radius);
+                return *Shape::sphere(radius);
             case 1:
-                return *Body::capsule(height, radius);
+                return *Shape::capsule(height, radius);
             case 2:
-                return *Body::cylinder(height, radius);
+                return *Shape::cylinder(height, radius);
             case 3:
-                return *Body::cone(height, radius);
+                return *Shape::cone(height, radius);
             default:
-                return *Body::rounded(*Body::box(glm::vec3(height)), radius);
+                return *Shape::rounded(*Shape::box(glm::vec3(height)), radius);
         }
     }
 

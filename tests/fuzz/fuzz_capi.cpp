@@ -88,7 +88,7 @@ struct World {
     crofton_scene* scene = nullptr;
     crofton_view_result* visible = nullptr;
     crofton_broadphase* broadphase = nullptr;
-    crofton_body* meshes[2] = {};
+    crofton_shape* meshes[2] = {};
     crofton_triangulator* triangulator = nullptr;
     crofton_clustered_mesh* clustered[2] = {};
     crofton_depth_culler* depth_culler = nullptr;
@@ -105,7 +105,7 @@ struct World {
         crofton_scene_destroy(scene);
         crofton_view_result_destroy(visible);
         crofton_broadphase_destroy(broadphase);
-        for (crofton_body* mesh : meshes) crofton_body_destroy(mesh);
+        for (crofton_shape* mesh : meshes) crofton_shape_destroy(mesh);
         crofton_triangulator_destroy(triangulator);
         for (crofton_clustered_mesh* mesh : clustered) crofton_clustered_mesh_destroy(mesh);
         crofton_depth_culler_destroy(depth_culler);
@@ -241,19 +241,19 @@ void two_boxes(Input& in) {
 }
 
 void meshes(World& world, Input& in) {
-    crofton_body*& changed = world.meshes[in.below(2)];
+    crofton_shape*& changed = world.meshes[in.below(2)];
     if (in.flag()) {
         const Mesh mesh(in);
-        crofton_body_destroy(changed);
+        crofton_shape_destroy(changed);
         changed = nullptr;
         body_mesh(&mesh.view, in.below(2), &changed);
     }
-    const crofton_body *a = world.meshes[0], *b = world.meshes[1];
+    const crofton_shape *a = world.meshes[0], *b = world.meshes[1];
     const crofton_transform pose = in.transform();
     const crofton_ray ray = in.ray();
     crofton_mesh_contact contacts[4];
     auto relation = sized<crofton_mesh_relation>();
-    auto hit = sized<crofton_body_ray_hit>();
+    auto hit = sized<crofton_shape_ray_hit>();
     std::size_t count = 0;
     int any = 0;
     if (crofton_meshes_relate(a, b, &pose, CROFTON_MESHES_MEET, &relation) == CROFTON_OK &&
@@ -262,8 +262,8 @@ void meshes(World& world, Input& in) {
     crofton_meshes_relate(a, b, &pose, in.below(17), &relation);
     const crofton_transform identity{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
     const crofton_placed placed{a, in.flag() ? &pose : &identity};
-    if (crofton_body_raycast(&placed, &ray, &hit) == CROFTON_OK &&
-        crofton_body_raycast_any(&placed, &ray, &any) == CROFTON_OK)
+    if (crofton_shape_raycast(&placed, &ray, &hit) == CROFTON_OK &&
+        crofton_shape_raycast_any(&placed, &ray, &any) == CROFTON_OK)
         demand((any != 0) == (hit.t < std::numeric_limits<double>::infinity()));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Moving convex bodies: what a cast proves is looked at in many moments; and rays at meshes against every triangle.
+// Moving convex shapes: what a cast proves is looked at in many moments; and rays at meshes against every triangle.
 #include <crofton/collide/narrow_phase.hpp>
 #include <crofton/convex/query.hpp>
 #include <crofton/mesh/mesh_query.hpp>
@@ -22,10 +22,10 @@ convex::Motion motion(fuzz::Shapes& in) {
 }
 
 void check_cast(fuzz::Shapes& in) {
-    fuzz::Bodies bodies(in);
-    const convex::Body a = bodies.body(), b = bodies.body();
+    fuzz::Bodies shapes(in);
+    const convex::Shape a = shapes.shape(), b = shapes.shape();
     const RigidTransform pose_a = in.pose();
-    RigidTransform pose_b = bodies.touching(a, pose_a, b);
+    RigidTransform pose_b = shapes.touching(a, pose_a, b);
     if (in.below(4) != 0) pose_b.translation += in.direction();
     const convex::Motion motion_a = motion(in), motion_b = motion(in);
     convex::CastOptions options;
@@ -44,19 +44,19 @@ void check_cast(fuzz::Shapes& in) {
     };
     if (impact->result != convex::CastResult::hit || impact->time > 0.0)
         for (int i = 0; i < 8; ++i)
-            demand(at(impact->time * i / 8.0) <= 1e-7 * size, "bodies touch before the time of a cast");
+            demand(at(impact->time * i / 8.0) <= 1e-7 * size, "shapes touch before the time of a cast");
     if (impact->result == convex::CastResult::miss)
         demand(impact->normal == glm::dvec3(0.0) && impact->distance == 0.0 && impact->time == options.duration,
                "the fields of a miss");
     if (impact->result != convex::CastResult::hit) return;
     const RigidTransform now_a = convex::moved(pose_a, motion_a, impact->time),
                          now_b = convex::moved(pose_b, motion_b, impact->time);
-    const auto is_hard = [](const convex::Body& body) {
-        return body.kind() == convex::Kind::cylinder || body.kind() == convex::Kind::cone;
+    const auto is_hard = [](const convex::Shape& shape) {
+        return shape.kind() == convex::Kind::cylinder || shape.kind() == convex::Kind::cone;
     };
     const double rounding = is_hard(a) || is_hard(b) ? 1e-7 : 1e-9;
     demand(convex::distance({a, now_a}, {b, now_b}).lower <= options.tolerance + rounding * size,
-           "bodies that have hit");
+           "shapes that have hit");
     demand(impact->distance < options.tolerance + rounding * size, "the distance of a hit");
     // Of what overlaps the depth is within 1e-5 of the size, and the deepest points with it.
     if (impact->distance > 0.0)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Two convex bodies that nearly touch: yes or no against exact integers; distances, depths and contacts by what was
+// Two convex shapes that nearly touch: yes or no against exact integers; distances, depths and contacts by what was
 // proven of them.
 #include <crofton/convex/query.hpp>
 #include <oracle/exact_convex.hpp>
@@ -13,23 +13,24 @@ using namespace crofton::convex;
 using fuzz::demand;
 
 // What the oracle knows. Spheres and capsules without a radius are polytopes, too, of one and two corners.
-bool has_triangles(const Body& body) {
-    return body.is_polytope() && (body.kind() == Kind::box || body.kind() == Kind::triangle || body.hull() != nullptr);
+bool has_triangles(const Shape& shape) {
+    return shape.is_polytope() &&
+           (shape.kind() == Kind::box || shape.kind() == Kind::triangle || shape.hull() != nullptr);
 }
 
-void check_meeting(const BodyAtPose& a, const BodyAtPose& b, double size, PairCache& cache) {
+void check_meeting(const ShapeAtPose& a, const ShapeAtPose& b, double size, PairCache& cache) {
     const bool meet = intersects(a, b);
     const Distance d = distance(a, b);
     const Penetration p = penetration(a, b);
     demand(d.lower <= d.upper && d.lower <= d.distance && d.distance <= d.upper, "bounds of a distance");
     demand(p.lower <= p.upper, "bounds of a depth");
-    // Of round bodies a gap or an overlap of little more than rounding may be told either way.
-    const bool exact = has_triangles(a.body) && has_triangles(b.body);
+    // Of round shapes a gap or an overlap of little more than rounding may be told either way.
+    const bool exact = has_triangles(a.shape) && has_triangles(b.shape);
     const bool is_clear = exact || d.distance > 1e-7 * size || p.depth > 1e-7 * size;
     if (is_clear) {
         demand(intersects(b, a) == meet, "meeting is symmetric");
         demand((d.distance == 0.0) == meet, "a distance of 0");
-        demand(p.overlapping == meet, "a depth of bodies that meet");
+        demand(p.overlapping == meet, "a depth of shapes that meet");
         demand(intersects(a, b, &cache) == meet, "the answer of a pair that remembers");
     }
     if (exact) {
@@ -50,10 +51,10 @@ void check_meeting(const BodyAtPose& a, const BodyAtPose& b, double size, PairCa
 }  // namespace
 
 CROFTON_FUZZ(in) {
-    fuzz::Bodies bodies(in);
-    const Body a = bodies.body(), b = bodies.body();
+    fuzz::Bodies shapes(in);
+    const Shape a = shapes.shape(), b = shapes.shape();
     const RigidTransform pose_a = in.pose();
-    RigidTransform pose_b = bodies.touching(a, pose_a, b);
+    RigidTransform pose_b = shapes.touching(a, pose_a, b);
     PairCache cache;
     for (int frame = 0; frame < 3 && (frame == 0 || in.more()); ++frame) {
         const double extent = a.core_radius() + b.core_radius() + a.radius() + b.radius() +

@@ -58,15 +58,15 @@ void check_views(fuzz::Shapes& in, const fuzz::LivingTree& living) {
 void check_bodies(fuzz::Shapes& in, const fuzz::LivingTree& living) {
     const std::uint32_t layers = in.layers();
     Vector<boxtree::ItemId> found;
-    Obb body = in.box();
-    if (!living.items.empty() && in.flag()) body = in.box_near(living.items.begin()->second.box);
-    const auto check = [&](const auto& shape, const char* what) {
-        collide::overlapping(living.tree(), shape, found, layers);
+    Obb shape = in.box();
+    if (!living.items.empty() && in.flag()) shape = in.box_near(living.items.begin()->second.box);
+    const auto check = [&](const auto& probe, const char* what) {
+        collide::overlapping(living.tree(), probe, found, layers);
         demand(Ids(found.begin(), found.end()) ==
-                   which(living, layers, [&](const Obb& box) { return collide::intersects(box, shape); }),
+                   which(living, layers, [&](const Obb& box) { return collide::intersects(box, probe); }),
                what);
     };
-    check(body, "boxes that meet a box");
+    check(shape, "boxes that meet a box");
     const Sphere sphere{in.point(), std::fabs(in.coordinate())};
     check(sphere, "boxes that meet a sphere");
     const collide::Capsule capsule{in.point(), in.point(), std::fabs(in.grid())};
@@ -101,10 +101,10 @@ void check_near(fuzz::Shapes& in, const fuzz::LivingTree& living) {
     });
     const Ids near = sorted(visited);
     demand(std::adjacent_find(near.begin(), near.end()) == near.end(), "an item is visited twice");
-    const Obb body = obb_of(bounds);
+    const Obb shape = obb_of(bounds);
     for (const auto& [id, item] : living.items) {
         if (item.detached) continue;
-        const double gap = collide::distance(body, item.box).distance;
+        const double gap = collide::distance(shape, item.box).distance;
         if (gap <= distance * (1.0 - 1e-9)) demand(std::binary_search(near.begin(), near.end(), id), "what is near");
     }
 }

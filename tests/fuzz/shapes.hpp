@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The fuzzer's bytes as numbers and shapes: most lie on a coarse grid, where bodies touch, or a few roundings beside
+// The fuzzer's bytes as numbers and shapes: most lie on a coarse grid, where shapes touch, or a few roundings beside
 // it.
 #pragma once
 #include <cmath>

@@ -101,9 +101,9 @@ TEST_SUITE("memory/capi") {
             },
             crofton_tree_destroy);
         const Sail sail;
-        sweep_create<crofton_body>(
-            "body of a mesh", [&](crofton_body** body) { return body_mesh(&sail.mesh, 0, body); },
-            crofton_body_destroy);
+        sweep_create<crofton_shape>(
+            "shape of a mesh", [&](crofton_shape** shape) { return shape_mesh(&sail.mesh, 0, shape); },
+            crofton_shape_destroy);
         sweep_create<crofton_clustered_mesh>(
             "clustered mesh",
             [&](crofton_clustered_mesh** clustered) { return crofton_clustered_mesh_create(&sail.mesh, 0, clustered); },

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <crofton/bake/baked_scene.hpp>
 #include <crofton/boxtree/box_tree.hpp>
-#include <crofton/convex/body.hpp>
+#include <crofton/convex/shape.hpp>
 #include <crofton/core/executor.hpp>
 #include <crofton/fit/fit.hpp>
 #include <crofton/geometry/mesh.hpp>
@@ -144,7 +144,7 @@ TEST_SUITE("memory/fault") {
               [&] { return outcome_of(mesh::MeshTree::build(mesh, {.refittable = true, .rays = true})); });
     }
 
-    TEST_CASE("convex bodies: hulls in full and simplified, height fields, compounds") {
+    TEST_CASE("convex shapes: hulls in full and simplified, height fields, compounds") {
         const testing::FailingMemory memory;
         Vector<glm::vec3> points;
         for (int i = 0; i < 40; ++i)
@@ -155,7 +155,7 @@ TEST_SUITE("memory/fault") {
         const Vector<float> heights(36, 1.0f);
         sweep("HeightField::build",
               [&] { return outcome_of(convex::HeightField::build({.columns = 6, .rows = 6, .heights = heights})); });
-        const Vector<convex::CompoundChild> children(9, {convex::Body::sphere(1.0f).value(), {}});
+        const Vector<convex::CompoundChild> children(9, {convex::Shape::sphere(1.0f).value(), {}});
         sweep("Compound::build", [&] { return outcome_of(convex::Compound::build(children)); });
     }
 

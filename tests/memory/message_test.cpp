@@ -3,7 +3,7 @@
 #include <doctest/doctest.h>
 #include <cmath>
 #include <crofton/bake/baked_scene.hpp>
-#include <crofton/convex/body.hpp>
+#include <crofton/convex/shape.hpp>
 #include <crofton/fit/fit.hpp>
 #include <crofton/geometry/mesh.hpp>
 #include <crofton/scene/scene.hpp>

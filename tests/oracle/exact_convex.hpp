@@ -38,49 +38,49 @@ struct Polytope {
 };
 using ExactPolytope = Polytope<Integer>;
 
-inline std::vector<std::array<std::size_t, 3>> triangles_of(const convex::Body& body) {
+inline std::vector<std::array<std::size_t, 3>> triangles_of(const convex::Shape& shape) {
     std::vector<std::array<std::size_t, 3>> result;
-    if (body.kind() == convex::Kind::box)
+    if (shape.kind() == convex::Kind::box)
         return {{0, 4, 2}, {4, 6, 2}, {1, 3, 5}, {3, 7, 5}, {0, 1, 4}, {1, 5, 4},
                 {2, 6, 3}, {6, 7, 3}, {0, 2, 1}, {2, 3, 1}, {4, 5, 6}, {5, 7, 6}};
-    if (body.hull() == nullptr) return {{0, 1, 2}, {0, 2, 1}};
-    const auto indices = body.hull()->triangles();
+    if (shape.hull() == nullptr) return {{0, 1, 2}, {0, 2, 1}};
+    const auto indices = shape.hull()->triangles();
     for (std::size_t i = 0; i < indices.size(); i += 3) result.push_back({indices[i], indices[i + 1], indices[i + 2]});
     return result;
 }
 
 // Relative to `origin`.
 template <class Number>
-Polytope<Number> polytope(const convex::BodyAtPose& placed, const glm::dvec3& origin) {
+Polytope<Number> polytope(const convex::ShapeAtPose& placed, const glm::dvec3& origin) {
     const RigidTransform& pose = placed.pose;
     Polytope<Number> result;
     const Vec3<Number> columns[3] = {vector_of<Number>(pose.rotation[0]), vector_of<Number>(pose.rotation[1]),
                                      vector_of<Number>(pose.rotation[2])};
     const Vec3<Number> at = minus(vector_of<Number>(pose.translation), vector_of<Number>(origin));
-    for (int i = 0; i < placed.body.vertex_count(); ++i) {
-        const Vec3<Number> v = vector_of<Number>(placed.body.vertex(i));
+    for (int i = 0; i < placed.shape.vertex_count(); ++i) {
+        const Vec3<Number> v = vector_of<Number>(placed.shape.vertex(i));
         Vec3<Number> image;
         for (std::size_t c = 0; c < 3; ++c)
             image[c] = columns[0][c] * v[0] + columns[1][c] * v[1] + columns[2][c] * v[2] + at[c];
         result.points.push_back(image);
     }
-    result.triangles = triangles_of(placed.body);
+    result.triangles = triangles_of(placed.shape);
     return result;
 }
 
-inline ExactPolytope exact_polytope(const convex::BodyAtPose& placed) {
+inline ExactPolytope exact_polytope(const convex::ShapeAtPose& placed) {
     ExactPolytope result;
     const Vec3z columns[3] = {scaled(placed.pose.rotation[0], kBits), scaled(placed.pose.rotation[1], kBits),
                               scaled(placed.pose.rotation[2], kBits)};
     const Vec3z at = scaled(placed.pose.translation, 2 * kBits);
-    for (int i = 0; i < placed.body.vertex_count(); ++i) {
-        const Vec3z v = scaled(placed.body.vertex(i), kBits);
+    for (int i = 0; i < placed.shape.vertex_count(); ++i) {
+        const Vec3z v = scaled(placed.shape.vertex(i), kBits);
         Vec3z image;
         for (std::size_t c = 0; c < 3; ++c)
             image[c] = columns[0][c] * v[0] + columns[1][c] * v[1] + columns[2][c] * v[2] + at[c];
         result.points.push_back(image);
     }
-    result.triangles = triangles_of(placed.body);
+    result.triangles = triangles_of(placed.shape);
     return result;
 }
 
@@ -142,12 +142,12 @@ bool is_some(const Vec3<Number>& v) {
     return false;
 }
 
-// Whether both bodies lie within one plane and a line of that plane parts them. All other axes are then across it.
+// Whether both shapes lie within one plane and a line of that plane parts them. All other axes are then across it.
 template <class Number>
 bool are_parted_in_a_plane(const Polytope<Number>& a, const Polytope<Number>& b) {
     std::vector<Vec3<Number>> ways;
-    for (const auto* body : {&a, &b})
-        for (const auto& p : body->points) ways.push_back(minus(p, a.points[0]));
+    for (const auto* shape : {&a, &b})
+        for (const auto& p : shape->points) ways.push_back(minus(p, a.points[0]));
     const auto first = [&](const auto& of) {
         for (const auto& way : ways)
             if (const Vec3<Number> v = of(way); is_some(v)) return v;
@@ -164,10 +164,10 @@ bool are_parted_in_a_plane(const Polytope<Number>& a, const Polytope<Number>& b)
     if (!is_some(n)) return either(u);  // on one line
     for (const auto& way : ways)
         if (const Vec3<Number> height{dot(n, way), 0, 0}; is_some(height)) return false;
-    for (const auto* body : {&a, &b})
-        for (const auto& t : body->triangles)
+    for (const auto* shape : {&a, &b})
+        for (const auto& t : shape->triangles)
             for (std::size_t i = 0; i < 3; ++i)
-                if (either(cross(n, minus(body->points[t[(i + 1) % 3]], body->points[t[i]])))) return true;
+                if (either(cross(n, minus(shape->points[t[(i + 1) % 3]], shape->points[t[i]])))) return true;
     return false;
 }
 
@@ -218,7 +218,7 @@ inline bool meet(const ExactPolytope& a, const ExactPolytope& b, const std::vect
 }
 
 // meet() in the first kind of number that can tell. Everything is relative to a's place.
-inline bool meet_quickly(const convex::BodyAtPose& a, const convex::BodyAtPose& b,
+inline bool meet_quickly(const convex::ShapeAtPose& a, const convex::ShapeAtPose& b,
                          const std::vector<glm::dvec3>& normals, const std::vector<glm::dvec3>& points) {
     const auto ask = [&]<class Number>() -> bool {
         const auto of_a = polytope<Number>(a, a.pose.translation), of_b = polytope<Number>(b, a.pose.translation);
@@ -245,7 +245,7 @@ inline bool meet_quickly(const convex::BodyAtPose& a, const convex::BodyAtPose& 
 }
 
 // The least over all faces of the difference body { p − q } of its distance from the origin, squared: by all triples of
-// its points. The bodies overlap.
+// its points. The shapes overlap.
 inline mpq_class squared_depth(const ExactPolytope& a, const ExactPolytope& b) {
     std::vector<Vec3z> w;
     for (const Vec3z& p : a.points)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Oracle: what an Impact says, checked by formulas of each kind of body. No search: a pair of points and a direction
+// Oracle: what an Impact says, checked by formulas of each kind of shape. No search: a pair of points and a direction
 // prove by themselves that they are the nearest.
 #pragma once
 #include <algorithm>
@@ -11,34 +11,34 @@
 
 namespace crofton::oracle {
 
-// How far the body reaches along a unit vector, in its frame.
-inline double extent_along(const convex::Body& body, const glm::dvec3& d) {
+// How far the shape reaches along a unit vector, in its frame.
+inline double extent_along(const convex::Shape& shape, const glm::dvec3& d) {
     using convex::Kind;
-    const glm::dvec3& h = body.half_extents();
+    const glm::dvec3& h = shape.half_extents();
     const double across = std::hypot(d.x, d.z);
-    switch (body.kind()) {
+    switch (shape.kind()) {
         case Kind::cylinder:
-            return h.x * across + h.y * std::abs(d.y) + body.radius();
+            return h.x * across + h.y * std::abs(d.y) + shape.radius();
         case Kind::cone:
-            return std::max(h.y * d.y, h.x * across - h.y * d.y) + body.radius();
+            return std::max(h.y * d.y, h.x * across - h.y * d.y) + shape.radius();
         case Kind::half_space: {
-            const Plane& plane = body.plane();
+            const Plane& plane = shape.plane();
             const double length = glm::length(plane.normal);
             const bool outward = glm::dot(d, plane.normal) < -0.999999 * length;
             return outward ? plane.offset / length : HUGE_VAL;
         }
         default: {
             double most = -HUGE_VAL;
-            for (int i = 0; i < body.vertex_count(); ++i) most = std::max(most, glm::dot(d, body.vertex(i)));
-            return most + body.radius();
+            for (int i = 0; i < shape.vertex_count(); ++i) most = std::max(most, glm::dot(d, shape.vertex(i)));
+            return most + shape.radius();
         }
     }
 }
 
-inline double extent_along(const convex::BodyAtPose& placed, const glm::dvec3& d) {
+inline double extent_along(const convex::ShapeAtPose& placed, const glm::dvec3& d) {
     const glm::dvec3 local = glm::transpose(placed.pose.rotation) * d;
     const double length = glm::length(local);
-    return length * extent_along(placed.body, local / length) + glm::dot(placed.pose.translation, d);
+    return length * extent_along(placed.shape, local / length) + glm::dot(placed.pose.translation, d);
 }
 
 inline double distance_to_segment(const glm::dvec3& p, const glm::dvec3& from, const glm::dvec3& to) {
@@ -57,16 +57,16 @@ inline double distance_to_triangle(const glm::dvec3& p, const glm::dvec3& a, con
     return above && glm::length(n) > 0.0 ? std::abs(glm::dot(p - a, n)) / glm::length(n) : edges;
 }
 
-// How far a point is outside the core, at least as far as it is from a face. The point is in the body's frame.
-inline double outside_core(const convex::Body& body, const glm::dvec3& p) {
+// How far a point is outside the core, at least as far as it is from a face. The point is in the shape's frame.
+inline double outside_core(const convex::Shape& shape, const glm::dvec3& p) {
     using convex::Kind;
-    const glm::dvec3& h = body.half_extents();
+    const glm::dvec3& h = shape.half_extents();
     const double across = std::hypot(p.x, p.z);
-    switch (body.kind()) {
+    switch (shape.kind()) {
         case Kind::sphere:
             return glm::length(p);
         case Kind::capsule:
-            return distance_to_segment(p, body.vertex(0), body.vertex(1));
+            return distance_to_segment(p, shape.vertex(0), shape.vertex(1));
         case Kind::cylinder:
             return glm::length(glm::max(glm::dvec3(across - h.x, std::abs(p.y) - h.y, 0.0), 0.0));
         case Kind::cone:
@@ -75,17 +75,17 @@ inline double outside_core(const convex::Body& body, const glm::dvec3& p) {
         case Kind::box:
             return glm::length(glm::max(glm::abs(p) - h, 0.0));
         case Kind::triangle:
-            return distance_to_triangle(p, body.vertex(0), body.vertex(1), body.vertex(2));
+            return distance_to_triangle(p, shape.vertex(0), shape.vertex(1), shape.vertex(2));
         case Kind::half_space:
-            return std::max(0.0, -(glm::dot(body.plane().normal, p) + body.plane().offset)) /
-                   glm::length(body.plane().normal);
+            return std::max(0.0, -(glm::dot(shape.plane().normal, p) + shape.plane().offset)) /
+                   glm::length(shape.plane().normal);
         default: {
             // By the planes of the triangles, each turned outward by a vertex that is off it.
             double most = 0.0;
-            const auto indices = body.hull()->triangles();
+            const auto indices = shape.hull()->triangles();
             for (std::size_t i = 0; i < indices.size(); i += 3) {
-                const glm::dvec3 a = body.vertex(indices[i]);
-                const glm::dvec3 n = glm::cross(body.vertex(indices[i + 1]) - a, body.vertex(indices[i + 2]) - a);
+                const glm::dvec3 a = shape.vertex(indices[i]);
+                const glm::dvec3 n = glm::cross(shape.vertex(indices[i + 1]) - a, shape.vertex(indices[i + 2]) - a);
                 if (glm::length(n) > 1e-9) most = std::max(most, glm::dot(p - a, n) / glm::length(n));
             }
             return most;
@@ -93,15 +93,15 @@ inline double outside_core(const convex::Body& body, const glm::dvec3& p) {
     }
 }
 
-inline double outside(const convex::BodyAtPose& placed, const glm::dvec3& point) {
+inline double outside(const convex::ShapeAtPose& placed, const glm::dvec3& point) {
     const glm::dvec3 local = glm::inverse(placed.pose.rotation) * (point - placed.pose.translation);
-    return std::max(0.0, outside_core(placed.body, local) - placed.body.radius());
+    return std::max(0.0, outside_core(placed.shape, local) - placed.shape.radius());
 }
 
-// What is wrong with the points, the normal and the distance of an impact of convex bodies, where they stand at its
-// time; empty: nothing. `slack` is a length. Points that are on their bodies, farthest along the normal, and apart
+// What is wrong with the points, the normal and the distance of an impact of convex shapes, where they stand at its
+// time; empty: nothing. `slack` is a length. Points that are on their shapes, farthest along the normal, and apart
 // along it by the distance, prove that they are the nearest points, or that they are deepest along that direction.
-inline std::string fault_of_contact(const convex::BodyAtPose& a, const convex::BodyAtPose& b,
+inline std::string fault_of_contact(const convex::ShapeAtPose& a, const convex::ShapeAtPose& b,
                                     const convex::Impact& impact, double slack) {
     const glm::dvec3& n = impact.normal;
     const auto tell = [](const char* what, double by) {
@@ -119,21 +119,21 @@ inline std::string fault_of_contact(const convex::BodyAtPose& a, const convex::B
     return {};
 }
 
-// The nearest or deepest direction from a body to a sphere's center outside its core, by formula; 0 of kinds without
+// The nearest or deepest direction from a shape to a sphere's center outside its core, by formula; 0 of kinds without
 // one.
-inline glm::dvec3 direction_to_point(const convex::BodyAtPose& placed, const glm::dvec3& point) {
+inline glm::dvec3 direction_to_point(const convex::ShapeAtPose& placed, const glm::dvec3& point) {
     using convex::Kind;
     const glm::dvec3 p = glm::inverse(placed.pose.rotation) * (point - placed.pose.translation);
-    const glm::dvec3& h = placed.body.half_extents();
+    const glm::dvec3& h = placed.shape.half_extents();
     glm::dvec3 nearest = p;
     const double across = std::hypot(p.x, p.z);
     const glm::dvec3 out = across > 0.0 ? glm::dvec3(p.x / across, 0.0, p.z / across) : glm::dvec3(1, 0, 0);
-    switch (placed.body.kind()) {
+    switch (placed.shape.kind()) {
         case Kind::sphere:
             nearest = glm::dvec3(0.0);
             break;
         case Kind::capsule:
-            nearest = {0.0, std::clamp(p.y, -std::abs(placed.body.vertex(0).y), std::abs(placed.body.vertex(0).y)),
+            nearest = {0.0, std::clamp(p.y, -std::abs(placed.shape.vertex(0).y), std::abs(placed.shape.vertex(0).y)),
                        0.0};
             break;
         case Kind::box:

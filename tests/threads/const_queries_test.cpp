@@ -112,7 +112,7 @@ TriangleMesh bumpy(std::uint32_t n) {
 }  // namespace
 
 TEST_SUITE("threads/const_queries") {
-    TEST_CASE("a tree that has been changed answers for views, bodies and rays, and is stored") {
+    TEST_CASE("a tree that has been changed answers for views, shapes and rays, and is stored") {
         oracle::Crowd crowd = oracle::random_crowd(3000, 0.0, 5);
         auto tree = *boxtree::BoxTree::build(crowd.boxes, crowd.layers);
         for (boxtree::ItemId i = 0; i < 500; ++i) REQUIRE(tree.move(i, box_of(static_cast<int>(i))).has_value());
@@ -185,20 +185,20 @@ TEST_SUITE("threads/const_queries") {
         });
     }
 
-    TEST_CASE("convex bodies share a hull") {
+    TEST_CASE("convex shapes share a hull") {
         NearMisses random(9);
         std::vector<glm::vec3> points;
         for (int i = 0; i < 60; ++i) points.emplace_back(random.direction());
         const auto hull = *convex::Hull::build(points);
-        const convex::Body body = convex::Body::hull(hull);
+        const convex::Shape shape = convex::Shape::hull(hull);
         check([&]() -> Questions {
             auto cache = std::make_shared<convex::PairCache>();
             return [&, cache](int q) {
                 *cache = {};  // the pair is a new one
                 RigidTransform here, there;
                 there.translation = {0.08 * q, 0.5, 0.25};
-                const convex::Distance d = convex::distance({body, here}, {body, there}, cache.get());
-                const convex::Manifold m = convex::contact_manifold({body, here}, {body, there}, {}, cache.get());
+                const convex::Distance d = convex::distance({shape, here}, {shape, there}, cache.get());
+                const convex::Manifold m = convex::contact_manifold({shape, here}, {shape, there}, {}, cache.get());
                 return Answer().add(d.distance).add(m.depth).add(m.count);
             };
         });

@@ -53,7 +53,7 @@ namespace Crofton {
             public MeshHandle Mesh;
             public NodeHandle Node;
             public uint Layers, CollidesWith, Occludes, OnlyOccludes;
-            public IntPtr Body;
+            public IntPtr Shape;
             public uint Hidden;
         }
 
@@ -86,15 +86,15 @@ namespace Crofton {
             public ulong ObjectCount;
         }
 
-        internal const uint ShapeBox = 0, ShapeSphere = 1, ShapeCapsule = 2;
+        internal const uint QueryShapeBox = 0, QueryShapeSphere = 1, QueryShapeCapsule = 2;
 
         [StructLayout(LayoutKind.Sequential)]
-        internal struct ShapeData {
+        internal struct QueryShapeData {
             public uint Kind;
             public Obb Box;
             public Vector3 Begin, End;
             public double Radius;
-            public IntPtr Body, Pose;
+            public IntPtr Shape, Pose;
         }
 
         [StructLayout(LayoutKind.Sequential)]
@@ -125,8 +125,8 @@ namespace Crofton {
             public UIntPtr PointCount;
             public IntPtr Triangles;
             public UIntPtr TriangleCount;
-            public IntPtr BodyPoints;
-            public UIntPtr BodyPointCount;
+            public IntPtr ShapePoints;
+            public UIntPtr ShapePointCount;
         }
 
         [StructLayout(LayoutKind.Sequential)]
@@ -284,8 +284,8 @@ namespace Crofton {
         [DllImport(Library)] internal static extern int crofton_world_raycast(WorldHandle world, Ray[] rays, UIntPtr count, uint layers, [Out] Hit[] hits);
         [DllImport(Library)] internal static extern int crofton_world_raycast_any(WorldHandle world, ref Ray ray, uint layers, out int hit);
         [DllImport(Library)] internal static extern int crofton_world_raycast_all(WorldHandle world, ref Ray ray, uint layers, FoundHandle found);
-        [DllImport(Library)] internal static extern int crofton_world_overlap(WorldHandle world, ref ShapeData shape, uint layers, FoundHandle found);
-        [DllImport(Library)] internal static extern int crofton_world_closest(WorldHandle world, ref ShapeData shape, double maxDistance, uint layers, ref ClosestData closest);
+        [DllImport(Library)] internal static extern int crofton_world_overlap(WorldHandle world, ref QueryShapeData shape, uint layers, FoundHandle found);
+        [DllImport(Library)] internal static extern int crofton_world_closest(WorldHandle world, ref QueryShapeData shape, double maxDistance, uint layers, ref ClosestData closest);
         [DllImport(Library)] internal static extern int crofton_world_pairs(WorldHandle world, out IntPtr pairs, out UIntPtr count);
         [DllImport(Library)] internal static extern int crofton_world_contacts(WorldHandle world, out IntPtr contacts, out UIntPtr count);
     }

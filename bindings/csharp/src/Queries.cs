@@ -60,16 +60,16 @@ namespace Crofton {
         public double T;
         public Vector3 Point;
         uint triangle;
-        /// <summary>The child of a compound body; else 0.</summary>
+        /// <summary>The child of a compound shape; else 0.</summary>
         public uint Child;
         /// <summary>The surface's unit normal, towards the ray's origin; 0 if the ray began inside.</summary>
         public Vector3 Normal;
         byte startedInside;
-        /// <summary>True if the ray began in the body, box or sphere; T is then 0.</summary>
+        /// <summary>True if the ray began in the shape, box or sphere; T is then 0.</summary>
         public bool StartedInside { get { return startedInside != 0; } }
         /// <summary>True if the ray hits anything; otherwise the other members are meaningless.</summary>
         public bool IsHit { get { return Object.Index != uint.MaxValue; } }
-        /// <summary>The triangle of the object's mesh or its body's surface.</summary>
+        /// <summary>The triangle of the object's mesh or its shape's surface.</summary>
         public uint? Triangle { get { return triangle == uint.MaxValue ? (uint?)null : triangle; } }
     }
 
@@ -345,22 +345,22 @@ namespace Crofton {
             }
         }
 
-        /// <summary>The objects that overlap a box, by index: their bodies, triangles, spheres or boxes.</summary>
+        /// <summary>The objects that overlap a box, by index: their shapes, triangles, spheres or boxes.</summary>
         public ObjectRef[] Overlap(Obb box, uint layers = AllLayers) {
-            return Overlap(new Native.ShapeData { Kind = Native.ShapeBox, Box = box }, layers);
+            return Overlap(new Native.QueryShapeData { Kind = Native.QueryShapeBox, Box = box }, layers);
         }
         /// <summary>The objects that overlap a sphere.</summary>
         public ObjectRef[] OverlapSphere(Vector3 center, double radius, uint layers = AllLayers) {
-            return Overlap(new Native.ShapeData { Kind = Native.ShapeSphere, Begin = center, Radius = radius }, layers);
+            return Overlap(new Native.QueryShapeData { Kind = Native.QueryShapeSphere, Begin = center, Radius = radius }, layers);
         }
         /// <summary>The objects that overlap a capsule: all points no farther than the radius from a segment.</summary>
         public ObjectRef[] OverlapCapsule(Vector3 begin, Vector3 end, double radius, uint layers = AllLayers) {
-            return Overlap(new Native.ShapeData { Kind = Native.ShapeCapsule, Begin = begin, End = end, Radius = radius }, layers);
+            return Overlap(new Native.QueryShapeData { Kind = Native.QueryShapeCapsule, Begin = begin, End = end, Radius = radius }, layers);
         }
         /// <summary>The object nearest to a sphere, no farther than a distance; null where there is none.</summary>
         public Closest? ClosestToSphere(Vector3 center, double radius, double maxDistance = double.PositiveInfinity, uint layers = AllLayers) {
             var data = new Native.ClosestData { Size = Native.SizeOf<Native.ClosestData>() };
-            var shape = new Native.ShapeData { Kind = Native.ShapeSphere, Begin = center, Radius = radius };
+            var shape = new Native.QueryShapeData { Kind = Native.QueryShapeSphere, Begin = center, Radius = radius };
             Library.Check(Native.crofton_world_closest(Handle, ref shape, maxDistance, layers, ref data));
             if (data.Object.Index == uint.MaxValue) return null;
             return new Closest {
@@ -397,7 +397,7 @@ namespace Crofton {
             Library.Check(Native.crofton_found_create(out found));
             return found;
         }
-        ObjectRef[] Overlap(Native.ShapeData shape, uint layers) {
+        ObjectRef[] Overlap(Native.QueryShapeData shape, uint layers) {
             using (var found = Find()) {
                 IntPtr objects;
                 UIntPtr count;

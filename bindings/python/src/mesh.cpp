@@ -281,14 +281,14 @@ std::string show(const PyMesh& mesh) {
 void bind_mesh(py::module_& module) {
     PYBIND11_NUMPY_DTYPE(ContactRecord, first, second, begin, end, normal);
     PYBIND11_NUMPY_DTYPE(MeshHitRecord, t, point, triangle, hit);
-    py::class_<SurfaceHit>(module, "RayHit", "Where a ray meets a mesh or a body first.")
+    py::class_<SurfaceHit>(module, "RayHit", "Where a ray meets a mesh or a shape first.")
         .def_readonly("t", &SurfaceHit::t, "how far along the ray, in lengths of its direction")
         .def_property_readonly("point", [](const SurfaceHit& h) { return tuple_of(h.point); })
         .def_property_readonly(
             "normal", [](const SurfaceHit& h) { return tuple_of(h.normal); },
             "unit, of the surface, to the side that the ray comes from; 0 if it began inside")
         .def_readonly("triangle", &SurfaceHit::triangle, "of the mesh or surface")
-        .def_readonly("started_inside", &SurfaceHit::started_inside, "the ray began in a solid body: t is 0")
+        .def_readonly("started_inside", &SurfaceHit::started_inside, "the ray began in a solid shape: t is 0")
         .def("__repr__", [](const SurfaceHit& h) {
             return format("RayHit(t=%g, point=(%g, %g, %g), triangle=%u)", h.t, h.point.x, h.point.y, h.point.z,
                           h.triangle);

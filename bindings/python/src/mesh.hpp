@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Meshes and bodies as Python has them: shared, and never changed once made.
+// Meshes and shapes as Python has them: shared, and never changed once made.
 #pragma once
 #include <crofton/convex/query.hpp>
 #include <crofton/geometry/mesh.hpp>
@@ -34,22 +34,22 @@ class PyMesh {
 // Checks a mesh and makes it Python's. Raises Error for one without triangles.
 [[nodiscard]] std::shared_ptr<PyMesh> make_mesh(TriangleMesh mesh, std::string name);
 
-// A body, with all that it is a view of.
-struct PyBody {
-    std::optional<convex::Body> body;
+// A shape, with all that it is a view of.
+struct PyShape {
+    std::optional<convex::Shape> shape;
     std::optional<convex::Hull> hull;
     std::optional<convex::HeightField> field;
     std::optional<convex::Compound> compound;
     std::shared_ptr<const PyMesh> mesh;
-    std::vector<std::shared_ptr<const PyBody>> parts;
+    std::vector<std::shared_ptr<const PyShape>> parts;
 };
-using SharedBody = std::shared_ptr<PyBody>;
+using SharedShape = std::shared_ptr<PyShape>;
 
 // A rotation and a translation as a matrix of shape (4, 4) or (3, 4); None: the identity. Raises Error for one that
 // scales, shears or mirrors.
 [[nodiscard]] RigidTransform pose_of(const py::object& given, const char* name);
 
-// The first hit of a ray at a mesh or a body.
+// The first hit of a ray at a mesh or a shape.
 struct SurfaceHit {
     double t;
     glm::dvec3 point, normal;

@@ -52,7 +52,7 @@ PYBIND11_MODULE(_crofton, module) {
     bind_depth(module);
     bind_collide(module);
     bind_mesh(module);
-    bind_body(module);
+    bind_shape(module);
     bind_load(module);
     bind_view_requests(module);
     bind_world(module);

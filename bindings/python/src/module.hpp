@@ -13,7 +13,7 @@ void bind_cull(pybind11::module_& module);
 void bind_depth(pybind11::module_& module);
 void bind_collide(pybind11::module_& module);
 void bind_mesh(pybind11::module_& module);
-void bind_body(pybind11::module_& module);
+void bind_shape(pybind11::module_& module);
 void bind_load(pybind11::module_& module);
 void bind_view_requests(pybind11::module_& module);  // ViewRequest and its parts
 void bind_world(pybind11::module_& module);

@@ -33,23 +33,23 @@ class PyWorld {
         });
     }
 
-    // Keeps an object's body alive while the World refers to it. Called within change().
-    void keep(ObjectHandle object, std::shared_ptr<const PyBody> body) {
-        if (object.index >= bodies_.size()) {
-            if (!body) return;
-            bodies_.resize(object.index + 1);
+    // Keeps an object's shape alive while the World refers to it. Called within change().
+    void keep(ObjectHandle object, std::shared_ptr<const PyShape> shape) {
+        if (object.index >= shapes_.size()) {
+            if (!shape) return;
+            shapes_.resize(object.index + 1);
         }
-        bodies_[object.index].swap(body);
-        if (body) replaced_.push_back(std::move(body));
+        shapes_[object.index].swap(shape);
+        if (shape) replaced_.push_back(std::move(shape));
     }
-    // After an update: bodies that were replaced are not referred to any more.
+    // After an update: shapes that were replaced are not referred to any more.
     void forget_replaced() { replaced_.clear(); }
 
     [[nodiscard]] const std::shared_ptr<AnswerPools>& pools() const { return pools_; }
 
   private:
-    std::vector<std::shared_ptr<const PyBody>> bodies_;  // by the object's index; outlive the World
-    std::vector<std::shared_ptr<const PyBody>> replaced_;
+    std::vector<std::shared_ptr<const PyShape>> shapes_;  // by the object's index; outlive the World
+    std::vector<std::shared_ptr<const PyShape>> replaced_;
     World world_;
     mutable std::shared_mutex mutex_;
     std::shared_ptr<AnswerPools> pools_ = std::make_shared<AnswerPools>();

@@ -79,10 +79,10 @@ py::array add_all(PyWorld& to, std::size_t count, const py::object& users, F&& d
 }
 
 ObjectHandle add(PyWorld& to, const py::object& mesh, const py::object& node, const py::object& transform,
-                 const py::object& box, const py::object& sphere, const py::object& aligned, const SharedBody& body,
+                 const py::object& box, const py::object& sphere, const py::object& aligned, const SharedShape& shape,
                  std::uint64_t user, std::uint32_t layers, std::uint32_t collides_with, bool occludes) {
     ObjectDescription description;
-    if (body) description.body = &*body->body;
+    if (shape) description.shape = &*shape->shape;
     description.mesh = handle_or_null<MeshHandle>(mesh, "mesh");
     description.node = handle_or_null<NodeHandle>(node, "node");
     if (!transform.is_none()) description.transform = transform_of(transform, "transform");
@@ -93,15 +93,15 @@ ObjectHandle add(PyWorld& to, const py::object& mesh, const py::object& node, co
     description.occludes = occludes;
     return value_of(to.change([&](World& world) {
         auto added = world.add(description);
-        if (added) to.keep(*added, body);
+        if (added) to.keep(*added, shape);
         return added;
     }));
 }
 
-void set_body(PyWorld& to, ObjectHandle object, const SharedBody& body) {
+void set_shape(PyWorld& to, ObjectHandle object, const SharedShape& shape) {
     value_of(to.change([&](World& world) {
-        auto done = world.set_body(object, body ? &*body->body : nullptr);
-        if (done) to.keep(object, body);
+        auto done = world.set_shape(object, shape ? &*shape->shape : nullptr);
+        if (done) to.keep(object, shape);
         return done;
     }));
 }
@@ -201,12 +201,12 @@ void bind_world_changes(py::class_<PyWorld>& type) {
             py::arg("parent") = py::none(), py::arg("transform") = py::none(), py::arg("layers") = ~0u)
         .def("add", &add, py::kw_only(), py::arg("mesh") = py::none(), py::arg("node") = py::none(),
              py::arg("transform") = py::none(), py::arg("box") = py::none(), py::arg("sphere") = py::none(),
-             py::arg("aligned") = py::none(), py::arg("body") = py::none(), py::arg("user") = 0,
+             py::arg("aligned") = py::none(), py::arg("shape") = py::none(), py::arg("user") = 0,
              py::arg("layers") = ~0u, py::arg("collides_with") = ~0u, py::arg("occludes") = true,
              "An object: a mesh, placed by `transform` under `node` or in the world; or a bound: a Box, a sphere "
-             "(center, radius) or an aligned box (low, high); or a Body, alone or beside one of them.")
-        .def("set_body", &set_body, py::arg("object"), py::arg("body"),
-             "Gives an object a Body, which touches and is hit in its place; None takes it away.")
+             "(center, radius) or an aligned box (low, high); or a Shape, alone or beside one of them.")
+        .def("set_shape", &set_shape, py::arg("object"), py::arg("shape"),
+             "Gives an object a Shape, which touches and is hit in its place; None takes it away.")
         .def("add_boxes", &add_boxes, py::arg("boxes"), py::kw_only(), py::arg("users") = py::none(),
              py::arg("layers") = ~0u, py::arg("collides_with") = ~0u,
              "One object a box. Returns an array of handle_dtype. All or none.")

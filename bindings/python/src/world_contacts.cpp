@@ -18,7 +18,7 @@ struct ContactCopy {
 
 ContactCopy copy_of(const Contact& c) {
     ContactCopy result{c.first, c.second, c.phase, c.normal, c.depth, {c.points.begin(), c.points.end()}};
-    for (const convex::TrackedPoint& point : c.body_points)
+    for (const convex::TrackedPoint& point : c.shape_points)
         result.points.push_back({point.contact.position, point.contact.depth});
     return result;
 }

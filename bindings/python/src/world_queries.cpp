@@ -60,33 +60,33 @@ Ray ray_of(const py::handle& origin, const py::handle& direction, double max_t) 
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Calls with the world and the shape that is given; with a body and its pose, with both.
+// Calls with the world and the probe that is given; with a shape and its pose, with both.
 template <class F>
 void visit_shape(const PyWorld& world, const py::object& box, const py::object& sphere, const py::object& capsule,
-                 const SharedBody& body, const py::object& given_pose, F&& f) {
-    if (!body && !given_pose.is_none()) raise_type("pose: it places a body, and there is none");
-    if (!body) {
-        const Shape shape = shape_of(box, sphere, capsule);
-        world.ask([&](const World& w) { std::visit([&](const auto& one) { f(w, one); }, shape); });
+                 const SharedShape& shape, const py::object& given_pose, F&& f) {
+    if (!shape && !given_pose.is_none()) raise_type("pose: it places a shape, and there is none");
+    if (!shape) {
+        const Shape probe = shape_of(box, sphere, capsule);
+        world.ask([&](const World& w) { std::visit([&](const auto& one) { f(w, one); }, probe); });
         return;
     }
     if (!box.is_none() || !sphere.is_none() || !capsule.is_none())
-        raise_type("one of box=, sphere=, capsule= and body= is expected, not more");
-    if (body->body->kind() == convex::Kind::half_space)
-        raise({ErrorCode::unsupported, kNoItem, "body: a half-space is infinite; ask with a body that has bounds"});
+        raise_type("one of box=, sphere=, capsule= and shape= is expected, not more");
+    if (shape->shape->kind() == convex::Kind::half_space)
+        raise({ErrorCode::unsupported, kNoItem, "shape: a half-space is infinite; ask with a shape that has bounds"});
     const RigidTransform pose = pose_of(given_pose, "pose");
-    world.ask([&](const World& w) { f(w, *body->body, pose); });
+    world.ask([&](const World& w) { f(w, *shape->shape, pose); });
 }
 
-std::optional<BodyHit> cast(const PyWorld& world, const PyBody& body, const py::handle& velocity,
-                            const py::object& given_pose, const py::handle& spin, double duration,
-                            bool ignore_initial_overlaps, std::uint32_t layers) {
+std::optional<ShapeHit> cast(const PyWorld& world, const PyShape& shape, const py::handle& velocity,
+                             const py::object& given_pose, const py::handle& spin, double duration,
+                             bool ignore_initial_overlaps, std::uint32_t layers) {
     convex::Motion motion;
     motion.velocity = vector_of(velocity, "velocity");
     motion.spin = vector_of(spin, "spin");
     const RigidTransform pose = pose_of(given_pose, "pose");
     const convex::CastOptions options{.duration = duration, .ignore_initial_overlaps = ignore_initial_overlaps};
-    return value_of(world.ask([&](const World& w) { return w.cast(*body.body, pose, motion, options, layers); }));
+    return value_of(world.ask([&](const World& w) { return w.cast(*shape.shape, pose, motion, options, layers); }));
 }
 
 }  // namespace
@@ -116,17 +116,17 @@ void bind_world_queries(py::module_& module, py::class_<PyWorld>& type) {
         .def_property_readonly("triangle", [](const ObjectHit& h) {
             return h.triangle == kNoTriangle ? py::object(py::none()) : py::object(py::int_(h.triangle));
         });
-    py::class_<BodyHit>(module, "BodyHit", "The first object that a moving body meets.")
-        .def_readonly("object", &BodyHit::object)
-        .def_readonly("user", &BodyHit::user)
-        .def_readonly("time", &BodyHit::time)
+    py::class_<ShapeHit>(module, "ShapeHit", "The first object that a moving shape meets.")
+        .def_readonly("object", &ShapeHit::object)
+        .def_readonly("user", &ShapeHit::user)
+        .def_readonly("time", &ShapeHit::time)
         .def_property_readonly(
-            "normal", [](const BodyHit& h) { return tuple_of(h.normal); }, "unit, from the body to the object")
-        .def_property_readonly("point", [](const BodyHit& h) { return tuple_of(h.point); })
-        .def_readonly("distance", &BodyHit::distance, "the gap then; negative: how deep they overlap from the start")
-        .def_readonly("resolved", &BodyHit::resolved, "False: up to `time` nothing is met, later is not known")
-        .def("__repr__", [](const BodyHit& h) {
-            return format("BodyHit(user=%llu, time=%g, point=(%g, %g, %g))", static_cast<unsigned long long>(h.user),
+            "normal", [](const ShapeHit& h) { return tuple_of(h.normal); }, "unit, from the shape to the object")
+        .def_property_readonly("point", [](const ShapeHit& h) { return tuple_of(h.point); })
+        .def_readonly("distance", &ShapeHit::distance, "the gap then; negative: how deep they overlap from the start")
+        .def_readonly("resolved", &ShapeHit::resolved, "False: up to `time` nothing is met, later is not known")
+        .def("__repr__", [](const ShapeHit& h) {
+            return format("ShapeHit(user=%llu, time=%g, point=(%g, %g, %g))", static_cast<unsigned long long>(h.user),
                           h.time, h.point.x, h.point.y, h.point.z);
         });
     py::class_<ClosestObject>(module, "Closest", "The nearest object.")
@@ -167,35 +167,35 @@ void bind_world_queries(py::module_& module, py::class_<PyWorld>& type) {
         .def(
             "overlap",
             [](const PyWorld& world, const py::object& box, const py::object& sphere, const py::object& capsule,
-               const SharedBody& body, const py::object& pose, std::uint32_t layers) {
+               const SharedShape& shape, const py::object& pose, std::uint32_t layers) {
                 Vector<ObjectRef> found;
-                visit_shape(world, box, sphere, capsule, body, pose,
-                            [&](const World& w, const auto&... shape) { w.overlap(shape..., found, layers); });
+                visit_shape(world, box, sphere, capsule, shape, pose,
+                            [&](const World& w, const auto&... probe) { w.overlap(probe..., found, layers); });
                 std::vector<ObjectHandle> handles;
                 for (const ObjectRef& ref : found) handles.push_back(ref.object);
                 return handles_of(handles);
             },
             py::kw_only(), py::arg("box") = py::none(), py::arg("sphere") = py::none(), py::arg("capsule") = py::none(),
-            py::arg("body") = py::none(), py::arg("pose") = py::none(), py::arg("layers") = ~0u,
-            "The handles of the objects that overlap the shape: a box, sphere, capsule, or a Body at `pose`.")
+            py::arg("shape") = py::none(), py::arg("pose") = py::none(), py::arg("layers") = ~0u,
+            "The handles of the objects that overlap the probe: a box, sphere, capsule, or a Shape at `pose`.")
         .def(
             "closest",
             [](const PyWorld& world, double max_distance, const py::object& box, const py::object& sphere,
-               const py::object& capsule, const SharedBody& body, const py::object& pose, std::uint32_t layers) {
+               const py::object& capsule, const SharedShape& shape, const py::object& pose, std::uint32_t layers) {
                 check_limit(max_distance, "max_distance");
                 std::optional<ClosestObject> found;
-                visit_shape(world, box, sphere, capsule, body, pose, [&](const World& w, const auto&... shape) {
-                    found = w.closest(shape..., max_distance, layers);
+                visit_shape(world, box, sphere, capsule, shape, pose, [&](const World& w, const auto&... probe) {
+                    found = w.closest(probe..., max_distance, layers);
                 });
                 return found;
             },
             py::arg("max_distance"), py::kw_only(), py::arg("box") = py::none(), py::arg("sphere") = py::none(),
-            py::arg("capsule") = py::none(), py::arg("body") = py::none(), py::arg("pose") = py::none(),
+            py::arg("capsule") = py::none(), py::arg("shape") = py::none(), py::arg("pose") = py::none(),
             py::arg("layers") = ~0u, "The nearest object, or None.")
-        .def("cast", &cast, py::arg("body"), py::arg("velocity"), py::arg("pose") = py::none(), py::kw_only(),
+        .def("cast", &cast, py::arg("shape"), py::arg("velocity"), py::arg("pose") = py::none(), py::kw_only(),
              py::arg("spin") = py::make_tuple(0.0, 0.0, 0.0), py::arg("duration") = 1.0,
              py::arg("ignore_initial_overlaps") = false, py::arg("layers") = ~0u,
-             "The first object that a Body meets as it moves and turns from `pose` on: a BodyHit, or None.")
+             "The first object that a Shape meets as it moves and turns from `pose` on: a ShapeHit, or None.")
         .def(
             "box_of",
             [](const PyWorld& world, ObjectHandle object) {
@@ -207,7 +207,7 @@ void bind_world_queries(py::module_& module, py::class_<PyWorld>& type) {
             [](const PyWorld& world, ObjectHandle object) {
                 return matrix_of(value_of(world.ask([&](const World& w) { return w.transform_of(object); })));
             },
-            py::arg("object"), "Its matrix to the world, shape (4, 4), as of the last update.")
+            py::arg("object"), "Its matrix to the world, probe (4, 4), as of the last update.")
         .def(
             "user_of",
             [](const PyWorld& world, ObjectHandle object) {

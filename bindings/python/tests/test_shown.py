@@ -12,8 +12,8 @@ def examples(cube):
     mesh, box = crofton.Mesh(*cube), crofton.Box((0, 0, 0), (1, 1, 1))
     world = crofton.World()
     world.add(box=box, user=1)
-    world.add(body=crofton.Body.sphere(1), transform=np.eye(4), user=2)
-    world.add(body=crofton.Body.sphere(1), transform=np.eye(4), user=3)
+    world.add(shape=crofton.Shape.sphere(1), transform=np.eye(4), user=2)
+    world.add(shape=crofton.Shape.sphere(1), transform=np.eye(4), user=3)
     world.update()
     camera = crofton.Camera((0, 0, 5))
     clustered = crofton.ClusteredMesh(*cube)
@@ -24,11 +24,11 @@ def examples(cube):
         crofton.DepthObject(clustered, np.eye(4)), crofton.DepthCuller(), crofton.Broadphase(), handle,
         world.add_node(), world.add_mesh(mesh), world.contacts[0].first, world.contacts[0], world,
         world.raycast((0, 0, 5), (0, 0, -1)), world.closest(10, sphere=((5, 0, 0), 1)),
-        world.cast(crofton.Body.sphere(1), (0, 0, -9), [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 5]]),
+        world.cast(crofton.Shape.sphere(1), (0, 0, -9), [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 5]]),
         crofton.OcclusionOptions(), crofton.ViewMatrix(np.eye(4)), crofton.PictureView(), crofton.DrawLimits((0, 0, 0)),
         crofton.ViewRequest(camera, order="tree"), world.view(camera), world.view([camera]), mesh, mesh.show(),
-        mesh.raycast((0, 0, 5), (0, 0, -1)), mesh.distance(mesh), crofton.Body.sphere(1), crofton.Body.sphere(1).mass,
-        crofton.Body.sphere(1).cast((9, 0, 0), crofton.Body.sphere(1), [[1, 0, 0, 5], [0, 1, 0, 0], [0, 0, 1, 0]]),
+        mesh.raycast((0, 0, 5), (0, 0, -1)), mesh.distance(mesh), crofton.Shape.sphere(1), crofton.Shape.sphere(1).mass,
+        crofton.Shape.sphere(1).cast((9, 0, 0), crofton.Shape.sphere(1), [[1, 0, 0, 5], [0, 1, 0, 0], [0, 0, 1, 0]]),
         crofton.Pvs.bake(*cube, cells=(1, 1, 1), seconds=0.01), crofton.Chart([1, 2], {"a": [1, 2]}), crofton.Error("text"),
     ]
 

@@ -5,7 +5,7 @@ use std::{mem::size_of, ptr};
 
 /// A mesh for queries without a World.
 pub struct Collider {
-    raw: *mut sys::Body,
+    raw: *mut sys::Shape,
 }
 
 unsafe impl Send for Collider {}
@@ -13,7 +13,7 @@ unsafe impl Sync for Collider {}
 
 impl Drop for Collider {
     fn drop(&mut self) {
-        unsafe { sys::crofton_body_destroy(self.raw) };
+        unsafe { sys::crofton_shape_destroy(self.raw) };
     }
 }
 
@@ -38,10 +38,10 @@ impl Collider {
             name: ptr::null(),
         };
         let mut raw = ptr::null_mut();
-        let mut description = unsafe { sys::crofton_default_body_description() };
-        description.kind = sys::BODY_MESH;
+        let mut description = unsafe { sys::crofton_default_shape_description() };
+        description.kind = sys::SHAPE_MESH;
         description.mesh = &mesh;
-        check(unsafe { sys::crofton_body_create(&description, &mut raw) })?;
+        check(unsafe { sys::crofton_shape_create(&description, &mut raw) })?;
         Ok(Collider { raw })
     }
 
@@ -66,14 +66,14 @@ impl Collider {
     /// Returns the nearest triangle that each ray hits.
     pub fn raycasts(&self, rays: &[Ray]) -> Result<Vec<Option<TriangleHit>>> {
         let here = Transform::default();
-        let placed = sys::Placed { body: self.raw, pose: &here };
+        let placed = sys::Placed { shape: self.raw, pose: &here };
         rays.iter().map(|ray| raycast(&placed, ray)).collect()
     }
 }
 
 fn raycast(placed: &sys::Placed, ray: &Ray) -> Result<Option<TriangleHit>> {
-    let mut hit: sys::BodyRayHit = unsafe { std::mem::zeroed() };
-    hit.size = size_of::<sys::BodyRayHit>();
-    check(unsafe { sys::crofton_body_raycast(placed, ray, &mut hit) })?;
+    let mut hit: sys::ShapeRayHit = unsafe { std::mem::zeroed() };
+    hit.size = size_of::<sys::ShapeRayHit>();
+    check(unsafe { sys::crofton_shape_raycast(placed, ray, &mut hit) })?;
     Ok(hit.t.is_finite().then_some(TriangleHit { t: hit.t, triangle: hit.triangle }))
 }

@@ -19,7 +19,7 @@ pub struct ObjectHit {
     /// In world coordinates.
     pub point: [f64; 3],
     triangle: u32,
-    /// The child of a compound body; else 0.
+    /// The child of a compound shape; else 0.
     pub child: u32,
     /// The surface's unit normal, towards the ray's origin; 0 if the ray began inside.
     pub normal: [f64; 3],
@@ -27,11 +27,11 @@ pub struct ObjectHit {
 }
 
 impl ObjectHit {
-    /// True if the ray began in the body, box or sphere; `t` is then 0.
+    /// True if the ray began in the shape, box or sphere; `t` is then 0.
     pub fn started_inside(&self) -> bool {
         self.started_inside != 0
     }
-    /// The triangle of the object's mesh or its body's surface.
+    /// The triangle of the object's mesh or its shape's surface.
     pub fn triangle(&self) -> Option<u32> {
         (self.triangle != NONE).then_some(self.triangle)
     }
@@ -222,7 +222,7 @@ impl World {
         Ok(unsafe { slice(hits, count) })
     }
 
-    /// The objects that overlap the shape, by index: their bodies, triangles, spheres or boxes.
+    /// The objects that overlap the shape, by index: their shapes, triangles, spheres or boxes.
     pub fn overlap<'a>(&self, shape: &Shape, layers: u32, found: &'a mut Found) -> Result<&'a [ObjectRef]> {
         check(unsafe { sys::crofton_world_overlap(self.raw, &shape.raw(), layers, found.raw) })?;
         let (mut objects, mut count) = (ptr::null(), 0);

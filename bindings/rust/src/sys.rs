@@ -16,7 +16,7 @@ macro_rules! opaque {
         }
     )*};
 }
-opaque!(World, ViewResult, Found, Body, Triangulator);
+opaque!(World, ViewResult, Found, Shape, Triangulator);
 
 #[repr(C)]
 pub struct Jobs {
@@ -75,7 +75,7 @@ pub struct MeshData {
     pub one_sided: u32,
 }
 
-/// The triangles of a body.
+/// The triangles of a shape.
 #[repr(C)]
 pub struct Mesh {
     pub size: usize,
@@ -110,7 +110,7 @@ pub struct ObjectDescription {
     pub collides_with: u32,
     pub occludes: u32,
     pub only_occludes: u32,
-    pub body: *const Body,
+    pub shape: *const Shape,
     pub hidden: u32,
 }
 
@@ -149,7 +149,7 @@ pub struct MeshInfo {
 }
 
 #[repr(C)]
-pub struct BodyDescription {
+pub struct ShapeDescription {
     pub size: usize,
     pub kind: u32,
     pub radius: f32,
@@ -164,17 +164,17 @@ pub struct BodyDescription {
     pub mesh: *const Mesh,
     pub height_field: *const c_void,
     pub front_only: u32,
-    pub core: *const Body,
-    pub children: *const *const Body,
+    pub core: *const Shape,
+    pub children: *const *const Shape,
     pub poses: *const crate::Transform,
     pub child_count: usize,
 }
-pub const BODY_MESH: u32 = 8;
+pub const SHAPE_MESH: u32 = 8;
 
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct Placed {
-    pub body: *const Body,
+    pub shape: *const Shape,
     pub pose: *const crate::Transform,
 }
 
@@ -189,7 +189,7 @@ pub struct Shape {
     pub begin: [f64; 3],
     pub end: [f64; 3],
     pub radius: f64,
-    pub body: Placed,
+    pub shape: Placed,
 }
 
 #[repr(C)]
@@ -207,7 +207,7 @@ pub const MESHES_MEET: u32 = 1;
 pub const MESHES_DISTANCE: u32 = 4;
 
 #[repr(C)]
-pub struct BodyRayHit {
+pub struct ShapeRayHit {
     pub size: usize,
     pub t: f64,
     pub point: [f64; 3],
@@ -267,8 +267,8 @@ pub struct ObjectContact {
     pub point_count: usize,
     pub triangles: *const crate::MeshContact,
     pub triangle_count: usize,
-    pub body_points: *mut c_void,
-    pub body_point_count: usize,
+    pub shape_points: *mut c_void,
+    pub shape_point_count: usize,
 }
 
 #[repr(C)]
@@ -427,7 +427,7 @@ extern "C" {
     pub fn crofton_default_object_description() -> ObjectDescription;
     pub fn crofton_default_picture_view() -> PictureView;
     pub fn crofton_default_draw_limits() -> DrawLimits;
-    pub fn crofton_default_body_description() -> BodyDescription;
+    pub fn crofton_default_shape_description() -> ShapeDescription;
     pub fn crofton_default_fit_options() -> FitOptions;
     pub fn crofton_frustum_from_camera(camera: *const Camera, frustum: *mut Frustum) -> Status;
     pub fn crofton_frustum_from_matrix(
@@ -447,11 +447,11 @@ extern "C" {
     ) -> Status;
     pub fn crofton_box_raycast(b: *const crate::Obb, ray: *const crate::Ray, t: *mut f64) -> Status;
 
-    pub fn crofton_body_create(description: *const BodyDescription, body: *mut *mut Body) -> Status;
-    pub fn crofton_body_destroy(body: *mut Body) -> Status;
-    pub fn crofton_body_raycast(body: *const Placed, ray: *const crate::Ray, hit: *mut BodyRayHit) -> Status;
+    pub fn crofton_shape_create(description: *const ShapeDescription, shape: *mut *mut Shape) -> Status;
+    pub fn crofton_shape_destroy(shape: *mut Shape) -> Status;
+    pub fn crofton_shape_raycast(shape: *const Placed, ray: *const crate::Ray, hit: *mut ShapeRayHit) -> Status;
     pub fn crofton_meshes_relate(
-        a: *const Body, b: *const Body, b_to_a: *const crate::Transform, which: u32, relation: *mut MeshRelation,
+        a: *const Shape, b: *const Shape, b_to_a: *const crate::Transform, which: u32, relation: *mut MeshRelation,
     ) -> Status;
 
     pub fn crofton_criterion_for_frustum(camera: *const Camera, criterion: *mut crate::Criterion) -> Status;

@@ -182,7 +182,7 @@ impl World {
             collides_with: description.collides_with,
             occludes: description.occludes as u32,
             only_occludes: 0,
-            body: ptr::null(),
+            shape: ptr::null(),
             hidden: 0,
         };
         let mut object = Object { index: 0, generation: 0 };

@@ -111,8 +111,8 @@ crofton_picture_view crofton_default_picture_view(void) {
     return result;
 }
 
-crofton_body_description crofton_default_body_description(void) {
-    return sized<crofton_body_description>();
+crofton_shape_description crofton_default_shape_description(void) {
+    return sized<crofton_shape_description>();
 }
 
 crofton_manifold_options crofton_default_manifold_options(void) {

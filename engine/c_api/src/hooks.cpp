@@ -46,15 +46,15 @@ unsigned HostJobs::concurrency() const {
     return jobs_ ? jobs_->concurrency : 1;
 }
 
-void HostJobs::parallel_for(std::size_t count, std::size_t grain, RangeTask body) {
-    if (!jobs_) return serial_executor().parallel_for(count, grain, body);
+void HostJobs::parallel_for(std::size_t count, std::size_t grain, RangeTask shape) {
+    if (!jobs_) return serial_executor().parallel_for(count, grain, shape);
     const detail::NoRecovery host;
     jobs_->parallel_for(
         jobs_->user, count, grain,
         [](void* data, std::size_t begin, std::size_t end, std::uint32_t worker) {
             (*static_cast<const RangeTask*>(data))(begin, end, worker);
         },
-        &body);
+        &shape);
 }
 
 crofton_status check_jobs(const crofton_jobs* jobs, const char* function) {

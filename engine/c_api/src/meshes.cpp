@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Questions asked of two bodies of meshes.
+// Questions asked of two shapes of meshes.
 #include <crofton/capi/modules.h>
 
 #include <algorithm>
 #include <crofton/mesh/mesh_distance.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 
-#include <crofton/capi/bodies.hpp>
+#include <crofton/capi/shapes.hpp>
 
 using namespace crofton;
 using namespace crofton::capi;
@@ -26,7 +26,7 @@ void copy_out(const glm::dvec3& v, double* result) {
 // Two meshes and how they lie, checked, for the length of a call.
 class PosedMeshes {
   public:
-    PosedMeshes(const crofton_body* a, const crofton_body* b, const crofton_transform* b_to_a, const char* function)
+    PosedMeshes(const crofton_shape* a, const crofton_shape* b, const crofton_transform* b_to_a, const char* function)
         : use_a_(a, function), use_b_(b, function) {
         status_ = use_a_.failed() ? use_a_.status() : use_b_.failed() ? use_b_.status() : set(*a, *b, b_to_a, function);
     }
@@ -36,10 +36,10 @@ class PosedMeshes {
     [[nodiscard]] const RigidTransform& pose() const { return pose_; }
 
   private:
-    crofton_status set(const crofton_body& a, const crofton_body& b, const crofton_transform* b_to_a,
+    crofton_status set(const crofton_shape& a, const crofton_shape& b, const crofton_transform* b_to_a,
                        const char* function) {
-        if (!a.data->mesh) return report(CROFTON_UNSUPPORTED, function, "the body is not a mesh", 0);
-        if (!b.data->mesh) return report(CROFTON_UNSUPPORTED, function, "the body is not a mesh", 1);
+        if (!a.data->mesh) return report(CROFTON_UNSUPPORTED, function, "the shape is not a mesh", 0);
+        if (!b.data->mesh) return report(CROFTON_UNSUPPORTED, function, "the shape is not a mesh", 1);
         CROFTON_CHECK(check_pointer(b_to_a, function));
         a_ = &*a.data->mesh;
         b_ = &*b.data->mesh;
@@ -56,7 +56,7 @@ class PosedMeshes {
 
 }  // namespace
 
-crofton_status crofton_meshes_relate(const crofton_body* a, const crofton_body* b, const crofton_transform* b_to_a,
+crofton_status crofton_meshes_relate(const crofton_shape* a, const crofton_shape* b, const crofton_transform* b_to_a,
                                      uint32_t which, crofton_mesh_relation* relation) {
     const PosedMeshes posed(a, b, b_to_a, __func__);
     CROFTON_CHECK(posed.status());
@@ -83,7 +83,7 @@ crofton_status crofton_meshes_relate(const crofton_body* a, const crofton_body* 
     return CROFTON_OK;
 }
 
-crofton_status crofton_meshes_contacts(const crofton_body* a, const crofton_body* b, const crofton_transform* b_to_a,
+crofton_status crofton_meshes_contacts(const crofton_shape* a, const crofton_shape* b, const crofton_transform* b_to_a,
                                        crofton_mesh_contact* contacts, size_t capacity, size_t* count) {
     const PosedMeshes posed(a, b, b_to_a, __func__);
     CROFTON_CHECK(posed.status());

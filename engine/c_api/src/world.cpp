@@ -161,22 +161,23 @@ crofton_status to_object_description(const crofton_object_description* argument,
     return CROFTON_OK;
 }
 
-constexpr std::uint32_t kShapeMembers = CROFTON_SET_OCCLUDES | CROFTON_SET_MESH | CROFTON_SET_BOUND | CROFTON_SET_BODY;
-constexpr std::uint32_t kAllMembers = 2 * CROFTON_SET_BODY - 1;
+constexpr std::uint32_t kShapeMembers = CROFTON_SET_OCCLUDES | CROFTON_SET_MESH | CROFTON_SET_BOUND | CROFTON_SET_SHAPE;
+constexpr std::uint32_t kAllMembers = 2 * CROFTON_SET_SHAPE - 1;
 
 crofton_status check_members(std::uint32_t members, const char* function) {
     if (members > kAllMembers) return report(CROFTON_INVALID_ARGUMENT, function, "unknown members of an object");
     if (std::popcount(members & kShapeMembers) > 1)
-        return report(CROFTON_INVALID_ARGUMENT, function, "set mesh, bound, body and occludes one at a time");
+        return report(CROFTON_INVALID_ARGUMENT, function, "set mesh, bound, shape and occludes one at a time");
     return CROFTON_OK;
 }
 
-crofton_status set_body(crofton_world& world, crofton_object object, const crofton_body* body, const char* function) {
-    if (!body) return status_of(world.world.set_body(to_handle(object), nullptr), function);
-    const SharedUse use(body, function);
+crofton_status set_shape(crofton_world& world, crofton_object object, const crofton_shape* shape,
+                         const char* function) {
+    if (!shape) return status_of(world.world.set_shape(to_handle(object), nullptr), function);
+    const SharedUse use(shape, function);
     if (use.failed()) return use.status();
-    CROFTON_CHECK(status_of(world.world.set_body(to_handle(object), &*body->data->body), function));
-    world.keep(object.index, body->data);
+    CROFTON_CHECK(status_of(world.world.set_shape(to_handle(object), &*shape->data->shape), function));
+    world.keep(object.index, shape->data);
     return CROFTON_OK;
 }
 
@@ -196,7 +197,7 @@ crofton_status set_shape(crofton_world& world, crofton_object object, std::uint3
         CROFTON_CHECK(to_bound(*given.bound, function, bound));
         return status_of(w.set_bound(to_handle(object), bound), function);
     }
-    if (members & CROFTON_SET_BODY) return set_body(world, object, given.body, function);
+    if (members & CROFTON_SET_SHAPE) return set_shape(world, object, given.shape, function);
     return CROFTON_OK;
 }
 
@@ -294,14 +295,14 @@ crofton_status crofton_world_add(crofton_world* world, const crofton_object_desc
     crofton_object_description given;
     ObjectDescription made;
     CROFTON_CHECK(to_object_description(description, __func__, given, made));
-    if (!given.body) {
+    if (!given.shape) {
         CROFTON_CHECK(hand_out(world->world.add(made), object, __func__));
     } else {
-        const SharedUse use_body(given.body, __func__);
-        if (use_body.failed()) return use_body.status();
-        made.body = &*given.body->data->body;
+        const SharedUse use_shape(given.shape, __func__);
+        if (use_shape.failed()) return use_shape.status();
+        made.shape = &*given.shape->data->shape;
         CROFTON_CHECK(hand_out(world->world.add(made), object, __func__));
-        world->keep(object->index, given.body->data);
+        world->keep(object->index, given.shape->data);
     }
     return given.hidden ? status_of(world->world.set_hidden(to_handle(*object), true), __func__) : CROFTON_OK;
 }

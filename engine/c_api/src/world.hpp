@@ -5,20 +5,20 @@
 
 #include <crofton/world/world.hpp>
 
-#include <crofton/capi/bodies.hpp>
 #include <crofton/capi/call.hpp>
+#include <crofton/capi/shapes.hpp>
 
 struct crofton_world {
     static constexpr std::uint32_t kKind = 0x43724f08;
     crofton::capi::Header header;
     crofton::World world;
     std::uint64_t serial;  // of its state after an update: unlike any other of the process, and not 0
-    crofton::Vector<crofton::capi::SharedBody> bodies{};  // by object, so that they live as long as they are used
+    crofton::Vector<crofton::capi::SharedShape> shapes{};  // by object, so that they live as long as they are used
 
-    // Until the object's index has another body.
-    void keep(std::uint32_t object, const crofton::capi::SharedBody& body) {
-        if (bodies.size() <= object) bodies.resize(object + std::size_t{1});
-        bodies[object] = body;
+    // Until the object's index has another shape.
+    void keep(std::uint32_t object, const crofton::capi::SharedShape& shape) {
+        if (shapes.size() <= object) shapes.resize(object + std::size_t{1});
+        shapes[object] = shape;
     }
 };
 

@@ -6,10 +6,10 @@
 #include <array>
 #include <limits>
 
-#include <crofton/capi/bodies.hpp>
 #include <crofton/capi/growing.hpp>
 #include <crofton/capi/numbers.hpp>
 #include <crofton/capi/queries.hpp>
+#include <crofton/capi/query_shapes.hpp>
 #include <crofton/capi/shapes.hpp>
 #include "clusters.hpp"
 #include "found.hpp"
@@ -38,7 +38,7 @@ static_assert(sizeof(crofton_object_contact) == sizeof(Contact) &&
               offsetof(crofton_object_contact, depth) == offsetof(Contact, depth) &&
               offsetof(crofton_object_contact, points) == offsetof(Contact, points) &&
               offsetof(crofton_object_contact, triangles) == offsetof(Contact, triangles) &&
-              offsetof(crofton_object_contact, body_points) == offsetof(Contact, body_points));
+              offsetof(crofton_object_contact, shape_points) == offsetof(Contact, shape_points));
 static_assert(sizeof(crofton_contact_point) == sizeof(collide::ContactPoint) &&
               offsetof(crofton_contact_point, depth) == offsetof(collide::ContactPoint, depth));
 static_assert(sizeof(crofton_mesh_contact) == sizeof(mesh::MeshContact) &&
@@ -169,7 +169,7 @@ crofton_status crofton_world_raycast_all(const crofton_world* world, const croft
     return CROFTON_OK;
 }
 
-crofton_status crofton_world_overlap(const crofton_world* world, const crofton_shape* shape, uint32_t layer_mask,
+crofton_status crofton_world_overlap(const crofton_world* world, const crofton_query_shape* shape, uint32_t layer_mask,
                                      crofton_found* found) {
     const SharedUse use_world(world, __func__);
     if (use_world.failed()) return use_world.status();
@@ -182,7 +182,7 @@ crofton_status crofton_world_overlap(const crofton_world* world, const crofton_s
     });
 }
 
-crofton_status crofton_world_closest(const crofton_world* world, const crofton_shape* shape, double max_distance,
+crofton_status crofton_world_closest(const crofton_world* world, const crofton_query_shape* shape, double max_distance,
                                      uint32_t layer_mask, crofton_closest_object* closest) {
     const SharedUse use(world, __func__);
     if (use.failed()) return use.status();

@@ -44,7 +44,7 @@ Result<FileBody> load_body(const std::string& path, bool as_hull, int max_vertic
     auto tree = mesh::MeshTree::build(*mesh);
     if (!tree) return named(tree.error());
     made.mesh = std::move(*tree);
-    if (auto body = convex::Body::mesh(*made.mesh); !body) return named(body.error());
+    if (auto shape = convex::Shape::mesh(*made.mesh); !shape) return named(shape.error());
     return made;
 }
 
@@ -62,7 +62,7 @@ Result<glm::dvec3> vector_of(const std::string& option, const std::string& text)
     return value;
 }
 
-BodyAnswer ask_hulls(const std::string& mode, const convex::BodyAtPose& a, const convex::BodyAtPose& b) {
+BodyAnswer ask_hulls(const std::string& mode, const convex::ShapeAtPose& a, const convex::ShapeAtPose& b) {
     BodyAnswer answer;
     const bool hit = convex::intersects(a, b);
     answer.document["hit"] = hit;
@@ -93,7 +93,7 @@ BodyAnswer ask_hulls(const std::string& mode, const convex::BodyAtPose& a, const
     return answer;
 }
 
-Result<BodyAnswer> ask_cast(const convex::BodyAtPose& a, const convex::BodyAtPose& b, const convex::Motion& motion,
+Result<BodyAnswer> ask_cast(const convex::ShapeAtPose& a, const convex::ShapeAtPose& b, const convex::Motion& motion,
                             double duration) {
     const auto impact = convex::cast(a, {}, b, motion, {.duration = duration});
     if (!impact) return tl::unexpected<Error>(impact.error());

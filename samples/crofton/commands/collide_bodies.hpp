@@ -11,12 +11,12 @@
 
 namespace crofton::cli {
 
-// A body made of a file: the hull of its vertices, or its triangles.
+// A shape made of a file: the hull of its vertices, or its triangles.
 struct FileBody {
     std::optional<convex::Hull> hull;
     std::optional<mesh::MeshTree> mesh;
-    [[nodiscard]] convex::Body body() const {
-        return hull ? convex::Body::hull(*hull) : convex::Body::mesh(*mesh).value();
+    [[nodiscard]] convex::Shape shape() const {
+        return hull ? convex::Shape::hull(*hull) : convex::Shape::mesh(*mesh).value();
     }
 };
 [[nodiscard]] Result<FileBody> load_body(const std::string& path, bool as_hull, int max_vertices,
@@ -30,9 +30,9 @@ struct BodyAnswer {
     Json document;
 };
 // `mode` is any, all or distance.
-[[nodiscard]] BodyAnswer ask_hulls(const std::string& mode, const convex::BodyAtPose& a, const convex::BodyAtPose& b);
+[[nodiscard]] BodyAnswer ask_hulls(const std::string& mode, const convex::ShapeAtPose& a, const convex::ShapeAtPose& b);
 // B moves. Errors: of convex::cast.
-[[nodiscard]] Result<BodyAnswer> ask_cast(const convex::BodyAtPose& a, const convex::BodyAtPose& b,
+[[nodiscard]] Result<BodyAnswer> ask_cast(const convex::ShapeAtPose& a, const convex::ShapeAtPose& b,
                                           const convex::Motion& motion, double duration);
 
 }  // namespace crofton::cli

@@ -176,7 +176,7 @@ int run_bodies(const CollideRequest& request, const RigidTransform& pose) {
     const auto b = load_body(request.b, request.hulls, static_cast<int>(request.max_vertices), request.read);
     if (!b) return report_error("", b.error());
     if (const auto valid = convex::validate_pose(pose); !valid) return report_error("--pose", valid.error());
-    const convex::Body body_a = a->body(), body_b = b->body();
+    const convex::Shape body_a = a->shape(), body_b = b->shape();
     const RigidTransform origin;
     BodyAnswer answer;
     if (request.mode == "cast") {

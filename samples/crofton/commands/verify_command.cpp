@@ -86,7 +86,7 @@ void add_verify_command(CommandLine& line) {
     for (const Topic& topic : kTopics) names.emplace_back(topic.name);
     command
         .option("topic", request->topic,
-                "Only this topic; all by default. convex: the rows of collide about convex bodies")
+                "Only this topic; all by default. convex: the rows of collide about convex shapes")
         .one_of(names);
     command.option("--trials", request->options.trials, "Random queries per row; more make every check sharper")
         .whole_between(1000, std::uint64_t{1} << 40)
@@ -94,7 +94,7 @@ void add_verify_command(CommandLine& line) {
     const Option scene =
         command.option("--scene", request->scenes,
                        "Check these scenes (files, or \"town\") instead: with the topic occlude the hidden objects, by "
-                       "witness rays; with collide hulls, meshes and maps of polygons as bodies");
+                       "witness rays; with collide hulls, meshes and maps of polygons as shapes");
     command.option("--map", request->map, "Level of a .wad file given to --scene").needs(scene);
     command.option("--instances", request->instances, "Approximate number of instances of the town given to --scene")
         .show_default()

@@ -51,8 +51,8 @@ struct Counts {
 
 // Whether a camera at `eye` could turn all around, and its near plane would cut nothing.
 bool has_room(const Looked& all, const glm::dvec3& eye) {
-    const auto ball = convex::Body::sphere(all.reach);
-    const auto mesh = convex::Body::mesh(all.tree);
+    const auto ball = convex::Shape::sphere(all.reach);
+    const auto mesh = convex::Shape::mesh(all.tree);
     return ball && mesh && !convex::intersects({*mesh, {}}, {*ball, {glm::dmat3(1.0), eye - all.geometry.origin}});
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Bodies made of a scene's or map's data: hulls, and surfaces with their triangles one by one.
 #pragma once
-#include <crofton/convex/body.hpp>
+#include <crofton/convex/shape.hpp>
 #include <crofton/core/error.hpp>
 #include <crofton/geometry/mesh.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
@@ -23,8 +23,8 @@ struct BodyData {
     std::vector<Triangle> triangles;  // of the surface, each as a part of it; coordinates are floats
     double size = 0.0;                // the diagonal of the box around it
 
-    [[nodiscard]] convex::Body surface() const {
-        return field ? convex::Body::height_field(*field, convex::Sides::both) : *convex::Body::mesh(tree);
+    [[nodiscard]] convex::Shape surface() const {
+        return field ? convex::Shape::height_field(*field, convex::Sides::both) : *convex::Shape::mesh(tree);
     }
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Convex bodies: yes or no, depth and casts, against numbers that are never rounded.
+// Convex shapes: yes or no, depth and casts, against numbers that are never rounded.
 #include "convex.hpp"
 
 #include <algorithm>
@@ -7,22 +7,22 @@
 #include <cmath>
 
 #include "convex_pairs.hpp"
-#include "exact_bodies.hpp"
+#include "exact_shapes.hpp"
 
 namespace crofton::cli {
 namespace {
 
-using convex::BodyAtPose;
+using convex::ShapeAtPose;
 
 constexpr double kOffsets[] = {0.0, 1e3, 1e7};
 
-// All bodies of one size, or each of its own.
+// All shapes of one size, or each of its own.
 enum class Sizes { one, any };
 
 // Whether a and b meet, as each question tells that has a yes or no: alone, and with what a neighbouring pose has left.
 // Returns how many of these answers are not the truth.
-std::uint64_t wrong_answers(const BodyAtPose& a, const BodyAtPose& b, const RigidTransform& earlier, bool truth) {
-    const BodyAtPose before{b.body, earlier};
+std::uint64_t wrong_answers(const ShapeAtPose& a, const ShapeAtPose& b, const RigidTransform& earlier, bool truth) {
+    const ShapeAtPose before{b.shape, earlier};
     convex::PairCache cache, manifold_cache;
     (void)convex::intersects(a, before, &cache);
     (void)convex::contact_manifold(a, before, {}, &manifold_cache);
@@ -44,7 +44,7 @@ VerifyRow yes_or_no(Sizes sizes, int decade, double offset, const VerifyOptions&
         const double gap = std::pow(10.0, -decade) * random.number(0.1, 1.0) * (i % 2 == 0 ? 1.0 : -1.0);
         const ConvexPairs::Pair pair =
             sizes == Sizes::one ? random.next(12, gap, offset) : random.next_of_sizes(12, gap, offset);
-        const BodyAtPose a = pair.placed_a(), b = pair.placed_b();
+        const ShapeAtPose a = pair.placed_a(), b = pair.placed_b();
         RigidTransform earlier = pair.pose_b;
         earlier.translation += (sizes == Sizes::one ? 0.01 : 0.01 * pair.b.core_radius()) * random.direction();
         const bool truth = meet_exactly(a, b, pair.normal, by_axes);
@@ -54,7 +54,7 @@ VerifyRow yes_or_no(Sizes sizes, int decade, double offset, const VerifyOptions&
     char claim[200];
     std::snprintf(claim, sizeof claim,
                   sizes == Sizes::one
-                      ? "convex bodies at %g m, gaps and overlaps of 1e-%d: %llu pairs, %llu meet, %llu by all "
+                      ? "convex shapes at %g m, gaps and overlaps of 1e-%d: %llu pairs, %llu meet, %llu by all "
                         "axes; none wrong"
                       : "of sizes 1e-6 to 1e6 at %g m, 1e-%d of the larger: %llu pairs, %llu meet, %llu by all "
                         "axes; none wrong",
@@ -70,7 +70,7 @@ VerifyRow depths(const VerifyOptions& options) {
     for (std::uint64_t i = 0; i < pairs; ++i) {
         const double overlap = i % 3 == 0 ? 0.3 : std::pow(10.0, random.number(-12.0, -1.0));
         const ConvexPairs::Pair pair = random.next(6, -overlap, i % 5 == 0 ? 1e5 : 0.0);
-        const BodyAtPose a = pair.placed_a(), b = pair.placed_b();
+        const ShapeAtPose a = pair.placed_a(), b = pair.placed_b();
         const convex::Penetration p = convex::penetration(a, b);
         if (!p.overlapping) {
             wrong += meet_exactly(a, b, pair.normal, by_axes);
@@ -79,7 +79,7 @@ VerifyRow depths(const VerifyOptions& options) {
         ++met;
         const double size = pair.a.core_radius() + pair.b.core_radius() +
                             glm::length(pair.pose_b.translation - pair.pose_a.translation);
-        wrong += !depth_lies_between(ExactBody(a), ExactBody(b), p.lower, p.upper) || p.upper - p.lower > 1e-9 * size;
+        wrong += !depth_lies_between(ExactShape(a), ExactShape(b), p.lower, p.upper) || p.upper - p.lower > 1e-9 * size;
     }
     return none_row("depths of overlaps of 0.3 and 1e-1 to 1e-12: " + std::to_string(met) +
                         " lie between their bounds, which differ by at most 1e-9 of the size",
@@ -92,7 +92,7 @@ ConvexPairs::Pair start_of(ConvexPairs& random, double offset) {
     return pair;
 }
 
-// No sample before the impact, or of a miss at all, has the bodies meet.
+// No sample before the impact, or of a miss at all, has the shapes meet.
 VerifyRow casts_sampled(const VerifyOptions& options) {
     constexpr int kSamples = 10'000;
     const std::uint64_t casts = std::max<std::uint64_t>(4, options.trials / 50'000);
@@ -119,20 +119,20 @@ VerifyRow casts_sampled(const VerifyOptions& options) {
             const RigidTransform at_a = convex::moved(pair.pose_a, a, time), at_b = convex::moved(pair.pose_b, b, time);
             const convex::Distance d = convex::distance({pair.a, at_a}, {pair.b, at_b});
             const std::array normals{d.normal};
-            met_before = meet_exactly(ExactBody({pair.a, at_a}), ExactBody({pair.b, at_b}), normals, glm::dvec3(0.0),
+            met_before = meet_exactly(ExactShape({pair.a, at_a}), ExactShape({pair.b, at_b}), normals, glm::dvec3(0.0),
                                       {}, by_axes);
         }
         const RigidTransform at_a = convex::moved(pair.pose_a, a, end), at_b = convex::moved(pair.pose_b, b, end);
         const bool far = hit && convex::distance({pair.a, at_a}, {pair.b, at_b}).lower > 1e-6;
         wrong += met_before || far;
     }
-    return none_row(std::to_string(casts) + " casts of turning bodies, " + std::to_string(hits) + " hits, " +
+    return none_row(std::to_string(casts) + " casts of turning shapes, " + std::to_string(hits) + " hits, " +
                         std::to_string(unresolved) +
                         " undecided: they overlap at none of 10,000 earlier times, and are then within 1e-6",
                     "separating planes in exact numbers", samples, wrong);
 }
 
-// Casts along translations. Finds the first contact by bisection between the impact and a time when the bodies overlap.
+// Casts along translations. Finds the first contact by bisection between the impact and a time when the shapes overlap.
 // Poses are not rounded.
 VerifyRow casts_bisected(const VerifyOptions& options) {
     const std::uint64_t casts = std::max<std::uint64_t>(20, options.trials / 5000);
@@ -163,29 +163,30 @@ VerifyRow casts_bisected(const VerifyOptions& options) {
                     "bisection in exact numbers", compared, wrong);
 }
 
-// How far the body reaches along a direction of the world.
-double reach_along(const BodyAtPose& body, const glm::dvec3& direction) {
-    const glm::dvec3 farthest = convex::support_point(body.body, glm::transpose(body.pose.rotation) * direction);
-    return glm::dot(direction, body.pose.rotation * farthest + body.pose.translation);
+// How far the shape reaches along a direction of the world.
+double reach_along(const ShapeAtPose& shape, const glm::dvec3& direction) {
+    const glm::dvec3 farthest = convex::support_point(shape.shape, glm::transpose(shape.pose.rotation) * direction);
+    return glm::dot(direction, shape.pose.rotation * farthest + shape.pose.translation);
 }
 
-// Casts of every pair of kinds. At the impact, each point is in its body, no point of the body is farther along the
-// normal, and the normal separates the bodies.
+// Casts of every pair of kinds. At the impact, each point is in its shape, no point of the shape is farther along the
+// normal, and the normal separates the shapes.
 VerifyRow casts_points(const VerifyOptions& options) {
-    const convex::Body box = convex::Body::box({0.4f, 0.7f, 0.3f}).value();
-    const std::array bodies{box,
-                            convex::Body::sphere(0.5).value(),
-                            convex::Body::capsule(0.6f, 0.3f).value(),
-                            convex::Body::rounded(box, 0.2).value(),
-                            convex::Body::cylinder(0.5f, 0.4f).value(),
-                            convex::Body::cone(0.5f, 0.4f).value(),
-                            convex::Body::triangle({0.0f, 0.0f, 0.0f}, {1.0f, 0.2f, 0.0f}, {0.3f, 0.9f, 0.1f}).value()};
+    const convex::Shape box = convex::Shape::box({0.4f, 0.7f, 0.3f}).value();
+    const std::array shapes{
+        box,
+        convex::Shape::sphere(0.5).value(),
+        convex::Shape::capsule(0.6f, 0.3f).value(),
+        convex::Shape::rounded(box, 0.2).value(),
+        convex::Shape::cylinder(0.5f, 0.4f).value(),
+        convex::Shape::cone(0.5f, 0.4f).value(),
+        convex::Shape::triangle({0.0f, 0.0f, 0.0f}, {1.0f, 0.2f, 0.0f}, {0.3f, 0.9f, 0.1f}).value()};
     constexpr double kTolerance = 1e-5;
-    const std::uint64_t casts = std::max<std::uint64_t>(2, options.trials / 2000) * bodies.size() * bodies.size();
+    const std::uint64_t casts = std::max<std::uint64_t>(2, options.trials / 2000) * shapes.size() * shapes.size();
     ConvexPairs random(options.seed + 80);
     std::uint64_t wrong = 0, hits = 0;
     for (std::uint64_t i = 0; i < casts; ++i) {
-        const convex::Body &first = bodies[i % bodies.size()], &second = bodies[i / bodies.size() % bodies.size()];
+        const convex::Shape &first = shapes[i % shapes.size()], &second = shapes[i / shapes.size() % shapes.size()];
         const ConvexPairs::Pair pair = random.touching(first, second, random.number(0.2, 2.0), 0.0);
         const convex::Motion a{0.2 * random.direction(), random.number(0.0, 1.0) * random.direction(), glm::dvec3(0.0)};
         const convex::Motion b{-4.0 * pair.normal, random.number(0.0, 1.0) * random.direction(), glm::dvec3(0.0)};
@@ -195,7 +196,7 @@ VerifyRow casts_points(const VerifyOptions& options) {
         ++hits;
         const RigidTransform at_a = convex::moved(pair.pose_a, a, impact->time),
                              at_b = convex::moved(pair.pose_b, b, impact->time);
-        const BodyAtPose hit_a{pair.a, at_a}, hit_b{pair.b, at_b};
+        const ShapeAtPose hit_a{pair.a, at_a}, hit_b{pair.b, at_b};
         const glm::dvec3& n = impact->normal;
         const double end_a = reach_along(hit_a, n), end_b = -reach_along(hit_b, -n);
         const bool is_right = std::fabs(glm::length(n) - 1.0) < 1e-9 && end_b - end_a > -kTolerance &&
@@ -206,7 +207,7 @@ VerifyRow casts_points(const VerifyOptions& options) {
                               std::fabs(glm::distance(impact->on_a, impact->on_b) - impact->distance) < kTolerance;
         wrong += !is_right;
     }
-    return none_row("casts of seven kinds of bodies, " + std::to_string(hits) +
+    return none_row("casts of seven kinds of shapes, " + std::to_string(hits) +
                         " hits: points on both surfaces, and a normal that parts them",
                     "support points", hits, wrong);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The claims of `crofton verify collide` about convex bodies.
+// The claims of `crofton verify collide` about convex shapes.
 #pragma once
 #include <vector>
 

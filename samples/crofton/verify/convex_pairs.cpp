@@ -26,11 +26,11 @@ glm::dmat3 ConvexPairs::rotation() {
     return glm::mat3_cast(glm::dquat(std::cos(angle / 2), std::sin(angle / 2) * axis));
 }
 
-convex::Body ConvexPairs::polytope(int corners, double size, std::unique_ptr<convex::Hull>& hull) {
+convex::Shape ConvexPairs::polytope(int corners, double size, std::unique_ptr<convex::Hull>& hull) {
     const int kind = index(8);
     if (kind < 3) {
         const double x = number(0.1, 1), y = number(0.1, 1), z = number(0.1, 1);
-        return *convex::Body::box(glm::vec3(size * glm::dvec3(x, y, z)));
+        return *convex::Shape::box(glm::vec3(size * glm::dvec3(x, y, z)));
     }
     glm::dvec3 scale(size);
     const int form = index(4);
@@ -43,27 +43,27 @@ convex::Body ConvexPairs::polytope(int corners, double size, std::unique_ptr<con
             const double radius = form == 1 ? number(0.3, 1.0) : 1.0;
             points.emplace_back(scale * radius * direction());
         }
-        if (kind == 3) return *convex::Body::triangle(points[0], points[1], points[2]);
+        if (kind == 3) return *convex::Shape::triangle(points[0], points[1], points[2]);
         auto built = convex::Hull::build(points);
         if (!built) continue;
         hull = std::make_unique<convex::Hull>(std::move(*built));
-        return convex::Body::hull(*hull);
+        return convex::Shape::hull(*hull);
     }
 }
 
 ConvexPairs::Pair ConvexPairs::next(int corners, double gap, double offset) {
-    const convex::Body a = polytope(corners, 1.0, hulls_[0]), b = polytope(corners, 1.0, hulls_[1]);
+    const convex::Shape a = polytope(corners, 1.0, hulls_[0]), b = polytope(corners, 1.0, hulls_[1]);
     return touching(a, b, gap, offset);
 }
 
 ConvexPairs::Pair ConvexPairs::next_of_sizes(int corners, double gap, double offset) {
     const double power_a = number(-6.0, 6.0), power_b = number(-6.0, 6.0);
     const double size_a = std::pow(10.0, power_a), size_b = std::pow(10.0, power_b);
-    const convex::Body a = polytope(corners, size_a, hulls_[0]), b = polytope(corners, size_b, hulls_[1]);
+    const convex::Shape a = polytope(corners, size_a, hulls_[0]), b = polytope(corners, size_b, hulls_[1]);
     return touching(a, b, std::max(size_a, size_b) * gap, offset);
 }
 
-ConvexPairs::Pair ConvexPairs::touching(const convex::Body& a, const convex::Body& b, double gap, double offset) {
+ConvexPairs::Pair ConvexPairs::touching(const convex::Shape& a, const convex::Shape& b, double gap, double offset) {
     Pair pair{a, b, {rotation(), offset * glm::dvec3(1.0, -0.7, 0.3)}, {}, {}};
     pair.pose_b.rotation = index(3) != 0 ? rotation() : pair.pose_a.rotation;
     glm::dvec3 local = direction();

@@ -13,19 +13,19 @@ class ConvexPairs {
     explicit ConvexPairs(std::uint64_t seed) : random_(seed) {}
 
     struct Pair {
-        convex::Body a, b;
+        convex::Shape a, b;
         RigidTransform pose_a, pose_b;
         glm::dvec3 normal;  // from a to b, about where they touch
-        [[nodiscard]] convex::BodyAtPose placed_a() const { return {a, pose_a}; }
-        [[nodiscard]] convex::BodyAtPose placed_b() const { return {b, pose_b}; }
+        [[nodiscard]] convex::ShapeAtPose placed_a() const { return {a, pose_a}; }
+        [[nodiscard]] convex::ShapeAtPose placed_b() const { return {b, pose_b}; }
     };
     // Along a direction, of which half are normals of faces, b is `gap` beyond a; both are about `offset` from the
     // origin. A third of the pairs is parallel.
     [[nodiscard]] Pair next(int corners, double gap, double offset);
-    // The same of bodies whose sizes are 1e-6 to 1e6, one independent of the other's; the gap is times the larger size.
+    // The same of shapes whose sizes are 1e-6 to 1e6, one independent of the other's; the gap is times the larger size.
     [[nodiscard]] Pair next_of_sizes(int corners, double gap, double offset);
-    // The same of two bodies that are given. b touches a, but for the gap, at a's farthest point along the direction.
-    [[nodiscard]] Pair touching(const convex::Body& a, const convex::Body& b, double gap, double offset);
+    // The same of two shapes that are given. b touches a, but for the gap, at a's farthest point along the direction.
+    [[nodiscard]] Pair touching(const convex::Shape& a, const convex::Shape& b, double gap, double offset);
 
     [[nodiscard]] std::uint64_t bits() { return random_(); }
     [[nodiscard]] double number(double low, double high);
@@ -34,7 +34,7 @@ class ConvexPairs {
   private:
     [[nodiscard]] int index(int count) { return static_cast<int>(random_() % static_cast<std::uint64_t>(count)); }
     [[nodiscard]] glm::dmat3 rotation();
-    [[nodiscard]] convex::Body polytope(int corners, double size, std::unique_ptr<convex::Hull>& hull);
+    [[nodiscard]] convex::Shape polytope(int corners, double size, std::unique_ptr<convex::Hull>& hull);
 
     std::mt19937_64 random_;
     std::unique_ptr<convex::Hull> hulls_[2];

@@ -72,7 +72,7 @@ void try_coplanar(Random& random, BodyTrial& trial) {
     const int axis = static_cast<int>(random.bits() % 3);
     for (glm::vec3& p : points) p[axis] = points[0][axis];
     trial.must_refuse(Hull::build(points), ErrorCode::degenerate);
-    // The least step out of the plane makes a body.
+    // The least step out of the plane makes a shape.
     points[5][axis] = std::nextafter(points[5][axis], 2.0f);
     const auto thin = Hull::build(points);
     trial.require(thin && holds_all(*thin, points));
@@ -106,10 +106,10 @@ void try_not_numbers(Random& random, BodyTrial& trial) {
     trial.must_refuse(Hull::build(points), ErrorCode::non_finite, bad);
     glm::vec3 half(1.0f);
     half[axis] = value;
-    trial.must_refuse(convex::Body::box(half), ErrorCode::non_finite, static_cast<std::uint64_t>(axis));
-    trial.must_refuse(convex::Body::sphere(not_finite(random)), ErrorCode::non_finite);
-    trial.must_refuse(convex::Body::capsule(value, 1.0f), ErrorCode::non_finite);
-    trial.must_refuse(convex::Body::triangle(glm::vec3(1.0f), half, glm::vec3(0.0f)), ErrorCode::non_finite, 1);
+    trial.must_refuse(convex::Shape::box(half), ErrorCode::non_finite, static_cast<std::uint64_t>(axis));
+    trial.must_refuse(convex::Shape::sphere(not_finite(random)), ErrorCode::non_finite);
+    trial.must_refuse(convex::Shape::capsule(value, 1.0f), ErrorCode::non_finite);
+    trial.must_refuse(convex::Shape::triangle(glm::vec3(1.0f), half, glm::vec3(0.0f)), ErrorCode::non_finite, 1);
     std::vector<float> heights(12, 1.0f);
     heights[7] = value;
     trial.must_refuse(convex::HeightField::build({.columns = 4, .rows = 3, .heights = heights}), ErrorCode::non_finite,
@@ -117,7 +117,7 @@ void try_not_numbers(Random& random, BodyTrial& trial) {
     RigidTransform pose;
     pose.translation[axis] = not_finite(random);
     trial.must_refuse(convex::validate_pose(pose), ErrorCode::non_finite);
-    const convex::Body box = *convex::Body::box(glm::vec3(1.0f));
+    const convex::Shape box = *convex::Shape::box(glm::vec3(1.0f));
     trial.require(!convex::intersects({box, {}}, {box, pose}));
     convex::Motion motion;
     motion.velocity[axis] = not_finite(random);
@@ -128,13 +128,13 @@ void try_inside_out(Random& random, BodyTrial& trial) {
     glm::vec3 half = glm::abs(any_point(random)) + 0.1f;
     const int axis = static_cast<int>(random.bits() % 3);
     half[axis] = -half[axis];
-    trial.must_refuse(convex::Body::box(half), ErrorCode::invalid_argument, static_cast<std::uint64_t>(axis));
-    trial.must_refuse(convex::Body::sphere(static_cast<double>(half[axis])), ErrorCode::invalid_argument);
-    trial.must_refuse(convex::Body::cylinder(1.0f, half[axis]), ErrorCode::invalid_argument);
+    trial.must_refuse(convex::Shape::box(half), ErrorCode::invalid_argument, static_cast<std::uint64_t>(axis));
+    trial.must_refuse(convex::Shape::sphere(static_cast<double>(half[axis])), ErrorCode::invalid_argument);
+    trial.must_refuse(convex::Shape::cylinder(1.0f, half[axis]), ErrorCode::invalid_argument);
     RigidTransform mirrored{sampling::rotation(random.point<3>()), glm::dvec3(0.0)};
     mirrored.rotation[axis] = -mirrored.rotation[axis];
     trial.must_refuse(convex::validate_pose(mirrored), ErrorCode::invalid_argument);
-    const convex::CompoundChild child{*convex::Body::sphere(1.0), mirrored};
+    const convex::CompoundChild child{*convex::Shape::sphere(1.0), mirrored};
     trial.must_refuse(convex::Compound::build({&child, 1}), ErrorCode::invalid_argument, 0);
 }
 
@@ -148,10 +148,10 @@ void try_many_points(Random& random, BodyTrial& trial) {
 }
 
 void try_casts(Random& random, BodyTrial& trial) {
-    const convex::Body box = *convex::Body::box(glm::vec3(0.5f));
+    const convex::Shape box = *convex::Shape::box(glm::vec3(0.5f));
     const double gap = random.uniform(0.5, 3.0);
     const RigidTransform near{glm::dmat3(1.0), {1.0 + gap, 0.0, 0.0}}, within{glm::dmat3(1.0), {0.7, 0.1, 0.0}};
-    // Casts without duration or motion miss separate bodies, and hit overlapping ones at once.
+    // Casts without duration or motion miss separate shapes, and hit overlapping ones at once.
     const convex::Motion forward{{9.0, 0.0, 0.0}, {}, {}};
     for (const convex::Motion& motion : {forward, convex::Motion{}}) {
         const convex::CastOptions no_time{.duration = motion.velocity.x > 0.0 ? 0.0 : 1.0};
@@ -191,7 +191,7 @@ void try_height_fields(Random& random, BodyTrial& trial) {
 void try_deep_compounds(Random& random, BodyTrial& trial) {
     std::vector<convex::Compound> chain;
     chain.reserve(1000);
-    convex::Body inner = *convex::Body::sphere(random.uniform(0.1, 1.0));
+    convex::Shape inner = *convex::Shape::sphere(random.uniform(0.1, 1.0));
     for (int depth = 1; depth <= 1000; ++depth) {
         const convex::CompoundChild child{inner, {}};
         auto built = convex::Compound::build({&child, 1});
@@ -202,40 +202,40 @@ void try_deep_compounds(Random& random, BodyTrial& trial) {
         trial.require(built && built->depth() == depth);
         if (!built) return;
         chain.push_back(std::move(*built));
-        inner = convex::Body::compound(chain.back());
+        inner = convex::Shape::compound(chain.back());
     }
-    trial.require(convex::intersects({inner, {}}, {*convex::Body::sphere(0.0), {}}));
+    trial.require(convex::intersects({inner, {}}, {*convex::Shape::sphere(0.0), {}}));
     trial.must_refuse(convex::Compound::build({}), ErrorCode::empty);
 }
 
-// Contacts stay as they are until the next update, whatever is done to the bodies meanwhile.
+// Contacts stay as they are until the next update, whatever is done to the shapes meanwhile.
 void try_changes(Random& random, BodyTrial& trial) {
     World world({.contact_margin = 0.02});
-    const convex::Body crate = *convex::Body::box(glm::vec3(0.5f)), slab = *convex::Body::box({9.0f, 1.0f, 9.0f}),
-                       sphere = *convex::Body::sphere(0.5);
+    const convex::Shape crate = *convex::Shape::box(glm::vec3(0.5f)), slab = *convex::Shape::box({9.0f, 1.0f, 9.0f}),
+                        sphere = *convex::Shape::sphere(0.5);
     const Obb bounds{{0.0, 1.45, 0.0}, glm::mat3(1.0f), glm::vec3(0.55f)};
     const auto floor = world.add({.bound = Obb{{}, glm::mat3(1.0f), {9.0f, 1.0f, 9.0f}}});
     const auto box = world.add({.bound = bounds});
-    trial.require(floor && box && world.set_body(*floor, &slab) && world.set_body(*box, &crate) && world.update());
+    trial.require(floor && box && world.set_shape(*floor, &slab) && world.set_shape(*box, &crate) && world.update());
     if (!floor || !box) return;
-    const auto points = [&] { return world.contacts().empty() ? 0 : world.contacts()[0].body_points.size(); };
+    const auto points = [&] { return world.contacts().empty() ? 0 : world.contacts()[0].shape_points.size(); };
     const auto read_after = [&](const Result<void>& done, std::size_t expected) {
         trial.require(done && points() == expected);
     };
     trial.require(points() == 4);
     const Contact read = world.contacts()[0];
-    read_after(world.set_body(*box, &sphere), 4);
-    trial.require(read.body_points[0].contact.depth == world.contacts()[0].body_points[0].contact.depth);
+    read_after(world.set_shape(*box, &sphere), 4);
+    trial.require(read.shape_points[0].contact.depth == world.contacts()[0].shape_points[0].contact.depth);
     read_after(world.update(), 1);
     if (random.bits() % 2 == 0) {
         read_after(world.remove(*box), 1);
-        trial.must_refuse(world.set_body(*box, &crate), ErrorCode::stale_handle);
+        trial.must_refuse(world.set_shape(*box, &crate), ErrorCode::stale_handle);
     } else {
-        read_after(world.set_body(*box, nullptr), 1);
+        read_after(world.set_shape(*box, nullptr), 1);
     }
     trial.require(world.update().has_value());
     trial.require(std::all_of(world.contacts().begin(), world.contacts().end(),
-                              [](const Contact& c) { return c.body_points.empty(); }));
+                              [](const Contact& c) { return c.shape_points.empty(); }));
 }
 
 struct BadKind {
@@ -245,15 +245,15 @@ struct BadKind {
 };
 constexpr BadKind kBadKinds[] = {
     {"hulls of fewer than four points are refused by name", try_few_points, 1},
-    {"points on a plane or line are refused by name, and points a bit off it are a body", try_coplanar, 1},
+    {"points on a plane or line are refused by name, and points a bit off it are a shape", try_coplanar, 1},
     {"points given twice do not change a hull", try_duplicates, 1},
-    {"NaN and infinite numbers of bodies, poses and motions are refused by name and item", try_not_numbers, 1},
-    {"bodies inside out and poses that mirror are refused by name", try_inside_out, 1},
+    {"NaN and infinite numbers of shapes, poses and motions are refused by name and item", try_not_numbers, 1},
+    {"shapes inside out and poses that mirror are refused by name", try_inside_out, 1},
     {"hulls of 100,000 points hold all of them with 256 corners", try_many_points, 100},
     {"casts of no length, of a thousand turns, and beyond the limits", try_casts, 1},
     {"height fields of one row, with too few heights or of holes alone are refused by name", try_height_fields, 1},
     {"compounds of compounds are refused beyond 16 deep, at each depth to 1,000", try_deep_compounds, 10},
-    {"bodies changed or removed while their contacts are read: these stay until the next update", try_changes, 10},
+    {"shapes changed or removed while their contacts are read: these stay until the next update", try_changes, 10},
 };
 
 }  // namespace

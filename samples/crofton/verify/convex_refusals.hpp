@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Bad bodies, poses and motions: refused by name, with nothing lost.
+// Bad shapes, poses and motions: refused by name, with nothing lost.
 #pragma once
 #include <vector>
 
@@ -7,7 +7,7 @@
 
 namespace crofton::cli {
 
-// A row for each kind of bad input. After each refusal good bodies answer as before; what is merely unusual is taken.
+// A row for each kind of bad input. After each refusal good shapes answer as before; what is merely unusual is taken.
 [[nodiscard]] std::vector<VerifyRow> verify_bad_bodies(const VerifyOptions& options);
 
 }  // namespace crofton::cli

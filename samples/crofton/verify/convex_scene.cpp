@@ -11,12 +11,12 @@
 
 #include "body_data.hpp"
 #include "convex_pairs.hpp"
-#include "exact_bodies.hpp"
+#include "exact_shapes.hpp"
 
 namespace crofton::cli {
 namespace {
 
-using convex::BodyAtPose;
+using convex::ShapeAtPose;
 
 constexpr double kSceneOffsets[] = {0.0, 1e3, 1e7};  // in sizes
 
@@ -57,8 +57,8 @@ VerifyRow hulls_that_touch(const BodyData& data, double offset, const VerifyOpti
     ConvexPairs random(options.seed + 80 + static_cast<std::uint64_t>(std::log10(offset + 1.0)));
     Tally tally;
     for (; tally.cases < pairs; ++tally.cases) {
-        const convex::Body a = convex::Body::hull(data.hulls[random.bits() % data.hulls.size()]);
-        const convex::Body b = convex::Body::hull(data.hulls[random.bits() % data.hulls.size()]);
+        const convex::Shape a = convex::Shape::hull(data.hulls[random.bits() % data.hulls.size()]);
+        const convex::Shape b = convex::Shape::hull(data.hulls[random.bits() % data.hulls.size()]);
         const double size = a.core_radius() + b.core_radius();
         const double gap = size * std::pow(10.0, random.number(-12.0, -1.0)) * (tally.cases % 2 == 0 ? 1.0 : -1.0);
         const ConvexPairs::Pair pair = random.touching(a, b, gap, offset * data.size);
@@ -76,42 +76,43 @@ VerifyRow hulls_that_touch(const BodyData& data, double offset, const VerifyOpti
                   "planes, common points and separating axes in exact numbers", tally);
 }
 
-// Triangles of a surface that may be within `far` of a body.
+// Triangles of a surface that may be within `far` of a shape.
 class TriangleTruth {
   public:
-    TriangleTruth(const BodyData& data, const BodyAtPose& surface) : data_(data), surface_(surface) {}
+    TriangleTruth(const BodyData& data, const ShapeAtPose& surface) : data_(data), surface_(surface) {}
 
     template <class Visit>
-    void visit_near(const BodyAtPose& body, double far, Visit visit) const {
+    void visit_near(const ShapeAtPose& shape, double far, Visit visit) const {
         const glm::dvec3 middle =
-            glm::transpose(surface_.pose.rotation) * (body.pose.translation - surface_.pose.translation);
-        const double reach = (body.body.core_radius() + far) * (1.0 + 1e-5) + 1e-9 * (data_.size + glm::length(middle));
+            glm::transpose(surface_.pose.rotation) * (shape.pose.translation - surface_.pose.translation);
+        const double reach =
+            (shape.shape.core_radius() + far) * (1.0 + 1e-5) + 1e-9 * (data_.size + glm::length(middle));
         for (const Triangle& t : data_.triangles) {
             const glm::dvec3 low = glm::min(glm::min(t[0], t[1]), t[2]), high = glm::max(glm::max(t[0], t[1]), t[2]);
             const glm::dvec3 gap = glm::max(glm::max(low - middle, middle - high), glm::dvec3(0.0));
             if (glm::dot(gap, gap) > reach * reach) continue;
-            const convex::Body part = *convex::Body::triangle(glm::vec3(t[0]), glm::vec3(t[1]), glm::vec3(t[2]));
-            if (!visit(BodyAtPose{part, surface_.pose})) return;
+            const convex::Shape part = *convex::Shape::triangle(glm::vec3(t[0]), glm::vec3(t[1]), glm::vec3(t[2]));
+            if (!visit(ShapeAtPose{part, surface_.pose})) return;
         }
     }
-    [[nodiscard]] bool meets(const BodyAtPose& body, std::uint64_t& by_axes) const {
+    [[nodiscard]] bool meets(const ShapeAtPose& shape, std::uint64_t& by_axes) const {
         bool met = false;
-        visit_near(body, 0.0, [&](const BodyAtPose& part) {
-            const convex::Distance d = convex::distance(part, body);
+        visit_near(shape, 0.0, [&](const ShapeAtPose& part) {
+            const convex::Distance d = convex::distance(part, shape);
             // Apart by a plane that exact numbers confirm, as nearly all are; else all that is known is tried.
             const std::array normals{d.normal};
-            const bool parted = d.distance > 0.0 &&
-                                !meet_exactly(ExactBody(part), ExactBody(body), normals, glm::dvec3(0.0), {}, by_axes);
-            met = !parted && meet_exactly(part, body, d.normal, by_axes);
+            const bool parted = d.distance > 0.0 && !meet_exactly(ExactShape(part), ExactShape(shape), normals,
+                                                                  glm::dvec3(0.0), {}, by_axes);
+            met = !parted && meet_exactly(part, shape, d.normal, by_axes);
             return !met;
         });
         return met;
     }
     // Lower and upper bounds of the distance, by all triangles that may be nearest.
-    [[nodiscard]] std::array<double, 2> distance(const BodyAtPose& body, double far) const {
+    [[nodiscard]] std::array<double, 2> distance(const ShapeAtPose& shape, double far) const {
         std::array<double, 2> least{HUGE_VAL, HUGE_VAL};
-        visit_near(body, far, [&](const BodyAtPose& part) {
-            const convex::Distance d = convex::distance(part, body);
+        visit_near(shape, far, [&](const ShapeAtPose& part) {
+            const convex::Distance d = convex::distance(part, shape);
             least = {std::min(least[0], d.lower), std::min(least[1], d.upper)};
             return true;
         });
@@ -120,25 +121,25 @@ class TriangleTruth {
 
   private:
     const BodyData& data_;
-    const BodyAtPose& surface_;
+    const ShapeAtPose& surface_;
 };
 
 // A box of 0.1 to 6 % of the surface's size, or one of the hulls if they are small.
-convex::Body probe_of(const BodyData& data, ConvexPairs& random) {
+convex::Shape probe_of(const BodyData& data, ConvexPairs& random) {
     if (!data.hulls.empty() && random.bits() % 2 == 0) {
-        const convex::Body hull = convex::Body::hull(data.hulls[random.bits() % data.hulls.size()]);
+        const convex::Shape hull = convex::Shape::hull(data.hulls[random.bits() % data.hulls.size()]);
         if (hull.core_radius() < 0.1 * data.size) return hull;
     }
     const double scale = 0.5 * data.size * std::pow(10.0, random.number(-2.0, -1.0));
     const double x = random.number(0.1, 0.6), y = random.number(0.1, 0.6), z = random.number(0.1, 0.6);
-    return *convex::Body::box(glm::vec3(scale * glm::dvec3(x, y, z)));
+    return *convex::Shape::box(glm::vec3(scale * glm::dvec3(x, y, z)));
 }
 
 // A probe that touches one triangle of the surface, but for a gap; and if `nearest`, none nearer than that.
 ConvexPairs::Pair place_probe(const BodyData& data, double gap, double offset, bool nearest, ConvexPairs& random) {
     const Triangle& t = data.triangles[random.bits() % data.triangles.size()];
-    const convex::Body part = *convex::Body::triangle(glm::vec3(t[0]), glm::vec3(t[1]), glm::vec3(t[2]));
-    const convex::Body probe = probe_of(data, random);
+    const convex::Shape part = *convex::Shape::triangle(glm::vec3(t[0]), glm::vec3(t[1]), glm::vec3(t[2]));
+    const convex::Shape probe = probe_of(data, random);
     if (!nearest) return random.touching(part, probe, gap, offset);
     ConvexPairs::Pair pair = random.touching(part, probe, random.number(0.0, 0.3) * data.size, offset);
     const convex::Distance d = convex::distance({data.surface(), pair.pose_a}, pair.placed_b());
@@ -149,13 +150,13 @@ ConvexPairs::Pair place_probe(const BodyData& data, double gap, double offset, b
 VerifyRow surface_touched(const BodyData& data, double offset, const VerifyOptions& options) {
     const std::uint64_t pairs = std::max<std::uint64_t>(20, options.trials / 4000);
     ConvexPairs random(options.seed + 90 + static_cast<std::uint64_t>(std::log10(offset + 1.0)));
-    const convex::Body whole = data.surface();
+    const convex::Shape whole = data.surface();
     Tally tally;
     for (; tally.cases < pairs; ++tally.cases) {
         const double gap = 0.1 * data.size * std::pow(10.0, random.number(-12.0, -1.0));
         const ConvexPairs::Pair pair =
             place_probe(data, tally.cases % 2 == 0 ? gap : -gap, offset * data.size, tally.cases % 4 < 2, random);
-        const BodyAtPose surface{whole, pair.pose_a}, probe = pair.placed_b();
+        const ShapeAtPose surface{whole, pair.pose_a}, probe = pair.placed_b();
         const TriangleTruth triangles(data, surface);
         const bool truth = triangles.meets(probe, tally.by_axes);
         const convex::Distance d = convex::distance(surface, probe);
@@ -170,7 +171,7 @@ VerifyRow surface_touched(const BodyData& data, double offset, const VerifyOptio
     }
     return row_of(std::to_string(data.triangles.size()) + " triangles as one " +
                       (data.field ? "height field," : "mesh,") + at_offset(offset) + std::to_string(pairs) +
-                      " bodies with gaps of 1e-2 to 1e-13, " + std::to_string(tally.meeting) +
+                      " shapes with gaps of 1e-2 to 1e-13, " + std::to_string(tally.meeting) +
                       " meet; none wrong, distances as of the nearest triangle",
                   "each triangle near it in exact numbers", tally);
 }
@@ -180,12 +181,12 @@ VerifyRow surface_hit(const BodyData& data, const VerifyOptions& options) {
     constexpr int kMoments = 50;
     const std::uint64_t casts = std::max<std::uint64_t>(4, options.trials / 20'000);
     ConvexPairs random(options.seed + 95);
-    const convex::Body whole = data.surface();
+    const convex::Shape whole = data.surface();
     Tally tally;
     std::uint64_t hits = 0;
     for (std::uint64_t i = 0; i < casts; ++i) {
         const ConvexPairs::Pair pair = place_probe(data, 0.1 * data.size, 0.0, i % 2 == 0, random);
-        const BodyAtPose surface{whole, pair.pose_a}, probe = pair.placed_b();
+        const ShapeAtPose surface{whole, pair.pose_a}, probe = pair.placed_b();
         const double rate = random.number(0.0, 6.0);
         const convex::Motion motion{-0.3 * data.size * pair.normal, rate * random.direction(), {}};
         const double tolerance = 1e-6 * data.size;
@@ -204,7 +205,7 @@ VerifyRow surface_hit(const BodyData& data, const VerifyOptions& options) {
         const RigidTransform last = at(end);
         tally.wrong += hit && triangles.distance({pair.b, last}, 2.0 * tolerance)[0] > tolerance;
     }
-    return row_of(std::to_string(casts) + " casts of turning bodies at it, " + std::to_string(hits) +
+    return row_of(std::to_string(casts) + " casts of turning shapes at it, " + std::to_string(hits) +
                       " hits: none meets a triangle at " + std::to_string(kMoments) +
                       " moments before, and then one is within the tolerance",
                   "each triangle near it in exact numbers", tally);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// crofton verify collide --scene: bodies made of a scene's or map's data.
+// crofton verify collide --scene: shapes made of a scene's or map's data.
 #pragma once
 #include <crofton/core/error.hpp>
 #include <string>

@@ -103,7 +103,7 @@ void least_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
 
 void mass_rows(std::vector<VerifyRow>& rows) {
     const char* const source = "mass of solids, in closed form";
-    using convex::Body;
+    using convex::Shape;
     const auto add = [&](const char* claim, const Result<convex::MassProperties>& mass, double volume, double inertia) {
         const double told = mass ? mass->volume : std::nan("");
         rows.push_back(computed_row(std::string(claim) + ": volume", source, volume, told, 1e-6 * volume));
@@ -112,20 +112,20 @@ void mass_rows(std::vector<VerifyRow>& rows) {
     };
     const double r = 0.5, h = 0.75;  // floats hold them
     const double ball = 4.0 / 3.0 * pi * r * r * r, cylinder = 2.0 * pi * r * r * h, cone = cylinder / 3.0;
-    add("a ball", mass_properties(*Body::sphere(r)), ball, 0.4 * ball * r * r);
-    add("a cylinder", mass_properties(*Body::cylinder(0.75f, 0.5f)), cylinder, 0.5 * cylinder * r * r);
-    add("a cone", mass_properties(*Body::cone(0.75f, 0.5f)), cone, 0.3 * cone * r * r);
-    add("a capsule", mass_properties(*Body::capsule(0.75f, 0.5f)), cylinder + ball,
+    add("a ball", mass_properties(*Shape::sphere(r)), ball, 0.4 * ball * r * r);
+    add("a cylinder", mass_properties(*Shape::cylinder(0.75f, 0.5f)), cylinder, 0.5 * cylinder * r * r);
+    add("a cone", mass_properties(*Shape::cone(0.75f, 0.5f)), cone, 0.3 * cone * r * r);
+    add("a capsule", mass_properties(*Shape::capsule(0.75f, 0.5f)), cylinder + ball,
         0.5 * cylinder * r * r + 0.4 * ball * r * r);
-    add("a box", mass_properties(*Body::box({0.5f, 0.75f, 1.0f})), 3.0, 3.0 * (0.25 + 1.0) / 3.0);
+    add("a box", mass_properties(*Shape::box({0.5f, 0.75f, 1.0f})), 3.0, 3.0 * (0.25 + 1.0) / 3.0);
 }
 
 // A ball, a box and a cone over level ground.
 void ground_rows(std::vector<VerifyRow>& rows) {
     const char* const source = "header of convex/query.hpp";
-    using convex::Body;
-    const Body level = *Body::half_space({{0.0, -1.0, 0.0}, 0.0}), box = *Body::box({0.5f, 0.25f, 0.5f}),
-               ball = *Body::sphere(0.5);
+    using convex::Shape;
+    const Shape level = *Shape::half_space({{0.0, -1.0, 0.0}, 0.0}), box = *Shape::box({0.5f, 0.25f, 0.5f}),
+                ball = *Shape::sphere(0.5);
     const RigidTransform zero, above{glm::dmat3(1.0), {3.0, 1.25, -2.0}}, sunk{glm::dmat3(1.0), {3.0, 0.125, -2.0}};
     rows.push_back(computed_row("a ball over level ground: how far", source, 0.75,
                                 convex::distance({level, zero}, {ball, above}).distance, 1e-12));

@@ -17,10 +17,10 @@ bool FoundContacts::Found<Contacts>::is_old(bool wanted, std::uint32_t frame, st
     return true;
 }
 
-void FoundContacts::update(InstanceBodies& bodies, std::uint32_t scene_frame, std::span<const InstancePair> pairs,
+void FoundContacts::update(InstanceShapes& shapes, std::uint32_t scene_frame, std::span<const InstancePair> pairs,
                            bool triangles, bool hulls) {
-    if (triangles_.is_old(triangles, scene_frame, pairs)) triangles_.found = bodies.triangle_contacts(pairs);
-    if (hulls_.is_old(hulls, scene_frame, pairs)) hulls_.found = bodies.hull_contacts(pairs);
+    if (triangles_.is_old(triangles, scene_frame, pairs)) triangles_.found = shapes.triangle_contacts(pairs);
+    if (hulls_.is_old(hulls, scene_frame, pairs)) hulls_.found = shapes.hull_contacts(pairs);
 }
 
 }  // namespace crofton::viewer

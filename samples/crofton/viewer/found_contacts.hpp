@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-// Where bodies touch, found anew only when they have moved.
+// Where shapes touch, found anew only when they have moved.
 #pragma once
 #include <span>
 #include <vector>
 
-#include "instance_bodies.hpp"
+#include "instance_shapes.hpp"
 
 namespace crofton::viewer {
 
 class FoundContacts {
   public:
     // Finds contacts among pairs whose boxes overlap, in this frame of the scene's motion. Computes only what is shown.
-    void update(InstanceBodies& bodies, std::uint32_t scene_frame, std::span<const InstancePair> pairs, bool triangles,
+    void update(InstanceShapes& shapes, std::uint32_t scene_frame, std::span<const InstancePair> pairs, bool triangles,
                 bool hulls);
     [[nodiscard]] std::span<const TriangleContacts> triangles() const { return triangles_.found; }
     [[nodiscard]] std::span<const HullContacts> hulls() const { return hulls_.found; }

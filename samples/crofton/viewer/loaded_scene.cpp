@@ -78,7 +78,7 @@ Result<std::unique_ptr<LoadedScene>> LoadedScene::load(const SceneRequest& reque
         loaded->triangle_count_ += scene.mesh(scene.mesh_of(i)).triangle_count();
     }
     loaded->focus_ = pipeline::focus_of(scene);
-    loaded->bodies_.emplace(scene);
+    loaded->shapes_.emplace(scene);
     if (auto taken = loaded->take_baked(request, method, like); !taken) return tl::unexpected(std::move(taken.error()));
     if (auto configured = loaded->configure(method, settings); !configured)
         return tl::unexpected(std::move(configured.error()));

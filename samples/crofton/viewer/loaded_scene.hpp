@@ -6,7 +6,7 @@
 #include <string>
 
 #include "assets/scene_source.hpp"
-#include "instance_bodies.hpp"
+#include "instance_shapes.hpp"
 #include "occlusion.hpp"
 #include "pipeline/baked_parts.hpp"
 #include "pipeline/pipeline.hpp"
@@ -50,7 +50,7 @@ class LoadedScene {
     [[nodiscard]] const pvs::Pvs* pvs() const { return baked_.pvs.get(); }
     // Clusters of the meshes that the scene's file had; nullptr: none.
     [[nodiscard]] std::shared_ptr<const pipeline::SceneClusters> clusters() const { return clusters_; }
-    [[nodiscard]] InstanceBodies& bodies() { return *bodies_; }
+    [[nodiscard]] InstanceShapes& shapes() { return *shapes_; }
 
     [[nodiscard]] const assets::SceneSource& source() const { return source_; }
     [[nodiscard]] const scene::Scene& scene() const { return source_.scene; }
@@ -66,7 +66,7 @@ class LoadedScene {
 
     assets::SceneSource source_;
     std::optional<pipeline::Pipeline> pipeline_;
-    std::optional<InstanceBodies> bodies_;
+    std::optional<InstanceShapes> shapes_;
     pipeline::BakedParts baked_;
     std::shared_ptr<const pipeline::SceneClusters> clusters_;
     Occlusion occlusion_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Separating planes of bodies that nearly touch, in world coordinates.
+// Separating planes of shapes that nearly touch, in world coordinates.
 #pragma once
 #include <crofton/geometry/box.hpp>
 #include <crofton/scene/scene.hpp>

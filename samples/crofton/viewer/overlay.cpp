@@ -159,7 +159,7 @@ void Overlay::draw_contacts(LineList& lines, const scene::Scene& scene, std::spa
     }
 }
 
-// Between moving bodies in view that come close.
+// Between moving shapes in view that come close.
 void Overlay::draw_separations(LineList& lines, const LoadedScene& loaded, const pipeline::FrameStatistics& frame) {
     const auto boxes = loaded.scene().world_boxes();
     std::vector<scene::InstanceId> movers;

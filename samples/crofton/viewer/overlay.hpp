@@ -37,7 +37,7 @@ class Overlay {
               const pipeline::FrameStatistics& frame, const FoundContacts& contacts, std::span<const Cascade> cascades,
               scene::InstanceId selected, bool show_frustum);
     // After draw(). Hulls of the visible instances, the nearest kMaxHulls, and where the hulls of pairs touch.
-    void draw_hulls(LineList& lines, InstanceBodies& bodies, const scene::Scene& scene,
+    void draw_hulls(LineList& lines, InstanceShapes& shapes, const scene::Scene& scene,
                     const pipeline::FrameStatistics& frame, std::span<const HullContacts> contacts);
     // Likewise: the cell in which the eye is.
     void draw_cell(LineList& lines, const CellSight& sight);

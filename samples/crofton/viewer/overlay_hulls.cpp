@@ -46,7 +46,7 @@ void outline_patch(LineList& lines, std::span<const convex::TrackedPoint> points
         lines.segment(ring[i].second, ring[(i + 1) % ring.size()].second, kManifold);
 }
 
-// An arrow from the manifold's deepest point, towards the second body.
+// An arrow from the manifold's deepest point, towards the second shape.
 void draw_normal(LineList& lines, std::span<const convex::TrackedPoint> points, double length) {
     const auto deepest = std::max_element(
         points.begin(), points.end(), [](const auto& a, const auto& b) { return a.contact.depth < b.contact.depth; });
@@ -63,13 +63,13 @@ void draw_normal(LineList& lines, std::span<const convex::TrackedPoint> points, 
 
 }  // namespace
 
-void Overlay::draw_hulls(LineList& lines, InstanceBodies& bodies, const scene::Scene& scene,
+void Overlay::draw_hulls(LineList& lines, InstanceShapes& shapes, const scene::Scene& scene,
                          const pipeline::FrameStatistics& frame, std::span<const HullContacts> contacts) {
     const auto boxes = scene.world_boxes();
     hulls_ = manifold_points_ = 0;
     for (const scene::InstanceId i : nearest_to(frame.camera.position, frame.visible_ids, boxes))
         hulls_ +=
-            bodies.outline(i, [&](const glm::dvec3& from, const glm::dvec3& to) { lines.segment(from, to, kHull); });
+            shapes.outline(i, [&](const glm::dvec3& from, const glm::dvec3& to) { lines.segment(from, to, kHull); });
     for (const HullContacts& contact : contacts) {
         manifold_points_ += contact.points.size();
         const double size = std::min(glm::length(glm::dvec3(boxes[contact.first].half_extents)),

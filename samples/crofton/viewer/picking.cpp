@@ -25,7 +25,7 @@ Ray ray_through(const Camera& camera, const glm::dvec2& cursor) {
 
 }  // namespace
 
-std::optional<Pick> pick(const World& world, InstanceBodies& bodies, std::span<const scene::InstanceId> candidates,
+std::optional<Pick> pick(const World& world, InstanceShapes& shapes, std::span<const scene::InstanceId> candidates,
                          const Camera& camera, const glm::dvec2& cursor) {
     Ray ray = ray_through(camera, cursor);
     Vector<ObjectHit> hits;  // of bounds, the nearest first
@@ -35,7 +35,7 @@ std::optional<Pick> pick(const World& world, InstanceBodies& bodies, std::span<c
         if (nearest && hit.t > nearest->distance) break;
         const auto instance = static_cast<scene::InstanceId>(hit.user);
         if (!std::binary_search(candidates.begin(), candidates.end(), instance)) continue;
-        const auto found = bodies.raycast(ray, instance);
+        const auto found = shapes.raycast(ray, instance);
         if (!found || (nearest && found->t >= nearest->distance)) continue;
         nearest = Pick{instance, found->triangle, found->t, ray.origin + found->t * ray.direction};
     }

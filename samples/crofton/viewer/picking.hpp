@@ -6,7 +6,7 @@
 #include <optional>
 #include <span>
 
-#include "instance_bodies.hpp"
+#include "instance_shapes.hpp"
 
 namespace crofton::viewer {
 
@@ -19,7 +19,7 @@ struct Pick {
 
 // The nearest triangle of `candidates` on the ray through `cursor`, given in [−1, 1]² with y up. `world` has bounds of
 // the instances as its objects of pipeline::kSeenLayer, with their numbers as user data. Candidates ascend.
-[[nodiscard]] std::optional<Pick> pick(const World& world, InstanceBodies& bodies,
+[[nodiscard]] std::optional<Pick> pick(const World& world, InstanceShapes& shapes,
                                        std::span<const scene::InstanceId> candidates, const Camera& camera,
                                        const glm::dvec2& cursor);
 

@@ -209,7 +209,7 @@ void Session::list_drawn() {
 
 void Session::find_contacts() {
     const bool triangles = settings_.coloring == Coloring::collision && settings_.collisions;
-    contacts_.update(loaded_->bodies(), loaded_->scene_frame(), frame_.colliding_ids, triangles, settings_.hulls);
+    contacts_.update(loaded_->shapes(), loaded_->scene_frame(), frame_.colliding_ids, triangles, settings_.hulls);
 }
 
 Result<void> Session::submit_view(const Camera& camera, std::uint32_t picture, bool show_frustum) {
@@ -219,7 +219,7 @@ Result<void> Session::submit_view(const Camera& camera, std::uint32_t picture, b
         list_->select(drawn_ids_, camera);
     lines_.clear(camera.position);
     overlay_.draw(lines_, settings_, *loaded_, frame_, contacts_, cascades_, selected_, show_frustum);
-    if (settings_.hulls) overlay_.draw_hulls(lines_, loaded_->bodies(), loaded_->scene(), frame_, contacts_.hulls());
+    if (settings_.hulls) overlay_.draw_hulls(lines_, loaded_->shapes(), loaded_->scene(), frame_, contacts_.hulls());
     if (sight_) overlay_.draw_cell(lines_, *sight_);
     return submit(camera, picture);
 }

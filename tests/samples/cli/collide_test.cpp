@@ -227,8 +227,8 @@ TEST_SUITE("cli/collide") {
 
     TEST_CASE("casts: of meshes and of hulls, with a hit, a proven miss, and what is refused") {
         const std::string pair = cube_file("cast_a.obj", 1.0) + " " + cube_file("cast_b.obj", 1.0);
-        for (const std::string& bodies : {pair, pair + " --hulls"}) {
-            const std::string from_five = bodies + " --pose 5,0,0,1,0,0,0 --mode cast --velocity ";
+        for (const std::string& shapes : {pair, pair + " --hulls"}) {
+            const std::string from_five = shapes + " --pose 5,0,0,1,0,0,0 --mode cast --velocity ";
             const json hit = answer(from_five + "-10,0,0");
             CHECK(hit["result"] == "hit");
             CHECK(hit["time"].get<double>() == doctest::Approx(0.3).epsilon(1e-5));

@@ -103,7 +103,7 @@ TEST_SUITE("cli/verify") {
         }
     }
 
-    TEST_CASE("bodies of bad input are refused by name, and hulls, meshes and maps as bodies are exact") {
+    TEST_CASE("shapes of bad input are refused by name, and hulls, meshes and maps as shapes are exact") {
         CliRun run = run_cli("verify collide --trials 1000 --json -");
         CHECK(run.status == 0);
         std::size_t bad = 0;

@@ -100,7 +100,7 @@ TEST_SUITE("collide/capsules") {
         CHECK(meeting > 1000);
     }
 
-    TEST_CASE("a radius makes bodies nearer, and points lie on the surfaces") {
+    TEST_CASE("a radius makes shapes nearer, and points lie on the surfaces") {
         std::mt19937_64 random(52);
         for (int trial = 0; trial < 5000; ++trial) {
             Obb box = any_box(random, trial);

@@ -32,7 +32,7 @@ Obb parted(Obb b, const glm::dvec3& motion) {
 }  // namespace
 
 TEST_SUITE("collide/convex_query") {
-    TEST_CASE("points on top of each other, bodies without extent and coincident boxes have answers") {
+    TEST_CASE("points on top of each other, shapes without extent and coincident boxes have answers") {
         const Sphere point{{1.0, 2.0, 3.0}, 0.0}, sphere{{1.0, 2.0, 3.0}, 0.5};
         CHECK(distance(Capsule{point.center, point.center, 0.0}, point).distance == 0.0);
         CHECK(contact_manifold(point, point).depth == 0.0);

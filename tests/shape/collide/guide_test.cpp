@@ -30,7 +30,7 @@ int collide_boxes() {
     const std::uint32_t moved[] = {2};
     if (auto result = broadphase.update_moved(boxes, moved); !result) return report(result.error());
 
-    const auto shape = crofton::convex::Body::box({1.0f, 1.0f, 1.0f});
+    const auto shape = crofton::convex::Shape::box({1.0f, 1.0f, 1.0f});
     if (!shape) return report(shape.error());
     const auto pose_of = [&](std::uint32_t box) { return crofton::RigidTransform{glm::dmat3(boxes[box].axes), boxes[box].center}; };
     for (const crofton::IdPair pair : broadphase.pairs()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rays and bodies against trees whose inner bounds lie along turned axes.
+// Rays and shapes against trees whose inner bounds lie along turned axes.
 #include <doctest/doctest.h>
 #include <algorithm>
 #include <crofton/boxtree/box_tree.hpp>
@@ -15,7 +15,7 @@ using namespace crofton;
 using boxtree::Orientation;
 
 TEST_SUITE("collide/oriented trees") {
-    TEST_CASE("rays meet and bodies overlap in an oriented tree what they do in a list") {
+    TEST_CASE("rays meet and shapes overlap in an oriented tree what they do in a list") {
         oracle::NearMisses random(1);
         for (const double offset : {0.0, 1e4, 1e7}) {
             const oracle::Crowd crowd = oracle::turned_crowd(2500, offset, 2);
@@ -40,15 +40,15 @@ TEST_SUITE("collide/oriented trees") {
                     CHECK(here->t == there->t);
                 }
                 Vector<boxtree::ItemId> found, expected;
-                Obb body = oracle::random_box(random, aim.center, 2.0);
-                body.half_extents *= 4.0f;
-                collide::overlapping(tree, body, found);
+                Obb shape = oracle::random_box(random, aim.center, 2.0);
+                shape.half_extents *= 4.0f;
+                collide::overlapping(tree, shape, found);
                 for (std::size_t i = 0; i < crowd.boxes.size(); ++i)
-                    if (collide::intersects(crowd.boxes[i], body)) expected.push_back(static_cast<boxtree::ItemId>(i));
+                    if (collide::intersects(crowd.boxes[i], shape)) expected.push_back(static_cast<boxtree::ItemId>(i));
                 touched += expected.size();
                 REQUIRE(test::ranges::equal(found, expected));
-                collide::overlapping(tree, Sphere{body.center, 3.0}, found);
-                collide::overlapping(flat, Sphere{body.center, 3.0}, expected);
+                collide::overlapping(tree, Sphere{shape.center, 3.0}, found);
+                collide::overlapping(flat, Sphere{shape.center, 3.0}, expected);
                 REQUIRE(test::ranges::equal(found, expected));
             }
             CHECK(met > 100);

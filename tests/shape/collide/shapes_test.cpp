@@ -217,7 +217,7 @@ TEST_SUITE("collide/shapes") {
         CHECK(compared > 400);
     }
 
-    TEST_CASE("spheres that nearly touch a box: as the distance between the bodies says") {
+    TEST_CASE("spheres that nearly touch a box: as the distance between the shapes says") {
         std::mt19937_64 random(12);
         std::uniform_real_distribution<double> unit(0.0, 1.0);
         for (int trial = 0; trial < 20000; ++trial) {

@@ -70,7 +70,7 @@ Ray random_ray(NearMisses& random, const glm::dvec3& middle, double spread) {
 }  // namespace
 
 TEST_SUITE("collide/tree_query") {
-    TEST_CASE("bodies and rays that are none meet nothing, and a tree without items answers") {
+    TEST_CASE("shapes and rays that are none meet nothing, and a tree without items answers") {
         const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
         const oracle::Crowd crowd = crowd_of(300, 0.0, 1);
         const boxtree::BoxTree tree = tree_of(crowd);
@@ -177,7 +177,7 @@ TEST_SUITE("collide/tree_query") {
         CHECK(visits == 1);
     }
 
-    TEST_CASE("a ray allocates nothing, nor does a body once the list has grown") {
+    TEST_CASE("a ray allocates nothing, nor does a shape once the list has grown") {
         const oracle::Crowd crowd = crowd_of(2000, 0.0, 6);
         const boxtree::BoxTree tree = tree_of(crowd);
         Vector<boxtree::ItemId> items;

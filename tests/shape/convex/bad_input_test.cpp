@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is wrong or extreme, body by body: a named error, or an answer that is right.
+// What is wrong or extreme, shape by shape: a named error, or an answer that is right.
 #include <doctest/doctest.h>
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "random_bodies.hpp"
+#include "random_shapes.hpp"
 
 using namespace crofton;
 using namespace crofton::convex;
@@ -35,7 +35,7 @@ TEST_SUITE("convex/bad input") {
     }
 
     TEST_CASE("a hundred thousand points, each twice: the hull of the corners") {
-        RandomBodies random(1);
+        RandomShapes random(1);
         std::vector<glm::vec3> points;
         for (int i = 0; i < 50'000; ++i) points.emplace_back(0.9 * random.number(0.0, 1.0) * random.direction());
         for (int i = 0; i < 8; ++i)
@@ -49,19 +49,19 @@ TEST_SUITE("convex/bad input") {
         CHECK(hull.mass().volume == doctest::Approx(8.0));
     }
 
-    TEST_CASE("lengths that are negative, NaN or infinite name themselves, whichever body") {
+    TEST_CASE("lengths that are negative, NaN or infinite name themselves, whichever shape") {
         for (const float bad : {-1.0f, kNaN, kNoEnd, 2e15f}) {
-            CHECK_FALSE(Body::sphere(bad).has_value());
-            CHECK_FALSE(Body::capsule(bad, 1).has_value());
-            CHECK_FALSE(Body::capsule(1, bad).has_value());
-            CHECK_FALSE(Body::cylinder(bad, 1).has_value());
-            CHECK_FALSE(Body::cone(1, bad).has_value());
-            CHECK(error_of(Body::box({1, 1, bad})).item == 2);
-            CHECK_FALSE(Body::rounded(Body::sphere(1).value(), bad).has_value());
+            CHECK_FALSE(Shape::sphere(bad).has_value());
+            CHECK_FALSE(Shape::capsule(bad, 1).has_value());
+            CHECK_FALSE(Shape::capsule(1, bad).has_value());
+            CHECK_FALSE(Shape::cylinder(bad, 1).has_value());
+            CHECK_FALSE(Shape::cone(1, bad).has_value());
+            CHECK(error_of(Shape::box({1, 1, bad})).item == 2);
+            CHECK_FALSE(Shape::rounded(Shape::sphere(1).value(), bad).has_value());
         }
-        CHECK(error_of(Body::triangle({0, 0, 0}, {1, kNaN, 0}, {0, 1, 0})).item == 1);
-        CHECK_FALSE(Body::half_space({{0, 0, 0}, 1}).has_value());
-        CHECK_FALSE(Body::rounded(Body::half_space({{0, 1, 0}, 0}).value(), 1).has_value());
+        CHECK(error_of(Shape::triangle({0, 0, 0}, {1, kNaN, 0}, {0, 1, 0})).item == 1);
+        CHECK_FALSE(Shape::half_space({{0, 0, 0}, 1}).has_value());
+        CHECK_FALSE(Shape::rounded(Shape::half_space({{0, 1, 0}, 0}).value(), 1).has_value());
     }
 
     TEST_CASE("height fields of one row, of no cells, of wrong sizes, of a height that is NaN") {
@@ -80,7 +80,7 @@ TEST_SUITE("convex/bad input") {
     TEST_CASE("compounds in compounds: sixteen deep they answer, a thousand deep they are refused at the seventeenth") {
         std::vector<Compound> nested;
         nested.reserve(1000);
-        Body inner = Body::box({1, 1, 1}).value();
+        Shape inner = Shape::box({1, 1, 1}).value();
         Error refused{};
         for (int depth = 1; depth <= 1000; ++depth) {
             Result<Compound> made = Compound::build(std::vector<CompoundChild>{{inner, at({1, 0, 0})}});
@@ -89,12 +89,12 @@ TEST_SUITE("convex/bad input") {
                 break;
             }
             nested.push_back(std::move(*made));
-            inner = Body::compound(nested.back());
+            inner = Shape::compound(nested.back());
         }
         CHECK(nested.size() == static_cast<std::size_t>(kMaxCompoundDepth));
         CHECK(refused.code == ErrorCode::out_of_range);
         CHECK(refused.item == 0);
-        const Body sphere = Body::sphere(0.5f).value();
+        const Shape sphere = Shape::sphere(0.5f).value();
         CHECK(intersects({inner, at({})}, {sphere, at({17.4, 0, 0})}));
         CHECK_FALSE(intersects({inner, at({})}, {sphere, at({17.6, 0, 0})}));
         CHECK(mass_properties(inner).value().center.x == doctest::Approx(16.0));
@@ -102,7 +102,7 @@ TEST_SUITE("convex/bad input") {
 
     TEST_CASE("spins of many turns: a bar that would be missed by its ends alone is hit at its first touch") {
         // It turns ten times in the second; the wall is within its reach from the start.
-        const Body bar = Body::box({2, 0.01f, 0.01f}).value(), wall = Body::box({9, 0.5f, 9}).value();
+        const Shape bar = Shape::box({2, 0.01f, 0.01f}).value(), wall = Shape::box({9, 0.5f, 9}).value();
         const RigidTransform origin = at({}), above = at({0, 1.5, 0});
         const double turns = 10.0 * 2.0 * std::numbers::pi;
         const Impact impact = cast({bar, origin}, {{}, {0, 0, turns}, {}}, {wall, above}, {}).value();
@@ -117,11 +117,11 @@ TEST_SUITE("convex/bad input") {
         CHECK(error_of(cast({bar, origin}, {{}, {0, 0, 2e5}, {}}, {wall, above}, {})).code == ErrorCode::out_of_range);
     }
 
-    TEST_CASE("a cache that names corners which the bodies do not have changes no answer") {
-        const Body box = Body::box({1, 1, 1}).value(),
-                   triangle = Body::triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}).value();
+    TEST_CASE("a cache that names corners which the shapes do not have changes no answer") {
+        const Shape box = Shape::box({1, 1, 1}).value(),
+                    triangle = Shape::triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}).value();
         for (const double x : {1.5, 0.5, -3.0}) {
-            const BodyAtPose a{box, at({})}, b{triangle, at({x, 0, 0})};
+            const ShapeAtPose a{box, at({})}, b{triangle, at({x, 0, 0})};
             PairCache lost;
             lost.count = 4;
             std::fill_n(lost.on_a, 4, std::uint16_t{65535});
@@ -134,7 +134,7 @@ TEST_SUITE("convex/bad input") {
     }
 
     TEST_CASE("poses that are lost meet nothing, and touch nowhere") {
-        const Body box = Body::box({1, 1, 1}).value();
+        const Shape box = Shape::box({1, 1, 1}).value();
         for (const double bad : {std::nan(""), HUGE_VAL}) {
             const RigidTransform lost = at({bad, 0, 0});
             CHECK_FALSE(intersects({box, at({})}, {box, lost}));
@@ -143,24 +143,24 @@ TEST_SUITE("convex/bad input") {
     }
 
     TEST_CASE("a pose with one entry that is NaN or infinite meets nothing, wherever the entry is") {
-        const Body box = Body::box({1, 1, 1}).value();
+        const Shape box = Shape::box({1, 1, 1}).value();
         const CompoundChild child{box, at({})};
         const Compound compound = Compound::build({&child, 1}).value();
-        const Body bodies[] = {box,
-                               Body::sphere(1).value(),
-                               Body::capsule(1, 0.5f).value(),
-                               Body::cylinder(1, 1).value(),
-                               Body::triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}).value(),
-                               Body::half_space({{0, 1, 0}, 0.5}).value(),
-                               Body::compound(compound)};
+        const Shape shapes[] = {box,
+                                Shape::sphere(1).value(),
+                                Shape::capsule(1, 0.5f).value(),
+                                Shape::cylinder(1, 1).value(),
+                                Shape::triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}).value(),
+                                Shape::half_space({{0, 1, 0}, 0.5}).value(),
+                                Shape::compound(compound)};
         for (const double bad : {std::nan(""), HUGE_VAL})
-            for (const Body& body : bodies)
+            for (const Shape& shape : shapes)
                 for (int i = 0; i < 12; ++i) {
                     RigidTransform lost = at({0.2, 0.1, 0.0});
-                    CHECK(intersects({body, lost}, {box, at({})}));
+                    CHECK(intersects({shape, lost}, {box, at({})}));
                     (i < 9 ? lost.rotation[i / 3][i % 3] : lost.translation[i - 9]) = bad;
-                    CHECK_FALSE(intersects({body, lost}, {box, at({})}));
-                    CHECK_FALSE(intersects({box, at({})}, {body, lost}));
+                    CHECK_FALSE(intersects({shape, lost}, {box, at({})}));
+                    CHECK_FALSE(intersects({box, at({})}, {shape, lost}));
                 }
     }
 }

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <crofton/convex/query.hpp>
 
-#include "random_bodies.hpp"
+#include "random_shapes.hpp"
 
 using namespace crofton;
 using namespace crofton::convex;
@@ -16,19 +16,19 @@ namespace {
 constexpr double kOffsets[] = {0.0, 1e3, 1e7};
 
 // Cubes, plates, rods, rectangles, segments; one in eight is rounded.
-Body random_box(RandomBodies& random) {
+Shape random_box(RandomShapes& random) {
     glm::dvec3 half(random.number(0.1, 1), random.number(0.1, 1), random.number(0.1, 1));
     const int form = random.index(8);
     if (form == 0) half.y *= 1e-4;
     if (form == 1) half.y *= 1e-3, half.z *= 1e-3;
     if (form == 2) half.x = 0.0;
     if (form == 3) half *= std::pow(10.0, random.number(-3, 3));
-    const Body box = Body::box(glm::vec3(half)).value();
-    return random.index(8) == 0 ? Body::rounded(box, 0.1f).value() : box;
+    const Shape box = Shape::box(glm::vec3(half)).value();
+    return random.index(8) == 0 ? Shape::rounded(box, 0.1f).value() : box;
 }
 
 // Turned a little against a, so that edges are parallel, nearly or not at all.
-glm::dmat3 nearly(RandomBodies& random, const glm::dmat3& rotation) {
+glm::dmat3 nearly(RandomShapes& random, const glm::dmat3& rotation) {
     if (random.index(4) == 0) return rotation;
     const double angle = std::pow(10.0, random.number(-13, 0));
     const glm::dvec3 axis = random.index(2) == 0 ? rotation[1] : random.direction();
@@ -36,16 +36,16 @@ glm::dmat3 nearly(RandomBodies& random, const glm::dmat3& rotation) {
 }
 
 // As far from a rotation as a valid pose may be.
-void skew(RandomBodies& random, glm::dmat3& rotation) {
+void skew(RandomShapes& random, glm::dmat3& rotation) {
     for (int k = 0; k < 3; ++k) rotation[k] += 2e-7 * random.direction();
 }
 
 struct BoxCase {
-    Body a, b;
+    Shape a, b;
     RigidTransform pose_a, pose_b;
     double gap, size;
 };
-BoxCase random_case(RandomBodies& random) {
+BoxCase random_case(RandomShapes& random) {
     BoxCase c{random_box(random), random_box(random), {}, {}, 0.0, 0.0};
     c.gap = std::pow(10.0, -random.number(1, 12)) * (random.index(2) == 0 ? 1.0 : -1.0);
     const CasePair where = nearly_touching(random, c.a, c.b, c.gap, kOffsets[random.index(3)]);
@@ -63,19 +63,19 @@ double off(double value, double low, double high) {
     return std::max(0.0, std::max(low - value, value - high));
 }
 
-// How far the manifold's depth is beyond what is proven of the pair, and its points outside of the bodies.
+// How far the manifold's depth is beyond what is proven of the pair, and its points outside of the shapes.
 double wrong_depth(const BoxCase& c, const Manifold& m) {
-    const BodyAtPose a{c.a, c.pose_a}, b{c.b, c.pose_b};
+    const ShapeAtPose a{c.a, c.pose_a}, b{c.b, c.pose_b};
     if (const Penetration p = penetration(a, b); p.overlapping) return off(m.depth, p.lower, p.upper);
     const Distance d = distance(a, b);
     return off(-m.depth, d.lower, d.upper);
 }
 
 // Along a unit vector from a to b, with roundings.
-double overlap_along(const BodyAtPose& a, const BodyAtPose& b, const glm::dvec3& n) {
-    const auto radius = [&n](const BodyAtPose& p) {
-        double sum = p.body.radius();
-        for (int k = 0; k < 3; ++k) sum += p.body.half_extents()[k] * std::abs(glm::dot(p.pose.rotation[k], n));
+double overlap_along(const ShapeAtPose& a, const ShapeAtPose& b, const glm::dvec3& n) {
+    const auto radius = [&n](const ShapeAtPose& p) {
+        double sum = p.shape.radius();
+        for (int k = 0; k < 3; ++k) sum += p.shape.half_extents()[k] * std::abs(glm::dot(p.pose.rotation[k], n));
         return sum;
     };
     return radius(a) + radius(b) - glm::dot(n, b.pose.translation - a.pose.translation);
@@ -90,7 +90,7 @@ double wrong_place(const BoxCase& c, const ContactPoint& p) {
 }
 
 // Rotations as poses of crates have them: none, quarter turns, turns about one axis, any; skewed or not.
-glm::dmat3 crate_rotation(RandomBodies& random) {
+glm::dmat3 crate_rotation(RandomShapes& random) {
     const int form = random.index(6);
     if (form == 0) return glm::dmat3(1.0);
     if (form == 5) return glm::dmat3(1.0, 0.0, 0.0, 1e-20, 1.0, 0.0, 0.0, -1e-17, 1.0);
@@ -106,11 +106,11 @@ glm::dmat3 crate_rotation(RandomBodies& random) {
 }
 
 // Whether the boxes meet, by the search in exact integers, which boxes do not take otherwise.
-bool meet_by_distance(const BodyAtPose& a, const BodyAtPose& b) {
+bool meet_by_distance(const ShapeAtPose& a, const ShapeAtPose& b) {
     return distance(a, b).distance == 0.0;
 }
 
-void check_touch(const BodyAtPose& a, const BodyAtPose& b, bool meet, double size) {
+void check_touch(const ShapeAtPose& a, const ShapeAtPose& b, bool meet, double size) {
     CHECK(intersects(a, b) == meet);
     CHECK(intersects(b, a) == meet);
     for (const double margin : {0.0, 1e-3 * size}) {
@@ -127,8 +127,8 @@ void check_touch(const BodyAtPose& a, const BodyAtPose& b, bool meet, double siz
             // Along the normal the boxes overlap by no more than rounding.
             CHECK(std::abs(overlap_along(a, b, m.normal)) <= 1e-13 * size + 1e-15 * glm::length(a.pose.translation));
             for (int k = 0; k < m.count; ++k)
-                for (const BodyAtPose* const body : {&a, &b})
-                    CHECK(closest_point(*body, m.points[k].position).distance <=
+                for (const ShapeAtPose* const shape : {&a, &b})
+                    CHECK(closest_point(*shape, m.points[k].position).distance <=
                           0.5 * std::abs(m.points[k].depth) + 1e-9 * size + 1e-15 * glm::length(a.pose.translation));
         }
     }
@@ -138,12 +138,12 @@ void check_touch(const BodyAtPose& a, const BodyAtPose& b, bool meet, double siz
 
 TEST_SUITE("convex/box_pair") {
     TEST_CASE("crates that touch exactly at faces, edges and corners meet, and 2^-50 beyond do not") {
-        RandomBodies random(41);
+        RandomShapes random(41);
         const auto dyadic = [&](double most) { return random.index(static_cast<int>(most * 64)) / 64.0 + 1.0 / 64; };
         for (int i = 0; i < 2000; ++i) {
             CAPTURE(i);
             const glm::dvec3 ha(dyadic(2), dyadic(2), dyadic(2)), hb(dyadic(2), dyadic(2), dyadic(2));
-            const Body a = Body::box(glm::vec3(ha)).value(), b = Body::box(glm::vec3(hb)).value();
+            const Shape a = Shape::box(glm::vec3(ha)).value(), b = Shape::box(glm::vec3(hb)).value();
             const glm::dvec3 place = i % 3 == 0 ? glm::dvec3(0.0) : glm::dvec3(dyadic(100), -dyadic(100), dyadic(100));
             glm::dvec3 offset(0.0);
             int touching = random.index(7) + 1;
@@ -162,12 +162,12 @@ TEST_SUITE("convex/box_pair") {
     }
 
     TEST_CASE("crates in frames of their own meet iff exact integers say so, at all ranges of sizes") {
-        RandomBodies random(43);
+        RandomShapes random(43);
         int meeting = 0, apart = 0;
         for (int i = 0; i < 8000; ++i) {
             CAPTURE(i);
             const double scale = i % 16 == 0 ? std::pow(10.0, random.number(-18, 14)) : 1.0;
-            const Body a = random.box(scale), b = random.box(scale);
+            const Shape a = random.box(scale), b = random.box(scale);
             const glm::dvec3 ha = a.half_extents(), hb = b.half_extents();
             const glm::dmat3 ra = crate_rotation(random), yaw = crate_rotation(random);
             // Turned about a's axis y, or as it is, or anyhow.
@@ -186,7 +186,7 @@ TEST_SUITE("convex/box_pair") {
             }
             const double size =
                 glm::length(ha) + glm::length(hb) + glm::length(pose_b.translation - pose_a.translation);
-            const BodyAtPose first{a, pose_a}, second{b, pose_b};
+            const ShapeAtPose first{a, pose_a}, second{b, pose_b};
             const bool meet = meet_by_distance(first, second);
             CHECK(intersects(first, second) == meet);
             CHECK(intersects(second, first) == meet);
@@ -203,9 +203,9 @@ TEST_SUITE("convex/box_pair") {
 
     // A face looks 2e-10 deep; an axis across two edges parts them, by less than a choice among axes tells.
     TEST_CASE("a thin box 7e-10 m from one of 1 km has no points") {
-        const auto body = [](float x, float y, float z) { return Body::box({x, y, z}).value(); };
-        const Body thin = body(0x1.065462p-2f, 0x1.0c426cp-12f, 0x1.410614p-12f),
-                   large = body(0x1.c4ae06p+7f, 0x1.65cfdcp+8f, 0x1.a0a068p+8f);
+        const auto shape = [](float x, float y, float z) { return Shape::box({x, y, z}).value(); };
+        const Shape thin = shape(0x1.065462p-2f, 0x1.0c426cp-12f, 0x1.410614p-12f),
+                    large = shape(0x1.c4ae06p+7f, 0x1.65cfdcp+8f, 0x1.a0a068p+8f);
         const RigidTransform at{glm::dmat3(0x1.f563fd76fadfbp-1, 0x1.fb8c772fd04d2p-5, 0x1.8adf0bef27dfdp-3,
                                            -0x1.d469129b59742p-5, 0x1.feed78dc8674fp-1, -0x1.efa2dfb42407cp-6,
                                            -0x1.8de1f9dd76a3bp-3, 0x1.30bd3641158f2p-6, 0x1.f6277d2b6d981p-1),
@@ -214,7 +214,7 @@ TEST_SUITE("convex/box_pair") {
                                                0x1.bd5787192ae37p-2, 0x1.cc45ca81266a6p-1, -0x1.aa8fc6d08a00ap-5,
                                                0x1.ee1062f9b8ef8p-2, -0x1.78724f6dd761ap-3, 0x1.b67a24e0b488ap-1),
                                     {0x1.312e7195d9f4ap+23, -0x1.ab39c3a954d48p+22, 0x1.6e4433de8cc0fp+21}};
-        const BodyAtPose a{thin, at}, b{large, beside};
+        const ShapeAtPose a{thin, at}, b{large, beside};
         REQUIRE(distance(a, b).lower > 6e-10);
         REQUIRE_FALSE(intersects(a, b));
         CHECK(contact_manifold(a, b).count == 0);
@@ -226,12 +226,12 @@ TEST_SUITE("convex/box_pair") {
     // Edges that are parallel to 1.2e-11: the axis across them parts the boxes. A face looks deeper than that axis's
     // neighbours by less than a choice among faces tells.
     TEST_CASE("two boxes that an axis across nearly parallel edges parts by less than 1e-15 m have no points") {
-        const Body cube = Body::box({1.0f, 1.0f, 1.0f}).value(), slab = Body::box({0.125f, 0.5f, 0.5f}).value();
+        const Shape cube = Shape::box({1.0f, 1.0f, 1.0f}).value(), slab = Shape::box({0.125f, 0.5f, 0.5f}).value();
         const double angle = 1.2212201636500881e-11;
         const RigidTransform low{glm::dmat3(1, 0, 0, 0, 0.8, 0.6, 0, -0.6, 0.8), {}};
         const RigidTransform top{glm::dmat3(1, 0, -angle, 0.8 * angle, 0.6, 0.8, 0.6 * angle, -0.8, 0.6),
                                  {-0x1.141b37c691c86p-2, 0x1.0cccccccccccdp+1, -0x1.999999999bb81p-4}};
-        const BodyAtPose a{cube, low}, b{slab, top};
+        const ShapeAtPose a{cube, low}, b{slab, top};
         REQUIRE_FALSE(intersects(a, b));
         REQUIRE(distance(a, b).upper < 1e-13);
         CHECK(contact_manifold(a, b).count == 0);
@@ -240,12 +240,12 @@ TEST_SUITE("convex/box_pair") {
 
     TEST_CASE(
         "boxes of all forms have points iff they meet, as deep as is proven, cold and warm, skewed poses or not") {
-        RandomBodies random(11);
+        RandomShapes random(11);
         int meeting = 0, edges = 0, gaps = 0;
         for (int i = 0; i < 20000; ++i) {
             const BoxCase c = random_case(random);
             CAPTURE(i);
-            const BodyAtPose a{c.a, c.pose_a}, b{c.b, c.pose_b};
+            const ShapeAtPose a{c.a, c.pose_a}, b{c.b, c.pose_b};
             const bool meet = intersects(a, b);
             const Manifold tight = contact_manifold(a, b);
             CHECK((tight.count > 0) == meet);
@@ -284,7 +284,7 @@ TEST_SUITE("convex/box_pair") {
     }
 
     TEST_CASE("the face of the frame before stays while nothing is less deep by 1e-4, and is given up beyond") {
-        const Body cube = Body::box(glm::vec3(1.0f)).value();
+        const Shape cube = Shape::box(glm::vec3(1.0f)).value();
         PairCache cache;
         const RigidTransform ground = at({});
         // The overlap across x falls below that across y.
@@ -302,7 +302,7 @@ TEST_SUITE("convex/box_pair") {
     }
 
     TEST_CASE("a face that a cache names is used only if no axis is less deep by 1e-4 of the size") {
-        RandomBodies random(29);
+        RandomShapes random(29);
         int taken = 0, others = 0, meeting = 0;
         for (int i = 0; i < 8000; ++i) {
             BoxCase c = random_case(random);
@@ -323,7 +323,7 @@ TEST_SUITE("convex/box_pair") {
                          glm::length(c.pose_b.translation - c.pose_a.translation);
             }
             CAPTURE(i);
-            const BodyAtPose a{c.a, c.pose_a}, b{c.b, c.pose_b};
+            const ShapeAtPose a{c.a, c.pose_a}, b{c.b, c.pose_b};
             const ManifoldOptions options{.margin = 2.0 * std::abs(c.gap) + 1e-9, .max_points = 8};
             const Manifold cold = contact_manifold(a, b, options);
             meeting += cold.count > 0 && cold.depth > 0.0;
@@ -353,22 +353,23 @@ TEST_SUITE("convex/box_pair") {
 
     TEST_CASE("thin plates that pass to a face's other side: its depth is not taken for theirs") {
         for (const float half : {0.0f, 2e-5f}) {
-            const Body plate = Body::box({1, half, 1}).value();
+            const Shape plate = Shape::box({1, half, 1}).value();
             std::vector<glm::vec3> corners;
             for (int i = 0; i < 8; ++i)
                 corners.emplace_back(i & 1 ? 1.0f : -1.0f, i & 2 ? half : -half, i & 4 ? 1.0f : -1.0f);
-            std::vector<Body> plates{plate};
+            std::vector<Shape> plates{plate};
             const auto hull = Hull::build(corners);
-            if (hull) plates.push_back(Body::hull(*hull));
-            for (const Body& body : plates)
+            if (hull) plates.push_back(Shape::hull(*hull));
+            for (const Shape& shape : plates)
                 for (const double below : {-5e-5, -1e-5, -4e-5, -1e-4}) {
                     CAPTURE(half);
                     CAPTURE(below);
                     PairCache cache;
-                    REQUIRE(contact_manifold({body, at({})}, {body, at({0, 5e-5, 0})}, {.margin = 1e-3}, &cache).count >
-                            0);
+                    REQUIRE(
+                        contact_manifold({shape, at({})}, {shape, at({0, 5e-5, 0})}, {.margin = 1e-3}, &cache).count >
+                        0);
                     const Manifold warm =
-                        contact_manifold({body, at({})}, {body, at({0, below, 0})}, {.margin = 1e-3}, &cache);
+                        contact_manifold({shape, at({})}, {shape, at({0, below, 0})}, {.margin = 1e-3}, &cache);
                     REQUIRE(warm.count > 0);
                     CHECK(warm.normal.y == doctest::Approx(-1.0));
                     CHECK(warm.depth == doctest::Approx(2.0 * double{half} + below).epsilon(1e-6));
@@ -377,7 +378,7 @@ TEST_SUITE("convex/box_pair") {
     }
 
     TEST_CASE("faces a little farther than the margin, nearer to each other than rounding: no contact, warm or cold") {
-        const Body cube = Body::box(glm::vec3(1.0f)).value();
+        const Shape cube = Shape::box(glm::vec3(1.0f)).value();
         for (std::uint16_t reference = 0; reference < 3; ++reference) {
             PairCache cache;
             cache.reference = reference;
@@ -390,7 +391,7 @@ TEST_SUITE("convex/box_pair") {
     }
 
     TEST_CASE("a pose that is not quite a rotation: the normal is that of the face, warm and cold, boxes and hulls") {
-        const Body slab = Body::box({4, 1, 4}).value(), cube = Body::box(glm::vec3(0.5f)).value();
+        const Shape slab = Shape::box({4, 1, 4}).value(), cube = Shape::box(glm::vec3(0.5f)).value();
         std::vector<glm::vec3> corners;
         for (int i = 0; i < 8; ++i)
             corners.emplace_back(i & 1 ? 0.5f : -0.5f, i & 2 ? 0.5f : -0.5f, i & 4 ? 0.5f : -0.5f);
@@ -398,7 +399,7 @@ TEST_SUITE("convex/box_pair") {
         RigidTransform ground = at({});
         ground.rotation[1] += glm::dvec3(4e-7, 0, 0);
         const glm::dvec3 across = glm::normalize(glm::cross(ground.rotation[2], ground.rotation[0]));
-        for (const Body& top : {cube, Body::hull(hull)}) {
+        for (const Shape& top : {cube, Shape::hull(hull)}) {
             PairCache cache;
             for (int frame = 0; frame < 3; ++frame) {
                 const RigidTransform place = at({0.1, 1.49, 0.0});

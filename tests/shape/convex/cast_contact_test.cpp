@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "random_bodies.hpp"
+#include "random_shapes.hpp"
 #include "surfaces.hpp"
 
 using namespace crofton;
@@ -16,62 +16,62 @@ using namespace crofton::testing;
 
 namespace {
 
-struct NamedBody {
+struct NamedShape {
     std::string name;
-    Body body;
+    Shape shape;
 };
 
 // One of each convex kind, round ones and those with a rounding.
-std::vector<NamedBody> convex_kinds(RandomBodies& random) {
+std::vector<NamedShape> convex_kinds(RandomShapes& random) {
     const float r = static_cast<float>(random.number(0.2, 0.9)), h = static_cast<float>(random.number(0.2, 0.9));
-    const Body box = random.box(), hull = random.hull(20), cylinder = Body::cylinder(h, r).value(),
-               cone = Body::cone(h, r).value(), triangle = random.polytope(4);
+    const Shape box = random.box(), hull = random.hull(20), cylinder = Shape::cylinder(h, r).value(),
+                cone = Shape::cone(h, r).value(), triangle = random.polytope(4);
     const glm::vec3 p[3] = {glm::vec3(random.direction()), glm::vec3(random.direction()),
                             glm::vec3(random.direction())};
-    const Body flat = Body::triangle(p[0], p[1], p[2]).value();
-    return {{"sphere", Body::sphere(r).value()},
-            {"capsule", Body::capsule(h, r).value()},
+    const Shape flat = Shape::triangle(p[0], p[1], p[2]).value();
+    return {{"sphere", Shape::sphere(r).value()},
+            {"capsule", Shape::capsule(h, r).value()},
             {"box", box},
             {"hull", hull},
             {"triangle", flat},
             {"polytope", triangle},
             {"cylinder", cylinder},
             {"cone", cone},
-            {"rounded box", Body::rounded(box, 0.2).value()},
-            {"rounded hull", Body::rounded(hull, 0.1).value()},
-            {"rounded triangle", Body::rounded(flat, 0.1).value()},
-            {"rounded cylinder", Body::rounded(cylinder, 0.15).value()},
-            {"rounded cone", Body::rounded(cone, 0.15).value()}};
+            {"rounded box", Shape::rounded(box, 0.2).value()},
+            {"rounded hull", Shape::rounded(hull, 0.1).value()},
+            {"rounded triangle", Shape::rounded(flat, 0.1).value()},
+            {"rounded cylinder", Shape::rounded(cylinder, 0.15).value()},
+            {"rounded cone", Shape::rounded(cone, 0.15).value()}};
 }
 
 double degrees_between(const glm::dvec3& u, const glm::dvec3& v) {
     return std::atan2(glm::length(glm::cross(u, v)), glm::dot(u, v)) * 57.29577951308232;
 }
 
-double size_of(const BodyAtPose& a, const BodyAtPose& b) {
-    const auto reach = [](const Body& body) {
-        return body.kind() == Kind::half_space ? 0.0 : body.core_radius() + body.radius();
+double size_of(const ShapeAtPose& a, const ShapeAtPose& b) {
+    const auto reach = [](const Shape& shape) {
+        return shape.kind() == Kind::half_space ? 0.0 : shape.core_radius() + shape.radius();
     };
-    return reach(a.body) + reach(b.body) + glm::distance(a.pose.translation, b.pose.translation);
+    return reach(a.shape) + reach(b.shape) + glm::distance(a.pose.translation, b.pose.translation);
 }
 
-bool is_hard(const Body& body) {
-    return body.kind() == Kind::cylinder || body.kind() == Kind::cone;
+bool is_hard(const Shape& shape) {
+    return shape.kind() == Kind::cylinder || shape.kind() == Kind::cone;
 }
 
-// All fields of a hit between two convex bodies.
-void check_hit(const BodyAtPose& a, const Motion& ma, const BodyAtPose& b, const Motion& mb, const Impact& i,
+// All fields of a hit between two convex shapes.
+void check_hit(const ShapeAtPose& a, const Motion& ma, const ShapeAtPose& b, const Motion& mb, const Impact& i,
                const CastOptions& options) {
     const RigidTransform now_a = moved(a.pose, ma, i.time), now_b = moved(b.pose, mb, i.time);
-    const BodyAtPose then_a{a.body, now_a}, then_b{b.body, now_b};
+    const ShapeAtPose then_a{a.shape, now_a}, then_b{b.shape, now_b};
     const double size = size_of(then_a, then_b);
     const double slack =
-        (is_hard(a.body) || is_hard(b.body) ? 4e-9 : 1e-12) * size + 1e-15 * glm::length(now_a.translation);
+        (is_hard(a.shape) || is_hard(b.shape) ? 4e-9 : 1e-12) * size + 1e-15 * glm::length(now_a.translation);
     CHECK(oracle::fault_of_contact(then_a, then_b, i, slack) == "");
     CHECK(i.distance >= 0.0);
     CHECK(i.distance < options.tolerance);
     // A sphere's normal, by formula.
-    if (b.body.kind() == Kind::sphere)
+    if (b.shape.kind() == Kind::sphere)
         if (const glm::dvec3 n = oracle::direction_to_point(then_a, now_b.translation); n != glm::dvec3(0.0))
             CHECK(degrees_between(n, i.normal) < 0.01);
     // What `distance` says there.
@@ -82,20 +82,20 @@ void check_hit(const BodyAtPose& a, const Motion& ma, const BodyAtPose& b, const
 }  // namespace
 
 TEST_SUITE("convex/cast_contact") {
-    TEST_CASE("for all pairs of kinds, hit points lie on both bodies and the normal separates them") {
-        RandomBodies random(71);
+    TEST_CASE("for all pairs of kinds, hit points lie on both shapes and the normal separates them") {
+        RandomShapes random(71);
         int hits = 0, misses = 0;
         for (int round = 0; round < 200; ++round) {
-            const std::vector<NamedBody> kinds = convex_kinds(random);
+            const std::vector<NamedShape> kinds = convex_kinds(random);
             const double offset = round % 4 == 3 ? 1e4 : 0.0;
-            for (const NamedBody& first : kinds)
-                for (const NamedBody& second : kinds) {
+            for (const NamedShape& first : kinds)
+                for (const NamedShape& second : kinds) {
                     CAPTURE(first.name);
                     CAPTURE(second.name);
                     const glm::dvec3 place = offset * random.direction();
                     const RigidTransform pose_a{random.rotation(), place},
                         pose_b{random.rotation(), place + 5.0 * random.direction()};
-                    const BodyAtPose a{first.body, pose_a}, b{second.body, pose_b};
+                    const ShapeAtPose a{first.shape, pose_a}, b{second.shape, pose_b};
                     Motion ma{random.number(0, 3) * random.direction(), {}, {}}, mb{};
                     mb.velocity = ma.velocity + 1.6 * (place - pose_b.translation) + 1.2 * random.direction();
                     const bool turns = round % 2 == 1;
@@ -109,7 +109,7 @@ TEST_SUITE("convex/cast_contact") {
                     REQUIRE(i.result != CastResult::unresolved);
                     const auto gap_at = [&](double t) {
                         const RigidTransform now_a = moved(pose_a, ma, t), now_b = moved(pose_b, mb, t);
-                        return distance({first.body, now_a}, {second.body, now_b}).distance;
+                        return distance({first.shape, now_a}, {second.shape, now_b}).distance;
                     };
                     if (i.result == CastResult::miss) {
                         ++misses;
@@ -138,27 +138,27 @@ TEST_SUITE("convex/cast_contact") {
         CHECK(misses > 2000);
     }
 
-    TEST_CASE("casts at half-spaces return the point on the ground under the body, in either order") {
-        RandomBodies random(72);
+    TEST_CASE("casts at half-spaces return the point on the ground under the shape, in either order") {
+        RandomShapes random(72);
         const Plane plane{{0.2, 1.0, -0.3}, 0.4};
-        const Body half = Body::half_space(plane).value();
+        const Shape half = Shape::half_space(plane).value();
         for (int round = 0; round < 40; ++round)
-            for (const NamedBody& kind : convex_kinds(random)) {
+            for (const NamedShape& kind : convex_kinds(random)) {
                 CAPTURE(kind.name);
                 const RigidTransform pose{random.rotation(), {0, -5, 0}}, rest;
                 Motion motion{{0, 20, 0}, {}, {}};
                 if (round % 2 == 1) motion.spin = 5.0 * random.direction();
-                const Impact i = cast({half, rest}, {}, {kind.body, pose}, motion).value();
+                const Impact i = cast({half, rest}, {}, {kind.shape, pose}, motion).value();
                 REQUIRE(i.result == CastResult::hit);
-                check_hit({half, rest}, {}, {kind.body, pose}, motion, i, {});
-                const Impact back = cast({kind.body, pose}, motion, {half, rest}, {}).value();
+                check_hit({half, rest}, {}, {kind.shape, pose}, motion, i, {});
+                const Impact back = cast({kind.shape, pose}, motion, {half, rest}, {}).value();
                 REQUIRE(back.result == CastResult::hit);
-                check_hit({kind.body, pose}, motion, {half, rest}, {}, back, {});
+                check_hit({kind.shape, pose}, motion, {half, rest}, {}, back, {});
             }
     }
 
-    TEST_CASE("casts at bodies of parts return the points, the normal and the first part") {
-        RandomBodies random(73);
+    TEST_CASE("casts at shapes of parts return the points, the normal and the first part") {
+        RandomShapes random(73);
         int hits = 0;
         for (int round = 0; round < 60; ++round) {
             const Surface s = soup(random, 30, 1.5, 0.6);
@@ -167,30 +167,30 @@ TEST_SUITE("convex/cast_contact") {
             const HeightField field =
                 HeightField::build({.columns = 6, .rows = 6, .heights = heights, .spacing = {0.7, 0.6}}).value();
             std::vector<CompoundChild> children;
-            for (const NamedBody& kind : convex_kinds(random))
-                children.push_back({kind.body, {random.rotation(), 1.5 * random.direction()}});
-            children.push_back({s.body(), {random.rotation(), glm::dvec3(0.0)}});
+            for (const NamedShape& kind : convex_kinds(random))
+                children.push_back({kind.shape, {random.rotation(), 1.5 * random.direction()}});
+            children.push_back({s.shape(), {random.rotation(), glm::dvec3(0.0)}});
             const Compound compound = Compound::build(children).value();
-            const Body bodies[] = {s.body(), Body::height_field(field, Sides::both), Body::compound(compound)};
-            for (const Body& body : bodies)
-                for (const NamedBody& kind : convex_kinds(random)) {
+            const Shape shapes[] = {s.shape(), Shape::height_field(field, Sides::both), Shape::compound(compound)};
+            for (const Shape& shape : shapes)
+                for (const NamedShape& kind : convex_kinds(random)) {
                     CAPTURE(kind.name);
                     const RigidTransform pose{random.rotation(), random.direction()},
                         from{random.rotation(), pose.translation + 7.0 * random.direction()};
                     const Motion motion{
                         1.7 * (pose.translation - from.translation), 0.5 * (round % 3) * random.direction(), {}};
-                    const BodyAtPose placed{body, pose}, mover{kind.body, from};
+                    const ShapeAtPose placed{shape, pose}, mover{kind.shape, from};
                     const Impact i = cast(placed, {}, mover, motion).value();
                     if (i.result != CastResult::hit || i.time == 0.0) continue;
                     ++hits;
                     const RigidTransform then = moved(from, motion, i.time);
                     Vector<Part> near;
-                    parts_near(placed, {kind.body, then}, 0.01, near);
+                    parts_near(placed, {kind.shape, then}, 0.01, near);
                     bool found = false;
                     for (const Part& part : near) {
                         if (part.id != i.part_a) continue;
                         found = true;
-                        check_hit({part.body, part.pose}, {}, mover, motion, i, {});
+                        check_hit({part.shape, part.pose}, {}, mover, motion, i, {});
                     }
                     CHECK(found);
                     const Impact back = cast(mover, motion, placed, {}).value();
@@ -204,22 +204,22 @@ TEST_SUITE("convex/cast_contact") {
 
     TEST_CASE(
         "after a hit: away and along is a miss, and into the wall a hit at once with its normal and the true gap") {
-        RandomBodies random(74);
+        RandomShapes random(74);
         int casts = 0;
         for (int round = 0; round < 60; ++round)
-            for (const NamedBody& wall : convex_kinds(random))
-                for (const NamedBody& kind : convex_kinds(random)) {
+            for (const NamedShape& wall : convex_kinds(random))
+                for (const NamedShape& kind : convex_kinds(random)) {
                     CAPTURE(wall.name);
                     CAPTURE(kind.name);
                     const RigidTransform here{random.rotation(), 2.0 * random.direction()},
                         from{random.rotation(), here.translation + 5.0 * random.direction()};
                     const Motion fly{1.3 * (here.translation - from.translation), {}, {}};
-                    const BodyAtPose placed{wall.body, here};
-                    const Impact first = cast(placed, {}, {kind.body, from}, fly).value();
+                    const ShapeAtPose placed{wall.shape, here};
+                    const Impact first = cast(placed, {}, {kind.shape, from}, fly).value();
                     if (first.result != CastResult::hit) continue;
                     ++casts;
                     const RigidTransform there = moved(from, fly, first.time);
-                    const BodyAtPose mover{kind.body, there};
+                    const ShapeAtPose mover{kind.shape, there};
                     const auto go = [&](const glm::dvec3& way, const CastOptions& options = {}) {
                         const Impact i = cast(placed, {}, mover, {way, {}, {}}, options).value();
                         const Impact back = cast(mover, {way, {}, {}}, placed, {}, options).value();
@@ -241,26 +241,26 @@ TEST_SUITE("convex/cast_contact") {
     }
 
     TEST_CASE(
-        "a body on the ground may spin about the normal, roll along and lift off, and hits at once if it falls in") {
-        const Body slab = Body::box({50, 1, 50}).value(), half = Body::half_space({{0, -1, 0}, 0}).value();
+        "a shape on the ground may spin about the normal, roll along and lift off, and hits at once if it falls in") {
+        const Shape slab = Shape::box({50, 1, 50}).value(), half = Shape::half_space({{0, -1, 0}, 0}).value();
         const RigidTransform low = at({0, -1, 0}), zero;
         const glm::dmat3 lying(glm::dvec3(0, 1, 0), glm::dvec3(1, 0, 0), glm::dvec3(0, 0, -1));
         struct Stand {
-            Body body;
+            Shape shape;
             glm::dmat3 rotation;
             double height;
             glm::dvec3 spin;
         };
-        const Body hull_free = Body::box({0.3f, 0.4f, 0.5f}).value();
+        const Shape hull_free = Shape::box({0.3f, 0.4f, 0.5f}).value();
         const Stand stands[] = {
-            {Body::box({0.5f, 0.25f, 0.5f}).value(), glm::dmat3(1.0), 0.25, {0, 7, 0}},
+            {Shape::box({0.5f, 0.25f, 0.5f}).value(), glm::dmat3(1.0), 0.25, {0, 7, 0}},
             {hull_free, glm::dmat3(1.0), static_cast<double>(0.4f), {0, -20, 0}},
-            {Body::sphere(0.5).value(), glm::dmat3(1.0), 0.5, {4, 2, 1}},
-            {Body::capsule(0.5f, 0.25f).value(), glm::dmat3(1.0), 0.75, {0, 3, 0}},
-            {Body::capsule(0.5f, 0.25f).value(), lying, 0.25, {6, 0, 0}},
-            {Body::cylinder(0.5f, 0.25f).value(), glm::dmat3(1.0), 0.5, {0, 9, 0}},
-            {Body::cylinder(0.5f, 0.25f).value(), lying, 0.25, {8, 0, 0}},
-            {Body::cone(0.5f, 0.25f).value(), glm::dmat3(1.0), 0.5, {0, 5, 0}},
+            {Shape::sphere(0.5).value(), glm::dmat3(1.0), 0.5, {4, 2, 1}},
+            {Shape::capsule(0.5f, 0.25f).value(), glm::dmat3(1.0), 0.75, {0, 3, 0}},
+            {Shape::capsule(0.5f, 0.25f).value(), lying, 0.25, {6, 0, 0}},
+            {Shape::cylinder(0.5f, 0.25f).value(), glm::dmat3(1.0), 0.5, {0, 9, 0}},
+            {Shape::cylinder(0.5f, 0.25f).value(), lying, 0.25, {8, 0, 0}},
+            {Shape::cone(0.5f, 0.25f).value(), glm::dmat3(1.0), 0.5, {0, 5, 0}},
         };
         for (const double gap : {5e-7, 1e-9, 0.0})
             for (const Stand& stand : stands)
@@ -268,10 +268,10 @@ TEST_SUITE("convex/cast_contact") {
                     CAPTURE(gap);
                     CAPTURE(stand.height);
                     CAPTURE(is_half);
-                    const BodyAtPose floor{is_half ? half : slab, is_half ? zero : low};
+                    const ShapeAtPose floor{is_half ? half : slab, is_half ? zero : low};
                     const RigidTransform pose{stand.rotation, {0, stand.height + gap, 0}};
                     const auto go = [&](const glm::dvec3& velocity, const glm::dvec3& spin) {
-                        return cast({stand.body, pose}, {velocity, spin, {}}, floor, {}).value();
+                        return cast({stand.shape, pose}, {velocity, spin, {}}, floor, {}).value();
                     };
                     CHECK(go({3, 0, 1}, {}).result == CastResult::miss);
                     CHECK(go({3, 0, 1}, stand.spin).result == CastResult::miss);
@@ -287,39 +287,39 @@ TEST_SUITE("convex/cast_contact") {
     }
 
     TEST_CASE("along a floor of many parts nothing is hit: triangles, cells, boxes side by side") {
-        RandomBodies random(75);
+        RandomShapes random(75);
         const Surface flat = ground(random, 20, 0.5, [](double, double) { return 0.0; });
         const std::vector<float> zeros(21 * 21, 0.0f);
         const HeightField field =
             HeightField::build({.columns = 21, .rows = 21, .heights = zeros, .spacing = {0.5, 0.5}}).value();
         std::vector<CompoundChild> boxes;
-        const Body tile = Body::box({0.5f, 0.5f, 0.5f}).value();
+        const Shape tile = Shape::box({0.5f, 0.5f, 0.5f}).value();
         for (int x = -5; x <= 5; ++x)
             for (int z = -5; z <= 5; ++z) boxes.push_back({tile, at({x, -0.5, z})});
         const Compound tiles = Compound::build(boxes).value();
         struct Floor {
-            Body body;
+            Shape shape;
             RigidTransform pose;
         };
-        const Floor floors[] = {{flat.body(), at({})},
-                                {flat.body(Sides::front), at({})},
-                                {Body::height_field(field), at({-5, 0, -5})},
-                                {Body::compound(tiles), at({})}};
+        const Floor floors[] = {{flat.shape(), at({})},
+                                {flat.shape(Sides::front), at({})},
+                                {Shape::height_field(field), at({-5, 0, -5})},
+                                {Shape::compound(tiles), at({})}};
         for (const Floor& floor : floors)
             for (int i = 0; i < 60; ++i)
-                for (const NamedBody& kind : convex_kinds(random)) {
+                for (const NamedShape& kind : convex_kinds(random)) {
                     CAPTURE(kind.name);
                     // As far above as a cast stops, turned at random or upright.
                     RigidTransform pose{i % 2 == 0 ? random.rotation() : glm::dmat3(1.0),
                                         {random.number(-2, 2), 3.0, random.number(-2, 2)}};
                     const Impact fall =
-                        cast({kind.body, pose}, {{0, -4, 0}, {}, {}}, {floor.body, floor.pose}, {}).value();
+                        cast({kind.shape, pose}, {{0, -4, 0}, {}, {}}, {floor.shape, floor.pose}, {}).value();
                     REQUIRE(fall.result == CastResult::hit);
                     CHECK(fall.normal.y < -0.9999);
                     pose.translation.y -= 4.0 * fall.time;
                     const glm::dvec3 way(random.number(-2, 2), 0, random.number(-2, 2));
                     const auto go = [&](const glm::dvec3& velocity) {
-                        return cast({kind.body, pose}, {velocity, {}, {}}, {floor.body, floor.pose}, {}).value();
+                        return cast({kind.shape, pose}, {velocity, {}, {}}, {floor.shape, floor.pose}, {}).value();
                     };
                     CHECK(go(way).result == CastResult::miss);
                     CHECK(go(way + glm::dvec3(0, 0.1, 0)).result == CastResult::miss);
@@ -330,15 +330,15 @@ TEST_SUITE("convex/cast_contact") {
                 }
     }
 
-    TEST_CASE("bodies that begin overlapping are a hit at once, with the shortest way out, or they are left out") {
-        RandomBodies random(76);
+    TEST_CASE("shapes that begin overlapping are a hit at once, with the shortest way out, or they are left out") {
+        RandomShapes random(76);
         int overlaps = 0;
         for (int round = 0; round < 30; ++round)
-            for (const NamedBody& first : convex_kinds(random))
-                for (const NamedBody& second : convex_kinds(random)) {
+            for (const NamedShape& first : convex_kinds(random))
+                for (const NamedShape& second : convex_kinds(random)) {
                     const RigidTransform pose_a{random.rotation(), random.direction()},
                         pose_b{random.rotation(), pose_a.translation + random.number(0, 1.2) * random.direction()};
-                    const BodyAtPose a{first.body, pose_a}, b{second.body, pose_b};
+                    const ShapeAtPose a{first.shape, pose_a}, b{second.shape, pose_b};
                     const Penetration p = penetration(a, b);
                     if (!p.overlapping || p.depth < 1e-4) continue;
                     ++overlaps;
@@ -358,21 +358,21 @@ TEST_SUITE("convex/cast_contact") {
 
     TEST_CASE(
         "if parts overlap from the start the deepest is the hit, and with the option the cast still hits others") {
-        const Body tile = Body::box({0.5f, 0.5f, 0.5f}).value(), sphere = Body::sphere(0.5).value();
+        const Shape tile = Shape::box({0.5f, 0.5f, 0.5f}).value(), sphere = Shape::sphere(0.5).value();
         const Compound row =
             Compound::build(
                 std::vector<CompoundChild>{{tile, at({0, 0, 0})}, {tile, at({0.3, 0.2, 0})}, {tile, at({5, 0, 0})}})
                 .value();
-        const Body body = Body::compound(row);
+        const Shape shape = Shape::compound(row);
         const RigidTransform zero, pose = at({0.3, 0.45, 0});
         const Motion right{{10, 0, 0}, {}, {}};
-        const Impact i = cast({sphere, pose}, right, {body, zero}, {}).value();
+        const Impact i = cast({sphere, pose}, right, {shape, zero}, {}).value();
         CHECK(i.result == CastResult::hit);
         CHECK(i.time == 0.0);
         CHECK(i.part_b.child == 1);
         CHECK(i.distance == doctest::Approx(-0.75));
         CHECK(i.normal.y == doctest::Approx(-1.0));
-        const Impact next = cast({sphere, pose}, right, {body, zero}, {}, {.ignore_initial_overlaps = true}).value();
+        const Impact next = cast({sphere, pose}, right, {shape, zero}, {}, {.ignore_initial_overlaps = true}).value();
         REQUIRE(next.result == CastResult::hit);
         CHECK(next.part_b.child == 2);
         CHECK(next.on_b.x == doctest::Approx(4.5));
@@ -380,8 +380,8 @@ TEST_SUITE("convex/cast_contact") {
     }
 
     TEST_CASE("early_out changes no hit up to it and turns later ones into misses, and bad values are errors") {
-        RandomBodies random(77);
-        const Body box = random.box(), sphere = Body::sphere(0.4).value();
+        RandomShapes random(77);
+        const Shape box = random.box(), sphere = Shape::sphere(0.4).value();
         const RigidTransform zero;
         for (int round = 0; round < 2000; ++round) {
             const RigidTransform from{random.rotation(), 4.0 * random.direction()};
@@ -405,13 +405,13 @@ TEST_SUITE("convex/cast_contact") {
 
     TEST_CASE(
         "cones and cylinders are hit no farther away than the tolerance, and their distance there is known to 1e-10") {
-        RandomBodies random(78);
-        const Body bodies[] = {Body::cone(0.8f, 0.6f).value(), Body::cylinder(0.5f, 0.8f).value(),
-                               Body::box({0.5f, 0.7f, 0.9f}).value(),
-                               Body::triangle({-1, 0, -1}, {1, 0, -1}, {0, 0, 1}).value()};
+        RandomShapes random(78);
+        const Shape shapes[] = {Shape::cone(0.8f, 0.6f).value(), Shape::cylinder(0.5f, 0.8f).value(),
+                                Shape::box({0.5f, 0.7f, 0.9f}).value(),
+                                Shape::triangle({-1, 0, -1}, {1, 0, -1}, {0, 0, 1}).value()};
         int hits = 0;
         for (int i = 0; i < 100000; ++i) {
-            const Body &first = bodies[i % 2], &second = bodies[i / 2 % 4];
+            const Shape &first = shapes[i % 2], &second = shapes[i / 2 % 4];
             const RigidTransform pose_a{random.rotation(), {}}, pose_b{random.rotation(), 5.0 * random.direction()};
             const Motion fly{0.8 * random.direction() - pose_b.translation, {}, {}};
             const Impact impact = cast({first, pose_a}, {}, {second, pose_b}, fly).value();

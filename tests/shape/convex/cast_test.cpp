@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "random_bodies.hpp"
+#include "random_shapes.hpp"
 
 using namespace crofton;
 using namespace crofton::convex;
@@ -21,7 +21,7 @@ Motion flying(const glm::dvec3& velocity, const glm::dvec3& spin = glm::dvec3(0.
 
 TEST_SUITE("convex/cast") {
     TEST_CASE("bad motions and options are named errors") {
-        const Body box = Body::box({1, 1, 1}).value(), floor = Body::half_space({{0, -1, 0}, 0}).value();
+        const Shape box = Shape::box({1, 1, 1}).value(), floor = Shape::half_space({{0, -1, 0}, 0}).value();
         const RigidTransform here = at({}), there = at({5, 5, 5});
         const auto code = [&](const Motion& m, const CastOptions& o) {
             return error_of(cast({box, here}, m, {box, there}, {}, o)).code;
@@ -34,8 +34,8 @@ TEST_SUITE("convex/cast") {
         CHECK(error_of(cast({box, there}, {}, {floor, here}, flying({}, {1, 0, 0}))).item == 1);
     }
 
-    TEST_CASE("a cast of zero length says whether the bodies are within the tolerance now") {
-        const Body box = Body::box({1, 1, 1}).value();
+    TEST_CASE("a cast of zero length says whether the shapes are within the tolerance now") {
+        const Shape box = Shape::box({1, 1, 1}).value();
         const RigidTransform here = at({}), near = at({2.0 + 1e-9, 0, 0}), far = at({2.1, 0, 0});
         CHECK(cast({box, here}, {}, {box, near}, {}).value().result == CastResult::hit);
         CHECK(cast({box, here}, {}, {box, far}, {}).value().result == CastResult::miss);
@@ -47,8 +47,8 @@ TEST_SUITE("convex/cast") {
     }
 
     TEST_CASE("times known by hand: boxes, a sphere on the floor, a bar that turns into a wall") {
-        const Body box = Body::box({1, 1, 1}).value(), sphere = Body::sphere(1).value();
-        const Body floor = Body::half_space({{0, -1, 0}, 0}).value(), bar = Body::box({2, 0.01f, 0.01f}).value();
+        const Shape box = Shape::box({1, 1, 1}).value(), sphere = Shape::sphere(1).value();
+        const Shape floor = Shape::half_space({{0, -1, 0}, 0}).value(), bar = Shape::box({2, 0.01f, 0.01f}).value();
         const RigidTransform origin = at({}), ten = at({10, 0.5, 0}), high = at({0, 5, 0});
         CHECK(cast({box, origin}, flying({16, 0, 0}), {box, ten}, {}).value().time == doctest::Approx(0.5));
         CHECK(cast({box, origin}, {}, {box, ten}, flying({-16, 0, 0})).value().time == doctest::Approx(0.5));
@@ -56,14 +56,14 @@ TEST_SUITE("convex/cast") {
         CHECK(cast({floor, origin}, {}, {sphere, high}, flying({0, -8, 0})).value().time == doctest::Approx(0.5));
         // The bar's end is 2 from the axis and reaches y = 1 at 30 degrees; its upper edge is 0.01 nearer.
         const RigidTransform wall = at({0, 1.5, 0});
-        const Body slab = Body::box({9, 0.5f, 9}).value();
+        const Shape slab = Shape::box({9, 0.5f, 9}).value();
         const Impact turn = cast({bar, origin}, flying({}, {0, 0, 1}), {slab, wall}, {}).value();
         CHECK(turn.result == CastResult::hit);
         CHECK(turn.time == doctest::Approx(std::asin(1.0 / std::hypot(2.0, 0.01)) - std::atan(0.005)).epsilon(1e-5));
     }
 
     TEST_CASE("a hit has a normal, also where the last step ends with a touch") {
-        const Body box = Body::box({0.5f, 0.5f, 0.5f}).value(), small = Body::box({0.25f, 0.25f, 0.25f}).value();
+        const Shape box = Shape::box({0.5f, 0.5f, 0.5f}).value(), small = Shape::box({0.25f, 0.25f, 0.25f}).value();
         for (const double height : {1.49, 2.0, 1.5, 0.3, 7.77}) {
             const RigidTransform low = at({0, height, 0}), high = at({0, height + 3.51, 0});
             const Impact fall = cast({small, high}, flying({0, -10, 0}), {box, low}, {}).value();
@@ -74,9 +74,9 @@ TEST_SUITE("convex/cast") {
     }
 
     TEST_CASE("no wall is too thin and no bullet too fast or small") {
-        const Body wall = Body::triangle({-9, -9, 0}, {9, -9, 0}, {0, 9, 0}).value();
-        const Body bullet = Body::box({1e-4f, 1e-4f, 1e-4f}).value(), point = Body::sphere(0).value();
-        RandomBodies random(1);
+        const Shape wall = Shape::triangle({-9, -9, 0}, {9, -9, 0}, {0, 9, 0}).value();
+        const Shape bullet = Shape::box({1e-4f, 1e-4f, 1e-4f}).value(), point = Shape::sphere(0).value();
+        RandomShapes random(1);
         for (int i = 0; i < 200; ++i) {
             const glm::dvec3 target(random.number(-2, 2), random.number(-2, 2), 0.0);
             const glm::dvec3 way = random.direction() * 1e3;
@@ -89,11 +89,12 @@ TEST_SUITE("convex/cast") {
         }
     }
 
-    TEST_CASE("random spinning bodies: at no sampled time before the impact do they meet, and then they are near") {
-        RandomBodies random(2);
+    TEST_CASE("random spinning shapes: at no sampled time before the impact do they meet, and then they are near") {
+        RandomShapes random(2);
         int hits = 0, unresolved = 0;
         for (int i = 0; i < 150; ++i) {
-            const Body a = random.polytope(24), b = i % 5 == 0 ? Body::cylinder(1, 0.3f).value() : random.polytope(24);
+            const Shape a = random.polytope(24),
+                        b = i % 5 == 0 ? Shape::cylinder(1, 0.3f).value() : random.polytope(24);
             const RigidTransform pose_a{random.rotation(), glm::dvec3(0.0)};
             const RigidTransform pose_b{random.rotation(), 4.0 * random.direction()};
             const Motion ma{0.5 * random.direction(), random.number(0, 30) * random.direction(),
@@ -120,11 +121,11 @@ TEST_SUITE("convex/cast") {
         CHECK(unresolved == 0);
     }
 
-    TEST_CASE("a translation's time agrees with bisection on a body grown along the way") {
-        RandomBodies random(3);
+    TEST_CASE("a translation's time agrees with bisection on a shape grown along the way") {
+        RandomShapes random(3);
         int hits = 0;
         for (int i = 0; i < 100; ++i) {
-            const Body a = random.polytope(24), b = random.polytope(24);
+            const Shape a = random.polytope(24), b = random.polytope(24);
             const RigidTransform pose_a{random.rotation(), glm::dvec3(0.0)};
             const RigidTransform pose_b{random.rotation(), 4.0 * random.direction()};
             const glm::dvec3 way = -2.0 * pose_b.translation + random.direction();
@@ -141,7 +142,7 @@ TEST_SUITE("convex/cast") {
                 const auto hull = Hull::build(p);
                 if (!hull) return false;
                 const RigidTransform place = at(pose_b.translation);
-                return intersects({a, pose_a}, {Body::hull(*hull), place});
+                return intersects({a, pose_a}, {Shape::hull(*hull), place});
             };
             if (impact.result == CastResult::miss) {
                 CHECK_FALSE(met_by(1.0 - 1e-6));
@@ -157,7 +158,7 @@ TEST_SUITE("convex/cast") {
     TEST_CASE(
         "far from the origin, or flying fast together, boxes that graze by 1e-10 hit, and those that pass by it miss") {
         // Squares of side 2 whose centres are apart by (x, y) with x + y = 4 − overlap meet at x = y = 2, or nearly.
-        const Body box = Body::box({1, 1, 1}).value();
+        const Shape box = Shape::box({1, 1, 1}).value();
         const double far = 1e7, fast = 1e6 + 0.1;
         for (const double overlap : {1e-10, -1e-10})
             for (const double common : {0.0, fast})
@@ -176,7 +177,7 @@ TEST_SUITE("convex/cast") {
 
     TEST_CASE("a gap that closes within a rounding of the time is a hit, after few steps") {
         // A turning box's edge, √2 from the axis and at 45 degrees from below, goes down until it reaches the floor.
-        const Body box = Body::box({1, 1, 1}).value(), floor = Body::half_space({{0, -1, 0}, 0}).value();
+        const Shape box = Shape::box({1, 1, 1}).value(), floor = Shape::half_space({{0, -1, 0}, 0}).value();
         const RigidTransform low = at({});
         for (int k = 1; k <= 50; ++k) {
             const double height = std::numbers::sqrt2 - 1e-3 * k;
@@ -201,7 +202,7 @@ TEST_SUITE("convex/cast") {
                               {{-0x1.7f48e747c1ef8p+6, 0x1.588e55100d26cp+6, -0x1.83f796561d0c8p+1},
                                {0x1.69b088c51800ap-2, 0x1.7344f67705819p-2, -0x1.b9906dd59ee8ep-1},
                                0x1.060353ea1e055p+0}};
-        const Body point = Body::sphere(0).value(), box = Body::box({1e-3f, 1e-3f, 1e-3f}).value();
+        const Shape point = Shape::sphere(0).value(), box = Shape::box({1e-3f, 1e-3f, 1e-3f}).value();
         for (const Turn& turn : turns) {
             const Motion motion{(0.05 / 6.283185307) * turn.spin, turn.spin, -turn.arm};
             // arm · cos + spin × arm · sin + … in long double: where the point is at the end, and where it goes.
@@ -231,8 +232,8 @@ TEST_SUITE("convex/cast") {
 
     // For such a needle an algorithm in floating point alone finds a gap of 0.5 where there is none.
     TEST_CASE("a needle a million times as long as wide is hit at once where a box overlaps it, else before") {
-        const Body needle = Body::box({632832.0f, 0.75f, 1.0f}).value(),
-                   box = Body::box({2.375f, 1.75f, 2.75f}).value();
+        const Shape needle = Shape::box({632832.0f, 0.75f, 1.0f}).value(),
+                    box = Shape::box({2.375f, 1.75f, 2.75f}).value();
         const RigidTransform lying{{{0.470588237f, 0.41522491f, -0.778546691f},
                                     {-0.286168516f, 0.906480849f, 0.310483485f},
                                     {0.834658206f, 0.0766856819f, 0.54540354f}},
@@ -268,7 +269,7 @@ TEST_SUITE("convex/cast") {
                                      {-0.125f, -0.125f, -0.124838918f},
                                      {0.0f, -0.125f, 0.125f}};
         const Hull hull = Hull::build(corners).value();
-        const Body needle = Body::hull(hull), cone = Body::cone(2.0f, 0.0f).value();
+        const Shape needle = Shape::hull(hull), cone = Shape::cone(2.0f, 0.0f).value();
         const RigidTransform a{{{-0.55526853944677645, 0.64040469271337863, -0.53062103110537095},
                                 {-0.53062103110537095, 0.2184910128080938, 0.81896458938757943},
                                 {0.64040469271337863, 0.73630395005919702, 0.2184910128080938}},

@@ -23,21 +23,21 @@ struct Tree {
     std::vector<CompoundChild> flat;
 };
 
-Tree random_tree(RandomBodies& random, int children, int levels, const Surface* surface = nullptr) {
+Tree random_tree(RandomShapes& random, int children, int levels, const Surface* surface = nullptr) {
     Tree tree;
     std::vector<CompoundChild> list;
     for (int i = 0; i < children; ++i) {
         const RigidTransform pose{random.rotation(), random.number(0, 2) * random.direction()};
         if (levels > 1 && i % 3 == 0) {
             Tree below = random_tree(random, 3, levels - 1);
-            for (const CompoundChild& child : below.flat) tree.flat.push_back({child.body, product(pose, child.pose)});
+            for (const CompoundChild& child : below.flat) tree.flat.push_back({child.shape, product(pose, child.pose)});
             for (auto& c : below.inner) tree.inner.push_back(std::move(c));
-            list.push_back({Body::compound(*below.compound), pose});
+            list.push_back({Shape::compound(*below.compound), pose});
             tree.inner.push_back(std::move(below.compound));
         } else {
-            const Body body = surface != nullptr && i == 1 ? surface->body() : any_body(random, 0.4);
-            list.push_back({body, pose});
-            tree.flat.push_back({body, pose});
+            const Shape shape = surface != nullptr && i == 1 ? surface->shape() : any_shape(random, 0.4);
+            list.push_back({shape, pose});
+            tree.flat.push_back({shape, pose});
         }
     }
     tree.compound = std::make_unique<Compound>(Compound::build(list).value());
@@ -49,7 +49,7 @@ Tree random_tree(RandomBodies& random, int children, int levels, const Surface* 
 TEST_SUITE("convex/compound") {
     TEST_CASE("no children and bad poses are named errors, with the child") {
         CHECK(error_of(Compound::build({})).code == ErrorCode::empty);
-        const Body box = Body::box({1, 1, 1}).value();
+        const Shape box = Shape::box({1, 1, 1}).value();
         std::vector<CompoundChild> children{{box, at({})}, {box, at({})}};
         children[1] = {box, at({0, NAN, 0})};
         REQUIRE_FALSE(Compound::build(children).has_value());
@@ -58,36 +58,36 @@ TEST_SUITE("convex/compound") {
     }
 
     TEST_CASE("a compound with half-spaces is ground without end: it answers as its children, in either order") {
-        RandomBodies random(4110);
+        RandomShapes random(4110);
         for (int round = 0; round < 300; ++round) {
             const bool all_ground = round % 5 == 0;
             std::vector<CompoundChild> children;
-            children.push_back({Body::half_space({random.direction(), random.number(-1.0, 1.0)}).value(),
+            children.push_back({Shape::half_space({random.direction(), random.number(-1.0, 1.0)}).value(),
                                 {random.rotation(), random.direction()}});
             if (!all_ground)
                 for (int i = 0; i < 7; ++i)
                     children.push_back({random.polytope(12), {random.rotation(), 4.0 * random.direction()}});
             const Compound level = Compound::build(children).value();
-            CHECK(!Body::compound(level).is_bounded());
+            CHECK(!Shape::compound(level).is_bounded());
             // Ground within a compound is ground as well.
-            const CompoundChild within{Body::compound(level), {random.rotation(), random.direction()}};
+            const CompoundChild within{Shape::compound(level), {random.rotation(), random.direction()}};
             const Compound outer = Compound::build({&within, 1}).value();
             const RigidTransform pose{random.rotation(), 5.0 * random.direction()};
             const RigidTransform inner{pose.rotation * within.pose.rotation,
                                        pose.rotation * within.pose.translation + pose.translation};
-            const std::vector<CompoundChild> spheres{{Body::sphere(0.5).value(), at({0.3, 0, 0})},
+            const std::vector<CompoundChild> spheres{{Shape::sphere(0.5).value(), at({0.3, 0, 0})},
                                                      {random.box(), at({-0.6, 0, 0})}};
             const Compound pair = Compound::build(spheres).value();
-            const Body body = round % 3 == 0 ? Body::compound(pair) : random.polytope(12);
+            const Shape shape = round % 3 == 0 ? Shape::compound(pair) : random.polytope(12);
             const RigidTransform place{random.rotation(), pose.translation + 6.0 * random.direction()};
-            const BodyAtPose ground{Body::compound(outer), pose}, thing{body, place};
+            const ShapeAtPose ground{Shape::compound(outer), pose}, thing{shape, place};
             bool meets = false;
             double nearest = HUGE_VAL, deepest = 0.0, first = HUGE_VAL;
             const Motion fall{.velocity = 8.0 * random.direction(), .spin = 2.0 * random.direction()};
             for (const CompoundChild& child : children) {
                 const RigidTransform at{inner.rotation * child.pose.rotation,
                                         inner.rotation * child.pose.translation + inner.translation};
-                const BodyAtPose part{child.body, at};
+                const ShapeAtPose part{child.shape, at};
                 meets = meets || intersects(part, thing);
                 nearest = std::min(nearest, distance(part, thing).distance);
                 deepest = std::max(deepest, penetration(part, thing).depth);
@@ -96,7 +96,7 @@ TEST_SUITE("convex/compound") {
             }
             CAPTURE(round);
             for (const bool swap : {false, true}) {
-                const BodyAtPose &a = swap ? thing : ground, &b = swap ? ground : thing;
+                const ShapeAtPose &a = swap ? thing : ground, &b = swap ? ground : thing;
                 CHECK(intersects(a, b) == meets);
                 CHECK(distance(a, b).distance == doctest::Approx(nearest).epsilon(1e-8));
                 CHECK(penetration(a, b).depth == doctest::Approx(deepest).epsilon(1e-8));
@@ -110,7 +110,7 @@ TEST_SUITE("convex/compound") {
             CHECK(error_of(cast(ground, fall, thing, {})).code == ErrorCode::unsupported);
             CHECK(error_of(cast(thing, {}, ground, fall)).item == 1);
             CHECK(error_of(cast(ground, {}, ground, {})).code == ErrorCode::unsupported);
-            CHECK(error_of(mass_properties(Body::compound(level))).code == ErrorCode::unsupported);
+            CHECK(error_of(mass_properties(Shape::compound(level))).code == ErrorCode::unsupported);
             int lines = 0;
             outline(ground, [&](const glm::dvec3& from, const glm::dvec3& to) {
                 lines += std::isfinite(glm::length(from) + glm::length(to)) ? 1 : -1000;
@@ -121,10 +121,10 @@ TEST_SUITE("convex/compound") {
 
     TEST_CASE("compounds in compounds: sixteen deep work, the seventeenth is a named error, so a thousand never nest") {
         std::vector<std::unique_ptr<Compound>> chain;
-        Body body = Body::sphere(0.5f).value();
+        Shape shape = Shape::sphere(0.5f).value();
         int built = 0;
         for (; built < 1000; ++built) {
-            const CompoundChild child{body, at({1, 0, 0})};
+            const CompoundChild child{shape, at({1, 0, 0})};
             auto next = Compound::build({&child, 1});
             if (!next) {
                 CHECK(next.error().code == ErrorCode::out_of_range);
@@ -132,33 +132,33 @@ TEST_SUITE("convex/compound") {
                 break;
             }
             chain.push_back(std::make_unique<Compound>(std::move(*next)));
-            body = Body::compound(*chain.back());
+            shape = Shape::compound(*chain.back());
         }
         CHECK(built == kMaxCompoundDepth);
         CHECK(chain.back()->depth() == kMaxCompoundDepth);
-        const Body point = Body::sphere(0.0f).value();
-        CHECK(intersects({body, at({})}, {point, at({16.4, 0, 0})}));
-        CHECK_FALSE(intersects({body, at({})}, {point, at({16.6, 0, 0})}));
-        CHECK(distance({body, at({})}, {point, at({20, 0, 0})}).distance == doctest::Approx(3.5));
+        const Shape point = Shape::sphere(0.0f).value();
+        CHECK(intersects({shape, at({})}, {point, at({16.4, 0, 0})}));
+        CHECK_FALSE(intersects({shape, at({})}, {point, at({16.6, 0, 0})}));
+        CHECK(distance({shape, at({})}, {point, at({20, 0, 0})}).distance == doctest::Approx(3.5));
     }
 
     TEST_CASE("children are numbered through, with those of compounds within in their place") {
-        RandomBodies random(1);
+        RandomShapes random(1);
         const Tree tree = random_tree(random, 9, 3);
         REQUIRE(tree.compound->part_count() == tree.flat.size());
         for (std::uint32_t i = 0; i < tree.compound->part_count(); ++i)
-            CHECK(tree.compound->part(i).body.kind() == tree.flat[i].body.kind());
+            CHECK(tree.compound->part(i).shape.kind() == tree.flat[i].shape.kind());
     }
 
     TEST_CASE("all answers are those of the children one by one") {
-        RandomBodies random(2);
+        RandomShapes random(2);
         const Surface patch = soup(random, 20, 1.0, 0.4);
         int meeting = 0, hits = 0;
         Manifolds found;
         for (int round = 0; round < 120; ++round) {
             const Tree tree =
                 random_tree(random, 1 + random.index(12), 1 + round % 3, round % 2 == 0 ? &patch : nullptr);
-            const Body body = Body::compound(*tree.compound), b = any_body(random, 0.6);
+            const Shape shape = Shape::compound(*tree.compound), b = any_shape(random, 0.6);
             const RigidTransform pose{random.rotation(), random.number(0, 1e5) * random.direction()};
             const RigidTransform pose_b{random.rotation(),
                                         pose.translation + random.number(0, 2.8) * random.direction()};
@@ -170,7 +170,7 @@ TEST_SUITE("convex/compound") {
             std::uint32_t nearest = 0;
             for (std::size_t i = 0; i < tree.flat.size(); ++i) {
                 const RigidTransform place = product(pose, tree.flat[i].pose);
-                const BodyAtPose child{tree.flat[i].body, place};
+                const ShapeAtPose child{tree.flat[i].shape, place};
                 meets = meets || intersects(child, {b, pose_b});
                 const double d = distance(child, {b, pose_b}).distance;
                 if (d < least) least = d, nearest = static_cast<std::uint32_t>(i);
@@ -181,16 +181,16 @@ TEST_SUITE("convex/compound") {
                 own.pivot = glm::transpose(tree.flat[i].pose.rotation) * (motion.pivot - tree.flat[i].pose.translation);
                 first = std::min(first, cast(child, own, {b, pose_b}, fly, {.max_steps = 5000}).value().time);
             }
-            CHECK(intersects({body, pose}, {b, pose_b}) == meets);
-            const Distance d = distance({body, pose}, {b, pose_b});
+            CHECK(intersects({shape, pose}, {b, pose_b}) == meets);
+            const Distance d = distance({shape, pose}, {b, pose_b});
             CHECK(d.distance == doctest::Approx(least).epsilon(1e-6));
             if (least > 0.0) CHECK(d.part_a.child == nearest);
-            contact_manifolds({b, pose_b}, {body, pose}, {.margin = 0.02}, found);
+            contact_manifolds({b, pose_b}, {shape, pose}, {.margin = 0.02}, found);
             double told = -1.0;
             for (const Manifold& m : found.all()) told = std::max(told, m.depth);
             CHECK(told == doctest::Approx(deepest).epsilon(1e-6));
-            CHECK(penetration({body, pose}, {b, pose_b}).depth == doctest::Approx(depth).epsilon(1e-6));
-            const Impact impact = cast({body, pose}, motion, {b, pose_b}, fly, {.max_steps = 5000}).value();
+            CHECK(penetration({shape, pose}, {b, pose_b}).depth == doctest::Approx(depth).epsilon(1e-6));
+            const Impact impact = cast({shape, pose}, motion, {b, pose_b}, fly, {.max_steps = 5000}).value();
             CHECK(std::abs(impact.time - first) <= 1e-5);
             meeting += meets;
             hits += impact.result == CastResult::hit;
@@ -200,11 +200,11 @@ TEST_SUITE("convex/compound") {
     }
 
     TEST_CASE("compound against compound: every pair of children") {
-        RandomBodies random(3);
+        RandomShapes random(3);
         int meeting = 0;
         for (int round = 0; round < 100; ++round) {
             const Tree a = random_tree(random, 6, 2), b = random_tree(random, 5, 1);
-            const Body body_a = Body::compound(*a.compound), body_b = Body::compound(*b.compound);
+            const Shape shape_a = Shape::compound(*a.compound), shape_b = Shape::compound(*b.compound);
             const RigidTransform pose_a{random.rotation(), {}},
                 pose_b{random.rotation(), random.number(1, 2.5) * random.direction()};
             const Motion fly{-2.0 * pose_b.translation, {}, {}};
@@ -213,23 +213,23 @@ TEST_SUITE("convex/compound") {
             for (const CompoundChild& x : a.flat)
                 for (const CompoundChild& y : b.flat) {
                     const RigidTransform px = product(pose_a, x.pose), py = product(pose_b, y.pose);
-                    meets = meets || intersects({x.body, px}, {y.body, py});
-                    least = std::min(least, distance({x.body, px}, {y.body, py}).distance);
-                    first = std::min(first, cast({x.body, px}, {}, {y.body, py}, fly).value().time);
+                    meets = meets || intersects({x.shape, px}, {y.shape, py});
+                    least = std::min(least, distance({x.shape, px}, {y.shape, py}).distance);
+                    first = std::min(first, cast({x.shape, px}, {}, {y.shape, py}, fly).value().time);
                 }
-            CHECK(intersects({body_a, pose_a}, {body_b, pose_b}) == meets);
-            CHECK(distance({body_a, pose_a}, {body_b, pose_b}).distance == doctest::Approx(least).epsilon(1e-6));
-            CHECK(std::abs(cast({body_a, pose_a}, {}, {body_b, pose_b}, fly).value().time - first) <= 1e-5);
+            CHECK(intersects({shape_a, pose_a}, {shape_b, pose_b}) == meets);
+            CHECK(distance({shape_a, pose_a}, {shape_b, pose_b}).distance == doctest::Approx(least).epsilon(1e-6));
+            CHECK(std::abs(cast({shape_a, pose_a}, {}, {shape_b, pose_b}, fly).value().time - first) <= 1e-5);
             meeting += meets;
         }
         CHECK(meeting > 10);
     }
 
     TEST_CASE("a child far from the compound's origin meets what it meets alone, also where they only touch") {
-        RandomBodies random(7);
+        RandomShapes random(7);
         int meeting = 0;
         for (int round = 0; round < 2000; ++round) {
-            const Body box = Body::box({1, 1, 1}).value();
+            const Shape box = Shape::box({1, 1, 1}).value();
             const CompoundChild child{box, {random.rotation(), 1e6 * random.direction()}};
             const Compound compound = Compound::build({&child, 1}).value();
             RigidTransform pose{random.rotation(), {}};
@@ -240,15 +240,15 @@ TEST_SUITE("convex/compound") {
             const Penetration deep = penetration({box, there}, {box, other});
             other.translation += deep.depth * deep.normal - apart.distance * apart.normal;
             const bool meet = intersects({box, there}, {box, other});
-            CHECK(intersects({Body::compound(compound), pose}, {box, other}) == meet);
+            CHECK(intersects({Shape::compound(compound), pose}, {box, other}) == meet);
             meeting += meet;
         }
         CHECK(meeting > 200);
     }
 
     TEST_CASE("a compound's cast far from the world's origin is that of its child, but for the place's rounding") {
-        RandomBodies random(8);
-        const Body box = Body::box({0.5f, 0.5f, 0.5f}).value();
+        RandomShapes random(8);
+        const Shape box = Shape::box({0.5f, 0.5f, 0.5f}).value();
         for (int round = 0; round < 200; ++round) {
             const CompoundChild child{box, {random.rotation(), random.direction()}};
             const Compound compound = Compound::build({&child, 1}).value();
@@ -257,7 +257,7 @@ TEST_SUITE("convex/compound") {
                 other{random.rotation(), pose.translation + 5.0 * random.direction()};
             const Motion fly{2.0 * (pose.translation - other.translation), {}, {}};
             const CastOptions close{.tolerance = 1e-9};
-            const Impact whole = cast({Body::compound(compound), pose}, {}, {box, other}, fly, close).value(),
+            const Impact whole = cast({Shape::compound(compound), pose}, {}, {box, other}, fly, close).value(),
                          alone = cast({box, there}, {}, {box, other}, fly, close).value();
             CHECK(whole.result == alone.result);
             CHECK(std::abs(whole.time - alone.time) * 10.0 <= 5e-6);  // places are off by 2e-6
@@ -265,17 +265,17 @@ TEST_SUITE("convex/compound") {
     }
 
     TEST_CASE("a compound far out answers as its child where the rounded product of the poses puts it") {
-        RandomBodies random(9);
-        const Body cube = Body::box({0.5f, 0.5f, 0.5f}).value();
+        RandomShapes random(9);
+        const Shape cube = Shape::box({0.5f, 0.5f, 0.5f}).value();
         int touching = 0;
         for (int round = 0; round < 3000; ++round) {
             const double far = std::pow(10.0, random.number(0, 12));
             const bool nested = round % 3 == 0, turned = round % 2 == 0;
             const CompoundChild child{cube, {turned ? random.rotation() : glm::dmat3(1.0), 0.7 * random.direction()}};
             const Compound inner = Compound::build({&child, 1}).value();
-            const CompoundChild middle{Body::compound(inner), {glm::dmat3(1.0), 0.9 * random.direction()}};
+            const CompoundChild middle{Shape::compound(inner), {glm::dmat3(1.0), 0.9 * random.direction()}};
             const Compound compound = Compound::build({nested ? &middle : &child, 1}).value();
-            const Body whole = Body::compound(compound);
+            const Shape whole = Shape::compound(compound);
             const RigidTransform pose{turned ? random.rotation() : glm::dmat3(1.0), far * random.direction()};
             RigidTransform part = nested ? product(pose, middle.pose) : pose;
             part = product(part, child.pose);
@@ -284,7 +284,7 @@ TEST_SUITE("convex/compound") {
             const int k = round % 5 == 0 ? 1 : 0;
             other.translation[k] += round % 7 == 0 ? -1.0 : 1.0;
             if (round % 3 == 1) other.translation[k] = std::nextafter(other.translation[k], 1e300);
-            const BodyAtPose a{whole, pose}, alone{cube, part}, b{cube, other};
+            const ShapeAtPose a{whole, pose}, alone{cube, part}, b{cube, other};
             const bool meet = intersects(alone, b);
             touching += meet;
             CAPTURE(round);
@@ -312,7 +312,7 @@ TEST_SUITE("convex/compound") {
             // Two compounds.
             const CompoundChild at_home{cube, {}};
             const Compound second = Compound::build({&at_home, 1}).value();
-            CHECK(intersects(a, {Body::compound(second), other}) == meet);
+            CHECK(intersects(a, {Shape::compound(second), other}) == meet);
         }
         CHECK(touching > 500);
         CHECK(touching < 2900);

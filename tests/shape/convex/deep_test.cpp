@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Spheres and capsules whose core lies deep in another body: every field of the answers, by formulas and exactly.
+// Spheres and capsules whose core lies deep in another shape: every field of the answers, by formulas and exactly.
 #include <doctest/doctest.h>
 #include <cmath>
 #include <crofton/convex/query.hpp>
@@ -7,7 +7,7 @@
 #include <oracle/exact_convex.hpp>
 #include <vector>
 
-#include "random_bodies.hpp"
+#include "random_shapes.hpp"
 #include "surfaces.hpp"
 
 using namespace crofton;
@@ -17,35 +17,35 @@ using namespace crofton::testing;
 namespace {
 
 // As far from a rotation as a pose may be.
-glm::dmat3 skewed(RandomBodies& random, glm::dmat3 rotation) {
+glm::dmat3 skewed(RandomShapes& random, glm::dmat3 rotation) {
     for (int k = 0; k < 3; ++k) rotation[k] += 2e-7 * random.direction();
     return rotation;
 }
 
 struct DeepCase {
-    Body a, b;
+    Shape a, b;
     RigidTransform pose_a, pose_b;
     double tolerance = 1e-9;  // of the size
-    [[nodiscard]] BodyAtPose first() const { return {a, pose_a}; }
-    [[nodiscard]] BodyAtPose second() const { return {b, pose_b}; }
+    [[nodiscard]] ShapeAtPose first() const { return {a, pose_a}; }
+    [[nodiscard]] ShapeAtPose second() const { return {b, pose_b}; }
     [[nodiscard]] double size() const {
         return a.core_radius() + b.core_radius() + a.radius() + b.radius() +
                glm::distance(pose_a.translation, pose_b.translation);
     }
 };
 
-// How far the body reaches along a unit vector, in the world.
-double reach_along(const BodyAtPose& body, const glm::dvec3& n) {
-    const glm::dvec3 local = glm::transpose(body.pose.rotation) * n;
+// How far the shape reaches along a unit vector, in the world.
+double reach_along(const ShapeAtPose& shape, const glm::dvec3& n) {
+    const glm::dvec3 local = glm::transpose(shape.pose.rotation) * n;
     // A rounding is of the world: the support of the core, and the radius.
-    const double radius = body.body.radius();
-    const glm::dvec3 core = support_point(body.body, local) - radius / glm::length(local) * local;
-    return glm::dot(n, body.pose.rotation * core + body.pose.translation) + radius;
+    const double radius = shape.shape.radius();
+    const glm::dvec3 core = support_point(shape.shape, local) - radius / glm::length(local) * local;
+    return glm::dot(n, shape.pose.rotation * core + shape.pose.translation) + radius;
 }
 
 // The answer's own fields: the way ends the overlap, none along `others` that is shorter does, and the points are the
 // deepest ones, on both.
-void check_penetration(const DeepCase& c, const Penetration& p, RandomBodies& random) {
+void check_penetration(const DeepCase& c, const Penetration& p, RandomShapes& random) {
     const double slack = c.tolerance * c.size();
     CHECK(p.overlapping);
     CHECK(p.lower <= p.depth);
@@ -99,8 +99,8 @@ void check_meeting(const DeepCase& c) {
     CHECK(closest_point(c.second(), d.on_b).distance <= 1e-9 * c.size());
 }
 
-// The thin body's middle is a point of the solid: anywhere, or beside its surface.
-DeepCase random_case(RandomBodies& random, const Body& solid, const Body& thin) {
+// The thin shape's middle is a point of the solid: anywhere, or beside its surface.
+DeepCase random_case(RandomShapes& random, const Shape& solid, const Shape& thin) {
     DeepCase c{solid, thin, {random.rotation(), 5.0 * random.direction()}, {random.rotation(), {}}};
     if (random.index(3) == 0) {
         c.pose_a.rotation = skewed(random, c.pose_a.rotation);
@@ -126,15 +126,15 @@ DeepCase swapped(const DeepCase& c) {
 TEST_SUITE("convex/deep") {
     TEST_CASE(
         "a sphere or capsule deep in a box or hull: every field is that of the shortest way out, in either order") {
-        RandomBodies random(41);
+        RandomShapes random(41);
         int asked = 0;
         for (int i = 0; i < 6000; ++i) {
-            const Body core = i % 2 == 0 ? random.box() : random.hull(4 + random.index(20));
-            const Body solid = i % 5 == 0 ? Body::rounded(core, random.number(0, 0.3)).value() : core;
-            const Body thin = i % 3 == 0 ? Body::sphere(random.number(0, 0.5)).value()
-                              : i % 3 == 1
-                                  ? Body::capsule(float(random.number(0, 0.5)), float(random.number(0, 0.3))).value()
-                                  : Body::sphere(0.2).value();
+            const Shape core = i % 2 == 0 ? random.box() : random.hull(4 + random.index(20));
+            const Shape solid = i % 5 == 0 ? Shape::rounded(core, random.number(0, 0.3)).value() : core;
+            const Shape thin = i % 3 == 0 ? Shape::sphere(random.number(0, 0.5)).value()
+                               : i % 3 == 1
+                                   ? Shape::capsule(float(random.number(0, 0.5)), float(random.number(0, 0.3))).value()
+                                   : Shape::sphere(0.2).value();
             const DeepCase c = random_case(random, solid, thin);
             if (!intersects(c.first(), c.second())) continue;
             CAPTURE(i);
@@ -150,12 +150,12 @@ TEST_SUITE("convex/deep") {
     }
 
     TEST_CASE("their depths lie between the bounds as exact integers have them") {
-        RandomBodies random(42);
+        RandomShapes random(42);
         for (int i = 0; i < 300; ++i) {
             const bool box = i % 2 == 0;
-            const Body solid = box ? random.box() : random.hull(4 + random.index(8));
-            const Body thin = box && i % 4 == 0 ? Body::capsule(float(random.number(0, 0.5)), 0.0f).value()
-                                                : Body::sphere(0.0).value();
+            const Shape solid = box ? random.box() : random.hull(4 + random.index(8));
+            const Shape thin = box && i % 4 == 0 ? Shape::capsule(float(random.number(0, 0.5)), 0.0f).value()
+                                                 : Shape::sphere(0.0).value();
             const DeepCase c = random_case(random, solid, thin);
             if (!intersects(c.first(), c.second())) continue;
             const Penetration p = penetration(c.first(), c.second());
@@ -168,16 +168,16 @@ TEST_SUITE("convex/deep") {
     }
 
     TEST_CASE("a sphere deep in a cylinder or cone leaves it across a disc or the side, as the formula says") {
-        RandomBodies random(43);
+        RandomShapes random(43);
         for (int i = 0; i < 6000; ++i) {
             const bool cone = i % 2 == 0;
             const double half = random.number(0.1, 1.0), radius = random.number(0.1, 1.0),
                          rounding = random.number(0, 0.2);
-            const Body core = cone ? Body::cone(float(half), float(radius)).value()
-                                   : Body::cylinder(float(half), float(radius)).value();
+            const Shape core = cone ? Shape::cone(float(half), float(radius)).value()
+                                    : Shape::cylinder(float(half), float(radius)).value();
             const double h = double(float(half)), r = double(float(radius));
-            const Body solid = i % 3 == 0 ? Body::rounded(core, rounding).value() : core;
-            DeepCase c = random_case(random, solid, Body::sphere(0.3).value());
+            const Shape solid = i % 3 == 0 ? Shape::rounded(core, rounding).value() : core;
+            DeepCase c = random_case(random, solid, Shape::sphere(0.3).value());
             const bool is_rigid =
                 glm::distance(glm::transpose(c.pose_a.rotation)[0] * c.pose_a.rotation, glm::dvec3(1, 0, 0)) < 1e-14;
             const glm::dvec3 local = glm::inverse(c.pose_a.rotation) * (c.pose_b.translation - c.pose_a.translation);
@@ -208,22 +208,22 @@ TEST_SUITE("convex/deep") {
     TEST_CASE(
         "a sphere or capsule deep in a child of a compound, or in a room of twelve triangles, leaves by the nearest "
         "wall") {
-        RandomBodies random(44);
+        RandomShapes random(44);
         Surface room;
         for (int i = 0; i < 8; ++i)
             room.mesh.positions.emplace_back((i & 1) != 0 ? 2 : -2, (i & 2) != 0 ? 2 : -2, (i & 4) != 0 ? 2 : -2);
         room.mesh.indices = {0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4,
                              2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6};
         room.build();
-        const Body box = Body::box({1, 1.2f, 1.4f}).value();
+        const Shape box = Shape::box({1, 1.2f, 1.4f}).value();
         int meeting = 0;
         for (int i = 0; i < 3000; ++i) {
-            const Body thin = i % 2 == 0 ? Body::sphere(0.4).value() : Body::capsule(0.3f, 0.2f).value();
+            const Shape thin = i % 2 == 0 ? Shape::sphere(0.4).value() : Shape::capsule(0.3f, 0.2f).value();
             const DeepCase alone = random_case(random, box, thin);
             const CompoundChild children[] = {{box, {random.rotation(), random.direction()}},
                                               {box, {glm::dmat3(1.0), {40, 0, 0}}}};
             const Compound compound = Compound::build(children).value();
-            const Body whole = Body::compound(compound);
+            const Shape whole = Shape::compound(compound);
             // The compound stands so that its first child is the box, but for rounding.
             RigidTransform pose;
             pose.rotation = alone.pose_a.rotation * glm::inverse(children[0].pose.rotation);
@@ -243,7 +243,7 @@ TEST_SUITE("convex/deep") {
             // The core stays within the room.
             const glm::dvec3 local(random.number(-1.69, 1.69), random.number(-1.69, 1.69), random.number(-1.69, 1.69));
             there.translation = here.rotation * local + here.translation;
-            // Every wall that is nearer than the body reaches is one manifold, as deep as that.
+            // Every wall that is nearer than the shape reaches is one manifold, as deep as that.
             double most = 0.0;
             for (int k = 0; k < 3; ++k)
                 for (const double side : {-1.0, 1.0}) {
@@ -252,9 +252,9 @@ TEST_SUITE("convex/deep") {
                     most = std::max(most, reach - 2.0);
                 }
             Manifolds found;
-            contact_manifolds({room.body(), here}, {thin, there}, {}, found);
-            CHECK(intersects({room.body(), here}, {thin, there}) == (most > 0.0));
-            CHECK(intersects({thin, there}, {room.body(), here}) == (most > 0.0));
+            contact_manifolds({room.shape(), here}, {thin, there}, {}, found);
+            CHECK(intersects({room.shape(), here}, {thin, there}) == (most > 0.0));
+            CHECK(intersects({thin, there}, {room.shape(), here}) == (most > 0.0));
             CHECK(found.all().empty() == (most <= 0.0));
             double deepest = 0.0;
             for (const Manifold& m : found.all()) deepest = std::max(deepest, m.depth);

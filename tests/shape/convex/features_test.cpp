@@ -6,7 +6,7 @@
 #include <crofton/convex/query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 
-#include "random_bodies.hpp"
+#include "random_shapes.hpp"
 
 using namespace crofton;
 using namespace crofton::convex;
@@ -14,8 +14,8 @@ using namespace crofton::testing;
 
 namespace {
 
-glm::dvec3 placed(const BodyAtPose& b, int vertex) {
-    return b.pose.rotation * b.body.vertex(vertex) + b.pose.translation;
+glm::dvec3 placed(const ShapeAtPose& b, int vertex) {
+    return b.pose.rotation * b.shape.vertex(vertex) + b.pose.translation;
 }
 
 double distance_to_segment(const glm::dvec3& p, const glm::dvec3& from, const glm::dvec3& to) {
@@ -31,18 +31,18 @@ double distance_to_plane(const glm::dvec3& p, const glm::dvec3& a, const glm::dv
 }
 
 // From a point of the core of a hull, box, triangle, capsule or sphere to the feature; to the plane of a face.
-double distance_to_feature(const BodyAtPose& b, const Feature& feature, const glm::dvec3& p) {
+double distance_to_feature(const ShapeAtPose& b, const Feature& feature, const glm::dvec3& p) {
     const int i = feature.index;
     if (feature.kind == FeatureKind::vertex) return glm::length(p - placed(b, i));
-    if (b.body.hull() != nullptr) {
+    if (b.shape.hull() != nullptr) {
         if (feature.kind == FeatureKind::edge) {
-            const HullEdge& e = b.body.hull()->edges()[feature.index];
+            const HullEdge& e = b.shape.hull()->edges()[feature.index];
             return distance_to_segment(p, placed(b, e.vertices[0]), placed(b, e.vertices[1]));
         }
-        const glm::dvec3 out = p - placed(b, b.body.hull()->face_vertices(i)[0]);
-        return std::abs(glm::dot(b.pose.rotation * b.body.hull()->face_normal(i), out));
+        const glm::dvec3 out = p - placed(b, b.shape.hull()->face_vertices(i)[0]);
+        return std::abs(glm::dot(b.pose.rotation * b.shape.hull()->face_normal(i), out));
     }
-    if (b.body.kind() == Kind::box) {
+    if (b.shape.kind() == Kind::box) {
         const int k = feature.kind == FeatureKind::edge ? i / 4 : i / 2, u = 1 << (k + 1) % 3, v = 1 << (k + 2) % 3;
         if (feature.kind == FeatureKind::edge) {
             const int from = ((i & 1) != 0 ? u : 0) + ((i & 2) != 0 ? v : 0);
@@ -52,7 +52,7 @@ double distance_to_feature(const BodyAtPose& b, const Feature& feature, const gl
         return distance_to_plane(p, placed(b, from), placed(b, from + u), placed(b, from + v));
     }
     if (feature.kind == FeatureKind::edge)
-        return distance_to_segment(p, placed(b, i), placed(b, (i + 1) % b.body.vertex_count()));
+        return distance_to_segment(p, placed(b, i), placed(b, (i + 1) % b.shape.vertex_count()));
     return distance_to_plane(p, placed(b, 0), placed(b, 1), placed(b, 2));
 }
 
@@ -60,18 +60,18 @@ double distance_to_feature(const BodyAtPose& b, const Feature& feature, const gl
 
 TEST_SUITE("convex/features") {
     TEST_CASE("points lie on the features that they name, faces, edges and vertices alike") {
-        RandomBodies random(3);
-        const auto any_body = [&](int i) {
-            const Body core = random.polytope(24);
-            if (i % 5 == 0) return Body::rounded(core, random.number(0.0, 0.3)).value();
-            if (i % 5 == 1) return Body::capsule(0.7f, 0.2f).value();
+        RandomShapes random(3);
+        const auto any_shape = [&](int i) {
+            const Shape core = random.polytope(24);
+            if (i % 5 == 0) return Shape::rounded(core, random.number(0.0, 0.3)).value();
+            if (i % 5 == 1) return Shape::capsule(0.7f, 0.2f).value();
             return core;
         };
         int named[3][3] = {};
         for (int i = 0; i < 1500; ++i) {
-            const Body a = any_body(i), b = any_body(i / 5);
+            const Shape a = any_shape(i), b = any_shape(i / 5);
             const CasePair where = nearly_touching(random, a, b, -std::pow(10.0, random.number(-6, -1)), 0.0);
-            const BodyAtPose pa{a, where.pose_a}, pb{b, where.pose_b};
+            const ShapeAtPose pa{a, where.pose_a}, pb{b, where.pose_b};
             const Manifold m = contact_manifold(pa, pb, {.max_points = 8});
             for (int k = 0; k < m.count; ++k) {
                 const ContactPoint& point = m.points[k];
@@ -95,19 +95,19 @@ TEST_SUITE("convex/features") {
     }
 
     TEST_CASE("points of spheres and capsules on a surface's triangle lie on the features that they name") {
-        RandomBodies random(9);
+        RandomShapes random(9);
         int named[3] = {};
         for (int i = 0; i < 1500; ++i) {
             TriangleMesh mesh;
             for (const glm::vec3& p : random.points(3)) mesh.positions.push_back(p);
             mesh.indices = {0, 1, 2};
             const auto tree = mesh::MeshTree::build(mesh).value();
-            const Body surface = Body::mesh(tree).value(),
-                       triangle = Body::triangle(mesh.positions[0], mesh.positions[1], mesh.positions[2]).value(),
-                       round = i % 2 == 0 ? Body::sphere(0.3).value() : Body::capsule(0.7f, 0.2f).value();
+            const Shape surface = Shape::mesh(tree).value(),
+                        triangle = Shape::triangle(mesh.positions[0], mesh.positions[1], mesh.positions[2]).value(),
+                        round = i % 2 == 0 ? Shape::sphere(0.3).value() : Shape::capsule(0.7f, 0.2f).value();
             const CasePair where =
                 nearly_touching(random, triangle, round, -std::pow(10.0, random.number(-6, -2)), 0.0);
-            const BodyAtPose part{triangle, where.pose_a}, other{round, where.pose_b};
+            const ShapeAtPose part{triangle, where.pose_a}, other{round, where.pose_b};
             Manifolds found;
             contact_manifolds({surface, where.pose_a}, other, {.max_points = 8}, found);
             CAPTURE(i);

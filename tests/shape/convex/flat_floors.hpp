@@ -25,10 +25,10 @@ struct Floor {
     std::vector<std::unique_ptr<convex::Hull>> hulls;
     double least = 0.0, most = 0.0;  // x and z that it certainly covers
 
-    void add(const convex::Body& body, const RigidTransform& pose) { parts.push_back({body, pose}); }
+    void add(const convex::Shape& shape, const RigidTransform& pose) { parts.push_back({shape, pose}); }
     void add_hull(const std::vector<glm::vec3>& points, const RigidTransform& pose) {
         hulls.push_back(std::make_unique<convex::Hull>(convex::Hull::build(points).value()));
-        add(convex::Body::hull(*hulls.back()), pose);
+        add(convex::Shape::hull(*hulls.back()), pose);
     }
     // A polygon of the plane, `thick` down; around its first corner, and so flush but for rounding to float.
     void add_prism(const std::vector<glm::vec2>& corners, float thick) {
@@ -37,18 +37,18 @@ struct Floor {
             for (const float y : {0.0f, -thick}) points.emplace_back(p.x - corners[0].x, y, p.y - corners[0].y);
         add_hull(points, at({corners[0].x, 0, corners[0].y}));
     }
-    void add_rectangle(RandomBodies& random, Tiles tiles, const glm::vec2& low, const glm::vec2& high, float thick) {
+    void add_rectangle(RandomShapes& random, Tiles tiles, const glm::vec2& low, const glm::vec2& high, float thick) {
         if (tiles == Tiles::mixed) tiles = static_cast<Tiles>(random.index(5));
         const glm::dvec2 size(high - low), middle = 0.5 * (glm::dvec2(low) + glm::dvec2(high));
         const glm::vec3 half(0.5f * (high.x - low.x), 0.5f * thick, 0.5f * (high.y - low.y));
         const glm::dvec3 center(middle.x, -0.5 * static_cast<double>(thick), middle.y);
-        if (tiles == Tiles::boxes) return add(convex::Body::box(half).value(), at(center));
+        if (tiles == Tiles::boxes) return add(convex::Shape::box(half).value(), at(center));
         if (tiles == Tiles::turned_boxes) {  // the same box seen from a frame whose axes are others
             const bool side = random.index(2) != 0;
             const glm::dmat3 turn =
                 side ? glm::dmat3{{0, 1, 0}, {0, 0, 1}, {1, 0, 0}} : glm::dmat3{{0, 0, 1}, {1, 0, 0}, {0, 1, 0}};
             const glm::dvec3 own = glm::transpose(turn) * glm::dvec3(half);
-            return add(convex::Body::box(glm::vec3(own)).value(), {turn, center});
+            return add(convex::Shape::box(glm::vec3(own)).value(), {turn, center});
         }
         if (tiles == Tiles::hulls) {
             std::vector<glm::vec3> points;
@@ -63,13 +63,13 @@ struct Floor {
             if (tiles == Tiles::prisms)
                 add_prism({a, b, c}, thick);
             else
-                add(convex::Body::triangle({a.x, 0, a.y}, {c.x, 0, c.y}, {b.x, 0, b.y}).value(), at({}));
+                add(convex::Shape::triangle({a.x, 0, a.y}, {c.x, 0, c.y}, {b.x, 0, b.y}).value(), at({}));
         }
     }
 };
 
 // Rows of different widths along one axis, cut at different places: with T-junctions. Sizes are quarters, or any float.
-inline Floor strips(RandomBodies& random, Tiles tiles, bool quarters, float thick) {
+inline Floor strips(RandomShapes& random, Tiles tiles, bool quarters, float thick) {
     Floor floor;
     const auto width = [&](double low, double high) {
         const double w = random.number(low, high);
@@ -95,14 +95,14 @@ inline Floor strips(RandomBodies& random, Tiles tiles, bool quarters, float thic
 }
 
 // A grid of prisms over triangles with moved corners.
-inline Floor triangulated(RandomBodies& random, float thick, bool flat) {
+inline Floor triangulated(RandomShapes& random, float thick, bool flat) {
     Floor floor;
     const Surface s = ground(random, 12, 0.5, [](double, double) { return 0.0; });
     for (std::size_t t = 0; t < s.size(); ++t) {
         glm::vec3 p[3];
         for (std::size_t k = 0; k < 3; ++k) p[k] = s.mesh.positions[s.mesh.indices[3 * t + k]];
         if (flat)
-            floor.add(convex::Body::triangle(p[0], p[1], p[2]).value(), at({}));
+            floor.add(convex::Shape::triangle(p[0], p[1], p[2]).value(), at({}));
         else
             floor.add_prism({{p[0].x, p[0].z}, {p[1].x, p[1].z}, {p[2].x, p[2].z}}, thick);
     }
@@ -111,11 +111,11 @@ inline Floor triangulated(RandomBodies& random, float thick, bool flat) {
     return floor;
 }
 
-// Bodies that move over floors, at most 0.5 high and wide.
+// Shapes that move over floors, at most 0.5 high and wide.
 class Sliders {
   public:
-    explicit Sliders(RandomBodies& random) {
-        using convex::Body;
+    explicit Sliders(RandomShapes& random) {
+        using convex::Shape;
         std::vector<glm::vec3> octagon;
         for (int k = 0; k < 8; ++k)
             for (const float y : {-0.2f, 0.25f})
@@ -125,28 +125,28 @@ class Sliders {
         std::vector<glm::vec3> round;
         for (int k = 0; k < 24; ++k) round.emplace_back(0.35 * random.direction());
         hulls_.push_back(std::make_unique<convex::Hull>(convex::Hull::build(round).value()));
-        bodies = {Body::box({0.3f, 0.3f, 0.3f}).value(),
-                  Body::box({0.3f, 0.2f, 0.05f}).value(),
-                  Body::sphere(0.3).value(),
-                  Body::capsule(0.3f, 0.25f).value(),
-                  Body::cylinder(0.3f, 0.25f).value(),
-                  Body::cone(0.3f, 0.25f).value(),
-                  Body::hull(*hulls_[0]),
-                  Body::hull(*hulls_[1]),
-                  Body::rounded(Body::box({0.2f, 0.2f, 0.2f}).value(), 0.1).value(),
-                  Body::rounded(Body::hull(*hulls_[0]), 0.05).value(),
-                  Body::rounded(Body::cylinder(0.2f, 0.2f).value(), 0.05).value()};
+        shapes = {Shape::box({0.3f, 0.3f, 0.3f}).value(),
+                  Shape::box({0.3f, 0.2f, 0.05f}).value(),
+                  Shape::sphere(0.3).value(),
+                  Shape::capsule(0.3f, 0.25f).value(),
+                  Shape::cylinder(0.3f, 0.25f).value(),
+                  Shape::cone(0.3f, 0.25f).value(),
+                  Shape::hull(*hulls_[0]),
+                  Shape::hull(*hulls_[1]),
+                  Shape::rounded(Shape::box({0.2f, 0.2f, 0.2f}).value(), 0.1).value(),
+                  Shape::rounded(Shape::hull(*hulls_[0]), 0.05).value(),
+                  Shape::rounded(Shape::cylinder(0.2f, 0.2f).value(), 0.05).value()};
     }
-    std::vector<convex::Body> bodies;
+    std::vector<convex::Shape> shapes;
 
   private:
     std::vector<std::unique_ptr<convex::Hull>> hulls_;
 };
 
-// How far the body reaches down from its origin under a rotation.
-[[nodiscard]] inline double below(const convex::Body& body, const glm::dmat3& rotation) {
+// How far the shape reaches down from its origin under a rotation.
+[[nodiscard]] inline double below(const convex::Shape& shape, const glm::dmat3& rotation) {
     const glm::dvec3 down = glm::transpose(rotation) * glm::dvec3(0, -1, 0);
-    return glm::dot(convex::support_point(body, down), down);
+    return glm::dot(convex::support_point(shape, down), down);
 }
 
 }  // namespace crofton::testing

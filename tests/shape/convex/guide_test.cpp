@@ -18,24 +18,24 @@ int drop(const std::vector<glm::vec3>& points) {
     // clang-format off
     using namespace crofton;
 
-    // Once: make the bodies.
+    // Once: make the shapes.
     const Result<convex::Hull> rock = convex::Hull::build(points, {.max_vertices = 32});
     if (!rock) return report(rock.error());  // which point is bad, and why
-    const convex::Body body = convex::Body::hull(*rock);  // a view: keep `rock`
-    const convex::Body floor = convex::Body::box({10.0f, 1.0f, 10.0f}).value();
+    const convex::Shape shape = convex::Shape::hull(*rock);  // a view: keep `rock`
+    const convex::Shape floor = convex::Shape::box({10.0f, 1.0f, 10.0f}).value();
     const double mass = 2700.0 * rock->mass().volume;
 
     // Each frame: their poses, and the cache of the pair.
     RigidTransform place{glm::dmat3(1.0), {0.0, 1.99, 0.0}}, ground;
     convex::PairCache cache;  // one per pair, kept from frame to frame
-    const auto contact = convex::contact_manifold({floor, ground}, {body, place}, {.margin = 0.02}, &cache);
+    const auto contact = convex::contact_manifold({floor, ground}, {shape, place}, {.margin = 0.02}, &cache);
     for (int i = 0; i < contact.count; ++i)
         std::printf("%g deep, id %u/%u\n", contact.points[i].depth, contact.points[i].on_a.index, contact.points[i].on_b.index);
 
-    // When does a fast body touch?
+    // When does a fast shape touch?
     const convex::Motion flight{.velocity = {0.0, -200.0, 0.0}, .spin = {0.0, 0.0, 30.0}};
     place.translation.y = 50.0;
-    const auto impact = convex::cast({body, place}, flight, {floor, ground}, {});
+    const auto impact = convex::cast({shape, place}, flight, {floor, ground}, {});
     if (!impact) return report(impact.error());
     if (impact->result != convex::CastResult::miss) std::printf("hit after %g s\n", impact->time);
     // clang-format on
@@ -43,19 +43,19 @@ int drop(const std::vector<glm::vec3>& points) {
 }
 
 int rest(const crofton::TriangleMesh& level, const std::vector<float>& heights,
-         const std::vector<std::uint8_t>& materials, const crofton::convex::Body& crate) {
+         const std::vector<std::uint8_t>& materials, const crofton::convex::Shape& crate) {
     using namespace crofton;
     const RigidTransform here, place{glm::dmat3(1.0), {4.0, 0.99, 4.0}};
     // clang-format off
     const Result<mesh::MeshTree> tree = mesh::MeshTree::build(level);
     if (!tree) return report(tree.error());
-    const auto walls = convex::Body::mesh(*tree, convex::Sides::front);  // pushes outward only
+    const auto walls = convex::Shape::mesh(*tree, convex::Sides::front);  // pushes outward only
     if (!walls) return report(walls.error());
 
     const Result<convex::HeightField> hills =
         convex::HeightField::build({.columns = 3, .rows = 3, .heights = heights, .spacing = {10.0, 10.0}, .materials = materials});
     if (!hills) return report(hills.error());  // which height is NaN
-    const convex::Body ground = convex::Body::height_field(*hills);  // a view: keep `hills`
+    const convex::Shape ground = convex::Shape::height_field(*hills);  // a view: keep `hills`
 
     convex::Manifolds found;  // kept from frame to frame
     convex::contact_manifolds({ground, here}, {crate, place}, {.margin = 0.02}, found);
@@ -82,7 +82,7 @@ TEST_SUITE("convex/guide") {
         crofton::TriangleMesh wall;
         wall.positions = {{9, 0, 0}, {9, 9, 0}, {9, 0, 9}};
         wall.indices = {0, 1, 2};
-        const auto crate = crofton::convex::Body::box({1, 1, 1}).value();
+        const auto crate = crofton::convex::Shape::box({1, 1, 1}).value();
         CHECK(rest(wall, std::vector<float>(9, 0.0f), {1, 2, 3, crofton::convex::kHole}, crate) == 1);
         CHECK(rest(wall, std::vector<float>(8, 0.0f), {}, crate) == -1);
         CHECK(rest({}, std::vector<float>(9, 0.0f), {}, crate) == -1);

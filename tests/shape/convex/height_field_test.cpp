@@ -21,7 +21,7 @@ struct Heights {
 };
 
 // Every sixth cell is a hole, or every sixth alone is none.
-Heights rough(RandomBodies& random, std::uint32_t columns, std::uint32_t rows, double height,
+Heights rough(RandomShapes& random, std::uint32_t columns, std::uint32_t rows, double height,
               bool mostly_holes = false) {
     Heights h{columns, rows, {}, {}, {random.number(0.3, 2), random.number(0.3, 2)}};
     for (std::uint32_t i = 0; i < columns * rows; ++i)
@@ -33,13 +33,13 @@ Heights rough(RandomBodies& random, std::uint32_t columns, std::uint32_t rows, d
     return h;
 }
 
-// The field's triangles as bodies: corners in double are those of floats where the spacing is a power of two.
+// The field's triangles as shapes: corners in double are those of floats where the spacing is a power of two.
 template <class Visit>
 void for_triangles(const HeightField& field, const Visit& visit) {
     for (std::uint32_t t = 0; t < 2 * field.cell_count(); ++t) {
         if (field.material(t / 2) == kHole) continue;
         const Triangle c = field.triangle(t);
-        visit(t, Body::triangle(glm::vec3(c[0]), glm::vec3(c[1]), glm::vec3(c[2])).value());
+        visit(t, Shape::triangle(glm::vec3(c[0]), glm::vec3(c[1]), glm::vec3(c[2])).value());
     }
 }
 
@@ -70,7 +70,7 @@ TEST_SUITE("convex/height_field") {
     }
 
     TEST_CASE("corners, materials and triangles are where they are said to be, fronts up") {
-        RandomBodies random(1);
+        RandomShapes random(1);
         Heights h = rough(random, 5, 4, 1.0);
         const HeightField field = HeightField::build(h.describe()).value();
         CHECK(field.cell_count() == 12);
@@ -85,7 +85,7 @@ TEST_SUITE("convex/height_field") {
     }
 
     TEST_CASE("yes or no, distance and the first touch are those of the triangles one by one, holes left out") {
-        RandomBodies random(2);
+        RandomShapes random(2);
         int meeting = 0, apart = 0, hits = 0;
         for (int round = 0; round < 30; ++round) {
             Heights h =
@@ -93,10 +93,10 @@ TEST_SUITE("convex/height_field") {
                       static_cast<std::uint32_t>(2 + random.index(30)), round % 3 == 0 ? 4.0 : 0.3, round % 5 == 4);
             h.spacing = {0.5, 0.25};
             const HeightField field = HeightField::build(h.describe()).value();
-            const Body body = Body::height_field(field, Sides::both);
+            const Shape shape = Shape::height_field(field, Sides::both);
             const RigidTransform pose{random.rotation(), (round % 2 == 0 ? 1e7 : 1.0) * random.direction()};
             for (int i = 0; i < 12; ++i) {
-                const Body b = any_body(random, 0.4);
+                const Shape b = any_shape(random, 0.4);
                 const glm::dvec3 local(random.number(-1, 0.5 * h.columns), random.number(-1, 2),
                                        random.number(-1, 0.25 * h.rows));
                 const RigidTransform pose_b{random.rotation(), pose.rotation * local + pose.translation};
@@ -104,15 +104,15 @@ TEST_SUITE("convex/height_field") {
                     pose.rotation * glm::dvec3(1, -5, 0.5), random.index(2) * 5.0 * random.direction(), {}};
                 double least = HUGE_VAL, first = 1.0;
                 bool meets = false;
-                for_triangles(field, [&](std::uint32_t, const Body& t) {
+                for_triangles(field, [&](std::uint32_t, const Shape& t) {
                     meets = meets || intersects({t, pose}, {b, pose_b});
                     least = std::min(least, distance({t, pose}, {b, pose_b}).distance);
                     first = std::min(first, cast({t, pose}, {}, {b, pose_b}, fall, {.max_steps = 5000}).value().time);
                 });
-                CHECK(intersects({body, pose}, {b, pose_b}) == meets);
-                const Distance d = distance({body, pose}, {b, pose_b});
+                CHECK(intersects({shape, pose}, {b, pose_b}) == meets);
+                const Distance d = distance({shape, pose}, {b, pose_b});
                 CHECK(d.distance == doctest::Approx(least).epsilon(1e-6));
-                const Impact impact = cast({body, pose}, {}, {b, pose_b}, fall, {.max_steps = 5000}).value();
+                const Impact impact = cast({shape, pose}, {}, {b, pose_b}, fall, {.max_steps = 5000}).value();
                 CHECK(std::abs(impact.time - first) <= 1e-6);
                 (meets ? meeting : apart) += 1;
                 hits += impact.result == CastResult::hit ? 1 : 0;
@@ -124,14 +124,14 @@ TEST_SUITE("convex/height_field") {
     }
 
     TEST_CASE(
-        "on a field of 1025 x 1025 a small body tests few triangles, and slides over level ground without a bump") {
-        RandomBodies random(3);
+        "on a field of 1025 x 1025 a small shape tests few triangles, and slides over level ground without a bump") {
+        RandomShapes random(3);
         Heights h{1025, 1025, {}, {}, {0.5, 0.5}};
         for (int j = 0; j < 1025; ++j)
             for (int i = 0; i < 1025; ++i)
                 h.heights.push_back(i < 512 ? 2.0f : static_cast<float>(2.0 + std::sin(0.1 * i) * std::cos(0.07 * j)));
         const HeightField field = HeightField::build(h.describe()).value();
-        const Body ground = Body::height_field(field), box = Body::box({0.4f, 0.4f, 0.4f}).value();
+        const Shape ground = Shape::height_field(field), box = Shape::box({0.4f, 0.4f, 0.4f}).value();
         Vector<Part> parts;
         Manifolds found;
         const RigidTransform still = at({});
@@ -157,25 +157,25 @@ TEST_SUITE("convex/height_field") {
     }
 
     TEST_CASE("a triangle far from its own origin meets the field iff it meets one of its triangles") {
-        RandomBodies random(11);
+        RandomShapes random(11);
         const std::vector<float> heights(9, 0.0f);
         const HeightField field = HeightField::build({3, 3, heights, {1, 1}, {}}).value();
         int meeting = 0;
         for (int round = 0; round < 2000; ++round) {
             const glm::vec3 far(1e6 * random.direction());
-            const Body body = Body::triangle(far, far + glm::vec3(1, 0.5f, 0), far + glm::vec3(0, 1, 1)).value();
+            const Shape shape = Shape::triangle(far, far + glm::vec3(1, 0.5f, 0), far + glm::vec3(0, 1, 1)).value();
             RigidTransform pose{random.rotation(), {}};
             pose.translation =
                 glm::dvec3(random.number(0.5, 1.5), 0.0, random.number(0.5, 1.5)) - pose.rotation * glm::dvec3(far);
             double lowest = HUGE_VAL;
             for (int k = 0; k < 3; ++k)
-                lowest = std::min(lowest, (pose.rotation * body.vertex(k) + pose.translation).y);
+                lowest = std::min(lowest, (pose.rotation * shape.vertex(k) + pose.translation).y);
             pose.translation.y -= lowest;
             bool meet = false;
-            for_triangles(field, [&](std::uint32_t, const Body& t) {
-                meet = meet || intersects({t, at({})}, {body, pose});
+            for_triangles(field, [&](std::uint32_t, const Shape& t) {
+                meet = meet || intersects({t, at({})}, {shape, pose});
             });
-            CHECK(intersects({Body::height_field(field), at({})}, {body, pose}) == meet);
+            CHECK(intersects({Shape::height_field(field), at({})}, {shape, pose}) == meet);
             meeting += meet;
         }
         CHECK(meeting > 200);

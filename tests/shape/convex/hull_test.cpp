@@ -2,7 +2,7 @@
 #include <doctest/doctest.h>
 #include <algorithm>
 #include <cmath>
-#include <crofton/convex/body.hpp>
+#include <crofton/convex/shape.hpp>
 #include <crofton/geometry/predicates.hpp>
 #include <error_of.hpp>
 #include <glm/geometric.hpp>
@@ -10,7 +10,7 @@
 #include <numbers>
 #include <set>
 
-#include "random_bodies.hpp"
+#include "random_shapes.hpp"
 
 using namespace crofton;
 using namespace crofton::convex;
@@ -97,14 +97,14 @@ TEST_SUITE("convex/hull") {
         CHECK(Hull::build(p).has_value());
     }
 
-    TEST_CASE("bodies inside out, NaN or without bounds are named errors") {
-        CHECK(error_of(Body::box({1, -1, 1})).item == 1);
-        CHECK(error_of(Body::sphere(-1)).code == ErrorCode::invalid_argument);
-        CHECK(error_of(Body::capsule(std::numeric_limits<float>::infinity(), 1)).code == ErrorCode::non_finite);
-        CHECK(error_of(Body::cone(1, 1e16f)).code == ErrorCode::out_of_range);
-        CHECK(error_of(Body::half_space({{0, 0, 0}, 1})).code == ErrorCode::degenerate);
-        CHECK(error_of(Body::triangle({0, 0, 0}, {NAN, 0, 0}, {0, 1, 0})).item == 1);
-        CHECK(error_of(Body::rounded(Body::half_space({{0, 1, 0}, 1}).value(), 1)).code == ErrorCode::unsupported);
+    TEST_CASE("shapes inside out, NaN or without bounds are named errors") {
+        CHECK(error_of(Shape::box({1, -1, 1})).item == 1);
+        CHECK(error_of(Shape::sphere(-1)).code == ErrorCode::invalid_argument);
+        CHECK(error_of(Shape::capsule(std::numeric_limits<float>::infinity(), 1)).code == ErrorCode::non_finite);
+        CHECK(error_of(Shape::cone(1, 1e16f)).code == ErrorCode::out_of_range);
+        CHECK(error_of(Shape::half_space({{0, 0, 0}, 1})).code == ErrorCode::degenerate);
+        CHECK(error_of(Shape::triangle({0, 0, 0}, {NAN, 0, 0}, {0, 1, 0})).item == 1);
+        CHECK(error_of(Shape::rounded(Shape::half_space({{0, 1, 0}, 1}).value(), 1)).code == ErrorCode::unsupported);
     }
 
     TEST_CASE("a cube of 1,000 grid points with duplicates has 8 vertices, 6 faces, 12 edges") {
@@ -124,7 +124,7 @@ TEST_SUITE("convex/hull") {
     }
 
     TEST_CASE("a cube turned at random, rounded to float, keeps six faces") {
-        RandomBodies random(3);
+        RandomShapes random(3);
         for (int trial = 0; trial < 50; ++trial) {
             const glm::dmat3 r = random.rotation();
             std::vector<glm::vec3> p;
@@ -137,7 +137,7 @@ TEST_SUITE("convex/hull") {
     }
 
     TEST_CASE("random, thin and nearly flat points: no point outside, no corner lost") {
-        RandomBodies random(4);
+        RandomShapes random(4);
         for (int trial = 0; trial < 60; ++trial) {
             std::vector<glm::vec3> p = random.points(8 + random.index(120), std::pow(10.0, random.number(-6, 6)));
             if (trial % 3 == 0)
@@ -152,7 +152,7 @@ TEST_SUITE("convex/hull") {
     }
 
     TEST_CASE("100,000 points on a sphere become 256 vertices that hold them all, and little more") {
-        RandomBodies random(5);
+        RandomShapes random(5);
         std::vector<glm::vec3> p;
         for (int i = 0; i < 100'000; ++i) p.emplace_back(random.direction());
         const Hull hull = Hull::build(p).value();
@@ -189,25 +189,25 @@ TEST_SUITE("convex/hull") {
                     capsule.emplace_back(0.5 * std::cos(round) * std::cos(up), end * (1.0 + 0.5 * std::sin(up)),
                                          0.5 * std::sin(round) * std::cos(up));
                 }
-        near(mass_properties(Body::cylinder(1, 0.5f).value()).value(), Hull::build(cylinder).value().mass());
-        near(mass_properties(Body::cone(1, 0.5f).value()).value(), Hull::build(cone).value().mass());
-        near(mass_properties(Body::capsule(1, 0.5f).value()).value(), Hull::build(capsule).value().mass());
-        CHECK(mass_properties(Body::sphere(2).value()).value().inertia[1][1] ==
+        near(mass_properties(Shape::cylinder(1, 0.5f).value()).value(), Hull::build(cylinder).value().mass());
+        near(mass_properties(Shape::cone(1, 0.5f).value()).value(), Hull::build(cone).value().mass());
+        near(mass_properties(Shape::capsule(1, 0.5f).value()).value(), Hull::build(capsule).value().mass());
+        CHECK(mass_properties(Shape::sphere(2).value()).value().inertia[1][1] ==
               doctest::Approx(0.4 * 4.0 * 32.0 / 3.0 * std::numbers::pi));
     }
 
     TEST_CASE(
         "no corner of a hull that was replaced is farther out than `max_overshoot`, where a step of float is large") {
-        RandomBodies random(6);
+        RandomShapes random(6);
         for (int round = 0; round < 40; ++round) {
             const glm::dvec3 middle = (round % 2 != 0 ? 1e6 : 1e3) * random.direction();
             std::vector<glm::vec3> points;
             for (int i = 0; i < 100; ++i) points.emplace_back(middle + 2.0 * random.direction());
             const Hull all = Hull::build(points).value(), few = Hull::build(points, {.max_vertices = 20}).value();
             CHECK(few.max_overshoot() > 0.0);
-            const Body body = Body::hull(all);
+            const Shape shape = Shape::hull(all);
             for (const glm::vec3& v : few.vertices())
-                CHECK(closest_point({body, at({})}, glm::dvec3(v)).lower <= few.max_overshoot());
+                CHECK(closest_point({shape, at({})}, glm::dvec3(v)).lower <= few.max_overshoot());
         }
     }
 }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Mass of rounded bodies and compounds: closed forms beside slices, hulls and sums.
+// Mass of rounded shapes and compounds: closed forms beside slices, hulls and sums.
 #include <doctest/doctest.h>
 #include <cmath>
 #include <error_of.hpp>
 #include <limits>
 #include <numbers>
 
-#include "random_bodies.hpp"
+#include "random_shapes.hpp"
 
 using namespace crofton;
 using namespace crofton::convex;
@@ -26,8 +26,8 @@ void check_near(const MassProperties& mass, const MassProperties& other, double 
 }
 
 // A midpoint sum over a grid of points, by the distance from the core.
-MassProperties counted(const Body& body, int cells) {
-    const Aabb box = body.bounds();
+MassProperties counted(const Shape& shape, int cells) {
+    const Aabb box = shape.bounds();
     const glm::dvec3 step = (box.max - box.min) / static_cast<double>(cells);
     double volume = 0.0;
     glm::dvec3 first(0.0);
@@ -36,7 +36,7 @@ MassProperties counted(const Body& body, int cells) {
         for (int j = 0; j < cells; ++j)
             for (int k = 0; k < cells; ++k) {
                 const glm::dvec3 x = box.min + step * glm::dvec3(i + 0.5, j + 0.5, k + 0.5);
-                if (closest_point({body, at({})}, x).distance > 0.0) continue;
+                if (closest_point({shape, at({})}, x).distance > 0.0) continue;
                 volume += 1.0;
                 first += x;
                 second += glm::outerProduct(x, x);
@@ -56,7 +56,7 @@ TEST_SUITE("convex/mass") {
     TEST_CASE("a rounded box: Steiner's volume, and inertia known from its pieces") {
         const double a = 0.5, b = 1.0, c = 1.5, r = 0.25;
         const MassProperties mass =
-            mass_properties(Body::rounded(Body::box({0.5f, 1, 1.5f}).value(), 0.25f).value()).value();
+            mass_properties(Shape::rounded(Shape::box({0.5f, 1, 1.5f}).value(), 0.25f).value()).value();
         const double volume = 8 * a * b * c + 8 * (a * b + b * c + c * a) * r + 2 * kPi * r * r * (a + b + c) +
                               4.0 / 3.0 * kPi * r * r * r;
         CHECK(mass.volume == doctest::Approx(volume).epsilon(1e-14));
@@ -85,7 +85,7 @@ TEST_SUITE("convex/mass") {
         std::vector<glm::vec3> corners;
         for (int i = 0; i < 8; ++i)
             corners.push_back(half * glm::vec3((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1, (i & 4) != 0 ? 1 : -1));
-        const MassProperties box = mass_properties(Body::box(half).value()).value();
+        const MassProperties box = mass_properties(Shape::box(half).value()).value();
         const Hull hull = Hull::build(corners).value();
         for (int k = 0; k < 3; ++k)
             CHECK(hull.mass().inertia[k][k] / box.inertia[k][k] == doctest::Approx(1.0).epsilon(1e-13));
@@ -97,35 +97,36 @@ TEST_SUITE("convex/mass") {
             corners.emplace_back(100.0f + ((i & 1) != 0 ? 0.5f : -0.5f), (i & 2) != 0 ? 1.0f : -1.0f,
                                  (i & 4) != 0 ? 1.5f : -1.5f);
         const Hull hull = Hull::build(corners).value();
-        MassProperties box = mass_properties(Body::rounded(Body::box({0.5f, 1, 1.5f}).value(), 0.25f).value()).value();
+        MassProperties box =
+            mass_properties(Shape::rounded(Shape::box({0.5f, 1, 1.5f}).value(), 0.25f).value()).value();
         box.center.x = 100.0;
-        check_near(mass_properties(Body::rounded(Body::hull(hull), 0.25f).value()).value(), box, 1e-13);
+        check_near(mass_properties(Shape::rounded(Shape::hull(hull), 0.25f).value()).value(), box, 1e-13);
     }
 
     TEST_CASE("flat cores: plates, triangles, segments and points") {
-        const auto rounded = [](const Body& core) {
-            return mass_properties(Body::rounded(core, 0.5f).value()).value();
+        const auto rounded = [](const Shape& core) {
+            return mass_properties(Shape::rounded(core, 0.5f).value()).value();
         };
-        const MassProperties sphere = mass_properties(Body::sphere(0.5f).value()).value();
-        check_near(rounded(Body::box({0, 0, 0}).value()), sphere, 1e-14);
-        check_near(rounded(Body::triangle({0, 0, 0}, {0, 0, 0}, {0, 0, 0}).value()), sphere, 1e-14);
-        const MassProperties capsule = mass_properties(Body::capsule(2, 0.5f).value()).value();
-        check_near(rounded(Body::box({0, 2, 0}).value()), capsule, 1e-14);
-        check_near(rounded(Body::triangle({0, 2, 0}, {0, -2, 0}, {0, 1, 0}).value()), capsule, 1e-14);
-        const MassProperties plate = rounded(Body::box({1, 0, 1}).value());
+        const MassProperties sphere = mass_properties(Shape::sphere(0.5f).value()).value();
+        check_near(rounded(Shape::box({0, 0, 0}).value()), sphere, 1e-14);
+        check_near(rounded(Shape::triangle({0, 0, 0}, {0, 0, 0}, {0, 0, 0}).value()), sphere, 1e-14);
+        const MassProperties capsule = mass_properties(Shape::capsule(2, 0.5f).value()).value();
+        check_near(rounded(Shape::box({0, 2, 0}).value()), capsule, 1e-14);
+        check_near(rounded(Shape::triangle({0, 2, 0}, {0, -2, 0}, {0, 1, 0}).value()), capsule, 1e-14);
+        const MassProperties plate = rounded(Shape::box({1, 0, 1}).value());
         CHECK(plate.volume == doctest::Approx(4.0 + 4.0 * kPi * 0.25 + kPi / 6).epsilon(1e-14));
-        const MassProperties triangle = rounded(Body::triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}).value());
+        const MassProperties triangle = rounded(Shape::triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}).value());
         CHECK(triangle.volume == doctest::Approx(0.5 + (2.0 + std::sqrt(2.0)) * kPi * 0.125 + kPi / 6).epsilon(1e-14));
     }
 
     TEST_CASE("mass of rounded hulls, cylinders and cones agrees with sums over a grid") {
-        RandomBodies random(3);
-        std::vector<Body> bodies{Body::cylinder(0.75f, 0.5f).value(), Body::cone(0.75f, 0.5f).value(),
-                                 Body::triangle({0, 0, 0}, {1, 0.2f, 0}, {0.3f, 1, 0.5f}).value()};
-        for (int i = 0; i < 6; ++i) bodies.push_back(random.hull(10));
-        for (const Body& core : bodies) {
-            const Body body = Body::rounded(core, 0.3f).value();
-            check_near(mass_properties(body).value(), counted(body, 60), 0.01);
+        RandomShapes random(3);
+        std::vector<Shape> shapes{Shape::cylinder(0.75f, 0.5f).value(), Shape::cone(0.75f, 0.5f).value(),
+                                  Shape::triangle({0, 0, 0}, {1, 0.2f, 0}, {0.3f, 1, 0.5f}).value()};
+        for (int i = 0; i < 6; ++i) shapes.push_back(random.hull(10));
+        for (const Shape& core : shapes) {
+            const Shape shape = Shape::rounded(core, 0.3f).value();
+            check_near(mass_properties(shape).value(), counted(shape, 60), 0.01);
         }
     }
 
@@ -134,50 +135,50 @@ TEST_SUITE("convex/mass") {
         const double volume = kPi * radius * radius * height / 3, area = kPi * radius * (radius + slant);
         // The side, whose curvature across is height / slant over the radius; the rim, by its outer angle.
         const double mean_curvature = kPi * height + kPi * radius * (kPi - std::atan2(height, radius));
-        const Body cone = Body::rounded(Body::cone(0.75f, 0.5f).value(), r).value();
+        const Shape cone = Shape::rounded(Shape::cone(0.75f, 0.5f).value(), r).value();
         CHECK(mass_properties(cone).value().volume ==
               doctest::Approx(volume + area * r + mean_curvature * r * r + 4 * kPi / 3 * r * r * r).epsilon(1e-14));
     }
 
     TEST_CASE("a rounded cylinder without height, a cone without height and one without radius are what they are") {
-        const auto rounded = [](const Body& core) {
-            return mass_properties(Body::rounded(core, 0.5f).value()).value();
+        const auto rounded = [](const Shape& core) {
+            return mass_properties(Shape::rounded(core, 0.5f).value()).value();
         };
-        check_near(rounded(Body::cone(2, 0).value()), mass_properties(Body::capsule(2, 0.5f).value()).value(), 1e-14);
-        check_near(rounded(Body::cylinder(2, 0).value()), mass_properties(Body::capsule(2, 0.5f).value()).value(),
+        check_near(rounded(Shape::cone(2, 0).value()), mass_properties(Shape::capsule(2, 0.5f).value()).value(), 1e-14);
+        check_near(rounded(Shape::cylinder(2, 0).value()), mass_properties(Shape::capsule(2, 0.5f).value()).value(),
                    1e-14);
-        check_near(rounded(Body::cone(0, 1).value()), rounded(Body::cylinder(0, 1).value()), 1e-13);
+        check_near(rounded(Shape::cone(0, 1).value()), rounded(Shape::cylinder(0, 1).value()), 1e-13);
         // Steiner: the disc's two sides, half its rim, and a sphere.
-        CHECK(rounded(Body::cylinder(0, 1).value()).volume ==
+        CHECK(rounded(Shape::cylinder(0, 1).value()).volume ==
               doctest::Approx(kPi + kPi * kPi * 0.25 + kPi / 6).epsilon(1e-14));
     }
 
     TEST_CASE("a compound is the sum of its children, turned and moved, nested or not") {
-        const Body half = Body::box({0.5f, 1, 1.5f}).value(), whole = Body::box({1, 1, 1.5f}).value();
-        RandomBodies random(4);
+        const Shape half = Shape::box({0.5f, 1, 1.5f}).value(), whole = Shape::box({1, 1, 1.5f}).value();
+        RandomShapes random(4);
         const RigidTransform place{random.rotation(), {3, -2, 7}};
         const Compound pair =
             Compound::build(std::vector<CompoundChild>{{half, at({-0.5, 0, 0})}, {half, at({0.5, 0, 0})}}).value();
-        check_near(mass_properties(Body::compound(pair)).value(), mass_properties(whole).value(), 1e-14);
-        const Compound outer = Compound::build(std::vector<CompoundChild>{{Body::compound(pair), place},
-                                                                          {Body::sphere(0).value(), at({})}})
+        check_near(mass_properties(Shape::compound(pair)).value(), mass_properties(whole).value(), 1e-14);
+        const Compound outer = Compound::build(std::vector<CompoundChild>{{Shape::compound(pair), place},
+                                                                          {Shape::sphere(0).value(), at({})}})
                                    .value();
         MassProperties expected = mass_properties(whole).value();
         expected.center = place.translation;
         expected.inertia = place.rotation * expected.inertia * glm::transpose(place.rotation);
-        check_near(mass_properties(Body::compound(outer)).value(), expected, 1e-13);
+        check_near(mass_properties(Shape::compound(outer)).value(), expected, 1e-13);
     }
 
     TEST_CASE("surfaces and half-spaces have no mass, also as children") {
-        const Body half = Body::half_space({{0, 1, 0}, 0}).value();
+        const Shape half = Shape::half_space({{0, 1, 0}, 0}).value();
         CHECK(error_of(mass_properties(half)).code == ErrorCode::unsupported);
         const std::vector<float> heights(4, 0.0f);
         const HeightField field = HeightField::build({.columns = 2, .rows = 2, .heights = heights}).value();
-        const Body ground = Body::height_field(field);
+        const Shape ground = Shape::height_field(field);
         CHECK(error_of(mass_properties(ground)).code == ErrorCode::unsupported);
         const Compound both =
-            Compound::build(std::vector<CompoundChild>{{Body::sphere(1).value(), at({})}, {ground, at({})}}).value();
-        const Error error = error_of(mass_properties(Body::compound(both)));
+            Compound::build(std::vector<CompoundChild>{{Shape::sphere(1).value(), at({})}, {ground, at({})}}).value();
+        const Error error = error_of(mass_properties(Shape::compound(both)));
         CHECK(error.code == ErrorCode::unsupported);
         CHECK(error.item == 1);
     }

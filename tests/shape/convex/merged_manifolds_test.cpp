@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which parts of a body share a manifold.
+// Which parts of a shape share a manifold.
 #include <doctest/doctest.h>
 #include <algorithm>
 #include <map>
@@ -15,7 +15,7 @@ namespace {
 const double kFiveDegrees = std::cos(5.0 * M_PI / 180.0);
 
 // Triangles that face up, each tilted, whose middles are around the origin and which share nothing.
-Surface tilted_triangles(RandomBodies& random, int count, double degrees) {
+Surface tilted_triangles(RandomShapes& random, int count, double degrees) {
     Surface s;
     for (int i = 0; i < count; ++i) {
         const double tilt = random.number(0.0, degrees) * M_PI / 180.0, turn = random.number(0.0, 6.2);
@@ -56,9 +56,9 @@ TEST_SUITE("convex/merged_manifolds") {
                     }
                 }
                 s.build();
-                const Body sphere = Body::sphere(1.0).value();
+                const Shape sphere = Shape::sphere(1.0).value();
                 Manifolds found;
-                contact_manifolds({s.body(), at({})}, {sphere, at({0, 0.99, 0})}, {}, found);
+                contact_manifolds({s.shape(), at({})}, {sphere, at({0, 0.99, 0})}, {}, found);
                 CHECK(found.all().size() == (degrees < 5.0 ? 1 : 2));
                 if (degrees < 5.0) continue;
                 const double between = glm::dot(found.all()[0].normal, found.all()[1].normal);
@@ -67,28 +67,28 @@ TEST_SUITE("convex/merged_manifolds") {
     }
 
     TEST_CASE("a point's own normal is within 5 degrees of its manifold's, and no two manifolds are") {
-        RandomBodies random(51);
+        RandomShapes random(51);
         Manifolds found;
         int shared = 0, several = 0;
         for (int round = 0; round < 2000; ++round) {
             CAPTURE(round);
             const Surface s = tilted_triangles(random, 2 + random.index(8), round % 2 == 0 ? 12.0 : 30.0);
-            const Body surface = s.body(), body = round % 3 == 0   ? Body::sphere(0.5).value()
-                                                  : round % 3 == 1 ? Body::box({0.3f, 0.5f, 0.3f}).value()
-                                                                   : Body::capsule(0.2f, 0.3f).value();
+            const Shape surface = s.shape(), shape = round % 3 == 0   ? Shape::sphere(0.5).value()
+                                                     : round % 3 == 1 ? Shape::box({0.3f, 0.5f, 0.3f}).value()
+                                                                      : Shape::capsule(0.2f, 0.3f).value();
             const RigidTransform pose{random.rotation(), random.direction()};
             const RigidTransform above{pose.rotation, pose.translation + pose.rotation * glm::dvec3(0, 0.49, 0)};
             const ManifoldOptions options{.margin = 0.02, .max_points = 8};
             std::map<std::uint32_t, Own> own;
             for (std::size_t t = 0; t < s.size(); ++t) {
-                const Manifold m = contact_manifold({s.triangle(t), pose}, {body, above}, options);
+                const Manifold m = contact_manifold({s.triangle(t), pose}, {shape, above}, options);
                 if (m.count > 0) own[static_cast<std::uint32_t>(t)] = {m, t};
             }
             const bool flip = round % 5 == 0;
             if (flip)
-                contact_manifolds({body, above}, {surface, pose}, options, found);
+                contact_manifolds({shape, above}, {surface, pose}, options, found);
             else
-                contact_manifolds({surface, pose}, {body, above}, options, found);
+                contact_manifolds({surface, pose}, {shape, above}, options, found);
             const double side = flip ? -1.0 : 1.0;
             std::size_t parts = 0;
             for (const Manifold& m : found.all()) {

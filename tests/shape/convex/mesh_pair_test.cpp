@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Two meshes as bodies: overlap and distance, against all pairs of their triangles.
+// Two meshes as shapes: overlap and distance, against all pairs of their triangles.
 #include <doctest/doctest.h>
 #include <cmath>
 #include <crofton/convex/query.hpp>
@@ -87,14 +87,14 @@ TEST_SUITE("convex/mesh pairs") {
                     least = std::min(least, oracle::distance_of_triangles(t, u));
                 }
             if (expected) least = 0.0;
-            const convex::Body body_a = *convex::Body::mesh(tree_a), body_b = *convex::Body::mesh(tree_b);
+            const convex::Shape shape_a = *convex::Shape::mesh(tree_a), shape_b = *convex::Shape::mesh(tree_b);
             CAPTURE(i);
-            REQUIRE(convex::intersects({body_a, pose_a}, {body_b, pose_b}) == expected);
-            REQUIRE(convex::intersects({body_b, pose_b}, {body_a, pose_a}) == expected);
-            const convex::Distance d = convex::distance({body_a, pose_a}, {body_b, pose_b});
+            REQUIRE(convex::intersects({shape_a, pose_a}, {shape_b, pose_b}) == expected);
+            REQUIRE(convex::intersects({shape_b, pose_b}, {shape_a, pose_a}) == expected);
+            const convex::Distance d = convex::distance({shape_a, pose_a}, {shape_b, pose_b});
             CHECK((d.distance == 0.0) == expected);
             check_distance(d, a, b, least, 10.0);
-            check_distance(convex::distance({body_b, pose_b}, {body_a, pose_a}), b, a, least, 10.0);
+            check_distance(convex::distance({shape_b, pose_b}, {shape_a, pose_a}), b, a, least, 10.0);
             (expected ? meet : apart) += 1;
         }
         CHECK(meet > 300);
@@ -121,12 +121,12 @@ TEST_SUITE("convex/mesh pairs") {
             double least = HUGE_VAL;
             for (const Triangle& t : a)
                 for (const Triangle& u : b) least = std::min(least, oracle::distance_of_triangles(t, u));
-            const convex::Body body_a = *convex::Body::mesh(tree_a), body_b = *convex::Body::mesh(tree_b);
+            const convex::Shape shape_a = *convex::Shape::mesh(tree_a), shape_b = *convex::Shape::mesh(tree_b);
             CAPTURE(i);
             const double size = i % 4 == 0 ? 1e4 : 10.0;  // the oracle's own rounding, far out
-            if (least > 1e-6) CHECK_FALSE(convex::intersects({body_a, pose_a}, {body_b, pose_b}));
-            if (least == 0.0) CHECK(convex::intersects({body_a, pose_a}, {body_b, pose_b}));
-            const convex::Distance d = convex::distance({body_a, pose_a}, {body_b, pose_b});
+            if (least > 1e-6) CHECK_FALSE(convex::intersects({shape_a, pose_a}, {shape_b, pose_b}));
+            if (least == 0.0) CHECK(convex::intersects({shape_a, pose_a}, {shape_b, pose_b}));
+            const convex::Distance d = convex::distance({shape_a, pose_a}, {shape_b, pose_b});
             if (least == 0.0 || least > 1e-6) check_distance(d, a, b, least, size);
             apart += least > 0.0;
         }

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "random_bodies.hpp"
+#include "random_shapes.hpp"
 #include "surfaces.hpp"
 
 using namespace crofton;
@@ -17,10 +17,10 @@ using namespace crofton::testing;
 
 namespace {
 
-// A body with a straight side or edge: which of its lines touches, in its frame, and which way that looks.
+// A shape with a straight side or edge: which of its lines touches, in its frame, and which way that looks.
 struct Side {
     std::string name;
-    Body body;
+    Shape shape;
     glm::dvec3 from, to, outward;  // of the core's line
     bool round;                    // no sharp edge
 };
@@ -32,26 +32,26 @@ class StraightSides {
         const auto v = [&](double x, double y, double z) {
             return glm::dvec3(double(f(x)), double(f(y)), double(f(z)));
         };
-        const Body box = Body::box({f(0.4), f(1.0), f(0.3)}).value();
-        const Body triangle = Body::triangle({f(0.5), f(-1), 0}, {f(0.5), f(1), 0}, {f(-0.5), f(0.2), 0}).value();
+        const Shape box = Shape::box({f(0.4), f(1.0), f(0.3)}).value();
+        const Shape triangle = Shape::triangle({f(0.5), f(-1), 0}, {f(0.5), f(1), 0}, {f(-0.5), f(0.2), 0}).value();
         // A prism whose edge at x = 0.5 runs along y; its sides meet there at 45 degrees from x.
         const std::vector<glm::vec3> corners{{f(0.5), f(-1), 0},    {f(0.5), f(1), 0},   {0, f(-1), f(0.5)},
                                              {0, f(1), f(0.5)},     {0, f(-1), f(-0.5)}, {0, f(1), f(-0.5)},
                                              {f(-0.3), f(-0.9), 0}, {f(-0.3), f(0.9), 0}};
         hull_ = std::make_unique<Hull>(Hull::build(corners).value());
-        const Body hull = Body::hull(*hull_), cylinder = Body::cylinder(f(1.0), f(0.3)).value(),
-                   cone = Body::cone(f(1.0), f(0.5)).value();
+        const Shape hull = Shape::hull(*hull_), cylinder = Shape::cylinder(f(1.0), f(0.3)).value(),
+                    cone = Shape::cone(f(1.0), f(0.5)).value();
         const double diagonal = std::sqrt(0.5);
         const glm::dvec3 x(1, 0, 0), edge(diagonal, 0, diagonal);
         const glm::dvec3 of_cone = glm::normalize(glm::dvec3(2.0 * double(f(1.0)), double(f(0.5)), 0.0));
-        add("capsule", Body::capsule(f(1.0), f(0.3)).value(), v(0, -1, 0), v(0, 1, 0), x, true);
+        add("capsule", Shape::capsule(f(1.0), f(0.3)).value(), v(0, -1, 0), v(0, 1, 0), x, true);
         add("cylinder", cylinder, v(0.3, -1, 0), v(0.3, 1, 0), x, true);
         add("cone", cone, v(0.5, -1, 0), v(0, 1, 0), of_cone, true);
-        add("rounded cylinder", Body::rounded(cylinder, scale * 0.1).value(), v(0.3, -1, 0), v(0.3, 1, 0), x, true);
-        add("rounded cone", Body::rounded(cone, scale * 0.1).value(), v(0.5, -1, 0), v(0, 1, 0), of_cone, true);
-        add("rounded box", Body::rounded(box, scale * 0.1).value(), v(0.4, -1, 0.3), v(0.4, 1, 0.3), edge, true);
-        add("rounded triangle", Body::rounded(triangle, scale * 0.1).value(), v(0.5, -1, 0), v(0.5, 1, 0), x, true);
-        add("rounded hull", Body::rounded(hull, scale * 0.1).value(), v(0.5, -1, 0), v(0.5, 1, 0), x, true);
+        add("rounded cylinder", Shape::rounded(cylinder, scale * 0.1).value(), v(0.3, -1, 0), v(0.3, 1, 0), x, true);
+        add("rounded cone", Shape::rounded(cone, scale * 0.1).value(), v(0.5, -1, 0), v(0, 1, 0), of_cone, true);
+        add("rounded box", Shape::rounded(box, scale * 0.1).value(), v(0.4, -1, 0.3), v(0.4, 1, 0.3), edge, true);
+        add("rounded triangle", Shape::rounded(triangle, scale * 0.1).value(), v(0.5, -1, 0), v(0.5, 1, 0), x, true);
+        add("rounded hull", Shape::rounded(hull, scale * 0.1).value(), v(0.5, -1, 0), v(0.5, 1, 0), x, true);
         add("box", box, v(0.4, -1, 0.3), v(0.4, 1, 0.3), edge, false);
         add("hull", hull, v(0.5, -1, 0), v(0.5, 1, 0), x, false);
         add("triangle", triangle, v(0.5, -1, 0), v(0.5, 1, 0), x, false);
@@ -59,9 +59,9 @@ class StraightSides {
     std::vector<Side> all;
 
   private:
-    void add(std::string name, const Body& body, const glm::dvec3& from, const glm::dvec3& to,
+    void add(std::string name, const Shape& shape, const glm::dvec3& from, const glm::dvec3& to,
              const glm::dvec3& outward, bool round) {
-        all.push_back({std::move(name), body, from, to, outward, round});
+        all.push_back({std::move(name), shape, from, to, outward, round});
     }
     std::unique_ptr<Hull> hull_;
 };
@@ -99,7 +99,7 @@ glm::dmat3 frame_of(const Side& side) {
 
 TEST_SUITE("convex/parallel_sides") {
     TEST_CASE("round sides and edges within 2 degrees of parallel have a point at each end of their common stretch") {
-        RandomBodies random(5);
+        RandomShapes random(5);
         int asked = 0;
         for (const double scale : {1.0, 1e-3, 250.0, 1e6}) {
             const StraightSides sides(scale);
@@ -127,7 +127,7 @@ TEST_SUITE("convex/parallel_sides") {
                         const double overlap = scale * random.number(0.06, 0.09), shift = scale * random.number(-1, 1);
                         const glm::dvec3 middle_a = turn_a * (0.5 * (a.from + a.to)),
                                          middle_b = turn_b * (0.5 * (b.from + b.to));
-                        const double apart = a.body.radius() + b.body.radius() - overlap;
+                        const double apart = a.shape.radius() + b.shape.radius() - overlap;
                         const glm::dvec3 move_b = middle_a + glm::dvec3(apart, shift, 0) - middle_b;
                         const RigidTransform pose_a{world.rotation * turn_a, world.translation},
                             pose_b{world.rotation * turn_b, world.rotation * move_b + world.translation};
@@ -135,7 +135,7 @@ TEST_SUITE("convex/parallel_sides") {
                             return SegmentInWorld{transform(pose, side.from), transform(pose, side.to)};
                         };
                         const SegmentInWorld line_a = placed(a, pose_a), line_b = placed(b, pose_b);
-                        const BodyAtPose pa{a.body, pose_a}, pb{b.body, pose_b};
+                        const ShapeAtPose pa{a.shape, pose_a}, pb{b.shape, pose_b};
                         const Manifold m = contact_manifold(pa, pb, {.max_points = 8});
                         CAPTURE(i);
                         CAPTURE(degrees);
@@ -147,8 +147,8 @@ TEST_SUITE("convex/parallel_sides") {
                         ++asked;
                         const Stretch s = common(line_a, line_b);
                         for (int k = 0; k < 2; ++k) {
-                            const glm::dvec3 p = s.on_a[k] + a.body.radius() * m.normal,
-                                             q = s.on_b[k] - b.body.radius() * m.normal, middle = 0.5 * (p + q);
+                            const glm::dvec3 p = s.on_a[k] + a.shape.radius() * m.normal,
+                                             q = s.on_b[k] - b.shape.radius() * m.normal, middle = 0.5 * (p + q);
                             double nearest = HUGE_VAL, depth = 0.0;
                             for (int j = 0; j < m.count; ++j)
                                 if (const double d = glm::distance(m.points[j].position, middle); d < nearest) {
@@ -168,7 +168,7 @@ TEST_SUITE("convex/parallel_sides") {
     TEST_CASE("capsules have two points up to two degrees and one beyond, whatever their size") {
         for (const double scale : {1e-6, 1e-3, 1.0, 1e3, 1e9})
             for (const double degrees : {1.5, 1.85, 1.99, 1.999, 2.001, 2.01, 2.5}) {
-                const Body capsule = Body::capsule(float(scale), float(0.5 * scale)).value();
+                const Shape capsule = Shape::capsule(float(scale), float(0.5 * scale)).value();
                 // Nearest at one end: the other is farther by the tilt.
                 const double turn = glm::radians(degrees);
                 const RigidTransform low = at({}), high{glm::mat3_cast(glm::angleAxis(turn, glm::dvec3(0, 0, 1))),

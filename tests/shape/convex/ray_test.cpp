@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rays at bodies of all kinds, against slow oracles in long double.
+// Rays at shapes of all kinds, against slow oracles in long double.
 #include <doctest/doctest.h>
 #include <crofton/convex/query.hpp>
 #include <crofton/mesh/mesh_query.hpp>
@@ -17,7 +17,7 @@
 using namespace crofton;
 using namespace crofton::convex;
 using crofton::testing::at;
-using crofton::testing::RandomBodies;
+using crofton::testing::RandomShapes;
 using crofton::testing::Surface;
 
 namespace {
@@ -65,26 +65,26 @@ Real distance_to_triangle(const Point& p, const Point& a, const Point& b, const 
     return best;
 }
 
-// The signed distance of a point from a body's core, in its frame: by formulas, of hulls by their triangles. Inside it
+// The signed distance of a point from a shape's core, in its frame: by formulas, of hulls by their triangles. Inside it
 // is negative, and not always the distance there.
-Real core_gap(const Body& body, const Point& p) {
-    const Point h = real(body.half_extents());
-    if (body.kind() == Kind::sphere) return length(p);
-    if (body.kind() == Kind::capsule) {
-        const Real end = std::abs(body.vertex(0).y);
+Real core_gap(const Shape& shape, const Point& p) {
+    const Point h = real(shape.half_extents());
+    if (shape.kind() == Kind::sphere) return length(p);
+    if (shape.kind() == Kind::capsule) {
+        const Real end = std::abs(shape.vertex(0).y);
         return length(p - Point{0, std::clamp(p.y, -end, end), 0});
     }
-    if (body.kind() == Kind::box) {
+    if (shape.kind() == Kind::box) {
         const Point q{std::abs(p.x) - h.x, std::abs(p.y) - h.y, std::abs(p.z) - h.z};
         const Real inside = std::max({q.x, q.y, q.z});
         return inside <= 0 ? inside : length({std::max<Real>(q.x, 0), std::max<Real>(q.y, 0), std::max<Real>(q.z, 0)});
     }
     const Real across = std::hypot(p.x, p.z);
-    if (body.kind() == Kind::cylinder) {
+    if (shape.kind() == Kind::cylinder) {
         const Real x = across - h.x, y = std::abs(p.y) - h.y;
         return x <= 0 || y <= 0 ? std::max(x, y) : std::hypot(x, y);
     }
-    if (body.kind() == Kind::cone) {
+    if (shape.kind() == Kind::cone) {
         // The half plane's triangle (0, h), (r, −h), (0, −h): a flat one in space.
         const Point q{across, p.y, 0}, apex{0, h.y, 0}, rim{h.x, -h.y, 0}, base{0, -h.y, 0};
         const Real side = cross(apex - rim, q - rim).z / length(apex - rim);
@@ -92,12 +92,12 @@ Real core_gap(const Body& body, const Point& p) {
         return distance_to_triangle(q, apex, rim, base);
     }
     Real best = std::numeric_limits<Real>::infinity();
-    if (body.kind() == Kind::triangle)
-        return distance_to_triangle(p, real(body.vertex(0)), real(body.vertex(1)), real(body.vertex(2)));
-    const std::span<const std::uint16_t> t = body.hull()->triangles();
+    if (shape.kind() == Kind::triangle)
+        return distance_to_triangle(p, real(shape.vertex(0)), real(shape.vertex(1)), real(shape.vertex(2)));
+    const std::span<const std::uint16_t> t = shape.hull()->triangles();
     Real outermost = -std::numeric_limits<Real>::infinity();
     for (std::size_t i = 0; i + 2 < t.size(); i += 3) {
-        const Point a = real(body.vertex(t[i])), b = real(body.vertex(t[i + 1])), c = real(body.vertex(t[i + 2]));
+        const Point a = real(shape.vertex(t[i])), b = real(shape.vertex(t[i + 1])), c = real(shape.vertex(t[i + 2]));
         const Point n = cross(b - a, c - a);
         outermost = std::max(outermost, dot(p - a, n) / length(n));
         best = std::min(best, distance_to_triangle(p, a, b, c));
@@ -110,7 +110,7 @@ struct Expected {
     Real t = 0;
 };
 
-// Where the ray's gap to the body, a convex function, first is 0: its least place by ternary search, then by halves.
+// Where the ray's gap to the shape, a convex function, first is 0: its least place by ternary search, then by halves.
 Expected first_in(const std::function<Real(Real)>& gap, Real to, Real tolerance) {
     Real low = 0, high = to;
     for (int i = 0; i < 300; ++i) {
@@ -134,9 +134,9 @@ Expected first_in(const std::function<Real(Real)>& gap, Real to, Real tolerance)
     return result;
 }
 
-// The oracle's body: the core's gap less the rounding, in the body's frame.
+// The oracle's shape: the core's gap less the rounding, in the shape's frame.
 struct Scene {
-    Body body;
+    Shape shape;
     RigidTransform pose;
     [[nodiscard]] Point local(const Point& p) const {
         const Point off = p - real(pose.translation);
@@ -145,47 +145,47 @@ struct Scene {
         const Real d = dot(x, cross(y, z));
         return {dot(off, cross(y, z)) / d, dot(off, cross(z, x)) / d, dot(off, cross(x, y)) / d};
     }
-    [[nodiscard]] Real gap(const Point& p) const { return core_gap(body, local(p)) - Real{body.radius()}; }
+    [[nodiscard]] Real gap(const Point& p) const { return core_gap(shape, local(p)) - Real{shape.radius()}; }
 };
 
-Body body_of_kind(RandomBodies& random, int kind, double size) {
+Shape shape_of_kind(RandomShapes& random, int kind, double size) {
     const auto length = [&] { return static_cast<float>(size * random.number(0.1, 1.0)); };
     const double rounding = size * random.number(0.02, 0.5);
     switch (kind) {
         case 0:
-            return *Body::sphere(size * random.number(0.1, 1.0));
+            return *Shape::sphere(size * random.number(0.1, 1.0));
         case 1:
-            return *Body::capsule(length(), length());
+            return *Shape::capsule(length(), length());
         case 2:
             return random.box(size);
         case 3:
             return random.hull(4 + random.index(40), size);
         case 4:
-            return *Body::cylinder(length(), length());
+            return *Shape::cylinder(length(), length());
         case 5:
-            return *Body::cone(length(), length());
+            return *Shape::cone(length(), length());
         case 6:
-            return *Body::rounded(random.box(size), rounding);
+            return *Shape::rounded(random.box(size), rounding);
         case 7:
-            return *Body::rounded(random.hull(4 + random.index(12), size), rounding);
+            return *Shape::rounded(random.hull(4 + random.index(12), size), rounding);
         case 8:
-            return *Body::rounded(*Body::cylinder(length(), length()), rounding);
+            return *Shape::rounded(*Shape::cylinder(length(), length()), rounding);
         case 9:
-            return *Body::rounded(*Body::cone(length(), length()), rounding);
+            return *Shape::rounded(*Shape::cone(length(), length()), rounding);
         default:
             break;
     }
     const auto p = random.points(3, size);
-    return *Body::rounded(*Body::triangle(p[0], p[1], p[2]), rounding);
+    return *Shape::rounded(*Shape::triangle(p[0], p[1], p[2]), rounding);
 }
 constexpr int kKinds = 11;
 
 // Checks all fields against the oracle. Returns whether it could tell.
 bool check_ray(const Scene& scene, const Ray& ray, double size) {
-    const auto hit = raycast({scene.body, scene.pose}, ray);
+    const auto hit = raycast({scene.shape, scene.pose}, ray);
     const Point origin = real(ray.origin), direction = real(ray.direction);
     const Real per_length = 1 / length(direction);
-    // The oracle begins where the ray comes near the body, by exact enough steps of its own.
+    // The oracle begins where the ray comes near the shape, by exact enough steps of its own.
     const Real nearest = dot(real(scene.pose.translation) - origin, direction) * per_length;
     const Real start = std::max<Real>(0, nearest - 4 * Real{size});
     const Real end = std::min<Real>(Real{ray.max_t} / per_length, std::max<Real>(0, nearest + 4 * Real{size}));
@@ -215,9 +215,9 @@ bool check_ray(const Scene& scene, const Ray& ray, double size) {
     REQUIRE(std::abs(scene.gap(point)) <= tolerance + far);
     REQUIRE(std::abs(length(normal) - 1) <= 1e-14L);
     REQUIRE(dot(normal, direction) <= 0);
-    // No point of the body lies beyond the plane through the point: the normal is the surface's.
+    // No point of the shape lies beyond the plane through the point: the normal is the surface's.
     const glm::dvec3 local = glm::transpose(scene.pose.rotation) * hit->normal;
-    const Point farthest = real(scene.pose.rotation * support_point(scene.body, local) + scene.pose.translation);
+    const Point farthest = real(scene.pose.rotation * support_point(scene.shape, local) + scene.pose.translation);
     REQUIRE(dot(farthest - point, normal) <= 1e-6L * Real{size} + far);
     return true;
 }
@@ -225,14 +225,14 @@ bool check_ray(const Scene& scene, const Ray& ray, double size) {
 }  // namespace
 
 TEST_SUITE("convex/ray") {
-    TEST_CASE("a ray meets a body of any kind at its first point, with its normal") {
-        RandomBodies random(4101);
+    TEST_CASE("a ray meets a shape of any kind at its first point, with its normal") {
+        RandomShapes random(4101);
         for (int i = 0; i < 3300; ++i) {
             const double size = std::exp2(random.number(-20.0, 20.0));
-            const Body body = body_of_kind(random, i % kKinds, size);
+            const Shape shape = shape_of_kind(random, i % kKinds, size);
             const glm::dvec3 place = size * std::exp2(random.number(-4.0, 10.0)) * random.direction();
-            const Scene scene{body, {random.rotation(), place}};
-            // From near, inside or far, at a point of about the body.
+            const Scene scene{shape, {random.rotation(), place}};
+            // From near, inside or far, at a point of about the shape.
             const double away = size * (i % 7 == 0 ? random.number(0.0, 0.5) : random.number(1.0, 20.0));
             const glm::dvec3 origin = place + away * random.direction();
             const glm::dvec3 aim = place + size * random.number(0.0, 1.2) * random.direction();
@@ -243,18 +243,18 @@ TEST_SUITE("convex/ray") {
             check_ray(scene, ray, 3.0 * size);
         }
     }
-    TEST_CASE("a ray from very far away meets a body where it does from near") {
-        RandomBodies random(4102);
+    TEST_CASE("a ray from very far away meets a shape where it does from near") {
+        RandomShapes random(4102);
         for (int i = 0; i < 1100; ++i) {
-            const Body body = body_of_kind(random, i % kKinds, 1.0);
-            const Scene scene{body, {random.rotation(), glm::dvec3(0.0)}};
+            const Shape shape = shape_of_kind(random, i % kKinds, 1.0);
+            const Scene scene{shape, {random.rotation(), glm::dvec3(0.0)}};
             // Powers of two keep the ray the same line.
             const glm::dvec3 near = glm::dvec3(glm::vec3(4.0 * random.direction())),
                              way = glm::dvec3(glm::vec3(0.3 * random.direction() - near));
             const int exponent = 10 + random.index(19);
             const Ray from_near{near, way}, from_far{near - std::exp2(exponent) * way, way};
             if ((from_far.origin + std::exp2(exponent) * way) != near) continue;
-            const auto expected = raycast({body, scene.pose}, from_near), hit = raycast({body, scene.pose}, from_far);
+            const auto expected = raycast({shape, scene.pose}, from_near), hit = raycast({shape, scene.pose}, from_far);
             CAPTURE(i);
             REQUIRE(hit.has_value() == expected.has_value());
             if (!hit) continue;
@@ -264,17 +264,17 @@ TEST_SUITE("convex/ray") {
         }
     }
     TEST_CASE("directions of any length, down to the least and up to the largest double, meet the same point") {
-        RandomBodies random(4103);
+        RandomShapes random(4103);
         for (int i = 0; i < 220; ++i) {
-            const Body body = body_of_kind(random, i % kKinds, 1.0);
+            const Shape shape = shape_of_kind(random, i % kKinds, 1.0);
             const RigidTransform pose{random.rotation(), {1.0, 2.0, 3.0}};
             const glm::dvec3 origin = pose.translation + 5.0 * random.direction();
             const glm::dvec3 way = glm::dvec3(glm::vec3(pose.translation - origin));
-            const auto expected = raycast({body, pose}, {origin, way});
+            const auto expected = raycast({shape, pose}, {origin, way});
             for (const int exponent : {-1000, -600, -200, 200, 600, 1000}) {
                 const glm::dvec3 scaled(std::scalbn(way.x, exponent), std::scalbn(way.y, exponent),
                                         std::scalbn(way.z, exponent));
-                const auto hit = raycast({body, pose}, {origin, scaled});
+                const auto hit = raycast({shape, pose}, {origin, scaled});
                 REQUIRE(hit.has_value() == expected.has_value());
                 if (!hit) continue;
                 REQUIRE(hit->point == expected->point);
@@ -284,7 +284,7 @@ TEST_SUITE("convex/ray") {
         }
     }
     TEST_CASE("rays that are none hit nothing") {
-        const Body sphere = *Body::sphere(1.0);
+        const Shape sphere = *Shape::sphere(1.0);
         const double nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
         const glm::dvec3 x(1.0, 0.0, 0.0);
         for (const Ray& ray : {Ray{x, {0, 0, 0}}, Ray{x, {nan, 0, 0}}, Ray{{nan, 0, 0}, x}, Ray{{0, infinite, 0}, x},
@@ -298,7 +298,7 @@ TEST_SUITE("convex/ray") {
         CHECK(!raycast({sphere, at({0, 0, 0})}, {{5, 0, 0}, x}));
     }
     TEST_CASE("a ray that starts on a box's surface has started inside, as intersects says") {
-        const Body box = *Body::box({1, 1, 1});
+        const Shape box = *Shape::box({1, 1, 1});
         const auto on = raycast({box, at({0, 0, 0})}, {{1, 0.5, 0.5}, {1, 0, 0}});
         REQUIRE(on.has_value());
         CHECK(on->started_inside);
@@ -310,20 +310,20 @@ TEST_SUITE("convex/ray") {
         CHECK(before->t <= 1e-15);
     }
     TEST_CASE("a ray that begins on a surface enters at once, or has left, whatever rounding says") {
-        RandomBodies random(4108);
+        RandomShapes random(4108);
         int entered = 0, left = 0;
         for (int i = 0; i < 11000; ++i) {
-            const Body body = body_of_kind(random, i % kKinds, 1.0);
+            const Shape shape = shape_of_kind(random, i % kKinds, 1.0);
             const RigidTransform pose{random.rotation(), 20.0 * random.direction()};
             const glm::dvec3 from = pose.translation + 5.0 * random.direction();
-            const auto first = raycast({body, pose}, {from, pose.translation + 0.3 * random.direction() - from});
+            const auto first = raycast({shape, pose}, {from, pose.translation + 0.3 * random.direction() - from});
             if (!first) continue;
             const double slip = 1e-14 * random.number(-1.0, 1.0);
             const Ray out{first->point + slip * first->normal, first->normal + 0.5 * random.direction()},
                 in{out.origin, -first->normal + 0.5 * random.direction()};
             CAPTURE(i);
             // Into the solid: at once. Out of it: only a start inside is a hit.
-            const auto comes = raycast({body, pose}, in), goes = raycast({body, pose}, out);
+            const auto comes = raycast({shape, pose}, in), goes = raycast({shape, pose}, out);
             REQUIRE(comes.has_value());
             REQUIRE(comes->t <= 1e-12);
             REQUIRE((comes->started_inside || glm::dot(comes->normal, in.direction) < 0.0));
@@ -335,10 +335,10 @@ TEST_SUITE("convex/ray") {
         CHECK(left > 2000);
     }
     TEST_CASE("a ray at a half-space meets its plane, from however far away") {
-        RandomBodies random(4104);
+        RandomShapes random(4104);
         for (int i = 0; i < 2000; ++i) {
             const Plane plane{random.number(0.1, 5.0) * random.direction(), random.number(-3.0, 3.0)};
-            const Body ground = *Body::half_space(plane);
+            const Shape ground = *Shape::half_space(plane);
             const RigidTransform pose{random.rotation(), std::exp2(random.number(-3.0, 12.0)) * random.direction()};
             const Ray ray{pose.translation + std::exp2(random.number(-3.0, 12.0)) * random.direction(),
                           std::exp2(random.number(-9.0, 9.0)) * random.direction()};
@@ -362,14 +362,14 @@ TEST_SUITE("convex/ray") {
         }
     }
     TEST_CASE("a ray at a surface meets the triangle that all triangles one by one say, one-sided or not") {
-        RandomBodies random(4105);
+        RandomShapes random(4105);
         for (int round = 0; round < 60; ++round) {
             const bool is_ground = round % 2 == 0;
             const auto waves = [](double x, double z) { return 0.4 * std::sin(2.0 * x) * std::cos(1.7 * z); };
             const Surface surface =
                 is_ground ? testing::ground(random, 12, 0.5, waves) : testing::soup(random, 150, 3.0, 0.8);
             const Sides sides = round % 4 < 2 ? Sides::both : Sides::front;
-            const Body body = surface.body(sides);
+            const Shape shape = surface.shape(sides);
             const RigidTransform pose{round % 3 == 0 ? glm::dmat3(1.0) : random.rotation(), 10.0 * random.direction()};
             for (int i = 0; i < 100; ++i) {
                 const glm::dvec3 from = 6.0 * random.direction(), aim = 2.0 * random.direction();
@@ -386,7 +386,7 @@ TEST_SUITE("convex/ray") {
                     expected = RayHit{*t, ray.origin + *t * ray.direction, glm::normalize(n), false, {0, k}};
                     if (glm::dot(n, ray.direction) > 0.0) expected->normal = -expected->normal;
                 }
-                const auto hit = raycast({body, pose}, ray);
+                const auto hit = raycast({shape, pose}, ray);
                 REQUIRE(hit.has_value() == expected.has_value());
                 if (!hit) continue;
                 REQUIRE(std::abs(hit->t - expected->t) <= 1e-12);
@@ -398,7 +398,7 @@ TEST_SUITE("convex/ray") {
         }
     }
     TEST_CASE("a ray at hills meets the triangle that all triangles one by one say, and passes holes") {
-        RandomBodies random(4106);
+        RandomShapes random(4106);
         for (int round = 0; round < 40; ++round) {
             const std::uint32_t columns = 2 + std::uint32_t(random.index(30)),
                                 rows = 2 + std::uint32_t(random.index(30));
@@ -409,7 +409,7 @@ TEST_SUITE("convex/ray") {
             materials[0] = 0;
             const HeightField field = HeightField::build({columns, rows, heights, {0.7, 1.3}, materials}).value();
             const Sides sides = round % 2 == 0 ? Sides::front : Sides::both;
-            const Body body = Body::height_field(field, sides);
+            const Shape shape = Shape::height_field(field, sides);
             const RigidTransform pose{random.rotation(), 30.0 * random.direction()};
             const glm::dvec3 size = field.bounds().max - field.bounds().min;
             for (int i = 0; i < 60; ++i) {
@@ -431,7 +431,7 @@ TEST_SUITE("convex/ray") {
                     expected = RayHit{*t, ray.origin + *t * ray.direction, glm::normalize(n), false, {0, k}};
                     if (glm::dot(n, ray.direction) > 0.0) expected->normal = -expected->normal;
                 }
-                const auto hit = raycast({body, pose}, ray);
+                const auto hit = raycast({shape, pose}, ray);
                 REQUIRE(hit.has_value() == expected.has_value());
                 if (!hit) continue;
                 REQUIRE(std::abs(hit->t - expected->t) * glm::length(ray.direction) <= 1e-10);
@@ -442,23 +442,23 @@ TEST_SUITE("convex/ray") {
         }
     }
     TEST_CASE("a ray at a compound meets the first of its parts, those of compounds within, and its ground") {
-        RandomBodies random(4107);
+        RandomShapes random(4107);
         for (int round = 0; round < 150; ++round) {
             std::vector<CompoundChild> inner, children;
             std::vector<Surface> surfaces(1);
             surfaces[0] = testing::soup(random, 20, 1.0, 0.7);
             for (int i = 0; i < 3; ++i)
                 inner.push_back(
-                    {body_of_kind(random, random.index(kKinds), 0.5), {random.rotation(), random.direction()}});
+                    {shape_of_kind(random, random.index(kKinds), 0.5), {random.rotation(), random.direction()}});
             const Compound part = Compound::build(inner).value();
             for (int i = 0; i < 6; ++i)
                 children.push_back(
-                    {body_of_kind(random, random.index(kKinds), 0.5), {random.rotation(), 3.0 * random.direction()}});
-            children.push_back({Body::compound(part), {random.rotation(), 3.0 * random.direction()}});
-            children.push_back({surfaces[0].body(), {random.rotation(), 3.0 * random.direction()}});
+                    {shape_of_kind(random, random.index(kKinds), 0.5), {random.rotation(), 3.0 * random.direction()}});
+            children.push_back({Shape::compound(part), {random.rotation(), 3.0 * random.direction()}});
+            children.push_back({surfaces[0].shape(), {random.rotation(), 3.0 * random.direction()}});
             if (round % 2 == 0)
                 children.push_back(
-                    {*Body::half_space({random.direction(), -2.0}), {random.rotation(), random.direction()}});
+                    {*Shape::half_space({random.direction(), -2.0}), {random.rotation(), random.direction()}});
             const Compound whole = Compound::build(children).value();
             const RigidTransform pose{random.rotation(), 8.0 * random.direction()};
             for (int i = 0; i < 40; ++i) {
@@ -466,8 +466,8 @@ TEST_SUITE("convex/ray") {
                 const Ray ray{origin, pose.translation + 2.0 * random.direction() - origin};
                 std::optional<RayHit> expected;
                 std::uint32_t number = 0;
-                const auto ask = [&](const Body& body, const RigidTransform& place) {
-                    auto hit = raycast({body, place}, ray);
+                const auto ask = [&](const Shape& shape, const RigidTransform& place) {
+                    auto hit = raycast({shape, place}, ray);
                     if (hit) hit->part.child = number;
                     ++number;
                     if (!hit || (expected && expected->started_inside)) return;
@@ -479,12 +479,12 @@ TEST_SUITE("convex/ray") {
                 };
                 for (const CompoundChild& child : children) {
                     const RigidTransform place = product(pose, child.pose);
-                    if (child.body.compound() == nullptr)
-                        ask(child.body, place);
+                    if (child.shape.compound() == nullptr)
+                        ask(child.shape, place);
                     else
-                        for (const CompoundChild& below : inner) ask(below.body, product(place, below.pose));
+                        for (const CompoundChild& below : inner) ask(below.shape, product(place, below.pose));
                 }
-                const auto hit = raycast({Body::compound(whole), pose}, ray);
+                const auto hit = raycast({Shape::compound(whole), pose}, ray);
                 REQUIRE(hit.has_value() == expected.has_value());
                 if (!hit) continue;
                 REQUIRE(hit->t == expected->t);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Manifolds where one body touches with a segment: a side of what is round, an edge, a triangle without area.
+// Manifolds where one shape touches with a segment: a side of what is round, an edge, a triangle without area.
 #include <doctest/doctest.h>
 #include <crofton/convex/query.hpp>
 
 #include "contact_ids.hpp"
-#include "random_bodies.hpp"
+#include "random_shapes.hpp"
 
 using namespace crofton;
 using namespace crofton::convex;
@@ -12,14 +12,14 @@ using namespace crofton::testing;
 
 TEST_SUITE("convex/segment_manifold") {
     TEST_CASE("a capsule that lies across a box has one point above each of two edges") {
-        const Body box = Body::box({1, 1, 1}).value(), capsule = Body::capsule(3, 0.5f).value();
+        const Shape box = Shape::box({1, 1, 1}).value(), capsule = Shape::capsule(3, 0.5f).value();
         for (const double shift : {0.0, 2.5, -3.0}) {
             CAPTURE(shift);
             const RigidTransform ground = at({}),
                                  lying{glm::mat3_cast(glm::angleAxis(1.5707963267948966, glm::dvec3(0, 0, 1))),
                                        {shift, 1.4, 0.25}};
             for (const bool first : {true, false}) {
-                const BodyAtPose low{box, ground}, high{capsule, lying};
+                const ShapeAtPose low{box, ground}, high{capsule, lying};
                 const Manifold m = first ? contact_manifold(low, high) : contact_manifold(high, low);
                 REQUIRE(m.count == 2);
                 CHECK(ids(m).size() == 2);
@@ -37,14 +37,14 @@ TEST_SUITE("convex/segment_manifold") {
     }
 
     TEST_CASE("points of capsules, cylinders and cones on boxes, hulls and triangles differ in their ids") {
-        RandomBodies random(7);
+        RandomShapes random(7);
         int points = 0;
         for (int i = 0; i < 2000; ++i) {
             const float height = static_cast<float>(random.number(0.2, 2.0));
-            const Body round = i % 3 == 0   ? Body::capsule(height, 0.3f).value()
-                               : i % 3 == 1 ? Body::cylinder(height, 0.3f).value()
-                                            : Body::cone(height, 0.3f).value();
-            const Body flat = random.polytope(24);
+            const Shape round = i % 3 == 0   ? Shape::capsule(height, 0.3f).value()
+                                : i % 3 == 1 ? Shape::cylinder(height, 0.3f).value()
+                                             : Shape::cone(height, 0.3f).value();
+            const Shape flat = random.polytope(24);
             const CasePair where = nearly_touching(random, flat, round, -std::pow(10.0, random.number(-6, -1)), 0.0);
             const Manifold m = contact_manifold({flat, where.pose_a}, {round, where.pose_b}, {.max_points = 8});
             CAPTURE(i);
@@ -55,17 +55,17 @@ TEST_SUITE("convex/segment_manifold") {
     }
 
     TEST_CASE("points lie on a triangle whose corners are in line, and on one that is nearly so") {
-        RandomBodies random(8);
-        const Body box = Body::box({0.8f, 1.1f, 0.6f}).value();
+        RandomShapes random(8);
+        const Shape box = Shape::box({0.8f, 1.1f, 0.6f}).value();
         int points = 0;
         for (int i = 0; i < 2000; ++i) {
             // Corners with rounded coordinates in the world, in any order along the line.
             const float width = i % 2 == 0 ? 0.0f : static_cast<float>(std::pow(10.0, random.number(-12, -2)));
             glm::vec3 corners[] = {{2, 0, 0}, {0, 0, 2}, {1, width, 1}};
             std::swap(corners[2], corners[random.index(3)]);
-            const Body sliver = Body::triangle(corners[0], corners[1], corners[2]).value();
+            const Shape sliver = Shape::triangle(corners[0], corners[1], corners[2]).value();
             const CasePair where = nearly_touching(random, box, sliver, -std::pow(10.0, random.number(-6, -1)), 0.0);
-            const BodyAtPose pa{box, where.pose_a}, pb{sliver, where.pose_b};
+            const ShapeAtPose pa{box, where.pose_a}, pb{sliver, where.pose_b};
             const Manifold m = contact_manifold(pa, pb, {.max_points = 8});
             CAPTURE(i);
             for (int k = 0; k < m.count; ++k) {

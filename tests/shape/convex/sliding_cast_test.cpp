@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Casts of bodies that slide over flush parts, land on them, and meet what stands on them.
+// Casts of shapes that slide over flush parts, land on them, and meet what stands on them.
 #include <doctest/doctest.h>
 #include <array>
 #include <cmath>
@@ -16,36 +16,36 @@ namespace {
 
 constexpr double kTenthOfADegree = 1.7453e-3;
 
-// A floor whose top is y = 0 of a frame, in one of the forms that bodies of parts have.
+// A floor whose top is y = 0 of a frame, in one of the forms that shapes of parts have.
 struct Ground {
     Floor tiles;
     Surface surface;
     std::vector<float> zeros;
     std::optional<HeightField> field;
     std::optional<Compound> compound;
-    std::optional<Body> body;
+    std::optional<Shape> shape;
     RigidTransform pose;
 
-    Ground(RandomBodies& random, int form, const RigidTransform& frame) : pose(frame) {
+    Ground(RandomShapes& random, int form, const RigidTransform& frame) : pose(frame) {
         if (form < 6) {
             tiles = form == 5 ? triangulated(random, 0.5f, random.index(2) == 0)
                               : strips(random, static_cast<Tiles>(form), random.index(2) == 0, 0.5f);
             compound = Compound::build(tiles.parts).value();
-            body = Body::compound(*compound);
+            shape = Shape::compound(*compound);
         } else if (form == 6) {
             surface = ground(
                 random, 12, 0.5, [](double, double) { return 0.0; }, random.index(2) * 0.3);
-            body = surface.body(random.index(2) == 0 ? Sides::both : Sides::front);
+            shape = surface.shape(random.index(2) == 0 ? Sides::both : Sides::front);
         } else {
             zeros.assign(13 * 13, 0.0f);
             field = HeightField::build({.columns = 13, .rows = 13, .heights = zeros, .spacing = {0.5, 0.5}}).value();
-            body = Body::height_field(*field);
+            shape = Shape::height_field(*field);
             pose = placed_in(frame, at({-3, 0, -3}));
         }
     }
 };
 
-RigidTransform any_frame(RandomBodies& random, int kind) {
+RigidTransform any_frame(RandomShapes& random, int kind) {
     if (kind == 0) return at({});
     if (kind == 1) return {around_y(random.number(0, 6)), 10.0 * random.direction()};
     const glm::dmat3 turn = random.rotation();
@@ -53,16 +53,16 @@ RigidTransform any_frame(RandomBodies& random, int kind) {
     return {turn, std::exp2(random.number(0.0, 10.0)) * direction};
 }
 
-// A cast of a mover over the ground, with either as the first body. The normal is from the ground.
+// A cast of a mover over the ground, with either as the first shape. The normal is from the ground.
 struct Answer {
     Impact impact;
     glm::dvec3 normal;
 };
-Answer go(const Ground& ground, const Body& mover, const RigidTransform& from, const Motion& motion, bool ground_first,
+Answer go(const Ground& ground, const Shape& mover, const RigidTransform& from, const Motion& motion, bool ground_first,
           const CastOptions& options = {}) {
-    const BodyAtPose floor{*ground.body, ground.pose}, body{mover, from};
-    const Impact i =
-        ground_first ? cast(floor, {}, body, motion, options).value() : cast(body, motion, floor, {}, options).value();
+    const ShapeAtPose floor{*ground.shape, ground.pose}, shape{mover, from};
+    const Impact i = ground_first ? cast(floor, {}, shape, motion, options).value()
+                                  : cast(shape, motion, floor, {}, options).value();
     return {i, ground_first ? i.normal : -i.normal};
 }
 
@@ -71,7 +71,7 @@ bool is_up(const Answer& answer, const glm::dvec3& up) {
 }
 
 // Somewhere over the middle of the floor; on a lattice now and then, where corners and edges come together.
-glm::dvec3 any_place(RandomBodies& random, bool lattice) {
+glm::dvec3 any_place(RandomShapes& random, bool lattice) {
     const double z = random.number(-1.2, 1.2), x = random.number(-1.2, 1.2);
     const glm::dvec3 place(x, 0.0, z);
     return lattice ? glm::round(place * 4.0) / 4.0 : place;
@@ -80,19 +80,19 @@ glm::dvec3 any_place(RandomBodies& random, bool lattice) {
 }  // namespace
 
 TEST_SUITE("convex/sliding_cast") {
-    TEST_CASE("a body in contact with a floor of flush parts slides and leaves without a hit, and presses on it up") {
-        RandomBodies random(9100);
+    TEST_CASE("a shape in contact with a floor of flush parts slides and leaves without a hit, and presses on it up") {
+        RandomShapes random(9100);
         const Sliders sliders(random);
-        std::vector<CompoundChild> shoes{{Body::box({0.2f, 0.125f, 0.2f}).value(), at({-0.2, 0, 0})},
-                                         {Body::box({0.25f, 0.125f, 0.25f}).value(), at({0.25, 0, 0})}};
+        std::vector<CompoundChild> shoes{{Shape::box({0.2f, 0.125f, 0.2f}).value(), at({-0.2, 0, 0})},
+                                         {Shape::box({0.25f, 0.125f, 0.25f}).value(), at({0.25, 0, 0})}};
         const Compound pair = Compound::build(shoes).value();
         for (int round = 0; round < 240; ++round) {
             const RigidTransform frame = any_frame(random, random.index(3));
             const Ground ground(random, round % 8, frame);
             const glm::dvec3 up = frame.rotation[1];
-            for (std::size_t kind = 0; kind <= sliders.bodies.size(); ++kind) {
-                const bool is_pair = kind == sliders.bodies.size(), lattice = random.index(3) == 0;
-                const Body mover = is_pair ? Body::compound(pair) : sliders.bodies[kind];
+            for (std::size_t kind = 0; kind <= sliders.shapes.size(); ++kind) {
+                const bool is_pair = kind == sliders.shapes.size(), lattice = random.index(3) == 0;
+                const Shape mover = is_pair ? Shape::compound(pair) : sliders.shapes[kind];
                 glm::dmat3 turn = lattice && random.index(2) == 0 ? glm::dmat3(1.0) : around_y(random.number(0, 6));
                 if (!lattice && !is_pair && random.index(2) == 0) turn = random.rotation();
                 const std::array gaps{0.0, random.number(-1, 1) * 1e-9, random.number(-1, 1) * 1e-7,
@@ -138,13 +138,13 @@ TEST_SUITE("convex/sliding_cast") {
 
     TEST_CASE(
         "what lands on a floor of flush parts has the floor's normal, however flat its way, at the plane's time") {
-        RandomBodies random(9200);
+        RandomShapes random(9200);
         const Sliders sliders(random);
         // On a flat way a corner is within the tolerance for long, so that seams are often beside it.
         for (int round = 0; round < 480; ++round) {
             const RigidTransform frame = any_frame(random, random.index(3));
             const Ground ground(random, round % 8, frame);
-            for (const Body& mover : sliders.bodies) {
+            for (const Shape& mover : sliders.shapes) {
                 const glm::dmat3 turn = random.rotation();
                 const double steep = random.number(-12.0, 0.0), flat = random.number(-24.0, -12.0);
                 const double height = std::exp2(round / 8 % 2 == 0 ? flat : steep), when = random.number(0.05, 0.9);
@@ -169,14 +169,14 @@ TEST_SUITE("convex/sliding_cast") {
     }
 
     TEST_CASE("a wall on the floor is hit by what slides along, where it stands, and a step is if it is no rounding") {
-        RandomBodies random(9300);
+        RandomShapes random(9300);
         const Sliders sliders(random);
         for (int round = 0; round < 300; ++round) {
             const RigidTransform frame = any_frame(random, random.index(3));
             const glm::dvec3 face = frame.rotation * glm::dvec3(-1, 0, 0);
             // Boxes side by side, a floor and a wall of them whose face is x = 2.
             std::vector<CompoundChild> parts;
-            const Body tile = Body::box({0.25f, 0.25f, 0.25f}).value();
+            const Shape tile = Shape::box({0.25f, 0.25f, 0.25f}).value();
             const bool is_step = round % 3 == 0;
             const double step =
                 is_step ? std::array{1e-7, 4e-6, 1e-3, 0.1}[static_cast<std::size_t>(round / 3 % 4)] : 0.5;
@@ -190,9 +190,10 @@ TEST_SUITE("convex/sliding_cast") {
                 }
             const Compound compound = Compound::build(parts).value();
             Ground ground(random, 7, frame);
-            ground.body = Body::compound(compound);
+            ground.shape = Shape::compound(compound);
             ground.pose = frame;
-            const Body mover = is_step ? sliders.bodies[0] : sliders.bodies[static_cast<std::size_t>(random.index(11))];
+            const Shape mover =
+                is_step ? sliders.shapes[0] : sliders.shapes[static_cast<std::size_t>(random.index(11))];
             const glm::dmat3 turn = is_step || random.index(2) == 0 ? glm::dmat3(1.0) : random.rotation();
             const double gap = std::array{0.0, 5e-7, -5e-7}[static_cast<std::size_t>(random.index(3))];
             const RigidTransform from =
@@ -217,8 +218,8 @@ TEST_SUITE("convex/sliding_cast") {
         }
     }
 
-    TEST_CASE("over a ridge a body leaves the ground, in a valley it meets the other slope where that begins") {
-        RandomBodies random(9400);
+    TEST_CASE("over a ridge a shape leaves the ground, in a valley it meets the other slope where that begins") {
+        RandomShapes random(9400);
         for (int round = 0; round < 400; ++round) {
             const double slope = random.number(0.05, 1.0) * (round % 2 == 0 ? -1.0 : 1.0);
             const RigidTransform frame = any_frame(random, random.index(3));
@@ -226,7 +227,7 @@ TEST_SUITE("convex/sliding_cast") {
             if (round % 4 < 2) {
                 land.surface = ground(
                     random, 12, 0.5, [&](double x, double) { return x <= 0.0 ? 0.0 : slope * x; }, 0.0);
-                land.body = land.surface.body(random.index(2) == 0 ? Sides::both : Sides::front);
+                land.shape = land.surface.shape(random.index(2) == 0 ? Sides::both : Sides::front);
                 land.pose = frame;
             } else {
                 for (std::size_t i = 0; i < land.zeros.size(); ++i)
@@ -234,9 +235,9 @@ TEST_SUITE("convex/sliding_cast") {
                 land.field =
                     HeightField::build({.columns = 13, .rows = 13, .heights = land.zeros, .spacing = {0.5, 0.5}})
                         .value();
-                land.body = Body::height_field(*land.field);
+                land.shape = Shape::height_field(*land.field);
             }
-            const Body mover = Body::box({0.2f, 0.25f, 0.3f}).value();
+            const Shape mover = Shape::box({0.2f, 0.25f, 0.3f}).value();
             const double gap = std::array{0.0, 5e-7, -5e-7}[static_cast<std::size_t>(random.index(3))];
             const double x = random.number(-1.0, -0.5);
             const RigidTransform from = placed_in(frame, {glm::dmat3(1.0), {x, 0.25 + gap, random.number(-1, 1)}});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Bodies that fly straight at surfaces of many triangles, beside the same cast at each triangle by itself.
+// Shapes that fly straight at surfaces of many triangles, beside the same cast at each triangle by itself.
 #include <doctest/doctest.h>
 
 #include <hwy/targets.h>
@@ -14,27 +14,27 @@ using namespace crofton::testing;
 namespace {
 
 struct Flight {
-    RigidTransform surface, body;
-    Motion of_surface, of_body;
+    RigidTransform surface, shape;
+    Motion of_surface, of_shape;
     double speed;
 };
 
-// At a point near one of the triangles, from up to `far` sizes away, past it by about the body's size.
-Flight fly(RandomBodies& random, const Surface& s, const Body& body, double far, double offset) {
+// At a point near one of the triangles, from up to `far` sizes away, past it by about the shape's size.
+Flight fly(RandomShapes& random, const Surface& s, const Shape& shape, double far, double offset) {
     Flight f;
     f.surface.rotation = random.rotation();
     f.surface.translation = offset * random.direction();
-    const double size = body.core_radius() + body.radius();
-    const Body triangle = s.triangle(static_cast<std::size_t>(random.index(static_cast<int>(s.size()))));
+    const double size = shape.core_radius() + shape.radius();
+    const Shape triangle = s.triangle(static_cast<std::size_t>(random.index(static_cast<int>(s.size()))));
     glm::dvec3 target = f.surface.rotation * triangle.vertex(random.index(3)) + f.surface.translation;
     const double beside = random.number(0, 1.2) * size;
     target += beside * random.direction();
     const double length = random.number(0.5, far);
     const glm::dvec3 way = length * random.direction();
-    f.body = {random.rotation(), target - way};
+    f.shape = {random.rotation(), target - way};
     if (random.index(2) == 0) f.of_surface.velocity = random.direction();
     const glm::dvec3 velocity = random.number(1.0, 2.0) * way;
-    f.of_body.velocity = velocity + f.of_surface.velocity;
+    f.of_shape.velocity = velocity + f.of_surface.velocity;
     f.speed = glm::length(velocity);
     return f;
 }
@@ -44,21 +44,21 @@ struct Counts {
 };
 
 // Checks a cast at a whole surface, in both orders, against those at its triangles.
-void check_flight(const Surface& s, const Body& whole, const Body& body, const Flight& f, const CastOptions& options,
+void check_flight(const Surface& s, const Shape& whole, const Shape& shape, const Flight& f, const CastOptions& options,
                   Counts& counts) {
     // How far apart the answers of two ways to advance may be, and what double leaves of the places.
-    const double size = whole.core_radius() + body.core_radius() + body.radius();
-    const double round = body.has_polytope_core() ? 0.0 : 1e-7 * size;
-    const double places = 1e-11 * (size + glm::length(f.body.translation - f.surface.translation)) + round;
+    const double size = whole.core_radius() + shape.core_radius() + shape.radius();
+    const double round = shape.has_polytope_core() ? 0.0 : 1e-7 * size;
+    const double places = 1e-11 * (size + glm::length(f.shape.translation - f.surface.translation)) + round;
     const double apart = (options.tolerance + places) / f.speed;
     Impact first;
     first.time = options.duration;
     for (std::size_t t = 0; t < s.size(); ++t) {
-        const Impact i = cast({s.triangle(t), f.surface}, f.of_surface, {body, f.body}, f.of_body, options).value();
+        const Impact i = cast({s.triangle(t), f.surface}, f.of_surface, {shape, f.shape}, f.of_shape, options).value();
         if (i.result != CastResult::miss && i.time < first.time) first = i;
     }
-    const Impact i = cast({whole, f.surface}, f.of_surface, {body, f.body}, f.of_body, options).value();
-    const Impact back = cast({body, f.body}, f.of_body, {whole, f.surface}, f.of_surface, options).value();
+    const Impact i = cast({whole, f.surface}, f.of_surface, {shape, f.shape}, f.of_shape, options).value();
+    const Impact back = cast({shape, f.shape}, f.of_shape, {whole, f.surface}, f.of_surface, options).value();
     CHECK(i.result == first.result);
     CHECK(back.result == i.result);
     CHECK(back.time == i.time);
@@ -67,19 +67,19 @@ void check_flight(const Surface& s, const Body& whole, const Body& body, const F
     (first.result == CastResult::hit ? counts.hits : counts.misses) += 1;
     if (i.result != CastResult::hit || first.result != CastResult::hit) return;
     // Steep or grazing: the gap closes at least this fast.
-    const double closing = std::max(1e-6, -glm::dot(i.normal, (f.of_body.velocity - f.of_surface.velocity) / f.speed));
+    const double closing = std::max(1e-6, -glm::dot(i.normal, (f.of_shape.velocity - f.of_surface.velocity) / f.speed));
     CHECK(std::abs(i.time - first.time) <= 2.0 * apart / closing);
-    // Where the bodies stand then, and that they have not come nearer before.
-    const RigidTransform then = moved(f.surface, f.of_surface, i.time), b_then = moved(f.body, f.of_body, i.time);
-    const Distance d = distance({s.triangle(i.part_a.triangle), then}, {body, b_then});
+    // Where the shapes stand then, and that they have not come nearer before.
+    const RigidTransform then = moved(f.surface, f.of_surface, i.time), b_then = moved(f.shape, f.of_shape, i.time);
+    const Distance d = distance({s.triangle(i.part_a.triangle), then}, {shape, b_then});
     if (i.time > 0.0) {
         CHECK(d.distance <= options.tolerance + places);
         CHECK(std::abs(d.distance - i.distance) <= places);
-        CHECK(distance({whole, then}, {body, b_then}).distance >= i.distance - 1e-3 * options.tolerance - places);
+        CHECK(distance({whole, then}, {shape, b_then}).distance >= i.distance - 1e-3 * options.tolerance - places);
         for (int k = 1; k < 4; ++k) {
             const double time = i.time * 0.25 * k;
             CHECK_FALSE(
-                intersects({whole, moved(f.surface, f.of_surface, time)}, {body, moved(f.body, f.of_body, time)}));
+                intersects({whole, moved(f.surface, f.of_surface, time)}, {shape, moved(f.shape, f.of_shape, time)}));
         }
     }
     CHECK(glm::length(i.on_b - i.on_a - i.distance * i.normal) <= places + 1e-12 * glm::length(i.on_a));
@@ -90,7 +90,7 @@ void check_flight(const Surface& s, const Body& whole, const Body& body, const F
 
 TEST_SUITE("convex/straight_cast") {
     TEST_CASE("straight flights hit the first of a surface's triangles, whatever flies and however it passes") {
-        RandomBodies random(11);
+        RandomShapes random(11);
         Counts counts;
         for (int round = 0; round < 1200; ++round) {
             const int kind = round % 4;
@@ -99,11 +99,11 @@ TEST_SUITE("convex/straight_cast") {
                               : kind == 2
                                   ? ground(random, 6, 0.4, [](double x, double z) { return 0.3 * std::sin(3 * x + z); })
                                   : ground(random, 6, 0.05, [](double x, double z) { return x * z; });
-            // Triangles from larger than the body to a hundred times smaller.
-            const Body body = any_body(random, round % 3 == 0 ? 0.05 : round % 3 == 1 ? 0.5 : 4.0);
-            const Flight f = fly(random, s, body, round % 5 == 0 ? 1e4 : 5.0, round % 7 == 0 ? 1e5 : 0.0);
+            // Triangles from larger than the shape to a hundred times smaller.
+            const Shape shape = any_shape(random, round % 3 == 0 ? 0.05 : round % 3 == 1 ? 0.5 : 4.0);
+            const Flight f = fly(random, s, shape, round % 5 == 0 ? 1e4 : 5.0, round % 7 == 0 ? 1e5 : 0.0);
             const double tolerance = round % 7 == 0 || round % 5 == 0 ? 1e-4 : round % 2 == 0 ? 1e-6 : 1e-3;
-            check_flight(s, s.body(), body, f,
+            check_flight(s, s.shape(), shape, f,
                          {.duration = random.number(0.5, 2.0), .tolerance = tolerance, .max_steps = 5000}, counts);
         }
         CHECK(counts.hits > 500);
@@ -111,23 +111,23 @@ TEST_SUITE("convex/straight_cast") {
     }
 
     TEST_CASE("at the edge of a touch: balls, capsules and boxes that miss or hit a triangle by a hair") {
-        RandomBodies random(12);
+        RandomShapes random(12);
         int told[2] = {0, 0};
         for (int round = 0; round < 1500; ++round) {
             const Surface s = soup(random, 1, 0.5, 0.5);
-            const Body triangle = s.triangle(0);
-            const Body body = round % 3 == 0   ? Body::sphere(0.3f).value()
-                              : round % 3 == 1 ? Body::capsule(0.3f, 0.2f).value()
-                                               : random.box(0.5);
+            const Shape triangle = s.triangle(0);
+            const Shape shape = round % 3 == 0   ? Shape::sphere(0.3f).value()
+                                : round % 3 == 1 ? Shape::capsule(0.3f, 0.2f).value()
+                                                 : random.box(0.5);
             // Along a plane across n they are `gap` apart all the way, where n is what parts them.
             const glm::dvec3 n = random.direction(), along = glm::normalize(glm::cross(n, random.direction()));
             const glm::dmat3 turned = random.rotation();
             const glm::dvec3 high = support_point(triangle, n),
-                             low = turned * support_point(body, glm::transpose(turned) * -n);
+                             low = turned * support_point(shape, glm::transpose(turned) * -n);
             const double gap = (round % 2 == 0 ? 1.0 : -1.0) * random.number(1e-7, 1e-5);
             const RigidTransform from{turned, high - low + gap * n - 2.0 * along};
             const CastOptions options{.duration = 1.0, .tolerance = 1e-8};
-            const Impact i = cast({s.body(), at({})}, {}, {body, from}, {4.0 * along, {}, {}}, options).value();
+            const Impact i = cast({s.shape(), at({})}, {}, {shape, from}, {4.0 * along, {}, {}}, options).value();
             if (gap > 0.0) {
                 CHECK(i.result == CastResult::miss);
             } else {
@@ -142,15 +142,16 @@ TEST_SUITE("convex/straight_cast") {
     }
 
     TEST_CASE("a straight cast tells the same bits on every instruction set") {
-        RandomBodies random(13);
+        RandomShapes random(13);
         const Surface s =
             ground(random, 24, 0.1, [](double x, double z) { return 0.1 * std::sin(5 * x) * std::cos(4 * z); });
-        const Body surface = s.body();
+        const Shape surface = s.shape();
         for (int round = 0; round < 60; ++round) {
-            const Body body = any_body(random, round % 2 == 0 ? 0.4 : 0.05);
-            const Flight f = fly(random, s, body, 5.0, 0.0);
+            const Shape shape = any_shape(random, round % 2 == 0 ? 0.4 : 0.05);
+            const Flight f = fly(random, s, shape, 5.0, 0.0);
             const auto ask = [&] {
-                return cast({surface, f.surface}, f.of_surface, {body, f.body}, f.of_body, {.tolerance = 1e-3}).value();
+                return cast({surface, f.surface}, f.of_surface, {shape, f.shape}, f.of_shape, {.tolerance = 1e-3})
+                    .value();
             };
             const Impact best = ask();
             for (std::int64_t rest = hwy::SupportedTargets(); rest != 0; rest &= rest - 1) {
@@ -168,7 +169,7 @@ TEST_SUITE("convex/straight_cast") {
     }
 
     TEST_CASE("height fields with holes: straight flights hit the first of the cells' triangles") {
-        RandomBodies random(14);
+        RandomShapes random(14);
         int hits = 0;
         for (int round = 0; round < 200; ++round) {
             constexpr std::uint32_t kSide = 14;
@@ -189,25 +190,26 @@ TEST_SUITE("convex/straight_cast") {
                 }
                 number.push_back(t);
             }
-            const Body body = any_body(random, 0.5);
-            const Flight f = fly(random, s, body, 6.0, 0.0);
+            const Shape shape = any_shape(random, 0.5);
+            const Flight f = fly(random, s, shape, 6.0, 0.0);
             const CastOptions options{.tolerance = 1e-5, .max_steps = 5000};
             Impact first;
             first.time = 1.0;
             for (const std::uint32_t t : number) {
                 const Triangle c = field.triangle(t);
-                const Body triangle = Body::triangle(glm::vec3(c[0]), glm::vec3(c[1]), glm::vec3(c[2])).value();
-                const Impact i = cast({triangle, f.surface}, f.of_surface, {body, f.body}, f.of_body, options).value();
+                const Shape triangle = Shape::triangle(glm::vec3(c[0]), glm::vec3(c[1]), glm::vec3(c[2])).value();
+                const Impact i =
+                    cast({triangle, f.surface}, f.of_surface, {shape, f.shape}, f.of_shape, options).value();
                 if (i.result != CastResult::miss && i.time < first.time) first = i;
             }
-            const Impact i = cast({Body::height_field(field, Sides::both), f.surface}, f.of_surface, {body, f.body},
-                                  f.of_body, options)
+            const Impact i = cast({Shape::height_field(field, Sides::both), f.surface}, f.of_surface, {shape, f.shape},
+                                  f.of_shape, options)
                                  .value();
             CHECK(i.result == first.result);
             if (i.result != CastResult::hit) continue;
             ++hits;
             const double closing =
-                std::max(1e-6, -glm::dot(i.normal, (f.of_body.velocity - f.of_surface.velocity) / f.speed));
+                std::max(1e-6, -glm::dot(i.normal, (f.of_shape.velocity - f.of_surface.velocity) / f.speed));
             CHECK(std::abs(i.time - first.time) <= 2.0 * (1e-5 + 1e-6) / f.speed / closing);
         }
         CHECK(hits > 80);

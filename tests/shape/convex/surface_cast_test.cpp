@@ -11,11 +11,11 @@ using namespace crofton::testing;
 
 TEST_SUITE("convex/surface_cast") {
     TEST_CASE("the first touch with a surface is the first of its triangles' one by one, under any motion of both") {
-        RandomBodies random(1);
+        RandomShapes random(1);
         int hits = 0, misses = 0;
         for (int round = 0; round < 150; ++round) {
             const Surface s = soup(random, 80, 3.0, 0.4);
-            const Body body = s.body(), b = any_body(random, 0.4);
+            const Shape shape = s.shape(), b = any_shape(random, 0.4);
             const double offset = round % 3 == 0 ? 1e6 : 0.0;
             const RigidTransform pose{random.rotation(), offset * random.direction()};
             const RigidTransform pose_b{random.rotation(), pose.translation + 5.0 * random.direction()};
@@ -30,8 +30,8 @@ TEST_SUITE("convex/surface_cast") {
                 const Impact i = cast({s.triangle(t), pose}, motion, {b, pose_b}, flying, options).value();
                 if (i.result != CastResult::miss && i.time < first.time) first = i;
             }
-            const Impact i = cast({body, pose}, motion, {b, pose_b}, flying, options).value();
-            const Impact back = cast({b, pose_b}, flying, {body, pose}, motion, options).value();
+            const Impact i = cast({shape, pose}, motion, {b, pose_b}, flying, options).value();
+            const Impact back = cast({b, pose_b}, flying, {shape, pose}, motion, options).value();
             CHECK(i.result == first.result);
             CHECK(std::abs(i.time - first.time) <= 2e-6);
             CHECK(back.result == first.result);
@@ -41,7 +41,7 @@ TEST_SUITE("convex/surface_cast") {
             if (i.result != CastResult::hit) continue;
             // A flight that ends just behind the touch hits as well.
             const CastOptions shorter{.duration = i.time * 1.001 + 1e-4, .tolerance = 1e-6, .max_steps = 5000};
-            CHECK(cast({body, pose}, motion, {b, pose_b}, flying, shorter).value().result == CastResult::hit);
+            CHECK(cast({shape, pose}, motion, {b, pose_b}, flying, shorter).value().result == CastResult::hit);
             const RigidTransform then = moved(pose, motion, i.time), b_then = moved(pose_b, flying, i.time);
             CHECK(distance({s.triangle(i.part_a.triangle), then}, {b, b_then}).distance <= 1e-6 + 1e-9 * offset);
         }
@@ -51,7 +51,7 @@ TEST_SUITE("convex/surface_cast") {
 
     TEST_CASE(
         "two surfaces that turn first touch where the first two of their triangles do, from contact and from afar") {
-        RandomBodies random(31);
+        RandomShapes random(31);
         int hits = 0, misses = 0, at_start = 0;
         for (int round = 0; round < 60; ++round) {
             const Surface s = soup(random, 14, 1.5, 0.5), other = soup(random, 12, 1.5, 0.5);
@@ -73,8 +73,8 @@ TEST_SUITE("convex/surface_cast") {
                         cast({s.triangle(t), pose}, motion_a, {other.triangle(u), pose_b}, motion_b, options).value();
                     if (i.result != CastResult::miss && i.time < first.time) first = i;
                 }
-            const Impact i = cast({s.body(), pose}, motion_a, {other.body(), pose_b}, motion_b, options).value();
-            const Impact back = cast({other.body(), pose_b}, motion_b, {s.body(), pose}, motion_a, options).value();
+            const Impact i = cast({s.shape(), pose}, motion_a, {other.shape(), pose_b}, motion_b, options).value();
+            const Impact back = cast({other.shape(), pose_b}, motion_b, {s.shape(), pose}, motion_a, options).value();
             CHECK(i.result == first.result);
             CHECK(back.result == first.result);
             CHECK(std::abs(i.time - first.time) <= 2e-6);
@@ -93,12 +93,12 @@ TEST_SUITE("convex/surface_cast") {
     }
 
     TEST_CASE("equal surfaces at one pose touch at once, whether they fly or turn, at about the same cost") {
-        RandomBodies random(32);
+        RandomShapes random(32);
         const Surface s = ground(random, 30, 0.1, [](double x, double z) { return std::sin(3 * x + z); });
-        const Body body = s.body();
+        const Shape shape = s.shape();
         const auto seconds = [&](const Motion& motion) {
             const std::clock_t start = std::clock();
-            const Impact i = cast({body, at({})}, {}, {body, at({})}, motion, {}).value();
+            const Impact i = cast({shape, at({})}, {}, {shape, at({})}, motion, {}).value();
             CHECK(i.result == CastResult::hit);
             CHECK(i.time == 0.0);
             return double(std::clock() - start) / CLOCKS_PER_SEC;
@@ -110,9 +110,9 @@ TEST_SUITE("convex/surface_cast") {
     }
 
     TEST_CASE("no floor is too thin, no way too long: a grain at 1e5 a second through 20,000 triangles") {
-        RandomBodies random(2);
+        RandomShapes random(2);
         const Surface s = ground(random, 100, 0.2, [](double x, double z) { return 0.1 * std::sin(3 * x + z); });
-        const Body floor = s.body(), grain = Body::box({1e-3f, 1e-3f, 1e-3f}).value();
+        const Shape floor = s.shape(), grain = Shape::box({1e-3f, 1e-3f, 1e-3f}).value();
         for (int i = 0; i < 100; ++i) {
             const glm::dvec3 target(random.number(-8, 8), 0.0, random.number(-8, 8));
             glm::dvec3 way = 1e5 * random.direction();
@@ -128,13 +128,13 @@ TEST_SUITE("convex/surface_cast") {
         CHECK(along.result == CastResult::miss);
     }
 
-    TEST_CASE("front sides alone: from behind a body passes, from the front it hits") {
-        RandomBodies random(3);
+    TEST_CASE("front sides alone: from behind a shape passes, from the front it hits") {
+        RandomShapes random(3);
         const Surface s = ground(random, 16, 0.5, [](double, double) { return 0.0; });
-        const Body front = s.body(Sides::front), sphere = Body::sphere(0.25f).value();
+        const Shape front = s.shape(Sides::front), sphere = Shape::sphere(0.25f).value();
         const Motion up{{0, 4, 0}, {}, {}}, down{{0, -4, 0}, {}, {}};
         CHECK(cast({sphere, at({0.1, -2, 0})}, up, {front, at({})}, {}).value().result == CastResult::miss);
-        CHECK(cast({sphere, at({0.1, -2, 0})}, up, {s.body(), at({})}, {}).value().result == CastResult::hit);
+        CHECK(cast({sphere, at({0.1, -2, 0})}, up, {s.shape(), at({})}, {}).value().result == CastResult::hit);
         const Impact hit = cast({sphere, at({0.1, 2, 0})}, down, {front, at({})}, {}).value();
         CHECK(hit.result == CastResult::hit);
         CHECK(hit.time == doctest::Approx(1.75 / 4).epsilon(1e-5));
@@ -142,13 +142,13 @@ TEST_SUITE("convex/surface_cast") {
     }
 
     TEST_CASE("bad motions are named errors also for surfaces") {
-        RandomBodies random(4);
+        RandomShapes random(4);
         const Surface s = soup(random, 3, 1.0, 1.0);
-        const Body body = s.body(), sphere = Body::sphere(1.0f).value();
-        const auto bad = cast({body, at({})}, {{NAN, 0, 0}, {}, {}}, {sphere, at({})}, {});
+        const Shape shape = s.shape(), sphere = Shape::sphere(1.0f).value();
+        const auto bad = cast({shape, at({})}, {{NAN, 0, 0}, {}, {}}, {sphere, at({})}, {});
         REQUIRE_FALSE(bad.has_value());
         CHECK(bad.error().code == ErrorCode::non_finite);
-        CHECK(cast({body, at({})}, {}, {sphere, at({9, 0, 0})}, {}, {.duration = 0.0}).value().result ==
+        CHECK(cast({shape, at({})}, {}, {sphere, at({9, 0, 0})}, {}, {.duration = 0.0}).value().result ==
               CastResult::miss);
     }
 }

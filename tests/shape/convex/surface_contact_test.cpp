@@ -18,7 +18,7 @@ RigidTransform turned(double angle, const glm::dvec3& p) {
 }
 
 // Winds some triangles the other way, none, or all.
-void turn_some_over(RandomBodies& random, Surface& s) {
+void turn_some_over(RandomShapes& random, Surface& s) {
     const int one_in = std::array{1, 2, 5, 1 << 30}[static_cast<std::size_t>(random.index(4))];
     for (std::size_t t = 0; t < s.mesh.indices.size(); t += 3)
         if (random.index(one_in) == 0) std::swap(s.mesh.indices[t], s.mesh.indices[t + 1]);
@@ -29,12 +29,12 @@ void turn_some_over(RandomBodies& random, Surface& s) {
 
 TEST_SUITE("convex/surface_contact") {
     TEST_CASE("triangles that share nothing have the manifolds of single triangles") {
-        RandomBodies random(1);
+        RandomShapes random(1);
         int touching = 0;
         Manifolds found;
         for (int round = 0; round < 200; ++round) {
             const Surface s = soup(random, 60, 2.0, 0.5);
-            const Body b = any_body(random, 0.7), body = s.body();
+            const Shape b = any_shape(random, 0.7), shape = s.shape();
             const RigidTransform pose{random.rotation(), {}}, pose_b{random.rotation(), random.direction()};
             const ManifoldOptions options{.margin = 0.05, .max_points = 8};
             double deepest = -1.0;
@@ -45,7 +45,7 @@ TEST_SUITE("convex/surface_contact") {
                 deepest = std::max(deepest, m.depth);
                 touched.insert(static_cast<std::uint32_t>(t));
             }
-            contact_manifolds({body, pose}, {b, pose_b}, options, found);
+            contact_manifolds({shape, pose}, {b, pose_b}, options, found);
             double told = -1.0;
             std::set<std::uint32_t> parts;
             for (const Manifold& m : found.all()) {
@@ -58,7 +58,7 @@ TEST_SUITE("convex/surface_contact") {
             CHECK(std::includes(touched.begin(), touched.end(), parts.begin(), parts.end()));
             if (found.all().size() == touched.size()) CHECK(parts == touched);
             touching += touched.empty() ? 0 : 1;
-            contact_manifolds({b, pose_b}, {body, pose}, options, found);
+            contact_manifolds({b, pose_b}, {shape, pose}, options, found);
             double reversed = -1.0;
             for (const Manifold& m : found.all()) reversed = std::max(reversed, m.depth);
             CHECK(reversed == doctest::Approx(deepest));
@@ -67,19 +67,19 @@ TEST_SUITE("convex/surface_contact") {
     }
 
     TEST_CASE("a polytope has contact points iff it meets a surface, also where edges and vertices are shared") {
-        RandomBodies random(8);
+        RandomShapes random(8);
         int meeting = 0, apart = 0;
         for (int round = 0; round < 100; ++round) {
             const Surface s = tangle(random, 6, 4);
-            const Body body = s.body();
+            const Shape shape = s.shape();
             for (int i = 0; i < 200; ++i) {
-                const Body b = random.polytope(12, 0.3);
+                const Shape b = random.polytope(12, 0.3);
                 const RigidTransform pose{random.rotation(), (i % 3 == 0 ? 1e3 : 0.0) * random.direction()};
                 const double gap = (i % 2 == 0 ? 1.0 : -1.0) * std::pow(10.0, -random.number(4, 14));
                 const RigidTransform pose_b = next_to(random, s, pose, b, gap);
-                const bool truth = intersects({body, pose}, {b, pose_b});
-                CHECK((contact_manifold({body, pose}, {b, pose_b}).count > 0) == truth);
-                CHECK((contact_manifold({b, pose_b}, {body, pose}).count > 0) == truth);
+                const bool truth = intersects({shape, pose}, {b, pose_b});
+                CHECK((contact_manifold({shape, pose}, {b, pose_b}).count > 0) == truth);
+                CHECK((contact_manifold({b, pose_b}, {shape, pose}).count > 0) == truth);
                 (truth ? meeting : apart) += 1;
             }
         }
@@ -87,23 +87,23 @@ TEST_SUITE("convex/surface_contact") {
         CHECK(apart > 3000);
     }
 
-    TEST_CASE("bodies that slide over a triangulated floor meet no inner edge, whatever the floor's place") {
-        RandomBodies random(2);
-        const Body bodies[] = {Body::box({0.5f, 0.5f, 0.5f}).value(),
-                               Body::box({0.05f, 0.5f, 0.05f}).value(),
-                               Body::box({3.0f, 0.5f, 2.0f}).value(),
-                               Body::sphere(0.5f).value(),
-                               Body::capsule(0.2f, 0.3f).value(),
-                               Body::cylinder(0.5f, 0.4f).value(),
-                               Body::rounded(Body::box({0.3f, 0.4f, 0.3f}).value(), 0.1f).value()};
+    TEST_CASE("shapes that slide over a triangulated floor meet no inner edge, whatever the floor's place") {
+        RandomShapes random(2);
+        const Shape shapes[] = {Shape::box({0.5f, 0.5f, 0.5f}).value(),
+                                Shape::box({0.05f, 0.5f, 0.05f}).value(),
+                                Shape::box({3.0f, 0.5f, 2.0f}).value(),
+                                Shape::sphere(0.5f).value(),
+                                Shape::capsule(0.2f, 0.3f).value(),
+                                Shape::cylinder(0.5f, 0.4f).value(),
+                                Shape::rounded(Shape::box({0.3f, 0.4f, 0.3f}).value(), 0.1f).value()};
         Manifolds found;
         for (const double offset : {0.0, 1e6}) {
             const Surface s = ground(random, 24, 0.5, [](double, double) { return 0.0; });
             for (const Sides sides : {Sides::front, Sides::both}) {
-                const Body floor = s.body(sides);
+                const Shape floor = s.shape(sides);
                 const RigidTransform place = at(offset * glm::dvec3(1.0, 0.5, -0.3));
                 for (int i = 0; i < 2000; ++i) {
-                    const Body& b = bodies[i % 7];
+                    const Shape& b = shapes[i % 7];
                     const double depth = std::pow(10.0, -random.number(1.4, 6.0));
                     const RigidTransform pose =
                         turned(random.number(0, 6.2),
@@ -121,7 +121,7 @@ TEST_SUITE("convex/surface_contact") {
     }
 
     TEST_CASE("normals over flat and ridged meshes and fields are those of the surface, on a seam or near it") {
-        RandomBodies random(9600);
+        RandomShapes random(9600);
         const Sliders sliders(random);
         Manifolds found;
         int touching = 0;
@@ -136,13 +136,13 @@ TEST_SUITE("convex/surface_contact") {
             const Sides sides = random.index(2) == 0 ? Sides::front : Sides::both;
             const bool is_field = round % 2 == 0;
             if (!is_field && sides == Sides::both) turn_some_over(random, s);
-            const Body floor = is_field ? Body::height_field(field, sides) : s.body(sides);
+            const Shape floor = is_field ? Shape::height_field(field, sides) : s.shape(sides);
             const glm::dmat3 tilt = random.index(3) == 0 ? glm::dmat3(1.0) : random.rotation();
             const glm::dvec3 direction = random.direction();
             const RigidTransform frame{tilt, std::exp2(random.number(0.0, 8.0)) * direction};
             const RigidTransform place = is_field ? placed_in(frame, at({-4, 0, -4})) : frame;
             for (int i = 0; i < 220; ++i) {
-                const Body& body = sliders.bodies[static_cast<std::size_t>(i % 11)];
+                const Shape& shape = sliders.shapes[static_cast<std::size_t>(i % 11)];
                 const bool lattice = random.index(3) == 0;
                 const glm::dmat3 turn = random.index(2) == 0 ? around_y(random.number(0, 6)) : random.rotation();
                 const double depth =
@@ -150,22 +150,22 @@ TEST_SUITE("convex/surface_contact") {
                 const double z = random.number(-2, 2), x = random.number(-1, 1);
                 glm::dvec3 at_x((slope < 0.0 ? 0.5 : 2.0) * x, 0.0, z);
                 if (lattice) at_x = glm::round(at_x * 4.0) / 4.0;
-                at_x.y = below(body, turn) - depth;
+                at_x.y = below(shape, turn) - depth;
                 const RigidTransform pose = placed_in(frame, {turn, at_x});
-                const bool body_first = random.index(2) == 0;
-                if (body_first)
-                    contact_manifolds({body, pose}, {floor, place}, {}, found);
+                const bool shape_first = random.index(2) == 0;
+                if (shape_first)
+                    contact_manifolds({shape, pose}, {floor, place}, {}, found);
                 else
-                    contact_manifolds({floor, place}, {body, pose}, {}, found);
+                    contact_manifolds({floor, place}, {shape, pose}, {}, found);
                 CAPTURE(round);
                 CAPTURE(i);
                 CAPTURE(depth);
-                if (intersects({body, pose}, {floor, place})) {
+                if (intersects({shape, pose}, {floor, place})) {
                     ++touching;
                     CHECK(!found.all().empty());
                 }
                 for (const Manifold& m : found.all()) {
-                    const glm::dvec3 n = glm::transpose(frame.rotation) * (body_first ? -m.normal : m.normal);
+                    const glm::dvec3 n = glm::transpose(frame.rotation) * (shape_first ? -m.normal : m.normal);
                     // Between the normals of the two faces.
                     CHECK(n.y > 0.0);
                     CHECK(std::abs(n.z) < 2e-3);
@@ -175,7 +175,7 @@ TEST_SUITE("convex/surface_contact") {
                         const ContactPoint& p = m.points[k];
                         if (slope == 0.0) CHECK(p.depth <= depth + 1e-6);
                         if (i % 4 != 0) continue;
-                        CHECK(closest_point({body, pose}, p.position).distance <= 0.5 * p.depth + 1e-5);
+                        CHECK(closest_point({shape, pose}, p.position).distance <= 0.5 * p.depth + 1e-5);
                         CHECK(closest_point({floor, place}, p.position).distance <= 0.5 * p.depth + 1e-5);
                     }
                 }
@@ -184,21 +184,22 @@ TEST_SUITE("convex/surface_contact") {
         CHECK(touching > 40000);
     }
 
-    TEST_CASE("a body along a large triangle has an equally deep point at either end, from the front and from behind") {
+    TEST_CASE(
+        "a shape along a large triangle has an equally deep point at either end, from the front and from behind") {
         Surface s;
         s.mesh.positions = {{-9, 0, -9}, {0, 0, 9}, {9, 0, -9}};
         s.mesh.indices = {0, 1, 2};
         s.build();
-        const Body surface = s.body(), capsule = Body::capsule(0.75f, 0.25f).value(),
-                   cylinder = Body::cylinder(0.75f, 0.25f).value();
+        const Shape surface = s.shape(), capsule = Shape::capsule(0.75f, 0.25f).value(),
+                    cylinder = Shape::cylinder(0.75f, 0.25f).value();
         const RigidTransform still = at({});
         Manifolds found;
-        for (const Body* body : {&capsule, &cylinder})
+        for (const Shape* shape : {&capsule, &cylinder})
             for (const double side : {1.0, -1.0}) {
-                CAPTURE(static_cast<int>(body->kind()));
+                CAPTURE(static_cast<int>(shape->kind()));
                 RigidTransform pose = at({0.5, side * 0.24, -1.0});
                 pose.rotation = {{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}};
-                contact_manifolds({surface, still}, {*body, pose}, {}, found);
+                contact_manifolds({surface, still}, {*shape, pose}, {}, found);
                 REQUIRE(found.all().size() == 1);
                 const Manifold& m = found.all()[0];
                 CHECK(m.normal.y == doctest::Approx(side));
@@ -214,9 +215,9 @@ TEST_SUITE("convex/surface_contact") {
     }
 
     TEST_CASE("a box tilted on the floor is held by its lowest corner or edge, straight up") {
-        RandomBodies random(3);
+        RandomShapes random(3);
         const Surface s = ground(random, 24, 0.5, [](double, double) { return 0.0; });
-        const Body floor = s.body(Sides::front), box = Body::box({0.5f, 0.5f, 0.5f}).value();
+        const Shape floor = s.shape(Sides::front), box = Shape::box({0.5f, 0.5f, 0.5f}).value();
         Manifolds found;
         for (int i = 0; i < 500; ++i) {
             RigidTransform pose{random.rotation(), {random.number(-2, 2), 0.0, random.number(-2, 2)}};
@@ -232,20 +233,20 @@ TEST_SUITE("convex/surface_contact") {
     }
 
     TEST_CASE("a ridge pushes to both sides, a valley along its faces, and a step's edge outward") {
-        RandomBodies random(4);
+        RandomShapes random(4);
         const auto roof = ground(
             random, 16, 0.5, [](double x, double) { return x < 1e-3 ? x : -x; }, 0.0);
         Manifolds found;
-        const Body sphere = Body::sphere(0.25f).value(), box = Body::box({0.25f, 0.25f, 0.25f}).value();
-        contact_manifolds({roof.body(Sides::front), at({})}, {sphere, at({0, 0.2, 0.1})}, {}, found);
+        const Shape sphere = Shape::sphere(0.25f).value(), box = Shape::box({0.25f, 0.25f, 0.25f}).value();
+        contact_manifolds({roof.shape(Sides::front), at({})}, {sphere, at({0, 0.2, 0.1})}, {}, found);
         REQUIRE(found.all().size() == 1);
         CHECK(found.all()[0].normal.y == doctest::Approx(1.0));  // between the two faces' normals
         CHECK(found.all()[0].depth == doctest::Approx(0.05));
-        contact_manifolds({roof.body(Sides::front), at({})}, {box, at({0, 0.2, 0.1})}, {}, found);
+        contact_manifolds({roof.shape(Sides::front), at({})}, {box, at({0, 0.2, 0.1})}, {}, found);
         for (const Manifold& m : found.all()) CHECK(m.normal.y > 0.7);
         const auto valley = ground(
             random, 16, 0.5, [](double x, double) { return std::abs(x); }, 0.0);
-        contact_manifolds({valley.body(Sides::front), at({})}, {sphere, at({0, 0.34, 0.1})}, {}, found);
+        contact_manifolds({valley.shape(Sides::front), at({})}, {sphere, at({0, 0.34, 0.1})}, {}, found);
         REQUIRE(found.all().size() == 2);
         for (const Manifold& m : found.all()) {
             CHECK(m.normal.y == doctest::Approx(std::sqrt(0.5)));
@@ -254,35 +255,35 @@ TEST_SUITE("convex/surface_contact") {
     }
 
     TEST_CASE("front sides alone: what has sunk in is pushed up, what is below is left alone, both sides push down") {
-        RandomBodies random(5);
+        RandomShapes random(5);
         const Surface s = ground(random, 16, 0.5, [](double, double) { return 0.0; });
-        const Body box = Body::box({0.5f, 0.5f, 0.5f}).value(), sphere = Body::sphere(0.5f).value();
+        const Shape box = Shape::box({0.5f, 0.5f, 0.5f}).value(), sphere = Shape::sphere(0.5f).value();
         Manifolds found;
-        for (const Body& b : {box, sphere}) {
-            contact_manifolds({s.body(Sides::front), at({})}, {b, at({0.1, 0.1, 0.2})}, {}, found);
+        for (const Shape& b : {box, sphere}) {
+            contact_manifolds({s.shape(Sides::front), at({})}, {b, at({0.1, 0.1, 0.2})}, {}, found);
             REQUIRE_FALSE(found.all().empty());
             for (const Manifold& m : found.all()) CHECK(m.normal.y == doctest::Approx(1.0));
             CHECK(found.all()[0].depth == doctest::Approx(0.4));
-            contact_manifolds({s.body(Sides::front), at({})}, {b, at({0.1, -0.4, 0.2})}, {}, found);
+            contact_manifolds({s.shape(Sides::front), at({})}, {b, at({0.1, -0.4, 0.2})}, {}, found);
             CHECK(found.all().empty());
-            contact_manifolds({s.body(Sides::both), at({})}, {b, at({0.1, -0.4, 0.2})}, {}, found);
+            contact_manifolds({s.shape(Sides::both), at({})}, {b, at({0.1, -0.4, 0.2})}, {}, found);
             REQUIRE_FALSE(found.all().empty());
             CHECK(found.all()[0].normal.y == doctest::Approx(-1.0));
             CHECK(found.all()[0].depth == doctest::Approx(0.1));
         }
-        CHECK(contact_manifold({s.body(), at({})}, {box, at({0.1, 0.45, 0.2})}).depth == doctest::Approx(0.05));
+        CHECK(contact_manifold({s.shape(), at({})}, {box, at({0.1, 0.45, 0.2})}).depth == doctest::Approx(0.05));
     }
 
-    TEST_CASE("a single sheet of two sides pushes the shorter way, a surface of two sides to the body's side of it") {
-        RandomBodies random(14);
+    TEST_CASE("a single sheet of two sides pushes the shorter way, a surface of two sides to the shape's side of it") {
+        RandomShapes random(14);
         Surface sheet;
         sheet.mesh.positions = {{-9, 0, -9}, {0, 0, 9}, {9, 0, -9}};
         sheet.mesh.indices = {0, 1, 2};
         sheet.build();
-        const Body plank = Body::box({4.0f, 0.05f, 0.2f}).value();
+        const Shape plank = Shape::box({4.0f, 0.05f, 0.2f}).value();
         Manifolds found;
         for (const double y : {0.04, 0.01, -0.01, -0.04}) {
-            contact_manifolds({sheet.body(), at({})}, {plank, at({0, y, 0})}, {}, found);
+            contact_manifolds({sheet.shape(), at({})}, {plank, at({0, y, 0})}, {}, found);
             REQUIRE(found.all().size() == 1);
             CHECK(found.all()[0].normal.y == doctest::Approx(y > 0.0 ? 1.0 : -1.0));
             CHECK(found.all()[0].depth == doctest::Approx(0.05 - std::abs(y)));
@@ -297,7 +298,7 @@ TEST_SUITE("convex/surface_contact") {
             for (const double side : {1.0, -1.0}) {  // also from below, hung up
                 const glm::dmat3 turn{{1, 0, 0}, {0, side, 0}, {0, 0, side}};
                 const RigidTransform place{turn, {0, 0, 0}};
-                contact_manifolds({roof.body(), place}, {plank, at({out - 4.0, side * (0.05 - depth), 0.1})}, {},
+                contact_manifolds({roof.shape(), place}, {plank, at({out - 4.0, side * (0.05 - depth), 0.1})}, {},
                                   found);
                 REQUIRE(!found.all().empty());
                 for (const Manifold& m : found.all()) {
@@ -311,9 +312,9 @@ TEST_SUITE("convex/surface_contact") {
     }
 
     TEST_CASE("ids stay while a box rests and trembles on triangles") {
-        RandomBodies random(6);
+        RandomShapes random(6);
         const Surface s = ground(random, 16, 0.9, [](double, double) { return 0.0; });
-        const Body floor = s.body(Sides::front), box = Body::box({0.5f, 0.5f, 0.5f}).value();
+        const Shape floor = s.shape(Sides::front), box = Shape::box({0.5f, 0.5f, 0.5f}).value();
         Manifolds found;
         int kept = 0, all = 0;
         std::set<std::pair<PartId, std::uint16_t>> before;
@@ -332,7 +333,7 @@ TEST_SUITE("convex/surface_contact") {
     }
 
     TEST_CASE("tracked points keep the caller's numbers while their ids stay, and those that go are counted") {
-        const Body floor = Body::box({9, 1, 9}).value(), box = Body::box({0.5f, 0.5f, 0.5f}).value();
+        const Shape floor = Shape::box({9, 1, 9}).value(), box = Shape::box({0.5f, 0.5f, 0.5f}).value();
         const RigidTransform still = at({});
         Manifolds found;
         PairCache cache;
@@ -363,25 +364,25 @@ TEST_SUITE("convex/surface_contact") {
     }
 
     TEST_CASE("compounds slide over a floor of triangles and meet no inner edge, whichever of the two comes first") {
-        RandomBodies random(12);
+        RandomShapes random(12);
         const Surface s = ground(random, 24, 0.5, [](double, double) { return 0.0; });
-        const CompoundChild children[2] = {{Body::box({0.5f, 0.5f, 0.2f}).value(), at({0, 0, -0.3})},
-                                           {Body::box({0.5f, 0.5f, 0.2f}).value(), at({0, 0, 0.3})}};
+        const CompoundChild children[2] = {{Shape::box({0.5f, 0.5f, 0.2f}).value(), at({0, 0, -0.3})},
+                                           {Shape::box({0.5f, 0.5f, 0.2f}).value(), at({0, 0, 0.3})}};
         const Compound compound = Compound::build(children).value();
         // A mesh far away makes the whole one that has surfaces as well.
-        const CompoundChild mixed[2] = {children[0], {s.body(), at({0, 50, 0})}};
+        const CompoundChild mixed[2] = {children[0], {s.shape(), at({0, 50, 0})}};
         const Compound mixture = Compound::build(mixed).value();
         Manifolds found;
         for (const Sides sides : {Sides::front, Sides::both})
             for (int i = 0; i < 1000; ++i) {
-                const Body floor = s.body(sides), body = Body::compound(i % 2 != 0 ? compound : mixture);
+                const Shape floor = s.shape(sides), shape = Shape::compound(i % 2 != 0 ? compound : mixture);
                 const RigidTransform pose =
                     turned(random.number(0, 6.2), {random.number(-2, 2), 0.49, random.number(-2, 2)});
                 for (const double side : {1.0, -1.0}) {
                     if (side > 0.0)
-                        contact_manifolds({floor, at({})}, {body, pose}, {.margin = 0.01}, found);
+                        contact_manifolds({floor, at({})}, {shape, pose}, {.margin = 0.01}, found);
                     else
-                        contact_manifolds({body, pose}, {floor, at({})}, {.margin = 0.01}, found);
+                        contact_manifolds({shape, pose}, {floor, at({})}, {.margin = 0.01}, found);
                     REQUIRE(found.all().size() == 1);
                     CHECK(side * found.all()[0].normal.y >= 1.0 - 1e-9);
                     CHECK(found.all()[0].depth == doctest::Approx(0.01));
@@ -392,17 +393,17 @@ TEST_SUITE("convex/surface_contact") {
     }
 
     TEST_CASE("front sides alone: a compound or a mesh that is below is left alone, whichever comes first") {
-        RandomBodies random(13);
+        RandomShapes random(13);
         const Surface s = ground(random, 16, 0.5, [](double, double) { return 0.0; });
-        const Body floor = s.body(Sides::front);
-        const CompoundChild child{Body::box({0.5f, 0.5f, 0.5f}).value(), at({})};
+        const Shape floor = s.shape(Sides::front);
+        const CompoundChild child{Shape::box({0.5f, 0.5f, 0.5f}).value(), at({})};
         const Compound compound = Compound::build({&child, 1}).value();
         Surface tooth;
         tooth.mesh.positions = {{-0.5f, -0.5f, 0}, {0.5f, -0.5f, 0}, {0, 0.05f, 0.3f}};
         tooth.mesh.indices = {0, 1, 2};
         tooth.build();
         Manifolds found;
-        for (const Body& b : {Body::compound(compound), tooth.body(), tooth.body(Sides::front)}) {
+        for (const Shape& b : {Shape::compound(compound), tooth.shape(), tooth.shape(Sides::front)}) {
             const double y = b.kind() == Kind::compound ? -0.45 : 0.0;
             for (int i = 0; i < 50; ++i) {
                 const RigidTransform pose =

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Surfaces to ask bodies about: soups, floors of many triangles, fields of heights.
+// Surfaces to ask shapes about: soups, floors of many triangles, fields of heights.
 #pragma once
 #include <crofton/convex/query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <functional>
 #include <vector>
 
-#include "random_bodies.hpp"
+#include "random_shapes.hpp"
 
 namespace crofton::testing {
 
@@ -15,18 +15,18 @@ struct Surface {
     mesh::MeshTree tree;
 
     [[nodiscard]] std::size_t size() const { return mesh.indices.size() / 3; }
-    [[nodiscard]] convex::Body triangle(std::size_t i) const {
+    [[nodiscard]] convex::Shape triangle(std::size_t i) const {
         const auto corner = [&](std::size_t k) { return mesh.positions[mesh.indices[3 * i + k]]; };
-        return convex::Body::triangle(corner(0), corner(1), corner(2)).value();
+        return convex::Shape::triangle(corner(0), corner(1), corner(2)).value();
     }
-    [[nodiscard]] convex::Body body(convex::Sides sides = convex::Sides::both) const {
-        return convex::Body::mesh(tree, sides).value();
+    [[nodiscard]] convex::Shape shape(convex::Sides sides = convex::Sides::both) const {
+        return convex::Shape::mesh(tree, sides).value();
     }
     void build() { tree = mesh::MeshTree::build(mesh).value(); }
 };
 
 // Triangles that share nothing.
-inline Surface soup(RandomBodies& random, int count, double extent, double size) {
+inline Surface soup(RandomShapes& random, int count, double extent, double size) {
     Surface s;
     for (int i = 0; i < count; ++i) {
         const glm::dvec3 at = extent * glm::dvec3(random.number(-1, 1), random.number(-1, 1), random.number(-1, 1));
@@ -40,7 +40,7 @@ inline Surface soup(RandomBodies& random, int count, double extent, double size)
 }
 
 // n × n oblong cells around the origin, with corners moved along the plane; height(x, z).
-inline Surface ground(RandomBodies& random, int n, double cell, const std::function<double(double, double)>& height,
+inline Surface ground(RandomShapes& random, int n, double cell, const std::function<double(double, double)>& height,
                       double jitter = 0.3) {
     Surface s;
     for (int j = 0; j <= n; ++j)
@@ -61,7 +61,7 @@ inline Surface ground(RandomBodies& random, int n, double cell, const std::funct
 }
 
 // Triangles among a few vertices: edges and vertices are shared by many.
-inline Surface tangle(RandomBodies& random, int vertices, int count) {
+inline Surface tangle(RandomShapes& random, int vertices, int count) {
     Surface s;
     for (int i = 0; i < vertices; ++i) s.mesh.positions.emplace_back(random.direction());
     while (s.mesh.indices.size() < 3 * static_cast<std::size_t>(count)) {
@@ -74,9 +74,9 @@ inline Surface tangle(RandomBodies& random, int vertices, int count) {
 }
 
 // b's pose next to one of the triangles, `gap` from it along a random direction.
-inline RigidTransform next_to(RandomBodies& random, const Surface& s, const RigidTransform& pose, const convex::Body& b,
-                              double gap) {
-    const convex::Body triangle = s.triangle(static_cast<std::size_t>(random.index(static_cast<int>(s.size()))));
+inline RigidTransform next_to(RandomShapes& random, const Surface& s, const RigidTransform& pose,
+                              const convex::Shape& b, double gap) {
+    const convex::Shape triangle = s.triangle(static_cast<std::size_t>(random.index(static_cast<int>(s.size()))));
     const glm::dvec3 d = random.direction();
     const RigidTransform turned{random.rotation(), {}};
     const glm::dvec3 from =
@@ -85,20 +85,20 @@ inline RigidTransform next_to(RandomBodies& random, const Surface& s, const Rigi
     return {turned.rotation, from - own + gap * d};
 }
 
-inline convex::Body any_body(RandomBodies& random, double size = 1.0) {
+inline convex::Shape any_shape(RandomShapes& random, double size = 1.0) {
     const float r = static_cast<float>(size * random.number(0.2, 1)),
                 h = static_cast<float>(size * random.number(0.2, 1));
     switch (random.index(7)) {
         case 0:
-            return convex::Body::sphere(r).value();
+            return convex::Shape::sphere(r).value();
         case 1:
-            return convex::Body::capsule(h, 0.5f * r).value();
+            return convex::Shape::capsule(h, 0.5f * r).value();
         case 2:
-            return convex::Body::cylinder(h, r).value();
+            return convex::Shape::cylinder(h, r).value();
         case 3:
-            return convex::Body::cone(h, r).value();
+            return convex::Shape::cone(h, r).value();
         case 4:
-            return convex::Body::rounded(random.box(size), 0.1f * r).value();
+            return convex::Shape::rounded(random.box(size), 0.1f * r).value();
         default:
             return random.polytope(24, size);
     }

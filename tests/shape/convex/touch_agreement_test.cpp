@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Bodies that touch within rounding: every query gives the same yes or no, in either order.
+// Shapes that touch within rounding: every query gives the same yes or no, in either order.
 #include <doctest/doctest.h>
 #include <cmath>
 #include <crofton/convex/query.hpp>
 #include <memory>
 #include <vector>
 
-#include "random_bodies.hpp"
+#include "random_shapes.hpp"
 #include "surfaces.hpp"
 
 using namespace crofton;
@@ -15,8 +15,8 @@ using namespace crofton::testing;
 
 namespace {
 
-// Whether one body ends where the other begins, along the normal: told by all the queries alike.
-void check_agreement(const BodyAtPose& a, const BodyAtPose& b, int& meeting) {
+// Whether one shape ends where the other begins, along the normal: told by all the queries alike.
+void check_agreement(const ShapeAtPose& a, const ShapeAtPose& b, int& meeting) {
     const bool meet = intersects(a, b);
     meeting += meet;
     CHECK(intersects(b, a) == meet);
@@ -25,7 +25,7 @@ void check_agreement(const BodyAtPose& a, const BodyAtPose& b, int& meeting) {
     CHECK((d.normal == glm::dvec3(0.0)) == meet);
     CHECK(d.lower <= d.distance);
     CHECK(d.distance <= d.upper + 1e-12);
-    const bool corners = a.body.has_polytope_core() && b.body.has_polytope_core();
+    const bool corners = a.shape.has_polytope_core() && b.shape.has_polytope_core();
     CHECK(glm::distance(d.on_a, d.on_b) <= (corners ? 1e-11 : 1e-7) * 24.0);
     const Penetration p = penetration(a, b);
     CHECK(p.overlapping == meet);
@@ -45,40 +45,40 @@ void check_agreement(const BodyAtPose& a, const BodyAtPose& b, int& meeting) {
     // Warm from a little deeper in.
     PairCache warm;
     const RigidTransform deeper{b.pose.rotation, b.pose.translation - 1e-3 * (meet ? p.normal : d.normal)};
-    (void)contact_manifold(a, {b.body, deeper}, {}, &warm);
+    (void)contact_manifold(a, {b.shape, deeper}, {}, &warm);
     for (int i = 0; i < 2; ++i) CHECK((contact_manifold(a, b, {}, &warm).count > 0) == meet);
 }
 
 struct Kinds {
     Kinds() {
-        const Body box = Body::box({.5f, .7f, .9f}).value(), cylinder = Body::cylinder(.5f, .8f).value(),
-                   triangle = Body::triangle({-1, 0, -1}, {1, 0, -1}, {0, 0, 1}).value(),
-                   cone = Body::cone(.6f, .5f).value();
-        RandomBodies random(3);
+        const Shape box = Shape::box({.5f, .7f, .9f}).value(), cylinder = Shape::cylinder(.5f, .8f).value(),
+                    triangle = Shape::triangle({-1, 0, -1}, {1, 0, -1}, {0, 0, 1}).value(),
+                    cone = Shape::cone(.6f, .5f).value();
+        RandomShapes random(3);
         hull = std::make_unique<Hull>(Hull::build(random.points(14)).value());
-        const Body of_points = Body::hull(*hull);
-        all = {Body::sphere(.5).value(),
-               Body::sphere(0.0).value(),
-               Body::capsule(.6f, .3f).value(),
-               Body::capsule(.6f, 0.0f).value(),
+        const Shape of_points = Shape::hull(*hull);
+        all = {Shape::sphere(.5).value(),
+               Shape::sphere(0.0).value(),
+               Shape::capsule(.6f, .3f).value(),
+               Shape::capsule(.6f, 0.0f).value(),
                box,
                triangle,
                of_points,
                cylinder,
                cone,
-               Body::rounded(box, .2).value(),
-               Body::rounded(triangle, .2).value(),
-               Body::rounded(of_points, .1).value(),
-               Body::rounded(cylinder, .2).value(),
-               Body::rounded(cone, 1e-6).value(),
-               Body::rounded(box, 1e-13).value()};
+               Shape::rounded(box, .2).value(),
+               Shape::rounded(triangle, .2).value(),
+               Shape::rounded(of_points, .1).value(),
+               Shape::rounded(cylinder, .2).value(),
+               Shape::rounded(cone, 1e-6).value(),
+               Shape::rounded(box, 1e-13).value()};
     }
     std::unique_ptr<Hull> hull;
-    std::vector<Body> all;
+    std::vector<Shape> all;
 };
 
 // b stands so that it ends on a plane on which a ends.
-RigidTransform touching_pose(RandomBodies& random, const Body& a, const RigidTransform& pose, const Body& b) {
+RigidTransform touching_pose(RandomShapes& random, const Shape& a, const RigidTransform& pose, const Shape& b) {
     RigidTransform there{random.rotation(), {}};
     const glm::dvec3 n = random.direction();
     const glm::dvec3 p = pose.rotation * support_point(a, glm::transpose(pose.rotation) * n),
@@ -90,8 +90,8 @@ RigidTransform touching_pose(RandomBodies& random, const Body& a, const RigidTra
 }  // namespace
 
 TEST_SUITE("convex/touch_agreement") {
-    TEST_CASE("bodies that touch within rounding meet for all queries or for none, in either order, warm or cold") {
-        RandomBodies random(17);
+    TEST_CASE("shapes that touch within rounding meet for all queries or for none, in either order, warm or cold") {
+        RandomShapes random(17);
         const Kinds kinds;
         int meeting = 0, asked = 0;
         for (std::size_t i = 0; i < kinds.all.size(); ++i)
@@ -109,8 +109,8 @@ TEST_SUITE("convex/touch_agreement") {
         CHECK(meeting < asked * 9 / 10);
     }
 
-    TEST_CASE("compounds and surfaces that touch a body within rounding meet it for all queries or for none") {
-        RandomBodies random(18);
+    TEST_CASE("compounds and surfaces that touch a shape within rounding meet it for all queries or for none") {
+        RandomShapes random(18);
         const Kinds kinds;
         int meeting = 0, asked = 0;
         for (std::size_t i = 0; i < kinds.all.size(); ++i)
@@ -121,12 +121,12 @@ TEST_SUITE("convex/touch_agreement") {
                     const CompoundChild children[] = {{kinds.all[i], {random.rotation(), 3.0 * random.direction()}},
                                                       {kinds.all[j], {random.rotation(), 40.0 * random.direction()}}};
                     const Compound compound = Compound::build(children).value();
-                    const Body whole = Body::compound(compound);
+                    const Shape whole = Shape::compound(compound);
                     const RigidTransform pose{random.rotation(), std::pow(10.0, k % 7) * random.direction()};
                     const RigidTransform part{pose.rotation * children[0].pose.rotation,
                                               pose.rotation * children[0].pose.translation + pose.translation};
                     const RigidTransform there = touching_pose(random, kinds.all[i], part, kinds.all[j]);
-                    const BodyAtPose a{whole, pose}, b{kinds.all[j], there};
+                    const ShapeAtPose a{whole, pose}, b{kinds.all[j], there};
                     const bool meet = intersects({kinds.all[i], part}, b);
                     CHECK(intersects(a, b) == meet);
                     CHECK(intersects(b, a) == meet);
@@ -141,8 +141,8 @@ TEST_SUITE("convex/touch_agreement") {
         CHECK(meeting < asked * 9 / 10);
     }
 
-    TEST_CASE("a body that touches a mesh within rounding has a contact iff it meets it") {
-        RandomBodies random(19);
+    TEST_CASE("a shape that touches a mesh within rounding has a contact iff it meets it") {
+        RandomShapes random(19);
         const Kinds kinds;
         int meeting = 0, asked = 0;
         for (int round = 0; round < 40; ++round) {
@@ -152,13 +152,13 @@ TEST_SUITE("convex/touch_agreement") {
                     CAPTURE(i);
                     const RigidTransform pose{random.rotation(), 10.0 * random.direction()};
                     RigidTransform there{random.rotation(), pose.translation + 6.0 * random.direction()};
-                    const BodyAtPose a{mesh.body(), pose};
+                    const ShapeAtPose a{mesh.shape(), pose};
                     // Twice, as the nearest points move on a little.
                     for (int step = 0; step < 2; ++step) {
                         const Distance d = distance(a, {kinds.all[i], there});
                         there.translation -= d.distance * d.normal;
                     }
-                    const BodyAtPose b{kinds.all[i], there};
+                    const ShapeAtPose b{kinds.all[i], there};
                     const bool meet = intersects(a, b);
                     CHECK(intersects(b, a) == meet);
                     CHECK((distance(a, b).distance == 0.0) == meet);

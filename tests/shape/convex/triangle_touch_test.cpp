@@ -23,7 +23,7 @@ Surface triangle_of(const glm::dvec3 (&corner)[3]) {
 }
 
 // Of any form: also slivers, tiny ones, and edges along or nearly along the axes.
-Surface one_triangle(RandomBodies& random) {
+Surface one_triangle(RandomShapes& random) {
     const double size = std::pow(10.0, random.number(-3.0, 1.0));
     glm::dvec3 corner[3];
     for (glm::dvec3& p : corner) p = size * random.direction();
@@ -36,37 +36,37 @@ Surface one_triangle(RandomBodies& random) {
     return triangle_of(corner);
 }
 
-Body round_or_box(RandomBodies& random) {
+Shape round_or_box(RandomShapes& random) {
     const float r = static_cast<float>(random.number(0.05, 1)), h = static_cast<float>(random.number(0.0, 1));
     switch (random.index(5)) {
         case 0:
-            return Body::sphere(r).value();
+            return Shape::sphere(r).value();
         case 1:
-            return Body::capsule(h, r).value();
+            return Shape::capsule(h, r).value();
         case 2:
-            return Body::rounded(random.box(), 0.2f * r).value();
+            return Shape::rounded(random.box(), 0.2f * r).value();
         default:
             return random.box();
     }
 }
 
-double size_of(const Body& a, const Body& b, const CasePair& place) {
+double size_of(const Shape& a, const Shape& b, const CasePair& place) {
     return a.core_radius() + b.core_radius() + b.radius() +
            glm::length(place.pose_b.translation - place.pose_a.translation);
 }
 
-// Calls check(random, surface, triangle) for `count` random triangles: as a mesh's surface, and as a body. Returns how
+// Calls check(random, surface, triangle) for `count` random triangles: as a mesh's surface, and as a shape. Returns how
 // many of them are meshes.
 template <class Check>
 int for_each_triangle(std::uint64_t seed, int count, const Check& check) {
-    RandomBodies random(seed);
+    RandomShapes random(seed);
     int checked = 0;
     for (int i = 0; i < count; ++i) {
         const Surface s = one_triangle(random);
         const Result<mesh::MeshTree> tree = mesh::MeshTree::build(s.mesh);
         if (!tree) continue;
         CAPTURE(i);
-        check(random, Body::mesh(*tree).value(), s.triangle(0));
+        check(random, Shape::mesh(*tree).value(), s.triangle(0));
         ++checked;
     }
     return checked;
@@ -76,7 +76,7 @@ int for_each_triangle(std::uint64_t seed, int count, const Check& check) {
 struct Brink {
     RigidTransform meet, apart;
 };
-std::optional<Brink> brink(const BodyAtPose& a, const Body& b, const RigidTransform& about,
+std::optional<Brink> brink(const ShapeAtPose& a, const Shape& b, const RigidTransform& about,
                            const glm::dvec3& direction) {
     const auto moved = [&](double t) { return RigidTransform{about.rotation, about.translation + t * direction}; };
     const auto meets = [&](double t) { return intersects(a, {b, moved(t)}); };
@@ -91,8 +91,8 @@ TEST_SUITE("convex/triangle_touch") {
     TEST_CASE("depth and gap are those of the certified queries, for any triangle, gap and place") {
         Manifolds found;
         int touching = 0, apart = 0;
-        const auto check = [&](RandomBodies& random, const Body& surface, const Body& triangle) {
-            const Body b = round_or_box(random);
+        const auto check = [&](RandomShapes& random, const Shape& surface, const Shape& triangle) {
+            const Shape b = round_or_box(random);
             const double decade = std::pow(10.0, -random.number(0.3, 12.0));
             const double gap = (random.index(2) != 0 ? 1.0 : -1.0) * decade;
             const double offset = random.index(3) == 0 ? 1e7 : random.index(2) == 0 ? 1e3 : 0.0;
@@ -129,8 +129,8 @@ TEST_SUITE("convex/triangle_touch") {
 
     TEST_CASE("the answers do not change with the rotation of the surface, which is rigid to 1e-6 alone") {
         Manifolds found;
-        const auto check = [&](RandomBodies& random, const Body& surface, const Body& triangle) {
-            const Body box = random.box();
+        const auto check = [&](RandomShapes& random, const Shape& surface, const Shape& triangle) {
+            const Shape box = random.box();
             CasePair place = nearly_touching(random, triangle, box, -std::pow(10.0, -random.number(1.0, 5.0)), 0.0);
             for (int k = 0; k < 3; ++k) place.pose_b.rotation[k] += 2e-7 * random.direction();
             contact_manifolds({surface, place.pose_a}, {box, place.pose_b}, {}, found);
@@ -147,7 +147,7 @@ TEST_SUITE("convex/triangle_touch") {
     // The rounded normal of a sliver is not quite across its edges. Its corners differ along it by up to 1e-10 of the
     // size.
     TEST_CASE("a box's corner on a sliver has a point iff they meet, to the last bit") {
-        RandomBodies random(74);
+        RandomShapes random(74);
         Manifolds found;
         int tried = 0;
         for (int i = 0; i < 1500; ++i) {
@@ -156,7 +156,7 @@ TEST_SUITE("convex/triangle_touch") {
             corner[2] = glm::mix(corner[0], corner[1], random.number(0.0, 1.0)) + width * random.direction();
             Surface s = triangle_of(corner);
             s.build();
-            const Body surface = s.body(), box = random.box();
+            const Shape surface = s.shape(), box = random.box();
             const RigidTransform at{random.rotation(), {}}, turned{random.rotation(), {}};
             const auto place = [&](std::uint32_t k) { return at.rotation * glm::dvec3(s.mesh.positions[k]); };
             const glm::dvec3 u = place(1) - place(0), v = place(2) - place(0), n = glm::normalize(glm::cross(u, v));
@@ -177,13 +177,13 @@ TEST_SUITE("convex/triangle_touch") {
 
     // Where a sliver's rounded normal leans by as much as the sliver is wide, its face parts nothing.
     TEST_CASE("a box's corner just above the middle of a thin sliver has no point") {
-        RandomBodies random(76);
+        RandomShapes random(76);
         Manifolds found;
         for (int i = 0; i < 3000; ++i) {
             const double width = std::pow(10.0, random.number(-8.5, -7.0));
             Surface s = triangle_of({{-1, 0, 0}, {1, 0, 0}, {random.number(-0.9, 0.9), width, 0}});
             s.build();
-            const Body surface = s.body(), box = random.box();
+            const Shape surface = s.shape(), box = random.box();
             const RigidTransform at{random.rotation(), {}}, turned{random.rotation(), {}};
             const double height = random.number(0.01, 0.15) * width;
             const glm::dvec3 up = at.rotation[2], middle = glm::dvec3(s.mesh.positions[2]) / 3.0,
@@ -198,13 +198,13 @@ TEST_SUITE("convex/triangle_touch") {
 
     // The axis across edges so nearly parallel is not asked: its neighbours look up to 1e-10 of the size deeper.
     TEST_CASE("a box above a triangle's edge, nearly parallel to its own, has points iff they meet") {
-        RandomBodies random(75);
+        RandomShapes random(75);
         Manifolds found;
         Surface s;
         s.mesh.positions = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0.25f}};
         s.mesh.indices = {0, 1, 2};
         s.build();
-        const Body surface = s.body(), box = Body::box({1.0f, 0.5f, 0.5f}).value();
+        const Shape surface = s.shape(), box = Shape::box({1.0f, 0.5f, 0.5f}).value();
         for (int i = 0; i < 400; ++i) {
             const double angle = std::pow(10.0, random.number(-12.0, -9.0)), slope = random.number(0.2, 1.3);
             const glm::dmat3 turned =
@@ -226,10 +226,10 @@ TEST_SUITE("convex/triangle_touch") {
         }
     }
 
-    TEST_CASE("points lie on both bodies up to half the depth, whatever the features") {
+    TEST_CASE("points lie on both shapes up to half the depth, whatever the features") {
         Manifolds found;
-        const auto check = [&](RandomBodies& random, const Body& surface, const Body& triangle) {
-            const Body b = round_or_box(random);
+        const auto check = [&](RandomShapes& random, const Shape& surface, const Shape& triangle) {
+            const Shape b = round_or_box(random);
             const CasePair place = nearly_touching(random, triangle, b, -1e-3, 0.0);
             contact_manifolds({surface, place.pose_a}, {b, place.pose_b}, {.margin = 0.01}, found);
             // The plane of a sliver is uncertain.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Bodies that touch parts which lie flush: the contacts are those of the union.
+// Shapes that touch parts which lie flush: the contacts are those of the union.
 #include <doctest/doctest.h>
 #include <algorithm>
 #include <cmath>
@@ -14,26 +14,26 @@ using namespace crofton::testing;
 
 namespace {
 
-// A body that is `depth` deep in the floor's plane at its lowest point, in the floor's frame.
-RigidTransform sunk(RandomBodies& random, const Body& body, const Floor& floor, double depth, bool upright) {
+// A shape that is `depth` deep in the floor's plane at its lowest point, in the floor's frame.
+RigidTransform sunk(RandomShapes& random, const Shape& shape, const Floor& floor, double depth, bool upright) {
     glm::dmat3 rotation = around_y(random.number(0, 6.2));
     if (!upright) rotation = random.rotation();
     const double edge = 0.7;
     return {rotation,
-            {random.number(floor.least + edge, floor.most - edge), below(body, rotation) - depth,
+            {random.number(floor.least + edge, floor.most - edge), below(shape, rotation) - depth,
              random.number(floor.least + edge, floor.most - edge)}};
 }
 
 struct Asked {
     const Compound& floor;
     RigidTransform frame;  // of the floor
-    const Body& body;
+    const Shape& shape;
     RigidTransform pose;  // in the frame
     double depth;         // of the lowest point
     bool swapped;
 };
 
-// Every field of every point: on the plane and on the body, along its normal, of a part that is there.
+// Every field of every point: on the plane and on the shape, along its normal, of a part that is there.
 void check_against_plane(const Asked& asked, std::span<const Manifold> found, double tolerance) {
     const glm::dvec3 up = asked.frame.rotation[1];
     const RigidTransform pose = placed_in(asked.frame, asked.pose);
@@ -50,14 +50,14 @@ void check_against_plane(const Asked& asked, std::span<const Manifold> found, do
     std::set<std::tuple<PartId, PartId, Feature, Feature>> ids;
     for (int i = 0; i < m.count; ++i) {
         const ContactPoint& p = m.points[i];
-        const glm::dvec3 half = 0.5 * p.depth * normal, on_floor = p.position + half, on_body = p.position - half;
+        const glm::dvec3 half = 0.5 * p.depth * normal, on_floor = p.position + half, on_shape = p.position - half;
         CHECK(std::abs(glm::dot(on_floor - asked.frame.translation, up)) <= tolerance + 2e-3 * std::abs(p.depth));
-        CHECK(closest_point({asked.body, pose}, on_body).distance <= tolerance + 2e-3 * std::abs(p.depth));
+        CHECK(closest_point({asked.shape, pose}, on_shape).distance <= tolerance + 2e-3 * std::abs(p.depth));
         const PartId id = asked.swapped ? p.part_b : p.part_a;
         REQUIRE(id.child < asked.floor.part_count());
         const CompoundChild& part = asked.floor.part(id.child);
         const RigidTransform there = placed_in(asked.frame, part.pose);
-        CHECK(closest_point({part.body, there}, on_floor).distance <= tolerance + 2e-3 * std::abs(p.depth));
+        CHECK(closest_point({part.shape, there}, on_floor).distance <= tolerance + 2e-3 * std::abs(p.depth));
         CHECK((asked.swapped ? p.part_a : p.part_b) == PartId{});
         ids.insert({p.part_a, p.part_b, p.on_a, p.on_b});
         deepest = std::max(deepest, p.depth);
@@ -66,27 +66,27 @@ void check_against_plane(const Asked& asked, std::span<const Manifold> found, do
     CHECK(deepest == m.depth);
 }
 
-int check_floor(RandomBodies& random, const Floor& floor, const Sliders& sliders, int rounds) {
+int check_floor(RandomShapes& random, const Floor& floor, const Sliders& sliders, int rounds) {
     const Compound compound = Compound::build(floor.parts).value();
     Manifolds found;
     int checked = 0;
     for (int i = 0; i < rounds; ++i) {
-        const std::size_t which = static_cast<std::size_t>(i) % sliders.bodies.size();
+        const std::size_t which = static_cast<std::size_t>(i) % sliders.shapes.size();
         CAPTURE(which);
         CAPTURE(i);
-        const Body& body = sliders.bodies[which];
+        const Shape& shape = sliders.shapes[which];
         const bool upright = i % 3 != 0;
         const double depth = i % 4 == 0 ? -random.number(1e-4, 0.01) : std::pow(10.0, -random.number(1.7, 6.0));
         RigidTransform frame = at({});
         if (i % 5 != 0) frame.rotation = random.rotation();
         if (i % 5 > 2) frame.translation = std::pow(10.0, random.number(0.0, 4.0)) * random.direction();
-        const Asked asked{compound, frame, body, sunk(random, body, floor, depth, upright), depth, i % 7 == 0};
+        const Asked asked{compound, frame, shape, sunk(random, shape, floor, depth, upright), depth, i % 7 == 0};
         const RigidTransform pose = placed_in(frame, asked.pose);
         const ManifoldOptions options{.margin = depth < 0.0 ? 0.02 : 0.0};
         if (asked.swapped)
-            contact_manifolds({body, pose}, {Body::compound(compound), frame}, options, found);
+            contact_manifolds({shape, pose}, {Shape::compound(compound), frame}, options, found);
         else
-            contact_manifolds({Body::compound(compound), frame}, {body, pose}, options, found);
+            contact_manifolds({Shape::compound(compound), frame}, {shape, pose}, options, found);
         // Depths of cylinders and cones are known to 1e-5.
         check_against_plane(asked, found.all(), 3e-5);
         ++checked;
@@ -98,7 +98,7 @@ int check_floor(RandomBodies& random, const Floor& floor, const Sliders& sliders
 
 TEST_SUITE("convex/union_normals") {
     TEST_CASE("over strips of boxes that lie flush, also with T-junctions, every contact is that of one plane") {
-        RandomBodies random(61);
+        RandomShapes random(61);
         const Sliders sliders(random);
         for (int round = 0; round < 24; ++round) {
             CAPTURE(round);
@@ -108,7 +108,7 @@ TEST_SUITE("convex/union_normals") {
     }
 
     TEST_CASE("over hulls, prisms, triangles and any of them that lie flush, every contact is that of one plane") {
-        RandomBodies random(62);
+        RandomShapes random(62);
         const Sliders sliders(random);
         for (const Tiles tiles : {Tiles::hulls, Tiles::prisms, Tiles::triangles, Tiles::mixed})
             for (int round = 0; round < 4; ++round) {
@@ -132,8 +132,8 @@ const Manifold* along(std::span<const Manifold> found, const glm::dvec3& directi
     return nullptr;
 }
 
-Body box_of(const glm::dvec3& size) {
-    return Body::box(glm::vec3(0.5 * size)).value();
+Shape box_of(const glm::dvec3& size) {
+    return Shape::box(glm::vec3(0.5 * size)).value();
 }
 
 // The box from `low` to `high`.
@@ -145,7 +145,7 @@ CompoundChild block(const glm::dvec3& low, const glm::dvec3& high) {
 
 TEST_SUITE("convex/union_normals_of_edges") {
     TEST_CASE("a wall on the floor pushes sideways, next to the floor that pushes up, in any frame") {
-        RandomBodies random(63);
+        RandomShapes random(63);
         Manifolds found;
         for (int i = 0; i < 2000; ++i) {
             CAPTURE(i);
@@ -160,9 +160,9 @@ TEST_SUITE("convex/union_normals_of_edges") {
             const double down = random.number(1e-5, 0.02), in = random.number(1e-5, 0.02);
             const RigidTransform frame{i % 4 == 0 ? glm::dmat3(1.0) : random.rotation(),
                                        (i % 2 == 0 ? 0.0 : 100.0) * random.direction()};
-            const Body body = i % 5 == 0 ? Body::sphere(0.25).value() : Body::box({0.25f, 0.25f, 0.25f}).value();
+            const Shape shape = i % 5 == 0 ? Shape::sphere(0.25).value() : Shape::box({0.25f, 0.25f, 0.25f}).value();
             const RigidTransform pose = placed_in(frame, at({face - 0.25 + in, 0.25 - down, random.number(-3.0, 3.0)}));
-            contact_manifolds({Body::compound(compound), frame}, {body, pose}, {}, found);
+            contact_manifolds({Shape::compound(compound), frame}, {shape, pose}, {}, found);
             CHECK(found.all().size() == 2);
             const Manifold *up = along(found.all(), frame.rotation[1]), *back = along(found.all(), -frame.rotation[0]);
             REQUIRE(up != nullptr);
@@ -173,18 +173,18 @@ TEST_SUITE("convex/union_normals_of_edges") {
     }
 
     TEST_CASE("a step of a centimetre and a gap wider than rounding push sideways, a step within rounding does not") {
-        RandomBodies random(64);
+        RandomShapes random(64);
         Manifolds found;
         for (int i = 0; i < 1000; ++i) {
             CAPTURE(i);
             const double down = random.number(1e-4, 0.009), in = random.number(1e-5, 0.9) * down;
             const RigidTransform frame{random.rotation(), 10.0 * random.direction()};
             const RigidTransform pose = placed_in(frame, at({-0.25 + in, 0.25 - down, random.number(-3.0, 3.0)}));
-            const Body body = Body::box({0.25f, 0.25f, 0.25f}).value();
+            const Shape shape = Shape::box({0.25f, 0.25f, 0.25f}).value();
             const auto ask = [&](double step, double gap) {
                 const CompoundChild parts[] = {block({-4, -1, -4}, {-gap, 0, 4}), block({0, -1, -4}, {4, step, 4})};
                 const Compound compound = Compound::build(parts).value();
-                contact_manifolds({Body::compound(compound), frame}, {body, pose}, {}, found);
+                contact_manifolds({Shape::compound(compound), frame}, {shape, pose}, {}, found);
                 const Manifold *up = along(found.all(), frame.rotation[1]),
                                *back = along(found.all(), -frame.rotation[0]);
                 REQUIRE(up != nullptr);
@@ -203,11 +203,11 @@ TEST_SUITE("convex/union_normals_of_edges") {
 
     TEST_CASE("in a corner of two walls, between floor and ceiling, and over a narrow beam: normals of the union") {
         Manifolds found;
-        const Body body = Body::box({0.25f, 0.25f, 0.25f}).value();
+        const Shape shape = Shape::box({0.25f, 0.25f, 0.25f}).value();
         const double s = 0.004, t = 0.007;
         const CompoundChild corner[] = {block({0, -1, -4}, {1, 1, 4}), block({-4, -1, 0}, {0, 1, 1})};
         const Compound walls = Compound::build(corner).value();
-        contact_manifolds({Body::compound(walls), at({})}, {body, at({-0.25 + s, 0, -0.25 + t})}, {}, found);
+        contact_manifolds({Shape::compound(walls), at({})}, {shape, at({-0.25 + s, 0, -0.25 + t})}, {}, found);
         CHECK(found.all().size() == 2);
         REQUIRE(along(found.all(), {-1, 0, 0}) != nullptr);
         REQUIRE(along(found.all(), {0, 0, -1}) != nullptr);
@@ -217,34 +217,34 @@ TEST_SUITE("convex/union_normals_of_edges") {
         const CompoundChild room[] = {block({-4, -1, -4}, {0, 0, 4}), block({-4, 0.49, -4}, {0, 1, 4}),
                                       block({0, -1, -4}, {1, 1, 4})};
         const Compound passage = Compound::build(room).value();
-        contact_manifolds({Body::compound(passage), at({})}, {body, at({-0.25 + s, 0.245, 0})}, {}, found);
+        contact_manifolds({Shape::compound(passage), at({})}, {shape, at({-0.25 + s, 0.245, 0})}, {}, found);
         CHECK(found.all().size() == 3);
         REQUIRE(along(found.all(), {-1, 0, 0}) != nullptr);
         CHECK(along(found.all(), {-1, 0, 0})->depth == doctest::Approx(s).epsilon(1e-6));
-        // A beam that is narrower than the body leads to a platform.
+        // A beam that is narrower than the shape leads to a platform.
         const CompoundChild beam[] = {block({-4, -1, -0.1}, {0, 0, 0.1}), block({0, -1, -4}, {4, 0, 4})};
         const Compound bridge = Compound::build(beam).value();
-        contact_manifolds({Body::compound(bridge), at({})}, {body, at({-0.25 + s, 0.25 - t, 0})}, {}, found);
+        contact_manifolds({Shape::compound(bridge), at({})}, {shape, at({-0.25 + s, 0.25 - t, 0})}, {}, found);
         CHECK(found.all().size() == 1);
         CHECK(found.all()[0].depth == doctest::Approx(t).epsilon(1e-6));
         CHECK(found.all()[0].normal.y == doctest::Approx(1.0));
-        // A hole that is narrower than the body.
+        // A hole that is narrower than the shape.
         const CompoundChild holed[] = {block({-4, -1, -4}, {0, 0, -0.1}), block({-4, -1, 0.1}, {0, 0, 4}),
                                        block({0, -1, -4}, {4, 0, 4})};
         const Compound floor = Compound::build(holed).value();
-        contact_manifolds({Body::compound(floor), at({})}, {body, at({-0.25 + s, 0.25 - t, 0})}, {}, found);
+        contact_manifolds({Shape::compound(floor), at({})}, {shape, at({-0.25 + s, 0.25 - t, 0})}, {}, found);
         CHECK(found.all().size() == 1);
         CHECK(found.all()[0].normal.y == doctest::Approx(1.0));
-        // Plates thinner than the body has sunk in.
+        // Plates thinner than the shape has sunk in.
         const CompoundChild plates[] = {block({-4, -0.002, -4}, {0, 0, 4}), block({0, -1, -4}, {4, 0, 4})};
         const Compound thin = Compound::build(plates).value();
-        contact_manifolds({Body::compound(thin), at({})}, {body, at({-0.25 + s, 0.25 - t, 0})}, {}, found);
+        contact_manifolds({Shape::compound(thin), at({})}, {shape, at({-0.25 + s, 0.25 - t, 0})}, {}, found);
         for (const Manifold& m : found.all()) CHECK(std::abs(m.normal.y) == doctest::Approx(1.0));
     }
 
     TEST_CASE(
         "a union of hulls pushes as the same union of boxes does, where parts overlap and where they stand apart") {
-        RandomBodies random(68);
+        RandomShapes random(68);
         int touching = 0, several = 0, differing = 0;
         for (int round = 0; round < 300; ++round) {
             std::vector<CompoundChild> boxes, hulls;
@@ -258,18 +258,18 @@ TEST_SUITE("convex/union_normals_of_edges") {
                     corners.push_back(half * glm::vec3(c & 1 ? 1 : -1, c & 2 ? 1 : -1, c & 4 ? 1 : -1));
                 kept.push_back(Hull::build(corners).value());
                 const RigidTransform pose = at({random.number(-1, 1), random.number(-1, 1), random.number(-1, 1)});
-                boxes.push_back({Body::box(half).value(), pose});
-                hulls.push_back({Body::hull(kept.back()), pose});
+                boxes.push_back({Shape::box(half).value(), pose});
+                hulls.push_back({Shape::hull(kept.back()), pose});
             }
             const Compound of_boxes = Compound::build(boxes).value(), of_hulls = Compound::build(hulls).value();
-            const Body mover = round % 2 == 0 ? Body::sphere(0.25).value() : Body::box({0.3f, 0.2f, 0.25f}).value();
+            const Shape mover = round % 2 == 0 ? Shape::sphere(0.25).value() : Shape::box({0.3f, 0.2f, 0.25f}).value();
             for (int i = 0; i < 20; ++i) {
                 const RigidTransform pose{
                     round % 3 == 0 ? glm::dmat3(1.0) : random.rotation(),
                     {random.number(-2.5, 2.5), random.number(-2.5, 2.5), random.number(-2.5, 2.5)}};
                 Manifolds expected, found;
-                contact_manifolds({Body::compound(of_boxes), at({})}, {mover, pose}, {}, expected);
-                contact_manifolds({Body::compound(of_hulls), at({})}, {mover, pose}, {}, found);
+                contact_manifolds({Shape::compound(of_boxes), at({})}, {mover, pose}, {}, expected);
+                contact_manifolds({Shape::compound(of_hulls), at({})}, {mover, pose}, {}, found);
                 CAPTURE(round);
                 CAPTURE(i);
                 if (found.all().size() != expected.all().size()) {
@@ -292,7 +292,7 @@ TEST_SUITE("convex/union_normals_of_edges") {
     }
 
     TEST_CASE("two compounds of flush boxes slide over each other as two boxes do, whichever comes first") {
-        RandomBodies random(65);
+        RandomShapes random(65);
         Manifolds found;
         for (int i = 0; i < 1000; ++i) {
             CAPTURE(i);
@@ -306,9 +306,9 @@ TEST_SUITE("convex/union_normals_of_edges") {
             const RigidTransform pose = placed_in(
                 frame, {around_y(random.number(0, 6.2)), {random.number(-2, 2), 0.2 - depth, random.number(-2, 2)}});
             if (i % 3 == 0)
-                contact_manifolds({Body::compound(above), pose}, {Body::compound(below), frame}, {}, found);
+                contact_manifolds({Shape::compound(above), pose}, {Shape::compound(below), frame}, {}, found);
             else
-                contact_manifolds({Body::compound(below), frame}, {Body::compound(above), pose}, {}, found);
+                contact_manifolds({Shape::compound(below), frame}, {Shape::compound(above), pose}, {}, found);
             REQUIRE(found.all().size() == 1);
             const Manifold& m = found.all()[0];
             CHECK(glm::distance(i % 3 == 0 ? -m.normal : m.normal, frame.rotation[1]) <= 1e-6);

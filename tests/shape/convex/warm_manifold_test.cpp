@@ -10,7 +10,7 @@
 
 #include "contact_ids.hpp"
 #include "counting_memory.hpp"
-#include "random_bodies.hpp"
+#include "random_shapes.hpp"
 
 using namespace crofton;
 using namespace crofton::convex;
@@ -29,12 +29,12 @@ double area(const Manifold& m) {
 }  // namespace
 
 TEST_SUITE("convex/warm_manifold") {
-    TEST_CASE("a warm call returns what a cold one does, up to ties, and ids stay while a body slides and rocks") {
-        RandomBodies random(2);
+    TEST_CASE("a warm call returns what a cold one does, up to ties, and ids stay while a shape slides and rocks") {
+        RandomShapes random(2);
         int kept = 0, frames = 0;
         for (int i = 0; i < 60; ++i) {
-            const Body a = Body::box({2, 0.5f, 2}).value(),
-                       b = i % 2 == 0 ? Body::box({0.5f, 0.5f, 0.5f}).value() : random.hull(32);
+            const Shape a = Shape::box({2, 0.5f, 2}).value(),
+                        b = i % 2 == 0 ? Shape::box({0.5f, 0.5f, 0.5f}).value() : random.hull(32);
             const RigidTransform ground = at({});
             PairCache cache;
             std::set<std::pair<Feature, Feature>> last;
@@ -44,7 +44,7 @@ TEST_SUITE("convex/warm_manifold") {
                 pose.rotation = glm::mat3_cast(glm::angleAxis(1e-3 * std::sin(9 * t), glm::dvec3(0.6, 0, 0.8)));
                 const glm::dvec3 low = support_point(b, glm::transpose(pose.rotation) * glm::dvec3(0, -1, 0));
                 pose.translation.y = 0.5 - (pose.rotation * low).y - 1e-3 - 1e-4 * std::sin(20 * t);
-                const BodyAtPose pa{a, ground}, pb{b, pose};
+                const ShapeAtPose pa{a, ground}, pb{b, pose};
                 const Manifold warm = contact_manifold(pa, pb, {.margin = 0.01}, &cache);
                 const Manifold cold = contact_manifold(pa, pb, {.margin = 0.01});
                 CHECK(std::abs(warm.depth - cold.depth) <= 1e-4 * (a.core_radius() + b.core_radius() + 1.0));
@@ -57,13 +57,13 @@ TEST_SUITE("convex/warm_manifold") {
     }
 
     // The face of the frame before tells of a gap, 2e-6 of the size, where other points meet.
-    TEST_CASE("round bodies that meet by little have a point, whatever face the frame before had") {
+    TEST_CASE("round shapes that meet by little have a point, whatever face the frame before had") {
         const std::vector<glm::vec3> points{{7.75f, 0.0859069824f, -11.125f}, {-6.78479385f, 14.875f, 12.375f},
                                             {0.25f, -11.625f, -9.875f},       {12.75f, 5.75f, 0.625f},
                                             {-12.5f, 0.75f, 1.15012884f},     {0.0f, -12.375f, 3.03466797f},
                                             {14.125f, 1.24355674f, 0.0f}};
         const Hull hull = Hull::build(points).value();
-        const Body a = Body::hull(hull), b = Body::rounded(Body::box(glm::vec3(1.5f)).value(), 2.125f).value();
+        const Shape a = Shape::hull(hull), b = Shape::rounded(Shape::box(glm::vec3(1.5f)).value(), 2.125f).value();
         const RigidTransform pose_a{{{-0.95819209039547992, 0.15819209039548021, -0.23841807909604518},
                                      {-0.072316384180790949, 0.67231638418079109, 0.7367231638418078},
                                      {0.2768361581920904, 0.72316384180790949, -0.63276836158192085}},
@@ -97,8 +97,8 @@ TEST_SUITE("convex/warm_manifold") {
                                               {-0x1.ff5718p-4f, -0x1.ff5718p-4f, 0x1.6aa8e8p+3f},
                                               {-0x1p-3f, -0x1p-3f, 0}};
         const Hull a = Hull::build(sliver).value(), b = Hull::build(wedge).value();
-        const BodyAtPose thin{Body::hull(a), at({0, -0x1.102a3ap-3, -0x1.ff5718p-4})};
-        const Body wide = Body::hull(b);
+        const ShapeAtPose thin{Shape::hull(a), at({0, -0x1.102a3ap-3, -0x1.ff5718p-4})};
+        const Shape wide = Shape::hull(b);
         const RigidTransform touching = at({-0x1.4cp+3, -0x1.0fd5c6p-3, 0}), past = at({-0x1.2cp+3, -0x1.0fd5c6p-3, 0});
         PairCache cache;
         REQUIRE(contact_manifold(thin, {wide, touching}, {}, &cache).count > 0);
@@ -107,7 +107,7 @@ TEST_SUITE("convex/warm_manifold") {
         CHECK(contact_manifold(thin, {wide, past}, {}, &cache).count == 0);
 
         // The same from many places nearby.
-        RandomBodies random(77);
+        RandomShapes random(77);
         int meeting = 0, apart = 0;
         for (int i = 0; i < 20000; ++i) {
             PairCache from = cache;
@@ -123,16 +123,16 @@ TEST_SUITE("convex/warm_manifold") {
     }
 
     TEST_CASE("a face that is no longer the least deep is given up") {
-        const Body box = Body::box({1, 1, 1}).value();
+        const Shape box = Shape::box({1, 1, 1}).value();
         const RigidTransform ground = at({}), top = at({0.5, 1.99, 0.25}), side = at({1.9, 1.5, 0.25});
         PairCache cache;
         CHECK(contact_manifold({box, ground}, {box, top}, {}, &cache).normal.y == doctest::Approx(1.0));
         const Manifold m = contact_manifold({box, ground}, {box, side}, {}, &cache);
         CHECK(m.normal.x == doctest::Approx(1.0));
         CHECK(m.depth == doctest::Approx(0.1));
-        RandomBodies random(5);
+        RandomShapes random(5);
         for (int i = 0; i < 400; ++i) {
-            const Body a = random.polytope(24), b = random.polytope(24);
+            const Shape a = random.polytope(24), b = random.polytope(24);
             const CasePair where = nearly_touching(random, a, b, -0.01, 0.0);
             RigidTransform next = where.pose_b;
             next.translation += (i % 2 == 0 ? 0.3 : 0.03) * random.direction();
@@ -148,11 +148,11 @@ TEST_SUITE("convex/warm_manifold") {
     }
 
     TEST_CASE("warm calls allocate nothing") {
-        RandomBodies random(4);
+        RandomShapes random(4);
         for (int i = 0; i < 50; ++i) {
-            const Body a = random.hull(32), b = i % 2 == 0 ? random.box() : random.hull(32);
+            const Shape a = random.hull(32), b = i % 2 == 0 ? random.box() : random.hull(32);
             const CasePair where = nearly_touching(random, a, b, 0.02 * (i % 3 - 1.5), 0.0);
-            const BodyAtPose pa{a, where.pose_a}, pb{b, where.pose_b};
+            const ShapeAtPose pa{a, where.pose_a}, pb{b, where.pose_b};
             PairCache cache;
             (void)contact_manifold(pa, pb, {.margin = 0.1}, &cache);
             const CountingMemory memory;
@@ -175,8 +175,9 @@ TEST_SUITE("convex/warm_manifold") {
         const Hull hull = Hull::build(corners).value();
         for (glm::vec3& p : corners) p *= glm::vec3(1.3f, 1.0f, 1.3f);
         const Hull wide_hull = Hull::build(corners).value();
-        const Body box = Body::box({1.5f, 0.5f, 1.5f}).value(), prism = Body::hull(hull), wide = Body::hull(wide_hull);
-        for (const Body* below : {&wide, &box}) {
+        const Shape box = Shape::box({1.5f, 0.5f, 1.5f}).value(), prism = Shape::hull(hull),
+                    wide = Shape::hull(wide_hull);
+        for (const Shape* below : {&wide, &box}) {
             PairCache cache;
             std::set<std::pair<Feature, Feature>> before;
             int kept = 0, all = 0, eight = 0;
@@ -210,7 +211,7 @@ TEST_SUITE("convex/warm_manifold") {
     }
 
     TEST_CASE("points of the frame before that lie together now make room for others") {
-        const Body box = Body::box({1, 1, 1}).value();
+        const Shape box = Shape::box({1, 1, 1}).value();
         PairCache cache;
         for (int frame = 0; frame < 200; ++frame) {
             RigidTransform top = at({0.01 * frame, 1.99, 0.004 * frame});

@@ -113,7 +113,7 @@ TEST_SUITE("scene/conventions") {
         CHECK(inside > 500);
     }
 
-    TEST_CASE("a Camera given left-handed vectors sees the same body, and only its left and right change places") {
+    TEST_CASE("a Camera given left-handed vectors sees the same shape, and only its left and right change places") {
         Camera camera;
         camera.forward = {0.0, 0.0, 1.0};
         camera.near_distance = 0.5;

@@ -34,7 +34,7 @@ TEST_SUITE("world/conventions") {
     TEST_CASE("a left-handed world with z up, in centimetres, gets the same answers") {
         oracle::NearMisses random(31);
         World ours, theirs;
-        // A brick: of a rounder body either world may choose another of equally good boxes.
+        // A brick: of a rounder shape either world may choose another of equally good boxes.
         TriangleMesh mesh;
         for (int i = 0; i < 8; ++i)
             mesh.positions.push_back({i & 1 ? 1.0f : -1.0f, i & 2 ? 0.6f : -0.6f, i & 4 ? 0.3f : -0.3f});

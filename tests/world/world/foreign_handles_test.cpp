@@ -59,7 +59,7 @@ TEST_SUITE("world/foreign_handles") {
         check_foreign(b.world.set_parent(b.node, a.node));
         check_foreign(b.world.set_user(a.object, 1));
         check_foreign(b.world.set_occludes(a.object, false));
-        check_foreign(b.world.set_body(a.object, nullptr));
+        check_foreign(b.world.set_shape(a.object, nullptr));
         check_foreign(b.world.find_occluders(a.mesh));
         check_foreign(b.world.set_occluders(a.mesh, {}));
         check_foreign(b.world.user_of(a.object));

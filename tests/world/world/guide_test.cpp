@@ -106,13 +106,13 @@ TEST_SUITE("world/guide") {
         CHECK(visible.size() == 9);  // the trigger is in layer 2 alone
     }
 
-    TEST_CASE("the guide's bodies rest on a floor, and fall on it") {
+    TEST_CASE("the guide's shapes rest on a floor, and fall on it") {
         // clang-format off
         crofton::World world;
         crofton::ThreadPool jobs(2);
-        const auto slab = crofton::convex::Body::box({5.0f, 0.2f, 5.0f}).value();
+        const auto slab = crofton::convex::Shape::box({5.0f, 0.2f, 5.0f}).value();
         const auto floor = world.add({.bound = crofton::Obb{{}, glm::mat3(1.0f), {5.0f, 0.2f, 5.0f}}}).value();
-        world.set_body(floor, &slab).value();
+        world.set_shape(floor, &slab).value();
         std::size_t pushed = 0;
         const auto push = [&](const crofton::Contact& contact, const glm::dvec3& position, const glm::dvec3& normal,
                               double depth, float* memory) {
@@ -124,12 +124,12 @@ TEST_SUITE("world/guide") {
             CHECK(memory[0] == 0.0f);
         };
 
-        const auto capsule = crofton::convex::Body::capsule(0.6f, 0.3f).value();  // a character, upright
+        const auto capsule = crofton::convex::Shape::capsule(0.6f, 0.3f).value();  // a character, upright
         const crofton::Transform standing{glm::dmat3(1.0), {0.0, 1.0, 0.0}};
-        const auto hero = world.add({.transform = standing, .body = &capsule, .user = 7}).value();
+        const auto hero = world.add({.transform = standing, .shape = &capsule, .user = 7}).value();
         world.update(jobs).value();
         for (const crofton::Contact& contact : world.contacts())
-            for (crofton::convex::TrackedPoint& point : contact.body_points)
+            for (crofton::convex::TrackedPoint& point : contact.shape_points)
                 push(contact, point.contact.position, point.normal, point.contact.depth, point.memory);  // and keep the impulses
         const crofton::RigidTransform from{glm::dmat3(1.0), {0.0, 9.0, 0.0}};
         const auto hit = world.cast(capsule, from, {.velocity = {0.0, -9.0, 0.0}}, {});  // where would it land?

@@ -284,7 +284,7 @@ TEST_SUITE("world/mesh_contacts") {
                     const Contact& contact = world.contacts()[0];
                     CHECK(contact.normal.x > 0.99);
                     CHECK(contact.depth == doctest::Approx(0.1).epsilon(0.01));
-                    // Triangles look out of the second body; their segments go round, seen from it.
+                    // Triangles look out of the second shape; their segments go round, seen from it.
                     double around = 0.0;
                     for (const mesh::MeshContact& found : contact.triangles) {
                         const glm::dvec3 middle = 0.5 * (found.segment.begin + found.segment.end);

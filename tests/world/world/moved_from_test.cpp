@@ -161,7 +161,7 @@ TEST_SUITE("world/moved_from") {
     }
 
     TEST_CASE("contacts that have been moved from are none, and may be looked for again") {
-        const auto sphere = *convex::Body::sphere(1.0);
+        const auto sphere = *convex::Shape::sphere(1.0);
         const RigidTransform place;
         convex::Manifolds found;
         convex::contact_manifolds({sphere, place}, {sphere, place}, {}, found);

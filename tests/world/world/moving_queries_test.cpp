@@ -55,16 +55,16 @@ void check_queries(const World& world, const Model& model, NearMisses& random, d
     REQUIRE(nearest.has_value() == !along.empty());
     if (nearest) CHECK(nearest->object == hits[0].object);
 
-    const Bound shape = bound_on_grid(random, place);
-    const auto expected = model.overlapping(shape.box, layers);
-    world.overlap(shape.box, found, layers);
+    const Bound probe = bound_on_grid(random, place);
+    const auto expected = model.overlapping(probe.box, layers);
+    world.overlap(probe.box, found, layers);
     CHECK(ids_of(found) == expected);
-    const Sphere sphere{shape.box.center, 0.5 * random.index(6)};
+    const Sphere sphere{probe.box.center, 0.5 * random.index(6)};
     world.overlap(sphere, found, layers);
     CHECK(ids_of(found) == model.overlapping(sphere, layers));
     for (const double limit : {0.5, 1e3, 1e300}) {
-        const double least = model.distance_to(shape.box, layers);
-        const auto closest = world.closest(shape.box, limit, layers);
+        const double least = model.distance_to(probe.box, layers);
+        const auto closest = world.closest(probe.box, limit, layers);
         REQUIRE(closest.has_value() == (least <= limit));
         if (closest) CHECK(closest->distance == doctest::Approx(least).epsilon(1e-9));
     }
@@ -123,7 +123,7 @@ TEST_SUITE("world/moving queries") {
         }
     }
 
-    TEST_CASE("a body that is cast hits the same among what moves as among the same objects at rest") {
+    TEST_CASE("a shape that is cast hits the same among what moves as among the same objects at rest") {
         NearMisses random(62);
         World moving({.pairs = false}), resting({.pairs = false});
         std::vector<ObjectHandle> objects;
@@ -143,13 +143,13 @@ TEST_SUITE("world/moving queries") {
             REQUIRE(resting.update().has_value());
         }
         REQUIRE(moving.statistics().moving == 400);
-        const auto body = convex::Body::box(glm::vec3(0.4f, 0.3f, 0.2f)).value();
+        const auto shape = convex::Shape::box(glm::vec3(0.4f, 0.3f, 0.2f)).value();
         std::size_t hits = 0;
         for (int n = 0; n < 300; ++n) {
             const RigidTransform pose{glm::dmat3(1.0), 14.0 * random.direction()};
             const convex::Motion motion{.velocity = -2.0 * pose.translation};
-            const auto a = moving.cast(body, pose, motion, {}).value(),
-                       b = resting.cast(body, pose, motion, {}).value();
+            const auto a = moving.cast(shape, pose, motion, {}).value(),
+                       b = resting.cast(shape, pose, motion, {}).value();
             REQUIRE(a.has_value() == b.has_value());
             if (!a) continue;
             ++hits;

@@ -67,7 +67,7 @@ bool are_equal(std::span<const collide::ContactPoint> a, std::span<const collide
 
 // What a world told of contacts after the update before.
 struct Before {
-    std::map<Key, std::pair<ObjectHandle, ObjectHandle>> contacts, body_contacts;
+    std::map<Key, std::pair<ObjectHandle, ObjectHandle>> contacts, shape_contacts;
 };
 
 // Whether a list of contacts tells what has begun, stayed and ended.
@@ -126,7 +126,7 @@ class Life {
 
     World serial, parallel, seldom_asked;
     Model model;  // with the handles of serial: each World gives its own
-    std::map<std::uint32_t, convex::Body> bodies;
+    std::map<std::uint32_t, convex::Shape> shapes;
 
   private:
     void add() {
@@ -156,11 +156,11 @@ class Life {
         if (kind == 2) object.collides_with = random_.index(4) ? ~0u : random_.index(4);
         if (kind == 3) object.user = random_.index(1u << 30);
         if (kind == 4) object.bound = random_bound(random_);
-        if (kind == 4 || kind == 5) bodies.erase(known->first);  // a body lies within the bound
+        if (kind == 4 || kind == 5) shapes.erase(known->first);  // a shape lies within the bound
         if (kind == 6)
-            bodies.insert_or_assign(known->first,
-                                    convex::Body::box(glm::vec3(object.bound.box.half_extents) *
-                                                      (object.bound.kind == BoundKind::sphere ? 0.57f : 0.99f))
+            shapes.insert_or_assign(known->first,
+                                    convex::Shape::box(glm::vec3(object.bound.box.half_extents) *
+                                                       (object.bound.kind == BoundKind::sphere ? 0.57f : 0.99f))
                                         .value());
         for (const auto& [world, handle] : in_worlds(known->first)) {
             Result<void> done;
@@ -169,13 +169,13 @@ class Life {
             if (kind == 2) done = world->set_collides_with(handle, object.collides_with);
             if (kind == 3) done = world->set_user(handle, object.user);
             if (kind == 4) REQUIRE(world->set_bound(handle, object.bound).has_value());
-            if (kind == 4 || kind == 5) done = world->set_body(handle, nullptr);
-            if (kind == 6) done = world->set_body(handle, &bodies.at(known->first));
+            if (kind == 4 || kind == 5) done = world->set_shape(handle, nullptr);
+            if (kind == 6) done = world->set_shape(handle, &shapes.at(known->first));
             if (kind == 7) done = world->remove(handle);
             REQUIRE(done.has_value());
         }
         if (kind == 7) {
-            bodies.erase(known->first);
+            shapes.erase(known->first);
             model.objects.erase(known);
         }
     }
@@ -197,7 +197,7 @@ TEST_SUITE("world/pairs life") {
             Life life(seed);
             NearMisses random(seed + 100);
             Before before;
-            std::size_t contacts = 0, ended = 0, body_contacts = 0;
+            std::size_t contacts = 0, ended = 0, shape_contacts = 0;
             for (int frame = 0; frame < 1500; ++frame) {
                 CAPTURE(frame);
                 life.change(frame % 400 == 0 ? 120 : frame % 3 == 0 ? random.index(4) : 0);
@@ -215,17 +215,17 @@ TEST_SUITE("world/pairs life") {
                 CHECK(are_pairs(life.serial.pairs()));
                 CHECK(are_pairs(life.parallel.pairs()));
                 if (frame % 29 == 0) CHECK(are_pairs(life.seldom_asked.pairs()));
-                const auto have_bodies = [&](const Key& pair) {
-                    return life.bodies.contains(pair.first) && life.bodies.contains(pair.second);
+                const auto have_shapes = [&](const Key& pair) {
+                    return life.shapes.contains(pair.first) && life.shapes.contains(pair.second);
                 };
                 // One list in order; of the same two objects what has ended comes before what has begun.
-                std::vector<Contact> of_bounds, of_bodies;
+                std::vector<Contact> of_bounds, of_shapes;
                 for (const Contact& contact : life.serial.contacts()) {
                     const Key key{contact.first.object.index, contact.second.object.index};
-                    const bool was_of_bodies = before.body_contacts.contains(key);
+                    const bool was_of_shapes = before.shape_contacts.contains(key);
                     const bool has_ended = contact.phase == ContactPhase::ended;
-                    (has_ended ? was_of_bodies : !contact.body_points.empty()) ? of_bodies.push_back(contact)
-                                                                               : of_bounds.push_back(contact);
+                    (has_ended ? was_of_shapes : !contact.shape_points.empty()) ? of_shapes.push_back(contact)
+                                                                                : of_bounds.push_back(contact);
                 }
                 const auto all = life.serial.contacts();
                 CHECK(std::is_sorted(all.begin(), all.end(), [](const Contact& a, const Contact& b) {
@@ -235,7 +235,7 @@ TEST_SUITE("world/pairs life") {
                     return key(a) < key(b);
                 }));
                 CHECK(check_phases(
-                    of_bounds, model, pairs, [&](const Key& pair) { return !have_bodies(pair); }, before.contacts));
+                    of_bounds, model, pairs, [&](const Key& pair) { return !have_shapes(pair); }, before.contacts));
                 bool good = true;
                 for (const Contact& contact : of_bounds) {
                     ++contacts;
@@ -252,10 +252,10 @@ TEST_SUITE("world/pairs life") {
                             are_equal(contact.points, {expected.points, static_cast<std::size_t>(expected.count)}) &&
                             contact.triangles.empty();
                 }
-                for (const Contact& contact : of_bodies) {
+                for (const Contact& contact : of_shapes) {
                     double deepest = -HUGE_VAL;
                     glm::dvec3 normal(0.0);
-                    for (const convex::TrackedPoint& point : contact.body_points)
+                    for (const convex::TrackedPoint& point : contact.shape_points)
                         if (point.contact.depth > deepest) deepest = point.contact.depth, normal = point.normal;
                     const bool has_ended = contact.phase == ContactPhase::ended;
                     good &= contact.points.empty() && contact.triangles.empty();
@@ -267,32 +267,32 @@ TEST_SUITE("world/pairs life") {
                         life.serial.contacts(), other->contacts(), [](const Contact& a, const Contact& b) {
                             return are_same(a.first, b.first) && are_same(a.second, b.second) && a.phase == b.phase &&
                                    a.normal == b.normal && a.depth == b.depth && are_equal(a.points, b.points) &&
-                                   a.body_points.size() == b.body_points.size();
+                                   a.shape_points.size() == b.shape_points.size();
                         }));
-                // Boxes as bodies.
-                std::map<Key, bool> bodies_meet;
-                for (const Contact& contact : of_bodies)
+                // Boxes as shapes.
+                std::map<Key, bool> shapes_meet;
+                for (const Contact& contact : of_shapes)
                     if (contact.phase != ContactPhase::ended)
-                        bodies_meet[{contact.first.object.index, contact.second.object.index}] = true;
+                        shapes_meet[{contact.first.object.index, contact.second.object.index}] = true;
                 CHECK(check_phases(
-                    of_bodies, model, pairs, [&](const Key& pair) { return have_bodies(pair) && bodies_meet[pair]; },
-                    before.body_contacts));
+                    of_shapes, model, pairs, [&](const Key& pair) { return have_shapes(pair) && shapes_meet[pair]; },
+                    before.shape_contacts));
                 const auto pose_of = [&](std::uint32_t id) {
                     const Bound& bound = model.objects.at(id).bound;
                     const bool sphere = bound.kind == BoundKind::sphere;
                     return RigidTransform{sphere ? glm::dmat3(1.0) : glm::dmat3(bound.box.axes), bound.box.center};
                 };
                 for (const Key& pair : pairs)
-                    if (have_bodies(pair)) {
-                        ++body_contacts;
+                    if (have_shapes(pair)) {
+                        ++shape_contacts;
                         const RigidTransform pose_a = pose_of(pair.first), pose_b = pose_of(pair.second);
-                        CHECK(bodies_meet[pair] == convex::intersects({life.bodies.at(pair.first), pose_a},
-                                                                      {life.bodies.at(pair.second), pose_b}));
+                        CHECK(shapes_meet[pair] == convex::intersects({life.shapes.at(pair.first), pose_a},
+                                                                      {life.shapes.at(pair.second), pose_b}));
                     }
             }
             CHECK(contacts > 5000);
             CHECK(ended > 200);
-            CHECK(body_contacts > 200);
+            CHECK(shape_contacts > 200);
         }
     }
 

@@ -274,29 +274,30 @@ void check_shapes(const TwoWorlds& worlds, NearMisses& random, const glm::dvec3&
     const collide::Capsule capsule{box.center, box.center + glm::dvec3(1.0, 0.5, 0.0), 0.5 * random.index(3)};
     const std::uint32_t layers = random.index(2) ? ~0u : 1u << random.index(3);
     Vector<ObjectRef> found, expected;
-    const auto compare = [&](const auto& shape) {
-        worlds.with.overlap(shape, found, layers);
-        worlds.single.overlap(shape, expected, layers);
+    const auto compare = [&](const auto& asked) {
+        worlds.with.overlap(asked, found, layers);
+        worlds.single.overlap(asked, expected, layers);
         CHECK(numbers_of(worlds, found) == numbers_of(worlds, expected));
         CHECK(std::is_sorted(found.begin(), found.end(),
                              [](const ObjectRef& a, const ObjectRef& b) { return a.object.index < b.object.index; }));
         for (const double limit : {0.5, 1e300})
-            check_closest(worlds, worlds.with.closest(shape, limit, layers),
-                          worlds.single.closest(shape, limit, layers));
+            check_closest(worlds, worlds.with.closest(asked, limit, layers),
+                          worlds.single.closest(asked, limit, layers));
     };
     compare(box);
     compare(sphere);
     compare(capsule);
-    const auto body = convex::Body::capsule(0.5f, 0.5f).value();
+    const auto shape = convex::Shape::capsule(0.5f, 0.5f).value();
     const RigidTransform pose{glm::dmat3(1.0), box.center};
-    worlds.with.overlap(body, pose, found, layers);
-    worlds.single.overlap(body, pose, expected, layers);
+    worlds.with.overlap(shape, pose, found, layers);
+    worlds.single.overlap(shape, pose, expected, layers);
     CHECK(numbers_of(worlds, found) == numbers_of(worlds, expected));
-    check_closest(worlds, worlds.with.closest(body, pose, 5.0, layers), worlds.single.closest(body, pose, 5.0, layers));
+    check_closest(worlds, worlds.with.closest(shape, pose, 5.0, layers),
+                  worlds.single.closest(shape, pose, 5.0, layers));
     const double u = random.number(-4.0, 4.0), v = random.number(-4.0, 4.0), w = random.number(-4.0, 4.0);
     const convex::Motion motion{.velocity = {u, v, w}};
-    const auto hit = worlds.with.cast(body, pose, motion, {}, layers).value(),
-               expected_hit = worlds.single.cast(body, pose, motion, {}, layers).value();
+    const auto hit = worlds.with.cast(shape, pose, motion, {}, layers).value(),
+               expected_hit = worlds.single.cast(shape, pose, motion, {}, layers).value();
     REQUIRE(hit.has_value() == expected_hit.has_value());
     if (!hit) return;
     CHECK(hit->time == expected_hit->time);
@@ -442,7 +443,7 @@ TEST_SUITE("world/regions") {
             for (int w = 0; w < 2; ++w)
                 meshes[w] =
                     (w == 0 ? worlds.with : worlds.single).add_mesh(testing::description_of(crate, false)).value();
-            const auto capsule = convex::Body::capsule(0.5f, 0.25f).value();
+            const auto capsule = convex::Shape::capsule(0.5f, 0.25f).value();
             const auto place = [&] {
                 const double x = 0.25 * random.index(40), y = 0.25 * random.index(40), z = 0.25 * random.index(40);
                 return glm::dvec3(x, y, z) - 5.0;
@@ -457,7 +458,7 @@ TEST_SUITE("world/regions") {
                 ObjectDescription description{.user = worlds.next_number++, .layers = 2, .collides_with = 3};
                 if (i % 3 == 0) description.bound = random_object(random, 5.0).bound;
                 if (i % 3 == 1) description.transform = transform();
-                if (i % 3 == 2) description.bound = box_at(place(), 1.0f), description.body = &capsule;
+                if (i % 3 == 2) description.bound = box_at(place(), 1.0f), description.shape = &capsule;
                 ObjectHandle made[2];
                 for (int w = 0; w < 2; ++w) {
                     if (i % 3 == 1) description.mesh = meshes[w];
@@ -571,7 +572,7 @@ TEST_SUITE("world/regions") {
         CHECK(world.contacts().size() == 10);  // which have ended
     }
 
-    TEST_CASE("what is detached is met by no ray or shape at once, and is in views until the next update") {
+    TEST_CASE("what is detached is met by no ray or probe at once, and is in views until the next update") {
         World world({.pairs = false});
         const std::vector<RegionObject> objects{{.bound = box_at(glm::dvec3(0.0)), .user = 5}};
         const Region region = Region::prepare(objects).value();
@@ -643,7 +644,7 @@ TEST_SUITE("world/regions") {
         CHECK(error_of(world.set_layers(object, 1)).code == ErrorCode::unsupported);
         CHECK(error_of(world.set_collides_with(object, 1)).code == ErrorCode::unsupported);
         CHECK(error_of(world.set_user(object, 1)).code == ErrorCode::unsupported);
-        CHECK(error_of(world.set_body(object, nullptr)).code == ErrorCode::unsupported);
+        CHECK(error_of(world.set_shape(object, nullptr)).code == ErrorCode::unsupported);
         CHECK(error_of(world.set_occludes(object, true)).code == ErrorCode::unsupported);
         CHECK(error_of(world.transform_of(object)).code == ErrorCode::invalid_argument);
         const ObjectHandle own = world.add({.bound = box}).value();

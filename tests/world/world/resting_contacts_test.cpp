@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Contacts of bodies of which few move: what is not computed anew is as if it were.
+// Contacts of shapes of which few move: what is not computed anew is as if it were.
 #include <doctest/doctest.h>
 #include <algorithm>
 #include <counting_memory.hpp>
@@ -15,7 +15,7 @@ using namespace crofton;
 
 namespace {
 
-// The same crates in two Worlds. In the second each body is set again before each update, so that all is computed.
+// The same crates in two Worlds. In the second each shape is set again before each update, so that all is computed.
 class Heaps {
   public:
     // On a slab, so many crates wide that it meets a crowd, or in the air.
@@ -38,13 +38,13 @@ class Heaps {
         return box;
     }
     void add() { add(place(), crate_); }
-    void add(const Obb& box, const convex::Body& body) {
+    void add(const Obb& box, const convex::Shape& shape) {
         const std::uint64_t user = random_();
         for (World* const world : {&few, &all}) {
             const ObjectHandle object = world->add({.bound = box, .user = user}).value();
-            REQUIRE(world->set_body(object, &body).has_value());
-            if (world == &few && &body == &slab_) slab = object;
-            if (world == &few && &body == &crate_) objects.push_back(object);
+            REQUIRE(world->set_shape(object, &shape).has_value());
+            if (world == &few && &shape == &slab_) slab = object;
+            if (world == &few && &shape == &crate_) objects.push_back(object);
         }
     }
     void remove(std::size_t which) {
@@ -62,7 +62,7 @@ class Heaps {
         for (World* const world : {&few, &all}) {
             const ObjectHandle object = in(*world, objects[which]);
             if (what == 2) REQUIRE(world->set_user(object, user).has_value());
-            if (what == 3) REQUIRE(world->set_body(object, layers == 0 ? nullptr : &crate_).has_value());
+            if (what == 3) REQUIRE(world->set_shape(object, layers == 0 ? nullptr : &crate_).has_value());
             if (what == 4) REQUIRE(world->set_collides_with(object, layers).has_value());
             if (what >= 5) REQUIRE(world->set_bound(object, box).has_value());
         }
@@ -70,8 +70,8 @@ class Heaps {
     }
     void update() {
         for (const ObjectHandle object : objects)
-            if (!bare_[object.index]) REQUIRE(all.set_body(in(all, object), &crate_).has_value());
-        if (slab) REQUIRE(all.set_body(in(all, *slab), &slab_).has_value());
+            if (!bare_[object.index]) REQUIRE(all.set_shape(in(all, object), &crate_).has_value());
+        if (slab) REQUIRE(all.set_shape(in(all, *slab), &slab_).has_value());
         REQUIRE(few.update().has_value());
         REQUIRE(all.update().has_value());
     }
@@ -98,8 +98,8 @@ class Heaps {
   private:
     std::mt19937_64 random_;
     int wide_, high_;
-    convex::Body slab_ = convex::Body::box({6.0f, 0.5f, 6.0f}).value();
-    convex::Body crate_ = convex::Body::box(glm::vec3(0.5f)).value();
+    convex::Shape slab_ = convex::Shape::box({6.0f, 0.5f, 6.0f}).value();
+    convex::Shape crate_ = convex::Shape::box(glm::vec3(0.5f)).value();
     std::uint32_t offset_ = 0;
     bool bare_[4096] = {};
 };
@@ -119,8 +119,8 @@ TEST_SUITE("world/resting_contacts") {
                 CAPTURE(frame);
                 for (int n = heaps.index(3); n > 0; --n) heaps.change();
                 heaps.update();
-                computed_few += heaps.few.statistics().body_pairs_computed;
-                computed_all += heaps.all.statistics().body_pairs_computed;
+                computed_few += heaps.few.statistics().shape_pairs_computed;
+                computed_all += heaps.all.statistics().shape_pairs_computed;
                 const auto few = heaps.few.contacts(), all = heaps.all.contacts();
                 REQUIRE(few.size() == all.size());
                 for (std::size_t i = 0; i < few.size(); ++i) {
@@ -130,14 +130,14 @@ TEST_SUITE("world/resting_contacts") {
                     CHECK(a.first.user == b.first.user);
                     CHECK(a.second.user == b.second.user);
                     CHECK(a.phase == b.phase);
-                    REQUIRE(a.body_points.size() == b.body_points.size());
-                    REQUIRE(a.points.size() == b.points.size());  // of crates without bodies
+                    REQUIRE(a.shape_points.size() == b.shape_points.size());
+                    REQUIRE(a.points.size() == b.points.size());  // of crates without shapes
                     CHECK(a.depth == doctest::Approx(b.depth).epsilon(1e-12));
-                    CHECK((!a.body_points.empty() || !a.points.empty()) == (a.phase != ContactPhase::ended));
+                    CHECK((!a.shape_points.empty() || !a.points.empty()) == (a.phase != ContactPhase::ended));
                     ended += a.phase == ContactPhase::ended;
                     double most = 0.0;
-                    for (std::size_t k = 0; k < a.body_points.size(); ++k) {
-                        const convex::TrackedPoint &p = a.body_points[k], &q = b.body_points[k];
+                    for (std::size_t k = 0; k < a.shape_points.size(); ++k) {
+                        const convex::TrackedPoint &p = a.shape_points[k], &q = b.shape_points[k];
                         CHECK(glm::distance(p.normal, q.normal) < 1e-12);
                         CHECK(glm::distance(p.contact.position, q.contact.position) < 1e-12);
                         CHECK(std::abs(p.contact.depth - q.contact.depth) < 1e-12);
@@ -165,7 +165,7 @@ TEST_SUITE("world/resting_contacts") {
         testing::CountingMemory memory;
         {
             World world;
-            const convex::Body crate = convex::Body::box(glm::vec3(0.5f)).value();
+            const convex::Shape crate = convex::Shape::box(glm::vec3(0.5f)).value();
             std::vector<ObjectHandle> objects;
             std::vector<Obb> boxes;
             for (int i = 0; i < 8 * 8 * 8; ++i) {
@@ -174,11 +174,11 @@ TEST_SUITE("world/resting_contacts") {
                 box.center = glm::dvec3(i % 8, i / 8 % 8, i / 64);
                 boxes.push_back(box);
                 objects.push_back(world.add({.bound = box}).value());
-                REQUIRE(world.set_body(objects.back(), &crate).has_value());
+                REQUIRE(world.set_shape(objects.back(), &crate).has_value());
             }
             for (int i = 0; i < 10; ++i) REQUIRE(world.update().has_value());
             CHECK(world.contacts().size() == (22 * 22 * 22 - 512) / 2);
-            CHECK(world.statistics().body_pairs_computed == 0);
+            CHECK(world.statistics().shape_pairs_computed == 0);
             // In and out of the layer on top. Lists of pairs that nobody asks for gather changes for 100 updates.
             const std::size_t which = 3 + 8 * 7 + 64 * 3;
             const auto move = [&](int frame) {
@@ -191,7 +191,7 @@ TEST_SUITE("world/resting_contacts") {
             const std::size_t before = memory.allocations(), news = testing::operator_news();
             for (int frame = 0; frame < 20; ++frame) {
                 move(frame);
-                CHECK(world.statistics().body_pairs_computed <= 17);
+                CHECK(world.statistics().shape_pairs_computed <= 17);
             }
             CHECK(memory.allocations() == before);
             CHECK(testing::operator_news() == news);
@@ -199,20 +199,20 @@ TEST_SUITE("world/resting_contacts") {
         CHECK(memory.bytes_in_use() == 0);
     }
 
-    TEST_CASE("contacts of bodies and of boxes are one list in order, and reading it allocates nothing once warm") {
+    TEST_CASE("contacts of shapes and of boxes are one list in order, and reading it allocates nothing once warm") {
         testing::CountingMemory memory;
         {
             World world;
-            const convex::Body crate = convex::Body::box(glm::vec3(0.5f)).value();
+            const convex::Shape crate = convex::Shape::box(glm::vec3(0.5f)).value();
             std::vector<ObjectHandle> objects;
             std::vector<Obb> boxes;
-            for (int i = 0; i < 64; ++i) {  // a row; every third is a trigger without a body
+            for (int i = 0; i < 64; ++i) {  // a row; every third is a trigger without a shape
                 Obb box;
                 box.half_extents = glm::vec3(0.5f);
                 box.center = {0.9 * i, 0, 0};
                 boxes.push_back(box);
                 objects.push_back(world.add({.bound = box}).value());
-                if (i % 3 != 0) REQUIRE(world.set_body(objects.back(), &crate).has_value());
+                if (i % 3 != 0) REQUIRE(world.set_shape(objects.back(), &crate).has_value());
             }
             const auto check = [&](bool apart, bool ended) {
                 std::uint32_t place = 0;
@@ -220,10 +220,10 @@ TEST_SUITE("world/resting_contacts") {
                     if (place == 31 && apart && !ended) place += 2;
                     REQUIRE(contact.first.object == objects[place]);
                     REQUIRE(contact.second.object == objects[place + 1]);
-                    const bool of_bodies = place % 3 == 1, is_over = ended && (place == 31 || place == 32);
+                    const bool of_shapes = place % 3 == 1, is_over = ended && (place == 31 || place == 32);
                     CHECK((contact.phase == ContactPhase::ended) == is_over);
-                    CHECK(contact.body_points.size() == (of_bodies && !is_over ? 4u : 0u));
-                    CHECK(contact.points.size() == (of_bodies || is_over ? 0u : 4u));
+                    CHECK(contact.shape_points.size() == (of_shapes && !is_over ? 4u : 0u));
+                    CHECK(contact.points.size() == (of_shapes || is_over ? 0u : 4u));
                     CHECK(contact.depth == doctest::Approx(is_over ? 0.0 : 0.1));
                     CHECK(contact.normal.x == doctest::Approx(is_over ? 0.0 : 1.0));
                     ++place;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Overlap, nearest object and casts among objects with meshes and bodies, against a look at every triangle.
+// Overlap, nearest object and casts among objects with meshes and shapes, against a look at every triangle.
 #include <doctest/doctest.h>
 #include <algorithm>
 #include <array>
@@ -40,19 +40,19 @@ bool encloses(const Soup& soup, const glm::dvec3& point) {
     return crossings % 2 == 1;
 }
 
-// Between a shape and an object: their surfaces, or 0 where one encloses the other. `contained`: also where the object
+// Between a probe and an object: their surfaces, or 0 where one encloses the other. `contained`: also where the object
 // is a closed mesh, which encloses.
-double distance_of(const Soup& shape, const Soup& object, bool contained) {
+double distance_of(const Soup& probe, const Soup& object, bool contained) {
     double least = kInfinity;
-    for (const Triangle& a : shape.triangles)
+    for (const Triangle& a : probe.triangles)
         for (const Triangle& b : object.triangles) {
             const double reach = std::max(glm::distance(a[0], a[1]), glm::distance(a[0], a[2])) +
                                  std::max(glm::distance(b[0], b[1]), glm::distance(b[0], b[2]));
             if (glm::distance(a[0], b[0]) - reach < least) least = std::min(least, oracle::distance_of_triangles(a, b));
         }
-    if (shape.solid && encloses(shape, object.triangles[0][0])) return 0.0;
-    if (contained && object.solid && encloses(object, shape.triangles[0][0])) return 0.0;
-    return std::max(0.0, least - shape.radius - object.radius);
+    if (probe.solid && encloses(probe, object.triangles[0][0])) return 0.0;
+    if (contained && object.solid && encloses(object, probe.triangles[0][0])) return 0.0;
+    return std::max(0.0, least - probe.radius - object.radius);
 }
 
 Soup soup_of(const TriangleMesh& mesh, const Transform& place, bool closed) {
@@ -89,7 +89,7 @@ TriangleMesh random_soup(NearMisses& random, std::uint32_t triangles) {
     return mesh;
 }
 
-// A World of objects with meshes, under all kinds of transform, with bodies and with bounds; and what the oracle sees.
+// A World of objects with meshes, under all kinds of transform, with shapes and with bounds; and what the oracle sees.
 struct Scene {
     World world;
     std::vector<ObjectHandle> handles;
@@ -127,8 +127,8 @@ struct Scene {
                 continue;
             }
             const float radius = static_cast<float>(random.number(0.1, 1.0));
-            const auto body = convex::Body::capsule(1.0f, radius).value();
-            handles.push_back(world.add({.transform = place, .body = &body}).value());
+            const auto shape = convex::Shape::capsule(1.0f, radius).value();
+            handles.push_back(world.add({.transform = place, .shape = &shape}).value());
             const glm::dvec3 end = place.linear[1];
             soups.push_back({{{place.translation - end, place.translation + end, place.translation + end}},
                              static_cast<double>(radius),
@@ -141,13 +141,13 @@ struct Scene {
 
 namespace {
 
-// A shape to ask with: as the World takes it, and as triangles.
+// A probe to ask with: as the World takes it, and as triangles.
 struct Probe {
-    enum class Kind { box, sphere, capsule, body } kind = Kind::box;
+    enum class Kind { box, sphere, capsule, shape } kind = Kind::box;
     Obb box;
     Sphere sphere;
     collide::Capsule capsule;
-    std::optional<convex::Body> body;
+    std::optional<convex::Shape> shape;
     RigidTransform pose;
     Soup soup;
 };
@@ -170,13 +170,13 @@ Probe random_probe(NearMisses& random, const convex::Hull& hull, double spread) 
             probe.capsule = {place, place + random.number(0.0, 2.0) * random.direction(), size};
             probe.soup = {{{place, probe.capsule.end, probe.capsule.end}}, size, false};
             break;
-        case Probe::Kind::body:
+        case Probe::Kind::shape:
             probe.pose = {random_rotation(random), place};
-            probe.body = convex::Body::hull(hull);
+            probe.shape = convex::Shape::hull(hull);
             for (std::size_t t = 0; t < 4; ++t) {
                 Triangle corners;
                 for (std::size_t k = 0; k < 3; ++k)
-                    corners[k] = transform(probe.pose, probe.body->vertex(hull.triangles()[3 * t + k]));
+                    corners[k] = transform(probe.pose, probe.shape->vertex(hull.triangles()[3 * t + k]));
                 probe.soup.triangles.push_back(corners);
             }
             probe.soup.solid = true;
@@ -190,7 +190,7 @@ void with(const Probe& probe, const Visit& visit) {
     if (probe.kind == Probe::Kind::box) visit(probe.box);
     if (probe.kind == Probe::Kind::sphere) visit(probe.sphere);
     if (probe.kind == Probe::Kind::capsule) visit(probe.capsule);
-    if (probe.kind == Probe::Kind::body) visit(*probe.body, probe.pose);
+    if (probe.kind == Probe::Kind::shape) visit(*probe.shape, probe.pose);
 }
 
 convex::Hull tetrahedron() {
@@ -201,7 +201,7 @@ convex::Hull tetrahedron() {
 }  // namespace
 
 TEST_SUITE("world/shape of objects") {
-    TEST_CASE("overlap and closest ask an object's triangles or body, under any transform") {
+    TEST_CASE("overlap and closest ask an object's triangles or shape, under any transform") {
         NearMisses random(501);
         const convex::Hull hull = tetrahedron();
         int overlaps = 0, inside = 0, near = 0;
@@ -219,7 +219,7 @@ TEST_SUITE("world/shape of objects") {
                     inside += distance.back() == 0.0 && distance_of(probe.soup, scene.soups[o], false) > 1e-6;
                 }
                 Vector<ObjectRef> found;
-                with(probe, [&](const auto&... shape) { scene.world.overlap(shape..., found); });
+                with(probe, [&](const auto&... asked) { scene.world.overlap(asked..., found); });
                 for (std::size_t o = 0; o < distance.size(); ++o) {
                     const bool listed = std::any_of(found.begin(), found.end(), [&](const ObjectRef& ref) {
                         return ref.object == scene.handles[o];
@@ -233,7 +233,7 @@ TEST_SUITE("world/shape of objects") {
                 for (const double limit : {0.9 * least, 1.1 * least + 1e-6, kInfinity}) {
                     CAPTURE(limit);
                     std::optional<ClosestObject> closest;
-                    with(probe, [&](const auto&... shape) { closest = scene.world.closest(shape..., limit); });
+                    with(probe, [&](const auto&... asked) { closest = scene.world.closest(asked..., limit); });
                     REQUIRE(closest.has_value() == (least == 0.0 || limit > least));
                     if (!closest) continue;
                     ++near;
@@ -256,10 +256,10 @@ TEST_SUITE("world/shape of objects") {
         CHECK(near > 1000);
     }
 
-    TEST_CASE("a cast stops at the first triangle or body in its way, turning or not") {
+    TEST_CASE("a cast stops at the first triangle or shape in its way, turning or not") {
         NearMisses random(502);
         const convex::Hull hull = tetrahedron();
-        const convex::Body body = convex::Body::hull(hull);
+        const convex::Shape shape = convex::Shape::hull(hull);
         int hits = 0, misses = 0, on_meshes = 0, starts = 0;
         for (int round = 0; round < 6; ++round) {
             const Scene scene(random, 10, 5.0);
@@ -276,7 +276,7 @@ TEST_SUITE("world/shape of objects") {
                     for (std::size_t t = 0; t < 4; ++t) {
                         Triangle corners;
                         for (std::size_t k = 0; k < 3; ++k)
-                            corners[k] = transform(there, body.vertex(hull.triangles()[3 * t + k]));
+                            corners[k] = transform(there, shape.vertex(hull.triangles()[3 * t + k]));
                         soup.triangles.push_back(corners);
                     }
                     std::vector<double> distances;
@@ -287,7 +287,7 @@ TEST_SUITE("world/shape of objects") {
                     const auto all = distances_at(time);
                     return *std::min_element(all.begin(), all.end());
                 };
-                const auto hit = scene.world.cast(body, pose, motion, {});
+                const auto hit = scene.world.cast(shape, pose, motion, {});
                 REQUIRE(hit.has_value());
                 const double end = *hit ? (**hit).time : 1.0;
                 const double at_start = least_at(0.0);
@@ -303,7 +303,7 @@ TEST_SUITE("world/shape of objects") {
                 misses += !*hit;
                 if (!*hit) continue;
                 ++hits;
-                const BodyHit& found = **hit;
+                const ShapeHit& found = **hit;
                 CHECK(found.resolved);
                 const auto at = std::find(scene.handles.begin(), scene.handles.end(), found.object);
                 REQUIRE(at != scene.handles.end());
@@ -328,7 +328,7 @@ TEST_SUITE("world/shape of objects") {
     }
 
     TEST_CASE(
-        "a shape inside a closed mesh overlaps it where contacts count that, and casts reach the wall from inside") {
+        "a probe inside a closed mesh overlaps it where contacts count that, and casts reach the wall from inside") {
         const TriangleMesh crate = box_mesh(glm::vec3(-1.0f), glm::vec3(1.0f));
         TriangleMesh open = crate;
         open.indices.resize(30);
@@ -346,7 +346,7 @@ TEST_SUITE("world/shape of objects") {
                 const auto closest = world.closest(sphere, kInfinity);
                 REQUIRE(closest.has_value());
                 CHECK(closest->distance == (counts ? 0.0 : doctest::Approx(1.25)));
-                const auto hit = world.cast(convex::Body::sphere(0.25).value(), {glm::dmat3(1.0), sphere.center},
+                const auto hit = world.cast(convex::Shape::sphere(0.25).value(), {glm::dmat3(1.0), sphere.center},
                                             {{5.0, 0.0, 0.0}, {}, {}}, {});
                 REQUIRE(hit.has_value());
                 REQUIRE(hit->has_value());
@@ -354,13 +354,13 @@ TEST_SUITE("world/shape of objects") {
             }
     }
 
-    TEST_CASE("objects with bodies are asked by their bodies, whatever the shape") {
+    TEST_CASE("objects with shapes are asked by their shapes, whatever the probe") {
         World world;
         const auto hull = tetrahedron();
-        const convex::Body body = convex::Body::hull(hull),
-                           ground = convex::Body::half_space({{0, -1, 0}, -5.0}).value();
-        REQUIRE(world.add({.transform = at({}), .body = &body}).has_value());
-        REQUIRE(world.add({.transform = at({}), .body = &ground}).has_value());
+        const convex::Shape shape = convex::Shape::hull(hull),
+                            ground = convex::Shape::half_space({{0, -1, 0}, -5.0}).value();
+        REQUIRE(world.add({.transform = at({}), .shape = &shape}).has_value());
+        REQUIRE(world.add({.transform = at({}), .shape = &ground}).has_value());
         REQUIRE(world.update().has_value());
         // In the tetrahedron's box, but outside of it.
         const glm::dvec3 corner(0.95, 0.85, 0.75);
@@ -393,7 +393,7 @@ TEST_SUITE("world/shape of objects") {
             REQUIRE(world.add({.mesh = mesh, .transform = at({})}).has_value());
             REQUIRE(world.add({.mesh = mesh, .transform = at({5, 0, 0}, glm::dmat3(0.5))}).has_value());
             Vector<ObjectRef> found;
-            const convex::Body ball = convex::Body::sphere(0.25).value();
+            const convex::Shape ball = convex::Shape::sphere(0.25).value();
             for (const float side : {1.0f, 2.0f, 1.5f}) {
                 for (glm::vec3& p : crate.positions) p = glm::sign(p) * side;
                 REQUIRE(world.set_vertices(mesh, crate.positions).has_value());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What meets a box, a sphere, a capsule or a body, and what is nearest.
+// What meets a box, a sphere, a capsule or a shape, and what is nearest.
 #include <doctest/doctest.h>
 #include <cmath>
 #include <crofton/convex/query.hpp>
@@ -109,7 +109,7 @@ TEST_SUITE("world/shape_queries") {
     }
 
     TEST_CASE("a box whose axes are not quite orthonormal is met at its corners") {
-        const auto speck = convex::Body::sphere(1e-14).value();
+        const auto speck = convex::Shape::sphere(1e-14).value();
         std::mt19937_64 rng(8);
         std::uniform_real_distribution<float> number(-1.0f, 1.0f), size(1.0f, 2.0f);
         for (int round = 0; round < 100; ++round) {

@@ -141,7 +141,7 @@ TEST_SUITE("world/storage") {
             World world;
             Crowd crowd(world, 100 + seed);
             crowd.add(20);
-            // Later in a life some collide with nothing, or have bodies beyond which contacts reach.
+            // Later in a life some collide with nothing, or have shapes beyond which contacts reach.
             const bool some_collide_with_nothing = seed % 2 != 0;
             std::set<std::uint32_t> apart;
             bool good = true;
@@ -196,17 +196,17 @@ TEST_SUITE("world/storage") {
         }
     }
 
-    TEST_CASE("pairs reach as far as the contact margin around bodies, also where a body comes late and then rests") {
+    TEST_CASE("pairs reach as far as the contact margin around shapes, also where a shape comes late and then rests") {
         World world({.contact_margin = 0.5});
         const ObjectHandle ground = world.add({.bound = box_at({0.0, 0.0, 0.0})}).value();
         const ObjectHandle mover = world.add({.bound = box_at({0.0, 9.0, 0.0})}).value();
-        const convex::Body cube = convex::Body::box(glm::vec3(0.5f)).value();
+        const convex::Shape cube = convex::Shape::box(glm::vec3(0.5f)).value();
         const auto update = [&](int count) {
             for (; count > 0; --count) REQUIRE(world.update().has_value());
         };
         update(10);
-        REQUIRE(world.set_body(ground, &cube).has_value());
-        REQUIRE(world.set_body(mover, &cube).has_value());
+        REQUIRE(world.set_shape(ground, &cube).has_value());
+        REQUIRE(world.set_shape(mover, &cube).has_value());
         for (int step = 0; step < 20; ++step) {
             REQUIRE(world.set_bound(mover, box_at({0.0, 9.0 - 0.38 * step, 0.0})).has_value());
             update(1);
@@ -222,14 +222,15 @@ TEST_SUITE("world/storage") {
         CHECK(world.pairs().size() == 3);
     }
 
-    TEST_CASE("boxes that are set many at once cover the bodies of those that have some, whoever else moves") {
+    TEST_CASE("boxes that are set many at once cover the shapes of those that have some, whoever else moves") {
         World at_once({.pairs = false}), one_by_one({.pairs = false});
         NearMisses random(63);
         std::vector<ObjectHandle> objects, twins;
         const auto add = [&] {
-            const convex::Body body = convex::Body::box(glm::vec3(static_cast<float>(random.number(0.2, 0.8)))).value();
+            const convex::Shape shape =
+                convex::Shape::box(glm::vec3(static_cast<float>(random.number(0.2, 0.8)))).value();
             const ObjectDescription description{.bound = oracle::random_box(random, {}, 9.0),
-                                                .body = random.index(3) == 0 ? &body : nullptr};
+                                                .shape = random.index(3) == 0 ? &shape : nullptr};
             objects.push_back(at_once.add(description).value());
             twins.push_back(one_by_one.add(description).value());
         };
@@ -238,11 +239,11 @@ TEST_SUITE("world/storage") {
             for (unsigned changes = random.index(3); changes > 0; --changes) {
                 const std::size_t which = random.index(static_cast<unsigned>(objects.size()));
                 if (random.index(2) == 0) {
-                    const convex::Body body =
-                        convex::Body::box(glm::vec3(static_cast<float>(random.number(0.2, 0.8)))).value();
+                    const convex::Shape shape =
+                        convex::Shape::box(glm::vec3(static_cast<float>(random.number(0.2, 0.8)))).value();
                     const bool none = random.index(2) == 0;
-                    REQUIRE(at_once.set_body(objects[which], none ? nullptr : &body).has_value());
-                    REQUIRE(one_by_one.set_body(twins[which], none ? nullptr : &body).has_value());
+                    REQUIRE(at_once.set_shape(objects[which], none ? nullptr : &shape).has_value());
+                    REQUIRE(one_by_one.set_shape(twins[which], none ? nullptr : &shape).has_value());
                 } else {
                     REQUIRE(at_once.remove(objects[which]).has_value());
                     REQUIRE(one_by_one.remove(twins[which]).has_value());

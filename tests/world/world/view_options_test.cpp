@@ -20,9 +20,9 @@ namespace {
 class CountingExecutor : public Executor {
   public:
     [[nodiscard]] unsigned concurrency() const override { return 4; }
-    void parallel_for(std::size_t count, std::size_t grain, RangeTask body) override {
+    void parallel_for(std::size_t count, std::size_t grain, RangeTask shape) override {
         ++calls;
-        for (std::size_t begin = 0; begin < count; begin += grain) body(begin, std::min(count, begin + grain), 0);
+        for (std::size_t begin = 0; begin < count; begin += grain) shape(begin, std::min(count, begin + grain), 0);
     }
     int calls = 0;
 };

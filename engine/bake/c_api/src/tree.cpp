@@ -6,8 +6,8 @@
 #include <crofton/cull/cull.hpp>
 #include <limits>
 
+#include <crofton/capi/query_shapes.hpp>
 #include <crofton/capi/requests.hpp>
-#include <crofton/capi/shapes.hpp>
 #include "tree.hpp"
 
 using namespace crofton;
@@ -92,7 +92,7 @@ crofton_status crofton_tree_raycast(const crofton_tree* tree, const crofton_ray*
     });
 }
 
-crofton_status crofton_tree_overlap(const crofton_tree* tree, const crofton_shape* shape, uint32_t layer_mask,
+crofton_status crofton_tree_overlap(const crofton_tree* tree, const crofton_query_shape* shape, uint32_t layer_mask,
                                     uint32_t* items, size_t capacity, size_t* found) {
     const SharedUse use(tree, __func__);
     if (use.failed()) return use.status();

@@ -263,7 +263,7 @@ PointPair search_features(const BoxPairInDouble& pair, PointPair best) {
     return best;
 }
 
-// Where the skins of bodies overlap, both points are the middle of the overlap. `core` is that of what they are around.
+// Where the skins of shapes overlap, both points are the middle of the overlap. `core` is that of what they are around.
 void grow_by_radii(double radius_a, double radius_b, const glm::dvec3& way, Distance& core) {
     const double apart = core.distance;
     core.distance = std::max(0.0, apart - radius_a - radius_b);

@@ -11,7 +11,7 @@
 namespace crofton::collide {
 namespace {
 
-// `axis` points to the sphere, which lies `depth` ≥ 0 deep in the other body.
+// `axis` points to the sphere, which lies `depth` ≥ 0 deep in the other shape.
 Manifold touch_of_sphere(const Sphere& sphere, const glm::dvec3& axis, double depth) {
     Manifold manifold;
     manifold.normal = axis;

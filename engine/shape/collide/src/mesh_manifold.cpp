@@ -56,7 +56,7 @@ glm::dvec3 normal_of(Contacts contacts, const Curve& curve, const glm::dvec3& be
     return {0.0, 0.0, 1.0};
 }
 
-// How deep the bodies overlap on the line along the normal through a point of both.
+// How deep the shapes overlap on the line along the normal through a point of both.
 class Overlap {
   public:
     Overlap(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& b_to_a, const glm::dvec3& normal)
@@ -133,7 +133,7 @@ Manifold contact_manifold(const mesh::MeshTree& a, const mesh::MeshTree& b, cons
     const Overlap overlap(a, b, b_to_a, manifold.normal);
     const double apart = 1e-6 * curve.length;
     for (const glm::dvec3& outer : outermost(contacts, manifold.normal)) {
-        // On the curve itself the overlap ends: a little within it says how deep the bodies are there.
+        // On the curve itself the overlap ends: a little within it says how deep the shapes are there.
         ContactPoint point{outer, 0.0};
         for (const double share : {1.0 / 16.0, 1.0 / 256.0}) {
             const ContactPoint within = overlap.at(outer + share * (curve.middle - outer));

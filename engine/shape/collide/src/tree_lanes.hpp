@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Bodies and rays against the sixteen children of a node, or the sixteen boxes of a leaf, of a BoxTree: filters that
+// Shapes and rays against the sixteen children of a node, or the sixteen boxes of a leaf, of a BoxTree: filters that
 // lose nothing.
 #pragma once
 #include <crofton/boxtree/layout.hpp>

@@ -100,14 +100,14 @@ LaneBox box_for(const boxtree::Node& node, const boxtree::Axes& axes, const Aabb
     return box;
 }
 
-template <class Body>
-void collect(const boxtree::BoxTree& tree, const Body& body, const Aabb& bounds, std::uint32_t layers,
+template <class Shape>
+void collect(const boxtree::BoxTree& tree, const Shape& shape, const Aabb& bounds, std::uint32_t layers,
              Vector<boxtree::ItemId>& items) {
     items.clear();
     visit_near(
         bounds, 0.0, tree,
         [&](boxtree::ItemId item) {
-            if (intersects(tree.boxes()[item], body)) items.push_back(item);
+            if (intersects(tree.boxes()[item], shape)) items.push_back(item);
             return 0.0;
         },
         layers);
@@ -223,25 +223,25 @@ void visit_near(const Aabb& bounds, double distance, const boxtree::BoxTree& tre
     }
 }
 
-void overlapping(const boxtree::BoxTree& tree, const Obb& body, Vector<boxtree::ItemId>& items, std::uint32_t layers) {
+void overlapping(const boxtree::BoxTree& tree, const Obb& shape, Vector<boxtree::ItemId>& items, std::uint32_t layers) {
     items.clear();
-    if (!validate(body)) return;
+    if (!validate(shape)) return;
     glm::dvec3 half_size(0.0);
     for (int k = 0; k < 3; ++k)
-        half_size += static_cast<double>(body.half_extents[k]) * glm::abs(glm::dvec3(body.axes[k]));
-    collect(tree, body, around(body.center, half_size), layers, items);
+        half_size += static_cast<double>(shape.half_extents[k]) * glm::abs(glm::dvec3(shape.axes[k]));
+    collect(tree, shape, around(shape.center, half_size), layers, items);
 }
 
-void overlapping(const boxtree::BoxTree& tree, const Sphere& body, Vector<boxtree::ItemId>& items,
+void overlapping(const boxtree::BoxTree& tree, const Sphere& shape, Vector<boxtree::ItemId>& items,
                  std::uint32_t layers) {
-    collect(tree, body, around(body.center, glm::dvec3(body.radius)), layers, items);
+    collect(tree, shape, around(shape.center, glm::dvec3(shape.radius)), layers, items);
 }
 
-void overlapping(const boxtree::BoxTree& tree, const Capsule& body, Vector<boxtree::ItemId>& items,
+void overlapping(const boxtree::BoxTree& tree, const Capsule& shape, Vector<boxtree::ItemId>& items,
                  std::uint32_t layers) {
-    Aabb bounds = around(body.begin, glm::dvec3(body.radius));
-    bounds.include(around(body.end, glm::dvec3(body.radius)));
-    collect(tree, body, bounds, layers, items);
+    Aabb bounds = around(shape.begin, glm::dvec3(shape.radius));
+    bounds.include(around(shape.end, glm::dvec3(shape.radius)));
+    collect(tree, shape, bounds, layers, items);
 }
 
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Conservative advancement of two convex bodies.
+// Conservative advancement of two convex shapes.
 #include <algorithm>
 #include <cmath>
 
@@ -13,7 +13,7 @@ namespace {
 // How often a pair within the tolerance is asked whether it goes on to touch, before that counts as a hit.
 constexpr int kMaxProofs = 32;
 
-// Where two bodies are nearest, or deepest in each other, seen from a's origin.
+// Where two shapes are nearest, or deepest in each other, seen from a's origin.
 struct Contact {
     double distance = 0.0;  // negative: how deep they overlap
     double lower = 0.0;     // proven
@@ -24,13 +24,13 @@ Contact contact_of(const Distance& d) {
 }
 
 // Of a triangle and a sphere, a capsule or a box in closed form. False where that leaves a doubt.
-bool triangle_contact(const BodyAtPose& triangle, const BodyAtPose& other, Contact& contact) {
-    const Kind kind = other.body.kind();
-    if (triangle.body.kind() != Kind::triangle || triangle.body.radius() > 0.0) return false;
+bool triangle_contact(const ShapeAtPose& triangle, const ShapeAtPose& other, Contact& contact) {
+    const Kind kind = other.shape.kind();
+    if (triangle.shape.kind() != Kind::triangle || triangle.shape.radius() > 0.0) return false;
     if (kind != Kind::sphere && kind != Kind::capsule && kind != Kind::box) return false;
     const glm::dvec3& origin = triangle.pose.translation;
-    const double reach = triangle.body.core_radius();
-    const Triangle corners{triangle.body.vertex(0), triangle.body.vertex(1), triangle.body.vertex(2)};
+    const double reach = triangle.shape.core_radius();
+    const Triangle corners{triangle.shape.vertex(0), triangle.shape.vertex(1), triangle.shape.vertex(2)};
     Touch touch;
     const Warm warm =
         kind == Kind::box
@@ -45,7 +45,7 @@ bool triangle_contact(const BodyAtPose& triangle, const BodyAtPose& other, Conta
     contact.on_b = contact.on_a - touch.depth * touch.normal;
     return true;
 }
-bool contact_in_closed_form(const BodyAtPose& a, const BodyAtPose& b, Contact& contact) {
+bool contact_in_closed_form(const ShapeAtPose& a, const ShapeAtPose& b, Contact& contact) {
     if (triangle_contact(a, b, contact)) return true;
     if (!triangle_contact(b, a, contact)) return false;
     contact.normal = -contact.normal;
@@ -58,7 +58,7 @@ constexpr double kShare = 0.03;
 
 class Advancement {
   public:
-    Advancement(const BodyAtPose& a, const Motion& motion_a, const BodyAtPose& b, const Motion& motion_b,
+    Advancement(const ShapeAtPose& a, const Motion& motion_a, const ShapeAtPose& b, const Motion& motion_b,
                 const CastOptions& options, double start, PairCache& cache)
         : flight_(a, motion_a, b, motion_b), options_(options), cache_(cache), start_(start) {
         early_ = std::min(options.early_out, options.duration);
@@ -81,7 +81,7 @@ class Advancement {
     PairCache& cache_;
     const double start_;
     double early_ = 0.0;
-    glm::dvec3 parted_{0.0};  // the direction that parted the bodies last
+    glm::dvec3 parted_{0.0};  // the direction that parted the shapes last
 };
 
 Impact Advancement::impact(CastResult result, const Contact& now, int steps) const {
@@ -106,7 +106,7 @@ Impact Advancement::miss(int steps) const {
 // As `distance`, where the bounds need not be close: a tenth of the distance. `reached`: it is not above `near`, and no
 // more is known.
 Contact Advancement::nearest(double near, bool& reached) {
-    const BodyAtPose a = flight_.a(), b = flight_.b();
+    const ShapeAtPose a = flight_.a(), b = flight_.b();
     Contact closed;
     if (contact_in_closed_form(a, b, closed)) return closed;
     if (is_half_space(a) || is_half_space(b)) {
@@ -115,7 +115,7 @@ Contact Advancement::nearest(double near, bool& reached) {
         return contact_of(d);
     }
     const Pair pair(a, b);
-    const double rounding = a.body.radius() + b.body.radius();
+    const double rounding = a.shape.radius() + b.shape.radius();
     Nearest core = nearest_points(pair, &cache_, rounding + near, HUGE_VAL, pair.has_polytope_cores() ? 0.0 : kShare);
     reached = core.upper <= rounding + near;
     if (reached) return {};
@@ -126,11 +126,11 @@ Contact Advancement::nearest(double near, bool& reached) {
 
 // The direction that proves the bound of round cores' distance, and the one between their nearest points, differ by the
 // root of what the search has left. Here that between the points, so that they are apart along the normal.
-void align(const BodyAtPose& a, const BodyAtPose& b, Contact& contact) {
-    const double ra = a.body.radius(), rb = b.body.radius();
+void align(const ShapeAtPose& a, const ShapeAtPose& b, Contact& contact) {
+    const double ra = a.shape.radius(), rb = b.shape.radius();
     const glm::dvec3 on_a = contact.on_a - ra * contact.normal, on_b = contact.on_b + rb * contact.normal;
     const double length = glm::distance(on_a, on_b);
-    if (!(length > 1e-3 * (a.body.core_radius() + b.body.core_radius())))
+    if (!(length > 1e-3 * (a.shape.core_radius() + b.shape.core_radius())))
         return;  // what the points are off across would turn it
     contact.normal = (on_b - on_a) / length;
     contact.on_a = on_a + ra * contact.normal;
@@ -139,13 +139,13 @@ void align(const BodyAtPose& a, const BodyAtPose& b, Contact& contact) {
 
 // As `distance` and `penetration` tell.
 Contact Advancement::contact() {
-    const BodyAtPose a = flight_.a(), b = flight_.b();
+    const ShapeAtPose a = flight_.a(), b = flight_.b();
     Contact closed;
     if (contact_in_closed_form(a, b, closed)) return closed;
     const Distance d = distance(a, b, &cache_);
     if (d.distance > 0.0) {
         Contact apart = contact_of(d);
-        if (!a.body.has_polytope_core() || !b.body.has_polytope_core())
+        if (!a.shape.has_polytope_core() || !b.shape.has_polytope_core())
             if (!is_half_space(a) && !is_half_space(b)) align(a, b, apart);
         return apart;
     }
@@ -215,7 +215,7 @@ Impact Advancement::run() {
 
 }  // namespace
 
-Impact advance(const BodyAtPose& a, const Motion& motion_a, const BodyAtPose& b, const Motion& motion_b,
+Impact advance(const ShapeAtPose& a, const Motion& motion_a, const ShapeAtPose& b, const Motion& motion_b,
                const CastOptions& options, double start, PairCache* cache) {
     PairCache own;
     return Advancement(a, motion_a, b, motion_b, options, start, cache != nullptr ? *cache : own).run();

@@ -79,7 +79,7 @@ constexpr FaceFeatures kFeatures = features_of_corners();
 
 }  // namespace
 
-BoxClip::BoxClip(const BodyAtPose& a, const BodyAtPose& b, const BoxPair& pair, bool reference_is_a, int face,
+BoxClip::BoxClip(const ShapeAtPose& a, const ShapeAtPose& b, const BoxPair& pair, bool reference_is_a, int face,
                  const glm::dvec3& direction)
     : reference_(reference_is_a ? a : b),
       other_(reference_is_a ? b : a),
@@ -103,7 +103,7 @@ BoxClip::BoxClip(const BodyAtPose& a, const BodyAtPose& b, const BoxPair& pair, 
 
 // The shadow of the incident face is a parallelogram: its middle and two half edges are cast.
 void BoxClip::find_corners(int incident_face) {
-    const glm::dvec3& h = other_.body.half_extents();
+    const glm::dvec3& h = other_.shape.half_extents();
     const int k = incident_face / 2, u = k == 2 ? 0 : k + 1, v = k == 0 ? 2 : k - 1;
     const double steep = 1.0 / coordinate(direction_, k_), du = coordinate(direction_, u_) * steep,
                  dv = coordinate(direction_, v_) * steep;
@@ -172,7 +172,7 @@ int BoxClip::clip_side(const FlatCorner* from, int count, int side, double level
 void BoxClip::clip() {
     FlatCorner other[kMost + 1];
     FlatCorner *now = corner_, *next = other;
-    const glm::dvec3& h = reference_.body.half_extents();
+    const glm::dvec3& h = reference_.shape.half_extents();
     const double level[2] = {coordinate(h, u_), coordinate(h, v_)};
     // Sides that all of the face is within cut nothing off.
     const auto [left, right] = std::minmax({corner_[0].x, corner_[1].x, corner_[2].x, corner_[3].x});
@@ -196,12 +196,12 @@ double BoxClip::deepest() const {
 }
 
 double BoxClip::level() const {
-    const double half = coordinate(reference_.body.half_extents(), k_);
+    const double half = coordinate(reference_.shape.half_extents(), k_);
     return (face_ & 1) != 0 ? half : -half;
 }
 
 void BoxClip::gather(const Touch& touch, double margin, GatheredPoints& to) const {
-    const double ra = reference_.body.radius(), ri = other_.body.radius(), most = touch.depth;
+    const double ra = reference_.shape.radius(), ri = other_.shape.radius(), most = touch.depth;
     const glm::dmat3& r = reference_.pose.rotation;
     // From the middle of the cores' points to that of the surfaces'.
     const glm::dvec3 out = reference_is_a_ ? touch.normal : -touch.normal, along_u = r[u_], along_v = r[v_];
@@ -225,7 +225,7 @@ void BoxClip::gather(const Touch& touch, double margin, GatheredPoints& to) cons
 }
 
 double BoxClip::corner_within(int corner) const {
-    const glm::dvec3 &h = other_.body.half_extents(), &half = reference_.body.half_extents();
+    const glm::dvec3 &h = other_.shape.half_extents(), &half = reference_.shape.half_extents();
     glm::dvec3 q = seen_.center;
     for (int k = 0; k < 3; ++k) q += ((corner >> k & 1) != 0 ? h[k] : -h[k]) * seen_.edge[k];
     return std::min(coordinate(half, u_) - std::abs(coordinate(q, u_)),
@@ -252,7 +252,7 @@ bool BoxClip::proves_least(double extent, double allowed) const {
     }
     const double share = 1.0 / count_;
     x *= share, y *= share, depth *= share;
-    const glm::dvec3 &half = reference_.body.half_extents(), &h = other_.body.half_extents();
+    const glm::dvec3 &half = reference_.shape.half_extents(), &h = other_.shape.half_extents();
     const double rim = 0.999 * std::min(coordinate(half, u_) - std::abs(x), coordinate(half, v_) - std::abs(y));
     if (!(depth > 0.0) || !(rim > depth) || !(extent - depth <= allowed)) return false;
     // A step through the other box, along the edge of its face that was clipped.

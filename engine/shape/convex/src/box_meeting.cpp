@@ -20,9 +20,9 @@ bool is_moderate(double value) {
 bool is_moderate(const glm::dvec3& v) {
     return static_cast<int>(is_moderate(v.x)) & static_cast<int>(is_moderate(v.y)) & static_cast<int>(is_moderate(v.z));
 }
-bool is_moderate(const BodyAtPose& box) {
+bool is_moderate(const ShapeAtPose& box) {
     const glm::dmat3& r = box.pose.rotation;
-    return static_cast<int>(is_moderate(box.body.half_extents())) &
+    return static_cast<int>(is_moderate(box.shape.half_extents())) &
            static_cast<int>(is_moderate(box.pose.translation)) & static_cast<int>(is_moderate(r[0])) &
            static_cast<int>(is_moderate(r[1])) & static_cast<int>(is_moderate(r[2]));
 }

@@ -14,9 +14,9 @@ namespace crofton::convex {
 }
 
 // The faces of other boxes are segments or points.
-[[nodiscard]] inline bool is_solid_box(const Body& body) {
-    const glm::dvec3& half = body.half_extents();
-    return body.kind() == Kind::box && half.x > 0.0 && half.y > 0.0 && half.z > 0.0;
+[[nodiscard]] inline bool is_solid_box(const Shape& shape) {
+    const glm::dvec3& half = shape.half_extents();
+    return shape.kind() == Kind::box && half.x > 0.0 && half.y > 0.0 && half.z > 0.0;
 }
 
 inline constexpr int kNext[3] = {1, 2, 0}, kLast[3] = {2, 0, 1};  // in a circle
@@ -99,7 +99,7 @@ class BoxPair {
 class BoxClip {
   public:
     // `direction`: unit, from a to b. The face is that of the reference.
-    BoxClip(const BodyAtPose& a, const BodyAtPose& b, const BoxPair& pair, bool reference_is_a, int face,
+    BoxClip(const ShapeAtPose& a, const ShapeAtPose& b, const BoxPair& pair, bool reference_is_a, int face,
             const glm::dvec3& direction);
     // How deep the deepest point is, without roundings; −infinity where there is none.
     [[nodiscard]] double deepest() const;
@@ -122,7 +122,7 @@ class BoxClip {
     [[nodiscard]] double level() const;  // of the reference face along its axis
     void clip();
 
-    const BodyAtPose &reference_, &other_;
+    const ShapeAtPose &reference_, &other_;
     BoxPair::Seen seen_;
     glm::dvec3 direction_;  // unit, out of the reference, in its frame
     bool reference_is_a_;
@@ -139,7 +139,7 @@ class BoxClip {
 // The manifold of two boxes up to thinning out. The touch's depth and normal are proven, as the least of all axes. The
 // face that the cache names stays while it is the least deep within kKeptDepth of the size. `unknown`: apart where
 // neither a face nor two edges decide, or beyond exact sums.
-[[nodiscard]] Warm touch_of_boxes(const BodyAtPose& a, const BodyAtPose& b, const Pair& pair, double margin,
+[[nodiscard]] Warm touch_of_boxes(const ShapeAtPose& a, const ShapeAtPose& b, const Pair& pair, double margin,
                                   PairCache* cache, Touch& touch, GatheredPoints& points);
 
 }  // namespace crofton::convex

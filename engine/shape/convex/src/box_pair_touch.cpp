@@ -15,10 +15,10 @@ constexpr double kParallelSine2 = 1.2181e-3;
 
 class BoxToucher {
   public:
-    BoxToucher(const BodyAtPose& a, const BodyAtPose& b, const Pair& pair, double margin, Touch& touch,
+    BoxToucher(const ShapeAtPose& a, const ShapeAtPose& b, const Pair& pair, double margin, Touch& touch,
                GatheredPoints& points)
         : a_(a), b_(b), pair_(pair), axes_(pair), margin_(margin), touch_(touch), points_(points) {
-        rounding_ = a.body.radius() + b.body.radius();
+        rounding_ = a.shape.radius() + b.shape.radius();
     }
 
     // The answer, and for the cache whose face of which number the touch is at: 0 where it is at edges.
@@ -51,7 +51,7 @@ class BoxToucher {
     // The corner of a or b that is farthest into the other, around a's origin.
     [[nodiscard]] glm::dvec3 deepest_corner(bool of_a, int& corner) const;
 
-    const BodyAtPose &a_, &b_;
+    const ShapeAtPose &a_, &b_;
     const Pair& pair_;
     BoxPair axes_;
     BoxAxis least_;
@@ -62,8 +62,8 @@ class BoxToucher {
 };
 
 glm::dvec3 BoxToucher::deepest_corner(bool of_a, int& corner) const {
-    const BodyAtPose& box = of_a ? a_ : b_;
-    const Support s = core_support(box.body, Pair::local(box.pose.rotation, of_a ? touch_.normal : -touch_.normal));
+    const ShapeAtPose& box = of_a ? a_ : b_;
+    const Support s = core_support(box.shape, Pair::local(box.pose.rotation, of_a ? touch_.normal : -touch_.normal));
     corner = s.vertex;
     return box.pose.rotation * s.point + (of_a ? glm::dvec3(0.0) : pair_.offset);
 }
@@ -74,7 +74,7 @@ void BoxToucher::add_deepest(const glm::dvec3& on_a, const glm::dvec3& on_b, Fea
     touch_.feature_a = feature_a;
     touch_.feature_b = feature_b;
     touch_.known = true;
-    Gatherer gatherer({a_.pose.translation, a_.body.radius(), b_.body.radius(), margin_}, touch_, points_);
+    Gatherer gatherer({a_.pose.translation, a_.shape.radius(), b_.shape.radius(), margin_}, touch_, points_);
     if (gatherer.lacks_deepest(1e-9 * pair_.size)) gatherer.add_deepest();
 }
 
@@ -108,7 +108,7 @@ bool BoxToucher::at_edges() {
     touch_.depth = least_.extent + rounding_;
     int corner_a = 0, corner_b = 0;
     const glm::dvec3 &u = a_.pose.rotation[i], &v = b_.pose.rotation[j];
-    const double half_a = a_.body.half_extents()[i], half_b = b_.body.half_extents()[j];
+    const double half_a = a_.shape.half_extents()[i], half_b = b_.shape.half_extents()[j];
     // The middles of the edges that face each other, and where the edges cross, seen along the axis.
     const glm::dvec3 end_a = deepest_corner(true, corner_a), end_b = deepest_corner(false, corner_b);
     const glm::dvec3 from_a = end_a - ((corner_a >> i & 1) != 0 ? half_a : -half_a) * u,
@@ -126,7 +126,7 @@ bool BoxToucher::at_edges() {
     const double most_a = std::max(facing_a.x, std::max(facing_a.y, facing_a.z)),
                  most_b = std::max(facing_b.x, std::max(facing_b.y, facing_b.z));
     const bool of_a = most_a >= most_b - 1e-3;
-    const int face = face_along((of_a ? a_ : b_).body,
+    const int face = face_along((of_a ? a_ : b_).shape,
                                 Pair::local((of_a ? a_ : b_).pose.rotation, of_a ? touch_.normal : -touch_.normal));
     BoxClip(a_, b_, axes_, of_a, face, touch_.normal).gather(touch_, margin_, points_);
     const int on_a = corner_a & ~(1 << i), on_b = corner_b & ~(1 << j);
@@ -199,7 +199,7 @@ Warm BoxToucher::ask(int& reference, int& face) {
 
 }  // namespace
 
-Warm touch_of_boxes(const BodyAtPose& a, const BodyAtPose& b, const Pair& pair, double margin, PairCache* cache,
+Warm touch_of_boxes(const ShapeAtPose& a, const ShapeAtPose& b, const Pair& pair, double margin, PairCache* cache,
                     Touch& touch, GatheredPoints& points) {
     if (!(pair.size < std::numeric_limits<double>::infinity())) return Warm::unknown;
     const double limit = -(pair.rounding() + margin + pair.doubt());

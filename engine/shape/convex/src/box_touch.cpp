@@ -37,12 +37,12 @@ double length_of(const glm::dmat3& metric, const glm::dvec3& m) {
 
 }  // namespace
 
-BoxTouch::BoxTouch(const BodyAtPose& box, const glm::dvec3& origin, double reach, double margin)
-    : box_(box), offset_(box.pose.translation - origin), half_(box.body.half_extents()), margin_(margin) {
+BoxTouch::BoxTouch(const ShapeAtPose& box, const glm::dvec3& origin, double reach, double margin)
+    : box_(box), offset_(box.pose.translation - origin), half_(box.shape.half_extents()), margin_(margin) {
     to_local_ = glm::inverse(box.pose.rotation);
     metric_ = to_local_ * glm::transpose(to_local_);
     for (int k = 0; k < 3; ++k) unit_[k] = std::sqrt(metric_[k][k]);
-    size_ = reach + box.body.core_radius() + glm::length(offset_);
+    size_ = reach + box.shape.core_radius() + glm::length(offset_);
     error_ = 0x1p-48 * size_;
 }
 
@@ -107,8 +107,8 @@ Warm BoxTouch::ask(const PlacedTriangle& triangle, Touch& touch) const {
     if (!(size_ < std::numeric_limits<double>::infinity())) return Warm::unknown;
     Local t;
     for (int v = 0; v < 3; ++v) t.corner[v] = to_local_ * (triangle.corner[v] - offset_);
-    const double doubt = box_.body.radius() > 0.0 ? (kSameDepth + kDepthError) * size_ : 0.0;
-    const double limit = -(margin_ + box_.body.radius()) - 2.0 * error_ - doubt;
+    const double doubt = box_.shape.radius() > 0.0 ? (kSameDepth + kDepthError) * size_ : 0.0;
+    const double limit = -(margin_ + box_.shape.radius()) - 2.0 * error_ - doubt;
     for (int k = 0; k < 3; ++k) {
         const double p = t.corner[0][k], q = t.corner[1][k], r = t.corner[2][k];
         const double nearest = std::max(std::min(p, std::min(q, r)), -std::max(p, std::max(q, r)));
@@ -127,19 +127,19 @@ Warm BoxTouch::ask(const PlacedTriangle& triangle, Touch& touch) const {
     if (least.extent < limit) return Warm::apart;
     const bool certain = try_edges(t, least);
     if (least.extent < limit) return Warm::apart;
-    // Another axis may be less deep, and part the bodies.
+    // Another axis may be less deep, and part the shapes.
     if (!certain || !(std::abs(least.extent) > (kSameDepth + kDepthError) * size_)) return Warm::unknown;
     const glm::dvec3 normal = Pair::local(to_local_, least.m);
     touch.normal = normal / glm::length(normal);
     if (!set_points(t, least, triangle, touch)) return Warm::unknown;
     touch.known = true;
-    touch.depth = least.extent + box_.body.radius();
-    // Whether bodies as near to a touch as this meet is left to the search that decides it for all queries.
+    touch.depth = least.extent + box_.shape.radius();
+    // Whether shapes as near to a touch as this meet is left to the search that decides it for all queries.
     if (doubt > 0.0 && std::abs(touch.depth) <= doubt) return Warm::unknown;
     return touch.depth >= -margin_ ? Warm::touching : Warm::apart;
 }
 
-// Bodies that are apart are as far apart as along the axis iff the points along it are within both faces; false if not.
+// Shapes that are apart are as far apart as along the axis iff the points along it are within both faces; false if not.
 bool BoxTouch::set_points(const Local& t, const Axis& axis, const PlacedTriangle& triangle, Touch& touch) const {
     const bool apart = axis.extent < 0.0;
     const glm::dvec3 way = axis.extent / axis.length * (metric_ * axis.m);  // from the point of b to that of a
@@ -183,7 +183,7 @@ bool BoxTouch::set_points(const Local& t, const Axis& axis, const PlacedTriangle
     touch.on_a = triangle.corner[j] + std::min(std::max(s, 0.0), 1.0) * edge;
     touch.on_b = touch.on_a - axis.extent * touch.normal;
     touch.feature_a = {FeatureKind::edge, static_cast<std::uint16_t>(j)};
-    touch.feature_b = feature_of(box_.body, ends, 2);
+    touch.feature_b = feature_of(box_.shape, ends, 2);
     return true;
 }
 

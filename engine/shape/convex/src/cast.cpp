@@ -22,7 +22,8 @@ Result<void> check(const Motion& motion, const CastOptions& options, std::uint64
     if (!finite(motion.velocity) || !finite(motion.spin) || !finite(motion.pivot))
         return fail(ErrorCode::non_finite, item, "cast: a motion is NaN or infinite");
     if (!(glm::length(motion.spin) * options.duration <= kMaxTurn))
-        return fail(ErrorCode::out_of_range, item, "cast: a body turns by more than 1e5 radians; shorten the duration");
+        return fail(ErrorCode::out_of_range, item,
+                    "cast: a shape turns by more than 1e5 radians; shorten the duration");
     return {};
 }
 
@@ -64,10 +65,10 @@ RigidTransform moved(const RigidTransform& pose, const Motion& motion, double ti
 
 namespace {
 
-Impact cast_once(const BodyAtPose& a, const Motion& motion_a, const BodyAtPose& b, const Motion& motion_b,
+Impact cast_once(const ShapeAtPose& a, const Motion& motion_a, const ShapeAtPose& b, const Motion& motion_b,
                  const CastOptions& options, PairCache* cache, const ContactsAt* slide) {
-    if (!a.body.is_convex()) return cast_parts(a, motion_a, b, motion_b, options, 0.0, slide, false);
-    if (!b.body.is_convex()) {
+    if (!a.shape.is_convex()) return cast_parts(a, motion_a, b, motion_b, options, 0.0, slide, false);
+    if (!b.shape.is_convex()) {
         Impact impact = cast_parts(b, motion_b, a, motion_a, options, 0.0, slide, true);
         impact.normal = -impact.normal;
         std::swap(impact.on_a, impact.on_b);
@@ -84,12 +85,12 @@ bool rests(const Motion& a, const Motion& b) {
 
 }  // namespace
 
-Result<Impact> cast(const BodyAtPose& a, const Motion& motion_a, const BodyAtPose& b, const Motion& motion_b,
+Result<Impact> cast(const ShapeAtPose& a, const Motion& motion_a, const ShapeAtPose& b, const Motion& motion_b,
                     const CastOptions& options, PairCache* cache) {
     return cast(a, motion_a, b, motion_b, options, Beside{}, cache);
 }
 
-Result<Impact> cast(const BodyAtPose& a, const Motion& motion_a, const BodyAtPose& b, const Motion& motion_b,
+Result<Impact> cast(const ShapeAtPose& a, const Motion& motion_a, const ShapeAtPose& b, const Motion& motion_b,
                     const CastOptions& options, const Beside& beside, PairCache* cache) {
     if (Result<void> good = check(options); !good) return tl::unexpected(good.error());
     if (Result<void> good = check(motion_a, options, 0); !good) return tl::unexpected(good.error());
@@ -101,7 +102,7 @@ Result<Impact> cast(const BodyAtPose& a, const Motion& motion_a, const BodyAtPos
         return fail(ErrorCode::unsupported, 1,
                     "cast: two half-spaces are not supported; call `distance` at the two times");
     const Impact first = cast_once(a, motion_a, b, motion_b, options, cache, nullptr);
-    const bool alone = a.body.is_convex() && b.body.is_convex() && beside.a.empty() && beside.b.empty();
+    const bool alone = a.shape.is_convex() && b.shape.is_convex() && beside.a.empty() && beside.b.empty();
     if (first.result == CastResult::miss || alone || rests(motion_a, motion_b) || options.duration == 0.0) return first;
     if (first.time == 0.0 && first.distance <= -options.tolerance) return first;
     const Mover mover_a{a, motion_a, beside.a}, mover_b{b, motion_b, beside.b};

@@ -71,7 +71,7 @@ Feature reference_feature(const Feature& self, const std::uint16_t* vertex, cons
 
 }  // namespace
 
-// Short edges are taken from the body's own numbers. They may turn inward by the unevenness of a hull's face, so that
+// Short edges are taken from the shape's own numbers. They may turn inward by the unevenness of a hull's face, so that
 // they bound the polygon from farther out, where all of its corners are inside.
 void find_sides(const Patch& polygon, const glm::dvec3& direction, Prism& sides) {
     sides.count = polygon.count;
@@ -123,11 +123,11 @@ void clip(const Patch& reference, const Prism& sides, const Patch& incident, con
     }
 }
 
-BoxFace::BoxFace(const BodyAtPose& box, int face, const glm::dmat3& to_local, const glm::dvec3& origin)
+BoxFace::BoxFace(const ShapeAtPose& box, int face, const glm::dmat3& to_local, const glm::dvec3& origin)
     : box_(box), to_local_(to_local), offset_(box.pose.translation - origin), face_(face), k_(face / 2) {
     u_ = k_ == 2 ? 0 : k_ + 1;
     v_ = k_ == 0 ? 2 : k_ - 1;
-    level_ = (face & 1) != 0 ? box.body.half_extents()[k_] : -box.body.half_extents()[k_];
+    level_ = (face & 1) != 0 ? box.shape.half_extents()[k_] : -box.shape.half_extents()[k_];
     for (int i = 0; i < 4; ++i) {
         const int from = kBoxFaces[face][i], common = 7 & ~(from ^ kBoxFaces[face][(i + 1) % 4]) & ~(1 << k_);
         sides_[i] = {common == 1 << u_ ? 0 : 1, (from & common) != 0 ? 1.0 : -1.0};
@@ -135,7 +135,7 @@ BoxFace::BoxFace(const BodyAtPose& box, int face, const glm::dmat3& to_local, co
 }
 
 double BoxFace::distance_within(const glm::dvec3& point) const {
-    const glm::dvec3 q = to_local_ * (point - offset_), &h = box_.body.half_extents();
+    const glm::dvec3 q = to_local_ * (point - offset_), &h = box_.shape.half_extents();
     return std::min(h[u_] - std::abs(q[u_]), h[v_] - std::abs(q[v_]));
 }
 
@@ -143,7 +143,7 @@ double BoxFace::distance_within(const glm::dvec3& point) const {
 // direction.
 void BoxFace::clip(const Patch& incident, const glm::dvec3& direction, Clipped& clipped) const {
     clipped.count = 0;
-    const glm::dvec3 d = to_local_ * direction, &h = box_.body.half_extents();
+    const glm::dvec3 d = to_local_ * direction, &h = box_.shape.half_extents();
     if (!(std::abs(d[k_]) > 0.05) || incident.count + 8 > kMaxClipped) return;
     ClipCorner buffers[2][kMaxClipped];
     int count = incident.count, current = 0;

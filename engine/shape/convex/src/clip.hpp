@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Patches of two bodies clipped against each other, and the points kept.
+// Patches of two shapes clipped against each other, and the points kept.
 #pragma once
 #include "features.hpp"
 
 namespace crofton::convex {
 
-// A contact point before its ids are told by body.
+// A contact point before its ids are told by shape.
 struct ClippedPoint {
     glm::dvec3 on_reference, on_incident;
     Feature reference, incident;
@@ -33,7 +33,7 @@ void clip(const Patch& reference, const Prism& sides, const Patch& incident, con
 class BoxFace {
   public:
     // `to_local` is the inverse of the pose's rotation; points are around `origin`.
-    BoxFace(const BodyAtPose& box, int face, const glm::dmat3& to_local, const glm::dvec3& origin);
+    BoxFace(const ShapeAtPose& box, int face, const glm::dmat3& to_local, const glm::dvec3& origin);
     void clip(const Patch& incident, const glm::dvec3& direction, Clipped& clipped) const;
     // How far a point is within the sides of the prism along the face's own axis: the least distance, negative outside.
     [[nodiscard]] double distance_within(const glm::dvec3& point) const;
@@ -43,7 +43,7 @@ class BoxFace {
         int axis;  // of x, y: 0 or 1
         double sign;
     };
-    const BodyAtPose& box_;
+    const ShapeAtPose& box_;
     const glm::dmat3& to_local_;
     glm::dvec3 offset_;
     int face_, k_, u_, v_;  // the face's axis and the two along it

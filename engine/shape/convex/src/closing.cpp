@@ -7,8 +7,8 @@
 namespace crofton::convex {
 namespace {
 
-bool is_solid_of_revolution(const Body& body) {
-    const Kind kind = body.kind();
+bool is_solid_of_revolution(const Shape& shape) {
+    const Kind kind = shape.kind();
     return kind == Kind::sphere || kind == Kind::capsule || kind == Kind::cylinder || kind == Kind::cone;
 }
 
@@ -26,16 +26,16 @@ double reaches(double rate, double bend, double gap) {
     return rate > 0.0 ? 2.0 * gap / (rate + root) : (root - rate) / (2.0 * bend);
 }
 
-double arm_of(const Body& body, const Motion& motion) {
-    return motion.pivot == glm::dvec3(0.0) ? body.core_radius() : body.core_radius() + glm::length(motion.pivot);
+double arm_of(const Shape& shape, const Motion& motion) {
+    return motion.pivot == glm::dvec3(0.0) ? shape.core_radius() : shape.core_radius() + glm::length(motion.pivot);
 }
 
 }  // namespace
 
-Advance::Advance(const BodyAtPose& now, const Motion& motion, const glm::dvec3& d) : body_(now.body) {
+Advance::Advance(const ShapeAtPose& now, const Motion& motion, const glm::dvec3& d) : shape_(now.shape) {
     rate_ = drift_ = glm::dot(d, motion.velocity);
     if (motion.spin == glm::dvec3(0.0)) return;
-    const double arm = arm_of(body_, motion);
+    const double arm = arm_of(shape_, motion);
     if (turn_as_solid_of_revolution(now, motion, d, arm)) return;
     const glm::dvec3 across = glm::cross(d, motion.spin);
     bend_ = 0.5 * glm::length(across) * glm::length(motion.spin) * arm * 1.00001;  // matrices are rotations up to 1e-6
@@ -46,7 +46,7 @@ Advance::Advance(const BodyAtPose& now, const Motion& motion, const glm::dvec3& 
 }
 
 void Advance::set_support(const glm::dvec3& local) {
-    const Support farthest = core_support(body_, local);
+    const Support farthest = core_support(shape_, local);
     local_ = local;
     now_ = farthest.along;
     rate_ = drift_ + glm::dot(turned_, farthest.point);
@@ -54,9 +54,9 @@ void Advance::set_support(const glm::dvec3& local) {
 }
 
 // Where that bound is the lesser one. A pose that is not quite a rotation makes an ellipse of the disc, which turns.
-bool Advance::turn_as_solid_of_revolution(const BodyAtPose& now, const Motion& motion, const glm::dvec3& d,
+bool Advance::turn_as_solid_of_revolution(const ShapeAtPose& now, const Motion& motion, const glm::dvec3& d,
                                           double arm) {
-    if (!is_solid_of_revolution(body_) || motion.pivot.x != 0.0 || motion.pivot.z != 0.0) return false;
+    if (!is_solid_of_revolution(shape_) || motion.pivot.x != 0.0 || motion.pivot.z != 0.0) return false;
     const glm::dvec3 axis = now.pose.rotation[1], moves = glm::cross(motion.spin, axis);
     const double spin = glm::length(motion.spin), tilt = glm::length(moves) * 1.00001 + 0x1p-50 * spin;
     const double bend = 0.5 * (spin + tilt) * tilt * arm * 1.00001;
@@ -68,9 +68,9 @@ bool Advance::turn_as_solid_of_revolution(const BodyAtPose& now, const Motion& m
     return true;
 }
 
-Flight::Flight(const BodyAtPose& a, const Motion& motion_a, const BodyAtPose& b, const Motion& motion_b)
-    : body_a_(a.body),
-      body_b_(b.body),
+Flight::Flight(const ShapeAtPose& a, const Motion& motion_a, const ShapeAtPose& b, const Motion& motion_b)
+    : shape_a_(a.shape),
+      shape_b_(b.shape),
       start_a_{a.pose.rotation, glm::dvec3(0.0)},
       start_b_{b.pose.rotation, b.pose.translation - a.pose.translation},
       turn_a_{glm::dvec3(0.0), motion_a.spin, motion_a.pivot},
@@ -82,15 +82,15 @@ Flight::Flight(const BodyAtPose& a, const Motion& motion_a, const BodyAtPose& b,
     const double speed = glm::length(way_b_.velocity);
     growth_ = 0x1p-47 * speed;
     size_ = glm::length(start_b_.translation);
-    const auto add = [&](const Body& body, const Motion& motion) {
-        if (body.kind() == Kind::half_space) return;
-        const double arm = arm_of(body, motion);
+    const auto add = [&](const Shape& shape, const Motion& motion) {
+        if (shape.kind() == Kind::half_space) return;
+        const double arm = arm_of(shape, motion);
         error_at_start_ += 0x1p-47 * arm;
         if (motion.spin != glm::dvec3(0.0)) growth_ += 0x1p-47 * arm * glm::length(motion.spin);
-        size_ += body.core_radius() + body.radius();
+        size_ += shape.core_radius() + shape.radius();
     };
-    add(body_a_, turn_a_);
-    add(body_b_, way_b_);
+    add(shape_a_, turn_a_);
+    add(shape_b_, way_b_);
 }
 
 void Flight::move_to(double time) {
@@ -109,10 +109,10 @@ bool Flight::rests() const {
 }
 
 double Flight::way(double within) const {
-    const auto turn = [](const Body& body, const Motion& motion) {
-        return motion.spin == glm::dvec3(0.0) ? 0.0 : glm::length(motion.spin) * arm_of(body, motion);
+    const auto turn = [](const Shape& shape, const Motion& motion) {
+        return motion.spin == glm::dvec3(0.0) ? 0.0 : glm::length(motion.spin) * arm_of(shape, motion);
     };
-    return within * (glm::length(way_b_.velocity) + turn(body_a_, turn_a_) + turn(body_b_, way_b_));
+    return within * (glm::length(way_b_.velocity) + turn(shape_a_, turn_a_) + turn(shape_b_, way_b_));
 }
 
 glm::dvec3 Flight::in_world(const glm::dvec3& point) const {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// How far two moving bodies come towards a plane between them.
+// How far two moving shapes come towards a plane between them.
 #pragma once
 #include "core_query.hpp"
 
 namespace crofton::convex {
 
-// How far one body comes towards a plane within time s: along d (unit, in the world), from where it stands now.
+// How far one shape comes towards a plane within time s: along d (unit, in the world), from where it stands now.
 //
 // A point at r from the pivot has dot(d, position)' = dot(d, velocity + spin × r) now, and later
 // dot(d, position)'' = dot(d, spin × (spin × r)) ≤ |d × spin| |spin| |r|, since |spin × r| never changes. So within s
@@ -16,9 +16,9 @@ namespace crofton::convex {
 // u × u', whose length is w = |spin × u|, and whose derivative is at most |spin| w.
 class Advance {
   public:
-    Advance(const BodyAtPose& now, const Motion& motion, const glm::dvec3& d);
+    Advance(const ShapeAtPose& now, const Motion& motion, const glm::dvec3& d);
     [[nodiscard]] double operator()(double s) const {
-        return turns_ ? core_support(body_, local_ + s * turned_).along - now_ + s * drift_ + s * s * bend_
+        return turns_ ? core_support(shape_, local_ + s * turned_).along - now_ + s * drift_ + s * s * bend_
                       : s * drift_;
     }
     [[nodiscard]] bool turns() const { return turns_; }
@@ -28,15 +28,15 @@ class Advance {
 
   private:
     void set_support(const glm::dvec3& local);
-    bool turn_as_solid_of_revolution(const BodyAtPose& now, const Motion& motion, const glm::dvec3& d, double arm);
+    bool turn_as_solid_of_revolution(const ShapeAtPose& now, const Motion& motion, const glm::dvec3& d, double arm);
 
-    const Body& body_;
+    const Shape& shape_;
     glm::dvec3 local_{0.0}, turned_{0.0};
     double now_ = 0.0, drift_ = 0.0, rate_ = 0.0, bend_ = 0.0;
     bool turns_ = false;
 };
 
-// How far two bodies come together across a plane.
+// How far two shapes come together across a plane.
 class Closing {
   public:
     // At most, within time s.
@@ -52,17 +52,17 @@ class Closing {
     const double growth_;  // of the error of both paths, as time goes on
 };
 
-// Two bodies that move, seen from a's origin: what `advance` asks of them. Far from the world's origin, or where both
+// Two shapes that move, seen from a's origin: what `advance` asks of them. Far from the world's origin, or where both
 // fly fast, places in the world lack the digits that decide.
 class Flight {
   public:
-    Flight(const BodyAtPose& a, const Motion& motion_a, const BodyAtPose& b, const Motion& motion_b);
+    Flight(const ShapeAtPose& a, const Motion& motion_a, const ShapeAtPose& b, const Motion& motion_b);
 
     void move_to(double time);
     [[nodiscard]] double time() const { return time_; }
-    [[nodiscard]] BodyAtPose a() const { return {body_a_, pose_a_}; }
-    [[nodiscard]] BodyAtPose b() const { return {body_b_, pose_b_}; }
-    // How far the bodies may be from where the real paths have them: by rounding of rotations and ways.
+    [[nodiscard]] ShapeAtPose a() const { return {shape_a_, pose_a_}; }
+    [[nodiscard]] ShapeAtPose b() const { return {shape_b_, pose_b_}; }
+    // How far the shapes may be from where the real paths have them: by rounding of rotations and ways.
     [[nodiscard]] double path_error() const { return error_at_start_ + growth_ * time_; }
     [[nodiscard]] bool rests() const;
     [[nodiscard]] bool turns() const;
@@ -71,11 +71,11 @@ class Flight {
     [[nodiscard]] double way(double within) const;
     [[nodiscard]] glm::dvec3 in_world(const glm::dvec3& point) const;
 
-    // Across a plane between the bodies where they stand now; `normal` is its unit normal, from a to b.
+    // Across a plane between the shapes where they stand now; `normal` is its unit normal, from a to b.
     [[nodiscard]] Closing closing(const glm::dvec3& normal) const;
 
   private:
-    const Body &body_a_, &body_b_;
+    const Shape &shape_a_, &shape_b_;
     const RigidTransform start_a_, start_b_;
     const Motion turn_a_, way_b_;
     const glm::dvec3 origin_, velocity_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <crofton/convex/body.hpp>
+#include <crofton/convex/shape.hpp>
 #include <crofton/core/recovery.hpp>
 
 #include "parts.hpp"
@@ -14,7 +14,7 @@ constexpr std::uint32_t kLeafSize = 4;
 
 Result<void> check(const CompoundChild& child, std::uint64_t item) {
     if (Result<void> good = validate_pose(child.pose, item); !good) return good;
-    if (child.body.compound() != nullptr && child.body.compound()->depth() >= kMaxCompoundDepth)
+    if (child.shape.compound() != nullptr && child.shape.compound()->depth() >= kMaxCompoundDepth)
         return fail(ErrorCode::out_of_range, item,
                     {"compound: child ", item, " holds compounds ", kMaxCompoundDepth,
                      " deep; put its children into fewer levels"});
@@ -35,14 +35,14 @@ Result<Compound> Compound::build(std::span<const CompoundChild> children) {
             const CompoundChild& child = children[i];
             if (Result<void> good = check(child, i); !good) return tl::unexpected(good.error());
             result.first_part_.push_back(static_cast<std::uint32_t>(parts));
-            const Compound* const inner = child.body.compound();
+            const Compound* const inner = child.shape.compound();
             parts += inner != nullptr ? inner->part_count() : 1;
             if (parts >= (std::uint64_t{1} << 31))
                 return fail(ErrorCode::out_of_range, i, "compound: 2^31 parts or more");
             if (inner != nullptr) result.depth_ = std::max(result.depth_, inner->depth() + 1);
-            result.has_surfaces_ = result.has_surfaces_ || has_surfaces(child.body);
-            boxes.push_back(bounds_of(box_around({child.body, child.pose}, {})));
-            (child.body.is_bounded() ? result.order_ : result.unbounded_).push_back(static_cast<std::uint32_t>(i));
+            result.has_surfaces_ = result.has_surfaces_ || has_surfaces(child.shape);
+            boxes.push_back(bounds_of(box_around({child.shape, child.pose}, {})));
+            (child.shape.is_bounded() ? result.order_ : result.unbounded_).push_back(static_cast<std::uint32_t>(i));
         }
         result.part_count_ = static_cast<std::uint32_t>(parts);
         if (!result.order_.empty()) {
@@ -82,7 +82,7 @@ void Compound::split(std::uint32_t begin, std::uint32_t end, std::span<const Aab
 const CompoundChild& Compound::part(std::uint32_t part) const {
     const auto after = std::upper_bound(first_part_.begin(), first_part_.end(), part);
     const auto child = static_cast<std::size_t>(after - first_part_.begin()) - 1;
-    const Compound* const inner = children_[child].body.compound();
+    const Compound* const inner = children_[child].shape.compound();
     return inner != nullptr ? inner->part(part - first_part_[child]) : children_[child];
 }
 
@@ -125,17 +125,17 @@ class CompoundSearch {
         const CompoundChild& child = compound_.children_[index];
         const RigidTransform pose = within(search_.pose, child.pose);
         const PartSearch inner{pose,
-                               child.body.sides(),
+                               child.shape.sides(),
                                search_.child + compound_.first_part_[index],
                                search_.nearest_first,
                                search_.limit,
                                search_.visit,
-                               &child.body,
+                               &child.shape,
                                search_.on_triangle};
         const QueryBox box = seen_from(box_, child.pose);
-        if (child.body.is_bounded() && distance_between(child.body.bounds(), bounds_of(box)) > search_.limit)
+        if (child.shape.is_bounded() && distance_between(child.shape.bounds(), bounds_of(box)) > search_.limit)
             return false;
-        return search_parts({child.body, pose}, box, inner);
+        return search_parts({child.shape, pose}, box, inner);
     }
 
     const Compound& compound_;
@@ -144,9 +144,9 @@ class CompoundSearch {
     const PartSearch& search_;
 };
 
-bool has_surfaces(const Body& body) {
-    return body.kind() == Kind::mesh || body.kind() == Kind::height_field ||
-           (body.kind() == Kind::compound && CompoundSearch::has_surfaces(*body.compound()));
+bool has_surfaces(const Shape& shape) {
+    return shape.kind() == Kind::mesh || shape.kind() == Kind::height_field ||
+           (shape.kind() == Kind::compound && CompoundSearch::has_surfaces(*shape.compound()));
 }
 
 // The children stand at rounded products of poses, which the box, told in the compound's frame, knows nothing of. With

@@ -2,7 +2,7 @@
 #include "contacts_at.hpp"
 
 #include <algorithm>
-#include <crofton/convex/body_maker.hpp>
+#include <crofton/convex/shape_maker.hpp>
 #include <glm/matrix.hpp>
 
 #include "part_cast.hpp"
@@ -15,24 +15,24 @@ namespace {
 
 constexpr double kSameNormal = 1e-9;
 constexpr double kSameDirection = 1.0 - 1e-7;  // a cosine, of 0.03 degrees
-constexpr double kShallowOverlap = 0.25;       // of the lesser body: deeper overlaps have no plain way out
+constexpr double kShallowOverlap = 0.25;       // of the lesser shape: deeper overlaps have no plain way out
 
 using PairVisitor = FunctionRef<bool(const Part& a, const Part& b)>;
 
 // Calls `visit` for pairs of parts that may be within the margin. True ends the search.
-bool visit_pairs(const BodyAtPose& a, const BodyAtPose& b, double margin, PairVisitor visit) {
+bool visit_pairs(const ShapeAtPose& a, const ShapeAtPose& b, double margin, PairVisitor visit) {
     const auto with_a = [&](const Part& part_a) {
         const auto with_b = [&](const Part& part_b) { return visit(part_a, part_b); };
-        if (b.body.is_convex()) return with_b({b.body, b.pose, {}, Sides::both});
-        return visit_parts_near(b, {part_a.body, part_a.pose}, margin, with_b);
+        if (b.shape.is_convex()) return with_b({b.shape, b.pose, {}, Sides::both});
+        return visit_parts_near(b, {part_a.shape, part_a.pose}, margin, with_b);
     };
-    if (a.body.is_convex()) return with_a({a.body, a.pose, {}, Sides::both});
+    if (a.shape.is_convex()) return with_a({a.shape, a.pose, {}, Sides::both});
     return visit_parts_near(a, b, margin, with_a);
 }
 
-// Tests whether two bodies are nearer to each other than `limit`: by `margin`, or along another direction than
+// Tests whether two shapes are nearer to each other than `limit`: by `margin`, or along another direction than
 // `normal`.
-bool is_nearer_than(const BodyAtPose& a, const BodyAtPose& b, const glm::dvec3& normal, double limit, double margin) {
+bool is_nearer_than(const ShapeAtPose& a, const ShapeAtPose& b, const glm::dvec3& normal, double limit, double margin) {
     const Distance d = near_distance(a, b, limit);
     const bool other_way = glm::dot(d.normal, normal) < kSameDirection;
     return d.distance < (other_way ? limit : limit - margin);
@@ -40,13 +40,13 @@ bool is_nearer_than(const BodyAtPose& a, const BodyAtPose& b, const glm::dvec3& 
 
 // The same of all parts of a but one, and a convex b. Most lie behind the plane across `normal` that touches b's
 // nearest points.
-bool is_part_nearer(const BodyAtPose& a, const BodyAtPose& b, const glm::dvec3& normal, const PartId& but, double limit,
-                    double margin) {
+bool is_part_nearer(const ShapeAtPose& a, const ShapeAtPose& b, const glm::dvec3& normal, const PartId& but,
+                    double limit, double margin) {
     const auto is_nearer = [&](const Part& part) {
-        return part.id != but && is_nearer_than({part.body, part.pose}, b, normal, limit, margin);
+        return part.id != but && is_nearer_than({part.shape, part.pose}, b, normal, limit, margin);
     };
-    const bool is_segment = b.body.kind() == Kind::sphere || b.body.kind() == Kind::capsule;
-    const double depth = core_support(b.body, Pair::local(b.pose.rotation, -normal)).along + b.body.radius();
+    const bool is_segment = b.shape.kind() == Kind::sphere || b.shape.kind() == Kind::capsule;
+    const double depth = core_support(b.shape, Pair::local(b.pose.rotation, -normal)).along + b.shape.radius();
     return visit_parts_near(
         a, b, limit, is_nearer, [&](const PartSearch& of, const Triangle& corners, std::uint32_t t) {
             const glm::dvec3 local = Pair::local(of.pose.rotation, normal),
@@ -54,76 +54,78 @@ bool is_part_nearer(const BodyAtPose& a, const BodyAtPose& b, const glm::dvec3& 
             const double top = std::max(glm::dot(local, corners[0]),
                                         std::max(glm::dot(local, corners[1]), glm::dot(local, corners[2])));
             const double error =
-                0x1p-47 * (of.body->core_radius() + b.body.core_radius() + b.body.radius() + glm::length(offset));
+                0x1p-47 * (of.shape->core_radius() + b.shape.core_radius() + b.shape.radius() + glm::length(offset));
             if (glm::dot(normal, offset) - depth - top - error >= limit) return false;
             if (is_segment) {
                 const glm::dvec3& origin = of.pose.translation;
-                const SegmentTouch segment(b, origin, of.body->core_radius(), std::max(limit, 0.0));
+                const SegmentTouch segment(b, origin, of.shape->core_radius(), std::max(limit, 0.0));
                 Touch touch;
                 const Warm warm = segment.ask(placed_triangle(corners, of.pose, origin), touch);
                 if (warm == Warm::apart) return false;
             }
-            return is_nearer({BodyMaker::triangle(corners), of.pose, {of.child, t}, of.sides});
+            return is_nearer({ShapeMaker::triangle(corners), of.pose, {of.child, t}, of.sides});
         });
 }
 
 }  // namespace
 
 bool is_nearer_elsewhere(const Mover& a, const Mover& b, const Impact& hit, double margin) {
-    Flight flight(a.body, a.motion, b.body, b.motion);
+    Flight flight(a.shape, a.motion, b.shape, b.motion);
     flight.move_to(hit.time);
-    const bool bounded = !is_unbounded(a.body) && !is_unbounded(b.body);
-    if (bounded && b.body.body.is_convex())
+    const bool bounded = !is_unbounded(a.shape) && !is_unbounded(b.shape);
+    if (bounded && b.shape.shape.is_convex())
         return is_part_nearer(flight.a(), flight.b(), hit.normal, hit.part_a, hit.distance, margin);
-    if (bounded && a.body.body.is_convex())
+    if (bounded && a.shape.shape.is_convex())
         return is_part_nearer(flight.b(), flight.a(), -hit.normal, hit.part_b, hit.distance, margin);
     return visit_pairs(flight.a(), flight.b(), hit.distance, [&](const Part& part_a, const Part& part_b) {
         if (part_a.id == hit.part_a && part_b.id == hit.part_b) return false;
-        return is_nearer_than({part_a.body, part_a.pose}, {part_b.body, part_b.pose}, hit.normal, hit.distance, margin);
+        return is_nearer_than({part_a.shape, part_a.pose}, {part_b.shape, part_b.pose}, hit.normal, hit.distance,
+                              margin);
     });
 }
 
-Motion motion_of_part(const BodyAtPose& whole, const Motion& motion, const RigidTransform& part) {
+Motion motion_of_part(const ShapeAtPose& whole, const Motion& motion, const RigidTransform& part) {
     Motion result = motion;
     result.pivot = glm::inverse(part.rotation) *
                    (whole.pose.rotation * motion.pivot + (whole.pose.translation - part.translation));
     return result;
 }
 
-bool comes_from_behind(const BodyAtPose& triangle, const BodyAtPose& b, const Impact& impact) {
+bool comes_from_behind(const ShapeAtPose& triangle, const ShapeAtPose& b, const Impact& impact) {
     const glm::dvec3& origin = triangle.pose.translation;
-    const Triangle corners{triangle.body.vertex(0), triangle.body.vertex(1), triangle.body.vertex(2)};
+    const Triangle corners{triangle.shape.vertex(0), triangle.shape.vertex(1), triangle.shape.vertex(2)};
     const PlacedTriangle there = placed_triangle(corners, triangle.pose, origin);
-    if (impact.distance <= 0.0) return !is_in_front(there, b.body, middle_of(b, origin));
+    if (impact.distance <= 0.0) return !is_in_front(there, b.shape, middle_of(b, origin));
     return glm::dot(impact.normal, there.normal) <= 0.0;
 }
 
-// At the start where the bodies are, later around a's place at the start: the world may lack digits there.
+// At the start where the shapes are, later around a's place at the start: the world may lack digits there.
 ContactsAt::ContactsAt(const Mover& a, const Mover& b, const CastOptions& options, double time)
-    : flight_(a.body, a.motion, b.body, b.motion),
+    : flight_(a.shape, a.motion, b.shape, b.motion),
       time_(time),
-      pose_a_(time > 0.0 ? (flight_.move_to(time), flight_.a().pose) : a.body.pose),
-      pose_b_(time > 0.0 ? flight_.b().pose : b.body.pose),
-      placed_a_{a.body.body, pose_a_},
-      placed_b_{b.body.body, pose_b_},
+      pose_a_(time > 0.0 ? (flight_.move_to(time), flight_.a().pose) : a.shape.pose),
+      pose_b_(time > 0.0 ? flight_.b().pose : b.shape.pose),
+      placed_a_{a.shape.shape, pose_a_},
+      placed_b_{b.shape.shape, pose_b_},
       a_{placed_a_, a.motion, a.beside},
       b_{placed_b_, b.motion, b.beside},
       options_(options) {
     bool own = true;
     const double left = options.duration - time;
-    visit_all_pairs([&](bool is_own) { own = is_own; },
-                    [&](const Part& part_a, const Motion& motion_a, const Part& part_b, const Motion& motion_b) {
-                        const auto impact = touch(part_a, part_b);
-                        if (!impact) return;
-                        const Flight flight({part_a.body, part_a.pose}, motion_a, {part_b.body, part_b.pose}, motion_b);
-                        const double slack = 0x1p-40 * (flight.size() + flight.way(left));
-                        const bool slides = flight.closing(impact->normal)(left) < std::max(impact->distance, slack);
-                        add({part_a, part_b, *impact, own, slides});
-                    });
+    visit_all_pairs(
+        [&](bool is_own) { own = is_own; },
+        [&](const Part& part_a, const Motion& motion_a, const Part& part_b, const Motion& motion_b) {
+            const auto impact = touch(part_a, part_b);
+            if (!impact) return;
+            const Flight flight({part_a.shape, part_a.pose}, motion_a, {part_b.shape, part_b.pose}, motion_b);
+            const double slack = 0x1p-40 * (flight.size() + flight.way(left));
+            const bool slides = flight.closing(impact->normal)(left) < std::max(impact->distance, slack);
+            add({part_a, part_b, *impact, own, slides});
+        });
 }
 
 void ContactsAt::visit_all_pairs(FunctionRef<void(bool own)> begin, MovingPairVisitor visit) const {
-    const auto visit_moving = [&](const BodyAtPose& a, const Motion& motion_a, const BodyAtPose& b,
+    const auto visit_moving = [&](const ShapeAtPose& a, const Motion& motion_a, const ShapeAtPose& b,
                                   const Motion& motion_b) {
         visit_pairs(a, b, options_.tolerance, [&](const Part& part_a, const Part& part_b) {
             visit(part_a, motion_of_part(a, motion_a, part_a.pose), part_b, motion_of_part(b, motion_b, part_b.pose));
@@ -131,24 +133,24 @@ void ContactsAt::visit_all_pairs(FunctionRef<void(bool own)> begin, MovingPairVi
         });
     };
     begin(true);
-    visit_moving(a_.body, a_.motion, b_.body, b_.motion);
+    visit_moving(a_.shape, a_.motion, b_.shape, b_.motion);
     if (time_ > 0.0) return;
     begin(false);
     const Motion along_a{a_.motion.velocity, {}, {}}, along_b{b_.motion.velocity, {}, {}};
-    for (const BodyAtPose& other : b_.beside) visit_moving(a_.body, a_.motion, other, along_b);
-    for (const BodyAtPose& other : a_.beside) visit_moving(other, along_a, b_.body, b_.motion);
+    for (const ShapeAtPose& other : b_.beside) visit_moving(a_.shape, a_.motion, other, along_b);
+    for (const ShapeAtPose& other : a_.beside) visit_moving(other, along_a, b_.shape, b_.motion);
 }
 
 // Where two parts are within the tolerance, or overlap by less; by more, if such are left out.
 std::optional<Impact> ContactsAt::touch(const Part& a, const Part& b) const {
-    const BodyAtPose placed_a{a.body, a.pose}, placed_b{b.body, b.pose};
+    const ShapeAtPose placed_a{a.shape, a.pose}, placed_b{b.shape, b.pose};
     if (is_half_space(placed_a) && is_half_space(placed_b)) return std::nullopt;
     const CastOptions now{.duration = 0.0, .tolerance = options_.tolerance};
     Impact impact = advance(placed_a, {}, placed_b, {}, now, 0.0, nullptr);
     if (impact.result == CastResult::miss || impact.normal == glm::dvec3(0.0)) return std::nullopt;
     if (impact.distance <= -options_.tolerance) {
-        const auto size = [](const Body& body) { return body.core_radius() + body.radius(); };
-        const bool shallow = -impact.distance <= kShallowOverlap * std::min(size(a.body), size(b.body));
+        const auto size = [](const Shape& shape) { return shape.core_radius() + shape.radius(); };
+        const bool shallow = -impact.distance <= kShallowOverlap * std::min(size(a.shape), size(b.shape));
         if (!options_.ignore_initial_overlaps || !shallow) return std::nullopt;
     }
     if (a.sides == Sides::front && comes_from_behind(placed_a, placed_b, impact)) return std::nullopt;
@@ -176,7 +178,7 @@ void ContactsAt::add(const Contact& contact) {
 void ContactsAt::count_behind() {
     visit_all_pairs([](bool) {},
                     [&](const Part& a, const Motion&, const Part& b, const Motion&) {
-                        const BodyAtPose placed_a{a.body, a.pose}, placed_b{b.body, b.pose};
+                        const ShapeAtPose placed_a{a.shape, a.pose}, placed_b{b.shape, b.pose};
                         if (is_half_space(placed_a) || is_half_space(placed_b) || !touch(a, b)) return;
                         for (std::size_t i = 0; i < count_; ++i)
                             at(i).behind += is_behind(placed_a, placed_b, at(i), 0.0);
@@ -185,17 +187,17 @@ void ContactsAt::count_behind() {
 
 // Whether two parts are no deeper along the contact's normal than it is, also when they have come together by
 // `closing`.
-bool ContactsAt::is_behind(const BodyAtPose& a, const BodyAtPose& b, const Contact& contact, double closing) const {
+bool ContactsAt::is_behind(const ShapeAtPose& a, const ShapeAtPose& b, const Contact& contact, double closing) const {
     const Pair pair(a, b);
     const double gap = -pair.extent(contact.impact.normal) - pair.rounding();
     const double allowed = std::max(options_.tolerance, flush_tolerance(a, b));
     return gap - std::max(closing, 0.0) >= std::min(contact.impact.distance, 0.0) - allowed;
 }
 
-bool ContactsAt::passes(const BodyAtPose& first, const Motion& motion_first, const BodyAtPose& second,
+bool ContactsAt::passes(const ShapeAtPose& first, const Motion& motion_first, const ShapeAtPose& second,
                         const Motion& motion_second, bool flipped) const {
     if (is_half_space(first) || is_half_space(second)) return false;
-    const BodyAtPose &a = flipped ? second : first, &b = flipped ? first : second;
+    const ShapeAtPose &a = flipped ? second : first, &b = flipped ? first : second;
     const Motion &motion_a = flipped ? motion_second : motion_first, &motion_b = flipped ? motion_first : motion_second;
     for (std::size_t i = 0; i < count_; ++i) {
         const Contact& contact = at(i);
@@ -207,7 +209,7 @@ bool ContactsAt::passes(const BodyAtPose& first, const Motion& motion_first, con
 }
 
 bool ContactsAt::is_told_by(const Contact& contact, const Contact& by) const {
-    const BodyAtPose a{contact.a.body, contact.a.pose}, b{contact.b.body, contact.b.pose};
+    const ShapeAtPose a{contact.a.shape, contact.a.pose}, b{contact.b.shape, contact.b.pose};
     return by.behind > contact.behind && !is_half_space(a) && !is_half_space(b) && is_behind(a, b, by, 0.0);
 }
 

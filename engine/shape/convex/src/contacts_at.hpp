@@ -9,24 +9,24 @@
 
 namespace crofton::convex {
 
-// One of the bodies of a cast.
+// One of the shapes of a cast.
 struct Mover {
-    const BodyAtPose& body;
+    const ShapeAtPose& shape;
     const Motion& motion;
-    std::span<const BodyAtPose> beside;  // bodies that move by the motion's velocity and do not turn
+    std::span<const ShapeAtPose> beside;  // shapes that move by the motion's velocity and do not turn
 };
 
-// Whether other parts of the two bodies are nearer to each other at the time of a hit than those that hit: by `margin`,
+// Whether other parts of the two shapes are nearer to each other at the time of a hit than those that hit: by `margin`,
 // or along another normal by any amount. A corner that lands beside the edge of a tile is hardly farther from that edge
 // than from the tile under it.
 [[nodiscard]] bool is_nearer_elsewhere(const Mover& a, const Mover& b, const Impact& hit, double margin);
 
-// The contacts of two bodies at a time of their cast: of all pairs of parts of the two, and at the start also of either
+// The contacts of two shapes at a time of their cast: of all pairs of parts of the two, and at the start also of either
 // with what is beside the other.
 //
 // Take a contact whose parts do not come together along its normal. Another pair of parts that is no deeper than it
 // along that normal at the start never gets deeper either. A plane across the normal stays between its parts, within
-// the tolerance. So the bodies slide past it: it is no hit, whatever edge it turns to the mover. This holds for all
+// the tolerance. So the shapes slide past it: it is no hit, whatever edge it turns to the mover. This holds for all
 // that lies in the plane of a floor, or below it. Likewise, of two contacts at one time the one tells where the surface
 // is that has more of them in its plane or behind it.
 class ContactsAt {
@@ -37,10 +37,10 @@ class ContactsAt {
     [[nodiscard]] bool slides() const { return slides_; }
     // Of contacts at the start: whether two convex parts slide past each other. They stand as at time 0. `flipped`: the
     // first is b's.
-    [[nodiscard]] bool passes(const BodyAtPose& first, const Motion& motion_first, const BodyAtPose& second,
+    [[nodiscard]] bool passes(const ShapeAtPose& first, const Motion& motion_first, const ShapeAtPose& second,
                               const Motion& motion_second, bool flipped) const;
-    // For a hit at this time: the deepest of the two bodies' contacts that come together and that no other contact
-    // tells better. Normals are within an angle of the hit's, told by its cosine. Nothing if contacts of bodies beside
+    // For a hit at this time: the deepest of the two shapes' contacts that come together and that no other contact
+    // tells better. Normals are within an angle of the hit's, told by its cosine. Nothing if contacts of shapes beside
     // them tell all of them better.
     [[nodiscard]] std::optional<Impact> deepest(const Impact& hit, double least_cosine);
 
@@ -48,7 +48,7 @@ class ContactsAt {
     struct Contact {
         Part a, b;
         Impact impact;
-        bool own;  // of the two bodies
+        bool own;  // of the two shapes
         bool slides;
         std::size_t behind = 0;  // contacts in its plane or behind it
     };
@@ -60,14 +60,14 @@ class ContactsAt {
     [[nodiscard]] std::optional<Impact> touch(const Part& a, const Part& b) const;
     void add(const Contact& contact);
     void count_behind();
-    [[nodiscard]] bool is_behind(const BodyAtPose& a, const BodyAtPose& b, const Contact& contact,
+    [[nodiscard]] bool is_behind(const ShapeAtPose& a, const ShapeAtPose& b, const Contact& contact,
                                  double closing) const;
     [[nodiscard]] bool is_told_by(const Contact& contact, const Contact& by) const;
 
     Flight flight_;
     const double time_;
     const RigidTransform pose_a_, pose_b_;
-    const BodyAtPose placed_a_, placed_b_;
+    const ShapeAtPose placed_a_, placed_b_;
     const Mover a_, b_;
     const CastOptions& options_;
     // Room for contacts, of which the first `count_` are there: setting all of it to nothing takes longer than a cast.
@@ -83,9 +83,9 @@ class ContactsAt {
     bool slides_ = false;
 };
 
-// Of a part of a body, about the body's pivot.
-[[nodiscard]] Motion motion_of_part(const BodyAtPose& whole, const Motion& motion, const RigidTransform& part);
+// Of a part of a shape, about the shape's pivot.
+[[nodiscard]] Motion motion_of_part(const ShapeAtPose& whole, const Motion& motion, const RigidTransform& part);
 // Whether b meets the back of a triangle: both where they are at the impact's time.
-[[nodiscard]] bool comes_from_behind(const BodyAtPose& triangle, const BodyAtPose& b, const Impact& impact);
+[[nodiscard]] bool comes_from_behind(const ShapeAtPose& triangle, const ShapeAtPose& b, const Impact& impact);
 
 }  // namespace crofton::convex

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Where a ray meets one convex body, in the body's frame. Spheres, capsules and boxes by formulas, hulls by their
+// Where a ray meets one convex shape, in the shape's frame. Spheres, capsules and boxes by formulas, hulls by their
 // triangles, cylinders and cones by Newton's method on the distance. A rounded polytope is the union of its core, its
-// faces moved outward, and capsules around its edges: each of these lies within the body, and its surface is theirs.
+// faces moved outward, and capsules around its edges: each of these lies within the shape, and its surface is theirs.
 #include <algorithm>
 #include <cmath>
 #include <crofton/geometry/expansion.hpp>
@@ -31,8 +31,8 @@ glm::dvec3 accurate_cross(const glm::dvec3& u, const glm::dvec3& v) {
             accurate_difference(u.x, v.y, u.y, v.x)};
 }
 
-// Where the ray is in a body from `enter` to `leave`: a hit where it enters, or at 0 where it begins within rounding of
-// the surface.
+// Where the ray is in a shape from `enter` to `leave`: a hit where it enters, or at 0 where it begins within rounding
+// of the surface.
 std::optional<double> first_of(double enter, double leave, double max_t) {
     if (!(enter <= leave && leave >= 0.0 && enter <= max_t)) return std::nullopt;
     return std::max(enter, 0.0);
@@ -120,8 +120,8 @@ struct RoundGap {
 };
 
 // In the half plane of the distance from the axis and the height.
-RoundGap round_gap(const Body& body, const glm::dvec3& p) {
-    const double radius = body.half_extents().x, height = body.half_extents().y;
+RoundGap round_gap(const Shape& shape, const glm::dvec3& p) {
+    const double radius = shape.half_extents().x, height = shape.half_extents().y;
     const double from_axis = std::sqrt(p.x * p.x + p.z * p.z);
     const glm::dvec3 outward =
         from_axis > 0.0 ? glm::dvec3(p.x / from_axis, 0.0, p.z / from_axis) : glm::dvec3(1.0, 0.0, 0.0);
@@ -130,7 +130,7 @@ RoundGap round_gap(const Body& body, const glm::dvec3& p) {
         const double gap = std::sqrt(across * across + along * along);
         return {gap, gap > 0.0 ? (across / gap) * outward + (along / gap) * up : up};
     };
-    if (body.kind() == Kind::cylinder) {
+    if (shape.kind() == Kind::cylinder) {
         const double across = from_axis - radius, along = std::abs(p.y) - height;
         const glm::dvec3 end = p.y >= 0.0 ? up : -up;
         if (across > 0.0 && along > 0.0) return from_point(across, p.y >= 0.0 ? along : -along);
@@ -153,13 +153,13 @@ RoundGap round_gap(const Body& body, const glm::dvec3& p) {
 
 // Newton's method from outside: the gap is a convex function along the ray, so that each step ends before the surface
 // and the first step that finds no way nearer proves a miss.
-std::optional<NearHit> meet_round(const Body& body, const NearRay& ray) {
+std::optional<NearHit> meet_round(const Shape& shape, const NearRay& ray) {
     double t = 0.0;
-    if (!passes_box(ray, body.bounds(), 0.0, t)) return std::nullopt;
-    const double enough = 0x1p-51 * (body.core_radius() + body.radius());
+    if (!passes_box(ray, shape.bounds(), 0.0, t)) return std::nullopt;
+    const double enough = 0x1p-51 * (shape.core_radius() + shape.radius());
     for (int i = 0; i < 300; ++i) {
-        const RoundGap at = round_gap(body, ray.origin + t * ray.direction);
-        const double gap = at.gap - body.radius(), speed = -glm::dot(at.gradient, ray.direction);
+        const RoundGap at = round_gap(shape, ray.origin + t * ray.direction);
+        const double gap = at.gap - shape.radius(), speed = -glm::dot(at.gradient, ray.direction);
         if (!(speed > 0.0)) return std::nullopt;
         if (gap <= enough) return NearHit{t, at.gradient};
         const double next = t + gap / speed;
@@ -167,7 +167,7 @@ std::optional<NearHit> meet_round(const Body& body, const NearRay& ray) {
         if (next == t) return NearHit{t, at.gradient};
         t = next;
     }
-    return NearHit{t, round_gap(body, ray.origin + t * ray.direction).gradient};
+    return NearHit{t, round_gap(shape, ray.origin + t * ray.direction).gradient};
 }
 
 // The face of a rounded polytope above a triangle of its core.
@@ -190,15 +190,15 @@ std::optional<NearHit> meet_moved_face(const NearRay& ray, const Triangle& core,
 // is clockwise around the origin.
 class Silhouette {
   public:
-    Silhouette(const Body& body, const NearRay& ray) {
+    Silhouette(const Shape& shape, const NearRay& ray) {
         const glm::dvec3 d = glm::normalize(ray.direction), m = glm::abs(d);
         const glm::dvec3 least = m.x <= m.y && m.x <= m.z ? glm::dvec3(1, 0, 0)
                                  : m.y <= m.z             ? glm::dvec3(0, 1, 0)
                                                           : glm::dvec3(0, 0, 1);
         const glm::dvec3 right = glm::normalize(glm::cross(d, least)), up = glm::cross(d, right);
         double size = std::numeric_limits<double>::min();
-        for (int i = 0; i < body.vertex_count(); ++i) {
-            const glm::dvec3 to = body.vertex(i) - ray.origin;
+        for (int i = 0; i < shape.vertex_count(); ++i) {
+            const glm::dvec3 to = shape.vertex(i) - ray.origin;
             x_[i] = glm::dot(to, right);
             y_[i] = glm::dot(to, up);
             size = std::max(size, std::abs(to.x) + std::abs(to.y) + std::abs(to.z));
@@ -224,9 +224,9 @@ class Silhouette {
 };
 
 // The ray begins a rounding earlier: where its origin has been rounded into the hull it would meet no way in.
-std::optional<NearHit> meet_hull(const Body& body, const NearRay& ray) {
-    const Hull& hull = *body.hull();
-    const Silhouette silhouette(body, ray);
+std::optional<NearHit> meet_hull(const Shape& shape, const NearRay& ray) {
+    const Hull& hull = *shape.hull();
+    const Silhouette silhouette(shape, ray);
     const double back = ray.error / glm::length(ray.direction);
     NearRay earlier = ray;
     earlier.origin -= back * ray.direction;
@@ -236,46 +236,46 @@ std::optional<NearHit> meet_hull(const Body& body, const NearRay& ray) {
     for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
         const int a = indices[i], b = indices[i + 1], c = indices[i + 2];
         if (!silhouette.may_enter(a, b, c)) continue;
-        keep_nearest(best, meet_triangle({body.vertex(a), body.vertex(b), body.vertex(c)}, Sides::front, earlier));
+        keep_nearest(best, meet_triangle({shape.vertex(a), shape.vertex(b), shape.vertex(c)}, Sides::front, earlier));
     }
     if (!best) return best;
     best->t = std::min(std::max(best->t - back, 0.0), ray.max_t);
     return best;
 }
 
-std::optional<NearHit> meet_rounded_hull(const Body& body, const NearRay& ray) {
+std::optional<NearHit> meet_rounded_hull(const Shape& shape, const NearRay& ray) {
     std::optional<NearHit> best;
-    const Silhouette silhouette(body, ray);
-    const std::span<const std::uint16_t> indices = body.hull()->triangles();
+    const Silhouette silhouette(shape, ray);
+    const std::span<const std::uint16_t> indices = shape.hull()->triangles();
     for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
-        const Triangle corners{body.vertex(indices[i]), body.vertex(indices[i + 1]), body.vertex(indices[i + 2])};
-        keep_nearest(best, meet_moved_face(ray, corners, normal_of(corners), body.radius()));
+        const Triangle corners{shape.vertex(indices[i]), shape.vertex(indices[i + 1]), shape.vertex(indices[i + 2])};
+        keep_nearest(best, meet_moved_face(ray, corners, normal_of(corners), shape.radius()));
         for (std::size_t k = 0; k < 3; ++k)  // each edge has two triangles, which name it in both directions
             if (indices[i + k] < indices[i + (k + 1) % 3] &&
-                silhouette.may_pass(indices[i + k], indices[i + (k + 1) % 3], body.radius()))
-                keep_nearest(best, meet_capsule(ray, corners[k], corners[(k + 1) % 3], body.radius()));
+                silhouette.may_pass(indices[i + k], indices[i + (k + 1) % 3], shape.radius()))
+                keep_nearest(best, meet_capsule(ray, corners[k], corners[(k + 1) % 3], shape.radius()));
     }
     return best;
 }
 
-std::optional<NearHit> meet_rounded_triangle(const Body& body, const NearRay& ray) {
-    const Triangle corners{body.vertex(0), body.vertex(1), body.vertex(2)};
+std::optional<NearHit> meet_rounded_triangle(const Shape& shape, const NearRay& ray) {
+    const Triangle corners{shape.vertex(0), shape.vertex(1), shape.vertex(2)};
     const glm::dvec3 normal = normal_of(corners);
-    std::optional<NearHit> best = meet_moved_face(ray, corners, normal, body.radius());
+    std::optional<NearHit> best = meet_moved_face(ray, corners, normal, shape.radius());
     const Triangle other{corners[0], corners[2], corners[1]};
-    keep_nearest(best, meet_moved_face(ray, other, -normal, body.radius()));
+    keep_nearest(best, meet_moved_face(ray, other, -normal, shape.radius()));
     for (std::size_t k = 0; k < 3; ++k)
-        keep_nearest(best, meet_capsule(ray, corners[k], corners[(k + 1) % 3], body.radius()));
+        keep_nearest(best, meet_capsule(ray, corners[k], corners[(k + 1) % 3], shape.radius()));
     return best;
 }
 
-std::optional<NearHit> meet_rounded_box(const Body& body, const NearRay& ray) {
-    const glm::dvec3& half = body.half_extents();
+std::optional<NearHit> meet_rounded_box(const Shape& shape, const NearRay& ray) {
+    const glm::dvec3& half = shape.half_extents();
     std::optional<NearHit> best;
     for (int k = 0; k < 3; ++k) {
         const int i = (k + 1) % 3, j = (k + 2) % 3;
         glm::dvec3 grown = half;
-        grown[k] += body.radius();
+        grown[k] += shape.radius();
         const auto hit = meet_box(ray, grown);
         if (hit && hit->normal[k] != 0.0) keep_nearest(best, hit);
         for (int corner = 0; corner < 4; ++corner) {
@@ -284,7 +284,7 @@ std::optional<NearHit> meet_rounded_box(const Body& body, const NearRay& ray) {
             if ((corner & 2) != 0) from[j] = half[j];
             glm::dvec3 to = from;
             to[k] = half[k];
-            keep_nearest(best, meet_capsule(ray, from, to, body.radius()));
+            keep_nearest(best, meet_capsule(ray, from, to, shape.radius()));
         }
     }
     return best;
@@ -326,28 +326,28 @@ std::optional<NearHit> meet_triangle(const Triangle& corners, Sides sides, const
     return hit;
 }
 
-bool is_in_round(const Body& body, const glm::dvec3& point) {
-    return round_gap(body, point).gap <= body.radius();
+bool is_in_round(const Shape& shape, const glm::dvec3& point) {
+    return round_gap(shape, point).gap <= shape.radius();
 }
 
-std::optional<NearHit> meet_convex(const Body& body, const NearRay& ray) {
+std::optional<NearHit> meet_convex(const Shape& shape, const NearRay& ray) {
     double from = 0.0;
-    if (!passes_box(ray, body.bounds(), ray.error, from)) return std::nullopt;
-    switch (body.kind()) {
+    if (!passes_box(ray, shape.bounds(), ray.error, from)) return std::nullopt;
+    switch (shape.kind()) {
         case Kind::sphere:
-            return meet_sphere(ray, glm::dvec3(0.0), body.radius());
+            return meet_sphere(ray, glm::dvec3(0.0), shape.radius());
         case Kind::capsule:
-            return meet_capsule(ray, body.vertex(0), body.vertex(1), body.radius());
+            return meet_capsule(ray, shape.vertex(0), shape.vertex(1), shape.radius());
         case Kind::cylinder:
         case Kind::cone:
-            return meet_round(body, ray);
+            return meet_round(shape, ray);
         case Kind::box:
-            return body.radius() > 0.0 ? meet_rounded_box(body, ray) : meet_box(ray, body.half_extents());
+            return shape.radius() > 0.0 ? meet_rounded_box(shape, ray) : meet_box(ray, shape.half_extents());
         case Kind::hull:
-            return body.radius() > 0.0 ? meet_rounded_hull(body, ray) : meet_hull(body, ray);
+            return shape.radius() > 0.0 ? meet_rounded_hull(shape, ray) : meet_hull(shape, ray);
         case Kind::triangle:
-            if (body.radius() > 0.0) return meet_rounded_triangle(body, ray);
-            return meet_triangle({body.vertex(0), body.vertex(1), body.vertex(2)}, Sides::both, ray);
+            if (shape.radius() > 0.0) return meet_rounded_triangle(shape, ray);
+            return meet_triangle({shape.vertex(0), shape.vertex(1), shape.vertex(2)}, Sides::both, ray);
         default:
             return std::nullopt;
     }

@@ -72,8 +72,8 @@ void align_points(const Pair& pair, const glm::dvec3& normal, Nearest& found) {
 
 namespace {
 
-// An order of placed bodies that is the same whichever comes first in a query.
-bool comes_first(const Body& a, const RigidTransform& pose_a, const Body& b, const RigidTransform& pose_b) {
+// An order of placed shapes that is the same whichever comes first in a query.
+bool comes_first(const Shape& a, const RigidTransform& pose_a, const Shape& b, const RigidTransform& pose_b) {
     if (a.kind() != b.kind()) return a.kind() < b.kind();
     if (a.radius() != b.radius()) return a.radius() < b.radius();
     if (a.core_radius() != b.core_radius()) return a.core_radius() < b.core_radius();
@@ -159,40 +159,40 @@ Depth core_depth(const Pair& pair, const Simplex& start) {
 }
 
 // The image of { n·x + offset ≥ 0 } under y = R x + t is { (cof(R) n)·(y − t) + det(R) offset ≥ 0 }.
-HalfSpaceGap half_space_gap(const BodyAtPose& half_space, const BodyAtPose& body) {
+HalfSpaceGap half_space_gap(const ShapeAtPose& half_space, const ShapeAtPose& shape) {
     const glm::dmat3& r = half_space.pose.rotation;
     const glm::dmat3 cofactor(glm::cross(r[1], r[2]), glm::cross(r[2], r[0]), glm::cross(r[0], r[1]));
-    const Plane& plane = half_space.body.plane();
+    const Plane& plane = half_space.shape.plane();
     const glm::dvec3 normal = cofactor * plane.normal;
     const double length = glm::length(normal);
     HalfSpaceGap result;
     result.outward = -normal / length;
     const double level = glm::dot(r[0], cofactor[0]) * plane.offset / length;
-    const glm::dvec3 offset = body.pose.translation - half_space.pose.translation;
-    const Support deepest = core_support(body.body, Pair::local(body.pose.rotation, -result.outward));
+    const glm::dvec3 offset = shape.pose.translation - half_space.pose.translation;
+    const Support deepest = core_support(shape.shape, Pair::local(shape.pose.rotation, -result.outward));
     result.gap = -((deepest.along + glm::dot(-result.outward, offset)) + level);
-    result.error = 0x1p-47 * (body.body.core_radius() + glm::length(offset) + std::abs(level));
-    result.deepest = body.pose.rotation * deepest.point + body.pose.translation;
+    result.error = 0x1p-47 * (shape.shape.core_radius() + glm::length(offset) + std::abs(level));
+    result.deepest = shape.pose.rotation * deepest.point + shape.pose.translation;
     return result;
 }
 
-bool half_space_meets(const BodyAtPose& half_space, const BodyAtPose& body) {
-    const HalfSpaceGap gap = half_space_gap(half_space, body);
-    const double apart = gap.gap - body.body.radius();
+bool half_space_meets(const ShapeAtPose& half_space, const ShapeAtPose& shape) {
+    const HalfSpaceGap gap = half_space_gap(half_space, shape);
+    const double apart = gap.gap - shape.shape.radius();
     if (apart > gap.error) return false;
     if (apart < -gap.error) return true;
     if (!std::isfinite(apart)) return false;
-    return body.body.is_polytope() ? meets_half_space(body, half_space) : apart <= 0.0;
+    return shape.shape.is_polytope() ? meets_half_space(shape, half_space) : apart <= 0.0;
 }
 
-double gap_of_half_spaces(const BodyAtPose& a, const BodyAtPose& b, glm::dvec3& normal) {
+double gap_of_half_spaces(const ShapeAtPose& a, const ShapeAtPose& b, glm::dvec3& normal) {
     // b's part that lies deepest along a's normal: a plane of points, or all directions.
     const glm::dmat3 &ra = a.pose.rotation, &rb = b.pose.rotation;
-    const glm::dvec3 na = glm::normalize(ra * a.body.plane().normal), nb = glm::normalize(rb * b.body.plane().normal);
+    const glm::dvec3 na = glm::normalize(ra * a.shape.plane().normal), nb = glm::normalize(rb * b.shape.plane().normal);
     if (glm::cross(na, nb) != glm::dvec3(0.0) || glm::dot(na, nb) > 0.0) return 0.0;
     const glm::dvec3 offset = b.pose.translation - a.pose.translation;
-    const double apart = -(a.body.plane().offset / glm::length(a.body.plane().normal) +
-                           b.body.plane().offset / glm::length(b.body.plane().normal) + glm::dot(na, offset));
+    const double apart = -(a.shape.plane().offset / glm::length(a.shape.plane().normal) +
+                           b.shape.plane().offset / glm::length(b.shape.plane().normal) + glm::dot(na, offset));
     normal = -na;
     return std::max(0.0, apart);
 }

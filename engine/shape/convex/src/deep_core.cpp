@@ -84,7 +84,7 @@ class DeepCore {
 
     const Pair& pair_;
     bool solid_is_a_;
-    const Body &solid_, &thin_;
+    const Shape &solid_, &thin_;
     const glm::dmat3& rotation_;
     Depth& depth_;
     glm::dmat3 to_local_{1.0};
@@ -281,17 +281,17 @@ bool DeepCore::in_round() {
     return finish(way, 8.0 * deviation * way.extent + error_);
 }
 
-bool is_solid(const Body& body) {
-    return body.kind() == Kind::box || body.kind() == Kind::hull || body.kind() == Kind::cylinder ||
-           body.kind() == Kind::cone;
+bool is_solid(const Shape& shape) {
+    return shape.kind() == Kind::box || shape.kind() == Kind::hull || shape.kind() == Kind::cylinder ||
+           shape.kind() == Kind::cone;
 }
-bool is_thin(const Body& body) {
-    return body.kind() == Kind::sphere || body.kind() == Kind::capsule;
+bool is_thin(const Shape& shape) {
+    return shape.kind() == Kind::sphere || shape.kind() == Kind::capsule;
 }
 
 // Whether the thin one surely lies on the outer side of a face of the solid's box: most pairs that are not deep do.
 bool is_beyond_a_face(const Pair& pair, bool solid_is_a) {
-    const Body &solid = solid_is_a ? pair.a : pair.b, &thin = solid_is_a ? pair.b : pair.a;
+    const Shape &solid = solid_is_a ? pair.a : pair.b, &thin = solid_is_a ? pair.b : pair.a;
     const RigidTransform &pose = solid_is_a ? pair.pose_a : pair.pose_b,
                          &thin_pose = solid_is_a ? pair.pose_b : pair.pose_a;
     const glm::dvec3 offset = solid_is_a ? pair.offset : -pair.offset, &low = solid.bounds().min,

@@ -10,25 +10,25 @@ namespace crofton::convex {
 namespace {
 
 // Triangles of a core's surface: of a hull its own, of a box two a side, of a triangle both sides.
-Vector<std::array<int, 3>> triangles_of(const Body& body) {
+Vector<std::array<int, 3>> triangles_of(const Shape& shape) {
     Vector<std::array<int, 3>> result;
-    if (body.kind() == Kind::hull) {
-        const auto indices = body.hull()->triangles();
+    if (shape.kind() == Kind::hull) {
+        const auto indices = shape.hull()->triangles();
         for (std::size_t i = 0; i + 2 < indices.size(); i += 3)
             result.push_back({indices[i], indices[i + 1], indices[i + 2]});
-    } else if (body.kind() == Kind::box) {
+    } else if (shape.kind() == Kind::box) {
         result = {{0, 4, 2}, {1, 3, 5}, {0, 1, 4}, {2, 6, 3}, {0, 2, 1}, {4, 5, 6}};
-    } else if (body.vertex_count() == 3) {
+    } else if (shape.vertex_count() == 3) {
         result = {{0, 1, 2}, {0, 2, 1}};
     }
     return result;
 }
 
-Vector<std::array<int, 2>> edges_of(const Body& body) {
+Vector<std::array<int, 2>> edges_of(const Shape& shape) {
     Vector<std::array<int, 2>> result;
-    if (body.kind() == Kind::box) return {{0, 1}, {0, 2}, {0, 4}};  // its edges have three directions
-    if (body.vertex_count() == 2) return {{0, 1}};
-    for (const auto& t : triangles_of(body))
+    if (shape.kind() == Kind::box) return {{0, 1}, {0, 2}, {0, 4}};  // its edges have three directions
+    if (shape.vertex_count() == 2) return {{0, 1}};
+    for (const auto& t : triangles_of(shape))
         for (std::size_t k = 0; k < 3; ++k)
             if (t[k] < t[(k + 1) % 3]) result.push_back({t[k], t[(k + 1) % 3]});
     return result;
@@ -64,15 +64,15 @@ glm::dvec3 product(const glm::dvec3& e, const glm::dvec3& f, double reach, doubl
     return n;
 }
 
-void offer_faces(const BodyAtPose& placed, double side, Axes& axes) {
-    const Body& body = placed.body;
+void offer_faces(const ShapeAtPose& placed, double side, Axes& axes) {
+    const Shape& shape = placed.shape;
     const glm::dmat3& rotation = placed.pose.rotation;
-    for (const auto& t : triangles_of(body)) {
+    for (const auto& t : triangles_of(shape)) {
         // Edges are turned, not normals: a pose is rigid to 1e-6 alone.
-        const glm::dvec3 a = body.vertex(t[0]), e = rotation * (body.vertex(t[1]) - a),
-                         f = rotation * (body.vertex(t[2]) - a);
+        const glm::dvec3 a = shape.vertex(t[0]), e = rotation * (shape.vertex(t[1]) - a),
+                         f = rotation * (shape.vertex(t[2]) - a);
         double turn = 0.0;
-        glm::dvec3 n = product(e, f, body.core_radius(), turn);
+        glm::dvec3 n = product(e, f, shape.core_radius(), turn);
         if (turn > 1e-11) {
             n = exact_edge_normal(Pair(placed, placed), t[0], t[1], t[0], t[2]);
             turn = 0x1p-48;
@@ -83,12 +83,12 @@ void offer_faces(const BodyAtPose& placed, double side, Axes& axes) {
 
 }  // namespace
 
-// The difference body's faces lie across normals of either body's faces and products of their edges, so that the least
+// The difference body's faces lie across normals of either shape's faces and products of their edges, so that the least
 // extent is at one of them.
 Depth depth_by_axes(const Pair& pair, const Depth& known) {
     Axes axes(pair);
     axes.best = known;
-    // One body may stand at both poses.
+    // One shape may stand at both poses.
     offer_faces({pair.a, pair.pose_a}, 1.0, axes);
     offer_faces({pair.b, pair.pose_b}, -1.0, axes);
     const auto first = edges_of(pair.a), second = edges_of(pair.b);

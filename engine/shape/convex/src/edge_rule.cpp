@@ -56,10 +56,10 @@ struct Stand {
 bool any_around(const NearSurface& surface, const glm::dvec3& vertex, FunctionRef<bool(const Triangle&)> is_one) {
     QueryBox place;
     place.center = vertex;
-    place.rounding = 1e-12 * surface.body->core_radius();
+    place.rounding = 1e-12 * surface.shape->core_radius();
     const auto triangle = [&](const PartSearch&, const Triangle& corners, std::uint32_t) { return is_one(corners); };
     return visit_parts(
-        {*surface.body, surface.pose}, place, 0.0, [](const Part&) { return false; }, triangle);
+        {*surface.shape, surface.pose}, place, 0.0, [](const Part&) { return false; }, triangle);
 }
 
 // How a triangle sees a point. Of triangles that are equally near the one whose plane is farther tells the side.
@@ -81,9 +81,9 @@ struct View {
 
 }  // namespace
 
-void EdgeRule::start(std::span<const NearTriangle> triangles, const BodyAtPose& body) {
+void EdgeRule::start(std::span<const NearTriangle> triangles, const ShapeAtPose& shape) {
     triangles_ = triangles;
-    body_ = &body;
+    shape_ = &shape;
     listed_ = false;
 }
 
@@ -108,8 +108,8 @@ std::size_t EdgeRule::slot_of(const glm::dvec3& vertex) const {
 }
 
 bool EdgeRule::is_in_box(const glm::dvec3& point) const {
-    const glm::dvec3 p = Pair::local(body_->pose.rotation, point - body_->pose.translation);
-    const Aabb& box = body_->body.bounds();
+    const glm::dvec3 p = Pair::local(shape_->pose.rotation, point - shape_->pose.translation);
+    const Aabb& box = shape_->shape.bounds();
     return p == (glm::clamp)(p, box.min, box.max);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Surfaces' triangles near a body, and the rule that keeps contacts off inner edges.
+// Surfaces' triangles near a shape, and the rule that keeps contacts off inner edges.
 #pragma once
 #include <span>
 
@@ -10,7 +10,7 @@ namespace crofton::convex {
 // A mesh or a height field, alone or within a compound.
 struct NearSurface {
     RigidTransform pose;
-    const Body* body;  // the mesh or the field
+    const Shape* shape;  // the mesh or the field
     std::uint32_t child;
 };
 struct NearTriangle {
@@ -19,14 +19,14 @@ struct NearTriangle {
 };
 
 // The rule: a contact's normal belongs to the surface iff no triangle around the vertices on which it stands rises
-// above them. Triangles near the body that share a vertex are found by a hash of its place, made when first asked for.
-// A neighbor need not be near the body: where a body dips into a triangle beside one of its edges, the way out may lead
-// across the edge, though the body ends before it. So if no listed neighbor rises, and the point of touch is not within
-// the body's box, the surface is asked for all of them.
+// above them. Triangles near the shape that share a vertex are found by a hash of its place, made when first asked for.
+// A neighbor need not be near the shape: where a shape dips into a triangle beside one of its edges, the way out may
+// lead across the edge, though the shape ends before it. So if no listed neighbor rises, and the point of touch is not
+// within the shape's box, the surface is asked for all of them.
 class EdgeRule {
   public:
-    // For these triangles, all that touch the body's box; both stay unchanged until the next call.
-    void start(std::span<const NearTriangle> triangles, const BodyAtPose& body);
+    // For these triangles, all that touch the shape's box; both stay unchanged until the next call.
+    void start(std::span<const NearTriangle> triangles, const ShapeAtPose& shape);
     // Whether a triangle that shares the vertices of `index` that are farthest along the normal rises above them. The
     // point of touch lies on the triangle, around the surface's origin.
     [[nodiscard]] bool points_into_neighbor(std::uint32_t index, const NearSurface& surface, const glm::dvec3& normal,
@@ -45,7 +45,7 @@ class EdgeRule {
     [[nodiscard]] std::size_t slot_of(const glm::dvec3& vertex) const;
 
     std::span<const NearTriangle> triangles_;
-    const BodyAtPose* body_ = nullptr;
+    const ShapeAtPose* shape_ = nullptr;
     bool listed_ = false;
     Vector<std::uint32_t> first_, next_;  // chains of corners: triangle · 3 + corner
     Vector<std::int8_t> side_;            // by triangle

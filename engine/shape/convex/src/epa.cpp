@@ -68,7 +68,7 @@ bool Polytope::start(const Simplex& s) {
         longest_ = std::max(longest_, glm::dot(s.corner[i].w, s.corner[i].w));
     }
     const double flat = 0x1p-34 * pair_.size;
-    // Each new corner is off the point, line or plane of those before; where none is, the body is flat.
+    // Each new corner is off the point, line or plane of those before; where none is, the shape is flat.
     while (corners_ < 4) {
         const glm::dvec3 origin = corner_[0].w, u = corners_ > 1 ? corner_[1].w - origin : glm::dvec3(0.0);
         glm::dvec3 directions[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};

@@ -32,21 +32,21 @@ class ExactSearch {
     }
 
     // The vertex farthest along d: those that double cannot tell from the farthest are compared exactly.
-    [[nodiscard]] static int farthest(const Body& body, const glm::dmat3& rotation, const ExactVector& d) {
+    [[nodiscard]] static int farthest(const Shape& shape, const glm::dmat3& rotation, const ExactVector& d) {
         const glm::dvec3 rounded = rounded_direction(d), along = Pair::local(rotation, rounded);
-        const double most = farthest_vertex(body, along).along;
+        const double most = farthest_vertex(shape, along).along;
         // `rounded` is off by 2^-51, the product by 9u of reach · |d|, twice.
-        const double least = most - 0x1p-46 * body.core_radius() * glm::length(rounded);
+        const double least = most - 0x1p-46 * shape.core_radius() * glm::length(rounded);
         int best = -1;
         Dyadic value;
-        for (int i = 0; i < body.vertex_count(); ++i) {
-            if (glm::dot(body.vertex(i), along) < least) continue;
+        for (int i = 0; i < shape.vertex_count(); ++i) {
+            if (glm::dot(shape.vertex(i), along) < least) continue;
             if (best < 0) {
                 best = i;
                 continue;
             }
-            if (value.sign() == 0) value = dot(d, exact_image(rotation, body.vertex(best)));
-            const Dyadic other = dot(d, exact_image(rotation, body.vertex(i)));
+            if (value.sign() == 0) value = dot(d, exact_image(rotation, shape.vertex(best)));
+            const Dyadic other = dot(d, exact_image(rotation, shape.vertex(i)));
             if ((other - value).sign() > 0) best = i, value = other;
         }
         return best;
@@ -185,19 +185,19 @@ ExactNearest exact_nearest(const Pair& pair, const Simplex& start, bool nearest)
     return result;
 }
 
-bool meets_half_space(const BodyAtPose& polytope, const BodyAtPose& half_space) {
+bool meets_half_space(const ShapeAtPose& polytope, const ShapeAtPose& half_space) {
     // y in the image of { n·x + offset ≥ 0 } under R, t: (cof(R) n) · (y − t) + det(R) offset ≥ 0, det(R) > 0.
     const glm::dmat3& r = half_space.pose.rotation;
     const ExactVector c0 = exact_vector(r[0]), c1 = exact_vector(r[1]), c2 = exact_vector(r[2]);
-    const Plane& plane = half_space.body.plane();
+    const Plane& plane = half_space.shape.plane();
     const ExactVector yz = cross(c1, c2);
     const ExactVector normal =
         (yz * Dyadic(plane.normal.x) + cross(c2, c0) * Dyadic(plane.normal.y)) + cross(c0, c1) * Dyadic(plane.normal.z);
     const Dyadic level =
         dot(c0, yz) * Dyadic(plane.offset) +
         dot(normal, exact_vector(polytope.pose.translation) - exact_vector(half_space.pose.translation));
-    const int vertex = ExactSearch::farthest(polytope.body, polytope.pose.rotation, normal);
-    return (dot(normal, exact_image(polytope.pose.rotation, polytope.body.vertex(vertex))) + level).sign() >= 0;
+    const int vertex = ExactSearch::farthest(polytope.shape, polytope.pose.rotation, normal);
+    return (dot(normal, exact_image(polytope.pose.rotation, polytope.shape.vertex(vertex))) + level).sign() >= 0;
 }
 
 glm::dvec3 exact_edge_normal(const Pair& pair, int i, int j, int k, int l) {

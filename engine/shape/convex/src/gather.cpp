@@ -13,8 +13,8 @@ bool nearly_parallel(const Patch& a, const Patch& b) {
 }
 
 bool is_sharp(const Patch& segment) {
-    const Body& body = segment.of->body;
-    return body.radius() == 0.0 && (body.has_polytope_core() || body.half_extents().x == 0.0);
+    const Shape& shape = segment.of->shape;
+    return shape.radius() == 0.0 && (shape.has_polytope_core() || shape.half_extents().x == 0.0);
 }
 
 // A segment without width touches only what is opposite to it.
@@ -49,7 +49,7 @@ void keep_ids_apart(GatheredPoints& points, int before) {
 
 void Gatherer::add(const glm::dvec3& core_a, const glm::dvec3& core_b, const Feature& on_a, const Feature& on_b) {
     const glm::dvec3 p = core_a + of_.radius_a * touch_.normal, q = core_b - of_.radius_b * touch_.normal;
-    // A face that is not quite flat would seem deeper than the bodies overlap.
+    // A face that is not quite flat would seem deeper than the shapes overlap.
     const double depth = std::min(glm::dot(p - q, touch_.normal), touch_.depth);
     if (!(depth >= -of_.margin)) return;
     points.point[points.count++] = {of_.origin + 0.5 * (p + q), depth, on_a, on_b, {}, {}};
@@ -101,11 +101,11 @@ int gather_patches(const Patch& a, const Patch& b, const glm::dvec3& normal, Cli
     return reference_is_a ? 1 : 2;
 }
 
-void name_features(const Body& a, const Body& b, const Patch& patch_a, const Patch& patch_b, Touch& touch) {
+void name_features(const Shape& a, const Shape& b, const Patch& patch_a, const Patch& patch_b, Touch& touch) {
     if (touch.known) return;
-    const auto feature = [&](const Body& body, const int* vertices, const Feature& fallback) {
-        return body.has_polytope_core() && touch.vertex_count > 0 ? feature_of(body, vertices, touch.vertex_count)
-                                                                  : fallback;
+    const auto feature = [&](const Shape& shape, const int* vertices, const Feature& fallback) {
+        return shape.has_polytope_core() && touch.vertex_count > 0 ? feature_of(shape, vertices, touch.vertex_count)
+                                                                   : fallback;
     };
     touch.feature_a = feature(a, touch.vertices_a, patch_a.self);
     touch.feature_b = feature(b, touch.vertices_b, patch_b.self);

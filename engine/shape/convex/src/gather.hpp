@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// From a touch to contact points: the patches of both bodies along the normal, clipped against each other.
+// From a touch to contact points: the patches of both shapes along the normal, clipped against each other.
 #pragma once
 #include "touch.hpp"
 
@@ -10,7 +10,7 @@ struct GatheredPoints {
     ContactPoint point[kMaxClipped + 1];
 };
 
-// Two bodies as the gatherer sees them: a's origin, and how far the surfaces are from the cores.
+// Two shapes as the gatherer sees them: a's origin, and how far the surfaces are from the cores.
 struct Gathering {
     const glm::dvec3& origin;
     double radius_a, radius_b, margin;
@@ -44,6 +44,6 @@ void add_support(const Patch& face, const glm::dvec3& out, const glm::dvec3& dee
                  Gatherer& gatherer);
 
 // Sets the features of a touch that are not known: what the vertices of its simplex span, else the patches.
-void name_features(const Body& a, const Body& b, const Patch& patch_a, const Patch& patch_b, Touch& touch);
+void name_features(const Shape& a, const Shape& b, const Patch& patch_a, const Patch& patch_b, Touch& touch);
 
 }  // namespace crofton::convex

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <crofton/convex/body.hpp>
+#include <crofton/convex/shape.hpp>
 #include <crofton/core/recovery.hpp>
 #include <glm/geometric.hpp>
 #include <string>
@@ -92,11 +92,11 @@ Vector<double> side_by_side(const List& points) {
 }
 
 // The least distance of the planes from the center, less what rounding may add.
-double inner_radius_of(const CornerHull& body, const glm::dvec3& center, double outer_radius) {
+double inner_radius_of(const CornerHull& shape, const glm::dvec3& center, double outer_radius) {
     double least = outer_radius;
-    for (const auto& t : body.hull.triangles) {
-        const glm::dvec3 a = body.corners[t[0]];
-        const glm::dvec3 n = glm::cross(body.corners[t[1]] - a, body.corners[t[2]] - a);
+    for (const auto& t : shape.hull.triangles) {
+        const glm::dvec3 a = shape.corners[t[0]];
+        const glm::dvec3 n = glm::cross(shape.corners[t[1]] - a, shape.corners[t[2]] - a);
         const double length = glm::length(n);
         least = std::min(least, length > 0.0 ? glm::dot(n, a - center) / length : 0.0);
     }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <crofton/convex/body.hpp>
+#include <crofton/convex/shape.hpp>
 #include <glm/geometric.hpp>
 
 #include "features.hpp"

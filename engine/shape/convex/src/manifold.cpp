@@ -19,11 +19,11 @@ Manifold nothing() {
     return manifold;
 }
 
-Gathering gathering_of(const BodyAtPose& a, const BodyAtPose& b, double margin) {
-    return {a.pose.translation, a.body.radius(), b.body.radius(), margin};
+Gathering gathering_of(const ShapeAtPose& a, const ShapeAtPose& b, double margin) {
+    return {a.pose.translation, a.shape.radius(), b.shape.radius(), margin};
 }
 
-// A point's id in one number that is not 0. Features of convex bodies have indices below 1024.
+// A point's id in one number that is not 0. Features of convex shapes have indices below 1024.
 std::uint32_t number_of(const ContactPoint& p) {
     const auto feature = [](const Feature& f) { return static_cast<std::uint32_t>(f.kind) << 10 | f.index; };
     return 1U << 31 | feature(p.on_a) << 12 | feature(p.on_b);
@@ -37,7 +37,7 @@ double area_of(const Manifold& m) {
     return glm::length(sum);
 }
 
-// Puts the points of the frame before into the place of those chosen afresh, if they serve as well. A body that sways
+// Puts the points of the frame before into the place of those chosen afresh, if they serve as well. A shape that sways
 // would else lose all of its ids whenever another corner becomes the deepest.
 void keep_choice(Manifold& manifold, const GatheredPoints& points, double kept, PairCache& cache) {
     const auto end = cache.chosen + 4;
@@ -69,7 +69,7 @@ Manifold finish(const GatheredPoints& points, const Touch& touch, const Manifold
 }
 
 // What the touch's patches have in common, clipped against the face of a (1) or of b (2).
-Manifold gather_clipped(const BodyAtPose& a, const BodyAtPose& b, const Pair& pair, const Touch& touch,
+Manifold gather_clipped(const ShapeAtPose& a, const ShapeAtPose& b, const Pair& pair, const Touch& touch,
                         const Clipped& clipped, const ManifoldOptions& options, PairCache& cache) {
     GatheredPoints points;
     Gatherer gatherer(gathering_of(a, b, options.margin), touch, points);
@@ -79,9 +79,9 @@ Manifold gather_clipped(const BodyAtPose& a, const BodyAtPose& b, const Pair& pa
 }
 
 // a is the half-space.
-Manifold on_half_space(const BodyAtPose& a, const BodyAtPose& b, const ManifoldOptions& options, PairCache* cache) {
+Manifold on_half_space(const ShapeAtPose& a, const ShapeAtPose& b, const ManifoldOptions& options, PairCache* cache) {
     const HalfSpaceGap gap = half_space_gap(a, b);
-    const double apart = gap.gap - b.body.radius();
+    const double apart = gap.gap - b.shape.radius();
     const bool meet = apart <= gap.error && half_space_meets(a, b);
     Touch touch;
     touch.normal = gap.outward;
@@ -101,12 +101,12 @@ Manifold on_half_space(const BodyAtPose& a, const BodyAtPose& b, const ManifoldO
         gatherer.add(shadow(patch.point[i]), patch.point[i], {FeatureKind::face, 0}, {kind, patch.vertex[i]});
     touch.on_a = shadow(deepest);
     touch.on_b = deepest;
-    if (gatherer.lacks_deepest(gap.error + 1e-9 * b.body.core_radius())) {
+    if (gatherer.lacks_deepest(gap.error + 1e-9 * b.shape.core_radius())) {
         touch.feature_a = {FeatureKind::face, 0};
         touch.feature_b = patch.self;
         gatherer.add_deepest();
     }
-    return finish(points, touch, options, b.body.core_radius(), cache);
+    return finish(points, touch, options, b.shape.core_radius(), cache);
 }
 
 }  // namespace
@@ -120,12 +120,13 @@ Manifold flipped(Manifold m) {
     return m;
 }
 
-Manifold contact_manifold(const BodyAtPose& a, const BodyAtPose& b, const ManifoldOptions& options, PairCache* cache) {
-    if (!a.body.is_convex() || !b.body.is_convex()) return deepest_manifold(a, b, options);
+Manifold contact_manifold(const ShapeAtPose& a, const ShapeAtPose& b, const ManifoldOptions& options,
+                          PairCache* cache) {
+    if (!a.shape.is_convex() || !b.shape.is_convex()) return deepest_manifold(a, b, options);
     if (is_half_space(a)) return is_half_space(b) ? nothing() : on_half_space(a, b, options, cache);
     if (is_half_space(b)) return flipped(on_half_space(b, a, options, cache));
     const Pair pair(a, b);
-    if (is_solid_box(a.body) && is_solid_box(b.body)) {
+    if (is_solid_box(a.shape) && is_solid_box(b.shape)) {
         Touch touch;
         GatheredPoints points;
         const Warm answer = touch_of_boxes(a, b, pair, options.margin, cache, touch, points);
@@ -157,7 +158,7 @@ Manifold contact_manifold(const BodyAtPose& a, const BodyAtPose& b, const Manifo
         cache->face = patch.self.index;
     }
     if (gatherer.lacks_deepest(1e-9 * pair.size)) {
-        name_features(a.body, b.body, patch_a, patch_b, touch);
+        name_features(a.shape, b.shape, patch_a, patch_b, touch);
         gatherer.add_deepest();
     }
     return finish(points, touch, options, pair.size, cache);

@@ -2,7 +2,7 @@
 // A mesh under a linear map, seen from the mesh's own frame.
 #pragma once
 #include <cmath>
-#include <crofton/convex/body_maker.hpp>
+#include <crofton/convex/shape_maker.hpp>
 #include <glm/matrix.hpp>
 #include <utility>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <crofton/convex/body.hpp>
+#include <crofton/convex/shape.hpp>
 #include <glm/matrix.hpp>
 #include <numbers>
 
@@ -56,7 +56,7 @@ Result<MassProperties> of_compound(const Compound& compound) {
     Moments sum;
     for (std::size_t i = 0; i < compound.children().size(); ++i) {
         const CompoundChild& child = compound.children()[i];
-        const Result<MassProperties> mass = mass_properties(child.body);
+        const Result<MassProperties> mass = mass_properties(child.shape);
         if (!mass) return fail(mass.error().code, i, mass.error().message);
         const glm::dmat3& turn = child.pose.rotation;
         const glm::dvec3 at = turn * mass->center + child.pose.translation - origin;
@@ -73,33 +73,33 @@ Result<MassProperties> of_compound(const Compound& compound) {
 
 }  // namespace
 
-Result<MassProperties> mass_properties(const Body& body) {
-    const glm::dvec3& half = body.half_extents();
-    const double radius = body.radius();
-    switch (body.kind()) {
+Result<MassProperties> mass_properties(const Shape& shape) {
+    const glm::dvec3& half = shape.half_extents();
+    const double radius = shape.radius();
+    switch (shape.kind()) {
         case Kind::sphere:
             return of_capsule(0.0, radius);
         case Kind::capsule:
-            return of_capsule(body.vertex(1).y, radius);
+            return of_capsule(shape.vertex(1).y, radius);
         case Kind::half_space:
             return fail(ErrorCode::unsupported, kNoItem, "mass_properties: a half-space has no finite volume");
         default:
             break;
     }
-    if (body.kind() == Kind::compound) return of_compound(*body.compound());
-    if (!body.is_convex())
+    if (shape.kind() == Kind::compound) return of_compound(*shape.compound());
+    if (!shape.is_convex())
         return fail(ErrorCode::unsupported, kNoItem,
                     "mass_properties: a surface has no volume; use the hull of its points or a compound of pieces");
     if (radius > 0.0) {
-        const bool turns = body.kind() == Kind::cylinder || body.kind() == Kind::cone;
-        return turns ? mass_of_rounded_revolution(body) : mass_of_rounded_polytope(body);
+        const bool turns = shape.kind() == Kind::cylinder || shape.kind() == Kind::cone;
+        return turns ? mass_of_rounded_revolution(shape) : mass_of_rounded_polytope(shape);
     }
-    if (body.kind() == Kind::cylinder) return of_cylinder(half.y, half.x);
-    if (body.kind() == Kind::cone) return of_cone(half.y, half.x);
-    if (body.kind() == Kind::box) return of_box(half);
-    if (body.kind() == Kind::hull) return body.hull()->mass();
+    if (shape.kind() == Kind::cylinder) return of_cylinder(half.y, half.x);
+    if (shape.kind() == Kind::cone) return of_cone(half.y, half.x);
+    if (shape.kind() == Kind::box) return of_box(half);
+    if (shape.kind() == Kind::hull) return shape.hull()->mass();
     MassProperties flat;
-    flat.center = (body.vertex(0) + body.vertex(1) + body.vertex(2)) / 3.0;
+    flat.center = (shape.vertex(0) + shape.vertex(1) + shape.vertex(2)) / 3.0;
     return flat;
 }
 

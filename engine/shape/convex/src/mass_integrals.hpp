@@ -2,7 +2,7 @@
 // Moments of solids, and mass properties from them.
 #pragma once
 #include <array>
-#include <crofton/convex/body.hpp>
+#include <crofton/convex/shape.hpp>
 #include <crofton/core/memory.hpp>
 #include <cstdint>
 #include <span>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Bodies and contacts as lines, for whoever draws them.
+// Shapes and contacts as lines, for whoever draws them.
 #include <algorithm>
 #include <crofton/convex/query.hpp>
 #include <crofton/geometry/trigonometry.hpp>
@@ -23,7 +23,7 @@ void find_across(const glm::dvec3& n, glm::dvec3& u, glm::dvec3& v) {
     v = glm::cross(n, u);
 }
 
-// Draws in the body's frame.
+// Draws in the shape's frame.
 class Pen {
   public:
     Pen(const RigidTransform& pose, LineVisitor line) : pose_(pose), line_(line) {}
@@ -86,24 +86,24 @@ void draw_hull(const Pen& pen, const Hull& hull, double round) {
     }
 }
 
-void draw_box(const Pen& pen, const Body& body) {
+void draw_box(const Pen& pen, const Shape& shape) {
     for (int axis = 0; axis < 3; ++axis)
         for (int side = 0; side < 2; ++side) {
             const int u = (axis + 1) % 3, v = (axis + 2) % 3;
             glm::dvec3 out(0.0);
-            out[axis] = side == 1 ? body.radius() : -body.radius();
+            out[axis] = side == 1 ? shape.radius() : -shape.radius();
             const int base = side << axis;
             const int loop[] = {base, base | 1 << u, base | 1 << u | 1 << v, base | 1 << v};
             // Two opposite faces have the eight edges across the axis; those along it are others'.
             for (int i = 0; i < 4; ++i)
-                if (body.radius() > 0.0 || i % 2 == 0)
-                    pen.line(body.vertex(loop[i]) + out, body.vertex(loop[(i + 1) % 4]) + out);
+                if (shape.radius() > 0.0 || i % 2 == 0)
+                    pen.line(shape.vertex(loop[i]) + out, shape.vertex(loop[(i + 1) % 4]) + out);
         }
 }
 
-void draw_triangle(const Pen& pen, const Body& body) {
-    const glm::dvec3 a = body.vertex(0), b = body.vertex(1), c = body.vertex(2), n = glm::cross(b - a, c - a);
-    const double length = glm::length(n), radius = length > 0.0 ? body.radius() : 0.0;
+void draw_triangle(const Pen& pen, const Shape& shape) {
+    const glm::dvec3 a = shape.vertex(0), b = shape.vertex(1), c = shape.vertex(2), n = glm::cross(b - a, c - a);
+    const double length = glm::length(n), radius = length > 0.0 ? shape.radius() : 0.0;
     for (const double side : {1.0, -1.0}) {
         const glm::dvec3 out = radius > 0.0 ? side * radius / length * n : glm::dvec3(0.0);
         pen.line(a + out, b + out);
@@ -113,41 +113,41 @@ void draw_triangle(const Pen& pen, const Body& body) {
     }
 }
 
-void draw_convex(const Body& body, const RigidTransform& pose, LineVisitor line) {
+void draw_convex(const Shape& shape, const RigidTransform& pose, LineVisitor line) {
     const Pen pen(pose, line);
-    const glm::dvec3& half = body.half_extents();
-    const double r = body.radius();
-    switch (body.kind()) {
+    const glm::dvec3& half = shape.half_extents();
+    const double r = shape.radius();
+    switch (shape.kind()) {
         case Kind::sphere:
             pen.arc({}, {r, 0, 0}, {0, r, 0});
             pen.arc({}, {0, r, 0}, {0, 0, r});
             return pen.arc({}, {0, 0, r}, {r, 0, 0});
         case Kind::capsule:
-            return draw_turned(pen, 0.0, 0.0, body.vertex(1).y, r);
+            return draw_turned(pen, 0.0, 0.0, shape.vertex(1).y, r);
         case Kind::cylinder:
             return draw_turned(pen, half.x, half.x, half.y, r);
         case Kind::cone:
             return draw_turned(pen, half.x, 0.0, half.y, r);
         case Kind::box:
-            return draw_box(pen, body);
+            return draw_box(pen, shape);
         case Kind::hull:
-            return draw_hull(pen, *body.hull(), r);
+            return draw_hull(pen, *shape.hull(), r);
         case Kind::half_space:
-            return draw_half_space(pen, body.plane());
+            return draw_half_space(pen, shape.plane());
         default:
-            return draw_triangle(pen, body);
+            return draw_triangle(pen, shape);
     }
 }
 
 }  // namespace
 
-void outline(const BodyAtPose& body, LineVisitor line) {
-    if (body.body.is_convex()) return draw_convex(body.body, body.pose, line);
-    // All parts are near the middle, within the body's own reach.
-    const Result<Body> point = Body::sphere(0.0f);
+void outline(const ShapeAtPose& shape, LineVisitor line) {
+    if (shape.shape.is_convex()) return draw_convex(shape.shape, shape.pose, line);
+    // All parts are near the middle, within the shape's own reach.
+    const Result<Shape> point = Shape::sphere(0.0f);
     Vector<Part> parts;
-    parts_near(body, {*point, body.pose}, std::min(2.0 * body.body.core_radius(), kEverything), parts);
-    for (const Part& part : parts) draw_convex(part.body, part.pose, line);
+    parts_near(shape, {*point, shape.pose}, std::min(2.0 * shape.shape.core_radius(), kEverything), parts);
+    for (const Part& part : parts) draw_convex(part.shape, part.pose, line);
 }
 
 void outline(std::span<const TrackedPoint> points, double size, LineVisitor line) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Two placed bodies, and the corners of their difference body { p − q : p in a, q in b }.
+// Two placed shapes, and the corners of their difference body { p − q : p in a, q in b }.
 #pragma once
 #include <crofton/convex/query.hpp>
 
@@ -7,7 +7,7 @@
 
 namespace crofton::convex {
 
-// How near to a touch a round body's answer depends on the search, of the size: with cores of corners alone, and with
+// How near to a touch a round shape's answer depends on the search, of the size: with cores of corners alone, and with
 // cylinders and cones.
 inline constexpr double kRoundedDoubt = 4e-12, kRoundDoubt = 1e-7;
 
@@ -22,8 +22,8 @@ struct Corner {
 // direction is off by 5.4u of its length, its product with a point by 3u more: `along` is off by 9u of
 // size · |direction|, the offset's part by 4.1u. All are below `error` / 2 = 16u · size.
 struct Pair {
-    Pair(const BodyAtPose& first, const BodyAtPose& second)
-        : a(first.body), b(second.body), pose_a(first.pose), pose_b(second.pose) {
+    Pair(const ShapeAtPose& first, const ShapeAtPose& second)
+        : a(first.shape), b(second.shape), pose_a(first.pose), pose_b(second.pose) {
         offset = pose_b.translation - pose_a.translation;
         size = a.core_radius() + b.core_radius() + glm::length(offset);
         error = 0x1p-48 * size;
@@ -58,7 +58,7 @@ struct Pair {
         return rounding() > 0.0 ? kRoundedDoubt * size : 0.0;
     }
 
-    const Body &a, &b;
+    const Shape &a, &b;
     const RigidTransform &pose_a, &pose_b;
     glm::dvec3 offset{0.0};  // of b's origin from a's
     double size = 0.0, error = 0.0;

@@ -21,9 +21,9 @@ struct Edge {
 // hull's faces are flat to 1e-5.
 double flat_sine(const PatchOf& a, const PatchOf& b) {
     const auto of = [](const PatchOf& side) {
-        if (side.body == nullptr) return 1e-6;
-        if (!side.body->body.has_polytope_core()) return 1e-3;
-        return side.body->body.kind() == Kind::hull ? 1e-4 : 1e-6;
+        if (side.shape == nullptr) return 1e-6;
+        if (!side.shape->shape.has_polytope_core()) return 1e-3;
+        return side.shape->shape.kind() == Kind::hull ? 1e-4 : 1e-6;
     };
     return std::max(of(a), of(b));
 }
@@ -31,7 +31,7 @@ double flat_sine(const PatchOf& a, const PatchOf& b) {
 // Whether it touches with what is no edge: a face across the normal, a rim, a point.
 bool has_no_edge(const PatchOf& side, const glm::dvec3& normal, double flat) {
     if (side.patch.count < 3) return side.patch.count < 2;
-    if (side.body != nullptr && !side.body->body.has_polytope_core()) return true;
+    if (side.shape != nullptr && !side.shape->shape.has_polytope_core()) return true;
     const glm::dvec3 across = glm::cross(side.patch.normal, normal);
     return side.patch.normal != glm::dvec3(0.0) && glm::dot(across, across) <= flat * flat;
 }
@@ -44,7 +44,7 @@ void for_each_edge(const PatchOf& side, const glm::dvec3& outward, const glm::dv
     if (patch.count == 2)
         return visit({patch.point[0], patch.point[1], {patch.vertex[0], patch.vertex[1]}, patch.self});
     const auto index = [](int i) { return static_cast<std::uint16_t>(i); };
-    if (side.body == nullptr || side.body->body.kind() == Kind::triangle) {
+    if (side.shape == nullptr || side.shape->shape.kind() == Kind::triangle) {
         double top = -HUGE_VAL;
         for (int k = 0; k < 3; ++k) top = std::max(top, glm::dot(outward, patch.point[k]));
         for (int k = 0; k < 3; ++k) {
@@ -55,29 +55,29 @@ void for_each_edge(const PatchOf& side, const glm::dvec3& outward, const glm::dv
         }
         return;
     }
-    const Body& body = side.body->body;
-    const RigidTransform& pose = side.body->pose;
+    const Shape& shape = side.shape->shape;
+    const RigidTransform& pose = side.shape->pose;
     const glm::dvec3 local = Pair::local(pose.rotation, outward), offset = pose.translation - origin;
-    const double least = core_support(body, local).along - tolerance;
+    const double least = core_support(shape, local).along - tolerance;
     const auto offer = [&](int i, int j, std::uint16_t edge) {
-        const glm::dvec3 p = body.vertex(i), q = body.vertex(j);
+        const glm::dvec3 p = shape.vertex(i), q = shape.vertex(j);
         if (std::max(glm::dot(local, p), glm::dot(local, q)) < least) return;
         visit(
             {pose.rotation * p + offset, pose.rotation * q + offset, {index(i), index(j)}, {FeatureKind::edge, edge}});
     };
-    if (body.kind() == Kind::box) {
+    if (shape.kind() == Kind::box) {
         for (int i = 0; i < 8; ++i)
             for (int k = 1; k < 8; k *= 2)
                 if ((i & k) == 0) offer(i, i | k, box_edge(i, i | k));
-    } else if (body.kind() == Kind::hull) {
-        const auto edges = body.hull()->edges();
+    } else if (shape.kind() == Kind::hull) {
+        const auto edges = shape.hull()->edges();
         for (std::size_t e = 0; e < edges.size(); ++e)
             offer(edges[e].vertices[0], edges[e].vertices[1], static_cast<std::uint16_t>(e));
     }
 }
 
 bool is_round(const PatchOf& side) {
-    return side.body != nullptr && (side.body->body.radius() > 0.0 || !side.body->body.has_polytope_core());
+    return side.shape != nullptr && (side.shape->shape.radius() > 0.0 || !side.shape->shape.has_polytope_core());
 }
 
 double squared(const glm::dvec3& v) {
@@ -123,7 +123,7 @@ bool gather_parallel_edges(const PatchOf& a, const PatchOf& b, const glm::dvec3&
     set_patch(of_b, on_b);
     clip_segments(on_a, on_b, clipped);
     // Round ones may pass beside each other by the angle between them, over the stretch; others lie elsewhere on the
-    // bodies. Points of sharp edges are on both.
+    // shapes. Points of sharp edges are on both.
     const double stretch =
         clipped.count < 2 ? 0.0 : glm::distance(clipped.point[0].on_reference, clipped.point[1].on_reference);
     const double beside = is_round(a) && is_round(b) ? 1.1 * kSine * stretch + 1e-6 * size

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: MIT
-// Straight sides and edges of two bodies that lie along each other.
+// Straight sides and edges of two shapes that lie along each other.
 #pragma once
 #include "gather.hpp"
 
 namespace crofton::convex {
 
-// A body and its patch along the normal. Of a surface's triangle the patch alone: `body` is null.
+// A shape and its patch along the normal. Of a surface's triangle the patch alone: `shape` is null.
 struct PatchOf {
-    const BodyAtPose* body;
+    const ShapeAtPose* shape;
     const Patch& patch;
 };
 
-// Adds the ends of the stretch that two straight sides or edges have in common with which the bodies touch, where these
+// Adds the ends of the stretch that two straight sides or edges have in common with which the shapes touch, where these
 // are parallel within 2 degrees. Of a sharp edge: where they lie on each other. Returns false, and adds nothing, where
-// there are none such, and where a body touches with a face: that is clipped. `normal` is from a to b, points are
+// there are none such, and where a shape touches with a face: that is clipped. `normal` is from a to b, points are
 // around `origin`, `size` is that of the pair.
 bool gather_parallel_edges(const PatchOf& a, const PatchOf& b, const glm::dvec3& normal, const glm::dvec3& origin,
                            double size, Clipped& clipped, Gatherer& gatherer);

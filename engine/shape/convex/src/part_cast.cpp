@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <crofton/convex/body_maker.hpp>
+#include <crofton/convex/shape_maker.hpp>
 #include <crofton/geometry/orthonormal_frame.hpp>
 #include <glm/matrix.hpp>
 
@@ -17,7 +17,7 @@ namespace {
 constexpr int kManyParts = 24;  // in a stretch of time that is then halved
 constexpr int kMaxHalvings = 40;
 
-// From the body's origin to its pivot.
+// From the shape's origin to its pivot.
 glm::dvec3 arm_of(const RigidTransform& pose, const Motion& motion) {
     return pose.rotation * motion.pivot;
 }
@@ -26,11 +26,11 @@ glm::dvec3 arm_of(const RigidTransform& pose, const Motion& motion) {
 // those it meets last are not asked.
 class PartCaster {
   public:
-    PartCaster(const BodyAtPose& a, const Motion& motion_a, const BodyAtPose& b, const Motion& motion_b,
+    PartCaster(const ShapeAtPose& a, const Motion& motion_a, const ShapeAtPose& b, const Motion& motion_b,
                const CastOptions& options, const ContactsAt* slide, bool flipped)
         : a_(a), b_(b), motion_a_(motion_a), motion_b_(motion_b), options_(options), slide_(slide), flipped_(flipped) {
         best_.time = std::min(options.early_out, options.duration);
-        const Aabb& bounds = b.body.bounds();
+        const Aabb& bounds = b.shape.bounds();
         b_turns_ = motion_b.spin != glm::dvec3(0.0);
         pivot_ = b_turns_ || is_unbounded(b) ? motion_b.pivot : bounds.center();
         around_ = glm::length(bounds.half_extents()) + glm::length(bounds.center() - pivot_);
@@ -38,7 +38,7 @@ class PartCaster {
     }
 
     void search(double from, double to) {
-        if (passes_straight() && to > from && is_surface(a_.body))
+        if (passes_straight() && to > from && is_surface(a_.shape))
             search_surface(from, to);
         else
             search_box(from, to, 0);
@@ -47,19 +47,19 @@ class PartCaster {
     [[nodiscard]] const Impact& best() const { return best_; }
 
   private:
-    [[nodiscard]] static bool is_surface(const Body& body) {
-        return body.kind() == Kind::mesh || body.kind() == Kind::height_field;
+    [[nodiscard]] static bool is_surface(const Shape& shape) {
+        return shape.kind() == Kind::mesh || shape.kind() == Kind::height_field;
     }
     // Whether a convex b flies along a line, seen from a.
     [[nodiscard]] bool passes_straight() const {
         const glm::dvec3 velocity = motion_b_.velocity - motion_a_.velocity;
         const double squared = glm::dot(velocity, velocity);
         return !b_turns_ && motion_a_.spin == glm::dvec3(0.0) && squared > 1e-200 && squared < 1e200 &&
-               b_.body.is_convex() && !is_unbounded(b_);
+               b_.shape.is_convex() && !is_unbounded(b_);
     }
-    [[nodiscard]] Passage passage_by(const BodyAtPose& surface, double from, double to) const {
-        const double rounding = 1e-13 * (around_ + surface.body.core_radius());
-        return {b_,   surface.pose, surface.body.bounds(),        motion_b_.velocity - motion_a_.velocity,
+    [[nodiscard]] Passage passage_by(const ShapeAtPose& surface, double from, double to) const {
+        const double rounding = 1e-13 * (around_ + surface.shape.core_radius());
+        return {b_,   surface.pose, surface.shape.bounds(),       motion_b_.velocity - motion_a_.velocity,
                 from, to,           options_.tolerance + rounding};
     }
 
@@ -68,13 +68,13 @@ class PartCaster {
         const auto visit = [&](const Triangle& corners, std::uint32_t triangle) {
             const Passage::Entry entry = passage.entry(corners, best_.time);
             if (entry.time > best_.time) return;
-            cast_part({BodyMaker::triangle(corners), a_.pose, {0, triangle}, a_.body.sides()}, from,
+            cast_part({ShapeMaker::triangle(corners), a_.pose, {0, triangle}, a_.shape.sides()}, from,
                       entry.is_apart ? std::max(entry.time, from) : from);
         };
-        if (a_.body.kind() == Kind::mesh)
-            passage.visit_mesh(a_.body, best_.time, visit);
+        if (a_.shape.kind() == Kind::mesh)
+            passage.visit_mesh(a_.shape, best_.time, visit);
         else
-            passage.visit_field(*a_.body.height_field(), best_.time, visit);
+            passage.visit_field(*a_.shape.height_field(), best_.time, visit);
     }
 
     // Seeks between two times among the parts near the box that b sweeps.
@@ -142,7 +142,7 @@ class PartCaster {
     // b at one time alone, however it turns.
     [[nodiscard]] QueryBox box_at(const RigidTransform& pose, double time) const {
         const RigidTransform then = moved(b_.pose, motion_b_, time);
-        const Aabb& bounds = b_.body.bounds();
+        const Aabb& bounds = b_.shape.bounds();
         const glm::dvec3 half = bounds.half_extents();
         QueryBox box;
         for (int k = 0; k < 3; ++k) box.half += half[k] * glm::abs(then.rotation[k]);
@@ -160,7 +160,7 @@ class PartCaster {
     // Contains b while it turns, for half a stretch before and after a time: around its pivot, or around its own centre
     // where that does not come far.
     [[nodiscard]] Sphere around_b(double middle, double half_stretch) const {
-        const Aabb& bounds = b_.body.bounds();
+        const Aabb& bounds = b_.shape.bounds();
         const glm::dvec3 arm = bounds.center() - pivot_;
         const double own = glm::length(bounds.half_extents()) * 1.00001 +
                            half_stretch * glm::length(motion_b_.spin) * glm::length(arm);
@@ -168,7 +168,7 @@ class PartCaster {
         return {moved(b_.pose, motion_b_, middle).rotation * arm, own};
     }
 
-    // Of the bodies' places up to a time, as `moved` has them, from each other.
+    // Of the shapes' places up to a time, as `moved` has them, from each other.
     [[nodiscard]] double rounding(double time) const {
         return 1e-15 * (glm::length(a_.pose.translation) + glm::length(b_.pose.translation) +
                         time * (glm::length(motion_a_.velocity) + glm::length(motion_b_.velocity)));
@@ -179,7 +179,7 @@ class PartCaster {
                                      double half_way) const {
         const glm::dvec3 across = unit_across(unit);
         const glm::dmat3 axes(unit, across, glm::cross(unit, across));
-        const Aabb& bounds = b_.body.bounds();
+        const Aabb& bounds = b_.shape.bounds();
         const glm::dmat3 sides = glm::transpose(axes) * b_.pose.rotation;
         QueryBox box;
         const glm::dvec3 half = bounds.half_extents();
@@ -194,20 +194,20 @@ class PartCaster {
     // Parts stand as at time 0, whenever the box is of.
     void visit(const QueryBox& box, PartVisitor visitor) const {
         if (is_unbounded(b_)) return (void)visit_parts(a_, {}, kEverything, visitor);
-        const double reach = is_unbounded(a_) ? 0.0 : a_.body.core_radius();
+        const double reach = is_unbounded(a_) ? 0.0 : a_.shape.core_radius();
         visit_parts(a_, box, options_.tolerance + 1e-9 * (around_ + reach), visitor);
     }
 
     // `start`: from `from` up to there the part is surely not met. The first hit counts, whatever order the parts come
     // in; of hits at `from` the deepest, and of hits alike that of the least part.
     void cast_part(const Part& part, double from, double start) {
-        const Motion motion = a_.body.kind() == Kind::compound ? motion_of_part(a_, motion_a_, part.pose) : motion_a_;
+        const Motion motion = a_.shape.kind() == Kind::compound ? motion_of_part(a_, motion_a_, part.pose) : motion_a_;
         CastOptions options = options_;
         options.early_out = best_.time;
         if (start > from) options.ignore_initial_overlaps = false;  // there are none
-        const BodyAtPose placed{part.body, part.pose};
+        const ShapeAtPose placed{part.shape, part.pose};
         if (comes_later(placed)) return;
-        const bool convex = b_.body.is_convex();
+        const bool convex = b_.shape.is_convex();
         if (convex && slide_ != nullptr && slide_->passes(placed, motion, b_, motion_b_, flipped_)) return;
         Impact impact = convex ? advance(placed, motion, b_, motion_b_, options, start, nullptr)
                                : reversed(cast_parts(b_, motion_b_, placed, motion, options, start, slide_, !flipped_));
@@ -215,7 +215,7 @@ class PartCaster {
         if (part.sides == Sides::front) {
             const RigidTransform then = moved(part.pose, motion, impact.time),
                                  b_then = moved(b_.pose, motion_b_, impact.time);
-            if (comes_from_behind({part.body, then}, {b_.body, b_then}, impact)) return;
+            if (comes_from_behind({part.shape, then}, {b_.shape, b_then}, impact)) return;
         }
         best_ = impact;
         best_.part_a = part.id;
@@ -228,14 +228,14 @@ class PartCaster {
     }
 
     // Whether neither turns, and along their way they are too far apart to touch by the time of the best.
-    [[nodiscard]] bool comes_later(const BodyAtPose& part) const {
+    [[nodiscard]] bool comes_later(const ShapeAtPose& part) const {
         const glm::dvec3 velocity = motion_b_.velocity - motion_a_.velocity;
         const double speed = glm::length(velocity);
         if (b_turns_ || motion_a_.spin != glm::dvec3(0.0) || !(speed > 0.0) || is_unbounded(b_)) return false;
         if (is_half_space(part)) return false;
-        if (!b_.body.is_convex()) return false;
+        if (!b_.shape.is_convex()) return false;
         const Pair pair(part, b_);
-        const double gap = -pair.extent(-velocity / speed) - pair.error - part.body.radius() - b_.body.radius();
+        const double gap = -pair.extent(-velocity / speed) - pair.error - part.shape.radius() - b_.shape.radius();
         return gap - 2.0 * options_.tolerance > speed * best_.time * (1.0 + 1e-9);
     }
 
@@ -246,7 +246,7 @@ class PartCaster {
         return impact;
     }
 
-    const BodyAtPose &a_, &b_;
+    const ShapeAtPose &a_, &b_;
     const Motion &motion_a_, &motion_b_;
     const CastOptions& options_;
     const ContactsAt* const slide_;
@@ -260,7 +260,7 @@ class PartCaster {
 
 }  // namespace
 
-Impact cast_parts(const BodyAtPose& a, const Motion& motion_a, const BodyAtPose& b, const Motion& motion_b,
+Impact cast_parts(const ShapeAtPose& a, const Motion& motion_a, const ShapeAtPose& b, const Motion& motion_b,
                   const CastOptions& options, double start, const ContactsAt* slide, bool flipped) {
     PartCaster caster(a, motion_a, b, motion_b, options, slide, flipped);
     caster.search(start, options.duration);

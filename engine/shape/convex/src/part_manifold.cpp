@@ -10,14 +10,14 @@
 
 namespace crofton::convex {
 
-glm::dvec3 middle_of(const BodyAtPose& placed, const glm::dvec3& origin) {
-    const Hull* const hull = placed.body.hull();
-    const glm::dvec3 middle = hull != nullptr ? hull->mass().center : placed.body.bounds().center();
+glm::dvec3 middle_of(const ShapeAtPose& placed, const glm::dvec3& origin) {
+    const Hull* const hull = placed.shape.hull();
+    const glm::dvec3 middle = hull != nullptr ? hull->mass().center : placed.shape.bounds().center();
     return placed.pose.rotation * middle + (placed.pose.translation - origin);
 }
 
-bool is_in_front(const PlacedTriangle& t, const Body& body, const glm::dvec3& middle) {
-    return body.kind() == Kind::half_space || glm::dot(t.normal, middle - t.corner[0]) >= 0.0;
+bool is_in_front(const PlacedTriangle& t, const Shape& shape, const glm::dvec3& middle) {
+    return shape.kind() == Kind::half_space || glm::dot(t.normal, middle - t.corner[0]) >= 0.0;
 }
 
 struct Manifolds::Scratch {
@@ -63,19 +63,19 @@ class ManifoldFinder {
     ManifoldFinder(const ManifoldOptions& options, Manifolds& found)
         : options_(options), found_(found), scratch_(scratch_of(found)) {}
 
-    void run(const BodyAtPose& a, const BodyAtPose& b, PairCache* cache) {
+    void run(const ShapeAtPose& a, const ShapeAtPose& b, PairCache* cache) {
         found_.all_.clear();
-        if (a.body.is_convex() && b.body.is_convex()) {
+        if (a.shape.is_convex() && b.shape.is_convex()) {
             const Manifold m = contact_manifold(a, b, options_, cache);
             if (m.count > 0) found_.all_.push_back(m);
             return;
         }
         scratch_.list.clear();
-        if (b.body.is_convex()) {
+        if (b.shape.is_convex()) {
             find(a, b, {}, false);
-        } else if (a.body.is_convex()) {
+        } else if (a.shape.is_convex()) {
             find(b, a, {}, true);
-        } else if (has_surfaces(a.body) || has_surfaces(b.body)) {
+        } else if (has_surfaces(a.shape) || has_surfaces(b.shape)) {
             find_parts(a, b);
         } else {
             find_convex_parts(a, b);
@@ -83,8 +83,8 @@ class ManifoldFinder {
         scratch_.list.finish(std::clamp(options_.max_points, 1, 8), found_.all_);
     }
 
-    // Bodies without surfaces.
-    void run_beside(const BodyAtPose& a, const BodyAtPose& b, const Beside& beside, PairCache* cache) {
+    // Shapes without surfaces.
+    void run_beside(const ShapeAtPose& a, const ShapeAtPose& b, const Beside& beside, PairCache* cache) {
         found_.all_.clear();
         scratch_.list.clear();
         UnionNormals& flush = scratch_.flush;
@@ -94,7 +94,7 @@ class ManifoldFinder {
         add_parts(1, b, a, own.parts[1]);
         for (std::uint32_t i = 0; i < own.parts[0]; ++i)
             for (std::uint32_t j = 0; j < own.parts[1]; ++j)
-                add_flush_contact(i, j, a.body.is_convex() && b.body.is_convex() ? cache : nullptr);
+                add_flush_contact(i, j, a.shape.is_convex() && b.shape.is_convex() ? cache : nullptr);
         const std::size_t wanted = flush.contacts().size();
         if (wanted == 0) return;
         const bool deep = std::any_of(flush.contacts().begin(), flush.contacts().end(), [&](const auto& contact) {
@@ -109,20 +109,20 @@ class ManifoldFinder {
     struct Count {
         std::uint32_t parts[2] = {0, 0};  // of the lists of `flush`
     };
-    void push_out_of_union(const BodyAtPose& a, const BodyAtPose& b, const Beside& beside, const Count& own) {
+    void push_out_of_union(const ShapeAtPose& a, const ShapeAtPose& b, const Beside& beside, const Count& own) {
         UnionNormals& flush = scratch_.flush;
         const std::size_t wanted = flush.contacts().size();
         Count all = own;
-        for (const BodyAtPose& other : beside.a) add_parts(0, other, b, all.parts[0]);
-        for (const BodyAtPose& other : beside.b) add_parts(1, other, a, all.parts[1]);
+        for (const ShapeAtPose& other : beside.a) add_parts(0, other, b, all.parts[0]);
+        for (const ShapeAtPose& other : beside.b) add_parts(1, other, a, all.parts[1]);
         if (!flush.is_any_covered()) return;
-        // Of those beside only what lies flush: bodies that are deep in each other are no floor.
+        // Of those beside only what lies flush: shapes that are deep in each other are no floor.
         flush.keep_parts(0, own.parts[0]);
         flush.keep_parts(1, own.parts[1]);
         all = own;
-        for (const BodyAtPose& other : beside.a)
+        for (const ShapeAtPose& other : beside.a)
             if (are_flush(a, other)) add_parts(0, other, b, all.parts[0]);
-        for (const BodyAtPose& other : beside.b)
+        for (const ShapeAtPose& other : beside.b)
             if (are_flush(b, other)) add_parts(1, other, a, all.parts[1]);
         for (std::uint32_t i = own.parts[0]; i < all.parts[0]; ++i)
             for (std::uint32_t j = 0; j < own.parts[1]; ++j) add_flush_contact(i, j, nullptr);
@@ -130,36 +130,36 @@ class ManifoldFinder {
             for (std::uint32_t j = own.parts[1]; j < all.parts[1]; ++j) add_flush_contact(i, j, nullptr);
         flush.apply(wanted);
     }
-    [[nodiscard]] static bool are_flush(const BodyAtPose& a, const BodyAtPose& b) {
-        if (has_surfaces(b.body) || is_half_space(b)) return false;
+    [[nodiscard]] static bool are_flush(const ShapeAtPose& a, const ShapeAtPose& b) {
+        if (has_surfaces(b.shape) || is_half_space(b)) return false;
         const double flush = flush_tolerance(a, b);
-        const bool boxes = is_solid_box(a.body) && is_solid_box(b.body) && a.body.radius() + b.body.radius() == 0.0;
+        const bool boxes = is_solid_box(a.shape) && is_solid_box(b.shape) && a.shape.radius() + b.shape.radius() == 0.0;
         if (boxes)
             if (const std::optional<bool> more = boxes_overlap_by_more(Pair(a, b), flush)) return !*more;
         return !are_deep(a, b, flush) && !(penetration(a, b).depth > flush);
     }
-    // Whether convex bodies are proved to overlap by more than `flush`, which takes a part of the time of their depth.
-    [[nodiscard]] static bool are_deep(const BodyAtPose& a, const BodyAtPose& b, double flush) {
-        if (!a.body.is_convex() || !b.body.is_convex()) return false;
+    // Whether convex shapes are proved to overlap by more than `flush`, which takes a part of the time of their depth.
+    [[nodiscard]] static bool are_deep(const ShapeAtPose& a, const ShapeAtPose& b, double flush) {
+        if (!a.shape.is_convex() || !b.shape.is_convex()) return false;
         const Pair pair(a, b);
         const Nearest core = nearest_points(pair, nullptr, 0.0, 0.0);
-        const double rounding = (a.body.radius() + b.body.radius()) * (1.0 - 0x1p-50);
+        const double rounding = (a.shape.radius() + b.shape.radius()) * (1.0 - 0x1p-50);
         return core.relation == Relation::overlapping && is_deeper(pair, core.simplex, flush - rounding);
     }
-    void add_parts(int list, const BodyAtPose& body, const BodyAtPose& near, std::uint32_t& count) {
-        if (has_surfaces(body.body) || is_half_space(body)) return;
-        if (body.body.is_convex()) {
-            count = scratch_.flush.add_part(list, {body.body, body.pose, {}, Sides::both}) + 1;
+    void add_parts(int list, const ShapeAtPose& shape, const ShapeAtPose& near, std::uint32_t& count) {
+        if (has_surfaces(shape.shape) || is_half_space(shape)) return;
+        if (shape.shape.is_convex()) {
+            count = scratch_.flush.add_part(list, {shape.shape, shape.pose, {}, Sides::both}) + 1;
             return;
         }
-        visit_parts_near(body, near, near_margin(near), [&](const Part& part) {
+        visit_parts_near(shape, near, near_margin(near), [&](const Part& part) {
             count = scratch_.flush.add_part(list, part) + 1;
             return false;
         });
     }
     void add_flush_contact(std::uint32_t first, std::uint32_t second, PairCache* cache) {
         const Part &a = scratch_.flush.part(0, first), &b = scratch_.flush.part(1, second);
-        scratch_.flush.add_contact(first, second, manifold_of({a.body, a.pose}, {b.body, b.pose}, cache));
+        scratch_.flush.add_contact(first, second, manifold_of({a.shape, a.pose}, {b.shape, b.pose}, cache));
     }
 
     static Manifolds::Scratch& scratch_of(Manifolds& found) {
@@ -168,7 +168,7 @@ class ManifoldFinder {
     }
 
     // Both have convex parts alone.
-    void find_convex_parts(const BodyAtPose& a, const BodyAtPose& b) {
+    void find_convex_parts(const ShapeAtPose& a, const ShapeAtPose& b) {
         UnionNormals& flush = scratch_.flush;
         flush.start(options_.margin);
         scratch_.numbers.clear();
@@ -179,12 +179,12 @@ class ManifoldFinder {
         std::sort(scratch_.numbers.begin(), scratch_.numbers.end());
         visit_parts_near(a, b, near_margin(b), [&](const Part& first) {
             const std::uint32_t number = flush.add_part(0, first);
-            const BodyAtPose placed{first.body, first.pose};
+            const ShapeAtPose placed{first.shape, first.pose};
             visit_parts_near(b, placed, options_.margin, [&](const Part& second) {
                 const auto at = std::lower_bound(scratch_.numbers.begin(), scratch_.numbers.end(),
                                                  std::pair(second.id.child, std::uint32_t{0}));
                 if (at == scratch_.numbers.end() || at->first != second.id.child) return false;
-                flush.add_contact(number, at->second, manifold_of(placed, {second.body, second.pose}));
+                flush.add_contact(number, at->second, manifold_of(placed, {second.shape, second.pose}));
                 return false;
             });
             return false;
@@ -193,14 +193,15 @@ class ManifoldFinder {
         add_flush(flush.contacts().size(), false);
     }
 
-    [[nodiscard]] Manifold manifold_of(const BodyAtPose& a, const BodyAtPose& b, PairCache* cache = nullptr) const {
+    [[nodiscard]] Manifold manifold_of(const ShapeAtPose& a, const ShapeAtPose& b, PairCache* cache = nullptr) const {
         ManifoldOptions all_points = options_;
         all_points.max_points = cache != nullptr ? options_.max_points : 8;
         return contact_manifold(a, b, all_points, cache);
     }
-    // Parts that lie flush with those within the margin of a body are wanted as well.
-    [[nodiscard]] double near_margin(const BodyAtPose& body) const {
-        return options_.margin + (is_half_space(body) ? 0.0 : 1e-5 * (body.body.core_radius() + body.body.radius()));
+    // Parts that lie flush with those within the margin of a shape are wanted as well.
+    [[nodiscard]] double near_margin(const ShapeAtPose& shape) const {
+        return options_.margin +
+               (is_half_space(shape) ? 0.0 : 1e-5 * (shape.shape.core_radius() + shape.shape.radius()));
     }
     // The first contacts.
     void add_flush(std::size_t count, bool flip) {
@@ -215,36 +216,36 @@ class ManifoldFinder {
 
     // Both have parts. A surface's rules hold where it is asked as a whole: a's for b's convex parts, if a has any
     // surface, and b's for all others of a.
-    void find_parts(const BodyAtPose& a, const BodyAtPose& b) {
-        if (has_surfaces(a.body)) {
+    void find_parts(const ShapeAtPose& a, const ShapeAtPose& b) {
+        if (has_surfaces(a.shape)) {
             const auto convex = [&](const Part& part) {
-                find(a, {part.body, part.pose}, part.id, false);
+                find(a, {part.shape, part.pose}, part.id, false);
                 return false;
             };
             const auto leave_out = [](const PartSearch&, const Triangle&, std::uint32_t) { return false; };
             (void)visit_parts_near(b, a, options_.margin, convex, leave_out);
-            if (!has_surfaces(b.body)) return;
+            if (!has_surfaces(b.shape)) return;
             only_surfaces_ = true;
         }
         visit_parts_near(a, b, options_.margin, [&](const Part& part) {
             set_front(part);
-            find(b, {part.body, part.pose}, part.id, true);
+            find(b, {part.shape, part.pose}, part.id, true);
             return false;
         });
     }
 
-    // A one-sided triangle that stands for a convex body pushes to its front as well.
+    // A one-sided triangle that stands for a convex shape pushes to its front as well.
     void set_front(const Part& part) {
         front_ = glm::dvec3(0.0);
         if (part.sides != Sides::front) return;
-        const Triangle corners{part.body.vertex(0), part.body.vertex(1), part.body.vertex(2)};
+        const Triangle corners{part.shape.vertex(0), part.shape.vertex(1), part.shape.vertex(2)};
         front_ = placed_triangle(corners, part.pose, part.pose.translation).normal;
     }
 
     // The contacts of a, which has parts, and b, which is convex; `of_b`: b's part. Across a ridge or a tip each
     // triangle's normal may point into the others, and the rule leaves no point: then all push along their faces. Where
     // triangles of two sides push to opposite sides, neighbors decide the side; if that leaves no point, they do not.
-    void find(const BodyAtPose& a, const BodyAtPose& b, const PartId& of_b, bool flip) {
+    void find(const ShapeAtPose& a, const ShapeAtPose& b, const PartId& of_b, bool flip) {
         list_near(a, b, of_b, flip);
         const ManifoldList::Mark before = scratch_.list.mark();
         scratch_.rule.start(scratch_.triangles, b);
@@ -265,10 +266,10 @@ class ManifoldFinder {
         return end;
     }
     struct Answer {
-        bool left_out = false;  // the rule left out a triangle that the body meets
+        bool left_out = false;  // the rule left out a triangle that the shape meets
         bool opposite = false;  // triangles of two sides may push to opposite sides
     };
-    Answer ask_triangles(const BodyAtPose& b, Push push, const PartId& of_b, bool flip) {
+    Answer ask_triangles(const ShapeAtPose& b, Push push, const PartId& of_b, bool flip) {
         Answer answer;
         DirectionBox pushed;
         std::uint32_t i = 0;
@@ -277,12 +278,12 @@ class ManifoldFinder {
             const std::uint32_t at = scratch_.triangles[i].surface;
             const NearSurface& surface = scratch_.surfaces[at];
             const SurfaceContacts contacts(surface, b, options_.margin);
-            if (push == Push::to_one_side && surface.body->sides() == Sides::both)
+            if (push == Push::to_one_side && surface.shape->sides() == Sides::both)
                 scratch_.rule.find_sides(i, end_of_surface(i), contacts.middle());
             for (; i < count && scratch_.triangles[i].surface == at; ++i) {
                 contacts.ask(scratch_.triangles[i], i, scratch_.rule, push, scratch_.contact);
                 answer.left_out = answer.left_out || scratch_.contact.left_out;
-                if (scratch_.contact.points.count > 0 && surface.body->sides() == Sides::both)
+                if (scratch_.contact.points.count > 0 && surface.shape->sides() == Sides::both)
                     pushed.add(scratch_.contact.normal);
                 add(scratch_.contact, {surface.child, scratch_.triangles[i].triangle}, of_b, flip);
             }
@@ -292,20 +293,21 @@ class ManifoldFinder {
     }
 
     // Lists the triangles that may touch; convex parts are asked at once.
-    void list_near(const BodyAtPose& a, const BodyAtPose& b, const PartId& of_b, bool flip) {
+    void list_near(const ShapeAtPose& a, const ShapeAtPose& b, const PartId& of_b, bool flip) {
         Vector<NearSurface>& surfaces = scratch_.surfaces;
         surfaces.clear();
         scratch_.triangles.clear();
         UnionNormals& flush = scratch_.flush;
         flush.start(options_.margin);
-        const std::uint32_t whole = flush.add_part(1, {b.body, b.pose, of_b});
+        const std::uint32_t whole = flush.add_part(1, {b.shape, b.pose, of_b});
         const auto convex = [&](const Part& part) {
             if (only_surfaces_) return false;
-            flush.add_contact(flush.add_part(0, part), whole, manifold_of({part.body, part.pose}, b));
+            flush.add_contact(flush.add_part(0, part), whole, manifold_of({part.shape, part.pose}, b));
             return false;
         };
         const auto triangle = [&](const PartSearch& of, const Triangle& corners, std::uint32_t index) {
-            if (surfaces.empty() || surfaces.back().child != of.child) surfaces.push_back({of.pose, of.body, of.child});
+            if (surfaces.empty() || surfaces.back().child != of.child)
+                surfaces.push_back({of.pose, of.shape, of.child});
             scratch_.triangles.push_back({corners, index, static_cast<std::uint32_t>(surfaces.size() - 1)});
             return false;
         };
@@ -328,25 +330,25 @@ class ManifoldFinder {
 
     const ManifoldOptions& options_;
     bool only_surfaces_ = false;  // convex parts have been asked already
-    glm::dvec3 front_{0.0};       // of the triangle that stands for a convex body; 0 where it has two sides
+    glm::dvec3 front_{0.0};       // of the triangle that stands for a convex shape; 0 where it has two sides
     Manifolds& found_;
     Manifolds::Scratch& scratch_;
 };
 
-void contact_manifolds(const BodyAtPose& a, const BodyAtPose& b, const ManifoldOptions& options, Manifolds& found,
+void contact_manifolds(const ShapeAtPose& a, const ShapeAtPose& b, const ManifoldOptions& options, Manifolds& found,
                        PairCache* cache) {
     ManifoldFinder(options, found).run(a, b, cache);
 }
 
-void contact_manifolds(const BodyAtPose& a, const BodyAtPose& b, const Beside& beside, const ManifoldOptions& options,
+void contact_manifolds(const ShapeAtPose& a, const ShapeAtPose& b, const Beside& beside, const ManifoldOptions& options,
                        Manifolds& found, PairCache* cache) {
     const bool alone = beside.a.empty() && beside.b.empty();
-    if (alone || has_surfaces(a.body) || has_surfaces(b.body) || is_half_space(a) || is_half_space(b))
+    if (alone || has_surfaces(a.shape) || has_surfaces(b.shape) || is_half_space(a) || is_half_space(b))
         return contact_manifolds(a, b, options, found, cache);
     ManifoldFinder(options, found).run_beside(a, b, beside, cache);
 }
 
-Manifold deepest_manifold(const BodyAtPose& a, const BodyAtPose& b, const ManifoldOptions& options) {
+Manifold deepest_manifold(const ShapeAtPose& a, const ShapeAtPose& b, const ManifoldOptions& options) {
     Manifolds found;
     contact_manifolds(a, b, options, found);
     Manifold deepest;

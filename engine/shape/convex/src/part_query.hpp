@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: MIT
-// Bodies of parts against any body. Here a has parts.
+// Shapes of parts against any shape. Here a has parts.
 #pragma once
 #include "parts.hpp"
 
 namespace crofton::convex {
 
-[[nodiscard]] bool parts_meet(const BodyAtPose& a, const BodyAtPose& b);
+[[nodiscard]] bool parts_meet(const ShapeAtPose& a, const ShapeAtPose& b);
 // Infinite if that is not less than `limit`.
-[[nodiscard]] Distance distance_of_parts(const BodyAtPose& a, const BodyAtPose& b, double limit);
-[[nodiscard]] Penetration penetration_of_parts(const BodyAtPose& a, const BodyAtPose& b);
+[[nodiscard]] Distance distance_of_parts(const ShapeAtPose& a, const ShapeAtPose& b, double limit);
+[[nodiscard]] Penetration penetration_of_parts(const ShapeAtPose& a, const ShapeAtPose& b);
 
-// `distance` of two convex bodies; above `far` any lower bound above it will do.
-[[nodiscard]] Distance near_distance(const BodyAtPose& a, const BodyAtPose& b, double far);
+// `distance` of two convex shapes; above `far` any lower bound above it will do.
+[[nodiscard]] Distance near_distance(const ShapeAtPose& a, const ShapeAtPose& b, double far);
 
 // Calls visit for the parts of a that may be within `margin` of b.
-bool visit_parts_near(const BodyAtPose& a, const BodyAtPose& b, double margin, PartVisitor visit);
+bool visit_parts_near(const ShapeAtPose& a, const ShapeAtPose& b, double margin, PartVisitor visit);
 // The same, with the triangles of surfaces by themselves.
-bool visit_parts_near(const BodyAtPose& a, const BodyAtPose& b, double margin, PartVisitor convex,
+bool visit_parts_near(const ShapeAtPose& a, const ShapeAtPose& b, double margin, PartVisitor convex,
                       TriangleVisitor triangle);
 
 [[nodiscard]] inline Distance flipped(Distance d) {

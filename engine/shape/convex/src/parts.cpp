@@ -2,7 +2,7 @@
 #include "parts.hpp"
 
 #include <cmath>
-#include <crofton/convex/body_maker.hpp>
+#include <crofton/convex/shape_maker.hpp>
 #include <crofton/mesh/mesh_parts.hpp>
 #include <crofton/mesh/near_triangles.hpp>
 #include <crofton/mesh/swept_triangles.hpp>
@@ -53,12 +53,12 @@ double rounding_of(const glm::dvec3& a, const glm::dvec3& b) {
 
 }  // namespace
 
-QueryBox box_around(const BodyAtPose& placed, const RigidTransform& pose) {
-    const Aabb& bounds = placed.body.bounds();
+QueryBox box_around(const ShapeAtPose& placed, const RigidTransform& pose) {
+    const Aabb& bounds = placed.shape.bounds();
     const glm::dmat3 back = glm::inverse(pose.rotation);
     QueryBox box;
     box.axes = back * placed.pose.rotation;
-    box.radius = placed.body.radius();
+    box.radius = placed.shape.radius();
     box.half = (glm::max)(bounds.half_extents() - box.radius, glm::dvec3(0.0));
     const glm::dvec3 offset = placed.pose.translation - pose.translation;
     box.center = back * (placed.pose.rotation * bounds.center() + offset);
@@ -110,14 +110,14 @@ bool is_apart(const QueryBox& box, const Triangle& corners, double margin) {
 }  // namespace
 
 bool PartSearch::offer(const Triangle& corners, std::uint32_t triangle) const {
-    if (on_triangle == nullptr) return visit({BodyMaker::triangle(corners), pose, {child, triangle}, sides});
+    if (on_triangle == nullptr) return visit({ShapeMaker::triangle(corners), pose, {child, triangle}, sides});
     return (*on_triangle)(*this, corners, triangle);
 }
 
-bool search_mesh(const Body& body, const QueryBox& outer, const PartSearch& search) {
-    const mesh::MeshTree& mesh = *body.mesh();
+bool search_mesh(const Shape& shape, const QueryBox& outer, const PartSearch& search) {
+    const mesh::MeshTree& mesh = *shape.mesh();
     const mesh::MeshParts& parts = mesh.parts();
-    const MapFrame frame(BodyMaker::map_of(body));
+    const MapFrame frame(ShapeMaker::map_of(shape));
     const QueryBox box = frame.map != nullptr ? frame.box(outer) : outer;
     const double wider = kWider * frame.stretch * (1.0 + 2.0 * frame.error);
     bool ended = false;
@@ -156,26 +156,26 @@ bool search_mesh(const Body& body, const QueryBox& outer, const PartSearch& sear
     return ended;
 }
 
-bool search_parts(const BodyAtPose& placed, const QueryBox& box, const PartSearch& search) {
-    const Body& body = placed.body;
-    if (body.is_convex()) return search.visit({body, placed.pose, {search.child, 0}, Sides::both});
-    if (body.kind() == Kind::mesh) return search_mesh(body, box, search);
-    if (body.kind() == Kind::height_field) return search_field(*body.height_field(), bounds_of(box), search);
-    return search_compound(*body.compound(), box, search);
+bool search_parts(const ShapeAtPose& placed, const QueryBox& box, const PartSearch& search) {
+    const Shape& shape = placed.shape;
+    if (shape.is_convex()) return search.visit({shape, placed.pose, {search.child, 0}, Sides::both});
+    if (shape.kind() == Kind::mesh) return search_mesh(shape, box, search);
+    if (shape.kind() == Kind::height_field) return search_field(*shape.height_field(), bounds_of(box), search);
+    return search_compound(*shape.compound(), box, search);
 }
 
-bool visit_parts(const BodyAtPose& placed, const QueryBox& box, double margin, PartVisitor visit) {
-    return search_parts(placed, box, {placed.pose, placed.body.sides(), 0, false, margin, visit, &placed.body});
+bool visit_parts(const ShapeAtPose& placed, const QueryBox& box, double margin, PartVisitor visit) {
+    return search_parts(placed, box, {placed.pose, placed.shape.sides(), 0, false, margin, visit, &placed.shape});
 }
 
-bool visit_parts(const BodyAtPose& placed, const QueryBox& box, double margin, PartVisitor visit,
+bool visit_parts(const ShapeAtPose& placed, const QueryBox& box, double margin, PartVisitor visit,
                  TriangleVisitor triangles) {
-    const Body& body = placed.body;
-    return search_parts(placed, box, {placed.pose, body.sides(), 0, false, margin, visit, &body, &triangles});
+    const Shape& shape = placed.shape;
+    return search_parts(placed, box, {placed.pose, shape.sides(), 0, false, margin, visit, &shape, &triangles});
 }
 
-bool visit_nearest_parts(const BodyAtPose& placed, const QueryBox& box, const double& limit, PartVisitor visit) {
-    return search_parts(placed, box, {placed.pose, placed.body.sides(), 0, true, limit, visit, &placed.body});
+bool visit_nearest_parts(const ShapeAtPose& placed, const QueryBox& box, const double& limit, PartVisitor visit) {
+    return search_parts(placed, box, {placed.pose, placed.shape.sides(), 0, true, limit, visit, &placed.shape});
 }
 
 }  // namespace crofton::convex

@@ -56,7 +56,7 @@ struct Passage::Stretch {
     const double start = first;
     bool is_apart = false;
 
-    // Along an axis, the two are `low` to `high` apart at `middle_`, grown by the body's extent.
+    // Along an axis, the two are `low` to `high` apart at `middle_`, grown by the shape's extent.
     void cut(double low, double high, double speed, double more) {
         is_apart |= low - more > start * speed || high + more < start * speed;
         if (speed > 0.0) {
@@ -76,9 +76,9 @@ struct Passage::Stretch {
 //
 // Let u be 2^-53. A corner there is off by 8u of its distance from the box, a product with an axis by 4u more, and
 // quotients by 2u of the way: below 2^-46 of the size, which counts all of these.
-Passage::Passage(const BodyAtPose& body, const RigidTransform& surface, const Aabb& bounds, const glm::dvec3& velocity,
-                 double from, double to, double tolerance)
-    : box_(box_around(body, surface)), from_(from), to_(to) {
+Passage::Passage(const ShapeAtPose& shape, const RigidTransform& surface, const Aabb& bounds,
+                 const glm::dvec3& velocity, double from, double to, double tolerance)
+    : box_(box_around(shape, surface)), from_(from), to_(to) {
     const glm::dmat3 back = glm::inverse(surface.rotation);
     velocity_ = back * velocity;
     speed_ = glm::length(velocity_);
@@ -134,7 +134,7 @@ Passage::Entry Passage::entry(const Triangle& corners, double until) const {
         if (box_.half.z > 0.0) cut(p, {u.y, -u.x, 0.0}, met);
         if (radius_ > 0.0) cut(p, glm::cross(u, normal), met);
     }
-    // A rounded body's bound gets closer along the way between its core and the triangle where the bound has it.
+    // A rounded shape's bound gets closer along the way between its core and the triangle where the bound has it.
     for (int round = 0; round < kRounds && radius_ > 0.0 && met.first <= met.last; ++round) {
         const glm::dvec3 center = met.first * along_;
         const glm::dvec3 near_center = nearest_on(p, edge, normal, center);
@@ -151,11 +151,11 @@ double Passage::entry(const Aabb& box, double until) const {
     return met.first <= met.last ? std::max(from_, met.first + middle_) : kNever;
 }
 
-void Passage::visit_mesh(const Body& body, const double& until, TriangleInPath visit) const {
+void Passage::visit_mesh(const Shape& shape, const double& until, TriangleInPath visit) const {
     if (!(from_ <= to_)) return;
-    const mesh::MeshTree& mesh = *body.mesh();
+    const mesh::MeshTree& mesh = *shape.mesh();
     const mesh::MeshParts& parts = mesh.parts();
-    const MapFrame frame(BodyMaker::map_of(body));
+    const MapFrame frame(ShapeMaker::map_of(shape));
     const auto offer = [&](const mesh::MeshLeaf& leaf, std::uint32_t lane) {
         Triangle corners;
         for (int v = 0; v < 3; ++v)

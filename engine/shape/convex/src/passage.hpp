@@ -1,36 +1,36 @@
 // SPDX-License-Identifier: MIT
-// When a convex body that moves along a line may come to what is near its way: bounds from below.
+// When a convex shape that moves along a line may come to what is near its way: bounds from below.
 #pragma once
 #include "parts.hpp"
 
 namespace crofton::convex {
 
-// The body and its way as a surface sees them that stands still. The body stands for its bounds: a box, of spheres,
-// capsules and rounded bodies with rounded edges. "Near" is within half the tolerance, as hits are told.
+// The shape and its way as a surface sees them that stands still. The shape stands for its bounds: a box, of spheres,
+// capsules and rounded shapes with rounded edges. "Near" is within half the tolerance, as hits are told.
 class Passage {
   public:
-    // `velocity` is the body's, seen from the surface, in the world; not 0. `bounds` are the surface's. The body stands
-    // as at time 0.
-    Passage(const BodyAtPose& body, const RigidTransform& surface, const Aabb& bounds, const glm::dvec3& velocity,
+    // `velocity` is the shape's, seen from the surface, in the world; not 0. `bounds` are the surface's. The shape
+    // stands as at time 0.
+    Passage(const ShapeAtPose& shape, const RigidTransform& surface, const Aabb& bounds, const glm::dvec3& velocity,
             double from, double to, double tolerance);
 
-    // Times in which the body may be near anything of the surface; none if `from() > to()`.
+    // Times in which the shape may be near anything of the surface; none if `from() > to()`.
     [[nodiscard]] double from() const { return from_; }
     [[nodiscard]] double to() const { return to_; }
 
     struct Entry {
-        double time;    // not after the first one, up to `until`, at which the body is near; infinite if it never is
+        double time;    // not after the first one, up to `until`, at which the shape is near; infinite if it never is
         bool is_apart;  // at the start: farther than the tolerance
     };
-    // Of a triangle of the surface, by separating axes of moving bodies (Eberly 2001).
+    // Of a triangle of the surface, by separating axes of moving shapes (Eberly 2001).
     [[nodiscard]] Entry entry(const Triangle& corners, double until) const;
     // The time of a box in the surface's frame.
     [[nodiscard]] double entry(const Aabb& box, double until) const;
 
-    // Call `visit` for triangles of the surface that the body may be near up to `until`, which the visitor may lessen;
+    // Call `visit` for triangles of the surface that the shape may be near up to `until`, which the visitor may lessen;
     // about the first first, in an order that depends on the machine.
     using TriangleInPath = FunctionRef<void(const Triangle& corners, std::uint32_t triangle)>;
-    void visit_mesh(const Body& body, const double& until, TriangleInPath visit) const;
+    void visit_mesh(const Shape& shape, const double& until, TriangleInPath visit) const;
     void visit_field(const HeightField& field, const double& until, TriangleInPath visit) const;
 
   private:

@@ -20,15 +20,15 @@ bool finite_pair(const Pair& pair) {
            std::isfinite(pair.pose_b.rotation[0].x + pair.pose_b.rotation[1].y);
 }
 
-Distance half_space_distance(const BodyAtPose& a, const BodyAtPose& b) {
+Distance half_space_distance(const ShapeAtPose& a, const ShapeAtPose& b) {
     Distance d;
     if (is_half_space(b)) {
         d.distance = d.lower = d.upper = gap_of_half_spaces(a, b, d.normal);
         return d;
     }
     const HalfSpaceGap gap = half_space_gap(a, b);
-    const double apart = gap.gap - b.body.radius();
-    d.on_b = d.on_a = gap.deepest - b.body.radius() * gap.outward;
+    const double apart = gap.gap - b.shape.radius();
+    d.on_b = d.on_a = gap.deepest - b.shape.radius() * gap.outward;
     if (half_space_meets(a, b)) return d;
     d.distance = std::max(apart, std::numeric_limits<double>::min());
     d.lower = std::max(0.0, apart - gap.error);
@@ -38,7 +38,7 @@ Distance half_space_distance(const BodyAtPose& a, const BodyAtPose& b) {
     return d;
 }
 
-Penetration half_space_penetration(const BodyAtPose& a, const BodyAtPose& b) {
+Penetration half_space_penetration(const ShapeAtPose& a, const ShapeAtPose& b) {
     Penetration p;
     if (is_half_space(b)) {
         p.overlapping = intersects(a, b);
@@ -48,12 +48,12 @@ Penetration half_space_penetration(const BodyAtPose& a, const BodyAtPose& b) {
     p.overlapping = half_space_meets(a, b);
     if (!p.overlapping) return p;
     const HalfSpaceGap gap = half_space_gap(a, b);
-    const double depth = b.body.radius() - gap.gap;
+    const double depth = b.shape.radius() - gap.gap;
     p.depth = std::max(0.0, depth);
     p.lower = std::max(0.0, depth - gap.error);
     p.upper = std::max(0.0, depth + gap.error);
     p.normal = gap.outward;
-    p.on_b = gap.deepest - b.body.radius() * gap.outward;
+    p.on_b = gap.deepest - b.shape.radius() * gap.outward;
     p.on_a = p.on_b + p.depth * p.normal;
     return p;
 }
@@ -75,13 +75,13 @@ CorePoints core_points(const Simplex& s) {
 Result<void> validate_pose(const RigidTransform& pose, std::uint64_t item) {
     if (Result<void> good = validate(pose, item); !good) return good;
     if (!(glm::determinant(pose.rotation) > 0.0))
-        return fail(ErrorCode::invalid_argument, item, "pose: the matrix mirrors, which turns bodies inside out");
+        return fail(ErrorCode::invalid_argument, item, "pose: the matrix mirrors, which turns shapes inside out");
     return {};
 }
 
-bool intersects(const BodyAtPose& a, const BodyAtPose& b, PairCache* cache) {
-    if (!a.body.is_convex()) return parts_meet(a, b);
-    if (!b.body.is_convex()) return parts_meet(b, a);
+bool intersects(const ShapeAtPose& a, const ShapeAtPose& b, PairCache* cache) {
+    if (!a.shape.is_convex()) return parts_meet(a, b);
+    if (!b.shape.is_convex()) return parts_meet(b, a);
     if (is_half_space(a) || is_half_space(b)) {
         if (!is_half_space(b)) return half_space_meets(a, b);
         if (!is_half_space(a)) return half_space_meets(b, a);
@@ -90,7 +90,7 @@ bool intersects(const BodyAtPose& a, const BodyAtPose& b, PairCache* cache) {
     }
     const Pair pair(a, b);
     if (!finite_pair(pair)) return false;
-    if (is_solid_box(a.body) && is_solid_box(b.body))
+    if (is_solid_box(a.shape) && is_solid_box(b.shape))
         if (const std::optional<bool> meet = boxes_meet(pair)) return *meet;
     const double near = std::max(0.0, pair.rounding() - 1.5 * pair.doubt()), far = pair.rounding() + 1.5 * pair.doubt();
     if (cache != nullptr && cache->count < 4 && cache->axis != glm::dvec3(0.0)) {
@@ -102,9 +102,9 @@ bool intersects(const BodyAtPose& a, const BodyAtPose& b, PairCache* cache) {
     return settle(pair, core);
 }
 
-Distance distance(const BodyAtPose& a, const BodyAtPose& b, PairCache* cache) {
-    if (!a.body.is_convex()) return distance_of_parts(a, b, kInfinity);
-    if (!b.body.is_convex()) return flipped(distance_of_parts(b, a, kInfinity));
+Distance distance(const ShapeAtPose& a, const ShapeAtPose& b, PairCache* cache) {
+    if (!a.shape.is_convex()) return distance_of_parts(a, b, kInfinity);
+    if (!b.shape.is_convex()) return flipped(distance_of_parts(b, a, kInfinity));
     if (is_half_space(a)) return half_space_distance(a, b);
     if (is_half_space(b)) return flipped(half_space_distance(b, a));
     const Pair pair(a, b);
@@ -137,7 +137,7 @@ Distance distance_of(const Pair& pair, Nearest core) {
     return d;
 }
 
-Distance near_distance(const BodyAtPose& a, const BodyAtPose& b, double far) {
+Distance near_distance(const ShapeAtPose& a, const ShapeAtPose& b, double far) {
     if (is_half_space(a) || is_half_space(b)) return distance(a, b);
     const Pair pair(a, b);
     if (!finite_pair(pair)) return {};
@@ -145,21 +145,21 @@ Distance near_distance(const BodyAtPose& a, const BodyAtPose& b, double far) {
 }
 
 // Parts are sought below a limit, so one that is as far as the limit needs a little more.
-Distance distance_within(const BodyAtPose& a, const BodyAtPose& b, double limit) {
-    if (a.body.is_convex() && b.body.is_convex()) return near_distance(a, b, limit);
+Distance distance_within(const ShapeAtPose& a, const ShapeAtPose& b, double limit) {
+    if (a.shape.is_convex() && b.shape.is_convex()) return near_distance(a, b, limit);
     const double above = limit * (1.0 + 1e-9) + std::numeric_limits<double>::min();
-    return a.body.is_convex() ? flipped(distance_of_parts(b, a, above)) : distance_of_parts(a, b, above);
+    return a.shape.is_convex() ? flipped(distance_of_parts(b, a, above)) : distance_of_parts(a, b, above);
 }
 
-Penetration penetration(const BodyAtPose& a, const BodyAtPose& b, PairCache* cache) {
-    if (!a.body.is_convex()) return penetration_of_parts(a, b);
-    if (!b.body.is_convex()) return flipped(penetration_of_parts(b, a));
+Penetration penetration(const ShapeAtPose& a, const ShapeAtPose& b, PairCache* cache) {
+    if (!a.shape.is_convex()) return penetration_of_parts(a, b);
+    if (!b.shape.is_convex()) return flipped(penetration_of_parts(b, a));
     if (is_half_space(a)) return half_space_penetration(a, b);
     if (is_half_space(b)) return flipped(half_space_penetration(b, a));
     const Pair pair(a, b);
     Penetration p;
     if (!finite_pair(pair)) return p;
-    const double ra = a.body.radius(), rb = b.body.radius(), rounding = ra + rb;
+    const double ra = a.shape.radius(), rb = b.shape.radius(), rounding = ra + rb;
     Depth depth;
     Nearest core;
     const bool deep = deep_in_closed_form(pair, depth);
@@ -183,7 +183,7 @@ Penetration penetration(const BodyAtPose& a, const BodyAtPose& b, PairCache* cac
         points = core_points(depth.face);
         p.depth = std::max(0.0, depth.upper - pair.error) + rounding;
         p.lower = depth.lower + rounding - error_bound;
-        p.upper = std::max(p.depth, depth.upper + rounding + error_bound);  // of round bodies `meeting` may be rounding
+        p.upper = std::max(p.depth, depth.upper + rounding + error_bound);  // of round shapes `meeting` may be rounding
         p.normal = depth.normal;
         if (cache != nullptr) cache->axis = p.normal;
     }
@@ -193,10 +193,10 @@ Penetration penetration(const BodyAtPose& a, const BodyAtPose& b, PairCache* cac
     return p;
 }
 
-Distance closest_point(const BodyAtPose& body, const glm::dvec3& point) {
+Distance closest_point(const ShapeAtPose& shape, const glm::dvec3& point) {
     const RigidTransform at{glm::dmat3(1.0), point};
-    static const Body kPoint = *Body::sphere(0.0f);
-    return distance({kPoint, at}, body);
+    static const Shape kPoint = *Shape::sphere(0.0f);
+    return distance({kPoint, at}, shape);
 }
 
 }  // namespace crofton::convex

@@ -215,7 +215,7 @@ Result<ExactHull> quickhull(std::span<const glm::dvec3> points, std::size_t max_
     Builder builder(points);
     if (points.size() < 4 || !builder.start())
         return fail(ErrorCode::degenerate, kNoItem,
-                    "hull: the points lie on one plane, line or point; a hull body needs a volume");
+                    "hull: the points lie on one plane, line or point; a hull shape needs a volume");
     while (builder.vertex_bound() < max_vertices && builder.step()) {
     }
     return builder.take();

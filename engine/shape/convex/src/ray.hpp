@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rays at bodies: brought near the body, in its own frame, and met there.
+// Rays at shapes: brought near the shape, in its own frame, and met there.
 #pragma once
 #include <crofton/convex/query.hpp>
 #include <crofton/geometry/shapes.hpp>
@@ -8,26 +8,26 @@
 namespace crofton::convex {
 
 // A ray in some frame: origin + t · direction for t in [0, max_t]. Components of the direction are below 4 in size, the
-// largest is at least about a half. `error` bounds how far its points near the body are from the real ray's.
+// largest is at least about a half. `error` bounds how far its points near the shape are from the real ray's.
 struct NearRay {
     glm::dvec3 origin{0.0}, direction{0.0};
     double max_t = 0.0;
     double error = 0.0;
-    bool moved = false;  // its origin lies ahead of the real one's, surely outside of the body
+    bool moved = false;  // its origin lies ahead of the real one's, surely outside of the shape
 };
 
-// Where a ray that begins outside first meets a body, in the body's frame. The normal is of any length but 0.
+// Where a ray that begins outside first meets a shape, in the shape's frame. The normal is of any length but 0.
 struct NearHit {
     double t = 0.0;
     glm::dvec3 normal{0.0};
     std::uint32_t triangle = 0;
 };
 
-// A convex body with bounds. Triangles without rounding have no inside and are met from both sides.
-[[nodiscard]] std::optional<NearHit> meet_convex(const Body& body, const NearRay& ray);
-// Whether the origin is in the body's rounded cylinder or cone.
-[[nodiscard]] bool is_in_round(const Body& body, const glm::dvec3& point);
-[[nodiscard]] std::optional<NearHit> meet_mesh(const Body& body, const NearRay& ray);
+// A convex shape with bounds. Triangles without rounding have no inside and are met from both sides.
+[[nodiscard]] std::optional<NearHit> meet_convex(const Shape& shape, const NearRay& ray);
+// Whether the origin is in the shape's rounded cylinder or cone.
+[[nodiscard]] bool is_in_round(const Shape& shape, const glm::dvec3& point);
+[[nodiscard]] std::optional<NearHit> meet_mesh(const Shape& shape, const NearRay& ray);
 [[nodiscard]] std::optional<NearHit> meet_field(const HeightField& field, Sides sides, const NearRay& ray);
 
 // The nearest point of a triangle on the ray, decided exactly for the ray as it is; a one-sided one is passed from

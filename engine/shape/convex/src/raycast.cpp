@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Rays at bodies that stand in the world.
+// Rays at shapes that stand in the world.
 //
-// A ray that begins far away is first followed to where it comes near the body, in twice the digits of double. There it
-// goes into the body's frame. With u = 2^-53, and `size` for how far the body and the ray's new origin are from the
-// frame's origin: the origin is rounded by u · size, the inverse of a rotation and the product with it by 20u · size;
-// the direction by 20u, on a way of at most 8 sizes. Formulas and Newton's method add 30u · size. All of it is below
-// 256u · size: kError.
+// A ray that begins far away is first followed to where it comes near the shape, in twice the digits of double. There
+// it goes into the shape's frame. With u = 2^-53, and `size` for how far the shape and the ray's new origin are from
+// the frame's origin: the origin is rounded by u · size, the inverse of a rotation and the product with it by 20u ·
+// size; the direction by 20u, on a way of at most 8 sizes. Formulas and Newton's method add 30u · size. All of it is
+// below 256u · size: kError.
 #include <algorithm>
 #include <cmath>
 #include <crofton/geometry/expansion.hpp>
@@ -67,25 +67,25 @@ ScaledRay scaled(const Ray& ray) {
     return result;
 }
 
-// A ray brought near a body.
+// A ray brought near a shape.
 struct Approach {
-    NearRay near;         // in the body's frame
+    NearRay near;         // in the shape's frame
     double skipped[2]{};  // the parameter of its origin, as a sum
-    glm::dmat3 to_body{1.0};
+    glm::dmat3 to_shape{1.0};
 
     [[nodiscard]] double parameter(double t) const { return skipped[0] + (skipped[1] + t); }
 };
 
-Approach approach(const BodyAtPose& placed, const Ray& ray) {
-    const bool bounded = placed.body.is_bounded();
-    const glm::dvec3 center = bounded ? placed.pose.rotation * placed.body.bounds().center() : glm::dvec3(0.0);
-    const double radius = bounded ? glm::length(placed.body.bounds().half_extents()) * (1.0 + 1e-5) : HUGE_VAL;
+Approach approach(const ShapeAtPose& placed, const Ray& ray) {
+    const bool bounded = placed.shape.is_bounded();
+    const glm::dvec3 center = bounded ? placed.pose.rotation * placed.shape.bounds().center() : glm::dvec3(0.0);
+    const double radius = bounded ? glm::length(placed.shape.bounds().half_extents()) * (1.0 + 1e-5) : HUGE_VAL;
     const double squared = glm::dot(ray.direction, ray.direction), length = std::sqrt(squared);
     Approach result;
     WideVector origin;
     origin.high = ray.origin;
     origin.add(-placed.pose.translation);
-    // Three steps end near the body from wherever doubles reach: each leaves a rounding of the way before it.
+    // Three steps end near the shape from wherever doubles reach: each leaves a rounding of the way before it.
     for (int step = 0; step < 3; ++step) {
         const glm::dvec3 to_center = (center - origin.high) - origin.low;
         const double way = glm::dot(to_center, ray.direction) / squared * (1.0 - 0x1p-48);
@@ -98,35 +98,35 @@ Approach approach(const BodyAtPose& placed, const Ray& ray) {
         result.near.moved = true;
     }
     const glm::dvec3 from = origin.high + origin.low;
-    result.to_body = glm::inverse(placed.pose.rotation);
-    result.near.origin = result.to_body * from;
-    result.near.direction = result.to_body * ray.direction;
+    result.to_shape = glm::inverse(placed.pose.rotation);
+    result.near.origin = result.to_shape * from;
+    result.near.direction = result.to_shape * ray.direction;
     result.near.max_t = (ray.max_t - result.skipped[0]) - result.skipped[1];
-    const double reach = bounded ? placed.body.core_radius() : 0.0;
-    result.near.error = kError * (reach + placed.body.radius() + std::min(glm::length(from), 16.0 * radius));
+    const double reach = bounded ? placed.shape.core_radius() : 0.0;
+    result.near.error = kError * (reach + placed.shape.radius() + std::min(glm::length(from), 16.0 * radius));
     return result;
 }
 
-// The nearest part of a body, and of a body's parts.
+// The nearest part of a shape, and of a shape's parts.
 class RayCaster {
   public:
     explicit RayCaster(const Ray& ray) : ray_(ray) {}
 
-    void cast(const BodyAtPose& placed, std::uint32_t child) {
+    void cast(const ShapeAtPose& placed, std::uint32_t child) {
         if (inside_ && best_ && best_->part.child <= child) return;
-        const Body& body = placed.body;
-        if (body.kind() == Kind::half_space) return cast_at_half_space(placed, child);
-        if (body.kind() == Kind::compound) return cast_at_compound(placed, child);
+        const Shape& shape = placed.shape;
+        if (shape.kind() == Kind::half_space) return cast_at_half_space(placed, child);
+        if (shape.kind() == Kind::compound) return cast_at_compound(placed, child);
         const Approach way = approach(placed, ray_);
         if (!(way.near.max_t >= 0.0)) return;
         if (!way.near.moved && is_inside(placed, way.near)) return keep_inside(child);
         std::optional<NearHit> hit;
-        if (body.kind() == Kind::mesh)
-            hit = meet_mesh(body, way.near);
-        else if (body.kind() == Kind::height_field)
-            hit = meet_field(*body.height_field(), body.sides(), way.near);
+        if (shape.kind() == Kind::mesh)
+            hit = meet_mesh(shape, way.near);
+        else if (shape.kind() == Kind::height_field)
+            hit = meet_field(*shape.height_field(), shape.sides(), way.near);
         else
-            hit = meet_convex(body, way.near);
+            hit = meet_convex(shape, way.near);
         if (hit) keep(placed, way, *hit, {child, hit->triangle});
     }
 
@@ -134,15 +134,15 @@ class RayCaster {
 
   private:
     // Of a solid, where the ray's own origin is near it.
-    [[nodiscard]] bool is_inside(const BodyAtPose& placed, const NearRay& near) const {
-        const Body& body = placed.body;
-        if (!body.is_convex() || (body.kind() == Kind::triangle && body.radius() == 0.0)) return false;
-        const Aabb& bounds = body.bounds();
+    [[nodiscard]] bool is_inside(const ShapeAtPose& placed, const NearRay& near) const {
+        const Shape& shape = placed.shape;
+        if (!shape.is_convex() || (shape.kind() == Kind::triangle && shape.radius() == 0.0)) return false;
+        const Aabb& bounds = shape.bounds();
         for (int k = 0; k < 3; ++k)
             if (!(near.origin[k] >= bounds.min[k] - near.error && near.origin[k] <= bounds.max[k] + near.error))
                 return false;
-        if (body.kind() == Kind::cylinder || body.kind() == Kind::cone) return is_in_round(body, near.origin);
-        static const Body kPoint = *Body::sphere(0.0);
+        if (shape.kind() == Kind::cylinder || shape.kind() == Kind::cone) return is_in_round(shape, near.origin);
+        static const Shape kPoint = *Shape::sphere(0.0);
         const RigidTransform at{glm::dmat3(1.0), ray_.origin};
         return intersects({kPoint, at}, placed);
     }
@@ -156,12 +156,12 @@ class RayCaster {
         best_ = hit;
     }
 
-    void keep(const BodyAtPose& placed, const Approach& way, const NearHit& met, const PartId& part) {
+    void keep(const ShapeAtPose& placed, const Approach& way, const NearHit& met, const PartId& part) {
         RayHit hit;
         hit.t = std::min(std::max(way.parameter(met.t), 0.0), ray_.max_t);
         hit.point = placed.pose.rotation * (way.near.origin + met.t * way.near.direction) + placed.pose.translation;
         const double size = std::max({std::abs(met.normal.x), std::abs(met.normal.y), std::abs(met.normal.z)});
-        hit.normal = glm::normalize(glm::transpose(way.to_body) * (met.normal / size));
+        hit.normal = glm::normalize(glm::transpose(way.to_shape) * (met.normal / size));
         hit.part = part;
         keep(hit);
     }
@@ -171,11 +171,11 @@ class RayCaster {
     }
 
     // The image of { n·x + offset ≥ 0 }: { n·inverse(R)(y − t) + offset ≥ 0 }.
-    void cast_at_half_space(const BodyAtPose& placed, std::uint32_t child) {
-        static const Body kPoint = *Body::sphere(0.0);
+    void cast_at_half_space(const ShapeAtPose& placed, std::uint32_t child) {
+        static const Shape kPoint = *Shape::sphere(0.0);
         const RigidTransform at{glm::dmat3(1.0), ray_.origin};
         if (half_space_meets(placed, {kPoint, at})) return keep_inside(child);
-        const Plane& plane = placed.body.plane();
+        const Plane& plane = placed.shape.plane();
         const glm::dvec3 normal = glm::transpose(glm::inverse(placed.pose.rotation)) * plane.normal;
         const double speed = glm::dot(normal, ray_.direction);
         WideVector from;
@@ -201,13 +201,13 @@ class RayCaster {
         keep(hit);
     }
 
-    void cast_at_compound(const BodyAtPose& placed, std::uint32_t first) {
+    void cast_at_compound(const ShapeAtPose& placed, std::uint32_t first) {
         const Approach way = approach(placed, ray_);
         if (!(way.near.max_t >= 0.0)) return;
         NearRay rest = way.near;
-        visit_children_along(*placed.body.compound(), rest, [&](const CompoundChild& child, std::uint32_t part) {
+        visit_children_along(*placed.shape.compound(), rest, [&](const CompoundChild& child, std::uint32_t part) {
             const RigidTransform pose = within(placed.pose, child.pose);
-            cast({child.body, pose}, first + part);
+            cast({child.shape, pose}, first + part);
             // What is met by then, and some roundings more, as children are asked in frames of their own.
             if (best_)
                 rest.max_t = std::min(rest.max_t, (best_->t - way.skipped[0]) - way.skipped[1] + 4.0 * rest.error);
@@ -221,8 +221,8 @@ class RayCaster {
 
 }  // namespace
 
-std::optional<NearHit> meet_mesh(const Body& body, const NearRay& ray) {
-    const mesh::MeshTree& tree = *body.mesh();
+std::optional<NearHit> meet_mesh(const Shape& shape, const NearRay& ray) {
+    const mesh::MeshTree& tree = *shape.mesh();
     const auto first = mesh::raycast(Ray{ray.origin, ray.direction, ray.max_t}, tree);
     if (!first) return std::nullopt;
     // Other triangles near the ray are asked where a one-sided one is met from behind, and for the vertices.
@@ -246,23 +246,23 @@ std::optional<NearHit> meet_mesh(const Body& body, const NearRay& ray) {
         };
         const RigidTransform here;
         (void)visit_parts(
-            {body, here}, box, ray.error, [](const Part&) { return false; }, triangles);
+            {shape, here}, box, ray.error, [](const Part&) { return false; }, triangles);
     };
     search(first->t, first->t, true);
     if (best) return best;
     double enter = 0.0;
-    const Aabb& bounds = body.bounds();
+    const Aabb& bounds = shape.bounds();
     if (!passes_box(ray, bounds, ray.error, enter)) return std::nullopt;
     const double size = glm::length(bounds.half_extents()) + glm::length(bounds.center() - ray.origin);
     search(first->t, std::min(ray.max_t, 2.0 * size / length), false);
     return best;
 }
 
-std::optional<RayHit> raycast(const BodyAtPose& body, const Ray& ray) {
-    if (!is_valid(ray) || !validate_pose(body.pose)) return std::nullopt;
+std::optional<RayHit> raycast(const ShapeAtPose& shape, const Ray& ray) {
+    if (!is_valid(ray) || !validate_pose(shape.pose)) return std::nullopt;
     const ScaledRay along = scaled(ray);
     RayCaster caster(along.ray);
-    caster.cast(body, 0);
+    caster.cast(shape, 0);
     std::optional<RayHit> hit = caster.best();
     if (hit) hit->t = std::min(std::scalbn(hit->t, -along.exponent), ray.max_t);
     return hit;

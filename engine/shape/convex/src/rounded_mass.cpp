@@ -99,7 +99,7 @@ double angle_between(const glm::dvec3& a, const glm::dvec3& b) {
     return arc_tangent(glm::length(glm::cross(a, b)), glm::dot(a, b));
 }
 
-Vector<RoundFacet> facets_of_box(const Body& body) {
+Vector<RoundFacet> facets_of_box(const Shape& shape) {
     Vector<RoundFacet> facets;
     for (int k = 0; k < 3; ++k)
         for (const int sign : {-1, 1}) {
@@ -114,25 +114,25 @@ Vector<RoundFacet> facets_of_box(const Body& body) {
             for (const int half : {1, 2}) {
                 const std::array<int, 3> ids{loop[0], loop[static_cast<std::size_t>(half)],
                                              loop[static_cast<std::size_t>(half) + 1]};
-                facets.push_back({{body.vertex(ids[0]), body.vertex(ids[1]), body.vertex(ids[2])}, ids, normal});
+                facets.push_back({{shape.vertex(ids[0]), shape.vertex(ids[1]), shape.vertex(ids[2])}, ids, normal});
             }
         }
     return facets;
 }
 
-Vector<RoundFacet> facets_of(const Body& body) {
-    if (body.kind() == Kind::box) return facets_of_box(body);
+Vector<RoundFacet> facets_of(const Shape& shape) {
+    if (shape.kind() == Kind::box) return facets_of_box(shape);
     Vector<RoundFacet> facets;
     const auto add = [&](int a, int b, int c) {
-        const glm::dvec3 p = body.vertex(a), q = body.vertex(b), r = body.vertex(c);
+        const glm::dvec3 p = shape.vertex(a), q = shape.vertex(b), r = shape.vertex(c);
         facets.push_back({{p, q, r}, {a, b, c}, glm::normalize(glm::cross(q - p, r - p))});
     };
-    if (body.hull() == nullptr) {
+    if (shape.hull() == nullptr) {
         add(0, 1, 2);
         add(0, 2, 1);
         return facets;
     }
-    const auto t = body.hull()->triangles();
+    const auto t = shape.hull()->triangles();
     for (std::size_t i = 0; i < t.size(); i += 3) add(t[i], t[i + 1], t[i + 2]);
     return facets;
 }
@@ -182,30 +182,30 @@ MassProperties mass_of_segment(const glm::dvec3& p, const glm::dvec3& q, double 
 
 }  // namespace
 
-MassProperties mass_of_rounded_polytope(const Body& body) {
-    const int count = body.vertex_count();
-    glm::dvec3 low = body.vertex(0), high = low;
-    for (int i = 1; i < count; ++i) low = glm::min(low, body.vertex(i)), high = glm::max(high, body.vertex(i));
+MassProperties mass_of_rounded_polytope(const Shape& shape) {
+    const int count = shape.vertex_count();
+    glm::dvec3 low = shape.vertex(0), high = low;
+    for (int i = 1; i < count; ++i) low = glm::min(low, shape.vertex(i)), high = glm::max(high, shape.vertex(i));
     const glm::dvec3 size = high - low;
-    if (body.kind() == Kind::triangle) {
-        const glm::dvec3 a = body.vertex(0), b = body.vertex(1), c = body.vertex(2);
+    if (shape.kind() == Kind::triangle) {
+        const glm::dvec3 a = shape.vertex(0), b = shape.vertex(1), c = shape.vertex(2);
         if (glm::length(glm::cross(b - a, c - a)) <= 1e-14 * glm::dot(size, size)) {
             const double ab = glm::distance(a, b), bc = glm::distance(b, c), ca = glm::distance(c, a);
-            if (ab >= bc && ab >= ca) return mass_of_segment(a, b, body.radius());
-            return bc >= ca ? mass_of_segment(b, c, body.radius()) : mass_of_segment(c, a, body.radius());
+            if (ab >= bc && ab >= ca) return mass_of_segment(a, b, shape.radius());
+            return bc >= ca ? mass_of_segment(b, c, shape.radius()) : mass_of_segment(c, a, shape.radius());
         }
     }
-    if (body.kind() == Kind::box && (size.x > 0.0) + (size.y > 0.0) + (size.z > 0.0) < 2)
-        return mass_of_segment(low, high, body.radius());
-    // About the middle, so that a body far from its frame's origin loses nothing.
+    if (shape.kind() == Kind::box && (size.x > 0.0) + (size.y > 0.0) + (size.z > 0.0) < 2)
+        return mass_of_segment(low, high, shape.radius());
+    // About the middle, so that a shape far from its frame's origin loses nothing.
     const glm::dvec3 origin = 0.5 * (low + high);
-    Vector<RoundFacet> facets = facets_of(body);
+    Vector<RoundFacet> facets = facets_of(shape);
     Vector<RoundCorner> corners(static_cast<std::size_t>(count));
     Moments sum;
     for (RoundFacet& facet : facets) {
         for (glm::dvec3& corner : facet.corners) corner -= origin;
         sum.add_tetrahedron(facet.corners[0], facet.corners[1], facet.corners[2]);
-        add_prism(sum, facet, body.radius());
+        add_prism(sum, facet, shape.radius());
         for (std::size_t k = 0; k < 3; ++k) {
             RoundCorner& corner = corners[static_cast<std::size_t>(facet.ids[k])];
             corner.at = facet.corners[k];
@@ -215,11 +215,11 @@ MassProperties mass_of_rounded_polytope(const Body& body) {
         }
     }
     // Three right angles, also where a box is flat and its sides have no area.
-    if (body.kind() == Kind::box)
+    if (shape.kind() == Kind::box)
         for (RoundCorner& corner : corners) corner.angles = 1.5 * kHalfTurn;
-    add_edges(sum, facets, body.radius(), corners);
+    add_edges(sum, facets, shape.radius(), corners);
     for (const RoundCorner& corner : corners)
-        if (corner.used) add_corner(sum, corner, body.radius());
+        if (corner.used) add_corner(sum, corner, shape.radius());
     return mass_of(sum, origin);
 }
 
@@ -279,11 +279,11 @@ struct Profile {
 
 }  // namespace
 
-MassProperties mass_of_rounded_revolution(const Body& body) {
-    const double R = body.half_extents().x, h = body.half_extents().y, r = body.radius();
+MassProperties mass_of_rounded_revolution(const Shape& shape) {
+    const double R = shape.half_extents().x, h = shape.half_extents().y, r = shape.radius();
     const glm::dvec2 down(0.0, -1.0), out(1.0, 0.0), up(0.0, 1.0);
     Profile profile;
-    if (body.kind() == Kind::cylinder) {
+    if (shape.kind() == Kind::cylinder) {
         profile.add_arc(R, -h, r, down, out, 0.5 * kHalfTurn);
         profile.add_line(R + r, -h, R + r, h);
         profile.add_arc(R, h, r, out, up, 0.5 * kHalfTurn);

@@ -66,11 +66,11 @@ PlacedTriangle placed_triangle(const Triangle& corners, const RigidTransform& po
     return t;
 }
 
-SegmentTouch::SegmentTouch(const BodyAtPose& body, const glm::dvec3& origin, double reach, double margin)
-    : count_(body.body.vertex_count()), radius_(body.body.radius()), limit_(body.body.radius() + margin) {
-    const glm::dvec3 offset = body.pose.translation - origin;
-    for (int i = 0; i < 2; ++i) end_[i] = body.pose.rotation * body.body.vertex(std::min(i, count_ - 1)) + offset;
-    const double size = reach + body.body.core_radius() + glm::length(offset);
+SegmentTouch::SegmentTouch(const ShapeAtPose& shape, const glm::dvec3& origin, double reach, double margin)
+    : count_(shape.shape.vertex_count()), radius_(shape.shape.radius()), limit_(shape.shape.radius() + margin) {
+    const glm::dvec3 offset = shape.pose.translation - origin;
+    for (int i = 0; i < 2; ++i) end_[i] = shape.pose.rotation * shape.shape.vertex(std::min(i, count_ - 1)) + offset;
+    const double size = reach + shape.shape.core_radius() + glm::length(offset);
     error_ = 0x1p-48 * size;
     doubt_ = kRoundedDoubt * size + 2.0 * error_;
 }
@@ -101,7 +101,7 @@ Warm SegmentTouch::ask(const PlacedTriangle& t, Touch& touch) const {
         std::max(glm::dot(n, t.corner[0] - best.on_triangle),
                  std::max(glm::dot(n, t.corner[1] - best.on_triangle), glm::dot(n, t.corner[2] - best.on_triangle)));
     if (lower - doubt_ > limit_) return Warm::apart;
-    // Whether bodies as near to a touch as this meet is left to the search that decides it for all queries.
+    // Whether shapes as near to a touch as this meet is left to the search that decides it for all queries.
     if (!(distance - lower <= 64.0 * error_) || std::abs(distance - radius_) <= doubt_) return Warm::unknown;
     touch.normal = n;
     touch.depth = radius_ - distance;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The farthest point of a body's core along a direction, in its own frame.
+// The farthest point of a shape's core along a direction, in its own frame.
 #pragma once
 #include <cmath>
-#include <crofton/convex/body.hpp>
+#include <crofton/convex/shape.hpp>
 #include <crofton/core/extensions.hpp>
 #include <cstring>
 #include <glm/geometric.hpp>
@@ -70,19 +70,19 @@ struct Support {
     return 0;
 }
 
-[[nodiscard]] inline Support farthest_vertex(const Body& body, const glm::dvec3& d) {
+[[nodiscard]] inline Support farthest_vertex(const Shape& shape, const glm::dvec3& d) {
     double along = 0.0;
-    const int vertex = farthest_of(body.column(0), body.column(1), body.column(2), body.padded_count(), d, along);
-    return {body.vertex(vertex), vertex, along};
+    const int vertex = farthest_of(shape.column(0), shape.column(1), shape.column(2), shape.padded_count(), d, along);
+    return {shape.vertex(vertex), vertex, along};
 }
 
-[[nodiscard]] inline Support farthest_round(const Body& body, const glm::dvec3& d) {
-    const double radius = body.half_extents().x, height = body.half_extents().y;
+[[nodiscard]] inline Support farthest_round(const Shape& shape, const glm::dvec3& d) {
+    const double radius = shape.half_extents().x, height = shape.half_extents().y;
     const double across = std::sqrt(d.x * d.x + d.z * d.z);
     const glm::dvec3 rim =
         across > 0.0 ? glm::dvec3(radius * (d.x / across), 0.0, radius * (d.z / across)) : glm::dvec3(radius, 0.0, 0.0);
     glm::dvec3 point = rim;
-    if (body.kind() == Kind::cylinder)
+    if (shape.kind() == Kind::cylinder)
         point.y = d.y >= 0.0 ? height : -height;
     else if (height * d.y > radius * across - height * d.y)
         point = {0.0, height, 0.0};
@@ -91,14 +91,14 @@ struct Support {
     return {point, 0, glm::dot(point, d)};
 }
 
-[[nodiscard]] inline Support core_support(const Body& body, const glm::dvec3& direction) {
-    if (body.kind() == Kind::box) {
-        const glm::dvec3& h = body.half_extents();
+[[nodiscard]] inline Support core_support(const Shape& shape, const glm::dvec3& direction) {
+    if (shape.kind() == Kind::box) {
+        const glm::dvec3& h = shape.half_extents();
         const int x = direction.x >= 0.0, y = direction.y >= 0.0, z = direction.z >= 0.0;
         const glm::dvec3 point(x != 0 ? h.x : -h.x, y != 0 ? h.y : -h.y, z != 0 ? h.z : -h.z);
         return {point, x + 2 * y + 4 * z, glm::dot(point, direction)};
     }
-    return body.has_polytope_core() ? farthest_vertex(body, direction) : farthest_round(body, direction);
+    return shape.has_polytope_core() ? farthest_vertex(shape, direction) : farthest_round(shape, direction);
 }
 
 }  // namespace crofton::convex

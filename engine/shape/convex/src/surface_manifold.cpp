@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <crofton/convex/body_maker.hpp>
+#include <crofton/convex/shape_maker.hpp>
 
 #include "core_query.hpp"
 #include "parallel_edges.hpp"
@@ -36,14 +36,14 @@ double deepest(const GatheredPoints& points) {
 
 }  // namespace
 
-SurfaceContacts::SurfaceContacts(const NearSurface& surface, const BodyAtPose& body, double margin)
-    : surface_(surface), body_(body), gathering_{surface.pose.translation, 0.0, body.body.radius(), margin} {
+SurfaceContacts::SurfaceContacts(const NearSurface& surface, const ShapeAtPose& shape, double margin)
+    : surface_(surface), shape_(shape), gathering_{surface.pose.translation, 0.0, shape.shape.radius(), margin} {
     const glm::dvec3& origin = surface.pose.translation;
-    size_ = surface.body->core_radius() + body.body.core_radius() + glm::length(body.pose.translation - origin);
-    middle_ = middle_of(body, origin);
-    if (body.body.kind() == Kind::box) box_.emplace(body, origin, surface.body->core_radius(), margin);
-    const bool round = body.body.kind() == Kind::sphere || body.body.kind() == Kind::capsule;
-    if (round) segment_.emplace(body, origin, surface.body->core_radius(), margin);
+    size_ = surface.shape->core_radius() + shape.shape.core_radius() + glm::length(shape.pose.translation - origin);
+    middle_ = middle_of(shape, origin);
+    if (shape.shape.kind() == Kind::box) box_.emplace(shape, origin, surface.shape->core_radius(), margin);
+    const bool round = shape.shape.kind() == Kind::sphere || shape.shape.kind() == Kind::capsule;
+    if (round) segment_.emplace(shape, origin, surface.shape->core_radius(), margin);
 }
 
 void SurfaceContacts::ask(const NearTriangle& near, std::uint32_t index, EdgeRule& rule, Push push,
@@ -57,19 +57,19 @@ void SurfaceContacts::ask(const NearTriangle& near, std::uint32_t index, EdgeRul
     t.normal = triangle_normal(surface_.pose.rotation, near.corners);
     if (segment_) warm = segment_->ask(t, touch);
     if (warm == Warm::apart) return;
-    std::optional<Body> triangle;
+    std::optional<Shape> triangle;
     Found found = Found::touch;
     if (warm == Warm::unknown) {
-        triangle = BodyMaker::triangle(near.corners);
+        triangle = ShapeMaker::triangle(near.corners);
         touch = {};
-        found = is_half_space(body_) ? find_on_half_space(*triangle, contact) : find(t, *triangle, touch, contact);
+        found = is_half_space(shape_) ? find_on_half_space(*triangle, contact) : find(t, *triangle, touch, contact);
         if (found == Found::nothing) return;
     }
     const glm::dvec3 normal = found == Found::points ? contact.normal : touch.normal;
     const double along = glm::dot(normal, t.normal);
     // 1: pushes to the front alone, -1: to the back alone.
-    const int only = surface_.body->sides() == Sides::front ? 1 : push == Push::to_one_side ? rule.side(index) : 0;
-    const bool in_front = is_in_front(t, body_.body, middle_);
+    const int only = surface_.shape->sides() == Sides::front ? 1 : push == Push::to_one_side ? rule.side(index) : 0;
+    const bool in_front = is_in_front(t, shape_.shape, middle_);
     const bool allowed = only == 0 || only * along > 0.0;
     if (!allowed && in_front != (only > 0)) {
         contact.points.count = 0;
@@ -77,7 +77,7 @@ void SurfaceContacts::ask(const NearTriangle& near, std::uint32_t index, EdgeRul
     }
     const bool across_face = std::abs(along) >= 1.0 - 0.5 * kFlatSine * kFlatSine;
     const bool has_face = t.normal != glm::dvec3(0.0);
-    if (allowed && (across_face || (push == Push::always && (!has_face || is_half_space(body_))) ||
+    if (allowed && (across_face || (push == Push::always && (!has_face || is_half_space(shape_))) ||
                     !rule.points_into_neighbor(index, surface_, normal, touch.on_a))) {
         if (found == Found::touch) gather(t, triangle ? &*triangle : nullptr, touch, contact);
         return;
@@ -94,14 +94,14 @@ void SurfaceContacts::ask(const NearTriangle& near, std::uint32_t index, EdgeRul
 }
 
 // The triangle's face is tried first: its points are clipped for that already.
-SurfaceContacts::Found SurfaceContacts::find(const PlacedTriangle& t, const Body& triangle, Touch& touch,
+SurfaceContacts::Found SurfaceContacts::find(const PlacedTriangle& t, const Shape& triangle, Touch& touch,
                                              Contact& contact) const {
-    const BodyAtPose placed{triangle, surface_.pose};
-    const Pair pair(placed, body_);
+    const ShapeAtPose placed{triangle, surface_.pose};
+    const Pair pair(placed, shape_);
     PairCache face;
     face.reference = 1;
     Clipped clipped;
-    const Warm warm = touch_at_face(placed, body_, pair, gathering_.margin, face, kSameDepth, touch, clipped);
+    const Warm warm = touch_at_face(placed, shape_, pair, gathering_.margin, face, kSameDepth, touch, clipped);
     if (warm == Warm::apart) return Found::nothing;
     if (warm == Warm::unknown) {
         touch = {};
@@ -114,9 +114,9 @@ SurfaceContacts::Found SurfaceContacts::find(const PlacedTriangle& t, const Body
     return glm::dot(touch.normal, t.normal) > 0.0 ? Found::points : Found::touch;
 }
 
-SurfaceContacts::Found SurfaceContacts::find_on_half_space(const Body& triangle, Contact& contact) const {
+SurfaceContacts::Found SurfaceContacts::find_on_half_space(const Shape& triangle, Contact& contact) const {
     const ManifoldOptions options{.margin = gathering_.margin, .max_points = 8};
-    const Manifold m = contact_manifold({triangle, surface_.pose}, body_, options, nullptr);
+    const Manifold m = contact_manifold({triangle, surface_.pose}, shape_, options, nullptr);
     contact.normal = m.normal;
     contact.points.count = m.count;
     for (int i = 0; i < m.count; ++i) {
@@ -127,34 +127,34 @@ SurfaceContacts::Found SurfaceContacts::find_on_half_space(const Body& triangle,
 }
 
 void SurfaceContacts::gather_patches_along(const PlacedTriangle& t, Gatherer& gatherer, const glm::dvec3& normal,
-                                           Patch& on_triangle, Patch& on_body) const {
+                                           Patch& on_triangle, Patch& on_shape) const {
     triangle_patch(t, normal, on_triangle);
-    on_body.count = 0;
-    on_body.self = {FeatureKind::vertex, 0};
-    if (body_.body.vertex_count() == 1) return;  // a sphere has no patch
+    on_shape.count = 0;
+    on_shape.self = {FeatureKind::vertex, 0};
+    if (shape_.shape.vertex_count() == 1) return;  // a sphere has no patch
     Clipped clipped;
-    const bool round = body_.body.radius() > 0.0 || !body_.body.has_polytope_core();
-    if (!box_ || round) patch_along(body_, -normal, gathering_.origin, on_body);
-    if (round && gather_parallel_edges({nullptr, on_triangle}, {&body_, on_body}, normal, gathering_.origin, size_,
+    const bool round = shape_.shape.radius() > 0.0 || !shape_.shape.has_polytope_core();
+    if (!box_ || round) patch_along(shape_, -normal, gathering_.origin, on_shape);
+    if (round && gather_parallel_edges({nullptr, on_triangle}, {&shape_, on_shape}, normal, gathering_.origin, size_,
                                        clipped, gatherer))
         return;
     if (box_) {
-        const int face = face_along(body_.body, Pair::local(body_.pose.rotation, -normal));
-        BoxFace(body_, face, box_->to_local(), gathering_.origin).clip(on_triangle, -normal, clipped);
+        const int face = face_along(shape_.shape, Pair::local(shape_.pose.rotation, -normal));
+        BoxFace(shape_, face, box_->to_local(), gathering_.origin).clip(on_triangle, -normal, clipped);
         gatherer.add(clipped, false);
-        on_body.self = {FeatureKind::face, static_cast<std::uint16_t>(face)};
+        on_shape.self = {FeatureKind::face, static_cast<std::uint16_t>(face)};
     } else {
-        (void)gather_patches(on_triangle, on_body, normal, clipped, gatherer);
+        (void)gather_patches(on_triangle, on_shape, normal, clipped, gatherer);
     }
 }
 
-void SurfaceContacts::gather(const PlacedTriangle& t, const Body* triangle, Touch& touch, Contact& contact) const {
+void SurfaceContacts::gather(const PlacedTriangle& t, const Shape* triangle, Touch& touch, Contact& contact) const {
     contact.normal = touch.normal;
     Gatherer gatherer(gathering_, touch, contact.points);
-    Patch on_triangle, on_body;
-    gather_patches_along(t, gatherer, touch.normal, on_triangle, on_body);
+    Patch on_triangle, on_shape;
+    gather_patches_along(t, gatherer, touch.normal, on_triangle, on_shape);
     if (!gatherer.lacks_deepest(1e-9 * size_)) return;
-    if (!touch.known && triangle != nullptr) name_features(*triangle, body_.body, on_triangle, on_body, touch);
+    if (!touch.known && triangle != nullptr) name_features(*triangle, shape_.shape, on_triangle, on_shape, touch);
     gatherer.add_deepest();
 }
 
@@ -165,31 +165,31 @@ void SurfaceContacts::gather_along_face(const PlacedTriangle& t, bool front, Con
     touch.depth = HUGE_VAL;
     contact.normal = touch.normal;
     Gatherer gatherer(gathering_, touch, contact.points);
-    Patch on_triangle, on_body;
-    gather_patches_along(t, gatherer, touch.normal, on_triangle, on_body);
+    Patch on_triangle, on_shape;
+    gather_patches_along(t, gatherer, touch.normal, on_triangle, on_shape);
     if (contact.points.count > 0) return;
-    const Support lowest = core_support(body_.body, Pair::local(body_.pose.rotation, -touch.normal));
-    const glm::dvec3 point = body_.pose.rotation * lowest.point + (body_.pose.translation - gathering_.origin);
+    const Support lowest = core_support(shape_.shape, Pair::local(shape_.pose.rotation, -touch.normal));
+    const glm::dvec3 point = shape_.pose.rotation * lowest.point + (shape_.pose.translation - gathering_.origin);
     add_support(on_triangle, touch.normal, point, lowest.vertex, true, gatherer);
 }
 
-// Of a body that meets the triangle: where the body leaves it last when it moves along the face's normal. It is found
-// by the way back, from where the body is certainly beyond the face.
+// Of a shape that meets the triangle: where the shape leaves it last when it moves along the face's normal. It is found
+// by the way back, from where the shape is certainly beyond the face.
 void SurfaceContacts::add_deepest_above(const NearTriangle& near, const PlacedTriangle& t, bool front,
                                         Contact& contact) const {
     const glm::dvec3 normal = front ? t.normal : -t.normal;
-    const double way = 2.5 * (body_.body.core_radius() + body_.body.radius());
-    const Body triangle = BodyMaker::triangle(near.corners);
-    const RigidTransform above{body_.pose.rotation, body_.pose.translation + way * normal};
-    const Impact back = advance({triangle, surface_.pose}, {}, {body_.body, above}, {.velocity = -way * normal},
+    const double way = 2.5 * (shape_.shape.core_radius() + shape_.shape.radius());
+    const Shape triangle = ShapeMaker::triangle(near.corners);
+    const RigidTransform above{shape_.pose.rotation, shape_.pose.translation + way * normal};
+    const Impact back = advance({triangle, surface_.pose}, {}, {shape_.shape, above}, {.velocity = -way * normal},
                                 {.tolerance = 1e-9 * size_}, 0.0, nullptr);
     if (back.result == CastResult::miss) return;
     const double depth = way * (1.0 - back.time);
-    Patch on_body;
-    patch_along(body_, -normal, gathering_.origin, on_body);
+    Patch on_shape;
+    patch_along(shape_, -normal, gathering_.origin, on_shape);
     contact.normal = normal;
     contact.points.count = 1;
-    contact.points.point[0] = {back.on_a - 0.5 * depth * normal, depth, {FeatureKind::face, 0}, on_body.self, {}, {}};
+    contact.points.point[0] = {back.on_a - 0.5 * depth * normal, depth, {FeatureKind::face, 0}, on_shape.self, {}, {}};
 }
 
 }  // namespace crofton::convex

@@ -36,13 +36,13 @@ struct InnerSphere {
     glm::dvec3 center;
     double radius;
 };
-InnerSphere inner_sphere(const BodyAtPose& p) {
-    if (p.body.hull() != nullptr)
-        return {p.pose.rotation * p.body.hull()->mass().center, p.body.hull()->inner_radius()};
-    if (p.body.kind() == Kind::triangle)
-        return {p.pose.rotation * ((p.body.vertex(0) + p.body.vertex(1) + p.body.vertex(2)) / 3.0), 0.0};
-    const glm::dvec3& h = p.body.half_extents();
-    return {glm::dvec3(0.0), p.body.kind() == Kind::box ? 0.999 * std::min(h.x, std::min(h.y, h.z)) : 0.0};
+InnerSphere inner_sphere(const ShapeAtPose& p) {
+    if (p.shape.hull() != nullptr)
+        return {p.pose.rotation * p.shape.hull()->mass().center, p.shape.hull()->inner_radius()};
+    if (p.shape.kind() == Kind::triangle)
+        return {p.pose.rotation * ((p.shape.vertex(0) + p.shape.vertex(1) + p.shape.vertex(2)) / 3.0), 0.0};
+    const glm::dvec3& h = p.shape.half_extents();
+    return {glm::dvec3(0.0), p.shape.kind() == Kind::box ? 0.999 * std::min(h.x, std::min(h.y, h.z)) : 0.0};
 }
 
 // How far `x` is within the sides of a prism: the least distance, negative outside.
@@ -81,7 +81,7 @@ struct Depths {
 // depth up to t = 2 atan(inner / most). Beyond, there is the sphere of radius R around c within the difference body.
 // At the angle s = π − t from −n it has extent −c·n cos s − |c across n| sin s + R. That falls with s up to a right
 // angle, so its value at the last s decides.
-bool least_deep(const BodyAtPose& a, const BodyAtPose& b, const Pair& pair, const glm::dvec3& n, const Depths& depths,
+bool least_deep(const ShapeAtPose& a, const ShapeAtPose& b, const Pair& pair, const glm::dvec3& n, const Depths& depths,
                 double inner) {
     // What rounding may have made of a touch counts as none.
     if (!(depths.least > 4.0 * pair.error) || !(inner > depths.most)) return false;
@@ -138,10 +138,10 @@ namespace {
 // As Pair::support() along the normal of a hull's face: the face's own farthest vertex is known. That the normal is
 // rounded, and so is what told the vertex, makes `along` off by 28 u of the size at most, below `error`.
 Corner support_of_hull_face(const Pair& pair, bool on_a, int face, const glm::dvec3& d, double& along) {
-    const Body &body = on_a ? pair.a : pair.b, &other = on_a ? pair.b : pair.a;
+    const Shape &shape = on_a ? pair.a : pair.b, &other = on_a ? pair.b : pair.a;
     const RigidTransform &pose = on_a ? pair.pose_a : pair.pose_b, &other_pose = on_a ? pair.pose_b : pair.pose_a;
-    const int vertex = body.hull()->face_support(face);
-    const glm::dvec3 point = body.vertex(vertex), out = on_a ? d : -d;
+    const int vertex = shape.hull()->face_support(face);
+    const glm::dvec3 point = shape.vertex(vertex), out = on_a ? d : -d;
     const Support opposite = core_support(other, Pair::local(other_pose.rotation, -out));
     along = glm::dot(out, pose.rotation * point) + (opposite.along - glm::dot(d, pair.offset));
     return on_a ? pair.corner(point, opposite.point, vertex, opposite.vertex)
@@ -150,19 +150,19 @@ Corner support_of_hull_face(const Pair& pair, bool on_a, int face, const glm::dv
 
 }  // namespace
 
-Warm touch_at_face(const BodyAtPose& a, const BodyAtPose& b, const Pair& pair, double margin, const PairCache& cache,
+Warm touch_at_face(const ShapeAtPose& a, const ShapeAtPose& b, const Pair& pair, double margin, const PairCache& cache,
                    double kept_share, Touch& touch, Clipped& clipped) {
     const bool on_a = cache.reference == 1;
-    const BodyAtPose &reference = on_a ? a : b, &incident = on_a ? b : a;
-    const Body& body = reference.body;
-    const bool valid = body.kind() == Kind::box
+    const ShapeAtPose &reference = on_a ? a : b, &incident = on_a ? b : a;
+    const Shape& shape = reference.shape;
+    const bool valid = shape.kind() == Kind::box
                            ? cache.face < 6
-                           : (body.kind() == Kind::hull && cache.face < body.hull()->face_count()) ||
-                                 (body.kind() == Kind::triangle && cache.face == 0);
-    if (!valid || (incident.body.kind() != Kind::box && incident.body.kind() != Kind::hull)) return Warm::unknown;
+                           : (shape.kind() == Kind::hull && cache.face < shape.hull()->face_count()) ||
+                                 (shape.kind() == Kind::triangle && cache.face == 0);
+    if (!valid || (incident.shape.kind() != Kind::box && incident.shape.kind() != Kind::hull)) return Warm::unknown;
     if (!(pair.size < std::numeric_limits<double>::infinity())) return Warm::unknown;
     Patch face, other;
-    const bool on_box = body.kind() == Kind::box;
+    const bool on_box = shape.kind() == Kind::box;
     if (on_box) {
         glm::dvec3 outward(0.0);
         outward[cache.face / 2] = (cache.face & 1) != 0 ? 1.0 : -1.0;
@@ -175,8 +175,8 @@ Warm touch_at_face(const BodyAtPose& a, const BodyAtPose& b, const Pair& pair, d
     const glm::dvec3 out = face.normal;
     touch.normal = on_a ? out : -out;
     double depth = 0.0;
-    const Corner deepest = body.hull() != nullptr ? support_of_hull_face(pair, on_a, cache.face, touch.normal, depth)
-                                                  : pair.support(touch.normal, depth);
+    const Corner deepest = shape.hull() != nullptr ? support_of_hull_face(pair, on_a, cache.face, touch.normal, depth)
+                                                   : pair.support(touch.normal, depth);
     const double rounding = pair.rounding(), kept = kept_share * pair.size;
     if (-depth - pair.error > rounding + margin + pair.doubt()) return Warm::apart;
     // Contacts nearer than rounding tells are decided exactly by the other way.
@@ -222,7 +222,7 @@ Warm touch_at_face(const BodyAtPose& a, const BodyAtPose& b, const Pair& pair, d
     }
     touch.depth = depth + rounding;
     if (rounding > 0.0 && std::abs(touch.depth) <= pair.doubt() + pair.error) return Warm::unknown;
-    // Other points than those of the face may be nearer to each other: no proof that the bodies are apart.
+    // Other points than those of the face may be nearer to each other: no proof that the shapes are apart.
     return touch.depth >= -margin ? Warm::touching : Warm::unknown;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Along which direction, how deep and where two bodies touch: what a manifold starts from.
+// Along which direction, how deep and where two shapes touch: what a manifold starts from.
 #pragma once
 #include "clip.hpp"
 #include "simplex.hpp"
@@ -15,16 +15,16 @@ struct Touch {
     int vertices_a[4], vertices_b[4], vertex_count = 0;  // of polytopes, whose hull holds the deepest points
 };
 
-// False if the bodies are farther apart than `margin`.
+// False if the shapes are farther apart than `margin`.
 [[nodiscard]] bool find_touch(const Pair& pair, double margin, PairCache* cache, Touch& touch);
 
 enum class Warm : std::uint8_t { unknown, apart, touching };
 
 // The touch at the face that the cache names, if that is proven to be the least deep within `kept` of the size, or the
-// bodies to be farther apart than the margin. Then `clipped` holds the patches' common part. kKeptDepth is for a face
+// shapes to be farther apart than the margin. Then `clipped` holds the patches' common part. kKeptDepth is for a face
 // that stays; kSameDepth for one that is a guess.
 inline constexpr double kKeptDepth = 1e-4, kSameDepth = 1e-12;
-[[nodiscard]] Warm touch_at_face(const BodyAtPose& a, const BodyAtPose& b, const Pair& pair, double margin,
+[[nodiscard]] Warm touch_at_face(const ShapeAtPose& a, const ShapeAtPose& b, const Pair& pair, double margin,
                                  const PairCache& cache, double kept, Touch& touch, Clipped& clipped);
 
 }  // namespace crofton::convex

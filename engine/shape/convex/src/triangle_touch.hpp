@@ -25,7 +25,7 @@ struct PlacedTriangle {
 class BoxTouch {
   public:
     // `reach` is the surface's; the box stands in the world, the triangles around the surface's origin.
-    BoxTouch(const BodyAtPose& box, const glm::dvec3& origin, double reach, double margin);
+    BoxTouch(const ShapeAtPose& box, const glm::dvec3& origin, double reach, double margin);
     // touching: sets normal, depth, deepest points and features. apart: surely farther than the margin. The triangle's
     // normal is not used.
     [[nodiscard]] Warm ask(const PlacedTriangle& triangle, Touch& touch) const;
@@ -41,7 +41,7 @@ class BoxTouch {
     [[nodiscard]] bool set_points(const Local& t, const Axis& axis, const PlacedTriangle& triangle, Touch& touch) const;
     [[nodiscard]] int lowest_corner(const glm::dvec3& m) const;
 
-    const BodyAtPose& box_;
+    const ShapeAtPose& box_;
     glm::dvec3 offset_, half_;  // of the box from the surface's origin
     glm::dvec3 unit_;           // lengths of the frame's covectors in the world
     glm::dmat3 to_local_, metric_;
@@ -52,7 +52,7 @@ class BoxTouch {
 // ch. 5), then proven by the extent along the direction between them, so that the cases need no proof.
 class SegmentTouch {
   public:
-    SegmentTouch(const BodyAtPose& body, const glm::dvec3& origin, double reach, double margin);
+    SegmentTouch(const ShapeAtPose& shape, const glm::dvec3& origin, double reach, double margin);
     [[nodiscard]] Warm ask(const PlacedTriangle& triangle, Touch& touch) const;
 
   private:

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <crofton/convex/body_maker.hpp>
+#include <crofton/convex/shape_maker.hpp>
 #include <glm/matrix.hpp>
 
 #include "core_query.hpp"
@@ -19,42 +19,43 @@ constexpr double kFlush = 0x1p-22;
 constexpr double kFlatSlope = 2e-5;
 constexpr double kShallow = 0.25;
 
-double reach_of(const Body& body) {
-    return body.core_radius() + body.radius();
+double reach_of(const Shape& shape) {
+    return shape.core_radius() + shape.radius();
 }
 
-bool rises_above(const BodyAtPose& body, const glm::dvec3& point, const glm::dvec3& direction, double tolerance) {
-    const Support s = core_support(body.body, Pair::local(body.pose.rotation, direction));
+bool rises_above(const ShapeAtPose& shape, const glm::dvec3& point, const glm::dvec3& direction, double tolerance) {
+    const Support s = core_support(shape.shape, Pair::local(shape.pose.rotation, direction));
     const glm::dvec3 way =
-        body.pose.rotation * s.point + (body.pose.translation - point) + body.body.radius() * direction;
+        shape.pose.rotation * s.point + (shape.pose.translation - point) + shape.shape.radius() * direction;
     return glm::dot(way, direction) > kFlatSine * glm::length(way) + tolerance;
 }
 
-int face_count(const Body& body) {
-    switch (body.kind()) {
+int face_count(const Shape& shape) {
+    switch (shape.kind()) {
         case Kind::box:
             return 6;
         case Kind::hull:
-            return body.hull()->face_count();
+            return shape.hull()->face_count();
         case Kind::triangle:
         case Kind::cylinder:
             return 2;
         default:
-            return body.kind() == Kind::cone ? 1 : 0;
+            return shape.kind() == Kind::cone ? 1 : 0;
     }
 }
 
 // Outward; 0 of a triangle without area.
-glm::dvec3 face_normal(const BodyAtPose& placed, int face) {
-    const Body& body = placed.body;
+glm::dvec3 face_normal(const ShapeAtPose& placed, int face) {
+    const Shape& shape = placed.shape;
     const glm::dmat3& rotation = placed.pose.rotation;
     glm::dvec3 local(0.0);
-    if (body.kind() == Kind::box)
+    if (shape.kind() == Kind::box)
         local[face / 2] = (face & 1) != 0 ? 1.0 : -1.0;
-    else if (body.kind() == Kind::hull)
-        local = body.hull()->face_normal(face);
-    else if (body.kind() == Kind::triangle)
-        return (face == 0 ? 1.0 : -1.0) * triangle_normal(rotation, {body.vertex(0), body.vertex(1), body.vertex(2)});
+    else if (shape.kind() == Kind::hull)
+        local = shape.hull()->face_normal(face);
+    else if (shape.kind() == Kind::triangle)
+        return (face == 0 ? 1.0 : -1.0) *
+               triangle_normal(rotation, {shape.vertex(0), shape.vertex(1), shape.vertex(2)});
     else
         local.y = face == 0 ? -1.0 : 1.0;
     return local == glm::dvec3(0.0) ? local : turned_normal(rotation, local);
@@ -78,9 +79,9 @@ double depth_of(const UnionNormals::Contact& contact) {
 
 }  // namespace
 
-double flush_tolerance(const BodyAtPose& a, const BodyAtPose& b) {
+double flush_tolerance(const ShapeAtPose& a, const ShapeAtPose& b) {
     const glm::dvec3 place = glm::abs(a.pose.translation);
-    const double size = reach_of(a.body) + reach_of(b.body) + glm::distance(a.pose.translation, b.pose.translation);
+    const double size = reach_of(a.shape) + reach_of(b.shape) + glm::distance(a.pose.translation, b.pose.translation);
     return kFlush * size + 0x1p-50 * (place.x + place.y + place.z);
 }
 
@@ -124,7 +125,7 @@ void UnionNormals::start(double margin) {
 
 std::uint32_t UnionNormals::add_part(int list, const Part& part) {
     parts_[list].push_back(part);
-    to_local_[list].push_back(is_sharp_box(part.body) ? glm::inverse(part.pose.rotation) : glm::dmat3(1.0));
+    to_local_[list].push_back(is_sharp_box(part.shape) ? glm::inverse(part.pose.rotation) : glm::dmat3(1.0));
     return static_cast<std::uint32_t>(parts_[list].size() - 1);
 }
 
@@ -140,60 +141,60 @@ void UnionNormals::add_contact(std::uint32_t first, std::uint32_t second, const 
 }
 
 UnionNormals::Neighbor UnionNormals::neighbor_of(int list, std::uint32_t own, std::uint32_t other) const {
-    const BodyAtPose body = placed(list, other);
-    const double tolerance = flush_tolerance(placed(list, own), body);
-    return {body, tolerance, reach_of(body.body) + tolerance, to_local_[list][other]};
+    const ShapeAtPose shape = placed(list, other);
+    const double tolerance = flush_tolerance(placed(list, own), shape);
+    return {shape, tolerance, reach_of(shape.shape) + tolerance, to_local_[list][other]};
 }
 
 bool UnionNormals::Neighbor::is_near(const glm::dvec3& point, double radius) const {
-    const glm::dvec3 offset = point - body.pose.translation;
+    const glm::dvec3 offset = point - shape.pose.translation;
     const double within = reach + radius;
     if (glm::dot(offset, offset) > within * within * (1.0 + 1e-12)) return false;
     if (!is_box()) return true;
     // Frames are rigid to 1e-6.
     const double wider = (radius + tolerance) * (1.0 + 1e-5) + 1e-5 * tolerance;
-    const glm::dvec3 p = glm::abs(to_local * offset), &half = body.body.half_extents();
+    const glm::dvec3 p = glm::abs(to_local * offset), &half = shape.shape.half_extents();
     return p.x <= half.x + wider && p.y <= half.y + wider && p.z <= half.z + wider;
 }
 
 bool UnionNormals::Neighbor::holds(const glm::dvec3& point) const {
     if (is_box()) {
-        const glm::dvec3 p = glm::abs(to_local * (point - body.pose.translation)), &half = body.body.half_extents();
+        const glm::dvec3 p = glm::abs(to_local * (point - shape.pose.translation)), &half = shape.shape.half_extents();
         return p.x <= half.x + tolerance && p.y <= half.y + tolerance && p.z <= half.z + tolerance;
     }
-    const double within = body.body.radius() + tolerance;
-    if (const Hull* hull = body.body.hull()) {
+    const double within = shape.shape.radius() + tolerance;
+    if (const Hull* hull = shape.shape.hull()) {
         // Frames are rigid to 1e-6, planes to their error.
-        const glm::dvec3 offset = point - body.pose.translation;
+        const glm::dvec3 offset = point - shape.pose.translation;
         const double slack = (1e-5 + 2.0 * hull->plane_error()) * (reach + glm::length(offset));
-        const double beyond = beyond_planes(*hull, glm::transpose(body.pose.rotation) * offset);
+        const double beyond = beyond_planes(*hull, glm::transpose(shape.pose.rotation) * offset);
         if (beyond > within + slack) return false;
         if (beyond < -slack) return true;
     }
-    static const Body kPoint = *Body::sphere(0.0);
+    static const Shape kPoint = *Shape::sphere(0.0);
     const RigidTransform at{glm::dmat3(1.0), point};
-    return !(nearest_points(Pair({kPoint, at}, body), nullptr, 0.5 * within, within).lower > within);
+    return !(nearest_points(Pair({kPoint, at}, shape), nullptr, 0.5 * within, within).lower > within);
 }
 
 // Along one of the box's axes. Frames are rigid to 1e-6.
 bool UnionNormals::Neighbor::is_beside(const Samples& polygon) const {
     glm::dvec3 low(HUGE_VAL), high(-HUGE_VAL);
     for (int i = 0; i < polygon.corners; ++i) {
-        const glm::dvec3 p = to_local * (polygon.point[i] - body.pose.translation);
+        const glm::dvec3 p = to_local * (polygon.point[i] - shape.pose.translation);
         low = glm::min(low, p);
         high = glm::max(high, p);
     }
     for (int k = 0; k < 3; ++k) {
-        const double within = body.body.half_extents()[k] + tolerance * (1.0 + 1e-5) + 1e-13 * reach;
+        const double within = shape.shape.half_extents()[k] + tolerance * (1.0 + 1e-5) + 1e-13 * reach;
         if (low[k] > within || high[k] < -within) return true;
     }
     return false;
 }
 
 bool UnionNormals::Neighbor::covers(const glm::dvec3& point, const glm::dvec3& direction) const {
-    if (glm::distance(point, body.pose.translation) > reach) return false;
-    if (is_box()) return holds(point) && rises_above(body, point, direction, tolerance);
-    return rises_above(body, point, direction, tolerance) && holds(point);
+    if (glm::distance(point, shape.pose.translation) > reach) return false;
+    if (is_box()) return holds(point) && rises_above(shape, point, direction, tolerance);
+    return rises_above(shape, point, direction, tolerance) && holds(point);
 }
 
 void UnionNormals::list_near(int list, std::uint32_t own, const glm::dvec3& middle, double radius) const {
@@ -213,12 +214,12 @@ bool UnionNormals::is_covered(const glm::dvec3& point, const glm::dvec3& directi
 // Whether a neighbour that rises above the contact's polygon comes to any point of it.
 bool UnionNormals::meets_polygon(const Neighbor& neighbor, const Samples& samples, const glm::dvec3& direction) {
     if (neighbor.is_box() && neighbor.is_beside(samples)) return false;
-    const BodyAtPose& body = neighbor.body;
-    const double within = body.body.radius() + neighbor.tolerance;
+    const ShapeAtPose& shape = neighbor.shape;
+    const double within = shape.shape.radius() + neighbor.tolerance;
     // How far its highest point rises above the lowest of the polygon's, and how far it is from all of them.
-    const Support top = core_support(body.body, Pair::local(body.pose.rotation, direction));
+    const Support top = core_support(shape.shape, Pair::local(shape.pose.rotation, direction));
     const glm::dvec3 way =
-        body.pose.rotation * top.point + (body.pose.translation - samples.middle) + body.body.radius() * direction;
+        shape.pose.rotation * top.point + (shape.pose.translation - samples.middle) + shape.shape.radius() * direction;
     double lowest = 0.0;
     for (int i = 0; i < samples.corners; ++i)
         lowest = std::min(lowest, glm::dot(direction, samples.point[i] - samples.middle));
@@ -227,13 +228,13 @@ bool UnionNormals::meets_polygon(const Neighbor& neighbor, const Samples& sample
     const RigidTransform at{glm::dmat3(1.0), samples.middle};
     for (int i = 1; i + 1 < std::max(samples.corners, 3); ++i) {
         const auto corner = [&](int k) { return samples.point[std::min(k, samples.corners - 1)] - samples.middle; };
-        const Body triangle = BodyMaker::triangle({corner(0), corner(i), corner(i + 1)});
-        const Nearest found = nearest_points(Pair({triangle, at}, body), nullptr, 0.5 * within, within);
+        const Shape triangle = ShapeMaker::triangle({corner(0), corner(i), corner(i + 1)});
+        const Nearest found = nearest_points(Pair({triangle, at}, shape), nullptr, 0.5 * within, within);
         if (found.lower > within || found.simplex.count == 0) continue;
         glm::dvec3 on_polygon = samples.middle;
         for (int k = 0; k < found.simplex.count; ++k)
             on_polygon += found.simplex.weight[k] * found.simplex.corner[k].on_a;
-        if (rises_above(body, on_polygon, direction, neighbor.tolerance)) return true;
+        if (rises_above(shape, on_polygon, direction, neighbor.tolerance)) return true;
     }
     return false;
 }
@@ -266,11 +267,11 @@ UnionNormals::State UnionNormals::state_of(const Contact& contact) const {
 
 // Whether the motion that ends one contact ends the other.
 bool UnionNormals::parts_pair(const Contact& by, const Contact& contact) const {
-    const BodyAtPose a = placed(0, contact.part[0]), b = placed(1, contact.part[1]);
+    const ShapeAtPose a = placed(0, contact.part[0]), b = placed(1, contact.part[1]);
     const Pair pair(a, b);
     double extent = 0.0;
     const Corner farthest = pair.support(by.normal, extent);
-    extent += a.body.radius() + b.body.radius();
+    extent += a.shape.radius() + b.shape.radius();
     const glm::dvec3 near = contact.points[0].position - a.pose.translation;
     const double away = glm::distance(farthest.on_a, near) + glm::distance(farthest.on_b, near);
     return extent <= by.depth + flush_tolerance(a, b) + kFlatSlope * away;
@@ -295,7 +296,7 @@ int UnionNormals::leave_out_covered(int list, std::uint32_t own, const glm::dvec
 // The points of a pair of parts along a normal, but those that neighbours cover. Returns how deep the deepest one is
 // with these.
 double UnionNormals::gather_along(const glm::dvec3& normal, Contact& contact) const {
-    const BodyAtPose a = placed(0, contact.part[0]), b = placed(1, contact.part[1]);
+    const ShapeAtPose a = placed(0, contact.part[0]), b = placed(1, contact.part[1]);
     const Pair pair(a, b);
     Touch touch;
     touch.normal = normal;
@@ -304,12 +305,12 @@ double UnionNormals::gather_along(const glm::dvec3& normal, Contact& contact) co
     patch_along(a, normal, a.pose.translation, on_a);
     patch_along(b, -normal, a.pose.translation, on_b);
     GatheredPoints points;
-    Gatherer gatherer({a.pose.translation, a.body.radius(), b.body.radius(), margin_}, touch, points);
+    Gatherer gatherer({a.pose.translation, a.shape.radius(), b.shape.radius(), margin_}, touch, points);
     Clipped clipped;
     (void)gather_patches(on_a, on_b, normal, clipped, gatherer);
     double extent = 0.0;
     const Corner deepest = pair.support(normal, extent);
-    touch.depth = extent + a.body.radius() + b.body.radius();
+    touch.depth = extent + a.shape.radius() + b.shape.radius();
     if (gatherer.lacks_deepest(1e-9 * pair.size)) {
         add_support(on_a, normal, deepest.on_b, deepest.b, true, gatherer);
         add_support(on_b, -normal, deepest.on_a, deepest.a, false, gatherer);
@@ -352,7 +353,7 @@ void UnionNormals::replace_by_free() {
 // Along the free face of either part that is least deep, if that is not deep within them: there no way out is plain.
 bool UnionNormals::find_own_face(const Contact& contact, Contact& found) const {
     found.count = 0;
-    const BodyAtPose placed_parts[2] = {placed(0, contact.part[0]), placed(1, contact.part[1])};
+    const ShapeAtPose placed_parts[2] = {placed(0, contact.part[0]), placed(1, contact.part[1])};
     const Pair pair(placed_parts[0], placed_parts[1]);
     const double rounding = pair.a.radius() + pair.b.radius();
     double least = kShallow * std::min(reach_of(pair.a), reach_of(pair.b));
@@ -360,7 +361,7 @@ bool UnionNormals::find_own_face(const Contact& contact, Contact& found) const {
     tried.part[0] = contact.part[0];
     tried.part[1] = contact.part[1];
     for (int list = 0; list < 2; ++list)
-        for (int face = 0; face < face_count(placed_parts[list].body); ++face) {
+        for (int face = 0; face < face_count(placed_parts[list].shape); ++face) {
             const glm::dvec3 outward = face_normal(placed_parts[list], face);
             if (outward == glm::dvec3(0.0)) continue;
             const glm::dvec3 normal = list == 0 ? outward : -outward;
@@ -391,7 +392,7 @@ bool UnionNormals::push_least_deep() {
     return true;
 }
 
-// Whether a contact's points are where the body has sunk in through the part of another, below a thin one or beside a
+// Whether a contact's points are where the shape has sunk in through the part of another, below a thin one or beside a
 // sheet: they are out once that contact has pushed.
 bool UnionNormals::is_behind(const Contact& contact, const Contact& other) const {
     // One of the two parts is another.
@@ -400,12 +401,12 @@ bool UnionNormals::is_behind(const Contact& contact, const Contact& other) const
     if (!parts_pair(other, contact) || parts_pair(contact, other)) return false;
     const int list = first_differs ? 0 : 1;
     const Samples samples(contact, list);
-    const BodyAtPose body = placed(list, other.part[list]);
-    const double within = body.body.radius() + flush_tolerance(placed(list, contact.part[list]), body);
+    const ShapeAtPose shape = placed(list, other.part[list]);
+    const double within = shape.shape.radius() + flush_tolerance(placed(list, contact.part[list]), shape);
     const glm::dvec3 way = (list == 0 ? other.depth : -other.depth) * other.normal;
     const RigidTransform at{glm::dmat3(1.0), samples.middle};
-    const Body swept = BodyMaker::triangle({glm::dvec3(0.0), way, way});
-    return nearest_points(Pair({swept, at}, body), nullptr, 0.5 * within, within).lower <= within;
+    const Shape swept = ShapeMaker::triangle({glm::dvec3(0.0), way, way});
+    return nearest_points(Pair({swept, at}, shape), nullptr, 0.5 * within, within).lower <= within;
 }
 
 void UnionNormals::replace_behind() {
@@ -417,10 +418,10 @@ void UnionNormals::replace_behind() {
         }
 }
 
-// A contact's deepest point seen along another normal, up at the face of the first part across it. Beside a round body
+// A contact's deepest point seen along another normal, up at the face of the first part across it. Beside a round shape
 // the overlap there is as deep as its surface is flat.
 void UnionNormals::keep_deepest(const Contact& from, Contact& contact) const {
-    const BodyAtPose a = placed(0, contact.part[0]), b = placed(1, contact.part[1]);
+    const ShapeAtPose a = placed(0, contact.part[0]), b = placed(1, contact.part[1]);
     const Pair pair(a, b);
     const glm::dvec3 normal = contact.normal;
     const ContactPoint* deepest = from.points;
@@ -428,7 +429,7 @@ void UnionNormals::keep_deepest(const Contact& from, Contact& contact) const {
         if (from.points[i].depth > deepest->depth) deepest = from.points + i;
     const glm::dvec3 on_a = deepest->position + 0.5 * deepest->depth * from.normal;
     const double turn = glm::dot(from.normal, normal), extent = pair.extent(normal) + pair.a.radius() + pair.b.radius();
-    const double top = core_support(a.body, Pair::local(a.pose.rotation, normal)).along + a.body.radius();
+    const double top = core_support(a.shape, Pair::local(a.pose.rotation, normal)).along + a.shape.radius();
     const double lift = std::max(0.0, top - glm::dot(on_a - a.pose.translation, normal));
     ContactPoint& point = contact.points[0];
     point = *deepest;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Contacts of bodies of convex parts that lie flush or overlap: with the normals of the union.
+// Contacts of shapes of convex parts that lie flush or overlap: with the normals of the union.
 #pragma once
 #include <crofton/convex/query.hpp>
 
@@ -7,8 +7,8 @@
 
 namespace crofton::convex {
 
-// Faces of two bodies count as flush that are within this of each other: rounding of their sizes to float.
-[[nodiscard]] double flush_tolerance(const BodyAtPose& a, const BodyAtPose& b);
+// Faces of two shapes count as flush that are within this of each other: rounding of their sizes to float.
+[[nodiscard]] double flush_tolerance(const ShapeAtPose& a, const ShapeAtPose& b);
 
 // Two lists of convex parts, and where parts of the first touch parts of the second. The least deep way out of one part
 // may lead into its neighbour. So a contact whose points the neighbours cover is none of the union's: its pair of parts
@@ -44,21 +44,21 @@ class UnionNormals {
   private:
     enum class State : std::uint8_t { free, partly_covered, covered, replaced };
     struct Samples;
-    [[nodiscard]] BodyAtPose placed(int list, std::uint32_t number) const {
-        return {parts_[list][number].body, parts_[list][number].pose};
+    [[nodiscard]] ShapeAtPose placed(int list, std::uint32_t number) const {
+        return {parts_[list][number].shape, parts_[list][number].pose};
     }
     [[nodiscard]] State state_of(const Contact& contact) const;
     [[nodiscard]] State state_on(int list, const Contact& contact) const;
-    [[nodiscard]] static bool is_sharp_box(const Body& body) {
-        return body.kind() == Kind::box && body.radius() == 0.0;
+    [[nodiscard]] static bool is_sharp_box(const Shape& shape) {
+        return shape.kind() == Kind::box && shape.radius() == 0.0;
     }
     // A part beside another of its list.
     struct Neighbor {
-        BodyAtPose body;
+        ShapeAtPose shape;
         double tolerance;            // within which the two count as flush
         double reach;                // of the neighbor, wider by that
         const glm::dmat3& to_local;  // of a box without rounding
-        [[nodiscard]] bool is_box() const { return is_sharp_box(body.body); }
+        [[nodiscard]] bool is_box() const { return is_sharp_box(shape.shape); }
         // Whether it may hold a point that is no farther than `radius` from `point`.
         [[nodiscard]] bool is_near(const glm::dvec3& point, double radius) const;
         [[nodiscard]] bool holds(const glm::dvec3& point) const;

@@ -16,8 +16,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 using DT = hn::CappedTag<float, kMeshLeafWidth>;
 using VT = hn::Vec<DT>;
 
-// Where on its way the body may overlap something, along all axes so far. Along an axis of any length, on which the two
-// are `low` to `high` apart at 0, grown by the body's extent and all errors, it is where low <= s · speed <= high.
+// Where on its way the shape may overlap something, along all axes so far. Along an axis of any length, on which the
+// two are `low` to `high` apart at 0, grown by the shape's extent and all errors, it is where low <= s · speed <= high.
 template <class Tag>
 struct Stretch {
     using Vec = hn::Vec<Tag>;
@@ -34,7 +34,7 @@ struct Stretch {
 // Ways between nearest points that are tried, each from where the one before leads.
 constexpr int kRounds = 2;
 
-// A speed so small changes nothing within the body's errors.
+// A speed so small changes nothing within the shape's errors.
 template <class Tag, class Vec>
 HWY_INLINE Vec per_speed_of(Tag d, Vec speed, Vec least) {
     return hn::Div(hn::Set(d, 1.0f), hn::IfThenElse(hn::Lt(hn::Abs(speed), least), least, speed));
@@ -83,9 +83,9 @@ class Sweep {
     }
 
     // The same of a leaf's triangles: along the normals of both, the edges of one across those of the other, and of a
-    // rounded body the normals of the triangle's edges in its plane. Points are taken in the box's frame. Any direction
-    // parts what it parts, so that an axis may be rounded as it will: its products with the three corners are off by
-    // less than 2^-20 of the corners' distance from the box and of its own length, which `error` holds.
+    // rounded shape the normals of the triangle's edges in its plane. Points are taken in the box's frame. Any
+    // direction parts what it parts, so that an axis may be rounded as it will: its products with the three corners are
+    // off by less than 2^-20 of the corners' distance from the box and of its own length, which `error` holds.
     HWY_INLINE std::uint32_t triangles_met(const MeshLeaf& leaf, float limit, float* entry) const {
         const DT d;
         std::uint32_t lanes = 0;

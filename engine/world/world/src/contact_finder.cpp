@@ -62,7 +62,7 @@ ContactFinder::ContactFinder(const WorldOptions& options)
     : options_(options), broadphase_({.exact_boxes = true, .max_pairs = options.max_pairs}) {}
 
 void ContactFinder::note_colliders(const ObjectTable& table, SpatialIndex& index, const scene::Scene& scene,
-                                   const ObjectBodies& bodies_of, const PairChanges& changes) {
+                                   const ObjectShapes& shapes_of, const PairChanges& changes) {
     resize(filters_, index.size());
     if (has_own_boxes_) resize(boxes_, index.size(), no_box());
     moved_.clear();
@@ -72,12 +72,12 @@ void ContactFinder::note_colliders(const ObjectTable& table, SpatialIndex& index
         const Object& object = table.objects[item];
         filters_[item] = {index.layers(item), object.collides_with};
         const bool collides = object.alive && object.collides_with != 0 && index.is_placed(item) &&
-                              !bodies_of.is_unbounded(item) && filters_[item].layers != 0;
+                              !shapes_of.is_unbounded(item) && filters_[item].layers != 0;
         if (!collides) {
             note_box(item, nullptr, index);
             continue;
         }
-        const Obb box = bodies_of.collider_box(item, object, index.box(item), scene, options_.contact_margin / 2.0);
+        const Obb box = shapes_of.collider_box(item, object, index.box(item), scene, options_.contact_margin / 2.0);
         note_box(item, &box, index);
     }
 }
@@ -174,17 +174,17 @@ void ContactFinder::touch_sphere(const PosedTree& mesh, const PosedTree& center,
 }
 
 void ContactFinder::find_contacts(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene,
-                                  Bodies& bodies, const ObjectBodies& bodies_of, Executor& executor) {
-    const auto have_bodies = [&](const IdPair& pair) {
-        return bodies_of.has(pair.first) && bodies_of.has(pair.second);
+                                  Shapes& shapes, const ObjectShapes& shapes_of, Executor& executor) {
+    const auto have_shapes = [&](const IdPair& pair) {
+        return shapes_of.has(pair.first) && shapes_of.has(pair.second);
     };
-    const auto is_mesh = [&](std::uint32_t object) { return bodies.mesh_tree_of(table.objects[object]) != nullptr; };
-    bodies.begin();
+    const auto is_mesh = [&](std::uint32_t object) { return shapes.mesh_tree_of(table.objects[object]) != nullptr; };
+    shapes.begin();
     for (const IdPair& pair : touched_) {
-        if ((!is_mesh(pair.first) && !is_mesh(pair.second)) || have_bodies(pair)) continue;
-        for (const std::uint32_t object : {pair.first, pair.second}) bodies.prepare(table, index, scene, object);
+        if ((!is_mesh(pair.first) && !is_mesh(pair.second)) || have_shapes(pair)) continue;
+        for (const std::uint32_t object : {pair.first, pair.second}) shapes.prepare(table, index, scene, object);
     }
-    bodies.build(scene, executor);
+    shapes.build(scene, executor);
     workers_.resize(std::max<std::size_t>(workers_.size(), executor.concurrency()));
     for (Worker& worker : workers_) {
         worker.points.clear();
@@ -200,14 +200,14 @@ void ContactFinder::find_contacts(const ObjectTable& table, const SpatialIndex& 
             touch.worker = w;
             touch.first_point = static_cast<std::uint32_t>(worker.points.size());
             touch.first_triangle = static_cast<std::uint32_t>(worker.triangles.size());
-            if (have_bodies(pair)) continue;
+            if (have_shapes(pair)) continue;
             if (!is_mesh(pair.first) && !is_mesh(pair.second)) {
                 touch_bounds(table, index, pair, worker, touch);
                 continue;
             }
             const std::uint32_t first = pair.first, second = pair.second;
-            const PosedTree a = bodies.posed_tree(table, index, scene, first),
-                            b = bodies.posed_tree(table, index, scene, second);
+            const PosedTree a = shapes.posed_tree(table, index, scene, first),
+                            b = shapes.posed_tree(table, index, scene, second);
             if (!a.tree || !b.tree) continue;
             if (table.objects[second].kind == BoundKind::sphere) {
                 touch_sphere(a, b, table.objects[second].radius, worker, touch);
@@ -234,7 +234,7 @@ void ContactFinder::touch_bounds(const Object& a, const Obb& box_a, const Object
     touch.points.assign(manifold.points, manifold.points + manifold.count);
 }
 
-void ContactFinder::touch_bound(const PosedTree& mesh, const Object& bound, const Obb& box, const Bodies& bodies,
+void ContactFinder::touch_bound(const PosedTree& mesh, const Object& bound, const Obb& box, const Shapes& shapes,
                                 const scene::Scene& scene, BoundTouch& touch) {
     Touch found;
     bound_worker_.points.clear();
@@ -242,7 +242,7 @@ void ContactFinder::touch_bound(const PosedTree& mesh, const Object& bound, cons
     mesh::MeshTree tree;
     if (bound.kind == BoundKind::sphere) {
         touch_sphere(mesh, {nullptr, {glm::dmat3(1.0), box.center}}, bound.radius, bound_worker_, found);
-    } else if (const PosedTree of_box = bodies.posed_box(box, scene, tree); of_box.tree != nullptr) {
+    } else if (const PosedTree of_box = shapes.posed_box(box, scene, tree); of_box.tree != nullptr) {
         touch_triangles(mesh, of_box, bound_worker_, found);
     }
     touch.hit = found.hit;
@@ -347,15 +347,15 @@ void ContactFinder::replace_contacts(const ObjectTable& table, std::span<const I
 }
 
 Result<void> ContactFinder::update(const ObjectTable& table, SpatialIndex& index, const scene::Scene& scene,
-                                   Bodies& bodies, const ObjectBodies& bodies_of, const PairChanges& changes,
+                                   Shapes& shapes, const ObjectShapes& shapes_of, const PairChanges& changes,
                                    Executor& executor) {
-    note_colliders(table, index, scene, bodies_of, changes);
+    note_colliders(table, index, scene, shapes_of, changes);
     const auto meet = [&](std::uint32_t a, std::uint32_t b) {
-        const bool body_a = bodies_of.has(a), body_b = bodies_of.has(b);
-        // Two bodies are asked as far as the contact margin, beyond boxes and spheres.
-        if (options_.contact_margin > 0.0 && body_a && body_b) return true;
+        const bool shape_a = shapes_of.has(a), shape_b = shapes_of.has(b);
+        // Two shapes are asked as far as the contact margin, beyond boxes and spheres.
+        if (options_.contact_margin > 0.0 && shape_a && shape_b) return true;
         const Obb &box_a = index.box(a), &box_b = index.box(b);
-        if (options_.contact_margin > 0.0 && (body_a || body_b) && !collide::intersects(box_a, box_b)) return false;
+        if (options_.contact_margin > 0.0 && (shape_a || shape_b) && !collide::intersects(box_a, box_b)) return false;
         return bounds_meet(table.objects[a], box_a, table.objects[b], box_b);
     };
     const std::span<const Obb> boxes = has_own_boxes_ ? std::span<const Obb>(boxes_) : index.kept_boxes();
@@ -364,7 +364,7 @@ Result<void> ContactFinder::update(const ObjectTable& table, SpatialIndex& index
     if (!options_.contacts) return found;
     const auto touched = changes.all_contacts ? broadphase_.pairs() : broadphase_.tested();
     touched_.assign(touched.begin(), touched.end());
-    find_contacts(table, index, scene, bodies, bodies_of, executor);
+    find_contacts(table, index, scene, shapes, shapes_of, executor);
     replace_contacts(table, broadphase_.ended());
     return found;
 }

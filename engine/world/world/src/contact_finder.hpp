@@ -6,10 +6,10 @@
 #include <crofton/world/world.hpp>
 
 #include "block_pool.hpp"
-#include "bodies.hpp"
-#include "object_bodies.hpp"
+#include "object_shapes.hpp"
 #include "object_table.hpp"
 #include "pair_order.hpp"
+#include "shapes.hpp"
 #include "spatial_index.hpp"
 
 namespace crofton::world {
@@ -46,7 +46,7 @@ struct BoundTouch {
 
 // What may change pairs and contacts beside the items that the spatial index tells of. Since the update before.
 struct PairChanges {
-    Vector<std::uint32_t> objects;  // whose kind, radius, mesh, body, user data or layers to collide with have changed
+    Vector<std::uint32_t> objects;  // whose kind, radius, mesh, shape, user data or layers to collide with have changed
     bool renamed = false;           // some have other user data
     bool all_contacts = false;      // triangles of meshes have changed
     bool after_error = false;       // the update before found too many pairs
@@ -63,10 +63,10 @@ class ContactFinder {
     explicit ContactFinder(const WorldOptions& options);
 
     // After the updates of these. Looks at the index's moved_items() and member_items() and at what `changes` tells of;
-    // other pairs and contacts stay as they are. Pairs of two bodies are left to `bodies_of`. Error: as
+    // other pairs and contacts stay as they are. Pairs of two shapes are left to `shapes_of`. Error: as
     // Broadphase::update.
-    Result<void> update(const ObjectTable& table, SpatialIndex& index, const scene::Scene& scene, Bodies& bodies,
-                        const ObjectBodies& bodies_of, const PairChanges& changes, Executor& executor);
+    Result<void> update(const ObjectTable& table, SpatialIndex& index, const scene::Scene& scene, Shapes& shapes,
+                        const ObjectShapes& shapes_of, const PairChanges& changes, Executor& executor);
     // Nothing has changed since the update before.
     void stay();
     // After an update: gives back what looking at many pairs has taken. touched() is empty then.
@@ -85,7 +85,7 @@ class ContactFinder {
     // Whether two bounds meet whose boxes do; then how they touch. Of a bound against an object's triangles as well.
     [[nodiscard]] static bool meet(const Object& a, const Obb& box_a, const Object& b, const Obb& box_b);
     void touch_bounds(const Object& a, const Obb& box_a, const Object& b, const Obb& box_b, BoundTouch& touch) const;
-    void touch_bound(const PosedTree& mesh, const Object& bound, const Obb& box, const Bodies& bodies,
+    void touch_bound(const PosedTree& mesh, const Object& bound, const Obb& box, const Shapes& shapes,
                      const scene::Scene& scene, BoundTouch& touch);
 
     [[nodiscard]] const collide::BroadphaseStatistics& broadphase() const { return broadphase_.statistics(); }
@@ -105,11 +105,11 @@ class ContactFinder {
     };
 
     void note_colliders(const ObjectTable& table, SpatialIndex& index, const scene::Scene& scene,
-                        const ObjectBodies& bodies_of, const PairChanges& changes);
+                        const ObjectShapes& shapes_of, const PairChanges& changes);
     void note_box(ItemId item, const Obb* box, SpatialIndex& index);
     void note_pairs(const ObjectTable& table, const PairChanges& changes);
-    void find_contacts(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene, Bodies& bodies,
-                       const ObjectBodies& bodies_of, Executor& executor);
+    void find_contacts(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene, Shapes& shapes,
+                       const ObjectShapes& shapes_of, Executor& executor);
     void touch_bounds(const ObjectTable& table, const SpatialIndex& index, const IdPair& pair, Worker& worker,
                       Touch& touch) const;
     void touch_triangles(const PosedTree& a, const PosedTree& b, Worker& worker, Touch& touch) const;
@@ -124,7 +124,7 @@ class ContactFinder {
 
     WorldOptions options_;
     collide::Broadphase broadphase_;  // its items are the objects; those that are no colliders have no valid box
-    // The broadphase's boxes, once one is not the index's: that of an object that collides with nothing, or whose body
+    // The broadphase's boxes, once one is not the index's: that of an object that collides with nothing, or whose shape
     // needs a wider box. Until then the broadphase reads SpatialIndex::kept_boxes(), which saves the memory.
     Vector<Obb> boxes_;
     bool has_own_boxes_ = false;

@@ -60,7 +60,7 @@ Result<MeshHandle> World::add_mesh(const MeshDescription& description) {
         return tl::unexpected(clusters.error());
     }
     s.mesh_clusters.set(*mesh, std::move(*clusters), s.scene.mesh_revision(*mesh));
-    s.bodies.set_mesh(*mesh, description.triangles);
+    s.shapes.set_mesh(*mesh, description.triangles);
     s.meshes.add(*mesh);
     return MeshHandle{*mesh, s.meshes.generations[*mesh]};
 }
@@ -79,7 +79,7 @@ Result<void> World::replace_mesh(MeshHandle mesh, const MeshDescription& descrip
     auto replaced = state_->scene.replace_mesh(mesh.index, std::move(replacement));
     if (!replaced) return replaced;
     state_->mesh_clusters.set(mesh.index, std::move(*clusters), state_->scene.mesh_revision(mesh.index));
-    state_->bodies.set_mesh(mesh.index, description.triangles);
+    state_->shapes.set_mesh(mesh.index, description.triangles);
     return state_->occluders.set(mesh.index, found.occluders);
 }
 
@@ -90,7 +90,7 @@ Result<void> World::set_vertices(MeshHandle mesh, PointsView positions) {
     for (std::size_t i = 0; i < positions.size(); ++i) s.vertices[i] = positions[i];
     auto set = s.scene.set_vertices(mesh.index, s.vertices);
     if (!set) return set;
-    s.bodies.note_deformed(mesh.index);
+    s.shapes.note_deformed(mesh.index);
     s.occluders.clear(mesh.index);
     return set;
 }
@@ -134,15 +134,15 @@ Result<void> World::State::set_transform(NodeHandle node, const Transform& trans
 
 // The scene checks the transform; an error names the caller's item.
 Result<void> World::State::set_local(scene::NodeId node, const Transform& transform, std::uint64_t item) {
-    const Transform before = mesh_bodies > 0 ? scene.local(node) : Transform();
+    const Transform before = mesh_shapes > 0 ? scene.local(node) : Transform();
     auto set = scene.set_local(node, transform);
     if (!set) {
         set.error().item = item;
         return set;
     }
     // What scales alike before and after leaves all shapes below as they are.
-    if (mesh_bodies == 0 || (world::is_similarity(before.linear) && world::is_similarity(transform.linear))) return set;
-    auto scales = check_bodies_below(node, item);
+    if (mesh_shapes == 0 || (world::is_similarity(before.linear) && world::is_similarity(transform.linear))) return set;
+    auto scales = check_shapes_below(node, item);
     if (!scales) world::require_ok(scene.set_local(node, before));
     return scales;
 }
@@ -154,15 +154,15 @@ Transform World::State::world_to_be(scene::NodeId node) const {
     return world;
 }
 
-Result<void> World::State::check_bodies_below(scene::NodeId node, std::uint64_t item) const {
+Result<void> World::State::check_shapes_below(scene::NodeId node, std::uint64_t item) const {
     Result<void> first;
     scene.visit_subtree(
         node, [](scene::NodeId) {},
         [&](scene::InstanceId instance) {
             const std::uint32_t object = object_of_instance[instance];
-            if (!first || !object_bodies.has(object)) return;
+            if (!first || !object_shapes.has(object)) return;
             const glm::dmat3 linear = world_to_be(scene.node_of(instance)).linear;
-            first = world::ObjectBodies::check(object_bodies.own_body(object), linear, item);
+            first = world::ObjectShapes::check(object_shapes.own_shape(object), linear, item);
         });
     return first;
 }
@@ -185,8 +185,8 @@ Result<void> World::set_transforms(Strided<NodeHandle> nodes, Strided<Transform>
             ids[count] = nodes[begin + count].index;
             ++count;
         }
-        // All of them, or, where one is bad, none: then one by one. So are those that bodies may hang on.
-        if (side_by_side && s.mesh_bodies == 0 && begin + count == end &&
+        // All of them, or, where one is bad, none: then one by one. So are those that shapes may hang on.
+        if (side_by_side && s.mesh_shapes == 0 && begin + count == end &&
             s.scene.set_local({ids, count}, {&transforms[begin], count}))
             continue;
         for (std::size_t i = begin; i < end; ++i) {
@@ -204,8 +204,8 @@ Result<void> World::set_parent(NodeHandle node, NodeHandle parent) {
     State& s = *state_;
     const scene::NodeId before = s.scene.parent_of(node.index);
     auto set = s.scene.set_parent(node.index, parent.index);
-    if (!set || s.mesh_bodies == 0) return set;
-    auto scales = s.check_bodies_below(node.index, node.index);
+    if (!set || s.mesh_shapes == 0) return set;
+    auto scales = s.check_shapes_below(node.index, node.index);
     if (!scales) world::require_ok(s.scene.set_parent(node.index, before));
     return scales;
 }

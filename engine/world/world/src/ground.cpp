@@ -20,28 +20,28 @@ double height_of(const Plane& plane, const glm::dvec3& point) {
     return glm::dot(plane.normal, point) + plane.offset;
 }
 
-Aabb bounds_of(const convex::Body& body, const RigidTransform& pose) {
-    const glm::dvec3 half = body.bounds().half_extents();
+Aabb bounds_of(const convex::Shape& shape, const RigidTransform& pose) {
+    const glm::dvec3 half = shape.bounds().half_extents();
     glm::dvec3 size(0.0);
     for (int k = 0; k < 3; ++k) size += half[k] * glm::abs(pose.rotation[k]);
-    const glm::dvec3 center = pose.rotation * body.bounds().center() + pose.translation;
+    const glm::dvec3 center = pose.rotation * shape.bounds().center() + pose.translation;
     size = size * (1.0 + 1e-9) + 1e-12 * glm::abs(center);
     return {center - size, center + size};
 }
 
 }  // namespace
 
-void GroundShape::add(const convex::Body& body, const RigidTransform& pose) {
-    if (body.is_bounded()) return rest.include(bounds_of(body, pose));
-    if (body.kind() == convex::Kind::half_space) {
-        const glm::dvec3 normal = glm::transpose(glm::inverse(pose.rotation)) * body.plane().normal;
+void GroundShape::add(const convex::Shape& shape, const RigidTransform& pose) {
+    if (shape.is_bounded()) return rest.include(bounds_of(shape, pose));
+    if (shape.kind() == convex::Kind::half_space) {
+        const glm::dvec3 normal = glm::transpose(glm::inverse(pose.rotation)) * shape.plane().normal;
         const double length = glm::length(normal);
         const glm::dvec3 unit = normal / length;
-        planes.push_back({unit, body.plane().offset / length - glm::dot(unit, pose.translation)});
+        planes.push_back({unit, shape.plane().offset / length - glm::dot(unit, pose.translation)});
         return;
     }
-    for (const convex::CompoundChild& child : body.compound()->children())
-        add(child.body,
+    for (const convex::CompoundChild& child : shape.compound()->children())
+        add(child.shape,
             {pose.rotation * child.pose.rotation, pose.rotation * child.pose.translation + pose.translation});
 }
 
@@ -140,49 +140,48 @@ void Ground::stay() {
 }  // namespace world
 
 world::GroundShape World::State::ground_shape(std::uint32_t id) const {
-    world::GroundShape shape;
-    if (const auto pose = object_bodies.pose_of(id, table.objects[id], index.box(id), scene))
-        shape.add(object_bodies.body(id), *pose);
-    return shape;
+    world::GroundShape own;
+    if (const auto pose = object_shapes.pose_of(id, table.objects[id], index.box(id), scene))
+        own.add(object_shapes.shape(id), *pose);
+    return own;
 }
 
 bool World::State::is_ground(std::uint32_t id, std::uint32_t layers) const {
     return table.objects[id].alive && index.is_placed(id) && (index.layers(id) & layers) != 0;
 }
 
-// The pairs of ground with all that it may meet, and contacts with what has no body.
+// The pairs of ground with all that it may meet, and contacts with what has no shape.
 void World::State::update_ground() {
     ground.start();
     const double margin = options.contact_margin;
-    for (const std::uint32_t id : object_bodies.unbounded()) {
+    for (const std::uint32_t id : object_shapes.unbounded()) {
         const world::Object& object = table.objects[id];
         if (!is_ground(id, ~0u) || object.collides_with == 0) continue;
-        const world::GroundShape shape = ground_shape(id);
+        const world::GroundShape own = ground_shape(id);
         const auto add = [&](std::uint32_t other) {
             if ((index.layers(id) & table.objects[other].collides_with) == 0 ||
                 (index.layers(other) & object.collides_with) == 0)
                 return;
             ground.add({table.ref(std::min(id, other)), table.ref(std::max(id, other))});
         };
-        for (const std::uint32_t other : object_bodies.unbounded())
+        for (const std::uint32_t other : object_shapes.unbounded())
             if (other > id && is_ground(other, ~0u)) add(other);
         const auto visit = [&](std::uint32_t other) {
-            if (shape.is_near(index.box(other), object_bodies.has(other) ? margin : 0.0)) add(other);
+            if (own.is_near(index.box(other), object_shapes.has(other) ? margin : 0.0)) add(other);
             return margin;
         };
-        for (const Plane& plane : shape.planes)
-            visit_bounded_near(world::GroundShape::around(plane), margin, ~0u, visit);
-        if (shape.rest.min.x <= shape.rest.max.x) visit_bounded_near(shape.rest, margin, ~0u, visit);
+        for (const Plane& plane : own.planes) visit_bounded_near(world::GroundShape::around(plane), margin, ~0u, visit);
+        if (own.rest.min.x <= own.rest.max.x) visit_bounded_near(own.rest, margin, ~0u, visit);
     }
     ground.merge_pairs(finder.pairs());
 }
 
-// Of a pair of which one has no body its mesh's triangles, its sphere or its box touch the ground.
+// Of a pair of which one has no shape its mesh's triangles, its sphere or its box touch the ground.
 void World::State::update_ground_contacts() {
     for (const ObjectPair& pair : ground.own_pairs()) {
         const std::uint32_t a = pair.first.object.index, b = pair.second.object.index;
-        if (object_bodies.has(a) && object_bodies.has(b)) continue;
-        const bool swapped = object_bodies.has(b);
+        if (object_shapes.has(a) && object_shapes.has(b)) continue;
+        const bool swapped = object_shapes.has(b);
         const std::uint32_t base = swapped ? b : a, other = swapped ? a : b;
         const world::QueryShape level = query_shape_of(base), thing = query_shape_of(other);
         if (!level.pose || !thing.pose) continue;

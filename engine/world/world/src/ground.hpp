@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Objects whose bodies have no bounds: what meets them, beside what the broadphase finds.
+// Objects whose shapes have no bounds: what meets them, beside what the broadphase finds.
 #pragma once
 #include <crofton/collide/narrow_phase.hpp>
 #include <crofton/convex/query.hpp>
@@ -8,19 +8,19 @@
 
 namespace crofton::world {
 
-// The half-spaces of a body in the world, with unit normals, and a box around all else.
+// The half-spaces of a shape in the world, with unit normals, and a box around all else.
 struct GroundShape {
     Vector<Plane> planes;
     Aabb rest;
 
-    void add(const convex::Body& body, const RigidTransform& pose);
+    void add(const convex::Shape& shape, const RigidTransform& pose);
     // Whether the box is within `margin`, as far as rounding tells: then yes.
     [[nodiscard]] bool is_near(const Obb& box, double margin) const;
     // Around a half-space, as far as an axis bounds it; coordinates are within 1e30.
     static Aabb around(const Plane& plane);
 };
 
-// Pairs with ground, contacts of ground with what has no body, and all of the World's with these among them.
+// Pairs with ground, contacts of ground with what has no shape, and all of the World's with these among them.
 class Ground {
   public:
     struct Touching {

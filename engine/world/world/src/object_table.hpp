@@ -91,7 +91,7 @@ struct ObjectTable {
 class MoverTable {
   public:
     // The entries of handles[begin … end), up to the first that is another thing or stale, or whose box may not cover
-    // its body. Returns how many.
+    // its shape. Returns how many.
     std::size_t list_entries(const Strided<ObjectHandle>& handles, const Strided<Obb>& boxes, std::size_t begin,
                              std::size_t end, std::uint32_t* entries) const {
         std::size_t count = 0;
@@ -105,7 +105,7 @@ class MoverTable {
         }
         return count;
     }
-    // `least_half_extents` as ObjectBodies tells them. kNoIndex: the object is no such box.
+    // `least_half_extents` as ObjectShapes tells them. kNoIndex: the object is no such box.
     void set(ObjectHandle handle, std::uint32_t entry, const glm::vec3& least_half_extents) {
         if (entry == kNoIndex) return forget(handle.index);
         if (handle.index >= keys_.size()) resize(keys_, handle.index + std::size_t{1});
@@ -130,7 +130,7 @@ class MoverTable {
         std::uint32_t generation = 0, entry = kNoIndex;
     };
     Vector<Key> keys_;         // by object, up to the last that has moved
-    Vector<glm::vec3> least_;  // by entry, up to the last with a body
+    Vector<glm::vec3> least_;  // by entry, up to the last with a shape
 };
 
 [[nodiscard]] inline Sphere sphere_of(const Object& object, const Obb& box) {

@@ -13,7 +13,7 @@ namespace crofton {
 namespace {
 
 Result<void> validate(const Bound& bound, std::uint64_t item) {
-    return world::validate(bound, item, "world: an object needs a mesh, a bound or a body");
+    return world::validate(bound, item, "world: an object needs a mesh, a bound or a shape");
 }
 
 }  // namespace
@@ -56,11 +56,11 @@ Result<scene::MeshId> World::State::mesh_of(const ObjectDescription& description
     mesh.indices = {0, 0, 0};
     const auto added = scene.add_mesh(std::move(mesh));
     if (!added) return added;
-    bodies.set_mesh(*added, false);
+    shapes.set_mesh(*added, false);
     return point = *added;
 }
 
-// The instance of an object with a mesh or a body alone, on the node that was given or on one of its own.
+// The instance of an object with a mesh or a shape alone, on the node that was given or on one of its own.
 Result<void> World::State::attach_mesh(world::Object& object, const ObjectDescription& description) {
     const auto mesh = mesh_of(description);
     if (!mesh) return tl::unexpected(mesh.error());
@@ -70,10 +70,10 @@ Result<void> World::State::attach_mesh(world::Object& object, const ObjectDescri
         node = description.node.index;
     }
     const Transform local = description.transform.value_or(Transform());
-    if (description.body != nullptr) {
+    if (description.shape != nullptr) {
         if (auto valid = crofton::validate(local, kNoItem); !valid) return valid;
         const Transform world = node == scene::kNone ? local : world_to_be(node) * local;
-        if (auto scales = world::ObjectBodies::check(*description.body, world.linear, kNoItem); !scales) return scales;
+        if (auto scales = world::ObjectShapes::check(*description.shape, world.linear, kNoItem); !scales) return scales;
     }
     if (node == scene::kNone || description.transform) {
         const auto own = scene.add_node(node, local);
@@ -94,7 +94,7 @@ Result<ObjectHandle> World::add(const ObjectDescription& description) {
     object.occludes = description.occludes;
     object.only_occludes = description.only_occludes;
     const bool has_mesh = !description.mesh.is_null(), has_bound = description.bound.kind != BoundKind::none;
-    const bool hangs = has_mesh || (!has_bound && description.body != nullptr);
+    const bool hangs = has_mesh || (!has_bound && description.shape != nullptr);
     if (has_mesh && has_bound)
         return fail(ErrorCode::invalid_argument, kNoItem, "world: an object has a mesh or a bound, not both");
     if (has_bound && (description.transform || !description.node.is_null()))
@@ -118,7 +118,7 @@ Result<ObjectHandle> World::add(const ObjectDescription& description) {
             s.object_of_instance.resize(object.instance + std::size_t{1}, kNoIndex);
         s.object_of_instance[object.instance] = *item;
     }
-    if (description.body != nullptr) world::require_ok(set_body(s.table.handle(*item), description.body));
+    if (description.shape != nullptr) world::require_ok(set_shape(s.table.handle(*item), description.shape));
     return s.table.handle(*item);
 }
 
@@ -176,11 +176,11 @@ Result<void> World::State::set_bound(ObjectHandle object, const Bound& bound, st
 bool World::State::stage_box_of_mover(std::uint32_t id, BoundKind kind, const Obb& box, double radius) {
     const world::Object& object = table.objects[id];
     if (object.kind != kind || object.radius != radius) return false;
-    if (object_bodies.has(id)) {
+    if (object_shapes.has(id)) {
         Bound bound(box);
         bound.kind = kind;
         bound.radius = radius;
-        if (object_bodies.is_grown(id) || !object_bodies.fits(id, bound)) return false;
+        if (object_shapes.is_grown(id) || !object_shapes.fits(id, bound)) return false;
     }
     if (object.staged != kNoIndex && staged[object.staged].has_bound) return false;
     return index.stage_box(id, box);
@@ -215,30 +215,30 @@ Result<void> World::set_mesh(ObjectHandle object, MeshHandle mesh) {
     const std::uint32_t instance = s.table.objects[object.index].instance;
     if (instance == kNoIndex)
         return fail(ErrorCode::invalid_argument, object.index, "world: the object is a bound and takes no mesh");
-    if (s.is_body_alone(s.table.objects[object.index]))
+    if (s.is_shape_alone(s.table.objects[object.index]))
         return fail(ErrorCode::invalid_argument, object.index, "world: the object was added without a mesh");
     s.stage(object.index);
     return s.scene.set_instance_mesh(instance, mesh.index);
 }
 
-Result<void> World::set_body(ObjectHandle object, const convex::Body* body) {
+Result<void> World::set_shape(ObjectHandle object, const convex::Shape* shape) {
     State& s = *state_;
     if (auto known = s.check(object, object.index); !known) return known;
     const std::uint32_t id = object.index, instance = s.table.objects[id].instance;
-    if (body == nullptr && s.is_body_alone(s.table.objects[id]))
+    if (shape == nullptr && s.is_shape_alone(s.table.objects[id]))
         return fail(ErrorCode::invalid_argument, id,
-                    "world: the object has nothing besides its body: remove the object, or set another body");
-    if (body != nullptr && instance != kNoIndex) {
+                    "world: the object has nothing besides its shape: remove the object, or set another shape");
+    if (shape != nullptr && instance != kNoIndex) {
         const glm::dmat3 linear = s.world_to_be(s.scene.node_of(instance)).linear;
-        if (auto scales = world::ObjectBodies::check(*body, linear, id); !scales) return scales;
+        if (auto scales = world::ObjectShapes::check(*shape, linear, id); !scales) return scales;
     }
-    s.mesh_bodies += body != nullptr && instance != kNoIndex ? 1 : 0;
-    s.object_bodies.set(id, body);
-    s.body_contacts.note(id);
+    s.mesh_shapes += shape != nullptr && instance != kNoIndex ? 1 : 0;
+    s.object_shapes.set(id, shape);
+    s.shape_contacts.note(id);
     s.movers.forget(id);  // until the update
     s.pair_changes.objects.push_back(id);
-    if (body != nullptr && instance != kNoIndex && s.index.has_box(id))
-        (void)s.object_bodies.scale(id, s.scene.world(s.scene.node_of(instance)).linear);  // told by the next update
+    if (shape != nullptr && instance != kNoIndex && s.index.has_box(id))
+        (void)s.object_shapes.scale(id, s.scene.world(s.scene.node_of(instance)).linear);  // told by the next update
     return {};
 }
 

@@ -29,7 +29,7 @@ class PairNeighbors {
         if (object >= slot_of_.size() || slot_of_[object] == kNoIndex) return {};
         return slots_[slot_of_[object]].partners;
     }
-    // Where the body of an object that meets others stands; nothing: it meets none for now.
+    // Where the shape of an object that meets others stands; nothing: it meets none for now.
     [[nodiscard]] const std::optional<RigidTransform>& pose_of(std::uint32_t object) const {
         return slots_[slot_of_[object]].pose;
     }

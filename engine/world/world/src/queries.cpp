@@ -47,24 +47,24 @@ bool is_valid(const collide::Capsule& capsule) {
     return is_in_range(capsule.begin) && is_in_range(Sphere{capsule.end, capsule.radius});
 }
 
-bool meets_sphere(const Obb& shape, const Sphere& sphere) {
-    return collide::intersects(shape, sphere);
+bool meets_sphere(const Obb& probe, const Sphere& sphere) {
+    return collide::intersects(probe, sphere);
 }
-bool meets_sphere(const Sphere& shape, const Sphere& sphere) {
-    return glm::length(shape.center - sphere.center) <= shape.radius + sphere.radius;
+bool meets_sphere(const Sphere& probe, const Sphere& sphere) {
+    return glm::length(probe.center - sphere.center) <= probe.radius + sphere.radius;
 }
-bool meets_sphere(const collide::Capsule& shape, const Sphere& sphere) {
-    return collide::distance(shape, sphere).distance <= 0.0;
+bool meets_sphere(const collide::Capsule& probe, const Sphere& sphere) {
+    return collide::distance(probe, sphere).distance <= 0.0;
 }
 
-// From the shape to an object's bound.
-collide::Distance gap_to(const Obb& shape, const world::Object& object, const Obb& box) {
-    if (object.kind != BoundKind::sphere) return collide::distance(shape, box);
-    return collide::distance(shape, collide::Capsule{box.center, box.center, object.radius});
+// From the probe to an object's bound.
+collide::Distance gap_to(const Obb& probe, const world::Object& object, const Obb& box) {
+    if (object.kind != BoundKind::sphere) return collide::distance(probe, box);
+    return collide::distance(probe, collide::Capsule{box.center, box.center, object.radius});
 }
-collide::Distance gap_to(const collide::Capsule& shape, const world::Object& object, const Obb& box) {
-    if (object.kind == BoundKind::sphere) return collide::distance(shape, world::sphere_of(object, box));
-    collide::Distance gap = collide::distance(box, shape);
+collide::Distance gap_to(const collide::Capsule& probe, const world::Object& object, const Obb& box) {
+    if (object.kind == BoundKind::sphere) return collide::distance(probe, world::sphere_of(object, box));
+    collide::Distance gap = collide::distance(box, probe);
     std::swap(gap.on_a, gap.on_b);
     return gap;
 }
@@ -106,10 +106,10 @@ double farthest(const Aabb& a, const Aabb& b) {
 void World::State::visit_along(const Ray& ray, std::uint32_t layers, collide::RayVisitor visit) const {
     Ray rest = ray;
     const auto visit_living = [&](std::uint32_t object, double t) {
-        if (table.objects[object].alive && !object_bodies.is_unbounded(object)) rest.max_t = visit(object, t);
+        if (table.objects[object].alive && !object_shapes.is_unbounded(object)) rest.max_t = visit(object, t);
         return rest.max_t;
     };
-    for (const std::uint32_t object : object_bodies.unbounded())
+    for (const std::uint32_t object : object_shapes.unbounded())
         if (rest.max_t >= 0.0 && is_ground(object, layers)) rest.max_t = visit(object, 0.0);
     if (!(rest.max_t >= 0.0)) return;
     collide::visit_along(rest, index.tree(), visit_living, layers);
@@ -123,17 +123,17 @@ void World::State::visit_along(const Ray& ray, std::uint32_t layers, collide::Ra
     regions.visit_along(rest, layers, visit);
 }
 
-std::optional<ObjectHit> World::State::body_hit(const Ray& ray, std::uint32_t id) const {
+std::optional<ObjectHit> World::State::shape_hit(const Ray& ray, std::uint32_t id) const {
     const world::QueryShape stand = query_shape_of(id);
     if (!stand.pose) return std::nullopt;
-    const auto met = convex::raycast({stand.body, *stand.pose}, ray);
+    const auto met = convex::raycast({stand.shape, *stand.pose}, ray);
     if (!met) return std::nullopt;
     ObjectHit hit{table.handle(id), table.names.users[id], met->t, met->point};
     hit.normal = met->normal;
     hit.started_inside = met->started_inside;
     hit.child = met->part.child;
-    const convex::Body& part =
-        stand.body.compound() != nullptr ? stand.body.compound()->part(met->part.child).body : stand.body;
+    const convex::Shape& part =
+        stand.shape.compound() != nullptr ? stand.shape.compound()->part(met->part.child).shape : stand.shape;
     if (!part.is_convex()) hit.triangle = met->part.triangle;
     return hit;
 }
@@ -162,11 +162,11 @@ std::optional<ObjectHit> bound_hit(const Ray& ray, const ObjectRef& ref, const w
 std::optional<ObjectHit> World::State::shape_hit(const Ray& ray, std::uint32_t id, double box_t) const {
     if (world::is_region_index(id)) return bound_hit(ray, regions.ref(id), regions.object(id), regions.box(id), box_t);
     const world::Object& object = table.objects[id];
-    if (object_bodies.has(id)) return body_hit(ray, id);
-    if (bodies.mesh_tree_of(object) == nullptr) return bound_hit(ray, table.ref(id), object, index.box(id), box_t);
+    if (object_shapes.has(id)) return shape_hit(ray, id);
+    if (shapes.mesh_tree_of(object) == nullptr) return bound_hit(ray, table.ref(id), object, index.box(id), box_t);
     ObjectHit hit{table.handle(id), table.names.users[id], box_t};
     hit.normal = world::normal_of(ray, index.box(id), box_t);
-    if (const mesh::MeshTree* tree = bodies.mesh_tree_of(object)) {
+    if (const mesh::MeshTree* tree = shapes.mesh_tree_of(object)) {
         const Transform& world = scene.world(scene.node_of(object.instance));
         if (world::is_invertible(world.linear)) {
             const glm::dmat3 inverse = glm::inverse(world.linear);
@@ -175,7 +175,7 @@ std::optional<ObjectHit> World::State::shape_hit(const Ray& ray, std::uint32_t i
             if (!on_mesh) return std::nullopt;
             hit.t = on_mesh->t;
             hit.triangle = on_mesh->triangle;
-            hit.normal = world::normal_of(ray, bodies.triangle_of(object, on_mesh->triangle), world.linear);
+            hit.normal = world::normal_of(ray, shapes.triangle_of(object, on_mesh->triangle), world.linear);
         }
     }
     hit.point = ray.origin + hit.t * ray.direction;
@@ -224,7 +224,7 @@ void World::raycast_all(const Ray& ray, Vector<ObjectHit>& hits, std::uint32_t l
 
 void World::State::visit_near(const Aabb& bounds, double distance, std::uint32_t layers,
                               collide::NearVisitor visit) const {
-    for (const std::uint32_t object : object_bodies.unbounded())
+    for (const std::uint32_t object : object_shapes.unbounded())
         if (is_ground(object, layers)) distance = visit(object);
     const auto visit_own = [&](std::uint32_t object) { return distance = visit(object); };
     visit_bounded_near(bounds, distance, layers, visit_own);
@@ -234,7 +234,7 @@ void World::State::visit_near(const Aabb& bounds, double distance, std::uint32_t
 void World::State::visit_bounded_near(const Aabb& bounds, double distance, std::uint32_t layers,
                                       collide::NearVisitor visit) const {
     const auto visit_living = [&](std::uint32_t object) {
-        if (table.objects[object].alive && !object_bodies.is_unbounded(object)) distance = visit(object);
+        if (table.objects[object].alive && !object_shapes.is_unbounded(object)) distance = visit(object);
         return distance;
     };
     collide::visit_near(bounds, distance, index.tree(), visit_living, layers);
@@ -248,41 +248,41 @@ void World::State::visit_bounded_near(const Aabb& bounds, double distance, std::
 
 namespace {
 
-// Whether a shape overlaps an object's sphere or box.
+// Whether a probe overlaps an object's sphere or box.
 template <class Shape>
-bool meets_bound(const Shape& shape, const world::Object& object, const Obb& box) {
-    return object.kind == BoundKind::sphere ? meets_sphere(shape, world::sphere_of(object, box))
-                                            : collide::intersects(box, shape);
+bool meets_bound(const Shape& probe, const world::Object& object, const Obb& box) {
+    return object.kind == BoundKind::sphere ? meets_sphere(probe, world::sphere_of(object, box))
+                                            : collide::intersects(box, probe);
 }
 
 }  // namespace
 
 template <class Shape>
-void World::State::overlap(const Shape& shape, Vector<ObjectRef>& found, std::uint32_t layers) const {
+void World::State::overlap(const Shape& probe, Vector<ObjectRef>& found, std::uint32_t layers) const {
     found.clear();
-    if (!is_valid(shape)) return;
-    const world::QueryShape asked = world::shape_of(shape);
-    visit_near(bounds_of(shape), 0.0, layers, [&](std::uint32_t id) {
+    if (!is_valid(probe)) return;
+    const world::QueryShape asked = world::shape_of(probe);
+    visit_near(bounds_of(probe), 0.0, layers, [&](std::uint32_t id) {
         if (world::is_region_index(id)) {
-            if (meets_bound(shape, regions.object(id), regions.box(id))) found.push_back(regions.ref(id));
+            if (meets_bound(probe, regions.object(id), regions.box(id))) found.push_back(regions.ref(id));
             return 0.0;
         }
         const bool meets =
-            has_shape(id) ? overlaps(asked.placed(), id) : meets_bound(shape, table.objects[id], index.box(id));
+            has_shape(id) ? overlaps(asked.placed(), id) : meets_bound(probe, table.objects[id], index.box(id));
         if (meets) found.push_back(table.ref(id));
         return 0.0;
     });
     world::sort_by_object(found);
 }
 
-void World::overlap(const Obb& shape, Vector<ObjectRef>& found, std::uint32_t layers) const {
-    state_->overlap(shape, found, layers);
+void World::overlap(const Obb& probe, Vector<ObjectRef>& found, std::uint32_t layers) const {
+    state_->overlap(probe, found, layers);
 }
-void World::overlap(const Sphere& shape, Vector<ObjectRef>& found, std::uint32_t layers) const {
-    state_->overlap(shape, found, layers);
+void World::overlap(const Sphere& probe, Vector<ObjectRef>& found, std::uint32_t layers) const {
+    state_->overlap(probe, found, layers);
 }
-void World::overlap(const collide::Capsule& shape, Vector<ObjectRef>& found, std::uint32_t layers) const {
-    state_->overlap(shape, found, layers);
+void World::overlap(const collide::Capsule& probe, Vector<ObjectRef>& found, std::uint32_t layers) const {
+    state_->overlap(probe, found, layers);
 }
 
 // A limit that is rounded to 0 grows too; one without end is beyond all that boxes and shapes may be.
@@ -306,8 +306,8 @@ std::optional<ClosestObject> World::State::closest(const Aabb& bounds, double ma
         return rest = gap.distance;
     };
     const auto is_mesh = [&](std::uint32_t id) {
-        return !world::is_region_index(id) && bodies.mesh_tree_of(table.objects[id]) != nullptr &&
-               !object_bodies.has(id);
+        return !world::is_region_index(id) && shapes.mesh_tree_of(table.objects[id]) != nullptr &&
+               !object_shapes.has(id);
     };
     for (double limit = max_distance * 0x1p-12;; limit = std::min(std::max(8.0 * limit, kLeastGrowth), max_distance)) {
         rest = limit;
@@ -324,26 +324,26 @@ std::optional<ClosestObject> World::State::closest(const Aabb& bounds, double ma
 }
 
 template <class Shape>
-std::optional<ClosestObject> World::State::closest(const Shape& shape, double max_distance,
+std::optional<ClosestObject> World::State::closest(const Shape& probe, double max_distance,
                                                    std::uint32_t layers) const {
-    if (!is_valid(shape)) return std::nullopt;
-    const world::QueryShape asked = world::shape_of(shape);
-    return closest(bounds_of(shape), max_distance, layers, [&](std::uint32_t id, double limit) {
-        if (world::is_region_index(id)) return gap_to(shape, regions.object(id), regions.box(id));
+    if (!is_valid(probe)) return std::nullopt;
+    const world::QueryShape asked = world::shape_of(probe);
+    return closest(bounds_of(probe), max_distance, layers, [&](std::uint32_t id, double limit) {
+        if (world::is_region_index(id)) return gap_to(probe, regions.object(id), regions.box(id));
         return has_shape(id) ? gap_to_shape(asked.placed(), id, limit)
-                             : gap_to(shape, table.objects[id], index.box(id));
+                             : gap_to(probe, table.objects[id], index.box(id));
     });
 }
 
-std::optional<ClosestObject> World::closest(const Sphere& shape, double max_distance, std::uint32_t layers) const {
-    return state_->closest(collide::Capsule{shape.center, shape.center, shape.radius}, max_distance, layers);
+std::optional<ClosestObject> World::closest(const Sphere& probe, double max_distance, std::uint32_t layers) const {
+    return state_->closest(collide::Capsule{probe.center, probe.center, probe.radius}, max_distance, layers);
 }
-std::optional<ClosestObject> World::closest(const Obb& shape, double max_distance, std::uint32_t layers) const {
-    return state_->closest(shape, max_distance, layers);
+std::optional<ClosestObject> World::closest(const Obb& probe, double max_distance, std::uint32_t layers) const {
+    return state_->closest(probe, max_distance, layers);
 }
-std::optional<ClosestObject> World::closest(const collide::Capsule& shape, double max_distance,
+std::optional<ClosestObject> World::closest(const collide::Capsule& probe, double max_distance,
                                             std::uint32_t layers) const {
-    return state_->closest(shape, max_distance, layers);
+    return state_->closest(probe, max_distance, layers);
 }
 
 }  // namespace crofton

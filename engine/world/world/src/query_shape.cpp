@@ -2,8 +2,8 @@
 #include "query_shape.hpp"
 
 #include <cmath>
-#include <crofton/convex/body_maker.hpp>
 #include <crofton/convex/distance_within.hpp>
+#include <crofton/convex/shape_maker.hpp>
 #include <crofton/geometry/orthonormal_frame.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <glm/geometric.hpp>
@@ -20,7 +20,7 @@ QueryShape shape_of(const Obb& box) {
     RigidTransform pose{glm::dmat3(box.axes), box.center};
     glm::dmat3& axes = pose.rotation;
     if (glm::determinant(axes) < 0.0) axes[2] = -axes[2];  // the same box
-    if (convex::validate_pose(pose)) return {convex::BodyMaker::box(glm::dvec3(box.half_extents)), pose};
+    if (convex::validate_pose(pose)) return {convex::ShapeMaker::box(glm::dvec3(box.half_extents)), pose};
     axes[0] = glm::normalize(axes[0]);
     axes[1] = glm::normalize(axes[1] - glm::dot(axes[0], axes[1]) * axes[0]);
     axes[2] = glm::cross(axes[0], axes[1]);
@@ -28,11 +28,11 @@ QueryShape shape_of(const Obb& box) {
     for (int k = 0; k < 3; ++k)
         for (int j = 0; j < 3; ++j)
             half[k] += static_cast<double>(box.half_extents[j]) * std::abs(glm::dot(axes[k], glm::dvec3(box.axes[j])));
-    return {convex::BodyMaker::box(half * (1.0 + 0x1p-22)), pose};
+    return {convex::ShapeMaker::box(half * (1.0 + 0x1p-22)), pose};
 }
 
 QueryShape shape_of(const Sphere& sphere) {
-    return {convex::BodyMaker::sphere(sphere.radius), RigidTransform{glm::dmat3(1.0), sphere.center}};
+    return {convex::ShapeMaker::sphere(sphere.radius), RigidTransform{glm::dmat3(1.0), sphere.center}};
 }
 
 QueryShape shape_of(const collide::Capsule& capsule) {
@@ -40,7 +40,7 @@ QueryShape shape_of(const collide::Capsule& capsule) {
     const double length = glm::length(way);
     if (!(length > 0.0)) return shape_of(Sphere{capsule.begin, capsule.radius});
     const glm::dvec3 y = way / length, x = unit_across(y);
-    return {convex::BodyMaker::capsule(0.5 * length, capsule.radius),
+    return {convex::ShapeMaker::capsule(0.5 * length, capsule.radius),
             RigidTransform{glm::dmat3(x, y, glm::cross(x, y)), capsule.begin + 0.5 * way}};
 }
 
@@ -53,30 +53,30 @@ QueryShape shape_of_bound(const Object& object, const Obb& box) {
 
 using PointVisitor = FunctionRef<bool(const glm::dvec3& point)>;
 
-// Calls `visit` with a point of each connected part of a body, until it returns true. Of a height field it takes one
+// Calls `visit` with a point of each connected part of a shape, until it returns true. Of a height field it takes one
 // point: islands between holes are not told apart.
-bool visit_parts(const convex::Body& body, const RigidTransform& pose, PointVisitor visit) {
-    switch (body.kind()) {
+bool visit_parts(const convex::Shape& shape, const RigidTransform& pose, PointVisitor visit) {
+    switch (shape.kind()) {
         case convex::Kind::half_space:
             return false;
         case convex::Kind::mesh:
-            for (const mesh::MeshPiece& piece : body.mesh()->pieces())
+            for (const mesh::MeshPiece& piece : shape.mesh()->pieces())
                 if (visit(transform(pose, glm::dvec3(piece.vertex)))) return true;
             return false;
         case convex::Kind::height_field: {
-            const convex::HeightField& field = *body.height_field();
+            const convex::HeightField& field = *shape.height_field();
             std::uint32_t cell = 0;
             while (field.material(cell) == convex::kHole) ++cell;
             return visit(transform(pose, field.triangle(2 * cell)[0]));
         }
         case convex::Kind::compound:
-            for (const convex::CompoundChild& child : body.compound()->children())
-                if (visit_parts(child.body,
+            for (const convex::CompoundChild& child : shape.compound()->children())
+                if (visit_parts(child.shape,
                                 {pose.rotation * child.pose.rotation, transform(pose, child.pose.translation)}, visit))
                     return true;
             return false;
         default:
-            return visit(body.vertex_count() > 0 ? transform(pose, body.vertex(0)) : pose.translation);
+            return visit(shape.vertex_count() > 0 ? transform(pose, shape.vertex(0)) : pose.translation);
     }
 }
 
@@ -87,42 +87,42 @@ world::QueryShape World::State::query_shape_of(std::uint32_t id) const {
     if (world::is_region_index(id)) return world::shape_of_bound(regions.object(id), regions.box(id));
     const world::Object& object = table.objects[id];
     const Obb& box = index.box(id);
-    if (object_bodies.has(id)) return {object_bodies.body(id), object_bodies.pose_of(id, object, box, scene)};
-    if (bodies.mesh_tree_of(object) != nullptr) {
+    if (object_shapes.has(id)) return {object_shapes.shape(id), object_shapes.pose_of(id, object, box, scene)};
+    if (shapes.mesh_tree_of(object) != nullptr) {
         const Transform& world = scene.world(scene.node_of(object.instance));
         if (world::is_clearly_rotation(world.linear))
-            return {bodies.body_of(object, nullptr), RigidTransform{world.linear, world.translation}};
-        return {bodies.body_of(object, &world.linear), RigidTransform{glm::dmat3(1.0), world.translation}};
+            return {shapes.shape_of(object, nullptr), RigidTransform{world.linear, world.translation}};
+        return {shapes.shape_of(object, &world.linear), RigidTransform{glm::dmat3(1.0), world.translation}};
     }
     return world::shape_of_bound(object, box);
 }
 
-std::optional<glm::dvec3> World::State::point_inside(const convex::BodyAtPose& shape, std::uint32_t id) const {
+std::optional<glm::dvec3> World::State::point_inside(const convex::ShapeAtPose& probe, std::uint32_t id) const {
     if (world::is_region_index(id)) return std::nullopt;
     const world::Object& object = table.objects[id];
-    const mesh::MeshTree* tree = bodies.mesh_tree_of(object);
-    if (!options.containment || tree == nullptr || object_bodies.has(id)) return std::nullopt;
+    const mesh::MeshTree* tree = shapes.mesh_tree_of(object);
+    if (!options.containment || tree == nullptr || object_shapes.has(id)) return std::nullopt;
     const Transform& world = scene.world(scene.node_of(object.instance));
     if (!world::is_invertible(world.linear)) return std::nullopt;
     const glm::dmat3 inverse = glm::inverse(world.linear);
     std::optional<glm::dvec3> inside;
-    (void)world::visit_parts(shape.body, shape.pose, [&](const glm::dvec3& at) {
+    (void)world::visit_parts(probe.shape, probe.pose, [&](const glm::dvec3& at) {
         if (mesh::contains(*tree, inverse * (at - world.translation))) inside = at;
         return inside.has_value();
     });
     return inside;
 }
 
-bool World::State::overlaps(const convex::BodyAtPose& shape, std::uint32_t id) const {
+bool World::State::overlaps(const convex::ShapeAtPose& probe, std::uint32_t id) const {
     const world::QueryShape object = query_shape_of(id);
-    return object.pose && (convex::intersects(shape, object.placed()) || point_inside(shape, id));
+    return object.pose && (convex::intersects(probe, object.placed()) || point_inside(probe, id));
 }
 
-collide::Distance World::State::gap_to_shape(const convex::BodyAtPose& shape, std::uint32_t id, double limit) const {
+collide::Distance World::State::gap_to_shape(const convex::ShapeAtPose& probe, std::uint32_t id, double limit) const {
     const world::QueryShape object = query_shape_of(id);
     if (!object.pose) return {std::numeric_limits<double>::infinity(), {}, {}};
-    if (const auto inside = point_inside(shape, id)) return {0.0, *inside, *inside};
-    const convex::Distance gap = convex::distance_within(shape, object.placed(), limit);
+    if (const auto inside = point_inside(probe, id)) return {0.0, *inside, *inside};
+    const convex::Distance gap = convex::distance_within(probe, object.placed(), limit);
     return {gap.distance, gap.on_a, gap.on_b};
 }
 

@@ -9,13 +9,13 @@
 
 namespace crofton::world {
 
-// A body and its pose. Without a pose it overlaps nothing.
+// A shape and its pose. Without a pose it overlaps nothing.
 struct QueryShape {
-    convex::Body body;
+    convex::Shape shape;
     std::optional<RigidTransform> pose;
 
     // Requires a pose.
-    [[nodiscard]] convex::BodyAtPose placed() const { return {body, *pose}; }
+    [[nodiscard]] convex::ShapeAtPose placed() const { return {shape, *pose}; }
 };
 
 // A box whose axes are off by more than poses may be is replaced by the smallest box around it along the nearest

@@ -125,7 +125,7 @@ void World::State::list_changed_near_regions() {
 
 void World::State::add_region_pairs_of(std::uint32_t id) {
     const world::Object& object = table.objects[id];
-    if (!object.alive || object.collides_with == 0 || !index.is_placed(id) || object_bodies.is_unbounded(id)) return;
+    if (!object.alive || object.collides_with == 0 || !index.is_placed(id) || object_shapes.is_unbounded(id)) return;
     const Obb& box = index.box(id);
     Vector<std::uint32_t>& met = region_pairs_met;
     met.clear();
@@ -140,11 +140,11 @@ void World::State::add_region_pairs_of(std::uint32_t id) {
     std::sort(met.begin(), met.end());
     if (met.empty()) return;
     world::PosedTree mesh;
-    if (options.contacts && bodies.mesh_tree_of(object) != nullptr) {
-        bodies.begin();
-        bodies.prepare(table, index, scene, id);
-        bodies.build(scene, serial_executor());
-        mesh = bodies.posed_tree(table, index, scene, id);
+    if (options.contacts && shapes.mesh_tree_of(object) != nullptr) {
+        shapes.begin();
+        shapes.prepare(table, index, scene, id);
+        shapes.build(scene, serial_executor());
+        mesh = shapes.posed_tree(table, index, scene, id);
     }
     for (const std::uint32_t other : met) {
         world::BoundTouch& touch = region_pairs.touch;
@@ -152,10 +152,10 @@ void World::State::add_region_pairs_of(std::uint32_t id) {
         if (options.contacts) {
             const world::Object of_region = regions.object(other);
             const Obb other_box = regions.box(other);
-            if (bodies.mesh_tree_of(object) == nullptr)
+            if (shapes.mesh_tree_of(object) == nullptr)
                 finder.touch_bounds(object, box, of_region, other_box, touch);
             else if (mesh.tree != nullptr)
-                finder.touch_bound(mesh, of_region, other_box, bodies, scene, touch);
+                finder.touch_bound(mesh, of_region, other_box, shapes, scene, touch);
         }
         region_pairs.add({table.ref(id), regions.ref(other)}, touch);
     }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// In place of contact_finder.cpp and body_contacts.cpp where CROFTON_CONTACTS is off: a World that views and casts
+// In place of contact_finder.cpp and shape_contacts.cpp where CROFTON_CONTACTS is off: a World that views and casts
 // rays, in less code. To ask it for pairs is an error.
-#include "body_contacts.hpp"
 #include "contact_finder.hpp"
 #include "region_pairs.hpp"
+#include "shape_contacts.hpp"
 #include "world_state.hpp"
 
 namespace crofton::world {
@@ -11,7 +11,7 @@ namespace crofton::world {
 ContactFinder::ContactFinder(const WorldOptions& options)
     : options_(options), broadphase_({.exact_boxes = true, .max_pairs = options.max_pairs}) {}
 
-Result<void> ContactFinder::update(const ObjectTable&, SpatialIndex&, const scene::Scene&, Bodies&, const ObjectBodies&,
+Result<void> ContactFinder::update(const ObjectTable&, SpatialIndex&, const scene::Scene&, Shapes&, const ObjectShapes&,
                                    const PairChanges&, Executor&) {
     return fail(ErrorCode::unsupported, kNoItem, "World::update: this build of the library finds no pairs");
 }
@@ -21,12 +21,12 @@ void ContactFinder::release_scratch() {}
 void RegionPairs::stay() {}
 void RegionPairs::merge(std::span<const ObjectPair>, std::span<const Contact>) {}
 
-void BodyContacts::update(const ChangedPairs&, const ObjectBodies&, const ObjectTable&, const SpatialIndex&,
-                          const scene::Scene&, double, Executor&) {}
-void BodyContacts::update_all(std::span<const ObjectPair>, const ObjectBodies&, const ObjectTable&, const SpatialIndex&,
-                              const scene::Scene&, double, Executor&) {}
-void BodyContacts::stay() {}
-void BodyContacts::release_scratch() {}
+void ShapeContacts::update(const ChangedPairs&, const ObjectShapes&, const ObjectTable&, const SpatialIndex&,
+                           const scene::Scene&, double, Executor&) {}
+void ShapeContacts::update_all(std::span<const ObjectPair>, const ObjectShapes&, const ObjectTable&,
+                               const SpatialIndex&, const scene::Scene&, double, Executor&) {}
+void ShapeContacts::stay() {}
+void ShapeContacts::release_scratch() {}
 
 }  // namespace crofton::world
 

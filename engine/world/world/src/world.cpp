@@ -39,7 +39,7 @@ std::span<const ObjectPair> World::pairs() const {
 std::span<const Contact> World::contacts() const {
     const State& s = *state_;
     return s.contact_list.get(s.region_pairs.is_used() ? s.region_pairs.contacts() : s.own_contacts(),
-                              s.body_contacts.contacts());
+                              s.shape_contacts.contacts());
 }
 
 Result<RegionHandle> World::attach(const Region& region, const glm::dvec3& origin) {
@@ -99,10 +99,10 @@ Result<Transform> World::transform_of(ObjectHandle object) const {
 void World::State::apply_changes() {
     for (const std::uint32_t object : removed) {
         index.remove(object);
-        bodies.forget(object);
-        if (object_bodies.has(object)) pair_changes.objects.push_back(object);  // ground has no box among the others
-        object_bodies.forget(object);
-        body_contacts.note(object);
+        shapes.forget(object);
+        if (object_shapes.has(object)) pair_changes.objects.push_back(object);  // ground has no box among the others
+        object_shapes.forget(object);
+        shape_contacts.note(object);
         occluders.note(object);
     }
     removed.clear();
@@ -114,7 +114,7 @@ void World::State::apply_changes() {
             object.mesh = scene.mesh_of(object.instance);
             refresh_visibility(change.object);
             pair_changes.objects.push_back(change.object);
-            body_contacts.note(change.object);
+            shape_contacts.note(change.object);
             continue;
         }
         index.set_layers(change.object, object.layers);
@@ -125,13 +125,13 @@ void World::State::apply_changes() {
     staged.clear();
 }
 
-// The bound as given or, where the object's body is larger, a box around both.
+// The bound as given or, where the object's shape is larger, a box around both.
 void World::State::update_bound(std::uint32_t id, const Bound& given) {
-    const Bound bound = object_bodies.has(id) || object_bodies.is_grown(id) ? object_bodies.cover(id, given) : given;
+    const Bound bound = object_shapes.has(id) || object_shapes.is_grown(id) ? object_shapes.cover(id, given) : given;
     world::Object& object = table.objects[id];
     if (object.kind != bound.kind || object.radius != bound.radius) {
         pair_changes.objects.push_back(id);
-        body_contacts.note(id);
+        shape_contacts.note(id);
     }
     object.kind = bound.kind;
     object.radius = bound.radius;
@@ -140,31 +140,31 @@ void World::State::update_bound(std::uint32_t id, const Bound& given) {
 }
 
 Bound World::State::bound_of(std::uint32_t id) const {
-    if (object_bodies.is_grown(id)) return object_bodies.given(id);
+    if (object_shapes.is_grown(id)) return object_shapes.given(id);
     Bound bound(index.box(id));
     bound.kind = table.objects[id].kind;
     bound.radius = table.objects[id].radius;
     return bound;
 }
 
-// After the scene's update, and the bounds that were set. Error: a transform that does not scale its object's body.
-Result<void> World::State::update_bodies() {
+// After the scene's update, and the bounds that were set. Error: a transform that does not scale its object's shape.
+Result<void> World::State::update_shapes() {
     Result<void> first;
     const auto update_mesh = [&](std::uint32_t id) {
         const scene::InstanceId instance = table.objects[id].instance;
         const Transform& world = scene.world(scene.node_of(instance));
-        if (!object_bodies.has(id)) return index.set_box_of_moved(id, scene.world_boxes()[instance]);
-        if (auto scaled = object_bodies.scale(id, world.linear); !scaled && first) first = std::move(scaled);
-        index.set_box_of_moved(id, object_bodies.cover(id, instance, scene, is_body_alone(table.objects[id])));
+        if (!object_shapes.has(id)) return index.set_box_of_moved(id, scene.world_boxes()[instance]);
+        if (auto scaled = object_shapes.scale(id, world.linear); !scaled && first) first = std::move(scaled);
+        index.set_box_of_moved(id, object_shapes.cover(id, instance, scene, is_shape_alone(table.objects[id])));
     };
-    for (const std::uint32_t id : object_bodies.fresh()) {
+    for (const std::uint32_t id : object_shapes.fresh()) {
         if (!table.objects[id].alive || !index.has_box(id)) continue;
         if (table.objects[id].instance == kNoIndex)
             update_bound(id, bound_of(id));
         else
             update_mesh(id);
     }
-    object_bodies.forget_fresh();
+    object_shapes.forget_fresh();
     for (const scene::InstanceId instance : scene.moved_instances()) {
         update_mesh(object_of_instance[instance]);
         occluders.note(object_of_instance[instance]);
@@ -183,8 +183,8 @@ void World::State::refresh_visibility(std::uint32_t id) {
 void World::State::note_movers() {
     const auto note = [&](std::uint32_t id) {
         const world::Object& object = table.objects[id];
-        const bool is_box = object.alive && object.kind == BoundKind::box && !object_bodies.is_grown(id);
-        movers.set(table.handle(id), is_box ? index.mover_entry(id) : kNoIndex, object_bodies.least_half_extents(id));
+        const bool is_box = object.alive && object.kind == BoundKind::box && !object_shapes.is_grown(id);
+        movers.set(table.handle(id), is_box ? index.mover_entry(id) : kNoIndex, object_shapes.least_half_extents(id));
     };
     for (const std::uint32_t id : index.relisted_items()) note(id);
     for (const std::uint32_t id : rebound) note(id);
@@ -203,8 +203,8 @@ Result<void> World::State::apply_scene(Executor& executor) {
         refresh_visibility(object);
         if (layers != 0) index.set_layers(object, layers);
     }
-    auto scaled = update_bodies();
-    pair_changes.all_contacts |= bodies.update(scene, executor);
+    auto scaled = update_shapes();
+    pair_changes.all_contacts |= shapes.update(scene, executor);
     mesh_clusters.update(scene);
     return scaled;
 }
@@ -214,7 +214,7 @@ void World::State::release_scratch() {
     world::release(staged, removed, rebound, pair_changes.objects);
     index.release_scratch();
     finder.release_scratch();
-    body_contacts.release_scratch();
+    shape_contacts.release_scratch();
 }
 
 Result<void> World::update(Executor& executor) {
@@ -242,24 +242,24 @@ Result<void> World::update(Executor& executor) {
     const auto start = std::chrono::steady_clock::now();
     if (s.options.pairs && changed) {
         const world::TraceZone part(trace, "update: pairs and contacts");
-        found = s.finder.update(s.table, s.index, s.scene, s.bodies, s.object_bodies, s.pair_changes, executor);
-        s.ground.set_used(!s.object_bodies.unbounded().empty());
+        found = s.finder.update(s.table, s.index, s.scene, s.shapes, s.object_shapes, s.pair_changes, executor);
+        s.ground.set_used(!s.object_shapes.unbounded().empty());
         if (s.ground.is_used()) s.update_ground();
         if (s.options.contacts) {
             if (s.ground.is_used()) s.update_ground_contacts();
             if (s.ground.is_or_was_used())
-                s.body_contacts.update_all(s.own_pairs(), s.object_bodies, s.table, s.index, s.scene,
-                                           s.options.contact_margin, executor);
+                s.shape_contacts.update_all(s.own_pairs(), s.object_shapes, s.table, s.index, s.scene,
+                                            s.options.contact_margin, executor);
             else
-                s.body_contacts.update({s.finder.touched(), s.finder.ended()}, s.object_bodies, s.table, s.index,
-                                       s.scene, s.options.contact_margin, executor);
+                s.shape_contacts.update({s.finder.touched(), s.finder.ended()}, s.object_shapes, s.table, s.index,
+                                        s.scene, s.options.contact_margin, executor);
         }
     }
     if (s.options.pairs && changed) found = s.update_region_pairs(std::move(found));
-    if (!s.options.pairs || !s.options.contacts) s.body_contacts.forget_changes();
+    if (!s.options.pairs || !s.options.contacts) s.shape_contacts.forget_changes();
     if (!changed) s.finder.stay();
     if (!changed) s.ground.stay();
-    if (!changed) s.body_contacts.stay();
+    if (!changed) s.shape_contacts.stay();
     if (!changed) s.region_pairs.stay();
     if (s.region_pairs.is_used()) s.region_pairs.merge(s.own_pairs(), s.own_contacts());
     s.contact_list.note_update(changed);
@@ -277,7 +277,7 @@ Result<void> World::update(Executor& executor) {
     s.statistics.tree_built = changes.tree_built;
     s.statistics.box_pairs_tested = changed ? s.finder.broadphase().bound_pairs : 0;
     if (changed) s.statistics.box_tests = s.finder.broadphase().boxes;
-    s.statistics.body_pairs_computed = s.options.pairs && s.options.contacts ? s.body_contacts.computed() : 0;
+    s.statistics.shape_pairs_computed = s.options.pairs && s.options.contacts ? s.shape_contacts.computed() : 0;
     s.statistics.contact_pairs_tested = changed ? s.finder.tested_count() + ground_pairs : 0;
     if (changes.tree_built) s.release_scratch();
     return found ? scaled : found;

@@ -5,17 +5,17 @@
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/world/world.hpp>
 
-#include "body_contacts.hpp"
 #include "contact_finder.hpp"
 #include "contact_list.hpp"
 #include "ground.hpp"
 #include "mesh_clusters.hpp"
-#include "object_bodies.hpp"
+#include "object_shapes.hpp"
 #include "object_table.hpp"
 #include "occluders.hpp"
 #include "query_shape.hpp"
 #include "region_pairs.hpp"
 #include "regions.hpp"
+#include "shape_contacts.hpp"
 #include "spatial_index.hpp"
 
 namespace crofton {
@@ -76,10 +76,10 @@ struct World::State {
     world::ObjectTable table;
     world::SpatialIndex index;
     world::MoverTable movers;
-    world::Bodies bodies;
+    world::Shapes shapes;
     world::ContactFinder finder;
-    world::ObjectBodies object_bodies;
-    world::BodyContacts body_contacts;
+    world::ObjectShapes object_shapes;
+    world::ShapeContacts shape_contacts;
     world::ContactList contact_list;
     world::Ground ground;
     world::Occluders occluders;
@@ -90,12 +90,12 @@ struct World::State {
     world::Regions regions;
     world::RegionPairs region_pairs;
     Vector<std::uint32_t> region_pairs_met;  // scratch
-    scene::MeshId point = scene::kNone;      // the mesh of objects that are added by their bodies alone; kNone: none is
+    scene::MeshId point = scene::kNone;      // the mesh of objects that are added by their shapes alone; kNone: none is
     Vector<std::uint32_t> object_of_instance;
     Vector<glm::vec3> vertices;  // scratch
     Vector<StagedChange> staged;
     Vector<std::uint32_t> removed, rebound;  // the second: objects that have got a bound in this update
-    std::size_t mesh_bodies = 0;             // objects with a mesh and a body, at least: removed ones may count
+    std::size_t mesh_shapes = 0;             // objects with a mesh and a shape, at least: removed ones may count
     world::PairChanges pair_changes;
 
     [[nodiscard]] Result<void> check(ObjectHandle object, std::uint64_t item) const;
@@ -106,7 +106,7 @@ struct World::State {
     [[nodiscard]] Result<void> attach_mesh(world::Object& object, const ObjectDescription& description);
     [[nodiscard]] Result<scene::MeshId> mesh_of(const ObjectDescription& description);
     // Whether the object was added with neither mesh nor bound.
-    [[nodiscard]] bool is_body_alone(const world::Object& object) const {
+    [[nodiscard]] bool is_shape_alone(const world::Object& object) const {
         return object.instance != kNoIndex && scene.mesh_of(object.instance) == point;
     }
     [[nodiscard]] Result<void> set_bound(ObjectHandle object, const Bound& bound, std::uint64_t item);
@@ -119,12 +119,12 @@ struct World::State {
     void note_movers();
     [[nodiscard]] Result<void> apply_scene(Executor& executor);
     void refresh_visibility(std::uint32_t object);
-    // Of objects with bodies, or with some until now: what stands in the index for them. `bound`: that they have got.
-    [[nodiscard]] Result<void> update_bodies();
+    // Of objects with shapes, or with some until now: what stands in the index for them. `bound`: that they have got.
+    [[nodiscard]] Result<void> update_shapes();
     void update_bound(std::uint32_t object, const Bound& bound);
     [[nodiscard]] Bound bound_of(std::uint32_t object) const;  // as given, of an object without a mesh
-    // Whether the bodies of what hangs on a node, and below it, may have their transforms. As set, not as updated.
-    [[nodiscard]] Result<void> check_bodies_below(scene::NodeId node, std::uint64_t item) const;
+    // Whether the shapes of what hangs on a node, and below it, may have their transforms. As set, not as updated.
+    [[nodiscard]] Result<void> check_shapes_below(scene::NodeId node, std::uint64_t item) const;
     [[nodiscard]] Transform world_to_be(scene::NodeId node) const;
     [[nodiscard]] world::GroundShape ground_shape(std::uint32_t object) const;
     [[nodiscard]] bool is_ground(std::uint32_t object, std::uint32_t layers) const;
@@ -153,24 +153,24 @@ struct World::State {
     void draw_and_ask(const occlude::OcclusionView& view, const OcclusionOptions& occlusion, std::uint32_t layers,
                       const cull::CullOptions& how, Executor& executor, world::OccludedView& result) const;
 
-    // Whether an object has a shape besides its sphere or box: a body, or a mesh that can be queried.
+    // Whether an object has a shape besides its sphere or box: a shape, or a mesh that can be queried.
     [[nodiscard]] bool has_shape(std::uint32_t object) const {
-        return object_bodies.has(object) || bodies.mesh_tree_of(table.objects[object]) != nullptr;
+        return object_shapes.has(object) || shapes.mesh_tree_of(table.objects[object]) != nullptr;
     }
-    // Returns an object's body, or else its mesh, sphere or box.
+    // Returns an object's shape, or else its mesh, sphere or box.
     [[nodiscard]] world::QueryShape query_shape_of(std::uint32_t object) const;
     // Answer for an object by its shape, as overlap() and closest() say. The distance is infinite beyond `limit`.
-    [[nodiscard]] bool overlaps(const convex::BodyAtPose& shape, std::uint32_t object) const;
-    [[nodiscard]] collide::Distance gap_to_shape(const convex::BodyAtPose& shape, std::uint32_t object,
+    [[nodiscard]] bool overlaps(const convex::ShapeAtPose& shape, std::uint32_t object) const;
+    [[nodiscard]] collide::Distance gap_to_shape(const convex::ShapeAtPose& shape, std::uint32_t object,
                                                  double limit) const;
     // Returns a point of the shape that lies inside an object's closed mesh, if contacts count that as touching.
-    [[nodiscard]] std::optional<glm::dvec3> point_inside(const convex::BodyAtPose& shape, std::uint32_t object) const;
+    [[nodiscard]] std::optional<glm::dvec3> point_inside(const convex::ShapeAtPose& shape, std::uint32_t object) const;
     // Returns the object of an index in an answer, the World's own or a region's.
     [[nodiscard]] ObjectRef ref_of(std::uint32_t object) const { return world::ref(table.names, object); }
 
     // How far along the ray an object's own shape is met, no farther than the ray goes; its box is met at `box_t`.
     [[nodiscard]] std::optional<ObjectHit> shape_hit(const Ray& ray, std::uint32_t object, double box_t) const;
-    [[nodiscard]] std::optional<ObjectHit> body_hit(const Ray& ray, std::uint32_t object) const;
+    [[nodiscard]] std::optional<ObjectHit> shape_hit(const Ray& ray, std::uint32_t object) const;
     // Visits objects whose boxes the ray meets; the visitor answers how far along the ray others are of interest.
     void visit_along(const Ray& ray, std::uint32_t layers, collide::RayVisitor visit) const;
     // Visits objects whose boxes are within `distance` of `bounds`, and some others.

@@ -56,7 +56,7 @@ typedef struct crofton_world_options {
      * least a 2048th of the objects and 128 while a rebuild is under way. */
     uint64_t rebuild_budget;
     uint32_t updates_to_rest; /* 16: updates without motion after which an object rests again */
-    double contact_margin;    /* 0: gaps up to this between bodies are contacts */
+    double contact_margin;    /* 0: gaps up to this between shapes are contacts */
 } crofton_world_options;
 
 /* As of the last update. */
@@ -101,11 +101,11 @@ typedef struct crofton_bound {
     double center[3], radius; /* of a sphere */
 } crofton_bound;
 
-/* Give an object a mesh or a body, placed by `transform` under `node` or in the world, or a bound. */
+/* Give an object a mesh or a shape, placed by `transform` under `node` or in the world, or a bound. */
 typedef struct crofton_object_description {
     size_t size;
     uint64_t user;                      /* returned with every answer */
-    const crofton_bound* bound;         /* or NULL, for an object with a mesh or only a body */
+    const crofton_bound* bound;         /* or NULL, for an object with a mesh or only a shape */
     const crofton_transform* transform; /* or NULL: the identity */
     uint32_t has_mesh, has_node;        /* 1: mesh, or node, is used */
     crofton_world_mesh mesh;
@@ -114,12 +114,12 @@ typedef struct crofton_object_description {
     uint32_t collides_with; /* all layers; 0: the object forms no pairs */
     uint32_t occludes;      /* 1: the object's mesh hides others; 0: it does not, for transparent objects */
     uint32_t only_occludes; /* 0; 1, with a mesh: no answer contains the object, but its occluders hide others */
-    /* Or NULL. You may destroy the body at any time: the world keeps what it needs. Queries use it at once, pairs from
+    /* Or NULL. You may destroy the shape at any time: the world keeps what it needs. Queries use it at once, pairs from
      * the next update on. From the next update on, the object's box also contains it. Half-spaces, and compounds that
-     * contain some, are infinite ground. The object's transform scales the body. CROFTON_UNSUPPORTED: the transform
-     * would turn the body into another kind, as a non-uniform scale does with a sphere; calls that move objects and
+     * contain some, are infinite ground. The object's transform scales the shape. CROFTON_UNSUPPORTED: the transform
+     * would turn the shape into another kind, as a non-uniform scale does with a sphere; calls that move objects and
      * nodes return the same error. */
-    const crofton_body* body;
+    const crofton_shape* shape;
     uint32_t hidden; /* 0; 1: no answer contains the object */
 } crofton_object_description;
 
@@ -132,7 +132,7 @@ typedef enum crofton_object_members {
     CROFTON_SET_OCCLUDES = 16, /* for an object with a mesh */
     CROFTON_SET_MESH = 32,     /* for an object that has one */
     CROFTON_SET_BOUND = 64,    /* for an object that was added with one */
-    CROFTON_SET_BODY = 128     /* NULL removes it; not for an object that was added with only a body */
+    CROFTON_SET_SHAPE = 128    /* NULL removes it; not for an object that was added with only a shape */
 } crofton_object_members;
 
 CROFTON_API crofton_world_options crofton_default_world_options(void);
@@ -176,7 +176,7 @@ CROFTON_API crofton_status crofton_world_set_node_transforms(crofton_world* worl
 CROFTON_API crofton_status crofton_world_add(crofton_world* world, const crofton_object_description* description,
                                              crofton_object* object);
 CROFTON_API crofton_status crofton_world_remove(crofton_world* world, crofton_object object);
-/* Requires objects that were added with a transform, or by a body under no node. */
+/* Requires objects that were added with a transform, or by a shape under no node. */
 CROFTON_API crofton_status crofton_world_set_transforms(crofton_world* world, const crofton_object* objects,
                                                         size_t object_stride, const crofton_transform* transforms,
                                                         size_t transform_stride, size_t count);
@@ -258,10 +258,10 @@ typedef struct crofton_object_hit {
     uint64_t user;
     double t; /* the ray's */
     double point[3];
-    uint32_t triangle;      /* of the object's mesh or its body's surface, or CROFTON_NONE */
-    uint32_t child;         /* of a compound body; else 0 */
+    uint32_t triangle;      /* of the object's mesh or its shape's surface, or CROFTON_NONE */
+    uint32_t child;         /* of a compound shape; else 0 */
     double normal[3];       /* of the surface, unit, towards the ray's origin; 0 if the ray began inside */
-    uint8_t started_inside; /* 1: the ray began in the body, box or sphere, and t is 0; else 0 */
+    uint8_t started_inside; /* 1: the ray began in the shape, box or sphere, and t is 0; else 0 */
 } crofton_object_hit;
 
 typedef struct crofton_closest_object {
@@ -283,7 +283,7 @@ typedef enum crofton_contact_phase {
 } crofton_contact_phase;
 
 /* Two objects that touch, or that have ended touching in this update. Ended contacts carry only the two object handles;
- * those of removed objects are stale. Two bodies also touch up to the contact margin. If neither object of a pair has
+ * those of removed objects are stale. Two shapes also touch up to the contact margin. If neither object of a pair has
  * moved, the pair is not computed again. */
 typedef struct crofton_object_contact {
     crofton_object_ref first, second; /* ordered as in crofton_object_pair */
@@ -291,26 +291,26 @@ typedef struct crofton_object_contact {
     uint8_t inside;                   /* a crofton_containment of first (a) and second (b) */
     double normal[3];                 /* unit, from first to second; 0 if no direction is known */
     double depth; /* of the deepest point; between meshes as a motion that separates them, if mesh_depth is set */
-    const crofton_contact_point* points; /* at most four, in the world, none for two bodies; until the next update */
+    const crofton_contact_point* points; /* at most four, in the world, none for two shapes; until the next update */
     size_t point_count;
     const crofton_mesh_contact* triangles; /* of two meshes, or of a mesh and a box; valid as long */
     size_t triangle_count;
-    crofton_tracked_point* body_points; /* of two bodies; you may write their `memory`; valid as long */
-    size_t body_point_count;
+    crofton_tracked_point* shape_points; /* of two shapes; you may write their `memory`; valid as long */
+    size_t shape_point_count;
 } crofton_object_contact;
 
-/* The first object that a moving body meets. */
-typedef struct crofton_body_hit {
+/* The first object that a moving shape meets. */
+typedef struct crofton_shape_hit {
     size_t size;
     crofton_object object; /* index CROFTON_NONE: none; `time` is then infinite */
     uint64_t user;
     double time;
-    double normal[3];  /* unit, from the body to the object */
+    double normal[3];  /* unit, from the shape to the object */
     double point[3];   /* on the object's surface */
     uint32_t triangle; /* of a surface */
     uint32_t result;   /* a crofton_cast_result; unresolved: it meets nothing before `time` */
     double distance;   /* gap at that time; negative: how deep they overlap, from the start */
-} crofton_body_hit;
+} crofton_shape_hit;
 
 /* An object's data; box and transform as of the last update. */
 typedef struct crofton_object_info {
@@ -351,7 +351,7 @@ CROFTON_API crofton_status crofton_view_result_list(const crofton_view_result* r
                                                     size_t first, crofton_object_ref* objects, uint32_t* view_masks,
                                                     size_t capacity);
 
-/* Sets hits[i] to the nearest hit of rays[i]. Tests an object's body, or if it has none, its mesh's triangles, its
+/* Sets hits[i] to the nearest hit of rays[i]. Tests an object's shape, or if it has none, its mesh's triangles, its
  * sphere or its box.
  */
 CROFTON_API crofton_status crofton_world_raycast(const crofton_world* world, const crofton_ray* rays, size_t count,
@@ -372,14 +372,14 @@ CROFTON_API crofton_status crofton_found_hits(const crofton_found* found, const 
  */
 CROFTON_API crofton_status crofton_world_raycast_all(const crofton_world* world, const crofton_ray* ray,
                                                      uint32_t layer_mask, crofton_found* found);
-/* Finds the objects that overlap the shape, in order of index: their bodies, or if they have none, their meshes'
- * triangles, their spheres or boxes. A shape inside a closed mesh overlaps it if `containment` of the world's options
+/* Finds the objects that overlap the probe, in order of index: their shapes, or if they have none, their meshes'
+ * triangles, their spheres or boxes. A probe inside a closed mesh overlaps it if `containment` of the world's options
  * is set. CROFTON_UNSUPPORTED: a half-space. */
-CROFTON_API crofton_status crofton_world_overlap(const crofton_world* world, const crofton_shape* shape,
+CROFTON_API crofton_status crofton_world_overlap(const crofton_world* world, const crofton_query_shape* probe,
                                                  uint32_t layer_mask, crofton_found* found);
-/* Fills a struct whose `size` is set: the object nearest to the shape, as above, no farther than max_distance, which
+/* Fills a struct whose `size` is set: the object nearest to the probe, as above, no farther than max_distance, which
  * may be infinite. If several are equally near, the one with the lowest index. */
-CROFTON_API crofton_status crofton_world_closest(const crofton_world* world, const crofton_shape* shape,
+CROFTON_API crofton_status crofton_world_closest(const crofton_world* world, const crofton_query_shape* probe,
                                                  double max_distance, uint32_t layer_mask,
                                                  crofton_closest_object* closest);
 
@@ -390,11 +390,11 @@ CROFTON_API crofton_status crofton_world_pairs(const crofton_world* world, const
 CROFTON_API crofton_status crofton_world_contacts(const crofton_world* world, const crofton_object_contact** contacts,
                                                   size_t* count);
 
-/* Finds the first object that a moving body meets, by the objects' shapes as for crofton_world_overlap; a body inside a
- * closed mesh meets it from inside. Fills a struct whose `size` is set. `options` or NULL. */
-CROFTON_API crofton_status crofton_world_cast(const crofton_world* world, const crofton_placed* shape,
+/* Finds the first object that a moving shape meets, by the objects' shapes as for crofton_world_overlap; a shape inside
+ * a closed mesh meets it from inside. Fills a struct whose `size` is set. `options` or NULL. */
+CROFTON_API crofton_status crofton_world_cast(const crofton_world* world, const crofton_placed* probe,
                                               const crofton_motion* motion, const crofton_cast_options* options,
-                                              uint32_t layer_mask, crofton_body_hit* hit);
+                                              uint32_t layer_mask, crofton_shape_hit* hit);
 
 /* Occluders: geometry by which a mesh's objects hide others. Guide: docs/occlude.md. */
 

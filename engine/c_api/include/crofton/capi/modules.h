@@ -150,30 +150,30 @@ CROFTON_API crofton_status crofton_boxes_manifold(const crofton_box* a, const cr
 CROFTON_API crofton_status crofton_boxes_distance(const crofton_box* a, const crofton_box* b, double* distance,
                                                   double* on_a, double* on_b);
 
-/* Bodies, convex or of convex parts: overlap, distance, depth, contacts, casts. Guide: docs/convex.md. A pose is a
+/* Shapes, convex or of convex parts: overlap, distance, depth, contacts, casts. Guide: docs/convex.md. A pose is a
  * rotation and a translation, without reflection. Smaller structs of this part, from an older version, are accepted:
  * members that they lack are 0, the default of every member. */
 
-/* A body never changes. You may destroy it at any time: a World, compound or rounded body that uses it keeps what it
+/* A shape never changes. You may destroy it at any time: a World, compound or rounded shape that uses it keeps what it
  * needs.
  */
-typedef struct crofton_body crofton_body;
-typedef struct crofton_body_contacts crofton_body_contacts; /* contacts of one pair, kept from step to step */
+typedef struct crofton_shape crofton_shape;
+typedef struct crofton_shape_contacts crofton_shape_contacts; /* contacts of one pair, kept from step to step */
 
-typedef enum crofton_body_kind {
-    CROFTON_BODY_SPHERE = 0,
-    CROFTON_BODY_CAPSULE = 1,
-    CROFTON_BODY_CYLINDER = 2,
-    CROFTON_BODY_CONE = 3,
-    CROFTON_BODY_BOX = 4,
-    CROFTON_BODY_TRIANGLE = 5,
-    CROFTON_BODY_HULL = 6,
-    CROFTON_BODY_HALF_SPACE = 7, /* up to here convex */
-    CROFTON_BODY_MESH = 8,
-    CROFTON_BODY_HEIGHT_FIELD = 9,
-    CROFTON_BODY_COMPOUND = 10,
-    CROFTON_BODY_ROUNDED = 11 /* in descriptions only */
-} crofton_body_kind;
+typedef enum crofton_shape_kind {
+    CROFTON_SHAPE_SPHERE = 0,
+    CROFTON_SHAPE_CAPSULE = 1,
+    CROFTON_SHAPE_CYLINDER = 2,
+    CROFTON_SHAPE_CONE = 3,
+    CROFTON_SHAPE_BOX = 4,
+    CROFTON_SHAPE_TRIANGLE = 5,
+    CROFTON_SHAPE_HULL = 6,
+    CROFTON_SHAPE_HALF_SPACE = 7, /* up to here convex */
+    CROFTON_SHAPE_MESH = 8,
+    CROFTON_SHAPE_HEIGHT_FIELD = 9,
+    CROFTON_SHAPE_COMPOUND = 10,
+    CROFTON_SHAPE_ROUNDED = 11 /* in descriptions only */
+} crofton_shape_kind;
 
 #define CROFTON_HOLE 255u /* as a cell's material: nothing is there */
 
@@ -186,12 +186,12 @@ typedef struct crofton_height_field {
     double spacing[2];        /* 0: 1 */
 } crofton_height_field;
 
-/* Describes a body by `kind` and the members that are named for that kind. Lengths are in [0, 1e15]. Solids of
+/* Describes a shape by `kind` and the members that are named for that kind. Lengths are in [0, 1e15]. Solids of
  * revolution have y as axis, with the origin half way up. Arrays are copied. */
-typedef struct crofton_body_description {
+typedef struct crofton_shape_description {
     size_t size;
-    uint32_t kind;         /* a crofton_body_kind */
-    float radius;          /* spheres, capsules, cylinders, cones; rounded bodies: the distance around the core */
+    uint32_t kind;         /* a crofton_shape_kind */
+    float radius;          /* spheres, capsules, cylinders, cones; rounded shapes: the distance around the core */
     float half_height;     /* capsules, without their caps; cylinders, cones */
     float half_extents[3]; /* boxes */
     float corners[9];      /* triangles: three corners, x y z each, counter-clockwise seen from the front */
@@ -204,80 +204,80 @@ typedef struct crofton_body_description {
     const crofton_height_field* height_field;
     uint32_t front_only; /* meshes, height fields; 1: contacts push to the front only, for fields up, and casts from
                             behind pass */
-    const crofton_body* core;            /* rounded: a convex body other than a half-space */
-    const crofton_body* const* children; /* compounds: children[i] is at poses[i] in the compound's frame */
+    const crofton_shape* core;            /* rounded: a convex shape other than a half-space */
+    const crofton_shape* const* children; /* compounds: children[i] is at poses[i] in the compound's frame */
     const crofton_transform* poses;
     size_t child_count;
-} crofton_body_description;
+} crofton_shape_description;
 
-typedef struct crofton_body_info {
+typedef struct crofton_shape_info {
     size_t size;
-    uint32_t kind;                     /* a crofton_body_kind */
+    uint32_t kind;                     /* a crofton_shape_kind */
     uint32_t vertex_count, face_count; /* for hulls, else 0 */
     uint32_t part_count;               /* for compounds, else 1 */
     double min[3], max[3];             /* in its frame, rounded outward; infinite for half-spaces */
     double max_overshoot;              /* how far a hull extends beyond that of its points at most */
-    /* For hulls, to draw them: vertices, x y z each, and triangles; else NULL. Valid as long as the body. */
+    /* For hulls, to draw them: vertices, x y z each, and triangles; else NULL. Valid as long as the shape. */
     const float* vertices;
     const uint16_t* indices;
     size_t index_count;
-} crofton_body_info;
+} crofton_shape_info;
 
-/* Mass properties for density 1, in the body's frame. The inertia is about the center of mass, symmetric. */
+/* Mass properties for density 1, in the shape's frame. The inertia is about the center of mass, symmetric. */
 typedef struct crofton_mass_properties {
     size_t size;
     double volume, center[3], inertia[9];
 } crofton_mass_properties;
 
-/* A body at a pose. */
+/* A shape at a pose. */
 typedef struct crofton_placed {
-    const crofton_body* body;
+    const crofton_shape* shape;
     const crofton_transform* pose;
 } crofton_placed;
 
-typedef enum crofton_shape_kind {
-    CROFTON_SHAPE_BOX = 0,
-    CROFTON_SHAPE_SPHERE = 1,
-    CROFTON_SHAPE_CAPSULE = 2,
-    CROFTON_SHAPE_BODY = 3
-} crofton_shape_kind;
+typedef enum crofton_query_shape_kind {
+    CROFTON_QUERY_SHAPE_BOX = 0,
+    CROFTON_QUERY_SHAPE_SPHERE = 1,
+    CROFTON_QUERY_SHAPE_CAPSULE = 2,
+    CROFTON_QUERY_SHAPE_SHAPE = 3
+} crofton_query_shape_kind;
 
 /* The shape of a query. */
-typedef struct crofton_shape {
-    uint32_t kind;   /* a crofton_shape_kind: says which members below are used */
+typedef struct crofton_query_shape {
+    uint32_t kind;   /* a crofton_query_shape_kind: says which members below are used */
     crofton_box box; /* for a box */
     double begin[3]; /* for a capsule; for a sphere, its center */
     double end[3];   /* for a capsule */
     double radius;   /* for a sphere or capsule */
-    crofton_placed body;
-} crofton_shape;
+    crofton_placed shape;
+} crofton_query_shape;
 
 /* Makes calls for one pair, in one order, faster from frame to frame. All 0 for a new pair. It never changes whether
- * bodies overlap. */
+ * shapes overlap. */
 typedef struct crofton_pair_cache {
     uint64_t opaque[16];
 } crofton_pair_cache;
 
-/* A convex part of a body: a child of a compound, or a triangle of a mesh or height field. */
+/* A convex part of a shape: a child of a compound, or a triangle of a mesh or height field. */
 typedef struct crofton_part {
     uint32_t child, triangle;
 } crofton_part;
 
-typedef struct crofton_body_distance {
+typedef struct crofton_shape_distance {
     size_t size;
     double distance, lower, upper;      /* proved: the true distance is in [lower, upper] */
-    double on_a[3], on_b[3], normal[3]; /* nearest points; the unit vector from a to b, 0 if the bodies overlap */
+    double on_a[3], on_b[3], normal[3]; /* nearest points; the unit vector from a to b, 0 if the shapes overlap */
     crofton_part part_a, part_b;
-} crofton_body_distance;
+} crofton_shape_distance;
 
 /* Moving b by depth * normal ends the overlap. */
-typedef struct crofton_body_penetration {
+typedef struct crofton_shape_penetration {
     size_t size;
-    double depth, lower, upper; /* as above; all 0 if the bodies do not overlap */
+    double depth, lower, upper; /* as above; all 0 if the shapes do not overlap */
     double on_a[3], on_b[3], normal[3];
     crofton_part part_a, part_b;
-    uint32_t overlapping; /* 1 or 0, as crofton_bodies_meet */
-} crofton_body_penetration;
+    uint32_t overlapping; /* 1 or 0, as crofton_shapes_meet */
+} crofton_shape_penetration;
 
 typedef enum crofton_feature_kind {
     CROFTON_FEATURE_VERTEX = 0,
@@ -305,20 +305,20 @@ typedef struct crofton_tracked_point {
 } crofton_tracked_point;
 
 /* The same as the first members of crofton_tracked_point. */
-typedef struct crofton_body_point {
+typedef struct crofton_shape_point {
     double position[3];
     double depth;
     crofton_feature on_a, on_b;
     crofton_part part_a, part_b;
-} crofton_body_point;
+} crofton_shape_point;
 
-typedef struct crofton_body_manifold {
+typedef struct crofton_shape_manifold {
     size_t size;
     double normal[3];     /* unit, from a to b */
     double depth;         /* of the deepest point */
-    uint32_t point_count; /* 0 if the bodies are farther apart than the margin */
-    crofton_body_point points[CROFTON_MAX_MANIFOLD_POINTS];
-} crofton_body_manifold;
+    uint32_t point_count; /* 0 if the shapes are farther apart than the margin */
+    crofton_shape_point points[CROFTON_MAX_MANIFOLD_POINTS];
+} crofton_shape_manifold;
 
 typedef struct crofton_manifold_options {
     size_t size;
@@ -326,7 +326,7 @@ typedef struct crofton_manifold_options {
     uint32_t max_points; /* 1 to 8; 0: 4 */
 } crofton_manifold_options;
 
-/* The body's `pivot`, in its frame, moves by velocity * t, and the body turns about it by |spin| * t radians around
+/* The shape's `pivot`, in its frame, moves by velocity * t, and the shape turns about it by |spin| * t radians around
  * `spin` (world axes). */
 typedef struct crofton_motion {
     double velocity[3], spin[3], pivot[3];
@@ -335,13 +335,13 @@ typedef struct crofton_motion {
 typedef struct crofton_cast_options {
     size_t size;
     double duration;                  /* >= 0 */
-    double tolerance;                 /* how far apart the bodies may still be at the time of a hit; 0: 1e-6 */
+    double tolerance;                 /* how far apart the shapes may still be at the time of a hit; 0: 1e-6 */
     uint32_t max_steps;               /* 0: 500 */
     uint32_t ignore_initial_overlaps; /* 1: skips what overlaps or is within the tolerance at time 0 */
 } crofton_cast_options;
 
 typedef enum crofton_cast_result {
-    CROFTON_CAST_MISS = 0, /* proved: the bodies do not touch in that time */
+    CROFTON_CAST_MISS = 0, /* proved: the shapes do not touch in that time */
     CROFTON_CAST_HIT = 1,  /* at `time` they are within the tolerance and about to touch; they do not touch earlier */
     CROFTON_CAST_UNRESOLVED = 2 /* max_steps was too small: they do not touch before `time` */
 } crofton_cast_result;
@@ -356,64 +356,66 @@ typedef struct crofton_impact {
 } crofton_impact;
 
 /* Returns all 0 but the size: a sphere of radius 0; surfaces have both sides. */
-CROFTON_API crofton_body_description crofton_default_body_description(void);
+CROFTON_API crofton_shape_description crofton_default_shape_description(void);
 CROFTON_API crofton_manifold_options crofton_default_manifold_options(void);
 CROFTON_API crofton_cast_options crofton_default_cast_options(void);
 
-/* Creates a body. For an error, crofton_last_error says which member is wrong, and crofton_last_error_item which point,
- * index or child.
+/* Creates a shape. For an error, crofton_last_error says which member is wrong, and crofton_last_error_item which
+ * point, index or child.
  */
-CROFTON_API crofton_status crofton_body_create(const crofton_body_description* description, crofton_body** body);
-CROFTON_API crofton_status crofton_body_destroy(crofton_body* body);
+CROFTON_API crofton_status crofton_shape_create(const crofton_shape_description* description, crofton_shape** shape);
+CROFTON_API crofton_status crofton_shape_destroy(crofton_shape* shape);
 
 /* Fill a struct whose `size` is set. CROFTON_UNSUPPORTED: surfaces have no mass. */
-CROFTON_API crofton_status crofton_body_get_info(const crofton_body* body, crofton_body_info* info);
-CROFTON_API crofton_status crofton_body_get_mass(const crofton_body* body, crofton_mass_properties* mass);
-/* Called with a line in the world and your `user` pointer. It must not throw. It may query bodies, but not the contacts
+CROFTON_API crofton_status crofton_shape_get_info(const crofton_shape* shape, crofton_shape_info* info);
+CROFTON_API crofton_status crofton_shape_get_mass(const crofton_shape* shape, crofton_mass_properties* mass);
+/* Called with a line in the world and your `user` pointer. It must not throw. It may query shapes, but not the contacts
  * that are being drawn. */
 typedef void (*crofton_line_visitor)(void* user, const double from[3], const double to[3]);
-/* Draws the edges of a body and of its parts, for debugging. Round shapes are drawn as circles, in pieces of a 24th. */
-CROFTON_API crofton_status crofton_body_outline(const crofton_placed* body, crofton_line_visitor visit, void* user);
-/* Lists the convex parts that may be within `margin` >= 0 of another body: all that are, and some more. Writes at most
- * `capacity`, and sets *found to how many there are. A convex body is its own part. */
-CROFTON_API crofton_status crofton_body_parts_near(const crofton_placed* body, const crofton_placed* other,
-                                                   double margin, crofton_part* parts, size_t capacity, size_t* found);
+/* Draws the edges of a shape and of its parts, for debugging. Round shapes are drawn as circles, in pieces of a 24th.
+ */
+CROFTON_API crofton_status crofton_shape_outline(const crofton_placed* shape, crofton_line_visitor visit, void* user);
+/* Lists the convex parts that may be within `margin` >= 0 of another shape: all that are, and some more. Writes at most
+ * `capacity`, and sets *found to how many there are. A convex shape is its own part. */
+CROFTON_API crofton_status crofton_shape_parts_near(const crofton_placed* shape, const crofton_placed* other,
+                                                    double margin, crofton_part* parts, size_t capacity, size_t* found);
 
-/* Sets *meet to 1 if the bodies share a point, else to 0. `cache` or NULL. */
-CROFTON_API crofton_status crofton_bodies_meet(const crofton_placed* a, const crofton_placed* b,
+/* Sets *meet to 1 if the shapes share a point, else to 0. `cache` or NULL. */
+CROFTON_API crofton_status crofton_shapes_meet(const crofton_placed* a, const crofton_placed* b,
                                                crofton_pair_cache* cache, int* meet);
 /* Fill a struct whose `size` is set. `cache` or NULL. */
-CROFTON_API crofton_status crofton_bodies_distance(const crofton_placed* a, const crofton_placed* b,
-                                                   crofton_pair_cache* cache, crofton_body_distance* distance);
-CROFTON_API crofton_status crofton_bodies_penetration(const crofton_placed* a, const crofton_placed* b,
-                                                      crofton_pair_cache* cache, crofton_body_penetration* penetration);
-CROFTON_API crofton_status crofton_body_closest_point(const crofton_placed* body, const double point[3],
-                                                      crofton_body_distance* distance);
-/* Returns where the bodies touch: the deepest manifold. crofton_body_contacts_update returns all, and keeps points from
- * step to step. */
-CROFTON_API crofton_status crofton_bodies_manifold(const crofton_placed* a, const crofton_placed* b,
+CROFTON_API crofton_status crofton_shapes_distance(const crofton_placed* a, const crofton_placed* b,
+                                                   crofton_pair_cache* cache, crofton_shape_distance* distance);
+CROFTON_API crofton_status crofton_shapes_penetration(const crofton_placed* a, const crofton_placed* b,
+                                                      crofton_pair_cache* cache,
+                                                      crofton_shape_penetration* penetration);
+CROFTON_API crofton_status crofton_shape_closest_point(const crofton_placed* shape, const double point[3],
+                                                       crofton_shape_distance* distance);
+/* Returns where the shapes touch: the deepest manifold. crofton_shape_contacts_update returns all, and keeps points
+ * from step to step. */
+CROFTON_API crofton_status crofton_shapes_manifold(const crofton_placed* a, const crofton_placed* b,
                                                    const crofton_manifold_options* options, crofton_pair_cache* cache,
-                                                   crofton_body_manifold* manifold);
-/* Finds the first time at which two moving bodies touch. `options` or NULL: the defaults, with a duration of 1. A
- * motion of NULL is rest. Bodies that begin within the tolerance hit if they move into each other, but not if they
- * separate or slide along each other. Bodies that begin overlapping hit at time 0, with the shortest way out. */
-CROFTON_API crofton_status crofton_bodies_cast(const crofton_placed* a, const crofton_motion* motion_a,
+                                                   crofton_shape_manifold* manifold);
+/* Finds the first time at which two moving shapes touch. `options` or NULL: the defaults, with a duration of 1. A
+ * motion of NULL is rest. Shapes that begin within the tolerance hit if they move into each other, but not if they
+ * separate or slide along each other. Shapes that begin overlapping hit at time 0, with the shortest way out. */
+CROFTON_API crofton_status crofton_shapes_cast(const crofton_placed* a, const crofton_motion* motion_a,
                                                const crofton_placed* b, const crofton_motion* motion_b,
                                                const crofton_cast_options* options, crofton_impact* impact);
 
-CROFTON_API crofton_status crofton_body_contacts_create(crofton_body_contacts** contacts);
-CROFTON_API crofton_status crofton_body_contacts_destroy(crofton_body_contacts* contacts);
+CROFTON_API crofton_status crofton_shape_contacts_create(crofton_shape_contacts** contacts);
+CROFTON_API crofton_status crofton_shape_contacts_destroy(crofton_shape_contacts* contacts);
 /* Updates the contacts of one pair, in one order. Call it once a step. `options` or NULL.
  *
  * Returns the points, whose `memory` you may write, and how many have ended. Valid until the next update. `points`,
  * `count`, `ended` or NULL. */
-CROFTON_API crofton_status crofton_body_contacts_update(crofton_body_contacts* contacts, const crofton_placed* a,
-                                                        const crofton_placed* b,
-                                                        const crofton_manifold_options* options,
-                                                        crofton_tracked_point** points, size_t* count, size_t* ended);
+CROFTON_API crofton_status crofton_shape_contacts_update(crofton_shape_contacts* contacts, const crofton_placed* a,
+                                                         const crofton_placed* b,
+                                                         const crofton_manifold_options* options,
+                                                         crofton_tracked_point** points, size_t* count, size_t* ended);
 /* Draws each point's normal, `length` >= 0 long, with a cross of that size across it, for debugging. */
-CROFTON_API crofton_status crofton_body_contacts_outline(crofton_body_contacts* contacts, double length,
-                                                         crofton_line_visitor visit, void* user);
+CROFTON_API crofton_status crofton_shape_contacts_outline(crofton_shape_contacts* contacts, double length,
+                                                          crofton_line_visitor visit, void* user);
 
 /* Rays. */
 
@@ -423,26 +425,26 @@ typedef struct crofton_ray {
     double max_t;
 } crofton_ray;
 
-/* The first point of a body on a ray. */
-typedef struct crofton_body_ray_hit {
+/* The first point of a shape on a ray. */
+typedef struct crofton_shape_ray_hit {
     size_t size;
     double t; /* of the ray; infinite: no hit, and all else is 0 */
     double point[3];
     double normal[3]; /* of the surface, unit, towards the ray's origin; 0 if the ray began inside */
     crofton_part part;
-    uint32_t started_inside; /* 1: the ray began in a solid body, and t is 0; else 0 */
-} crofton_body_ray_hit;
+    uint32_t started_inside; /* 1: the ray began in a solid shape, and t is 0; else 0 */
+} crofton_shape_ray_hit;
 
 /* Sets *t to where the ray enters the box: 0 if it begins inside, infinite if it misses. */
 CROFTON_API crofton_status crofton_box_raycast(const crofton_box* box, const crofton_ray* ray, double* t);
-/* Finds the first hit. Fills a struct whose `size` is set. A ray that begins inside a solid body hits it at t = 0,
+/* Finds the first hit. Fills a struct whose `size` is set. A ray that begins inside a solid shape hits it at t = 0,
  * without a normal; triangles, meshes and height fields have no inside. */
-CROFTON_API crofton_status crofton_body_raycast(const crofton_placed* body, const crofton_ray* ray,
-                                                crofton_body_ray_hit* hit);
-/* Sets *hit to 1 if the ray hits the body, else to 0. Faster than crofton_body_raycast for a mesh at the identity. */
-CROFTON_API crofton_status crofton_body_raycast_any(const crofton_placed* body, const crofton_ray* ray, int* hit);
+CROFTON_API crofton_status crofton_shape_raycast(const crofton_placed* shape, const crofton_ray* ray,
+                                                 crofton_shape_ray_hit* hit);
+/* Sets *hit to 1 if the ray hits the shape, else to 0. Faster than crofton_shape_raycast for a mesh at the identity. */
+CROFTON_API crofton_status crofton_shape_raycast_any(const crofton_placed* shape, const crofton_ray* ray, int* hit);
 
-/* The surfaces of two bodies made of meshes. `b_to_a` is the pose of b in a's frame: a rotation and a translation. */
+/* The surfaces of two shapes made of meshes. `b_to_a` is the pose of b in a's frame: a rotation and a translation. */
 
 /* A contact of two triangles, in a's frame: the ends of their common segment, and the unit normal of b's triangle. */
 typedef struct crofton_mesh_contact {
@@ -479,12 +481,12 @@ typedef enum crofton_mesh_relations {
 } crofton_mesh_relations;
 
 /* Fills a struct whose `size` is set. `which` is a sum of crofton_mesh_relations; each takes its own search. */
-CROFTON_API crofton_status crofton_meshes_relate(const crofton_body* a, const crofton_body* b,
+CROFTON_API crofton_status crofton_meshes_relate(const crofton_shape* a, const crofton_shape* b,
                                                  const crofton_transform* b_to_a, uint32_t which,
                                                  crofton_mesh_relation* relation);
 /* Lists the contacts, one for each pair of triangles that overlap, in order. Writes at most `capacity`, and sets *count
  * to how many there are. */
-CROFTON_API crofton_status crofton_meshes_contacts(const crofton_body* a, const crofton_body* b,
+CROFTON_API crofton_status crofton_meshes_contacts(const crofton_shape* a, const crofton_shape* b,
                                                    const crofton_transform* b_to_a, crofton_mesh_contact* contacts,
                                                    size_t capacity, size_t* count);
 

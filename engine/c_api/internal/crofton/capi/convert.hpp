@@ -55,7 +55,7 @@ class HostJobs final : public Executor {
   public:
     explicit HostJobs(const crofton_jobs* jobs) : jobs_(jobs) {}
     [[nodiscard]] unsigned concurrency() const override;
-    void parallel_for(std::size_t count, std::size_t grain, RangeTask body) override;
+    void parallel_for(std::size_t count, std::size_t grain, RangeTask shape) override;
 
   private:
     const crofton_jobs* jobs_;

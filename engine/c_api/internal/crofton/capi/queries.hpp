@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What queries are asked with, checked: views, rays and bodies.
+// What queries are asked with, checked: views, rays and shapes.
 #pragma once
 #include <crofton/capi/modules.h>
 

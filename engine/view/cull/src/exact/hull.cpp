@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A convex hull against a view, exactly: by its corners, its triangles, and whether it holds the whole view.
 #include <array>
-#include <crofton/convex/body.hpp>
+#include <crofton/convex/shape.hpp>
 #include <crofton/cull/classify.hpp>
 
 #include "exact/box_constraints.hpp"

@@ -80,7 +80,7 @@ CROFTON_API crofton_status crofton_tree_raycast(const crofton_tree* tree, const 
                                                 uint32_t layer_mask, crofton_ray_hit* hits);
 /* Lists the items that overlap a box, sphere or capsule, ascending. Writes at most `capacity`, and sets *found to how
  * many there are. */
-CROFTON_API crofton_status crofton_tree_overlap(const crofton_tree* tree, const crofton_shape* shape,
+CROFTON_API crofton_status crofton_tree_overlap(const crofton_tree* tree, const crofton_query_shape* shape,
                                                 uint32_t layer_mask, uint32_t* items, size_t capacity, size_t* found);
 
 #ifdef __cplusplus

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// All overlapping pairs of many boxes, and queries of one body or ray against a tree of boxes.
+// All overlapping pairs of many boxes, and queries of one shape or ray against a tree of boxes.
 #pragma once
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/collide/narrow_phase.hpp>
@@ -113,13 +113,13 @@ class Broadphase {
 // All queries skip items whose layers share no bit with `layers`. They require a tree that has been refitted since its
 // last moves. They are const and thread-safe, and allocate only to grow the caller's vector.
 
-// Replaces `items` by the items whose boxes overlap the body, ascending, as intersects(box, body) decides: exactly for
-// boxes. A body that is not finite or fails validate(Obb) overlaps nothing.
-void overlapping(const boxtree::BoxTree& tree, const Obb& body, Vector<boxtree::ItemId>& items,
+// Replaces `items` by the items whose boxes overlap the shape, ascending, as intersects(box, shape) decides: exactly
+// for boxes. A shape that is not finite or fails validate(Obb) overlaps nothing.
+void overlapping(const boxtree::BoxTree& tree, const Obb& shape, Vector<boxtree::ItemId>& items,
                  std::uint32_t layers = ~0u);
-void overlapping(const boxtree::BoxTree& tree, const Sphere& body, Vector<boxtree::ItemId>& items,
+void overlapping(const boxtree::BoxTree& tree, const Sphere& shape, Vector<boxtree::ItemId>& items,
                  std::uint32_t layers = ~0u);
-void overlapping(const boxtree::BoxTree& tree, const Capsule& body, Vector<boxtree::ItemId>& items,
+void overlapping(const boxtree::BoxTree& tree, const Capsule& shape, Vector<boxtree::ItemId>& items,
                  std::uint32_t layers = ~0u);
 
 // Called for an item whose box may be near. Return the distance up to which other items are still of interest, such as

@@ -85,7 +85,7 @@ struct Capsule {
     double radius = 0.0;
 };
 
-// Test whether a box and another body share a point; touching counts, and NaN overlaps nothing.
+// Test whether a box and another shape share a point; touching counts, and NaN overlaps nothing.
 //
 // Half-spaces { x : dot(normal, x) + offset ≥ 0 } and triangles: exact for the stored numbers, for every valid box and
 // coordinates of 0 or magnitude in [1e-70, 1e30]. Spheres and capsules: a gap or overlap below 1e-13 of the

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Distances and contacts of objects that are boxes, spheres or meshes in a World.
 //
-// Boxes are exact parallelepipeds here, whose axes may be off by kMaxAxisDeviation; bodies have poses (crofton/convex).
+// Boxes are exact parallelepipeds here, whose axes may be off by kMaxAxisDeviation; shapes have poses (crofton/convex).
 #pragma once
 #include <crofton/collide/narrow_phase.hpp>
 #include <span>
@@ -43,7 +43,7 @@ struct Penetration {
 struct Manifold {
     glm::dvec3 normal{0.0};  // unit, from a to b
     double depth = 0.0;      // of the deepest point
-    int count = 0;           // 0 if the bodies do not overlap
+    int count = 0;           // 0 if the shapes do not overlap
     ContactPoint points[8];
 };
 enum class ManifoldPoints : std::uint8_t {
@@ -60,13 +60,13 @@ enum class ManifoldPoints : std::uint8_t {
 // Returns where two meshes touch, in a's frame: at most four points, from all their contacts (mesh::contacts). Without
 // contacts there are no points.
 //
-// The normal is that of the curve in which the surfaces cross, by its vector area; an even pressure between the bodies
+// The normal is that of the curve in which the surfaces cross, by its vector area; an even pressure between the shapes
 // would push in that direction. The points are the deepest and those that keep most of the area. The depth of a point
 // is how far b has to move along the normal until the surfaces separate on the line through the point. It is 0 if the
 // point lies in no overlap.
 [[nodiscard]] Manifold contact_manifold(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& b_to_a,
                                         std::span<const mesh::MeshContact> contacts);
-// Returns one point, at the deepest point of the sphere, or none if the bodies do not overlap. Spheres with the same
+// Returns one point, at the deepest point of the sphere, or none if the shapes do not overlap. Spheres with the same
 // center separate along z.
 [[nodiscard]] Manifold contact_manifold(const Obb& box, const Sphere& sphere);
 [[nodiscard]] Manifold contact_manifold(const Sphere& a, const Sphere& b);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Queries of bodies: overlap, distance, depth, rays, contacts, casts.
+// Queries of shapes: overlap, distance, depth, rays, contacts, casts.
 #pragma once
 #include <cmath>
 #include <compare>
-#include <crofton/convex/body.hpp>
+#include <crofton/convex/shape.hpp>
 #include <crofton/core/executor.hpp>
 #include <crofton/core/memory.hpp>
 #include <cstdint>
@@ -15,56 +15,56 @@ namespace crofton::convex {
 
 // ---- Overlap, distance, depth ----
 
-// A body at a pose: the image of its stored points under the stored pose, all taken as reals. Alive for the call only.
+// A shape at a pose: the image of its stored points under the stored pose, all taken as reals. Alive for the call only.
 //
 // Poses are valid and without reflection, as validate_pose checks. A rotation that is orthonormal only to 1e-6 skews
-// the stored points accordingly; a body's rounding keeps its radius.
-struct BodyAtPose {
-    const Body& body;
+// the stored points accordingly; a shape's rounding keeps its radius.
+struct ShapeAtPose {
+    const Shape& shape;
     const RigidTransform& pose;
 };
 
-// Checks a pose. Errors: as validate(RigidTransform); a pose that mirrors, because it would turn the body inside out.
+// Checks a pose. Errors: as validate(RigidTransform); a pose that mirrors, because it would turn the shape inside out.
 [[nodiscard]] Result<void> validate_pose(const RigidTransform& pose, std::uint64_t item = kNoItem);
 
 // Data that a pair keeps from one call to the next. It makes calls faster and changes no answer of `intersects`;
 // numbers stay within their stated bounds. Zero-initialise it for a new pair. It belongs to one pair in one order, and
 // to one thread at a time.
 struct PairCache {
-    glm::dvec3 axis{0.0};  // from a to b, where the bodies were last apart or least deep
+    glm::dvec3 axis{0.0};  // from a to b, where the shapes were last apart or least deep
     std::uint16_t on_a[4] = {}, on_b[4] = {};
     std::uint16_t count = 0;
-    // For a manifold: the body whose face it lies on, a (1) or b (2), and the face.
+    // For a manifold: the shape whose face it lies on, a (1) or b (2), and the face.
     std::uint16_t reference = 0, face = 0;
     std::uint32_t chosen[4] = {};  // and its points, where there were more than were wanted
 };
 
-// Tests whether two bodies share a point; touching counts. Returns false for a pose with NaN.
+// Tests whether two shapes share a point; touching counts. Returns false for a pose with NaN.
 //
-// Exact for two polytopes, and for a polytope and a half-space. If a body is round, a gap or overlap below 1e-11 of the
-// size (1e-7 with cylinders and cones) may be decided either way. `intersects`, `distance`, `penetration` and manifolds
-// decide it the same way, with a cache or without, and in either order of the bodies. The size of a pair is the sum of
-// the radii of the bodies around their origins and of the distance between the origins.
+// Exact for two polytopes, and for a polytope and a half-space. If a shape is round, a gap or overlap below 1e-11 of
+// the size (1e-7 with cylinders and cones) may be decided either way. `intersects`, `distance`, `penetration` and
+// manifolds decide it the same way, with a cache or without, and in either order of the shapes. The size of a pair is
+// the sum of the radii of the shapes around their origins and of the distance between the origins.
 //
-// Two half-spaces are exact if the rounded cross product of their normals is not 0, as they overlap then. A body of
+// Two half-spaces are exact if the rounded cross product of their normals is not 0, as they overlap then. A shape of
 // parts overlaps another if one of its parts does, with the same exactness.
-[[nodiscard]] bool intersects(const BodyAtPose& a, const BodyAtPose& b, PairCache* cache = nullptr);
+[[nodiscard]] bool intersects(const ShapeAtPose& a, const ShapeAtPose& b, PairCache* cache = nullptr);
 
 struct Distance {
-    double distance = 0.0;  // between on_a and on_b; 0 iff the bodies overlap
-    // Proved: the true distance lies between them. For round bodies that are decided to overlap (see intersects) both
-    // are 0, though the bodies may be 1e-11 of the size apart, cylinders and cones 1e-7.
+    double distance = 0.0;  // between on_a and on_b; 0 iff the shapes overlap
+    // Proved: the true distance lies between them. For round shapes that are decided to overlap (see intersects) both
+    // are 0, though the shapes may be 1e-11 of the size apart, cylinders and cones 1e-7.
     double lower = 0.0, upper = 0.0;
-    glm::dvec3 on_a{0.0}, on_b{0.0};  // nearest points; if the bodies overlap, a common point up to 1e-9 of the size
-    glm::dvec3 normal{0.0};           // unit, from a to b; 0 if the bodies overlap
-    PartId part_a{}, part_b{};        // the nearest parts of bodies of parts
+    glm::dvec3 on_a{0.0}, on_b{0.0};  // nearest points; if the shapes overlap, a common point up to 1e-9 of the size
+    glm::dvec3 normal{0.0};           // unit, from a to b; 0 if the shapes overlap
+    PartId part_a{}, part_b{};        // the nearest parts of shapes of parts
 };
-// Returns the distance of two bodies.
+// Returns the distance of two shapes.
 //
 // upper − lower ≤ 1e-9 of the size for polytopes, also rounded ones. Computed by Gilbert, Johnson, Keerthi 1988, and in
 // exact arithmetic where double does not reach the bound. Half-spaces have a positive distance only if they are
-// parallel. For bodies of parts it is the distance of the nearest parts; caches are not used.
-[[nodiscard]] Distance distance(const BodyAtPose& a, const BodyAtPose& b, PairCache* cache = nullptr);
+// parallel. For shapes of parts it is the distance of the nearest parts; caches are not used.
+[[nodiscard]] Distance distance(const ShapeAtPose& a, const ShapeAtPose& b, PairCache* cache = nullptr);
 
 // The shortest motion of b that ends the overlap: depth · normal.
 struct Penetration {
@@ -73,40 +73,40 @@ struct Penetration {
     double lower = 0.0, upper = 0.0;  // proved: the true depth lies between them
     glm::dvec3 normal{0.0};           // unit, from a to b
     glm::dvec3 on_a{0.0}, on_b{0.0};  // deepest points: on_a − on_b = depth · normal
-    PartId part_a{}, part_b{};        // of bodies of parts: the parts that are deepest in each other
+    PartId part_a{}, part_b{};        // of shapes of parts: the parts that are deepest in each other
 };
-// Returns how deep two bodies overlap.
+// Returns how deep two shapes overlap.
 //
 // upper − lower ≤ 1e-9 of the size for polytopes, also rounded ones; ≤ 1e-5 for cylinders and cones, but 1e-3 if all
 // ways out around an axis are equally long. Computed by the expanding polytope algorithm (van den Bergen 2001), then
 // checked from both sides; if that fails, over all separating axes. A sphere whose center lies in a box, hull, cylinder
 // or cone, and a capsule whose segment meets a box, are computed in closed form.
 //
-// Two half-spaces that overlap do so without end: depth, lower and upper are infinite. For bodies of parts it is the
-// depth of the two deepest parts. `lower` holds for the bodies; `upper` is infinite, because parts may be pushed into
+// Two half-spaces that overlap do so without end: depth, lower and upper are infinite. For shapes of parts it is the
+// depth of the two deepest parts. `lower` holds for the shapes; `upper` is infinite, because parts may be pushed into
 // others.
-[[nodiscard]] Penetration penetration(const BodyAtPose& a, const BodyAtPose& b, PairCache* cache = nullptr);
+[[nodiscard]] Penetration penetration(const ShapeAtPose& a, const ShapeAtPose& b, PairCache* cache = nullptr);
 
-// Returns the distance from a point (in the world) to the body; a is the point.
-[[nodiscard]] Distance closest_point(const BodyAtPose& body, const glm::dvec3& point);
+// Returns the distance from a point (in the world) to the shape; a is the point.
+[[nodiscard]] Distance closest_point(const ShapeAtPose& shape, const glm::dvec3& point);
 
-// The first hit of a ray on a body.
+// The first hit of a ray on a shape.
 struct RayHit {
     double t = 0.0;          // along the ray, in [0, max_t]
-    glm::dvec3 point{0.0};   // at t; on the body's surface
+    glm::dvec3 point{0.0};   // at t; on the shape's surface
     glm::dvec3 normal{0.0};  // unit, of the surface there, towards the ray; 0 if the ray began inside
     bool started_inside = false;
     PartId part{};  // the part hit; of several at the same t the lowest
 };
-// Returns the first point of the ray in the body, or nothing.
+// Returns the first point of the ray in the shape, or nothing.
 //
-// A ray that begins in a solid body has started inside: t is 0, the point is the ray's origin, and the normal is 0.
+// A ray that begins in a solid shape has started inside: t is 0, the point is the ray's origin, and the normal is 0.
 // "In" is decided as by `intersects` of a sphere of radius 0 at the origin; for cylinders and cones it is decided by
 // their distance, within 1e-15 of the size. Triangles, meshes and height fields have no inside: a ray that begins
 // within one hits the nearest triangle. A ray in the plane of a triangle does not hit that triangle, as in
 // mesh::raycast. A ray passes through one-sided triangles from behind.
 //
-// The point is the ray's first point in a body that is larger or smaller by at most 1e-13 of its size. The size is
+// The point is the ray's first point in a shape that is larger or smaller by at most 1e-13 of its size. The size is
 // core_radius() plus radius(); for half-spaces it is the distances from the frame's origin to the ray's, and from there
 // to the point. So a ray that passes closer to the surface than that may hit or miss. t · |direction| is off by at most
 // that divided by the cosine between the ray and the normal, and by 2^-51 of itself. This holds for any distance of the
@@ -115,11 +115,11 @@ struct RayHit {
 //
 // Hits nothing if the ray's origin or direction is NaN or infinite, the direction is 0, max_t is NaN or negative, or
 // the pose is not valid: validate(Ray) and validate_pose say why.
-[[nodiscard]] std::optional<RayHit> raycast(const BodyAtPose& body, const Ray& ray);
+[[nodiscard]] std::optional<RayHit> raycast(const ShapeAtPose& shape, const Ray& ray);
 
 // ---- Contacts ----
 
-// A vertex, edge or face of a body.
+// A vertex, edge or face of a shape.
 //
 // - Hulls: the indices are the hull's.
 // - Boxes: a vertex is a corner number; edge 4k + j runs along axis k; face 2k + s is across axis k, on the + side for
@@ -148,7 +148,7 @@ struct ContactPoint {
 struct Manifold {
     glm::dvec3 normal{0.0};  // unit, from a to b
     double depth = 0.0;      // of the deepest point
-    int count = 0;           // 0 when the bodies are farther apart than the margin
+    int count = 0;           // 0 when the shapes are farther apart than the margin
     ContactPoint points[8];  // the first `count` are set
 };
 
@@ -157,10 +157,10 @@ struct ManifoldOptions {
     int max_points = 4;   // in [1, 8]: the deepest, and those that keep most of the area
 };
 
-// Returns where two bodies touch.
+// Returns where two shapes touch.
 //
 // The normal is that of `penetration` or `distance`, and the depth of the manifold is the same. The faces that look
-// along the normal are clipped against each other (Sutherland, Hodgman); the deepest point is among the points. Bodies
+// along the normal are clipped against each other (Sutherland, Hodgman); the deepest point is among the points. Shapes
 // that overlap, as `intersects` decides, have at least one point; polytopes that do not overlap have none at a margin
 // of 0.
 //
@@ -170,22 +170,22 @@ struct ManifoldOptions {
 //
 // Points are off by 1e-9 of the pair's size, by 1e-5 if a hull's face is not quite flat (HullOptions), and with
 // cylinders and cones by as much as the depth may be. Round sides (of capsules, cylinders and cones, and edges of
-// rounded bodies) that are parallel within 2 degrees have a point at each end of their common stretch, midway between
+// rounded shapes) that are parallel within 2 degrees have a point at each end of their common stretch, midway between
 // them, also where they pass each other. Next to a sharp edge this holds if the two lie on each other.
 //
-// For bodies of parts it returns the deepest of the manifolds below; this allocates.
-[[nodiscard]] Manifold contact_manifold(const BodyAtPose& a, const BodyAtPose& b, const ManifoldOptions& options = {},
+// For shapes of parts it returns the deepest of the manifolds below; this allocates.
+[[nodiscard]] Manifold contact_manifold(const ShapeAtPose& a, const ShapeAtPose& b, const ManifoldOptions& options = {},
                                         PairCache* cache = nullptr);
 
-// One part of a body, at its pose.
+// One part of a shape, at its pose.
 struct Part {
-    Body body;  // convex
+    Shape shape;  // convex
     RigidTransform pose;
     PartId id{};
     Sides sides = Sides::both;
 };
 
-// The contacts of two bodies with parts: one manifold for each direction. Keeps its memory from call to call.
+// The contacts of two shapes with parts: one manifold for each direction. Keeps its memory from call to call.
 class Manifolds {
   public:
     Manifolds();
@@ -201,7 +201,7 @@ class Manifolds {
     std::unique_ptr<Scratch> scratch_;
 };
 
-// Replaces `found` by the contacts of two bodies. Two convex bodies have one manifold or none. No allocation once
+// Replaces `found` by the contacts of two shapes. Two convex shapes have one manifold or none. No allocation once
 // `found` has seen as many parts.
 //
 // Parts whose normals agree within 5 degrees share a manifold. The deepest part comes first. Each next part joins the
@@ -210,43 +210,43 @@ class Manifolds {
 // along its own part's normal.
 //
 // On the edges and vertices of a surface the internal-edge rule holds: if a contact's normal would point into the
-// neighbouring surface, the triangle pushes along its face's normal. A body that slides over a floor of many triangles
-// therefore touches only the floor. If this leaves a body that overlaps the surface without any point, each triangle
-// that it meets pushes along its face's normal, by as much as the body reaches below the triangle. Between triangles of
-// two surfaces the second surface's rule holds. Triangles of a body are neighbours if they share vertices of equal
+// neighbouring surface, the triangle pushes along its face's normal. A shape that slides over a floor of many triangles
+// therefore touches only the floor. If this leaves a shape that overlaps the surface without any point, each triangle
+// that it meets pushes along its face's normal, by as much as the shape reaches below the triangle. Between triangles
+// of two surfaces the second surface's rule holds. Triangles of a shape are neighbours if they share vertices of equal
 // position.
 //
 // Convex children of compounds that overlap or are flush, within 2^-22 of their size, touch as their union does: a
 // contact that its neighbours cover is replaced by one that separates the pair as well, or by the least deep face that
-// is free. A body that slides over a floor of flush boxes touches one plane; walls, steps and wider gaps push sideways.
-// Deep within the parts, or if there is no other contact, the contact stays.
+// is free. A shape that slides over a floor of flush boxes touches one plane; walls, steps and wider gaps push
+// sideways. Deep within the parts, or if there is no other contact, the contact stays.
 //
-// Surfaces with Sides::front push to the front, and push only bodies whose center is there (the center of mass for
-// hulls; otherwise the middle of the bounds). A triangle with Sides::both pushes the shorter way out, so a thin body
-// that has sunk into it by more than half comes out on the other side. If triangles of such a surface would push a body
-// in directions more than a right angle apart, its center decides: all triangles that are connected over edges push to
-// the side of the surface where the triangle nearest to the center sees it. Winding does not matter.
+// Surfaces with Sides::front push to the front, and push only shapes whose center is there (the center of mass for
+// hulls; otherwise the middle of the bounds). A triangle with Sides::both pushes the shorter way out, so a thin shape
+// that has sunk into it by more than half comes out on the other side. If triangles of such a surface would push a
+// shape in directions more than a right angle apart, its center decides: all triangles that are connected over edges
+// push to the side of the surface where the triangle nearest to the center sees it. Winding does not matter.
 //
-// The cache serves two convex bodies.
-void contact_manifolds(const BodyAtPose& a, const BodyAtPose& b, const ManifoldOptions& options, Manifolds& found,
+// The cache serves two convex shapes.
+void contact_manifolds(const ShapeAtPose& a, const ShapeAtPose& b, const ManifoldOptions& options, Manifolds& found,
                        PairCache* cache = nullptr);
 
-// Neighbours: bodies that lie flush with a and touch b, and bodies that lie flush with b and touch a, as tiles of a
+// Neighbours: shapes that lie flush with a and touch b, and shapes that lie flush with b and touch a, as tiles of a
 // floor do.
 struct Beside {
-    std::span<const BodyAtPose> a, b;
+    std::span<const ShapeAtPose> a, b;
 };
-// Does the same if a and its neighbours touch other bodies as their union does, like children of a compound, and so do
+// Does the same if a and its neighbours touch other shapes as their union does, like children of a compound, and so do
 // b and its neighbours.
 //
 // Replaces `found` by the contacts of a and b, at least one if they overlap. Call it for each pair, with the others as
-// neighbours. Meshes, height fields, half-spaces, and bodies that overlap by more than the rounding to float are not
+// neighbours. Meshes, height fields, half-spaces, and shapes that overlap by more than the rounding to float are not
 // treated as neighbours.
-void contact_manifolds(const BodyAtPose& a, const BodyAtPose& b, const Beside& beside, const ManifoldOptions& options,
+void contact_manifolds(const ShapeAtPose& a, const ShapeAtPose& b, const Beside& beside, const ManifoldOptions& options,
                        Manifolds& found, PairCache* cache = nullptr);
 
-// Replaces `parts` by the parts of a body that may be within `margin` ≥ 0 of another: all that are, and some more.
-void parts_near(const BodyAtPose& body, const BodyAtPose& other, double margin, Vector<Part>& parts);
+// Replaces `parts` by the parts of a shape that may be within `margin` ≥ 0 of another: all that are, and some more.
+void parts_near(const ShapeAtPose& shape, const ShapeAtPose& other, double margin, Vector<Part>& parts);
 
 // A contact point that persists from step to step.
 struct TrackedPoint {
@@ -261,20 +261,20 @@ std::size_t track(std::span<const Manifold> manifolds, Vector<TrackedPoint>& poi
 
 // For debug drawing: called with lines in the world.
 using LineVisitor = FunctionRef<void(const glm::dvec3& from, const glm::dvec3& to)>;
-// Draws the edges of a body and of its parts.
+// Draws the edges of a shape and of its parts.
 //
 // Round shapes are drawn as circles, in pieces of a 24th. The faces of a rounded polytope are drawn at their true
 // place, `radius` out. A half-space is drawn as its normal and a square of 20 around the point nearest to its frame's
 // origin. Surfaces and compounds allocate.
-void outline(const BodyAtPose& body, LineVisitor line);
+void outline(const ShapeAtPose& shape, LineVisitor line);
 // Draws at each point its normal from surface to surface, with a cross of size `size` across it.
 void outline(std::span<const TrackedPoint> points, double size, LineVisitor line);
 
 // ---- Casts ----
 
-// The motion of a body, from its pose on. Its `pivot` (in the body's frame: the center of mass) moves by velocity · t.
-// The body turns about it by |spin| · t radians around `spin` (in world axes), by any number of turns. A motion of zero
-// is rest.
+// The motion of a shape, from its pose on. Its `pivot` (in the shape's frame: the center of mass) moves by velocity ·
+// t. The shape turns about it by |spin| · t radians around `spin` (in world axes), by any number of turns. A motion of
+// zero is rest.
 struct Motion {
     glm::dvec3 velocity{0.0};
     glm::dvec3 spin{0.0};
@@ -287,65 +287,65 @@ struct Motion {
 
 struct CastOptions {
     double duration = 1.0;    // ≥ 0, finite
-    double tolerance = 1e-6;  // > 0, in lengths: how far apart the bodies may still be at the time of a hit
+    double tolerance = 1e-6;  // > 0, in lengths: how far apart the shapes may still be at the time of a hit
     int max_steps = 500;      // ≥ 1
-    // Skips bodies, or parts of bodies, that overlap at time 0 or are within the tolerance then. They are skipped for
+    // Skips shapes, or parts of shapes, that overlap at time 0 or are within the tolerance then. They are skipped for
     // the whole cast, even if they separate and touch again.
     bool ignore_initial_overlaps = false;
-    // Hits after this time are not searched for and are reported as a miss. To find the first hit among many bodies,
+    // Hits after this time are not searched for and are reported as a miss. To find the first hit among many shapes,
     // pass the time of the first hit so far. It changes no hit up to this time. ≥ 0.
     double early_out = HUGE_VAL;
 };
 
 enum class CastResult : std::uint8_t {
-    miss,        // proved: the bodies do not touch in [0, duration]; for bodies that begin in contact see `cast`
+    miss,        // proved: the shapes do not touch in [0, duration]; for shapes that begin in contact see `cast`
     hit,         // at `time` they are within the tolerance and about to touch, and they do not touch earlier
     unresolved,  // max_steps was too small: they do not touch before `time`
 };
 struct Impact {
     CastResult result = CastResult::miss;
     double time = 0.0;  // of a miss: the duration, or early_out if that is less
-    // The contact at that time; all 0 for a miss. The normal is the direction that separates the bodies, as in
+    // The contact at that time; all 0 for a miss. The normal is the direction that separates the shapes, as in
     // `distance`, or in `penetration` if they overlap.
     glm::dvec3 normal{0.0};           // unit, from a to b
     glm::dvec3 on_a{0.0}, on_b{0.0};  // nearest points, on the surfaces: on_b − on_a = distance · normal
     double distance = 0.0;            // gap at that time; negative: how deep they overlap, from the start
-    int steps = 0;                    // of bodies of parts: of the pair of parts that hit
+    int steps = 0;                    // of shapes of parts: of the pair of parts that hit
     PartId part_a{}, part_b{};        // that hit
 };
 
-// Finds the first time at which two moving bodies touch, by conservative advancement (Mirtich 1996) with a bound of
+// Finds the first time at which two moving shapes touch, by conservative advancement (Mirtich 1996) with a bound of
 // second order.
 //
-// Each step ends before any vertex can have crossed the plane that separates the bodies, by its velocity across the
+// Each step ends before any vertex can have crossed the plane that separates the shapes, by its velocity across the
 // plane and a bound of its acceleration. So no wall is too thin. As with `intersects`, a hit may be off by 1e-7 of the
-// size with cylinders and cones. "Touch" refers to the bodies as they move in real arithmetic from their stored poses,
-// at any place; `moved` rounds. Rounding grows with the bodies, their gap, and their translations and rotations as seen
+// size with cylinders and cones. "Touch" refers to the shapes as they move in real arithmetic from their stored poses,
+// at any place; `moved` rounds. Rounding grows with the shapes, their gap, and their translations and rotations as seen
 // from a: it stays below 1e-13 of (size + |pivot|) · (1 + angle) + way. A gap that small may be reported as a hit, but
 // a touch is never reported as a miss.
 //
-// A hit is reported up to the tolerance before the touch, with half the tolerance between the bodies if they can be
-// stopped there, so that a body that stops at a hit can continue from there:
-// - Bodies that begin within the tolerance, touching or overlapping by less than it, hit at time 0 if they move into
+// A hit is reported up to the tolerance before the touch, with half the tolerance between the shapes if they can be
+// stopped there, so that a shape that stops at a hit can continue from there:
+// - Shapes that begin within the tolerance, touching or overlapping by less than it, hit at time 0 if they move into
 //   each other, with the normal and the true gap. If they separate or move along each other, within rounding, they do
 //   not hit: a box slides, a wheel rolls, a top spins on the floor.
-// - Bodies that begin overlapping by the tolerance or more hit at time 0, wherever they move. The normal and `distance`
-//   are the shortest way out; for bodies with parts, that of the deepest parts.
-// - For bodies at rest, and for casts of duration 0, the result says whether the bodies are within the tolerance.
-// - Bodies that turn and stay within the tolerance hit if 32 steps do not prove that they pass.
+// - Shapes that begin overlapping by the tolerance or more hit at time 0, wherever they move. The normal and `distance`
+//   are the shortest way out; for shapes with parts, that of the deepest parts.
+// - For shapes at rest, and for casts of duration 0, the result says whether the shapes are within the tolerance.
+// - Shapes that turn and stay within the tolerance hit if 32 steps do not prove that they pass.
 //
-// For bodies of parts it is the first time at which parts touch. A body that begins in contact with a part and slides
+// For shapes of parts it is the first time at which parts touch. A shape that begins in contact with a part and slides
 // along it passes all parts that lie in the plane of that contact or behind it, within the tolerance or 2^-22 of their
-// size. So no part of a floor of flush parts stops a slide, and a hit at time 0 has the normal of the floor. A body
+// size. So no part of a floor of flush parts stops a slide, and a hit at time 0 has the normal of the floor. A shape
 // passes through a one-sided triangle that it first touches from behind.
 //
 // Errors: NaN or infinite motions, a turn beyond 1e5 radians, options out of range, half-spaces that turn.
-[[nodiscard]] Result<Impact> cast(const BodyAtPose& a, const Motion& motion_a, const BodyAtPose& b,
+[[nodiscard]] Result<Impact> cast(const ShapeAtPose& a, const Motion& motion_a, const ShapeAtPose& b,
                                   const Motion& motion_b, const CastOptions& options = {}, PairCache* cache = nullptr);
-// Does the same if b and its neighbours are one surface to slide on, like parts of one body, and so are a and its
-// neighbours. They move with the velocity of that body. Call it for each pair, with the others that the cast begins in
+// Does the same if b and its neighbours are one surface to slide on, like parts of one shape, and so are a and its
+// neighbours. They move with the velocity of that shape. Call it for each pair, with the others that the cast begins in
 // contact with as neighbours. A hit at time 0 that one of the neighbours describes better is a miss.
-[[nodiscard]] Result<Impact> cast(const BodyAtPose& a, const Motion& motion_a, const BodyAtPose& b,
+[[nodiscard]] Result<Impact> cast(const ShapeAtPose& a, const Motion& motion_a, const ShapeAtPose& b,
                                   const Motion& motion_b, const CastOptions& options, const Beside& beside,
                                   PairCache* cache = nullptr);
 

@@ -6,6 +6,6 @@ namespace crofton::convex {
 
 // Returns distance(a, b) if that is at most `limit`, and some distance above the limit otherwise. The search ends as
 // soon as that is known.
-[[nodiscard]] Distance distance_within(const BodyAtPose& a, const BodyAtPose& b, double limit);
+[[nodiscard]] Distance distance_within(const ShapeAtPose& a, const ShapeAtPose& b, double limit);
 
 }  // namespace crofton::convex

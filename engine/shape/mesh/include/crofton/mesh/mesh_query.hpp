@@ -33,7 +33,7 @@ struct SegmentOfContact {
 
 // ---- Meshes against meshes: triangles that overlap, contacts, containment ----
 
-// For overlap, distance, depth and casts of meshes see crofton/convex: a mesh is a body (Body::mesh).
+// For overlap, distance, depth and casts of meshes see crofton/convex: a mesh is a shape (Shape::mesh).
 
 // All queries take the pose of b in a's frame, which must pass validate(RigidTransform).
 //

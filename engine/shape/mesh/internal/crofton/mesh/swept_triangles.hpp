@@ -9,7 +9,7 @@ namespace crofton::mesh {
 struct RoundedBox {
     MeshBox core;  // axes orthonormal to 1e-5
     float radius;
-    float error;  // how far the body may be from there, and how much is to be left around it
+    float error;  // how far the shape may be from there, and how much is to be left around it
 };
 // A rounded box that moves along a line and does not turn: at s it stands as `box`, moved by s · way.
 struct SweptBox {
@@ -18,7 +18,7 @@ struct SweptBox {
     float from, to;  // the part of the way, in lengths
 };
 
-// Calls `visit` for every triangle that the body may come within its `error` of at some s from `swept.from` up to
+// Calls `visit` for every triangle that the shape may come within its `error` of at some s from `swept.from` up to
 // `limit`, about the first first. `limit` is the visitor's to lessen, and at most `swept.to`. The order, and which
 // triangles come that could be left out, are those of the machine. `nodes` and `leaves` are those of a mesh tree with
 // triangles.

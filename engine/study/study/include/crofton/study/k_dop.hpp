@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // k-DOPs, convex polytopes with faces perpendicular to k/2 fixed directions, as an alternative to boxes and spheres.
 #pragma once
-#include <crofton/convex/body.hpp>
+#include <crofton/convex/shape.hpp>
 #include <crofton/core/error.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/measure/measure.hpp>

@@ -195,10 +195,10 @@ struct ObjectHit {
     std::uint64_t user = 0;
     double t = 0.0;  // along the ray, in lengths of its direction
     glm::dvec3 point{0.0};
-    std::uint32_t triangle = kNoTriangle;  // of the object's mesh, or of the body's surface
-    std::uint32_t child = 0;               // which child, if the body is a compound (convex::PartId)
+    std::uint32_t triangle = kNoTriangle;  // of the object's mesh, or of the shape's surface
+    std::uint32_t child = 0;               // which child, if the shape is a compound (convex::PartId)
     glm::dvec3 normal{0.0};       // unit, of the surface, to the side that the ray comes from; 0 if it began inside
-    bool started_inside = false;  // the ray began in the body, box or sphere: t is 0; meshes have no inside
+    bool started_inside = false;  // the ray began in the shape, box or sphere: t is 0; meshes have no inside
 };
 
 struct ClosestObject {
@@ -217,32 +217,32 @@ enum class ContactPhase : std::uint8_t { began, stayed, ended };
 // Two objects that touch, or that touched in the update before. Ended contacts have only the two objects, whose handles
 // are stale if the objects were removed.
 //
-// Two objects with bodies also touch if they come within WorldOptions::contact_margin. Their points persist from update
+// Two objects with shapes also touch if they come within WorldOptions::contact_margin. Their points persist from update
 // to update: a point keeps its `memory`, which you may write, while its id stays the same (crofton/convex/query.hpp).
 // If neither object has moved, the pair is not computed again. All points are valid until the next update.
 struct Contact {
-    ObjectRef first, second;  // ordered as in ObjectPair; the first is body a
+    ObjectRef first, second;  // ordered as in ObjectPair; the first is shape a
     ContactPhase phase = ContactPhase::began;
     mesh::Containment inside = mesh::Containment::none;
     glm::dvec3 normal{0.0};  // unit, from the first to the second; zero if no direction is known
-    // The depth of the deepest point; negative: a gap between bodies. With WorldOptions::mesh_depth, between meshes the
+    // The depth of the deepest point; negative: a gap between shapes. With WorldOptions::mesh_depth, between meshes the
     // distance along the normal by which the second must move to end the contact.
     double depth = 0.0;
-    // In world coordinates, at most four. None if a mesh is inside another, or for two bodies, which have body_points.
+    // In world coordinates, at most four. None if a mesh is inside another, or for two shapes, which have shape_points.
     std::span<const collide::ContactPoint> points;
-    std::span<const mesh::MeshContact> triangles;      // of two meshes, or a mesh and a box
-    std::span<convex::TrackedPoint> body_points = {};  // of two bodies
+    std::span<const mesh::MeshContact> triangles;       // of two meshes, or a mesh and a box
+    std::span<convex::TrackedPoint> shape_points = {};  // of two shapes
 };
 
-// The first object that a moving body meets.
-struct BodyHit {
+// The first object that a moving shape meets.
+struct ShapeHit {
     ObjectHandle object;
     std::uint64_t user = 0;
     double time = 0.0;
-    glm::dvec3 normal{0.0};      // unit, from the body to the object
+    glm::dvec3 normal{0.0};      // unit, from the shape to the object
     glm::dvec3 point{0.0};       // on the object's surface
     std::uint32_t triangle = 0;  // of a surface
-    bool resolved = true;        // false: the body meets nothing up to `time`; later contacts are unknown
+    bool resolved = true;        // false: the shape meets nothing up to `time`; later contacts are unknown
     double distance = 0.0;       // the gap at `time`; negative: the depth by which they overlapped at the start
 };
 

@@ -23,7 +23,7 @@
 namespace crofton {
 
 namespace convex {
-class Body;
+class Shape;
 }  // namespace convex
 
 // Handles of objects, nodes and meshes: an index, which is reused, and a generation, which differs for each use.
@@ -168,16 +168,16 @@ struct Bound {
     Bound(const Sphere& sphere);
 };
 
-// Describes an object: a mesh or a body, which `transform` places under `node` or in the world, or a bound in world
+// Describes an object: a mesh or a shape, which `transform` places under `node` or in the world, or a bound in world
 // coordinates.
 struct ObjectDescription {
     MeshHandle mesh = {};
     NodeHandle node = {};
     std::optional<Transform> transform = {};  // none: the node's own
     Bound bound = {};
-    // As World::set_body. An object may have only a body: its box is the body's, and set_transform moves it. The box of
-    // infinite ground is then a point, so views seldom list it.
-    const convex::Body* body = nullptr;
+    // As World::set_shape. An object may have only a shape: its box is the shape's, and set_transform moves it. The box
+    // of infinite ground is then a point, so views seldom list it.
+    const convex::Shape* shape = nullptr;
     std::uint64_t user = 0;      // returned with every answer
     std::uint32_t layers = ~0u;  // views and queries ask for layers
     // Two objects can collide if each one's `layers` share a bit with the other's `collides_with`.

@@ -16,7 +16,7 @@
 namespace crofton {
 
 namespace convex {
-class Body;
+class Shape;
 struct CastOptions;
 struct Motion;
 }  // namespace convex
@@ -37,7 +37,7 @@ struct WorldOptions {
     bool pairs = true;            // false: update() finds neither pairs nor contacts
     bool contacts = true;         // false: update() finds pairs only
     bool containment = true;      // counts an object inside a closed mesh as a contact
-    double contact_margin = 0.0;  // ≥ 0: gaps up to this between bodies are contacts
+    double contact_margin = 0.0;  // ≥ 0: gaps up to this between shapes are contacts
     bool mesh_depth = false;      // computes depths of contacts between meshes; takes longer than finding them
     std::size_t max_pairs = std::size_t{1} << 24;  // update() fails if there are more, so that memory stays bounded
     // Items' worth of background work on the tree an update (BoxTree::rebuild_step), beside what changes make
@@ -55,7 +55,7 @@ struct WorldStatistics {
     std::uint32_t boxes_changed = 0;                   // in this update; includes meshes that moved within their boxes
     bool tree_built = false;                           // built in one go: a scene was loaded, or much came to rest
     std::uint64_t box_pairs_tested = 0, contact_pairs_tested = 0;  // the second: pairs whose shapes were tested
-    std::uint64_t body_pairs_computed = 0;                         // in this update; none for resting objects
+    std::uint64_t shape_pairs_computed = 0;                        // in this update; none for resting objects
     collide::BatchStatistics box_tests;                            // how the pairs of boxes were decided
     double contacts_us = 0.0;  // microseconds that pairs and contacts took in this update
     std::uint32_t nodes_updated = 0;
@@ -80,7 +80,7 @@ class World {
 
     Result<ObjectHandle> add(const ObjectDescription& description);
     Result<void> remove(ObjectHandle object);
-    // Requires an object that was added with a transform, or by its body under no node.
+    // Requires an object that was added with a transform, or by its shape under no node.
     Result<void> set_transform(ObjectHandle object, const Transform& transform);
     Result<void> set_transforms(Strided<ObjectHandle> objects, Strided<Transform> transforms);
     // Requires an object that was added with a bound.
@@ -92,31 +92,31 @@ class World {
     Result<void> set_collides_with(ObjectHandle object, std::uint32_t layers);
     Result<void> set_user(ObjectHandle object, std::uint64_t user);  // at once, in pairs from the next update on
 
-    // Gives an object a body, or takes it away (nullptr). Pairs change with the next update, queries at once.
+    // Gives an object a shape, or takes it away (nullptr). Pairs change with the next update, queries at once.
     //
-    // Contacts of two objects that both have bodies have Contact::body_points. Data that the body refers to
-    // must stay alive and unchanged; to change it, set the body again. The object's transform, or the frame of its box
-    // or sphere, places the body; axes that are left-handed or off by more than 1e-6 are replaced by the nearest
+    // Contacts of two objects that both have shapes have Contact::shape_points. Data that the shape refers to
+    // must stay alive and unchanged; to change it, set the shape again. The object's transform, or the frame of its box
+    // or sphere, places the shape; axes that are left-handed or off by more than 1e-6 are replaced by the nearest
     // rotation.
     //
-    // Box: from the next update on, the object's box is the smallest in its own frame that contains the body and the
+    // Box: from the next update on, the object's box is the smallest in its own frame that contains the shape and the
     // bound or the mesh's box, if it has one. Views, pairs and queries use this box, so that they miss no part of the
-    // body. A sphere that does not contain the body is replaced by that box. The bound's size may be 0: it then only
-    // gives the body's position.
+    // shape. A sphere that does not contain the shape is replaced by that box. The bound's size may be 0: it then only
+    // gives the shape's position.
     //
     // Ground: half-spaces, and compounds that contain some, are infinite. They are tested against everything that
     // shares layers with them, wherever their object's box is; views use that box. The time of an update grows with the
     // number of objects on level ground, or, if the ground is tilted, with the number of all objects.
     //
-    // Scale: a transform that is not rigid scales the body. A uniform scale, within 1e-5, works for any kind of body.
-    // Other maps, also flat and mirroring ones, work for bodies with vertices and no rounding, and for half-spaces.
+    // Scale: a transform that is not rigid scales the shape. A uniform scale, within 1e-5, works for any kind of shape.
+    // Other maps, also flat and mirroring ones, work for shapes with vertices and no rounding, and for half-spaces.
     // Cylinders, cones and height fields may be scaled along their axes. Sizes are rounded to float. Scaled hulls and
     // meshes are built anew whenever the scale changes.
     //
-    // Errors: the object's transform would turn the body into another kind (unsupported) or put it out of range; calls
-    // that set transforms or parents return the same errors. nullptr for an object that was added with only a body
+    // Errors: the object's transform would turn the shape into another kind (unsupported) or put it out of range; calls
+    // that set transforms or parents return the same errors. nullptr for an object that was added with only a shape
     // (invalid_argument).
-    Result<void> set_body(ObjectHandle object, const convex::Body* body);
+    Result<void> set_shape(ObjectHandle object, const convex::Shape* shape);
 
     // A mesh must have triangles and pass validate(TriangleMesh).
     Result<MeshHandle> add_mesh(const MeshDescription& description);
@@ -181,7 +181,7 @@ class World {
     // Applies the changes and finds pairs and contacts. Call it once a frame.
     //
     // Errors: more than max_pairs pairs (all pairs are dropped; everything else is up to date); an object's transform
-    // puts its body out of range (no answer contains the body until the transform changes).
+    // puts its shape out of range (no answer contains the shape until the transform changes).
     Result<void> update(Executor& executor = serial_executor());
     [[nodiscard]] const WorldStatistics& statistics() const;
     // Returns the tree of resting objects, for overlays and measurements. Its items are the objects' indices.
@@ -210,59 +210,59 @@ class World {
     Result<void> hidden_by(ObjectHandle object, const ViewResult& visible, Vector<OccluderRef>& occluders) const;
     Result<void> drawn_occluders(const ViewResult& visible, Vector<OccluderRef>& occluders) const;
 
-    // Returns the nearest hit. Tests an object's body (as convex::raycast), or if it has none, its mesh's triangles,
+    // Returns the nearest hit. Tests an object's shape (as convex::raycast), or if it has none, its mesh's triangles,
     // its sphere or its box.
     //
-    // A ray that begins inside a body, sphere or box hits it at t = 0, without a normal. A direction may have any
+    // A ray that begins inside a shape, sphere or box hits it at t = 0, without a normal. A direction may have any
     // length except 0. An invalid ray hits nothing. No answer contains objects removed since the last update.
     [[nodiscard]] std::optional<ObjectHit> raycast(const Ray& ray, std::uint32_t layers = ~0u) const;
     [[nodiscard]] bool raycast_any(const Ray& ray, std::uint32_t layers = ~0u) const;
     // Lists the nearest hit of each object that the ray hits, in order of t, then of index.
     void raycast_all(const Ray& ray, Vector<ObjectHit>& hits, std::uint32_t layers = ~0u) const;
 
-    // Lists the objects that overlap the shape, in order of index. Tests an object's body (as convex::intersects), or
+    // Lists the objects that overlap the probe, in order of index. Tests an object's shape (as convex::intersects), or
     // if it has none, its mesh's triangles, its sphere or its box.
     //
-    // A mesh is a surface. A shape inside it overlaps it if the mesh is closed there and WorldOptions::containment is
-    // set, as for contacts; a body of a mesh is a surface only. Exact for boxes with boxes; otherwise as exact as
-    // convex::intersects. Beside a body or mesh, a box whose axes are off by more than 1e-6 counts as the smallest box
+    // A mesh is a surface. A probe inside it overlaps it if the mesh is closed there and WorldOptions::containment is
+    // set, as for contacts; a shape of a mesh is a surface only. Exact for boxes with boxes; otherwise as exact as
+    // convex::intersects. Beside a shape or mesh, a box whose axes are off by more than 1e-6 counts as the smallest box
     // around it along the nearest orthonormal axes. Vertices of meshes under a scale or shear are rounded to double.
     //
     // An invalid box, and a sphere or capsule with NaN or numbers beyond kMaxCoordinate, overlaps nothing; closest()
     // finds nothing for it.
-    void overlap(const Obb& shape, Vector<ObjectRef>& found, std::uint32_t layers = ~0u) const;
-    void overlap(const Sphere& shape, Vector<ObjectRef>& found, std::uint32_t layers = ~0u) const;
-    void overlap(const collide::Capsule& shape, Vector<ObjectRef>& found, std::uint32_t layers = ~0u) const;
-    // The same for any body except a half-space. A body with an invalid pose overlaps nothing.
-    void overlap(const convex::Body& shape, const RigidTransform& pose, Vector<ObjectRef>& found,
+    void overlap(const Obb& probe, Vector<ObjectRef>& found, std::uint32_t layers = ~0u) const;
+    void overlap(const Sphere& probe, Vector<ObjectRef>& found, std::uint32_t layers = ~0u) const;
+    void overlap(const collide::Capsule& probe, Vector<ObjectRef>& found, std::uint32_t layers = ~0u) const;
+    // The same for any shape except a half-space. A shape with an invalid pose overlaps nothing.
+    void overlap(const convex::Shape& probe, const RigidTransform& pose, Vector<ObjectRef>& found,
                  std::uint32_t layers = ~0u) const;
-    // Returns the first object that a moving body meets, by convex::cast against each object's body, or if it has none,
-    // its mesh's triangles, its sphere or its box. The objects are at rest.
+    // Returns the first object that a moving shape meets, by convex::cast against each object's shape, or if it has
+    // none, its mesh's triangles, its sphere or its box. The objects are at rest.
     //
-    // A body that starts inside a closed mesh meets the mesh from inside, as a ray does.
-    // A body that stands on an object can slide along it and move away from it. An object that overlaps the body at the
-    // start is met at time 0; CastOptions::ignore_initial_overlaps leaves it out. Errors: as convex::cast; a
+    // A shape that starts inside a closed mesh meets the mesh from inside, as a ray does.
+    // A shape that stands on an object can slide along it and move away from it. An object that overlaps the shape at
+    // the start is met at time 0; CastOptions::ignore_initial_overlaps leaves it out. Errors: as convex::cast; a
     // half-space; an invalid pose.
-    [[nodiscard]] Result<std::optional<BodyHit>> cast(const convex::Body& shape, const RigidTransform& pose,
-                                                      const convex::Motion& motion, const convex::CastOptions& options,
-                                                      std::uint32_t layers = ~0u) const;
-    // Returns the object that is nearest to the shape, within max_distance; if several are equally near, the one with
-    // the lowest index. Tests the same shapes as overlap(): the distance is 0 iff the shape overlaps the object.
-    [[nodiscard]] std::optional<ClosestObject> closest(const Sphere& shape, double max_distance,
+    [[nodiscard]] Result<std::optional<ShapeHit>> cast(const convex::Shape& probe, const RigidTransform& pose,
+                                                       const convex::Motion& motion, const convex::CastOptions& options,
                                                        std::uint32_t layers = ~0u) const;
-    [[nodiscard]] std::optional<ClosestObject> closest(const Obb& shape, double max_distance,
+    // Returns the object that is nearest to the probe, within max_distance; if several are equally near, the one with
+    // the lowest index. Tests the same shapes as overlap(): the distance is 0 iff the probe overlaps the object.
+    [[nodiscard]] std::optional<ClosestObject> closest(const Sphere& probe, double max_distance,
                                                        std::uint32_t layers = ~0u) const;
-    [[nodiscard]] std::optional<ClosestObject> closest(const collide::Capsule& shape, double max_distance,
+    [[nodiscard]] std::optional<ClosestObject> closest(const Obb& probe, double max_distance,
                                                        std::uint32_t layers = ~0u) const;
-    // The same for any body except a half-space, within the bounds that convex::distance proves. Returns nothing for an
-    // invalid pose.
-    [[nodiscard]] std::optional<ClosestObject> closest(const convex::Body& shape, const RigidTransform& pose,
+    [[nodiscard]] std::optional<ClosestObject> closest(const collide::Capsule& probe, double max_distance,
+                                                       std::uint32_t layers = ~0u) const;
+    // The same for any shape except a half-space, within the bounds that convex::distance proves. Returns nothing for
+    // an invalid pose.
+    [[nodiscard]] std::optional<ClosestObject> closest(const convex::Shape& probe, const RigidTransform& pose,
                                                        double max_distance, std::uint32_t layers = ~0u) const;
 
     // pairs() returns the pairs of objects whose boxes or spheres overlap, in order. contacts() returns the pairs that
     // touch, and those that have ended touching, in order. Both are of the last update.
     //
-    // With a contact margin, pairs of two bodies are listed up to that gap; on infinite ground, within rounding.
+    // With a contact margin, pairs of two shapes are listed up to that gap; on infinite ground, within rounding.
     [[nodiscard]] std::span<const ObjectPair> pairs() const;
     [[nodiscard]] std::span<const Contact> contacts() const;
 

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: MIT
+// Any shape against all objects.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <crofton/convex/query.hpp>
+#include <cstddef>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <new>
+#include <optional>
+#include <span>
+
+#include "world_state.hpp"
+
+namespace crofton {
+namespace {
+
+constexpr double kSameSurface = 0.996;         // normals within 5 degrees
+constexpr double kSameDirection = 1.0 - 1e-7;  // within 0.03 degrees
+
+// Around a shape, and some more.
+Aabb bounds_of(const convex::Shape& shape, const RigidTransform& pose) {
+    const glm::dvec3 half = shape.bounds().half_extents();
+    glm::dvec3 half_size(0.0);
+    for (int k = 0; k < 3; ++k) half_size += half[k] * glm::abs(pose.rotation[k]);
+    const glm::dvec3 offset = shape.bounds().center();
+    const glm::dvec3 center = pose.rotation * offset + pose.translation;
+    // The centre's sums round by 2^-53 of their parts, which may cancel.
+    const double parts = std::abs(offset.x) + std::abs(offset.y) + std::abs(offset.z);
+    half_size = half_size * (1.0 + 1e-9) + 1e-12 * glm::abs(center) + 1e-14 * (parts + glm::abs(pose.translation));
+    return {center - half_size, center + half_size};
+}
+
+// All that the shape passes in the time: a sphere around its pivot, or the box at both ends.
+Aabb swept_bounds(const convex::Shape& shape, const RigidTransform& pose, const convex::Motion& motion, double time,
+                  double tolerance) {
+    Aabb bounds = bounds_of(shape, pose);
+    if (motion.spin != glm::dvec3(0.0)) {
+        const glm::dvec3 pivot = pose.rotation * motion.pivot + pose.translation;
+        const double half_size =
+            glm::length(shape.bounds().half_extents()) + glm::length(shape.bounds().center() - motion.pivot);
+        bounds = {pivot - half_size * (1.0 + 1e-5), pivot + half_size * (1.0 + 1e-5)};
+    }
+    const glm::dvec3 way = time * motion.velocity;
+    bounds.include(Aabb{bounds.min + way, bounds.max + way});
+    const glm::dvec3 margin = tolerance + 1e-9 * (glm::abs(bounds.min) + glm::abs(bounds.max));
+    return {bounds.min - margin, bounds.max + margin};
+}
+
+// Objects that a cast begins in contact with. Of very many the first are enough: the others have the same normals.
+class TouchedObjects {
+  public:
+    void add(std::uint32_t id, const convex::Shape& shape, const RigidTransform& pose) {
+        if (count_ == kMost) return;
+        const Touched& touched = touched_[count_].emplace(Touched{id, shape, pose});
+        new (placed_[count_++]) convex::ShapeAtPose{touched.shape, touched.pose};
+    }
+    // Whether there are others than this.
+    [[nodiscard]] bool has_others(std::uint32_t id) const {
+        return count_ > 1 || (count_ == 1 && touched_[0]->id != id);
+    }
+    [[nodiscard]] std::span<const convex::ShapeAtPose> placed() const {
+        return {std::launder(reinterpret_cast<const convex::ShapeAtPose*>(placed_)), count_};
+    }
+
+  private:
+    static constexpr std::size_t kMost = 32;
+    struct Touched {
+        std::uint32_t id;
+        convex::Shape shape;
+        RigidTransform pose;
+    };
+    std::array<std::optional<Touched>, kMost> touched_;
+    alignas(convex::ShapeAtPose) std::byte placed_[kMost][sizeof(convex::ShapeAtPose)];
+    std::size_t count_ = 0;
+};
+
+// Whether a touch at a hit's time is nearer: by `margin`, or along another normal by any amount.
+bool is_nearer(const convex::Impact& touch, const ShapeHit& hit, double margin) {
+    const bool other_way = glm::dot(touch.normal, hit.normal) < kSameDirection;
+    return touch.distance < (other_way ? hit.distance : hit.distance - margin);
+}
+
+// Whether what is touched is in the way: by the velocity of the point of touch, the shape comes at least as far along
+// the normal in the time left as the gap is wide. Otherwise it slides along, or parts.
+bool is_in_the_way(const convex::Impact& touch, const convex::ShapeAtPose& shape, const convex::Motion& motion,
+                   double left) {
+    const glm::dvec3 arm = touch.on_a - (shape.pose.rotation * motion.pivot + shape.pose.translation);
+    const glm::dvec3 way = left * (motion.velocity + glm::cross(motion.spin, arm));
+    const double slack = 0x1p-40 * (shape.shape.core_radius() + shape.shape.radius() + glm::length(way));
+    return glm::dot(way, touch.normal) >= std::max(touch.distance, slack);
+}
+
+Result<void> check(const convex::Shape& probe, const RigidTransform& pose) {
+    if (!probe.is_bounded())
+        return fail(ErrorCode::unsupported, kNoItem,
+                    "world: a half-space overlaps nearly everything; use a bounded shape");
+    return convex::validate_pose(pose);
+}
+
+}  // namespace
+
+void World::overlap(const convex::Shape& probe, const RigidTransform& pose, Vector<ObjectRef>& found,
+                    std::uint32_t layers) const {
+    found.clear();
+    if (!check(probe, pose)) return;
+    const State& s = *state_;
+    s.visit_near(bounds_of(probe, pose), 0.0, layers, [&](std::uint32_t id) {
+        if (s.overlaps({probe, pose}, id)) found.push_back(s.ref_of(id));
+        return 0.0;
+    });
+    world::sort_by_object(found);
+}
+
+std::optional<ClosestObject> World::closest(const convex::Shape& probe, const RigidTransform& pose, double max_distance,
+                                            std::uint32_t layers) const {
+    if (!check(probe, pose)) return std::nullopt;
+    const State& s = *state_;
+    return s.closest(bounds_of(probe, pose), max_distance, layers, [&](std::uint32_t id, double limit) {
+        return s.gap_to_shape({probe, pose}, id, limit);
+    });
+}
+
+Result<std::optional<ShapeHit>> World::cast(const convex::Shape& probe, const RigidTransform& pose,
+                                            const convex::Motion& motion, const convex::CastOptions& options,
+                                            std::uint32_t layers) const {
+    if (auto good = check(probe, pose); !good) return tl::unexpected(good.error());
+    // Bad motions and options are told also where nothing is near.
+    static const convex::Shape kPoint = *convex::Shape::sphere(0.0);
+    const RigidTransform far{glm::dmat3(1.0), glm::dvec3(1e15)};
+    if (auto good = convex::cast({probe, pose}, motion, {kPoint, far}, {}, options); !good)
+        return tl::unexpected(good.error());
+    const State& s = *state_;
+    const auto hit_of = [&](std::uint32_t id, const convex::Impact& impact) {
+        const ObjectRef ref = s.ref_of(id);
+        return ShapeHit{ref.object,
+                        ref.user,
+                        impact.time,
+                        impact.normal,
+                        impact.on_b,
+                        impact.part_b.triangle,
+                        impact.result == convex::CastResult::hit,
+                        impact.distance};
+    };
+    const auto find_first = [&](std::span<const convex::ShapeAtPose> touched) {
+        std::optional<ShapeHit> first;
+        convex::CastOptions rest = options;
+        const Aabb swept = swept_bounds(probe, pose, motion, options.duration, options.tolerance);
+        s.visit_near(swept, 0.0, layers, [&](std::uint32_t id) {
+            const world::QueryShape stand = s.query_shape_of(id);
+            if (!stand.pose) return 0.0;
+            const auto impact =
+                convex::cast({probe, pose}, motion, {stand.shape, *stand.pose}, {}, rest, {{}, touched});
+            if (!impact || impact->result == convex::CastResult::miss) return 0.0;
+            if (first && impact->time > first->time) return 0.0;
+            if (first && impact->time == first->time && id > first->object.index) return 0.0;
+            first = hit_of(id, *impact);
+            rest.early_out = impact->time;
+            return 0.0;
+        });
+        return first;
+    };
+    // Objects that the shape touches at one time are one surface, to slide on or to land on.
+    const auto visit_touched = [&](const RigidTransform& there, const auto& visit) {
+        convex::CastOptions now = options;
+        now.duration = 0.0;
+        now.ignore_initial_overlaps = false;
+        s.visit_near(bounds_of(probe, there), options.tolerance, layers, [&](std::uint32_t id) {
+            const world::QueryShape stand = s.query_shape_of(id);
+            if (!stand.pose) return options.tolerance;
+            const auto impact = convex::cast({probe, there}, {}, {stand.shape, *stand.pose}, {}, now);
+            if (impact && impact->result == convex::CastResult::hit) visit(id, stand, *impact);
+            return options.tolerance;
+        });
+    };
+    std::optional<ShapeHit> first = find_first({});
+    const auto overlaps = [&] { return first->time == 0.0 && first->distance <= -options.tolerance; };
+    if (!first || overlaps()) return first;
+    TouchedObjects at_start;
+    bool slides = false;
+    visit_touched(pose, [&](std::uint32_t id, const world::QueryShape& stand, const convex::Impact& touch) {
+        at_start.add(id, stand.shape, *stand.pose);
+        slides |= !is_in_the_way(touch, {probe, pose}, motion, options.duration);
+    });
+    if (at_start.has_others(first->object.index)) first = find_first(at_start.placed());
+    if (!first || first->time == 0.0 || !first->resolved || options.ignore_initial_overlaps) return first;
+    // The nearest of those that it touches then.
+    std::optional<ShapeHit> nearest;
+    const RigidTransform there = convex::moved(pose, motion, first->time);
+    visit_touched(there, [&](std::uint32_t id, const world::QueryShape&, const convex::Impact& touch) {
+        if (!is_in_the_way(touch, {probe, there}, motion, options.duration - first->time)) return;
+        // What it slides on may seem to come nearer, within rounding.
+        if (slides && glm::dot(touch.normal, first->normal) < kSameSurface) return;
+        if (!is_nearer(touch, *first, 1e-3 * options.tolerance)) return;
+        if (nearest && touch.distance > nearest->distance) return;
+        if (nearest && touch.distance == nearest->distance && id > nearest->object.index) return;
+        nearest = hit_of(id, touch);
+    });
+    if (!nearest) return first;
+    nearest->time = first->time;
+    return nearest;
+}
+
+}  // namespace crofton

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+// Objects as meshes: the trees over triangles that rays and contacts ask.
+#pragma once
+#include <crofton/convex/shape.hpp>
+#include <crofton/geometry/shapes.hpp>
+#include <crofton/mesh/mesh_tree.hpp>
+#include <crofton/scene/scene.hpp>
+
+#include "object_table.hpp"
+#include "spatial_index.hpp"
+
+namespace crofton::world {
+
+// Triangles and where they are.
+struct PosedTree {
+    const mesh::MeshTree* tree = nullptr;  // none: no valid triangle
+    RigidTransform pose;
+};
+
+// A mesh's tree serves all objects that turn and move it. An object with a scale or shear has a tree of its own, of the
+// vertices times the linear part, rounded to float. So has a box that meets a mesh. Spheres are points.
+class Shapes {
+  public:
+    Shapes();
+
+    // The mesh is new or another.
+    void set_mesh(scene::MeshId mesh, bool wants_triangles);
+    // Its vertices have moved: its tree is refitted from the second time on, and built anew where it has worn out.
+    void note_deformed(scene::MeshId mesh) { meshes_[mesh].deforms = true; }
+    // Builds the trees of meshes that are new or changed; true if there were any.
+    bool update(const scene::Scene& scene, Executor& executor);
+
+    // Its mesh's tree; none for a bound, and where triangles are not wanted or none is valid: then its box stands for
+    // it.
+    [[nodiscard]] const mesh::MeshTree* mesh_tree_of(const Object& object) const {
+        const bool has = object.kind == BoundKind::none && object.mesh < meshes_.size();
+        return has && meshes_[object.mesh].is_usable ? &meshes_[object.mesh].tree : nullptr;
+    }
+
+    // Returns an object's mesh as a shape, under a map that stays alive as long as the shape; nullptr: no map. Requires
+    // that there is a tree.
+    [[nodiscard]] convex::Shape shape_of(const Object& object, const glm::dmat3* map) const;
+
+    // A triangle of the tree of an object's mesh, in its frame. Requires that there is one.
+    [[nodiscard]] Triangle triangle_of(const Object& object, std::uint32_t triangle) const;
+
+    // Objects that prepare() is called for between begin() and build() can be asked for their tree afterwards, until
+    // something changes.
+    void begin();
+    void prepare(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene, std::uint32_t object);
+    void build(const scene::Scene& scene, Executor& executor);
+    [[nodiscard]] PosedTree posed_tree(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene,
+                                       std::uint32_t object) const;
+    void forget(std::uint32_t object);  // it is gone, or another
+    // Of a box that is no object: its triangles, in `tree`.
+    [[nodiscard]] PosedTree posed_box(const Obb& box, const scene::Scene& scene, mesh::MeshTree& tree) const;
+
+  private:
+    struct Mesh {
+        mesh::MeshTree tree;
+        Vector<std::uint32_t> places;  // of triangles in the tree's leaves, by index: leaf · kMeshLeafWidth + lane
+        std::uint64_t revision = 0;
+        Aabb bounds;          // of the tree's vertices
+        double spread = 0.0;  // of the tree's boxes when it was built
+        bool wants_triangles = true, is_usable = false;
+        bool deforms = false, can_refit = false;  // the second: the tree is refittable and of this mesh's triangles
+    };
+    struct Own {
+        mesh::MeshTree tree;
+        glm::dmat3 linear{1.0};
+        glm::vec3 half_extents{0.0f};   // of a box
+        scene::MeshId mesh = kNoIndex;  // none: a box
+        std::uint64_t revision = 0;
+        bool is_usable = false;
+    };
+    static void update_tree(const TriangleMesh& triangles, Mesh& mesh);
+    void build_own(const scene::Scene& scene, Own& own) const;
+
+    Vector<Mesh> meshes_;
+    Vector<std::uint32_t> own_of_object_;  // kNoIndex: none
+    Vector<Own> own_;
+    Vector<std::uint32_t> free_, to_build_;
+    mesh::MeshTree point_;
+};
+
+}  // namespace crofton::world
