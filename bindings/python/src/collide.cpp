@@ -129,26 +129,27 @@ class Pairs {
 }  // namespace
 
 void bind_collide(py::module_& module) {
-    module.def(
-        "intersects", &intersects, py::arg("a"), py::arg("b"),
-        "Whether a[i] and b[i] share a point, exactly; touching counts. One box goes with all of the other side. A box "
-        "with NaN or infinite members meets nothing.");
+    module.def("intersects", &intersects, py::arg("a"), py::arg("b"),
+               "Tests whether a[i] and b[i] share a point, exactly; touching counts. A single box is tested against "
+               "all of the other side. A box with NaN or infinite members overlaps nothing.");
     module.def("distance", &distance, py::arg("a"), py::arg("b"),
-               "How far a[i] and b[i] are apart; 0 where they meet.");
+               "Returns the distance between a[i] and b[i]; 0 if they overlap.");
     module.def("penetration", &penetration, py::arg("a"), py::arg("b"),
-               "(depth, axis): the shortest way out of the overlap moves b by depth · axis. Negative: a gap.");
-    module.def("contact_manifold", &contact_manifold, py::arg("a"), py::arg("b"),
-               "Where two boxes touch: `normal` from a to b, `points` of shape (n, 3), n ≤ 4, and their `depths`.");
-    py::class_<Pairs>(module, "Broadphase", "All pairs of boxes that meet, kept from frame to frame.")
+               "Returns (depth, axis): moving b by depth · axis ends the overlap by the shortest way. A negative depth "
+               "is a gap.");
+    module.def(
+        "contact_manifold", &contact_manifold, py::arg("a"), py::arg("b"),
+        "Returns where two boxes touch: `normal` from a to b, `points` of shape (n, 3), n ≤ 4, and their `depths`.");
+    py::class_<Pairs>(module, "Broadphase",
+                      "Finds all pairs of boxes that overlap, and updates them from frame to frame.")
         .def(py::init<bool>(), py::kw_only(), py::arg("exact_boxes") = true)
         .def("__repr__",
              [](Pairs& p) {
                  return format("Broadphase(%zd pairs)", p.read([](auto& b) { return b.pairs(); }).shape(0));
              })
-        .def(
-            "update", &Pairs::update, py::arg("boxes"), py::arg("moved") = py::none(),
-            "boxes[i] is the same item as before. With `moved`, only these items have changed. A box that is not valid "
-            "meets nothing.")
+        .def("update", &Pairs::update, py::arg("boxes"), py::arg("moved") = py::none(),
+             "Updates the pairs. boxes[i] is the same item as in the last call. If `moved` is given, only these items "
+             "have changed. A box that is not valid overlaps nothing.")
         .def_property_readonly(
             "pairs", [](Pairs& p) { return p.read([](auto& b) { return b.pairs(); }); },
             "indices of shape (n, 2), in order")

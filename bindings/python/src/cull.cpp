@@ -86,21 +86,19 @@ void bind_cull(py::module_& module) {
     module.attr("STRADDLING") = static_cast<int>(cull::Verdict::straddling);
     module.attr("INSIDE") = static_cast<int>(cull::Verdict::inside);
     module.def("classify", &classify, py::arg("view"), py::arg("boxes"), py::kw_only(), py::arg("conservative") = false,
-               "OUTSIDE, STRADDLING or INSIDE for each box, exactly. `view` is a Camera or a Frustum. A box that is "
-               "not finite "
-               "straddles, here and in lists: what may be visible is never left out.");
-    module.def(
-        "find_visible", &find_visible, py::arg("view"), py::arg("boxes"), py::kw_only(), py::arg("layers") = py::none(),
-        py::arg("layer_mask") = ~0u, py::arg("conservative") = false,
-        "The indices, ascending, of the boxes that a view sees. `layers` has 32 bits a box; a view sees those that "
-        "share a bit with `layer_mask`.");
-    py::class_<BoxList>(module, "BoxList", "Boxes at rest, laid out once for many views.")
+               "Returns OUTSIDE, STRADDLING or INSIDE for each box, exactly. `view` is a Camera or a Frustum. A box "
+               "that is not finite is STRADDLING, because nothing that may be visible is left out.");
+    module.def("find_visible", &find_visible, py::arg("view"), py::arg("boxes"), py::kw_only(),
+               py::arg("layers") = py::none(), py::arg("layer_mask") = ~0u, py::arg("conservative") = false,
+               "Returns the indices, ascending, of the boxes that a view sees. `layers` holds 32 bits per box; boxes "
+               "that share no bit with `layer_mask` are left out.");
+    py::class_<BoxList>(module, "BoxList", "A list of boxes that do not change, prepared once for many views.")
         .def(py::init<const py::handle&>(), py::arg("boxes"))
         .def("__len__", &BoxList::size)
         .def("__repr__", [](const BoxList& list) { return format("BoxList(%zu boxes)", list.size()); })
         .def_property_readonly("boxes", &BoxList::boxes)
         .def("find_visible", &BoxList::find_visible, py::arg("view"), py::kw_only(), py::arg("conservative") = false,
-             "The indices, ascending, of the boxes that a view sees.");
+             "Returns the indices, ascending, of the boxes that a view sees.");
 }
 
 }  // namespace crofton::python

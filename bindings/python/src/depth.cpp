@@ -166,8 +166,8 @@ void bind_depth(py::module_& module) {
     py::class_<ClusteredMesh, std::shared_ptr<ClusteredMesh>>(
         module, "ClusteredMesh", "A mesh cut into clusters, groups of neighbouring triangles, for DepthCuller.")
         .def(py::init(&cut), py::arg("positions"), py::arg("indices"), py::arg("max_triangles") = 0,
-             "From points (n, 3), stored as float32, and indices, three a triangle. A cluster has up to "
-             "`max_triangles`, at most 64; 0 chooses by the mesh's size.")
+             "Cuts a mesh given by points (n, 3), stored as float32, and indices, three per triangle. A cluster has up "
+             "to `max_triangles` triangles, at most 64; 0 chooses by the mesh's size.")
         .def_property_readonly(
             "triangle_order", [](const ClusteredMesh& mesh) { return array_of<std::uint32_t>(mesh.triangle_order()); },
             "the mesh's triangles in the order of the clusters: indices.reshape(-1, 3)[triangle_order] is an index "
@@ -182,11 +182,12 @@ void bind_depth(py::module_& module) {
                           mesh.triangle_order().size());
         });
 
-    py::class_<DrawnMesh>(module, "DepthObject", "A mesh that a picture draws, for DepthCuller.")
+    py::class_<DrawnMesh>(module, "DepthObject", "A mesh in a picture, for DepthCuller.")
         .def(py::init(&drawn_mesh), py::arg("mesh"), py::arg("to_clip"), py::kw_only(), py::arg("one_sided") = false,
              py::arg("hides") = true, py::arg("position_error") = 0.0,
-             "`to_clip` takes columns (x, y, z, 1) of the mesh's to clip space, in float32 as a vertex shader does. "
-             "`position_error`: how far drawn vertices may lie from the mesh's, besides that product's rounding.")
+             "`to_clip` transforms columns (x, y, z, 1) from the mesh's frame to clip space, in float32 as a vertex "
+             "shader does. `position_error` bounds how far drawn vertices may be from the mesh's, apart from the "
+             "rounding of that product.")
         .def_property_readonly("mesh",
                                [](const DrawnMesh& m) { return std::const_pointer_cast<ClusteredMesh>(m.mesh); })
         .def_property(
@@ -194,8 +195,8 @@ void bind_depth(py::module_& module) {
             [](DrawnMesh& m, const py::handle& given) { m.to_clip = glm::mat4(projection_of(given, "to_clip")); },
             "shape (4, 4), as NumPy prints it")
         .def_readwrite("one_sided", &DrawnMesh::one_sided,
-                       "back faces are not drawn; front faces are counter-clockwise seen with y up")
-        .def_readwrite("hides", &DrawnMesh::hides, "False for what is alpha-tested or transparent: it hides nothing")
+                       "True if back faces are not drawn; front faces are counter-clockwise seen with y up")
+        .def_readwrite("hides", &DrawnMesh::hides, "False for alpha-tested and transparent meshes, which hide nothing")
         .def_readwrite("position_error", &DrawnMesh::position_error)
         .def("__repr__", [](const DrawnMesh& m) {
             return format("DepthObject(%zu triangles%s%s)", m.mesh->triangle_order().size(),
@@ -203,8 +204,8 @@ void bind_depth(py::module_& module) {
         });
 
     py::class_<Culler>(module, "DepthCuller",
-                       "Finds the triangles without which a picture would change, front to back, by the depth of those "
-                       "that it has found. It keeps its memory between calls.")
+                       "Finds the triangles that a picture needs: walks front to back and tests clusters against the "
+                       "depth of the triangles found before. Keeps its memory between calls.")
         .def(py::init<>())
         .def("__repr__",
              [](Culler& culler) {
@@ -213,13 +214,14 @@ void bind_depth(py::module_& module) {
              })
         .def("find_visible", &Culler::find_visible, py::arg("objects"), py::arg("width"), py::arg("height"),
              py::kw_only(), py::arg("depth") = "reversed_zero_to_one",
-             "(object, cluster, triangles): arrays with one item for each cluster that is listed, by object, then by "
+             "Returns (object, cluster, triangles): arrays with one item per listed cluster, by object, then by "
              "cluster. Bit k of `triangles` stands for triangle first_triangle + k of the cluster. The picture has one "
-             "sample a pixel and 32-bit float depth.")
-        .def_property_readonly("statistics", &Culler::statistics, "what the last call asked, drew and listed: a dict")
+             "sample per pixel and 32-bit float depth.")
+        .def_property_readonly("statistics", &Culler::statistics,
+                               "what the last call tested, drew and listed, as a dict")
         .def_property_readonly("nearness", &Culler::nearness,
-                               "what the triangles listed last surely cover, (height, width), the bottom row first: "
-                               "their depth, negated unless reversed; −inf where none does");
+                               "a depth that the triangles of the last call certainly cover, (height, width), the "
+                               "bottom row first; negated unless reversed, and −inf where no triangle covers");
 }
 
 }  // namespace crofton::python

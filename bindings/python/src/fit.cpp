@@ -107,34 +107,38 @@ py::tuple minimal_sphere(const py::handle& given) {
 }  // namespace
 
 void bind_fit(py::module_& module) {
-    py::class_<fit::ExactFit>(module, "ExactFit", "The best box around points, with a proof of how good it is.")
+    py::class_<fit::ExactFit>(module, "ExactFit",
+                              "The best box around points, with a bound on how far it is from the optimum.")
         .def_readonly("box", &fit::ExactFit::box)
         .def_readonly("value", &fit::ExactFit::value, "the criterion of `box`")
-        .def_readonly("lower_bound", &fit::ExactFit::lower_bound, "no box around the points has less")
+        .def_readonly("lower_bound", &fit::ExactFit::lower_bound,
+                      "a lower bound: no box around the points has a smaller value")
         .def_readonly("gap", &fit::ExactFit::gap, "(value − lower_bound) / value")
         .def_readonly("complete", &fit::ExactFit::complete, "the search ended by itself")
-        .def_readonly("cells", &fit::ExactFit::cells, "sets of orientations looked at")
+        .def_readonly("cells", &fit::ExactFit::cells, "how many sets of orientations the search tested")
         .def("__repr__", [](const fit::ExactFit& f) {
             return format("ExactFit(value=%g, gap=%g, %s)", f.value, f.gap, f.complete ? "complete" : "not complete");
         });
 
-    module.def(
-        "fit_obb", &fit_obb, py::arg("points"), py::arg("criterion") = "perimeter", py::arg("quality") = "tight",
-        "The oriented box around points of shape (n, 3) that is best by a criterion. Contains every point exactly.");
+    module.def("fit_obb", &fit_obb, py::arg("points"), py::arg("criterion") = "perimeter", py::arg("quality") = "tight",
+               "Returns the oriented box around points of shape (n, 3) that is best by a criterion. It contains every "
+               "point exactly.");
     module.def("fit_exact", &fit_exact, py::arg("points"), py::arg("criterion") = "perimeter", py::kw_only(),
                py::arg("gap") = 2e-7, py::arg("seconds") = py::none(), py::arg("progress") = py::none(),
-               "The best of all boxes, to the relative `gap`. `progress(value, lower_bound)` may end the search by "
-               "returning False; the result then carries the gap reached. Ctrl-C raises KeyboardInterrupt.");
+               "Finds the best of all boxes, to the relative `gap`. `progress(value, lower_bound)` may end the search "
+               "by returning False; the result then has the gap reached. Ctrl-C raises KeyboardInterrupt.");
     module.def("fit_many", &fit_many, py::arg("positions"), py::arg("ends"), py::arg("indices") = py::none(),
                py::arg("criterion") = "perimeter", py::arg("quality") = "fast",
-               "A box for each cluster of points; cluster i holds indices[ends[i − 1]:ends[i]]. Returns an array of "
-               "box_dtype.");
+               "Fits a box to each cluster of points; cluster i holds indices[ends[i − 1]:ends[i]]. Returns an array "
+               "of box_dtype.");
     module.def("minimal_rectangle", &minimal_rectangle, py::arg("points"), py::arg("criterion") = "perimeter",
-               "The best rectangle around points of the plane: (center, axis, half_extents).");
+               "Returns the best rectangle around points in the plane: (center, axis, half_extents).");
     module.def("minimal_triangle", &minimal_triangle, py::arg("points"), py::arg("criterion") = "area",
-               "The best triangle around points of the plane, shape (3, 2), counter-clockwise.");
-    module.def("minimal_disc", &minimal_disc, py::arg("points"), "The smallest disc: (center, radius).");
-    module.def("minimal_sphere", &minimal_sphere, py::arg("points"), "The smallest sphere: (center, radius).");
+               "Returns the best triangle around points in the plane, shape (3, 2), counter-clockwise.");
+    module.def("minimal_disc", &minimal_disc, py::arg("points"),
+               "Returns the smallest disc around points in the plane: (center, radius).");
+    module.def("minimal_sphere", &minimal_sphere, py::arg("points"),
+               "Returns the smallest sphere around points: (center, radius).");
 }
 
 }  // namespace crofton::python

@@ -87,11 +87,11 @@ py::array corners_of(const Obb& box) {
 }  // namespace
 
 void bind_geometry(py::module_& module) {
-    py::class_<Obb>(module, "Box", "An oriented box: centre in double; axes and half extents in single precision.")
+    py::class_<Obb>(module, "Box",
+                    "An oriented box. Its centre is in double, its axes and half extents in single precision.")
         .def(py::init(&make_box), py::arg("center"), py::arg("half_extents"), py::arg("axes") = py::none(),
-             "`axes[k]` is the direction of axis k, of unit length; without axes they are x, y and z. Half extents "
-             "become the "
-             "next floats above.")
+             "`axes[k]` is the direction of axis k, of unit length; by default x, y and z. Half extents are rounded up "
+             "to float.")
         .def_property_readonly("center", [](const Obb& b) { return py::array_t<double>(3, &b.center[0]); })
         .def_property_readonly("axes", &axes_of, "axes[k] is the direction of axis k")
         .def_property_readonly("half_extents", [](const Obb& b) { return py::array_t<float>(3, &b.half_extents[0]); })
@@ -107,17 +107,17 @@ void bind_geometry(py::module_& module) {
             [](const Obb& b) {
                 return matrix_of({glm::dmat3(b.axes), b.center});
             },
-            "shape (4, 4): takes the box's own coordinates to the world's; its columns are the axes and the center")
+            "shape (4, 4): transforms the box's own coordinates to the world; its columns are the axes and the center")
         .def_property_readonly("corners", &corners_of,
-                               "shape (8, 3); bit k of a corner's index says which side along axis k")
+                               "shape (8, 3); a corner is on the + side of axis k if bit k of its index is set")
         .def_property_readonly("volume", [](const Obb& b) { return volume(b); })
         .def_property_readonly("surface_area", [](const Obb& b) { return surface_area(b); })
         .def_property_readonly(
             "edge_sum", [](const Obb& b) { return edge_sum(b); },
-            "the sum of the three edges, which the perimeter criterion minimises")
+            "the sum of the three edge lengths, which the perimeter criterion minimises")
         .def(
             "contains", [](const Obb& b, const py::handle& p) { return contains(b, vector_of(p, "point")); },
-            py::arg("point"), "Decided exactly; the boundary belongs to the box.")
+            py::arg("point"), "Tests whether the box contains the point, exactly. The boundary belongs to the box.")
         .def("__eq__",
              [](const Obb& a, const Obb& b) {
                  return a.center == b.center && a.axes == b.axes && a.half_extents == b.half_extents;
@@ -126,13 +126,14 @@ void bind_geometry(py::module_& module) {
         .def("__repr__", &show)
         .attr("__hash__") = py::none();
 
-    py::class_<Camera>(module, "Camera", "A right-handed camera; angles in radians, one unit of length for all.")
+    py::class_<Camera>(module, "Camera",
+                       "A right-handed camera. Angles are in radians; all lengths have the same unit.")
         .def(py::init(&make_camera), py::arg("position") = py::make_tuple(0.0, 0.0, 0.0),
              py::arg("forward") = py::make_tuple(0.0, 0.0, -1.0), py::arg("up") = py::make_tuple(0.0, 1.0, 0.0),
              py::kw_only(), py::arg("fov_y") = Camera{}.fov_y, py::arg("height") = py::none(),
              py::arg("aspect") = Camera{}.aspect, py::arg("near") = Camera{}.near_distance,
              py::arg("far") = Camera{}.far_distance,
-             "Perspective with the full vertical angle `fov_y`; with `height`, orthographic.")
+             "A perspective camera with the full vertical angle `fov_y`; if `height` is given, an orthographic one.")
         .def_property_readonly("position", [](const Camera& c) { return tuple_of(c.position); })
         .def_property_readonly("forward", [](const Camera& c) { return tuple_of(c.forward); })
         .def_property_readonly("frustum", [](const Camera& c) { return value_of(frustum_of(c)); })
@@ -144,10 +145,11 @@ void bind_geometry(py::module_& module) {
                           c.near_distance, c.far_distance);
         });
 
-    py::class_<Frustum>(module, "Frustum", "A view volume: the points on the inner side of all planes.")
+    py::class_<Frustum>(module, "Frustum", "A view volume: all points on the inner side of its planes.")
         .def_static("from_matrix", &frustum_from, py::arg("matrix"), py::arg("depth") = "reversed_zero_to_one",
                     py::arg("origin") = py::make_tuple(0.0, 0.0, 0.0),
-                    "From a matrix that takes columns (x, y, z, 1), relative to `origin`, to clip space.")
+                    "Makes the view volume of a matrix that transforms columns (x, y, z, 1), relative to `origin`, to "
+                    "clip space.")
         .def_property_readonly("origin", [](const Frustum& f) { return tuple_of(f.origin); })
         .def("__repr__",
              [](const Frustum& f) {
@@ -160,7 +162,8 @@ void bind_geometry(py::module_& module) {
             [](const Frustum& f, const py::handle& toward_light) {
                 return value_of(cull::shadow_volume(f, vector_of(toward_light, "toward_light")));
             },
-            py::arg("toward_light"), "All points whose shadow, of a far light, may fall into the view.");
+            py::arg("toward_light"),
+            "Returns the volume of all points whose shadow from a distant light may fall into the view.");
 }
 
 }  // namespace crofton::python

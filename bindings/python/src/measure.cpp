@@ -55,26 +55,28 @@ void bind_measure(py::module_& module) {
             "of_box", [](const Obb& box) { return measure::intrinsic_volumes_of_box(box); }, py::arg("box"))
         .def_static(
             "of_box", [](double a, double b, double c) { return measure::intrinsic_volumes_of_box(a, b, c); },
-            py::arg("a"), py::arg("b"), py::arg("c"), "A box of these edges.")
+            py::arg("a"), py::arg("b"), py::arg("c"), "Returns the measures of a box with these edges.")
         .def_static("of_sphere", &measure::intrinsic_volumes_of_sphere, py::arg("radius"))
         .def_static("of_segment", &measure::intrinsic_volumes_of_segment, py::arg("length"))
-        .def_static("of_hull", &of_hull, py::arg("points"), "The convex hull of points, shape (n, 3).")
+        .def_static("of_hull", &of_hull, py::arg("points"),
+                    "Returns the measures of the convex hull of points, shape (n, 3).")
         .def_static(
             "of_frustum", [](const Camera& camera) { return value_of(measure::intrinsic_volumes_of_frustum(camera)); },
-            py::arg("camera"), "The view volume of a camera whose far plane is finite.")
+            py::arg("camera"), "Returns the measures of a camera's view volume; its far plane must be finite.")
         .def("__repr__", &show);
 
-    py::class_<Criterion>(module, "Criterion", "α·volume + β·area + γ·mean curvature: what a good bound makes small.")
+    py::class_<Criterion>(module, "Criterion",
+                          "α·volume + β·area + γ·mean curvature: the cost that a good bound minimises.")
         .def(py::init(&make_criterion), py::arg("volume") = 0.0, py::arg("area") = 0.0, py::arg("mean_curvature") = 0.0)
         .def_readonly("volume_weight", &Criterion::volume_weight)
         .def_readonly("area_weight", &Criterion::area_weight)
         .def_readonly("mean_curvature_weight", &Criterion::mean_curvature_weight)
-        .def_static("for_rays", &measure::for_rays, py::arg("length"), "Against random segments of this length.")
+        .def_static("for_rays", &measure::for_rays, py::arg("length"), "The cost for random segments of this length.")
         .def_static("for_partner", &measure::for_partner, py::arg("shape"),
-                    "Against a convex shape that moves uniformly.")
+                    "The cost for a convex shape at uniformly random motions.")
         .def_static(
             "for_frustum", [](const Camera& camera) { return value_of(measure::for_frustum(camera)); },
-            py::arg("camera"), "Against the view volume of a camera that moves uniformly.")
+            py::arg("camera"), "The cost for the view volume of a camera at uniformly random motions.")
         .def("__repr__",
              [](const Criterion& c) {
                  return format("Criterion(volume=%g, area=%g, mean_curvature=%g)", c.volume_weight, c.area_weight,
@@ -85,23 +87,24 @@ void bind_measure(py::module_& module) {
             return criterion(measure::intrinsic_volumes_of_box(box));
         });
 
-    module.def(
-        "kinematic_measure",
-        py::overload_cast<const IntrinsicVolumes&, const IntrinsicVolumes&>(&measure::kinematic_measure), py::arg("b"),
-        py::arg("k"),
-        "The measure of the motions under which B meets K: rotations have measure 1, translations their volume.");
+    module.def("kinematic_measure",
+               py::overload_cast<const IntrinsicVolumes&, const IntrinsicVolumes&>(&measure::kinematic_measure),
+               py::arg("b"), py::arg("k"),
+               "Returns the measure of the motions under which B meets K: rotations have measure 1, translations their "
+               "volume.");
     module.def("improper_outside",
                py::overload_cast<const IntrinsicVolumes&, const IntrinsicVolumes&, const IntrinsicVolumes&>(
                    &measure::improper_outside),
                py::arg("query"), py::arg("bound"), py::arg("object"),
-               "The measure of the motions under which the query meets the bound but not the object in it.");
+               "Returns the measure of the motions under which the query meets the bound but not the object in it.");
     module.def(
         "triangles_met",
         [](const IntrinsicVolumes& b, double triangles, double area, double boundary, double weight) {
             return measure::triangles_met(b, {triangles, area, boundary, weight});
         },
         py::arg("shape"), py::arg("triangles"), py::arg("area"), py::arg("boundary"), py::arg("weight"),
-        "The sum, over the triangles of a flat polygon, of the measures of the motions under which a shape meets it.");
+        "Returns the sum, over the triangles of a flat polygon, of the measures of the motions under which a shape "
+        "meets them.");
 }
 
 }  // namespace crofton::python

@@ -281,20 +281,21 @@ std::string show(const PyMesh& mesh) {
 void bind_mesh(py::module_& module) {
     PYBIND11_NUMPY_DTYPE(ContactRecord, first, second, begin, end, normal);
     PYBIND11_NUMPY_DTYPE(MeshHitRecord, t, point, triangle, hit);
-    py::class_<SurfaceHit>(module, "RayHit", "Where a ray meets a mesh or a shape first.")
+    py::class_<SurfaceHit>(module, "RayHit", "The first hit of a ray on a mesh or a shape.")
         .def_readonly("t", &SurfaceHit::t, "how far along the ray, in lengths of its direction")
         .def_property_readonly("point", [](const SurfaceHit& h) { return tuple_of(h.point); })
         .def_property_readonly(
             "normal", [](const SurfaceHit& h) { return tuple_of(h.normal); },
-            "unit, of the surface, to the side that the ray comes from; 0 if it began inside")
-        .def_readonly("triangle", &SurfaceHit::triangle, "of the mesh or surface")
-        .def_readonly("started_inside", &SurfaceHit::started_inside, "the ray began in a solid shape: t is 0")
+            "unit, of the surface, towards the ray; 0 if the ray began inside")
+        .def_readonly("triangle", &SurfaceHit::triangle, "the triangle of the mesh or surface that was hit")
+        .def_readonly("started_inside", &SurfaceHit::started_inside,
+                      "True if the ray began in a solid shape; t is then 0")
         .def("__repr__", [](const SurfaceHit& h) {
             return format("RayHit(t=%g, point=(%g, %g, %g), triangle=%u)", h.t, h.point.x, h.point.y, h.point.z,
                           h.triangle);
         });
-    py::class_<NearestPoints>(module, "Distance", "How far two things are apart, and their nearest points.")
-        .def_readonly("distance", &NearestPoints::distance, "0 where they touch")
+    py::class_<NearestPoints>(module, "Distance", "The distance between two things, and their nearest points.")
+        .def_readonly("distance", &NearestPoints::distance, "0 if they touch")
         .def_property_readonly("on_a", [](const NearestPoints& d) { return tuple_of(d.on_a); })
         .def_property_readonly("on_b", [](const NearestPoints& d) { return tuple_of(d.on_b); })
         .def("__float__", [](const NearestPoints& d) { return d.distance; })
@@ -303,12 +304,12 @@ void bind_mesh(py::module_& module) {
                           d.on_a.z, d.on_b.x, d.on_b.y, d.on_b.z);
         });
 
-    py::class_<PyMesh, SharedMesh>(module, "Mesh",
-                                   "Triangles that never change: boxes around them, what they touch, what rays hit.")
+    py::class_<PyMesh, SharedMesh>(
+        module, "Mesh", "A triangle mesh that never changes. Fits boxes, tests overlap and distance, casts rays.")
         .def(py::init(&mesh_of_arrays), py::arg("positions"), py::arg("indices") = py::none(), py::kw_only(),
              py::arg("colors") = py::none(), py::arg("name") = "",
-             "Points (n, 3), stored as float32, and indices, three a triangle, counter-clockwise seen from outside; "
-             "without indices three points are a triangle.")
+             "Makes a mesh of points (n, 3), stored as float32, and indices, three per triangle, counter-clockwise "
+             "seen from outside. Without indices, each three points form a triangle.")
         .def_property_readonly("positions",
                                [](const py::object& self) {
                                    return view_of<float>(self, self.cast<const PyMesh&>().triangles().positions);
@@ -329,27 +330,28 @@ void bind_mesh(py::module_& module) {
         .def_property_readonly("name", &PyMesh::name)
         .def_property_readonly("bounds", &bounds_of, "the least and the greatest corner, shape (2, 3)")
         .def_property_readonly("area", &area_of)
-        .def_property_readonly("is_closed", &is_closed,
-                               "every edge belongs to an even number of triangles, so that it has an inside")
+        .def_property_readonly(
+            "is_closed", &is_closed,
+            "True if every edge belongs to an even number of triangles, so that the mesh has an inside")
         .def("fit_box", &fit_box, py::arg("criterion") = "perimeter", py::arg("quality") = "tight",
-             "The oriented box around all vertices that is best by a criterion; Box.matrix places it.")
-        .def("hull", &hull_of, "The convex hull, as a Mesh.")
-        .def("transformed", &transformed, py::arg("transform"), "A copy under a matrix of shape (4, 4).")
+             "Returns the oriented box around all vertices that is best by a criterion; Box.matrix places it.")
+        .def("hull", &hull_of, "Returns the convex hull as a Mesh.")
+        .def("transformed", &transformed, py::arg("transform"),
+             "Returns a copy transformed by a matrix of shape (4, 4).")
         .def("touches", &touches, py::arg("other"), py::arg("pose") = py::none(),
-             "Whether two meshes share a point, or one lies within the other, which is closed; exactly. `pose` places "
-             "`other`.")
+             "Tests exactly whether two meshes share a point, or one lies inside the other, closed one. `pose` is that "
+             "of `other`.")
         .def("distance", &distance, py::arg("other"), py::arg("pose") = py::none(),
-             "The Distance between the two surfaces; 0 where they meet. `pose` places `other`.")
-        .def(
-            "contacts", &contacts, py::arg("other"), py::arg("pose") = py::none(),
-            "Pairs of triangles that meet, as an array of records: `first`, `second`, the ends of their common segment "
-            "`begin` and `end`, and the `normal` of the other's triangle.")
-        .def("contains", &contains, py::arg("points"), "Whether each point lies within a closed mesh.")
+             "Returns the Distance between the two surfaces; 0 if they touch. `pose` is that of `other`.")
+        .def("contacts", &contacts, py::arg("other"), py::arg("pose") = py::none(),
+             "Returns the pairs of triangles that intersect, as an array of records: `first`, `second`, the ends "
+             "`begin` and `end` of their common segment, and the `normal` of the other's triangle.")
+        .def("contains", &contains, py::arg("points"), "Tests whether each point lies inside this closed mesh.")
         .def("raycast", &raycast, py::arg("origin"), py::arg("direction"),
-             py::arg("max_t") = std::numeric_limits<double>::infinity(), "The first RayHit, or None.")
+             py::arg("max_t") = std::numeric_limits<double>::infinity(), "Returns the first RayHit, or None.")
         .def("raycast_many", &raycast_many, py::arg("origins"), py::arg("directions"),
              py::arg("max_t") = std::numeric_limits<double>::infinity(),
-             "The first hit of each ray, as an array of records; `hit` is 0 where there is none.")
+             "Returns the first hit of each ray, as an array of records; `hit` is 0 for rays that hit nothing.")
         .def("__repr__", &show);
 }
 

@@ -36,14 +36,15 @@ PYBIND11_MODULE(_crofton, module) {
     using namespace crofton::python;
     module.attr("__version__") = std::to_string(CROFTON_VERSION_MAJOR) + "." + std::to_string(CROFTON_VERSION_MINOR) +
                                  "." + std::to_string(CROFTON_VERSION_PATCH);
-    module.attr("Error") = py::reinterpret_steal<py::object>(PyErr_NewExceptionWithDoc(
-        "crofton.Error",
-        "Bad data. `code` is a short name such as 'not_finite'; `item` is the index of the offending input, or None.",
-        PyExc_ValueError, nullptr));
+    module.attr("Error") = py::reinterpret_steal<py::object>(
+        PyErr_NewExceptionWithDoc("crofton.Error",
+                                  "Raised for bad data. `code` is a short name such as 'not_finite'; `item` is the "
+                                  "index of the offending input, or None.",
+                                  PyExc_ValueError, nullptr));
     module.attr("box_dtype") = box_dtype();
     module.attr("handle_dtype") = handle_dtype();
     module.def("set_threads", &set_threads, py::arg("threads"),
-               "How many threads calls may use; 0: one for each of the machine's. The default is 1.");
+               "Sets how many threads calls may use; 0 means one for each of the machine's. The default is 1.");
     bind_geometry(module);
     bind_measure(module);
     bind_fit(module);

@@ -266,33 +266,39 @@ void bind_pvs(py::module_& module) {
     module.attr("UNSEEN") = static_cast<int>(pvs::PairState::unseen);
     module.attr("SEEN") = static_cast<int>(pvs::PairState::seen);
     py::class_<Pvs>(module, "Pvs", "Potentially visible sets: which objects can be seen from each cell.")
-        .def_static(
-            "bake", &bake, py::arg("positions"), py::arg("indices"), py::arg("object_of") = py::none(), py::kw_only(),
-            py::arg("cells") = py::make_tuple(8, 8, 8), py::arg("bounds") = py::none(), py::arg("epsilon") = 1e-4,
-            py::arg("confidence") = 0.999, py::arg("seed") = 1, py::arg("sides") = "both", py::arg("surface_steps") = 0,
-            py::arg("near_radius") = 0.5, py::arg("seconds") = py::none(), py::arg("progress") = py::none(),
-            "Sets of a mesh whose triangle t belongs to object_of[t], by uniform lines. `cells`: counts of a "
-            "grid in `bounds` (the mesh's), boxes or convex cells. A pair that holds more than `epsilon` of "
-            "its cell's lines is missed with at most 1 - confidence, all pairs together. `surface_steps` above "
-            "0 (400 is good for levels): what the triangles hide is also proved. After `seconds`, or when "
-            "`progress(share, 1.0)` returns False, what was found so far counts, and `epsilon` says what it is worth.")
-        .def_static(
-            "open", &open, py::arg("path"), py::arg("most_pairs") = kMostPairs,
-            "A file with sets: of `crofton pvs --out`, or of to_bytes(). With more than so many pairs of a cell and an "
-            "object it is refused: a small file may hold very many, and each takes a byte while it is read.")
+        .def_static("bake", &bake, py::arg("positions"), py::arg("indices"), py::arg("object_of") = py::none(),
+                    py::kw_only(), py::arg("cells") = py::make_tuple(8, 8, 8), py::arg("bounds") = py::none(),
+                    py::arg("epsilon") = 1e-4, py::arg("confidence") = 0.999, py::arg("seed") = 1,
+                    py::arg("sides") = "both", py::arg("surface_steps") = 0, py::arg("near_radius") = 0.5,
+                    py::arg("seconds") = py::none(), py::arg("progress") = py::none(),
+                    "Bakes the visible sets of a mesh whose triangle t belongs to object_of[t], by uniform lines. "
+                    "`cells` are counts of a grid in `bounds` (by default the mesh's), boxes, or convex cells. The "
+                    "probability that any pair that holds more than `epsilon` of its cell's lines is missed is at most "
+                    "1 - confidence. If `surface_steps` is above 0 (400 is good for levels), it also proves what the "
+                    "triangles hide. After `seconds`, or when `progress(share, 1.0)` returns False, it returns what "
+                    "was found so far, and `epsilon` says what that is worth.")
+        .def_static("open", &open, py::arg("path"), py::arg("most_pairs") = kMostPairs,
+                    "Reads visible sets from the bytes of a file that `crofton pvs --out` or to_bytes() made. Refuses "
+                    "a file with more than `max_pairs` pairs of a cell and an object, because a small file may hold "
+                    "very many, and each takes a byte while it is read.")
         .def_static("from_bytes", &from_bytes, py::arg("file"), py::arg("most_pairs") = kMostPairs)
-        .def("to_bytes", &to_bytes, "A .crofton file of its own.")
-        .def("find_cell", &find_cell, py::arg("eye"), "The cell that holds a point; None: none, or one that is solid.")
+        .def("to_bytes", &to_bytes, "Returns the sets as the bytes of a .crofton file.")
+        .def("find_cell", &find_cell, py::arg("eye"),
+             "Returns the cell that contains a point, or None if there is none or it is solid.")
         .def("visible", &visible, py::arg("eye"), py::arg("mode") = "conservative",
-             "Whether each object may be seen from an eye, or from the cell of that number. 'conservative': all that "
-             "is not proved hidden; 'statistical': what lines have seen. Where no cell is: everything.")
-        .def_property_readonly("states", &states, "HIDDEN (proved), UNSEEN or SEEN: cells by objects.")
-        .def_property_readonly("kinds", &kinds, "By cell: 0 unknown, 1 solid, 2 inner, 3 open to the outside.")
-        .def_property_readonly("cell_boxes", &cell_boxes, "Around each cell: shape (n, 2, 3).")
-        .def_property_readonly("counts", &counts, "Pairs of cells and objects: hidden, unseen, seen.")
+             "Returns for each object whether it may be visible from an eye, or from the cell with that number. "
+             "'conservative' returns all that is not proved hidden, 'statistical' what lines have seen. Outside of all "
+             "cells everything is visible.")
+        .def_property_readonly("states", &states,
+                               "HIDDEN (proved), UNSEEN or SEEN for each cell and object, shape (cells, objects).")
+        .def_property_readonly("kinds", &kinds, "For each cell: 0 unknown, 1 solid, 2 inner, 3 open to the outside.")
+        .def_property_readonly("cell_boxes", &cell_boxes, "The bounds of each cell, shape (n, 2, 3).")
+        .def_property_readonly("counts", &counts, "How many pairs of a cell and an object are hidden, unseen and seen.")
         .def_property_readonly("cell_count", [](const Pvs& sets) { return sets.cells().size(); })
         .def_property_readonly("object_count", &Pvs::object_count)
-        .def_property_readonly("epsilon", &Pvs::epsilon, "What the lines promise; above 1: nothing.")
+        .def_property_readonly("epsilon", &Pvs::epsilon,
+                               "The share of a cell's lines above which a pair is found with the stated confidence; "
+                               "above 1 nothing is promised.")
         .def_property_readonly("confidence", &Pvs::confidence)
         .def("__repr__", [](const Pvs& sets) {
             return "Pvs(" + std::to_string(sets.cells().size()) + " cells, " + std::to_string(sets.object_count()) +

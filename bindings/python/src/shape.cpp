@@ -168,7 +168,8 @@ std::string show(const PyShape& shape) {
 
 void bind_shape(py::module_& module) {
     PYBIND11_NUMPY_DTYPE(PointRecord, position, depth, normal);
-    py::class_<convex::MassProperties>(module, "MassProperties", "Of a shape of density 1, in its own frame.")
+    py::class_<convex::MassProperties>(module, "MassProperties",
+                                       "Mass properties of a shape of density 1, in its own frame.")
         .def_readonly("volume", &convex::MassProperties::volume)
         .def_property_readonly(
             "center", [](const convex::MassProperties& m) { return tuple_of(m.center); }, "of mass")
@@ -182,26 +183,27 @@ void bind_shape(py::module_& module) {
             return format("MassProperties(volume=%g, center=(%g, %g, %g))", m.volume, m.center.x, m.center.y,
                           m.center.z);
         });
-    py::class_<convex::Impact>(module, "Impact", "When and where a moving shape meets another.")
+    py::class_<convex::Impact>(module, "Impact", "The time and place at which a moving shape meets another.")
         .def_readonly("time", &convex::Impact::time)
         .def_property_readonly(
-            "normal", [](const convex::Impact& i) { return tuple_of(i.normal); }, "unit, from the moving shape on")
+            "normal", [](const convex::Impact& i) { return tuple_of(i.normal); },
+            "unit, from the moving shape to the other")
         .def_property_readonly("on_a", [](const convex::Impact& i) { return tuple_of(i.on_a); })
         .def_property_readonly("on_b", [](const convex::Impact& i) { return tuple_of(i.on_b); })
         .def_readonly("distance", &convex::Impact::distance,
-                      "the gap then; negative: how deep they overlap from the start")
+                      "the gap at that time; if negative, how deep they overlap at the start")
         .def_property_readonly(
             "resolved", [](const convex::Impact& i) { return i.result == convex::CastResult::hit; },
-            "False: up to `time` nothing is met, later is not known")
+            "False if the search ended early: nothing is hit up to `time`, and later is not known")
         .def("__repr__", [](const convex::Impact& i) {
             return format("Impact(time=%g, normal=(%g, %g, %g))", i.time, i.normal.x, i.normal.y, i.normal.z);
         });
 
-    const auto lengths = "Lengths are 0 or more. It stands along y, with the origin half way up.";
+    const auto lengths = "Lengths are 0 or more. The axis is y, with the origin half way up.";
     py::class_<PyShape, SharedShape>(
         module, "Shape",
-        "A solid or a surface that never changes: does it touch another, how far, how deep, "
-        "where, and when? A pose is a matrix of a rotation and a translation.")
+        "A solid or a surface that never changes. Tests overlap with other shapes, and finds distance, depth, contacts "
+        "and the time of impact. A pose is a matrix of a rotation and a translation.")
         .def_static(
             "sphere", [](double radius) { return shape_of(convex::Shape::sphere(radius)); }, py::arg("radius"),
             "Around the origin.")
@@ -218,24 +220,24 @@ void bind_shape(py::module_& module) {
             py::arg("half_height"), py::arg("radius"), lengths)
         .def_static(
             "box", [](const py::handle& half) { return shape_of(convex::Shape::box(vector_of(half, "half_extents"))); },
-            py::arg("half_extents"), "Along the axes, around the origin.")
+            py::arg("half_extents"), "A box along the axes, centred at the origin.")
         .def_static("hull", &hull_shape, py::arg("points"), py::arg("max_vertices") = convex::kMaxHullVertices,
-                    "The convex hull of points (n, 3), stored as float32. One with more vertices is replaced by one "
-                    "that contains it.")
+                    "The convex hull of points (n, 3), stored as float32. A hull with more than `max_vertices` "
+                    "vertices is replaced by a larger one that contains it.")
         .def_static(
             "half_space",
             [](const py::handle& normal, double offset) {
                 return shape_of(convex::Shape::half_space({vector_of(normal, "normal"), offset}));
             },
             py::arg("normal"), py::arg("offset") = 0.0,
-            "All x with dot(normal, x) + offset >= 0: the normal points into the solid.")
+            "All points x with dot(normal, x) + offset >= 0; the normal points into the solid.")
         .def_static("mesh", &mesh_shape, py::arg("mesh"), py::arg("front_only") = false,
                     "The triangles of a Mesh, as a surface.")
         .def_static("height_field", &field_shape, py::arg("heights"), py::arg("spacing") = py::make_tuple(1.0, 1.0),
-                    "Ground: heights[j, i] is y at x = i · spacing[0] and z = j · spacing[1].")
+                    "Ground given by heights: heights[j, i] is y at x = i · spacing[0] and z = j · spacing[1].")
         .def_static("rounded", &rounded_shape, py::arg("core"), py::arg("radius"),
                     "All points within `radius` of a convex shape.")
-        .def_static("compound", &compound_shape, py::arg("children"), "Of shapes, or of pairs (shape, pose).")
+        .def_static("compound", &compound_shape, py::arg("children"), "The union of shapes, or of pairs (shape, pose).")
         .def_property_readonly("kind", [](const PyShape& b) { return kind_name(b.shape->kind()); })
         .def_property_readonly(
             "bounds",
@@ -245,23 +247,24 @@ void bind_shape(py::module_& module) {
             "in its own frame, shape (2, 3); infinite for half-spaces")
         .def_property_readonly(
             "mass", [](const PyShape& b) { return value_of(convex::mass_properties(*b.shape)); },
-            "MassProperties. Error: a surface or a half-space")
+            "Returns the MassProperties. Error: a surface or a half-space.")
         .def("touches", &touches, py::arg("other"), py::arg("pose") = py::none(), py::arg("own_pose") = py::none(),
-             "Whether the shapes share a point. `pose` is the other's.")
+             "Tests whether the shapes share a point. `pose` is that of `other`.")
         .def("distance", &distance, py::arg("other"), py::arg("pose") = py::none(), py::arg("own_pose") = py::none(),
-             "The Distance between them.")
+             "Returns the Distance between the shapes. `pose` is that of `other`.")
         .def("penetration", &penetration, py::arg("other"), py::arg("pose") = py::none(),
              py::arg("own_pose") = py::none(),
-             "(depth, normal): moving the other by depth · normal ends the overlap; 0 where there is none.")
+             "Returns (depth, normal): moving `other` by depth · normal ends the overlap. Both are 0 if there is none.")
         .def("contacts", &contacts, py::arg("other"), py::arg("pose") = py::none(), py::arg("own_pose") = py::none(),
-             "Where they touch, as an array of records: `position`, `depth`, and `normal` to the other.")
+             "Returns the points where the shapes touch, as an array of records: `position`, `depth`, and `normal` to "
+             "the other.")
         .def("cast", &cast, py::arg("velocity"), py::arg("other"), py::arg("pose") = py::none(),
              py::arg("own_pose") = py::none(), py::kw_only(), py::arg("spin") = py::make_tuple(0.0, 0.0, 0.0),
              py::arg("duration") = 1.0,
-             "The first Impact of this shape, which moves and turns (radians around the origin of its frame), on the "
-             "other, which rests; or None.")
+             "Moves and turns this shape (radians around the origin of its frame) and returns its first Impact on "
+             "`other`, which rests, or None.")
         .def("raycast", &raycast, py::arg("origin"), py::arg("direction"), py::arg("max_t") = kInfinity,
-             py::arg("pose") = py::none(), "The first RayHit, or None.")
+             py::arg("pose") = py::none(), "Returns the first RayHit, or None.")
         .def("__repr__", &show);
 }
 

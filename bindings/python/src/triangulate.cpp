@@ -98,7 +98,7 @@ py::tuple retriangulate(const py::handle& positions, const py::handle& indices, 
 }  // namespace
 
 void bind_triangulate(py::module_& module) {
-    py::class_<PolygonTriangles>(module, "Triangulation", "A polygon with holes, cut into triangles.")
+    py::class_<PolygonTriangles>(module, "Triangulation", "The triangles of a polygon with holes.")
         .def("__repr__",
              [](const PolygonTriangles& t) {
                  return format("Triangulation(%zu triangles, weight=%g%s)", t.found.triangles.size(), t.found.weight,
@@ -106,7 +106,7 @@ void bind_triangulate(py::module_& module) {
              })
         .def_property_readonly(
             "points", [](const PolygonTriangles& t) { return array_of<double>(t.polygon.points, 2); },
-            "all rings' points one after another, shape (n, 2)")
+            "the points of all rings in sequence, shape (n, 2)")
         .def_property_readonly("ring_ends",
                                [](const PolygonTriangles& t) { return array_of<std::uint32_t>(t.polygon.ring_ends); })
         .def_property_readonly(
@@ -115,18 +115,21 @@ void bind_triangulate(py::module_& module) {
         .def_property_readonly(
             "weight", [](const PolygonTriangles& t) { return t.found.weight; }, "the total length of the diagonals")
         .def_property_readonly(
-            "optimal", [](const PolygonTriangles& t) { return t.found.optimal; }, "the weight is proven minimal")
+            "optimal", [](const PolygonTriangles& t) { return t.found.optimal; },
+            "True if the weight is proven minimal")
         .def_property_readonly(
             "gap", [](const PolygonTriangles& t) { return t.found.gap; },
             "a proven bound on how much heavier than the minimum it is");
 
     module.def("triangulate", &run, py::arg("polygon"), py::arg("method") = "minimum_weight", py::kw_only(),
                py::arg("seconds") = py::none(), py::arg("work") = py::none(), py::arg("progress") = py::none(),
-               "Triangulates a polygon: one ring of shape (n, 2), or a list of rings, the outer one first. The least "
-               "total length of diagonals by default. `progress(share, 1.0)` may cancel by returning False.");
+               "Triangulates a polygon: one ring of shape (n, 2), or a list of rings, the outer one first. By default "
+               "it finds the triangulation with the least total length of diagonals. `progress(share, 1.0)` may cancel "
+               "by returning False.");
     module.def("retriangulate_planar_patches", &retriangulate, py::arg("positions"), py::arg("indices"), py::kw_only(),
                py::arg("tolerance") = 0.0, py::arg("progress") = py::none(),
-               "Cuts the flat parts of a mesh anew where that makes their diagonals shorter: (indices, summary).");
+               "Triangulates the flat parts of a mesh anew where that makes their diagonals shorter. Returns (indices, "
+               "summary).");
 }
 
 }  // namespace crofton::python

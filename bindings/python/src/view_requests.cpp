@@ -186,49 +186,54 @@ void read_request(const RequestArguments& given, HeldRequest& result) {
 }
 
 void bind_view_requests(py::module_& module) {
-    py::class_<OcclusionOptions>(module, "OcclusionOptions", "How a view leaves out what other objects hide.")
+    py::class_<OcclusionOptions>(module, "OcclusionOptions", "Options of occlusion culling in a view.")
         .def(py::init(&make_occlusion), py::kw_only(), py::arg("size") = py::make_tuple(480, 270),
              py::arg("max_occluders") = OcclusionOptions{}.max_occluders,
              py::arg("least_cover") = OcclusionOptions{}.least_cover, py::arg("list_occluded") = false,
-             "`size` of the depth buffer, (width, height): more pixels find more and cost more. Draws at most "
-             "`max_occluders`, none that covers less than `least_cover` of the sphere of directions. `list_occluded` "
-             "also lists what is hidden, which costs a second query.")
+             "`size` is that of the depth buffer, (width, height): more pixels find more hidden objects and cost more. "
+             "At most `max_occluders` are drawn, and none that covers less than `least_cover` of the sphere of "
+             "directions. `list_occluded` also lists the hidden objects, which costs a second query.")
         .def("__repr__", [](const OcclusionOptions& o) {
             return format("OcclusionOptions(size=(%u, %u), max_occluders=%u, least_cover=%g)",
                           static_cast<unsigned>(o.size.width), static_cast<unsigned>(o.size.height), o.max_occluders,
                           double{o.least_cover});
         });
 
-    py::class_<ViewMatrix>(module, "ViewMatrix", "An engine's own matrix to clip space, and its kind of depth.")
-        .def(py::init(&make_matrix), py::arg("to_clip"), py::kw_only(), py::arg("depth") = "reversed_zero_to_one",
-             py::arg("origin") = py::make_tuple(0.0, 0.0, 0.0),
-             "`to_clip`, (4, 4) as NumPy prints it, takes columns (x, y, z, 1) relative to `origin` to clip space.")
+    py::class_<ViewMatrix>(module, "ViewMatrix", "An engine's own matrix to clip space, with its depth convention.")
+        .def(
+            py::init(&make_matrix), py::arg("to_clip"), py::kw_only(), py::arg("depth") = "reversed_zero_to_one",
+            py::arg("origin") = py::make_tuple(0.0, 0.0, 0.0),
+            "`to_clip`, (4, 4) as NumPy prints it, transforms columns (x, y, z, 1) relative to `origin` to clip space.")
         .def("__repr__", [](const ViewMatrix& m) {
             return format("ViewMatrix(depth='%s', origin=(%g, %g, %g))", depth_name(m.depth), m.origin.x, m.origin.y,
                           m.origin.z);
         });
 
-    py::class_<depth::PictureView>(module, "PictureView", "The picture that is drawn: one sample a pixel.")
+    py::class_<depth::PictureView>(module, "PictureView", "The picture that is drawn, with one sample per pixel.")
         .def(py::init([](std::uint32_t width, std::uint32_t height, const std::string& depth) {
                  return depth::PictureView{width, height, depth_range(depth)};
              }),
              py::arg("width") = depth::PictureView{}.width, py::arg("height") = depth::PictureView{}.height,
              py::kw_only(), py::arg("depth") = "reversed_zero_to_one",
-             "`depth` is that of the renderer's projection; beside a ViewMatrix, the same as its.")
+             "`depth` is the depth convention of the renderer's projection; with a ViewMatrix it must be the same as "
+             "there.")
         .def("__repr__", [](const depth::PictureView& p) {
             return format("PictureView(%u, %u, depth='%s')", p.width, p.height, depth_name(p.depth));
         });
 
-    py::class_<HeldLimits, std::shared_ptr<HeldLimits>>(module, "DrawLimits", "What is too small or too far to draw.")
+    py::class_<HeldLimits, std::shared_ptr<HeldLimits>>(module, "DrawLimits",
+                                                        "Limits of what is drawn, by size and distance.")
         .def(py::init(&make_limits), py::arg("eye"), py::kw_only(),
              py::arg("max_distance_in_radii") = cull::DrawLimits::kNone, py::arg("least_radius") = 0.0,
              py::arg("layer_distances") = py::none(), py::arg("item_distances") = py::none(),
              py::arg("drawn_before") = py::none(), py::arg("hysteresis") = 1.0,
-             "Leaves out what is farther from `eye` than so many of its radii, or smaller than `least_radius`, or "
-             "farther than its layer's (32 numbers) or its own distance (by object index). What was `drawn_before` "
-             "(bools by index) has `hysteresis` times as long limits. Arrays are copied.")
+             "Leaves out objects farther from `eye` than `max_distance_in_radii` times their radius, smaller than "
+             "`least_radius`, or farther than the distance of their layer (32 numbers) or their own (by object index). "
+             "For objects in `drawn_before` (bools by index), distances are multiplied by `hysteresis`. Arrays are "
+             "copied.")
         .def_static("of_camera", &limits_of_camera, py::arg("camera"), py::arg("picture_height"), py::arg("pixels"),
-                    "Leaves out what is less than so many pixels wide in the middle of the picture.")
+                    "Makes limits that leave out objects which are less than this many pixels wide in the middle of "
+                    "the picture.")
         .def("__repr__", [](const HeldLimits& held) {
             const cull::DrawLimits& l = held.limits;
             return format("DrawLimits(eye=(%g, %g, %g), max_distance_in_radii=%g, least_radius=%g)", l.eye.x, l.eye.y,
@@ -236,7 +241,7 @@ void bind_view_requests(py::module_& module) {
         });
 
     py::class_<HeldRequest, std::shared_ptr<HeldRequest>>(
-        module, "ViewRequest", "What a view asks, made once for many calls of World.view. Arrays are copied.")
+        module, "ViewRequest", "The arguments of World.view, prepared once for many calls. Arrays are copied.")
         .def(py::init([](const py::object& camera, const py::object& matrix, const py::object& volume,
                          const py::object& layers, const py::object& occlusion, const py::object& picture,
                          const py::object& limits, const py::object& candidates, const py::object& order,

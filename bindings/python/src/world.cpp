@@ -11,7 +11,7 @@ namespace {
 template <class Tag>
 void bind_handle(py::module_& module, const char* name) {
     using H = Handle<Tag>;
-    py::class_<H>(module, name, "Names a thing in a World. Stale once the thing has been removed.")
+    py::class_<H>(module, name, "Names an object, node or mesh of a World. It is stale once that has been removed.")
         .def(py::init([](std::uint32_t index, std::uint32_t generation) {
                  return H{index, generation};
              }),
@@ -42,8 +42,8 @@ void bind_world(py::module_& module) {
     bind_handle<MeshTag>(module, "MeshHandle");
     py::class_<PyWorld> type(
         module, "World",
-        "Objects in; what a view sees, what a ray meets and what touches out. Changes count from the "
-        "next update(). May be used from several threads.");
+        "A set of objects. Add and move them, call update() once a frame, then ask what a camera sees, what a ray hits "
+        "and what touches what. Changes take effect at the next update(). May be used from several threads.");
     type.def(py::init([](bool pairs, bool contacts, bool containment, std::size_t max_pairs,
                          std::uint32_t updates_to_rest, const std::string& tree) {
                  return std::make_unique<PyWorld>(WorldOptions{.pairs = pairs,

@@ -180,15 +180,16 @@ void bind_world_changes(py::class_<PyWorld>& type) {
             },
             py::arg("positions"), py::arg("indices") = py::none(), py::kw_only(), py::arg("triangles") = true,
             py::arg("occluders") = false, py::arg("clusters") = false, py::arg("one_sided") = false,
-            "A Mesh, or points (n, 3) and indices, three a triangle. With occluders it hides what is behind it. With "
-            "clusters, views with a picture list its triangles; `one_sided`: back faces are not drawn.")
+            "Adds a mesh: a Mesh, or points (n, 3) and indices, three per triangle. With occluders it hides what is "
+            "behind it. With clusters, views with a picture list its triangles; `one_sided` says that back faces are "
+            "not drawn.")
         .def(
             "set_vertices",
             [](PyWorld& world, MeshHandle mesh, const py::handle& positions) {
                 const MeshArrays arrays(positions, py::none());
                 value_of(world.change([&](World& w) { return w.set_vertices(mesh, arrays.points()); }));
             },
-            py::arg("mesh"), py::arg("positions"), "Other positions, as many as before.")
+            py::arg("mesh"), py::arg("positions"), "Replaces the mesh's positions by as many others.")
         .def(
             "add_node",
             [](PyWorld& world, const py::object& parent, const py::object& transform, std::uint32_t layers) {
@@ -203,52 +204,58 @@ void bind_world_changes(py::class_<PyWorld>& type) {
              py::arg("transform") = py::none(), py::arg("box") = py::none(), py::arg("sphere") = py::none(),
              py::arg("aligned") = py::none(), py::arg("shape") = py::none(), py::arg("user") = 0,
              py::arg("layers") = ~0u, py::arg("collides_with") = ~0u, py::arg("occludes") = true,
-             "An object: a mesh, placed by `transform` under `node` or in the world; or a bound: a Box, a sphere "
-             "(center, radius) or an aligned box (low, high); or a Shape, alone or beside one of them.")
+             "Adds an object: a mesh, placed by `transform` under `node` or in the world; or a bound, which is a Box, "
+             "a sphere (center, radius) or an aligned box (low, high); or a Shape, alone or with one of them.")
         .def("set_shape", &set_shape, py::arg("object"), py::arg("shape"),
-             "Gives an object a Shape, which touches and is hit in its place; None takes it away.")
+             "Gives an object a Shape, which queries and contacts use instead of its mesh or bound. None removes it.")
         .def("add_boxes", &add_boxes, py::arg("boxes"), py::kw_only(), py::arg("users") = py::none(),
              py::arg("layers") = ~0u, py::arg("collides_with") = ~0u,
-             "One object a box. Returns an array of handle_dtype. All or none.")
+             "Adds one object per box, all or none. Returns an array of handle_dtype.")
         .def("add_instances", &add_instances, py::arg("mesh"), py::arg("transforms"), py::kw_only(),
              py::arg("users") = py::none(), py::arg("layers") = ~0u, py::arg("collides_with") = ~0u,
-             "One object of the mesh a matrix, shape (n, 4, 4). All or none.")
+             "Adds one object of the mesh per matrix, shape (n, 4, 4), all or none.")
         .def(
             "remove",
             [](PyWorld& world, NodeHandle node) { value_of(world.change([&](World& w) { return w.remove(node); })); },
-            py::arg("node"), "With all nodes and objects below it.")
+            py::arg("node"), "Removes a node with all nodes and objects below it.")
         .def(
             "remove",
             [](PyWorld& world, MeshHandle mesh) { value_of(world.change([&](World& w) { return w.remove(mesh); })); },
-            py::arg("mesh"), "An error while objects use it.")
+            py::arg("mesh"), "Removes a mesh. Error: objects use it.")
         .def(
             "remove",
             [](PyWorld& world, const py::object& objects) {
                 for_objects(world, objects, [](World& w, ObjectHandle handle) { return w.remove(handle); });
             },
-            py::arg("objects"), "One object or many: all but those refused; the error names the first.")
+            py::arg("objects"),
+            "Removes one object or many. Stale handles are refused, the others are removed, and the error names the "
+            "first refused.")
         .def("set_transform", &set_transform<ObjectHandle>, py::arg("handle"), py::arg("transform"))
         .def("set_transform", &set_transform<NodeHandle>, py::arg("handle"), py::arg("transform"))
         .def("set_transforms", &set_transforms<ObjectHandle>, py::arg("objects"), py::arg("transforms"),
-             "Of objects with a mesh. All but those refused change; the error names the first.")
+             "Moves objects that have a mesh. Bad items are refused, the others change, and the error names the first "
+             "refused.")
         .def("set_node_transforms", &set_transforms<NodeHandle>, py::arg("nodes"), py::arg("transforms"),
              "As set_transforms.")
         .def("set_boxes", &set_boxes, py::arg("objects"), py::arg("boxes"),
-             "Of objects that were added with a bound, which becomes a box. Refused ones as in set_transforms.")
+             "Sets the bounds of objects that were added with a bound; they become boxes. Bad items as in "
+             "set_transforms.")
         .def(
             "set_hidden",
             [](PyWorld& world, const py::object& objects, bool hidden) {
                 for_objects(world, objects,
                             [hidden](World& w, ObjectHandle handle) { return w.set_hidden(handle, hidden); });
             },
-            py::arg("objects"), py::arg("hidden"), "Hidden ones are in no answer. Refused ones as in set_transforms.")
+            py::arg("objects"), py::arg("hidden"),
+            "Hides or shows objects. Hidden objects are in no answer. Bad items as in set_transforms.")
         .def(
             "set_layers",
             [](PyWorld& world, const py::object& objects, std::uint32_t layers) {
                 for_objects(world, objects,
                             [layers](World& w, ObjectHandle handle) { return w.set_layers(handle, layers); });
             },
-            py::arg("objects"), py::arg("layers"), "Refused ones as in set_transforms.")
+            py::arg("objects"), py::arg("layers"),
+            "Sets the objects' layers, 32 bits each. Bad items as in set_transforms.")
         .def(
             "update",
             [](PyWorld& world) {
@@ -259,8 +266,8 @@ void bind_world_changes(py::class_<PyWorld>& type) {
                     return done;
                 }));
             },
-            "Makes all changes since the last call count. Once a frame. Error: more than `max_pairs` pairs; then there "
-            "are none, and all else is as it should be.")
+            "Applies all changes since the last call. Call it once a frame. Error: more than `max_pairs` pairs; the "
+            "World then has no pairs, and all else is up to date.")
         .def_property_readonly("statistics", [](const PyWorld& world) {
             const WorldStatistics s = world.ask([](const World& w) { return w.statistics(); });
             py::dict d;

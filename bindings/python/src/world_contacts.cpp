@@ -50,7 +50,7 @@ py::array pairs_of(const PyWorld& world) {
 }  // namespace
 
 void bind_world_contacts(py::module_& module, py::class_<PyWorld>& type) {
-    py::class_<ContactCopy>(module, "Contact", "Two objects that touch, or that have ended touching in this update.")
+    py::class_<ContactCopy>(module, "Contact", "Two objects that touch, or stopped touching in this update.")
         .def_property_readonly("first", [](const ContactCopy& c) { return c.first; })
         .def_property_readonly("second", [](const ContactCopy& c) { return c.second; })
         .def_property_readonly(
@@ -65,7 +65,7 @@ void bind_world_contacts(py::module_& module, py::class_<PyWorld>& type) {
                 for (const auto& point : c.points) depths.push_back(point.depth);
                 return array_of<double>(depths);
             },
-            "of `points`; negative: a gap")
+            "depth at each of `points`; negative for a gap")
         .def("__repr__",
              [](const ContactCopy& c) {
                  return format("Contact(%llu and %llu, %s, depth=%g, %d points)",
@@ -79,8 +79,8 @@ void bind_world_contacts(py::module_& module, py::class_<PyWorld>& type) {
                 for (int k = 0; k < 3; ++k) points.mutable_at(i, k) = c.points[i].position[k];
             return points;
         });
-    type.def_property_readonly("pairs", &pairs_of, "indices of objects whose boxes or spheres meet, shape (n, 2)")
-        .def_property_readonly("contacts", &contacts_of, "the Contacts of the last update");
+    type.def_property_readonly("pairs", &pairs_of, "indices of objects whose boxes or spheres overlap, shape (n, 2)")
+        .def_property_readonly("contacts", &contacts_of, "the contacts of the last update");
 }
 
 }  // namespace crofton::python

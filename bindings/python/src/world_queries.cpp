@@ -93,21 +93,22 @@ std::optional<ShapeHit> cast(const PyWorld& world, const PyShape& shape, const p
 
 void bind_world_queries(py::module_& module, py::class_<PyWorld>& type) {
     PYBIND11_NUMPY_DTYPE(HitRecord, index, generation, t, point, triangle, hit, user);
-    py::class_<ObjectRef>(module, "ObjectRef", "An object and its user number.")
+    py::class_<ObjectRef>(module, "ObjectRef", "An object with its user number.")
         .def_readonly("object", &ObjectRef::object)
         .def_readonly("user", &ObjectRef::user)
         .def("__repr__", [](const ObjectRef& r) {
             return format("ObjectRef(index=%u, user=%llu)", r.object.index, static_cast<unsigned long long>(r.user));
         });
-    py::class_<ObjectHit>(module, "Hit", "Where a ray meets an object.")
+    py::class_<ObjectHit>(module, "Hit", "The first hit of a ray on an object.")
         .def_readonly("object", &ObjectHit::object)
         .def_readonly("user", &ObjectHit::user)
         .def_readonly("t", &ObjectHit::t, "how far along the ray, in lengths of its direction")
         .def_property_readonly("point", [](const ObjectHit& h) { return tuple_of(h.point); })
         .def_property_readonly(
             "normal", [](const ObjectHit& h) { return tuple_of(h.normal); },
-            "unit, of the surface, to the side that the ray comes from; 0 if it began inside")
-        .def_readonly("started_inside", &ObjectHit::started_inside, "the ray began in the box or sphere: t is 0")
+            "unit, of the surface, towards the ray; 0 if the ray began inside")
+        .def_readonly("started_inside", &ObjectHit::started_inside,
+                      "True if the ray began in the box, sphere or solid shape; t is then 0")
         .def("__repr__",
              [](const ObjectHit& h) {
                  return format("Hit(user=%llu, t=%g, point=(%g, %g, %g))", static_cast<unsigned long long>(h.user), h.t,
@@ -116,15 +117,17 @@ void bind_world_queries(py::module_& module, py::class_<PyWorld>& type) {
         .def_property_readonly("triangle", [](const ObjectHit& h) {
             return h.triangle == kNoTriangle ? py::object(py::none()) : py::object(py::int_(h.triangle));
         });
-    py::class_<ShapeHit>(module, "ShapeHit", "The first object that a moving shape meets.")
+    py::class_<ShapeHit>(module, "ShapeHit", "The first object that a moving shape hits.")
         .def_readonly("object", &ShapeHit::object)
         .def_readonly("user", &ShapeHit::user)
         .def_readonly("time", &ShapeHit::time)
         .def_property_readonly(
             "normal", [](const ShapeHit& h) { return tuple_of(h.normal); }, "unit, from the shape to the object")
         .def_property_readonly("point", [](const ShapeHit& h) { return tuple_of(h.point); })
-        .def_readonly("distance", &ShapeHit::distance, "the gap then; negative: how deep they overlap from the start")
-        .def_readonly("resolved", &ShapeHit::resolved, "False: up to `time` nothing is met, later is not known")
+        .def_readonly("distance", &ShapeHit::distance,
+                      "the gap at that time; if negative, how deep they overlap at the start")
+        .def_readonly("resolved", &ShapeHit::resolved,
+                      "False if the search ended early: nothing is hit up to `time`, and later is not known")
         .def("__repr__", [](const ShapeHit& h) {
             return format("ShapeHit(user=%llu, time=%g, point=(%g, %g, %g))", static_cast<unsigned long long>(h.user),
                           h.time, h.point.x, h.point.y, h.point.z);
@@ -147,10 +150,10 @@ void bind_world_queries(py::module_& module, py::class_<PyWorld>& type) {
                 return world.ask([&](const World& w) { return w.raycast(ray, layers); });
             },
             py::arg("origin"), py::arg("direction"), py::arg("max_t") = kInfinity, py::arg("layers") = ~0u,
-            "The nearest Hit, or None.")
+            "Returns the nearest Hit, or None.")
         .def("raycast_many", &raycast_many, py::arg("origins"), py::arg("directions"), py::arg("max_t") = kInfinity,
              py::arg("layers") = ~0u,
-             "The nearest hit of each ray, as an array of records; `hit` is 0 where there is none.")
+             "Returns the nearest hit of each ray, as an array of records; `hit` is 0 for rays that hit nothing.")
         .def(
             "raycast_all",
             [](const PyWorld& world, const py::handle& origin, const py::handle& direction, double max_t,
@@ -163,7 +166,7 @@ void bind_world_queries(py::module_& module, py::class_<PyWorld>& type) {
                 return result;
             },
             py::arg("origin"), py::arg("direction"), py::arg("max_t") = kInfinity, py::arg("layers") = ~0u,
-            "Every object's nearest Hit, in the order in which the ray meets them.")
+            "Returns each object's first Hit, ordered along the ray.")
         .def(
             "overlap",
             [](const PyWorld& world, const py::object& box, const py::object& sphere, const py::object& capsule,
@@ -177,7 +180,7 @@ void bind_world_queries(py::module_& module, py::class_<PyWorld>& type) {
             },
             py::kw_only(), py::arg("box") = py::none(), py::arg("sphere") = py::none(), py::arg("capsule") = py::none(),
             py::arg("shape") = py::none(), py::arg("pose") = py::none(), py::arg("layers") = ~0u,
-            "The handles of the objects that overlap the probe: a box, sphere, capsule, or a Shape at `pose`.")
+            "Returns the handles of the objects that overlap a box, sphere, capsule, or Shape at `pose`.")
         .def(
             "closest",
             [](const PyWorld& world, double max_distance, const py::object& box, const py::object& sphere,
@@ -191,23 +194,23 @@ void bind_world_queries(py::module_& module, py::class_<PyWorld>& type) {
             },
             py::arg("max_distance"), py::kw_only(), py::arg("box") = py::none(), py::arg("sphere") = py::none(),
             py::arg("capsule") = py::none(), py::arg("shape") = py::none(), py::arg("pose") = py::none(),
-            py::arg("layers") = ~0u, "The nearest object, or None.")
+            py::arg("layers") = ~0u, "Returns the nearest object, or None.")
         .def("cast", &cast, py::arg("shape"), py::arg("velocity"), py::arg("pose") = py::none(), py::kw_only(),
              py::arg("spin") = py::make_tuple(0.0, 0.0, 0.0), py::arg("duration") = 1.0,
              py::arg("ignore_initial_overlaps") = false, py::arg("layers") = ~0u,
-             "The first object that a Shape meets as it moves and turns from `pose` on: a ShapeHit, or None.")
+             "Moves and turns a Shape from `pose` and returns its first ShapeHit, or None.")
         .def(
             "box_of",
             [](const PyWorld& world, ObjectHandle object) {
                 return value_of(world.ask([&](const World& w) { return w.box_of(object); }));
             },
-            py::arg("object"), "The object's box as of the last update.")
+            py::arg("object"), "Returns the object's box as of the last update.")
         .def(
             "transform_of",
             [](const PyWorld& world, ObjectHandle object) {
                 return matrix_of(value_of(world.ask([&](const World& w) { return w.transform_of(object); })));
             },
-            py::arg("object"), "Its matrix to the world, probe (4, 4), as of the last update.")
+            py::arg("object"), "Returns the object's matrix to the world, shape (4, 4), as of the last update.")
         .def(
             "user_of",
             [](const PyWorld& world, ObjectHandle object) {

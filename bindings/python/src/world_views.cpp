@@ -196,16 +196,16 @@ PyObject* view_method(PyObject* self, PyObject* const* values, Py_ssize_t count,
 constexpr const char* kViewText =
     "view($self, camera=None, *, matrix=None, volume=None, layers=None, occlusion=None, picture=None, limits=None, "
     "candidates=None, order=None, conservative=None)\n--\n\n"
-    "What a Camera, a ViewMatrix or any Frustum (`volume`) sees, in the `layers` that share a bit. With `occlusion`, "
-    "OcclusionOptions or True, leaves out what others hide. With `picture`, a PictureView, lists the triangles without "
-    "which that picture would change. `limits`, DrawLimits, leave out what is small or far; `candidates`, bools by "
-    "object index, what cannot be seen, though nothing that is new or has moved. `order` is 'ascending' or 'tree', "
-    "which is quicker. `conservative` tests planes only. Or give a ViewRequest alone, or a list of up to 32: a "
-    "MultiViewResult. What cannot be obeyed is refused.";
+    "Returns what a Camera, a ViewMatrix or any Frustum (`volume`) sees of the objects in `layers`. `occlusion` "
+    "(OcclusionOptions or True) leaves out what other objects hide. `picture` (a PictureView) lists the triangles that "
+    "the picture needs. `limits` (DrawLimits) leaves out objects that are small or far. `candidates` (bools by object "
+    "index) leaves out all others, except those that are new or have moved. `order` is 'ascending' or 'tree', which is "
+    "faster. `conservative` tests planes only. Pass a ViewRequest alone, or a list of up to 32 for a MultiViewResult. "
+    "Arguments that cannot be obeyed are refused.";
 
 void bind_one(py::module_& module) {
-    py::class_<SeenByOne>(module, "ViewResult", "What a view saw, as of the update before.")
-        .def_property_readonly("ids", &ids_of<ViewResult>, "the objects' indices, in the order that was asked for")
+    py::class_<SeenByOne>(module, "ViewResult", "The result of World.view.")
+        .def_property_readonly("ids", &ids_of<ViewResult>, "the objects' indices, in the order of the request")
         .def_property_readonly("handles", &handles_seen<ViewResult>, "their handles, an array of handle_dtype")
         .def_property_readonly("users", &users_seen<ViewResult>, "their user numbers")
         .def_property_readonly(
@@ -222,7 +222,7 @@ void bind_one(py::module_& module) {
             [](const py::object& self) {
                 return array_in<std::uint32_t>(self, self.cast<const SeenByOne&>().found().occluded_ids());
             },
-            "in the view's frustum, and hidden by others; with OcclusionOptions(list_occluded=True)")
+            "indices of objects in the view's frustum that others hide; with OcclusionOptions(list_occluded=True)")
         .def_property_readonly(
             "depth", [](const SeenByOne& seen) { return depth_of(seen.found().occlusion_buffer()); },
             "the depth buffer, (height, width), the bottom row first, larger is nearer; None without occlusion")
@@ -231,7 +231,7 @@ void bind_one(py::module_& module) {
             [](const py::object& self) {
                 return array_in<TriangleRecord>(self, self.cast<const SeenByOne&>().found().triangles());
             },
-            "of a view with a picture: what to draw, an array of records. Bit k of `triangles` stands for triangle "
+            "what to draw, for a view with a picture: an array of records. Bit k of `triangles` stands for triangle "
             "first_triangle + k of cluster `cluster` (World.clusters_of) of object index `object`")
         .def_property_readonly("statistics", &statistics_of)
         .def("__len__", [](const SeenByOne& seen) { return seen.found().size(); })
@@ -241,7 +241,8 @@ void bind_one(py::module_& module) {
 }
 
 void bind_many(py::module_& module) {
-    py::class_<SeenByMany>(module, "MultiViewResult", "What several views saw, each object once.")
+    py::class_<SeenByMany>(module, "MultiViewResult",
+                           "The result of World.view for several views. It lists each object once.")
         .def_property_readonly("ids", &ids_of<MultiViewResult>, "the objects' indices")
         .def_property_readonly("handles", &handles_seen<MultiViewResult>, "their handles, an array of handle_dtype")
         .def_property_readonly("users", &users_seen<MultiViewResult>, "their user numbers")
@@ -250,7 +251,7 @@ void bind_many(py::module_& module) {
             [](const py::object& self) {
                 return array_in<std::uint32_t>(self, self.cast<const SeenByMany&>().answer().view_masks);
             },
-            "bit v of each: view v sees it")
+            "one mask per object; bit v is set if view v sees it")
         .def_property_readonly("view_count", [](const SeenByMany& seen) { return seen.found().view_count(); })
         .def(
             "depth",
@@ -258,7 +259,7 @@ void bind_many(py::module_& module) {
                 check_view(seen, view);
                 return depth_of(seen.found().occlusion_buffer(view));
             },
-            py::arg("view"), "The depth buffer of one view; None without occlusion.")
+            py::arg("view"), "Returns the depth buffer of one view, or None without occlusion.")
         .def(
             "triangles",
             [](const py::object& self, std::size_t view) {
@@ -266,7 +267,8 @@ void bind_many(py::module_& module) {
                 check_view(seen, view);
                 return array_in<TriangleRecord>(self, seen.found().triangles(view));
             },
-            py::arg("view"), "The triangles to draw in one view, as ViewResult.triangles; empty without a picture.")
+            py::arg("view"),
+            "Returns the triangles to draw in one view, as ViewResult.triangles; empty without a picture.")
         .def(
             "occluded_ids",
             [](const py::object& self, std::size_t view) {
@@ -274,14 +276,14 @@ void bind_many(py::module_& module) {
                 check_view(seen, view);
                 return array_in<std::uint32_t>(self, seen.found().occluded_ids(view));
             },
-            py::arg("view"), "As ViewResult.occluded_ids, of one view.")
+            py::arg("view"), "Returns the occluded objects of one view, as ViewResult.occluded_ids.")
         .def(
             "occluders_drawn",
             [](const SeenByMany& seen, std::size_t view) {
                 check_view(seen, view);
                 return seen.found().occlusion_statistics(view).occluders_drawn;
             },
-            py::arg("view"), "How many occluders one view drew.")
+            py::arg("view"), "Returns how many occluders one view drew.")
         .def("__len__", [](const SeenByMany& seen) { return seen.found().size(); })
         .def("__repr__", [](const SeenByMany& seen) {
             return format("MultiViewResult(%d objects, %d views)", static_cast<int>(seen.found().size()),
@@ -308,7 +310,7 @@ void bind_world_views(py::module_& module, py::class_<PyWorld>& type) {
             });
         },
         py::arg("mesh"),
-        "How a mesh with clusters is cut, as of the last update: a ClusteredMesh, or None where it is not.");
+        "Returns the clusters of a mesh as of the last update: a ClusteredMesh, or None for a mesh without clusters.");
 }
 
 }  // namespace crofton::python
