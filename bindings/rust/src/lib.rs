@@ -42,7 +42,7 @@ pub use geometry::{
 };
 pub use jobs::{Executor, Threads};
 pub use occlusion::{FindOptions, OcclusionOptions, OcclusionStatistics};
-pub use queries::{Closest, Contact, Containment, Found, MeshContact, ObjectHit, ObjectPair, Phase, Shape};
+pub use queries::{Closest, Contact, Containment, Found, MeshContact, ObjectHit, ObjectPair, Phase, QueryShape};
 pub use triangulate::{Method, Triangulation, Triangulator};
 pub use views::{Cluster, Clusters, DrawLimits, PictureView, Seen, SeenByMany};
 pub use views::{ViewMatrix, ViewRequest, ViewResult, VisibleCluster};

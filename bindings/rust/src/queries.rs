@@ -39,7 +39,7 @@ impl ObjectHit {
 
 /// The shape of a query, in world coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Shape {
+pub enum QueryShape {
     /// An oriented box.
     Box(Obb),
     /// A sphere.
@@ -60,21 +60,21 @@ pub enum Shape {
     },
 }
 
-impl Shape {
-    fn raw(&self) -> sys::Shape {
-        let mut raw: sys::Shape = unsafe { std::mem::zeroed() };
+impl QueryShape {
+    fn raw(&self) -> sys::QueryShape {
+        let mut raw: sys::QueryShape = unsafe { std::mem::zeroed() };
         match *self {
-            Shape::Box(b) => {
-                raw.kind = sys::SHAPE_BOX;
+            QueryShape::Box(b) => {
+                raw.kind = sys::QUERY_SHAPE_BOX;
                 raw.bounding_box = b;
             }
-            Shape::Sphere { center, radius } => {
-                raw.kind = sys::SHAPE_SPHERE;
+            QueryShape::Sphere { center, radius } => {
+                raw.kind = sys::QUERY_SHAPE_SPHERE;
                 raw.begin = center;
                 raw.radius = radius;
             }
-            Shape::Capsule { begin, end, radius } => {
-                raw.kind = sys::SHAPE_CAPSULE;
+            QueryShape::Capsule { begin, end, radius } => {
+                raw.kind = sys::QUERY_SHAPE_CAPSULE;
                 raw.begin = begin;
                 raw.end = end;
                 raw.radius = radius;
@@ -223,7 +223,7 @@ impl World {
     }
 
     /// The objects that overlap the shape, by index: their shapes, triangles, spheres or boxes.
-    pub fn overlap<'a>(&self, shape: &Shape, layers: u32, found: &'a mut Found) -> Result<&'a [ObjectRef]> {
+    pub fn overlap<'a>(&self, shape: &QueryShape, layers: u32, found: &'a mut Found) -> Result<&'a [ObjectRef]> {
         check(unsafe { sys::crofton_world_overlap(self.raw, &shape.raw(), layers, found.raw) })?;
         let (mut objects, mut count) = (ptr::null(), 0);
         check(unsafe { sys::crofton_found_objects(found.raw, &mut objects, &mut count) })?;
@@ -231,7 +231,7 @@ impl World {
     }
 
     /// The object nearest to the shape, no farther than `max_distance`, which may be infinite.
-    pub fn closest(&self, shape: &Shape, max_distance: f64, layers: u32) -> Result<Option<Closest>> {
+    pub fn closest(&self, shape: &QueryShape, max_distance: f64, layers: u32) -> Result<Option<Closest>> {
         let mut c: sys::ClosestObject = unsafe { std::mem::zeroed() };
         c.size = size_of::<sys::ClosestObject>();
         check(unsafe { sys::crofton_world_closest(self.raw, &shape.raw(), max_distance, layers, &mut c) })?;

@@ -58,9 +58,9 @@ fn shapes_find_what_they_meet() {
     let (world, objects) = row(5);
     let mut found = Found::new().unwrap();
     let shapes = [
-        Shape::Box(Obb::aligned([1.5, 0.0, -5.0], [0.3; 3])),
-        Shape::Sphere { center: [1.5, 0.0, -5.0], radius: 0.26 },
-        Shape::Capsule { begin: [1.1, 0.5, -5.0], end: [1.9, 0.5, -5.0], radius: 0.3 },
+        QueryShape::Box(Obb::aligned([1.5, 0.0, -5.0], [0.3; 3])),
+        QueryShape::Sphere { center: [1.5, 0.0, -5.0], radius: 0.26 },
+        QueryShape::Capsule { begin: [1.1, 0.5, -5.0], end: [1.9, 0.5, -5.0], radius: 0.3 },
     ];
     for shape in shapes {
         let met: Vec<_> = world.overlap(&shape, ALL_LAYERS, &mut found).unwrap().iter().map(|o| o.object).collect();
@@ -71,7 +71,7 @@ fn shapes_find_what_they_meet() {
 #[test]
 fn the_closest_is_found_within_a_distance() {
     let (world, objects) = row(3);
-    let shape = Shape::Sphere { center: [2.0, 4.0, -5.0], radius: 0.5 };
+    let shape = QueryShape::Sphere { center: [2.0, 4.0, -5.0], radius: 0.5 };
     let closest = world.closest(&shape, f64::INFINITY, ALL_LAYERS).unwrap().unwrap();
     assert_eq!(closest.object, objects[2]);
     assert!((closest.distance - 3.25).abs() < 1e-9);

@@ -150,14 +150,8 @@ fn rays_meet_a_mesh() {
 }
 
 /// Of the functions that the library exports, those that the crate leaves out: World does what they are for.
-const LEFT_OUT: [&str; 6] = [
-    "crofton_scene_",
-    "crofton_tree_",
-    "crofton_baked_",
-    "crofton_broadphase_",
-    "crofton_set_",
-    "crofton_log",
-];
+const LEFT_OUT: [&str; 6] =
+    ["crofton_scene_", "crofton_tree_", "crofton_baked_", "crofton_broadphase_", "crofton_set_", "crofton_log"];
 
 #[test]
 fn every_declared_function_is_exported() {
