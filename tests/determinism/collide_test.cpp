@@ -80,9 +80,34 @@ std::uint64_t meshes() {
     return digest.value();
 }
 
+// The nearest points of meshes of few leaves and of many, ties included, and on which side of them.
+std::uint64_t points_at_meshes() {
+    Digest digest;
+    TriangleMesh box;
+    for (unsigned i = 0; i < 8; ++i) box.positions.push_back({i & 1 ? 2 : -2, i & 2 ? 2 : -2, i & 4 ? 4 : -4});
+    box.indices = {0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4,
+                   2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6};
+    const auto house = *mesh::MeshTree::build(box), ring = *mesh::MeshTree::build(torus(60, 30, 0.2));
+    Random random(45);
+    for (int trial = 0; trial < 2000; ++trial) {
+        const double length = random.uniform(0.0, trial % 2 == 0 ? 5.0 : 1.5);
+        glm::dvec3 point = length * sampling::direction(random.point<2>());
+        if (trial % 4 == 0) point = glm::round(point);
+        const mesh::MeshTree& tree = trial % 2 == 0 ? house : ring;
+        const auto found = mesh::distance_to_point(tree, point);
+        digest.add(found.distance).add(found.on_a).add(found.triangles.first);
+        digest.add(static_cast<std::uint8_t>(mesh::contains(tree, point)));
+    }
+    return digest.value();
+}
+
 }  // namespace
 
 TEST_SUITE("determinism/collide") {
+    TEST_CASE("nearest points of meshes, and the sides of points, are the same bits everywhere") {
+        check_everywhere(0x37ebee0bae06d2c4, [](Executor&) { return points_at_meshes(); });
+    }
+
     TEST_CASE("pairs of moving boxes are the same everywhere") {
         check_everywhere(0xc74938a5f930b243, [](Executor& e) { return pairs(e); });
     }

@@ -4,7 +4,9 @@
 #include <crofton/mesh/mesh_parts.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
+#include <crofton/mesh/near_triangles.hpp>
 #include <glm/geometric.hpp>
+#include <limits>
 
 #include "exact_signs.hpp"
 #include "posed_mesh.hpp"
@@ -34,72 +36,39 @@ Crossing crossing(const glm::dvec3& p, const Triangle& t) {
     return side > 0 ? Crossing::crosses : Crossing::none;
 }
 
-struct MeshRay {
-    glm::dvec3 origin, direction;  // in the mesh's frame
-    double error_bound;            // of positions carried to the mesh's frame
-};
-
-// Separating axes of a ray and a box: the cross products of the ray with the box's axes, and the ray itself.
-bool may_meet(const MeshRay& ray, const mesh::MeshNode& node, std::uint32_t lane) {
-    double o[3], d[3], h[3];
-    glm::dvec3 offset;
-    for (int i = 0; i < 3; ++i) offset[i] = ray.origin[i] - static_cast<double>(node.center[i][lane]);
-    double behind = glm::dot(offset, ray.direction);
-    for (int k = 0; k < 3; ++k) {
-        glm::dvec3 axis;
-        for (int i = 0; i < 3; ++i) axis[i] = static_cast<double>(node.axes[k][i][lane]);
-        o[k] = glm::dot(axis, offset);
-        d[k] = glm::dot(axis, ray.direction);
-        h[k] = static_cast<double>(node.half[k][lane]) + ray.error_bound;
-        behind -= h[k] * std::abs(d[k]);
-    }
-    if (behind > ray.error_bound) return false;
-    for (int k = 0; k < 3; ++k) {
-        const int i = (k + 1) % 3, j = (k + 2) % 3;
-        if (std::abs(o[i] * d[j] - o[j] * d[i]) > h[i] * std::abs(d[j]) + h[j] * std::abs(d[i]) + ray.error_bound)
-            return false;
-    }
-    return true;
-}
-
 // The ray from p along +z in the frame of a mesh, which stands at `pose`; without one, in p's frame.
-MeshRay upward_ray(const mesh::MeshTree& mesh, const RigidTransform* pose, const glm::dvec3& p) {
-    const glm::dvec3 up(0.0, 0.0, 1.0);
-    const double size = static_cast<double>(mesh.extent()) + glm::length(p);
-    if (pose == nullptr) return {p, up, 2e-6 * size};
-    const RigidTransform back = inverse(*pose);
-    return {transform(back, p), back.rotation * up, 2e-6 * (size + glm::length(pose->translation))};
+UpwardRay upward_ray(const mesh::MeshTree& mesh, const RigidTransform* pose, const glm::dvec3& p) {
+    double size = static_cast<double>(mesh.extent()) + glm::length(p);
+    RigidTransform back;
+    if (pose != nullptr) {
+        back = inverse(*pose);
+        size += glm::length(pose->translation);
+    }
+    const glm::dvec3 origin = pose != nullptr ? transform(back, p) : p;
+    UpwardRay ray{};
+    for (int i = 0; i < 3; ++i) {
+        ray.origin[i] = static_cast<float>(origin[i]);
+        for (int k = 0; k < 3; ++k) ray.axes[k][i] = static_cast<float>(back.rotation[k][i]);
+    }
+    ray.error = static_cast<float>(2e-6 * size) + std::numeric_limits<float>::min();
+    return ray;
 }
 
 // Parity of the crossings of p's ray with the closed pieces of the mesh; on their surface counts as inside.
 bool is_inside(const mesh::MeshTree& mesh, const RigidTransform* pose, const glm::dvec3& p) {
     const std::span<const MeshPiece> pieces = mesh.pieces();
     if (std::none_of(pieces.begin(), pieces.end(), [](const MeshPiece& piece) { return piece.closed; })) return false;
-    const MeshRay ray = upward_ray(mesh, pose, p);
-    const MeshParts& parts = mesh.parts();
-    std::uint32_t stack[256];
-    std::uint32_t height = 0;
-    stack[height++] = 0;
     bool inside = false;
-    while (height > 0) {
-        const mesh::MeshNode& node = parts.nodes[stack[--height]];
-        for (std::uint32_t lane = 0; lane < node.count; ++lane) {
-            if (!may_meet(ray, node, lane)) continue;
-            if (!(node.child[lane] & mesh::kMeshLeaf)) {
-                stack[height++] = node.child[lane];
-                continue;
-            }
-            const mesh::MeshLeaf& leaf = parts.leaves[node.child[lane] & ~mesh::kMeshLeaf];
-            for (std::uint32_t i = 0; i < leaf.count; ++i) {
-                if (!pieces[leaf.piece[i]].closed) continue;
-                const Crossing found =
-                    crossing(p, pose == nullptr ? triangle_of(leaf, i) : triangle_of(leaf, i, *pose));
-                if (found == Crossing::touches) return true;
-                inside ^= found == Crossing::crosses;
-            }
-        }
-    }
-    return inside;
+    const auto visit = [&](const MeshLeaf& leaf, std::uint32_t lane, bool surely) {
+        if (!pieces[leaf.piece[lane]].closed) return false;
+        Crossing found = Crossing::crosses;
+        if (!surely) found = crossing(p, pose == nullptr ? triangle_of(leaf, lane) : triangle_of(leaf, lane, *pose));
+        inside ^= found == Crossing::crosses;
+        return found == Crossing::touches;
+    };
+    const MeshParts& parts = mesh.parts();
+    const bool touches = visit_triangles_above(parts.nodes.data(), parts.leaves, upward_ray(mesh, pose, p), visit);
+    return touches || inside;
 }
 
 // One of each piece, and of each part where a refit has parted them.

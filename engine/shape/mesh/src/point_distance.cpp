@@ -58,11 +58,6 @@ MeshDistance distance_to_point(const MeshTree& mesh, const glm::dvec3& point) {
     const double reach = std::abs(point.x) + std::abs(point.y) + std::abs(point.z);
     if (mesh.triangle_count() == 0 || !(reach < std::numeric_limits<double>::infinity())) return result;
     const double size = reach + static_cast<double>(mesh.extent());
-    MeshBox box{};
-    for (int k = 0; k < 3; ++k) {
-        box.center[k] = static_cast<float>(point[k]);
-        box.axes[k][k] = 1.0f;
-    }
     // Nearer than rounding tells, each triangle is asked exactly.
     const double doubtful = 1e-12 * size, least = doubtful * doubtful;
     double squared = std::numeric_limits<double>::infinity();  // of what is worth a visit
@@ -74,26 +69,25 @@ MeshDistance distance_to_point(const MeshTree& mesh, const glm::dvec3& point) {
         const glm::dvec3 nearest = nearest_on(point, triangle, seen), way = point - nearest;
         const double distance = std::max(glm::dot(way, way), kLeastSquaredToPoint);
         const TrianglePair indices{leaf.triangle[lane], 0};
-        if (distance <= least && segment_meets_triangle(point, point, triangle)) {
-            result = {0.0, point, point, indices};
-            return true;
-        }
-        if (distance < best) {
-            best = distance;
+        const bool meets = distance <= least && segment_meets_triangle(point, point, triangle);
+        const double now = meets ? 0.0 : distance;
+        if (now < best || (now == best && indices.first < result.triangles.first)) {
+            best = now;
             squared = std::max(best, least);
-            result = {std::sqrt(best), nearest, point, indices};
+            result = {std::sqrt(best), meets ? point : nearest, point, indices};
         }
         return false;
     };
     if (size > kMostForTree) {
         for (const MeshLeaf& leaf : mesh.parts().leaves)
-            for (std::uint32_t lane = 0; lane < leaf.count; ++lane)
-                if (visit(leaf, lane)) return result;
+            for (std::uint32_t lane = 0; lane < leaf.count; ++lane) (void)visit(leaf, lane);
         return result;
     }
-    // The center in float is off by 2^-24 of itself.
+    // A coordinate in float is off by 2^-24 of itself.
+    const glm::vec3 at(point);
     const float rounding = static_cast<float>(0x1p-22 * reach) + std::numeric_limits<float>::min();
-    visit_nearest_triangles(mesh.parts().nodes.data(), mesh.parts().leaves.data(), box, rounding, squared, visit);
+    visit_nearest_triangles(mesh.parts().nodes.data(), mesh.parts().leaves, NearPoint{{at.x, at.y, at.z}, rounding},
+                            squared, visit);
     return result;
 }
 
