@@ -122,10 +122,10 @@ TEST_SUITE("convex/beside") {
                 }
         };
         for (int round = 0; round < 120; ++round) check(random_crowd(random, 16, 1.0 + 0.01 * round));
-        for (int round = 0; round < 60; ++round)
+        for (int round = 0; round < 500; ++round)
             check(wall_of_crates(random, std::pow(10.0, -random.number(1.5, 6.0))));
         CHECK(touching > 20000);
-        CHECK(changed > 1000);
+        CHECK(changed > 2000);
     }
 
     // A second part that touches nothing makes the first a shape of parts, which has all contacts beside it found.
