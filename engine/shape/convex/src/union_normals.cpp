@@ -240,6 +240,7 @@ bool UnionNormals::meets_polygon(const Neighbor& neighbor, const Samples& sample
 }
 
 bool UnionNormals::Neighbor::covers_any(const Samples& samples, const glm::dvec3& direction) const {
+    if (is_box() && is_beside(samples)) return false;
     for (int i = 0; i < samples.count; ++i)
         if (covers(samples.point[i], direction)) return true;
     return samples.corners > 1 && meets_polygon(*this, samples, direction);
@@ -445,11 +446,11 @@ void UnionNormals::keep_deepest(const Contact& from, Contact& contact) const {
     contact.depth = point.depth;
 }
 
-// Whether the contact may be behind that of its part with another: not where the two are apart, nor where the contact's
-// motion parts them.
-bool UnionNormals::may_be_behind(const Contact& contact, int list, std::uint32_t part) const {
-    const ShapeAtPose a = placed(0, list == 0 ? part : contact.part[0]),
-                      b = placed(1, list == 0 ? contact.part[1] : part);
+// Whether the first contact may be behind that of its part with another: not where the two are apart, nor where the
+// contact's motion parts them.
+bool UnionNormals::may_be_behind(int list, std::uint32_t part) const {
+    const Contact& contact = contacts_[0];
+    const ShapeAtPose a = placed(0, list == 0 ? part : 0), b = placed(1, list == 0 ? 0 : part);
     const Pair pair(a, b);
     const double reach = reach_of(a.shape) + reach_of(b.shape);
     if (glm::dot(pair.offset, pair.offset) > reach * reach * (1.0 + 1e-12)) return false;
@@ -459,8 +460,10 @@ bool UnionNormals::may_be_behind(const Contact& contact, int list, std::uint32_t
 bool UnionNormals::is_first_left(PartTest counts, PairTouch touch) {
     const Contact& contact = contacts_[0];
     bool any_covers = false;
+    glm::dvec3 middle[2];
     for (int list = 0; list < 2; ++list) {
         const Samples samples(contact, list);
+        middle[list] = samples.middle;
         const glm::dvec3 direction = list == 0 ? contact.normal : -contact.normal;
         list_near(list, 0, samples.middle, samples.radius);
         for (const Neighbor& neighbor : near_) {
@@ -473,9 +476,11 @@ bool UnionNormals::is_first_left(PartTest counts, PairTouch touch) {
     // Where nothing covers the contact, it is replaced only if it is behind another one.
     for (int list = 0; list < 2; ++list)
         for (std::uint32_t part = 1; part < parts_[list].size(); ++part) {
-            if (!may_be_behind(contact, list, part) || !counts(list, part)) continue;
+            if (!may_be_behind(list, part) || !counts(list, part)) continue;
             const PairContact found = list == 0 ? touch(part, 0) : touch(0, part);
-            if (!found.touches) continue;
+            if (!found.touches || !(found.depth > 0.0)) continue;
+            // The way out of the other contact, from here, does not come to the other part.
+            if (!neighbor_of(list, 0, part).is_near(middle[list], found.depth)) continue;
             Contact other;
             other.part[0] = list == 0 ? part : 0;
             other.part[1] = list == 0 ? 0 : part;

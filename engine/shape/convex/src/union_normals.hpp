@@ -85,7 +85,7 @@ class UnionNormals {
     [[nodiscard]] const Contact* find_free(const Contact& contact) const;
     void replace_by_free();
     [[nodiscard]] bool is_behind(const Contact& contact, const Contact& other) const;
-    [[nodiscard]] bool may_be_behind(const Contact& contact, int list, std::uint32_t part) const;
+    [[nodiscard]] bool may_be_behind(int list, std::uint32_t part) const;
     void replace_behind();
     void keep_deepest(const Contact& from, Contact& contact) const;
     bool push_least_deep();
