@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Times updates of stacked crates, as shapes and as boxes: at rest, one that moves, and all.
+// Times updates of stacked crates, as shapes and as boxes: at rest, one that moves, and all. Then of hulls that are
+// deep in each other.
 #include <algorithm>
+#include <cmath>
 #include <crofton/convex/query.hpp>
 #include <crofton/crofton.hpp>
 #include <cstdio>
@@ -78,6 +80,59 @@ class Crates {
     std::mt19937_64 random_{1};
 };
 
+// 300 hulls of 16 points, at random in a cube: about 6,000 pairs of boxes, most of them deep in each other.
+class DenseHulls {
+  public:
+    DenseHulls() {
+        for (int i = 0; i < kCount; ++i) {
+            std::vector<glm::vec3> points;
+            while (points.size() < 16) {
+                const double x = number(1.0), y = number(1.0), z = number(1.0),
+                             length = std::sqrt(x * x + y * y + z * z);
+                if (length > 0.1 && length < 1.0) points.emplace_back(x / length, y / length, z / length);
+            }
+            hulls_.push_back(convex::Hull::build(points).value());
+        }
+        for (const convex::Hull& hull : hulls_) shapes_.push_back(convex::Shape::hull(hull));
+        for (const convex::Shape& shape : shapes_) {
+            Obb box;
+            box.half_extents = glm::vec3(1.0f);
+            for (int k = 0; k < 3; ++k) box.center[k] = number(3.3);
+            boxes_.push_back(box);
+            objects_.push_back(world_.add({.bound = box}).value());
+            expect(world_.set_shape(objects_.back(), &shape).has_value(), "a shape");
+        }
+        expect(world_.update().has_value(), "loading");
+    }
+    double frame() {
+        for (std::size_t i = 0; i < objects_.size(); ++i) {
+            Obb box = boxes_[i];
+            for (int k = 0; k < 3; ++k) box.center[k] += number(1e-3);
+            expect(world_.set_bound(objects_[i], box).has_value(), "a move");
+        }
+        return microseconds([&] { expect(world_.update().has_value(), "an update"); });
+    }
+    [[nodiscard]] std::size_t pairs() const { return world_.pairs().size(); }
+
+  private:
+    static constexpr int kCount = 300;
+    double number(double most) { return most * (static_cast<double>(random_() >> 11) * 0x1p-52 - 1.0); }
+
+    std::mt19937_64 random_{5};
+    std::vector<convex::Hull> hulls_;
+    std::vector<convex::Shape> shapes_;
+    World world_;
+    std::vector<ObjectHandle> objects_;
+    std::vector<Obb> boxes_;
+};
+
+void print_row(const char* name, const char* motion, std::size_t pairs, std::vector<double>& times) {
+    std::sort(times.begin(), times.end());
+    std::printf("%-28s %-28s %8zu %10.2f %10.2f %10.2f\n", name, motion, pairs, times.front(), times[times.size() / 2],
+                times.back());
+    std::fflush(stdout);
+}
+
 }  // namespace
 
 void stacks(int frames) {
@@ -89,13 +144,14 @@ void stacks(int frames) {
                 Crates crates(touch ? 1.0 : 1.5, shapes);
                 std::vector<double> times;
                 for (int number = 0; number < frames; ++number) times.push_back(crates.frame(row.motion, number));
-                std::sort(times.begin(), times.end());
-                const char* const name = touch ? (shapes ? "a wall, shapes" : "a wall, boxes")
-                                               : (shapes ? "towers, shapes" : "towers, boxes");
-                std::printf("%-28s %-28s %8zu %10.2f %10.2f %10.2f\n", name, row.name, crates.pairs(), times.front(),
-                            times[times.size() / 2], times.back());
-                std::fflush(stdout);
+                print_row(touch ? (shapes ? "a wall, shapes" : "a wall, boxes")
+                                : (shapes ? "towers, shapes" : "towers, boxes"),
+                          row.name, crates.pairs(), times);
             }
+    DenseHulls dense;
+    std::vector<double> times;
+    for (int number = 0; number < frames; ++number) times.push_back(dense.frame());
+    print_row("300 hulls in each other", "each moves 1 mm or less", dense.pairs(), times);
 }
 
 }  // namespace crofton::bench

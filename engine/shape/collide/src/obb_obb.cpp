@@ -96,6 +96,14 @@ int separating_straight_axis(const Obb& a, const Obb& b) {
         const double rough = std::abs(b.center[k] - a.center[k]), sum = half_a + half_b;
         if (!(rough + sum < std::numeric_limits<double>::infinity())) return 0;
         if (rough < sum * (1.0 - 0x1p-50)) continue;
+        if (rough > sum * (1.0 + 0x1p-50)) return k;
+        // Without rounding, but for that of what is below the rounding of either sum.
+        const auto apart = detail::two_sum(b.center[k], -a.center[k]), radius = detail::two_sum(half_a, half_b);
+        const double low = (apart.high < 0.0 ? -apart.low : apart.low) - radius.low;
+        if (apart.low == 0.0 || radius.low == 0.0) {
+            if ((rough - sum) + low > 0.0) return k;
+            continue;
+        }
         Expansion<2> way = exact_difference(b.center[k], a.center[k]);
         if (way.sign() < 0) way = -way;
         if ((way - exact_sum(half_a, half_b)).sign() > 0) return k;
@@ -104,7 +112,6 @@ int separating_straight_axis(const Obb& a, const Obb& b) {
 }
 
 int careful_axis(const Obb& a, const Obb& b, const PairColumns& columns, int hint) {
-    if (hint == kNotSeparated && is_straight(a) && is_straight(b)) return separating_straight_axis(a, b);
     const AxisVerdicts verdicts = judge_axes(columns);
     if (verdicts.separated != 0)
         return hint >= 0 && (verdicts.separated >> hint & 1u) != 0 ? hint : first_of(verdicts.separated);
@@ -145,12 +152,14 @@ int axis_of(const Obb& a, const Obb& b) {
                                         lanes_where(edges[2] > error)};
         return first_of(axis_set(lanes));
     }
+    if (is_straight(a) && is_straight(b)) return separating_straight_axis(a, b);
     return careful_axis(a, b, columns_of(pair.a, pair.b, b.center - a.center), kNotSeparated);
 }
 
 }  // namespace
 
 int careful_axis(const Obb& a, const Obb& b, int hint) {
+    if (hint == kNotSeparated && is_straight(a) && is_straight(b)) return separating_straight_axis(a, b);
     return careful_axis(a, b, columns_of(FloatBox(a), FloatBox(b), b.center - a.center), hint);
 }
 

@@ -90,6 +90,12 @@ BoxClip::BoxClip(const ShapeAtPose& a, const ShapeAtPose& b, const BoxPair& pair
       k_(face / 2),
       u_(k_ == 2 ? 0 : k_ + 1),
       v_(k_ == 0 ? 2 : k_ - 1) {
+    if (pair.is_straight()) {
+        incident_ = face ^ 1;
+        find_straight_corners();
+        clip();
+        return;
+    }
     if (!(std::abs(coordinate(direction_, k_)) > 0.05)) return;
     // The face that looks against the direction most.
     const glm::dvec3 facing(glm::dot(seen_.edge[0], direction_), glm::dot(seen_.edge[1], direction_),
@@ -127,6 +133,21 @@ void BoxClip::find_corners(int incident_face) {
                            lines((number + 3) & 3, number)};
     };
     corner(sum, -1.0, 0), corner(difference, 1.0, 1), corner(sum, 1.0, 2), corner(difference, -1.0, 3);
+    count_ = 4;
+}
+
+// Of boxes that are not turned, along the axis of the faces: the incident face itself is the shadow.
+void BoxClip::find_straight_corners() {
+    const glm::dvec3 &h = other_.shape.half_extents(), &at = seen_.center;
+    const double out = coordinate(h, k_), hu = coordinate(h, u_), hv = coordinate(h, v_), x = coordinate(at, u_),
+                 y = coordinate(at, v_);
+    const double rise = coordinate(at, k_) + ((incident_ & 1) != 0 ? out : -out) - level();
+    const double height = (face_ & 1) != 0 ? rise : -rise;
+    for (int i = 0; i < 4; ++i) {
+        const int corner = kBoxFaces[incident_][i];
+        corner_[i] = {(corner >> u_ & 1) != 0 ? x + hu : x - hu, (corner >> v_ & 1) != 0 ? y + hv : y - hv, height,
+                      lines((i + 3) & 3, i)};
+    }
     count_ = 4;
 }
 

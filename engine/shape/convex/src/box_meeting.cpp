@@ -61,7 +61,7 @@ struct RoughSum {
 };
 
 // Whether each of the frame's axes is one of the world's, or its opposite.
-bool is_straight(const glm::dmat3& r) {
+bool has_straight_axes(const glm::dmat3& r) {
     const auto along_one = [](const glm::dvec3& v) {
         const int zeros = static_cast<int>(v.x == 0.0) + static_cast<int>(v.y == 0.0) + static_cast<int>(v.z == 0.0);
         return zeros == 2 && std::abs(v.x + v.y + v.z) == 1.0;
@@ -75,9 +75,11 @@ bool straight_boxes_overlap(const Pair& pair, int k) {
     const int i = axis.x != 0.0 ? 0 : axis.y != 0.0 ? 1 : 2;
     const double a = pair.pose_a.translation[i], b = pair.pose_b.translation[i], half_a = pair.a.half_extents()[k],
                  half_b = pair.b.half_extents()[k], low = std::min(a, b), high = std::max(a, b);
-    RoughSum rough;
-    for (const double term : {low, -high, half_a, half_b}) rough.add(term);
-    if (rough.is_sure()) return rough.sum >= 0.0;
+    const auto apart = detail::two_sum(high, -low), radius = detail::two_sum(half_a, half_b);
+    // The difference of two numbers as near as these is exact, and so is the sign of a sum of two.
+    const double rough = radius.high - apart.high, rest = radius.low - apart.low;
+    const bool close = apart.high <= 2.0 * radius.high && radius.high <= 2.0 * apart.high;
+    if (close && (radius.low == 0.0 || apart.low == 0.0)) return rough + rest >= 0.0;
     return (exact_sum(half_a, half_b) - exact_difference(high, low)).sign() >= 0;
 }
 
@@ -148,7 +150,7 @@ class MeetingBoxes {
 // Edges that are parallel have no axis across them. If edge i of a is parallel to one of b, what is across edge i and
 // another of b is across two edges of b: a face's axis. The same holds where edge j of b is parallel to one of a.
 std::optional<bool> BoxPair::meet_exactly() const {
-    if (common_frame_ && is_straight(pair_.pose_a.rotation)) {
+    if (straight_ || (common_frame_ && has_straight_axes(pair_.pose_a.rotation))) {
         for (int k = 0; k < 3; ++k)
             if ((near_ >> k & 1) != 0 && !straight_boxes_overlap(pair_, k)) return false;
         return true;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/geometry/expansion.hpp>
+#include <cstring>
 #include <limits>
 
 namespace crofton::convex {
@@ -27,15 +28,27 @@ double radius_along(const glm::dvec3& half, const glm::dvec3& n) {
     return half.x * std::abs(n.x) + half.y * std::abs(n.y) + half.z * std::abs(n.z);
 }
 
+constexpr double kWorldAxes[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+
+bool is_world_frame(const glm::dmat3& rotation) {
+    return std::memcmp(&rotation, kWorldAxes, sizeof kWorldAxes) == 0;
+}
+
 }  // namespace
 
 BoxPair::BoxPair(const Pair& pair)
     : pair_(pair),
       half_a_(pair.a.half_extents()),
       half_b_(pair.b.half_extents()),
-      common_frame_(pair.pose_a.rotation == pair.pose_b.rotation),
+      straight_(is_world_frame(pair.pose_a.rotation) && is_world_frame(pair.pose_b.rotation)),
+      common_frame_(straight_ || pair.pose_a.rotation == pair.pose_b.rotation),
       depth_margin_(kSameDepth * pair.size),
       error_(4.0 * pair.error) {
+    if (straight_) {
+        for (int k = 0; k < 3; ++k) to_a_[k] = glm::dvec3(k == 0, k == 1, k == 2);
+        at_ = pair.offset;
+        return;
+    }
     const glm::dmat3& r = pair.pose_a.rotation;
     const glm::dvec3 x = glm::cross(r[1], r[2]), y = glm::cross(r[2], r[0]), z = glm::cross(r[0], r[1]);
     const double share = 1.0 / glm::dot(r[0], x);
@@ -122,6 +135,7 @@ void BoxPair::try_edges(BoxAxis& least) {
 }
 
 void BoxPair::try_slivers(BoxAxis& least) const {
+    if (slivers_ == 0) return;
     for (int n = 0; n < 9; ++n) {
         if ((slivers_ >> n & 1) == 0) continue;
         const glm::dvec3 m = careful_cross(pair_.pose_a.rotation[n / 3], pair_.pose_b.rotation[n % 3]);
@@ -130,6 +144,22 @@ void BoxPair::try_slivers(BoxAxis& least) const {
         const double extent = std::min(pair_.extent(m), pair_.extent(-m)) / length;
         if (extent < least.extent - depth_margin_) least = {6 + n, extent};
     }
+}
+
+// Each number is what least_in_common_frame() would come to.
+BoxAxis BoxPair::least_of_straight(double far) {
+    BoxAxis least;
+    for (int k = 0; k < 3; ++k) {
+        const double along = coordinate(at_, k), sum = coordinate(half_a_, k) + coordinate(half_b_, k),
+                     extent = sum - std::abs(along);
+        row_share_[k] = 1.0;
+        radius_sum_[0][k] = radius_sum_[1][k] = sum;
+        along_[0][k] = along_[1][k] = along;
+        near_ |= (extent > error_ ? 0 : 1) << k;
+        if (k == 0 || extent < far || extent < least.extent - depth_margin_) least = {k, extent};
+        if (extent < far) return least;
+    }
+    return least;
 }
 
 BoxAxis BoxPair::least_in_common_frame(double far) {
@@ -147,6 +177,7 @@ BoxAxis BoxPair::least_in_common_frame(double far) {
 }
 
 BoxAxis BoxPair::least(double far) {
+    if (straight_) return least_of_straight(far);
     if (common_frame_) return least_in_common_frame(far);
     BoxAxis least;
     if (try_faces(far, least)) try_edges(least);
@@ -171,6 +202,7 @@ glm::dvec3 BoxPair::normal(int axis) const {
 }
 
 BoxPair::Seen BoxPair::seen_by(bool a) const {
+    if (straight_) return {a ? at_ : -at_, {to_a_[0], to_a_[1], to_a_[2]}};
     if (a) return {at_, {edge_[0], edge_[1], edge_[2]}};
     Seen seen;
     for (int j = 0; j < 3; ++j) {
@@ -181,6 +213,7 @@ BoxPair::Seen BoxPair::seen_by(bool a) const {
 }
 
 glm::dvec3 BoxPair::into_frame(bool of_a, const glm::dvec3& direction) const {
+    if (straight_) return direction;
     const glm::dvec3 d(glm::dot(to_a_[0], direction), glm::dot(to_a_[1], direction), glm::dot(to_a_[2], direction));
     if (of_a) return d;
     return share_ * glm::dvec3(glm::dot(across_[0], d), glm::dot(across_[1], d), glm::dot(across_[2], d));

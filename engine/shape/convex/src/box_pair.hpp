@@ -47,6 +47,9 @@ class BoxPair {
     // sums do. Nothing: numbers beyond what exact sums take.
     [[nodiscard]] std::optional<bool> meet_exactly() const;
 
+    // Whether neither box is turned: both frames are the world's. look_along() is not for these.
+    [[nodiscard]] bool is_straight() const { return straight_; }
+
     // Of one face's axis alone, 0 to 5; then normal() and face_towards_other() know this axis, and seen_by() and
     // into_frame() this box.
     [[nodiscard]] BoxAxis look_along(int axis);
@@ -74,6 +77,7 @@ class BoxPair {
         for (int j = 0; j < 3; ++j) edge_[j][k] = glm::dot(to_a_[k], pair_.pose_b.rotation[j]);
     }
     void find_products();
+    [[nodiscard]] BoxAxis least_of_straight(double far);
     [[nodiscard]] BoxAxis least_in_common_frame(double far);
     [[nodiscard]] double face_of_a(int k);
     [[nodiscard]] double face_of_b(int j);
@@ -82,6 +86,7 @@ class BoxPair {
 
     const Pair& pair_;
     const glm::dvec3 &half_a_, &half_b_;
+    bool straight_;      // neither box is turned
     bool common_frame_;  // the poses' rotations are the same: the faces of a have all axes
     double depth_margin_, error_, sliver_width_ = 0.0;
     int slivers_ = 0;                         // bit 3i + j
@@ -119,6 +124,7 @@ class BoxClip {
     static constexpr int kMost = 8;  // four corners and four sides; roundings can add one, which is left out
     static int clip_side(const FlatCorner* from, int count, int side, double level, int face, FlatCorner* to);
     void find_corners(int incident_face);
+    void find_straight_corners();
     [[nodiscard]] double level() const;  // of the reference face along its axis
     void clip();
 

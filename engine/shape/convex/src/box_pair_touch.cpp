@@ -165,7 +165,8 @@ Warm BoxToucher::decide() {
 
 Warm BoxToucher::ask(int& reference, int& face) {
     const double limit = -(rounding_ + margin_) - axes_.error() - pair_.doubt();
-    if (reference != 0) {
+    // Of boxes that are not turned all axes take less than the proof.
+    if (reference != 0 && !axes_.is_straight()) {
         if (const Warm warm = stays(reference == 1, face, limit); warm != Warm::unknown) return warm;
         points_.count = 0;
     }

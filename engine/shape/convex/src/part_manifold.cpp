@@ -2,6 +2,7 @@
 #include "part_manifold.hpp"
 
 #include <algorithm>
+#include <crofton/convex/push_out_of_union.hpp>
 
 #include "box_pair.hpp"
 #include "core_query.hpp"
@@ -27,6 +28,7 @@ struct Manifolds::Scratch {
     ManifoldList list;
     SurfaceContacts::Contact contact;
     UnionNormals flush;
+    Vector<std::uint32_t> shape_of_part[2];  // of `flush`, beside the pair's own: shapes beside, by number
     Vector<std::pair<std::uint32_t, std::uint32_t>> numbers;  // of second parts: child, number in `flush`
 };
 
@@ -95,6 +97,31 @@ class ManifoldFinder {
         for (std::uint32_t i = 0; i < own.parts[0]; ++i)
             for (std::uint32_t j = 0; j < own.parts[1]; ++j)
                 add_flush_contact(i, j, a.shape.is_convex() && b.shape.is_convex() ? cache : nullptr);
+        find_beside(a, b, beside, own);
+    }
+
+    // Of two convex shapes that have been asked alone.
+    void run_beside(const ShapeAtPose& a, const ShapeAtPose& b, const NumberedBeside& beside, PairMemory& memory) {
+        if (found_.all_.empty()) return;
+        const Manifold alone = found_.all_[0];
+        found_.all_.clear();
+        scratch_.list.clear();
+        scratch_.flush.start(options_.margin);
+        Count own;
+        add_parts(0, a, b, own.parts[0]);
+        add_parts(1, b, a, own.parts[1]);
+        scratch_.flush.add_contact(0, 0, alone);
+        numbered_ = &beside;
+        memory_ = &memory;
+        find_beside(a, b, beside.shapes, own);
+    }
+
+  private:
+    struct Count {
+        std::uint32_t parts[2] = {0, 0};  // of the lists of `flush`
+    };
+    void find_beside(const ShapeAtPose& a, const ShapeAtPose& b, const Beside& beside, const Count& own) {
+        UnionNormals& flush = scratch_.flush;
         const std::size_t wanted = flush.contacts().size();
         if (wanted == 0) return;
         const bool deep = std::any_of(flush.contacts().begin(), flush.contacts().end(), [&](const auto& contact) {
@@ -104,26 +131,25 @@ class ManifoldFinder {
         add_flush(wanted, false);
         scratch_.list.finish(std::clamp(options_.max_points, 1, 8), found_.all_);
     }
-
-  private:
-    struct Count {
-        std::uint32_t parts[2] = {0, 0};  // of the lists of `flush`
-    };
     void push_out_of_union(const ShapeAtPose& a, const ShapeAtPose& b, const Beside& beside, const Count& own) {
         UnionNormals& flush = scratch_.flush;
         const std::size_t wanted = flush.contacts().size();
         Count all = own;
-        for (const ShapeAtPose& other : beside.a) add_parts(0, other, b, all.parts[0]);
-        for (const ShapeAtPose& other : beside.b) add_parts(1, other, a, all.parts[1]);
-        if (!flush.is_any_covered()) return;
+        add_beside(0, beside.a, b, all.parts[0]);
+        add_beside(1, beside.b, a, all.parts[1]);
+        const bool two_parts = own.parts[0] == 1 && own.parts[1] == 1;
+        const auto is_flush = [&](int list, std::uint32_t shape) { return is_flush_beside(a, b, beside, list, shape); };
+        const auto counts = [&](int list, std::uint32_t part) { return is_flush(list, shape_of_part(list, part)); };
+        const auto touch = [&](std::uint32_t first, std::uint32_t second) { return contact_of_parts(first, second); };
+        if (two_parts ? flush.is_first_left(counts, touch) : !flush.is_any_covered()) return;
         // Of those beside only what lies flush: shapes that are deep in each other are no floor.
         flush.keep_parts(0, own.parts[0]);
         flush.keep_parts(1, own.parts[1]);
         all = own;
-        for (const ShapeAtPose& other : beside.a)
-            if (are_flush(a, other)) add_parts(0, other, b, all.parts[0]);
-        for (const ShapeAtPose& other : beside.b)
-            if (are_flush(b, other)) add_parts(1, other, a, all.parts[1]);
+        for (std::uint32_t i = 0; i < beside.a.size(); ++i)
+            if (is_flush(0, i)) add_parts(0, beside.a[i], b, all.parts[0]);
+        for (std::uint32_t i = 0; i < beside.b.size(); ++i)
+            if (is_flush(1, i)) add_parts(1, beside.b[i], a, all.parts[1]);
         for (std::uint32_t i = own.parts[0]; i < all.parts[0]; ++i)
             for (std::uint32_t j = 0; j < own.parts[1]; ++j) add_flush_contact(i, j, nullptr);
         for (std::uint32_t i = 0; i < own.parts[0]; ++i)
@@ -132,6 +158,9 @@ class ManifoldFinder {
     }
     [[nodiscard]] static bool are_flush(const ShapeAtPose& a, const ShapeAtPose& b) {
         if (has_surfaces(b.shape) || is_half_space(b)) return false;
+        const glm::dvec3 offset = b.pose.translation - a.pose.translation;
+        const double reach = (a.shape.core_radius() + a.shape.radius()) + (b.shape.core_radius() + b.shape.radius());
+        if (glm::dot(offset, offset) > reach * reach * (1.0 + 1e-12)) return true;
         const double flush = flush_tolerance(a, b);
         const bool boxes = is_solid_box(a.shape) && is_solid_box(b.shape) && a.shape.radius() + b.shape.radius() == 0.0;
         if (boxes)
@@ -157,9 +186,47 @@ class ManifoldFinder {
             return false;
         });
     }
-    void add_flush_contact(std::uint32_t first, std::uint32_t second, PairCache* cache) {
+    // Whether a shape beside a or b lies flush with it.
+    [[nodiscard]] bool is_flush_beside(const ShapeAtPose& a, const ShapeAtPose& b, const Beside& beside, int list,
+                                       std::uint32_t shape) {
+        const auto ask = [&] { return list == 0 ? are_flush(a, beside.a[shape]) : are_flush(b, beside.b[shape]); };
+        if (memory_ == nullptr) return ask();
+        const std::uint32_t own = list == 0 ? numbered_->number_a : numbered_->number_b;
+        return memory_->is_flush.get(own, (list == 0 ? numbered_->numbers_a : numbered_->numbers_b)[shape], ask);
+    }
+    // The shape beside whose part this is.
+    [[nodiscard]] std::uint32_t shape_of_part(int list, std::uint32_t part) const {
+        return scratch_.shape_of_part[list][part - 1];
+    }
+    // Of two convex shapes' parts, one of which is of a shape beside.
+    [[nodiscard]] PairContact contact_of_parts(std::uint32_t first, std::uint32_t second) {
+        const auto ask = [&] {
+            const Manifold m = manifold_of_parts(first, second);
+            return PairContact{m.count > 0, m.normal, m.points[0].position, m.depth};
+        };
+        if (memory_ == nullptr) return ask();
+        const Beside& beside = numbered_->shapes;
+        const bool of_a = second == 0;
+        const std::uint32_t shape = of_a ? shape_of_part(0, first) : shape_of_part(1, second);
+        if (!(of_a ? beside.a : beside.b)[shape].shape.is_convex()) return ask();
+        const std::uint32_t number = (of_a ? numbered_->numbers_a : numbered_->numbers_b)[shape];
+        return memory_->contact.get(of_a ? number : numbered_->number_a, of_a ? numbered_->number_b : number, ask);
+    }
+    void add_beside(int list, std::span<const ShapeAtPose> shapes, const ShapeAtPose& near, std::uint32_t& count) {
+        scratch_.shape_of_part[list].clear();
+        for (std::uint32_t i = 0; i < shapes.size(); ++i) {
+            const std::uint32_t before = count;
+            add_parts(list, shapes[i], near, count);
+            scratch_.shape_of_part[list].insert(scratch_.shape_of_part[list].end(), count - before, i);
+        }
+    }
+    [[nodiscard]] Manifold manifold_of_parts(std::uint32_t first, std::uint32_t second,
+                                             PairCache* cache = nullptr) const {
         const Part &a = scratch_.flush.part(0, first), &b = scratch_.flush.part(1, second);
-        scratch_.flush.add_contact(first, second, manifold_of({a.shape, a.pose}, {b.shape, b.pose}, cache));
+        return manifold_of({a.shape, a.pose}, {b.shape, b.pose}, cache);
+    }
+    void add_flush_contact(std::uint32_t first, std::uint32_t second, PairCache* cache) {
+        scratch_.flush.add_contact(first, second, manifold_of_parts(first, second, cache));
     }
 
     static Manifolds::Scratch& scratch_of(Manifolds& found) {
@@ -331,6 +398,8 @@ class ManifoldFinder {
     const ManifoldOptions& options_;
     bool only_surfaces_ = false;  // convex parts have been asked already
     glm::dvec3 front_{0.0};       // of the triangle that stands for a convex shape; 0 where it has two sides
+    const NumberedBeside* numbered_ = nullptr;  // with the memory
+    PairMemory* memory_ = nullptr;
     Manifolds& found_;
     Manifolds::Scratch& scratch_;
 };
@@ -346,6 +415,13 @@ void contact_manifolds(const ShapeAtPose& a, const ShapeAtPose& b, const Beside&
     if (alone || has_surfaces(a.shape) || has_surfaces(b.shape) || is_half_space(a) || is_half_space(b))
         return contact_manifolds(a, b, options, found, cache);
     ManifoldFinder(options, found).run_beside(a, b, beside, cache);
+}
+
+void push_out_of_union(const ShapeAtPose& a, const ShapeAtPose& b, const NumberedBeside& beside,
+                       const ManifoldOptions& options, Manifolds& found, PairMemory& memory) {
+    const bool alone = beside.shapes.a.empty() && beside.shapes.b.empty();
+    if (!alone && !is_half_space(a) && !is_half_space(b))
+        ManifoldFinder(options, found).run_beside(a, b, beside, memory);
 }
 
 Manifold deepest_manifold(const ShapeAtPose& a, const ShapeAtPose& b, const ManifoldOptions& options) {

@@ -11,17 +11,16 @@ std::size_t track(std::span<const Manifold> manifolds, Vector<TrackedPoint>& poi
     std::size_t kept = 0;  // old points that have stayed come first
     for (const Manifold& manifold : manifolds)
         for (int i = 0; i < manifold.count; ++i) {
-            TrackedPoint now;
+            TrackedPoint& now = points.emplace_back();
             now.contact = manifold.points[i];
             now.normal = manifold.normal;
-            for (std::size_t old = kept; old < before; ++old) {
-                if (!has_same_id(points[old].contact, now.contact)) continue;
-                now.began = false;
-                std::copy_n(points[old].memory, 4, now.memory);
-                std::swap(points[old], points[kept++]);
-                break;
-            }
-            points.push_back(now);
+            std::size_t old = kept;
+            while (old < before && !has_same_id(points[old].contact, now.contact)) ++old;
+            if (old == before) continue;
+            now.began = false;
+            std::copy_n(points[old].memory, 4, now.memory);
+            if (old != kept) std::swap(points[old], points[kept]);
+            ++kept;
         }
     points.erase(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(before));
     return before - kept;

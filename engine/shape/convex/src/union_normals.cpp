@@ -143,7 +143,7 @@ void UnionNormals::add_contact(std::uint32_t first, std::uint32_t second, const 
 UnionNormals::Neighbor UnionNormals::neighbor_of(int list, std::uint32_t own, std::uint32_t other) const {
     const ShapeAtPose shape = placed(list, other);
     const double tolerance = flush_tolerance(placed(list, own), shape);
-    return {shape, tolerance, reach_of(shape.shape) + tolerance, to_local_[list][other]};
+    return {other, shape, tolerance, reach_of(shape.shape) + tolerance, to_local_[list][other]};
 }
 
 bool UnionNormals::Neighbor::is_near(const glm::dvec3& point, double radius) const {
@@ -237,6 +237,13 @@ bool UnionNormals::meets_polygon(const Neighbor& neighbor, const Samples& sample
         if (rises_above(shape, on_polygon, direction, neighbor.tolerance)) return true;
     }
     return false;
+}
+
+bool UnionNormals::Neighbor::covers_any(const Samples& samples, const glm::dvec3& direction) const {
+    if (is_box() && is_beside(samples)) return false;
+    for (int i = 0; i < samples.count; ++i)
+        if (covers(samples.point[i], direction)) return true;
+    return samples.corners > 1 && meets_polygon(*this, samples, direction);
 }
 
 UnionNormals::State UnionNormals::state_on(int list, const Contact& contact) const {
@@ -437,6 +444,53 @@ void UnionNormals::keep_deepest(const Contact& from, Contact& contact) const {
     point.position = on_a + (lift - 0.5 * point.depth) * normal;
     contact.count = 1;
     contact.depth = point.depth;
+}
+
+// Whether the first contact may be behind that of its part with another: not where the two are apart, nor where the
+// contact's motion parts them.
+bool UnionNormals::may_be_behind(int list, std::uint32_t part) const {
+    const Contact& contact = contacts_[0];
+    const ShapeAtPose a = placed(0, list == 0 ? part : 0), b = placed(1, list == 0 ? 0 : part);
+    const Pair pair(a, b);
+    const double reach = reach_of(a.shape) + reach_of(b.shape);
+    if (glm::dot(pair.offset, pair.offset) > reach * reach * (1.0 + 1e-12)) return false;
+    return pair.extent(contact.normal) + pair.rounding() > contact.depth + flush_tolerance(a, b);
+}
+
+bool UnionNormals::is_first_left(PartTest counts, PairTouch touch) {
+    const Contact& contact = contacts_[0];
+    bool any_covers = false;
+    glm::dvec3 middle[2];
+    for (int list = 0; list < 2; ++list) {
+        const Samples samples(contact, list);
+        middle[list] = samples.middle;
+        const glm::dvec3 direction = list == 0 ? contact.normal : -contact.normal;
+        list_near(list, 0, samples.middle, samples.radius);
+        for (const Neighbor& neighbor : near_) {
+            if (!neighbor.covers_any(samples, direction)) continue;
+            if (counts(list, neighbor.number)) return false;
+            any_covers = true;
+        }
+    }
+    if (!any_covers) return true;
+    // Where nothing covers the contact, it is replaced only if it is behind another one.
+    for (int list = 0; list < 2; ++list)
+        for (std::uint32_t part = 1; part < parts_[list].size(); ++part) {
+            if (!may_be_behind(list, part) || !counts(list, part)) continue;
+            const PairContact found = list == 0 ? touch(part, 0) : touch(0, part);
+            if (!found.touches || !(found.depth > 0.0)) continue;
+            // The way out of the other contact, from here, does not come to the other part.
+            if (!neighbor_of(list, 0, part).is_near(middle[list], found.depth)) continue;
+            Contact other;
+            other.part[0] = list == 0 ? part : 0;
+            other.part[1] = list == 0 ? 0 : part;
+            other.normal = found.normal;
+            other.depth = found.depth;
+            other.count = 1;
+            other.points[0].position = found.point;
+            if (is_behind(contact, other)) return false;
+        }
+    return true;
 }
 
 bool UnionNormals::is_any_covered() const {

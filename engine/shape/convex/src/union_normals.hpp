@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Contacts of shapes of convex parts that lie flush or overlap: with the normals of the union.
 #pragma once
-#include <crofton/convex/query.hpp>
+#include <crofton/convex/push_out_of_union.hpp>
+#include <crofton/core/executor.hpp>
 
 #include "gather.hpp"
 
@@ -32,6 +33,11 @@ class UnionNormals {
     void add_contact(std::uint32_t first, std::uint32_t second, const Manifold& manifold);
     // Whether a neighbour covers any contact, in part at least.
     [[nodiscard]] bool is_any_covered() const;
+    // Of one contact of two parts, each the first of its list, and parts beside them of which only those count that
+    // `counts` names: whether apply() surely leaves the contact as it is. `touch` tells the contact of two parts.
+    using PartTest = FunctionRef<bool(int list, std::uint32_t part)>;
+    using PairTouch = FunctionRef<PairContact(std::uint32_t first, std::uint32_t second)>;
+    [[nodiscard]] bool is_first_left(PartTest counts, PairTouch touch);
     // Each of the first `told` contacts keeps a point, as a pair that meets has one.
     void apply(std::size_t told = 0);
     void keep_parts(int list, std::uint32_t count) {
@@ -54,6 +60,7 @@ class UnionNormals {
     }
     // A part beside another of its list.
     struct Neighbor {
+        std::uint32_t number;
         ShapeAtPose shape;
         double tolerance;            // within which the two count as flush
         double reach;                // of the neighbor, wider by that
@@ -65,6 +72,8 @@ class UnionNormals {
         // Whether all points of a polygon are surely farther away than what counts as flush; of a box.
         [[nodiscard]] bool is_beside(const Samples& polygon) const;
         [[nodiscard]] bool covers(const glm::dvec3& point, const glm::dvec3& direction) const;
+        // Whether it covers any point of a contact.
+        [[nodiscard]] bool covers_any(const Samples& samples, const glm::dvec3& direction) const;
     };
     [[nodiscard]] Neighbor neighbor_of(int list, std::uint32_t own, std::uint32_t other) const;
     // Into `near_`: those that may hold a point no farther from `middle`.
@@ -76,6 +85,7 @@ class UnionNormals {
     [[nodiscard]] const Contact* find_free(const Contact& contact) const;
     void replace_by_free();
     [[nodiscard]] bool is_behind(const Contact& contact, const Contact& other) const;
+    [[nodiscard]] bool may_be_behind(int list, std::uint32_t part) const;
     void replace_behind();
     void keep_deepest(const Contact& from, Contact& contact) const;
     bool push_least_deep();

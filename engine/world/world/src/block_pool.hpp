@@ -28,6 +28,12 @@ class BlockPool {
         free.pop_back();
         return {block, size};
     }
+    // Exchanges a block for one that take(count) would give, unless it is as large. What stays in its place stays near.
+    void fit(std::span<T>& block, std::size_t count) {
+        if (block.size() == (count == 0 ? 0 : std::bit_ceil(count))) return;
+        give_back(block);
+        block = take(count);
+    }
     void give_back(std::span<T> block) {
         if (!block.empty()) free_[static_cast<std::size_t>(std::countr_zero(block.size()))].push_back(block.data());
     }

@@ -263,8 +263,8 @@ void ContactFinder::write_contact(const ObjectTable& table, const IdPair& pair, 
                                   std::size_t place) {
     const Worker& worker = workers_[touch.worker];
     ContactMemory& memory = memory_[place];
-    give_back(memory);
-    memory = {points_.take(touch.point_count), triangles_.take(touch.triangle_count)};
+    points_.fit(memory.points, touch.point_count);
+    triangles_.fit(memory.triangles, touch.triangle_count);
     std::copy_n(worker.points.begin() + touch.first_point, touch.point_count, memory.points.begin());
     std::copy_n(worker.triangles.begin() + touch.first_triangle, touch.triangle_count, memory.triangles.begin());
     Contact& contact = contacts_[place];
@@ -350,7 +350,11 @@ Result<void> ContactFinder::update(const ObjectTable& table, SpatialIndex& index
                                    Shapes& shapes, const ObjectShapes& shapes_of, const PairChanges& changes,
                                    Executor& executor) {
     note_colliders(table, index, scene, shapes_of, changes);
+    const auto has_sphere = [&](std::uint32_t a, std::uint32_t b) {
+        return table.objects[a].kind == BoundKind::sphere || table.objects[b].kind == BoundKind::sphere;
+    };
     const auto meet = [&](std::uint32_t a, std::uint32_t b) {
+        if (!(options_.contact_margin > 0.0) && !has_sphere(a, b)) return true;
         const bool shape_a = shapes_of.has(a), shape_b = shapes_of.has(b);
         // Two shapes are asked as far as the contact margin, beyond boxes and spheres.
         if (options_.contact_margin > 0.0 && shape_a && shape_b) return true;

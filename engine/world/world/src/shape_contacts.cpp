@@ -126,10 +126,10 @@ void ShapeContacts::place_object(std::uint32_t object, const Surroundings& aroun
 void ShapeContacts::list_candidates() {
     touches_.clear();
     const auto add = [&](std::size_t state) { touches_.emplace_back().state = static_cast<std::uint32_t>(state); };
-    if ((movers_.size() + joined_.size() + parted_.size()) * kManyMovers > states_.size()) {
+    const auto add_all = [&] {
         for (std::size_t i = 0; i < states_.size(); ++i) add(i);
-        return;
-    }
+    };
+    if ((movers_.size() + joined_.size() + parted_.size()) * kManyMovers > states_.size()) return add_all();
     candidates_.clear();
     const auto add_pair = [&](std::uint32_t a, std::uint32_t b) {
         candidates_.push_back({std::min(a, b), std::max(a, b)});
@@ -137,6 +137,7 @@ void ShapeContacts::list_candidates() {
     for (const std::uint32_t object : movers_) {
         for (const std::uint32_t partner : neighbors_.partners_of(object)) add_pair(object, partner);
         neighbors_.visit_pairs_beside(object, add_pair);
+        if (candidates_.size() > states_.size()) return add_all();  // where many meet many
     }
     for (const auto* const pairs : {&joined_, &parted_})
         for (const PairNeighbors::Pair& pair : *pairs) {
@@ -160,9 +161,12 @@ bool ShapeContacts::have_moved(const Neighbors& neighbors) const {
 void ShapeContacts::place_neighbors(const Surroundings& around, Worker& worker) const {
     for (int side = 0; side < 2; ++side) {
         worker.placed[side].clear();
+        worker.numbers[side].clear();
         for (const std::uint32_t object : worker.neighbors.objects[side])
-            if (const auto& pose = neighbors_.pose_of(object))
+            if (const auto& pose = neighbors_.pose_of(object)) {
                 worker.placed[side].push_back({around.shapes.shape(object), *pose});
+                worker.numbers[side].push_back(object);
+            }
     }
 }
 
@@ -175,8 +179,8 @@ void ShapeContacts::compute(Touch& touch, const Surroundings& around, Worker& wo
     if (!pose_a || !pose_b) return worker.pair_points.clear();
     const convex::ShapeAtPose placed_a{around.shapes.shape(a), *pose_a}, placed_b{around.shapes.shape(b), *pose_b};
     const convex::ManifoldOptions options{.margin = around.margin};
-    const convex::PairCache before = touch.cache;
-    if (placed_a.shape.is_convex() && placed_b.shape.is_convex()) {
+    const bool convex = placed_a.shape.is_convex() && placed_b.shape.is_convex();
+    if (convex) {
         convex::contact_manifolds(placed_a, placed_b, options, worker.found, &touch.cache);
         touch.asks_neighbors = is_deep(worker.found, placed_a.shape, placed_b.shape);
         if (!touch.asks_neighbors) return void(convex::track(worker.found.all(), worker.pair_points));
@@ -185,9 +189,12 @@ void ShapeContacts::compute(Touch& touch, const Surroundings& around, Worker& wo
     neighbors_.find({a, b}, worker.neighbors);
     touch.neighbors = worker.neighbors.name;
     place_neighbors(around, worker);
-    touch.cache = before;
-    convex::contact_manifolds(placed_a, placed_b, {worker.placed[0], worker.placed[1]}, options, worker.found,
-                              &touch.cache);
+    const convex::Beside beside{worker.placed[0], worker.placed[1]};
+    if (convex)
+        convex::push_out_of_union(placed_a, placed_b, {beside, a, b, worker.numbers[0], worker.numbers[1]}, options,
+                                  worker.found, worker.memory);
+    else
+        convex::contact_manifolds(placed_a, placed_b, beside, options, worker.found, &touch.cache);
     convex::track(worker.found.all(), worker.pair_points);
 }
 
@@ -220,7 +227,10 @@ void ShapeContacts::update(const ChangedPairs& pairs, const ObjectShapes& shapes
     note_pairs(pairs, around);
     list_candidates();
     workers_.resize(std::max<std::size_t>(workers_.size(), executor.concurrency()));
-    for (Worker& worker : workers_) worker.points.clear();
+    for (Worker& worker : workers_) {
+        worker.points.clear();
+        worker.memory.clear();
+    }
     executor.parallel_for(touches_.size(), kPairsATask, [&](std::size_t begin, std::size_t end, unsigned w) {
         for (std::size_t i = begin; i < end; ++i) {
             touches_[i].worker = w;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Where shapes of objects touch from update to update.
 #pragma once
-#include <crofton/convex/query.hpp>
+#include <crofton/convex/push_out_of_union.hpp>
 #include <crofton/core/sorted_edits.hpp>
 #include <crofton/geometry/shapes.hpp>
 #include <crofton/scene/scene.hpp>
@@ -65,6 +65,8 @@ class ShapeContacts {
         Vector<convex::TrackedPoint> points, pair_points;
         Neighbors neighbors;
         Vector<convex::ShapeAtPose> placed[2];
+        Vector<std::uint32_t> numbers[2];  // of these
+        convex::PairMemory memory;         // of objects, in this update
     };
     // What an update looks things up in.
     struct Surroundings {
