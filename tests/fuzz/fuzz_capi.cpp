@@ -246,7 +246,7 @@ void meshes(World& world, Input& in) {
         const Mesh mesh(in);
         crofton_shape_destroy(changed);
         changed = nullptr;
-        body_mesh(&mesh.view, in.below(2), &changed);
+        shape_mesh(&mesh.view, in.below(2), &changed);
     }
     const crofton_shape *a = world.meshes[0], *b = world.meshes[1];
     const crofton_transform pose = in.transform();
