@@ -131,7 +131,7 @@ void many_rays(benchmark::State& state, const char* name, RayMaker make, std::si
     const mesh::MeshTree* const tree = tree_of(name, true);
     if (tree == nullptr) return state.SkipWithError("shared data is absent");
     const auto rays = make(mesh_of(name), count);
-    std::vector<std::optional<mesh::RayHit>> found(rays.size());
+    std::vector<std::optional<mesh::TriangleHit>> found(rays.size());
     for (auto _ : state) mesh::raycast(rays, *tree, found);
     int hits = 0;
     for (const auto& hit : found) hits += hit.has_value();

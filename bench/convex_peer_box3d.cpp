@@ -10,14 +10,14 @@
 namespace crofton::bench {
 namespace {
 
-std::vector<b3Vec3> box3d_points(const convex::Shape& body) {
+std::vector<b3Vec3> box3d_points(const convex::Shape& shape) {
     std::vector<b3Vec3> points;
-    if (body.kind() == convex::Kind::box) {
-        const glm::vec3 h(body.half_extents());
+    if (shape.kind() == convex::Kind::box) {
+        const glm::vec3 h(shape.half_extents());
         for (int k = 0; k < 8; ++k) points.push_back({k & 1 ? h.x : -h.x, k & 2 ? h.y : -h.y, k & 4 ? h.z : -h.z});
         return points;
     }
-    for (const glm::vec3& v : body.hull()->vertices()) points.push_back({v.x, v.y, v.z});
+    for (const glm::vec3& v : shape.hull()->vertices()) points.push_back({v.x, v.y, v.z});
     return points;
 }
 

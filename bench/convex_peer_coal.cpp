@@ -11,15 +11,15 @@
 namespace crofton::bench {
 namespace {
 
-std::unique_ptr<coal::ShapeBase> coal_shape(const convex::Shape& body) {
-    if (body.kind() == convex::Kind::box) {
-        const glm::dvec3 h = body.half_extents();
+std::unique_ptr<coal::ShapeBase> coal_shape(const convex::Shape& shape) {
+    if (shape.kind() == convex::Kind::box) {
+        const glm::dvec3 h = shape.half_extents();
         return std::make_unique<coal::Box>(2 * h.x, 2 * h.y, 2 * h.z);
     }
     auto vertices = std::make_shared<std::vector<coal::Vec3s>>();
-    for (const glm::vec3& v : body.hull()->vertices()) vertices->emplace_back(v.x, v.y, v.z);
+    for (const glm::vec3& v : shape.hull()->vertices()) vertices->emplace_back(v.x, v.y, v.z);
     auto triangles = std::make_shared<std::vector<coal::Triangle>>();
-    const auto t = body.hull()->triangles();
+    const auto t = shape.hull()->triangles();
     for (std::size_t k = 0; k < t.size(); k += 3) triangles->emplace_back(t[k], t[k + 1], t[k + 2]);
     return std::make_unique<coal::Convex<coal::Triangle>>(vertices, unsigned(vertices->size()), triangles,
                                                           unsigned(triangles->size()));

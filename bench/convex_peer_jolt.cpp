@@ -17,13 +17,13 @@
 namespace crofton::bench {
 namespace {
 
-JPH::RefConst<JPH::Shape> jolt_shape(const convex::Shape& body) {
-    if (body.kind() == convex::Kind::box) {
-        const glm::vec3 h(body.half_extents());
+JPH::RefConst<JPH::Shape> jolt_shape(const convex::Shape& shape) {
+    if (shape.kind() == convex::Kind::box) {
+        const glm::vec3 h(shape.half_extents());
         return new JPH::BoxShape({h.x, h.y, h.z}, 0.0f);
     }
     JPH::Array<JPH::Vec3> points;
-    for (const glm::vec3& v : body.hull()->vertices()) points.push_back({v.x, v.y, v.z});
+    for (const glm::vec3& v : shape.hull()->vertices()) points.push_back({v.x, v.y, v.z});
     JPH::ConvexHullShapeSettings settings(points, 0.0f);
     settings.mHullTolerance = 1e-6f;  // as far as corners may lie outside
     const JPH::ShapeSettings::ShapeResult shape = settings.Create();

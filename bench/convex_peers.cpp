@@ -27,15 +27,15 @@ using convex::ShapeAtPose;
 #if defined(CROFTON_HAVE_FCL)
 namespace {
 
-std::unique_ptr<fcl::CollisionGeometryd> fcl_shape(const Body& body) {
-    if (body.kind() == convex::Kind::box) {
-        const glm::dvec3 h = body.half_extents();
+std::unique_ptr<fcl::CollisionGeometryd> fcl_shape(const Shape& shape) {
+    if (shape.kind() == convex::Kind::box) {
+        const glm::dvec3 h = shape.half_extents();
         return std::make_unique<fcl::Boxd>(2 * h.x, 2 * h.y, 2 * h.z);
     }
     auto vertices = std::make_shared<std::vector<fcl::Vector3d>>();
-    for (const glm::vec3& v : body.hull()->vertices()) vertices->emplace_back(v.x, v.y, v.z);
+    for (const glm::vec3& v : shape.hull()->vertices()) vertices->emplace_back(v.x, v.y, v.z);
     auto faces = std::make_shared<std::vector<int>>();
-    const auto t = body.hull()->triangles();
+    const auto t = shape.hull()->triangles();
     for (std::size_t k = 0; k < t.size(); k += 3)
         faces->insert(faces->end(), {3, int(t[k]), int(t[k + 1]), int(t[k + 2])});
     return std::make_unique<fcl::Convexd>(vertices, int(t.size() / 3), faces);
@@ -62,15 +62,15 @@ bool fcl_meets(const ShapeAtPose& a, const ShapeAtPose& b) {
 #if defined(CROFTON_HAVE_BULLET)
 namespace {
 
-std::unique_ptr<btConvexShape> bullet_shape(const Body& body) {
-    if (body.kind() == convex::Kind::box) {
-        const glm::dvec3 h = body.half_extents();
+std::unique_ptr<btConvexShape> bullet_shape(const Shape& shape) {
+    if (shape.kind() == convex::Kind::box) {
+        const glm::dvec3 h = shape.half_extents();
         auto box = std::make_unique<btBoxShape>(btVector3(btScalar(h.x), btScalar(h.y), btScalar(h.z)));
         box->setMargin(0);  // else its corners are round
         return box;
     }
     auto hull = std::make_unique<btConvexHullShape>();
-    for (const glm::vec3& v : body.hull()->vertices()) hull->addPoint(btVector3(v.x, v.y, v.z), false);
+    for (const glm::vec3& v : shape.hull()->vertices()) hull->addPoint(btVector3(v.x, v.y, v.z), false);
     hull->recalcLocalAabb();
     hull->setMargin(0);
     return hull;

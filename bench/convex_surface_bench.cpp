@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Bodies that rest on surfaces, beside Bullet and ODE: boxes and capsules on the bunny, boxes on a height field of
+// Shapes that rest on surfaces, beside Bullet and ODE: boxes and capsules on the bunny, boxes on a height field of
 // 1025 x 1025 corners. Manifolds are asked for, frame after frame, with poses that tremble. `depth` is the mean of the
 // deepest point, in sizes of the shape. ODE stops at as many contacts as its caller has room for: 64, or `all`.
 #include <benchmark/benchmark.h>
@@ -29,7 +29,7 @@ namespace {
 
 using namespace crofton::convex;
 
-constexpr int kFrames = 8, kBodies = 1000;
+constexpr int kFrames = 8, kShapes = 1000;
 constexpr std::uint32_t kSide = 1025;
 
 // Where a shape stands on a surface, sunk in by 1 % of its size.
@@ -52,7 +52,7 @@ SurfaceScene make_crests() {
     scene.size = 0.4f;
     scene.shape = Shape::box(glm::vec3(scene.size)).value();
     scene.heights.assign(std::size_t{kSide} * kSide, -1.0f);
-    for (int i = 0; i < kBodies; ++i) {
+    for (int i = 0; i < kShapes; ++i) {
         const std::size_t x = 10 + 30 * static_cast<std::size_t>(i % 33),
                           z = 10 + 30 * static_cast<std::size_t>(i / 33);
         scene.heights[z * kSide + x] = 0.0f;
@@ -84,7 +84,7 @@ SurfaceScene make_scene(bool field, bool capsule, bool crests = false) {
     }
     const float s = scene.size;
     scene.shape = capsule ? Shape::capsule(0.6f * s, 0.5f * s).value() : Shape::box({s, s, s}).value();
-    for (int i = 0; i < kBodies; ++i) {
+    for (int i = 0; i < kShapes; ++i) {
         glm::dvec3 on, n;
         if (field) {
             on = {number(20, 1000), 0, number(20, 1000)};
@@ -118,7 +118,7 @@ void frames(benchmark::State& state, double size, Run run) {
     std::uint64_t points = 0, touching = 0;
     double depth = 0.0;
     for (auto _ : state) {
-        for (int i = 0; i < kBodies; ++i) {
+        for (int i = 0; i < kShapes; ++i) {
             const Told told = run(f, i);
             points += static_cast<std::uint64_t>(told.points);
             touching += told.points > 0 ? 1 : 0;
@@ -126,7 +126,7 @@ void frames(benchmark::State& state, double size, Run run) {
         }
         f = (f + 1) % kFrames;
     }
-    const double all = static_cast<double>(state.iterations()) * kBodies;
+    const double all = static_cast<double>(state.iterations()) * kShapes;
     state.counters["points"] = static_cast<double>(points) / all;
     state.counters["depth"] = touching > 0 ? depth / (size * static_cast<double>(touching)) : 0.0;
     state.counters["touching"] = static_cast<double>(touching) / all;
@@ -179,7 +179,7 @@ BENCHMARK_CAPTURE(crofton_rest, d, true, true)->Name("capsule on heights 1025^2/
 // The shape that is cast: the scene's box, or a capsule or sphere of about its size.
 enum class Flying { box, capsule, ball };
 
-Shape flying_body(Flying kind, float s) {
+Shape flying_shape(Flying kind, float s) {
     if (kind == Flying::capsule) return Shape::capsule(0.6f * s, 0.5f * s).value();
     return kind == Flying::ball ? Shape::sphere(s).value() : Shape::box({s, s, s}).value();
 }
@@ -189,7 +189,7 @@ void crofton_drop(benchmark::State& state, bool field, Flying kind) {
     const SurfaceScene scene = make_scene(field, false);
     if (!field && scene.mesh.indices.empty()) return state.SkipWithError("no shared meshes");
     const OwnSurface own(scene, field);
-    const Shape surface = own.shape(Sides::both), shape = flying_body(kind, scene.size);
+    const Shape surface = own.shape(Sides::both), shape = flying_shape(kind, scene.size);
     const RigidTransform still;
     frames(state, scene.size, [&](int f, int i) {
         RigidTransform from = scene.poses[f][i];
@@ -234,11 +234,11 @@ struct BulletSurface {
             probe = std::make_unique<btCapsuleShape>(0.5f * s, 1.2f * s);
         else
             probe = std::make_unique<btBoxShape>(btVector3(s, s, s));
-        for (int i = 0; i < kBodies; ++i) {
+        for (int i = 0; i < kShapes; ++i) {
             objects.push_back(std::make_unique<btCollisionObject>());
             objects.back()->setCollisionShape(probe.get());
         }
-        algorithms.resize(kBodies);
+        algorithms.resize(kShapes);
     }
     static btTransform transform_of(const RigidTransform& pose) {
         btTransform t = btTransform::getIdentity();

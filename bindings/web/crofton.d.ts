@@ -18,7 +18,7 @@ export interface LoadOptions {
 export interface CullOptions { conservative?: boolean; treeOrder?: boolean }
 export interface ObjectHandle { readonly kind: 'object'; readonly index: number; readonly generation: number }
 export interface MeshHandle { readonly kind: 'mesh'; readonly index: number; readonly generation: number }
-export interface Hit { object: ObjectHandle; user: number; t: number; point: number[]; triangle: number; normal: number[]; startedInside: boolean }
+export interface ObjectHit { object: ObjectHandle; user: number; t: number; point: number[]; triangle: number; normal: number[]; startedInside: boolean }
 export interface Triangulation {
     indices: Uint32Array;
     /** Total length of the diagonals. */
@@ -109,7 +109,7 @@ export interface World extends Owned {
     update(): void;
     /** `camera` or `volume`, or both: then objects are tested against the volume, and hidden from the camera. */
     view(request: ViewRequest, visible: ViewResult): ViewResult;
-    raycast(origin: Vector, direction: Vector, maxT?: number, layers?: number): Hit | null;
+    raycast(origin: Vector, direction: Vector, maxT?: number, layers?: number): ObjectHit | null;
 }
 export interface Crofton {
     readonly version: string;

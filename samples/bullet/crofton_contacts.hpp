@@ -14,7 +14,7 @@ struct PointCounts {
     std::uint64_t kept = 0, begun = 0;
 };
 
-// Bullet's own configuration but for pairs of shapes that have bodies. Outlives the dispatcher, and shapes their
+// Bullet's own configuration but for pairs of shapes that Crofton has as well. Outlives the dispatcher, and shapes their
 // objects, as in Bullet.
 class Configuration final : public btDefaultCollisionConfiguration {
   public:

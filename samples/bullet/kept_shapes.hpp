@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Crofton's bodies of Bullet's shapes.
+// Crofton's shapes of Bullet's.
 #pragma once
 #include <btBulletDynamicsCommon.h>
 
@@ -20,7 +20,7 @@ struct KeptShape {
 // Whether `get` has a shape for shapes of this type: boxes, hulls, spheres.
 [[nodiscard]] bool has_shape(int shape_type);
 
-// Bodies are made once a shape, and again where its numbers have changed.
+// Each is made once, and again where its numbers have changed.
 class KeptShapes {
   public:
     // Nothing where Crofton refuses the shape, as points in one plane.

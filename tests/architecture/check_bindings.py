@@ -297,7 +297,7 @@ def check_constant(where, name, value, headers):
 
 SHARP_KINDS = {"double": "f64", "float": "f32", "ulong": "u64", "uint": "u32", "int": "i32", "byte": "u8", "ushort": "u16",
                "UIntPtr": "usize", "IntPtr": "ptr"}
-SHARP_NAMES = {"Obb": "box", "Hit": "object_hit", "ObjectHandle": "object", "NodeHandle": "node", "MeshHandle": "world_mesh",
+SHARP_NAMES = {"Obb": "box", "ObjectHandle": "object", "NodeHandle": "node", "MeshHandle": "world_mesh",
                "ObjectData": "object_description", "MeshData": "mesh_data", "ClosestData": "closest_object",
                "ContactData": "object_contact", "PictureData": "picture_view"}
 SHARP_OWN = {"Vector3", "Float3", "Edge"}  # three numbers each, where the headers have arrays

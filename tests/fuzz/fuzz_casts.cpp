@@ -6,7 +6,7 @@
 #include <crofton/mesh/mesh_tree.hpp>
 #include <oracle/impacts.hpp>
 
-#include "bodies.hpp"
+#include "convex_shapes.hpp"
 
 namespace {
 
@@ -22,7 +22,7 @@ convex::Motion motion(fuzz::Shapes& in) {
 }
 
 void check_cast(fuzz::Shapes& in) {
-    fuzz::Bodies shapes(in);
+    fuzz::ConvexShapes shapes(in);
     const convex::Shape a = shapes.shape(), b = shapes.shape();
     const RigidTransform pose_a = in.pose();
     RigidTransform pose_b = shapes.touching(a, pose_a, b);
@@ -87,7 +87,7 @@ void check_rays(fuzz::Shapes& in) {
         };
         const glm::dvec3 p = corner(), q = corner();
         const Ray ray = in.flag() ? in.ray_through(p) : in.ray_through(0.5 * (p + q));
-        std::optional<mesh::RayHit> first;
+        std::optional<mesh::TriangleHit> first;
         for (std::uint32_t t = 0; t < triangles.triangle_count(); ++t) {
             if (const auto at = mesh::raycast(ray, triangle_of(triangles, t)); at && (!first || *at < first->t))
                 first = {*at, t};

@@ -4,7 +4,7 @@
 #include <crofton/convex/query.hpp>
 #include <oracle/exact_convex.hpp>
 
-#include "bodies.hpp"
+#include "convex_shapes.hpp"
 
 namespace {
 
@@ -51,7 +51,7 @@ void check_meeting(const ShapeAtPose& a, const ShapeAtPose& b, double size, Pair
 }  // namespace
 
 CROFTON_FUZZ(in) {
-    fuzz::Bodies shapes(in);
+    fuzz::ConvexShapes shapes(in);
     const Shape a = shapes.shape(), b = shapes.shape();
     const RigidTransform pose_a = in.pose();
     RigidTransform pose_b = shapes.touching(a, pose_a, b);

@@ -55,7 +55,7 @@ void check_views(fuzz::Shapes& in, const fuzz::LivingTree& living) {
     }
 }
 
-void check_bodies(fuzz::Shapes& in, const fuzz::LivingTree& living) {
+void check_shapes(fuzz::Shapes& in, const fuzz::LivingTree& living) {
     const std::uint32_t layers = in.layers();
     Vector<boxtree::ItemId> found;
     Obb shape = in.box();
@@ -122,7 +122,7 @@ CROFTON_FUZZ(in) {
             case 1:
                 living.settle(in);
                 living.check();
-                check_bodies(in, living);
+                check_shapes(in, living);
                 break;
             case 2:
                 living.settle(in);

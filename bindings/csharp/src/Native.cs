@@ -281,7 +281,7 @@ namespace Crofton {
         [DllImport(Library)] internal static extern int crofton_found_destroy(IntPtr found);
         [DllImport(Library)] internal static extern int crofton_found_objects(FoundHandle found, out IntPtr objects, out UIntPtr count);
         [DllImport(Library)] internal static extern int crofton_found_hits(FoundHandle found, out IntPtr hits, out UIntPtr count);
-        [DllImport(Library)] internal static extern int crofton_world_raycast(WorldHandle world, Ray[] rays, UIntPtr count, uint layers, [Out] Hit[] hits);
+        [DllImport(Library)] internal static extern int crofton_world_raycast(WorldHandle world, Ray[] rays, UIntPtr count, uint layers, [Out] ObjectHit[] hits);
         [DllImport(Library)] internal static extern int crofton_world_raycast_any(WorldHandle world, ref Ray ray, uint layers, out int hit);
         [DllImport(Library)] internal static extern int crofton_world_raycast_all(WorldHandle world, ref Ray ray, uint layers, FoundHandle found);
         [DllImport(Library)] internal static extern int crofton_world_overlap(WorldHandle world, ref QueryShapeData shape, uint layers, FoundHandle found);

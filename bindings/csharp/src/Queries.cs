@@ -53,7 +53,7 @@ namespace Crofton {
 
     /// <summary>Where a ray hits an object.</summary>
     [StructLayout(LayoutKind.Sequential)]
-    public struct Hit {
+    public struct ObjectHit {
         public ObjectHandle Object;
         public ulong User;
         /// <summary>The parameter along the ray.</summary>
@@ -320,11 +320,11 @@ namespace Crofton {
         }
 
         /// <summary>Returns the nearest hit of a ray with triangles of meshes, boxes and spheres.</summary>
-        public Hit Raycast(Ray ray, uint layers = AllLayers) { return Raycast(new[] { ray }, layers)[0]; }
+        public ObjectHit Raycast(Ray ray, uint layers = AllLayers) { return Raycast(new[] { ray }, layers)[0]; }
         /// <summary>Returns the nearest hit of each ray.</summary>
-        public Hit[] Raycast(Ray[] rays, uint layers = AllLayers) {
+        public ObjectHit[] Raycast(Ray[] rays, uint layers = AllLayers) {
             Library.NotNull(rays, "rays");
-            var hits = new Hit[rays.Length];
+            var hits = new ObjectHit[rays.Length];
             Library.Check(Native.crofton_world_raycast(Handle, rays, (UIntPtr)rays.Length, layers, hits));
             return hits;
         }
@@ -335,13 +335,13 @@ namespace Crofton {
             return hit != 0;
         }
         /// <summary>Lists the nearest hit of each object that the ray hits, in order of T, then of index.</summary>
-        public Hit[] RaycastAll(Ray ray, uint layers = AllLayers) {
+        public ObjectHit[] RaycastAll(Ray ray, uint layers = AllLayers) {
             using (var found = Find()) {
                 IntPtr hits;
                 UIntPtr count;
                 Library.Check(Native.crofton_world_raycast_all(Handle, ref ray, layers, found));
                 Library.Check(Native.crofton_found_hits(found, out hits, out count));
-                return Library.ToArray<Hit>(hits, count);
+                return Library.ToArray<ObjectHit>(hits, count);
             }
         }
 

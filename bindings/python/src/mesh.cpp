@@ -192,7 +192,7 @@ py::array raycast_many(const PyMesh& mesh, const py::handle& origins, const py::
         rays.push_back({at(from, i), at(along, i), max_t});
         value_of(validate(rays.back(), i));
     }
-    std::vector<std::optional<mesh::RayHit>> hits(rays.size());
+    std::vector<std::optional<mesh::TriangleHit>> hits(rays.size());
     with_tree(mesh, [&](const mesh::MeshTree& tree) {
         mesh::raycast(rays, tree, hits);
         return true;

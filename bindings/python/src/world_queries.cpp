@@ -99,7 +99,7 @@ void bind_world_queries(py::module_& module, py::class_<PyWorld>& type) {
         .def("__repr__", [](const ObjectRef& r) {
             return format("ObjectRef(index=%u, user=%llu)", r.object.index, static_cast<unsigned long long>(r.user));
         });
-    py::class_<ObjectHit>(module, "Hit", "The first hit of a ray on an object.")
+    py::class_<ObjectHit>(module, "ObjectHit", "The first hit of a ray on an object.")
         .def_readonly("object", &ObjectHit::object)
         .def_readonly("user", &ObjectHit::user)
         .def_readonly("t", &ObjectHit::t, "how far along the ray, in lengths of its direction")
@@ -111,8 +111,8 @@ void bind_world_queries(py::module_& module, py::class_<PyWorld>& type) {
                       "True if the ray began in the box, sphere or solid shape; t is then 0")
         .def("__repr__",
              [](const ObjectHit& h) {
-                 return format("Hit(user=%llu, t=%g, point=(%g, %g, %g))", static_cast<unsigned long long>(h.user), h.t,
-                               h.point.x, h.point.y, h.point.z);
+                 return format("ObjectHit(user=%llu, t=%g, point=(%g, %g, %g))",
+                               static_cast<unsigned long long>(h.user), h.t, h.point.x, h.point.y, h.point.z);
              })
         .def_property_readonly("triangle", [](const ObjectHit& h) {
             return h.triangle == kNoTriangle ? py::object(py::none()) : py::object(py::int_(h.triangle));
@@ -150,7 +150,7 @@ void bind_world_queries(py::module_& module, py::class_<PyWorld>& type) {
                 return world.ask([&](const World& w) { return w.raycast(ray, layers); });
             },
             py::arg("origin"), py::arg("direction"), py::arg("max_t") = kInfinity, py::arg("layers") = ~0u,
-            "Returns the nearest Hit, or None.")
+            "Returns the nearest ObjectHit, or None.")
         .def("raycast_many", &raycast_many, py::arg("origins"), py::arg("directions"), py::arg("max_t") = kInfinity,
              py::arg("layers") = ~0u,
              "Returns the nearest hit of each ray, as an array of records; `hit` is 0 for rays that hit nothing.")
@@ -166,7 +166,7 @@ void bind_world_queries(py::module_& module, py::class_<PyWorld>& type) {
                 return result;
             },
             py::arg("origin"), py::arg("direction"), py::arg("max_t") = kInfinity, py::arg("layers") = ~0u,
-            "Returns each object's first Hit, ordered along the ray.")
+            "Returns each object's first ObjectHit, ordered along the ray.")
         .def(
             "overlap",
             [](const PyWorld& world, const py::object& box, const py::object& sphere, const py::object& capsule,

@@ -34,7 +34,7 @@ def test_a_mesh_is_seen_hit_and_touched(world, cube):
     assert (contact.first.object, contact.second.object) == (near, far)
     assert contact.phase == "began"
     assert repr(contact).startswith("Contact(7 and 8, began, depth=0.5")
-    assert repr(hit) == "Hit(user=7, t=4, point=(0, 0, -4))"
+    assert repr(hit) == "ObjectHit(user=7, t=4, point=(0, 0, -4))"
     assert repr(seen) == "ViewResult(2 objects)"
     world.update()
     assert world.contacts[0].phase == "stayed"

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <crofton/core/error.hpp>
+#include <crofton/geometry/model_to_clip.hpp>
 #include <crofton/render/clip_space.hpp>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -140,9 +141,7 @@ ModelToClip::ModelToClip(const Camera& camera, DepthRange depth)
       from_camera_relative_(view_to_clip(camera, depth) * glm::dmat4(world_to_view_rotation(camera))) {}
 
 glm::mat4 ModelToClip::operator()(const glm::dmat3& linear, const glm::dvec3& translation) const {
-    glm::dmat4 placement(linear);
-    placement[3] = glm::dvec4(translation - camera_position_, 1.0);
-    glm::mat4 result(from_camera_relative_ * placement);
+    glm::mat4 result = detail::model_to_clip(from_camera_relative_, camera_position_, linear, translation);
     // Denormal entries would be taken as zero on one side only.
     for (int column = 0; column < 4; ++column)
         for (int row = 0; row < 4; ++row) result[column][row] = flush(result[column][row]);

@@ -10,7 +10,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
-#include "collide_bodies.hpp"
+#include "collide_shapes.hpp"
 #include "commands.hpp"
 #include "json/json.hpp"
 #include "mesh_file.hpp"
@@ -163,7 +163,7 @@ Json document_of(const Answer& answer) {
 }
 
 // Runs queries of hulls, and casts of hulls or meshes.
-int run_bodies(const CollideRequest& request, const RigidTransform& pose) {
+int run_shapes(const CollideRequest& request, const RigidTransform& pose) {
     if (request.mode == "contain") {
         std::fputs("crofton: --mode contain tests meshes; leave out --hulls\n", stderr);
         return kBadInput;
@@ -171,25 +171,25 @@ int run_bodies(const CollideRequest& request, const RigidTransform& pose) {
     const auto velocity = vector_of("--velocity", request.velocity), spin = vector_of("--spin", request.spin);
     if (!velocity) return report_error("", velocity.error());
     if (!spin) return report_error("", spin.error());
-    const auto a = load_body(request.a, request.hulls, static_cast<int>(request.max_vertices), request.read);
+    const auto a = load_shape(request.a, request.hulls, static_cast<int>(request.max_vertices), request.read);
     if (!a) return report_error("", a.error());
-    const auto b = load_body(request.b, request.hulls, static_cast<int>(request.max_vertices), request.read);
+    const auto b = load_shape(request.b, request.hulls, static_cast<int>(request.max_vertices), request.read);
     if (!b) return report_error("", b.error());
     if (const auto valid = convex::validate_pose(pose); !valid) return report_error("--pose", valid.error());
-    const convex::Shape body_a = a->shape(), body_b = b->shape();
+    const convex::Shape shape_a = a->shape(), shape_b = b->shape();
     const RigidTransform origin;
-    BodyAnswer answer;
+    ShapeAnswer answer;
     if (request.mode == "cast") {
         auto cast =
-            ask_cast({body_a, origin}, {body_b, pose}, {*velocity, *spin, body_b.bounds().center()}, request.duration);
+            ask_cast({shape_a, origin}, {shape_b, pose}, {*velocity, *spin, shape_b.bounds().center()}, request.duration);
         if (!cast) return report_error("", cast.error());
         answer = std::move(*cast);
     } else {
-        answer = ask_hulls(request.mode, {body_a, origin}, {body_b, pose});
+        answer = ask_hulls(request.mode, {shape_a, origin}, {shape_b, pose});
     }
     if (request.hulls) {
         answer.document["hulls"] = Json::array();
-        for (const FileBody* file : {&*a, &*b})
+        for (const FileShape* file : {&*a, &*b})
             answer.document["hulls"].push_back({{"vertices", file->hull->vertices().size()},
                                                 {"faces", file->hull->face_count()},
                                                 {"max_overshoot", file->hull->max_overshoot()},
@@ -205,7 +205,7 @@ int run_bodies(const CollideRequest& request, const RigidTransform& pose) {
 int run_collide(const CollideRequest& request) {
     const auto pose = pose_of(request.pose);
     if (!pose) return report_error("", pose.error());
-    if (request.hulls || request.mode == "cast") return run_bodies(request, *pose);
+    if (request.hulls || request.mode == "cast") return run_shapes(request, *pose);
     double build = 0.0;
     const auto a = tree_of(request.a, request.read, build);
     if (!a) return report_error("", a.error());

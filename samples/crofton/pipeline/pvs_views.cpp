@@ -100,7 +100,7 @@ Vector<std::uint32_t> owned_pixels(const Looked& all, const Camera& camera) {
     const glm::dvec3 eye = camera.position - all.geometry.origin;
     Vector<std::uint32_t> pixels(all.geometry.boxes.size(), 0);
     Vector<Ray> rays;
-    Vector<std::optional<mesh::RayHit>> hits(std::size_t{kTile} * width);
+    Vector<std::optional<mesh::TriangleHit>> hits(std::size_t{kTile} * width);
     for (std::uint32_t y = 0; y < height; y += kTile) {
         rays.clear();
         for (std::uint32_t x = 0; x < width; x += kTile)

@@ -112,7 +112,7 @@ VerifyRow casts_sampled(const VerifyOptions& options) {
         hits += hit;
         const double end = hit ? impact->time : 1.0;
         bool met_before = false;
-        // Bodies that overlap from the start have no time before.
+        // Shapes that overlap from the start have no time before.
         for (int k = 0; k < kSamples && end > 0.0 && !met_before; ++k) {
             ++samples;
             const double time = end * (k + 0.5) / kSamples;

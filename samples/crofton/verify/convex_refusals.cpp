@@ -17,7 +17,7 @@ using convex::Hull;
 using sampling::Random;
 using Points = std::vector<glm::vec3>;
 
-struct BodyTrial {
+struct ShapeTrial {
     std::uint64_t tried = 0, wrong = 0;
 
     template <class Value>
@@ -58,7 +58,7 @@ bool holds_all(const Hull& hull, const Points& points) {
     return true;
 }
 
-void try_few_points(Random& random, BodyTrial& trial) {
+void try_few_points(Random& random, ShapeTrial& trial) {
     for (std::size_t count = 0; count < 4; ++count)
         trial.must_refuse(Hull::build(any_points(random, count)), ErrorCode::empty);
     // Four, of which two are one.
@@ -67,7 +67,7 @@ void try_few_points(Random& random, BodyTrial& trial) {
     trial.must_refuse(Hull::build(points), ErrorCode::degenerate);
 }
 
-void try_coplanar(Random& random, BodyTrial& trial) {
+void try_coplanar(Random& random, ShapeTrial& trial) {
     Points points = any_points(random, 12);
     const int axis = static_cast<int>(random.bits() % 3);
     for (glm::vec3& p : points) p[axis] = points[0][axis];
@@ -80,7 +80,7 @@ void try_coplanar(Random& random, BodyTrial& trial) {
     trial.must_refuse(Hull::build(points), ErrorCode::degenerate);
 }
 
-void try_duplicates(Random& random, BodyTrial& trial) {
+void try_duplicates(Random& random, ShapeTrial& trial) {
     Points points = any_points(random, 20);
     const auto once = Hull::build(points);
     const Points all = points;
@@ -97,7 +97,7 @@ void try_duplicates(Random& random, BodyTrial& trial) {
     trial.require(once && twice && sorted(*once) == sorted(*twice));
 }
 
-void try_not_numbers(Random& random, BodyTrial& trial) {
+void try_not_numbers(Random& random, ShapeTrial& trial) {
     const int axis = static_cast<int>(random.bits() % 3);
     Points points = any_points(random, 30);
     const std::uint64_t bad = random.bits() % points.size();
@@ -124,7 +124,7 @@ void try_not_numbers(Random& random, BodyTrial& trial) {
     trial.must_refuse(convex::cast({box, {}}, {}, {box, {}}, motion), ErrorCode::non_finite);
 }
 
-void try_inside_out(Random& random, BodyTrial& trial) {
+void try_inside_out(Random& random, ShapeTrial& trial) {
     glm::vec3 half = glm::abs(any_point(random)) + 0.1f;
     const int axis = static_cast<int>(random.bits() % 3);
     half[axis] = -half[axis];
@@ -139,7 +139,7 @@ void try_inside_out(Random& random, BodyTrial& trial) {
 }
 
 // Rarely, as each takes long.
-void try_many_points(Random& random, BodyTrial& trial) {
+void try_many_points(Random& random, ShapeTrial& trial) {
     Points points = any_points(random, 100'000);
     for (glm::vec3& p : points) p = glm::length(p) > 0.1f ? p / glm::length(p) : glm::vec3(1.0f, 0.0f, 0.0f);
     const auto hull = Hull::build(points);
@@ -147,7 +147,7 @@ void try_many_points(Random& random, BodyTrial& trial) {
     trial.require(hull && hull->max_overshoot() > 0.0 && hull->max_overshoot() < 0.1);
 }
 
-void try_casts(Random& random, BodyTrial& trial) {
+void try_casts(Random& random, ShapeTrial& trial) {
     const convex::Shape box = *convex::Shape::box(glm::vec3(0.5f));
     const double gap = random.uniform(0.5, 3.0);
     const RigidTransform near{glm::dmat3(1.0), {1.0 + gap, 0.0, 0.0}}, within{glm::dmat3(1.0), {0.7, 0.1, 0.0}};
@@ -172,7 +172,7 @@ void try_casts(Random& random, BodyTrial& trial) {
     trial.must_refuse(convex::cast({box, {}}, {}, {box, near}, {}, {.duration = -1.0}), ErrorCode::invalid_argument);
 }
 
-void try_height_fields(Random& random, BodyTrial& trial) {
+void try_height_fields(Random& random, ShapeTrial& trial) {
     const std::uint32_t many = 2 + static_cast<std::uint32_t>(random.bits() % 50);
     const std::vector<float> heights(many, 1.0f);
     using convex::HeightField;
@@ -188,7 +188,7 @@ void try_height_fields(Random& random, BodyTrial& trial) {
 }
 
 // Compounds within compounds, 1,000 deep: the sixteenth is the last.
-void try_deep_compounds(Random& random, BodyTrial& trial) {
+void try_deep_compounds(Random& random, ShapeTrial& trial) {
     std::vector<convex::Compound> chain;
     chain.reserve(1000);
     convex::Shape inner = *convex::Shape::sphere(random.uniform(0.1, 1.0));
@@ -209,7 +209,7 @@ void try_deep_compounds(Random& random, BodyTrial& trial) {
 }
 
 // Contacts stay as they are until the next update, whatever is done to the shapes meanwhile.
-void try_changes(Random& random, BodyTrial& trial) {
+void try_changes(Random& random, ShapeTrial& trial) {
     World world({.contact_margin = 0.02});
     const convex::Shape crate = *convex::Shape::box(glm::vec3(0.5f)), slab = *convex::Shape::box({9.0f, 1.0f, 9.0f}),
                         sphere = *convex::Shape::sphere(0.5);
@@ -240,7 +240,7 @@ void try_changes(Random& random, BodyTrial& trial) {
 
 struct BadKind {
     const char* claim;
-    void (*attempt)(Random&, BodyTrial&);
+    void (*attempt)(Random&, ShapeTrial&);
     std::uint64_t share;  // one in so many rounds
 };
 constexpr BadKind kBadKinds[] = {
@@ -258,12 +258,12 @@ constexpr BadKind kBadKinds[] = {
 
 }  // namespace
 
-std::vector<VerifyRow> verify_bad_bodies(const VerifyOptions& options) {
+std::vector<VerifyRow> verify_bad_shapes(const VerifyOptions& options) {
     std::vector<VerifyRow> rows;
     const std::uint64_t rounds = std::max<std::uint64_t>(4, options.trials / 1000);
     for (const BadKind& kind : kBadKinds) {
         Random random(options.seed + rows.size());
-        BodyTrial trial;
+        ShapeTrial trial;
         for (std::uint64_t round = 0; round < std::max<std::uint64_t>(1, rounds / kind.share); ++round)
             kind.attempt(random, trial);
         rows.push_back(none_row(kind.claim, "bad input", trial.tried, trial.wrong));

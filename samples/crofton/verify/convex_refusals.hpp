@@ -8,6 +8,6 @@
 namespace crofton::cli {
 
 // A row for each kind of bad input. After each refusal good shapes answer as before; what is merely unusual is taken.
-[[nodiscard]] std::vector<VerifyRow> verify_bad_bodies(const VerifyOptions& options);
+[[nodiscard]] std::vector<VerifyRow> verify_bad_shapes(const VerifyOptions& options);
 
 }  // namespace crofton::cli

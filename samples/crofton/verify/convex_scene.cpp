@@ -9,7 +9,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "body_data.hpp"
+#include "shape_data.hpp"
 #include "convex_pairs.hpp"
 #include "exact_shapes.hpp"
 
@@ -35,7 +35,7 @@ std::string at_offset(double offset) {
 }
 
 // No point of what a hull was built of lies outside.
-VerifyRow hulls_hold_points(const BodyData& data) {
+VerifyRow hulls_hold_points(const ShapeData& data) {
     Tally tally;
     std::size_t larger = 0;
     for (std::size_t h = 0; h < data.hulls.size(); ++h) {
@@ -52,7 +52,7 @@ VerifyRow hulls_hold_points(const BodyData& data) {
                   "exact orientations", tally);
 }
 
-VerifyRow hulls_that_touch(const BodyData& data, double offset, const VerifyOptions& options) {
+VerifyRow hulls_that_touch(const ShapeData& data, double offset, const VerifyOptions& options) {
     const std::uint64_t pairs = std::max<std::uint64_t>(20, options.trials / 2000);
     ConvexPairs random(options.seed + 80 + static_cast<std::uint64_t>(std::log10(offset + 1.0)));
     Tally tally;
@@ -79,7 +79,7 @@ VerifyRow hulls_that_touch(const BodyData& data, double offset, const VerifyOpti
 // Triangles of a surface that may be within `far` of a shape.
 class TriangleTruth {
   public:
-    TriangleTruth(const BodyData& data, const ShapeAtPose& surface) : data_(data), surface_(surface) {}
+    TriangleTruth(const ShapeData& data, const ShapeAtPose& surface) : data_(data), surface_(surface) {}
 
     template <class Visit>
     void visit_near(const ShapeAtPose& shape, double far, Visit visit) const {
@@ -120,12 +120,12 @@ class TriangleTruth {
     }
 
   private:
-    const BodyData& data_;
+    const ShapeData& data_;
     const ShapeAtPose& surface_;
 };
 
 // A box of 0.1 to 6 % of the surface's size, or one of the hulls if they are small.
-convex::Shape probe_of(const BodyData& data, ConvexPairs& random) {
+convex::Shape probe_of(const ShapeData& data, ConvexPairs& random) {
     if (!data.hulls.empty() && random.bits() % 2 == 0) {
         const convex::Shape hull = convex::Shape::hull(data.hulls[random.bits() % data.hulls.size()]);
         if (hull.core_radius() < 0.1 * data.size) return hull;
@@ -136,7 +136,7 @@ convex::Shape probe_of(const BodyData& data, ConvexPairs& random) {
 }
 
 // A probe that touches one triangle of the surface, but for a gap; and if `nearest`, none nearer than that.
-ConvexPairs::Pair place_probe(const BodyData& data, double gap, double offset, bool nearest, ConvexPairs& random) {
+ConvexPairs::Pair place_probe(const ShapeData& data, double gap, double offset, bool nearest, ConvexPairs& random) {
     const Triangle& t = data.triangles[random.bits() % data.triangles.size()];
     const convex::Shape part = *convex::Shape::triangle(glm::vec3(t[0]), glm::vec3(t[1]), glm::vec3(t[2]));
     const convex::Shape probe = probe_of(data, random);
@@ -147,7 +147,7 @@ ConvexPairs::Pair place_probe(const BodyData& data, double gap, double offset, b
     return pair;
 }
 
-VerifyRow surface_touched(const BodyData& data, double offset, const VerifyOptions& options) {
+VerifyRow surface_touched(const ShapeData& data, double offset, const VerifyOptions& options) {
     const std::uint64_t pairs = std::max<std::uint64_t>(20, options.trials / 4000);
     ConvexPairs random(options.seed + 90 + static_cast<std::uint64_t>(std::log10(offset + 1.0)));
     const convex::Shape whole = data.surface();
@@ -176,8 +176,8 @@ VerifyRow surface_touched(const BodyData& data, double offset, const VerifyOptio
                   "each triangle near it in exact numbers", tally);
 }
 
-// Bodies that fly at the surface: at no moment before the impact do they meet a triangle.
-VerifyRow surface_hit(const BodyData& data, const VerifyOptions& options) {
+// Shapes that fly at the surface: at no moment before the impact do they meet a triangle.
+VerifyRow surface_hit(const ShapeData& data, const VerifyOptions& options) {
     constexpr int kMoments = 50;
     const std::uint64_t casts = std::max<std::uint64_t>(4, options.trials / 20'000);
     ConvexPairs random(options.seed + 95);
@@ -215,7 +215,7 @@ VerifyRow surface_hit(const BodyData& data, const VerifyOptions& options) {
 
 Result<std::vector<VerifyRow>> verify_collided_scene(const std::string& source, const assets::LoadOptions& which,
                                                      const VerifyOptions& options) {
-    const auto data = read_body_data(source, which);
+    const auto data = read_shape_data(source, which);
     if (!data) return tl::unexpected(data.error());
     std::vector<VerifyRow> rows;
     if (!data->hulls.empty()) {

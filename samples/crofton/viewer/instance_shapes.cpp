@@ -47,7 +47,7 @@ const convex::Hull* InstanceShapes::hull_of(scene::InstanceId instance, TreeAndH
     return entry.hull ? &*entry.hull : nullptr;
 }
 
-std::optional<mesh::RayHit> InstanceShapes::raycast(const Ray& ray, scene::InstanceId instance) {
+std::optional<mesh::TriangleHit> InstanceShapes::raycast(const Ray& ray, scene::InstanceId instance) {
     const Transform& world = scene_->world(scene_->node_of(instance));
     const glm::dmat3 inverse = glm::inverse(world.linear);
     for (int k = 0; k < 9; ++k)

@@ -37,7 +37,7 @@ class InstanceShapes {
     explicit InstanceShapes(const scene::Scene& scene);
 
     // The nearest triangle of an instance. A transform without an inverse is not hit.
-    [[nodiscard]] std::optional<mesh::RayHit> raycast(const Ray& ray, scene::InstanceId instance);
+    [[nodiscard]] std::optional<mesh::TriangleHit> raycast(const Ray& ray, scene::InstanceId instance);
     // Returns the pairs whose triangles overlap.
     [[nodiscard]] std::vector<TriangleContacts> triangle_contacts(std::span<const InstancePair> pairs);
     // Returns the pairs whose hulls overlap. Flat meshes have no hull and overlap nothing.

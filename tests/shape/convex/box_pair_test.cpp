@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Manifolds of two boxes, which have a way of their own, beside distance and penetration, which have not.
+// Manifolds and depths of two boxes, which have a way of their own, beside hulls of the same corners, which have not.
 #include <doctest/doctest.h>
+#include <gmpxx.h>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <crofton/convex/query.hpp>
+#include <optional>
+#include <vector>
 
+#include "penetration_fields.hpp"
 #include "random_shapes.hpp"
 
 using namespace crofton;
@@ -59,14 +64,97 @@ BoxCase random_case(RandomShapes& random) {
     return c;
 }
 
+// As above, but b stands anywhere where the boxes may overlap.
+BoxCase deep_case(RandomShapes& random) {
+    BoxCase c = random_case(random);
+    if (random.index(4) == 0) return c;
+    const double reach = c.a.core_radius() + c.b.core_radius();
+    c.pose_b.translation = c.pose_a.translation + random.number(0, 1) * reach * random.direction();
+    c.size = reach + c.a.radius() + c.b.radius() + glm::length(c.pose_b.translation - c.pose_a.translation);
+    return c;
+}
+
 double off(double value, double low, double high) {
     return std::max(0.0, std::max(low - value, value - high));
+}
+
+// A hull of the box's corners, with its rounding.
+class BoxAsHull {
+  public:
+    explicit BoxAsHull(const Shape& box) : hull_(Hull::build(corners_of(box)).value()), shape_(Shape::hull(hull_)) {
+        if (box.radius() > 0.0) shape_ = Shape::rounded(shape_, box.radius()).value();
+    }
+    BoxAsHull(const BoxAsHull&) = delete;
+    BoxAsHull& operator=(const BoxAsHull&) = delete;
+    [[nodiscard]] const Shape& shape() const { return shape_; }
+
+  private:
+    static std::vector<glm::vec3> corners_of(const Shape& box) {
+        const glm::vec3 h(box.half_extents());
+        std::vector<glm::vec3> corners;
+        for (int i = 0; i < 8; ++i)
+            corners.emplace_back((i & 1) != 0 ? h.x : -h.x, (i & 2) != 0 ? h.y : -h.y, (i & 4) != 0 ? h.z : -h.z);
+        return corners;
+    }
+    Hull hull_;
+    Shape shape_;
+};
+
+bool is_solid(const Shape& box) {
+    const glm::dvec3 h = box.half_extents();
+    return h.x > 0.0 && h.y > 0.0 && h.z > 0.0;
+}
+
+// By the search that all polytopes share.
+Penetration general_penetration(const BoxCase& c) {
+    if (!is_solid(c.a) || !is_solid(c.b)) return penetration({c.a, c.pose_a}, {c.b, c.pose_b});
+    const BoxAsHull a(c.a), b(c.b);
+    return penetration({a.shape(), c.pose_a}, {b.shape(), c.pose_b});
+}
+
+// The least overlap of two boxes over all axes that can be the least: the difference body has six directions of edges,
+// and each face is across two of them. Negative if an axis parts them.
+double exact_depth(const ShapeAtPose& a, const ShapeAtPose& b) {
+    using Vector3 = std::array<mpq_class, 3>;
+    const auto exact = [](const glm::dvec3& v) { return Vector3{mpq_class(v.x), mpq_class(v.y), mpq_class(v.z)}; };
+    const auto dot = [](const Vector3& u, const Vector3& v) {
+        return mpq_class(u[0] * v[0] + u[1] * v[1] + u[2] * v[2]);
+    };
+    std::array<Vector3, 6> edges;
+    Vector3 between = exact(b.pose.translation);
+    const Vector3 from = exact(a.pose.translation);
+    for (std::size_t k = 0; k < 3; ++k) {
+        between[k] -= from[k];
+        for (std::size_t side = 0; side < 2; ++side) {
+            const ShapeAtPose& box = side == 0 ? a : b;
+            const auto axis = static_cast<int>(k);
+            edges[3 * side + k] = exact(box.pose.rotation[axis]);
+            for (mpq_class& x : edges[3 * side + k]) x *= box.shape.half_extents()[axis];
+        }
+    }
+    std::optional<mpq_class> least;  // squared
+    for (std::size_t i = 0; i < 6; ++i)
+        for (std::size_t j = i + 1; j < 6; ++j) {
+            Vector3 m;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::size_t u = (k + 1) % 3, v = (k + 2) % 3;
+                m[k] = edges[i][u] * edges[j][v] - edges[i][v] * edges[j][u];
+            }
+            const mpq_class squared = dot(m, m);
+            if (squared == 0) continue;
+            mpq_class overlap = -abs(dot(m, between));
+            for (const Vector3& edge : edges) overlap += abs(dot(m, edge));
+            if (overlap < 0) return -1.0;
+            const mpq_class depth = overlap * overlap / squared;
+            if (!least || depth < *least) least = depth;
+        }
+    return std::sqrt(least->get_d());
 }
 
 // How far the manifold's depth is beyond what is proven of the pair, and its points outside of the shapes.
 double wrong_depth(const BoxCase& c, const Manifold& m) {
     const ShapeAtPose a{c.a, c.pose_a}, b{c.b, c.pose_b};
-    if (const Penetration p = penetration(a, b); p.overlapping) return off(m.depth, p.lower, p.upper);
+    if (const Penetration p = general_penetration(c); p.overlapping) return off(m.depth, p.lower, p.upper);
     const Distance d = distance(a, b);
     return off(-m.depth, d.lower, d.upper);
 }
@@ -199,6 +287,61 @@ TEST_SUITE("convex/box_pair") {
         MESSAGE(meeting, " meet, ", apart, " do not");
         CHECK(meeting > 1000);
         CHECK(apart > 1000);
+    }
+
+    TEST_CASE(
+        "the depth of two boxes is that of hulls of their corners, and every field is that of the shortest way out") {
+        RandomShapes random(47);
+        int deep = 0;
+        for (int i = 0; i < 20000; ++i) {
+            const BoxCase c = deep_case(random);
+            if (!is_solid(c.a) || !is_solid(c.b)) continue;
+            CAPTURE(i);
+            const Penetration general = general_penetration(c);
+            for (const bool swap : {false, true}) {
+                const ShapeAtPose a = swap ? ShapeAtPose{c.b, c.pose_b} : ShapeAtPose{c.a, c.pose_a},
+                                  b = swap ? ShapeAtPose{c.a, c.pose_a} : ShapeAtPose{c.b, c.pose_b};
+                PairCache cache;
+                const Penetration p = penetration(a, b), cached = penetration(a, b, &cache);
+                REQUIRE(p.overlapping == general.overlapping);
+                CHECK(intersects(a, b) == p.overlapping);
+                CHECK((distance(a, b).distance == 0.0) == p.overlapping);
+                CHECK(cached.depth == p.depth);
+                CHECK(cached.normal == p.normal);
+                CHECK(p.part_a == PartId{});
+                CHECK(p.part_b == PartId{});
+                if (!p.overlapping) {
+                    CHECK(p.depth == 0.0);
+                    CHECK(p.upper == 0.0);
+                    CHECK(p.normal == glm::dvec3(0.0));
+                    continue;
+                }
+                CHECK(p.lower <= general.upper);
+                CHECK(general.lower <= p.upper);
+                check_penetration_fields(a, b, p, 1e-9 * c.size, c.size, random);
+                ++deep;
+            }
+        }
+        CHECK(deep > 13000);
+    }
+
+    TEST_CASE("the depth of two boxes lies between its bounds as rationals have it") {
+        RandomShapes random(48);
+        int deep = 0;
+        for (int i = 0; i < 6000; ++i) {
+            const BoxCase c = deep_case(random);
+            const ShapeAtPose a{c.a, c.pose_a}, b{c.b, c.pose_b};
+            if (!is_solid(c.a) || !is_solid(c.b) || c.a.radius() > 0.0 || c.b.radius() > 0.0) continue;
+            const double exact = exact_depth(a, b);
+            const Penetration p = penetration(a, b);
+            CAPTURE(i);
+            REQUIRE(p.overlapping == (exact >= 0.0));
+            if (!p.overlapping) continue;
+            CHECK(p.lower <= exact * (1.0 + 1e-14));
+            CHECK(exact <= p.upper * (1.0 + 1e-14));
+            ++deep;
+        }
+        CHECK(deep > 1300);
     }
 
     // A face looks 2e-10 deep; an axis across two edges parts them, by less than a choice among axes tells.

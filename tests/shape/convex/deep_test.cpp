@@ -7,6 +7,7 @@
 #include <oracle/exact_convex.hpp>
 #include <vector>
 
+#include "penetration_fields.hpp"
 #include "random_shapes.hpp"
 #include "surfaces.hpp"
 
@@ -34,34 +35,8 @@ struct DeepCase {
     }
 };
 
-// How far the shape reaches along a unit vector, in the world.
-double reach_along(const ShapeAtPose& shape, const glm::dvec3& n) {
-    const glm::dvec3 local = glm::transpose(shape.pose.rotation) * n;
-    // A rounding is of the world: the support of the core, and the radius.
-    const double radius = shape.shape.radius();
-    const glm::dvec3 core = support_point(shape.shape, local) - radius / glm::length(local) * local;
-    return glm::dot(n, shape.pose.rotation * core + shape.pose.translation) + radius;
-}
-
-// The answer's own fields: the way ends the overlap, none along `others` that is shorter does, and the points are the
-// deepest ones, on both.
 void check_penetration(const DeepCase& c, const Penetration& p, RandomShapes& random) {
-    const double slack = c.tolerance * c.size();
-    CHECK(p.overlapping);
-    CHECK(p.lower <= p.depth);
-    CHECK(p.depth <= p.upper);
-    CHECK(p.upper - p.lower <= slack);
-    CHECK(glm::length(p.normal) == doctest::Approx(1.0).epsilon(1e-12));
-    CHECK(glm::distance(p.on_a - p.on_b, p.depth * p.normal) <= 1e-12 * c.size());
-    CHECK(std::abs(reach_along(c.first(), p.normal) - glm::dot(p.normal, p.on_a)) <= slack);
-    CHECK(std::abs(reach_along(c.second(), -p.normal) + glm::dot(p.normal, p.on_b)) <= slack);
-    CHECK(closest_point(c.first(), p.on_a).distance <= slack);
-    CHECK(closest_point(c.second(), p.on_b).distance <= slack);
-    CHECK(std::abs(reach_along(c.first(), p.normal) + reach_along(c.second(), -p.normal) - p.depth) <= slack);
-    for (int k = 0; k < 20; ++k) {
-        const glm::dvec3 d = glm::normalize(p.normal + std::pow(10.0, -0.5 * k) * random.direction());
-        CHECK(reach_along(c.first(), d) + reach_along(c.second(), -d) >= p.lower - 1e-12 * c.size());
-    }
+    check_penetration_fields(c.first(), c.second(), p, c.tolerance * c.size(), c.size(), random);
 }
 
 void check_manifold(const DeepCase& c, const Penetration& p) {

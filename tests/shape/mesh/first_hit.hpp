@@ -31,7 +31,7 @@ inline std::optional<double> oracle_hit(const Ray& ray, const TriangleMesh& mesh
     return best->get_d();
 }
 
-inline bool are_same(const std::optional<mesh::RayHit>& a, const std::optional<mesh::RayHit>& b) {
+inline bool are_same(const std::optional<mesh::TriangleHit>& a, const std::optional<mesh::TriangleHit>& b) {
     return a.has_value() == b.has_value() && (!a || (a->t == b->t && a->triangle == b->triangle));
 }
 

@@ -58,10 +58,10 @@ TEST_SUITE("mesh/ray_ends") {
             CHECK(hits_any(ray, *tree) == truth.has_value());
             CHECK(hits_any(ray, *prepared) == truth.has_value());
             const std::vector<Ray> rays(8, ray);
-            std::vector<std::optional<RayHit>> together(rays.size());
+            std::vector<std::optional<TriangleHit>> together(rays.size());
             raycast(rays, *prepared, together);
             CHECK(are_same(together[7], hit));
-            std::optional<RayHit> nearest;
+            std::optional<TriangleHit> nearest;
             for (std::uint32_t i = 0; i < mesh.triangle_count(); ++i) {
                 const auto at = raycast(ray, Triangle{vertex(mesh, i, 0), vertex(mesh, i, 1), vertex(mesh, i, 2)});
                 if (at && (!nearest || *at < nearest->t)) nearest = {*at, i};

@@ -177,7 +177,7 @@ TEST_SUITE("mesh/ray") {
         for (const float shift : {0.0f, 3e4f}) {
             for (glm::vec3& p : mesh.positions) p.x += shift;
             const auto plain = mesh::MeshTree::build(mesh), prepared = mesh::MeshTree::build(mesh, {.rays = true});
-            std::vector<std::optional<RayHit>> hits;
+            std::vector<std::optional<TriangleHit>> hits;
             int met = 0, missed = 0;
             for (int trial = 0; trial < 1500; ++trial) {
                 const double cone = std::pow(10.0, -static_cast<double>(trial % 5));
@@ -199,22 +199,22 @@ TEST_SUITE("mesh/ray") {
                     rays.push_back(ray);
                 }
                 for (const auto* tree : {&*plain, &*prepared}) {
-                    hits.assign(count + 1, RayHit{-7.0, 7u});
+                    hits.assign(count + 1, TriangleHit{-7.0, 7u});
                     raycast(rays, *tree, hits);
                     for (std::size_t i = 0; i < count; ++i) {
                         const auto alone = raycast(rays[i], *plain);
                         CHECK(are_same(hits[i], alone));
                         ++(alone ? met : missed);
                     }
-                    CHECK(are_same(hits[count], RayHit{-7.0, 7u}));  // of no ray
+                    CHECK(are_same(hits[count], TriangleHit{-7.0, 7u}));  // of no ray
                 }
             }
             CHECK(met > 5000);
             CHECK(missed > 5000);
         }
-        raycast(std::span<const Ray>(), mesh::MeshTree(), std::span<std::optional<RayHit>>());
+        raycast(std::span<const Ray>(), mesh::MeshTree(), std::span<std::optional<TriangleHit>>());
         const std::vector<Ray> same(20, Ray{{0.0, 0.0, -5.0}});
-        std::vector<std::optional<RayHit>> none(20, RayHit{});
+        std::vector<std::optional<TriangleHit>> none(20, TriangleHit{});
         raycast(same, mesh::MeshTree(), none);
         for (const auto& hit : none) CHECK_FALSE(hit.has_value());
         CHECK_FALSE(raycast(same[0], mesh::MeshTree()).has_value());
@@ -231,7 +231,7 @@ TEST_SUITE("mesh/ray") {
                 const glm::dvec3 a = vertex(mesh, t, 0), b = vertex(mesh, t, 1);
                 rays.push_back({eye, a + along * (b - a) - eye});
             }
-        std::vector<std::optional<RayHit>> alone, hits(rays.size());
+        std::vector<std::optional<TriangleHit>> alone, hits(rays.size());
         for (const Ray& ray : rays) alone.push_back(raycast(ray, *tree));
         for (std::int64_t rest = hwy::SupportedTargets(); rest != 0; rest &= rest - 1) {
             hwy::SetSupportedTargetsForTest(rest & -rest);

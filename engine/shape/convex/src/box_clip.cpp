@@ -216,6 +216,13 @@ double BoxClip::deepest() const {
     return -least;
 }
 
+glm::dvec3 BoxClip::deepest_place() const {
+    const FlatCorner& c = *std::min_element(
+        corner_, corner_ + count_, [](const FlatCorner& p, const FlatCorner& q) { return p.height < q.height; });
+    const glm::dmat3& r = reference_.pose.rotation;
+    return level() * r[k_] + (c.x * r[u_] + c.y * r[v_]);
+}
+
 double BoxClip::level() const {
     const double half = coordinate(reference_.shape.half_extents(), k_);
     return (face_ & 1) != 0 ? half : -half;

@@ -4,6 +4,7 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <optional>
 
+#include "epa.hpp"
 #include "gather.hpp"
 
 namespace crofton::convex {
@@ -108,6 +109,8 @@ class BoxClip {
             const glm::dvec3& direction);
     // How deep the deepest point is, without roundings; −infinity where there is none.
     [[nodiscard]] double deepest() const;
+    // That point's shadow on the face, around the reference's origin.
+    [[nodiscard]] glm::dvec3 deepest_place() const;
     void gather(const Touch& touch, double margin, GatheredPoints& to) const;
     // How far a corner of the other box is within the sides of the prism: the least distance, negative outside.
     [[nodiscard]] double corner_within(int corner) const;
@@ -141,6 +144,10 @@ class BoxClip {
 
 // Whether two boxes overlap by more than so much ≥ 0. Nothing: that is nearer to it than the search tells.
 [[nodiscard]] std::optional<bool> boxes_overlap_by_more(const Pair& pair, double depth);
+
+// How deep the cores of two solid boxes overlap, with the deepest points. `apart`: the boxes do not meet. `unknown`:
+// they are nearer to a touch than the axes tell, or the deepest points are not found.
+[[nodiscard]] Warm depth_of_boxes(const Pair& pair, Depth& depth);
 
 // The manifold of two boxes up to thinning out. The touch's depth and normal are proven, as the least of all axes. The
 // face that the cache names stays while it is the least deep within kKeptDepth of the size. `unknown`: apart where

@@ -162,7 +162,14 @@ Penetration penetration(const ShapeAtPose& a, const ShapeAtPose& b, PairCache* c
     const double ra = a.shape.radius(), rb = b.shape.radius(), rounding = ra + rb;
     Depth depth;
     Nearest core;
-    const bool deep = deep_in_closed_form(pair, depth);
+    bool deep = false;
+    if (is_solid_box(a.shape) && is_solid_box(b.shape)) {
+        const Warm found = depth_of_boxes(pair, depth);
+        if (found == Warm::apart) return p;
+        deep = found == Warm::touching;
+    } else {
+        deep = deep_in_closed_form(pair, depth);
+    }
     if (!deep) {
         core = core_distance(pair, cache, 0.0, rounding + 1.5 * pair.doubt());
         remember(core, cache);

@@ -210,11 +210,11 @@ std::optional<double> raycast(const Ray& ray, const Triangle& triangle) {
     return t;
 }
 
-std::optional<RayHit> raycast(const Ray& ray, const mesh::MeshTree& mesh) {
+std::optional<TriangleHit> raycast(const Ray& ray, const mesh::MeshTree& mesh) {
     if (!is_valid(ray)) return std::nullopt;
     const RayAnswer answer = trace(ray, mesh, false);
     if (!answer.hit) return std::nullopt;
-    return RayHit{answer.t, answer.triangle};
+    return TriangleHit{answer.t, answer.triangle};
 }
 
 bool hits_any(const Ray& ray, const mesh::MeshTree& mesh) {

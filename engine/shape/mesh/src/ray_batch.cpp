@@ -31,7 +31,7 @@ bool lie_together(std::span<const Ray> rays, double extent) {
     return rays.size() > 2;
 }
 
-void cast_packet(std::span<const Ray> rays, const MeshTree& mesh, std::optional<RayHit>* hits) {
+void cast_packet(std::span<const Ray> rays, const MeshTree& mesh, std::optional<TriangleHit>* hits) {
     RayQuery queries[kRayPacketWidth];
     RayAnswer answers[kRayPacketWidth];
     for (std::size_t r = 0; r < rays.size(); ++r) queries[r] = query_of(rays[r], mesh, false);
@@ -41,13 +41,13 @@ void cast_packet(std::span<const Ray> rays, const MeshTree& mesh, std::optional<
     trace_packet(std::span<const RayQuery>(queries, rays.size()), exact, std::span<RayAnswer>(answers, rays.size()));
     for (std::size_t r = 0; r < rays.size(); ++r) {
         hits[r] = std::nullopt;
-        if (answers[r].hit) hits[r] = RayHit{answers[r].t, answers[r].triangle};
+        if (answers[r].hit) hits[r] = TriangleHit{answers[r].t, answers[r].triangle};
     }
 }
 
 }  // namespace
 
-void raycast(std::span<const Ray> rays, const MeshTree& mesh, std::span<std::optional<RayHit>> hits) {
+void raycast(std::span<const Ray> rays, const MeshTree& mesh, std::span<std::optional<TriangleHit>> hits) {
     CROFTON_ASSERT(hits.size() >= rays.size(), "fewer hits than rays");
     const bool prepared = !mesh.parts().ray_nodes.empty();
     for (std::size_t begin = 0; begin < rays.size(); begin += kRayPacketWidth) {

@@ -2,6 +2,7 @@
 #include "picture_view.hpp"
 
 #include <algorithm>
+#include <crofton/geometry/model_to_clip.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 #include <numeric>
@@ -29,13 +30,6 @@ ViewMatrix matrix_of(const ViewRequest& request) {
             request.picture->depth, camera.position};
 }
 
-// Rounded once, so that coordinates lose nothing at large offsets.
-glm::mat4 model_to_clip(const ViewMatrix& view, const glm::dmat3& linear, const glm::dvec3& translation) {
-    glm::dmat4 placed(linear);
-    placed[3] = glm::dvec4(translation - view.origin, 1.0);
-    return glm::mat4(view.to_clip * placed);
-}
-
 }  // namespace
 
 Result<void> check_picture(const ViewRequest& request, std::uint64_t item) {
@@ -55,6 +49,9 @@ Result<void> check_picture(const ViewRequest& request, std::uint64_t item) {
 void PictureView::find(const ViewRequest& request, const cull::VisibleSet& in_frustum, const ObjectTable& table,
                        const SpatialIndex& index, const scene::Scene& scene, const MeshClusters& clusters) {
     const ViewMatrix view = matrix_of(request);
+    const auto to_clip = [&view](const glm::dmat3& linear, const glm::dvec3& translation) {
+        return crofton::detail::model_to_clip(view.to_clip, view.origin, linear, translation);
+    };
     const std::span<const std::uint32_t> ids = in_frustum.ids();
     // Ascending, so that the answer does not depend on the order that is asked for.
     places_.resize(ids.size());
@@ -69,7 +66,7 @@ void PictureView::find(const ViewRequest& request, const cull::VisibleSet& in_fr
         depth::DepthObject asked;
         if (mesh != nullptr) {
             const Transform& world = scene.world(scene.node_of(object.instance));
-            asked = {&mesh->cut, model_to_clip(view, world.linear, world.translation)};
+            asked = {&mesh->cut, to_clip(world.linear, world.translation)};
             // Mirrored, fronts and backs change places.
             asked.one_sided = mesh->one_sided && glm::determinant(world.linear) > 0.0;
             asked.hides = object.occludes;
@@ -77,7 +74,7 @@ void PictureView::find(const ViewRequest& request, const cull::VisibleSet& in_fr
             const Obb& box = index.box(id);
             glm::dmat3 linear(box.axes);
             for (int k = 0; k < 3; ++k) linear[k] *= double{box.half_extents[k]};
-            asked = {&unit_cube(), model_to_clip(view, linear, box.center)};
+            asked = {&unit_cube(), to_clip(linear, box.center)};
             asked.hides = false;
         }
         objects_.push_back(asked);

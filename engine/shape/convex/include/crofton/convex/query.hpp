@@ -79,8 +79,8 @@ struct Penetration {
 //
 // upper − lower ≤ 1e-9 of the size for polytopes, also rounded ones; ≤ 1e-5 for cylinders and cones, but 1e-3 if all
 // ways out around an axis are equally long. Computed by the expanding polytope algorithm (van den Bergen 2001), then
-// checked from both sides; if that fails, over all separating axes. A sphere whose center lies in a box, hull, cylinder
-// or cone, and a capsule whose segment meets a box, are computed in closed form.
+// checked from both sides; if that fails, over all separating axes. Two boxes, a sphere whose center lies in a box,
+// hull, cylinder or cone, and a capsule whose segment meets a box, are computed in closed form.
 //
 // Two half-spaces that overlap do so without end: depth, lower and upper are infinite. For shapes of parts it is the
 // depth of the two deepest parts. `lower` holds for the shapes; `upper` is infinite, because parts may be pushed into

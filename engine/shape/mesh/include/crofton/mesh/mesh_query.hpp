@@ -107,19 +107,20 @@ enum class Containment : std::uint8_t { none, a_inside_b, b_inside_a, partly };
 // ray within the plane of a triangle does not hit that triangle.
 [[nodiscard]] std::optional<double> raycast(const Ray& ray, const Triangle& triangle);
 
-struct RayHit {
-    double t = 0.0;
+// The triangle of a mesh that a ray hits first. convex::RayHit has the point and the normal as well.
+struct TriangleHit {
+    double t = 0.0;  // along the ray, in [0, max_t]
     std::uint32_t triangle = 0;
 };
 // Returns the nearest triangle, with the same exactness for origins within 1e37; of hits with equal t, that of the
 // lowest index.
-[[nodiscard]] std::optional<RayHit> raycast(const Ray& ray, const mesh::MeshTree& mesh);
+[[nodiscard]] std::optional<TriangleHit> raycast(const Ray& ray, const mesh::MeshTree& mesh);
 // Casts many rays: hits[i] has the same bits as raycast(rays[i], mesh).
 //
 // If rays are prepared (MeshTree::prepare_rays), sixteen at a time go through the hierarchy as a packet. This is faster
 // the closer they lie together; cast the rays of a picture in tiles of 4 × 4 pixels. Requires hits.size() >=
 // rays.size(). Allocates nothing.
-void raycast(std::span<const Ray> rays, const mesh::MeshTree& mesh, std::span<std::optional<RayHit>> hits);
+void raycast(std::span<const Ray> rays, const mesh::MeshTree& mesh, std::span<std::optional<TriangleHit>> hits);
 [[nodiscard]] bool hits_any(const Ray& ray, const mesh::MeshTree& mesh);
 
 }  // namespace crofton::mesh

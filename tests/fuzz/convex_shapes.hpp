@@ -8,9 +8,9 @@
 
 namespace crofton::fuzz {
 
-class Bodies {
+class ConvexShapes {
   public:
-    explicit Bodies(Shapes& in) : in_(in) {}
+    explicit ConvexShapes(Shapes& in) : in_(in) {}
 
     convex::Shape shape() {
         using convex::Shape;

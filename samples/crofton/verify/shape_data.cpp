@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "body_data.hpp"
+#include "shape_data.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,7 @@ Triangle triangle_of(const TriangleMesh& mesh, std::size_t t) {
     return {at(0), at(1), at(2)};
 }
 
-void add_hull(const Points& points, BodyData& data) {
+void add_hull(const Points& points, ShapeData& data) {
     auto hull = convex::Hull::build(points);
     if (!hull) {
         ++data.flat;
@@ -30,7 +30,7 @@ void add_hull(const Points& points, BodyData& data) {
 }
 
 // Adds the hulls of pieces of the triangles begin … end of `order`.
-void add_pieces(const TriangleMesh& mesh, std::uint32_t* begin, std::uint32_t* end, int cuts, BodyData& data) {
+void add_pieces(const TriangleMesh& mesh, std::uint32_t* begin, std::uint32_t* end, int cuts, ShapeData& data) {
     Points points;
     Aabb middles;
     const auto middle = [&](std::uint32_t t) {
@@ -54,18 +54,18 @@ void add_pieces(const TriangleMesh& mesh, std::uint32_t* begin, std::uint32_t* e
     add_pieces(mesh, cut, end, cuts - 1, data);
 }
 
-void add_mesh(const TriangleMesh& mesh, BodyData& data) {
+void add_mesh(const TriangleMesh& mesh, ShapeData& data) {
     std::vector<std::uint32_t> order(mesh.indices.size() / 3);
     for (std::uint32_t t = 0; t < order.size(); ++t) order[t] = t;
     add_pieces(mesh, order.data(), order.data() + order.size(), 3, data);
 }
 
-Result<BodyData> data_of_scene(const std::string& source, const assets::LoadOptions& which) {
+Result<ShapeData> data_of_scene(const std::string& source, const assets::LoadOptions& which) {
     auto loaded = assets::load_scene(source, which);
     if (!loaded) return tl::unexpected(loaded.error());
     scene::Scene& scene = loaded->scene;
     scene.update();
-    BodyData data;
+    ShapeData data;
     TriangleMesh all;
     std::vector<bool> has_hulls;
     for (scene::InstanceId i = 0; i < scene.instance_count(); ++i) {
@@ -126,7 +126,7 @@ std::vector<std::uint32_t> raster(const PolygonFile& file) {
     return over;
 }
 
-Result<BodyData> data_of_map(const std::string& source) {
+Result<ShapeData> data_of_map(const std::string& source) {
     const auto file = read_polygons(source, "");
     if (!file) return tl::unexpected(file.error());
     const std::vector<std::uint32_t> over = raster(*file);
@@ -139,7 +139,7 @@ Result<BodyData> data_of_map(const std::string& source) {
             const bool none = (over[at] | over[at + 1] | over[at + kMapSide] | over[at + kMapSide + 1]) == 0;
             materials[j * (kMapSide - 1) + i] = none ? convex::kHole : static_cast<std::uint8_t>(over[at] % 200);
         }
-    BodyData data;
+    ShapeData data;
     auto field =
         convex::HeightField::build({.columns = kMapSide, .rows = kMapSide, .heights = heights, .materials = materials});
     if (!field) return tl::unexpected(field.error());
@@ -152,7 +152,7 @@ Result<BodyData> data_of_map(const std::string& source) {
 
 }  // namespace
 
-Result<BodyData> read_body_data(const std::string& source, const assets::LoadOptions& which) {
+Result<ShapeData> read_shape_data(const std::string& source, const assets::LoadOptions& which) {
     const bool is_level = source.size() > 4 && source.substr(source.size() - 4) == ".wad";
     return is_polygon_file(source) && !is_level ? data_of_map(source) : data_of_scene(source, which);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "collide_bodies.hpp"
+#include "collide_shapes.hpp"
 
 #include <charconv>
 #include <cmath>
@@ -27,8 +27,8 @@ std::string text_of(const char* format, double a, double b = 0.0, double c = 0.0
 
 }  // namespace
 
-Result<FileBody> load_body(const std::string& path, bool as_hull, int max_vertices, const ReadOptions& options) {
-    FileBody made;
+Result<FileShape> load_shape(const std::string& path, bool as_hull, int max_vertices, const ReadOptions& options) {
+    FileShape made;
     const auto named = [&](const Error& e) { return fail(e.code, e.item, path + ": " + e.message); };
     if (as_hull) {
         const auto points = load_points(path, options);
@@ -62,8 +62,8 @@ Result<glm::dvec3> vector_of(const std::string& option, const std::string& text)
     return value;
 }
 
-BodyAnswer ask_hulls(const std::string& mode, const convex::ShapeAtPose& a, const convex::ShapeAtPose& b) {
-    BodyAnswer answer;
+ShapeAnswer ask_hulls(const std::string& mode, const convex::ShapeAtPose& a, const convex::ShapeAtPose& b) {
+    ShapeAnswer answer;
     const bool hit = convex::intersects(a, b);
     answer.document["hit"] = hit;
     answer.sentence = hit ? "hit" : "no hit";
@@ -93,12 +93,12 @@ BodyAnswer ask_hulls(const std::string& mode, const convex::ShapeAtPose& a, cons
     return answer;
 }
 
-Result<BodyAnswer> ask_cast(const convex::ShapeAtPose& a, const convex::ShapeAtPose& b, const convex::Motion& motion,
+Result<ShapeAnswer> ask_cast(const convex::ShapeAtPose& a, const convex::ShapeAtPose& b, const convex::Motion& motion,
                             double duration) {
     const auto impact = convex::cast(a, {}, b, motion, {.duration = duration});
     if (!impact) return tl::unexpected<Error>(impact.error());
     constexpr const char* kNames[] = {"miss", "hit", "unresolved"};
-    BodyAnswer answer;
+    ShapeAnswer answer;
     answer.document = {{"hit", impact->result == convex::CastResult::hit},
                        {"result", kNames[static_cast<int>(impact->result)]},
                        {"time", impact->time},

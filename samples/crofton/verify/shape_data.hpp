@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Bodies made of a scene's or map's data: hulls, and surfaces with their triangles one by one.
+// Shapes made of a scene's or map's data: hulls, and surfaces with their triangles one by one.
 #pragma once
 #include <crofton/convex/shape.hpp>
 #include <crofton/core/error.hpp>
@@ -13,7 +13,7 @@
 
 namespace crofton::cli {
 
-struct BodyData {
+struct ShapeData {
     std::vector<convex::Hull> hulls;
     std::vector<std::vector<glm::vec3>> hull_points;  // that each was built of
     std::size_t flat = 0;                             // meshes and pieces without a hull
@@ -31,6 +31,6 @@ struct BodyData {
 // Hulls are of the whole scene, of each mesh and of its pieces. A mesh of more than 64 triangles is cut at the median
 // of its triangles three times, across its longest side: at most eight pieces. A map's polygons are steps of several
 // heights on a grid of 257².
-[[nodiscard]] Result<BodyData> read_body_data(const std::string& source, const assets::LoadOptions& which);
+[[nodiscard]] Result<ShapeData> read_shape_data(const std::string& source, const assets::LoadOptions& which);
 
 }  // namespace crofton::cli
