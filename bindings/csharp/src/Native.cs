@@ -171,6 +171,7 @@ namespace Crofton {
         internal struct PictureData {
             public UIntPtr Size;
             public uint Width, Height, Depth;
+            public ulong WorkLimit;
         }
 
         [StructLayout(LayoutKind.Sequential)]

@@ -150,6 +150,8 @@ namespace Crofton {
         public uint Width = 1280, Height = 720;
         /// <summary>The depth range of the projection; with a ViewMatrix, the same as its.</summary>
         public DepthRange Depth;
+        /// <summary>0 for no limit. Otherwise a number of clusters that are tested and of triangles that are drawn, together; what is left after that is listed whole unless its box is hidden.</summary>
+        public ulong WorkLimit;
     }
 
     /// <summary>Limits that leave out objects that are too small or too far away.</summary>
@@ -266,6 +268,7 @@ namespace Crofton {
                     picture.Width = request.Picture.Width;
                     picture.Height = request.Picture.Height;
                     picture.Depth = (uint)request.Picture.Depth;
+                    picture.WorkLimit = request.Picture.WorkLimit;
                     data.Picture = Copied(picture);
                 }
                 if (request.CandidateMask != null) {

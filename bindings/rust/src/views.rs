@@ -57,6 +57,9 @@ pub struct PictureView {
     pub height: u32,
     /// The depth range of the projection; with a [`ViewMatrix`], the same as its.
     pub depth: DepthRange,
+    /// 0 for no limit. Otherwise a number of clusters that are tested and of triangles that are drawn, together; what is
+    /// left after that is listed whole unless its box is hidden.
+    pub work_limit: u64,
 }
 
 /// Limits that leave out objects that are too small or too far away.
@@ -201,6 +204,7 @@ impl<'a> Asked<'a> {
                 width: p.width,
                 height: p.height,
                 depth: p.depth as u32,
+                work_limit: p.work_limit,
             }),
             limits: request.limits.map(|l| l.raw()),
         }

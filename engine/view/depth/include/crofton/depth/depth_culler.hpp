@@ -2,6 +2,7 @@
 // Finds the triangles that a picture needs, from front to back: triangles behind those found before are left out.
 #pragma once
 #include <crofton/core/error.hpp>
+#include <crofton/core/executor.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/depth/clustered_mesh.hpp>
 #include <crofton/geometry/camera.hpp>
@@ -33,6 +34,11 @@ struct PictureView {
     std::uint32_t width = 1280;  // 1 to kMaxSize pixels
     std::uint32_t height = 720;
     DepthRange depth = DepthRange::reversed_zero_to_one;
+
+    // Bounds the time where little is hidden: 0 for no limit, otherwise a number of clusters that are tested and of
+    // triangles that are drawn, together. An average one takes some 50 to 200 ns. After that, an object or a cluster is
+    // still tested by its box, and if the box may be visible, it is listed whole and hides nothing.
+    std::uint64_t work_limit = 0;
 };
 
 // A cluster with at least one triangle that may be visible at a sample. If bit k of `triangles` is set, draw triangle
@@ -44,11 +50,12 @@ struct VisibleCluster {
 };
 
 struct DepthStatistics {
-    std::uint64_t objects_listed = 0;   // with at least one triangle
-    std::uint64_t objects_asked = 0;    // their bounds may cover a sample of the picture
-    std::uint64_t clusters_asked = 0;   // of the objects that were not hidden as a whole
-    std::uint64_t clusters_drawn = 0;   // that were not hidden as a whole
-    std::uint64_t triangles_drawn = 0;  // of those clusters
+    std::uint64_t objects_listed = 0;  // with at least one triangle
+    std::uint64_t objects_asked = 0;   // their bounds may cover a sample of the picture
+    std::uint64_t clusters_asked = 0;  // of the objects that were not hidden as a whole
+    std::uint64_t clusters_drawn = 0;  // that were not hidden as a whole
+    // Of those clusters. The limit was exceeded if this and clusters_asked are more together.
+    std::uint64_t triangles_drawn = 0;
     std::uint64_t triangles_listed = 0;
 };
 
@@ -63,7 +70,8 @@ struct DepthStatistics {
 // - never give a sample a depth nearer than the triangle's nearest vertex, and write and compare depth as 32-bit
 // floats. docs/notes/depth.md derives the margins.
 //
-// Keeps its memory between calls and allocates only when it must grow. Use one culler per thread.
+// Keeps its memory between calls and allocates only when it must grow. Use one culler per thread; with an executor one
+// call may use several threads.
 class DepthCuller {
   public:
     DepthCuller();
@@ -72,12 +80,13 @@ class DepthCuller {
     DepthCuller& operator=(DepthCuller&&) noexcept;
 
     // Returns visible clusters by object, then by cluster, both ascending; valid until the next call. Leave out objects
-    // outside the frustum (World::view): it is faster.
+    // outside the frustum (World::view): it is faster. The answer has the same bits with any executor.
     //
     // Errors: a size out of range; an object without a mesh (item = object). If an object's matrix or position_error is
     // not finite, all its triangles are listed and it hides nothing.
     [[nodiscard]] Result<std::span<const VisibleCluster>> find_visible(std::span<const DepthObject> objects,
-                                                                       const PictureView& view);
+                                                                       const PictureView& view,
+                                                                       Executor& executor = serial_executor());
 
     [[nodiscard]] const DepthStatistics& statistics() const;
 
