@@ -45,8 +45,6 @@ HWY_INLINE float pixel_error(const PictureData& picture, const ClipErrors& error
 
 // A cluster whose vertices may move by more is drawn in clip coordinates, and listed always.
 inline constexpr float kMaxPixelError = 0.25f;
-// The sides of the picture in clip coordinates, as shares of w, and a pixel's share more for the renderer's grid.
-inline constexpr float kBeyondEdge = 1.01f;
 
 // Half-open coordinates to the samples within, which lie at halves.
 HWY_INLINE std::int32_t first_sample(float low, float limit) {
@@ -95,8 +93,9 @@ class ClipBox {
                               hn::Add(hn::Mul(s1, hn::Set(d, edges_[1][k])), hn::Mul(s2, hn::Set(d, edges_[2][k]))));
     }
 
-    // True if the box is beyond a side of the picture or before the near plane. Unlike a rectangle in the picture this
-    // is known of boxes behind the eye, too.
+    // True if the box is beyond a side of the picture or before the near plane. The renderer's grid needs no margin:
+    // the outermost samples are half a pixel from the side. Unlike a rectangle in the picture this is known of boxes
+    // behind the eye, too.
     [[nodiscard]] bool is_outside(float near_share, const ClipErrors& errors) const {
         const DF d;
         const VF infinity = hn::Set(d, std::numeric_limits<float>::infinity());
@@ -104,13 +103,13 @@ class ClipBox {
         for (std::size_t i = 0; i < kCorners; i += hn::Lanes(d)) {
             VF clip[4];
             corners(i, clip);
-            const VF edge = hn::Mul(clip[3], hn::Set(d, kBeyondEdge));
+            const VF edge = clip[3];
             right = hn::Min(right, hn::Sub(clip[0], edge)), left = hn::Min(left, hn::Sub(hn::Neg(clip[0]), edge));
             above = hn::Min(above, hn::Sub(clip[1], edge)), below = hn::Min(below, hn::Sub(hn::Neg(clip[1]), edge));
             behind = hn::Max(behind, hn::Sub(hn::Mul(hn::Set(d, near_share), clip[3]), clip[2]));
         }
         const auto least = [&](VF v) { return hn::GetLane(hn::MinOfLanes(d, v)); };
-        const float limit = 2.0f * (std::max(errors.x, errors.y) + kBeyondEdge * errors.w);
+        const float limit = 2.0f * (std::max(errors.x, errors.y) + errors.w);
         return least(right) > limit || least(left) > limit || least(above) > limit || least(below) > limit ||
                hn::GetLane(hn::MaxOfLanes(d, behind)) < -2.0f * (errors.z + errors.w);
     }
