@@ -20,7 +20,7 @@ using oracle::DepthCertificate;
 // CROFTON_CERTIFICATES=100000 asks for so many (`.ci/long depth`).
 std::uint64_t wanted_proofs() {
     const char* const text = std::getenv("CROFTON_CERTIFICATES");
-    return text != nullptr ? std::strtoull(text, nullptr, 10) : 500;
+    return text != nullptr ? std::strtoull(text, nullptr, 10) : 2000;
 }
 
 // Whether the first corner is in the picture: most triangles are far from it.
