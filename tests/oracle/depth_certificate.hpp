@@ -17,6 +17,7 @@
 #include <oracle/tracked.hpp>
 #include <span>
 #include <tuple>
+#include <unordered_map>
 #include <vector>
 
 namespace crofton::oracle {
@@ -31,7 +32,10 @@ class DepthCertificate {
 
     // Reversed-Z matrices.
     DepthCertificate(std::span<const Body> bodies, std::uint32_t width, std::uint32_t height)
-        : bodies_(bodies), size_{Rational(width), Rational(height)}, columns_((width + kTile - 1) / kTile) {
+        : bodies_(bodies),
+          size_{Rational(width), Rational(height)},
+          columns_((width + kTile - 1) / kTile),
+          pixels_{double(width), double(height)} {
         tiles_.resize(std::size_t{columns_} * ((height + kTile - 1) / kTile));
         vertices_.resize(bodies.size());
         for (std::uint32_t b = 0; b < bodies.size(); ++b) {
@@ -47,8 +51,8 @@ class DepthCertificate {
         if (is_outside(corners)) return Proof::outside;
         if (corners[0].key == corners[1].key || corners[1].key == corners[2].key || corners[2].key == corners[0].key)
             return Proof::no_sample;
-        std::vector<Piece> pieces;
-        if (!cut(corners, pieces)) return Proof::none;
+        const std::vector<Piece>& pieces = pieces_of(body, triangle);
+        if (pieces.empty()) return Proof::none;
         bool faces_away = bodies_[body].mesh.one_sided;
         std::vector<std::pair<std::uint32_t, std::uint32_t>> samples;
         for (const Piece& piece : pieces) {
@@ -91,6 +95,7 @@ class DepthCertificate {
         Rational x, y, z;
         Rational move, z_error;
         Key key;
+        std::array<double, 2> about;  // x and y
     };
     // A triangle in front of the near plane.
     struct Piece {
@@ -101,6 +106,13 @@ class DepthCertificate {
         Rational across, up;  // slopes of the nearness
         Rational bias;        // what it may be moved back by, and no more
         Rational move, z_error, nearest, farthest;
+    };
+
+    // What may hide something: the rectangle and the nearest point in front of the near plane, about.
+    struct Filed {
+        std::uint32_t body, triangle;
+        std::array<double, 2> low, high;
+        double nearest;  // ∞ close to the near plane
     };
 
     void number_vertices(std::uint32_t body) {
@@ -157,6 +169,14 @@ class DepthCertificate {
         return false;
     }
 
+    // Cut when they are first asked for; none where a vertex has no place, or where nothing is in front of the near
+    // plane.
+    [[nodiscard]] const std::vector<Piece>& pieces_of(std::uint32_t body, std::uint32_t triangle) const {
+        const auto [at, is_new] = pieces_.try_emplace(std::uint64_t{body} << 32 | triangle);
+        if (is_new && !cut(corners_of(body, triangle), at->second)) at->second.clear();
+        return at->second;
+    }
+
     // What is in front of the near plane, as a fan. False where a vertex has no place.
     [[nodiscard]] bool cut(const std::array<Vertex, 3>& corners, std::vector<Piece>& pieces) const {
         std::vector<Vertex> polygon;
@@ -200,6 +220,7 @@ class DepthCertificate {
                      std::max(Rational(errors[0] * size_[0]), Rational(errors[1] * size_[1])) / 2;
         place.z_error = errors[2] + abs(place.z) * power(-22);
         place.key = v.key;
+        place.about = {place.x.get_d(), place.y.get_d()};
         return true;
     }
 
@@ -244,20 +265,26 @@ class DepthCertificate {
     [[nodiscard]] static Point2 center_of(const std::pair<std::uint32_t, std::uint32_t>& sample) {
         return {Rational(2 * sample.first + 1) / 2, Rational(2 * sample.second + 1) / 2};
     }
-    // Some displacement covers p: the triangle and the square around p meet.
+    // False only if no displacement covers p: the triangle and the square around p are apart. In double: 2^-40 of all
+    // terms is more than what rounds.
     [[nodiscard]] static bool may_cover(const Piece& t, const Point2& p) {
+        constexpr double kRounding = 0x1p-40;
+        const double at[2] = {p[0].get_d(), p[1].get_d()}, move = t.move.get_d() * (1.0 + kRounding);
         for (std::size_t axis = 0; axis < 2; ++axis) {
-            const auto at = [&](std::size_t k) -> const Rational& { return axis == 0 ? t.at[k].x : t.at[k].y; };
-            if (std::min({at(0), at(1), at(2)}) > p[axis] + t.move) return false;
-            if (std::max({at(0), at(1), at(2)}) < p[axis] - t.move) return false;
+            const auto [low, high] = std::minmax({t.at[0].about[axis], t.at[1].about[axis], t.at[2].about[axis]});
+            const double reach = move + kRounding * (std::abs(low) + std::abs(high) + at[axis]);
+            if (low > at[axis] + reach || high < at[axis] - reach) return false;
         }
         for (std::size_t k = 0; k < 3; ++k) {
-            const Place &a = t.at[k], &b = t.at[(k + 1) % 3], &c = t.at[(k + 2) % 3];
-            const Rational nx = a.y - b.y, ny = b.x - a.x;
-            const Rational reach = t.move * (abs(nx) + abs(ny));
-            const Rational other = nx * (c.x - a.x) + ny * (c.y - a.y), mine = nx * (p[0] - a.x) + ny * (p[1] - a.y);
-            if (mine > std::max(other, Rational(0)) + reach || mine < std::min(other, Rational(0)) - reach)
-                return false;
+            const auto &a = t.at[k].about, &b = t.at[(k + 1) % 3].about, &c = t.at[(k + 2) % 3].about;
+            const double nx = a[1] - b[1], ny = b[0] - a[0];
+            const double other_x = nx * (c[0] - a[0]), other_y = ny * (c[1] - a[1]);
+            const double mine_x = nx * (at[0] - a[0]), mine_y = ny * (at[1] - a[1]);
+            const double far = std::max({std::abs(a[0]), std::abs(b[0]), std::abs(c[0]), std::abs(a[1]), std::abs(b[1]),
+                                         std::abs(c[1]), at[0], at[1]});
+            const double reach = move * (std::abs(nx) + std::abs(ny)) + kRounding * far * (far + move);
+            const double other = other_x + other_y, mine = mine_x + mine_y;
+            if (mine > std::max(other, 0.0) + reach || mine < std::min(other, 0.0) - reach) return false;
         }
         return true;
     }
@@ -269,7 +296,7 @@ class DepthCertificate {
                 const double at = (axis == 0 ? p.x : p.y).get_d();
                 low[axis] = std::min(low[axis], at), high[axis] = std::max(high[axis], at);
             }
-            const double reach = t.move.get_d() + 1.0, last = size_[axis].get_d() - 1.0;
+            const double reach = t.move.get_d() + 1.0, last = pixels_[axis] - 1.0;
             low[axis] = std::floor(std::clamp(low[axis] - reach, 0.0, last + 1.0));
             high[axis] = std::ceil(std::clamp(high[axis] + reach, -1.0, last));
         }
@@ -286,11 +313,12 @@ class DepthCertificate {
         std::array<glm::dvec4, 3> clip;
         for (std::size_t k = 0; k < 3; ++k)
             clip[k] = glm::dmat4(mesh.to_clip) * glm::dvec4(mesh.positions[mesh.indices[3 * triangle + k]], 1.0);
-        double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+        Filed filed{body, triangle, {HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL}, -HUGE_VAL};
         const auto include = [&](const glm::dvec4& p) {
-            for (int axis = 0; axis < 2; ++axis) {
-                const double at = p.w > 1e-9 ? (p[axis] / p.w + 1.0) * 0.5 * size_[std::size_t(axis)].get_d() : 0.0;
-                low[axis] = std::min(low[axis], at), high[axis] = std::max(high[axis], at);
+            for (std::size_t axis = 0; axis < 2; ++axis) {
+                const double ratio = p.w > 1e-9 ? p[static_cast<glm::length_t>(axis)] / p.w : 0.0;
+                const double at = (ratio + 1.0) * 0.5 * pixels_[axis];
+                filed.low[axis] = std::min(filed.low[axis], at), filed.high[axis] = std::max(filed.high[axis], at);
             }
         };
         for (std::size_t k = 0; k < 3; ++k) {
@@ -298,15 +326,18 @@ class DepthCertificate {
             const double da = a.w - a.z, db = b.w - b.z;
             if (da >= 0.0) include(a);
             if ((da >= 0.0) != (db >= 0.0)) include(a + (b - a) * (da / (da - db)));
+            filed.nearest = da < 1e-3 * a.w ? HUGE_VAL : std::max(filed.nearest, a.z / a.w);
         }
         const auto tile = [&](double at, std::size_t axis) {
-            return static_cast<std::uint32_t>(std::clamp(at, 0.0, size_[axis].get_d() - 1.0)) / kTile;
+            return static_cast<std::uint32_t>(std::clamp(at, 0.0, pixels_[axis] - 1.0)) / kTile;
         };
-        if (!(low[0] - 2.0 < size_[0].get_d() && high[0] > -2.0 && low[1] - 2.0 < size_[1].get_d() && high[1] > -2.0))
+        if (!(filed.low[0] - 2.0 < pixels_[0] && filed.high[0] > -2.0 && filed.low[1] - 2.0 < pixels_[1] &&
+              filed.high[1] > -2.0))
             return;
-        for (std::uint32_t y = tile(low[1] - 2.0, 1); y <= tile(high[1] + 2.0, 1); ++y)
-            for (std::uint32_t x = tile(low[0] - 2.0, 0); x <= tile(high[0] + 2.0, 0); ++x)
-                tiles_[std::size_t{y} * columns_ + x].push_back({body, triangle});
+        for (std::uint32_t y = tile(filed.low[1] - 2.0, 1); y <= tile(filed.high[1] + 2.0, 1); ++y)
+            for (std::uint32_t x = tile(filed.low[0] - 2.0, 0); x <= tile(filed.high[0] + 2.0, 0); ++x)
+                tiles_[std::size_t{y} * columns_ + x].push_back(static_cast<std::uint32_t>(filed_.size()));
+        filed_.push_back(filed);
     }
 
     // Triangles of one body cover the sample for certain, nearer than `nearness`.
@@ -314,44 +345,31 @@ class DepthCertificate {
                                   const Rational& nearness) const {
         const auto& tile = tiles_[std::size_t{sample.second / kTile} * columns_ + sample.first / kTile];
         for (std::size_t begin = 0, end = 0; begin < tile.size(); begin = end) {
-            while (end < tile.size() && tile[end].first == tile[begin].first) ++end;
-            std::vector<Piece> front, back;
+            const std::uint32_t body = filed_[tile[begin]].body;
+            while (end < tile.size() && filed_[tile[end]].body == body) ++end;
+            std::vector<const Piece*> front, back;
             for (std::size_t i = begin; i < end; ++i) {
-                if (!is_close(tile[i], p, nearness)) continue;
-                std::vector<Piece> pieces;
-                if (!cut(corners_of(tile[i].first, tile[i].second), pieces)) continue;
-                for (const Piece& piece : pieces)
+                const Filed& filed = filed_[tile[i]];
+                if (!is_close(filed, p, nearness)) continue;
+                for (const Piece& piece : pieces_of(body, filed.triangle))
                     if (piece.facing != 0 && may_cover(piece, p) && lower_bound(piece, p) > nearness)
-                        (piece.facing > 0 ? front : back).push_back(piece);
+                        (piece.facing > 0 ? front : back).push_back(&piece);
             }
             if (surely_cover(front, p)) return true;
-            if (!bodies_[tile[begin].first].mesh.one_sided && surely_cover(back, p)) return true;
+            if (!bodies_[body].mesh.one_sided && surely_cover(back, p)) return true;
         }
         return false;
     }
 
     // In double, with room to spare: whether a look in rationals is worth it.
-    [[nodiscard]] bool is_close(const std::pair<std::uint32_t, std::uint32_t>& at, const Point2& p,
-                                const Rational& nearness) const {
-        const DrawnMesh& mesh = bodies_[at.first].mesh;
-        double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL}, nearest = -HUGE_VAL;
-        for (std::uint32_t k = 0; k < 3; ++k) {
-            const glm::dvec4 clip =
-                glm::dmat4(mesh.to_clip) * glm::dvec4(mesh.positions[mesh.indices[3 * at.second + k]], 1.0);
-            if (clip.w - clip.z < 1e-3 * clip.w) return true;  // near the near plane
-            for (int axis = 0; axis < 2; ++axis) {
-                const double place = (clip[axis] / clip.w + 1.0) * 0.5 * size_[std::size_t(axis)].get_d();
-                low[axis] = std::min(low[axis], place), high[axis] = std::max(high[axis], place);
-            }
-            nearest = std::max(nearest, clip.z / clip.w);
-        }
+    [[nodiscard]] static bool is_close(const Filed& filed, const Point2& p, const Rational& nearness) {
         for (std::size_t axis = 0; axis < 2; ++axis)
-            if (p[axis].get_d() < low[axis] - 1.0 || p[axis].get_d() > high[axis] + 1.0) return false;
-        return nearest > nearness.get_d() - 1e-9;
+            if (p[axis].get_d() < filed.low[axis] - 1.0 || p[axis].get_d() > filed.high[axis] + 1.0) return false;
+        return filed.nearest > nearness.get_d() - 1e-9;
     }
 
     // By those that are left when each triangle with an end over p is taken away.
-    [[nodiscard]] static bool surely_cover(std::vector<Piece> pieces, const Point2& p) {
+    [[nodiscard]] static bool surely_cover(std::vector<const Piece*> pieces, const Point2& p) {
         for (;;) {
             std::map<std::pair<Key, Key>, int> chain;
             const auto for_edges = [](const Piece& t, auto&& use) {
@@ -361,18 +379,18 @@ class DepthCertificate {
                     use(a, b, forward ? std::pair{a.key, b.key} : std::pair{b.key, a.key}, forward ? 1 : -1);
                 }
             };
-            for (const Piece& t : pieces)
-                for_edges(t, [&](const Place&, const Place&, const auto& edge, int sign) { chain[edge] += sign; });
-            const auto ends_over = [&](const Piece& t) {
+            for (const Piece* const t : pieces)
+                for_edges(*t, [&](const Place&, const Place&, const auto& edge, int sign) { chain[edge] += sign; });
+            const auto ends_over = [&](const Piece* t) {
                 bool ends = false;
-                for_edges(t, [&](const Place& a, const Place& b, const auto& edge, int) {
+                for_edges(*t, [&](const Place& a, const Place& b, const auto& edge, int) {
                     ends = ends || (chain[edge] != 0 && may_pass(a, b, p));
                 });
                 return ends;
             };
             if (std::erase_if(pieces, ends_over) == 0) break;
         }
-        return std::any_of(pieces.begin(), pieces.end(), [&](const Piece& t) { return is_inside(t, p); });
+        return std::any_of(pieces.begin(), pieces.end(), [&](const Piece* t) { return is_inside(*t, p); });
     }
     // Of two triangles that share an edge one has the points on it.
     [[nodiscard]] static bool is_inside(const Piece& t, const Point2& p) {
@@ -411,8 +429,11 @@ class DepthCertificate {
     std::span<const Body> bodies_;
     std::array<Rational, 2> size_;
     std::uint32_t columns_;
-    std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> tiles_;  // bodies and triangles
-    std::vector<std::vector<std::uint32_t>> vertices_;                         // by body: the first at the same place
+    std::array<double, 2> pixels_;  // the size again
+    std::vector<Filed> filed_;
+    std::vector<std::vector<std::uint32_t>> tiles_;  // of filed_
+    mutable std::unordered_map<std::uint64_t, std::vector<Piece>> pieces_;
+    std::vector<std::vector<std::uint32_t>> vertices_;  // by body: the first at the same place
 };
 
 }  // namespace crofton::oracle

@@ -33,19 +33,27 @@ struct OwnerPicture {
         : width(w), height(h), owners(std::size_t{w} * h, kNobody), depths(owners.size(), -HUGE_VAL) {}
 };
 
-// Reversed-Z matrices. `wobble`: by how many pixels, at most, a vertex is moved before it is snapped, differently at
-// each place; what renderers round by. `bias`: the share of a triangle's steepest slope of depth, from one pixel to the
-// next, by which it is drawn farther away (the depth bias that the guide asks for is 1/256).
+// How a renderer rounds.
+struct Rounding {
+    double wobble = 0.0;  // pixels by which a vertex is moved, at most, before it is snapped; differently at each place
+    // The share of a triangle's steepest slope of depth, from one pixel to the next, by which it is drawn farther away
+    // (the depth bias that the guide asks for is 1/256).
+    double bias = 0.0;
+    double clip_share = 0.0;   // of the sum of its terms, by which a clip coordinate is off, at most
+    double depth_share = 0.0;  // of itself, by which a depth is off, at most
+    bool snaps_plane = true;   // depth is that of the plane of the snapped vertices; otherwise of the vertices' places
+};
+
+// Reversed-Z matrices.
 class OwnerRenderer {
   public:
-    OwnerRenderer(OwnerPicture& picture, double wobble, std::uint64_t seed, double bias = 0.0)
-        : picture_(picture), wobble_(wobble), bias_(bias), seed_(seed) {}
+    OwnerRenderer(OwnerPicture& picture, const Rounding& rounding, std::uint64_t seed)
+        : picture_(picture), rounding_(rounding), seed_(seed) {}
 
     void draw(const DrawnMesh& mesh, std::uint32_t number) {
         for (std::uint32_t t = 0; 3 * t + 2 < mesh.indices.size(); ++t) {
             std::array<glm::dvec4, 3> clip;
-            for (std::size_t k = 0; k < 3; ++k)
-                clip[k] = glm::dmat4(mesh.to_clip) * glm::dvec4(mesh.positions[mesh.indices[3 * t + k]], 1.0);
+            for (std::size_t k = 0; k < 3; ++k) clip[k] = rounded_clip(mesh, mesh.positions[mesh.indices[3 * t + k]]);
             std::vector<glm::dvec4> polygon = before_near(clip);
             for (std::size_t k = 2; k < polygon.size(); ++k)
                 draw_triangle({polygon[0], polygon[k - 1], polygon[k]}, mesh.one_sided,
@@ -57,7 +65,19 @@ class OwnerRenderer {
     struct Point {
         std::int64_t x, y;  // 1/256 pixel
         double z;
+        double at_x, at_y;  // before it was snapped
     };
+
+    [[nodiscard]] glm::dvec4 rounded_clip(const DrawnMesh& mesh, const glm::vec3& position) const {
+        glm::dvec4 clip = glm::dmat4(mesh.to_clip) * glm::dvec4(position, 1.0);
+        if (rounding_.clip_share == 0.0) return clip;
+        for (glm::length_t i = 0; i < 4; ++i) {
+            double terms = std::abs(double(mesh.to_clip[3][i]));
+            for (glm::length_t c = 0; c < 3; ++c) terms += std::abs(double(mesh.to_clip[c][i]) * double(position[c]));
+            clip[i] += rounding_.clip_share * terms * random(clip[i], 3 + static_cast<std::uint64_t>(i));
+        }
+        return clip;
+    }
 
     static std::vector<glm::dvec4> before_near(const std::array<glm::dvec4, 3>& clip) {
         std::vector<glm::dvec4> result;
@@ -72,17 +92,21 @@ class OwnerRenderer {
         return result;
     }
 
-    [[nodiscard]] double moved(double pixels, std::uint64_t salt) const {
-        std::uint64_t bits = std::bit_cast<std::uint64_t>(pixels) ^ seed_ * 0x9e3779b97f4a7c15u ^ salt;
+    // From −1 to 1, always the same for the same number.
+    [[nodiscard]] double random(double number, std::uint64_t salt) const {
+        std::uint64_t bits = std::bit_cast<std::uint64_t>(number) ^ seed_ * 0x9e3779b97f4a7c15u ^ salt;
         bits = (bits ^ bits >> 31) * 0xbf58476d1ce4e5b9u;
         bits = (bits ^ bits >> 27) * 0x94d049bb133111ebu;
-        return pixels + wobble_ * (double(bits >> 11) * 0x1p-52 - 1.0);
+        return double(bits >> 11) * 0x1p-52 - 1.0;
+    }
+    [[nodiscard]] double moved(double pixels, std::uint64_t salt) const {
+        return pixels + rounding_.wobble * random(pixels, salt);
     }
 
     [[nodiscard]] Point snapped(const glm::dvec4& p) const {
         const double x = (p.x / p.w * 0.5 + 0.5) * picture_.width, y = (p.y / p.w * 0.5 + 0.5) * picture_.height;
         return {std::llround(256.0 * std::clamp(moved(x, 1), -1e6, 1e6)),
-                std::llround(256.0 * std::clamp(moved(y, 2), -1e6, 1e6)), p.z / p.w};
+                std::llround(256.0 * std::clamp(moved(y, 2), -1e6, 1e6)), p.z / p.w, x, y};
     }
 
     void draw_triangle(const std::array<glm::dvec4, 3>& clip, bool one_sided, std::uint64_t owner) {
@@ -100,7 +124,7 @@ class OwnerRenderer {
         const std::int64_t x0 = from(least(x_of), picture_.width), x1 = from(most(x_of), picture_.width) + 2;
         const std::int64_t y0 = from(least(y_of), picture_.height), y1 = from(most(y_of), picture_.height) + 2;
         const double nearest = std::max({p[0].z, p[1].z, p[2].z});
-        const double moved_back = bias_ * steepest(p, double(area));
+        const double moved_back = rounding_.bias * steepest(p, double(area));
         for (std::int64_t y = y0; y <= std::min<std::int64_t>(y1, picture_.height - 1); ++y)
             for (std::int64_t x = x0; x <= std::min<std::int64_t>(x1, picture_.width - 1); ++x) {
                 const std::int64_t sx = 256 * x + 128, sy = 256 * y + 128;
@@ -114,13 +138,24 @@ class OwnerRenderer {
                     weights[k] = double(e) / double(area);
                 }
                 if (!inside) continue;
-                const double z =
-                    std::min(weights[0] * p[0].z + weights[1] * p[1].z + weights[2] * p[2].z, nearest) - moved_back;
+                double z = rounding_.snaps_plane ? weights[0] * p[0].z + weights[1] * p[1].z + weights[2] * p[2].z
+                                                 : plane_of_places(p, x, y);
+                z += rounding_.depth_share * std::abs(z) * random(z, owner);
+                z = std::min(z, nearest) - moved_back;
                 const std::size_t at = std::size_t(y) * picture_.width + std::size_t(x);
                 if (z < 0.0 || z <= picture_.depths[at]) continue;
                 picture_.depths[at] = z;
                 picture_.owners[at] = owner;
             }
+    }
+
+    static double plane_of_places(const std::array<Point, 3>& p, std::int64_t x, std::int64_t y) {
+        const double x1 = p[1].at_x - p[0].at_x, y1 = p[1].at_y - p[0].at_y, z1 = p[1].z - p[0].z;
+        const double x2 = p[2].at_x - p[0].at_x, y2 = p[2].at_y - p[0].at_y, z2 = p[2].z - p[0].z;
+        const double area = x1 * y2 - x2 * y1;
+        if (area == 0.0) return std::max({p[0].z, p[1].z, p[2].z});
+        const double across = (z1 * y2 - z2 * y1) / area, up = (z2 * x1 - z1 * x2) / area;
+        return p[0].z + across * (double(x) + 0.5 - p[0].at_x) + up * (double(y) + 0.5 - p[0].at_y);
     }
 
     // What the depth changes by from one pixel to the next.
@@ -132,7 +167,7 @@ class OwnerRenderer {
     }
 
     OwnerPicture& picture_;
-    double wobble_, bias_;
+    Rounding rounding_;
     std::uint64_t seed_;
 };
 

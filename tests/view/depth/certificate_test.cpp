@@ -20,7 +20,7 @@ using oracle::DepthCertificate;
 // CROFTON_CERTIFICATES=100000 asks for so many (`.ci/long depth`).
 std::uint64_t wanted_proofs() {
     const char* const text = std::getenv("CROFTON_CERTIFICATES");
-    return text != nullptr ? std::strtoull(text, nullptr, 10) : 500;
+    return text != nullptr ? std::strtoull(text, nullptr, 10) : 2000;
 }
 
 // Whether the first corner is in the picture: most triangles are far from it.
@@ -173,7 +173,7 @@ TEST_CASE("there is no proof for what owns a sample") {
         camera.aspect = 1.5;
         std::vector<DepthCertificate::Body> bodies;
         oracle::OwnerPicture picture(120, 80);
-        oracle::OwnerRenderer renderer(picture, 0.0006, seed, 1.0 / 256.0);
+        oracle::OwnerRenderer renderer(picture, {.wobble = 0.0006, .bias = 1.0 / 256.0}, seed);
         for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
             const PlacedMesh& o = scene.objects[i];
             bodies.push_back({{o.mesh->mesh.positions, o.mesh->mesh.indices, glm::mat4(world_to_clip(camera) * o.world),

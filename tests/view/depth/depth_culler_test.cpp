@@ -54,7 +54,7 @@ TEST_CASE("every projection's depth range and far cameras lose nothing") {
         camera.aspect = 1.5;
         if (camera.far_distance > 1e6) camera.far_distance = 500.0;
         oracle::OwnerPicture picture(150, 100);
-        oracle::OwnerRenderer renderer(picture, 0.0005, seed);
+        oracle::OwnerRenderer renderer(picture, {.wobble = 0.0005}, seed);
         for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
             const PlacedMesh& o = scene.objects[i];
             renderer.draw(

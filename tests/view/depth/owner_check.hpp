@@ -17,11 +17,9 @@ struct Checked {
     std::uint64_t too_near = 0;  // samples where the culler says that the picture is nearer than it is
 };
 
-// What a renderer would draw, each of several ways to round, is listed. It moves vertices by up to `most_wobble` pixels
-// before it snaps them.
-inline Checked check(const Scene& scene, const Camera& camera, std::uint32_t width, std::uint32_t height,
-                     std::uint64_t seed, depth::DepthCuller& culler, double most_wobble = 0.0006) {
-    const glm::dmat4 to_clip = world_to_clip(camera);
+// What a renderer would draw is listed, in each of several ways to round.
+inline Checked check(const Scene& scene, const glm::dmat4& to_clip, std::uint32_t width, std::uint32_t height,
+                     std::uint64_t seed, depth::DepthCuller& culler, std::span<const oracle::Rounding> roundings) {
     std::vector<depth::DepthObject> objects;
     for (const PlacedMesh& o : scene.objects)
         objects.push_back({&o.mesh->clusters, glm::mat4(to_clip * o.world), o.one_sided, o.hides, o.position_error});
@@ -38,13 +36,9 @@ inline Checked check(const Scene& scene, const Camera& camera, std::uint32_t wid
             if (c.triangles >> k & 1)
                 listed[c.object][scene.objects[c.object].mesh->clusters.clusters()[c.cluster].first_triangle + k] = 1;
     for (const auto& l : listed) result.listed += static_cast<std::uint64_t>(std::count(l.begin(), l.end(), 1));
-    struct Rounding {
-        double wobble, bias;
-    };
-    for (const auto [wobble, bias] :
-         {Rounding{0.0, 0.0}, Rounding{most_wobble, 0.0}, Rounding{most_wobble, 1.0 / 256.0}}) {
+    for (const oracle::Rounding& rounding : roundings) {
         oracle::OwnerPicture picture(width, height), hiding(width, height);
-        oracle::OwnerRenderer renderer(picture, wobble, seed, bias), hiding_renderer(hiding, wobble, seed, bias);
+        oracle::OwnerRenderer renderer(picture, rounding, seed), hiding_renderer(hiding, rounding, seed);
         for (std::uint32_t i = 0; i < objects.size(); ++i) {
             const PlacedMesh& o = scene.objects[i];
             const oracle::DrawnMesh drawn{o.mesh->mesh.positions, o.mesh->mesh.indices, objects[i].to_clip,
@@ -67,6 +61,13 @@ inline Checked check(const Scene& scene, const Camera& camera, std::uint32_t wid
         result.owners = static_cast<std::uint64_t>(std::unique(owners.begin(), owners.end()) - owners.begin());
     }
     return result;
+}
+
+// It moves vertices by up to `most_wobble` pixels before it snaps them.
+inline Checked check(const Scene& scene, const Camera& camera, std::uint32_t width, std::uint32_t height,
+                     std::uint64_t seed, depth::DepthCuller& culler, double most_wobble = 0.0006) {
+    const oracle::Rounding roundings[] = {{}, {.wobble = most_wobble}, {.wobble = most_wobble, .bias = 1.0 / 256.0}};
+    return check(scene, world_to_clip(camera), width, height, seed, culler, roundings);
 }
 
 }  // namespace crofton::testing

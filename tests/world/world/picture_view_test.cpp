@@ -79,7 +79,7 @@ Camera camera_in(oracle::NearMisses& random) {
 std::set<std::pair<std::uint32_t, std::uint32_t>> owners_of(const Town& town, const Camera& camera, std::uint32_t width,
                                                             std::uint32_t height) {
     oracle::OwnerPicture picture(width, height);
-    oracle::OwnerRenderer renderer(picture, 0.0004, 5);
+    oracle::OwnerRenderer renderer(picture, {.wobble = 0.0004}, 5);
     for (std::size_t i = 0; i < town.placed.size(); ++i) {
         const Town::Placed& p = town.placed[i];
         const CutMesh& mesh = town.meshes[p.mesh];

@@ -34,8 +34,7 @@ class NearFaceSetup {
     NearFaceSetup(const PictureData& picture, const ObjectData& object, const ClipErrors& errors)
         : picture_(picture), object_(object), errors_(errors) {
         constexpr float kError = 0x1p-6f;
-        least_w_ = std::max(pixel_error(picture_, errors_, kError), 64.0f * errors_.w);
-        least_w_ = std::max(least_w_, 1e-30f);
+        least_w_ = std::max(pixel_error(picture_, errors_, kError), 1e-30f);  // at least 64 · errors_.w
         const auto size = static_cast<float>(std::max(picture.tiles.width, picture.tiles.height));
         move_ = picture_.grid + kError + 0x1p-20f * size;
         depth_error_ = (errors_.z + errors_.w) / least_w_;
@@ -78,7 +77,7 @@ class NearFaceSetup {
         bool left = true, right = true, low = true, high = true, before = true;
         for (int k = 0; k < 3; ++k) {
             const float x = v.x[c[k]], y = v.y[c[k]], z = v.z[c[k]], w = v.w[c[k]];
-            const float edge = kBeyondEdge * std::abs(w) + side;
+            const float edge = std::abs(w) + side;
             left = left && x < -edge, right = right && x > edge;
             low = low && y < -edge, high = high && y > edge;
             before = before && picture_.near_share * w - z < -front;
@@ -138,8 +137,7 @@ class NearFaceSetup {
         const float rounding =
             depth_error_ + 0x1p-20f * (std::abs(f.base[i]) + slope * (picture_.half_width + picture_.half_height));
         f.steps[i] = 8.0f * move_ * slope;
-        f.below[i] = rounding, f.above[i] = 0.0f;
-        f.nearest[i] = picture_.near_share + depth_error_;
+        f.below[i] = rounding;
         f.farthest[i] = f.own_farthest[i] = kNothing;
         limits.count = 0;
         return add_limit(limits, -inverse_w[0], -inverse_w[1], 1.0 / least_w_ - inverse_w[2]) &&

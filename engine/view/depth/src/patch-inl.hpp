@@ -198,7 +198,7 @@ class PatchDrawer {
         for (std::uint32_t v = 0; v < patch_.vertex_count; v += static_cast<std::uint32_t>(hn::Lanes(d)))
             if (has_samples(v))
                 for (std::uint32_t i = v; i < std::min(v + hn::Lanes(d), std::size_t{patch_.vertex_count}); ++i)
-                    if (radius_[i] > 0.0f && ends_[i] != 0) exclude_near(i);
+                    if (radius_[i] > 0.0f) settle_corner(i);
     }
 
     // False if no sample is within the radius of one of the vertices at `v`.
@@ -213,7 +213,9 @@ class PatchDrawer {
         return !hn::AllFalse(d, hn::And(hn::Gt(radius, hn::Zero(d)), hn::And(near(vertices_.x), near(vertices_.y))));
     }
 
-    HWY_INLINE void exclude_near(std::uint32_t v) {
+    // Samples so near a corner that a renderer may take them from any of its triangles, or from none where the surface
+    // ends.
+    HWY_INLINE void settle_corner(std::uint32_t v) {
         float x = vertices_.x[v], y = vertices_.y[v];
         if (unclear_) {
             const float w = vertices_.w[v];
@@ -225,14 +227,37 @@ class PatchDrawer {
         const auto width = static_cast<float>(picture_.tiles.width), height = static_cast<float>(picture_.tiles.height);
         if (!(x > -1.0f && x < width + 1.0f && y > -1.0f && y < height + 1.0f)) return;
         const std::int32_t x0 = first_sample(x - r, width), x1 = last_sample(x + r, width);
-        if (x0 > x1) return;
-        const std::int32_t y1 = last_sample(y + r, height);
-        for (std::int32_t j = first_sample(y - r, height); j <= y1; ++j)
+        const std::int32_t y0 = first_sample(y - r, height), y1 = last_sample(y + r, height);
+        if (x0 > x1 || y0 > y1) return;
+        if (ends_[v] == 0) return take_farthest_around(v);
+        for (std::int32_t j = y0; j <= y1; ++j)
             for (std::int32_t i = x0; i <= x1; ++i)
                 if (excluded_.count < ExcludedSamples::kMax)
                     excluded_.add(i, j);
                 else
                     solid_ = 0;
+    }
+
+    // No triangle around the corner says that it is nearer than any other of them may be there.
+    void take_farthest_around(std::uint32_t v) {
+        float widest = 0.0f, farthest = std::numeric_limits<float>::infinity();
+        for_triangles_around(v, [&](Faces& f, std::uint32_t i) {
+            widest = std::max(widest, f.steps[i]);
+            farthest = std::min(farthest, f.own_farthest[i]);
+        });
+        for_triangles_around(v, [&](Faces& f, std::uint32_t i) {
+            f.below[i] += widest;
+            f.farthest[i] = std::min(f.farthest[i], farthest);
+        });
+    }
+    template <class Use>
+    void for_triangles_around(std::uint32_t v, const Use& use) {
+        for (std::uint64_t left = solid_; left != 0; left &= left - 1) {
+            const auto t = static_cast<std::uint32_t>(std::countr_zero(left));
+            const ClusteredMesh::Block& block = patch_.blocks[t / Faces::kCount];
+            for (const auto& corners : block.corners)
+                if (corners[lane(t)] == v) use(faces(t), lane(t));
+        }
     }
 
     const PictureData& picture_;

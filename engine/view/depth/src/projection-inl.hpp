@@ -50,8 +50,6 @@ HWY_INLINE float pixel_error(const PictureData& picture, const ClipErrors& error
 
 // A cluster whose vertices may move by more is drawn in clip coordinates, and listed always.
 inline constexpr float kMaxPixelError = 0.25f;
-// The sides of the picture in clip coordinates, as shares of w, and a pixel's share more for the renderer's grid.
-inline constexpr float kBeyondEdge = 1.01f;
 
 // Half-open coordinates to the samples within, which lie at halves.
 HWY_INLINE std::int32_t first_sample(float low, float limit) {
@@ -129,20 +127,19 @@ class ClipBoxes {
             }
     }
 
-    // True of boxes beyond a side of the picture or before the near plane. Unlike a rectangle in the picture this is
-    // known of boxes behind the eye, too.
+    // True of boxes beyond a side of the picture or before the near plane. The renderer's grid needs no margin: the
+    // outermost samples are half a pixel from the side. Unlike a rectangle in the picture this is known of boxes behind
+    // the eye, too.
     [[nodiscard]] auto are_outside(float near_share) const {
         const DF d;
         const VF infinity = hn::Set(d, std::numeric_limits<float>::infinity()), two = hn::Set(d, 2.0f);
         VF right = infinity, left = infinity, above = infinity, below = infinity, behind = hn::Neg(infinity);
         each_corner([&](VF x, VF y, VF z, VF w) {
-            const VF edge = hn::Mul(w, hn::Set(d, kBeyondEdge));
-            right = hn::Min(right, hn::Sub(x, edge)), left = hn::Min(left, hn::Sub(hn::Neg(x), edge));
-            above = hn::Min(above, hn::Sub(y, edge)), below = hn::Min(below, hn::Sub(hn::Neg(y), edge));
+            right = hn::Min(right, hn::Sub(x, w)), left = hn::Min(left, hn::Sub(hn::Neg(x), w));
+            above = hn::Min(above, hn::Sub(y, w)), below = hn::Min(below, hn::Sub(hn::Neg(y), w));
             behind = hn::Max(behind, hn::Sub(hn::Mul(hn::Set(d, near_share), w), z));
         });
-        const VF limit =
-            hn::Mul(two, hn::Add(hn::Max(errors_[0], errors_[1]), hn::Mul(hn::Set(d, kBeyondEdge), errors_[3])));
+        const VF limit = hn::Mul(two, hn::Add(hn::Max(errors_[0], errors_[1]), errors_[3]));
         const VF most = hn::Max(hn::Max(right, left), hn::Max(above, below));
         return hn::Or(hn::Gt(most, limit), hn::Lt(behind, hn::Mul(hn::Neg(two), hn::Add(errors_[2], errors_[3]))));
     }
