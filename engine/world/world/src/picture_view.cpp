@@ -52,10 +52,9 @@ Result<void> check_picture(const ViewRequest& request, std::uint64_t item) {
     return {};
 }
 
-void PictureView::find(const ViewRequest& request, const cull::VisibleSet& in_frustum, const ObjectTable& table,
-                       const SpatialIndex& index, const scene::Scene& scene, const MeshClusters& clusters) {
+void PictureView::find(const ViewRequest& request, const InFrustum& in_frustum, DrawnOf drawn_of) {
     const ViewMatrix view = matrix_of(request);
-    const std::span<const std::uint32_t> ids = in_frustum.ids();
+    const std::span<const std::uint32_t> ids = in_frustum.ids;
     // Ascending, so that the answer does not depend on the order that is asked for.
     places_.resize(ids.size());
     std::iota(places_.begin(), places_.end(), 0u);
@@ -63,21 +62,18 @@ void PictureView::find(const ViewRequest& request, const cull::VisibleSet& in_fr
         std::sort(places_.begin(), places_.end(), [&](std::uint32_t a, std::uint32_t b) { return ids[a] < ids[b]; });
     objects_.clear();
     for (const std::uint32_t place : places_) {
-        const std::uint32_t id = ids[place];
-        const Object& object = table.objects[id];
-        const MeshClusters::Mesh* mesh = object.kind == BoundKind::none ? clusters.find(object.mesh) : nullptr;
+        const Drawn drawn = drawn_of(ids[place]);
         depth::DepthObject asked;
-        if (mesh != nullptr) {
-            const Transform& world = scene.world(scene.node_of(object.instance));
-            asked = {&mesh->cut, model_to_clip(view, world.linear, world.translation)};
+        if (drawn.clusters != nullptr) {
+            const glm::dmat3& linear = *drawn.placed.linear;
+            asked = {&drawn.clusters->cut, model_to_clip(view, linear, drawn.placed.translation)};
             // Mirrored, fronts and backs change places.
-            asked.one_sided = mesh->one_sided && glm::determinant(world.linear) > 0.0;
-            asked.hides = object.occludes;
+            asked.one_sided = drawn.clusters->one_sided && glm::determinant(linear) > 0.0;
+            asked.hides = drawn.occludes;
         } else {
-            const Obb& box = index.box(id);
-            glm::dmat3 linear(box.axes);
-            for (int k = 0; k < 3; ++k) linear[k] *= double{box.half_extents[k]};
-            asked = {&unit_cube(), model_to_clip(view, linear, box.center)};
+            glm::dmat3 linear(drawn.box.axes);
+            for (int k = 0; k < 3; ++k) linear[k] *= double{drawn.box.half_extents[k]};
+            asked = {&unit_cube(), model_to_clip(view, linear, drawn.box.center)};
             asked.hides = false;
         }
         objects_.push_back(asked);
@@ -95,12 +91,12 @@ void PictureView::find(const ViewRequest& request, const cull::VisibleSet& in_fr
     ids_.clear();
     verdicts_.clear();
     inside_count_ = 0;
-    const std::span<const cull::Verdict> verdicts = in_frustum.verdicts();
+    const std::span<const cull::Verdict> verdicts = in_frustum.verdicts;
     for (std::size_t i = 0; i < ids.size(); ++i) {
         if (seen_[i] == 0) continue;
         ids_.push_back(ids[i]);
         if (!verdicts.empty()) verdicts_.push_back(verdicts[i]);
-        inside_count_ += verdicts.empty() ? i < in_frustum.inside_count() : verdicts[i] == cull::Verdict::inside;
+        inside_count_ += verdicts.empty() ? i < in_frustum.inside_count : verdicts[i] == cull::Verdict::inside;
     }
 }
 

@@ -21,6 +21,11 @@ struct CastOptions;
 struct Motion;
 }  // namespace convex
 
+namespace world {
+class RegionSolids;
+struct Eye;
+}  // namespace world
+
 inline constexpr std::size_t kAutomatic = ~std::size_t{0};
 
 // Functions of your profiler. World calls them at the beginning and end of each zone, on the thread that runs the zone;
@@ -59,6 +64,9 @@ struct WorldStatistics {
     collide::BatchStatistics box_tests;                            // how the pairs of boxes were decided
     double contacts_us = 0.0;  // microseconds that pairs and contacts took in this update
     std::uint32_t nodes_updated = 0;
+    // Objects of attached regions whose occluders are not placed yet. An update places some 256 occluders, and fewer of
+    // meshes that are new; until then, these objects hide nothing.
+    std::size_t occluders_waiting = 0;
     std::uint32_t out_of_range = 0;  // objects whose product of transforms is out of range: hidden until it is valid
 };
 
@@ -267,16 +275,20 @@ class World {
     [[nodiscard]] std::span<const Contact> contacts() const;
 
   private:
+    friend class world::RegionSolids;
+    World(const WorldOptions& options, std::uint32_t first_generation);
     // Of the World's own objects.
-    [[nodiscard]] Result<void> view_own(const ViewRequest& request, ViewResult& visible, Executor& executor) const;
-    [[nodiscard]] Result<void> view_own(std::span<const ViewRequest> requests, MultiViewResult& visible,
-                                        Executor& executor) const;
-    void view_each(std::span<const ViewRequest> requests, MultiViewResult& visible, Executor& executor) const;
+    void view_own(const ViewRequest& request, const world::Eye& eye, ViewResult& visible, Executor& executor) const;
+    [[nodiscard]] Result<void> view_own(std::span<const ViewRequest> requests, std::span<const world::Eye> eyes,
+                                        MultiViewResult& visible, Executor& executor) const;
+    void view_each(std::span<const ViewRequest> requests, std::span<const world::Eye> eyes, MultiViewResult& visible,
+                   Executor& executor) const;
     // Adds regions' objects to such an answer.
     void find_in_regions(const ViewRequest& request, const cull::View& view, ViewResult& visible) const;
     void add_regions(const ViewRequest& request, const cull::View& view, ViewResult& visible) const;
-    void add_regions(std::span<const ViewRequest> requests, std::span<const cull::View> views,
+    void add_regions(std::span<const ViewRequest> requests, std::span<const world::Eye> eyes,
                      MultiViewResult& visible) const;
+    void keep_in_picture(const ViewRequest& request, ViewResult& visible) const;
     struct State;
     Owner<State> state_;
 };
