@@ -84,6 +84,7 @@ Result<Region> Region::prepare(Strided<RegionObject> objects, const RegionOption
         if (contents.solids) {
             contents.solids->finish(*data, boxes.size(), executor);
             data->max_origin = options.max_origin;
+            data->keep = options.keep;
         }
         data->common_layers = ~0u;
         for (std::size_t i = 0; i < boxes.size(); ++i) {

@@ -5,6 +5,7 @@
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/world/region.hpp>
+#include <memory>
 #include <utility>
 
 #include "mesh_clusters.hpp"
@@ -39,6 +40,7 @@ struct RegionData {
 
     explicit RegionData(boxtree::BoxTree&& built) : tree(std::move(built)) {}
 
+    std::shared_ptr<const void> keep;  // released last
     boxtree::BoxTree tree;
     Vector<Item> items;
     Vector<std::uint32_t> solid_of_item;  // kNoIndex: a bound; empty: all are bounds

@@ -86,14 +86,15 @@ void Occluders::update_regions(const Regions& regions) {
             {handle, {attached.first, attached.generation}, attached.move.by, shapes_of(attached.region), {}});
         any_ = true;
     }
+    // What has gone gets half of the time, so that it does not pile up while regions keep coming.
     std::size_t left = kBudget;
+    for (RegionHolder& holder : region_holders_)
+        if (!regions.contains(holder.handle)) left -= std::min(take_some(holder, left - kBudget / 2), left);
     waiting_count_ = 0;
     for (RegionHolder& holder : region_holders_) {
-        const bool stays = regions.contains(holder.handle);
-        const std::size_t cost = stays ? add_some(holder, left) : take_some(holder, left);
-        left -= std::min(cost, left);
-        if (stays)
-            waiting_count_ += region_shapes_[holder.shapes].region.data()->occluding.size() - holder.first.size();
+        if (!regions.contains(holder.handle)) continue;
+        left -= std::min(add_some(holder, left), left);
+        waiting_count_ += region_shapes_[holder.shapes].region.data()->occluding.size() - holder.first.size();
     }
     const auto is_done = [&](const RegionHolder& holder) {
         const bool done = holder.first.empty() && !regions.contains(holder.handle);

@@ -7,6 +7,7 @@
 #include <crofton/world/inputs.hpp>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 
 namespace crofton {
@@ -17,13 +18,13 @@ struct RegionData;
 
 // One object of a region: a bound, or a mesh, or a shape alone. All of it is relative to the region's origin.
 struct RegionObject {
-    Bound bound;
+    Bound bound = {};
     std::uint64_t user = 0;             // returned with every answer
     std::uint32_t layers = ~0u;         // as ObjectDescription
     std::uint32_t collides_with = ~0u;  // as ObjectDescription; regions' objects form no pairs with each other
     std::uint32_t mesh = kNoIndex;      // its place in RegionOptions::meshes
     // As World::set_shape, but bounded: add ground to the World itself. Data that the shape refers to must stay alive
-    // and unchanged while a copy of the region lives.
+    // and unchanged while a copy of the region lives (RegionOptions::keep).
     const convex::Shape* shape = nullptr;
     Transform transform = {};    // of a mesh, or of a shape without a bound
     bool occludes = true;        // as ObjectDescription
@@ -32,7 +33,7 @@ struct RegionObject {
 
 // A mesh of a region, which its objects share.
 struct RegionMesh {
-    MeshDescription mesh;
+    MeshDescription mesh = {};
     // As World::set_occluders. Not used if `mesh.occluders` is set: occluders are then searched for.
     std::span<const occlude::FoundOccluder> occluders = {};
 };
@@ -46,6 +47,8 @@ struct RegionOptions {
     // No coordinate of an origin may be larger if an object has a mesh or a shape. The boxes of such objects are wider
     // by about 1e-15 of it, so that they contain the mesh and the shape at any such origin, however sums round.
     double max_origin = 1e9;
+    // The region holds it until its last copy is destroyed: what shapes refer to, if you like.
+    std::shared_ptr<const void> keep = {};
 };
 
 // Many objects that do not move, with a tree over them. A Region does not change; World::attach places it, at several

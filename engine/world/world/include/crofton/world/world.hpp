@@ -159,7 +159,11 @@ class World {
     // attached at several origins. Takes constant time, and so does detach(), whatever the region holds.
     //
     // From the next update on, all answers contain the region's objects as if they had been added one by one, with
-    // boxes whose centers are the sums of their own and the origin, rounded once; exactness is that of other objects.
+    // centers of boxes and translations of transforms that are the sums of their own and the origin, rounded once;
+    // exactness is that of other objects. Boxes around meshes and shapes are those of the region, a little wider
+    // (RegionOptions::max_origin). What occluders of regions hide is left out as soon as they are placed
+    // (WorldStatistics::occluders_waiting).
+    //
     // The object at place i of the region has the index of object_in(region, 0) plus i. Such objects are at rest.
     // set_hidden() works for them; other changes fail with `unsupported`: hide the object and add one of the World's
     // own. pairs() and contacts() contain pairs of one of the World's own objects and one of a region
@@ -167,7 +171,7 @@ class World {
     //
     // Detaching makes the handles of the region's objects stale. As for removed objects, rays and shapes no longer
     // meet them, and other answers follow with the next update. Errors: an origin that is not finite, or puts the
-    // objects beyond 5e29; more than 2^31 objects in all regions; a stale handle.
+    // objects beyond 5e29, or is beyond the region's max_origin; more than 2^31 objects in all regions; a stale handle.
     Result<RegionHandle> attach(const Region& region, const glm::dvec3& origin);
     Result<void> detach(RegionHandle region);
     [[nodiscard]] bool contains(RegionHandle region) const;
