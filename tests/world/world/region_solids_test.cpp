@@ -2,6 +2,7 @@
 // Objects of regions with meshes: what they hide, the triangles that pictures list, and what is refused.
 #include <doctest/doctest.h>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <counting_memory.hpp>
 #include <crofton/convex/query.hpp>
@@ -9,6 +10,7 @@
 #include <error_of.hpp>
 #include <limits>
 #include <map>
+#include <thread>
 #include <vector>
 
 #include "box_at.hpp"
@@ -477,5 +479,84 @@ TEST_SUITE("world/region_solids") {
             CHECK(other.raycast({{-20.0, 1.0, 60.0}, {1.0, 0.0, 0.05}}).has_value());
         }
         CHECK(memory.bytes_in_use() == 0);
+    }
+
+    TEST_CASE("many threads ask a World while others prepare, copy and free regions, and hear what one thread hears") {
+        NearMisses random(96);
+        const auto meshes = town_meshes();
+        const auto objects = town_objects(random, 25, 150);
+        const Region region = Region::prepare(objects, {.meshes = meshes}).value();
+        const convex::Shape ball = convex::Shape::sphere(1.5).value();
+        World world;
+        std::vector<RegionHandle> attached;
+        std::vector<ObjectHandle> movers;
+        for (int i = 0; i < 10; ++i) {
+            const double x = random.number(0.0, 120.0), z = random.number(0.0, 120.0);
+            movers.push_back(world.add({.bound = box_at({x, 0.0, z}, 2.0f), .shape = i % 2 ? &ball : nullptr}).value());
+        }
+        std::atomic<bool> done{false};
+        std::thread loader([&] {
+            while (!done) {
+                const Region prepared = Region::prepare(objects, {.meshes = meshes}).value();
+                const Region copy = region;
+                CHECK(copy.object_count() == prepared.object_count());
+            }
+        });
+        for (int step = 0; step < 12; ++step) {
+            const double x = random.number(-30.0, 30.0);
+            attached.push_back(world.attach(region, {x, 0.0, 0.25 * x}).value());
+            if (attached.size() > 3) {
+                world.detach(attached.front()).value();
+                attached.erase(attached.begin());
+            }
+            for (const ObjectHandle mover : movers) {
+                const double y = random.number(-2.0, 2.0), z = random.number(0.0, 120.0);
+                world.set_bound(mover, box_at({60.0 + y, y, z}, 2.0f)).value();
+            }
+            world.update().value();
+            const Camera camera = camera_in(random, {});
+            const ViewRequest hiding{.camera = camera, .occlusion = OcclusionOptions{}};
+            ViewRequest picture{.camera = camera};
+            picture.picture = depth::PictureView{.width = 64, .height = 36};
+            const double u = random.number(-1.0, 1.0), w = random.number(-1.0, 1.0);
+            const Ray ray{camera.position, {u, 0.02, w}};
+            struct Heard {
+                std::vector<std::uint32_t> seen, drawn, found;
+                std::vector<double> hits;
+                double nearest = 0.0;
+                std::size_t contacts = 0;
+            };
+            const auto ask = [&](Heard& heard) {
+                ViewResult visible;
+                world.view(hiding, visible).value();
+                heard.seen.assign(visible.ids().begin(), visible.ids().end());
+                world.view(picture, visible).value();
+                heard.drawn.assign(visible.ids().begin(), visible.ids().end());
+                Vector<ObjectHit> hits;
+                world.raycast_all(ray, hits);
+                for (const ObjectHit& hit : hits) heard.hits.push_back(hit.t);
+                Vector<ObjectRef> found;
+                world.overlap(ball, {glm::dmat3(1.0), camera.position}, found);
+                for (const ObjectRef& ref : found) heard.found.push_back(ref.object.index);
+                if (const auto nearest = world.closest(Sphere{camera.position, 1.0}, 100.0))
+                    heard.nearest = nearest->distance;
+                heard.contacts = world.contacts().size();
+            };
+            Heard alone, heard[3];
+            std::vector<std::thread> threads;
+            for (Heard& one : heard) threads.emplace_back([&] { ask(one); });
+            for (std::thread& thread : threads) thread.join();
+            ask(alone);
+            for (const Heard& one : heard) {
+                CHECK(one.seen == alone.seen);
+                CHECK(one.drawn == alone.drawn);
+                CHECK(one.hits == alone.hits);
+                CHECK(one.found == alone.found);
+                CHECK(one.nearest == alone.nearest);
+                CHECK(one.contacts == alone.contacts);
+            }
+        }
+        done = true;
+        loader.join();
     }
 }
