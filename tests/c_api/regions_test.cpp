@@ -125,4 +125,63 @@ TEST_SUITE("capi/regions") {
         CHECK(crofton_region_prepare(nullptr, 2, nullptr, nullptr, &none) == CROFTON_INVALID_ARGUMENT);
         CHECK(none == nullptr);
     }
+
+    TEST_CASE("objects of a region have meshes and shapes, which may be destroyed once the region is prepared") {
+        const float positions[] = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
+        crofton_mesh_data mesh = crofton_default_mesh_data();
+        mesh.positions = positions;
+        mesh.position_count = 3;
+        crofton_shape_description ball = crofton_default_shape_description();
+        ball.kind = CROFTON_SHAPE_SPHERE;
+        ball.radius = 2.0;
+        crofton_shape* shape = nullptr;
+        REQUIRE(crofton_shape_create(&ball, &shape) == CROFTON_OK);
+        crofton_transform place{};
+        for (int k = 0; k < 3; ++k) place.linear[4 * k] = 1.0;
+        place.translation[0] = 10.0;
+        std::vector<crofton_region_object> objects(3, crofton_default_region_object());
+        objects[0].mesh = 0;
+        objects[1].shape = shape;
+        objects[1].transform = &place;
+        objects[2] = sphere_at(20.0, 0.0, 0.0, 0);
+        objects[2].shape = shape;
+        for (std::uint64_t i = 0; i < 3; ++i) objects[i].user = i + 1;
+        crofton_region_options options = crofton_default_region_options();
+        options.meshes = &mesh;
+        options.mesh_count = 1;
+        options.max_origin = 100.0;
+        crofton_region* made = nullptr;
+        REQUIRE(crofton_region_prepare(objects.data(), objects.size(), &options, nullptr, &made) == CROFTON_OK);
+        const RegionOwner region(made);
+        REQUIRE(crofton_shape_destroy(shape) == CROFTON_OK);
+        WorldHandle world = make_world();
+        const double origin[3] = {0.0, 0.0, -10.0}, far[3] = {101.0, 0.0, 0.0};
+        crofton_attached_region attached{};
+        CHECK(crofton_world_attach(world.get(), region.get(), far, &attached) == CROFTON_OUT_OF_RANGE);
+        REQUIRE(crofton_world_attach(world.get(), region.get(), origin, &attached) == CROFTON_OK);
+        REQUIRE(crofton_world_update(world.get(), nullptr) == CROFTON_OK);
+        const auto hit_at = [&](double x, double y) {
+            const crofton_ray ray{{x, y, 0.0}, {0.0, 0.0, -1.0}, 100.0};
+            crofton_object_hit hit{};
+            REQUIRE(crofton_world_raycast(world.get(), &ray, 1, ~0u, &hit) == CROFTON_OK);
+            return hit;
+        };
+        CHECK(hit_at(0.0, 0.0).user == 1);
+        CHECK(hit_at(0.0, 0.0).t == 10.0);
+        CHECK(hit_at(0.0, 0.0).triangle == 0);
+        CHECK(hit_at(0.9, 0.9).object.index == CROFTON_NONE);
+        CHECK(hit_at(10.0, 0.0).user == 2);
+        CHECK(hit_at(10.0, 0.0).t == 8.0);
+        CHECK(hit_at(20.0, 0.0).t == 8.0);
+
+        objects[1].mesh = 1;
+        CHECK(crofton_region_prepare(objects.data(), objects.size(), &options, nullptr, &made) != CROFTON_OK);
+        CHECK(crofton_last_error_item() == 1);
+        objects[1].mesh = CROFTON_NONE;
+        objects[1].shape = nullptr;
+        objects[2].shape = nullptr;
+        options.meshes = nullptr;
+        CHECK(crofton_region_prepare(objects.data(), objects.size(), &options, nullptr, &made) ==
+              CROFTON_INVALID_ARGUMENT);
+    }
 }

@@ -83,7 +83,7 @@ namespace Crofton {
             public UIntPtr Size;
             public ulong Objects, Resting, Moving, BoxPairsTested, ContactPairsTested;
             public uint BoxesChanged, NodesUpdated, OutOfRange, TreeBuilt;
-            public ulong ObjectCount;
+            public ulong ObjectCount, OccludersWaiting;
         }
 
         internal const uint QueryShapeBox = 0, QueryShapeSphere = 1, QueryShapeCapsule = 2;

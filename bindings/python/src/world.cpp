@@ -40,6 +40,7 @@ void bind_world(py::module_& module) {
     bind_handle<ObjectTag>(module, "ObjectHandle");
     bind_handle<NodeTag>(module, "NodeHandle");
     bind_handle<MeshTag>(module, "MeshHandle");
+    bind_handle<RegionTag>(module, "RegionHandle");
     py::class_<PyWorld> type(
         module, "World",
         "A set of objects. Add and move them, call update() once a frame, then ask what a camera sees, what a ray hits "
@@ -63,6 +64,7 @@ void bind_world(py::module_& module) {
     bind_world_views(module, type);
     bind_world_queries(module, type);
     bind_world_contacts(module, type);
+    bind_world_regions(module, type);
 }
 
 }  // namespace crofton::python

@@ -59,6 +59,7 @@ class PyWorld {
 void bind_world_changes(py::class_<PyWorld>& type);
 void bind_world_views(py::module_& module, py::class_<PyWorld>& type);
 void bind_world_queries(py::module_& module, py::class_<PyWorld>& type);
+void bind_world_regions(py::module_& module, py::class_<PyWorld>& type);
 void bind_world_contacts(py::module_& module, py::class_<PyWorld>& type);
 
 }  // namespace crofton::python

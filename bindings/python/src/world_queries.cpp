@@ -229,6 +229,10 @@ void bind_world_queries(py::module_& module, py::class_<PyWorld>& type) {
              [](const PyWorld& world, MeshHandle mesh) {
                  return world.ask([&](const World& w) { return w.contains(mesh); });
              })
+        .def("__contains__",
+             [](const PyWorld& world, RegionHandle region) {
+                 return world.ask([&](const World& w) { return w.contains(region); });
+             })
         .def("__len__",
              [](const PyWorld& world) { return world.ask([](const World& w) { return w.object_count(); }); });
 }

@@ -243,6 +243,7 @@ pub struct WorldStatistics {
     pub out_of_range: u32,
     pub tree_built: u32,
     pub object_count: u64,
+    pub occluders_waiting: u64,
 }
 
 #[repr(C)]

@@ -183,8 +183,8 @@ export class World extends Owned {
         }
     }
     get count() {
-        const at = this.memory.scratch(72);
-        this.memory.words[at >> 2] = 72;
+        const at = this.memory.scratch(80);
+        this.memory.words[at >> 2] = 80;
         this.memory.call('world_get_statistics', this.handle, at);
         return this.memory.words[at + 64 >> 2];
     }

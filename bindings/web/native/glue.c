@@ -38,7 +38,7 @@ AT(crofton_object_description, bound, 16);
 AT(crofton_object_description, mesh, 32);
 AT(crofton_object_description, hidden, 68);
 SIZE(crofton_object_info, 192);
-SIZE(crofton_world_statistics, 72);
+SIZE(crofton_world_statistics, 80);
 AT(crofton_world_statistics, object_count, 64);
 SIZE(crofton_mesh_info, 24);
 AT(crofton_mesh_info, clusters, 8);

@@ -54,12 +54,15 @@ crofton_region_object crofton_default_region_object(void) {
     crofton_region_object result{};
     result.layers = object.layers;
     result.collides_with = object.collides_with;
+    result.mesh = object.mesh;
+    result.occludes = object.occludes;
     return result;
 }
 
 crofton_region_options crofton_default_region_options(void) {
     auto result = sized<crofton_region_options>();
     result.max_objects = RegionOptions().max_objects;
+    result.max_origin = RegionOptions().max_origin;
     return result;
 }
 

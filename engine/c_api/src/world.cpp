@@ -112,9 +112,17 @@ crofton_status to_indices(const crofton_mesh_data& data, const char* function, I
     return CROFTON_OK;
 }
 
-crofton_status to_mesh_description(const crofton_mesh_data* given, const char* function, MeshDescription& description) {
+crofton_status read_mesh_description(const crofton_mesh_data* given, const char* function,
+                                     MeshDescription& description) {
     crofton_mesh_data data;
     CROFTON_CHECK(read_growing(given, function, data));
+    return to_mesh_description(data, function, description);
+}
+
+}  // namespace
+
+crofton_status capi::to_mesh_description(const crofton_mesh_data& data, const char* function,
+                                         MeshDescription& description) {
     CROFTON_CHECK(to_points(data, function, description.positions));
     CROFTON_CHECK(to_indices(data, function, description.indices));
     description.triangles = data.triangles != 0;
@@ -122,8 +130,6 @@ crofton_status to_mesh_description(const crofton_mesh_data* given, const char* f
     description.one_sided = data.one_sided != 0;
     return CROFTON_OK;
 }
-
-}  // namespace
 
 crofton_status capi::to_bound(const crofton_bound& given, const char* function, Bound& bound) {
     switch (given.kind) {
@@ -226,7 +232,7 @@ crofton_status crofton_world_add_mesh(crofton_world* world, const crofton_mesh_d
     if (use.failed()) return use.status();
     CROFTON_CHECK(check_pointer(mesh, __func__));
     MeshDescription description;
-    CROFTON_CHECK(to_mesh_description(data, __func__, description));
+    CROFTON_CHECK(read_mesh_description(data, __func__, description));
     return hand_out(world->world.add_mesh(description), mesh, __func__);
 }
 
@@ -235,7 +241,7 @@ crofton_status crofton_world_replace_mesh(crofton_world* world, crofton_world_me
     const ExclusiveUse use(world, __func__);
     if (use.failed()) return use.status();
     MeshDescription description;
-    CROFTON_CHECK(to_mesh_description(data, __func__, description));
+    CROFTON_CHECK(read_mesh_description(data, __func__, description));
     return status_of(world->world.replace_mesh(to_handle(mesh), description), __func__);
 }
 
@@ -360,9 +366,9 @@ crofton_status crofton_world_get_statistics(const crofton_world* world, crofton_
     if (use.failed()) return use.status();
     CROFTON_CHECK(check_growing(statistics, __func__));
     const WorldStatistics& s = world->world.statistics();
-    write_growing(
-        {sizeof *statistics, s.objects, s.resting, s.moving, s.box_pairs_tested, s.contact_pairs_tested,
-         s.boxes_changed, s.nodes_updated, s.out_of_range, s.tree_built ? 1u : 0u, world->world.object_count()},
-        statistics);
+    write_growing({sizeof *statistics, s.objects, s.resting, s.moving, s.box_pairs_tested, s.contact_pairs_tested,
+                   s.boxes_changed, s.nodes_updated, s.out_of_range, s.tree_built ? 1u : 0u,
+                   world->world.object_count(), s.occluders_waiting},
+                  statistics);
     return CROFTON_OK;
 }

@@ -36,6 +36,8 @@ static_assert(offsetof(crofton_object, generation) == offsetof(ObjectHandle, gen
 [[nodiscard]] inline MeshHandle to_handle(crofton_world_mesh mesh) {
     return {mesh.index, mesh.generation};
 }
+[[nodiscard]] crofton_status to_mesh_description(const crofton_mesh_data& data, const char* function,
+                                                 MeshDescription& description);
 [[nodiscard]] crofton_status to_bound(const crofton_bound& given, const char* function, Bound& bound);
 
 [[nodiscard]] inline crofton_object_ref to_c_ref(const ObjectRef& ref) {

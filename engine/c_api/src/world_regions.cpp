@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <crofton/world/region.hpp>
+#include <memory>
 
 #include <crofton/capi/convert.hpp>
 #include <crofton/capi/growing.hpp>
@@ -27,19 +28,62 @@ struct AskedToStop {
     void* user;
 };
 
-Result<Region> prepare(std::span<const RegionObject> objects, const crofton_region_options& given,
-                       const crofton_jobs* jobs) {
+// What a region is prepared from.
+struct Contents {
+    Vector<RegionObject> objects;
+    Vector<RegionMesh> meshes;
+    // Which the region keeps.
+    std::shared_ptr<Vector<SharedShape>> shapes =
+        std::allocate_shared<Vector<SharedShape>>(Allocator<Vector<SharedShape>>());
+};
+
+crofton_status read_meshes(const crofton_region_options& given, const char* function, Contents& contents) {
+    for (std::size_t i = 0; i < given.mesh_count; ++i) {
+        crofton_mesh_data data;
+        CROFTON_CHECK(of_item(read_growing_at(given.meshes, i, function, data), i));
+        RegionMesh& mesh = contents.meshes.emplace_back();
+        CROFTON_CHECK(of_item(to_mesh_description(data, function, mesh.mesh), i));
+        mesh.mesh.occluders = given.find_occluders != 0;
+    }
+    return CROFTON_OK;
+}
+
+crofton_status read_shape(const crofton_shape* given, const char* function, Contents& contents, RegionObject& object) {
+    const SharedUse use(given, function);
+    if (use.failed()) return use.status();
+    object.shape = &*given->data->shape;
+    if (contents.shapes->empty() || contents.shapes->back() != given->data) contents.shapes->push_back(given->data);
+    return CROFTON_OK;
+}
+
+crofton_status read_object(const crofton_region_object& given, const char* function, Contents& contents) {
+    RegionObject& object = contents.objects.emplace_back();
+    CROFTON_CHECK(to_bound(given.bound, function, object.bound));
+    object.user = given.user;
+    object.layers = given.layers;
+    object.collides_with = given.collides_with;
+    object.mesh = given.mesh;
+    object.occludes = given.occludes != 0;
+    object.only_occludes = given.only_occludes != 0;
+    if (given.transform) object.transform = to_transform(*given.transform);
+    return given.shape ? read_shape(given.shape, function, contents, object) : CROFTON_OK;
+}
+
+Result<Region> prepare(const Contents& contents, const crofton_region_options& given, const crofton_jobs* jobs) {
     AskedToStop asked{given.should_stop, given.stop_user};
     RegionOptions options;
     options.max_objects = static_cast<std::size_t>(std::min<std::uint64_t>(given.max_objects, SIZE_MAX));
     options.stop_user = &asked;
+    options.meshes = contents.meshes;
+    options.max_origin = given.max_origin;
+    options.keep = contents.shapes;
     if (given.should_stop)
         options.should_stop = [](void* user, double share_done) {
             const AskedToStop& of_caller = *static_cast<AskedToStop*>(user);
             return of_caller.should_stop(of_caller.user, share_done) != 0;
         };
     HostJobs executor(jobs);
-    return Region::prepare(objects, options, executor);
+    return Region::prepare(contents.objects, options, executor);
 }
 
 }  // namespace
@@ -52,18 +96,16 @@ crofton_status crofton_region_prepare(const crofton_region_object* objects, size
     crofton_region_options given = crofton_default_region_options();
     if (options) CROFTON_CHECK(read_growing(options, __func__, given));
     CROFTON_CHECK(check_jobs(jobs, __func__));
+    if (given.mesh_count > 0) CROFTON_CHECK(check_pointer(given.meshes, __func__));
     if (count > given.max_objects)
         return report(CROFTON_OUT_OF_RANGE, __func__, "more objects than `max_objects`: prepare several regions");
     const char* const function = __func__;
     return recover(function, [&] {
-        Vector<RegionObject> read(count);
-        for (std::size_t i = 0; i < count; ++i) {
-            CROFTON_CHECK(of_item(to_bound(objects[i].bound, function, read[i].bound), i));
-            read[i].user = objects[i].user;
-            read[i].layers = objects[i].layers;
-            read[i].collides_with = objects[i].collides_with;
-        }
-        auto prepared = prepare(read, given, jobs);
+        Contents contents;
+        CROFTON_CHECK(read_meshes(given, function, contents));
+        contents.objects.reserve(count);
+        for (std::size_t i = 0; i < count; ++i) CROFTON_CHECK(of_item(read_object(objects[i], function, contents), i));
+        auto prepared = prepare(contents, given, jobs);
         if (!prepared) return report(prepared.error(), function);
         return create(region, function, std::move(*prepared));
     });

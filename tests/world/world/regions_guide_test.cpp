@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The code of docs/large_worlds.md.
 #include <doctest/doctest.h>
+#include <crofton/convex/query.hpp>
 #include <crofton/crofton.hpp>
 #include <string>
 #include <vector>
+
+#include "occlusion_town.hpp"
 
 namespace {
 
@@ -11,6 +14,15 @@ namespace {
 struct Tree {
     crofton::Obb box;
     std::uint64_t number = 0;
+};
+struct Model {
+    std::vector<glm::vec3> positions;
+    std::vector<std::uint32_t> indices;
+};
+struct Wall {
+    std::uint64_t number = 0;
+    std::uint32_t model = 0;
+    crofton::Transform transform;
 };
 std::vector<std::uint64_t> drawn;
 std::size_t drawn_of_regions = 0;
@@ -72,5 +84,36 @@ TEST_SUITE("world/regions guide") {
         REQUIRE(hit.has_value());
         CHECK(hit->object == falling);
         CHECK(!world.contains(west));
+    }
+
+    TEST_CASE("the guide's code makes a street of walls, which rays hit and things hide behind") {
+        const crofton::TriangleMesh cuboid = crofton::testing::cuboid({4.0f, 3.0f, 0.5f});
+        const std::vector<Model> models{
+            {{cuboid.positions.begin(), cuboid.positions.end()}, {cuboid.indices.begin(), cuboid.indices.end()}}};
+        const crofton::convex::Shape stone = crofton::convex::Shape::box({4.0f, 3.0f, 0.5f}).value();
+        std::vector<Wall> street(5);
+        for (std::size_t i = 0; i < street.size(); ++i)
+            street[i].transform.translation.x = 8.0 * static_cast<double>(i);
+
+        // The meshes of this part, which its objects share; a wall has a shape as well, for bodies to stand on.
+        std::vector<crofton::RegionMesh> meshes;
+        for (const Model& model : models)
+            meshes.push_back({.mesh = {.positions = model.positions, .indices = model.indices, .occluders = true}});
+        std::vector<crofton::RegionObject> walls;
+        for (const Wall& wall : street)
+            walls.push_back({.user = wall.number, .mesh = wall.model, .shape = &stone, .transform = wall.transform});
+        const auto town = crofton::Region::prepare(walls, {.meshes = meshes});
+
+        crofton::World world;
+        world.attach(*town, {0.0, 0.0, -10.0}).value();
+        const auto behind = world.add({.bound = crofton::Sphere{{0.0, 0.0, -20.0}, 0.5}}).value();
+        world.update().value();
+        CHECK(world.statistics().occluders_waiting == 0);
+        CHECK(world.raycast({{0.0, 0.0, 0.0}, {0.0, 0.0, -1.0}})->t == 9.5);
+        crofton::ViewResult visible;
+        world
+            .view({.camera = crofton::Camera{}, .occlusion = crofton::OcclusionOptions{.list_occluded = true}}, visible)
+            .value();
+        CHECK(visible.verdict_of(behind.index) == crofton::occlude::Verdict::occluded);
     }
 }

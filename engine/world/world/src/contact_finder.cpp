@@ -173,6 +173,16 @@ void ContactFinder::touch_sphere(const PosedTree& mesh, const PosedTree& center,
     worker.points.push_back({on_mesh, touch.depth});
 }
 
+void ContactFinder::touch_trees(const Object& a, const PosedTree& tree_a, const Object& b, const PosedTree& tree_b,
+                                Worker& worker, Touch& touch) const {
+    const bool sphere_a = a.kind == BoundKind::sphere, sphere_b = b.kind == BoundKind::sphere;
+    if ((!sphere_a && tree_a.tree == nullptr) || (!sphere_b && tree_b.tree == nullptr)) return;
+    if (sphere_b) return touch_sphere(tree_a, tree_b, b.radius, worker, touch);
+    if (!sphere_a) return touch_triangles(tree_a, tree_b, worker, touch);
+    touch_sphere(tree_b, tree_a, a.radius, worker, touch);
+    touch.normal = -touch.normal;
+}
+
 void ContactFinder::find_contacts(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene,
                                   Shapes& shapes, const ObjectShapes& shapes_of, Executor& executor) {
     const auto have_shapes = [&](const IdPair& pair) {
@@ -208,15 +218,7 @@ void ContactFinder::find_contacts(const ObjectTable& table, const SpatialIndex& 
             const std::uint32_t first = pair.first, second = pair.second;
             const PosedTree a = shapes.posed_tree(table, index, scene, first),
                             b = shapes.posed_tree(table, index, scene, second);
-            if (!a.tree || !b.tree) continue;
-            if (table.objects[second].kind == BoundKind::sphere) {
-                touch_sphere(a, b, table.objects[second].radius, worker, touch);
-            } else if (table.objects[first].kind == BoundKind::sphere) {
-                touch_sphere(b, a, table.objects[first].radius, worker, touch);
-                touch.normal = -touch.normal;
-            } else {
-                touch_triangles(a, b, worker, touch);
-            }
+            touch_trees(table.objects[first], a, table.objects[second], b, worker, touch);
         }
     });
 }
@@ -234,17 +236,12 @@ void ContactFinder::touch_bounds(const Object& a, const Obb& box_a, const Object
     touch.points.assign(manifold.points, manifold.points + manifold.count);
 }
 
-void ContactFinder::touch_bound(const PosedTree& mesh, const Object& bound, const Obb& box, const Shapes& shapes,
-                                const scene::Scene& scene, BoundTouch& touch) {
+void ContactFinder::touch_trees(const Object& a, const PosedTree& tree_a, const Object& b, const PosedTree& tree_b,
+                                BoundTouch& touch) {
     Touch found;
     bound_worker_.points.clear();
     bound_worker_.triangles.clear();
-    mesh::MeshTree tree;
-    if (bound.kind == BoundKind::sphere) {
-        touch_sphere(mesh, {nullptr, {glm::dmat3(1.0), box.center}}, bound.radius, bound_worker_, found);
-    } else if (const PosedTree of_box = shapes.posed_box(box, scene, tree); of_box.tree != nullptr) {
-        touch_triangles(mesh, of_box, bound_worker_, found);
-    }
+    touch_trees(a, tree_a, b, tree_b, bound_worker_, found);
     touch.hit = found.hit;
     touch.inside = found.inside;
     touch.normal = found.normal;

@@ -25,7 +25,7 @@ struct Touch {
     std::uint32_t first_triangle = 0, triangle_count = 0;
 };
 
-// What the shapes of a pair gave, of which the second is a bound that stands in no table.
+// What the shapes of a pair gave, of which the second stands in no table.
 struct BoundTouch {
     bool hit = false;
     mesh::Containment inside = mesh::Containment::none;
@@ -82,11 +82,12 @@ class ContactFinder {
     // Objects whose pairs the last update() has found again; they may be named more than once.
     [[nodiscard]] std::span<const std::uint32_t> moved() const { return moved_; }
 
-    // Whether two bounds meet whose boxes do; then how they touch. Of a bound against an object's triangles as well.
+    // Whether two bounds meet whose boxes do; then how they touch. Of objects' triangles as well: a tree is that of a
+    // mesh or a box, and of a sphere only its pose is read.
     [[nodiscard]] static bool meet(const Object& a, const Obb& box_a, const Object& b, const Obb& box_b);
     void touch_bounds(const Object& a, const Obb& box_a, const Object& b, const Obb& box_b, BoundTouch& touch) const;
-    void touch_bound(const PosedTree& mesh, const Object& bound, const Obb& box, const Shapes& shapes,
-                     const scene::Scene& scene, BoundTouch& touch);
+    void touch_trees(const Object& a, const PosedTree& tree_a, const Object& b, const PosedTree& tree_b,
+                     BoundTouch& touch);
 
     [[nodiscard]] const collide::BroadphaseStatistics& broadphase() const { return broadphase_.statistics(); }
 
@@ -112,6 +113,8 @@ class ContactFinder {
                        const ObjectShapes& shapes_of, Executor& executor);
     void touch_bounds(const ObjectTable& table, const SpatialIndex& index, const IdPair& pair, Worker& worker,
                       Touch& touch) const;
+    void touch_trees(const Object& a, const PosedTree& tree_a, const Object& b, const PosedTree& tree_b, Worker& worker,
+                     Touch& touch) const;
     void touch_triangles(const PosedTree& a, const PosedTree& b, Worker& worker, Touch& touch) const;
     void touch_sphere(const PosedTree& mesh, const PosedTree& center, double radius, Worker& worker,
                       Touch& touch) const;
@@ -135,7 +138,7 @@ class ContactFinder {
     Vector<IdPair> touched_;  // pairs whose shapes are looked at in this update, in order
     Vector<Touch> touches_;   // of these
     Vector<Worker> workers_;
-    Worker bound_worker_;           // of touch_bound()
+    Worker bound_worker_;           // of touch_trees()
     Vector<Contact> contacts_;      // in order
     Vector<ContactMemory> memory_;  // of each
     Vector<IdPair> began_, ended_;  // contacts that have in the last update

@@ -23,6 +23,10 @@ void MeshClusters::clear(scene::MeshId mesh) {
     if (mesh < meshes_.size()) meshes_[mesh] = {};
 }
 
+MeshClusters::Mesh MeshClusters::take(scene::MeshId mesh) {
+    return mesh < meshes_.size() ? std::exchange(meshes_[mesh], Mesh()) : Mesh();
+}
+
 void MeshClusters::update(const scene::Scene& scene) {
     for (scene::MeshId id = 0; id < meshes_.size(); ++id) {
         Mesh& mesh = meshes_[id];

@@ -22,6 +22,7 @@ class MeshClusters {
     // The mesh is new or another, and has this revision.
     void set(scene::MeshId mesh, Mesh cut, std::uint64_t revision);
     void clear(scene::MeshId mesh);
+    [[nodiscard]] Mesh take(scene::MeshId mesh);  // the mesh has none then
     // Cuts what has changed since.
     void update(const scene::Scene& scene);
 

@@ -7,6 +7,7 @@
 #include <crofton/scene/transformed_box.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <utility>
 
 #include "rigid.hpp"
 
@@ -24,10 +25,6 @@ bool has_nothing(const glm::dmat3& linear) {
     return linear[0] == glm::dvec3(0.0) && linear[1] == glm::dvec3(0.0) && linear[2] == glm::dvec3(0.0);
 }
 
-glm::vec3 rounded_up(const glm::dvec3& half, double rounding) {
-    return glm::vec3(half * (1.0 + 0x1p-22) + (rounding * (1.0 + 0x1p-22) + 0x1p-149));
-}
-
 // From and to these coordinates along the axes from the box's centre, with its axes.
 Obb spanning(const Obb& box, const glm::dvec3& from, const glm::dvec3& to) {
     Obb result = box;
@@ -38,6 +35,10 @@ Obb spanning(const Obb& box, const glm::dvec3& from, const glm::dvec3& to) {
 }
 
 }  // namespace
+
+glm::vec3 rounded_up(const glm::dvec3& half, double rounding) {
+    return glm::vec3(half * (1.0 + 0x1p-22) + (rounding * (1.0 + 0x1p-22) + 0x1p-149));
+}
 
 RigidTransform frame_of(BoundKind kind, const Obb& box) {
     RigidTransform frame{glm::dmat3(1.0), box.center};
@@ -126,6 +127,13 @@ void ObjectShapes::forget(std::uint32_t object) {
     count_ -= entries_[object].own ? 1 : 0;
     entries_[object] = {};
     list_unbounded(object);
+}
+
+PlacedShape ObjectShapes::take(std::uint32_t object) {
+    Entry& entry = entries_[object];
+    PlacedShape taken{std::move(entry.own), std::move(entry.scaled), std::nullopt};
+    forget(object);
+    return taken;
 }
 
 std::optional<RigidTransform> ObjectShapes::pose_of(std::uint32_t id, const Object& object, const Obb& box,

@@ -12,10 +12,21 @@
 
 namespace crofton::world {
 
+// A shape as its object's transform scales it, and where it stands; without a pose it overlaps nothing.
+struct PlacedShape {
+    std::optional<convex::Shape> own;
+    std::unique_ptr<ScaledShape> scaled;
+    std::optional<RigidTransform> pose;
+
+    [[nodiscard]] const convex::Shape& shape() const { return scaled ? scaled->shape() : *own; }
+};
+
 class ObjectShapes {
   public:
     void set(std::uint32_t object, const convex::Shape* shape);  // nullptr: none
     void forget(std::uint32_t object);                           // it is gone, or another
+    // Takes out an object's shape, without its pose. The object has none then. Requires that it has one.
+    [[nodiscard]] PlacedShape take(std::uint32_t object);
 
     [[nodiscard]] bool has(std::uint32_t object) const { return object < entries_.size() && entries_[object].own; }
     // As its object's transform scales it.
@@ -80,6 +91,8 @@ class ObjectShapes {
     Vector<std::uint32_t> unbounded_, fresh_;
 };
 
+// Half extents in float that are at least these, grown by `rounding`.
+[[nodiscard]] glm::vec3 rounded_up(const glm::dvec3& half, double rounding);
 // A bound's frame, as a rotation.
 [[nodiscard]] RigidTransform frame_of(BoundKind kind, const Obb& box);
 // Around the shape, in its frame.

@@ -74,12 +74,12 @@ Result<void> complete(FoundOccluder& occluder, std::uint64_t place) {
     return done;
 }
 
-Result<ShapeId> add_shape(occlude::OccluderSet& set, const FoundOccluder& occluder) {
-    return occluder.kind == OccluderKind::patch ? set.add_surface(occluder.surface, occluder.sides)
-                                                : set.add_convex(occluder.surface.positions);
-}
-
 }  // namespace
+
+Result<ShapeId> Occluders::add_shape(const FoundOccluder& occluder) {
+    return occluder.kind == OccluderKind::patch ? set_.add_surface(occluder.surface, occluder.sides)
+                                                : set_.add_convex(occluder.surface.positions);
+}
 
 void Occluders::remove_shapes(Vector<ShapeId>& shapes) {
     for (const ShapeId shape : shapes) require_ok(set_.remove_shape(shape));
@@ -92,7 +92,7 @@ Result<void> Occluders::set(scene::MeshId mesh, std::span<const FoundOccluder> o
     for (std::size_t i = 0; i < completed.size(); ++i) {
         Result<void> done = complete(completed[i], i);
         if (done) {
-            const auto shape = add_shape(set_, completed[i]);
+            const auto shape = add_shape(completed[i]);
             if (shape)
                 shapes.push_back(*shape);
             else
@@ -124,13 +124,16 @@ void Occluders::clear(scene::MeshId mesh) {
 
 void Occluders::take_away(std::uint32_t object) {
     if (object >= holders_.size()) return;
-    Holder& holder = holders_[object];
-    for (OccluderId id = holder.first; id != kNoIndex; id = placed_[id].next) {
+    take_away_chain(holders_[object].first);
+    holders_[object] = {};
+}
+
+void Occluders::take_away_chain(OccluderId first) {
+    for (OccluderId id = first; id != kNoIndex; id = placed_[id].next) {
         require_ok(set_.remove(id));
         require_ok(candidates_.set(id, {}));  // without an area: worth nothing
         placed_[id].object = kNoIndex;
     }
-    holder = {};
 }
 
 bool Occluders::set_candidate(OccluderId id, const FoundOccluder& occluder, const Transform& transform,
@@ -142,21 +145,26 @@ bool Occluders::set_candidate(OccluderId id, const FoundOccluder& occluder, cons
 }
 
 // What cannot be placed, as under a transform that flattens, hides nothing.
+void Occluders::place_one(ShapeId shape, const FoundOccluder& occluder, const Transform& transform,
+                          std::uint32_t layers, Placed placed, OccluderId& first) {
+    const auto id = set_.place(shape, transform);
+    if (!id) return;
+    if (!set_candidate(*id, occluder, transform, layers)) {
+        require_ok(set_.remove(*id));
+        if (*id < candidates_.size()) require_ok(candidates_.set(*id, {}));
+        return;
+    }
+    if (*id >= placed_.size()) placed_.resize(*id + std::size_t{1});
+    placed_[*id] = placed;
+    placed_[*id].next = std::exchange(first, *id);
+}
+
 void Occluders::place(std::uint32_t object, const Transform& transform, std::uint32_t layers) {
     Holder& holder = holders_[object];
     const Mesh& mesh = meshes_[holder.mesh];
-    for (std::size_t i = mesh.placed.size(); i-- > 0;) {
-        const auto id = set_.place(mesh.placed[i], transform);
-        if (!id) continue;
-        if (!set_candidate(*id, mesh.occluders[i], transform, layers)) {
-            require_ok(set_.remove(*id));
-            if (*id < candidates_.size()) require_ok(candidates_.set(*id, {}));
-            continue;
-        }
-        if (*id >= placed_.size()) placed_.resize(*id + std::size_t{1});
-        placed_[*id] = {object, static_cast<std::uint32_t>(i), holder.first};
-        holder.first = *id;
-    }
+    for (std::size_t i = mesh.placed.size(); i-- > 0;)
+        place_one(mesh.placed[i], mesh.occluders[i], transform, layers, {object, static_cast<std::uint32_t>(i)},
+                  holder.first);
 }
 
 bool Occluders::move(std::uint32_t object, const Transform& transform, std::uint32_t layers) {

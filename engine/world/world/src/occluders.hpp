@@ -7,6 +7,7 @@
 #include <span>
 
 #include "object_table.hpp"
+#include "regions.hpp"
 
 namespace crofton::world {
 
@@ -27,6 +28,17 @@ class Occluders {
     }
     void update(const ObjectTable& table, const scene::Scene& scene);
 
+    // Of regions' objects: adds what has come, and takes away what has gone, as much as an update has time for. The
+    // rest hides nothing meanwhile.
+    void update_regions(const Regions& regions);
+    // How many objects of attached regions wait for that.
+    [[nodiscard]] std::size_t waiting_count() const { return waiting_count_; }
+    // Whether its object is one of a region, and detached or hidden.
+    [[nodiscard]] bool is_gone(occlude::OccluderId id, const Regions& regions) const {
+        const Placed& placed = placed_[id];
+        return is_region_index(placed.object) && !regions.is_shown({placed.object, placed.generation});
+    }
+
     // An occluder's id is that of its candidate.
     [[nodiscard]] const occlude::OccluderSet& set() const { return set_; }
     [[nodiscard]] const occlude::OccluderCandidates& candidates() const { return candidates_; }
@@ -45,12 +57,36 @@ class Occluders {
     struct Placed {
         std::uint32_t object = kNoIndex, place = 0;
         occlude::OccluderId next = kNoIndex;  // of the object
+        std::uint32_t generation = 0;         // of a region's object
     };
     struct Holder {
         occlude::OccluderId first = kNoIndex;
         scene::MeshId mesh = kNoIndex;
     };
+    // A region's shapes, which all its attachments share.
+    struct RegionShapes {
+        Region region;
+        Vector<Vector<occlude::ShapeId>> of_mesh;
+        std::size_t users = 0;
+    };
+    // What an attached region has placed: the first occluders of its occluding objects, in order.
+    struct RegionHolder {
+        RegionHandle handle;
+        ObjectHandle first_object;
+        glm::dvec3 origin{0.0};
+        std::size_t shapes = 0;
+        Vector<occlude::OccluderId> first;
+    };
+    [[nodiscard]] std::size_t shapes_of(const Region& region);
+    void release_shapes(std::size_t shapes);
+    // Does a part of what waits, and returns what it has cost.
+    std::size_t add_some(RegionHolder& holder, std::size_t budget);
+    std::size_t take_some(RegionHolder& holder, std::size_t budget);
+    [[nodiscard]] Result<occlude::ShapeId> add_shape(const occlude::FoundOccluder& occluder);
     void remove_shapes(Vector<occlude::ShapeId>& shapes);
+    void take_away_chain(occlude::OccluderId first);
+    void place_one(occlude::ShapeId shape, const occlude::FoundOccluder& occluder, const Transform& transform,
+                   std::uint32_t layers, Placed placed, occlude::OccluderId& first);
     void change_meshes(const ObjectTable& table);
     void change_object(std::uint32_t object, const ObjectTable& table, const scene::Scene& scene);
     void take_away(std::uint32_t object);
@@ -66,6 +102,9 @@ class Occluders {
     Vector<Holder> holders_;  // by object
     Vector<scene::MeshId> changed_meshes_;
     Vector<std::uint32_t> changed_objects_;
+    Vector<RegionShapes> region_shapes_;
+    Vector<RegionHolder> region_holders_;  // in the order in which they came
+    std::size_t waiting_count_ = 0;
     bool any_ = false;  // some mesh has had occluders
 };
 

@@ -48,10 +48,12 @@ Result<void> World::set_occludes(ObjectHandle object, bool occludes) {
 }
 
 void World::State::update_occluders() {
+    occluders.update_regions(regions);
+    statistics.occluders_waiting = occluders.waiting_count();
     if (!occluders.any()) return;
     occluders.update(table, scene);
     // Roughly: the bounds only tell how much lies behind an occluder.
-    object_bounds = {};
+    object_bounds = regions.bounds();
     const boxtree::Structure& tree = index.tree().structure();
     if (index.tree().item_count() > 0)
         for (unsigned lane = 0; lane < tree.nodes()[0].count; ++lane) object_bounds.include(tree.child_bounds(0, lane));
@@ -78,7 +80,7 @@ Result<void> World::hidden_by(ObjectHandle object, const ViewResult& visible, Ve
     const Obb box = of_region ? state_->regions.box(object.index) : state_->index.box(object.index);
     visible.occluded_->buffer->hidden_by(box, ids);
     for (const occlude::OccluderId id : ids) {
-        const ObjectRef ref = state_->table.ref(state_->occluders.object_of(id));
+        const ObjectRef ref = state_->ref_of(state_->occluders.object_of(id));
         occluders.push_back({ref.object, ref.user, state_->occluders.place_of(id)});
     }
     return {};
@@ -89,7 +91,7 @@ Result<void> World::drawn_occluders(const ViewResult& visible, Vector<OccluderRe
     occluders.clear();
     if (!visible.has_occlusion()) return {};
     for (const occlude::OccluderId id : visible.occluded_->choice.ids) {
-        const ObjectRef ref = state_->table.ref(state_->occluders.object_of(id));
+        const ObjectRef ref = state_->ref_of(state_->occluders.object_of(id));
         occluders.push_back({ref.object, ref.user, state_->occluders.place_of(id)});
     }
     return {};

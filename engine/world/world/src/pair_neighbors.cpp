@@ -15,12 +15,37 @@ double size_of(const Aabb& bounds) {
     return glm::distance(bounds.min, bounds.max);
 }
 
+constexpr auto is_slot_before = [](const auto& slot, std::uint32_t object) { return slot.object < object; };
+
 }  // namespace
+
+std::uint32_t PairNeighbors::slot_of(std::uint32_t object) const {
+    if (object < slot_of_.size()) return slot_of_[object];
+    if (object < kFirstRegionIndex) return kNoIndex;
+    const auto at = std::lower_bound(region_slots_.begin(), region_slots_.end(), object, is_slot_before);
+    return at != region_slots_.end() && at->object == object ? at->slot : kNoIndex;
+}
+
+std::uint32_t& PairNeighbors::take_slot(std::uint32_t object) {
+    if (object < kFirstRegionIndex) {
+        if (object >= slot_of_.size()) resize(slot_of_, object + std::size_t{1}, kNoIndex);
+        return slot_of_[object];
+    }
+    auto at = std::lower_bound(region_slots_.begin(), region_slots_.end(), object, is_slot_before);
+    if (at == region_slots_.end() || at->object != object) at = region_slots_.insert(at, {object, kNoIndex});
+    return at->slot;
+}
+
+void PairNeighbors::give_back_slot(std::uint32_t object) {
+    if (object < kFirstRegionIndex)
+        slot_of_[object] = kNoIndex;
+    else
+        region_slots_.erase(std::lower_bound(region_slots_.begin(), region_slots_.end(), object, is_slot_before));
+}
 
 void PairNeighbors::add(const Pair& pair) {
     const auto insert = [&](std::uint32_t object, std::uint32_t partner) {
-        if (object >= slot_of_.size()) resize(slot_of_, object + std::size_t{1}, kNoIndex);
-        std::uint32_t& slot = slot_of_[object];
+        std::uint32_t& slot = take_slot(object);
         if (slot == kNoIndex) {
             if (free_.empty()) {
                 free_.push_back(static_cast<std::uint32_t>(slots_.size()));
@@ -39,12 +64,12 @@ void PairNeighbors::add(const Pair& pair) {
 
 void PairNeighbors::remove(const Pair& pair) {
     const auto erase = [&](std::uint32_t object, std::uint32_t partner) {
-        Vector<std::uint32_t>& partners = slots_[slot_of_[object]].partners;
+        Vector<std::uint32_t>& partners = slots_[slot_of(object)].partners;
         partners.erase(std::lower_bound(partners.begin(), partners.end(), partner));
         if (partners.size() == kCrowd) crowds_.erase(std::find(crowds_.begin(), crowds_.end(), object));
         if (!partners.empty()) return;
-        free_.push_back(slot_of_[object]);
-        slot_of_[object] = kNoIndex;
+        free_.push_back(slot_of(object));
+        give_back_slot(object);
     };
     erase(pair.first, pair.second);
     erase(pair.second, pair.first);
@@ -52,7 +77,7 @@ void PairNeighbors::remove(const Pair& pair) {
 
 void PairNeighbors::place(std::uint32_t object, const Obb& box, double margin,
                           const std::optional<RigidTransform>& pose) {
-    Slot& slot = slots_[slot_of_[object]];
+    Slot& slot = slots_[slot_of(object)];
     slot.pose = pose;
     slot.bounds = aabb_of(box);
     const glm::dvec3 size = slot.bounds.max - slot.bounds.min;

@@ -26,12 +26,13 @@ class PairNeighbors {
     void remove(const Pair& pair);
     // Whom an object meets, ascending.
     [[nodiscard]] std::span<const std::uint32_t> partners_of(std::uint32_t object) const {
-        if (object >= slot_of_.size() || slot_of_[object] == kNoIndex) return {};
-        return slots_[slot_of_[object]].partners;
+        const std::uint32_t slot = slot_of(object);
+        if (slot == kNoIndex) return {};
+        return slots_[slot].partners;
     }
     // Where the shape of an object that meets others stands; nothing: it meets none for now.
     [[nodiscard]] const std::optional<RigidTransform>& pose_of(std::uint32_t object) const {
-        return slots_[slot_of_[object]].pose;
+        return slots_[slot_of(object)].pose;
     }
     // After the object has come into a pair, or moved. Its box is taken wider by `margin`, and by what counts as flush.
     void place(std::uint32_t object, const Obb& box, double margin, const std::optional<RigidTransform>& pose);
@@ -70,9 +71,18 @@ class PairNeighbors {
         Aabb bounds;
         std::optional<RigidTransform> pose;
     };
-    [[nodiscard]] const Aabb& bounds_of(std::uint32_t object) const { return slots_[slot_of_[object]].bounds; }
+    [[nodiscard]] const Aabb& bounds_of(std::uint32_t object) const { return slots_[slot_of(object)].bounds; }
 
-    Vector<std::uint32_t> slot_of_;  // by object
+    // kNoIndex: it meets no other.
+    [[nodiscard]] std::uint32_t slot_of(std::uint32_t object) const;
+    [[nodiscard]] std::uint32_t& take_slot(std::uint32_t object);  // where slot_of() is kept
+    void give_back_slot(std::uint32_t object);
+
+    struct RegionSlot {
+        std::uint32_t object, slot;
+    };
+    Vector<std::uint32_t> slot_of_;    // by object of the World's own
+    Vector<RegionSlot> region_slots_;  // of regions' objects, in order
     Vector<Slot> slots_;
     Vector<std::uint32_t> free_;    // slots
     Vector<std::uint32_t> crowds_;  // objects that meet more than kCrowd

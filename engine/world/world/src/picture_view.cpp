@@ -30,26 +30,22 @@ ViewMatrix matrix_of(const ViewRequest& request) {
             request.picture->depth, camera.position};
 }
 
-depth::DepthObject object_of(std::uint32_t id, const ViewMatrix& view, const ObjectTable& table,
-                             const SpatialIndex& index, const scene::Scene& scene, const MeshClusters& clusters) {
+depth::DepthObject object_of(const PictureView::Drawn& drawn, const ViewMatrix& view) {
     const auto to_clip = [&view](const glm::dmat3& linear, const glm::dvec3& translation) {
         return crofton::detail::model_to_clip(view.to_clip, view.origin, linear, translation);
     };
-    const Object& object = table.objects[id];
-    const MeshClusters::Mesh* mesh = object.kind == BoundKind::none ? clusters.find(object.mesh) : nullptr;
-    if (mesh == nullptr) {
-        const Obb& box = index.box(id);
-        glm::dmat3 linear(box.axes);
-        for (int k = 0; k < 3; ++k) linear[k] *= double{box.half_extents[k]};
-        depth::DepthObject asked{&unit_cube(), to_clip(linear, box.center)};
+    if (drawn.clusters == nullptr) {
+        glm::dmat3 linear(drawn.box.axes);
+        for (int k = 0; k < 3; ++k) linear[k] *= double{drawn.box.half_extents[k]};
+        depth::DepthObject asked{&unit_cube(), to_clip(linear, drawn.box.center)};
         asked.hides = false;
         return asked;
     }
-    const Transform& world = scene.world(scene.node_of(object.instance));
-    depth::DepthObject asked{&mesh->cut, to_clip(world.linear, world.translation)};
+    const glm::dmat3& linear = *drawn.placed.linear;
+    depth::DepthObject asked{&drawn.clusters->cut, to_clip(linear, drawn.placed.translation)};
     // Mirrored, fronts and backs change places.
-    asked.one_sided = mesh->one_sided && glm::determinant(world.linear) > 0.0;
-    asked.hides = object.occludes;
+    asked.one_sided = drawn.clusters->one_sided && glm::determinant(linear) > 0.0;
+    asked.hides = drawn.occludes;
     return asked;
 }
 
@@ -69,11 +65,9 @@ Result<void> check_picture(const ViewRequest& request, std::uint64_t item) {
     return {};
 }
 
-void PictureView::find(const ViewRequest& request, const cull::VisibleSet& in_frustum, const ObjectTable& table,
-                       const SpatialIndex& index, const scene::Scene& scene, const MeshClusters& clusters,
-                       Executor& executor) {
+void PictureView::find(const ViewRequest& request, const InFrustum& in_frustum, DrawnOf drawn_of, Executor& executor) {
     const ViewMatrix view = matrix_of(request);
-    const std::span<const std::uint32_t> ids = in_frustum.ids();
+    const std::span<const std::uint32_t> ids = in_frustum.ids;
     // Ascending, so that the answer does not depend on the order that is asked for.
     places_.resize(ids.size());
     std::iota(places_.begin(), places_.end(), 0u);
@@ -82,8 +76,7 @@ void PictureView::find(const ViewRequest& request, const cull::VisibleSet& in_fr
     objects_.resize(ids.size());
     constexpr std::size_t kGrain = 256;
     executor.parallel_for(ids.size(), kGrain, [&](std::size_t begin, std::size_t end, unsigned) {
-        for (std::size_t i = begin; i < end; ++i)
-            objects_[i] = object_of(ids[places_[i]], view, table, index, scene, clusters);
+        for (std::size_t i = begin; i < end; ++i) objects_[i] = object_of(drawn_of(ids[places_[i]]), view);
     });
     // Sizes and meshes are checked: nothing can fail.
     const auto found = culler_.find_visible(objects_, *request.picture, executor);
@@ -98,12 +91,12 @@ void PictureView::find(const ViewRequest& request, const cull::VisibleSet& in_fr
     ids_.clear();
     verdicts_.clear();
     inside_count_ = 0;
-    const std::span<const cull::Verdict> verdicts = in_frustum.verdicts();
+    const std::span<const cull::Verdict> verdicts = in_frustum.verdicts;
     for (std::size_t i = 0; i < ids.size(); ++i) {
         if (seen_[i] == 0) continue;
         ids_.push_back(ids[i]);
         if (!verdicts.empty()) verdicts_.push_back(verdicts[i]);
-        inside_count_ += verdicts.empty() ? i < in_frustum.inside_count() : verdicts[i] == cull::Verdict::inside;
+        inside_count_ += verdicts.empty() ? i < in_frustum.inside_count : verdicts[i] == cull::Verdict::inside;
     }
 }
 

@@ -4,21 +4,33 @@
 #include <crofton/core/executor.hpp>
 #include <crofton/cull/cull.hpp>
 #include <crofton/depth/depth_culler.hpp>
-#include <crofton/scene/scene.hpp>
 #include <crofton/world/inputs.hpp>
 
 #include "mesh_clusters.hpp"
-#include "object_table.hpp"
-#include "spatial_index.hpp"
+#include "shapes.hpp"
 
 namespace crofton::world {
 
 // Kept from frame to frame.
 class PictureView {
   public:
+    // What the frustum sees. Without verdicts, the first inside_count are inside.
+    struct InFrustum {
+        std::span<const std::uint32_t> ids;
+        std::span<const cull::Verdict> verdicts;
+        std::size_t inside_count = 0;
+    };
+    // What a picture asks of an object.
+    struct Drawn {
+        const MeshClusters::Mesh* clusters = nullptr;  // none: its box stands for it
+        PlacedMesh placed = {};                        // with clusters
+        bool occludes = false;
+        Obb box = {};
+    };
+    using DrawnOf = FunctionRef<Drawn(std::uint32_t id)>;
+
     // Of what the frustum sees, in the order given. Requires a view that is checked.
-    void find(const ViewRequest& request, const cull::VisibleSet& in_frustum, const ObjectTable& table,
-              const SpatialIndex& index, const scene::Scene& scene, const MeshClusters& clusters, Executor& executor);
+    void find(const ViewRequest& request, const InFrustum& in_frustum, DrawnOf drawn_of, Executor& executor);
 
     [[nodiscard]] std::span<const depth::VisibleCluster> triangles() const { return triangles_; }
     // Of in_frustum: its places that are seen, in its order.

@@ -123,12 +123,13 @@ void World::State::visit_along(const Ray& ray, std::uint32_t layers, collide::Ra
     regions.visit_along(rest, layers, visit);
 }
 
-std::optional<ObjectHit> World::State::shape_hit(const Ray& ray, std::uint32_t id) const {
+std::optional<ObjectHit> World::State::own_shape_hit(const Ray& ray, std::uint32_t id) const {
     const world::QueryShape stand = query_shape_of(id);
     if (!stand.pose) return std::nullopt;
     const auto met = convex::raycast({stand.shape, *stand.pose}, ray);
     if (!met) return std::nullopt;
-    ObjectHit hit{table.handle(id), table.names.users[id], met->t, met->point};
+    const ObjectRef ref = ref_of(id);
+    ObjectHit hit{ref.object, ref.user, met->t, met->point};
     hit.normal = met->normal;
     hit.started_inside = met->started_inside;
     hit.child = met->part.child;
@@ -160,23 +161,23 @@ std::optional<ObjectHit> bound_hit(const Ray& ray, const ObjectRef& ref, const w
 }  // namespace
 
 std::optional<ObjectHit> World::State::shape_hit(const Ray& ray, std::uint32_t id, double box_t) const {
-    if (world::is_region_index(id)) return bound_hit(ray, regions.ref(id), regions.object(id), regions.box(id), box_t);
-    const world::Object& object = table.objects[id];
-    if (object_shapes.has(id)) return shape_hit(ray, id);
-    if (shapes.mesh_tree_of(object) == nullptr) return bound_hit(ray, table.ref(id), object, index.box(id), box_t);
-    ObjectHit hit{table.handle(id), table.names.users[id], box_t};
-    hit.normal = world::normal_of(ray, index.box(id), box_t);
-    if (const mesh::MeshTree* tree = shapes.mesh_tree_of(object)) {
-        const Transform& world = scene.world(scene.node_of(object.instance));
-        if (world::is_invertible(world.linear)) {
-            const glm::dmat3 inverse = glm::inverse(world.linear);
-            const auto on_mesh = mesh::raycast(
-                Ray{inverse * (ray.origin - world.translation), inverse * ray.direction, ray.max_t}, *tree);
-            if (!on_mesh) return std::nullopt;
-            hit.t = on_mesh->t;
-            hit.triangle = on_mesh->triangle;
-            hit.normal = world::normal_of(ray, shapes.triangle_of(object, on_mesh->triangle), world.linear);
-        }
+    if (has_own_shape(id)) return own_shape_hit(ray, id);
+    const ObjectRef ref = ref_of(id);
+    const world::PlacedMesh placed = mesh_of_object(id);
+    if (placed.mesh == nullptr)
+        return world::is_region_index(id) ? bound_hit(ray, ref, regions.object(id), regions.box(id), box_t)
+                                          : bound_hit(ray, ref, table.objects[id], index.box(id), box_t);
+    ObjectHit hit{ref.object, ref.user, box_t};
+    if (const glm::dmat3& linear = *placed.linear; world::is_invertible(linear)) {
+        const glm::dmat3 inverse = glm::inverse(linear);
+        const auto on_mesh = mesh::raycast(
+            Ray{inverse * (ray.origin - placed.translation), inverse * ray.direction, ray.max_t}, placed.mesh->tree);
+        if (!on_mesh) return std::nullopt;
+        hit.t = on_mesh->t;
+        hit.triangle = on_mesh->triangle;
+        hit.normal = world::normal_of(ray, placed.mesh->triangle(on_mesh->triangle), linear);
+    } else {
+        hit.normal = world::normal_of(ray, box_of_object(id), box_t);
     }
     hit.point = ray.origin + hit.t * ray.direction;
     hit.started_inside = hit.normal == glm::dvec3(0.0);
@@ -263,13 +264,10 @@ void World::State::overlap(const Shape& probe, Vector<ObjectRef>& found, std::ui
     if (!is_valid(probe)) return;
     const world::QueryShape asked = world::shape_of(probe);
     visit_near(bounds_of(probe), 0.0, layers, [&](std::uint32_t id) {
-        if (world::is_region_index(id)) {
-            if (meets_bound(probe, regions.object(id), regions.box(id))) found.push_back(regions.ref(id));
-            return 0.0;
-        }
-        const bool meets =
-            has_shape(id) ? overlaps(asked.placed(), id) : meets_bound(probe, table.objects[id], index.box(id));
-        if (meets) found.push_back(table.ref(id));
+        const bool meets = has_shape(id)                ? overlaps(asked.placed(), id)
+                           : world::is_region_index(id) ? meets_bound(probe, regions.object(id), regions.box(id))
+                                                        : meets_bound(probe, table.objects[id], index.box(id));
+        if (meets) found.push_back(ref_of(id));
         return 0.0;
     });
     world::sort_by_object(found);
@@ -305,17 +303,14 @@ std::optional<ClosestObject> World::State::closest(const Aabb& bounds, double ma
         nearest = ClosestObject{ref.object, ref.user, gap.distance, gap.on_a, gap.on_b};
         return rest = gap.distance;
     };
-    const auto is_mesh = [&](std::uint32_t id) {
-        return !world::is_region_index(id) && shapes.mesh_tree_of(table.objects[id]) != nullptr &&
-               !object_shapes.has(id);
-    };
+    const auto is_mesh = [&](std::uint32_t id) { return !has_own_shape(id) && mesh_of_object(id).mesh != nullptr; };
     for (double limit = max_distance * 0x1p-12;; limit = std::min(std::max(8.0 * limit, kLeastGrowth), max_distance)) {
         rest = limit;
         bool has_meshes = false;
         visit_near(bounds, limit, layers, [&](std::uint32_t id) {
             if (!is_mesh(id)) return look_at(id);
             has_meshes = true;
-            return rest = std::min(rest, farthest(bounds, aabb_of(index.box(id))));
+            return rest = std::min(rest, farthest(bounds, aabb_of(box_of_object(id))));
         });
         if (has_meshes)
             visit_near(bounds, rest, layers, [&](std::uint32_t id) { return is_mesh(id) ? look_at(id) : rest; });
@@ -329,9 +324,9 @@ std::optional<ClosestObject> World::State::closest(const Shape& probe, double ma
     if (!is_valid(probe)) return std::nullopt;
     const world::QueryShape asked = world::shape_of(probe);
     return closest(bounds_of(probe), max_distance, layers, [&](std::uint32_t id, double limit) {
-        if (world::is_region_index(id)) return gap_to(probe, regions.object(id), regions.box(id));
-        return has_shape(id) ? gap_to_shape(asked.placed(), id, limit)
-                             : gap_to(probe, table.objects[id], index.box(id));
+        if (has_shape(id)) return gap_to_shape(asked.placed(), id, limit);
+        return world::is_region_index(id) ? gap_to(probe, regions.object(id), regions.box(id))
+                                          : gap_to(probe, table.objects[id], index.box(id));
     });
 }
 

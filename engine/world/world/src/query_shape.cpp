@@ -84,30 +84,27 @@ bool visit_parts(const convex::Shape& shape, const RigidTransform& pose, PointVi
 }  // namespace world
 
 world::QueryShape World::State::query_shape_of(std::uint32_t id) const {
-    if (world::is_region_index(id)) return world::shape_of_bound(regions.object(id), regions.box(id));
-    const world::Object& object = table.objects[id];
-    const Obb& box = index.box(id);
-    if (object_shapes.has(id)) return {object_shapes.shape(id), object_shapes.pose_of(id, object, box, scene)};
-    if (shapes.mesh_tree_of(object) != nullptr) {
-        const Transform& world = scene.world(scene.node_of(object.instance));
-        if (world::is_clearly_rotation(world.linear))
-            return {shapes.shape_of(object, nullptr), RigidTransform{world.linear, world.translation}};
-        return {shapes.shape_of(object, &world.linear), RigidTransform{glm::dmat3(1.0), world.translation}};
+    const bool of_region = world::is_region_index(id);
+    if (of_region && regions.has_shape(id)) return {regions.shape(id), regions.pose(id)};
+    if (!of_region && object_shapes.has(id))
+        return {object_shapes.shape(id), object_shapes.pose_of(id, table.objects[id], index.box(id), scene)};
+    if (const world::PlacedMesh placed = mesh_of_object(id); placed.mesh != nullptr) {
+        if (world::is_clearly_rotation(*placed.linear))
+            return {placed.mesh->shape(nullptr), RigidTransform{*placed.linear, placed.translation}};
+        return {placed.mesh->shape(placed.linear), RigidTransform{glm::dmat3(1.0), placed.translation}};
     }
-    return world::shape_of_bound(object, box);
+    return of_region ? world::shape_of_bound(regions.object(id), regions.box(id))
+                     : world::shape_of_bound(table.objects[id], index.box(id));
 }
 
 std::optional<glm::dvec3> World::State::point_inside(const convex::ShapeAtPose& probe, std::uint32_t id) const {
-    if (world::is_region_index(id)) return std::nullopt;
-    const world::Object& object = table.objects[id];
-    const mesh::MeshTree* tree = shapes.mesh_tree_of(object);
-    if (!options.containment || tree == nullptr || object_shapes.has(id)) return std::nullopt;
-    const Transform& world = scene.world(scene.node_of(object.instance));
-    if (!world::is_invertible(world.linear)) return std::nullopt;
-    const glm::dmat3 inverse = glm::inverse(world.linear);
+    if (!options.containment || has_own_shape(id)) return std::nullopt;
+    const world::PlacedMesh placed = mesh_of_object(id);
+    if (placed.mesh == nullptr || !world::is_invertible(*placed.linear)) return std::nullopt;
+    const glm::dmat3 inverse = glm::inverse(*placed.linear);
     std::optional<glm::dvec3> inside;
     (void)world::visit_parts(probe.shape, probe.pose, [&](const glm::dvec3& at) {
-        if (mesh::contains(*tree, inverse * (at - world.translation))) inside = at;
+        if (mesh::contains(placed.mesh->tree, inverse * (at - placed.translation))) inside = at;
         return inside.has_value();
     });
     return inside;

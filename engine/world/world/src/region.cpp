@@ -6,11 +6,14 @@
 #include <crofton/boxtree/structure.hpp>
 #include <crofton/core/recovery.hpp>
 #include <crofton/core/stop_signal.hpp>
+#include <crofton/mesh/mesh_parts.hpp>
 #include <glm/geometric.hpp>
+#include <optional>
 #include <utility>
 
 #include "bound_rules.hpp"
 #include "region_data.hpp"
+#include "region_solids.hpp"
 
 namespace crofton {
 namespace {
@@ -19,20 +22,41 @@ Result<void> cancelled() {
     return fail(ErrorCode::cancelled, kNoItem, "region: the callback asked to stop");
 }
 
-Result<void> read(Strided<RegionObject> objects, detail::StopSignal& stop, Vector<Obb>& boxes,
-                  Vector<std::uint32_t>& layers, Vector<world::RegionData::Item>& items) {
+// What the tree is built over, and what it does not hold.
+struct Contents {
+    Vector<Obb> boxes;
+    Vector<std::uint32_t> layers;
+    Vector<world::RegionData::Item> items;
+    std::optional<world::RegionSolids> solids;  // none: all are bounds
+};
+
+bool is_solid(const RegionObject& object) {
+    return object.mesh != kNoIndex || object.shape != nullptr || object.only_occludes;
+}
+
+Result<void> read(Strided<RegionObject> objects, const RegionOptions& options, detail::StopSignal& stop,
+                  Contents& contents) {
     constexpr std::size_t kBetweenQuestions = 4096;
+    if (!options.meshes.empty())
+        if (auto added = contents.solids.emplace().add_meshes(options.meshes, stop); !added) return added;
     for (std::size_t i = 0; i < objects.size(); ++i) {
         if (i % kBetweenQuestions == 0 &&
             stop.is_raised(0.1 * static_cast<double>(i) / static_cast<double>(objects.size())))
             return cancelled();
         const RegionObject& object = objects[i];
-        if (auto valid = world::validate(object.bound, i, "region: an object needs a bound"); !valid) return valid;
-        boxes.push_back(object.bound.box);
-        layers.push_back(object.layers);
-        items.push_back({object.user, object.bound.radius, object.collides_with, object.bound.kind});
+        if (is_solid(object)) {
+            if (!contents.solids) contents.solids.emplace();
+            if (auto added = contents.solids->add(object, static_cast<std::uint32_t>(i)); !added) return added;
+        } else if (auto valid = world::validate(object.bound, i, "region: an object needs a bound, a mesh or a shape");
+                   !valid) {
+            return valid;
+        }
+        contents.boxes.push_back(object.bound.box);
+        contents.layers.push_back(object.layers);
+        contents.items.push_back({object.user, object.bound.radius, object.collides_with, object.bound.kind});
     }
-    return {};
+    if (!contents.solids) return {};
+    return contents.solids->place(options.max_origin, contents.boxes, contents.layers, contents.items);
 }
 
 }  // namespace
@@ -41,21 +65,28 @@ Result<Region> Region::prepare(Strided<RegionObject> objects, const RegionOption
     if (objects.size() > options.max_objects)
         return fail(ErrorCode::out_of_range, options.max_objects,
                     {"region: ", objects.size(), " objects are more than max_objects: prepare several regions"});
+    if (!(options.max_origin >= 0.0 && options.max_origin <= 0.5 * kMaxCoordinate))
+        return fail(ErrorCode::out_of_range, kNoItem, "region: max_origin is not from 0 to 5e29");
     return detail::recover([&]() -> Result<Region> {
         detail::StopSignal stop(options.should_stop, options.stop_user);
-        Vector<Obb> boxes;
-        Vector<std::uint32_t> layers;
-        Vector<world::RegionData::Item> items;
+        Contents contents;
+        Vector<Obb>& boxes = contents.boxes;
+        Vector<std::uint32_t>& layers = contents.layers;
         boxes.reserve(objects.size());
         layers.reserve(objects.size());
-        items.reserve(objects.size());
-        if (auto done = read(objects, stop, boxes, layers, items); !done) return tl::unexpected(done.error());
+        contents.items.reserve(objects.size());
+        if (auto done = read(objects, options, stop, contents); !done) return tl::unexpected(done.error());
         Region region;
         if (boxes.empty()) return region;
         auto tree = boxtree::BoxTree::build(boxes, layers, {.orientation = options.tree}, executor);
         if (!tree) return tl::unexpected(tree.error());
         auto data = Owner<world::RegionData>::make(std::move(*tree));
-        data->items = std::move(items);
+        data->items = std::move(contents.items);
+        if (contents.solids) {
+            contents.solids->finish(*data, boxes.size(), executor);
+            data->max_origin = options.max_origin;
+            data->keep = options.keep;
+        }
         data->common_layers = ~0u;
         for (std::size_t i = 0; i < boxes.size(); ++i) {
             data->bounds.include(aabb_of(boxes[i]));
@@ -100,11 +131,35 @@ const Aabb& Region::bounds() const {
 std::size_t Region::bytes() const {
     if (data_ == nullptr) return 0;
     const boxtree::Structure& tree = data_->tree.structure();
-    return sizeof(world::RegionData) + data_->items.size() * sizeof(world::RegionData::Item) +
-           data_->tree.boxes().size_bytes() + data_->tree.layer_masks().size_bytes() + tree.nodes().size_bytes() +
-           tree.leaves().size_bytes() + tree.slot_items().size_bytes() + tree.leaf_counts().size_bytes() +
-           tree.leaf_ranges().size_bytes() + tree.leaf_radii().size_bytes() + tree.node_radii().size_bytes() +
-           tree.item_slots().size_bytes() + tree.axes().size_bytes();
+    std::size_t bytes = sizeof(world::RegionData) + data_->items.size() * sizeof(world::RegionData::Item) +
+                        data_->tree.boxes().size_bytes() + data_->tree.layer_masks().size_bytes() +
+                        tree.nodes().size_bytes() + tree.leaves().size_bytes() + tree.slot_items().size_bytes() +
+                        tree.leaf_counts().size_bytes() + tree.leaf_ranges().size_bytes() +
+                        tree.leaf_radii().size_bytes() + tree.node_radii().size_bytes() +
+                        tree.item_slots().size_bytes() + tree.axes().size_bytes();
+    bytes += std::span(data_->solid_of_item).size_bytes() + std::span(data_->solids).size_bytes() +
+             std::span(data_->shapes).size_bytes() + std::span(data_->occluding).size_bytes();
+    for (const world::RegionData::Mesh& mesh : data_->meshes)
+        bytes += sizeof mesh + std::span(mesh.triangles.positions).size_bytes() +
+                 std::span(mesh.triangles.indices).size_bytes() + std::span(mesh.shape.places).size_bytes() +
+                 std::span(mesh.shape.tree.parts().nodes).size_bytes() +
+                 std::span(mesh.shape.tree.parts().leaves).size_bytes();
+    return bytes;
+}
+
+std::uint32_t Region::mesh_of(std::uint32_t place) const {
+    const world::RegionData::Solid* const solid = data_->solid(place);
+    return solid != nullptr ? solid->mesh : kNoIndex;
+}
+
+const depth::ClusteredMesh* Region::clusters_of(std::uint32_t mesh) const {
+    if (data_ == nullptr || mesh >= data_->meshes.size() || !data_->meshes[mesh].clusters.usable) return nullptr;
+    return &data_->meshes[mesh].clusters.cut;
+}
+
+std::span<const occlude::FoundOccluder> Region::occluders_of(std::uint32_t mesh) const {
+    if (data_ == nullptr || mesh >= data_->meshes.size()) return {};
+    return data_->meshes[mesh].occluders;
 }
 
 }  // namespace crofton

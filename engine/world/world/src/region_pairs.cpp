@@ -14,6 +14,7 @@ void RegionPairs::begin() {
     next_.clear();
     next_points_.clear();
     next_triangles_.clear();
+    added_.clear();
     kept_ = 0;
 }
 
@@ -29,6 +30,7 @@ void RegionPairs::keep(const ObjectPair& old) {
 }
 
 void RegionPairs::add(const ObjectPair& pair, const BoundTouch& found) {
+    added_.push_back({pair.first.object.index, pair.second.object.index});
     Entry& entry = next_.emplace_back();
     entry = {pair,
              found.hit,
@@ -56,11 +58,40 @@ Contact RegionPairs::contact_of(const Entry& entry, ContactPhase phase) const {
     return contact;
 }
 
+void RegionPairs::list_ended() {
+    ended_.clear();
+    std::size_t now = 0;
+    for (const Entry& old : next_) {
+        while (now < entries_.size() && is_before(entries_[now].pair, old.pair)) ++now;
+        const bool is_there = now < entries_.size() && !is_before(old.pair, entries_[now].pair);
+        if (!is_there) ended_.push_back({old.pair.first.object.index, old.pair.second.object.index});
+    }
+}
+
+const mesh::MeshTree* RegionPairs::tree_under(ObjectHandle object, const glm::dmat3& linear,
+                                              const TriangleMesh& triangles) {
+    auto at = std::lower_bound(trees_.begin(), trees_.end(), object,
+                               [](const OwnTree& own, ObjectHandle asked) { return own.object < asked; });
+    if (at == trees_.end() || at->object != object) {
+        auto built = std::make_unique<mesh::MeshTree>();
+        if (!build_under(linear, triangles, *built)) built.reset();
+        at = trees_.insert(at, OwnTree{object, std::move(built)});
+    }
+    return at->tree.get();
+}
+
+void RegionPairs::forget_trees(const Regions& regions) {
+    trees_.erase(
+        std::remove_if(trees_.begin(), trees_.end(), [&](const OwnTree& own) { return !regions.contains(own.object); }),
+        trees_.end());
+}
+
 void RegionPairs::end(bool finds_contacts) {
     std::swap(entries_, next_);  // next_ has those before
     std::swap(points_, next_points_);
     std::swap(triangles_, next_triangles_);
     contacts_.clear();
+    list_ended();
     if (!finds_contacts) return;
     std::size_t old = 0;
     const auto end_old = [&] {
@@ -115,60 +146,93 @@ void World::State::list_changed_near_regions() {
     if (pair_changes.all_contacts || region_pairs.lost)
         for (std::uint32_t id = 0; id < table.objects.size(); ++id) changed.push_back(id);
     for (const std::uint32_t slot : regions.changed())
-        visit_bounded_near(aabb_of(regions.at_slot(slot).bounds), 0.0, ~0u, [&](std::uint32_t id) {
-            changed.push_back(id);
-            return 0.0;
-        });
+        visit_bounded_near(aabb_of(regions.at_slot(slot).bounds), 2.0 * options.contact_margin, ~0u,
+                           [&](std::uint32_t id) {
+                               changed.push_back(id);
+                               return 2.0 * options.contact_margin;
+                           });
     std::sort(changed.begin(), changed.end());
     changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+}
+
+// The box in which a region's object is looked for by shapes that come within the margin, as
+// ObjectShapes::collider_box.
+Obb World::State::region_collider_box(std::uint32_t other, const Obb& box) const {
+    if (options.contact_margin == 0.0 || !regions.has_shape(other)) return box;
+    const auto pose = regions.pose(other);
+    return pose ? world::box_around(box, regions.shape(other), *pose, options.contact_margin / 2.0) : box;
 }
 
 void World::State::add_region_pairs_of(std::uint32_t id) {
     const world::Object& object = table.objects[id];
     if (!object.alive || object.collides_with == 0 || !index.is_placed(id) || object_shapes.is_unbounded(id)) return;
     const Obb& box = index.box(id);
+    const double margin = options.contact_margin;
+    const Obb collider = object_shapes.collider_box(id, object, box, scene, margin / 2.0);
+    const auto meet = [&](std::uint32_t other) {
+        const world::Object of_region = regions.object(other);
+        if ((index.layers(id) & of_region.collides_with) == 0) return false;
+        const Obb other_box = regions.box(other);
+        if (!collide::intersects(collider, region_collider_box(other, other_box))) return false;
+        // Two shapes are asked as far as the contact margin, beyond boxes and spheres.
+        const bool shape = object_shapes.has(id), other_shape = regions.has_shape(other);
+        if (margin > 0.0 && shape && other_shape) return true;
+        if (margin > 0.0 && (shape || other_shape) && !collide::intersects(box, other_box)) return false;
+        return world::ContactFinder::meet(object, box, of_region, other_box);
+    };
     Vector<std::uint32_t>& met = region_pairs_met;
     met.clear();
-    regions.visit_near(aabb_of(box), 0.0, object.collides_with, [&](std::uint32_t other) {
-        const world::Object of_region = regions.object(other);
-        const Obb other_box = regions.box(other);
-        if ((index.layers(id) & of_region.collides_with) != 0 && collide::intersects(box, other_box) &&
-            world::ContactFinder::meet(object, box, of_region, other_box))
-            met.push_back(other);
-        return 0.0;
+    regions.visit_near(aabb_of(collider), margin, object.collides_with, [&](std::uint32_t other) {
+        if (meet(other)) met.push_back(other);
+        return margin;
     });
     std::sort(met.begin(), met.end());
-    if (met.empty()) return;
-    world::PosedTree mesh;
-    if (options.contacts && shapes.mesh_tree_of(object) != nullptr) {
-        shapes.begin();
-        shapes.prepare(table, index, scene, id);
-        shapes.build(scene, serial_executor());
-        mesh = shapes.posed_tree(table, index, scene, id);
-    }
     for (const std::uint32_t other : met) {
-        world::BoundTouch& touch = region_pairs.touch;
-        touch.clear();
-        if (options.contacts) {
-            const world::Object of_region = regions.object(other);
-            const Obb other_box = regions.box(other);
-            if (shapes.mesh_tree_of(object) == nullptr)
-                finder.touch_bounds(object, box, of_region, other_box, touch);
-            else if (mesh.tree != nullptr)
-                finder.touch_bound(mesh, of_region, other_box, shapes, scene, touch);
-        }
-        region_pairs.add({table.ref(id), regions.ref(other)}, touch);
+        region_pairs.touch.clear();
+        if (options.contacts && !(object_shapes.has(id) && regions.has_shape(other)))
+            touch_in_region(id, other, region_pairs.touch);
+        region_pairs.add({table.ref(id), regions.ref(other)}, region_pairs.touch);
     }
 }
 
+void World::State::touch_in_region(std::uint32_t id, std::uint32_t other, world::BoundTouch& touch) {
+    const world::Object& object = table.objects[id];
+    const world::Object of_region = regions.object(other);
+    const Obb other_box = regions.box(other);
+    const world::PlacedMesh placed = regions.mesh(other);
+    if (shapes.mesh_tree_of(object) == nullptr && placed.mesh == nullptr)
+        return finder.touch_bounds(object, index.box(id), of_region, other_box, touch);
+    shapes.begin();
+    shapes.prepare(table, index, scene, id);
+    shapes.build(scene, serial_executor());
+    const world::PosedTree mesh = shapes.posed_tree(table, index, scene, id);
+    mesh::MeshTree box_tree;
+    world::PosedTree other_mesh{nullptr, {glm::dmat3(1.0), other_box.center}};
+    if (placed.mesh != nullptr) {
+        other_mesh = {&placed.mesh->tree, {*placed.linear, placed.translation}};
+        if (!world::is_rotation(*placed.linear)) {
+            const ObjectHandle handle = regions.ref(other).object;
+            other_mesh.tree = region_pairs.tree_under(handle, *placed.linear, regions.triangles(other));
+            other_mesh.pose.rotation = glm::dmat3(1.0);
+        }
+    } else if (of_region.kind != BoundKind::sphere) {
+        other_mesh = shapes.posed_box(other_box, scene, box_tree);
+    }
+    finder.touch_trees(object, mesh, of_region, other_mesh, touch);
+}
+
 Result<void> World::State::update_region_pairs(Result<void> others) {
-    if (regions.is_empty() && !region_pairs.is_used()) return others;
+    if (regions.is_empty() && !region_pairs.is_used()) {
+        region_pairs.forget_changes();
+        return others;
+    }
     if (!others) {
         region_pairs.lost = true;
         region_pairs.begin();
         region_pairs.end(options.contacts);
         return others;
     }
+    region_pairs.forget_trees(regions);
     list_changed_near_regions();
     const Vector<std::uint32_t>& changed = region_pairs.changed;
     region_pairs.begin();
@@ -187,6 +251,24 @@ Result<void> World::State::update_region_pairs(Result<void> others) {
     if (!region_pairs.lost) return {};
     return fail(ErrorCode::budget_exceeded, kNoItem,
                 {"world: ", count, " pairs with objects of regions are more than max_pairs"});
+}
+
+// After all pairs were found, and contacts of what are not two shapes.
+void World::State::update_shape_contacts(Executor& executor) {
+    const world::ShapeContacts::Surroundings around{object_shapes, table,   index,
+                                                    scene,         regions, options.contact_margin};
+    if (ground.is_or_was_used())
+        return shape_contacts.update_all(region_pairs.is_used() ? region_pairs.pairs() : own_pairs(), around, executor);
+    const std::span<const IdPair> added = region_pairs.added(), ended = region_pairs.ended();
+    if (added.empty() && ended.empty())
+        return shape_contacts.update({finder.touched(), finder.ended()}, around, executor);
+    const auto merge = [](std::span<const IdPair> a, std::span<const IdPair> b, Vector<IdPair>& all) {
+        all.resize(a.size() + b.size());
+        std::merge(a.begin(), a.end(), b.begin(), b.end(), all.begin());
+    };
+    merge(finder.touched(), added, region_pairs.all_added);
+    merge(finder.ended(), ended, region_pairs.all_ended);
+    shape_contacts.update({region_pairs.all_added, region_pairs.all_ended}, around, executor);
 }
 
 }  // namespace crofton

@@ -5,9 +5,11 @@
 #include <crofton/core/memory.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <crofton/world/answers.hpp>
+#include <memory>
 #include <span>
 
 #include "contact_finder.hpp"
+#include "regions.hpp"
 
 namespace crofton::world {
 
@@ -29,29 +31,51 @@ class RegionPairs {
         std::size_t first_point = 0, point_count = 0, first_triangle = 0, triangle_count = 0;
     };
     [[nodiscard]] std::span<const Entry> entries() const { return entries_; }  // as of the last end()
-    [[nodiscard]] std::size_t added_count() const { return next_.size(); }     // since begin()
+    // Of the last end(), in order: pairs that were added, and those that are there no more.
+    [[nodiscard]] std::span<const IdPair> added() const { return added_; }
+    [[nodiscard]] std::span<const IdPair> ended() const { return ended_; }
+    [[nodiscard]] std::size_t added_count() const { return next_.size(); }  // since begin()
 
+    void forget_changes() {  // added() and ended() are empty then
+        added_.clear();
+        ended_.clear();
+    }
     void stay();  // nothing has changed
     // With all others of the World.
     void merge(std::span<const ObjectPair> pairs, std::span<const Contact> contacts);
+
+    // Returns the triangles of a region's object under a map that is no rotation, which are built once; nullptr: none
+    // is valid under it.
+    [[nodiscard]] const mesh::MeshTree* tree_under(ObjectHandle object, const glm::dmat3& linear,
+                                                   const TriangleMesh& triangles);
+    // Frees what belongs to objects whose regions are gone.
+    void forget_trees(const Regions& regions);
     [[nodiscard]] bool is_used() const { return !entries_.empty() || !contacts_.empty(); }
     [[nodiscard]] std::span<const ObjectPair> pairs() const { return all_pairs_; }
     [[nodiscard]] std::span<const Contact> contacts() const { return all_contacts_; }
 
-    Vector<std::uint32_t> changed;  // scratch: own objects whose pairs are found again
-    BoundTouch touch;               // scratch
-    bool lost = false;              // the update before found too many pairs
+    Vector<std::uint32_t> changed;        // scratch: own objects whose pairs are found again
+    BoundTouch touch;                     // scratch
+    Vector<IdPair> all_added, all_ended;  // scratch: of the World's own as well
+    bool lost = false;                    // the update before found too many pairs
 
   private:
+    struct OwnTree {
+        ObjectHandle object;
+        std::unique_ptr<mesh::MeshTree> tree;
+    };
     [[nodiscard]] Contact contact_of(const Entry& entry, ContactPhase phase) const;
+    void list_ended();
 
     Vector<Entry> entries_, next_;
     Vector<collide::ContactPoint> points_, next_points_;  // of the entries
     Vector<mesh::MeshContact> triangles_, next_triangles_;
+    Vector<IdPair> added_, ended_;
     Vector<Contact> contacts_;  // of these pairs
     Vector<ObjectPair> all_pairs_;
     Vector<Contact> all_contacts_;
-    std::size_t kept_ = 0;  // entries before it have been looked at since begin()
+    Vector<OwnTree> trees_;  // in order
+    std::size_t kept_ = 0;   // entries before it have been looked at since begin()
 };
 
 }  // namespace crofton::world

@@ -2,6 +2,7 @@
 // Views of a World that regions are attached to: its own objects', then the regions'.
 #include <algorithm>
 
+#include "eye.hpp"
 #include "occluded_view.hpp"
 #include "region_view.hpp"
 #include "trace_zone.hpp"
@@ -24,7 +25,8 @@ ObjectRef region_ref(const ObjectNames& names, std::uint32_t index) {
 
 }  // namespace world
 
-void World::add_regions(const ViewRequest& request, const cull::View& view, ViewResult& visible) const {
+void World::add_regions(const ViewRequest& request, const cull::View& view, ViewResult& visible,
+                        Executor& executor) const {
     if (!visible.whole_) visible.whole_ = world::WholeViewOwner(Owner<world::WholeView>::make().release());
     world::WholeView& whole = *visible.whole_;
     whole.clear();
@@ -35,6 +37,21 @@ void World::add_regions(const ViewRequest& request, const cull::View& view, View
     if (by_tree) whole.straddling.add(own.subspan(whole.inside_count));
     whole.verdicts.add(visible.verdicts());
     find_in_regions(request, view, visible);
+    if (request.picture) keep_in_picture(request, visible, executor);
+}
+
+// Of an answer that has all that the frustum sees.
+void World::keep_in_picture(const ViewRequest& request, ViewResult& visible, Executor& executor) const {
+    world::WholeView& whole = *visible.whole_;
+    world::OccludedView& result = *visible.occluded_;
+    state_->find_triangles(request, {whole.ids.values(), whole.verdicts.values(), whole.inside_count}, result,
+                           executor);
+    whole.ids.clear();
+    whole.verdicts.clear();
+    whole.ids.add(result.picture.ids());
+    whole.verdicts.add(result.picture.verdicts());
+    whole.inside_count = result.picture.inside_count();
+    visible.hides_ = true;
 }
 
 void World::find_in_regions(const ViewRequest& request, const cull::View& view, ViewResult& visible) const {
@@ -49,18 +66,19 @@ void World::find_in_regions(const ViewRequest& request, const cull::View& view, 
     visible.with_regions_ = true;
 }
 
-void World::add_regions(std::span<const ViewRequest> requests, std::span<const cull::View> views,
+void World::add_regions(std::span<const ViewRequest> requests, std::span<const world::Eye> eyes,
                         MultiViewResult& visible) const {
     if (!visible.whole_) visible.whole_ = world::WholeViewsOwner(Owner<world::WholeViews>::make().release());
     while (visible.each_.size() < requests.size()) visible.each_.emplace_back();
     for (std::size_t v = 0; v < requests.size(); ++v) {
+        if (requests[v].picture) continue;  // view_each() has added them
         ViewResult& each = visible.each_[v];
         if (!each.whole_) each.whole_ = world::WholeViewOwner(Owner<world::WholeView>::make().release());
         if (visible.one_walk_) each.hides_ = each.with_regions_ = false;  // what it has is of an earlier call
         each.whole_->clear();
         ViewRequest request = requests[v];
         request.order = cull::ResultOrder::ascending;
-        find_in_regions(request, views[v], each);
+        find_in_regions(request, eyes[v].plain, each);
     }
     world::WholeViews& whole = *visible.whole_;
     whole.ids.clear();
@@ -72,16 +90,18 @@ void World::add_regions(std::span<const ViewRequest> requests, std::span<const c
     // Region by region, so that a mask for each of its objects is enough.
     const auto ids_of = [&](std::size_t v) { return visible.each_[v].whole_->ids.values(); };
     std::size_t next[cull::kMaxViews] = {};
+    for (std::size_t v = 0; v < requests.size(); ++v)
+        while (next[v] < ids_of(v).size() && ids_of(v)[next[v]] < kFirstRegionIndex) ++next[v];
     const auto first_left = [&] {
         std::uint32_t least = kNoIndex;
-        for (std::size_t v = 0; v < views.size(); ++v)
+        for (std::size_t v = 0; v < requests.size(); ++v)
             if (next[v] < ids_of(v).size()) least = std::min(least, ids_of(v)[next[v]]);
         return least;
     };
     for (std::uint32_t id = first_left(); id != kNoIndex; id = first_left()) {
         const world::Attachment& region = state_->regions.of(id);
         whole.object_masks.assign(region.size(), 0);
-        for (std::size_t v = 0; v < views.size(); ++v) {
+        for (std::size_t v = 0; v < requests.size(); ++v) {
             const std::span<const std::uint32_t> ids = ids_of(v);
             for (; next[v] < ids.size() && ids[next[v]] - region.first < region.size(); ++next[v])
                 whole.object_masks[ids[next[v]] - region.first] |= std::uint32_t{1} << v;

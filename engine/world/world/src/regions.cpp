@@ -3,6 +3,7 @@
 #include "regions.hpp"
 
 #include <algorithm>
+#include <crofton/boxtree/structure.hpp>
 #include <crofton/core/error.hpp>
 #include <crofton/core/recovery.hpp>
 #include <crofton/geometry/finite.hpp>
@@ -70,6 +71,11 @@ Result<RegionHandle> Regions::attach(const Region& region, const glm::dvec3& ori
     const glm::dvec3 far = glm::abs(origin) + most;
     if (std::max({far.x, far.y, far.z}) > 0.5 * kMaxCoordinate)
         return fail(ErrorCode::out_of_range, kNoItem, "world: the region's origin puts its objects out of range");
+    const glm::dvec3 from_zero = glm::abs(origin);
+    if (region.object_count() > 0 && !region.data()->solids.empty() &&
+        std::max({from_zero.x, from_zero.y, from_zero.z}) > region.data()->max_origin)
+        return fail(ErrorCode::out_of_range, kNoItem,
+                    "world: the origin is beyond the region's RegionOptions::max_origin: prepare it with a larger one");
     const std::uint32_t pages = pages_of(region);
     std::uint32_t first = kNoIndex;
     if (pages > 0) {
@@ -194,6 +200,14 @@ bool Regions::update() {
     return changed;
 }
 
+Aabb Regions::bounds() const {
+    Aabb bounds;
+    if (tree_.item_count() == 0) return bounds;
+    const boxtree::Structure& structure = tree_.structure();
+    for (unsigned lane = 0; lane < structure.nodes()[0].count; ++lane) bounds.include(structure.child_bounds(0, lane));
+    return bounds;
+}
+
 ObjectRef Regions::ref(std::uint32_t index) const {
     const std::uint32_t slot = slot_of(index);
     if (slot == kNoIndex) return {};
@@ -213,6 +227,38 @@ Object Regions::object(std::uint32_t index) const {
     result.collides_with = item.collides_with;
     result.radius = item.radius;
     return result;
+}
+
+PlacedMesh Regions::mesh(std::uint32_t index) const {
+    const Attachment& region = of(index);
+    const RegionData::Solid* const solid = region.data().solid(index - region.first);
+    if (solid == nullptr || solid->mesh == kNoIndex) return {};
+    const MeshShape& mesh = region.data().meshes[solid->mesh].shape;
+    if (!mesh.is_usable) return {};
+    return {&mesh, &solid->transform.linear, solid->transform.translation + region.move.by};
+}
+
+PictureView::Drawn Regions::drawn(std::uint32_t index) const {
+    const Attachment& region = of(index);
+    const RegionData::Solid* const solid = region.data().solid(index - region.first);
+    if (solid == nullptr || solid->mesh == kNoIndex) return {.box = box(index)};
+    const MeshClusters::Mesh& clusters = region.data().meshes[solid->mesh].clusters;
+    if (!clusters.usable) return {.box = box(index)};
+    return {.clusters = &clusters,
+            .placed = {nullptr, &solid->transform.linear, solid->transform.translation + region.move.by},
+            .occludes = solid->occludes};
+}
+
+std::optional<RigidTransform> Regions::pose(std::uint32_t index) const {
+    std::optional<RigidTransform> pose = placed_shape(index)->pose;
+    if (pose) pose->translation += of(index).move.by;
+    return pose;
+}
+
+Transform Regions::transform(std::uint32_t index) const {
+    Transform transform = solid(index)->transform;
+    transform.translation += of(index).move.by;
+    return transform;
 }
 
 }  // namespace crofton::world

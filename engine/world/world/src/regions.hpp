@@ -9,6 +9,7 @@
 #include <crofton/world/region.hpp>
 
 #include "object_table.hpp"
+#include "picture_view.hpp"
 #include "region_data.hpp"
 
 namespace crofton::world {
@@ -54,11 +55,15 @@ class Regions {
     [[nodiscard]] std::span<const std::uint32_t> changed() const { return changed_; }
     [[nodiscard]] const Attachment& at_slot(std::uint32_t slot) const { return attachments_[slot]; }
 
+    [[nodiscard]] Aabb bounds() const;  // around all regions of the last update; roughly
     // None was attached in the last update, and none was before it.
     [[nodiscard]] bool is_empty() const { return tree_.item_count() == 0; }
     [[nodiscard]] std::size_t object_count() const { return object_count_; }
     [[nodiscard]] bool contains(RegionHandle region) const;
     [[nodiscard]] bool contains(ObjectHandle object) const;
+    [[nodiscard]] bool is_shown(ObjectHandle object) const {  // attached, and not hidden
+        return contains(object) && of(object.index).is_shown(object.index - of(object.index).first);
+    }
     [[nodiscard]] Result<void> check(RegionHandle region) const;
     [[nodiscard]] const Attachment& at(RegionHandle region) const { return attachments_[region.index]; }
     // Why an object of a region cannot be changed, or that the handle is stale.
@@ -73,7 +78,24 @@ class Regions {
         const Attachment& region = of(index);
         return region.box(index - region.first);
     }
-    [[nodiscard]] Object object(std::uint32_t index) const;  // as if it were the World's own
+    [[nodiscard]] Object object(std::uint32_t index) const;  // as if it were the World's own, but for its mesh
+    // As the World's own: an object's mesh, if triangles stand for it, and its shape.
+    [[nodiscard]] PlacedMesh mesh(std::uint32_t index) const;
+    [[nodiscard]] PictureView::Drawn drawn(std::uint32_t index) const;        // in a picture
+    [[nodiscard]] const TriangleMesh& triangles(std::uint32_t index) const {  // of an object with a mesh
+        return of(index).data().meshes[solid(index)->mesh].triangles;
+    }
+    [[nodiscard]] bool has_shape(std::uint32_t index) const { return placed_shape(index) != nullptr; }
+    [[nodiscard]] const convex::Shape& shape(std::uint32_t index) const { return placed_shape(index)->shape(); }
+    [[nodiscard]] std::optional<RigidTransform> pose(std::uint32_t index) const;
+    [[nodiscard]] const RegionData::Solid* solid(std::uint32_t index) const {
+        const Attachment& region = of(index);
+        return region.data().solid(index - region.first);
+    }
+    [[nodiscard]] bool has_transform(std::uint32_t index) const {
+        return solid(index) != nullptr && solid(index)->has_transform;
+    }
+    [[nodiscard]] Transform transform(std::uint32_t index) const;  // of an object that has one
 
     // As the World's own of these names, for the regions' objects. The visitors get indices. A ray's visitor is called
     // for boxes that the ray meets.
@@ -96,6 +118,10 @@ class Regions {
     }
     [[nodiscard]] static std::uint32_t pages_of(const Region& region) {
         return static_cast<std::uint32_t>((region.object_count() + kPage - 1) / kPage);
+    }
+    [[nodiscard]] const PlacedShape* placed_shape(std::uint32_t index) const {
+        const Attachment& region = of(index);
+        return region.data().shape(index - region.first);
     }
     [[nodiscard]] Result<std::uint32_t> take_pages(std::uint32_t count);
     void give_back(Pages pages);

@@ -74,12 +74,12 @@ void ShapeContacts::note_pairs(const ChangedPairs& pairs, const Surroundings& ar
     while (t < pairs.there.size() || e < pairs.ended.size()) {
         const bool is_there = t < pairs.there.size() && (e == pairs.ended.size() || !(pairs.ended[e] < pairs.there[t]));
         const IdPair ids = is_there ? pairs.there[t++] : pairs.ended[e++];
-        const bool of_shapes = is_there && around.shapes.has(ids.first) && around.shapes.has(ids.second);
+        const bool of_shapes = is_there && around.has_shape(ids.first) && around.has_shape(ids.second);
         place = find_from(place, states_, ids, is_state_before);
         const bool was_there =
             place < states_.size() && ids_of(states_[place].pair.first, states_[place].pair.second) == ids;
         if (!of_shapes && !was_there) continue;
-        const ObjectPair pair{around.table.ref(ids.first), around.table.ref(ids.second)};
+        const ObjectPair pair{ref(around.table.names, ids.first), ref(around.table.names, ids.second)};
         if (was_there && of_shapes && are_same(states_[place].pair, pair)) {
             rename(states_[place], pair);
             continue;
@@ -117,9 +117,7 @@ void ShapeContacts::note_pairs(const ChangedPairs& pairs, const Surroundings& ar
 }
 
 void ShapeContacts::place_object(std::uint32_t object, const Surroundings& around) {
-    const Obb& box = around.index.box(object);
-    neighbors_.place(object, box, around.margin,
-                     around.shapes.pose_of(object, around.table.objects[object], box, around.scene));
+    neighbors_.place(object, around.box(object), around.margin, around.pose(object));
 }
 
 // Pairs that may have to be computed; touch() tells.
@@ -154,7 +152,7 @@ void ShapeContacts::list_candidates() {
 bool ShapeContacts::have_moved(const Neighbors& neighbors) const {
     for (const Vector<std::uint32_t>& objects : neighbors.objects)
         for (const std::uint32_t object : objects)
-            if (moved_[object] != 0) return true;
+            if (has_moved(object)) return true;
     return false;
 }
 
@@ -164,7 +162,7 @@ void ShapeContacts::place_neighbors(const Surroundings& around, Worker& worker) 
         worker.numbers[side].clear();
         for (const std::uint32_t object : worker.neighbors.objects[side])
             if (const auto& pose = neighbors_.pose_of(object)) {
-                worker.placed[side].push_back({around.shapes.shape(object), *pose});
+                worker.placed[side].push_back({around.shape(object), *pose});
                 worker.numbers[side].push_back(object);
             }
     }
@@ -177,7 +175,7 @@ void ShapeContacts::compute(Touch& touch, const Surroundings& around, Worker& wo
     touch.computed = true;
     const auto &pose_a = neighbors_.pose_of(a), &pose_b = neighbors_.pose_of(b);
     if (!pose_a || !pose_b) return worker.pair_points.clear();
-    const convex::ShapeAtPose placed_a{around.shapes.shape(a), *pose_a}, placed_b{around.shapes.shape(b), *pose_b};
+    const convex::ShapeAtPose placed_a{around.shape(a), *pose_a}, placed_b{around.shape(b), *pose_b};
     const convex::ManifoldOptions options{.margin = around.margin};
     const bool convex = placed_a.shape.is_convex() && placed_b.shape.is_convex();
     if (convex) {
@@ -201,7 +199,7 @@ void ShapeContacts::compute(Touch& touch, const Surroundings& around, Worker& wo
 void ShapeContacts::touch(Touch& touch, const Surroundings& around, Worker& worker) const {
     const PairState& state = states_[touch.state];
     const std::uint32_t a = state.pair.first.object.index, b = state.pair.second.object.index;
-    if (!state.is_new && moved_[a] == 0 && moved_[b] == 0) {
+    if (!state.is_new && !has_moved(a) && !has_moved(b)) {
         if (!state.asks_neighbors) return;
         neighbors_.find({a, b}, worker.neighbors);
         if (worker.neighbors.name == state.neighbors && !have_moved(worker.neighbors)) return;
@@ -214,15 +212,13 @@ void ShapeContacts::touch(Touch& touch, const Surroundings& around, Worker& work
     worker.points.insert(worker.points.end(), worker.pair_points.begin(), worker.pair_points.end());
 }
 
-void ShapeContacts::update(const ChangedPairs& pairs, const ObjectShapes& shapes, const ObjectTable& table,
-                           const SpatialIndex& index, const scene::Scene& scene, double margin, Executor& executor) {
+void ShapeContacts::update(const ChangedPairs& pairs, const Surroundings& around, Executor& executor) {
     computed_ = 0;
-    if (!has_work(shapes)) {
+    if (!has_work(around.shapes)) {
         for (Vector<IdPair>* const list : {&began_, &ended_, &fresh_}) list->clear();
         changed_.clear();
         return contacts_.clear();
     }
-    const Surroundings around{shapes, table, index, scene, margin};
     note_moved(around);
     note_pairs(pairs, around);
     list_candidates();
@@ -244,9 +240,7 @@ void ShapeContacts::update(const ChangedPairs& pairs, const ObjectShapes& shapes
     write_contacts();
 }
 
-void ShapeContacts::update_all(std::span<const ObjectPair> pairs, const ObjectShapes& shapes, const ObjectTable& table,
-                               const SpatialIndex& index, const scene::Scene& scene, double margin,
-                               Executor& executor) {
+void ShapeContacts::update_all(std::span<const ObjectPair> pairs, const Surroundings& around, Executor& executor) {
     all_.clear();
     gone_.clear();
     for (const ObjectPair& pair : pairs) all_.push_back(ids_of(pair.first, pair.second));
@@ -256,7 +250,7 @@ void ShapeContacts::update_all(std::span<const ObjectPair> pairs, const ObjectSh
         while (place < all_.size() && all_[place] < ids) ++place;
         if (place == all_.size() || !(all_[place] == ids)) gone_.push_back(ids);
     }
-    update({all_, gone_}, shapes, table, index, scene, margin, executor);
+    update({all_, gone_}, around, executor);
 }
 
 // What began in the update before stays.

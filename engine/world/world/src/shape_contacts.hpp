@@ -10,6 +10,7 @@
 #include "object_shapes.hpp"
 #include "object_table.hpp"
 #include "pair_neighbors.hpp"
+#include "regions.hpp"
 #include "spatial_index.hpp"
 
 namespace crofton::world {
@@ -22,21 +23,44 @@ class ShapeContacts {
         std::span<const IdPair> there, ended;
     };
 
+    // What an update looks things up in.
+    struct Surroundings {
+        const ObjectShapes& shapes;
+        const ObjectTable& table;
+        const SpatialIndex& index;
+        const scene::Scene& scene;
+        const Regions& regions;
+        double margin;
+
+        // Of objects of the World's own and of regions.
+        [[nodiscard]] bool has_shape(std::uint32_t object) const {
+            return is_region_index(object) ? regions.has_shape(object) : shapes.has(object);
+        }
+        [[nodiscard]] const convex::Shape& shape(std::uint32_t object) const {
+            return is_region_index(object) ? regions.shape(object) : shapes.shape(object);
+        }
+        [[nodiscard]] Obb box(std::uint32_t object) const {
+            return is_region_index(object) ? regions.box(object) : index.box(object);
+        }
+        [[nodiscard]] std::optional<RigidTransform> pose(std::uint32_t object) const {
+            if (is_region_index(object)) return regions.pose(object);
+            return shapes.pose_of(object, table.objects[object], index.box(object), scene);
+        }
+    };
+
     // The object's shape, or where it stands, has changed otherwise than by its box.
     void note(std::uint32_t object) { changed_.push_back(object); }
     void forget_changes() { changed_.clear(); }  // where contacts are not asked for
     // After an update: gives back what many changes have taken.
     void release_scratch();
 
-    // False: the pairs do not matter to an update.
+    // False: the pairs do not matter to an update. Regions' objects are in pairs with the World's own alone.
     [[nodiscard]] bool has_work(const ObjectShapes& shapes) const { return shapes.count() > 0 || !states_.empty(); }
     // Pairs are computed that are new, or of an object among the index's moved_items(), or with another shape, or
     // noted; or where a neighbour matters for which that holds. The cost follows these, however many others rest.
-    void update(const ChangedPairs& pairs, const ObjectShapes& shapes, const ObjectTable& table,
-                const SpatialIndex& index, const scene::Scene& scene, double margin, Executor& executor);
+    void update(const ChangedPairs& pairs, const Surroundings& around, Executor& executor);
     // The same, of all pairs.
-    void update_all(std::span<const ObjectPair> pairs, const ObjectShapes& shapes, const ObjectTable& table,
-                    const SpatialIndex& index, const scene::Scene& scene, double margin, Executor& executor);
+    void update_all(std::span<const ObjectPair> pairs, const Surroundings& around, Executor& executor);
     void stay();  // nothing has changed
     [[nodiscard]] std::span<const Contact> contacts() const { return contacts_; }
     [[nodiscard]] std::size_t computed() const { return computed_; }  // pairs, in the last update or stay
@@ -68,20 +92,15 @@ class ShapeContacts {
         Vector<std::uint32_t> numbers[2];  // of these
         convex::PairMemory memory;         // of objects, in this update
     };
-    // What an update looks things up in.
-    struct Surroundings {
-        const ObjectShapes& shapes;
-        const ObjectTable& table;
-        const SpatialIndex& index;
-        const scene::Scene& scene;
-        double margin;
-    };
     void note_moved(const Surroundings& around);
     void note_pairs(const ChangedPairs& pairs, const Surroundings& around);
     void place_object(std::uint32_t object, const Surroundings& around);
     void rename(PairState& state, const ObjectPair& pair);
     void drop(const PairState& state);
     void list_candidates();
+    [[nodiscard]] bool has_moved(std::uint32_t object) const {  // regions' objects never do
+        return object < moved_.size() && moved_[object] != 0;
+    }
     [[nodiscard]] bool have_moved(const Neighbors& neighbors) const;
     void place_neighbors(const Surroundings& around, Worker& worker) const;
     void compute(Touch& touch, const Surroundings& around, Worker& worker) const;

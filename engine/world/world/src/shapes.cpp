@@ -17,21 +17,11 @@
 namespace crofton::world {
 namespace {
 
-// As validate(Pose) asks it of a rotation, with room for rounding.
-bool is_rotation(const glm::dmat3& m) {
-    const glm::dmat3 gram = glm::transpose(m) * m;
-    for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j)
-            if (!(std::abs(gram[i][j] - (i == j ? 1.0 : 0.0)) <= 5e-7)) return false;
-    return true;
-}
-
-TriangleMesh box_mesh(const glm::dmat3& linear, const glm::vec3& half) {
+TriangleMesh box_mesh(const glm::vec3& half) {
     TriangleMesh mesh;
     for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec3 p((corner & 1 ? half.x : -half.x), (corner & 2 ? half.y : -half.y),
-                           (corner & 4 ? half.z : -half.z));
-        mesh.positions.push_back(glm::vec3(linear * p));
+        mesh.positions.push_back(
+            {(corner & 1 ? half.x : -half.x), (corner & 2 ? half.y : -half.y), (corner & 4 ? half.z : -half.z)});
     }
     mesh.indices.assign(std::begin(kBoxTriangles), std::end(kBoxTriangles));
     return mesh;
@@ -68,6 +58,46 @@ constexpr double kWornOut = 1.5;  // times the spread at the build: then a tree 
 
 }  // namespace
 
+// As validate(Pose) asks it of a rotation, with room for rounding.
+bool is_rotation(const glm::dmat3& m) {
+    const glm::dmat3 gram = glm::transpose(m) * m;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+            if (!(std::abs(gram[i][j] - (i == j ? 1.0 : 0.0)) <= 5e-7)) return false;
+    return true;
+}
+
+void MeshShape::build(const TriangleMesh& triangles, bool refittable) {
+    auto built = mesh::MeshTree::build(triangles, {.refittable = refittable, .rays = true});
+    detail::give_up_without_memory(built);
+    is_usable = built.has_value();
+    tree = built ? std::move(*built) : mesh::MeshTree();
+    places = places_in(tree);
+    bounds = is_usable ? tree.parts().bounds() : Aabb{};
+}
+
+convex::Shape MeshShape::shape(const glm::dmat3* map) const {
+    return convex::ShapeMaker::mesh(tree, bounds, map);
+}
+
+Triangle MeshShape::triangle(std::uint32_t index) const {
+    const std::uint32_t place = places[index], lane = place % mesh::kMeshLeafWidth;
+    const mesh::MeshLeaf& leaf = tree.parts().leaves[place / mesh::kMeshLeafWidth];
+    Triangle corners;
+    for (std::size_t v = 0; v < 3; ++v)
+        corners[v] = {glm::vec3(leaf.vertex[v][0][lane], leaf.vertex[v][1][lane], leaf.vertex[v][2][lane])};
+    return corners;
+}
+
+bool build_under(const glm::dmat3& linear, TriangleMesh triangles, mesh::MeshTree& tree) {
+    for (glm::vec3& p : triangles.positions) p = glm::vec3(linear * glm::dvec3(p));
+    if (glm::determinant(linear) < 0.0) turn_round(triangles);
+    auto built = mesh::MeshTree::build(triangles);
+    detail::give_up_without_memory(built);
+    if (built) tree = std::move(*built);
+    return built.has_value();
+}
+
 Shapes::Shapes() {
     TriangleMesh point;
     point.positions.resize(1);
@@ -85,18 +115,14 @@ void Shapes::set_mesh(scene::MeshId mesh, bool wants_triangles) {
 }
 
 void Shapes::update_tree(const TriangleMesh& triangles, Mesh& mesh) {
-    if (mesh.can_refit && mesh.tree.refit(triangles.positions) && spread_of(mesh.tree) <= kWornOut * mesh.spread) {
-        mesh.bounds = mesh.tree.parts().bounds();
+    mesh::MeshTree& tree = mesh.shape.tree;
+    if (mesh.can_refit && tree.refit(triangles.positions) && spread_of(tree) <= kWornOut * mesh.spread) {
+        mesh.shape.bounds = tree.parts().bounds();
         return;
     }
-    auto built = mesh::MeshTree::build(triangles, {.refittable = mesh.deforms, .rays = true});
-    detail::give_up_without_memory(built);
-    mesh.is_usable = built.has_value();
-    mesh.tree = built ? std::move(*built) : mesh::MeshTree();
-    mesh.places = places_in(mesh.tree);
-    mesh.bounds = mesh.is_usable ? mesh.tree.parts().bounds() : Aabb{};
-    mesh.can_refit = mesh.is_usable && mesh.deforms;
-    if (mesh.can_refit) mesh.spread = spread_of(mesh.tree);
+    mesh.shape.build(triangles, mesh.deforms);
+    mesh.can_refit = mesh.shape.is_usable && mesh.deforms;
+    if (mesh.can_refit) mesh.spread = spread_of(tree);
 }
 
 bool Shapes::update(const scene::Scene& scene, Executor& executor) {
@@ -110,28 +136,12 @@ bool Shapes::update(const scene::Scene& scene, Executor& executor) {
         if (revision != 0 && meshes_[mesh].wants_triangles)
             to_build_.push_back(mesh);
         else
-            meshes_[mesh].tree = {}, meshes_[mesh].places = {},
-            meshes_[mesh].is_usable = meshes_[mesh].can_refit = false;
+            meshes_[mesh].shape = {}, meshes_[mesh].can_refit = false;
     }
     executor.parallel_for(to_build_.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t i = begin; i < end; ++i) update_tree(scene.mesh(to_build_[i]), meshes_[to_build_[i]]);
     });
     return changed;
-}
-
-convex::Shape Shapes::shape_of(const Object& object, const glm::dmat3* map) const {
-    const Mesh& mesh = meshes_[object.mesh];
-    return convex::ShapeMaker::mesh(mesh.tree, mesh.bounds, map);
-}
-
-Triangle Shapes::triangle_of(const Object& object, std::uint32_t triangle) const {
-    const Mesh& mesh = meshes_[object.mesh];
-    const std::uint32_t place = mesh.places[triangle], lane = place % mesh::kMeshLeafWidth;
-    const mesh::MeshLeaf& leaf = mesh.tree.parts().leaves[place / mesh::kMeshLeafWidth];
-    Triangle corners;
-    for (std::size_t v = 0; v < 3; ++v)
-        corners[v] = {glm::vec3(leaf.vertex[v][0][lane], leaf.vertex[v][1][lane], leaf.vertex[v][2][lane])};
-    return corners;
 }
 
 void Shapes::begin() {
@@ -172,20 +182,8 @@ void Shapes::prepare(const ObjectTable& table, const SpatialIndex& index, const 
 }
 
 void Shapes::build_own(const scene::Scene& scene, Own& own) const {
-    TriangleMesh turned;
-    if (own.mesh == kNoIndex) {
-        turned = box_mesh(own.linear, own.half_extents);
-    } else {
-        const TriangleMesh& mesh = scene.mesh(own.mesh);
-        turned.indices = mesh.indices;
-        turned.positions.reserve(mesh.positions.size());
-        for (const glm::vec3& p : mesh.positions) turned.positions.push_back(glm::vec3(own.linear * glm::dvec3(p)));
-    }
-    if (glm::determinant(own.linear) < 0.0) turn_round(turned);
-    auto built = mesh::MeshTree::build(turned);
-    detail::give_up_without_memory(built);
-    own.is_usable = built.has_value();
-    if (built) own.tree = std::move(*built);
+    own.is_usable =
+        build_under(own.linear, own.mesh == kNoIndex ? box_mesh(own.half_extents) : scene.mesh(own.mesh), own.tree);
 }
 
 void Shapes::build(const scene::Scene& scene, Executor& executor) {

@@ -5,6 +5,7 @@
 #include <crofton/geometry/shapes.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <crofton/scene/scene.hpp>
+#include <utility>
 
 #include "object_table.hpp"
 #include "spatial_index.hpp"
@@ -16,6 +17,33 @@ struct PosedTree {
     const mesh::MeshTree* tree = nullptr;  // none: no valid triangle
     RigidTransform pose;
 };
+
+// A mesh as queries ask it.
+struct MeshShape {
+    mesh::MeshTree tree;
+    Vector<std::uint32_t> places;  // of triangles in the tree's leaves, by index: leaf · kMeshLeafWidth + lane
+    Aabb bounds;                   // of the tree's vertices
+    bool is_usable = false;        // false: no triangle is valid or wanted
+
+    // Builds the tree.
+    void build(const TriangleMesh& triangles, bool refittable);
+    // Returns the mesh as a shape, under a map that stays alive as long as the shape; nullptr: no map.
+    [[nodiscard]] convex::Shape shape(const glm::dmat3* map) const;
+    // Returns a triangle, in the mesh's frame.
+    [[nodiscard]] Triangle triangle(std::uint32_t index) const;
+};
+
+// A mesh that stands for an object, and its transform to the world.
+struct PlacedMesh {
+    const MeshShape* mesh = nullptr;  // none: the object's sphere or box stands for it
+    const glm::dmat3* linear = nullptr;
+    glm::dvec3 translation{0.0};
+};
+
+// Whether trees may be asked under the map as under a pose.
+[[nodiscard]] bool is_rotation(const glm::dmat3& map);
+// Builds the tree over the mesh's triangles under a linear map. False: no triangle is valid then.
+[[nodiscard]] bool build_under(const glm::dmat3& linear, TriangleMesh triangles, mesh::MeshTree& tree);
 
 // A mesh's tree serves all objects that turn and move it. An object with a scale or shear has a tree of its own, of the
 // vertices times the linear part, rounded to float. So has a box that meets a mesh. Spheres are points.
@@ -30,19 +58,18 @@ class Shapes {
     // Builds the trees of meshes that are new or changed; true if there were any.
     bool update(const scene::Scene& scene, Executor& executor);
 
-    // Its mesh's tree; none for a bound, and where triangles are not wanted or none is valid: then its box stands for
-    // it.
-    [[nodiscard]] const mesh::MeshTree* mesh_tree_of(const Object& object) const {
+    // Its mesh, and the mesh's tree; none for a bound, and where triangles are not wanted or none is valid: then its
+    // box stands for it.
+    [[nodiscard]] const MeshShape* mesh_of(const Object& object) const {
         const bool has = object.kind == BoundKind::none && object.mesh < meshes_.size();
-        return has && meshes_[object.mesh].is_usable ? &meshes_[object.mesh].tree : nullptr;
+        return has && meshes_[object.mesh].shape.is_usable ? &meshes_[object.mesh].shape : nullptr;
     }
-
-    // Returns an object's mesh as a shape, under a map that stays alive as long as the shape; nullptr: no map. Requires
-    // that there is a tree.
-    [[nodiscard]] convex::Shape shape_of(const Object& object, const glm::dmat3* map) const;
-
-    // A triangle of the tree of an object's mesh, in its frame. Requires that there is one.
-    [[nodiscard]] Triangle triangle_of(const Object& object, std::uint32_t triangle) const;
+    [[nodiscard]] const mesh::MeshTree* mesh_tree_of(const Object& object) const {
+        const MeshShape* const mesh = mesh_of(object);
+        return mesh != nullptr ? &mesh->tree : nullptr;
+    }
+    // Takes a mesh out. Its objects must not be asked for afterwards.
+    [[nodiscard]] MeshShape take(scene::MeshId mesh) { return std::move(meshes_[mesh].shape); }
 
     // Objects that prepare() is called for between begin() and build() can be asked for their tree afterwards, until
     // something changes.
@@ -57,12 +84,10 @@ class Shapes {
 
   private:
     struct Mesh {
-        mesh::MeshTree tree;
-        Vector<std::uint32_t> places;  // of triangles in the tree's leaves, by index: leaf · kMeshLeafWidth + lane
+        MeshShape shape;
         std::uint64_t revision = 0;
-        Aabb bounds;          // of the tree's vertices
         double spread = 0.0;  // of the tree's boxes when it was built
-        bool wants_triangles = true, is_usable = false;
+        bool wants_triangles = true;
         bool deforms = false, can_refit = false;  // the second: the tree is refittable and of this mesh's triangles
     };
     struct Own {

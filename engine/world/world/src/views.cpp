@@ -8,19 +8,17 @@
 #include <crofton/geometry/finite.hpp>
 #include <optional>
 
+#include "eye.hpp"
 #include "occluded_view.hpp"
 #include "require_ok.hpp"
 #include "trace_zone.hpp"
 #include "world_state.hpp"
 
 namespace crofton {
+
 namespace {
 
-// The volume of a view, and for occlusion its eye.
-struct Eye {
-    cull::View plain;
-    occlude::OcclusionView occluding;  // if the request asks for occlusion
-};
+using world::Eye;
 
 // An error of a request that is one of many names its place.
 Error at_item(Error error, std::uint64_t item) {
@@ -120,11 +118,23 @@ std::span<const std::uint64_t> World::State::candidates_and_changed(std::span<co
     return both;
 }
 
-void World::State::find_triangles(const ViewRequest& request, const cull::VisibleSet& in_frustum,
+void World::State::find_triangles(const ViewRequest& request, const world::PictureView::InFrustum& in_frustum,
                                   world::OccludedView& result, Executor& executor) const {
     const world::TraceZone zone(options.trace, "view: list triangles");
     result.by_picture = true;
-    result.picture.find(request, in_frustum, table, index, scene, mesh_clusters, executor);
+    result.picture.find(
+        request, in_frustum,
+        [&](std::uint32_t id) -> world::PictureView::Drawn {
+            if (world::is_region_index(id)) return regions.drawn(id);
+            const world::Object& object = table.objects[id];
+            const auto* const clusters = object.kind == BoundKind::none ? mesh_clusters.find(object.mesh) : nullptr;
+            if (clusters == nullptr) return {.box = index.box(id)};
+            const Transform& world = scene.world(scene.node_of(object.instance));
+            return {.clusters = clusters,
+                    .placed = {nullptr, &world.linear, world.translation},
+                    .occludes = object.occludes};
+        },
+        executor);
     world::trace_count(options.trace, "triangles to draw", result.picture.statistics().triangles_listed);
 }
 
@@ -139,13 +149,15 @@ void World::State::draw_and_ask(const occlude::OcclusionView& view, const Occlus
                                .objects = object_bounds,
                                .layer_mask = layers},
                               result.choice);
-    // What the view does not draw hides nothing.
+    // What the view does not draw hides nothing, and what has left the World.
+    ids.erase(std::remove_if(ids.begin(), ids.end(), [&](std::uint32_t id) { return occluders.is_gone(id, regions); }),
+              ids.end());
     if (how.limits)
         ids.erase(std::remove_if(ids.begin(), ids.end(),
                                  [&](std::uint32_t id) {
                                      const std::uint32_t object = occluders.object_of(id);
                                      const std::uint32_t common = occluders.candidates().layers(id) & layers;
-                                     return !cull::is_worth_drawing(*how.limits, index.box(object), object, common);
+                                     return !cull::is_worth_drawing(*how.limits, box_of_object(object), object, common);
                                  }),
                   ids.end());
     {
@@ -163,14 +175,14 @@ void World::State::draw_and_ask(const occlude::OcclusionView& view, const Occlus
 }
 
 Result<void> World::view(const ViewRequest& request, ViewResult& visible, Executor& executor) const {
-    if (auto own = view_own(request, visible, executor); !own) return own;
-    if (!state_->regions.is_empty()) add_regions(request, eye_of(request, kNoItem)->plain, visible);
+    const auto eye = eye_of(request, kNoItem);
+    if (!eye) return tl::unexpected(eye.error());
+    view_own(request, *eye, visible, executor);
+    if (!state_->regions.is_empty()) add_regions(request, eye->plain, visible, executor);
     return {};
 }
 
-Result<void> World::view_own(const ViewRequest& request, ViewResult& visible, Executor& executor) const {
-    const auto eye = eye_of(request, kNoItem);
-    if (!eye) return tl::unexpected(eye.error());
+void World::view_own(const ViewRequest& request, const world::Eye& eye, ViewResult& visible, Executor& executor) const {
     visible.with_regions_ = false;
     cull::CullOptions how{request.mode, request.order, request.limits, {}};
     how.candidate_mask = state_->candidates_and_changed(request.candidate_mask, visible.candidates_);
@@ -179,52 +191,52 @@ Result<void> World::view_own(const ViewRequest& request, ViewResult& visible, Ex
         const world::TraceZone zone(state_->options.trace, "World::view");
         visible.names_ = &state_->table.names;
         visible.hides_ = false;
-        cull::find_visible(state_->index.tree(), state_->index.moving(), eye->plain, visible.set_, how, executor);
+        cull::find_visible(state_->index.tree(), state_->index.moving(), eye.plain, visible.set_, how, executor);
         world::trace_count(state_->options.trace, "objects in view", visible.set_.size());
-        if (request.picture) {
-            if (!visible.occluded_) visible.occluded_ = world::make_occluded_view();
-            state_->find_triangles(request, visible.set_, *visible.occluded_, executor);
-        }
-        visible.hides_ = request.picture.has_value();
-        return {};
+        if (!request.picture) return;
+        if (!visible.occluded_) visible.occluded_ = world::make_occluded_view();
+        if (!state_->regions.is_empty()) return;  // the picture is of regions' objects as well
+        state_->find_triangles(request, {visible.set_.ids(), visible.set_.verdicts(), visible.set_.inside_count()},
+                               *visible.occluded_, executor);
+        visible.hides_ = true;
+        return;
     }
     if (!visible.occluded_) visible.occluded_ = world::make_occluded_view();
     world::OccludedView& result = *visible.occluded_;
     result.by_picture = false;
     result.resize(request.occlusion->size);
-    state_->draw_and_ask(eye->occluding, *request.occlusion, request.layers, how, executor, result);
+    state_->draw_and_ask(eye.occluding, *request.occlusion, request.layers, how, executor, result);
     visible.names_ = &state_->table.names;
     visible.hides_ = true;
     result.occluded.clear();
     result.by_tree = request.order == cull::ResultOrder::tree;
-    if (!request.occlusion->list_occluded && !result.by_tree) return {};
-    cull::find_visible(state_->index.tree(), state_->index.moving(), eye->plain, visible.set_, how, executor);
+    if (!request.occlusion->list_occluded && !result.by_tree) return;
+    cull::find_visible(state_->index.tree(), state_->index.moving(), eye.plain, visible.set_, how, executor);
     result.split(visible.set_, state_->index.size());
     if (!request.occlusion->list_occluded) result.occluded.clear();
-    return {};
 }
 
 Result<void> World::view(std::span<const ViewRequest> requests, MultiViewResult& visible, Executor& executor) const {
-    if (auto own = view_own(requests, visible, executor); !own) return own;
-    visible.with_regions_ = false;
-    if (state_->regions.is_empty()) return {};
-    std::array<cull::View, cull::kMaxViews> views;
-    for (std::size_t v = 0; v < requests.size(); ++v) views[v] = eye_of(requests[v], v)->plain;
-    add_regions(requests, std::span(views).first(requests.size()), visible);
-    return {};
-}
-
-Result<void> World::view_own(std::span<const ViewRequest> requests, MultiViewResult& visible,
-                             Executor& executor) const {
     if (auto few = cull::check_view_count(requests.size()); !few) return few;
-    std::array<cull::View, cull::kMaxViews> volumes;
+    std::array<Eye, cull::kMaxViews> eyes;
     for (std::size_t v = 0; v < requests.size(); ++v) {
         const auto eye = eye_of(requests[v], v);
         if (!eye) return tl::unexpected(eye.error());
-        volumes[v] = eye->plain;
+        eyes[v] = *eye;
         if (requests[v].order != requests[0].order)
             return fail(ErrorCode::invalid_argument, v, "view: the views of one call are listed in one order");
     }
+    const std::span<const Eye> of_requests = std::span(eyes).first(requests.size());
+    if (auto own = view_own(requests, of_requests, visible, executor); !own) return own;
+    visible.with_regions_ = false;
+    if (!state_->regions.is_empty()) add_regions(requests, of_requests, visible);
+    return {};
+}
+
+Result<void> World::view_own(std::span<const ViewRequest> requests, std::span<const world::Eye> eyes,
+                             MultiViewResult& visible, Executor& executor) const {
+    std::array<cull::View, cull::kMaxViews> volumes;
+    for (std::size_t v = 0; v < eyes.size(); ++v) volumes[v] = eyes[v].plain;
     const std::span<const cull::View> views = std::span(volumes).first(requests.size());
     const bool ascending = requests.empty() || requests[0].order == cull::ResultOrder::ascending;
     const bool shared_out = ascending && requests.size() > 1 && executor.concurrency() > 1;
@@ -242,7 +254,7 @@ Result<void> World::view_own(std::span<const ViewRequest> requests, MultiViewRes
         for (std::size_t i = 0; ascending && i < visible.set_.size(); ++i)
             visible.add(visible.set_.ids()[i], visible.set_.view_mask(i));
     } else {
-        view_each(requests, visible, executor);
+        view_each(requests, eyes, visible, executor);
     }
     visible.names_ = &state_->table.names;
     visible.view_count_ = requests.size();
@@ -259,24 +271,30 @@ Result<void> World::view_own(std::span<const ViewRequest> requests, MultiViewRes
     return {};
 }
 
-// Every request by itself. Buffers are made first, so that threads that share the requests make none.
-void World::view_each(std::span<const ViewRequest> requests, MultiViewResult& visible, Executor& executor) const {
+// Every request by itself. Buffers are made first, so that threads that share the requests make none. A picture has
+// regions' objects in it from the beginning.
+void World::view_each(std::span<const ViewRequest> requests, std::span<const world::Eye> eyes, MultiViewResult& visible,
+                      Executor& executor) const {
     while (visible.each_.size() < requests.size()) visible.each_.emplace_back();
     for (std::size_t v = 0; v < requests.size(); ++v) {
         if (!requests[v].occlusion) continue;
         if (!visible.each_[v].occluded_) visible.each_[v].occluded_ = world::make_occluded_view();
         visible.each_[v].occluded_->resize(requests[v].occlusion->size);
     }
+    const bool has_regions = !state_->regions.is_empty();
     executor.parallel_for(requests.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t v = begin; v < end; ++v) {
+            const bool with_regions = has_regions && requests[v].picture;
             ViewRequest request = requests[v];
-            request.order =
-                request.occlusion ? cull::ResultOrder::ascending : cull::ResultOrder::tree;  // the quicker one
-            world::require_ok(view_own(request, visible.each_[v], serial_executor()));
+            request.order = request.occlusion || with_regions ? cull::ResultOrder::ascending
+                                                              : cull::ResultOrder::tree;  // the quicker one
+            view_own(request, eyes[v], visible.each_[v], serial_executor());
+            if (with_regions) add_regions(request, eyes[v].plain, visible.each_[v], serial_executor());
         }
     });
     for (std::size_t v = 0; v < requests.size(); ++v)
-        for (const std::uint32_t id : visible.each_[v].ids()) visible.add(id, std::uint32_t{1} << v);
+        for (const std::uint32_t id : visible.each_[v].ids())
+            if (id < kFirstRegionIndex) visible.add(id, std::uint32_t{1} << v);
 }
 
 void MultiViewResult::forget_ids() {

@@ -21,10 +21,8 @@ void ContactFinder::release_scratch() {}
 void RegionPairs::stay() {}
 void RegionPairs::merge(std::span<const ObjectPair>, std::span<const Contact>) {}
 
-void ShapeContacts::update(const ChangedPairs&, const ObjectShapes&, const ObjectTable&, const SpatialIndex&,
-                           const scene::Scene&, double, Executor&) {}
-void ShapeContacts::update_all(std::span<const ObjectPair>, const ObjectShapes&, const ObjectTable&,
-                               const SpatialIndex&, const scene::Scene&, double, Executor&) {}
+void ShapeContacts::update(const ChangedPairs&, const Surroundings&, Executor&) {}
+void ShapeContacts::update_all(std::span<const ObjectPair>, const Surroundings&, Executor&) {}
 void ShapeContacts::stay() {}
 void ShapeContacts::release_scratch() {}
 
@@ -34,4 +32,5 @@ namespace crofton {
 Result<void> World::State::update_region_pairs(Result<void> others) {
     return others;
 }
+void World::State::update_shape_contacts(Executor&) {}
 }  // namespace crofton

@@ -10,6 +10,8 @@
 namespace crofton {
 
 World::World(const WorldOptions& options) : state_(Owner<State>::make(options)) {}
+World::World(const WorldOptions& options, std::uint32_t first_generation)
+    : state_(Owner<State>::make(options, first_generation)) {}
 World::~World() = default;
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
@@ -84,8 +86,10 @@ Result<Obb> World::box_of(ObjectHandle object) const {
 }
 
 Result<Transform> World::transform_of(ObjectHandle object) const {
-    if (state_->regions.contains(object))
+    if (const world::Regions& regions = state_->regions; regions.contains(object)) {
+        if (regions.has_transform(object.index)) return regions.transform(object.index);
         return fail(ErrorCode::invalid_argument, object.index, "world: the object is a bound and has no transform");
+    }
     if (auto known = state_->check(object, object.index); !known) return tl::unexpected(known.error());
     const std::uint32_t instance = state_->table.objects[object.index].instance;
     if (instance == kNoIndex)
@@ -245,23 +249,19 @@ Result<void> World::update(Executor& executor) {
         found = s.finder.update(s.table, s.index, s.scene, s.shapes, s.object_shapes, s.pair_changes, executor);
         s.ground.set_used(!s.object_shapes.unbounded().empty());
         if (s.ground.is_used()) s.update_ground();
-        if (s.options.contacts) {
-            if (s.ground.is_used()) s.update_ground_contacts();
-            if (s.ground.is_or_was_used())
-                s.shape_contacts.update_all(s.own_pairs(), s.object_shapes, s.table, s.index, s.scene,
-                                            s.options.contact_margin, executor);
-            else
-                s.shape_contacts.update({s.finder.touched(), s.finder.ended()}, s.object_shapes, s.table, s.index,
-                                        s.scene, s.options.contact_margin, executor);
-        }
+        if (s.options.contacts && s.ground.is_used()) s.update_ground_contacts();
+        found = s.update_region_pairs(std::move(found));
+        if (s.region_pairs.is_used()) s.region_pairs.merge(s.own_pairs(), s.own_contacts());
+        if (s.options.contacts) s.update_shape_contacts(executor);
     }
-    if (s.options.pairs && changed) found = s.update_region_pairs(std::move(found));
     if (!s.options.pairs || !s.options.contacts) s.shape_contacts.forget_changes();
-    if (!changed) s.finder.stay();
-    if (!changed) s.ground.stay();
-    if (!changed) s.shape_contacts.stay();
-    if (!changed) s.region_pairs.stay();
-    if (s.region_pairs.is_used()) s.region_pairs.merge(s.own_pairs(), s.own_contacts());
+    if (!changed) {
+        s.finder.stay();
+        s.ground.stay();
+        s.shape_contacts.stay();
+        s.region_pairs.stay();
+        if (s.region_pairs.is_used()) s.region_pairs.merge(s.own_pairs(), s.own_contacts());
+    }
     s.contact_list.note_update(changed);
     s.statistics.contacts_us =
         std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();

@@ -135,6 +135,10 @@ struct World::State {
     Result<void> update_region_pairs(Result<void> others);
     void list_changed_near_regions();
     void add_region_pairs_of(std::uint32_t object);
+    [[nodiscard]] Obb region_collider_box(std::uint32_t other, const Obb& box) const;
+    // How one of the World's own and an object of a region touch, of which one has no shape.
+    void touch_in_region(std::uint32_t object, std::uint32_t other, world::BoundTouch& touch);
+    void update_shape_contacts(Executor& executor);
     [[nodiscard]] std::span<const ObjectPair> own_pairs() const {
         return ground.is_used() ? ground.pairs() : finder.pairs();
     }
@@ -147,15 +151,30 @@ struct World::State {
     // CullOptions::candidate_mask, in `both`, with the bits of objects that have moved or reuse an index.
     [[nodiscard]] std::span<const std::uint64_t> candidates_and_changed(std::span<const std::uint64_t> candidate_mask,
                                                                         Vector<std::uint64_t>& both) const;
-    void find_triangles(const ViewRequest& request, const cull::VisibleSet& in_frustum, world::OccludedView& result,
-                        Executor& executor) const;
+    void find_triangles(const ViewRequest& request, const world::PictureView::InFrustum& in_frustum,
+                        world::OccludedView& result, Executor& executor) const;
     // Draws the occluders that are worth most to the view into the result's buffer, then asks what they do not hide.
     void draw_and_ask(const occlude::OcclusionView& view, const OcclusionOptions& occlusion, std::uint32_t layers,
                       const cull::CullOptions& how, Executor& executor, world::OccludedView& result) const;
 
-    // Whether an object has a shape besides its sphere or box: a shape, or a mesh that can be queried.
-    [[nodiscard]] bool has_shape(std::uint32_t object) const {
-        return object_shapes.has(object) || shapes.mesh_tree_of(table.objects[object]) != nullptr;
+    // Of an object of the World's own or of a region: whether it has a shape; the mesh that stands for it, if it has
+    // none; whether it has either.
+    [[nodiscard]] bool has_own_shape(std::uint32_t id) const {
+        return world::is_region_index(id) ? regions.has_shape(id) : object_shapes.has(id);
+    }
+    [[nodiscard]] world::PlacedMesh mesh_of_object(std::uint32_t id) const {
+        if (world::is_region_index(id)) return regions.mesh(id);
+        const world::Object& object = table.objects[id];
+        const world::MeshShape* const mesh = shapes.mesh_of(object);
+        if (mesh == nullptr) return {};
+        const Transform& world = scene.world(scene.node_of(object.instance));
+        return {mesh, &world.linear, world.translation};
+    }
+    [[nodiscard]] bool has_shape(std::uint32_t id) const {
+        return has_own_shape(id) || mesh_of_object(id).mesh != nullptr;
+    }
+    [[nodiscard]] Obb box_of_object(std::uint32_t id) const {
+        return world::is_region_index(id) ? regions.box(id) : index.box(id);
     }
     // Returns an object's shape, or else its mesh, sphere or box.
     [[nodiscard]] world::QueryShape query_shape_of(std::uint32_t object) const;
@@ -170,7 +189,7 @@ struct World::State {
 
     // How far along the ray an object's own shape is met, no farther than the ray goes; its box is met at `box_t`.
     [[nodiscard]] std::optional<ObjectHit> shape_hit(const Ray& ray, std::uint32_t object, double box_t) const;
-    [[nodiscard]] std::optional<ObjectHit> shape_hit(const Ray& ray, std::uint32_t object) const;
+    [[nodiscard]] std::optional<ObjectHit> own_shape_hit(const Ray& ray, std::uint32_t object) const;
     // Visits objects whose boxes the ray meets; the visitor answers how far along the ray others are of interest.
     void visit_along(const Ray& ray, std::uint32_t layers, collide::RayVisitor visit) const;
     // Visits objects whose boxes are within `distance` of `bounds`, and some others.

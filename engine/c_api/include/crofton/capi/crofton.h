@@ -68,6 +68,8 @@ typedef struct crofton_world_statistics {
     uint32_t out_of_range; /* objects whose product of transforms is out of range: hidden until it is valid */
     uint32_t tree_built;   /* 1: in one go: a scene was loaded, or much came to rest */
     uint64_t object_count; /* as of now, hidden ones included */
+    uint64_t
+        occluders_waiting; /* objects of regions whose occluders are not placed yet; they hide nothing until then */
 } crofton_world_statistics;
 
 /* A mesh in its own frame, in your arrays; World copies what it needs. Each triangle has three indices,
@@ -201,11 +203,19 @@ typedef struct crofton_attached_region {
 
 #define CROFTON_FIRST_REGION_INDEX 0x80000000u /* objects of regions have indices from here on, consecutive in each */
 
-/* An object of a region. Get it from crofton_default_region_object(). */
+/* An object of a region: a bound, a mesh, or only a shape, relative to the region's origin. Get it from
+ * crofton_default_region_object(). */
 typedef struct crofton_region_object {
-    crofton_bound bound; /* relative to the region's origin */
+    crofton_bound bound;
     uint64_t user;
     uint32_t layers, collides_with; /* all */
+    uint32_t mesh;                  /* CROFTON_NONE, or a place in the options' meshes */
+    uint32_t occludes;              /* 1; 0: the object's mesh does not hide others */
+    uint32_t only_occludes; /* 0; 1, with a mesh: no answer contains the object, but its occluders hide others */
+    const crofton_transform* transform; /* of a mesh or a shape without a bound; NULL: the identity */
+    /* Or NULL. Not infinite ground, which you add to the world itself. You may destroy it once the region is prepared.
+     */
+    const crofton_shape* shape;
 } crofton_region_object;
 
 typedef struct crofton_region_options {
@@ -214,12 +224,18 @@ typedef struct crofton_region_options {
     /* Or NULL. Return 1 to stop (CROFTON_CANCELLED). It is not called while the tree is built. */
     int (*should_stop)(void* user, double share_done);
     void* stop_user;
+    const crofton_mesh_data* meshes; /* that the objects share; or NULL */
+    size_t mesh_count;
+    uint32_t find_occluders; /* 0; 1: searches the meshes for occluders, as crofton_world_find_occluders does */
+    /* 1e9: no coordinate of an origin may be larger if an object has a mesh or a shape, whose box is wider by about
+     * 1e-15 of it. */
+    double max_origin;
 } crofton_region_options;
 
 CROFTON_API crofton_region_object crofton_default_region_object(void);
 CROFTON_API crofton_region_options crofton_default_region_options(void);
-/* Prepares a region; call it on any thread. `options`, `jobs` or NULL. If an object is refused, crofton_last_error_item
- * is its place. */
+/* Prepares a region; call it on any thread. `options`, `jobs` or NULL. If an object or a mesh is refused,
+ * crofton_last_error_item is its place. */
 CROFTON_API crofton_status crofton_region_prepare(const crofton_region_object* objects, size_t count,
                                                   const crofton_region_options* options, const crofton_jobs* jobs,
                                                   crofton_region** region);

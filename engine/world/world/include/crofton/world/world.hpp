@@ -21,6 +21,11 @@ struct CastOptions;
 struct Motion;
 }  // namespace convex
 
+namespace world {
+class RegionSolids;
+struct Eye;
+}  // namespace world
+
 inline constexpr std::size_t kAutomatic = ~std::size_t{0};
 
 // Functions of your profiler. World calls them at the beginning and end of each zone, on the thread that runs the zone;
@@ -59,6 +64,9 @@ struct WorldStatistics {
     collide::BatchStatistics box_tests;                            // how the pairs of boxes were decided
     double contacts_us = 0.0;  // microseconds that pairs and contacts took in this update
     std::uint32_t nodes_updated = 0;
+    // Objects of attached regions whose occluders are not placed yet. An update places some 256 occluders, and fewer of
+    // meshes that are new; until then, these objects hide nothing.
+    std::size_t occluders_waiting = 0;
     std::uint32_t out_of_range = 0;  // objects whose product of transforms is out of range: hidden until it is valid
 };
 
@@ -151,7 +159,11 @@ class World {
     // attached at several origins. Takes constant time, and so does detach(), whatever the region holds.
     //
     // From the next update on, all answers contain the region's objects as if they had been added one by one, with
-    // boxes whose centers are the sums of their own and the origin, rounded once; exactness is that of other objects.
+    // centers of boxes and translations of transforms that are the sums of their own and the origin, rounded once;
+    // exactness is that of other objects. Boxes around meshes and shapes are those of the region, a little wider
+    // (RegionOptions::max_origin). What occluders of regions hide is left out as soon as they are placed
+    // (WorldStatistics::occluders_waiting).
+    //
     // The object at place i of the region has the index of object_in(region, 0) plus i. Such objects are at rest.
     // set_hidden() works for them; other changes fail with `unsupported`: hide the object and add one of the World's
     // own. pairs() and contacts() contain pairs of one of the World's own objects and one of a region
@@ -159,7 +171,7 @@ class World {
     //
     // Detaching makes the handles of the region's objects stale. As for removed objects, rays and shapes no longer
     // meet them, and other answers follow with the next update. Errors: an origin that is not finite, or puts the
-    // objects beyond 5e29; more than 2^31 objects in all regions; a stale handle.
+    // objects beyond 5e29, or is beyond the region's max_origin; more than 2^31 objects in all regions; a stale handle.
     Result<RegionHandle> attach(const Region& region, const glm::dvec3& origin);
     Result<void> detach(RegionHandle region);
     [[nodiscard]] bool contains(RegionHandle region) const;
@@ -267,16 +279,20 @@ class World {
     [[nodiscard]] std::span<const Contact> contacts() const;
 
   private:
+    friend class world::RegionSolids;
+    World(const WorldOptions& options, std::uint32_t first_generation);
     // Of the World's own objects.
-    [[nodiscard]] Result<void> view_own(const ViewRequest& request, ViewResult& visible, Executor& executor) const;
-    [[nodiscard]] Result<void> view_own(std::span<const ViewRequest> requests, MultiViewResult& visible,
-                                        Executor& executor) const;
-    void view_each(std::span<const ViewRequest> requests, MultiViewResult& visible, Executor& executor) const;
+    void view_own(const ViewRequest& request, const world::Eye& eye, ViewResult& visible, Executor& executor) const;
+    [[nodiscard]] Result<void> view_own(std::span<const ViewRequest> requests, std::span<const world::Eye> eyes,
+                                        MultiViewResult& visible, Executor& executor) const;
+    void view_each(std::span<const ViewRequest> requests, std::span<const world::Eye> eyes, MultiViewResult& visible,
+                   Executor& executor) const;
     // Adds regions' objects to such an answer.
     void find_in_regions(const ViewRequest& request, const cull::View& view, ViewResult& visible) const;
-    void add_regions(const ViewRequest& request, const cull::View& view, ViewResult& visible) const;
-    void add_regions(std::span<const ViewRequest> requests, std::span<const cull::View> views,
+    void add_regions(const ViewRequest& request, const cull::View& view, ViewResult& visible, Executor& executor) const;
+    void add_regions(std::span<const ViewRequest> requests, std::span<const world::Eye> eyes,
                      MultiViewResult& visible) const;
+    void keep_in_picture(const ViewRequest& request, ViewResult& visible, Executor& executor) const;
     struct State;
     Owner<State> state_;
 };

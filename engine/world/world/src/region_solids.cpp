@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+#include "region_solids.hpp"
+
+#include <cmath>
+#include <crofton/core/recovery.hpp>
+#include <glm/common.hpp>
+
+#include "require_ok.hpp"
+#include "world_state.hpp"
+
+namespace crofton::world {
+namespace {
+
+double sum_of_sizes(const glm::dvec3& v) {
+    return std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
+}
+
+Error at_item(Error error, std::uint64_t item) {
+    error.item = item;
+    return error;
+}
+
+// What stands at t + origin is in a box around c + origin, relative to its own coordinates. Both sums round, by 2^-53
+// of themselves on each axis. Twice that.
+double rounding_at(const glm::dvec3& t, const glm::dvec3& c, double max_origin) {
+    return 0x1p-52 * (sum_of_sizes(t) + sum_of_sizes(c) + 6.0 * max_origin);
+}
+
+}  // namespace
+
+RegionSolids::RegionSolids() : world_({.pairs = false}, 1) {}
+
+Result<void> RegionSolids::add_meshes(std::span<const RegionMesh> meshes, detail::StopSignal& stop) {
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        if (stop.is_raised(0.0)) return fail(ErrorCode::cancelled, kNoItem, "region: the callback asked to stop");
+        MeshDescription description = meshes[i].mesh;
+        wants_triangles_.push_back(description.triangles);
+        description.triangles = false;  // finish() builds the trees
+        const auto mesh = world_.add_mesh(description);
+        if (!mesh) return tl::unexpected(at_item(mesh.error(), i));
+        if (!description.occluders && !meshes[i].occluders.empty())
+            if (auto set = world_.set_occluders(*mesh, meshes[i].occluders); !set)
+                return tl::unexpected(at_item(set.error(), i));
+        meshes_.push_back(*mesh);
+    }
+    return {};
+}
+
+Result<void> RegionSolids::add(const RegionObject& object, std::uint32_t item) {
+    if (object.mesh != kNoIndex && object.mesh >= meshes_.size())
+        return fail(ErrorCode::invalid_argument, item, {"region: there is no mesh ", object.mesh, " in the options"});
+    if (object.shape != nullptr && !object.shape->is_bounded())
+        return fail(ErrorCode::unsupported, item,
+                    "region: an object's shape is infinite ground: add it to the World itself");
+    const bool has_mesh = object.mesh != kNoIndex;
+    ObjectDescription description{.bound = object.bound,
+                                  .shape = object.shape,
+                                  .layers = object.layers,
+                                  .occludes = object.occludes,
+                                  .only_occludes = object.only_occludes};
+    if (has_mesh) description.mesh = meshes_[object.mesh];
+    if (has_mesh || object.bound.kind == BoundKind::none) description.transform = object.transform;
+    const auto added = world_.add(description);
+    if (!added) return tl::unexpected(at_item(added.error(), item));
+    added_.push_back({item, added->index, has_mesh});
+    return {};
+}
+
+Result<void> RegionSolids::place(double max_origin, Vector<Obb>& boxes, Vector<std::uint32_t>& layers,
+                                 Vector<RegionData::Item>& items) {
+    World::State& s = *world_.state_;
+    require_ok(s.apply_scene(serial_executor()));
+    for (const Added& added : added_) {
+        const Object& object = s.table.objects[added.object];
+        Obb& box = boxes[added.item] = s.index.box(added.object);
+        items[added.item].kind = object.kind;
+        items[added.item].radius = object.radius;
+        const bool hangs = object.instance != kNoIndex;
+        if (hangs) layers[added.item] = object.only_occludes ? 0 : s.scene.layer_masks()[object.instance];
+        if (!hangs && !s.object_shapes.is_grown(added.object)) continue;
+        const glm::dvec3 at = hangs ? s.scene.world(s.scene.node_of(object.instance)).translation
+                                    : s.object_shapes.given(added.object).box.center;
+        box.half_extents = rounded_up(glm::dvec3(box.half_extents), rounding_at(at, box.center, max_origin));
+        if (auto valid = validate(box, added.item); !valid) return valid;
+    }
+    return {};
+}
+
+void RegionSolids::finish(RegionData& data, std::size_t item_count, Executor& executor) {
+    World::State& s = *world_.state_;
+    data.meshes.resize(meshes_.size());
+    for (std::size_t m = 0; m < meshes_.size(); ++m) {
+        const scene::MeshId id = meshes_[m].index;
+        if (wants_triangles_[m]) data.meshes[m].triangles = s.scene.mesh(id);
+        const std::span<const occlude::FoundOccluder> occluders = s.occluders.occluders_of(id);
+        data.meshes[m].occluders.assign(occluders.begin(), occluders.end());
+        data.meshes[m].clusters = s.mesh_clusters.take(id);
+    }
+    detail::recoverable_for(executor, data.meshes.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
+        for (std::size_t m = begin; m < end; ++m)
+            if (wants_triangles_[m]) data.meshes[m].shape.build(data.meshes[m].triangles, false);
+    });
+    data.solid_of_item.assign(item_count, kNoIndex);
+    data.solids.reserve(added_.size());
+    for (const Added& added : added_) {
+        const Object& object = s.table.objects[added.object];
+        data.solid_of_item[added.item] = static_cast<std::uint32_t>(data.solids.size());
+        RegionData::Solid& solid = data.solids.emplace_back();
+        solid.has_transform = object.instance != kNoIndex;
+        if (solid.has_transform) solid.transform = s.scene.world(s.scene.node_of(object.instance));
+        if (added.has_mesh) {
+            solid.mesh = object.mesh;
+            solid.occludes = object.occludes;
+            if (object.occludes && !data.meshes[solid.mesh].occluders.empty())
+                solid.occluding_layers = s.scene.layer_masks()[object.instance];
+            if (solid.occluding_layers != 0) data.occluding.push_back(added.item);
+        }
+        if (!s.object_shapes.has(added.object)) continue;
+        solid.shape = static_cast<std::uint32_t>(data.shapes.size());
+        const auto pose = s.object_shapes.pose_of(added.object, object, s.index.box(added.object), s.scene);
+        data.shapes.push_back(s.object_shapes.take(added.object));
+        data.shapes.back().pose = pose;
+    }
+}
+
+}  // namespace crofton::world

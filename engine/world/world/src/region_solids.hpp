@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// Objects of a region that are more than bounds, while the region is prepared.
+#pragma once
+#include <crofton/core/stop_signal.hpp>
+#include <crofton/world/world.hpp>
+
+#include "region_data.hpp"
+
+namespace crofton::world {
+
+// Adds such objects to a World of its own, so that they become what World::add makes of them, and then takes them out.
+class RegionSolids {
+  public:
+    RegionSolids();
+
+    // Errors: as World::add_mesh and set_occluders; the item is the mesh's place.
+    [[nodiscard]] Result<void> add_meshes(std::span<const RegionMesh> meshes, detail::StopSignal& stop);
+    // The object at place `item`. Errors: as World::add, and of a shape without bounds.
+    [[nodiscard]] Result<void> add(const RegionObject& object, std::uint32_t item);
+    // Replaces the boxes, layers and items of the objects that were added. The boxes contain mesh and shape wherever
+    // the region is attached, up to `max_origin`. Error: a box that is out of range then.
+    [[nodiscard]] Result<void> place(double max_origin, Vector<Obb>& boxes, Vector<std::uint32_t>& layers,
+                                     Vector<RegionData::Item>& items);
+    // Moves all the rest to the region, which has `item_count` objects.
+    void finish(RegionData& data, std::size_t item_count, Executor& executor);
+
+  private:
+    struct Added {
+        std::uint32_t item = 0, object = 0;
+        bool has_mesh = false;
+    };
+    World world_;
+    Vector<MeshHandle> meshes_;
+    Vector<std::uint8_t> wants_triangles_;  // by mesh
+    Vector<Added> added_;
+};
+
+}  // namespace crofton::world
