@@ -207,7 +207,7 @@ void bind_world_queries(py::module_& module, py::class_<PyWorld>& type) {
             [](const PyWorld& world, ObjectHandle object) {
                 return matrix_of(value_of(world.ask([&](const World& w) { return w.transform_of(object); })));
             },
-            py::arg("object"), "Its matrix to the world, probe (4, 4), as of the last update.")
+            py::arg("object"), "Its matrix to the world, shape (4, 4), as of the last update.")
         .def(
             "user_of",
             [](const PyWorld& world, ObjectHandle object) {

@@ -9,9 +9,9 @@ import crofton
 stub = ast.parse((pathlib.Path(crofton.__file__).parent / "__init__.pyi").read_text())
 
 
-def names_of(shape):
+def names_of(body):
     names = set()
-    for node in shape:
+    for node in body:
         if isinstance(node, (ast.ClassDef, ast.FunctionDef)):
             names.add(node.name)
         elif isinstance(node, ast.AnnAssign):
@@ -24,13 +24,13 @@ def public(thing):
 
 
 def test_the_module_has_what_its_stub_has():
-    assert names_of(stub.shape) - {"__version__"} == public(crofton)
+    assert names_of(stub.body) - {"__version__"} == public(crofton)
 
 
 def test_classes_have_what_their_stubs_have():
-    for node in stub.shape:
+    for node in stub.body:
         if isinstance(node, ast.ClassDef) and node.name != "Error":
-            members = {n for n in names_of(node.shape) if not n.startswith("_")}
+            members = {n for n in names_of(node.body) if not n.startswith("_")}
             assert members == public(getattr(crofton, node.name)), node.name
 
 

@@ -61,20 +61,20 @@ pub enum Shape {
 }
 
 impl Shape {
-    fn raw(&self) -> sys::Shape {
-        let mut raw: sys::Shape = unsafe { std::mem::zeroed() };
+    fn raw(&self) -> sys::QueryShape {
+        let mut raw: sys::QueryShape = unsafe { std::mem::zeroed() };
         match *self {
             Shape::Box(b) => {
-                raw.kind = sys::SHAPE_BOX;
+                raw.kind = sys::QUERY_SHAPE_BOX;
                 raw.bounding_box = b;
             }
             Shape::Sphere { center, radius } => {
-                raw.kind = sys::SHAPE_SPHERE;
+                raw.kind = sys::QUERY_SHAPE_SPHERE;
                 raw.begin = center;
                 raw.radius = radius;
             }
             Shape::Capsule { begin, end, radius } => {
-                raw.kind = sys::SHAPE_CAPSULE;
+                raw.kind = sys::QUERY_SHAPE_CAPSULE;
                 raw.begin = begin;
                 raw.end = end;
                 raw.radius = radius;

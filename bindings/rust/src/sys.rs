@@ -178,12 +178,12 @@ pub struct Placed {
     pub pose: *const crate::Transform,
 }
 
-pub const SHAPE_BOX: u32 = 0;
-pub const SHAPE_SPHERE: u32 = 1;
-pub const SHAPE_CAPSULE: u32 = 2;
+pub const QUERY_SHAPE_BOX: u32 = 0;
+pub const QUERY_SHAPE_SPHERE: u32 = 1;
+pub const QUERY_SHAPE_CAPSULE: u32 = 2;
 
 #[repr(C)]
-pub struct Shape {
+pub struct QueryShape {
     pub kind: u32,
     pub bounding_box: crate::Obb,
     pub begin: [f64; 3],
@@ -538,10 +538,10 @@ extern "C" {
         world: *const World, ray: *const crate::Ray, layer_mask: u32, found: *mut Found,
     ) -> Status;
     pub fn crofton_world_overlap(
-        world: *const World, shape: *const Shape, layer_mask: u32, found: *mut Found,
+        world: *const World, shape: *const QueryShape, layer_mask: u32, found: *mut Found,
     ) -> Status;
     pub fn crofton_world_closest(
-        world: *const World, shape: *const Shape, max_distance: f64, layer_mask: u32, closest: *mut ClosestObject,
+        world: *const World, shape: *const QueryShape, max_distance: f64, layer_mask: u32, closest: *mut ClosestObject,
     ) -> Status;
     pub fn crofton_world_pairs(world: *const World, pairs: *mut *const crate::ObjectPair, count: *mut usize) -> Status;
     pub fn crofton_world_contacts(
