@@ -48,22 +48,21 @@ configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/crofton-config.cmake.in 
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/crofton-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/crofton-config.cmake ${PROJECT_BINARY_DIR}/crofton-config-version.cmake
         DESTINATION ${package_dir})
-# What the library itself needs is private to a shared one, and everybody's to link with an archive.
-set(pc_system "-lstdc++ -lm -pthread")
-if(CROFTON_NEEDS_LIBATOMIC)
-    string(APPEND pc_system " -latomic")
-endif()
-if(BUILD_SHARED_LIBS)
-    set(pc_private ".private")
-    set(pc_libs "")
-else()
-    set(pc_private "")
-    set(pc_libs " ${pc_system}")
-endif()
-get_target_property(pc_qhull Qhull::qhull_r ALIASED_TARGET)  # qhullstatic_r, where only that is installed
-string(REGEX REPLACE "^(Qhull::|.*NOTFOUND$)" "" pc_qhull "${pc_qhull}")
-if(NOT pc_qhull)
-    set(pc_qhull qhull_r)
+# What the library itself needs, everybody needs who links with an archive. A shared one brings it, so that the packages
+# need not be there: pkg-config looks for Requires.private as well.
+set(pc_libs "")
+set(pc_requires "")
+if(NOT BUILD_SHARED_LIBS)
+    set(pc_libs " -lstdc++ -lm -pthread")
+    if(CROFTON_NEEDS_LIBATOMIC)
+        string(APPEND pc_libs " -latomic")
+    endif()
+    get_target_property(pc_qhull Qhull::qhull_r ALIASED_TARGET)  # qhullstatic_r, where only that is installed
+    string(REGEX REPLACE "^(Qhull::|.*NOTFOUND$)" "" pc_qhull "${pc_qhull}")
+    if(NOT pc_qhull)
+        set(pc_qhull qhull_r)
+    endif()
+    set(pc_requires "\nRequires: libhwy ${pc_qhull}")
 endif()
 file(RELATIVE_PATH pc_to_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 configure_file(${CMAKE_CURRENT_LIST_DIR}/crofton.pc.in ${PROJECT_BINARY_DIR}/crofton.pc @ONLY)

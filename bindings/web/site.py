@@ -1,24 +1,31 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Builds the documentation site into one folder: the live page in front, guides and reference with search behind it.
+"""Builds the site into one folder: the README in front, guides with search, the live page, references of C++, C and Python.
 
-bindings/web/site.py [--out DIR] [--page-only]
+bindings/web/site.py [--out DIR] [--page-only]     --page-only: the live page alone
 
-Needs the package's build (bindings/web/test.sh or bindings/web/build.py), and doxygen for all but the page. The folder can be served, or
-its index.html opened as a file: modules are put into the page by an import map, the compiled library into scripts.
+Needs the package's build (bindings/web/test.sh or bindings/web/build.py), and for all but the page mkdocs with its theme
+Material, and doxygen. The folder can be served, or its index.html opened as a file: modules are put into the live page by an
+import map, the compiled library into scripts. Ends with an error where a link leads nowhere.
 """
 import argparse
+import ast
 import base64
 import json
 import re
 import shutil
 import subprocess
 import sys
+from html.parser import HTMLParser
 from pathlib import Path
+from urllib.parse import unquote
 
 ROOT = Path(__file__).resolve().parents[2]
 WEB = ROOT / "bindings/web"
 PAGE = ["town", "culling", "camera", "draw", "map", "main"]
+# The tabs of the start page: language, and the README that begins with a program in it.
+LANGUAGES = [("C++", "README.md", "cpp"), ("Python", "bindings/python/README.md", "python"), ("JavaScript", "bindings/web/README.md", "js"),
+             ("Rust", "bindings/rust/README.md", "rust"), ("C#", "bindings/csharp/README.md", "csharp")]
 
 
 def module_url(text):
@@ -28,6 +35,7 @@ def module_url(text):
 
 
 def write_page(out):
+    out.mkdir(parents=True, exist_ok=True)
     modules = {f"crofton/{p.name}": p.read_text() for p in sorted((WEB / "js").glob("*.js")) if not p.name.startswith("inline")}
     modules |= {f"crofton/{name}.js": (WEB / f"page/{name}.js").read_text() for name in PAGE}
     modules["crofton/wasm/simd.js"] = (WEB / "wasm/simd.js").read_text()
@@ -57,34 +65,85 @@ def write_reference(out, work):
     run_doxygen(text + "\nSEARCHENGINE = YES\nSERVER_BASED_SEARCH = NO\n", work / "reference.txt")
 
 
-def write_guides(out, work):
-    settings = {"PROJECT_NAME": '"Crofton: guides"', "OUTPUT_DIRECTORY": out, "HTML_OUTPUT": "guides", "GENERATE_LATEX": "NO",
-                "QUIET": "YES", "INPUT": f"{ROOT}/docs {ROOT}/bindings/web/README.md", "FILE_PATTERNS": "*.md", "RECURSIVE": "YES",
-                "USE_MDFILE_AS_MAINPAGE": f"{ROOT}/docs/README.md", "IMAGE_PATH": f"{ROOT}/docs/pictures {ROOT}/docs",
-                "STRIP_FROM_PATH": ROOT, "SEARCHENGINE": "YES", "SERVER_BASED_SEARCH": "NO", "HAVE_DOT": "NO",
-                "GENERATE_TREEVIEW": "YES", "TOC_INCLUDE_HEADINGS": 3, "AUTOLINK_SUPPORT": "NO", "USE_MATHJAX": "NO",
-                "WARN_IF_DOC_ERROR": "NO"}
-    run_doxygen("\n".join(f"{name} = {value}" for name, value in settings.items()), work / "guides.txt")
-    shutil.copytree(ROOT / "docs/pictures", out / "guides/pictures", dirs_exist_ok=True)
-    mend_links(out / "guides")
+def git_files(*patterns):
+    done = subprocess.run(["git", "ls-files", "-z", "--", *patterns], cwd=ROOT, check=True, capture_output=True, text=True)
+    return done.stdout.split("\0")[:-1]
 
 
-def mend_links(guides):
-    """Links to pages that doxygen left as they are, as those with an anchor, and pictures named from below docs/notes."""
-    pages = {re.sub(r"^md_docs_|_", "", p.stem): p.name for p in guides.glob("md_docs_*.html")}
+def program_of(readme, language):
+    """The first program of a README in a language, with its fence."""
+    return re.search(rf"^```{language}\n.*?^```\n", (ROOT / readme).read_text(), re.M | re.S)[0]
 
-    def page_of(match):
-        up, name = match.group(1).startswith("../"), re.sub(r"_|/|\.\./", "", match.group(1))
-        beside = "notes" + name if below and not up else name
-        found = pages.get(beside) or pages.get(name)
-        return f'href="{found}{match.group(2) or ""}"' if found else match.group(0)
 
-    for page in guides.glob("*.html"):
-        text, below = page.read_text(), page.name.startswith("md_docs_notes")
-        mended = re.sub(r'href="([\w/.]+)\.md(#[^"]*)?"', page_of, re.sub(r'src="\.\./(docs/)?pictures/', 'src="pictures/', text))
-        mended = mended.replace('href="../pictures/', 'href="pictures/').replace('data="../pictures/', 'data="pictures/')
-        if mended != text:
-            page.write_text(mended)
+def start_page(text):
+    """The README, with the live page behind its first picture and the first programs of all languages."""
+    text = re.sub(r"^(!\[.*\]\(.*\))$", r"[\1](live/index.html)\n\n[Fly through a town in your browser](live/index.html){ .md-button .md-button--primary }", text, count=1, flags=re.M)
+    tabs = "".join(f'=== "{name}"\n\n' + "".join(f"    {line}" for line in program_of(readme, language).splitlines(keepends=True)) + "\n"
+                   for name, readme, language in LANGUAGES)
+    return text.replace(program_of("README.md", "cpp"), tabs)
+
+
+def python_reference():
+    """What the package's stub declares, a heading for each class."""
+    text = (ROOT / "bindings/python/crofton/__init__.pyi").read_text()
+    classes = [node for node in ast.parse(text).body if isinstance(node, ast.ClassDef)]
+    functions = "\n".join(ast.get_source_segment(text, node) for node in ast.parse(text).body if isinstance(node, ast.FunctionDef))
+    parts = [("Functions", functions)] + [(node.name, ast.get_source_segment(text, node)) for node in sorted(classes, key=lambda n: n.name)]
+    return ("# Python: what the package declares\n\n`help(crofton.World)` and its kin explain each call. "
+            "[The guide](bindings/python/README.md) begins with programs.\n\n"
+            + "".join(f"## {name}\n\n```python\n{code}\n```\n\n" for name, code in parts))
+
+
+def write_pages(pages):
+    """Gathers the repository's pages and what they link to: mkdocs sees the same tree, and follows the same links."""
+    shutil.rmtree(pages, ignore_errors=True)
+    for name in git_files("*.md", "docs/pictures", ":!.github"):
+        (pages / name).parent.mkdir(parents=True, exist_ok=True)
+        if not name.endswith(".md"):
+            shutil.copy(ROOT / name, pages / name)
+            continue
+        text = (ROOT / name).read_text()
+        for target in re.findall(r"\]\(([\w./-]+)\)", text):
+            file = (ROOT / name).parent / target
+            if file.is_file() and file.suffix != ".md":
+                copy = pages / file.resolve().relative_to(ROOT)
+                copy.parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy(file, copy)
+        # Lists and tables may follow a line of text, as on GitHub; mkdocs wants an empty line between.
+        text = re.sub(r"^(?![-|\s]|\d+\. )(.+)\n(?=(?:- |\d+\. |\| ))", r"\1\n\n", text, flags=re.M)
+        (pages / name).write_text(start_page(text) if name == "README.md" else text)
+    (pages / "python.md").write_text(python_reference())
+
+
+class Links(HTMLParser):
+    """A page's links, and the places in it that a link may name."""
+
+    def __init__(self, page):
+        super().__init__()
+        self.links, self.places = [], {""}
+        self.feed(page.read_text(errors="replace"))
+
+    def handle_starttag(self, tag, attributes):
+        for name, value in attributes:
+            if name in ("id", "name"):
+                self.places.add(value)
+            elif name in ("href", "src") and value and not re.match(r"[a-z]+:|//", value):
+                self.links.append(value)
+
+
+def check_links(out):
+    """Every link of a page, but for those of the reference to itself, which are Doxygen's."""
+    pages = {page: Links(page) for page in out.rglob("*.html") if page.parent != out / "reference"}
+    broken = []
+    for page, found in pages.items():
+        for link in found.links:
+            path, _, place = unquote(link).partition("#")
+            target = (page.parent / path.partition("?")[0]).resolve() if path else page
+            target = target / "index.html" if target.is_dir() else target
+            if not target.exists() or (target in pages and place not in pages[target].places):
+                broken.append(f"{page.relative_to(out)}: {link}")
+    if broken:
+        sys.exit("site: links lead nowhere:\n  " + "\n  ".join(sorted(set(broken))))
 
 
 def main():
@@ -94,15 +153,19 @@ def main():
     options = parser.parse_args()
     if not (WEB / "wasm/simd.wasm").exists():
         sys.exit("site: the package is not built: bindings/web/build.py")
-    options.out.mkdir(parents=True, exist_ok=True)
-    write_page(options.out)
-    if not options.page_only:
-        if not shutil.which("doxygen"):
-            sys.exit("site: doxygen is not here; third_party/install.sh --web installs it")
+    if options.page_only:
+        write_page(options.out)
+    else:
+        for tool in ("mkdocs", "doxygen"):
+            if not shutil.which(tool):
+                sys.exit(f"site: {tool} is not here; third_party/install.sh --web installs it")
         work = ROOT / "build/web"
-        work.mkdir(parents=True, exist_ok=True)
-        write_reference(options.out.resolve(), work)
-        write_guides(options.out.resolve(), work)
+        write_pages(work / "pages")
+        write_page(work / "pages/live")
+        write_reference(work / "pages", work)
+        subprocess.run(["mkdocs", "build", "--quiet", "--config-file", WEB / "mkdocs.yml", "--site-dir", options.out.resolve()], check=True)
+        (options.out / "404.html").unlink()  # its links are those of a site that lies at a server's root
+        check_links(options.out.resolve())
     print(f"site: {options.out}/index.html")
 
 

@@ -12,7 +12,7 @@ from ._crofton import Box, Mesh
 MOST_TRIANGLES = 500_000
 BOX_EDGES = np.array([[a, a | bit] for bit in (1, 2, 4) for a in range(8) if not a & bit])
 PAGE = """<!doctype html><meta charset="utf-8"><title>Crofton</title>
-<style>html,shape{margin:0;height:100%;background:#f6f6f4}canvas{width:100%;height:100%;display:block;touch-action:none}
+<style>html,body{margin:0;height:100%;background:#f6f6f4}canvas{width:100%;height:100%;display:block;touch-action:none}
 p{position:absolute;margin:.5em;font:13px sans-serif;color:#444}</style><p></p><canvas></canvas><script>
 const scene = SCENE, canvas = document.querySelector('canvas'), gl = canvas.getContext('webgl');
 const say = (text) => { document.querySelector('p').textContent = text; };

@@ -43,7 +43,7 @@ IntrinsicVolumes of_hull(const py::handle& given) {
 
 void bind_measure(py::module_& module) {
     py::class_<IntrinsicVolumes>(module, "IntrinsicVolumes",
-                                 "Volume, surface area and integral of mean curvature of a convex shape.")
+                                 "Volume, surface area and integral of mean curvature of a convex body.")
         .def(py::init([](double v, double f, double m) {
                  return IntrinsicVolumes{v, f, m};
              }),
@@ -72,8 +72,8 @@ void bind_measure(py::module_& module) {
         .def_readonly("area_weight", &Criterion::area_weight)
         .def_readonly("mean_curvature_weight", &Criterion::mean_curvature_weight)
         .def_static("for_rays", &measure::for_rays, py::arg("length"), "The cost for random segments of this length.")
-        .def_static("for_partner", &measure::for_partner, py::arg("shape"),
-                    "The cost for a convex shape at uniformly random motions.")
+        .def_static("for_partner", &measure::for_partner, py::arg("body"),
+                    "The cost for a convex body at uniformly random motions.")
         .def_static(
             "for_frustum", [](const Camera& camera) { return value_of(measure::for_frustum(camera)); },
             py::arg("camera"), "The cost for the view volume of a camera at uniformly random motions.")
@@ -102,8 +102,8 @@ void bind_measure(py::module_& module) {
         [](const IntrinsicVolumes& b, double triangles, double area, double boundary, double weight) {
             return measure::triangles_met(b, {triangles, area, boundary, weight});
         },
-        py::arg("shape"), py::arg("triangles"), py::arg("area"), py::arg("boundary"), py::arg("weight"),
-        "Returns the sum, over the triangles of a flat polygon, of the measures of the motions under which a shape "
+        py::arg("body"), py::arg("triangles"), py::arg("area"), py::arg("boundary"), py::arg("weight"),
+        "Returns the sum, over the triangles of a flat polygon, of the measures of the motions under which a body "
         "meets them.");
 }
 

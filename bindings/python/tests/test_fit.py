@@ -175,7 +175,7 @@ def test_the_smallest_disc_and_sphere():
     assert center == pytest.approx((0, 0, 0), abs=1e-12) and radius == pytest.approx(1)
 
 
-def test_measures_of_known_shapes():
+def test_measures_of_known_bodies():
     v = crofton.IntrinsicVolumes.of_box(1, 2, 3)
     assert (v.volume, v.area, v.mean_curvature) == pytest.approx((6, 22, 6 * np.pi))
     v = crofton.IntrinsicVolumes.of_sphere(2)

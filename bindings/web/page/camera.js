@@ -37,6 +37,21 @@ export function edgesOf(camera, reach = 400) {
     return Float32Array.from(lines.flat());
 }
 
+/** Beside and above a camera, with its frustum in the middle of the picture. */
+export function besideOf({ position, yaw }) {
+    const ahead = [Math.sin(yaw), 0, -Math.cos(yaw)], right = [Math.cos(yaw), 0, Math.sin(yaw)];
+    const place = position.map((p, k) => p - 90 * ahead[k] + 110 * right[k] + (k === 1 ? 130 : 0));
+    const way = position.map((p, k) => p + 130 * ahead[k] - place[k]);
+    return { position: place, yaw: Math.atan2(way[0], -way[2]), pitch: Math.atan2(way[1], Math.hypot(way[0], way[2])) };
+}
+
+/** Between two poses, at `part` from 0 to 1; turns the shorter way. */
+export function between(a, b, part) {
+    const smooth = part * part * (3 - 2 * part), mix = (x, y) => x + smooth * (y - x), turn = b.yaw - a.yaw;
+    return { position: a.position.map((x, k) => mix(x, b.position[k])), pitch: mix(a.pitch, b.pitch),
+        yaw: a.yaw + smooth * (turn - 2 * Math.PI * Math.round(turn / (2 * Math.PI))) };
+}
+
 /** Where the flight around a square of streets is after `seconds`; it turns on the last metres before each corner. */
 export function tour(seconds) {
     const half = 200, along = 18 * seconds, leg = Math.floor(along / (2 * half)), u = along - 2 * half * leg;

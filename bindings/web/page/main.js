@@ -6,7 +6,7 @@
 import { load } from 'crofton';
 import { makeTown } from './town.js';
 import { CRITERIA, Culling, VERDICTS } from './culling.js';
-import { cameraOf, edgesOf, matrixOf, tour } from './camera.js';
+import { besideOf, between, cameraOf, edgesOf, matrixOf, tour } from './camera.js';
 import { COLOURS, Drawing } from './draw.js';
 import { TownMap } from './map.js';
 
@@ -18,6 +18,13 @@ const poseOf = (text) => {
     return { position: numbers.slice(0, 3), yaw: numbers[3], pitch: numbers[4] };
 };
 
+// The flight stops once for a demonstration, seconds: the frustum freezes, the viewer turns aside, looks and comes back.
+const DEMONSTRATION = { begins: 6, aside: 3, looks: 9, back: 2.5 };
+const STORY = {
+    flying: 'Only what may be seen is drawn: green objects lie within the view, amber ones cross its edge.',
+    frozen: 'The view is frozen and looked at from outside. Green is drawn, red is hidden behind it and left out, grey lies outside.',
+};
+
 class Page {
     constructor(gl, culling, objects) {
         Object.assign(this, { gl, culling, objects, drawing: new Drawing(gl, objects), map: new TownMap(element('map'), objects),
@@ -26,6 +33,7 @@ class Page {
         this.flying = !this.pose;
         this.pose ??= tour(0);
         this.frozen = poseOf(address.get('frozen'));
+        this.demonstrates = this.flying && !this.frozen;
         this.occlusion = address.get('occlusion') !== '0';
         this.all = address.has('all');
         if (address.get('criterion') in CRITERIA) culling.setCriterion(address.get('criterion'));
@@ -39,20 +47,48 @@ class Page {
         element('occlusion').checked = this.occlusion;
         element('occlusion').onchange = (event) => { this.occlusion = event.target.checked; };
         element('freeze').checked = Boolean(this.frozen);
-        element('freeze').onchange = (event) => this.freeze(event.target.checked);
+        element('freeze').onchange = (event) => this.userFreezes(event.target.checked);
         element('fly').checked = this.flying;
-        element('fly').onchange = (event) => { this.flying = event.target.checked; };
-        canvas.onpointerdown = (event) => canvas.setPointerCapture(event.pointerId);
-        canvas.onpointermove = (event) => { if (event.buttons) this.turn(event.movementX / 300, -event.movementY / 300); };
+        element('more').open = !matchMedia('(max-width: 600px)').matches;
+        element('fly').onchange = (event) => {
+            this.endDemonstration();
+            this.flying = event.target.checked;
+        };
+        const fingers = new Map(), apart = () => { const [a, b] = fingers.values(); return Math.hypot(a.x - b.x, a.y - b.y); };
+        canvas.onpointerdown = (event) => {
+            canvas.setPointerCapture(event.pointerId);
+            fingers.set(event.pointerId, { x: event.clientX, y: event.clientY });
+        };
+        canvas.onpointerup = canvas.onpointercancel = (event) => fingers.delete(event.pointerId);
+        canvas.onpointermove = (event) => {
+            const last = fingers.get(event.pointerId), before = fingers.size === 2 ? apart() : 0;
+            if (!last) return;
+            const [x, y] = [event.clientX - last.x, event.clientY - last.y];
+            Object.assign(last, { x: event.clientX, y: event.clientY });
+            if (fingers.size === 2) this.step((apart() - before) / 4);
+            else this.turn(x / 300, -y / 300);
+        };
+        canvas.onwheel = (event) => this.step(-event.deltaY / 20);
         onkeydown = (event) => {
             if (event.target.tagName === 'SELECT' || event.ctrlKey || event.metaKey) return;
-            if (event.key === 'f') this.freeze(!this.frozen);
+            if (event.key === 'f') this.userFreezes(!this.frozen);
             else this.keys.add(event.key.toLowerCase());
         };
         onkeyup = (event) => this.keys.delete(event.key.toLowerCase());
         onblur = () => this.keys.clear();
     }
-    stopFlying() { this.flying = element('fly').checked = false; }
+    stopFlying() {
+        this.endDemonstration();
+        this.flying = element('fly').checked = false;
+    }
+    endDemonstration() {
+        this.demonstrates = false;
+        this.shown = undefined;
+    }
+    userFreezes(on) {
+        this.endDemonstration();
+        this.freeze(on);
+    }
     freeze(on) {
         this.frozen = on ? structuredClone(this.pose) : null;
         element('freeze').checked = on;
@@ -62,23 +98,46 @@ class Page {
         const from = this.pose;
         this.pose = { ...from, yaw: from.yaw + yaw, pitch: Math.max(-1.5, Math.min(1.5, from.pitch + pitch)) };
     }
+    /** Ahead, where the viewer looks. */
+    step(metres) {
+        const { yaw, pitch, position } = this.pose;
+        this.go([Math.sin(yaw) * Math.cos(pitch), Math.sin(pitch), -Math.cos(yaw) * Math.cos(pitch)], metres);
+    }
+    go(way, metres) {
+        this.stopFlying();
+        this.pose = { ...this.pose, position: this.pose.position.map((p, k) => k === 1 ? Math.max(0.5, p + metres * way[k]) : p + metres * way[k]) };
+    }
     walk(seconds) {
         const held = (...names) => names.some((name) => this.keys.has(name)) ? 1 : 0;
         const ahead = held('w', 'arrowup') - held('s', 'arrowdown'), aside = held('d', 'arrowright') - held('a', 'arrowleft');
         const rise = held('e') - held('q');
         if (!ahead && !aside && !rise) return;
-        this.stopFlying();
-        const { yaw, pitch, position } = this.pose, step = seconds * (held('shift') ? 150 : 40);
-        const way = [ahead * Math.sin(yaw) * Math.cos(pitch) + aside * Math.cos(yaw), ahead * Math.sin(pitch) + rise,
-            -ahead * Math.cos(yaw) * Math.cos(pitch) + aside * Math.sin(yaw)];
-        this.pose = { yaw, pitch, position: position.map((p, k) => k === 1 ? Math.max(0.5, p + step * way[k]) : p + step * way[k]) };
+        const { yaw, pitch } = this.pose;
+        this.go([ahead * Math.sin(yaw) * Math.cos(pitch) + aside * Math.cos(yaw), ahead * Math.sin(pitch) + rise,
+            -ahead * Math.cos(yaw) * Math.cos(pitch) + aside * Math.sin(yaw)], seconds * (held('shift') ? 150 : 40));
+    }
+    fly(seconds) {
+        const { begins, aside, looks, back } = DEMONSTRATION;
+        if (!this.demonstrates || (this.shown === undefined && this.seconds < begins)) {
+            this.pose = tour(this.seconds += seconds);
+            return;
+        }
+        if (this.shown === undefined) {
+            this.shown = 0;
+            this.freeze(true);
+        }
+        const time = this.shown += seconds, away = Math.min(1, time / aside, Math.max(0, (aside + looks + back - time) / back));
+        this.pose = between(this.frozen, besideOf(this.frozen), away);
+        if (away > 0 || time < aside) return;
+        this.freeze(false);
+        this.endDemonstration();
     }
 
     frame(seconds) {
         const { gl } = this, { canvas } = gl, scale = Math.min(devicePixelRatio, 1.5);
         const [width, height] = [Math.max(1, canvas.clientWidth * scale | 0), Math.max(1, canvas.clientHeight * scale | 0)];
         if (canvas.width !== width || canvas.height !== height) [canvas.width, canvas.height] = [width, height];
-        if (this.flying) this.pose = tour(this.seconds += seconds);
+        if (this.flying) this.fly(seconds);
         else this.walk(seconds);
         const viewer = cameraOf(this.pose, width / height), camera = this.frozen ? cameraOf(this.frozen, width / height) : viewer;
         const { counts, ms } = this.culling.run(camera, this.occlusion);
@@ -91,9 +150,11 @@ class Page {
     }
     show(counts, ms, drawn) {
         VERDICTS.forEach((name, verdict) => { element(name).textContent = counts[verdict].toLocaleString('en'); });
+        element('story').textContent = this.frozen ? STORY.frozen : STORY.flying;
         this.mean = this.mean === undefined ? ms : 0.9 * this.mean + 0.1 * ms;
-        element('time').textContent = `${this.objects.length.toLocaleString('en')} objects, ${
-            drawn.toLocaleString('en')} drawn, culled in ${this.mean.toFixed(2)} ms`;
+        const needed = counts[1] + counts[2], say = (count) => count.toLocaleString('en');
+        element('time').textContent = `${say(this.objects.length)} objects, ${drawn > needed
+            ? `all shown here; a frame needs ${say(needed)},` : `${say(drawn)} drawn,`} culled in ${this.mean.toFixed(2)} ms`;
     }
 }
 

@@ -14,7 +14,7 @@ import { CRITERIA, Culling } from '../page/culling.js';
 const ROOT = fileURLToPath(new URL('../../../', import.meta.url));
 const SITE = `${ROOT}build/web/page`, ADDRESS = `${pathToFileURL(SITE)}/index.html`;
 const READY = 'document.documentElement.dataset.state';
-const LIBRARY = `${ROOT}build/release/engine/libcrofton.a`;
+const LIBRARIES = ['crofton_bake', 'crofton'].map((name) => `${ROOT}build/release/engine/lib${name}.a`);
 const STREET = '200,9,120,0.1,-0.02', ABOVE = '0,220,520,0.3,-0.5';
 const notBuilt = existsSync(`${ROOT}bindings/web/wasm/simd.wasm`) ? false : 'the package is not built';
 const skip = missing ?? notBuilt;
@@ -82,6 +82,29 @@ test('page: frozen, the viewer moves on and the counts stay', { skip }, () => se
     assert.notDeepEqual((await answer(page)).counts, first.counts);
 }));
 
+test('page: the flight freezes once, turns aside, says what the colours are, and goes on; a key ends it', { skip }, async () => {
+    const step = 'globalThis.requestAnimationFrame = () => 0; const p = croftonPage, says = () => document.getElementById("story").textContent;';
+    await see('', async (page) => {
+        const [flown, held, after, text] = await page.evaluate(`(() => { ${step} const places = [];
+            for (let i = 0; i < 62; ++i) p.fly(0.1);
+            const flown = p.frozen;
+            for (let i = 0; i < 50; ++i) p.fly(0.1);
+            p.frame(0.01); const text = says(), held = p.pose.position;
+            for (let i = 0; i < 300; ++i) p.fly(0.1);
+            return [flown, held, p.frozen, text]; })()`);
+        assert.ok(flown && !after, 'it froze, and went on');
+        assert.ok(Math.hypot(...held.map((c, k) => c - flown.position[k])) > 100, held);
+        assert.match(text, /Green is drawn, red is hidden/);
+    });
+    await see('', async (page) => {
+        const [flying, frozen] = await page.evaluate(`(() => { ${step}
+            for (let i = 0; i < 90; ++i) p.fly(0.1);
+            p.keys.add('w'); p.walk(0.1); p.keys.clear();
+            return [p.flying, p.frozen !== null]; })()`);
+        assert.ok(!flying && frozen, 'the viewer stands where it was, the view still frozen');
+    });
+});
+
 test('page: without occlusion nothing is occluded, and nothing else changes', { skip }, () => see(`at=${STREET}`, async (page) => {
     const with_ = await answer(page);
     await page.evaluate('document.getElementById("occlusion").click()');
@@ -141,9 +164,10 @@ test('page: the box of an object holds its mesh, to the last bit', { skip: notBu
 });
 
 test('page: counts are those of the native library, for every criterion', {
-    skip: skip || (existsSync(LIBRARY) ? false : `no ${LIBRARY}: cmake --preset release; ninja -C build/release crofton`) }, async () => {
+    skip: skip || (LIBRARIES.every(existsSync) ? false : `no ${LIBRARIES}: cmake --preset release; ninja -C build/release crofton_bake`) }, async () => {
     const objects = makeTown(), culling = new Culling(await load(), objects), program = `${ROOT}build/web/town_counts`;
-    execFileSync('g++', ['-std=c++20', '-O1', `-I${ROOT}engine/c_api/include`, `${ROOT}bindings/web/native/town_counts.cpp`, LIBRARY,
+    execFileSync('g++', ['-std=c++20', '-O1', `-I${ROOT}engine/c_api/include`, `-I${ROOT}engine/bake/c_api/include`,
+        `${ROOT}bindings/web/native/town_counts.cpp`, ...LIBRARIES,
         '-lqhull_r', '-lhwy', '-lpthread', '-o', program]);
     for (const criterion of Object.keys(CRITERIA)) {
         const answers = [];
