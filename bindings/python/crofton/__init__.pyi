@@ -328,7 +328,8 @@ class ViewMatrix:
     def __init__(self, to_clip: npt.ArrayLike, *, depth: str = "reversed_zero_to_one", origin: Vector = ...) -> None: ...
 
 class PictureView:
-    def __init__(self, width: int = 1280, height: int = 720, *, depth: str = "reversed_zero_to_one") -> None: ...
+    def __init__(self, width: int = 1280, height: int = 720, *, depth: str = "reversed_zero_to_one",
+                 samples: int = 1, work_limit: int = 0) -> None: ...
 
 class DrawLimits:
     def __init__(self, eye: Vector, *, max_distance_in_radii: float = ..., least_radius: float = 0.0,

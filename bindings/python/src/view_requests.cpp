@@ -208,13 +208,19 @@ void bind_view_requests(py::module_& module) {
                           m.origin.z);
         });
 
-    py::class_<depth::PictureView>(module, "PictureView", "The picture that is drawn: one sample a pixel.")
-        .def(py::init([](std::uint32_t width, std::uint32_t height, const std::string& depth) {
-                 return depth::PictureView{width, height, depth_range(depth)};
+    py::class_<depth::PictureView>(module, "PictureView", "The picture that is drawn.")
+        .def(py::init([](std::uint32_t width, std::uint32_t height, const std::string& depth, std::uint32_t samples,
+                         std::uint64_t work_limit) {
+                 return depth::PictureView{width, height, depth_range(depth), samples, work_limit};
              }),
              py::arg("width") = depth::PictureView{}.width, py::arg("height") = depth::PictureView{}.height,
-             py::kw_only(), py::arg("depth") = "reversed_zero_to_one",
-             "`depth` is that of the renderer's projection; beside a ViewMatrix, the same as its.")
+             py::kw_only(), py::arg("depth") = "reversed_zero_to_one", py::arg("samples") = 1,
+             py::arg("work_limit") = 0,
+             "`depth` is that of the renderer's projection; beside a ViewMatrix, the same as its. `samples` in each "
+             "pixel: 1, at its centre; 2, 4 or 8 for multisampling, at Vulkan's standard locations. `work_limit`, "
+             "unless "
+             "0, is a number of clusters that are tested and of triangles that are drawn, together; what is left after "
+             "that is listed whole unless its box is hidden.")
         .def("__repr__", [](const depth::PictureView& p) {
             return format("PictureView(%u, %u, depth='%s')", p.width, p.height, depth_name(p.depth));
         });

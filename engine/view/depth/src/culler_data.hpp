@@ -2,6 +2,7 @@
 // What the depth culler and its kernels share.
 #pragma once
 #include <crofton/depth/clustered_mesh.hpp>
+#include <crofton/depth/depth_culler.hpp>
 #include <cstdint>
 #include <limits>
 
@@ -13,22 +14,26 @@ inline constexpr float kNothing = -std::numeric_limits<float>::infinity();
 inline constexpr std::uint32_t kTile = 8;
 inline constexpr std::uint32_t kTilePixels = kTile * kTile;
 
-// At a pixel the picture is at least as near as its number, and as the floor of its tile.
+// At a pixel the picture is at least as near as its number, and as the floor of its tile. Tile (x, y) of the picture is
+// at y · columns + x of each list; only those from first_x to last_x are there.
 struct Tiles {
     float* pixels;  // tile by tile, row by row
-    float* least;   // at most the least nearness in the tile
+    float* least;   // the least nearness in the tile
     float* floors;
-    std::uint8_t* written;        // 0: the pixels have not been written in this picture
-    std::uint32_t columns, rows;  // of tiles
-    std::uint32_t width, height;  // of pixels; those of tiles beyond count as infinitely near
+    std::uint8_t* written;         // 0: the pixels have not been written in this picture
+    std::uint32_t columns;         // tiles in a row
+    std::uint32_t width, height;   // pixels of the picture; those of tiles beyond count as infinitely near
+    std::int32_t first_x, last_x;  // pixels
 };
 
 struct PictureData {
     Tiles tiles;
     float half_width, half_height;
+    float middle_x, middle_y;  // in pixels, so that the sample at hand is in the middle of each
     float near_share;  // points are in front of the near plane where nearness ≤ near_share · w, in clip coordinates
     float infinitely_far;  // nearness there
-    float grid;  // pixels by which a vertex may lie elsewhere along each axis: the grid's step, floats' rounding
+    float grid;    // pixels by which a vertex may lie elsewhere along each axis: the grid's step, floats' rounding
+    float z_sign;  // of nearness in the third row of DepthObject::to_clip
 };
 
 // A matrix whose third row gives nearness.
@@ -43,19 +48,14 @@ struct ClipErrors {
     float x, y, z, w;
 };
 
-enum class Coverage : std::uint8_t {
-    nothing,  // no sample
-    samples,
-    unclear,  // reaches the near plane, or too close to the eye for a useful bound
-};
-
 // The samples [x0, x1] × [y0, y1] that a box may cover; its nearest possible nearness.
 struct Projection {
-    std::int32_t x0, y0, x1, y1;
+    std::uint16_t x0, x1, y0, y1;
     float nearest;
-    float least_w;
-    Coverage coverage;
-    ClipErrors errors;
+    float least_w;  // 0: the box reaches the near plane, or is too close to the eye for a useful bound
+
+    [[nodiscard]] bool covers_nothing() const { return x0 > x1; }
+    [[nodiscard]] bool is_unclear() const { return least_w == 0.0f; }
 };
 
 // A cluster to draw.
@@ -63,18 +63,23 @@ struct PatchData {
     const float* coordinates;
     const ClusteredMesh::Block* blocks;
     std::uint32_t vertex_count, triangle_count;
-    float least_w;  // of the cluster's bound
-    ClipErrors errors;
-    bool unclear;  // as its projection
+    const Cluster& bound;  // that `projection` is of
+    const Projection& projection;
 };
 
 inline constexpr std::uint32_t kMaxPatchVertices = Cluster::kMaxTriangles * 3;
 
-void project_bounds(const PictureData& picture, const ObjectData& object, const Cluster* clusters, std::size_t count,
-                    Projection* to);
-// True if all that may be covered is nearer already.
+// Of each object as a whole. Objects that cannot be placed get a negative least_w, and cover nothing.
+void project_objects(const PictureData& picture, const DepthObject* objects, std::size_t count, Projection* to);
+// Of an object's clusters: within the projection of the object. Writes up to 7 more than there are.
+void project_clusters(const PictureData& picture, const ObjectData& object, const Projection& within,
+                      const Cluster* clusters, std::size_t count, Projection* to);
+// True if all that may be covered is nearer already, as far as the tiles are there.
 bool is_hidden(const Tiles& tiles, const Projection& projection);
-// Draws the cluster; returns the triangles that may own a sample.
+// Returns the first of objects[begin, end) that is not hidden, or `end`.
+std::size_t first_shown(const Tiles& tiles, const Projection* projections, const std::uint32_t* objects,
+                        std::size_t begin, std::size_t end);
+// Draws the cluster; returns the triangles that may own a sample, as far as the tiles are there.
 std::uint64_t draw_patch(const PictureData& picture, const ObjectData& object, const PatchData& patch);
 
 }  // namespace crofton::depth

@@ -6,7 +6,9 @@
 // clang-format off
 #include <hwy/foreach_target.h>
 // clang-format on
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
+#include <algorithm>
 
 #include "faces-inl.hpp"
 #include "near_faces-inl.hpp"
@@ -21,13 +23,35 @@ namespace {
 
 // No operation is contracted here: the bits are those of any target.
 
-void project_all(const PictureData& picture, const ObjectData& object, const Cluster* clusters, std::size_t count,
-                 Projection* to) {
-    for (std::size_t i = 0; i < count; ++i) to[i] = project(picture, object, clusters[i]);
+void project_each(const PictureData& picture, const DepthObject* objects, std::size_t count, Projection* to) {
+    const std::size_t lanes = hn::Lanes(DF());
+    for (std::size_t i = 0; i < count; i += lanes) project_some_objects(picture, objects + i, count - i, to + i);
+}
+
+void project_parts(const PictureData& picture, const ObjectData& object, const Projection& within,
+                   const Cluster* clusters, std::size_t count, Projection* to) {
+    const DF d;
+    BoxLanes box;
+    for (std::size_t i = 0; i < 4; ++i) {
+        for (std::size_t c = 0; c < 4; ++c) box.columns[c][i] = hn::Set(d, object.columns[c][i]);
+        box.moved[i] = hn::Set(d, object.moved[i]);
+    }
+    for (std::size_t i = 0; i < count; i += hn::Lanes(d))
+        project_some_clusters(picture, box, within, clusters + i, count - i, to + i);
 }
 
 bool ask(const Tiles& tiles, const Projection& projection) {
     return hides(tiles, projection);
+}
+
+std::size_t ask_each(const Tiles& tiles, const Projection* projections, const std::uint32_t* objects, std::size_t begin,
+                     std::size_t end) {
+    constexpr std::size_t kAhead = 8;
+    for (std::size_t i = begin; i < end; ++i) {
+        hwy::Prefetch(&projections[objects[std::min(i + kAhead, end - 1)]]);
+        if (!hides(tiles, projections[objects[i]])) return i;
+    }
+    return end;
 }
 
 std::uint64_t draw(const PictureData& picture, const ObjectData& object, const PatchData& patch) {
@@ -41,16 +65,25 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace crofton::depth {
 
-HWY_EXPORT(project_all);
+HWY_EXPORT(project_each);
+HWY_EXPORT(project_parts);
 HWY_EXPORT(ask);
+HWY_EXPORT(ask_each);
 HWY_EXPORT(draw);
 
-void project_bounds(const PictureData& picture, const ObjectData& object, const Cluster* clusters, std::size_t count,
-                    Projection* to) {
-    HWY_DYNAMIC_DISPATCH(project_all)(picture, object, clusters, count, to);
+void project_objects(const PictureData& picture, const DepthObject* objects, std::size_t count, Projection* to) {
+    HWY_DYNAMIC_DISPATCH(project_each)(picture, objects, count, to);
+}
+void project_clusters(const PictureData& picture, const ObjectData& object, const Projection& within,
+                      const Cluster* clusters, std::size_t count, Projection* to) {
+    HWY_DYNAMIC_DISPATCH(project_parts)(picture, object, within, clusters, count, to);
 }
 bool is_hidden(const Tiles& tiles, const Projection& projection) {
     return HWY_DYNAMIC_DISPATCH(ask)(tiles, projection);
+}
+std::size_t first_shown(const Tiles& tiles, const Projection* projections, const std::uint32_t* objects,
+                        std::size_t begin, std::size_t end) {
+    return HWY_DYNAMIC_DISPATCH(ask_each)(tiles, projections, objects, begin, end);
 }
 std::uint64_t draw_patch(const PictureData& picture, const ObjectData& object, const PatchData& patch) {
     return HWY_DYNAMIC_DISPATCH(draw)(picture, object, patch);

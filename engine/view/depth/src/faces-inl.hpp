@@ -74,10 +74,11 @@ class FaceSetup {
   public:
     // move: by how many pixels a vertex may lie elsewhere. Its nearness may be off by depth_error, and by depth_share
     // of itself.
-    FaceSetup(const PictureData& picture, const ObjectData& object, const PatchVertices& vertices, float move,
-              float depth_error, float depth_share)
+    FaceSetup(const PictureData& picture, const ObjectData& object, const Projection& projection,
+              const PatchVertices& vertices, float move, float depth_error, float depth_share)
         : picture_(picture),
           object_(object),
+          projection_(projection),
           vertices_(vertices),
           move_(move),
           depth_error_(depth_error),
@@ -132,7 +133,7 @@ class FaceSetup {
         const VF nearest = hn::Max(hn::Max(z[0], z[1]), z[2]), farthest = hn::Min(hn::Min(z[0], z[1]), z[2]);
         const VF rounding = hn::Add(hn::Set(d, depth_error_),
                                     hn::Mul(hn::Set(d, depth_share_), hn::Max(hn::Abs(nearest), hn::Abs(farthest))));
-        hn::Store(hn::Add(nearest, rounding), d, f.nearest + i);
+        hn::Store(hn::Min(hn::Add(nearest, rounding), hn::Set(d, projection_.nearest)), d, f.nearest + i);
 
         // Of triangles thinner than the grid only the rectangle is known, and the nearest corner.
         const VF inverse = hn::Div(hn::Set(d, 1.0f), area);
@@ -186,15 +187,22 @@ class FaceSetup {
         return hn::IfThenElseZero(hn::RebindMask(d, where), hn::Set(d, flag));
     }
 
+    // Within the cluster's: what hides the cluster then hides its triangles, too.
     HWY_INLINE void set_rectangle(Faces& f, std::size_t i, VF low_x, VF high_x, VF low_y, VF high_y) const {
         const DF d;
         const DI integers;
+        const auto from = [&](VF sample, std::uint16_t least) {
+            return hn::Max(hn::ConvertTo(integers, sample), hn::Set(integers, least));
+        };
+        const auto to = [&](VF sample, std::uint16_t most) {
+            return hn::Min(hn::ConvertTo(integers, sample), hn::Set(integers, most));
+        };
         const VF width = hn::Set(d, static_cast<float>(picture_.tiles.width));
         const VF height = hn::Set(d, static_cast<float>(picture_.tiles.height));
-        hn::Store(hn::ConvertTo(integers, first_samples(low_x, width)), integers, f.x0 + i);
-        hn::Store(hn::ConvertTo(integers, last_samples(high_x, width)), integers, f.x1 + i);
-        hn::Store(hn::ConvertTo(integers, first_samples(low_y, height)), integers, f.y0 + i);
-        hn::Store(hn::ConvertTo(integers, last_samples(high_y, height)), integers, f.y1 + i);
+        hn::Store(from(first_samples(low_x, width), projection_.x0), integers, f.x0 + i);
+        hn::Store(to(last_samples(high_x, width), projection_.x1), integers, f.x1 + i);
+        hn::Store(from(first_samples(low_y, height), projection_.y0), integers, f.y0 + i);
+        hn::Store(to(last_samples(high_y, height), projection_.y1), integers, f.y1 + i);
     }
 
     HWY_INLINE void set_middle(Faces& f, std::size_t i, VF x, VF y) const {
@@ -240,6 +248,7 @@ class FaceSetup {
 
     const PictureData& picture_;
     const ObjectData& object_;
+    const Projection& projection_;
     const PatchVertices& vertices_;
     float move_, depth_error_, depth_share_;
 };

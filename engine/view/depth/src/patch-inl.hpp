@@ -36,10 +36,14 @@ namespace hn = hwy::HWY_NAMESPACE;
 class PatchDrawer {
   public:
     PatchDrawer(const PictureData& picture, const ObjectData& object, const PatchData& patch)
-        : picture_(picture), object_(object), patch_(patch) {}
+        : picture_(picture),
+          object_(object),
+          patch_(patch),
+          unclear_(patch.projection.is_unclear()),
+          errors_(clip_errors(object, patch.bound)) {}
 
     std::uint64_t run() {
-        if (patch_.unclear)
+        if (unclear_)
             set_near_faces();
         else
             set_faces();
@@ -76,16 +80,16 @@ class PatchDrawer {
     HWY_INLINE void set_faces() {
         const DF d;
         const VF half_width = hn::Set(d, picture_.half_width), half_height = hn::Set(d, picture_.half_height);
+        const VF middle_x = hn::Set(d, picture_.middle_x), middle_y = hn::Set(d, picture_.middle_y);
         transform([&](const VF(&clip)[4], std::size_t i) {
             const VF inverse = hn::Div(hn::Set(d, 1.0f), clip[3]);
-            hn::Store(hn::Add(hn::Mul(hn::Mul(clip[0], inverse), half_width), half_width), d, vertices_.x + i);
-            hn::Store(hn::Add(hn::Mul(hn::Mul(clip[1], inverse), half_height), half_height), d, vertices_.y + i);
+            hn::Store(hn::Add(hn::Mul(hn::Mul(clip[0], inverse), half_width), middle_x), d, vertices_.x + i);
+            hn::Store(hn::Add(hn::Mul(hn::Mul(clip[1], inverse), half_height), middle_y), d, vertices_.y + i);
             hn::Store(hn::Mul(clip[2], inverse), d, vertices_.z + i);
         });
-        const ClipErrors& errors = patch_.errors;
-        const float w = patch_.least_w - 2.0f * errors.w;
-        const float move = picture_.grid + pixel_error(picture_, errors, w);
-        const FaceSetup setup(picture_, object_, vertices_, move, errors.z / w, errors.w / w);
+        const float w = patch_.projection.least_w - 2.0f * errors_.w;
+        const float move = picture_.grid + pixel_error(picture_, errors_, w);
+        const FaceSetup setup(picture_, object_, patch_.projection, vertices_, move, errors_.z / w, errors_.w / w);
         for (std::uint32_t b = 0; b * Faces::kCount < patch_.triangle_count; ++b) {
             setup.run(patch_.blocks[b], faces_[b]);
             note(b);
@@ -100,7 +104,7 @@ class PatchDrawer {
             hn::Store(clip[2], d, vertices_.z + i);
             hn::Store(clip[3], d, vertices_.w + i);
         });
-        const NearFaceSetup setup(picture_, object_, patch_.errors);
+        const NearFaceSetup setup(picture_, object_, errors_);
         for (std::uint32_t b = 0; b * Faces::kCount < patch_.triangle_count; ++b) {
             for (std::uint32_t i = 0; i < Faces::kCount; ++i)
                 setup.set(patch_.blocks[b], i, vertices_, faces_[b], limits_[b * Faces::kCount + i]);
@@ -200,7 +204,7 @@ class PatchDrawer {
 
     // False if no sample is within the radius of one of the vertices at `v`.
     HWY_INLINE bool has_samples(std::uint32_t v) const {
-        if (patch_.unclear) return true;
+        if (unclear_) return true;
         const DF d;
         const VF radius = hn::Min(hn::Load(d, radius_ + v), hn::Set(d, kMaxCorner)), half = hn::Set(d, 0.5f);
         const auto near = [&](const float* at) {
@@ -214,11 +218,11 @@ class PatchDrawer {
     // ends.
     HWY_INLINE void settle_corner(std::uint32_t v) {
         float x = vertices_.x[v], y = vertices_.y[v];
-        if (patch_.unclear) {
+        if (unclear_) {
             const float w = vertices_.w[v];
             if (!(w > 0.0f)) return;
-            x = x / w * picture_.half_width + picture_.half_width;
-            y = y / w * picture_.half_height + picture_.half_height;
+            x = x / w * picture_.half_width + picture_.middle_x;
+            y = y / w * picture_.half_height + picture_.middle_y;
         }
         const float r = std::min(radius_[v], kMaxCorner);
         const auto width = static_cast<float>(picture_.tiles.width), height = static_cast<float>(picture_.tiles.height);
@@ -260,6 +264,8 @@ class PatchDrawer {
     const PictureData& picture_;
     const ObjectData& object_;
     const PatchData& patch_;
+    const bool unclear_;  // in clip coordinates
+    const ClipErrors errors_;
     std::uint64_t drawn_ = 0, solid_ = 0;          // triangles
     std::uint8_t closed_[Cluster::kMaxTriangles];  // edges of solid ones, one bit each
     bool surface_is_closed_ = false;

@@ -55,8 +55,8 @@ class Rasterizer {
           far_(infinitely_far),
           f_(faces),
           i_(lane),
-          x0_(faces.x0[lane]),
-          x1_(faces.x1[lane]),
+          x0_(std::max(faces.x0[lane], tiles.first_x)),
+          x1_(std::min(faces.x1[lane], tiles.last_x)),
           y0_(faces.y0[lane]),
           y1_(faces.y1[lane]),
           spread_(3.5f * (std::abs(faces.across[lane]) + std::abs(faces.up[lane]))) {}
@@ -98,7 +98,8 @@ class Rasterizer {
         for (std::uint32_t k = 0; k < 3; ++k)
             lines[k] = {f_.per_row[k][i_], f_.at_y[k][i_], f_.low[k][i_], f_.high[k][i_]};
         for (std::uint32_t k = 0; k < more_count; ++k) lines[3 + k] = more[k];
-        const bool wide = x1_ / 8 - x0_ / 8 > kNarrow;
+        // Of the whole triangle, so that what is drawn does not depend on which tiles are here.
+        const bool wide = f_.x1[i_] / 8 - f_.x0[i_] / 8 > kNarrow;
         for (std::int32_t ty = y0_ / 8; ty <= y1_ / 8; ++ty) {
             find_band(ty, lines, 3 + more_count);
             at_row_ = plane_at_row(ty);
@@ -140,6 +141,7 @@ class Rasterizer {
     // The sample near the middle: most triangles that show do so there.
     [[nodiscard]] HWY_INLINE bool shows_in_middle() const {
         const float x = f_.middle_x[i_], y = f_.middle_y[i_];
+        if (x < static_cast<float>(x0_) || x > static_cast<float>(x1_ + 1)) return false;
         const auto column = static_cast<std::uint32_t>(x), row = static_cast<std::uint32_t>(y);
         const std::size_t t = std::size_t{row / 8} * tiles_.columns + column / 8;
         const float depth = (f_.base[i_] + f_.across[i_] * (x - f_.plane_x[i_])) + f_.up[i_] * (y - f_.plane_y[i_]);

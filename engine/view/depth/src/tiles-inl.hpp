@@ -81,11 +81,13 @@ HWY_INLINE bool may_show_in_tile(const Tiles& tiles, const Projection& p, std::i
     return shows_in_tile(tiles, p, tx, ty, t);
 }
 
+// True if all samples of the rectangle that the tiles have are nearer.
 HWY_INLINE bool hides(const Tiles& tiles, const Projection& p) {
     const DF d;
     const auto lanes = static_cast<std::int32_t>(hn::Lanes(d));
     const VF nearest = hn::Set(d, p.nearest);
-    const std::int32_t first = p.x0 / 8, last = p.x1 / 8;
+    const std::int32_t first = std::max<std::int32_t>(p.x0, tiles.first_x) / 8;
+    const std::int32_t last = std::min<std::int32_t>(p.x1, tiles.last_x) / 8;
     for (std::int32_t ty = p.y0 / 8; ty <= p.y1 / 8; ++ty) {
         const std::size_t row = static_cast<std::size_t>(ty) * tiles.columns;
         for (std::int32_t from = first; from <= last; from += lanes) {

@@ -36,6 +36,26 @@ glm::mat4 model_to_clip(const ViewMatrix& view, const glm::dmat3& linear, const 
     return glm::mat4(view.to_clip * placed);
 }
 
+depth::DepthObject object_of(std::uint32_t id, const ViewMatrix& view, const ObjectTable& table,
+                             const SpatialIndex& index, const scene::Scene& scene, const MeshClusters& clusters) {
+    const Object& object = table.objects[id];
+    const MeshClusters::Mesh* mesh = object.kind == BoundKind::none ? clusters.find(object.mesh) : nullptr;
+    if (mesh == nullptr) {
+        const Obb& box = index.box(id);
+        glm::dmat3 linear(box.axes);
+        for (int k = 0; k < 3; ++k) linear[k] *= double{box.half_extents[k]};
+        depth::DepthObject asked{&unit_cube(), model_to_clip(view, linear, box.center)};
+        asked.hides = false;
+        return asked;
+    }
+    const Transform& world = scene.world(scene.node_of(object.instance));
+    depth::DepthObject asked{&mesh->cut, model_to_clip(view, world.linear, world.translation)};
+    // Mirrored, fronts and backs change places.
+    asked.one_sided = mesh->one_sided && glm::determinant(world.linear) > 0.0;
+    asked.hides = object.occludes;
+    return asked;
+}
+
 }  // namespace
 
 Result<void> check_picture(const ViewRequest& request, std::uint64_t item) {
@@ -49,11 +69,13 @@ Result<void> check_picture(const ViewRequest& request, std::uint64_t item) {
     if (p.width == 0 || p.height == 0 || p.width > depth::PictureView::kMaxSize ||
         p.height > depth::PictureView::kMaxSize)
         return fail(ErrorCode::out_of_range, item, "view: a picture has 1 to 16,384 pixels each way");
+    if (!p.has_samples()) return fail(ErrorCode::out_of_range, item, "view: a pixel has 1, 2, 4 or 8 samples");
     return {};
 }
 
 void PictureView::find(const ViewRequest& request, const cull::VisibleSet& in_frustum, const ObjectTable& table,
-                       const SpatialIndex& index, const scene::Scene& scene, const MeshClusters& clusters) {
+                       const SpatialIndex& index, const scene::Scene& scene, const MeshClusters& clusters,
+                       Executor& executor) {
     const ViewMatrix view = matrix_of(request);
     const std::span<const std::uint32_t> ids = in_frustum.ids();
     // Ascending, so that the answer does not depend on the order that is asked for.
@@ -61,29 +83,14 @@ void PictureView::find(const ViewRequest& request, const cull::VisibleSet& in_fr
     std::iota(places_.begin(), places_.end(), 0u);
     if (!std::is_sorted(ids.begin(), ids.end()))
         std::sort(places_.begin(), places_.end(), [&](std::uint32_t a, std::uint32_t b) { return ids[a] < ids[b]; });
-    objects_.clear();
-    for (const std::uint32_t place : places_) {
-        const std::uint32_t id = ids[place];
-        const Object& object = table.objects[id];
-        const MeshClusters::Mesh* mesh = object.kind == BoundKind::none ? clusters.find(object.mesh) : nullptr;
-        depth::DepthObject asked;
-        if (mesh != nullptr) {
-            const Transform& world = scene.world(scene.node_of(object.instance));
-            asked = {&mesh->cut, model_to_clip(view, world.linear, world.translation)};
-            // Mirrored, fronts and backs change places.
-            asked.one_sided = mesh->one_sided && glm::determinant(world.linear) > 0.0;
-            asked.hides = object.occludes;
-        } else {
-            const Obb& box = index.box(id);
-            glm::dmat3 linear(box.axes);
-            for (int k = 0; k < 3; ++k) linear[k] *= double{box.half_extents[k]};
-            asked = {&unit_cube(), model_to_clip(view, linear, box.center)};
-            asked.hides = false;
-        }
-        objects_.push_back(asked);
-    }
+    objects_.resize(ids.size());
+    constexpr std::size_t kGrain = 256;
+    executor.parallel_for(ids.size(), kGrain, [&](std::size_t begin, std::size_t end, unsigned) {
+        for (std::size_t i = begin; i < end; ++i)
+            objects_[i] = object_of(ids[places_[i]], view, table, index, scene, clusters);
+    });
     // Sizes and meshes are checked: nothing can fail.
-    const auto found = culler_.find_visible(objects_, *request.picture);
+    const auto found = culler_.find_visible(objects_, *request.picture, executor);
     seen_.assign(ids.size(), 0);
     triangles_.clear();
     for (const depth::VisibleCluster& cluster : *found) {

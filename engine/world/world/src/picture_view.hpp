@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A view by the depth of its picture: the triangles to draw.
 #pragma once
+#include <crofton/core/executor.hpp>
 #include <crofton/cull/cull.hpp>
 #include <crofton/depth/depth_culler.hpp>
 #include <crofton/scene/scene.hpp>
@@ -17,7 +18,7 @@ class PictureView {
   public:
     // Of what the frustum sees, in the order given. Requires a view that is checked.
     void find(const ViewRequest& request, const cull::VisibleSet& in_frustum, const ObjectTable& table,
-              const SpatialIndex& index, const scene::Scene& scene, const MeshClusters& clusters);
+              const SpatialIndex& index, const scene::Scene& scene, const MeshClusters& clusters, Executor& executor);
 
     [[nodiscard]] std::span<const depth::VisibleCluster> triangles() const { return triangles_; }
     // Of in_frustum: its places that are seen, in its order.

@@ -121,10 +121,10 @@ std::span<const std::uint64_t> World::State::candidates_and_changed(std::span<co
 }
 
 void World::State::find_triangles(const ViewRequest& request, const cull::VisibleSet& in_frustum,
-                                  world::OccludedView& result) const {
+                                  world::OccludedView& result, Executor& executor) const {
     const world::TraceZone zone(options.trace, "view: list triangles");
     result.by_picture = true;
-    result.picture.find(request, in_frustum, table, index, scene, mesh_clusters);
+    result.picture.find(request, in_frustum, table, index, scene, mesh_clusters, executor);
     world::trace_count(options.trace, "triangles to draw", result.picture.statistics().triangles_listed);
 }
 
@@ -183,7 +183,7 @@ Result<void> World::view_own(const ViewRequest& request, ViewResult& visible, Ex
         world::trace_count(state_->options.trace, "objects in view", visible.set_.size());
         if (request.picture) {
             if (!visible.occluded_) visible.occluded_ = world::make_occluded_view();
-            state_->find_triangles(request, visible.set_, *visible.occluded_);
+            state_->find_triangles(request, visible.set_, *visible.occluded_, executor);
         }
         visible.hides_ = request.picture.has_value();
         return {};

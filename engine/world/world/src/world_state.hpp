@@ -147,8 +147,8 @@ struct World::State {
     // CullOptions::candidate_mask, in `both`, with the bits of objects that have moved or reuse an index.
     [[nodiscard]] std::span<const std::uint64_t> candidates_and_changed(std::span<const std::uint64_t> candidate_mask,
                                                                         Vector<std::uint64_t>& both) const;
-    void find_triangles(const ViewRequest& request, const cull::VisibleSet& in_frustum,
-                        world::OccludedView& result) const;
+    void find_triangles(const ViewRequest& request, const cull::VisibleSet& in_frustum, world::OccludedView& result,
+                        Executor& executor) const;
     // Draws the occluders that are worth most to the view into the result's buffer, then asks what they do not hide.
     void draw_and_ask(const occlude::OcclusionView& view, const OcclusionOptions& occlusion, std::uint32_t layers,
                       const cull::CullOptions& how, Executor& executor, world::OccludedView& result) const;

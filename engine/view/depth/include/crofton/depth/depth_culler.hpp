@@ -2,6 +2,7 @@
 // Finds the triangles that a picture needs, from front to back: triangles behind those found before are left out.
 #pragma once
 #include <crofton/core/error.hpp>
+#include <crofton/core/executor.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/depth/clustered_mesh.hpp>
 #include <crofton/geometry/camera.hpp>
@@ -26,13 +27,25 @@ struct DepthObject {
     float position_error = 0.0f;
 };
 
-// The picture that is drawn, with one sample per pixel, at its centre.
+// The picture that is drawn.
 struct PictureView {
     static constexpr std::uint32_t kMaxSize = 16'384;
 
     std::uint32_t width = 1280;  // 1 to kMaxSize pixels
     std::uint32_t height = 720;
     DepthRange depth = DepthRange::reversed_zero_to_one;
+
+    // In each pixel: 1, at its centre, or 2, 4 or 8 for multisampling, at Vulkan's standard sample locations, where y
+    // points up. What is visible at any of them is listed, which takes the time of so many pictures.
+    std::uint32_t samples = 1;
+
+    // Bounds the time where little is hidden: 0 for no limit, otherwise a number of clusters that are tested and of
+    // triangles that are drawn, together. An average one takes some 50 to 200 ns. After that, an object or a cluster is
+    // still tested by its box, and if the box may be visible, it is listed whole and hides nothing.
+    // With several samples it is a limit for each.
+    std::uint64_t work_limit = 0;
+
+    [[nodiscard]] bool has_samples() const { return samples == 1 || samples == 2 || samples == 4 || samples == 8; }
 };
 
 // A cluster with at least one triangle that may be visible at a sample. If bit k of `triangles` is set, draw triangle
@@ -43,27 +56,30 @@ struct VisibleCluster {
     std::uint64_t triangles = 0;
 };
 
+// With several samples per pixel, what is asked and drawn is counted for each.
 struct DepthStatistics {
-    std::uint64_t objects_listed = 0;   // with at least one triangle
-    std::uint64_t objects_asked = 0;    // their bounds may cover a sample of the picture
-    std::uint64_t clusters_asked = 0;   // of the objects that were not hidden as a whole
-    std::uint64_t clusters_drawn = 0;   // that were not hidden as a whole
-    std::uint64_t triangles_drawn = 0;  // of those clusters
+    std::uint64_t objects_listed = 0;  // with at least one triangle
+    std::uint64_t objects_asked = 0;   // their bounds may cover a sample of the picture
+    std::uint64_t clusters_asked = 0;  // of the objects that were not hidden as a whole
+    std::uint64_t clusters_drawn = 0;  // that were not hidden as a whole
+    // Of those clusters. The limit was exceeded if this and clusters_asked are more together.
+    std::uint64_t triangles_drawn = 0;
     std::uint64_t triangles_listed = 0;
 };
 
 // Finds the triangles without which a picture of opaque triangles, drawn with the depth test, would change.
 //
 // Draw the listed triangles, or any set that contains them, in the order in which you would draw all triangles: the
-// picture has the same bits. This holds only for the size given, with one sample per pixel; another size needs another
-// call. It holds for renderers that
+// picture has the same bits. This holds only for the size and the samples given; others need another call. It holds for
+// renderers that
 // - compute positions as to_clip · vertex in float, in any order of operations, and snap them to a grid of at most
 //   1/256 pixel (Vulkan's subPixelPrecisionBits ≥ 8),
 // - cover no sample twice and leave none out where two triangles share an edge,
 // - never give a sample a depth nearer than the triangle's nearest vertex, and write and compare depth as 32-bit
 // floats. docs/notes/depth.md derives the margins.
 //
-// Keeps its memory between calls and allocates only when it must grow. Use one culler per thread.
+// Keeps its memory between calls and allocates only when it must grow. Use one culler per thread; with an executor one
+// call may use several threads.
 class DepthCuller {
   public:
     DepthCuller();
@@ -72,18 +88,19 @@ class DepthCuller {
     DepthCuller& operator=(DepthCuller&&) noexcept;
 
     // Returns visible clusters by object, then by cluster, both ascending; valid until the next call. Leave out objects
-    // outside the frustum (World::view): it is faster.
+    // outside the frustum (World::view): it is faster. The answer has the same bits with any executor.
     //
-    // Errors: a size out of range; an object without a mesh (item = object). If an object's matrix or position_error is
-    // not finite, all its triangles are listed and it hides nothing.
+    // Errors: a size or a number of samples out of range; an object without a mesh (item = object). If an object's
+    // matrix or position_error is not finite, all its triangles are listed and it hides nothing.
     [[nodiscard]] Result<std::span<const VisibleCluster>> find_visible(std::span<const DepthObject> objects,
-                                                                       const PictureView& view);
+                                                                       const PictureView& view,
+                                                                       Executor& executor = serial_executor());
 
     [[nodiscard]] const DepthStatistics& statistics() const;
 
     // Returns a lower bound for the nearness of the listed triangles at a pixel, after the last call. Nearness is
     // depth, negated unless the range is reversed; minus infinity where no triangle surely covers the pixel. Row 0 is
-    // at the bottom. Requires x < width, y < height.
+    // at the bottom. Where a pixel has several samples, it is that of the first. Requires x < width, y < height.
     [[nodiscard]] float nearness(std::uint32_t x, std::uint32_t y) const;
 
   private:

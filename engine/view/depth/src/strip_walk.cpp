@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+#include "strip_walk.hpp"
+
+#include <hwy/cache_control.h>
+#include <algorithm>
+
+namespace crofton::depth {
+
+void StripWalk::run(const DepthFrame& frame, std::uint32_t first_column, std::uint32_t end_column, SharedWork& work) {
+    frame_ = &frame;
+    work_ = &work;
+    begin(first_column, end_column);
+    for (bin_ = 0; bin_ < DepthFrame::kBins; ++bin_) {
+        walk_bin(bin_);
+        if (!whole_ && is_exceeded()) return;
+    }
+}
+
+void StripWalk::begin(std::uint32_t first_column, std::uint32_t end_column) {
+    picture_ = frame_->picture();
+    first_column_ = first_column, end_column_ = end_column;
+    Tiles& tiles = picture_.tiles;
+    const std::uint32_t rows = (tiles.height + kTile - 1) / kTile;
+    tiles.columns = end_column - first_column;
+    tiles.first_x = static_cast<std::int32_t>(first_column * kTile);
+    tiles.last_x = static_cast<std::int32_t>(std::min(end_column * kTile, tiles.width)) - 1;
+    whole_ = tiles.first_x == 0 && tiles.last_x + 1 == static_cast<std::int32_t>(tiles.width);
+    // Tile (x, y) is at y · columns + x of the lists: they begin with the strip's first column. Kernels read and write
+    // a vector beyond the end.
+    const std::size_t count = std::size_t{tiles.columns} * rows + first_column;
+    if (pixels_.size() < count * kTilePixels) pixels_.resize(count * kTilePixels);
+    least_.assign(count + kTile, kNothing);
+    floors_.assign(count + kTile, kNothing);
+    written_.assign(count, 0);
+    tiles.pixels = pixels_.data(), tiles.least = least_.data(), tiles.floors = floors_.data();
+    tiles.written = written_.data();
+    first_.fill(kEnd);
+    items_.clear();
+    clusters_.clear();
+    asked_.clear();
+    untested_.clear();
+}
+
+// Objects first: clusters come to this bin only while it is walked, or from nearer objects that reach as far.
+void StripWalk::walk_bin(std::uint32_t bin) {
+    const std::span<const std::uint32_t> objects = frame_->in_bin(bin);
+    const Projection* const projections = frame_->projections().data();
+    for (std::size_t i = 0;; ++i) {
+        i = first_shown(picture_.tiles, projections, objects.data(), i, objects.size());
+        if (i == objects.size()) break;
+        look_into(objects[i]);
+    }
+    while (first_[bin] != kEnd) {
+        const Item item = items_[first_[bin]];
+        first_[bin] = item.next;
+        if (item.next != kEnd) hwy::Prefetch(&items_[item.next]);
+        if (is_hidden(picture_.tiles, item.projection)) continue;
+        draw(item.object, item.cluster, frame_->objects()[item.object].mesh->clusters()[item.cluster], item.projection);
+    }
+}
+
+void StripWalk::look_into(std::uint32_t object) {
+    const ClusteredMesh& mesh = *frame_->objects()[object].mesh;
+    const auto clusters = static_cast<std::uint32_t>(mesh.clusters().size());
+    if (whole_ && is_exceeded()) {
+        for (std::uint32_t c = 0; c < clusters; ++c) list_whole(object, c);
+        return;
+    }
+    asked_.push_back(object);
+    count(clusters, frame_->projections()[object]);
+    if (clusters > 1) return split(object);
+    draw(object, 0, mesh.bound(), frame_->projections()[object]);
+}
+
+void StripWalk::split(std::uint32_t object) {
+    const std::span<const Cluster> clusters = frame_->objects()[object].mesh->clusters();
+    const Projection& whole = frame_->projections()[object];
+    if (projections_.size() < clusters.size() + kTile) projections_.resize(clusters.size() + kTile);
+    project_clusters(picture_, frame_->data_of(object), whole, clusters.data(), clusters.size(), projections_.data());
+    for (std::uint32_t c = 0; c < clusters.size(); ++c) {
+        const Projection& p = projections_[c];
+        if (!p.covers_nothing() && p.x1 >= picture_.tiles.first_x && p.x0 <= picture_.tiles.last_x)
+            push({object, c, kEnd, p});
+    }
+}
+
+// One that is nearer than what has been taken comes next.
+void StripWalk::push(const Item& item) {
+    const std::uint32_t bin = std::max(frame_->bin_of(item.projection), bin_);
+    const auto number = static_cast<std::uint32_t>(items_.size());
+    items_.push_back(item);
+    if (first_[bin] == kEnd)
+        first_[bin] = number;
+    else
+        items_[last_[bin]].next = number;
+    last_[bin] = number;
+}
+
+void StripWalk::draw(std::uint32_t object, std::uint32_t cluster, const Cluster& bound, const Projection& projection) {
+    if (whole_ && is_exceeded()) return list_whole(object, cluster);
+    const ClusteredMesh::Layout layout = frame_->objects()[object].mesh->layout();
+    const ClusteredMesh::Patch& patch = layout.patches[cluster];
+    count(patch.triangle_count, projection);
+    const PatchData data{layout.coordinates.data() + patch.first_coordinate,
+                         layout.blocks.data() + patch.first_block,
+                         patch.vertex_count,
+                         patch.triangle_count,
+                         bound,
+                         projection};
+    clusters_.push_back({object, cluster, draw_patch(picture_, frame_->data_of(object), data)});
+}
+
+void StripWalk::list_whole(std::uint32_t object, std::uint32_t cluster) {
+    untested_.push_back(all_of(*frame_->objects()[object].mesh, object, cluster));
+}
+
+void StripWalk::count(std::uint64_t work, const Projection& box) {
+    const bool counts = box.x0 >= picture_.tiles.first_x && box.x0 <= picture_.tiles.last_x;
+    if (counts) work_->done.fetch_add(work, std::memory_order_relaxed);
+}
+
+float StripWalk::nearness(std::uint32_t x, std::uint32_t y) const {
+    const Tiles& tiles = picture_.tiles;
+    const std::size_t t = std::size_t{y / kTile} * tiles.columns + x / kTile;
+    const float floor = tiles.floors[t];
+    if (tiles.written[t] == 0) return floor;
+    return std::max(floor, tiles.pixels[t * kTilePixels + y % kTile * kTile + x % kTile]);
+}
+
+}  // namespace crofton::depth
