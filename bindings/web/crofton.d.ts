@@ -85,8 +85,8 @@ export interface DrawLimits {
 export interface ViewRequest {
     camera?: Camera; matrix?: Vector; depth?: Depth; origin?: Vector; volume?: Frustum; layers?: number;
     occlusion?: { listOccluded?: boolean; width?: number; height?: number; maxOccluders?: number; leastCover?: number };
-    /** Instead of occlusion; `depth` is the depth range of the projection, 'reversed' by default. */
-    picture?: { width?: number; height?: number; depth?: Depth };
+    /** Instead of occlusion; `depth` is the depth range of the projection, 'reversed' by default; `samples` in each pixel: 1, 2, 4 or 8. */
+    picture?: { width?: number; height?: number; depth?: Depth; samples?: number };
     limits?: DrawLimits;
     /** Bit i says whether object i may be seen. Objects that have moved since their first update may always be seen. */
     candidates?: Bits;

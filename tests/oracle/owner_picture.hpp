@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <span>
 #include <vector>
@@ -47,8 +48,9 @@ struct Rounding {
 // Reversed-Z matrices.
 class OwnerRenderer {
   public:
-    OwnerRenderer(OwnerPicture& picture, const Rounding& rounding, std::uint64_t seed)
-        : picture_(picture), rounding_(rounding), seed_(seed) {}
+    // `sample`: where in each pixel, in sixteenths, from its lower left corner.
+    OwnerRenderer(OwnerPicture& picture, const Rounding& rounding, std::uint64_t seed, glm::ivec2 sample = {8, 8})
+        : picture_(picture), rounding_(rounding), seed_(seed), sample_(sample) {}
 
     void draw(const DrawnMesh& mesh, std::uint32_t number) {
         for (std::uint32_t t = 0; 3 * t + 2 < mesh.indices.size(); ++t) {
@@ -127,7 +129,7 @@ class OwnerRenderer {
         const double moved_back = rounding_.bias * steepest(p, double(area));
         for (std::int64_t y = y0; y <= std::min<std::int64_t>(y1, picture_.height - 1); ++y)
             for (std::int64_t x = x0; x <= std::min<std::int64_t>(x1, picture_.width - 1); ++x) {
-                const std::int64_t sx = 256 * x + 128, sy = 256 * y + 128;
+                const std::int64_t sx = 256 * x + 16 * sample_.x, sy = 256 * y + 16 * sample_.y;
                 std::array<double, 3> weights{};
                 bool inside = true;
                 for (std::size_t k = 0; k < 3; ++k) {
@@ -139,7 +141,7 @@ class OwnerRenderer {
                 }
                 if (!inside) continue;
                 double z = rounding_.snaps_plane ? weights[0] * p[0].z + weights[1] * p[1].z + weights[2] * p[2].z
-                                                 : plane_of_places(p, x, y);
+                                                 : plane_of_places(p, double(sx) / 256.0, double(sy) / 256.0);
                 z += rounding_.depth_share * std::abs(z) * random(z, owner);
                 z = std::min(z, nearest) - moved_back;
                 const std::size_t at = std::size_t(y) * picture_.width + std::size_t(x);
@@ -149,13 +151,13 @@ class OwnerRenderer {
             }
     }
 
-    static double plane_of_places(const std::array<Point, 3>& p, std::int64_t x, std::int64_t y) {
+    static double plane_of_places(const std::array<Point, 3>& p, double x, double y) {
         const double x1 = p[1].at_x - p[0].at_x, y1 = p[1].at_y - p[0].at_y, z1 = p[1].z - p[0].z;
         const double x2 = p[2].at_x - p[0].at_x, y2 = p[2].at_y - p[0].at_y, z2 = p[2].z - p[0].z;
         const double area = x1 * y2 - x2 * y1;
         if (area == 0.0) return std::max({p[0].z, p[1].z, p[2].z});
         const double across = (z1 * y2 - z2 * y1) / area, up = (z2 * x1 - z1 * x2) / area;
-        return p[0].z + across * (double(x) + 0.5 - p[0].at_x) + up * (double(y) + 0.5 - p[0].at_y);
+        return p[0].z + across * (x - p[0].at_x) + up * (y - p[0].at_y);
     }
 
     // What the depth changes by from one pixel to the next.
@@ -169,6 +171,7 @@ class OwnerRenderer {
     OwnerPicture& picture_;
     Rounding rounding_;
     std::uint64_t seed_;
+    glm::ivec2 sample_;
 };
 
 }  // namespace crofton::oracle

@@ -170,7 +170,7 @@ namespace Crofton {
         [StructLayout(LayoutKind.Sequential)]
         internal struct PictureData {
             public UIntPtr Size;
-            public uint Width, Height, Depth;
+            public uint Width, Height, Depth, Samples;
             public ulong WorkLimit;
         }
 

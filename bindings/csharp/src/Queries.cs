@@ -145,11 +145,13 @@ namespace Crofton {
         public Vector3 Origin;
     }
 
-    /// <summary>The picture that you draw, with one sample a pixel.</summary>
+    /// <summary>The picture that you draw.</summary>
     public sealed class PictureView {
         public uint Width = 1280, Height = 720;
         /// <summary>The depth range of the projection; with a ViewMatrix, the same as its.</summary>
         public DepthRange Depth;
+        /// <summary>1 in each pixel, at its centre; 2, 4 or 8: for multisampling, at Vulkan's standard locations.</summary>
+        public uint Samples = 1;
         /// <summary>0 for no limit. Otherwise a number of clusters that are tested and of triangles that are drawn, together; what is left after that is listed whole unless its box is hidden.</summary>
         public ulong WorkLimit;
     }
@@ -268,6 +270,7 @@ namespace Crofton {
                     picture.Width = request.Picture.Width;
                     picture.Height = request.Picture.Height;
                     picture.Depth = (uint)request.Picture.Depth;
+                    picture.Samples = request.Picture.Samples;
                     picture.WorkLimit = request.Picture.WorkLimit;
                     data.Picture = Copied(picture);
                 }

@@ -334,7 +334,7 @@ class ViewMatrix:
 
 class PictureView:
     def __init__(self, width: int = 1280, height: int = 720, *, depth: str = "reversed_zero_to_one",
-                 work_limit: int = 0) -> None: ...
+                 samples: int = 1, work_limit: int = 0) -> None: ...
 
 class DrawLimits:
     def __init__(self, eye: Vector, *, max_distance_in_radii: float = ..., least_radius: float = 0.0,

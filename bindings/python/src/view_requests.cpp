@@ -209,16 +209,18 @@ void bind_view_requests(py::module_& module) {
                           m.origin.z);
         });
 
-    py::class_<depth::PictureView>(module, "PictureView", "The picture that is drawn, with one sample per pixel.")
-        .def(
-            py::init([](std::uint32_t width, std::uint32_t height, const std::string& depth, std::uint64_t work_limit) {
-                return depth::PictureView{width, height, depth_range(depth), work_limit};
-            }),
-            py::arg("width") = depth::PictureView{}.width, py::arg("height") = depth::PictureView{}.height,
-            py::kw_only(), py::arg("depth") = "reversed_zero_to_one", py::arg("work_limit") = 0,
-            "`depth` is the depth convention of the renderer's projection; with a ViewMatrix it must be the same as "
-            "there. `work_limit`, unless 0, limits the number of clusters tested and of triangles drawn, together; "
-            "what is left is then listed whole unless its box is hidden.")
+    py::class_<depth::PictureView>(module, "PictureView", "The picture that is drawn.")
+        .def(py::init([](std::uint32_t width, std::uint32_t height, const std::string& depth, std::uint32_t samples,
+                         std::uint64_t work_limit) {
+                 return depth::PictureView{width, height, depth_range(depth), samples, work_limit};
+             }),
+             py::arg("width") = depth::PictureView{}.width, py::arg("height") = depth::PictureView{}.height,
+             py::kw_only(), py::arg("depth") = "reversed_zero_to_one", py::arg("samples") = 1,
+             py::arg("work_limit") = 0,
+             "`depth` is the depth convention of the renderer's projection; with a ViewMatrix it must be the same as "
+             "there. `samples` is the number in each pixel: 1, at its centre, or 2, 4 or 8 for multisampling, at "
+             "Vulkan's standard locations. `work_limit`, unless 0, limits the number of clusters tested and of "
+             "triangles drawn, together; what is left is then listed whole unless its box is hidden.")
         .def("__repr__", [](const depth::PictureView& p) {
             return format("PictureView(%u, %u, depth='%s')", p.width, p.height, depth_name(p.depth));
         });

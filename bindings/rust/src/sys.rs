@@ -342,6 +342,7 @@ pub struct PictureView {
     pub width: u32,
     pub height: u32,
     pub depth: u32,
+    pub samples: u32,
     pub work_limit: u64,
 }
 

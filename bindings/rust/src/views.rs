@@ -48,7 +48,7 @@ pub struct ViewRequest<'a> {
     pub tree_order: bool,
 }
 
-/// The picture that you draw, with one sample a pixel.
+/// The picture that you draw.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PictureView {
     /// In pixels, 1 to 16,384.
@@ -57,6 +57,8 @@ pub struct PictureView {
     pub height: u32,
     /// The depth range of the projection; with a [`ViewMatrix`], the same as its.
     pub depth: DepthRange,
+    /// 1 in each pixel, at its centre; 2, 4 or 8: for multisampling, at Vulkan's standard locations.
+    pub samples: u32,
     /// 0 for no limit. Otherwise a number of clusters that are tested and of triangles that are drawn, together; what is
     /// left after that is listed whole unless its box is hidden.
     pub work_limit: u64,
@@ -204,6 +206,7 @@ impl<'a> Asked<'a> {
                 width: p.width,
                 height: p.height,
                 depth: p.depth as u32,
+                samples: p.samples,
                 work_limit: p.work_limit,
             }),
             limits: request.limits.map(|l| l.raw()),

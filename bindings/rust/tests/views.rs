@@ -150,7 +150,7 @@ fn walls() -> (World, Mesh, Vec<Object>) {
 #[test]
 fn a_picture_lists_the_triangles_that_it_needs() {
     let (mut world, mesh, objects) = walls();
-    let picture = Some(PictureView { width: 160, height: 90, depth: DepthRange::ReversedZeroToOne, work_limit: 0 });
+    let picture = Some(PictureView { width: 160, height: 90, depth: DepthRange::ReversedZeroToOne, samples: 1, work_limit: 0 });
     let mut visible = ViewResult::new().unwrap();
     let request = ViewRequest { picture, ..Camera::default().into() };
     let seen = world.view(&request, &mut visible).unwrap();
@@ -172,7 +172,7 @@ fn a_picture_lists_the_triangles_that_it_needs() {
 fn each_of_many_views_is_obeyed_as_it_is_alone() {
     let (world, _, objects) = walls();
     let camera = || ViewRequest::from(Camera::default());
-    let picture = Some(PictureView { width: 160, height: 90, depth: DepthRange::ReversedZeroToOne, work_limit: 0 });
+    let picture = Some(PictureView { width: 160, height: 90, depth: DepthRange::ReversedZeroToOne, samples: 1, work_limit: 0 });
     let near = DrawLimits { max_distance_in_radii: 5.0, ..DrawLimits::new([0.0; 3]) };
     let distances = [1.0, 100.0, 1.0];
     let by_item = DrawLimits { item_distances: &distances, ..DrawLimits::new([0.0; 3]) };

@@ -194,7 +194,7 @@ export class World extends Owned {
     /**
      * Lists what a view sees. Set `camera`, `matrix` (with `depth` and `origin`, as in Frustum) or `volume`, a Frustum; with
      * occlusion also a camera or matrix beside a volume. `layers`; `occlusion`: leaves out what others hide, `{ listOccluded, width, height,
-     * maxOccluders, leastCover }`; `picture`: `{ width, height, depth }`, lists the triangles that it needs, instead of
+     * maxOccluders, leastCover }`; `picture`: `{ width, height, depth, samples }`, lists the triangles that it needs, instead of
      * occlusion; `limits`: leaves out what is small or far; `candidates`: bits by object index, BigUint64Array or
      * Uint32Array; `treeOrder`, `conservative`.
      */
@@ -243,9 +243,9 @@ export class World extends Owned {
             words[first + 6] = structs.limits;
         }
         if (picture) {
-            const { width = 1280, height = 720, depth: range = 'reversed' } = picture, place = at + 464;
+            const { width = 1280, height = 720, depth: range = 'reversed', samples = 1 } = picture, place = at + 464;
             memory.fill('default_picture_view', place);
-            words.set([width, height, word(range)], (place >> 2) + 1);
+            words.set([width, height, word(range), samples], (place >> 2) + 1);
             words[first + 11] = place;
         }
         words[first + 9] = conservative ? 1 : 0;

@@ -62,7 +62,7 @@ AT(crofton_draw_limits, eye, 8);
 AT(crofton_draw_limits, layer_distances, 48);
 AT(crofton_draw_limits, drawn_word_count, 64);
 AT(crofton_draw_limits, hysteresis, 72);
-SIZE(crofton_picture_view, 24);
+SIZE(crofton_picture_view, 32);
 SIZE(crofton_view_request, 48);
 AT(crofton_view_request, picture, 44);
 AT(crofton_view_request, limits, 24);

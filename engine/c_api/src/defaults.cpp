@@ -111,6 +111,7 @@ crofton_picture_view crofton_default_picture_view(void) {
     result.width = view.width;
     result.height = view.height;
     result.depth = static_cast<std::uint32_t>(view.depth);
+    result.samples = view.samples;
     result.work_limit = view.work_limit;
     return result;
 }

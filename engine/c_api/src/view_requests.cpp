@@ -93,7 +93,7 @@ crofton_status capi::read_picture(const crofton_picture_view* picture, const cha
     CROFTON_CHECK(read_growing(picture, function, given));
     if (given.depth > CROFTON_DEPTH_MINUS_ONE_TO_ONE)
         return report(CROFTON_INVALID_ARGUMENT, function, "unknown depth range");
-    view = {given.width, given.height, static_cast<DepthRange>(given.depth), given.work_limit};
+    view = {given.width, given.height, static_cast<DepthRange>(given.depth), given.samples, given.work_limit};
     return CROFTON_OK;
 }
 

@@ -20,6 +20,9 @@ class MarginScenes {
     MarginScenes(std::uint32_t width, std::uint32_t height, oracle::NearMisses& random)
         : width_(width), height_(height), random_(random) {}
 
+    // Aims at this place of each pixel, in sixteenths, instead of its centre.
+    void aim_at(glm::ivec2 sample) { shift_ = glm::dvec2(sample - glm::ivec2(8)) / 16.0; }
+
     // A coordinate next to a sample's: by about as much as vertices are moved.
     double next_to(double sample) {
         const double side = random_.index(2) == 0 ? 1.0 : -1.0;
@@ -299,13 +302,15 @@ class MarginScenes {
 
   private:
     void add(TriangleMesh& mesh, const Aimed& p) {
-        mesh.positions.push_back(glm::vec3(2.0 * p.x / width_ - 1.0, 2.0 * p.y / height_ - 1.0, p.z));
+        mesh.positions.push_back(
+            glm::vec3(2.0 * (p.x + shift_.x) / width_ - 1.0, 2.0 * (p.y + shift_.y) / height_ - 1.0, p.z));
     }
     [[nodiscard]] glm::vec3 to_ndc(const glm::dvec3& p) const {
-        return {2.0 * p.x / width_ - p.z, 2.0 * p.y / height_ - p.z, p.z};
+        return {2.0 * (p.x + shift_.x * p.z) / width_ - p.z, 2.0 * (p.y + shift_.y * p.z) / height_ - p.z, p.z};
     }
 
     std::uint32_t width_, height_;
+    glm::dvec2 shift_{0.0};
     oracle::NearMisses& random_;
 };
 

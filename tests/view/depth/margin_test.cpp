@@ -32,7 +32,8 @@ struct Aim {
 // Pictures of `least` to `most` pixels each way. A renderer may round a vertex's clip coordinates, its place in the
 // picture and depth by as much as the notes say.
 template <class Build>
-void try_aimed(std::uint64_t count, std::uint32_t least, std::uint32_t most, const Build& build) {
+void try_aimed(std::uint64_t count, std::uint32_t least, std::uint32_t most, const Build& build,
+               std::uint32_t samples = 1) {
     depth::DepthCuller culler;
     std::uint64_t lost = 0, too_near = 0, owners = 0;
     for (std::uint64_t seed = 1; seed <= count; ++seed) {
@@ -48,7 +49,7 @@ void try_aimed(std::uint64_t count, std::uint32_t least, std::uint32_t most, con
         roundings.push_back(rounding);
         rounding.snaps_plane = false;
         roundings.push_back(rounding);
-        const Checked c = check(aim.scene, glm::dmat4(1.0), width, height, seed, culler, roundings);
+        const Checked c = check(aim.scene, glm::dmat4(1.0), width, height, seed, culler, roundings, samples);
         if (c.lost + c.too_near > 0) MESSAGE("seed ", seed, ": lost ", c.lost, ", too near ", c.too_near);
         lost += c.lost, too_near += c.too_near, owners += c.owners;
     }
@@ -189,6 +190,34 @@ TEST_SUITE("depth/margins") {
             aim.most_offset = 4e6;
             aim.add(aim.meshes.beside(30), aim.random.index(2) == 0 ? 1 : aim.some_size());
         });
+    }
+
+    TEST_CASE("what owns any sample of a multisampled pixel is listed") {
+        for (const std::uint32_t samples : {2u, 4u, 8u}) {
+            CAPTURE(samples);
+            const auto build = [&](Aim& aim) {
+                aim.meshes.aim_at(samples_of_pixel(samples)[aim.random.index(samples)]);
+                const double z = aim.random.number(0.1, 0.9);
+                aim.add(aim.meshes.wall(z, 0.0), 0);
+                aim.add(aim.meshes.specks(z, 20), aim.some_size());
+                for (int i = 0; i < 3; ++i) aim.add(aim.meshes.fan(0.3), aim.some_size());
+                aim.add(aim.meshes.crown(), 64);
+            };
+            try_aimed(300, 8, 40, build, samples);
+            try_aimed(100, 1, 4, build, samples);
+            const auto deep = [&](Aim& aim) {
+                aim.meshes.aim_at(samples_of_pixel(samples)[aim.random.index(samples)]);
+                const double near = aim.meshes.some(0.01, 1.0);
+                aim.to_clip = MarginScenes::deep(near);
+                aim.add(aim.meshes.through_near(2, near), 1);
+                for (int i = 0; i < 3; ++i) {
+                    TriangleMesh mesh = aim.random.index(2) == 0 ? aim.meshes.fan(0.3) : aim.meshes.patch(0.3);
+                    aim.meshes.deepen(mesh, 0.99 * near, 20.0 * near, true);
+                    aim.add(std::move(mesh), aim.some_size());
+                }
+            };
+            try_aimed(200, 8, 40, deep, samples);
+        }
     }
 
     TEST_CASE("pictures of one to four pixels lose nothing") {

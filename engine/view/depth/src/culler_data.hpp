@@ -29,6 +29,7 @@ struct Tiles {
 struct PictureData {
     Tiles tiles;
     float half_width, half_height;
+    float middle_x, middle_y;  // in pixels, so that the sample at hand is in the middle of each
     float near_share;  // points are in front of the near plane where nearness ≤ near_share · w, in clip coordinates
     float infinitely_far;  // nearness there
     float grid;    // pixels by which a vertex may lie elsewhere along each axis: the grid's step, floats' rounding

@@ -20,6 +20,7 @@ Result<void> check(std::span<const DepthObject> objects, const PictureView& view
     if (view.width == 0 || view.height == 0 || view.width > PictureView::kMaxSize ||
         view.height > PictureView::kMaxSize)
         return fail(ErrorCode::out_of_range, kNoItem, "depth: a picture has 1 to 16,384 pixels each way");
+    if (!view.has_samples()) return fail(ErrorCode::out_of_range, kNoItem, "depth: a pixel has 1, 2, 4 or 8 samples");
     if (objects.size() >= std::numeric_limits<std::uint32_t>::max())
         return fail(ErrorCode::out_of_range, kNoItem, "depth: too many objects");
     for (std::size_t i = 0; i < objects.size(); ++i)
@@ -36,6 +37,7 @@ struct DepthCuller::State {
     Vector<StripWalk> strips;
     std::uint32_t strip_count = 0;  // of the last picture
     Vector<VisibleCluster> found, sorted;
+    Vector<VisibleCluster> of_samples;  // found at any of those that were looked at
     Vector<std::uint32_t> ends;
     Vector<std::uint8_t> looked_into;  // by object
     DepthStatistics statistics;
@@ -111,7 +113,22 @@ struct DepthCuller::State {
         }
     }
 
-    // Clusters that several strips found.
+    // Takes up what was found at the samples before this one.
+    void add_samples(const DepthStatistics& before) {
+        found.assign(of_samples.begin(), of_samples.end());
+        found.insert(found.end(), sorted.begin(), sorted.end());
+        sort();
+        unite();
+        statistics.objects_asked += before.objects_asked;
+        statistics.clusters_asked += before.clusters_asked;
+        statistics.clusters_drawn += before.clusters_drawn;
+        statistics.triangles_drawn += before.triangles_drawn;
+        statistics.objects_listed = statistics.triangles_listed = 0;
+        count_listed();
+        of_samples.assign(sorted.begin(), sorted.end());
+    }
+
+    // Clusters that several strips or samples found.
     void unite() {
         std::size_t count = 0;
         for (const VisibleCluster& c : sorted)
@@ -139,11 +156,18 @@ Result<std::span<const VisibleCluster>> DepthCuller::find_visible(std::span<cons
                                                                   const PictureView& view, Executor& executor) {
     if (auto checked = check(objects, view); !checked) return tl::unexpected(checked.error());
     State& s = *state_;
-    s.frame.set(objects, view, executor);
     const std::uint64_t limit = view.work_limit != 0 ? view.work_limit : ~std::uint64_t{0};
     const unsigned threads = executor.concurrency();
-    // Which of the clusters are the first within the limit only one walk can tell.
-    if (!s.walk(threads == 1 ? 1 : kStripsPerThread * threads, limit, executor)) (void)s.walk(1, limit, executor);
+    s.of_samples.clear();
+    DepthStatistics statistics;
+    // nearness() is that of the last: the first sample.
+    for (std::uint32_t sample = view.samples; sample-- > 0;) {
+        s.frame.set(objects, view, sample, executor);
+        // Which of the clusters are the first within the limit only one walk can tell.
+        if (!s.walk(threads == 1 ? 1 : kStripsPerThread * threads, limit, executor)) (void)s.walk(1, limit, executor);
+        if (view.samples > 1) s.add_samples(std::exchange(statistics, {}));
+        statistics = s.statistics;
+    }
     return std::span<const VisibleCluster>(s.sorted);
 }
 

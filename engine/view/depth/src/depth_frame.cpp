@@ -7,10 +7,29 @@
 #include <numeric>
 
 namespace crofton::depth {
+namespace {
 
-void DepthFrame::set(std::span<const DepthObject> objects, const PictureView& view, Executor& executor) {
+// Where Vulkan's sample lies in its pixel ("Standard sample locations"), with y up.
+glm::vec2 standard_sample(std::uint32_t samples, std::uint32_t sample) {
+    struct Sixteenths {
+        std::uint8_t right, down;
+    };
+    static constexpr Sixteenths kPlaces[][8] = {
+        {{8, 8}},
+        {{12, 12}, {4, 4}},
+        {{6, 2}, {14, 6}, {2, 10}, {10, 14}},
+        {{9, 5}, {7, 11}, {13, 9}, {5, 3}, {3, 13}, {1, 7}, {11, 15}, {15, 1}},
+    };
+    const Sixteenths place = kPlaces[std::countr_zero(samples)][sample];
+    return {static_cast<float>(place.right) / 16.0f, static_cast<float>(16 - place.down) / 16.0f};
+}
+
+}  // namespace
+
+void DepthFrame::set(std::span<const DepthObject> objects, const PictureView& view, std::uint32_t sample,
+                     Executor& executor) {
     objects_ = objects;
-    set_picture(view);
+    set_picture(view, sample);
     perspective_ = std::any_of(objects.begin(), objects.end(), [](const DepthObject& o) {
         return o.to_clip[0][3] != 0.0f || o.to_clip[1][3] != 0.0f || o.to_clip[2][3] != 0.0f;
     });
@@ -22,10 +41,12 @@ void DepthFrame::set(std::span<const DepthObject> objects, const PictureView& vi
     sort();
 }
 
-void DepthFrame::set_picture(const PictureView& view) {
+void DepthFrame::set_picture(const PictureView& view, std::uint32_t sample) {
     picture_.tiles.width = view.width, picture_.tiles.height = view.height;
     picture_.half_width = 0.5f * static_cast<float>(view.width);
     picture_.half_height = 0.5f * static_cast<float>(view.height);
+    const glm::vec2 at = standard_sample(view.samples, sample);
+    picture_.middle_x = picture_.half_width + (0.5f - at.x), picture_.middle_y = picture_.half_height + (0.5f - at.y);
     const bool reversed = view.depth == DepthRange::reversed_zero_to_one;
     picture_.near_share = view.depth == DepthRange::zero_to_one ? 0.0f : 1.0f;
     picture_.infinitely_far = reversed ? 0.0f : -1.0f;

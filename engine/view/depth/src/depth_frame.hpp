@@ -18,7 +18,8 @@ class DepthFrame {
   public:
     static constexpr std::uint32_t kBins = 1024;
 
-    void set(std::span<const DepthObject> objects, const PictureView& view, Executor& executor);
+    // Of one of the picture's samples.
+    void set(std::span<const DepthObject> objects, const PictureView& view, std::uint32_t sample, Executor& executor);
 
     [[nodiscard]] const PictureData& picture() const { return picture_; }  // without tiles
     [[nodiscard]] std::span<const DepthObject> objects() const { return objects_; }
@@ -35,7 +36,7 @@ class DepthFrame {
     [[nodiscard]] std::uint32_t bin_of(const Projection& projection) const;
 
   private:
-    void set_picture(const PictureView& view);
+    void set_picture(const PictureView& view, std::uint32_t sample);
     void sort();
 
     PictureData picture_{};

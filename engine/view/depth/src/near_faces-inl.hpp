@@ -54,8 +54,8 @@ class NearFaceSetup {
         Points p;
         for (int k = 0; k < 3; ++k) {
             const double w = vertices.w[c[k]];
-            p.at[k][0] = vertices.x[c[k]] * double{picture_.half_width} + w * picture_.half_width;
-            p.at[k][1] = vertices.y[c[k]] * double{picture_.half_height} + w * picture_.half_height;
+            p.at[k][0] = vertices.x[c[k]] * double{picture_.half_width} + w * picture_.middle_x;
+            p.at[k][1] = vertices.y[c[k]] * double{picture_.half_height} + w * picture_.middle_y;
             p.at[k][2] = w;
         }
         if (set_planes(f, i, vertices, c, p, limits)) f.flags[i] |= Faces::solid | 7 * Faces::closable;

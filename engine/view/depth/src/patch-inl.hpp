@@ -80,10 +80,11 @@ class PatchDrawer {
     HWY_INLINE void set_faces() {
         const DF d;
         const VF half_width = hn::Set(d, picture_.half_width), half_height = hn::Set(d, picture_.half_height);
+        const VF middle_x = hn::Set(d, picture_.middle_x), middle_y = hn::Set(d, picture_.middle_y);
         transform([&](const VF(&clip)[4], std::size_t i) {
             const VF inverse = hn::Div(hn::Set(d, 1.0f), clip[3]);
-            hn::Store(hn::Add(hn::Mul(hn::Mul(clip[0], inverse), half_width), half_width), d, vertices_.x + i);
-            hn::Store(hn::Add(hn::Mul(hn::Mul(clip[1], inverse), half_height), half_height), d, vertices_.y + i);
+            hn::Store(hn::Add(hn::Mul(hn::Mul(clip[0], inverse), half_width), middle_x), d, vertices_.x + i);
+            hn::Store(hn::Add(hn::Mul(hn::Mul(clip[1], inverse), half_height), middle_y), d, vertices_.y + i);
             hn::Store(hn::Mul(clip[2], inverse), d, vertices_.z + i);
         });
         const float w = patch_.projection.least_w - 2.0f * errors_.w;
@@ -220,8 +221,8 @@ class PatchDrawer {
         if (unclear_) {
             const float w = vertices_.w[v];
             if (!(w > 0.0f)) return;
-            x = x / w * picture_.half_width + picture_.half_width;
-            y = y / w * picture_.half_height + picture_.half_height;
+            x = x / w * picture_.half_width + picture_.middle_x;
+            y = y / w * picture_.half_height + picture_.middle_y;
         }
         const float r = std::min(radius_[v], kMaxCorner);
         const auto width = static_cast<float>(picture_.tiles.width), height = static_cast<float>(picture_.tiles.height);

@@ -127,9 +127,9 @@ class ClipBoxes {
             }
     }
 
-    // True of boxes beyond a side of the picture or before the near plane. The renderer's grid needs no margin: the
-    // outermost samples are half a pixel from the side. Unlike a rectangle in the picture this is known of boxes behind
-    // the eye, too.
+    // True of boxes beyond a side of the picture or before the near plane. Unlike a rectangle in the picture this is
+    // known of boxes behind the eye, too. The renderer's grid needs no margin: the outermost samples are a
+    // sixteenth of a pixel from the side, or farther.
     [[nodiscard]] auto are_outside(float near_share) const {
         const DF d;
         const VF infinity = hn::Set(d, std::numeric_limits<float>::infinity()), two = hn::Set(d, 2.0f);
@@ -212,18 +212,20 @@ HWY_INLINE Projections project(const PictureData& picture, const ClipBoxes& boxe
     const VF margin = hn::Mul(two, hn::Add(hn::Set(d, picture.grid), moved));
     const VF width = hn::Set(d, static_cast<float>(picture.tiles.width));
     const VF height = hn::Set(d, static_cast<float>(picture.tiles.height));
-    const auto low = [&](VF v, VF half) { return hn::Sub(hn::Add(hn::Mul(v, half), half), margin); };
-    const auto high = [&](VF v, VF half) { return hn::Add(hn::Add(hn::Mul(v, half), half), margin); };
+    const VF middle_x = hn::Set(d, picture.middle_x), middle_y = hn::Set(d, picture.middle_y);
+    const auto low = [&](VF v, VF half, VF middle) { return hn::Sub(hn::Add(hn::Mul(v, half), middle), margin); };
+    const auto high = [&](VF v, VF half, VF middle) { return hn::Add(hn::Add(hn::Mul(v, half), middle), margin); };
     const VF off_z = hn::Div(hn::Mul(two, hn::Add(errors[2], hn::Mul(hn::Abs(nearest), errors[3]))), w);
     nearest = hn::Add(nearest, hn::Add(off_z, hn::Mul(hn::Abs(nearest), hn::Set(d, 0x1p-20f))));
     const auto clear = hn::And(in_front, hn::And(hn::Lt(moved, hn::Set(d, kMaxPixelError)), hn::Lt(nearest, infinity)));
     const VF one = hn::Set(d, 1.0f);
-    Projections result{hn::IfThenElseZero(clear, first_samples(low(low_x, half_width), width)),
-                       hn::IfThenElse(clear, last_samples(high(high_x, half_width), width), hn::Sub(width, one)),
-                       hn::IfThenElseZero(clear, first_samples(low(low_y, half_height), height)),
-                       hn::IfThenElse(clear, last_samples(high(high_y, half_height), height), hn::Sub(height, one)),
-                       hn::IfThenElse(clear, nearest, infinity),
-                       hn::IfThenElseZero(clear, least_w)};
+    Projections result{
+        hn::IfThenElseZero(clear, first_samples(low(low_x, half_width, middle_x), width)),
+        hn::IfThenElse(clear, last_samples(high(high_x, half_width, middle_x), width), hn::Sub(width, one)),
+        hn::IfThenElseZero(clear, first_samples(low(low_y, half_height, middle_y), height)),
+        hn::IfThenElse(clear, last_samples(high(high_y, half_height, middle_y), height), hn::Sub(height, one)),
+        hn::IfThenElse(clear, nearest, infinity),
+        hn::IfThenElseZero(clear, least_w)};
     if (hn::AllTrue(d, clear)) return result;
     const auto outside = hn::AndNot(clear, boxes.are_outside(picture.near_share));
     result.x1 = hn::IfThenElse(outside, hn::Neg(one), result.x1);

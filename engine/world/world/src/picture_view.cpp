@@ -62,6 +62,7 @@ Result<void> check_picture(const ViewRequest& request, std::uint64_t item) {
     if (p.width == 0 || p.height == 0 || p.width > depth::PictureView::kMaxSize ||
         p.height > depth::PictureView::kMaxSize)
         return fail(ErrorCode::out_of_range, item, "view: a picture has 1 to 16,384 pixels each way");
+    if (!p.has_samples()) return fail(ErrorCode::out_of_range, item, "view: a pixel has 1, 2, 4 or 8 samples");
     return {};
 }
 

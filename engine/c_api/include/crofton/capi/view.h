@@ -42,11 +42,12 @@ typedef struct crofton_clusters {
     size_t triangle_count;
 } crofton_clusters;
 
-/* The picture that you draw, with one sample a pixel, at its centre. */
+/* The picture that you draw. */
 typedef struct crofton_picture_view {
     size_t size;
     uint32_t width, height; /* 1280 and 720; 1 to 16384 */
     uint32_t depth;         /* a crofton_depth_range; CROFTON_DEPTH_REVERSED_ZERO_TO_ONE */
+    uint32_t samples;       /* 1 in each pixel, at its centre; 2, 4 or 8: for multisampling, at Vulkan's locations */
     /* 0 for no limit. Otherwise a number of clusters that are tested and of triangles that are drawn, together; what is
      * left after that is listed whole unless its box is hidden. */
     uint64_t work_limit;

@@ -27,7 +27,7 @@ struct DepthObject {
     float position_error = 0.0f;
 };
 
-// The picture that is drawn, with one sample per pixel, at its centre.
+// The picture that is drawn.
 struct PictureView {
     static constexpr std::uint32_t kMaxSize = 16'384;
 
@@ -35,10 +35,17 @@ struct PictureView {
     std::uint32_t height = 720;
     DepthRange depth = DepthRange::reversed_zero_to_one;
 
+    // In each pixel: 1, at its centre, or 2, 4 or 8 for multisampling, at Vulkan's standard sample locations, where y
+    // points up. What is visible at any of them is listed, which takes the time of so many pictures.
+    std::uint32_t samples = 1;
+
     // Bounds the time where little is hidden: 0 for no limit, otherwise a number of clusters that are tested and of
     // triangles that are drawn, together. An average one takes some 50 to 200 ns. After that, an object or a cluster is
     // still tested by its box, and if the box may be visible, it is listed whole and hides nothing.
+    // With several samples it is a limit for each.
     std::uint64_t work_limit = 0;
+
+    [[nodiscard]] bool has_samples() const { return samples == 1 || samples == 2 || samples == 4 || samples == 8; }
 };
 
 // A cluster with at least one triangle that may be visible at a sample. If bit k of `triangles` is set, draw triangle
@@ -49,6 +56,7 @@ struct VisibleCluster {
     std::uint64_t triangles = 0;
 };
 
+// With several samples per pixel, what is asked and drawn is counted for each.
 struct DepthStatistics {
     std::uint64_t objects_listed = 0;  // with at least one triangle
     std::uint64_t objects_asked = 0;   // their bounds may cover a sample of the picture
@@ -62,8 +70,8 @@ struct DepthStatistics {
 // Finds the triangles without which a picture of opaque triangles, drawn with the depth test, would change.
 //
 // Draw the listed triangles, or any set that contains them, in the order in which you would draw all triangles: the
-// picture has the same bits. This holds only for the size given, with one sample per pixel; another size needs another
-// call. It holds for renderers that
+// picture has the same bits. This holds only for the size and the samples given; others need another call. It holds for
+// renderers that
 // - compute positions as to_clip · vertex in float, in any order of operations, and snap them to a grid of at most
 //   1/256 pixel (Vulkan's subPixelPrecisionBits ≥ 8),
 // - cover no sample twice and leave none out where two triangles share an edge,
@@ -82,8 +90,8 @@ class DepthCuller {
     // Returns visible clusters by object, then by cluster, both ascending; valid until the next call. Leave out objects
     // outside the frustum (World::view): it is faster. The answer has the same bits with any executor.
     //
-    // Errors: a size out of range; an object without a mesh (item = object). If an object's matrix or position_error is
-    // not finite, all its triangles are listed and it hides nothing.
+    // Errors: a size or a number of samples out of range; an object without a mesh (item = object). If an object's
+    // matrix or position_error is not finite, all its triangles are listed and it hides nothing.
     [[nodiscard]] Result<std::span<const VisibleCluster>> find_visible(std::span<const DepthObject> objects,
                                                                        const PictureView& view,
                                                                        Executor& executor = serial_executor());
@@ -92,7 +100,7 @@ class DepthCuller {
 
     // Returns a lower bound for the nearness of the listed triangles at a pixel, after the last call. Nearness is
     // depth, negated unless the range is reversed; minus infinity where no triangle surely covers the pixel. Row 0 is
-    // at the bottom. Requires x < width, y < height.
+    // at the bottom. Where a pixel has several samples, it is that of the first. Requires x < width, y < height.
     [[nodiscard]] float nearness(std::uint32_t x, std::uint32_t y) const;
 
   private:
