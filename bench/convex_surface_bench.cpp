@@ -170,6 +170,25 @@ void crofton_rest(benchmark::State& state, bool field, bool capsule, bool crests
         return told;
     });
 }
+// A ball of the box's width, sunk in by as much.
+void crofton_ball(benchmark::State& state) {
+    const SurfaceScene scene = make_scene(false, false);
+    if (scene.mesh.indices.empty()) return state.SkipWithError("no shared meshes");
+    const OwnSurface own(scene, false);
+    const Shape surface = own.shape(Sides::front), ball = Shape::sphere(scene.size).value();
+    const RigidTransform still;
+    Manifolds found;
+    frames(state, scene.size, [&](int f, int i) {
+        contact_manifolds({surface, still}, {ball, scene.poses[f][i]}, {.margin = 0.02 * scene.size}, found);
+        Told told{0, -HUGE_VAL};
+        for (const Manifold& m : found.all()) {
+            told.points += m.count;
+            told.depth = std::max(told.depth, m.depth);
+        }
+        return told;
+    });
+}
+BENCHMARK(crofton_ball)->Name("ball on bunny/crofton");
 BENCHMARK_CAPTURE(crofton_rest, a, false, false)->Name("box on bunny/crofton");
 BENCHMARK_CAPTURE(crofton_rest, b, false, true)->Name("capsule on bunny/crofton");
 BENCHMARK_CAPTURE(crofton_rest, c, true, false)->Name("box on heights 1025^2/crofton");

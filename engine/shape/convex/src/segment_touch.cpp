@@ -31,6 +31,29 @@ double clamped(double s) {
     return s > 0.0 ? (s < 1.0 ? s : 1.0) : 0.0;
 }
 
+Feature feature_of_edge(int k, double s) {
+    const auto vertex = [](int at) { return Feature{FeatureKind::vertex, static_cast<std::uint16_t>(at)}; };
+    if (s == 0.0) return vertex(k);
+    return s == 1.0 ? vertex(k == 2 ? 0 : k + 1) : Feature{FeatureKind::edge, static_cast<std::uint16_t>(k)};
+}
+
+// Of the triangle's edges and a point: each number is what offer_edge() would come to.
+void offer_edges(NearestPair& best, const PlacedTriangle& t, const glm::dvec3 (&edge)[3], const glm::dvec3& q) {
+    int nearest = -1;
+    double place = 0.0;
+    for (int k = 0; k < 3; ++k) {
+        const glm::dvec3 &p = t.corner[k], &u = edge[k];
+        const double uu = glm::dot(u, u), s = uu > 0.0 ? clamped(-glm::dot(u, p - q) / uu) : 0.0;
+        const glm::dvec3 way = q - (p + s * u);
+        if (const double d = glm::dot(way, way); d < best.squared) best.squared = d, nearest = k, place = s;
+    }
+    if (nearest < 0) return;
+    best.on_triangle = t.corner[nearest] + place * edge[nearest];
+    best.on_segment = q;
+    best.of_triangle = feature_of_edge(nearest, place);
+    best.of_segment = end_feature(0);
+}
+
 // Of edge k of the triangle, from p along u, and the segment from q along v; v may be 0.
 void offer_edge(NearestPair& best, int k, const glm::dvec3& p, const glm::dvec3& u, const glm::dvec3& q,
                 const glm::dvec3& v, int ends) {
@@ -41,10 +64,7 @@ void offer_edge(NearestPair& best, int k, const glm::dvec3& p, const glm::dvec3&
     double s = whole > 0.0 ? clamped((uv * vr - ur * vv) / whole) : 0.0;
     const double t = vv > 0.0 ? clamped((uv * s + vr) / vv) : 0.0;
     s = uu > 0.0 ? clamped((uv * t - ur) / uu) : 0.0;
-    const auto vertex = [](int at) { return Feature{FeatureKind::vertex, static_cast<std::uint16_t>(at)}; };
-    const Feature on_edge = s == 0.0   ? vertex(k)
-                            : s == 1.0 ? vertex(k == 2 ? 0 : k + 1)
-                                       : Feature{FeatureKind::edge, static_cast<std::uint16_t>(k)};
+    const Feature on_edge = feature_of_edge(k, s);
     const Feature on_segment = ends == 1 || t == 0.0 ? end_feature(0)
                                : t == 1.0            ? end_feature(1)
                                                      : Feature{FeatureKind::edge, 0};
@@ -91,7 +111,10 @@ Warm SegmentTouch::ask(const PlacedTriangle& t, Touch& touch) const {
             inside = inside && glm::dot(glm::cross(edge[k], end_[i] - t.corner[k]), t.normal) >= 0.0;
         if (inside) best.offer(end_[i] - height[i] * t.normal, end_[i], kFace, end_feature(i));
     }
-    for (int k = 0; k < 3; ++k) offer_edge(best, k, t.corner[k], edge[k], end_[0], end_[1] - end_[0], count_);
+    if (count_ == 1)
+        offer_edges(best, t, edge, end_[0]);
+    else
+        for (int k = 0; k < 3; ++k) offer_edge(best, k, t.corner[k], edge[k], end_[0], end_[1] - end_[0], count_);
     const double distance = std::sqrt(best.squared);
     // Nearer than this the direction is rounding.
     if (!(distance > 0x1p16 * error_)) return Warm::unknown;

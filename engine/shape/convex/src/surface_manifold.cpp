@@ -84,7 +84,10 @@ void SurfaceContacts::ask(const NearTriangle& near, std::uint32_t index, EdgeRul
     }
     const bool meets = found == Found::points ? deepest(contact.points) >= 0.0 : touch.depth >= 0.0;
     contact.points.count = 0;
-    if (has_face) {
+    // A sphere that touches an edge or a corner, along another direction than the face's, is not above the face.
+    const bool is_beside = shape_.shape.kind() == Kind::sphere && warm == Warm::touching && !across_face &&
+                           touch.feature_a.kind != FeatureKind::face;
+    if (has_face && !(is_beside && push != Push::always)) {
         const bool front = only == 0 ? in_front : only > 0;
         gather_along_face(t, front, contact);
         const bool none = contact.points.count == 0;

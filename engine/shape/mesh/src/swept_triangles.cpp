@@ -29,6 +29,11 @@ struct Stretch {
         first = hn::Max(first, hn::Min(a, b));
         last = hn::Min(last, hn::Max(a, b));
     }
+    // Where nothing moves: all of the way, or none of it.
+    HWY_INLINE void cut_still(Vec low, Vec high) {
+        first = hn::Max(first, low);
+        last = hn::Min(last, high);
+    }
 };
 
 // Ways between nearest points that are tried, each from where the one before leads.
@@ -40,6 +45,8 @@ HWY_INLINE Vec per_speed_of(Tag d, Vec speed, Vec least) {
     return hn::Div(hn::Set(d, 1.0f), hn::IfThenElse(hn::Lt(hn::Abs(speed), least), least, speed));
 }
 
+// kStill: of a shape that does not move. It is asked at 0 alone.
+template <bool kStill>
 class Sweep {
   public:
     explicit Sweep(const SweptBox& swept)
@@ -66,7 +73,10 @@ class Sweep {
                     s.half[0], s.magnitude[i][0],
                     hn::MulAdd(s.half[1], s.magnitude[i][1],
                                hn::MulAdd(s.half[2], s.magnitude[i][2], hn::Add(hn::Set(d, box_.half[i]), s.error))));
-                met.cut(hn::Sub(s.t[i], reach), hn::Add(s.t[i], reach), hn::Set(d, per_speed_[i]));
+                if constexpr (kStill)
+                    met.cut_still(hn::Sub(s.t[i], reach), hn::Add(s.t[i], reach));
+                else
+                    met.cut(hn::Sub(s.t[i], reach), hn::Add(s.t[i], reach), hn::Set(d, per_speed_[i]));
             }
             for (int j = 0; j < 3; ++j) {
                 V reach = hn::Add(s.half[j], s.error), at = hn::Zero(d), speed = hn::Zero(d);
@@ -75,7 +85,10 @@ class Sweep {
                     at = hn::MulAdd(s.t[i], s.r[i][j], at);
                     speed = hn::MulAdd(hn::Set(d, speed_[i]), s.r[i][j], speed);
                 }
-                met.cut(hn::Sub(at, reach), hn::Add(at, reach), per_speed_of(d, speed, hn::Set(d, 1e-12f)));
+                if constexpr (kStill)
+                    met.cut_still(hn::Sub(at, reach), hn::Add(at, reach));
+                else
+                    met.cut(hn::Sub(at, reach), hn::Add(at, reach), per_speed_of(d, speed, hn::Set(d, 1e-12f)));
             }
             lanes |= finish(d, met, entry + l) << l;
         }
@@ -105,8 +118,12 @@ class Sweep {
                 const VT reach = hn::Set(d, box_.half[k] + radius_ + error_);
                 const VT low = hn::Min(p[0][k], hn::Min(p[1][k], p[2][k])),
                          high = hn::Max(p[0][k], hn::Max(p[1][k], p[2][k]));
-                met.cut(hn::Sub(low, reach), hn::Add(high, reach), hn::Set(d, per_speed_[k]));
+                if constexpr (kStill)
+                    met.cut_still(hn::Sub(low, reach), hn::Add(high, reach));
+                else
+                    met.cut(hn::Sub(low, reach), hn::Add(high, reach), hn::Set(d, per_speed_[k]));
             }
+            if (kStill && hn::AllTrue(d, hn::Gt(met.first, met.last))) continue;
             VT edge[3][3], normal[3];
             for (int e = 0; e < 3; ++e)
                 for (int k = 0; k < 3; ++k) edge[e][k] = hn::Sub(p[e == 2 ? 0 : e + 1][k], p[e][k]);
@@ -129,7 +146,8 @@ class Sweep {
                 }
             }
             if (rounded_ && !hn::AllTrue(d, hn::Gt(met.first, met.last)))
-                for (int round = 0; round < kRounds; ++round) cut_between_nearest(d, p, edge, normal, met);
+                for (int round = 0; round < (kStill ? 1 : kRounds); ++round)
+                    cut_between_nearest(d, p, edge, normal, met);
             lanes |= finish(d, met, entry + l) << l;
         }
         return lanes & ((1u << leaf.count) - 1u);
@@ -219,6 +237,7 @@ class Sweep {
         const auto fit = hn::And(hn::Gt(length, hn::Set(d, 1e-24f)), hn::Lt(length, hn::Set(d, 1e18f)));
         low = hn::IfThenElse(fit, hn::Sub(low, reach), hn::Neg(far));
         high = hn::IfThenElse(fit, hn::Add(high, reach), far);
+        if constexpr (kStill) return met.cut_still(low, high);
         const VT least = hn::MulAdd(length, hn::Set(d, 1e-12f), hn::Set(d, 1e-36f));
         met.cut(low, high, hn::IfThenElse(fit, per_speed_of(d, speed, least), hn::Set(d, 1.0f)));
     }
@@ -249,7 +268,7 @@ struct WaitingTriangle {
 void VisitSwept(const MeshNode* nodes, const MeshLeaf* leaves, const SweptBox& swept, const float& limit,
                 TriangleVisitor visit) {
     constexpr std::uint32_t kMost = 64;
-    const Sweep sweep(swept);
+    const Sweep<false> sweep(swept);
     WaitingNode stack[kMeshStackSize];
     WaitingTriangle triangles[kMost];  // the first one last
     std::uint32_t height = 0, count = 0;
@@ -289,6 +308,27 @@ void VisitSwept(const MeshNode* nodes, const MeshLeaf* leaves, const SweptBox& s
     }
 }
 
+void VisitNear(const MeshNode* nodes, const MeshLeaf* leaves, const SweptBox& still, TriangleVisitor visit) {
+    const Sweep<true> sweep(still);
+    std::uint32_t stack[kMeshStackSize], height = 0;
+    stack[height++] = 0;
+    while (height > 0) {
+        const std::uint32_t child = stack[--height];
+        HWY_ALIGN float entry[kMeshNodeWidth];
+        const bool is_leaf = (child & kMeshLeaf) != 0;
+        const std::uint32_t leaf = child & ~kMeshLeaf;
+        std::uint32_t lanes =
+            is_leaf ? sweep.triangles_met(leaves[leaf], 0.0f, entry) : sweep.nodes_met(nodes[child], 0.0f, entry);
+        for (; lanes != 0; lanes &= lanes - 1) {
+            const auto lane = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(lanes));
+            if (!is_leaf)
+                stack[height++] = nodes[child].child[lane];
+            else if (visit(leaves[leaf], lane))
+                return;
+        }
+    }
+}
+
 }  // namespace crofton::mesh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -296,16 +336,16 @@ HWY_AFTER_NAMESPACE();
 namespace crofton::mesh {
 
 HWY_EXPORT(VisitSwept);
+HWY_EXPORT(VisitNear);
 
 void visit_swept_triangles(const MeshNode* nodes, const MeshLeaf* leaves, const SweptBox& swept, const float& limit,
                            TriangleVisitor visit) {
     HWY_DYNAMIC_DISPATCH(VisitSwept)(nodes, leaves, swept, limit, visit);
 }
 
-// A way of no length: all are come to at its start.
 void visit_triangles_near(const MeshNode* nodes, const MeshLeaf* leaves, const RoundedBox& box, TriangleVisitor visit) {
     const SweptBox still{box, {0.0f, 0.0f, 0.0f}, 0.0f, 0.0f};
-    HWY_DYNAMIC_DISPATCH(VisitSwept)(nodes, leaves, still, still.to, visit);
+    HWY_DYNAMIC_DISPATCH(VisitNear)(nodes, leaves, still, visit);
 }
 
 }  // namespace crofton::mesh
