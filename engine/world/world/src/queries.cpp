@@ -161,6 +161,12 @@ std::optional<ObjectHit> bound_hit(const Ray& ray, const ObjectRef& ref, const w
 }  // namespace
 
 std::optional<ObjectHit> World::State::shape_hit(const Ray& ray, std::uint32_t id, double box_t) const {
+    if (world::is_region_index(id)) {
+        const world::Attachment& region = regions.of(id);
+        const std::uint32_t item = id - region.first;
+        if (region.data().solid(item) == nullptr)
+            return bound_hit(ray, region.ref(item), region.object(item), region.box(item), box_t);
+    }
     if (has_own_shape(id)) return own_shape_hit(ray, id);
     const ObjectRef ref = ref_of(id);
     const world::PlacedMesh placed = mesh_of_object(id);

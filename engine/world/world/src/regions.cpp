@@ -28,6 +28,17 @@ double largest(const Aabb& bounds) {
 
 }  // namespace
 
+Object Attachment::object(std::uint32_t item_of_region) const {
+    const RegionData::Item& of_item = data().items[item_of_region];
+    Object result;
+    result.kind = of_item.kind;
+    result.alive = alive;
+    result.layers = data().tree.layer_masks()[item_of_region];
+    result.collides_with = of_item.collides_with;
+    result.radius = of_item.radius;
+    return result;
+}
+
 Regions::Regions(std::uint32_t first_generation)
     : tree_(detail::value_or_give_up(boxtree::BoxTree::build({}))), next_generation_(first_generation) {}
 
@@ -214,19 +225,12 @@ ObjectRef Regions::ref(std::uint32_t index) const {
     const Attachment& region = attachments_[slot];
     const std::uint32_t item = index - region.first;
     if (item >= region.size()) return {};
-    return {{index, region.generation}, region.data().items[item].user};
+    return region.ref(item);
 }
 
 Object Regions::object(std::uint32_t index) const {
     const Attachment& region = of(index);
-    const RegionData::Item& item = region.data().items[index - region.first];
-    Object result;
-    result.kind = item.kind;
-    result.alive = region.alive;
-    result.layers = region.data().tree.layer_masks()[index - region.first];
-    result.collides_with = item.collides_with;
-    result.radius = item.radius;
-    return result;
+    return region.object(index - region.first);
 }
 
 PlacedMesh Regions::mesh(std::uint32_t index) const {

@@ -36,6 +36,10 @@ struct Attachment {
     [[nodiscard]] const RegionData& data() const { return *region.data(); }
     [[nodiscard]] std::size_t size() const { return region.object_count(); }
     [[nodiscard]] Obb box(std::uint32_t item_of_region) const { return move(data().tree.boxes()[item_of_region]); }
+    [[nodiscard]] ObjectRef ref(std::uint32_t item_of_region) const {
+        return {{first + item_of_region, generation}, data().items[item_of_region].user};
+    }
+    [[nodiscard]] Object object(std::uint32_t item_of_region) const;
     [[nodiscard]] bool is_shown(std::uint32_t item_of_region) const {
         return shown.empty() || (shown[item_of_region / 64] >> item_of_region % 64 & 1) != 0;
     }

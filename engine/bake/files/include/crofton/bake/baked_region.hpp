@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+// Regions of a World from baked files.
+#pragma once
+#include <crofton/bake/baked_scene.hpp>
+#include <crofton/core/executor.hpp>
+#include <crofton/world/region.hpp>
+#include <cstdint>
+
+namespace crofton::bake {
+
+struct BakedRegionOptions {
+    // Rays, probes and contacts test the triangles, for which a tree is built over each mesh. False: they test the
+    // meshes' boxes.
+    bool triangles = true;
+    std::uint32_t collides_with = ~0u;  // of all objects, as RegionObject
+    RegionOptions region = {};          // `meshes` is not read
+};
+
+// Prepares a region of a baked scene's instances, on any thread: open() on a thread that loads, then this. The origin
+// of the region is that of the scene's coordinates.
+//
+// The object at place i is instance i, with the user data i, its mesh, its layers and where its node stands; a removed
+// instance is in no layer. A node's occluders hide by its first instance, if all its instances are in the same layers;
+// meshes that were baked with clusters have clusters. Everything is copied: the scene may be destroyed afterwards, and
+// nothing is read from its file later. Errors: as Region::prepare.
+[[nodiscard]] Result<Region> prepare_region(const BakedScene& scene, const BakedRegionOptions& options = {},
+                                            Executor& executor = serial_executor());
+
+}  // namespace crofton::bake

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+#include <crofton/bake/baked_region.hpp>
+#include <crofton/core/recovery.hpp>
+#include <utility>
+
+namespace crofton::bake {
+namespace {
+
+constexpr std::uint32_t kNone = scene::kNone;
+
+// The kind of occluders that each instance has; kNone: none.
+Vector<std::uint32_t> occluders_of_instances(const BakedScene& scene) {
+    const std::span<const InstanceRecord> instances = scene.instances();
+    const std::span<const std::uint32_t> layers = scene.tree().layer_masks();
+    Vector<std::uint32_t> kinds(instances.size(), kNone);
+    if (!scene.occluders()) return kinds;
+    Vector<std::uint32_t> of_node(scene.nodes().size(), kNone), first(scene.nodes().size(), kNone);
+    for (const OccludingNode& occluding : scene.occluders()->nodes) of_node[occluding.node] = occluding.kind;
+    for (std::uint32_t i = 0; i < instances.size(); ++i) {
+        const scene::NodeId node = instances[i].node;
+        if (node == kNone || of_node[node] == kNone) continue;
+        if (first[node] == kNone) {
+            first[node] = i;
+            kinds[i] = of_node[node];
+        } else if (layers[i] != layers[first[node]]) {
+            kinds[first[node]] = kNone;
+        }
+    }
+    return kinds;
+}
+
+// The region's meshes: one for each mesh of the scene, and each set of occluders that it is used with.
+class Meshes {
+  public:
+    Meshes(const BakedScene& scene, const BakedRegionOptions& options)
+        : scene_(scene), options_(options), places_(scene.mesh_count()) {}
+
+    // The place of a mesh with a kind of occluders, or without.
+    [[nodiscard]] std::uint32_t place_of(scene::MeshId mesh, std::uint32_t kind) {
+        for (const auto& [known, place] : places_[mesh])
+            if (known == kind) return place;
+        const auto place = static_cast<std::uint32_t>(meshes_.size());
+        places_[mesh].emplace_back(kind, place);
+        const MeshView view = scene_.mesh(mesh);
+        RegionMesh& added = meshes_.emplace_back();
+        added.mesh.positions = view.positions;
+        added.mesh.indices = view.indices;
+        added.mesh.triangles = options_.triangles;
+        added.mesh.clusters = scene_.clusters(mesh) != nullptr;
+        added.mesh.one_sided = view.look.one_sided;
+        if (kind != kNone) added.occluders = scene_.occluders()->kinds[kind];
+        return place;
+    }
+    [[nodiscard]] std::span<const RegionMesh> all() const { return meshes_; }
+
+  private:
+    const BakedScene& scene_;
+    const BakedRegionOptions& options_;
+    Vector<Vector<std::pair<std::uint32_t, std::uint32_t>>> places_;  // by mesh: kind, place
+    Vector<RegionMesh> meshes_;
+};
+
+}  // namespace
+
+Result<Region> prepare_region(const BakedScene& scene, const BakedRegionOptions& options, Executor& executor) {
+    return detail::recover([&]() -> Result<Region> {
+        const std::span<const InstanceRecord> instances = scene.instances();
+        const std::span<const std::uint32_t> layers = scene.tree().layer_masks();
+        const Vector<std::uint32_t> kinds = occluders_of_instances(scene);
+        Meshes meshes(scene, options);
+        Vector<RegionObject> objects(instances.size());
+        for (std::uint32_t i = 0; i < instances.size(); ++i) {
+            RegionObject& object = objects[i];
+            object.user = i;
+            object.layers = layers[i];
+            object.collides_with = options.collides_with;
+            if (instances[i].mesh == kNone) {
+                object.bound = Obb();
+                object.layers = 0;
+                continue;
+            }
+            object.mesh = meshes.place_of(instances[i].mesh, kinds[i]);
+            object.transform = scene.nodes()[instances[i].node].world;
+        }
+        RegionOptions prepared = options.region;
+        prepared.meshes = meshes.all();
+        return Region::prepare(objects, prepared, executor);
+    });
+}
+
+}  // namespace crofton::bake

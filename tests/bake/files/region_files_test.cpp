@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: MIT
+// Scenes split into regions, written, opened again and attached.
+#include <doctest/doctest.h>
+#include <algorithm>
+#include <crofton/bake/container.hpp>
+#include <crofton/bake/region_files.hpp>
+#include <crofton/crofton.hpp>
+#include <error_of.hpp>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <oracle/random_boxes.hpp>
+#include <set>
+#include <vector>
+
+#include "../../box_mesh.hpp"
+
+using namespace crofton;
+using namespace crofton::bake;
+
+namespace {
+
+// A folder that is gone after the test.
+class TemporaryFolder {
+  public:
+    TemporaryFolder() {
+        path_ = (std::filesystem::temp_directory_path() / "crofton-test-XXXXXX").string();
+        REQUIRE(mkdtemp(path_.data()) != nullptr);
+    }
+    ~TemporaryFolder() { std::filesystem::remove_all(path_); }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+    [[nodiscard]] const std::string& path() const { return path_; }
+
+  private:
+    std::string path_;
+};
+
+// Houses with a yard on one node, by chains of nodes, in a place far from 0.
+struct Town {
+    scene::Scene scene;
+    BakedOccluders occluders;
+    std::vector<MeshLook> looks{{.one_sided = true}, {.unlit = true}};
+
+    explicit Town(std::size_t houses) {
+        oracle::NearMisses random(15);
+        const TriangleMesh house = testing::box_mesh(glm::vec3(-3.0f), glm::vec3(3.0f));
+        REQUIRE(scene.add_mesh(house, "house"));
+        REQUIRE(scene.add_mesh(testing::box_mesh({-4, -3, -4}, {9, -2.5, 4}), "yard"));
+        occluders.kinds.push_back(occlude::find_occluders(house)->occluders);
+        const auto street = scene.add_node(scene::kNone, {glm::dmat3(1.0), {5000.0, 10.0, -2000.0}}).value();
+        for (std::size_t i = 0; i < houses; ++i) {
+            Transform transform;
+            const double x = random.number(-100.0, 100.0), z = random.number(-40.0, 40.0);
+            transform.linear = glm::dmat3(oracle::random_box(random, {}, 1.0).axes);
+            transform.translation = {x, 0.0, z};
+            const auto node = scene.add_node(street, transform, i % 7 == 0 ? 5u : ~0u).value();
+            REQUIRE(scene.add_instance(node, 0));
+            if (i % 2 == 0) REQUIRE(scene.add_instance(node, 1));
+            if (i % 3 == 0) occluders.nodes.push_back({node, 0});
+        }
+        REQUIRE(scene.remove_instance(4));
+        scene.update();
+    }
+    [[nodiscard]] BakeOptions options() const { return {.occluders = &occluders, .looks = looks}; }
+};
+
+void write_regions(const Town& town, const SceneRegions& regions, const std::string& folder) {
+    std::vector<RegionFile> index;
+    for (std::size_t i = 0; i < regions.size(); ++i) {
+        const Vector<std::byte> file = regions.bake(i, town.options()).value();
+        index.push_back(regions.region(i));
+        index.back().bytes = file.size();
+        REQUIRE(write_file(folder + "/" + index.back().name, file));
+    }
+    REQUIRE(write_file(folder + "/" + kRegionIndexName, bake_region_index(index).value()));
+}
+
+}  // namespace
+
+TEST_SUITE("bake/region_files") {
+    TEST_CASE("a scene in regions is hit as the scene itself, each instance once, wherever the cells divide it") {
+        const Town town(80);
+        World single({.pairs = false});
+        std::vector<MeshHandle> meshes;
+        for (scene::MeshId m = 0; m < 2; ++m)
+            meshes.push_back(
+                single.add_mesh({.positions = town.scene.mesh(m).positions, .indices = town.scene.mesh(m).indices})
+                    .value());
+        for (std::uint32_t i = 0; i < town.scene.instance_count(); ++i)
+            if (i != 4)
+                single
+                    .add({.mesh = meshes[town.scene.mesh_of(i)],
+                          .transform = town.scene.world(town.scene.node_of(i)),
+                          .user = town.scene.mesh_of(i),
+                          .layers = town.scene.layer_masks()[i]})
+                    .value();
+        single.update().value();
+        for (const auto& [columns, rows] : {std::pair(1u, 1u), std::pair(3u, 2u), std::pair(40u, 1u)}) {
+            const TemporaryFolder folder;
+            const SceneRegions regions = SceneRegions::split(town.scene, columns, rows).value();
+            CHECK(regions.size() <= std::size_t{columns} * rows);
+            CHECK(regions.size() >= (columns == 40 ? 20 : std::size_t{columns} * rows));
+            write_regions(town, regions, folder.path());
+            World world({.pairs = false});
+            std::size_t objects = 0, occluding = 0;
+            const Vector<RegionFile> index = open_region_index(folder.path()).value();
+            REQUIRE(index.size() == regions.size());
+            for (const RegionFile& file : index) {
+                const Region region = open_region(folder.path(), file).value();
+                CHECK(region.object_count() == file.objects);
+                for (int k = 0; k < 3; ++k) {
+                    CHECK(std::abs(region.bounds().min[k] - file.bounds.min[k]) < 1e-4);
+                    CHECK(std::abs(region.bounds().max[k] - file.bounds.max[k]) < 1e-4);
+                }
+                objects += region.object_count();
+                for (std::uint32_t i = 0; i < region.object_count(); ++i)
+                    occluding += !region.occluders_of(region.mesh_of(i)).empty();
+                world.attach(region, file.origin).value();
+            }
+            CHECK(objects == town.scene.instance_count() - 1);
+            CHECK(occluding == 27);
+            for (int i = 0; i < 4; ++i) world.update().value();
+            oracle::NearMisses random(16);
+            std::size_t hits = 0;
+            for (int n = 0; n < 300; ++n) {
+                const double x = random.number(-100.0, 100.0), z = random.number(-40.0, 40.0),
+                             u = random.number(-1.0, 1.0), v = random.number(-0.05, 0.05), w = random.number(-1.0, 1.0);
+                const Ray ray{{5000.0 + x, 10.0, -2000.0 + z}, {u, v, w}};
+                Vector<ObjectHit> found, expected;
+                world.raycast_all(ray, found, n % 2 ? 1u : 2u);
+                single.raycast_all(ray, expected, n % 2 ? 1u : 2u);
+                REQUIRE(found.size() == expected.size());
+                for (std::size_t h = 0; h < found.size(); ++h) {
+                    CHECK(std::abs(found[h].t - expected[h].t) < 1e-8);
+                    CHECK(found[h].triangle == expected[h].triangle);
+                }
+                hits += found.size();
+            }
+            CHECK(hits > 500);
+        }
+    }
+
+    TEST_CASE("regions are baked to the same bytes in any order and number, with the looks of their meshes") {
+        const Town town(40);
+        const SceneRegions regions = SceneRegions::split(town.scene, 4, 4).value();
+        std::vector<Vector<std::byte>> serial(regions.size()), parallel(regions.size());
+        for (std::size_t i = 0; i < regions.size(); ++i) serial[i] = regions.bake(i, town.options()).value();
+        ThreadPool pool(4);
+        pool.parallel_for(regions.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
+            for (std::size_t i = begin; i < end; ++i) parallel[i] = regions.bake(i, town.options()).value();
+        });
+        std::set<std::string> names;
+        for (std::size_t i = 0; i < regions.size(); ++i) {
+            CHECK(serial[i] == parallel[i]);
+            CHECK(names.insert(regions.region(i).name).second);
+            const auto baked = BakedScene::from_memory(serial[i]);
+            REQUIRE(baked);
+            for (scene::MeshId m = 0; m < baked->mesh_count(); ++m)
+                CHECK(baked->mesh(m).look == town.looks[baked->mesh(m).name == "house" ? 0 : 1]);
+        }
+        CHECK(error_of(SceneRegions::split(town.scene, 0, 1)).code == ErrorCode::out_of_range);
+        CHECK(error_of(SceneRegions::split(town.scene, 1, 1025)).code == ErrorCode::out_of_range);
+        const scene::Scene empty;
+        CHECK(SceneRegions::split(empty, 3, 3).value().size() == 0);
+        CHECK(read_region_index(bake_region_index({}).value()).value().empty());
+    }
+
+    TEST_CASE("a damaged index and a file that is another are errors when they are opened") {
+        const Town town(20);
+        const TemporaryFolder folder;
+        const SceneRegions regions = SceneRegions::split(town.scene, 2, 1).value();
+        write_regions(town, regions, folder.path());
+        Vector<RegionFile> index = open_region_index(folder.path()).value();
+        REQUIRE(index.size() == 2);
+        CHECK(open_region(folder.path(), index[0]).has_value());
+        // A region's file in the place of the other, one that is cut, and one that is gone.
+        const std::string first = folder.path() + "/" + index[0].name, second = folder.path() + "/" + index[1].name;
+        std::filesystem::rename(first, first + ".kept");
+        CHECK(!open_region(folder.path(), index[0]));
+        std::filesystem::copy_file(second, first);
+        CHECK(!open_region(folder.path(), index[0]));
+        std::filesystem::remove(first);
+        std::filesystem::rename(first + ".kept", first);
+        std::filesystem::resize_file(first, index[0].bytes - 64);
+        CHECK(error_of(open_region(folder.path(), index[0])).code == ErrorCode::parse);
+        index[1].objects += 1;
+        CHECK(error_of(open_region(folder.path(), index[1])).code == ErrorCode::parse);
+        // Each byte of the index.
+        const Vector<std::byte> file = bake_region_index(index).value();
+        REQUIRE(read_region_index(file));
+        std::size_t refused = 0;
+        for (std::size_t i = 0; i < file.size(); ++i) {
+            Vector<std::byte> damaged = file;
+            damaged[i] ^= std::byte{4};
+            refused += !read_region_index(damaged);
+        }
+        CHECK(refused == file.size());
+        for (std::size_t size = 0; size < file.size(); size += 8)
+            CHECK(!read_region_index(std::span<const std::byte>(file).first(size)));
+        for (const char* name : {"", "..", "../r.crofton", "a/b.crofton", "C:r.crofton", "a\\b.crofton"}) {
+            index[1].name = name;
+            CHECK(error_of(bake_region_index(index)).item == 1);
+        }
+        std::filesystem::remove(folder.path() + "/" + kRegionIndexName);
+        CHECK(!open_region_index(folder.path()));
+    }
+}
