@@ -18,11 +18,13 @@ class CountingMemory {
 
     [[nodiscard]] std::size_t allocations() const { return allocations_; }
     [[nodiscard]] std::size_t bytes_in_use() const { return bytes_in_use_; }
+    [[nodiscard]] std::size_t bytes_taken() const { return bytes_taken_; }  // of all allocations so far
 
   private:
     static void* allocate(void* self, std::size_t bytes, std::size_t alignment) {
         ++static_cast<CountingMemory*>(self)->allocations_;
         static_cast<CountingMemory*>(self)->bytes_in_use_ += bytes;
+        static_cast<CountingMemory*>(self)->bytes_taken_ += bytes;
         return aligned_block(bytes, alignment);
     }
     static void release(void* self, void* memory, std::size_t bytes, std::size_t) {
@@ -30,7 +32,7 @@ class CountingMemory {
         free_block(memory);
     }
 
-    std::atomic<std::size_t> allocations_ = 0, bytes_in_use_ = 0;
+    std::atomic<std::size_t> allocations_ = 0, bytes_in_use_ = 0, bytes_taken_ = 0;
 };
 
 }  // namespace crofton::testing

@@ -293,7 +293,7 @@ TEST_SUITE("world/bounds changes") {
                 REQUIRE(world.update().has_value());
                 built += world.statistics().tree_built;
                 for (int i = 0; i < each_update; ++i) spawn();
-                if (frame < updates / 5) first = std::max(first, memory.bytes_in_use());
+                if (frame < updates / 3) first = std::max(first, memory.bytes_in_use());
                 most = std::max(most, memory.bytes_in_use());
             }
             CHECK(built == 0);  // the work is spread over updates

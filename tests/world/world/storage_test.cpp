@@ -120,6 +120,33 @@ TEST_SUITE("world/storage") {
         CHECK(bytes_an_object(50'000, {}) < 250.0);
     }
 
+    TEST_CASE("the first changes after loading copy no array of the world, so that no update is long") {
+        const CountingMemory memory;
+        NearMisses random(65);
+        World world({.contacts = false});
+        std::vector<ObjectHandle> objects;
+        // One in a cube of side 20: few touch.
+        const auto anywhere = [&] {
+            const double x = random.number(0.0, 740.0), y = random.number(0.0, 740.0), z = random.number(0.0, 740.0);
+            return Sphere{{x, y, z}, 1.0};
+        };
+        const auto add = [&] { objects.push_back(world.add({.bound = anywhere()}).value()); };
+        for (int i = 0; i < 50'000; ++i) add();
+        REQUIRE(world.update().has_value());
+        REQUIRE(world.update().has_value());
+        std::size_t most = 0;
+        for (int update = 0; update < 60; ++update) {
+            if (update % 3 == 0) REQUIRE(world.set_bound(objects[0], anywhere()).has_value());
+            if (update % 3 == 1) add();
+            if (update % 3 == 2) REQUIRE(world.remove(objects[static_cast<std::size_t>(update)]).has_value());
+            const std::size_t before = memory.bytes_taken();
+            REQUIRE(world.update().has_value());
+            most = std::max(most, memory.bytes_taken() - before);
+        }
+        // An array of four bytes an object would be 200,000.
+        CHECK(most < 100'000);
+    }
+
     TEST_CASE("loading takes no more memory for good if all objects come at once than if they come one by one") {
         const auto bytes = [](std::size_t an_update) {
             const CountingMemory memory;

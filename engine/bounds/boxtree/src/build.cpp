@@ -21,11 +21,12 @@ void finish_nodes(Structure& structure, NodeId begin, NodeId end, const Topology
 }
 
 // Makes each subtree's leaves and nodes right after dividing it, while its boxes are in the cache.
-void build_subtrees(Structure& structure, Builder& builder, Executor& executor) {
+void build_subtrees(Structure& structure, Builder& builder, std::size_t room, Executor& executor) {
+    builder.make_room_for_leaves();
     const Topology& topology = builder.result();
     const std::span<const Subtree> subtrees = builder.subtrees();
     const std::span<const Obb> boxes = structure.items().boxes();
-    structure.make_room(topology);
+    structure.make_room(topology, room);
     Vector<SubtreeBuilder> workers(executor.concurrency());
     for (std::size_t first = 0; first < subtrees.size(); first += kSubtreeBatch) {
         const std::size_t count = std::min(kSubtreeBatch, subtrees.size() - first);
@@ -53,7 +54,8 @@ Result<BoxTree> BoxTree::build(std::span<const Obb> boxes, const BuildOptions& o
 Result<BoxTree> BoxTree::build(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks,
                                const BuildOptions& options, Executor& executor) {
     return detail::recover([&]() -> Result<BoxTree> {
-        if (boxes.size() > kMaxItems) return fail(ErrorCode::out_of_range, kMaxItems, "box tree: more than 2^30 boxes");
+        if (boxes.size() > kMaxItems || options.room > kMaxItems - boxes.size())
+            return fail(ErrorCode::out_of_range, kMaxItems, "box tree: more than 2^30 boxes");
         if (!layer_masks.empty() && layer_masks.size() != boxes.size())
             return fail(ErrorCode::invalid_argument, kNoItem,
                         "box tree: as many layer masks as boxes are needed, or none");
@@ -70,7 +72,8 @@ Result<BoxTree> BoxTree::build(std::span<const Obb> boxes, std::span<const std::
         BoxTree tree(options.criterion, options.orientation);
         Items& items = *tree.items_;
         Aabb centers;
-        if (auto taken = items.assign(boxes, layer_masks, centers); !taken) return tl::unexpected(taken.error());
+        if (auto taken = items.assign(boxes, layer_masks, centers, options.room); !taken)
+            return tl::unexpected(taken.error());
         for (const ItemId item : options.detached) {
             if (item >= boxes.size())
                 return fail(ErrorCode::out_of_range, item, "box tree: no box for an item to detach");
@@ -83,10 +86,10 @@ Result<BoxTree> BoxTree::build(std::span<const Obb> boxes, std::span<const std::
         } else {
             for (ItemId item = 0; item < boxes.size(); ++item)
                 if (!items.is_detached(item)) builder.add(item, items.boxes()[item]);
-            while (!builder.prepare(~std::size_t{0} / 8, items.boxes(), movers)) {
+            while (!builder.prepare(~std::size_t{0} / 16, items.boxes(), movers)) {
             }
         }
-        build_subtrees(*tree.structure_, builder, executor);
+        build_subtrees(*tree.structure_, builder, options.room, executor);
         return tree;
     });
 }

@@ -82,11 +82,12 @@ void Builder::add(ItemId id, const Obb& box) {
 bool Builder::step(std::size_t budget, std::span<const Obb> boxes, const Movers& movers) {
     if (!prepare(budget, boxes, movers)) return false;
     while (next_ < subtrees_.size()) {
+        result_.leaves.resize(subtrees_[next_].first_leaf + std::size_t{subtrees_[next_].leaves});
         if (subtrees_[next_].is_leaf()) {
             build(next_++, subtree_builder_, boxes);
             continue;
         }
-        if (!std::exchange(building_, true)) subtree_builder_.start(subtrees_[next_], boxes, middle_, result_);
+        if (!std::exchange(building_, true)) subtree_builder_.start(subtrees_[next_], middle_);
         if (!subtree_builder_.step(budget, cost_, orientation_, boxes, result_)) return false;
         building_ = false;
         ++next_;
@@ -95,7 +96,7 @@ bool Builder::step(std::size_t budget, std::span<const Obb> boxes, const Movers&
 }
 
 void Builder::build(std::size_t subtree, SubtreeBuilder& with, std::span<const Obb> boxes) {
-    with.start(subtrees_[subtree], boxes, middle_, result_);
+    with.start(subtrees_[subtree], middle_);
     std::size_t budget = ~std::size_t{0};
     (void)with.step(budget, cost_, orientation_, boxes, result_);
 }
@@ -116,6 +117,8 @@ std::size_t Builder::prepare_on(std::size_t budget, std::span<const Obb> boxes, 
             return gather_items(budget, boxes, movers);
         case Phase::append:
             return append_moving(budget);
+        case Phase::gather_all:
+            return gather_all(budget);
         case Phase::label:
             return label_items(budget);
         default:
@@ -131,7 +134,7 @@ std::size_t Builder::sort_pass(std::size_t budget) {
         for (std::uint32_t& count : places) sum += std::exchange(count, sum);
     }
     const unsigned shift = kItemBits + pass_ * kDigitBits;
-    const std::size_t end = std::min(keys_.size(), next_ + 2 * budget), spent = (end - next_ + 1) / 2;
+    const std::size_t end = std::min(keys_.size(), next_ + budget), spent = end - next_;
     for (; next_ < end; ++next_) keys_next_[places[keys_[next_] >> shift & (places.size() - 1)]++] = keys_[next_];
     if (next_ < keys_.size()) return spent;
     next_ = 0;
@@ -276,10 +279,18 @@ void Builder::place_clusters() {
 void Builder::place_all() {
     result_.order.clear();
     result_.order.reserve(keys_.size());
-    for (const std::uint64_t key : keys_) result_.order.push_back(item_of(key));
+    next_ = 0;
+    phase_ = Phase::gather_all;
+}
+
+std::size_t Builder::gather_all(std::size_t budget) {
+    const std::size_t end = std::min(keys_.size(), next_ + 8 * budget), spent = (end - next_ + 7) / 8;
+    for (; next_ < end; ++next_) result_.order.push_back(item_of(keys_[next_]));
+    if (next_ < keys_.size()) return spent;
     subtrees_.emplace_back(Range{0, static_cast<std::uint32_t>(keys_.size())}, result_.node_leaves);
     result_.height = subtrees_[0].height;
     place_subtrees();
+    return spent;
 }
 
 void Builder::place_subtrees() {
@@ -297,7 +308,8 @@ void Builder::place_subtrees() {
     }
     result_.nodes.resize(node);
     if (orientation_ != Orientation::aligned) result_.axes.resize(std::size_t{node} + 1);
-    result_.leaves.resize(leaf);
+    leaf_count_ = leaf;
+    result_.leaves.reserve(leaf);
     for (const Subtree& subtree : subtrees_)
         if (!subtree.is_leaf()) result_.nodes[subtree.first_node].leaves = {subtree.first_leaf, subtree.leaves};
     for (auto n = static_cast<NodeId>(above); n-- > 0;) {

@@ -20,8 +20,8 @@ struct Movers {
     const void* context = nullptr;
 };
 
-// Crowds of at most `small_crowd` items are split from the top: the best tree, at a cost that grows with n log n, of
-// which the first cut is one step. A node above leaves gets `node_leaves` of them.
+// Crowds of at most `small_crowd` items are split from the top: the best tree, at a cost that grows with n log n. A
+// node above leaves gets `node_leaves` of them.
 struct BuildGrain {
     std::size_t small_crowd = 32768;
     std::uint32_t node_leaves = kWidth;
@@ -50,7 +50,10 @@ class Builder {
     // order.
     bool prepare(std::size_t budget, std::span<const Obb> boxes, const Movers& movers);
     [[nodiscard]] std::span<const Subtree> subtrees() const { return subtrees_; }
+    void make_room_for_leaves() { result_.leaves.resize(leaf_count_); }  // before the first build()
     void build(std::size_t subtree, SubtreeBuilder& with, std::span<const Obb> boxes);
+
+    [[nodiscard]] std::size_t visits() const { return subtree_builder_.visits(); }  // by step(), of items
 
     // Once the result is ready: gives back all memory but the result's.
     void release_scratch() { subtree_builder_ = {}; }
@@ -64,7 +67,7 @@ class Builder {
     static constexpr unsigned kItemBits = 30, kDigitBits = 12, kPasses = 3, kFineBits = 10;
     static constexpr std::size_t kDigits = std::size_t{1} << kDigitBits;
 
-    enum class Phase : std::uint8_t { sort, crowding, gather, append, label, bound, ready };
+    enum class Phase : std::uint8_t { sort, crowding, gather, append, label, bound, gather_all, ready };
 
     [[nodiscard]] static ItemId item_of(std::uint64_t key);
     [[nodiscard]] std::uint64_t key_of(ItemId id, const Obb& box) const;
@@ -78,6 +81,7 @@ class Builder {
     void sort_crowd(std::span<std::uint64_t> keys, std::span<const Obb> boxes);
     std::size_t gather_items(std::size_t budget, std::span<const Obb> boxes, const Movers& movers);
     std::size_t append_moving(std::size_t budget);
+    std::size_t gather_all(std::size_t budget);
     void start_clusters();
     std::size_t label_items(std::size_t budget);
     std::size_t bound_clusters(std::size_t budget, std::span<const Obb> boxes);
@@ -101,6 +105,7 @@ class Builder {
     Vector<std::uint32_t> cluster_of_;  // by item; kNone where there is none
     Vector<BuildItem> clusters_;
     Vector<Subtree> subtrees_;
+    LeafId leaf_count_ = 0;
     std::size_t next_ = 0;
     SubtreeBuilder subtree_builder_;
     bool building_ = false;

@@ -18,10 +18,13 @@ void Builder::prepare_all(std::span<const Obb> boxes, const Movers& movers, Exec
     detail::recoverable_for(executor, boxes.size(), kItemsAtOnce, [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t i = begin; i < end; ++i) keys_[i] = key_of(static_cast<ItemId>(i), boxes[i]);
     });
-    if (boxes.size() <= small_crowd_) return place_all();
-    sort_keys(executor);
-    phase_ = Phase::crowding;
-    while (phase_ != Phase::label && phase_ != Phase::ready) prepare_on(~std::size_t{0} / 8, boxes, movers);
+    if (boxes.size() <= small_crowd_) {
+        place_all();
+    } else {
+        sort_keys(executor);
+        phase_ = Phase::crowding;
+    }
+    while (phase_ != Phase::label && phase_ != Phase::ready) prepare_on(~std::size_t{0} / 16, boxes, movers);
     if (phase_ == Phase::ready) return;
     label_items(executor);
     bound_clusters(boxes, executor);

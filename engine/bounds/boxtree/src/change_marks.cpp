@@ -14,9 +14,13 @@ void ChangeMarks::Marks::clear() {
 
 void ChangeMarks::reset(std::size_t leaves) {
     for (Marks* marks : {&dirty_, &last_refit_, &two_refits_ago_}) {
-        marks->lanes.assign(leaves, 0);
-        marks->leaves.clear();
+        marks->clear();
+        marks->lanes.resize(leaves, 0);
     }
+}
+
+void ChangeMarks::reserve(std::size_t leaves) {
+    for (Marks* marks : {&dirty_, &last_refit_, &two_refits_ago_}) marks->lanes.reserve(leaves);
 }
 
 void ChangeMarks::add_leaf() {

@@ -12,8 +12,10 @@ constexpr std::size_t kGrain = 1024;
 }  // namespace
 
 // Boxes are copied right after their check, while they are in the cache.
-Result<void> Items::assign(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks, Aabb& centers) {
-    boxes_.reserve(boxes.size());
+Result<void> Items::assign(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks, Aabb& centers,
+                           std::size_t room) {
+    boxes_.reserve(boxes.size() + room);
+    layer_masks_.reserve(boxes.size() + room);
     for (std::size_t begin = 0; begin < boxes.size(); begin += kGrain) {
         const std::span<const Obb> some = boxes.subspan(begin, std::min(kGrain, boxes.size() - begin));
         for (std::size_t i = count_certainly_valid(some.data(), some.size()); i < some.size(); ++i)

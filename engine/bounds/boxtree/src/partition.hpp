@@ -5,6 +5,7 @@
 #include <bit>
 #include <crofton/boxtree/layout.hpp>
 #include <crofton/core/memory.hpp>
+#include <crofton/geometry/float_lanes.hpp>
 #include <crofton/measure/measure.hpp>
 #include <limits>
 #include <numbers>
@@ -22,7 +23,13 @@ struct alignas(16) BuildItem {
     void set_id(std::uint32_t id) { extreme[3] = std::bit_cast<float>(id); }  // below 2^30: never NaN
     [[nodiscard]] float twice_center(unsigned axis) const { return extreme[4 + axis] - extreme[axis]; }
     void include(const BuildItem& other) {
-        for (int k = 0; k < 8; ++k) extreme[k] = other.extreme[k] > extreme[k] ? other.extreme[k] : extreme[k];
+        for (int k = 0; k < 8; k += 4) {
+            const detail::Lanes4 larger = detail::larger(other.lanes(k), lanes(k));
+            std::memcpy(extreme + k, &larger, sizeof larger);
+        }
+    }
+    [[nodiscard]] detail::Lanes4 lanes(int first) const {
+        return detail::load4(reinterpret_cast<const char*>(extreme + first));
     }
 };
 
@@ -61,21 +68,34 @@ struct Children {
 
 // Divides a crowd of items into parts. Keeps the items in three orders, by their centres along each axis. Cuts keep all
 // three sorted, so that items are sorted only once. Memory is kept from crowd to crowd.
+//
+// Both can be done in steps, each of about `work`, which is lessened by what was spent: in sixteenths of what an item
+// costs in Builder::add().
 class Splitter {
   public:
     // `items` stay where they are, and are read until the last divide().
     void start(std::span<const BuildItem> items);
+    // The same in steps: then sort_on() until it is true.
+    void begin(std::span<const BuildItem> items);
+    bool sort_on(std::size_t& work);
 
     // Cuts the items order()[range] into the fewest parts of items_a_part() items each, the last of which may be
     // smaller: at most 16. A part is a range of order() then. Cuts are chosen to minimise Σ criterion(part) ·
     // items(part), what a uniformly random query pays below here.
     [[nodiscard]] Children divide(Range range, std::uint32_t unit, const Cost& cost);
+    // The same in steps: then divide_on() until it is true, and children() are the parts.
+    void begin_division(Range range, std::uint32_t unit);
+    bool divide_on(const Cost& cost, std::size_t& work);
+    [[nodiscard]] const Children& children() const { return division_.children; }
 
     // order()[range] becomes that of another splitter's items, whose item i is indices[i] here, in all three orders.
     void take(Range range, const Splitter& from, std::span<const std::uint32_t> indices);
 
+    // How often an item has been looked at.
+    [[nodiscard]] std::size_t visits() const { return visits_; }
+
     // Indices into the items.
-    [[nodiscard]] std::span<const std::uint32_t> order() const { return sorted_[0]; }
+    [[nodiscard]] std::span<const std::uint32_t> order() const { return std::span(sorted_[0]).first(items_.size()); }
 
   private:
     struct Cut {
@@ -86,15 +106,50 @@ class Splitter {
         std::uint32_t value, index;
     };
 
-    void sort(unsigned axis);
-    [[nodiscard]] Cut best_cut(Range range, std::uint32_t capacity, const Cost& cost) const;
+    // Sorting along an axis: its keys, a pass for each digit, then the order.
+    enum class Pass : std::uint8_t { keys, digits, order };
+    // A division is a row of cuts, each of the largest part there is: the axes are rated, one is chosen, and the other
+    // two orders are parted.
+    enum class Stage : std::uint8_t { choose, rate, mark, part };
+    static constexpr unsigned kDigitBits = 8, kDigits = 4, kDigitValues = 1u << kDigitBits;
+    struct Division {
+        Children children;
+        std::uint32_t capacity = 0;
+        Stage stage = Stage::choose;
+        std::uint32_t largest = 0;  // which of the children is cut
+        Cut cut;
+        double least = 0.0;  // the cost of the cut
+        unsigned axis = 0;   // that is rated or parted
+        std::uint32_t at = 0;
+        BuildItem bounds[kWidth];           // along the axis, of each part of `capacity` items
+        std::uint32_t left = 0, right = 0;  // where the next items of either side go
+    };
+
+    template <class Visit>
+    bool run_some(std::uint32_t& at, std::uint32_t end, std::size_t cost, std::size_t& work, Visit visit);
+    bool sort_pass(std::size_t& work);
+    void write_keys(std::uint32_t begin, std::uint32_t end);
+    [[nodiscard]] bool skips_digit() const;
+    bool choose_part();
+    bool rate_axis(const Cost& cost, std::size_t& work);
+    void rate_cuts(const Cost& cost);
+    bool mark_sides(std::size_t& work);
+    bool part_axis(std::size_t& work);
+    void finish_cut();
     [[nodiscard]] unsigned longest_axis(Range range) const;
-    void cut(Range range, const Cut& cut);
 
     std::span<const BuildItem> items_;
     Vector<std::uint32_t> sorted_[3], right_;
     Vector<std::uint8_t> is_left_;
     Vector<Key> keys_, keys_next_;
+    unsigned axis_ = 0;  // that is sorted; 3: all are
+    Pass pass_ = Pass::keys;
+    unsigned digit_ = 0;
+    std::uint32_t at_ = 0;
+    std::array<std::array<std::uint32_t, kDigitValues>, kDigits>
+        starts_;  // how often each digit occurs, then its place
+    Division division_;
+    std::size_t visits_ = 0;
 };
 
 // Cuts sixteen items in halves across the axis along which their centres spread farthest, and puts the first half

@@ -234,13 +234,14 @@ NodeId Placement::split_node(NodeId n) {
         items[lane].set_id(lane);
     }
     halve(items);
-    std::array<std::uint32_t, kWidth> children;  // those of the first half, then the others
-    for (unsigned i = 0; i < kWidth; ++i) children[i] = nodes_[n].child[items[i].id()];
-    const auto half = [&](unsigned side) {
-        return std::span<const std::uint32_t>(children).subspan(side * kWidth / 2, kWidth / 2);
+    const Node whole = nodes_[n];
+    const NodeRadii radii = structure_.node_radii_[n];
+    const auto make_half = [&](unsigned side, NodeId half, NodeId parent, unsigned lane_in_parent) {
+        unsigned lanes[kWidth / 2];  // of the whole
+        for (unsigned i = 0; i < kWidth / 2; ++i) lanes[i] = items[side * kWidth / 2 + i].id();
+        make_part(half, whole, radii, lanes, parent, lane_in_parent);
     };
     const auto fresh = static_cast<NodeId>(nodes_.size());
-    const std::uint32_t axes = nodes_[n].axes;
     make_room_for(nodes_, 2);
     make_room_for(structure_.ranges_, 2);
     make_room_for(structure_.node_radii_, 2);
@@ -248,28 +249,46 @@ NodeId Placement::split_node(NodeId n) {
         nodes_.resize(fresh + 2);
         structure_.ranges_.resize(fresh + 2);
         structure_.node_radii_.resize(fresh + 2);
-        make_node(fresh, half(0), 0, 0, axes);
-        make_node(fresh + 1, half(1), 0, 1, axes);
+        make_half(0, fresh, 0, 0);
+        make_half(1, fresh + 1, 0, 1);
         const std::uint32_t both[2] = {fresh, fresh + 1};
-        make_node(0, both, kNone, 0, axes);
+        make_node(0, both, kNone, 0, whole.axes);
         ++structure_.height_;
-        structure_.refresh_node(fresh);
-        structure_.refresh_node(fresh + 1);
         structure_.refresh_node(0);
         return fresh;
     }
     nodes_.emplace_back();
     structure_.ranges_.emplace_back();
     structure_.node_radii_.emplace_back();
-    const NodeId parent = nodes_[n].parent;
-    make_node(n, half(0), parent, nodes_[n].lane_in_parent, axes);
-    make_node(fresh, half(1), parent, 0, axes);
-    structure_.refresh_node(n);
-    structure_.refresh_node(fresh);
-    add_child(parent, fresh);
+    make_half(0, n, whole.parent, whole.lane_in_parent);
+    make_half(1, fresh, whole.parent, 0);
+    add_child(whole.parent, fresh);
     refresh_above(n);
     refresh_above(fresh);
     return n;
+}
+
+// Makes a node of some lanes of another. It keeps the other's frame, so that bounds need not be computed again.
+void Placement::make_part(NodeId n, const Node& whole, const NodeRadii& radii, std::span<const unsigned> lanes,
+                          NodeId parent, unsigned lane_in_parent) {
+    std::uint32_t children[kWidth];
+    for (std::size_t i = 0; i < lanes.size(); ++i) children[i] = whole.child[lanes[i]];
+    make_node(n, {children, lanes.size()}, parent, lane_in_parent, whole.axes);
+    Node& part = nodes_[n];
+    std::copy_n(whole.origin, 3, part.origin);
+    part.unit = whole.unit;
+    part.per_quantum = whole.per_quantum;
+    part.l1_radius = whole.l1_radius;
+    part.rounding = whole.rounding;
+    for (std::size_t i = 0; i < lanes.size(); ++i) {
+        part.middle_xy[i] = whole.middle_xy[lanes[i]];
+        part.middle_half_z[i] = whole.middle_half_z[lanes[i]];
+        part.half_xy[i] = whole.half_xy[lanes[i]];
+        part.layers_any[i] = whole.layers_any[lanes[i]];
+        part.layers_all[i] = whole.layers_all[lanes[i]];
+        structure_.node_radii_[n].below[i] = radii.below[lanes[i]];
+    }
+    structure_.join_layers(part);
 }
 
 void Placement::make_node(NodeId n, std::span<const std::uint32_t> children, NodeId parent, unsigned lane_in_parent,

@@ -36,6 +36,8 @@ class Placement {
     NodeId split_node(NodeId n);
     void make_node(NodeId n, std::span<const std::uint32_t> children, NodeId parent, unsigned lane_in_parent,
                    std::uint32_t axes);
+    void make_part(NodeId n, const Node& whole, const NodeRadii& radii, std::span<const unsigned> lanes, NodeId parent,
+                   unsigned lane_in_parent);
     void refresh_above(std::uint32_t first);
     [[nodiscard]] bool write_path_lane(Place above, std::uint32_t first, std::uint32_t child);
     [[nodiscard]] Place place_of(std::uint32_t child) const;

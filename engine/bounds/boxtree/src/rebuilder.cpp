@@ -14,17 +14,19 @@
 namespace crofton::boxtree {
 namespace {
 
-// Costs of a rebuild's work. The unit is adding an item to a builder.
-constexpr std::size_t kSlotsPerItem = 16;  // slots cleared for the cost of one item added
-constexpr std::size_t kNodeLinked = 8, kLeafFilled = 32, kNodeBounded = 32;
-constexpr std::size_t kWordsPerItem = 16;
+// Costs of a rebuild's work, in parts of a budget's unit: of about ten nanoseconds.
+constexpr std::size_t kPartsOfUnit = 2;
+constexpr std::size_t kItemAdded = 3;     // to a builder
+constexpr std::size_t kSlotsPerPart = 8;  // cleared
+constexpr std::size_t kNodeLinked = 8, kLeafFilled = 80, kNodeBounded = 128;
+constexpr std::size_t kWordsPerPart = 16;
 // Where at least one item in so many has been inserted since the rebuild before, nodes leave room for more leaves: a
 // full leaf that gets an item is split, and where its node is full, that is split too, whose bounds views pay for.
 constexpr std::size_t kManyPlaced = 32;
 // Clusters then keep the steps short.
 constexpr BuildGrain kWithRoom{4096, 14};
-constexpr std::size_t kMostBudget = ~std::size_t{0} / 64;  // so that no multiple of it, added to an index, overflows
-constexpr std::size_t kItemMoved = 2, kItemPlaced = 64;    // of an item that is brought up to date
+constexpr std::size_t kMostBudget = ~std::size_t{0} / 128;  // so that no multiple of it, added to an index, overflows
+constexpr std::size_t kItemMoved = 8, kItemPlaced = 160;    // of an item that is brought up to date
 
 std::size_t steps(std::size_t budget, std::size_t cost) {
     return std::max<std::size_t>(budget / cost, 1);
@@ -94,7 +96,7 @@ void Rebuilder::note_changes(std::span<const ItemId> items) {
 
 Owner<Structure> Rebuilder::step(const Structure& current, Items& items, std::size_t budget) {
     last_step_ = {};
-    budget = std::min(budget, kMostBudget);
+    budget = kPartsOfUnit * std::min(budget, kMostBudget);
     if (!work_) {
         if (items.count_in_leaves() == 0) return {};
         const bool many_placed = std::exchange(placed_, 0) * kManyPlaced >= items.count_in_leaves();
@@ -131,18 +133,22 @@ std::size_t Rebuilder::run_stage(const Structure& current, std::size_t budget) {
 }
 
 std::size_t Rebuilder::add_items(const Structure& current, std::size_t budget) {
-    const std::size_t all = work_->items.size(), end = std::min(all, work_->at + budget), spent = end - work_->at;
+    const std::size_t all = work_->items.size(), end = std::min(all, work_->at + steps(budget, kItemAdded));
+    const std::size_t added = end - work_->at;
     for (; work_->at < end; ++work_->at, ++last_step_.items_added) {
         const auto item = static_cast<ItemId>(work_->at);
         if (current.contains(item)) work_->builder.add(item, work_->items.boxes()[item]);
     }
     if (end == all) work_->enter(Work::Stage::divide);
-    return spent;
+    return added * kItemAdded;
 }
 
 std::size_t Rebuilder::divide(const Structure& current, std::size_t budget) {
     ++last_step_.divisions;
-    if (!work_->builder.step(budget, work_->items.boxes(), {moves_often, &current})) return budget;
+    const std::size_t visits_before = work_->builder.visits();
+    const bool done = work_->builder.step(budget, work_->items.boxes(), {moves_often, &current});
+    last_step_.visits = work_->builder.visits() - visits_before;
+    if (!done) return budget;
     work_->builder.release_scratch();
     work_->next->begin_steps(work_->builder.result());
     work_->enter(Work::Stage::clear_slots);
@@ -150,8 +156,8 @@ std::size_t Rebuilder::divide(const Structure& current, std::size_t budget) {
 }
 
 std::size_t Rebuilder::clear_slots(std::size_t budget) {
-    const std::size_t all = work_->items.size(), end = std::min(all, work_->at + budget * kSlotsPerItem);
-    const std::size_t spent = (end - work_->at) / kSlotsPerItem + 1;
+    const std::size_t all = work_->items.size(), end = std::min(all, work_->at + budget * kSlotsPerPart);
+    const std::size_t spent = (end - work_->at) / kSlotsPerPart + 1;
     last_step_.slots_cleared += end - work_->at;
     work_->next->add_items(static_cast<ItemId>(end));
     work_->at = end;
@@ -197,18 +203,21 @@ std::size_t Rebuilder::apply_changes(const Structure& current, std::size_t budge
     Structure& next = *work_->next;
     next.add_items(static_cast<ItemId>(work_->items.size()));
     std::size_t spent = 1;
-    for (; work_->changed_count > 0 && spent < budget; ++work_->at) {
-        if (work_->at >= work_->changed.size()) work_->at = 0;
-        const std::uint64_t placed_word = std::exchange(work_->placed[work_->at], 0);
-        spent += work_->at % kWordsPerItem == 0;
-        for (std::uint64_t rest = std::exchange(work_->changed[work_->at], 0); rest; rest &= rest - 1) {
-            const auto item = static_cast<ItemId>(64 * work_->at + static_cast<unsigned>(std::countr_zero(rest)));
-            const bool present = current.contains(item), placed = (placed_word & rest & (~rest + 1)) != 0;
+    while (work_->changed_count > 0 && spent < budget) {
+        std::uint64_t &changed = work_->changed[work_->at], &placed_word = work_->placed[work_->at];
+        for (; changed != 0 && spent < budget; changed &= changed - 1) {
+            const std::uint64_t bit = changed & (~changed + 1);
+            const auto item = static_cast<ItemId>(64 * work_->at + static_cast<unsigned>(std::countr_zero(changed)));
+            const bool present = current.contains(item), placed = (placed_word & bit) != 0;
+            placed_word &= ~bit;
             spent += present && (placed || !next.contains(item)) ? kItemPlaced : kItemMoved;
             sync_item(item, present, placed);
             ++last_step_.items_synced;
             --work_->changed_count;
         }
+        if (changed != 0) break;
+        spent += work_->at % kWordsPerPart == 0;
+        work_->at = (work_->at + 1) % work_->changed.size();
     }
     Refit(next).run();
     next.reset_marks();

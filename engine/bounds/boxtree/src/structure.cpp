@@ -22,6 +22,10 @@ std::uint64_t next_number() {
     return ++last;
 }
 
+std::size_t with_room(std::size_t size) {
+    return size + size / 16 + kWidth;
+}
+
 }  // namespace
 
 Structure::Structure(Items& items, const measure::Criterion& criterion, Orientation orientation)
@@ -45,7 +49,11 @@ Aabb Structure::bounds_below(std::uint32_t child, std::uint32_t axes) const {
     return bounds;
 }
 
-void Structure::make_room(const Topology& topology) {
+void Structure::make_room(const Topology& topology, std::size_t more_items) {
+    // An insertion may split a leaf; leaves that have been split take eight more.
+    const std::size_t leaves = std::min(more_items, more_items / kWidth + kWidth);
+    reserve(topology.nodes.size() + leaves / 4, topology.leaves.size() + leaves);
+    item_slots_.reserve(items_.size() + more_items);
     height_ = topology.height;
     axes_.resize(std::max(axes_.size(), topology.axes.size()));
     nodes_.resize(topology.nodes.size());
@@ -56,7 +64,17 @@ void Structure::make_room(const Topology& topology) {
     slot_items_.assign(topology.leaves.size() * kWidth, kNone);
     item_slots_.assign(items_.size(), kNone);
     marks_.reset(topology.leaves.size());
-    leaves_.reserve(topology.leaves.size());
+}
+
+void Structure::reserve(std::size_t nodes, std::size_t leaves) {
+    nodes_.reserve(nodes);
+    ranges_.reserve(nodes);
+    node_radii_.reserve(nodes);
+    leaves_.reserve(leaves);
+    leaf_counts_.reserve(leaves);
+    leaf_radii_.reserve(leaves);
+    slot_items_.reserve(leaves * kWidth);
+    marks_.reserve(leaves);
 }
 
 // Makes room for the leaves before `end`, just before they are written, so that the new memory is in the cache.
@@ -126,14 +144,9 @@ void Structure::bound_nodes(NodeId begin, NodeId end) {
 void Structure::begin_steps(const Topology& topology) {
     height_ = topology.height;
     axes_.resize(std::max(axes_.size(), topology.axes.size()));
+    // With room for what changes will add: where items change so much that the tree is rebuilt, it will grow.
+    reserve(with_room(topology.nodes.size()), with_room(topology.leaves.size()));
     item_slots_.reserve(items_.size());
-    nodes_.reserve(topology.nodes.size());
-    ranges_.reserve(topology.nodes.size());
-    node_radii_.reserve(topology.nodes.size());
-    leaves_.reserve(topology.leaves.size());
-    leaf_counts_.reserve(topology.leaves.size());
-    leaf_radii_.reserve(topology.leaves.size());
-    slot_items_.reserve(topology.leaves.size() * kWidth);
 }
 
 void Structure::add_items(ItemId end) {

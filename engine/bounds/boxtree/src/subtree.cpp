@@ -8,6 +8,9 @@
 namespace crofton::boxtree {
 namespace {
 
+// The unit of budgets in the splitter's; what a leaf costs; choosing axes, an item of a node.
+constexpr std::size_t kItemWork = 16, kLeafWork = 4 * kItemWork, kAxesWork = 10 * kItemWork;
+
 struct Size {
     std::uint32_t nodes = 0, leaves = 0;
     unsigned height = 0;
@@ -51,60 +54,95 @@ Subtree::Subtree(Range range, std::uint32_t node_leaves) : items(range) {
     nodes = size.nodes, leaves = size.leaves, height = size.height;
 }
 
-void SubtreeBuilder::start(const Subtree& subtree, std::span<const Obb> boxes, const glm::dvec3& middle,
-                           const Topology& topology) {
+void SubtreeBuilder::start(const Subtree& subtree, const glm::dvec3& middle) {
     middle_ = middle;
     first_item_ = subtree.items.begin;
+    item_count_ = subtree.items.size();
     next_node_ = subtree.first_node;
     next_leaf_ = subtree.first_leaf;
-    const std::span<const ItemId> ids = std::span(topology.order).subspan(first_item_, subtree.items.size());
+    divided_ = kNone;
     items_.clear();
-    items_.reserve(ids.size());
+    items_.reserve(item_count_);
+    tasks_.clear();
+    tasks_.push_back({{0, item_count_}, subtree.parent, subtree.lane_in_parent});
+}
+
+// Copies the items, in parts that the work allows; true when all are there, and sorted.
+bool SubtreeBuilder::gather(std::size_t& work, std::span<const Obb> boxes, const Topology& topology) {
+    if (items_.size() == item_count_) return splitter_.sort_on(work);
+    const std::size_t most = std::max<std::size_t>(work / kItemWork, 1), begin = items_.size(),
+                      end = std::min<std::size_t>(item_count_, begin + std::min<std::size_t>(most, item_count_));
+    const std::span<const ItemId> ids = std::span(topology.order).subspan(first_item_, end);
     // The boxes lie in the order of their ids, far from each other: prefetch them.
     constexpr std::size_t kAhead = 16;
-    for (std::size_t i = 0; i < ids.size(); ++i) {
-        if (i + kAhead < ids.size()) {
+    for (std::size_t i = begin; i < end; ++i) {
+        if (i + kAhead < end) {
             hwy::Prefetch(&boxes[ids[i + kAhead]]);
             hwy::Prefetch(&boxes[ids[i + kAhead]].half_extents);
         }
-        items_.push_back(build_item(ids[i], boxes[ids[i]], middle));
+        items_.push_back(build_item(ids[i], boxes[ids[i]], middle_));
     }
-    splitter_.start(items_);
-    tasks_.clear();
-    tasks_.push_back({{0, subtree.items.size()}, subtree.parent, subtree.lane_in_parent});
+    gathered_ += end - begin;
+    work -= std::min(work, (end - begin) * kItemWork);
+    if (end < item_count_) return false;
+    splitter_.begin(items_);
+    return splitter_.sort_on(work);
 }
 
 bool SubtreeBuilder::step(std::size_t& budget, const Cost& cost, Orientation orientation, std::span<const Obb> boxes,
                           Topology& topology) {
-    while (!tasks_.empty()) {
-        if (budget == 0) return false;
+    std::size_t work = std::min(budget, ~std::size_t{0} / kItemWork) * kItemWork;
+    const bool done = step_on(work, cost, orientation, boxes, topology);
+    budget = work / kItemWork;
+    return done;
+}
+
+bool SubtreeBuilder::step_on(std::size_t& work, const Cost& cost, Orientation orientation, std::span<const Obb> boxes,
+                             Topology& topology) {
+    if (!gather(work, boxes, topology)) return false;
+    for (;;) {
+        if (divided_ != kNone) {
+            if (!splitter_.divide_on(cost, work)) return false;
+            add_children(topology);
+        }
+        if (tasks_.empty()) return true;
+        if (work == 0) return false;
         const std::size_t size = tasks_.back().range.size();
         if (orientation != Orientation::aligned && size > kWidth) {
-            budget -= std::min(budget, 10 * size);
+            work -= std::min(work, kAxesWork * size);
             if (!choose_axes(cost, orientation, boxes, topology)) continue;
         }
         const Task task = tasks_.back();
         tasks_.pop_back();
         if (task.parent != kNone && size <= kWidth) {
             add_leaf(task, topology);
-            budget -= std::min<std::size_t>(budget, kWidth);
-            continue;
+            work -= std::min(work, kLeafWork);
+        } else {
+            begin_node(task, topology);
         }
-        const NodeId node = next_node_++;
-        Topology::NodeRecord& record = topology.nodes[node];
-        record.parent = task.parent;
-        record.lane_in_parent = task.lane;
-        record.axes = task.axes;
-        record.leaves = {next_leaf_, (task.range.size() + kWidth - 1) / kWidth};
-        if (task.parent != kNone) topology.nodes[task.parent].child[task.lane] = node;
-        const Children children = splitter_.divide(task.range, unit_of(task.range.size(), topology.node_leaves), cost);
-        record.count = children.count;
-        budget -= std::min(budget, 4 * size);
-        // Last in, first out: leaves come out in the order of the lanes.
-        for (std::uint32_t lane = record.count; lane-- > 0;)
-            tasks_.push_back({children.ranges[lane], node, lane, record.axes});
     }
-    return true;
+}
+
+void SubtreeBuilder::begin_node(const Task& task, Topology& topology) {
+    divided_ = next_node_++;
+    Topology::NodeRecord& record = topology.nodes[divided_];
+    record.parent = task.parent;
+    record.lane_in_parent = task.lane;
+    record.axes = task.axes;
+    record.leaves = {next_leaf_, (task.range.size() + kWidth - 1) / kWidth};
+    if (task.parent != kNone) topology.nodes[task.parent].child[task.lane] = divided_;
+    splitter_.begin_division(task.range, unit_of(task.range.size(), topology.node_leaves));
+}
+
+// The parts of the node that has been divided become tasks.
+void SubtreeBuilder::add_children(Topology& topology) {
+    const Children& children = splitter_.children();
+    Topology::NodeRecord& record = topology.nodes[divided_];
+    record.count = children.count;
+    // Last in, first out: leaves come out in the order of the lanes.
+    for (std::uint32_t lane = record.count; lane-- > 0;)
+        tasks_.push_back({children.ranges[lane], divided_, lane, record.axes});
+    divided_ = kNone;
 }
 
 // Chooses axes for the last of the tasks, the next node; true when that is done. Then the items' coordinates and their

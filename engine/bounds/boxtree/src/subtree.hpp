@@ -56,11 +56,14 @@ struct Subtree {
 class SubtreeBuilder {
   public:
     // Items that order[items] names; their places in `order` change among them.
-    void start(const Subtree& subtree, std::span<const Obb> boxes, const glm::dvec3& middle, const Topology& topology);
+    void start(const Subtree& subtree, const glm::dvec3& middle);
 
     // Works on, about `budget` items' worth, which is lessened by what was spent; true when the subtree is complete.
     bool step(std::size_t& budget, const Cost& cost, Orientation orientation, std::span<const Obb> boxes,
               Topology& topology);
+
+    // How often an item has been looked at.
+    [[nodiscard]] std::size_t visits() const { return gathered_ + splitter_.visits(); }
 
   private:
     struct Task {
@@ -69,13 +72,19 @@ class SubtreeBuilder {
         std::uint32_t lane;
         std::uint32_t axes = 0;  // that its items lie along
     };
+    bool step_on(std::size_t& work, const Cost& cost, Orientation orientation, std::span<const Obb> boxes,
+                 Topology& topology);
+    bool gather(std::size_t& work, std::span<const Obb> boxes, const Topology& topology);
+    void begin_node(const Task& task, Topology& topology);
+    void add_children(Topology& topology);
     void add_leaf(const Task& task, Topology& topology);
     [[nodiscard]] bool choose_axes(const Cost& cost, Orientation orientation, std::span<const Obb> boxes,
                                    Topology& topology);
 
-    std::uint32_t first_item_ = 0;
-    NodeId next_node_ = 0;
+    std::uint32_t first_item_ = 0, item_count_ = 0;
+    NodeId next_node_ = 0, divided_ = kNone;  // the second: whose items are being divided
     LeafId next_leaf_ = 0;
+    std::size_t gathered_ = 0;
     Vector<BuildItem> items_;
     Splitter splitter_;
     AxesChooser chooser_;

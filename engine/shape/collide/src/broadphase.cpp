@@ -258,6 +258,16 @@ void Broadphase::State::release_scratch() {
     const auto release = [](auto&... lists) { (std::exchange(lists, {}), ...); };
     release(workers, previous, movers, partners, partners_begin, queries, query_movers, query_bounds, found_begin, now,
             came, left, ended_entries);
+    if (!current) return;
+    workers.resize(1);
+    (void)grow(workers.front().pairs, workers.front());
+    note_count(tree.item_count());
+    begin_table();
+}
+
+void Broadphase::State::begin_table() {
+    if (!table_is_current) table.assign(tree.item_count(), pairs.get());
+    table_is_current = true;
 }
 
 void Broadphase::release_scratch() {

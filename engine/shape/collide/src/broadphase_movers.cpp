@@ -9,11 +9,16 @@
 
 namespace crofton::collide {
 
+void Broadphase::State::note_count(std::size_t item_count) {
+    if (item_count > is_moved.capacity()) is_moved.reserve(item_count + item_count / 16 + kBoxBlock);
+    is_moved.resize(item_count, 0);
+}
+
 // Of `moved`, each item once, then what is new at the end, then what is dropped from it.
 void Broadphase::State::gather_movers(std::size_t item_count, std::span<const std::uint32_t> moved) {
     const std::size_t before = tree.item_count();
     movers.clear();
-    is_moved.resize(std::max(before, item_count), 0);
+    note_count(std::max(before, item_count));
     const auto add = [&](std::uint32_t item) {
         if (is_moved[item] != 0) return;
         is_moved[item] = 1;
@@ -182,8 +187,7 @@ Result<void> Broadphase::State::update_few(std::span<const Obb> boxes, std::span
         began.clear();
         ended.clear();
     } else {
-        if (!table_is_current) table.assign(tree.item_count(), pairs.get());
-        table_is_current = true;
+        begin_table();
         table.resize(std::max(tree.item_count(), boxes.size()));
         gather_partners();
         place_movers(boxes);

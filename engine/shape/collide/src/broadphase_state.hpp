@@ -95,6 +95,8 @@ struct Broadphase::State {
                                           std::span<const CollisionFilter> filters, Executor& executor,
                                           const PairTest* test);
     void gather_movers(std::size_t item_count, std::span<const std::uint32_t> moved);
+    void begin_table();
+    void note_count(std::size_t item_count);
     void gather_partners();
     void place_movers(std::span<const Obb> boxes);
     [[nodiscard]] bool find_candidates(std::span<const CollisionFilter> filters);

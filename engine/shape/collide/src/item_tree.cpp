@@ -62,6 +62,9 @@ std::size_t lane_for(const BoundBlock& block, const LaneBounds& bounds) {
     return best;
 }
 
+// Blocks that are made at once get room for a part more: each insertion into a full leaf makes one.
+constexpr std::size_t kRoomPart = 16;
+
 // Grows the room by an eighth: what is loaded and then changes a little does not double its memory.
 template <class T>
 void append(Vector<T>& values, std::size_t count, const T& value) {
@@ -75,6 +78,11 @@ void ItemTree::clear() {
     arrange({});
 }
 
+void ItemTree::resize(std::size_t count) {
+    if (count > places_.capacity()) places_.reserve(count + count / kRoomPart + kBoxBlock);
+    places_.resize(count, kNowhere);
+}
+
 void ItemTree::Level::clear() {
     bounds.clear();
     children.clear();
@@ -84,6 +92,15 @@ void ItemTree::Level::clear() {
     extents.clear();
     free.clear();
     marked.clear();
+}
+
+void ItemTree::Level::reserve(std::size_t blocks) {
+    bounds.reserve(blocks);
+    children.reserve(blocks * kBoxBlock);
+    parents.reserve(blocks);
+    counts.reserve(blocks);
+    is_marked.reserve(blocks);
+    extents.reserve(blocks);
 }
 
 BoundTree ItemTree::view() const {
@@ -108,6 +125,7 @@ void ItemTree::arrange(std::span<const std::uint32_t> order) {
     for (; k < 2 || below > 1; ++k) {
         Level& level = levels_[k];
         const std::size_t blocks = std::max<std::size_t>(k > 0 ? 1 : 0, (below + kBoxBlock - 1) / kBoxBlock);
+        if (blocks > level.bounds.capacity()) level.reserve(blocks + blocks / kRoomPart + std::min(blocks, 3 * kBoxBlock));
         level.bounds.resize(blocks);
         level.children.assign(blocks * kBoxBlock, 0);
         level.parents.resize(blocks);

@@ -17,7 +17,7 @@ class ItemTree {
 
     void clear();
     // Items are below `count`. New ones are not in the tree. Requires that those that fall away are not.
-    void resize(std::size_t count) { places_.resize(count, kNowhere); }
+    void resize(std::size_t count);
     [[nodiscard]] std::size_t item_count() const { return places_.size(); }
     [[nodiscard]] std::size_t size() const { return size_; }  // items in the tree
     [[nodiscard]] bool contains(std::uint32_t item) const { return places_[item] != kNowhere; }
@@ -57,6 +57,7 @@ class ItemTree {
         Vector<float> extents;               // of a block's bounds, but for what moves have added since it was made
         Vector<std::uint32_t> free, marked;  // the second: bounds have changed
         void clear();
+        void reserve(std::size_t blocks);
     };
     // A child and its bounds, which belong into a block of the level.
     struct Entry {

@@ -2,20 +2,35 @@
 #include "pair_table.hpp"
 
 namespace crofton::collide {
+namespace {
+
+std::size_t with_room(std::size_t size) {
+    return size + size / 16 + 64;
+}
+
+}  // namespace
 
 void PairTable::assign(std::size_t item_count, std::span<const IdPair> pairs) {
     entries_.clear();
-    entries_.reserve(pairs.size());
-    first_.assign(item_count, kNone);
+    entries_.reserve(with_room(pairs.size()));
+    first_.clear();
+    first_.reserve(with_room(item_count));
+    first_.resize(item_count, kNone);
     free_ = kNone;
     size_ = 0;
     for (const IdPair& pair : pairs) add(pair);
+}
+
+void PairTable::resize(std::size_t item_count) {
+    if (item_count > first_.capacity()) first_.reserve(with_room(item_count));
+    first_.resize(item_count, kNone);
 }
 
 void PairTable::add(const IdPair& pair) {
     std::uint32_t entry = free_;
     if (entry == kNone) {
         entry = static_cast<std::uint32_t>(entries_.size());
+        if (entries_.size() == entries_.capacity()) entries_.reserve(with_room(entries_.size()));
         entries_.emplace_back();
     } else {
         free_ = entries_[entry].next[0];

@@ -13,10 +13,10 @@ namespace crofton::collide {
 // the same however many there are.
 class PairTable {
   public:
-    // These pairs alone, of items below `item_count`.
+    // These pairs alone, of items below `item_count`. Takes memory for some more.
     void assign(std::size_t item_count, std::span<const IdPair> pairs);
     // New items have no pairs. Requires that those that fall away have none.
-    void resize(std::size_t item_count) { first_.resize(item_count, kNone); }
+    void resize(std::size_t item_count);
     [[nodiscard]] std::size_t size() const { return size_; }
 
     void add(const IdPair& pair);

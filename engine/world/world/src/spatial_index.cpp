@@ -29,13 +29,16 @@ constexpr std::size_t kFewItems = 64;
 // comes or goes any more, or has moved within it: what moves stays in its leaf, whose bound grows, and wears the tree
 // more.
 constexpr std::size_t kMembersToRebuild = 16, kMembersToRebuildAtRest = 64, kMovesToRebuild = 64;
-// Work on the new tree for each change of the old one: the cost of an update follows its changes. Putting an item into
-// it is worth 64, another change 2, building it 10 an item (BoxTree::rebuild_step). Measured: docs/notes/world.md.
-constexpr std::size_t kBudgetPerMember = 320, kBudgetPerMove = 128;
+// Work on the new tree for each change of the old one, for an item that comes, goes or moves: the cost of an update
+// follows its changes. Putting an item into the new tree is worth 80, another change 4, building it some 12 an item
+// (BoxTree::rebuild_step). Measured: docs/notes/world.md.
+constexpr std::size_t kBudgetPerComing = 384, kBudgetPerGoing = 96, kBudgetPerMove = 128;
 // Where less changes than before, an update still does such a part of the work of the update before,
 constexpr std::size_t kBudgetKept = 7, kBudgetKeptOf = 8;
 // and at least so much and a part of the items.
 constexpr std::size_t kLeastBudget = 128, kBudgetPart = 2048;
+// Memory for so many items more, a part and a number, is taken with a tree that is built at once.
+constexpr std::size_t kRoomPart = 24, kLeastRoom = 64;
 // No more than this in one update: some milliseconds.
 constexpr std::size_t kMostExtraWork = std::size_t{1} << 19;
 
@@ -106,7 +109,7 @@ void SpatialIndex::take(ItemId item) {
 
 void SpatialIndex::detach(ItemId item) {
     require_ok(tree_.detach(item));
-    ++changed_in_tree_.members;
+    ++changed_in_tree_.went;
     wants_refit_ = true;
 }
 
@@ -246,12 +249,13 @@ const collide::MovingTree& SpatialIndex::mover_tree() const {
 // Begins once enough has changed since the last rebuild began.
 void SpatialIndex::rebuild_step(std::size_t budget) {
     const Changed fresh = changed_in_tree_ - std::exchange(changed_before_, changed_in_tree_);
-    const std::size_t changes = kBudgetPerMember * fresh.members + kBudgetPerMove * fresh.moves;
+    const std::size_t changes =
+        kBudgetPerComing * fresh.came + kBudgetPerGoing * fresh.went + kBudgetPerMove * fresh.moves;
     rebuild_work_ = std::min(kMostExtraWork, std::max(changes, rebuild_work_ * kBudgetKept / kBudgetKeptOf));
     if (budget == 0) return;
     if (!rebuilding_) {
-        const std::size_t part = fresh.members > 0 ? kMembersToRebuild : kMembersToRebuildAtRest;
-        const std::size_t worn = changed_in_tree_.members * part + changed_in_tree_.moves * kMovesToRebuild;
+        const std::size_t part = fresh.members() > 0 ? kMembersToRebuild : kMembersToRebuildAtRest;
+        const std::size_t worn = changed_in_tree_.members() * part + changed_in_tree_.moves * kMovesToRebuild;
         if (worn < tree_.item_count() || worn == 0) return;
         rebuilding_ = true;
         changed_at_start_ = changed_in_tree_;
@@ -292,7 +296,7 @@ void SpatialIndex::attach(ItemId item) {
     take(item);
     items_[item].place = Place::resting;
     require_ok(tree_.attach(item, last));
-    ++changed_in_tree_.members;
+    ++changed_in_tree_.came;
 }
 
 void SpatialIndex::bring_to_rest(const Settings& settings, Changes& changes, Executor& executor) {
@@ -323,8 +327,11 @@ void SpatialIndex::build_tree(std::span<const ItemId> fresh, Executor& executor)
         if (!tree_.is_detached(item) && !tree_.contains(item)) removed.push_back(item);
         boxes[item] = items_[item].place == Place::moving ? box(item) : Obb();  // valid ones, as building needs them
     }
-    auto built = boxtree::BoxTree::build(
-        boxes, tree_.layer_masks(), {.detached = detached, .orientation = tree_.structure().orientation()}, executor);
+    auto built = boxtree::BoxTree::build(boxes, tree_.layer_masks(),
+                                         {.detached = detached,
+                                          .orientation = tree_.structure().orientation(),
+                                          .room = boxes.size() / kRoomPart + kLeastRoom},
+                                         executor);
     detail::give_up_without_memory(built);
     CROFTON_ASSERT(built.has_value(), "boxes were checked before");
     if (!built) return;

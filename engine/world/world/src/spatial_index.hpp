@@ -130,11 +130,12 @@ class SpatialIndex {
         Vector<ItemId> items;
         Vector<Obb> boxes;
     };
-    // How many items came or went, and how many moved.
+    // How many items came, went and moved.
     struct Changed {
-        std::size_t members = 0, moves = 0;
+        std::size_t came = 0, went = 0, moves = 0;
+        [[nodiscard]] std::size_t members() const { return came + went; }
         [[nodiscard]] Changed operator-(const Changed& other) const {
-            return {members - other.members, moves - other.moves};
+            return {came - other.came, went - other.went, moves - other.moves};
         }
     };
     static constexpr std::uint32_t kUpdatesAMark = 8;

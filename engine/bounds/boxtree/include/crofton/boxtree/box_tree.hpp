@@ -31,6 +31,8 @@ struct BuildOptions {
     std::span<const ItemId> detached = {};  // detached from the start: see BoxTree::detach
     // The tree keeps this setting: rebuild_step() chooses new axes, insert() uses the existing ones.
     Orientation orientation = Orientation::aligned;
+    // Takes memory for so many items more, so that the first insertions do not copy the tree's arrays.
+    std::size_t room = 0;
 };
 
 // How much deserialise() may trust its input. `contents`: a checksum has shown that serialise() wrote these bytes.
@@ -83,7 +85,7 @@ class BoxTree {
     // after refit(), if items move for a long time.
     //
     // `budget` bounds the work of a step. Its unit is adding an item: a whole build costs some 10 per item. Changes
-    // since the last call cost extra: 64 for an insertion, 2 for any other change. Items that moved before each of the
+    // since the last call cost extra: 80 for an insertion, 4 for any other change. Items that moved before each of the
     // last two refits count as always moving (BuildOptions).
     bool rebuild_step(std::size_t budget);
 

@@ -12,6 +12,7 @@ namespace crofton::boxtree {
 class ChangeMarks {
   public:
     void reset(std::size_t leaves);  // nothing has changed
+    void reserve(std::size_t leaves);
     void add_leaf();
 
     void mark(std::uint32_t slot) { add(slot / kWidth, 1u << slot % kWidth); }

@@ -23,8 +23,9 @@ void make_room_for(Vector<T>& items, std::size_t more) {
 class Items {
   public:
     // Copies the boxes and widens `centers` to all their centres. Errors: a box that fails validate(Obb), by its index.
+    // Takes memory for `room` more.
     [[nodiscard]] Result<void> assign(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks,
-                                      Aabb& centers);
+                                      Aabb& centers, std::size_t room = 0);
 
     [[nodiscard]] std::span<const Obb> boxes() const { return boxes_; }
     [[nodiscard]] std::span<const std::uint32_t> layer_masks() const { return layer_masks_; }

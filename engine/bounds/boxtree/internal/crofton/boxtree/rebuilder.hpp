@@ -11,6 +11,7 @@ struct RebuildStep {
     std::size_t items_added = 0, items_synced = 0;  // for the new structure; into it, as they have changed since
     std::size_t slots_cleared = 0, leaves_filled = 0, nodes_linked = 0, nodes_bounded = 0;
     std::size_t divisions = 0;  // steps of dividing items among leaves and nodes, each of the budget's size
+    std::size_t visits = 0;     // of items, while they are copied, sorted and divided
 };
 
 // A rebuild that is under way, or none.

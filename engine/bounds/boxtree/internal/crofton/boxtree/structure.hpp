@@ -47,7 +47,7 @@ class Structure {
 
     // To make a structure: first room, then leaves, then nodes, children before parents. Different threads may make
     // different leaves, and nodes that are not above each other.
-    void make_room(const Topology& topology);
+    void make_room(const Topology& topology, std::size_t more_items = 0);
     void make_room_for_leaves(LeafId end);
     void link_nodes(NodeId begin, NodeId end, const Topology& topology);
     // Gives leaf l its items. May prefetch the boxes of leaves before `end` alone: other threads may be making those
@@ -86,6 +86,7 @@ class Structure {
         Vector<std::uint64_t> node_bits;
     };
 
+    void reserve(std::size_t nodes, std::size_t leaves);
     void init_node(NodeId n, const Topology& topology);
     void write_leaf_layers(LeafId l);
     void write_leaf_radii(LeafId l);

@@ -86,8 +86,8 @@ class Broadphase {
     Result<void> update_moved(std::span<const Obb> boxes, std::span<const std::uint32_t> moved, PairTest test,
                               std::span<const CollisionFilter> filters = {}, Executor& executor = serial_executor());
 
-    // Gives back the memory that updates work with. All lists stay as they are. Call it after loading many items, if
-    // the next updates move few.
+    // Gives back the memory that updates of all items work with, and takes what updates of few need. All lists stay as
+    // they are. Call it after loading many items, if the next updates move few.
     void release_scratch();
 
     // Any thread may call these. began() and ended() are ready after each update. The other lists, which are long, are
