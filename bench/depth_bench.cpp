@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: MIT
-// Culling by depth on one thread: what it costs along a street path, how many triangles it passes, and what it costs to
-// cut meshes into clusters. Scenes may be named; without names they are the town and, where the shared data lies, a
-// forest.
+// Culling by depth: what it costs along a street path, how many triangles it passes, what 100,000 objects in view cost,
+// and what it costs to cut meshes into clusters. Scenes may be named; without names they are the town and, where the
+// shared data lies, a forest. Several threads are told by the time that passes, one by its processor time.
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <crofton/crofton.hpp>
 #include <crofton/depth/depth_culler.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
 #include <filesystem>
+#include <glm/gtc/matrix_transform.hpp>
 #include <string>
 #include <vector>
 
@@ -32,6 +35,22 @@ double cpu_seconds() {
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
+
+double seconds() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+// The least times of a frame, of some runs.
+struct FrameTime {
+    double cpu = HUGE_VAL, wall = HUGE_VAL;
+
+    template <class Frame>
+    void run(const Frame& frame) {
+        const double cpu_begin = cpu_seconds(), begin = seconds();
+        frame();
+        cpu = std::min(cpu, cpu_seconds() - cpu_begin), wall = std::min(wall, seconds() - begin);
+    }
+};
 
 template <class T>
 T expect(Result<T> result, const char* what) {
@@ -71,8 +90,9 @@ std::vector<Objects> objects_along(assets::SceneSource& source, const pipeline::
     return frames;
 }
 
-void walk_street(const std::string& name, const depth::PictureView& view, int repeats) {
-    auto source = expect(assets::load_scene(name), name.c_str());
+void walk_street(const std::string& name, std::uint32_t instances, const depth::PictureView& view, ThreadPool& pool,
+                 int repeats) {
+    auto source = expect(assets::load_scene(name, {.instances = instances}), name.c_str());
     source.scene.update();
     auto& executor = serial_executor();
     const auto clusters = expect(pipeline::cut_scene(source.scene, executor), "clusters");
@@ -87,23 +107,70 @@ void walk_street(const std::string& name, const depth::PictureView& view, int re
     const auto frames = objects_along(source, clusters, cameras);
 
     depth::DepthCuller culler;
-    double least = HUGE_VAL;
+    std::vector<FrameTime> alone(frames.size()), shared(frames.size());
     std::size_t in_frustum = 0, passed = 0;
     for (int r = 0; r < repeats; ++r) {
         in_frustum = passed = 0;
-        const double begin = cpu_seconds();
-        for (const Objects& objects : frames) {
-            (void)expect(culler.find_visible(objects.list, view), "culler");
+        for (std::size_t i = 0; i < frames.size(); ++i) {
+            const Objects& objects = frames[i];
+            alone[i].run([&] { (void)expect(culler.find_visible(objects.list, view), "culler"); });
             in_frustum += objects.triangles;
             passed += culler.statistics().triangles_listed;
+            if (pool.concurrency() > 1)
+                shared[i].run([&] { (void)expect(culler.find_visible(objects.list, view, pool), "culler"); });
         }
-        least = std::min(least, cpu_seconds() - begin);
     }
     const auto count = static_cast<double>(frames.size());
-    std::printf("%-40s %4ux%-4u %8.0f in the frustum, %6.0f passed, %6.3f ms CPU a frame; clusters %.2f x the mesh\n",
+    const auto mean = [&](const std::vector<FrameTime>& times, double FrameTime::*which) {
+        double sum = 0.0;
+        for (const FrameTime& time : times) sum += time.*which;
+        return 1e3 * sum / count;
+    };
+    std::printf("%-28s %4ux%-4u %8.0f in the frustum, %6.0f passed, %6.3f ms CPU a frame; clusters %.2f x the mesh\n",
                 std::filesystem::path(name).filename().c_str(), view.width, view.height,
-                static_cast<double>(in_frustum) / count, static_cast<double>(passed) / count, 1e3 * least / count,
-                static_cast<double>(clusters.memory()) / static_cast<double>(mesh_bytes));
+                static_cast<double>(in_frustum) / count, static_cast<double>(passed) / count,
+                mean(alone, &FrameTime::cpu), static_cast<double>(clusters.memory()) / static_cast<double>(mesh_bytes));
+    if (pool.concurrency() > 1)
+        std::printf("%-28s %u threads: %6.3f ms, one: %6.3f ms\n", "", pool.concurrency(),
+                    mean(shared, &FrameTime::wall), mean(alone, &FrameTime::wall));
+}
+
+// Boxes before a camera, all in its frustum. `walls`: every hundredth is one, and hides what is behind it.
+void walk_field(std::size_t count, bool walls, std::uint64_t work_limit, ThreadPool& pool, int repeats) {
+    const std::vector<glm::vec3> corners = {{-1, -1, -1}, {1, -1, -1}, {-1, 1, -1}, {1, 1, -1},
+                                            {-1, -1, 1},  {1, -1, 1},  {-1, 1, 1},  {1, 1, 1}};
+    const std::vector<std::uint32_t> indices = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
+                                                2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+    const auto cube = expect(depth::ClusteredMesh::cut(corners, indices), "cube");
+    const Camera camera{.aspect = 16.0 / 9.0, .near_distance = 0.1};
+    const glm::dmat4 to_clip = world_to_clip(camera);
+    sampling::Random random(7);
+    std::vector<depth::DepthObject> objects;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double z = 10.0 + 990.0 * std::sqrt(random.uniform());
+        const double x = random.uniform(-0.9, 0.9) * z, y = random.uniform(-2.0, 10.0);
+        const bool wall = walls && i % 100 == 0;
+        const double width = wall ? 10.0 : random.uniform(0.2, 1.0), height = wall ? 8.0 : random.uniform(0.2, 1.0);
+        const glm::dmat4 place =
+            glm::scale(glm::translate(glm::dmat4(1.0), {x, wall ? 4.0 : y, -z}), {width, height, 0.5});
+        objects.push_back({.mesh = &cube, .to_clip = glm::mat4(to_clip * place), .one_sided = true, .hides = walls});
+    }
+    depth::DepthCuller culler;
+    FrameTime alone, shared;
+    const depth::PictureView view{1280, 720, DepthRange::reversed_zero_to_one, work_limit};
+    for (int r = 0; r < repeats; ++r) {
+        alone.run([&] { (void)expect(culler.find_visible(objects, view), "culler"); });
+        if (pool.concurrency() > 1)
+            shared.run([&] { (void)expect(culler.find_visible(objects, view, pool), "culler"); });
+    }
+    const depth::DepthStatistics& s = culler.statistics();
+    std::printf("%zu boxes, %s, limit %llu: %llu tested, %llu triangles drawn, %llu passed, %6.3f ms CPU", count,
+                walls ? "walls among them" : "nothing hides", static_cast<unsigned long long>(work_limit),
+                static_cast<unsigned long long>(s.objects_asked), static_cast<unsigned long long>(s.triangles_drawn),
+                static_cast<unsigned long long>(s.triangles_listed), 1e3 * alone.cpu);
+    if (pool.concurrency() > 1)
+        std::printf("; %u threads: %6.3f ms, one: %6.3f ms", pool.concurrency(), 1e3 * shared.wall, 1e3 * alone.wall);
+    std::printf("\n");
 }
 
 // Hills of n × n squares.
@@ -130,14 +197,17 @@ void cut_terrain(std::uint32_t n) {
 
 }  // namespace
 
-// bench_depth [--target=NAME] [--repeats=N] [SCENE…]
+// bench_depth [--target=NAME] [--repeats=N] [--threads=N] [SCENE…]
 int main(int argc, char** argv) {
     if (!take_target_option(argc, argv)) return 1;
     int repeats = 5;
+    unsigned threads = 1;
     std::vector<std::string> scenes;
     for (int i = 1; i < argc; ++i)
         if (std::strncmp(argv[i], "--repeats=", 10) == 0)
             repeats = std::atoi(argv[i] + 10);
+        else if (std::strncmp(argv[i], "--threads=", 10) == 0)
+            threads = static_cast<unsigned>(std::atoi(argv[i] + 10));
         else
             scenes.emplace_back(argv[i]);
     std::printf("Instruction set: %s\n", target_in_use());
@@ -147,7 +217,15 @@ int main(int argc, char** argv) {
         const std::string forest = std::string(CROFTON_SHARED_DATA) + "/scenes/stk_black_forest.glb";
         if (std::filesystem::exists(forest)) scenes.push_back(forest);
     }
-    for (const std::string& scene : scenes) walk_street(scene, {1280, 720}, repeats);
-    if (all) cut_terrain(700);
+    ThreadPool pool(threads);
+    for (const std::string& scene : scenes) walk_street(scene, 0, {1280, 720}, pool, repeats);
+    if (!all) return 0;
+    constexpr std::uint32_t kMany = 100'000;
+    std::printf("the town with %u objects: ", kMany);
+    walk_street("town", kMany, {1280, 720}, pool, repeats);
+    walk_field(kMany, true, 0, pool, repeats);
+    walk_field(kMany, false, 0, pool, repeats);
+    walk_field(kMany, false, 20'000, pool, repeats);
+    cut_terrain(700);
     return 0;
 }

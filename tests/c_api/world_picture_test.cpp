@@ -140,6 +140,47 @@ std::vector<std::uint32_t> ids_of(const ViewResultHandle& result) {
 }  // namespace
 
 TEST_SUITE("capi/world_picture") {
+    TEST_CASE("a mesh takes clusters that were cut before, and refuses those of another mesh") {
+        const Wall wall{10, 4.0f}, other{10, 3.0f};
+        crofton_clustered_mesh* made = nullptr;
+        const crofton_mesh mesh = wall.mesh();
+        REQUIRE(crofton_clustered_mesh_create(&mesh, 3, &made) == CROFTON_OK);
+        const ClusteredMesh precut(made);
+        crofton_clusters expected{};
+        REQUIRE(crofton_clustered_mesh_get(precut.get(), &expected) == CROFTON_OK);
+        const WorldHandle world = make_world();
+        crofton_mesh_data data = wall.data();
+        data.precut = precut.get();
+        crofton_world_mesh added{};
+        REQUIRE(crofton_world_add_mesh(world.get(), &data, &added) == CROFTON_OK);
+        auto info = sized<crofton_mesh_info>();
+        REQUIRE(crofton_world_get_mesh(world.get(), added, &info) == CROFTON_OK);
+        CHECK(info.clusters.cluster_count == expected.cluster_count);
+        CHECK(std::equal(expected.triangle_order, expected.triangle_order + expected.triangle_count,
+                         info.clusters.triangle_order));
+        data = other.data();
+        data.precut = precut.get();
+        CHECK(crofton_world_add_mesh(world.get(), &data, &added) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_world_replace_mesh(world.get(), added, &data) == CROFTON_INVALID_ARGUMENT);
+        data.clusters = 0;  // not asked for
+        CHECK(crofton_world_add_mesh(world.get(), &data, &added) == CROFTON_OK);
+    }
+
+    TEST_CASE("a limit of work lists no less, and says that it was exceeded") {
+        Walls s;
+        const ViewResultHandle result = make_view_result();
+        crofton_view_request request = s.request();
+        CHECK(s.picture.work_limit == 0);
+        REQUIRE(crofton_world_view(s.world.get(), &request, 1, nullptr, result.get()) == CROFTON_OK);
+        const crofton_view_info all = info_of(result);
+        s.picture.work_limit = 1;
+        REQUIRE(crofton_world_view(s.world.get(), &request, 1, nullptr, result.get()) == CROFTON_OK);
+        const crofton_view_info some = info_of(result);
+        CHECK(some.triangles_listed > all.triangles_listed);
+        CHECK(some.clusters_asked + some.triangles_drawn > 1);
+        CHECK(some.triangles_drawn < all.triangles_drawn);
+    }
+
     TEST_CASE("a picture lists the triangles that the depth culler lists, in one view and in each of many") {
         for (const std::uint32_t one_sided : {0u, 1u}) {
             CAPTURE(one_sided);

@@ -34,6 +34,7 @@ namespace Crofton {
             public IntPtr Indices;
             public UIntPtr IndexCount;
             public uint IsDouble, IsShort, Triangles, Clusters, OneSided;
+            public IntPtr Precut;
         }
 
         [StructLayout(LayoutKind.Sequential)]

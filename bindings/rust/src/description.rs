@@ -90,6 +90,7 @@ impl<'a> MeshData<'a> {
             triangles: self.triangles as u32,
             clusters: self.clusters as u32,
             one_sided: self.one_sided as u32,
+            precut: ptr::null(),
         })
     }
 }

@@ -73,6 +73,7 @@ pub struct MeshData {
     pub triangles: u32,
     pub clusters: u32,
     pub one_sided: u32,
+    pub precut: *const c_void,
 }
 
 /// The triangles of a shape.

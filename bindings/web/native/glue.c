@@ -23,7 +23,7 @@ SIZE(crofton_polygon, 20);
 SIZE(crofton_triangulation, 40);
 AT(crofton_triangulation, weight, 16);
 AT(crofton_triangulation, optimal, 32);
-SIZE(crofton_mesh_data, 44);
+SIZE(crofton_mesh_data, 48);
 AT(crofton_mesh_data, clusters, 36);
 SIZE(crofton_world_options, 56);
 AT(crofton_world_options, pairs, 4);

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <bit>
 
+#include <crofton/capi/clustered_mesh.hpp>
 #include <crofton/capi/convert.hpp>
 #include <crofton/capi/growing.hpp>
 #include <crofton/capi/numbers.hpp>
@@ -128,6 +129,11 @@ crofton_status capi::to_mesh_description(const crofton_mesh_data& data, const ch
     description.triangles = data.triangles != 0;
     description.clusters = data.clusters != 0;
     description.one_sided = data.one_sided != 0;
+    if (data.clusters != 0 && data.precut != nullptr) {
+        const SharedUse use(data.precut, function);
+        if (use.failed()) return use.status();
+        description.precut = &data.precut->mesh;
+    }
     return CROFTON_OK;
 }
 

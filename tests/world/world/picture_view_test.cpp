@@ -291,6 +291,53 @@ TEST_SUITE("world/picture_view") {
         CHECK(sees(hidden));
     }
 
+    TEST_CASE("clusters that were cut before are used as they are, until the mesh deforms") {
+        oracle::NearMisses random(4);
+        const TriangleMesh round = ball(14, random);
+        // As no World would cut them.
+        const auto precut = depth::ClusteredMesh::cut(round.positions, round.indices, {.max_triangles = 5}).value();
+        const std::size_t own = depth::ClusteredMesh::cut(round.positions, round.indices)->clusters().size();
+        REQUIRE(precut.clusters().size() != own);
+        World world;
+        MeshDescription description{.positions = round.positions, .indices = round.indices, .clusters = true};
+        description.precut = &precut;
+        const MeshHandle mesh = world.add_mesh(description).value();
+        const MeshHandle cut = world.add_mesh({.positions = round.positions, .indices = round.indices}).value();
+        REQUIRE(world.replace_mesh(cut, description));
+        const Transform place{glm::dmat3(1.0), {0, 0, -5}};
+        (void)world.add({.mesh = mesh, .transform = place}).value();
+        (void)world.update();
+        for (const MeshHandle handle : {mesh, cut}) {
+            REQUIRE(world.clusters_of(handle) != nullptr);
+            CHECK(world.clusters_of(handle)->clusters().size() == precut.clusters().size());
+            CHECK(std::equal(precut.triangle_order().begin(), precut.triangle_order().end(),
+                             world.clusters_of(handle)->triangle_order().begin()));
+        }
+        ViewResult visible;
+        REQUIRE(world.view({.camera = Camera{}, .picture = depth::PictureView{160, 90}}, visible));
+        depth::DepthCuller culler;
+        const std::vector<depth::DepthObject> alone = {
+            {&precut, glm::mat4(world_to_clip(Camera{}) * glm::translate(glm::dmat4(1.0), {0, 0, -5}))}};
+        const auto expected = culler.find_visible(alone, {160, 90});
+        REQUIRE(visible.triangles().size() == expected->size());
+        for (std::size_t i = 0; i < expected->size(); ++i)
+            CHECK(visible.triangles()[i].triangles == (*expected)[i].triangles);
+
+        TriangleMesh wider = round;
+        for (glm::vec3& p : wider.positions) p.x *= 2.0f;
+        description.positions = wider.positions;
+        CHECK(error_of(world.add_mesh(description)).message.find("`precut`") != std::string::npos);
+        CHECK(error_of(world.replace_mesh(mesh, description)).message.find("`precut`") != std::string::npos);
+        CHECK(world.clusters_of(mesh)->clusters().size() == precut.clusters().size());
+        description.positions = round.positions;
+        description.indices = std::span<const std::uint32_t>(round.indices).first(round.indices.size() - 3);
+        CHECK_FALSE(world.add_mesh(description));
+
+        REQUIRE(world.set_vertices(mesh, wider.positions));
+        (void)world.update();
+        CHECK(world.clusters_of(mesh)->clusters().size() == own);
+    }
+
     TEST_CASE("requests that cannot be obeyed are refused by name") {
         World world;
         ViewResult result;

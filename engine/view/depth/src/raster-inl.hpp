@@ -66,28 +66,17 @@ class Rasterizer {
     // True if a sample may be the triangle's.
     HWY_INLINE bool shows() {
         if (shows_in_middle()) return true;
-        const float reach = spread_ + f_.above[i_];
         Line lines[3];
         for (std::uint32_t k = 0; k < 3; ++k)
             lines[k] = {f_.per_row[k][i_], f_.at_y[k][i_], f_.ask_low[k][i_], f_.ask_high[k][i_]};
         for (std::int32_t ty = y0_ / 8; ty <= y1_ / 8; ++ty) {
             bool known = false;
-            Interval touched{x0_ / 8, x1_ / 8};
-            if (touched.last - touched.first > kNarrow) {
-                find_band(ty, lines, 3);
-                touched = touched_tiles();
-                known = true;
-            }
-            const float up = plane_at_row(ty);
-            const std::size_t row = static_cast<std::size_t>(ty) * tiles_.columns;
-            for (std::int32_t tx = touched.first; tx <= touched.last; ++tx) {
-                const std::size_t t = row + static_cast<std::size_t>(tx);
-                const float most = std::min(plane_at_column(up, tx) + reach, f_.nearest[i_]);
-                if (tiles_.least[t] > most) continue;
+            const bool shown = any_low_tile(ty, [&](std::int32_t tx, std::size_t t) {
                 if (!known) find_band(ty, lines, 3);
                 known = true;
-                if (shows_in_tile(tx, t)) return true;
-            }
+                return meets_tile(tx) && shows_in_tile(tx, t);
+            });
+            if (shown) return true;
         }
         return false;
     }
@@ -136,6 +125,33 @@ class Rasterizer {
     // In the middle of a tile.
     [[nodiscard]] HWY_INLINE float plane_at_column(float at_row, std::int32_t tx) const {
         return at_row + f_.across[i_] * (static_cast<float>(8 * tx) + 4.0f - f_.plane_x[i_]);
+    }
+
+    // Calls use(tx, t) for tiles of the rectangle in which the triangle may be nearer than some pixel, until it returns
+    // true.
+    template <class Use>
+    HWY_INLINE bool any_low_tile(std::int32_t ty, const Use& use) {
+        const DF d;
+        const auto lanes = static_cast<std::int32_t>(hn::Lanes(d));
+        const VF up = hn::Set(d, plane_at_row(ty)), reach = hn::Set(d, spread_ + f_.above[i_]);
+        const VF across = hn::Set(d, f_.across[i_]), plane_x = hn::Set(d, f_.plane_x[i_]);
+        const std::size_t row = static_cast<std::size_t>(ty) * tiles_.columns;
+        const std::int32_t last = x1_ / 8;
+        for (std::int32_t first = x0_ / 8; first <= last; first += lanes) {
+            const std::size_t at = row + static_cast<std::size_t>(first);
+            const VF x = hn::Add(hn::Mul(steps_from(static_cast<float>(first)), hn::Set(d, 8.0f)), hn::Set(d, 4.0f));
+            const VF plane = hn::Add(up, hn::Mul(across, hn::Sub(x, plane_x)));
+            const VF most = hn::Min(hn::Add(plane, reach), hn::Set(d, f_.nearest[i_]));
+            // The list is padded by a vector.
+            std::uint8_t hidden[8] = {};
+            hn::StoreMaskBits(d, hn::Gt(hn::LoadU(d, tiles_.least + at), most), hidden);
+            const std::uint32_t those = (2u << std::min(lanes - 1, last - first)) - 1;
+            for (std::uint32_t left = those & ~std::uint32_t{hidden[0]}; left != 0; left &= left - 1) {
+                const int i = std::countr_zero(left);
+                if (use(first + i, at + static_cast<std::size_t>(i))) return true;
+            }
+        }
+        return false;
     }
 
     // The sample near the middle: most triangles that show do so there.
@@ -275,17 +291,19 @@ class Rasterizer {
         }
         if (!spares) return write_tile<false>(tx, t);
         float before[ExcludedSamples::kMax];
+        std::uint8_t places[ExcludedSamples::kMax];
+        std::uint32_t count = 0;
         float* const pixels = tiles_.pixels + t * kTilePixels;
-        for (std::uint32_t k = 0; k < excluded.count; ++k)
-            before[k] = pixels[excluded.samples[k].y % 8 * 8 + excluded.samples[k].x % 8];
-        write_tile<false>(tx, t);
-        bool restored = false;
         for (std::uint32_t k = 0; k < excluded.count; ++k) {
-            if (excluded.samples[k].y / 8 != ty || excluded.samples[k].x / 8 != tx) continue;
-            pixels[excluded.samples[k].y % 8 * 8 + excluded.samples[k].x % 8] = before[k];
-            restored = true;
+            const ExcludedSamples::Sample& sample = excluded.samples[k];
+            if (sample.y / 8 != ty || sample.x / 8 != tx) continue;
+            places[count] = static_cast<std::uint8_t>(sample.y % 8 * 8 + sample.x % 8);
+            before[count] = pixels[places[count]];
+            ++count;
         }
-        if (restored) tiles_.least[t] = least_of(tiles_, t);
+        write_tile<false>(tx, t);
+        for (std::uint32_t k = 0; k < count; ++k) pixels[places[k]] = before[k];
+        if (count != 0) tiles_.least[t] = least_of(tiles_, t);
     }
 
     // True if a sample of the tile lies between the lines.

@@ -1,12 +1,31 @@
 // SPDX-License-Identifier: MIT
 #include "mesh_clusters.hpp"
 
+#include <glm/common.hpp>
 #include <utility>
 
 namespace crofton::world {
 
+namespace {
+
+// Whether the clusters have this mesh's triangles, as far as their number and the largest coordinates tell.
+bool fits(const depth::ClusteredMesh& cut, const TriangleMesh& mesh) {
+    if (cut.triangle_order().size() != mesh.triangle_count()) return false;
+    glm::vec3 largest(0.0f);
+    for (const std::uint32_t i : mesh.indices) largest = (glm::max)(largest, glm::abs(mesh.positions[i]));
+    return largest == cut.layout().largest;
+}
+
+}  // namespace
+
 Result<MeshClusters::Mesh> MeshClusters::cut(const TriangleMesh& triangles, const MeshDescription& description) {
     if (!description.clusters) return Mesh{};
+    if (description.precut != nullptr) {
+        if (!fits(*description.precut, triangles))
+            return fail(ErrorCode::invalid_argument, kNoItem,
+                        "mesh: `precut` is of another mesh; pass the clusters of this one, or nullptr");
+        return Mesh{*description.precut, 0, true, description.one_sided, true};
+    }
     auto cut = depth::ClusteredMesh::cut(triangles.positions, triangles.indices);
     if (!cut) return tl::unexpected(cut.error());
     return Mesh{std::move(*cut), 0, true, description.one_sided, true};

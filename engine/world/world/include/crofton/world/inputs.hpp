@@ -143,6 +143,9 @@ struct MeshDescription {
     bool occluders = false;
     // True: views that ask for a picture list the mesh's triangles, in clusters (World::clusters_of).
     bool clusters = false;
+    // With clusters: those of this mesh that were cut before, as BakedScene::clusters() has them, or nullptr to cut the
+    // mesh. Error: they are of another mesh.
+    const depth::ClusteredMesh* precut = nullptr;
     // With clusters: set it if the renderer drops back faces; they are then not listed. Mirrored objects list both
     // sides.
     bool one_sided = false;
