@@ -259,7 +259,30 @@ class DepthCertificate {
     [[nodiscard]] static Rational lower_bound(const Piece& t, const Point2& p) {
         const Rational plane = plane_at(t, p) - t.z_error;
         const Rational moved = std::max(Rational(plane - step_of(t)), t.farthest);
-        return std::min({plane, moved, Rational(t.nearest - 2 * t.z_error)}) - t.bias;
+        const Rational bound = std::min({plane, moved, Rational(t.nearest - 2 * t.z_error)});
+        return std::max(bound, Rational(plane_at(t, p) - mean_error(t, p) - t.bias * 5 / 4)) - t.bias;
+    }
+    // Where the triangle covers p, p is a mean of the vertices as they were moved, and the depth is this mean of
+    // theirs. So what vertices are off counts by their share, which is small for those far nearer than p: those on the
+    // near plane. Where the depth is by places before they are snapped, this adds half a step times the slope: the
+    // bias.
+    [[nodiscard]] static Rational mean_error(const Piece& t, const Point2& p) {
+        std::array<const Place*, 3> by_depth = {&t.at[0], &t.at[1], &t.at[2]};
+        std::sort(by_depth.begin(), by_depth.end(), [](const Place* a, const Place* b) { return a->z < b->z; });
+        const auto error_of = [&](const Place& v) -> Rational {
+            return v.move * (abs(t.across) + abs(t.up)) + v.z_error;
+        };
+        const Place& farthest = *by_depth[0];
+        const Rational nearest = plane_at(t, p) + step_of(t) + t.z_error, low = farthest.z - farthest.z_error;
+        Rational error = error_of(farthest);
+        for (std::size_t k = 1; k < 3; ++k) {
+            const Place& v = *by_depth[k];
+            const Rational range = v.z - v.z_error - low;
+            // Of this vertex and of those nearer.
+            const Rational share = range > 0 ? std::min(Rational(1), Rational((nearest - low) / range)) : Rational(1);
+            error += share * error_of(v);
+        }
+        return error;
     }
 
     [[nodiscard]] static Point2 center_of(const std::pair<std::uint32_t, std::uint32_t>& sample) {
