@@ -70,6 +70,7 @@ class Advancement {
     [[nodiscard]] bool begins_in_contact();
     [[nodiscard]] Contact nearest(double near, bool& reached);
     [[nodiscard]] Contact contact();
+    [[nodiscard]] bool meet_after(double step);
     [[nodiscard]] double proven(const Contact& now) const {
         return (now.lower - flight_.path_error()) * (1.0 - 0x1p-40);
     }
@@ -154,6 +155,21 @@ Contact Advancement::contact() {
     return {0.0, 0.0, parted_, d.on_a, d.on_b};
 }
 
+// Whether the shapes surely overlap a little later: then they touch before.
+bool Advancement::meet_after(double step) {
+    const double now = flight_.time();
+    flight_.move_to(now + step);
+    const ShapeAtPose a = flight_.a(), b = flight_.b();
+    bool meet = false;
+    if (!is_half_space(a) && !is_half_space(b)) {
+        const Pair pair(a, b);
+        const Nearest core = nearest_points(pair, &cache_, pair.rounding(), pair.rounding());
+        meet = core.relation == Relation::overlapping || core.upper <= pair.rounding() - pair.doubt();
+    }
+    flight_.move_to(now);
+    return meet;
+}
+
 // At time 0, where the search begins later.
 bool Advancement::begins_in_contact() {
     flight_.move_to(0.0);
@@ -174,6 +190,7 @@ Impact Advancement::run() {
         bool reached = false;
         Contact now = nearest(near, reached);
         if (reached && within) return first;
+        const bool was_within = within;
         const bool nearer = within && now.distance < first.distance;
         if (reached || !(proven(now) > 0.0) || (now.distance < tolerance && !nearer)) now = contact();
         const double gap = proven(now);
@@ -202,6 +219,10 @@ Impact Advancement::run() {
         if (!within && early_ < options_.duration && closing(early_ - flight_.time()) < gap - tolerance)
             return miss(steps);
         if (touching && !flight_.turns()) return first;
+        // The way to a touch that turns is long; a step beyond it tells as much.
+        if (within && !was_within && !touching && !starts && flight_.turns() &&
+            meet_after(std::min(left, closing.safe_step(2.0 * gap, left))))
+            return first;
         lifting = touching;
         const double kept = within ? std::max(0x1p-12 * gap, 64.0 * flight_.path_error()) : 0.5 * tolerance;
         near = within ? 2.0 * kept : 0.99 * tolerance;

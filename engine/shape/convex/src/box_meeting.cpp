@@ -91,12 +91,12 @@ class MeetingBoxes {
     MeetingBoxes(const Pair& pair)
         : half_a_(pair.a.half_extents()), half_b_(pair.b.half_extents()), a_(pair.pose_a), b_(pair.pose_b) {}
 
-    [[nodiscard]] bool overlap_along(const glm::dvec3& u, const glm::dvec3& v) const {
+    [[nodiscard]] bool overlap_along(const glm::dvec3& u, const glm::dvec3& v) {
         // Of a floor's faces the normal is along a coordinate.
         bool zero[3];
         for (int k = 0; k < 3; ++k) zero[k] = is_difference_zero(u[kNext[k]], v[kLast[k]], u[kLast[k]], v[kNext[k]]);
         for (int k = 0; k < 3; ++k)
-            if (zero[kNext[k]] && zero[kLast[k]]) return zero[k] || overlap_along_coordinate(k);
+            if (zero[kNext[k]] && zero[kLast[k]]) return zero[k] || overlap_along_coordinate_once(k);
         ExactNormal normal;
         for (int k = 0; k < 3; ++k)
             normal[k] = exact_product(u[kNext[k]], v[kLast[k]]) - exact_product(u[kLast[k]], v[kNext[k]]);
@@ -104,6 +104,11 @@ class MeetingBoxes {
     }
 
   private:
+    // Of upright boxes many products of edges are along one coordinate.
+    [[nodiscard]] bool overlap_along_coordinate_once(int k) {
+        if (!overlap_known_[k]) overlap_known_[k] = overlap_along_coordinate(k);
+        return overlap_known_[k];
+    }
     [[nodiscard]] bool overlap_along_coordinate(int k) const {
         const auto apart = detail::two_sum(b_.translation[k], -a_.translation[k]);
         const double sign = apart.high < 0.0 ? 1.0 : -1.0;
@@ -143,6 +148,7 @@ class MeetingBoxes {
 
     const glm::dvec3 &half_a_, &half_b_;
     const RigidTransform &a_, &b_;
+    bool overlap_known_[3] = {false, false, false};  // along the coordinates
 };
 
 }  // namespace
@@ -163,7 +169,7 @@ std::optional<bool> BoxPair::meet_exactly() const {
         constexpr int kRow = 7 << 6, kColumn = 73 << 6;
         near &= ~(kRow << 3 * (n / 3) | kColumn << n % 3);
     }
-    const MeetingBoxes boxes(pair_);
+    MeetingBoxes boxes(pair_);
     for (int n = 0; n < 15; ++n) {
         if ((near >> n & 1) == 0) continue;
         const bool overlap = n < 3   ? boxes.overlap_along(ra[kNext[n]], ra[kLast[n]])
