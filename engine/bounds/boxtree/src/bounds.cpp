@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "bounds.hpp"
 
+#include <crofton/geometry/float_lanes.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -30,6 +32,14 @@ bool is_unit(float unit) {
 // How many edge_units a position_unit is, as a power of two.
 int edge_shift_of(const Leaf& leaf) {
     return std::min(31, std::ilogb(leaf.position_unit) - std::ilogb(leaf.edge_unit));
+}
+
+// By shifts, which vectors have.
+void unpack(const Int16x2 (&pairs)[kWidth], int (&lower)[kWidth], int (&upper)[kWidth]) {
+    for (unsigned lane = 0; lane < kWidth; ++lane) {
+        lower[lane] = static_cast<int>(pairs[lane] << 16) >> 16;
+        upper[lane] = static_cast<int>(pairs[lane]) >> 16;
+    }
 }
 
 }  // namespace
@@ -213,18 +223,35 @@ Aabb bounds_of_lane(const Node& node, unsigned lane, const Axes& axes) {
     return around(axes, node.origin, low, high, axes.rounding);
 }
 
+ChildEnds ends_of(const Node& node) {
+    int middle[3][kWidth], half[3][kWidth];
+    unpack(node.middle_xy, middle[0], middle[1]);
+    unpack(node.middle_half_z, middle[2], half[2]);
+    unpack(node.half_xy, half[0], half[1]);
+    ChildEnds ends;
+    for (unsigned j = 0; j < 3; ++j)
+        for (unsigned lane = 0; lane < kWidth; ++lane) {
+            ends.low[j][lane] = static_cast<float>(middle[j][lane] - half[j][lane]);
+            ends.high[j][lane] = static_cast<float>(middle[j][lane] + half[j][lane]);
+        }
+    return ends;
+}
+
 Aabb bounds_of(const Node& node, const Axes& axes) {
+    const ChildEnds ends = ends_of(node);
     double low[3], high[3];
     for (unsigned j = 0; j < 3; ++j) {
-        // Empty lanes do not count: theirs are the largest low and the least high.
-        int least = 32767, most = -32767;
-        for (unsigned lane = 0; lane < kWidth; ++lane) {
-            least = std::min(least, low_of(node, lane, j));
-            most = std::max(most, high_of(node, lane, j));
+        const auto lanes = [](const float* from) { return detail::load4(reinterpret_cast<const char*>(from)); };
+        detail::Lanes4 least = lanes(ends.low[j]), most = lanes(ends.high[j]);
+        for (unsigned lane = 4; lane < kWidth; lane += 4) {
+            least = detail::lesser(least, lanes(ends.low[j] + lane));
+            most = detail::larger(most, lanes(ends.high[j] + lane));
         }
-        if (least > most) return {};
-        low[j] = double{node.unit} * least;
-        high[j] = double{node.unit} * most;
+        const float first = std::min(std::min<float>(least[0], least[1]), std::min<float>(least[2], least[3])),
+                    last = std::max(std::max<float>(most[0], most[1]), std::max<float>(most[2], most[3]));
+        if (first > last) return {};
+        low[j] = double{node.unit} * double{first};
+        high[j] = double{node.unit} * double{last};
     }
     return around(axes, node.origin, low, high, axes.rounding);
 }

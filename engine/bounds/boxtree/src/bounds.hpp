@@ -42,6 +42,13 @@ void write_layers(Node& node, unsigned lane, const std::uint32_t* any, const std
 [[nodiscard]] Aabb bounds_of(const Leaf& leaf);
 [[nodiscard]] Aabb bounds_of(const Leaf& leaf, const LeafExtent& extent);
 
+// Where the children's boxes begin and end along each axis, in the node's units. Those of empty lanes are the largest
+// low and the least high.
+struct ChildEnds {
+    float low[3][kWidth], high[3][kWidth];
+};
+[[nodiscard]] ChildEnds ends_of(const Node& node);
+
 [[nodiscard]] Aabb bounds_of(const Node& node, const Axes& axes);
 [[nodiscard]] Aabb bounds_of_lane(const Node& node, unsigned lane, const Axes& axes);
 

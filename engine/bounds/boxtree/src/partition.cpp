@@ -285,23 +285,24 @@ bool Splitter::divide_on(const Cost& cost, std::size_t& work) {
 }
 
 void halve(std::span<BuildItem, kWidth> items) {
-    // An item's rank is how many centres come before its own; equal ones keep their order.
-    std::uint32_t ranks[3][kWidth];
+    float centers[3][kWidth];
     unsigned widest = 0;
     float most = -1.0f;
     for (unsigned axis = 0; axis < 3; ++axis) {
-        float centers[kWidth];
-        for (unsigned i = 0; i < kWidth; ++i) {
-            centers[i] = items[i].twice_center(axis);
-            ranks[axis][i] = 0;
-        }
+        for (unsigned i = 0; i < kWidth; ++i) centers[axis][i] = items[i].twice_center(axis);
+        const auto [low, high] = std::minmax_element(centers[axis], centers[axis] + kWidth);
+        if (*high - *low > most) most = *high - *low, widest = axis;
+    }
+    // An item's rank is how many centres come before its own; equal ones keep their order.
+    std::uint32_t ranks[3][kWidth] = {};
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        if (axis != 0 && axis != widest) continue;
+        const float(&along)[kWidth] = centers[axis];
         for (unsigned j = 0; j < kWidth; ++j)
             for (unsigned i = 0; i < kWidth; ++i)
                 ranks[axis][i] +=
-                    static_cast<std::uint32_t>(centers[j] < centers[i]) |
-                    (static_cast<std::uint32_t>(centers[j] == centers[i]) & static_cast<std::uint32_t>(j < i));
-        const auto [low, high] = std::minmax_element(centers, centers + kWidth);
-        if (*high - *low > most) most = *high - *low, widest = axis;
+                    static_cast<std::uint32_t>(along[j] < along[i]) |
+                    (static_cast<std::uint32_t>(along[j] == along[i]) & static_cast<std::uint32_t>(j < i));
     }
     std::array<BuildItem, kWidth> along_x;
     std::array<bool, kWidth> is_first;

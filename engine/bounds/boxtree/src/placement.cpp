@@ -81,11 +81,11 @@ unsigned Placement::best_lane(const Node& node, const Aabb& box) const {
                  most = std::max({volume, area, cost.edges});
     const auto of_volume = static_cast<float>(volume / most), of_area = static_cast<float>(area / most),
                of_edges = static_cast<float>(cost.edges / most);
+    const ChildEnds ends = ends_of(node);
     float old[3][kWidth], grown[3][kWidth], sizes[kWidth], growths[kWidth];
     for (unsigned j = 0; j < 3; ++j)
         for (unsigned lane = 0; lane < kWidth; ++lane) {
-            const auto low = static_cast<float>(low_of(node, lane, j)),
-                       high = static_cast<float>(high_of(node, lane, j));
+            const float low = ends.low[j][lane], high = ends.high[j][lane];
             old[j][lane] = high < low ? 0.0f : high - low;
             grown[j][lane] = (high < box_high[j] ? box_high[j] : high) - (box_low[j] < low ? box_low[j] : low);
         }
@@ -167,8 +167,7 @@ void Placement::split_leaf(LeafId l) {
         make_leaf(both[side], ids, parent, leaves_[both[side]].lane_in_parent);
     }
     if (empty == kNone) add_child(parent, other | kLeafBit);
-    refresh_above(l | kLeafBit);
-    refresh_above(other | kLeafBit);
+    refresh_above_both(l | kLeafBit, other | kLeafBit);
 }
 
 void Placement::make_leaf(LeafId l, std::span<const ItemId> items, NodeId parent, std::uint32_t lane_in_parent) {
@@ -263,8 +262,7 @@ NodeId Placement::split_node(NodeId n) {
     make_half(0, n, whole.parent, whole.lane_in_parent);
     make_half(1, fresh, whole.parent, 0);
     add_child(whole.parent, fresh);
-    refresh_above(n);
-    refresh_above(fresh);
+    refresh_above_both(n, fresh);
     return n;
 }
 
@@ -320,6 +318,19 @@ void Placement::refresh_above(std::uint32_t first) {
             return;
         child = n;
     }
+}
+
+// The same above both halves of what has been split. Below one node the first needs its lane alone: the second's, which
+// was empty, changes that node, so that its path goes on.
+void Placement::refresh_above_both(std::uint32_t first, std::uint32_t second) {
+    const Place place = place_of(first);
+    if (place.node != place_of(second).node) {
+        refresh_above(first);
+    } else {
+        if (!write_path_lane(place, first, first)) structure_.refresh_bounds(place.node);
+        structure_.refresh_contents(place.node, place.lane);
+    }
+    refresh_above(second);
 }
 
 // Writes the bound of what lies below `child` into its lane; false if the node's frame does not take it. Where child's

@@ -39,6 +39,7 @@ class Placement {
     void make_part(NodeId n, const Node& whole, const NodeRadii& radii, std::span<const unsigned> lanes, NodeId parent,
                    unsigned lane_in_parent);
     void refresh_above(std::uint32_t first);
+    void refresh_above_both(std::uint32_t first, std::uint32_t second);
     [[nodiscard]] bool write_path_lane(Place above, std::uint32_t first, std::uint32_t child);
     [[nodiscard]] Place place_of(std::uint32_t child) const;
     void invalidate_item_count(NodeId n);

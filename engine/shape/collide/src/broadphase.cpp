@@ -291,7 +291,8 @@ Result<void> Broadphase::State::update_moved(std::span<const Obb> boxes, std::sp
         return fail(ErrorCode::out_of_range, *last, "broadphase: an item in `moved` is no index of a box");
     const std::size_t before = tree.item_count(),
                       came_or_went = std::max(before, boxes.size()) - std::min(before, boxes.size());
-    const bool few = moved.size() + came_or_went <= boxes.size() / kFewMovers;
+    const auto old_moved = std::count_if(moved.begin(), moved.end(), [&](std::uint32_t item) { return item < before; });
+    const bool few = static_cast<std::size_t>(old_moved) + came_or_went <= boxes.size() / kFewMovers;
     if (!was_current || !few) return update_all(boxes, filters, executor, test);
     return update_few(boxes, moved, filters, executor, test);
 }

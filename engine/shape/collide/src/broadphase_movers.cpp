@@ -8,6 +8,14 @@
 #include "broadphase_state.hpp"
 
 namespace crofton::collide {
+namespace {
+
+bool is_valid(const Obb& box) {
+    if (!(box.half_extents.x >= 0.0f) || !is_in_range(box.center)) return false;  // at once, without a message
+    return validate(box).has_value();
+}
+
+}  // namespace
 
 void Broadphase::State::note_count(std::size_t item_count) {
     if (item_count > is_moved.capacity()) is_moved.reserve(item_count + item_count / 16 + kBoxBlock);
@@ -79,7 +87,7 @@ void Broadphase::State::place_movers(std::span<const Obb> boxes) {
         const std::uint32_t suspect = bound_boxes(block, bounds);
         for (std::size_t lane = 0; lane < size; ++lane) {
             const std::uint32_t item = movers[begin + lane];
-            if ((suspect >> lane & 1u) != 0 && (!is_in_range(boxes[item].center) || !validate(boxes[item]))) {
+            if ((suspect >> lane & 1u) != 0 && !is_valid(boxes[item])) {
                 if (tree.contains(item)) left.push_back(item);
                 continue;
             }

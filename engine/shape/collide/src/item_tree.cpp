@@ -3,7 +3,11 @@
 
 #include <hwy/cache_control.h>
 #include <algorithm>
+#include <array>
+#include <crofton/geometry/float_lanes.hpp>
+#include <cstring>
 #include <limits>
+#include <utility>
 
 #include "leaf_bounds.hpp"
 
@@ -16,6 +20,28 @@ constexpr std::size_t kFewestLanes = 5, kFewestAfterSplit = 6;
 constexpr float kLooseGrowth = 1.1f;
 // Leaves are worn once the sum of their extents has grown by the first, or there are so many times more than needed.
 constexpr double kWornGrowth = 1.2, kWornCount = 1.5;
+
+using detail::Lanes4;
+
+Lanes4 load_lanes(const float* from) {
+    return detail::load4(reinterpret_cast<const char*>(from));
+}
+
+// Bounds with a component for each axis side by side; the fourth is 0.
+struct WideBounds {
+    Lanes4 low, high;
+    WideBounds(const LaneBounds& bounds)
+        : low{bounds.low[0], bounds.low[1], bounds.low[2], 0.0f},
+          high{bounds.high[0], bounds.high[1], bounds.high[2], 0.0f} {}
+    void include(const WideBounds& more) {
+        low = detail::lesser(more.low, low);
+        high = detail::larger(more.high, high);
+    }
+    [[nodiscard]] float extent() const {
+        const Lanes4 size = high - low;
+        return size[0] + size[1] + size[2];
+    }
+};
 
 float extent_of(const LaneBounds& bounds) {
     return (bounds.high[0] - bounds.low[0]) + (bounds.high[1] - bounds.low[1]) + (bounds.high[2] - bounds.low[2]);
@@ -46,20 +72,42 @@ bool are_equal(const LaneBounds& a, const LaneBounds& b) {
 
 // The lane that grows least by taking the bounds in; of several the smallest. Empty lanes grow infinitely.
 std::size_t lane_for(const BoundBlock& block, const LaneBounds& bounds) {
-    float extent[kBoxBlock], growth[kBoxBlock];
-    for (std::size_t lane = 0; lane < kBoxBlock; ++lane) extent[lane] = growth[lane] = 0.0f;
-    for (int i = 0; i < 3; ++i)
-        for (std::size_t lane = 0; lane < kBoxBlock; ++lane) {
-            const float low = block.low[i][lane], high = block.high[i][lane];
-            const float grown_low = low < bounds.low[i] ? low : bounds.low[i],
-                        grown_high = high > bounds.high[i] ? high : bounds.high[i];
-            extent[lane] += high - low;
-            growth[lane] += (grown_high - high) + (low - grown_low);
+    float extents[kBoxBlock], growths[kBoxBlock];
+    Lanes4 least_growth{};
+    for (std::size_t first = 0; first < kBoxBlock; first += 4) {
+        Lanes4 extent{}, growth{};
+        for (int i = 0; i < 3; ++i) {
+            const Lanes4 low = load_lanes(block.low[i] + first), high = load_lanes(block.high[i] + first);
+            const Lanes4 grown_low = detail::lesser(low, detail::all_lanes(bounds.low[i])),
+                         grown_high = detail::larger(high, detail::all_lanes(bounds.high[i]));
+            extent = extent + (high - low);
+            growth = growth + ((grown_high - high) + (low - grown_low));
         }
-    std::size_t best = 0;
-    for (std::size_t lane = 1; lane < kBoxBlock; ++lane)
-        if (growth[lane] < growth[best] || (growth[lane] == growth[best] && extent[lane] < extent[best])) best = lane;
+        std::memcpy(extents + first, &extent, sizeof extent);
+        std::memcpy(growths + first, &growth, sizeof growth);
+        least_growth = first == 0 ? growth : detail::lesser(growth, least_growth);
+    }
+    const float least = std::min({least_growth[0], least_growth[1], least_growth[2], float{least_growth[3]}});
+    std::size_t best = kBoxBlock;
+    for (std::size_t lane = kBoxBlock; lane-- > 0;)
+        if (growths[lane] == least && (best == kBoxBlock || extents[lane] <= extents[best])) best = lane;
     return best;
+}
+
+// A block that is split has seventeen children; five vectors of keys.
+constexpr std::size_t kSplitCount = kBoxBlock + 1, kSplitPadded = kBoxBlock + 4;
+
+// The order of the first seventeen keys; equal ones keep theirs.
+void put_in_order(const float (&keys)[kSplitPadded], std::size_t (&order)[kSplitCount]) {
+    // Each one's place is how many come before it: no branch to guess, and vectors of four.
+    std::int32_t places[kSplitPadded] = {}, sum = 0;
+    for (std::size_t m = 0; m < kSplitCount; ++m)
+        for (std::size_t n = 0; n < kSplitPadded; ++n) places[n] += static_cast<std::int32_t>(keys[m] < keys[n]);
+    for (std::size_t n = 0; n < kSplitCount; ++n) sum += places[n];
+    const bool has_equal = sum != static_cast<std::int32_t>(kSplitCount * (kSplitCount - 1) / 2);
+    for (std::size_t m = 0; has_equal && m < kSplitCount; ++m)
+        for (std::size_t n = m + 1; n < kSplitCount; ++n) places[n] += static_cast<std::int32_t>(keys[m] == keys[n]);
+    for (std::size_t n = 0; n < kSplitCount; ++n) order[places[n]] = n;
 }
 
 // Blocks that are made at once get room for a part more: each insertion into a full leaf makes one.
@@ -125,7 +173,8 @@ void ItemTree::arrange(std::span<const std::uint32_t> order) {
     for (; k < 2 || below > 1; ++k) {
         Level& level = levels_[k];
         const std::size_t blocks = std::max<std::size_t>(k > 0 ? 1 : 0, (below + kBoxBlock - 1) / kBoxBlock);
-        if (blocks > level.bounds.capacity()) level.reserve(blocks + blocks / kRoomPart + std::min(blocks, 3 * kBoxBlock));
+        if (blocks > level.bounds.capacity())
+            level.reserve(blocks + blocks / kRoomPart + std::min(blocks, 3 * kBoxBlock));
         level.bounds.resize(blocks);
         level.children.assign(blocks * kBoxBlock, 0);
         level.parents.resize(blocks);
@@ -267,42 +316,38 @@ void ItemTree::grow(std::size_t level, std::uint32_t block, const LaneBounds& bo
 
 // Seventeen children in two blocks, cut along the axis, or by size, where the sum of both blocks' extents is least.
 void ItemTree::split(std::size_t level, std::uint32_t block, const Entry& entry) {
-    constexpr std::size_t kCount = kBoxBlock + 1, kPadded = kBoxBlock + 4;
+    constexpr std::size_t kCount = kSplitCount;
     Entry entries[kCount], best[kCount];
     for (std::size_t lane = 0; lane < kBoxBlock; ++lane)
         entries[lane] = {level, levels_[level].children[block * kBoxBlock + lane],
                          lane_of(levels_[level].bounds[block], lane)};
     entries[kBoxBlock] = entry;
+    std::array<WideBounds, kCount> wide = [&]<std::size_t... N>(std::index_sequence<N...>) {
+        return std::array<WideBounds, kCount>{WideBounds(entries[N].bounds)...};
+    }
+    (std::make_index_sequence<kCount>());
     float least = std::numeric_limits<float>::infinity();
     std::size_t cut = kCount / 2;
     std::size_t order[kCount], best_order[kCount];
     for (std::size_t n = 0; n < kCount; ++n) best_order[n] = n;
     for (int axis = 0; axis < 4; ++axis) {
-        float keys[kPadded];
-        for (std::size_t n = 0; n < kPadded; ++n) {
+        float keys[kSplitPadded];
+        for (std::size_t n = 0; n < kSplitPadded; ++n) {
             const LaneBounds& bounds = entries[std::min(n, kCount - 1)].bounds;
             keys[n] = axis < 3 ? bounds.low[axis] + bounds.high[axis] : extent_of(bounds);
         }
-        // Each one's place is how many come before it: no branch to guess, and vectors of four.
-        std::int32_t places[kPadded] = {};
-        for (std::int32_t m = 0; m < static_cast<std::int32_t>(kCount); ++m) {
-            const float key = keys[m];
-            for (std::int32_t n = 0; n < static_cast<std::int32_t>(kPadded); ++n)
-                places[n] += static_cast<std::int32_t>(key < keys[n]) |
-                             (static_cast<std::int32_t>(key == keys[n]) & static_cast<std::int32_t>(m < n));
-        }
-        for (std::size_t n = 0; n < kCount; ++n) order[places[n]] = n;
+        put_in_order(keys, order);
         float extent_from[kCount + 1];
-        LaneBounds bounds = kEmpty;
+        WideBounds bounds = kEmpty;
         for (std::size_t n = kCount; n-- > kFewestAfterSplit;) {
-            include(entries[order[n]].bounds, bounds);
-            extent_from[n] = extent_of(bounds);
+            bounds.include(wide[order[n]]);
+            extent_from[n] = bounds.extent();
         }
         bounds = kEmpty;
         for (std::size_t n = 1; n <= kCount - kFewestAfterSplit; ++n) {
-            include(entries[order[n - 1]].bounds, bounds);
+            bounds.include(wide[order[n - 1]]);
             if (n < kFewestAfterSplit) continue;
-            const float sum = extent_of(bounds) + extent_from[n];
+            const float sum = bounds.extent() + extent_from[n];
             if (!(sum < least)) continue;
             least = sum;
             cut = n;

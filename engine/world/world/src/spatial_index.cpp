@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "spatial_index.hpp"
 
+#include <hwy/cache_control.h>
 #include <algorithm>
 #include <cmath>
 #include <crofton/boxtree/box_tree.hpp>
@@ -23,7 +24,7 @@ constexpr std::uint8_t kYoungMarks = 8;
 constexpr std::uint32_t kYoungGoes = 4, kMostShortLived = 64, kManyShortLived = 16;
 constexpr std::size_t kShortList = 64;
 // Into the tree one at a time, so many in an update or such a part of those that wait.
-const std::size_t kAttachedPerUpdate = 64, kAttachedPart = 2;
+constexpr std::size_t kAttachedPerUpdate = 192, kAttachedPart = 4;
 constexpr std::size_t kFewItems = 64;
 // The tree is rebuilt in the background, once such a part of its items has come or gone, a smaller one where nothing
 // comes or goes any more, or has moved within it: what moves stays in its leaf, whose bound grows, and wears the tree
@@ -32,9 +33,10 @@ constexpr std::size_t kMembersToRebuild = 16, kMembersToRebuildAtRest = 64, kMov
 // Work on the new tree for each change of the old one, for an item that comes, goes or moves: the cost of an update
 // follows its changes. Putting an item into the new tree is worth 80, another change 4, building it some 12 an item
 // (BoxTree::rebuild_step). Measured: docs/notes/world.md.
-constexpr std::size_t kBudgetPerComing = 384, kBudgetPerGoing = 96, kBudgetPerMove = 128;
-// Where less changes than before, an update still does such a part of the work of the update before,
-constexpr std::size_t kBudgetKept = 7, kBudgetKeptOf = 8;
+constexpr std::size_t kBudgetPerComing = 448, kBudgetPerGoing = 96, kBudgetPerMove = 128;
+// The work follows the changes slowly, so that the update in which many things change does not do all of it: up by the
+// first part of the difference in each update, down by the second,
+constexpr std::size_t kBudgetRise = 8, kBudgetFall = 32;
 // and at least so much and a part of the items.
 constexpr std::size_t kLeastBudget = 128, kBudgetPart = 2048;
 // Memory for so many items more, a part and a number, is taken with a tree that is built at once.
@@ -105,6 +107,21 @@ void SpatialIndex::take(ItemId item) {
     from.boxes[taken.entry] = from.boxes.back();
     from.items.pop_back();
     from.boxes.pop_back();
+}
+
+void SpatialIndex::fetch_slot(ItemId item) const {
+    hwy::Prefetch(&items_[item]);
+    if (item < tree_.structure().item_slots().size()) hwy::Prefetch(&tree_.structure().item_slots()[item]);
+    hwy::Prefetch(&tree_.boxes()[item]);
+}
+
+void SpatialIndex::fetch_leaf(ItemId item) const {
+    const boxtree::Structure& structure = tree_.structure();
+    if (!structure.contains(item)) return;
+    const std::uint32_t leaf = structure.slot_of(item) / boxtree::kWidth;
+    const char* const bytes = reinterpret_cast<const char*>(&structure.leaves()[leaf]);
+    for (std::size_t byte = 0; byte < sizeof(boxtree::Leaf); byte += 64) hwy::Prefetch(bytes + byte);
+    hwy::Prefetch(&structure.slot_items()[leaf * boxtree::kWidth]);
 }
 
 void SpatialIndex::detach(ItemId item) {
@@ -251,7 +268,11 @@ void SpatialIndex::rebuild_step(std::size_t budget) {
     const Changed fresh = changed_in_tree_ - std::exchange(changed_before_, changed_in_tree_);
     const std::size_t changes =
         kBudgetPerComing * fresh.came + kBudgetPerGoing * fresh.went + kBudgetPerMove * fresh.moves;
-    rebuild_work_ = std::min(kMostExtraWork, std::max(changes, rebuild_work_ * kBudgetKept / kBudgetKeptOf));
+    if (changes > rebuild_work_)
+        rebuild_work_ += std::min(kMostExtraWork, (changes - rebuild_work_ + kBudgetRise - 1) / kBudgetRise);
+    else
+        rebuild_work_ -= (rebuild_work_ - changes) / kBudgetFall;
+    rebuild_work_ = std::min(kMostExtraWork, rebuild_work_);
     if (budget == 0) return;
     if (!rebuilding_) {
         const std::size_t part = fresh.members() > 0 ? kMembersToRebuild : kMembersToRebuildAtRest;

@@ -32,6 +32,13 @@ class SpatialIndex {
     // A new item, shown, without a box: it is nowhere until it gets one.
     [[nodiscard]] Result<ItemId> add(std::uint32_t layers);
     void remove(ItemId item);
+    // Asks the memory for what removing or hiding the n-th and later of many items needs.
+    template <class ItemOf>
+    void fetch_ahead(std::size_t n, std::size_t count, ItemOf item_of) const {
+        constexpr std::size_t kFar = 24, kNear = 12;
+        if (n + kFar < count) fetch_slot(item_of(n + kFar));
+        if (n + kNear < count) fetch_leaf(item_of(n + kNear));
+    }
     void set_box(ItemId item, const Obb& box) {
         if (items_[item].place != Place::moving)
             set_box_elsewhere(item, box);
@@ -145,6 +152,8 @@ class SpatialIndex {
     void put(ItemId item, Place place, const Obb& box);
     void add_mover(ItemId item, const Obb& box, std::uint32_t last_moved);
     void take(ItemId item);
+    void fetch_slot(ItemId item) const;
+    void fetch_leaf(ItemId item) const;
     void set_box_elsewhere(ItemId item, const Obb& box);
     void detach(ItemId item);
     void note_move(ItemId item);

@@ -101,7 +101,9 @@ Result<Transform> World::transform_of(ObjectHandle object) const {
 }
 
 void World::State::apply_changes() {
-    for (const std::uint32_t object : removed) {
+    for (std::size_t n = 0; n < removed.size(); ++n) {
+        const std::uint32_t object = removed[n];
+        index.fetch_ahead(n, removed.size(), [&](std::size_t later) { return removed[later]; });
         index.remove(object);
         shapes.forget(object);
         if (object_shapes.has(object)) pair_changes.objects.push_back(object);  // ground has no box among the others
@@ -110,7 +112,9 @@ void World::State::apply_changes() {
         occluders.note(object);
     }
     removed.clear();
-    for (const StagedChange& change : staged) {
+    for (std::size_t n = 0; n < staged.size(); ++n) {
+        const StagedChange& change = staged[n];
+        index.fetch_ahead(n, staged.size(), [&](std::size_t later) { return staged[later].object; });
         world::Object& object = table.objects[change.object];
         object.staged = kNoIndex;
         if (!object.alive) continue;
