@@ -6,6 +6,7 @@
 #include <crofton/boxtree/structure.hpp>
 #include <crofton/core/recovery.hpp>
 #include <crofton/core/stop_signal.hpp>
+#include <crofton/mesh/mesh_parts.hpp>
 #include <glm/geometric.hpp>
 #include <optional>
 #include <utility>
