@@ -71,17 +71,6 @@ bool is_room(const RoomRecord& record) {
            std::isfinite(record.floor) && std::isfinite(record.ceiling);
 }
 
-std::vector<bake::MeshLook> looks_of(const SceneSource& source) {
-    const auto flag = [](const std::vector<std::uint8_t>& flags, std::size_t mesh) {
-        return mesh < flags.size() && flags[mesh] != 0;
-    };
-    std::vector<bake::MeshLook> looks(source.scene.mesh_count());
-    for (std::size_t m = 0; m < looks.size(); ++m)
-        looks[m] = {
-            .one_sided = flag(source.one_sided, m), .flat = flag(source.flat, m), .unlit = flag(source.unlit, m)};
-    return looks;
-}
-
 void add_visit(const SceneSource& source, bake::Writer& writer) {
     const VisitHead head{source.in_metres ? 1u : 0u, 0};
     writer.add(kHead, std::span<const VisitHead>(&head, 1));
@@ -126,6 +115,17 @@ Result<void> read_glow(const bake::Reader& reader, SceneSource& source) {
 }
 
 }  // namespace
+
+std::vector<bake::MeshLook> looks_of(const SceneSource& source) {
+    const auto flag = [](const std::vector<std::uint8_t>& flags, std::size_t mesh) {
+        return mesh < flags.size() && flags[mesh] != 0;
+    };
+    std::vector<bake::MeshLook> looks(source.scene.mesh_count());
+    for (std::size_t m = 0; m < looks.size(); ++m)
+        looks[m] = {
+            .one_sided = flag(source.one_sided, m), .flat = flag(source.flat, m), .unlit = flag(source.unlit, m)};
+    return looks;
+}
 
 Result<Vector<std::byte>> bake_source(const SceneSource& source, Executor& executor, bake::BakeOptions options) {
     const std::vector<bake::MeshLook> looks = looks_of(source);

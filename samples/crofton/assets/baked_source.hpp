@@ -13,6 +13,9 @@ namespace crofton::assets {
 [[nodiscard]] Result<Vector<std::byte>> bake_source(const SceneSource& source, Executor& executor,
                                                     bake::BakeOptions options = {});
 
+// How the source's meshes are drawn, by mesh.
+[[nodiscard]] std::vector<bake::MeshLook> looks_of(const SceneSource& source);
+
 // Adds to the source what bake_source() wrote besides the scene. Errors name the section: numbers out of range, counts
 // that do not fit the scene.
 [[nodiscard]] Result<void> read_visit(std::span<const std::byte> file, SceneSource& source);

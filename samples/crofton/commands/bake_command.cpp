@@ -12,6 +12,7 @@
 
 #include "assets/baked_source.hpp"
 #include "assets/scene_source.hpp"
+#include "bake_regions.hpp"
 #include "commands.hpp"
 #include "json/json.hpp"
 #include "pipeline/pipeline.hpp"
@@ -26,7 +27,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 struct BakeOptions {
-    std::string scene, output, map, json, tree = "aligned";
+    std::string scene, output, folder, regions, map, json, tree = "aligned";
     std::uint32_t instances = 0;
     std::uint64_t seed = 1;
     unsigned threads = 1;
@@ -109,11 +110,25 @@ class BakeRun {
         if (options_.threads != 1) pool_.emplace(options_.threads);
     }
 
-    int run() { return options_.output.empty() ? check() : write(); }
+    int run() {
+        const bool writes = !options_.output.empty() || !options_.folder.empty() || !options_.regions.empty();
+        const bool is_told_how = !options_.map.empty() || options_.instances != 0 || options_.seed != 1 ||
+                                 options_.tree != "aligned" || options_.no_occluders || options_.no_clusters;
+        if (!writes && is_told_how)
+            return report_error("", {ErrorCode::invalid_argument, kNoItem,
+                                     "options of baking need --output FILE, or --folder FOLDER, to write to"});
+        if (!writes) return check();
+        if (options_.folder.empty() != options_.regions.empty())
+            return report_error(
+                "", {ErrorCode::invalid_argument, kNoItem, "--regions says how many, --folder where to: give both"});
+        return write();
+    }
 
   private:
     // Loads the file as an engine would and says how long that took.
     int check() {
+        if (has_regions(options_.scene))
+            return check_regions(options_.scene, options_.read.limits.bytes, options_.json, executor());
         if (assets::extension(options_.scene) != "crofton" && (is_scene() || !std::filesystem::exists(options_.scene)))
             return report_error(
                 options_.scene,
@@ -134,6 +149,12 @@ class BakeRun {
     int write() {
         const auto tree = pipeline::orientation_from(options_.tree);
         if (!tree) return report_error("", tree.error());
+        RegionGrid grid;
+        if (!options_.regions.empty()) {
+            const auto given = region_grid_from(options_.regions);
+            if (!given) return report_error("", given.error());
+            grid = *given;
+        }
         const auto source = load_updated_scene(
             options_.scene, options_.read,
             {.map = options_.map, .seed = options_.seed, .instances = options_.instances}, executor());
@@ -145,10 +166,12 @@ class BakeRun {
             occluders = pipeline::to_baked(pipeline::find_scene_occluders(source->scene, executor()));
             finding_ms = finding.milliseconds();
         }
+        const bake::BakeOptions how{
+            .tree = *tree, .occluders = occluders ? &*occluders : nullptr, .clusters = !options_.no_clusters};
+        if (!options_.folder.empty())
+            return write_regions(*source, grid, options_.folder, how, options_.json, executor());
         const Stopwatch watch;
-        const auto file = assets::bake_source(
-            *source, executor(),
-            {.tree = *tree, .occluders = occluders ? &*occluders : nullptr, .clusters = !options_.no_clusters});
+        const auto file = assets::bake_source(*source, executor(), how);
         const Times times{watch.milliseconds(), watch.cpu_milliseconds(), finding_ms};
         if (!file) return report_error(options_.scene, file.error());
         const std::string_view bytes(reinterpret_cast<const char*>(file->data()), file->size());
@@ -173,36 +196,38 @@ void add_bake_command(CommandLine& line) {
     command
         .option("scene", options->scene,
                 "town, room, office, valley, hall, a folder of city parts, or a .glb, .gltf, .obj or .wad file to bake "
-                "with -o; without -o a .crofton file to check")
+                "with -o; without -o a .crofton file, or a folder of regions, to check")
         .required();
     const Option output = command.option("-o,--output", options->output, "File to write").writable_file();
-    command.option("--map", options->map, "Level of a .wad file").needs(output);
-    command.option("--instances", options->instances, "Approximate number of instances of the town").needs(output);
-    command.option("--seed", options->seed, "Seed of the town").show_default().needs(output);
+    command
+        .option("--regions", options->regions,
+                "Columns and rows of regions along x and z, such as 8x8: each becomes a file in --folder")
+        .excludes(output);
+    command.option("--folder", options->folder, "Folder to write regions and their index to").excludes(output);
+    command.option("--map", options->map, "Level of a .wad file");
+    command.option("--instances", options->instances, "Approximate number of instances of the town");
+    command.option("--seed", options->seed, "Seed of the town").show_default();
     command.option("--tree", options->tree, "Axes of the tree's inner bounds: aligned, oriented or automatic")
-        .show_default()
-        .needs(output);
-    command
-        .flag("--no-occluders", options->no_occluders,
-              "Do not search for occluders, which takes a second or more for each mesh of 100,000 triangles")
-        .needs(output);
-    command
-        .flag("--no-clusters", options->no_clusters,
-              "Do not cut meshes into clusters, which 'frames --occlude' then does whenever the file is opened")
-        .needs(output);
+        .show_default();
+    command.flag("--no-occluders", options->no_occluders,
+                 "Do not search for occluders, which takes a second or more for each mesh of 100,000 triangles");
+    command.flag("--no-clusters", options->no_clusters,
+                 "Do not cut meshes into clusters, which 'frames --occlude' then does whenever the file is opened");
     command.option("--threads", options->threads, "Worker threads; 0: one per core")
         .whole_between(0, 256)
         .show_default();
     command.option("--json", options->json, "Write the figures as JSON; - for stdout").writable_file_or_stdout();
     command.footer(
         "A .crofton file contains the whole scene, as it stands when it has been read: the town's traffic does not\n"
-        "move. Every sub-command that reads scenes reads it too.\n"
+        "move. Every sub-command that reads scenes reads it too. A folder of regions has a .crofton file for each and\n"
+        "index.crofton, which is written last; a World attaches those that are near (docs/large_worlds.md).\n"
         "Exit status: 0 done, 2 bad usage, a scene that cannot be read or a damaged .crofton file, 130 interrupted\n"
         "(nothing is written then).\n"
         "\n"
         "Examples:\n"
         "  crofton bake level.wad --map MAP01 -o map01.crofton\n"
         "  crofton bake map01.crofton\n"
+        "  crofton bake town --instances 100000 --regions 8x8 --folder town --threads 0 && crofton bake town\n"
         "  crofton frames map01.crofton --camera street --occlude\n"
         "  crofton frames level.wad --map MAP01 --occlude --baked map01.crofton\n"
         "  crofton bake town --instances 1000000 -o town.crofton && crofton bake town.crofton --threads 0");

@@ -14,7 +14,7 @@ namespace {
 
 using convex::ShapeAtPose;
 
-constexpr double kOffsets[] = {0.0, 1e3, 1e7};
+constexpr double kPairOffsets[] = {0.0, 1e3, 1e7};
 
 // All shapes of one size, or each of its own.
 enum class Sizes { one, any };
@@ -139,7 +139,7 @@ VerifyRow casts_bisected(const VerifyOptions& options) {
     ConvexPairs random(options.seed + 79);
     std::uint64_t wrong = 0, compared = 0, by_axes = 0;
     for (std::uint64_t i = 0; i < casts; ++i) {
-        const ConvexPairs::Pair pair = start_of(random, kOffsets[i % std::size(kOffsets)]);
+        const ConvexPairs::Pair pair = start_of(random, kPairOffsets[i % std::size(kPairOffsets)]);
         const convex::Motion motion{-4.0 * pair.normal + 0.3 * random.direction(), glm::dvec3(0.0), glm::dvec3(0.0)};
         const auto impact = convex::cast(pair.placed_a(), {}, pair.placed_b(), motion);
         wrong += !impact;
@@ -217,7 +217,7 @@ VerifyRow casts_points(const VerifyOptions& options) {
 std::vector<VerifyRow> verify_convex(const VerifyOptions& options) {
     std::vector<VerifyRow> rows;
     for (const Sizes sizes : {Sizes::one, Sizes::any})
-        for (const double offset : kOffsets)
+        for (const double offset : kPairOffsets)
             for (int decade = 1; decade <= 12; ++decade) rows.push_back(yes_or_no(sizes, decade, offset, options));
     rows.push_back(depths(options));
     rows.push_back(casts_sampled(options));

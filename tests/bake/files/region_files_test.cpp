@@ -205,4 +205,28 @@ TEST_SUITE("bake/region_files") {
         std::filesystem::remove(folder.path() + "/" + kRegionIndexName);
         CHECK(!open_region_index(folder.path()));
     }
+
+    TEST_CASE("the code of docs/large_worlds.md opens a region of a folder") {
+        const Town town(30);
+        const TemporaryFolder written;
+        write_regions(town, SceneRegions::split(town.scene, 2, 2).value(), written.path());
+        const std::string folder = written.path();
+        const auto fail_loading = [](const std::string& why) { FAIL(why); };
+
+        // Where the regions are; then, on a thread that loads, one that the player comes near.
+        const auto index = crofton::bake::open_region_index(folder).value();
+        const crofton::bake::RegionFile& near = index.front();
+        const auto part = crofton::bake::open_region(folder, near);
+        if (!part) return fail_loading(part.error().message);  // the path, and what is damaged
+
+        World world;
+        world.attach(*part, near.origin).value();
+        std::filesystem::remove_all(folder);
+        world.update().value();
+        CHECK(world.object_count() == near.objects);
+        const glm::dvec3 middle = near.origin + near.bounds.center();
+        Vector<ObjectRef> found;
+        world.overlap(Sphere{middle, 1000.0}, found);
+        CHECK(found.size() == near.objects);
+    }
 }

@@ -190,4 +190,37 @@ TEST_SUITE("cli/bake") {
         CHECK(other.err.find("another scene") != std::string::npos);
         CHECK(run_cli("frames town --baked " + path).status == 2);  // without --occlude
     }
+
+    TEST_CASE("a scene is baked into regions, to the same bytes on any number of threads, and the folder is checked") {
+        const std::string one = scratch().file("one"), two = scratch().file("two");
+        const std::string bake = "bake town --instances 400 --no-occluders --regions 3x2 --json - --folder ";
+        const CliRun first = run_cli(bake + one), second = run_cli(bake + two + " --threads 3");
+        REQUIRE_MESSAGE(first.status == 0, first.err);
+        REQUIRE_MESSAGE(second.status == 0, second.err);
+        CHECK(first.json()["regions"] == 6);
+        std::size_t files = 0;
+        for (const auto& entry : std::filesystem::directory_iterator(one)) {
+            const std::string name = entry.path().filename().string();
+            CHECK(contents_of(one + "/" + name) == contents_of(two + "/" + name));
+            ++files;
+        }
+        CHECK(files == 7);
+        const CliRun checked = run_cli("bake " + one + " --json -");
+        REQUIRE_MESSAGE(checked.status == 0, checked.err);
+        for (const char* key : {"regions", "instances", "bytes"}) CHECK(checked.json()[key] == first.json()[key]);
+        CHECK(checked.json()["instances"].get<int>() > 300);
+        // A damaged region is named.
+        std::string damaged = contents_of(one + "/r1_0.crofton");
+        damaged[damaged.size() / 2] ^= 1;
+        write_contents(one + "/r1_0.crofton", damaged);
+        const CliRun refused = run_cli("bake " + one);
+        CHECK(refused.status == 2);
+        CHECK(refused.err.find("r1_0.crofton") != std::string::npos);
+        for (const char* wrong : {"--regions 3", "--regions 3x", "--regions x3", "--regions 3x2x1", "--regions 0x1",
+                                  "--regions 2x-1", "--regions 2000x1"})
+            CHECK(run_cli("bake room --folder " + scratch().file("none") + " " + wrong).status == 2);
+        CHECK(run_cli("bake room --regions 2x2").status == 2);
+        CHECK(run_cli("bake room --folder " + scratch().file("none")).status == 2);
+        CHECK(run_cli("bake room --regions 2x2 --folder /proc/none").status == 2);
+    }
 }

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// `crofton bake --regions`: a scene as a folder of regions, and what such a folder holds.
+#pragma once
+#include <crofton/bake/baked_scene.hpp>
+#include <crofton/core/executor.hpp>
+#include <cstdint>
+#include <string>
+
+#include "assets/scene_source.hpp"
+
+namespace crofton::cli {
+
+struct RegionGrid {
+    std::uint32_t columns = 1, rows = 1;
+};
+// Reads "8x4". Error: another text.
+[[nodiscard]] Result<RegionGrid> region_grid_from(const std::string& text);
+
+// Writes a file for each region, in parallel, then the index, so that a folder with an index is complete. Returns the
+// exit status. `json`: a file or "-" for the figures; may be empty.
+int write_regions(const assets::SceneSource& source, const RegionGrid& grid, const std::string& folder,
+                  const bake::BakeOptions& options, const std::string& json, Executor& executor);
+
+[[nodiscard]] bool has_regions(const std::string& folder);
+// Opens all regions of a folder, attaches them to a World, and says how long that took.
+int check_regions(const std::string& folder, std::uint64_t largest_file, const std::string& json, Executor& executor);
+
+}  // namespace crofton::cli
