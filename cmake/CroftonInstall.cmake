@@ -29,6 +29,7 @@ if(TARGET crofton_cli)
     install(FILES ${PROJECT_SOURCE_DIR}/packaging/crofton.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
             RENAME crofton COMPONENT tools)
     install(FILES ${PROJECT_SOURCE_DIR}/packaging/_crofton DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions COMPONENT tools)
+    install(FILES ${PROJECT_SOURCE_DIR}/packaging/crofton.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT tools)
     # The manual pages are the texts of --help: made when they are installed.
     find_program(CROFTON_HELP2MAN help2man)
     if(CROFTON_HELP2MAN AND NOT CMAKE_CROSSCOMPILING)
@@ -40,7 +41,6 @@ if(TARGET crofton_cli)
     else()
         message(STATUS "No manual pages are installed: help2man is not here")
     endif()
-    install(FILES ${PROJECT_SOURCE_DIR}/packaging/crofton.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT tools)
 endif()
 
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/crofton-config.cmake.in ${PROJECT_BINARY_DIR}/crofton-config.cmake

@@ -38,6 +38,8 @@ def bundle(files, licences):
     licences.mkdir(parents=True, exist_ok=True)
     paths, waiting = list(files), list(files)
     own_names = {output("patchelf", "--print-soname", path).strip(): path for path in files if ".so" in path.name}
+    for path in files:  # before patchelf, whose work strip does not know
+        output("strip", "--strip-unneeded", path)
     for own in own_names.values():
         output("patchelf", "--set-soname", own.name, own)
     while waiting:

@@ -22,7 +22,7 @@ const poseOf = (text) => {
 const DEMONSTRATION = { begins: 6, aside: 3, looks: 9, back: 2.5 };
 const STORY = {
     flying: 'Only what may be seen is drawn: green objects lie within the view, amber ones cross its edge.',
-    frozen: 'The view is frozen and looked at from outside. Green is drawn, red is hidden behind it and left out, grey lies outside.',
+    frozen: 'The view is frozen and seen from outside. Green and amber are drawn, red is hidden behind them and left out, grey lies outside.',
 };
 
 class Page {
