@@ -14,8 +14,8 @@ struct PointCounts {
     std::uint64_t kept = 0, begun = 0;
 };
 
-// Bullet's own configuration but for pairs of shapes that Crofton has as well. Outlives the dispatcher, and shapes their
-// objects, as in Bullet.
+// Bullet's own configuration but for pairs of shapes that Crofton has as well. Outlives the dispatcher, and shapes
+// their objects, as in Bullet.
 class Configuration final : public btDefaultCollisionConfiguration {
   public:
     Configuration();
