@@ -5,12 +5,14 @@
 #include <crofton/mesh/mesh_query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <map>
 #include <random>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "collide_inputs.hpp"
 #include "simd_target.hpp"
@@ -93,10 +95,35 @@ constexpr struct {
 } kKinds[] = {{"random", random_rays}, {"diffuse", diffuse_rays}, {"camera", camera_rays},
               {"tiles", tiled_rays},   {"missing", missing_rays}, {"doubled", doubled_rays}};
 
+// Each triangle in four, at the middles of its edges.
+TriangleMesh in_four(const TriangleMesh& mesh) {
+    TriangleMesh result;
+    result.positions = mesh.positions;
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
+    const auto middle = [&](std::uint32_t a, std::uint32_t b) {
+        const auto [place, is_new] =
+            middles.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(result.positions.size()));
+        if (is_new) result.positions.push_back(0.5f * (mesh.positions[a] + mesh.positions[b]));
+        return place->second;
+    };
+    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+        const std::uint32_t a = mesh.indices[i], b = mesh.indices[i + 1], c = mesh.indices[i + 2], ab = middle(a, b),
+                            bc = middle(b, c), ca = middle(c, a);
+        for (const std::uint32_t v : {a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca}) result.indices.push_back(v);
+    }
+    return result;
+}
+
+// "NAME in four" is the shared mesh NAME with four times the triangles.
 const TriangleMesh& mesh_of(const char* name) {
     static std::map<std::string, TriangleMesh> meshes;
     const auto [place, is_new] = meshes.try_emplace(name);
-    if (is_new) place->second = shared_mesh(name);
+    if (!is_new) return place->second;
+    const std::string_view whole = name, part = " in four";
+    if (whole.ends_with(part))
+        place->second = in_four(shared_mesh(std::string(whole.substr(0, whole.size() - part.size()))));
+    else
+        place->second = shared_mesh(name);
     return place->second;
 }
 
@@ -122,6 +149,19 @@ void single_rays(benchmark::State& state, const char* name, RayMaker make, std::
     for (auto _ : state) {
         hits = 0;
         for (const Ray& ray : rays) hits += mesh::raycast(ray, *tree).has_value();
+    }
+    count_rays(state, rays.size(), hits);
+}
+
+// Whether anything is hit, as shadows ask.
+void any_hits(benchmark::State& state, const char* name, RayMaker make, std::size_t count) {
+    const mesh::MeshTree* const tree = tree_of(name, true);
+    if (tree == nullptr) return state.SkipWithError("shared data is absent");
+    const auto rays = make(mesh_of(name), count);
+    int hits = 0;
+    for (auto _ : state) {
+        hits = 0;
+        for (const Ray& ray : rays) hits += mesh::hits_any(ray, *tree);
     }
     count_rays(state, rays.size(), hits);
 }
@@ -247,7 +287,7 @@ void embree_packets(benchmark::State& state, const char* name, RayMaker make, st
 #endif
 
 void ray_benchmarks() {
-    for (const char* mesh : {"bunny", "armadillo"})
+    for (const char* mesh : {"bunny", "armadillo", "armadillo in four"})
         for (const auto& kind : kKinds)
             for (const std::size_t count : {std::size_t{256}, std::size_t{20'000}}) {
                 const std::string name =
@@ -256,6 +296,8 @@ void ray_benchmarks() {
                     ->Unit(benchmark::kMicrosecond);
                 benchmark::RegisterBenchmark((name + "not prepared").c_str(), single_rays, mesh, kind.make, count,
                                              false)
+                    ->Unit(benchmark::kMicrosecond);
+                benchmark::RegisterBenchmark((name + "any hit").c_str(), any_hits, mesh, kind.make, count)
                     ->Unit(benchmark::kMicrosecond);
 #if defined(CROFTON_HAVE_EMBREE)
                 benchmark::RegisterBenchmark((name + "embree").c_str(), embree_rays, mesh, kind.make, count)

@@ -152,6 +152,7 @@ CROFTON_PAIRS("hull32 penetration 0.01", Ask::penetration, -0.01, false);
 CROFTON_PAIRS("hull32 manifold 0.01", Ask::manifold, -0.01, false);
 CROFTON_PAIRS("hull32 manifold gap 0.01", Ask::manifold, 0.01, false);
 CROFTON_PAIRS("box manifold 0.01", Ask::manifold, -0.01, true);
+CROFTON_PAIRS("box penetration 0.01", Ask::penetration, -0.01, true);
 
 // Hulls of fewer points, warm.
 void few_points(benchmark::State& state) {

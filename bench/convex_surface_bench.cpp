@@ -195,20 +195,20 @@ BENCHMARK_CAPTURE(crofton_rest, c, true, false)->Name("box on heights 1025^2/cro
 BENCHMARK_CAPTURE(crofton_rest, f, true, false, true)->Name("box on a crest/crofton");
 BENCHMARK_CAPTURE(crofton_rest, d, true, true)->Name("capsule on heights 1025^2/crofton");
 
-// The shape that is cast: the scene's box, or a capsule or sphere of about its size.
-enum class Flying { box, capsule, ball };
+// The shape that is asked about: the scene's box, or a capsule or sphere of about its size.
+enum class Probe { box, capsule, sphere };
 
-Shape flying_shape(Flying kind, float s) {
-    if (kind == Flying::capsule) return Shape::capsule(0.6f * s, 0.5f * s).value();
-    return kind == Flying::ball ? Shape::sphere(s).value() : Shape::box({s, s, s}).value();
+Shape probe_shape(Probe kind, float s) {
+    if (kind == Probe::capsule) return Shape::capsule(0.6f * s, 0.5f * s).value();
+    return kind == Probe::sphere ? Shape::sphere(s).value() : Shape::box({s, s, s}).value();
 }
 
 // Down onto the surface from twice the size above it.
-void crofton_drop(benchmark::State& state, bool field, Flying kind) {
+void crofton_drop(benchmark::State& state, bool field, Probe kind) {
     const SurfaceScene scene = make_scene(field, false);
     if (!field && scene.mesh.indices.empty()) return state.SkipWithError("no shared meshes");
     const OwnSurface own(scene, field);
-    const Shape surface = own.shape(Sides::both), shape = flying_shape(kind, scene.size);
+    const Shape surface = own.shape(Sides::both), shape = probe_shape(kind, scene.size);
     const RigidTransform still;
     frames(state, scene.size, [&](int f, int i) {
         RigidTransform from = scene.poses[f][i];
@@ -219,12 +219,46 @@ void crofton_drop(benchmark::State& state, bool field, Flying kind) {
         return Told{impact->result == CastResult::hit ? 1 : 0};
     });
 }
-BENCHMARK_CAPTURE(crofton_drop, a, false, Flying::box)->Name("cast of a box, bunny/crofton");
-BENCHMARK_CAPTURE(crofton_drop, c, false, Flying::capsule)->Name("cast of a capsule, bunny/crofton");
-BENCHMARK_CAPTURE(crofton_drop, e, false, Flying::ball)->Name("cast of a ball, bunny/crofton");
-BENCHMARK_CAPTURE(crofton_drop, b, true, Flying::box)->Name("cast of a box, heights 1025^2/crofton");
-BENCHMARK_CAPTURE(crofton_drop, d, true, Flying::capsule)->Name("cast of a capsule, heights 1025^2/crofton");
-BENCHMARK_CAPTURE(crofton_drop, f, true, Flying::ball)->Name("cast of a ball, heights 1025^2/crofton");
+BENCHMARK_CAPTURE(crofton_drop, a, false, Probe::box)->Name("cast of a box, bunny/crofton");
+BENCHMARK_CAPTURE(crofton_drop, c, false, Probe::capsule)->Name("cast of a capsule, bunny/crofton");
+BENCHMARK_CAPTURE(crofton_drop, e, false, Probe::sphere)->Name("cast of a sphere, bunny/crofton");
+BENCHMARK_CAPTURE(crofton_drop, b, true, Probe::box)->Name("cast of a box, heights 1025^2/crofton");
+BENCHMARK_CAPTURE(crofton_drop, d, true, Probe::capsule)->Name("cast of a capsule, heights 1025^2/crofton");
+BENCHMARK_CAPTURE(crofton_drop, f, true, Probe::sphere)->Name("cast of a sphere, heights 1025^2/crofton");
+
+// Where the shapes rest, sunk in by 1 % of their size, or as far above the surface as they are large.
+enum class Question { meet, distance, depth };
+
+void crofton_ask(benchmark::State& state, Question question, Probe kind) {
+    const SurfaceScene scene = make_scene(false, false);
+    if (scene.mesh.indices.empty()) return state.SkipWithError("no shared meshes");
+    const OwnSurface own(scene, false);
+    const Shape surface = own.shape(Sides::both), shape = probe_shape(kind, scene.size);
+    const RigidTransform still;
+    frames(state, scene.size, [&](int f, int i) {
+        RigidTransform pose = scene.poses[f][i];
+        if (question == Question::distance) pose.translation += 1.0 * scene.size * pose.rotation[1];
+        const ShapeAtPose probe{shape, pose}, mesh{surface, still};
+        switch (question) {
+            case Question::meet:
+                return Told{intersects(probe, mesh) ? 1 : 0};
+            case Question::distance:
+                return Told{distance(probe, mesh).distance == 0.0 ? 1 : 0};
+            default: {
+                const Penetration p = penetration(probe, mesh);
+                return Told{p.overlapping ? 1 : 0, p.depth};
+            }
+        }
+    });
+}
+#define ASK(question, name)                                                                                       \
+    BENCHMARK_CAPTURE(crofton_ask, box, question, Probe::box)->Name(name " of a box, bunny/crofton");             \
+    BENCHMARK_CAPTURE(crofton_ask, capsule, question, Probe::capsule)->Name(name " of a capsule, bunny/crofton"); \
+    BENCHMARK_CAPTURE(crofton_ask, sphere, question, Probe::sphere)->Name(name " of a sphere, bunny/crofton")
+ASK(Question::meet, "overlap");
+ASK(Question::distance, "distance");
+ASK(Question::depth, "depth");
+#undef ASK
 
 #if defined(CROFTON_HAVE_BULLET)
 struct BulletSurface {
