@@ -267,7 +267,7 @@ struct Pipeline::State {
         const auto start = Clock::now();
         depth_objects.clear();
         append_depth_objects(scene, *clusters, options.one_sided, visible_ids, camera, depth_objects);
-        const auto found = depth_culler.find_visible(depth_objects, *options.picture);
+        const auto found = depth_culler.find_visible(depth_objects, *options.picture, executor);
         if (!found) return tl::unexpected(found.error());
         frame.by_depth = true;
         frame.clusters.assign(found->begin(), found->end());

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 #include <crofton/bake/baked_scene.hpp>
 #include <crofton/core/executor.hpp>
+#include <crofton/world/world.hpp>
 #include <error_of.hpp>
 
 #include <string>
@@ -170,6 +171,23 @@ TEST_SUITE("bake/baked_scene") {
         CHECK(without->clusters(0) == nullptr);
         const std::array<MeshLook, 3> too_many{};
         CHECK(error_of(bake::bake(scene, pool, {.looks = too_many})).code == ErrorCode::invalid_argument);
+    }
+
+    TEST_CASE("a World takes a file's clusters as they are, and cuts nothing") {
+        const scene::Scene scene = sample_scene(10);
+        const auto file = bake::bake(scene);
+        const auto baked = BakedScene::from_memory(*file);
+        REQUIRE(baked);
+        World world;
+        for (scene::MeshId i = 0; i < baked->mesh_count(); ++i) {
+            CAPTURE(i);
+            const bake::MeshView mesh = baked->mesh(i);
+            REQUIRE(baked->clusters(i) != nullptr);
+            const auto added = world.add_mesh(
+                {.positions = mesh.positions, .indices = mesh.indices, .clusters = true, .precut = baked->clusters(i)});
+            REQUIRE(added);
+            CHECK(world.clusters_of(*added)->serialise() == baked->clusters(i)->serialise());
+        }
     }
 
     TEST_CASE("a mesh that cannot be cut is baked without clusters, beside others that have them") {

@@ -14,7 +14,7 @@ namespace {
 
 // Strips for each thread that may run: few, as what reaches into several is set up in each, but more than one, as some
 // are empty.
-constexpr std::uint32_t kStripsPerThread = 3;
+constexpr std::uint32_t kStripsPerThread = 2;
 
 Result<void> check(std::span<const DepthObject> objects, const PictureView& view) {
     if (view.width == 0 || view.height == 0 || view.width > PictureView::kMaxSize ||

@@ -87,7 +87,7 @@ typedef struct crofton_mesh_data {
     uint32_t clusters;  /* 0; 1: views with a picture list the triangles by clusters (crofton_world_get_mesh) */
     uint32_t one_sided; /* 0; 1, with clusters: back faces are not drawn; they are listed for mirrored objects only */
     /* NULL; or with clusters: those of this mesh that were cut before, as crofton_baked_scene_clusters gives them */
-    const struct crofton_clustered_mesh* precut;
+    const crofton_clustered_mesh* precut;
 } crofton_mesh_data;
 
 typedef enum crofton_bound_kind {

@@ -21,8 +21,7 @@ typedef struct crofton_mesh {
 /* Find the triangles that a picture needs: tests clusters and triangles from front to back against the depth of those
  * before. Guide: docs/depth.md. */
 
-typedef struct crofton_clustered_mesh crofton_clustered_mesh; /* a mesh cut into clusters; it never changes */
-typedef struct crofton_depth_culler crofton_depth_culler;     /* finds the triangles of pictures; keeps its buffers */
+typedef struct crofton_depth_culler crofton_depth_culler; /* finds the triangles of pictures; keeps its buffers */
 
 /* A mesh to be drawn. */
 typedef struct crofton_depth_object {

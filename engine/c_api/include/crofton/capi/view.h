@@ -34,6 +34,8 @@ typedef struct crofton_cluster {
     float half_edges[9]; /* half_edges[3 k + i] is component i of edge k; center +- each edge gives the corners */
 } crofton_cluster;
 
+typedef struct crofton_clustered_mesh crofton_clustered_mesh; /* a mesh cut into clusters; it never changes */
+
 /* A mesh cut into clusters. The k-th triangle of the order is triangle triangle_order[k] of the given mesh. */
 typedef struct crofton_clusters {
     const crofton_cluster* clusters;
