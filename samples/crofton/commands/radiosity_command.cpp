@@ -204,8 +204,13 @@ Result<int> run_radiosity(const RadiosityOptions& options) {
         if (auto written = write_lit_picture(options.png, picture, *camera, 1280, 720, sky); !written)
             return tl::unexpected(written.error());
     }
-    const auto tracer = lines::LineTracer::build(lit->patches.mesh);
-    if (!tracer) return tl::unexpected(tracer.error());
+    // What needs lines of its own is left out of a run that was cut short.
+    std::optional<lines::LineTracer> tracer;
+    if (!cut_short) {
+        auto built = lines::LineTracer::build(lit->patches.mesh);
+        if (!built) return tl::unexpected(built.error());
+        tracer.emplace(std::move(*built));
+    }
     std::optional<LightFieldReport> field;
     if (!options.light_field.empty() && !cut_short) {
         const auto camera = camera_for(*source, options.seed);
@@ -222,8 +227,12 @@ Result<int> run_radiosity(const RadiosityOptions& options) {
         if (!compared) return tl::unexpected(compared.error());
         reference = *compared;
     }
-    const auto seen = lines::visibility_complexity(
-        *tracer, lines::LineSource(tracer->bounds(), lines::LineMethod::walls, options.seed), cut_short ? 1 : 50);
+    Json visibility;
+    if (tracer) {
+        const auto seen = lines::visibility_complexity(
+            *tracer, lines::LineSource(tracer->bounds(), lines::LineMethod::walls, options.seed), 50);
+        visibility = {{"mean_crossings", seen.mean_crossings}, {"deviation", seen.deviation}, {"wasted", seen.wasted}};
+    }
     glm::dvec3 mean(0.0);
     double area = 0.0;
     for (std::size_t i = 0; i < lit->patches.count(); ++i) {
@@ -231,26 +240,24 @@ Result<int> run_radiosity(const RadiosityOptions& options) {
         area += lit->patches.areas[i];
     }
     mean /= area;
-    const Json report = {
-        {"scene", source->name},
-        {"patches", lit->patches.count()},
-        {"triangles", lit->patches.mesh.triangle_count()},
-        {"solver_bytes", solver->bytes()},
-        {"method", options.method},
-        {"lines_from", lines::to_string(solver->method())},
-        {"runs", solver->runs()},
-        {"runs_planned", found->bake ? Json(found->bake->runs_planned()) : Json(nullptr)},
-        {"lines", solver->lines_traced()},
-        {"relative_error", solver->relative_error()},
-        {"share_within_10_percent", solver->share_within(0.1)},
-        {"reference", reference ? to_json(*reference) : Json(nullptr)},
-        {"unseen", solver->unseen()},
-        {"bounces", solver->bounces_of_last_run()},
-        {"mean_radiosity", {mean.x, mean.y, mean.z}},
-        {"seconds", seconds},
-        {"light_field", field ? to_json(*field) : Json(nullptr)},
-        {"visibility",
-         {{"mean_crossings", seen.mean_crossings}, {"deviation", seen.deviation}, {"wasted", seen.wasted}}}};
+    const Json report = {{"scene", source->name},
+                         {"patches", lit->patches.count()},
+                         {"triangles", lit->patches.mesh.triangle_count()},
+                         {"solver_bytes", solver->bytes()},
+                         {"method", options.method},
+                         {"lines_from", lines::to_string(solver->method())},
+                         {"runs", solver->runs()},
+                         {"runs_planned", found->bake ? Json(found->bake->runs_planned()) : Json(nullptr)},
+                         {"lines", solver->lines_traced()},
+                         {"relative_error", solver->relative_error()},
+                         {"share_within_10_percent", solver->share_within(0.1)},
+                         {"reference", reference ? to_json(*reference) : Json(nullptr)},
+                         {"unseen", solver->unseen()},
+                         {"bounces", solver->bounces_of_last_run()},
+                         {"mean_radiosity", {mean.x, mean.y, mean.z}},
+                         {"seconds", seconds},
+                         {"light_field", field ? to_json(*field) : Json(nullptr)},
+                         {"visibility", visibility}};
     if (cut_short)
         std::fprintf(stderr, "crofton: interrupted: the results of %llu runs are written%s%s\n",
                      static_cast<unsigned long long>(solver->runs()),

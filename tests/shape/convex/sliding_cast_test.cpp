@@ -145,10 +145,12 @@ TEST_SUITE("convex/sliding_cast") {
             const RigidTransform frame = any_frame(random, random.index(3));
             const Ground ground(random, round % 8, frame);
             for (const Shape& mover : sliders.shapes) {
-                const glm::dmat3 turn = random.rotation();
+                // On the lattice edges lie over seams, to rounding.
+                const bool lattice = random.index(3) == 0;
+                const glm::dmat3 turn = lattice ? glm::dmat3(1.0) : random.rotation();
                 const double steep = random.number(-12.0, 0.0), flat = random.number(-24.0, -12.0);
                 const double height = std::exp2(round / 8 % 2 == 0 ? flat : steep), when = random.number(0.05, 0.9);
-                glm::dvec3 place = any_place(random, false);
+                glm::dvec3 place = any_place(random, lattice);
                 place.y = below(mover, turn) + height;
                 const RigidTransform from = placed_in(frame, {turn, place});
                 const double velocity_z = random.number(-1.5, 1.5), velocity_x = random.number(-1.5, 1.5);

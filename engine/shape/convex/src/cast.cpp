@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/convex/query.hpp>
+#include <crofton/convex/slides.hpp>
 #include <crofton/geometry/trigonometry.hpp>
 
 #include "contacts_at.hpp"
@@ -115,6 +116,13 @@ Result<Impact> cast(const ShapeAtPose& a, const Motion& motion_a, const ShapeAtP
     // What it slides on may seem to come nearer, within rounding.
     const double least_cosine = start.slides() ? kSameSurface : kAnyNormal;
     return *ContactsAt(mover_a, mover_b, options, impact.time).deepest(impact, least_cosine);
+}
+
+bool slides_along(const ShapeAtPose& shape, const Motion& motion, std::span<const ShapeAtPose> touched,
+                  const CastOptions& options) {
+    if (touched.empty()) return false;
+    const Motion still;
+    return ContactsAt({shape, motion, {}}, {touched[0], still, touched.subspan(1)}, options, 0.0).slides();
 }
 
 }  // namespace crofton::convex

@@ -122,6 +122,7 @@ ContactsAt::ContactsAt(const Mover& a, const Mover& b, const CastOptions& option
             const bool slides = flight.closing(impact->normal)(left) < std::max(impact->distance, slack);
             add({part_a, part_b, *impact, own, slides});
         });
+    find_covered();
 }
 
 void ContactsAt::visit_all_pairs(FunctionRef<void(bool own)> begin, MovingPairVisitor visit) const {
@@ -164,7 +165,6 @@ std::optional<Impact> ContactsAt::touch(const Part& a, const Part& b) const {
 
 // One of each normal, the deepest.
 void ContactsAt::add(const Contact& contact) {
-    slides_ |= contact.slides;
     for (std::size_t i = 0; i < count_; ++i) {
         Contact& other = at(i);
         if (other.slides != contact.slides || other.own != contact.own) continue;
@@ -173,6 +173,26 @@ void ContactsAt::add(const Contact& contact) {
         return;
     }
     if (count_ < kMost) std::construct_at(&at(count_++), contact);
+}
+
+void ContactsAt::find_covered() {
+    for (std::size_t i = 0; i < count_; ++i) {
+        if (!at(i).slides) continue;
+        for (std::size_t k = 0; k < count_ && !at(i).is_covered; ++k) at(i).is_covered = is_covered_by(at(i), at(k));
+        slides_ |= !at(i).is_covered;
+    }
+}
+
+// To the rounding of normals across gaps: floors whose tiles are flush to the tolerance alone have planes of their own.
+bool ContactsAt::is_covered_by(const Contact& contact, const Contact& by) const {
+    const auto lies_behind = [](const Contact& c, const Contact& plane) {
+        const ShapeAtPose a{c.a.shape, c.a.pose}, b{c.b.shape, c.b.pose};
+        if (is_half_space(a) || is_half_space(b)) return false;
+        const Pair pair(a, b);
+        const double gap = -pair.extent(plane.impact.normal) - pair.rounding();
+        return gap >= plane.impact.distance - 0x1p-33 * pair.size;
+    };
+    return !by.slides && lies_behind(contact, by) && !lies_behind(by, contact);
 }
 
 void ContactsAt::count_behind() {
@@ -201,7 +221,7 @@ bool ContactsAt::passes(const ShapeAtPose& first, const Motion& motion_first, co
     const Motion &motion_a = flipped ? motion_second : motion_first, &motion_b = flipped ? motion_first : motion_second;
     for (std::size_t i = 0; i < count_; ++i) {
         const Contact& contact = at(i);
-        if (!contact.slides || !is_behind(a, b, contact, 0.0)) continue;
+        if (!contact.slides || contact.is_covered || !is_behind(a, b, contact, 0.0)) continue;
         const Flight flight(a, motion_a, b, motion_b);
         if (is_behind(a, b, contact, flight.closing(contact.impact.normal)(options_.duration))) return true;
     }
@@ -215,7 +235,10 @@ bool ContactsAt::is_told_by(const Contact& contact, const Contact& by) const {
 
 std::optional<Impact> ContactsAt::deepest(const Impact& hit, double least_cosine) {
     if (count_ > 1) count_behind();
-    std::optional<Impact> best;
+    std::optional<Impact> best, best_of_others;
+    const auto offer = [](std::optional<Impact>& to, const Impact& impact) {
+        if (!(to && impact.distance >= to->distance)) to = impact;
+    };
     bool others_tell = false;
     for (std::size_t i = 0; i < count_; ++i) {
         const Contact& contact = at(i);
@@ -225,9 +248,16 @@ std::optional<Impact> ContactsAt::deepest(const Impact& hit, double least_cosine
         for (std::size_t k = 0; k < count_; ++k) {
             if (!is_told_by(contact, at(k))) continue;
             is_told = true;
-            others_tell |= !at(k).own;
+            if (at(k).own) continue;
+            others_tell = true;
+            if (!at(k).slides) offer(best_of_others, at(k).impact);
         }
-        if (!is_told && !(best && contact.impact.distance >= best->distance)) best = contact.impact;
+        if (!is_told) offer(best, contact.impact);
+    }
+    if (!best && best_of_others) {
+        best = best_of_others;
+        best->part_a = hit.part_a;
+        best->part_b = hit.part_b;
     }
     if (!best) return others_tell ? best : hit;
     best->time = time_;

@@ -27,8 +27,10 @@ struct Mover {
 // Take a contact whose parts do not come together along its normal. Another pair of parts that is no deeper than it
 // along that normal at the start never gets deeper either. A plane across the normal stays between its parts, within
 // the tolerance. So the shapes slide past it: it is no hit, whatever edge it turns to the mover. This holds for all
-// that lies in the plane of a floor, or below it. Likewise, of two contacts at one time the one tells where the surface
-// is that has more of them in its plane or behind it.
+// that lies in the plane of a floor, or below it. But a contact that lies behind the plane of another that comes
+// together, which in turn is not behind its own, only seems to slide: the edge of a tile that is hardly beside the
+// mover turns its normal away from it, while the tile below is about to be met. Likewise, of two contacts at one time
+// the one tells where the surface is that has more of them in its plane or behind it.
 class ContactsAt {
   public:
     ContactsAt(const Mover& a, const Mover& b, const CastOptions& options, double time);
@@ -40,8 +42,8 @@ class ContactsAt {
     [[nodiscard]] bool passes(const ShapeAtPose& first, const Motion& motion_first, const ShapeAtPose& second,
                               const Motion& motion_second, bool flipped) const;
     // For a hit at this time: the deepest of the two shapes' contacts that come together and that no other contact
-    // tells better. Normals are within an angle of the hit's, told by its cosine. Nothing if contacts of shapes beside
-    // them tell all of them better.
+    // tells better. Normals are within an angle of the hit's, told by its cosine. If contacts of shapes beside them
+    // tell all of them better: the deepest of those that come together, else nothing.
     [[nodiscard]] std::optional<Impact> deepest(const Impact& hit, double least_cosine);
 
   private:
@@ -50,7 +52,8 @@ class ContactsAt {
         Impact impact;
         bool own;  // of the two shapes
         bool slides;
-        std::size_t behind = 0;  // contacts in its plane or behind it
+        bool is_covered = false;  // slides behind a contact that comes together
+        std::size_t behind = 0;   // contacts in its plane or behind it
     };
     static constexpr std::size_t kMost = 16;  // with different normals
     using MovingPairVisitor =
@@ -59,9 +62,11 @@ class ContactsAt {
     void visit_all_pairs(FunctionRef<void(bool own)> begin, MovingPairVisitor visit) const;
     [[nodiscard]] std::optional<Impact> touch(const Part& a, const Part& b) const;
     void add(const Contact& contact);
+    void find_covered();
     void count_behind();
     [[nodiscard]] bool is_behind(const ShapeAtPose& a, const ShapeAtPose& b, const Contact& contact,
                                  double closing) const;
+    [[nodiscard]] bool is_covered_by(const Contact& contact, const Contact& by) const;
     [[nodiscard]] bool is_told_by(const Contact& contact, const Contact& by) const;
 
     Flight flight_;

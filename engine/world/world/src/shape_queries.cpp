@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <crofton/convex/query.hpp>
+#include <crofton/convex/slides.hpp>
 #include <cstddef>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -81,6 +82,11 @@ class TouchedObjects {
 bool is_nearer(const convex::Impact& touch, const ShapeHit& hit, double margin) {
     const bool other_way = glm::dot(touch.normal, hit.normal) < kSameDirection;
     return touch.distance < (other_way ? hit.distance : hit.distance - margin);
+}
+
+// Whether a touch is what a hit tells.
+bool is_same(const convex::Impact& touch, const ShapeHit& hit, double margin) {
+    return glm::dot(touch.normal, hit.normal) >= kSameDirection && std::abs(touch.distance - hit.distance) <= margin;
 }
 
 // Whether what is touched is in the way: by the velocity of the point of touch, the shape comes at least as far along
@@ -179,13 +185,22 @@ Result<std::optional<ShapeHit>> World::cast(const convex::Shape& probe, const Ri
     const auto overlaps = [&] { return first->time == 0.0 && first->distance <= -options.tolerance; };
     if (!first || overlaps()) return first;
     TouchedObjects at_start;
-    bool slides = false;
-    visit_touched(pose, [&](std::uint32_t id, const world::QueryShape& stand, const convex::Impact& touch) {
+    visit_touched(pose, [&](std::uint32_t id, const world::QueryShape& stand, const convex::Impact&) {
         at_start.add(id, stand.shape, *stand.pose);
-        slides |= !is_in_the_way(touch, {probe, pose}, motion, options.duration);
     });
+    const bool slides = convex::slides_along({probe, pose}, motion, at_start.placed(), options);
     if (at_start.has_others(first->object.index)) first = find_first(at_start.placed());
-    if (!first || first->time == 0.0 || !first->resolved || options.ignore_initial_overlaps) return first;
+    if (!first || !first->resolved) return first;
+    if (first->time == 0.0 && at_start.has_others(first->object.index)) {
+        std::optional<ShapeHit> told;
+        visit_touched(pose, [&](std::uint32_t id, const world::QueryShape&, const convex::Impact& touch) {
+            if (is_same(touch, *first, 1e-3 * options.tolerance) && !(told && told->object == first->object) &&
+                (id == first->object.index || !told || touch.distance < told->distance))
+                told = hit_of(id, touch);
+        });
+        return told ? told : first;
+    }
+    if (first->time == 0.0 || options.ignore_initial_overlaps) return first;
     // The nearest of those that it touches then.
     std::optional<ShapeHit> nearest;
     const RigidTransform there = convex::moved(pose, motion, first->time);

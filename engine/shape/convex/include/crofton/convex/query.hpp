@@ -344,7 +344,8 @@ struct Impact {
                                   const Motion& motion_b, const CastOptions& options = {}, PairCache* cache = nullptr);
 // Does the same if b and its neighbours are one surface to slide on, like parts of one shape, and so are a and its
 // neighbours. They move with the velocity of that shape. Call it for each pair, with the others that the cast begins in
-// contact with as neighbours. A hit at time 0 that one of the neighbours describes better is a miss.
+// contact with as neighbours. A hit at time 0 that one of the neighbours describes better has the normal, distance and
+// points of that neighbour, or is a miss if the shape slides on it.
 [[nodiscard]] Result<Impact> cast(const ShapeAtPose& a, const Motion& motion_a, const ShapeAtPose& b,
                                   const Motion& motion_b, const CastOptions& options, const Beside& beside,
                                   PairCache* cache = nullptr);
