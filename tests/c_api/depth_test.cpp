@@ -179,9 +179,10 @@ TEST_SUITE("capi/depth") {
             }
             crofton_picture_view picture = picture_of(192, 108);
             picture.depth = static_cast<std::uint32_t>(depth);
+            picture.samples = 1u << random() % 3;
             auto statistics = sized<crofton_depth_statistics>();
             const auto found = find(culler, objects, picture, &statistics);
-            const auto expected = same.find_visible(same_objects, {192, 108, depth}).value();
+            const auto expected = same.find_visible(same_objects, {192, 108, depth, picture.samples}).value();
             REQUIRE(found.size() == expected.size());
             REQUIRE(found.size() > 20);
             CHECK(std::memcmp(found.data(), expected.data(), found.size_bytes()) == 0);

@@ -84,6 +84,7 @@ class DepthCertificate {
 
   private:
     static constexpr std::uint32_t kTile = 8;
+    static constexpr std::array<double, 3> kCuts = {1.0, 0x1p-4, 0x1p-7};  // nearness; 1 on the near plane
     using Key = std::pair<std::uint32_t, std::uint32_t>;  // a vertex twice, or the ends of the edge that was cut
     using Point2 = std::array<Rational, 2>;
 
@@ -172,17 +173,25 @@ class DepthCertificate {
     // Cut when they are first asked for; none where a vertex has no place, or where nothing is in front of the near
     // plane.
     [[nodiscard]] const std::vector<Piece>& pieces_of(std::uint32_t body, std::uint32_t triangle) const {
-        const auto [at, is_new] = pieces_.try_emplace(std::uint64_t{body} << 32 | triangle);
-        if (is_new && !cut(corners_of(body, triangle), at->second)) at->second.clear();
+        return pieces_of(body, triangle, 0);
+    }
+    [[nodiscard]] const std::vector<Piece>& pieces_of(std::uint32_t body, std::uint32_t triangle,
+                                                      std::size_t cut_at) const {
+        const auto [at, is_new] = pieces_[cut_at].try_emplace(std::uint64_t{body} << 32 | triangle);
+        if (is_new && !cut(corners_of(body, triangle), kCuts[cut_at], at->second)) at->second.clear();
         return at->second;
     }
 
-    // What is in front of the near plane, as a fan. False where a vertex has no place.
-    [[nodiscard]] bool cut(const std::array<Vertex, 3>& corners, std::vector<Piece>& pieces) const {
+    // Of a triangle that crosses the near plane, the part no nearer than `nearest`; any other as it is. As a fan. False
+    // where a vertex has no place.
+    [[nodiscard]] bool cut(const std::array<Vertex, 3>& corners, double nearest, std::vector<Piece>& pieces) const {
+        const bool crosses =
+            std::any_of(corners.begin(), corners.end(), [](const Vertex& v) { return v.clip[3] < v.clip[2]; });
+        const Rational share = crosses ? nearest : 1.0;
         std::vector<Vertex> polygon;
         for (std::size_t k = 0; k < 3; ++k) {
             const Vertex &a = corners[k], &b = corners[(k + 1) % 3];
-            const Rational da = a.clip[3] - a.clip[2], db = b.clip[3] - b.clip[2];
+            const Rational da = share * a.clip[3] - a.clip[2], db = share * b.clip[3] - b.clip[2];
             if (da >= 0) polygon.push_back(a);
             if ((da >= 0) == (db >= 0)) continue;
             Vertex v{{}, {}, {std::min(a.key.first, b.key.first), std::max(a.key.first, b.key.first)}};
@@ -235,13 +244,18 @@ class DepthCertificate {
         }
         t.nearest = std::max({at[0].z, at[1].z, at[2].z}) + t.z_error;
         t.farthest = std::min({at[0].z, at[1].z, at[2].z}) - t.z_error;
-        const Rational change = 2 * t.move * (abs(x1) + abs(y1) + abs(x2) + abs(y2)) + 8 * t.move * t.move;
+        const auto length_of = [&](std::size_t i, std::size_t j) -> Rational {
+            return abs(at[i].x - at[j].x) + abs(at[i].y - at[j].y);
+        };
+        const Rational &m0 = at[0].move, &m1 = at[1].move, &m2 = at[2].move;
+        const Rational change =
+            m0 * length_of(1, 2) + m1 * length_of(2, 0) + m2 * length_of(0, 1) + 2 * (m0 * m1 + m1 * m2 + m2 * m0);
         t.least_area = abs(t.area) - change;
         if (t.least_area <= 0) return t;
         t.facing = t.area > 0 ? 1 : -1;
         const Rational across = z1 * y2 - z2 * y1, up = z2 * x1 - z1 * x2;
         t.across = across / t.area, t.up = up / t.area;
-        const Rational steeper = 2 * t.move * (abs(z1) + abs(z2));
+        const Rational steeper = abs(z1) * (m2 + m0) + abs(z2) * (m1 + m0);
         t.bias = (std::max(Rational(abs(across)), Rational(abs(up))) + steeper) / t.least_area / 256;
         return t;
     }
@@ -363,9 +377,16 @@ class DepthCertificate {
         filed_.push_back(filed);
     }
 
-    // Triangles of one body cover the sample for certain, nearer than `nearness`.
+    // Triangles of one body cover the sample for certain, nearer than `nearness`. On the near plane places are known to
+    // many pixels, so that walls through it may do so only by their farther parts.
     [[nodiscard]] bool is_covered(const std::pair<std::uint32_t, std::uint32_t>& sample, const Point2& p,
                                   const Rational& nearness) const {
+        for (std::size_t cut_at = 0; cut_at < kCuts.size(); ++cut_at)
+            if (is_covered(sample, p, nearness, cut_at)) return true;
+        return false;
+    }
+    [[nodiscard]] bool is_covered(const std::pair<std::uint32_t, std::uint32_t>& sample, const Point2& p,
+                                  const Rational& nearness, std::size_t cut_at) const {
         const auto& tile = tiles_[std::size_t{sample.second / kTile} * columns_ + sample.first / kTile];
         for (std::size_t begin = 0, end = 0; begin < tile.size(); begin = end) {
             const std::uint32_t body = filed_[tile[begin]].body;
@@ -374,7 +395,7 @@ class DepthCertificate {
             for (std::size_t i = begin; i < end; ++i) {
                 const Filed& filed = filed_[tile[i]];
                 if (!is_close(filed, p, nearness)) continue;
-                for (const Piece& piece : pieces_of(body, filed.triangle))
+                for (const Piece& piece : pieces_of(body, filed.triangle, cut_at))
                     if (piece.facing != 0 && may_cover(piece, p) && lower_bound(piece, p) > nearness)
                         (piece.facing > 0 ? front : back).push_back(&piece);
             }
@@ -454,8 +475,8 @@ class DepthCertificate {
     std::uint32_t columns_;
     std::array<double, 2> pixels_;  // the size again
     std::vector<Filed> filed_;
-    std::vector<std::vector<std::uint32_t>> tiles_;  // of filed_
-    mutable std::unordered_map<std::uint64_t, std::vector<Piece>> pieces_;
+    std::vector<std::vector<std::uint32_t>> tiles_;                                        // of filed_
+    mutable std::array<std::unordered_map<std::uint64_t, std::vector<Piece>>, 3> pieces_;  // by the cut
     std::vector<std::vector<std::uint32_t>> vertices_;  // by body: the first at the same place
 };
 

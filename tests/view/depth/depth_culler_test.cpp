@@ -126,6 +126,8 @@ TEST_CASE("matrices and meshes that cannot be placed are listed whole, and spoil
     CHECK(culler.find_visible(none, {320, 180}).error().item == 1);
     CHECK(culler.find_visible(alone, {0, 180}).error().code == ErrorCode::out_of_range);
     CHECK(culler.find_visible(alone, {320, 20000}).error().code == ErrorCode::out_of_range);
+    for (const std::uint32_t samples : {0u, 3u, 5u, 16u})
+        CHECK(culler.find_visible(alone, {.samples = samples}).error().code == ErrorCode::out_of_range);
     CHECK(culler.find_visible({}, {1, 1})->empty());
     CHECK(culler.find_visible(alone, {1, 1}));
     DepthCuller moved = std::move(culler);
@@ -198,6 +200,14 @@ TEST_CASE("an object behind a wall is dropped as a whole, and one that may not h
     CHECK(culler.statistics().clusters_drawn == 1);
     CHECK(culler.statistics().triangles_drawn == 12);
     CHECK(culler.statistics().triangles_listed == static_cast<std::uint64_t>(std::popcount((*found)[0].triangles)));
+    // What is done for each of several samples is counted for each, and what is listed once.
+    REQUIRE(culler.find_visible(objects, {.width = 640, .height = 360, .samples = 4})->size() == 1);
+    CHECK(culler.statistics().objects_listed == 1);
+    CHECK(culler.statistics().objects_asked == 4 * 51);
+    CHECK(culler.statistics().clusters_asked == 4);
+    CHECK(culler.statistics().clusters_drawn == 4);
+    CHECK(culler.statistics().triangles_drawn == 4 * 12);
+    CHECK(culler.statistics().triangles_listed <= 12);
     objects[0].hides = false;
     CHECK(culler.find_visible(objects, {640, 360})->size() > 1);
     CHECK(culler.nearness(320, 180) > 0.0f);

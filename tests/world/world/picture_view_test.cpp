@@ -351,6 +351,8 @@ TEST_SUITE("world/picture_view") {
               ErrorCode::out_of_range);
         CHECK(error_of(world.view({.camera = Camera{}, .picture = depth::PictureView{20000, 180}}, result)).code ==
               ErrorCode::out_of_range);
+        CHECK(error_of(world.view({.camera = Camera{}, .picture = depth::PictureView{.samples = 3}}, result)).code ==
+              ErrorCode::out_of_range);
         CHECK(error_of(world.view(
                            {.matrix = ViewMatrix{world_to_clip(Camera{}), DepthRange::zero_to_one}, .picture = picture},
                            result))
