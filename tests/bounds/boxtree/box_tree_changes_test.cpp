@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 #include <hwy/targets.h>
 #include <algorithm>
+#include <counting_memory.hpp>
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/boxtree/rebuilder.hpp>
 #include <crofton/boxtree/structure.hpp>
@@ -229,6 +230,23 @@ TEST_SUITE("boxtree/box_tree changes") {
         CHECK(all.visits > 20 * 50000);
         CHECK(tree.validate().has_value());
         CHECK(holds_all(tree));
+    }
+
+    TEST_CASE("a tree that is built with room takes insertions without copying its arrays, and is the same tree") {
+        const oracle::Crowd crowd = oracle::random_crowd(20000, 0.0, 17);
+        const oracle::Crowd more = oracle::random_crowd(15, 0.0, 18);
+        const testing::CountingMemory memory;
+        std::vector<Vector<std::byte>> stored;
+        for (const std::size_t room : {0u, 400u}) {
+            BoxTree tree = *BoxTree::build(crowd.boxes, {.room = room});
+            const std::size_t before = memory.bytes_taken();
+            for (const Obb& box : more.boxes) REQUIRE(tree.insert(box).has_value());
+            const std::size_t taken = memory.bytes_taken() - before;
+            CHECK((taken < 20'000) == (room > 0));
+            stored.push_back(tree.serialise());
+        }
+        CHECK(stored[0] == stored[1]);
+        CHECK(!BoxTree::build(crowd.boxes, {.room = std::size_t{1} << 30}).has_value());
     }
 
     TEST_CASE("a step without bounds completes a rebuild, wherever it has come to") {

@@ -80,7 +80,7 @@ void Builder::add(ItemId id, const Obb& box) {
 }
 
 bool Builder::step(std::size_t budget, std::span<const Obb> boxes, const Movers& movers) {
-    if (!prepare(budget, boxes, movers)) return false;
+    if (!prepare_some(budget, boxes, movers)) return false;
     while (next_ < subtrees_.size()) {
         result_.leaves.resize(subtrees_[next_].first_leaf + std::size_t{subtrees_[next_].leaves});
         if (subtrees_[next_].is_leaf()) {
@@ -102,6 +102,10 @@ void Builder::build(std::size_t subtree, SubtreeBuilder& with, std::span<const O
 }
 
 bool Builder::prepare(std::size_t budget, std::span<const Obb> boxes, const Movers& movers) {
+    return prepare_some(budget, boxes, movers);
+}
+
+bool Builder::prepare_some(std::size_t& budget, std::span<const Obb> boxes, const Movers& movers) {
     if (phase_ == Phase::sort && pass_ == 0 && next_ == 0 && keys_.size() <= small_crowd_) place_all();
     while (phase_ != Phase::ready && budget > 0) budget -= std::min(budget, prepare_on(budget, boxes, movers));
     return phase_ == Phase::ready;

@@ -74,6 +74,7 @@ class Builder {
     void sort_keys(Executor& executor);
     void label_items(Executor& executor);
     void bound_clusters(std::span<const Obb> boxes, Executor& executor);
+    bool prepare_some(std::size_t& budget, std::span<const Obb> boxes, const Movers& movers);  // lessens the budget
     std::size_t prepare_on(std::size_t budget, std::span<const Obb> boxes, const Movers& movers);
     [[nodiscard]] std::array<std::uint32_t, 3> cell_of(const glm::dvec3& center) const;
     std::size_t sort_pass(std::size_t budget);
