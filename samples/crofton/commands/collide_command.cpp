@@ -180,8 +180,8 @@ int run_shapes(const CollideRequest& request, const RigidTransform& pose) {
     const RigidTransform origin;
     ShapeAnswer answer;
     if (request.mode == "cast") {
-        auto cast =
-            ask_cast({shape_a, origin}, {shape_b, pose}, {*velocity, *spin, shape_b.bounds().center()}, request.duration);
+        auto cast = ask_cast({shape_a, origin}, {shape_b, pose}, {*velocity, *spin, shape_b.bounds().center()},
+                             request.duration);
         if (!cast) return report_error("", cast.error());
         answer = std::move(*cast);
     } else {
