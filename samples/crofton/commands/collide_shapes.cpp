@@ -94,7 +94,7 @@ ShapeAnswer ask_hulls(const std::string& mode, const convex::ShapeAtPose& a, con
 }
 
 Result<ShapeAnswer> ask_cast(const convex::ShapeAtPose& a, const convex::ShapeAtPose& b, const convex::Motion& motion,
-                            double duration) {
+                             double duration) {
     const auto impact = convex::cast(a, {}, b, motion, {.duration = duration});
     if (!impact) return tl::unexpected<Error>(impact.error());
     constexpr const char* kNames[] = {"miss", "hit", "unresolved"};
