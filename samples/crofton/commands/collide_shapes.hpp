@@ -20,7 +20,7 @@ struct FileShape {
     }
 };
 [[nodiscard]] Result<FileShape> load_shape(const std::string& path, bool as_hull, int max_vertices,
-                                         const ReadOptions& options);
+                                           const ReadOptions& options);
 
 // "x,y,z"; empty: none. The option's name is for the error.
 [[nodiscard]] Result<glm::dvec3> vector_of(const std::string& option, const std::string& text);
@@ -30,9 +30,10 @@ struct ShapeAnswer {
     Json document;
 };
 // `mode` is any, all or distance.
-[[nodiscard]] ShapeAnswer ask_hulls(const std::string& mode, const convex::ShapeAtPose& a, const convex::ShapeAtPose& b);
+[[nodiscard]] ShapeAnswer ask_hulls(const std::string& mode, const convex::ShapeAtPose& a,
+                                    const convex::ShapeAtPose& b);
 // B moves. Errors: of convex::cast.
 [[nodiscard]] Result<ShapeAnswer> ask_cast(const convex::ShapeAtPose& a, const convex::ShapeAtPose& b,
-                                          const convex::Motion& motion, double duration);
+                                           const convex::Motion& motion, double duration);
 
 }  // namespace crofton::cli

@@ -9,9 +9,9 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "shape_data.hpp"
 #include "convex_pairs.hpp"
 #include "exact_shapes.hpp"
+#include "shape_data.hpp"
 
 namespace crofton::cli {
 namespace {
