@@ -26,7 +26,7 @@ using std::chrono::milliseconds;
 
 // After the first signal: to end the long work; to write a file, and to put results together. A second signal that
 // comes sooner than `kOneSignal` is the same one, sent to the process and to its group.
-constexpr milliseconds kToEndWork{1300}, kToFinish{120'000}, kOneSignal{300};
+constexpr milliseconds kToEndWork{1600}, kToFinish{120'000}, kOneSignal{300};
 
 std::atomic<int> signals{0};
 std::atomic<bool> ends_by_itself{false}, is_finishing{false};

@@ -167,7 +167,8 @@ struct Projections {
         nearest = hn::Min(nearest, hn::Set(d, within.nearest));
     }
 
-    HWY_INLINE void store(Projection* to) const {
+    // Writes the first `count`, or all.
+    HWY_INLINE void store(Projection* to, std::size_t count = kTile) const {
         const DF d;
         const hn::RebindToSigned<DF> integers;
         const auto nothing = hn::Or(hn::Gt(x0, x1), hn::Gt(y0, y1));
@@ -179,6 +180,16 @@ struct Projections {
         const VF x = pack(hn::IfThenElse(nothing, one, x0), hn::IfThenElse(nothing, zero, x1));
         const VF y = pack(hn::IfThenElse(nothing, one, y0), hn::IfThenElse(nothing, zero, y1));
         static_assert(sizeof(Projection) == 4 * sizeof(float));
+        if (count < hn::Lanes(d)) {
+            alignas(32) float parts[4][kTile];
+            hn::Store(x, d, parts[0]), hn::Store(y, d, parts[1]);
+            hn::Store(nearest, d, parts[2]), hn::Store(least_w, d, parts[3]);
+            for (std::size_t i = 0; i < count; ++i) {
+                const float one_of_them[4] = {parts[0][i], parts[1][i], parts[2][i], parts[3][i]};
+                std::memcpy(to + i, one_of_them, sizeof one_of_them);
+            }
+            return;
+        }
         alignas(32) float raw[4 * kTile];
         hn::StoreInterleaved4(x, y, nearest, least_w, d, raw);
         std::memcpy(to, raw, hn::Lanes(d) * sizeof(Projection));
@@ -311,9 +322,7 @@ HWY_INLINE void project_some_objects(const PictureData& picture, const DepthObje
     Projections found = project(picture, ClipBoxes::of<true>(box));
     found.x1 = hn::IfThenElse(placed, found.x1, hn::Set(d, -1.0f));
     found.least_w = hn::IfThenElse(placed, found.least_w, hn::Set(d, -1.0f));
-    alignas(32) Projection all[kTile];
-    found.store(all);
-    std::memcpy(to, all, std::min(count, hn::Lanes(d)) * sizeof(Projection));
+    found.store(to, count);
 }
 
 }  // namespace crofton::depth::HWY_NAMESPACE
