@@ -227,7 +227,7 @@ void add_bake_command(CommandLine& line) {
         "Examples:\n"
         "  crofton bake level.wad --map MAP01 -o map01.crofton\n"
         "  crofton bake map01.crofton\n"
-        "  crofton bake town --instances 100000 --regions 8x8 --folder town --threads 0 && crofton bake town\n"
+        "  crofton bake town --instances 100000 --regions 8x8 --folder regions --threads 0 && crofton bake regions\n"
         "  crofton frames map01.crofton --camera street --occlude\n"
         "  crofton frames level.wad --map MAP01 --occlude --baked map01.crofton\n"
         "  crofton bake town --instances 1000000 -o town.crofton && crofton bake town.crofton --threads 0");
