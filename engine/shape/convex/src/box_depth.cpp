@@ -66,8 +66,8 @@ bool BoxDepth::set_points_at_face() {
         set_points(of_a ? foot : deepest_.on_a, of_a ? deepest_.on_b : foot);
         return true;
     }
-    const BoxClip clip({pair_.a, pair_.pose_a}, {pair_.b, pair_.pose_b}, axes_, of_a,
-                       axes_.face_towards_other(least_.number), depth_.normal);
+    const ShapeAtPose a{pair_.a, pair_.pose_a}, b{pair_.b, pair_.pose_b};
+    const BoxClip clip(a, b, axes_, of_a, axes_.face_towards_other(least_.number), depth_.normal);
     if (!(clip.deepest() >= least_.extent - kBeside * pair_.size)) return false;
     const glm::dvec3 place = of_a ? clip.deepest_place() : clip.deepest_place() + pair_.offset;
     set_points(of_a ? place : place + way, of_a ? place - way : place);
