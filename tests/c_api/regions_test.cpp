@@ -174,12 +174,12 @@ TEST_SUITE("capi/regions") {
         CHECK(hit_at(10.0, 0.0).t == 8.0);
         CHECK(hit_at(20.0, 0.0).t == 8.0);
 
+        objects[1].shape = nullptr;
+        objects[2].shape = nullptr;
         objects[1].mesh = 1;
         CHECK(crofton_region_prepare(objects.data(), objects.size(), &options, nullptr, &made) != CROFTON_OK);
         CHECK(crofton_last_error_item() == 1);
         objects[1].mesh = CROFTON_NONE;
-        objects[1].shape = nullptr;
-        objects[2].shape = nullptr;
         options.meshes = nullptr;
         CHECK(crofton_region_prepare(objects.data(), objects.size(), &options, nullptr, &made) ==
               CROFTON_INVALID_ARGUMENT);

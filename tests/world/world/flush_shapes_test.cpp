@@ -161,7 +161,9 @@ TEST_SUITE("world/flush_shapes") {
         const Sliders sliders(random);
         for (int round = 0; round < 60; ++round) {
             CAPTURE(round);
-            // Not of triangulated tiles, whose corners are floats: cracks between them may be as wide as the gap.
+            // Not of triangulated tiles, whose corners are floats: cracks between them may be as wide as the gap. Those
+            // of prisms are floats, too. An edge at a crack turns the normal by the crack's width over the gap.
+            const double crack = round % 4 == 3 ? 0x1p-22 : 0.0;
             const Floor floor = strips(
                 random,
                 std::array{Tiles::boxes, Tiles::turned_boxes, Tiles::hulls, Tiles::prisms}[std::size_t(round % 4)],
@@ -193,7 +195,7 @@ TEST_SUITE("world/flush_shapes") {
                 CAPTURE(lattice);
                 const auto hit = world.cast(mover, from, {velocity, {}, {}}, {}).value();
                 REQUIRE(hit.has_value());
-                CHECK(glm::length(hit->normal + frame.rotation[1]) < 1.7453e-3);
+                CHECK(glm::length(hit->normal + frame.rotation[1]) < 1.7453e-3 + crack / gap);
                 const double left = gap - hit->time * fall;
                 CHECK(left >= -1e-9);
                 CHECK(left <= 1e-6);
