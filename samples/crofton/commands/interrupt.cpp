@@ -10,6 +10,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <ctime>
 #include <initializer_list>
 #include <mutex>
 #include <optional>
@@ -24,9 +25,10 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-// After the first signal: to end the long work; to write a file, and to put results together. A second signal that
-// comes sooner than `kOneSignal` is the same one, sent to the process and to its group.
-constexpr milliseconds kToEndWork{1600}, kToFinish{120'000}, kOneSignal{300};
+// After the first signal: to end the long work; at most, where others keep the processor busy; to write a file, and to
+// put results together. A second signal that comes sooner than `kOneSignal` is the same one, sent to the process and to
+// its group.
+constexpr milliseconds kToEndWork{1600}, kAtMostToEndWork{8000}, kToFinish{120'000}, kOneSignal{300};
 
 std::atomic<int> signals{0};
 std::atomic<bool> ends_by_itself{false}, is_finishing{false};
@@ -66,7 +68,7 @@ class Watch {
                 if (why == kGoodbye) return;
                 hear_signal();
             }
-            if (first_ && Clock::now() >= deadline()) end_if_nothing_is_written();
+            if (first_ && Clock::now() >= deadline() && has_had_its_time()) end_if_nothing_is_written();
             show_progress();
         }
     }
@@ -84,9 +86,16 @@ class Watch {
         return *first_ + (is_finishing ? kToFinish : kToEndWork);
     }
 
+    // Long work gets its time on the processor: else a busy machine would lose what there is.
+    [[nodiscard]] bool has_had_its_time() const {
+        if (!ends_by_itself || is_finishing || Clock::now() >= *first_ + kAtMostToEndWork) return true;
+        return std::chrono::duration<double>(kToEndWork).count() * CLOCKS_PER_SEC <=
+               static_cast<double>(std::clock() - used_at_first_);
+    }
+
     void hear_signal() {
         if (first_ && Clock::now() >= *first_ + kOneSignal) end_program();
-        if (!first_) first_ = Clock::now();
+        if (!first_) first_ = Clock::now(), used_at_first_ = std::clock();
     }
 
     void end_if_nothing_is_written() const {
@@ -95,6 +104,7 @@ class Watch {
     }
 
     std::optional<Clock::time_point> first_;
+    std::clock_t used_at_first_ = 0;
 };
 
 }  // namespace
