@@ -223,8 +223,13 @@ void ContactFinder::find_contacts(const ObjectTable& table, const SpatialIndex& 
     });
 }
 
-bool ContactFinder::meet(const Object& a, const Obb& box_a, const Object& b, const Obb& box_b) {
-    return bounds_meet(a, box_a, b, box_b);
+bool ContactFinder::meet(const Bounded& a, const Bounded& b) const {
+    if (options_.contact_margin > 0.0 && (a.has_shape || b.has_shape)) {
+        // Two shapes are asked as far as the contact margin, beyond boxes and spheres.
+        if (a.has_shape && b.has_shape) return true;
+        if (!collide::intersects(a.box, b.box)) return false;
+    }
+    return bounds_meet(a.object, a.box, b.object, b.box);
 }
 
 void ContactFinder::touch_bounds(const Object& a, const Obb& box_a, const Object& b, const Obb& box_b,
@@ -350,17 +355,13 @@ Result<void> ContactFinder::update(const ObjectTable& table, SpatialIndex& index
     const auto has_sphere = [&](std::uint32_t a, std::uint32_t b) {
         return table.objects[a].kind == BoundKind::sphere || table.objects[b].kind == BoundKind::sphere;
     };
-    const auto meet = [&](std::uint32_t a, std::uint32_t b) {
+    const auto meet_by_id = [&](std::uint32_t a, std::uint32_t b) {
         if (!(options_.contact_margin > 0.0) && !has_sphere(a, b)) return true;
-        const bool shape_a = shapes_of.has(a), shape_b = shapes_of.has(b);
-        // Two shapes are asked as far as the contact margin, beyond boxes and spheres.
-        if (options_.contact_margin > 0.0 && shape_a && shape_b) return true;
-        const Obb &box_a = index.box(a), &box_b = index.box(b);
-        if (options_.contact_margin > 0.0 && (shape_a || shape_b) && !collide::intersects(box_a, box_b)) return false;
-        return bounds_meet(table.objects[a], box_a, table.objects[b], box_b);
+        return meet({table.objects[a], index.box(a), shapes_of.has(a)},
+                    {table.objects[b], index.box(b), shapes_of.has(b)});
     };
     const std::span<const Obb> boxes = has_own_boxes_ ? std::span<const Obb>(boxes_) : index.kept_boxes();
-    Result<void> found = broadphase_.update_moved(boxes, moved_, meet, filters_, executor);
+    Result<void> found = broadphase_.update_moved(boxes, moved_, meet_by_id, filters_, executor);
     note_pairs(table, changes);
     if (!options_.contacts) return found;
     const auto touched = changes.all_contacts ? broadphase_.pairs() : broadphase_.tested();

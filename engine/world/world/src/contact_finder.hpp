@@ -58,6 +58,13 @@ struct PairChanges {
     }
 };
 
+// An object with its box, which is also around its sphere.
+struct Bounded {
+    const Object& object;
+    const Obb& box;
+    bool has_shape;
+};
+
 class ContactFinder {
   public:
     explicit ContactFinder(const WorldOptions& options);
@@ -82,9 +89,10 @@ class ContactFinder {
     // Objects whose pairs the last update() has found again; they may be named more than once.
     [[nodiscard]] std::span<const std::uint32_t> moved() const { return moved_; }
 
-    // Whether two bounds meet whose boxes do; then how they touch. Of objects' triangles as well: a tree is that of a
-    // mesh or a box, and of a sphere only its pose is read.
-    [[nodiscard]] static bool meet(const Object& a, const Obb& box_a, const Object& b, const Obb& box_b);
+    // Whether two objects are a pair whose boxes are, wider by the contact margin around shapes.
+    [[nodiscard]] bool meet(const Bounded& a, const Bounded& b) const;
+    // How the bounds of a pair touch, or its triangles: a tree is that of a mesh or a box, and of a sphere only its
+    // pose is read.
     void touch_bounds(const Object& a, const Obb& box_a, const Object& b, const Obb& box_b, BoundTouch& touch) const;
     void touch_trees(const Object& a, const PosedTree& tree_a, const Object& b, const PosedTree& tree_b,
                      BoundTouch& touch);

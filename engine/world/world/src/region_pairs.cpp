@@ -73,8 +73,8 @@ const mesh::MeshTree* RegionPairs::tree_under(ObjectHandle object, const glm::dm
     auto at = std::lower_bound(trees_.begin(), trees_.end(), object,
                                [](const OwnTree& own, ObjectHandle asked) { return own.object < asked; });
     if (at == trees_.end() || at->object != object) {
-        auto built = std::make_unique<mesh::MeshTree>();
-        if (!build_under(linear, triangles, *built)) built.reset();
+        auto built = Owner<mesh::MeshTree>::make();
+        if (!build_under(linear, triangles, *built)) built = {};
         at = trees_.insert(at, OwnTree{object, std::move(built)});
     }
     return at->tree.get();
@@ -174,11 +174,7 @@ void World::State::add_region_pairs_of(std::uint32_t id) {
         if ((index.layers(id) & of_region.collides_with) == 0) return false;
         const Obb other_box = regions.box(other);
         if (!collide::intersects(collider, region_collider_box(other, other_box))) return false;
-        // Two shapes are asked as far as the contact margin, beyond boxes and spheres.
-        const bool shape = object_shapes.has(id), other_shape = regions.has_shape(other);
-        if (margin > 0.0 && shape && other_shape) return true;
-        if (margin > 0.0 && (shape || other_shape) && !collide::intersects(box, other_box)) return false;
-        return world::ContactFinder::meet(object, box, of_region, other_box);
+        return finder.meet({object, box, object_shapes.has(id)}, {of_region, other_box, regions.has_shape(other)});
     };
     Vector<std::uint32_t>& met = region_pairs_met;
     met.clear();

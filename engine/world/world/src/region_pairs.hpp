@@ -5,7 +5,6 @@
 #include <crofton/core/memory.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <crofton/world/answers.hpp>
-#include <memory>
 #include <span>
 
 #include "contact_finder.hpp"
@@ -62,7 +61,7 @@ class RegionPairs {
   private:
     struct OwnTree {
         ObjectHandle object;
-        std::unique_ptr<mesh::MeshTree> tree;
+        Owner<mesh::MeshTree> tree;
     };
     [[nodiscard]] Contact contact_of(const Entry& entry, ContactPhase phase) const;
     void list_ended();
