@@ -46,7 +46,8 @@ class Meshes {
         added.mesh.positions = view.positions;
         added.mesh.indices = view.indices;
         added.mesh.triangles = options_.triangles;
-        added.mesh.clusters = scene_.clusters(mesh) != nullptr;
+        added.mesh.precut = scene_.clusters(mesh);
+        added.mesh.clusters = added.mesh.precut != nullptr;
         added.mesh.one_sided = view.look.one_sided;
         if (kind != kNone) added.occluders = scene_.occluders()->kinds[kind];
         return place;
