@@ -129,7 +129,6 @@ class Splitter {
     bool run_some(std::uint32_t& at, std::uint32_t end, std::size_t cost, std::size_t& work, Visit visit);
     bool sort_pass(std::size_t& work);
     void write_keys(std::uint32_t begin, std::uint32_t end);
-    [[nodiscard]] bool skips_digit() const;
     bool choose_part();
     bool rate_axis(const Cost& cost, std::size_t& work);
     void rate_cuts(const Cost& cost);
