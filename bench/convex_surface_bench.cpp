@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Shapes that rest on surfaces, beside Bullet and ODE: boxes and capsules on the bunny, boxes on a height field of
-// 1025 x 1025 corners. Manifolds are asked for, frame after frame, with poses that tremble. `depth` is the mean of the
-// deepest point, in sizes of the shape. ODE stops at as many contacts as its caller has room for: 64, or `all`.
+// Compares manifolds of shapes that rest on surfaces with Bullet's and ODE's: boxes and capsules on the bunny, boxes on
+// a height field of 1025 x 1025 corners. The poses tremble from frame to frame. `depth` is the mean of the deepest
+// point, in sizes of the shape. ODE stops at as many contacts as its caller has room for: 64, or `all`.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>

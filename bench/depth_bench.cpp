@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Culling by depth: what it costs along a street path, how many triangles it passes, what 100,000 objects in view cost,
 // and what it costs to cut meshes into clusters. Scenes may be named; without names they are the town and, where the
-// shared data lies, a forest. Several threads are told by the time that passes, one by its processor time.
+// shared data lies, a forest. One thread is measured by processor time, several by wall time.
 #include <algorithm>
 #include <chrono>
 #include <cmath>

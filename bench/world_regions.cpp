@@ -125,7 +125,7 @@ void flight(Town& town, int frames) {
         all.size() + calm.size(), mean(calm), mean(all), all[all.size() * 99 / 100], all.back());
 }
 
-// Regions that come and go a hundred thousand times, beside a World that has what is there in the end.
+// Compares a World after 100,000 attachments with a fresh World that holds the same regions.
 void aging(int frames) {
     constexpr std::size_t kRegions = 1000;
     std::vector<RegionObject> objects;
